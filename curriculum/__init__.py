@@ -1,0 +1,1 @@
+"""What stands around contact.py: shared helpers, prose, gate, page, benchmarks and tests."""

@@ -1,0 +1,1 @@
+"""What every chapter of the course shares. Standard library only, and cheap to import."""

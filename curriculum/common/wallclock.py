@@ -1,0 +1,144 @@
+"""The ledger of measured wall-clock, /wallclock.csv: read it, show it, measure a row.
+
+    python -m curriculum.common.wallclock              # the table, as the chapter shows it
+    python -m curriculum.common.wallclock --measure    # time the default contact.py here, write the row
+
+Seven columns, no quoting: chapter,tier,wallclock_min,config_hash,commit,date,status. wallclock_min
+is in minutes, for a whole process (`python contact.py`, recording included, the median of several).
+status is MEASURED or PENDING; a PENDING row holds nothing else, and no time is ever guessed.
+"""
+
+import os
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+LEDGER = os.path.join(ROOT, "wallclock.csv")
+CHAPTER = "ch3.5-contact"
+COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", "status")
+SHOWN = ("cpu-laptop", "mps", "t4", "4090")       # tiers the course shows, measured or not
+
+
+def read(path=None):
+    """The ledger's rows, dicts of str by column. No file: no rows. Raises ValueError `file:line: what`."""
+    path = path or LEDGER
+    if not os.path.exists(path):
+        return []
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().splitlines()
+    if not lines or tuple(lines[0].split(",")) != COLUMNS:
+        raise ValueError(f"{path}:1: the header must be {','.join(COLUMNS)}")
+    rows = []
+    for number, line in enumerate(lines[1:], 2):
+        row = dict(zip(COLUMNS, line.split(",")))
+        trouble = _trouble(row) if line.count(",") == 6 else f"{line.count(',') + 1} columns, not 7"
+        if trouble is None and any((row["chapter"], row["tier"]) == (r["chapter"], r["tier"]) for r in rows):
+            trouble = "a second row of this chapter and tier"
+        if trouble:
+            raise ValueError(f"{path}:{number}: {trouble}")
+        rows.append(row)
+    return rows
+
+
+def _trouble(row):
+    """What is wrong with a row, or None."""
+    facts = [row[name] for name in ("wallclock_min", "config_hash", "commit", "date")]
+    if row["status"] == "PENDING":
+        return "a PENDING row claims a measurement" if any(facts) else None
+    if row["status"] != "MEASURED":
+        return f"status {row['status']!r}; allowed: MEASURED, PENDING"
+    if not all(facts):
+        return "a MEASURED row needs wallclock_min, config_hash, commit and date"
+    try:
+        return None if 0 < float(row["wallclock_min"]) < float("inf") else "wallclock_min must be > 0"
+    except ValueError:
+        return f"wallclock_min {row['wallclock_min']!r} is not a number"
+
+
+def lookup(chapter, tier, path=None):
+    """Measured minutes of a whole default run, or None where not measured."""
+    for row in read(path):
+        if (row["chapter"], row["tier"], row["status"]) == (chapter, tier, "MEASURED"):
+            return float(row["wallclock_min"])
+    return None
+
+
+def show(minutes):
+    """Minutes as text: two digits, and seconds beside them when that is the unit one feels."""
+    if minutes is None:
+        return "not yet measured"
+    return f"{minutes:.2g} min" + (f" ({60 * minutes:.2g} s)" if minutes < 1 else "")
+
+
+def render_line(chapter, tier, path=None):
+    """The banner's second line."""
+    minutes = lookup(chapter, tier, path)
+    if minutes is None:
+        return f"wall-clock on {tier}: not yet measured"
+    return f"expected wall-clock on {tier}: {show(minutes)}, measured"
+
+
+def measure(runs):
+    """Time `python contact.py` as a whole process: (median minutes, config hash).
+
+    The first run only warms the disk cache and is not counted. Raises RuntimeError when a run fails
+    or makes no recording: a run without rerun is not the default run.
+    """
+    import statistics
+    import subprocess
+    import sys
+    import tempfile
+    import time
+    script, times = os.path.join(ROOT, "contact.py"), []
+    with tempfile.TemporaryDirectory() as out:
+        for _ in range(runs + 1):
+            start = time.perf_counter()
+            run = subprocess.run([sys.executable, script, "--out", out], capture_output=True, text=True)
+            times.append(time.perf_counter() - start)
+            if run.returncode:
+                raise RuntimeError(f"contact.py failed: {run.stderr.strip()}")
+            if not os.path.exists(os.path.join(out, "contact.rrd")):
+                raise RuntimeError("the default run records, and rerun is missing: pip install rerun-sdk")
+    return statistics.median(times[1:]) / 60, run.stdout.split()[-1]
+
+
+def write_row(tier, minutes, config_hash, commit, date, path=None):
+    """Put a MEASURED row of this chapter into the ledger; other tiers and chapters stay as they are."""
+    from curriculum.common.files import write_whole
+    row = dict(zip(COLUMNS, (CHAPTER, tier, f"{minutes:.3g}", config_hash, commit, date, "MEASURED")))
+    rows = {(r["chapter"], r["tier"]): r for r in read(path)}
+    for name in SHOWN:
+        pending = dict.fromkeys(COLUMNS, "") | {"chapter": CHAPTER, "tier": name, "status": "PENDING"}
+        rows.setdefault((CHAPTER, name), pending)
+    rows[CHAPTER, tier] = row
+    lines = [",".join(COLUMNS)] + [",".join(r.values()) for r in rows.values()]
+    write_whole(path or LEDGER, "\n".join(lines) + "\n")
+    return row
+
+
+def main(argv=None):
+    """Show the ledger, or measure this machine's row. Returns the exit status."""
+    import datetime
+    import subprocess
+    import sys
+    from curriculum.common.arguments import Parser, number
+    from curriculum.common.device import cpu_tier
+    parser = Parser(prog="python -m curriculum.common.wallclock", description="The wall-clock ledger.")
+    parser.add_argument("--measure", action="store_true", help="time contact.py here and write the row")
+    parser.add_argument("--runs", type=number(int, low=3), default=9, help="counted runs (default: 9)")
+    args = parser.parse_args(argv)
+    if args.measure:
+        git = ["git", "-C", ROOT, "rev-parse", "--short", "HEAD"]
+        try:
+            minutes, config_hash = measure(args.runs)
+            commit = subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
+        except (RuntimeError, OSError, subprocess.CalledProcessError) as error:
+            print(f"nothing written: {error}", file=sys.stderr)
+            return 1
+        write_row(cpu_tier(), minutes, config_hash, commit, datetime.date.today().isoformat())
+    for row in read():
+        minutes = float(row["wallclock_min"]) if row["status"] == "MEASURED" else None
+        print(f"{row['tier']:<12}{show(minutes)}")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
