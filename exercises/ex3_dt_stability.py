@@ -32,8 +32,9 @@ def measure():
     scene = contact.build_scene("drop")
     runs = {name: {"quality": predict.quality(scene, dt, steps=2000)}
             for name, dt in (("drop", 0.002), ("drop-dt-0.03", 0.03))}
-    damped, undamped = contact.critical_dt(float(scene.mass[0]), 1e4, scene.damping)
-    runs["drop"]["stability"] = {"dt_crit_damped": damped, "dt_crit_penalty": undamped}
+    mass, stiffness = float(scene.mass[0]), 1e4
+    runs["drop"]["stability"] = {"dt_crit_damped": contact.critical_dt(mass, stiffness, scene.damping),
+                                 "dt_crit_penalty": contact.critical_dt(mass, stiffness, 0.0)}
     return runs
 
 

@@ -126,10 +126,13 @@ def main(argv=None):
     parser.add_argument("--runs", type=number(int, low=3), default=9, help="counted runs (default: 9)")
     args = parser.parse_args(argv)
     if args.measure:
-        git = ["git", "-C", ROOT, "rev-parse", "--short", "HEAD"]
+        def git(*words):
+            return subprocess.check_output(["git", "-C", ROOT, *words], text=True).strip()
         try:
+            if git("status", "--porcelain", "contact.py", "curriculum/common"):
+                raise RuntimeError("contact.py or curriculum/common differs from the commit; commit it first")
             minutes, config_hash = measure(args.runs)
-            commit = subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
+            commit = git("rev-parse", "--short", "HEAD")
         except (RuntimeError, OSError, subprocess.CalledProcessError) as error:
             print(f"nothing written: {error}", file=sys.stderr)
             return 1
