@@ -31,11 +31,13 @@ def check_prediction(name, exercise):
     runs = exercise.measure()
     numbers = Numbers(runs=runs)
     for key, (low, high) in FACTS[name]["bands"].items():
-        assert low <= numbers.value(key) <= high, f"{key} is {numbers.value(key)}, outside {low} to {high}"
+        value = numbers.value(key)
+        assert low <= value <= high, f"{key} is {value}, outside {low} to {high}"
     for claim in FACTS[name]["holds"]:
         assert numbers.holds(claim), f"{claim} does not hold"
     if exercise.PREDICTION != FACTS[name]["answer"]:
-        pytest.fail(f"{exercise.table(runs)}\n\n{predict.verdict(name, exercise, runs)}", pytrace=False)
+        said = f"{exercise.table(runs)}\n\n{predict.verdict(name, exercise, runs)}"
+        pytest.fail(said, pytrace=False)
 
 
 def test_ex1_prediction():
@@ -52,9 +54,20 @@ def compare(blank, hint, **inputs):
     got, expected = getattr(ex2, blank)(**inputs), getattr(contact, blank)(**inputs)
     if got is ...:
         pytest.skip(f"ex2: {blank} is still a blank")
-    if not (isinstance(got, (int, float)) and abs(got - expected) <= FACTS["ex2"]["within"]):
-        pytest.fail(f"{call}\n  got       {got!r}\n  expected  {expected!r}\n  where to look: {blank} in "
-                    f"exercises/ex2_completion_contact.py, the sign table in contact.py, or {HINT} {hint}", pytrace=False)
+    if not equal(got, expected):
+        fail(call, got, expected, f"{blank} in exercises/ex2_completion_contact.py, the sign table "
+             f"at the top of contact.py, or {HINT} {hint}")
+
+
+def equal(got, expected):
+    """Whether it is a number, and that number but for the last bits."""
+    return isinstance(got, (int, float)) and abs(got - expected) <= FACTS["ex2"]["within"]
+
+
+def fail(call, got, expected, where):
+    """Fail with what a learner needs, and no traceback."""
+    pytest.fail(f"{call}\n  got       {got!r}\n  expected  {expected!r}\n  where to look: {where}",
+                pytrace=False)
 
 
 @pytest.mark.parametrize("depth, v_n, hint", [
@@ -66,21 +79,21 @@ def test_ex2_penalty_normal_force(depth, v_n, damping, hint):
 
 
 @pytest.mark.parametrize("lam, dlam, hint", [
-    (0.0, 0.0, 3), (0.0, 0.3, 3), (0.2, 0.3, 3), (0.0, -0.3, 3), (0.2, -0.5, 3), (0.2, -0.2, 4), (0.2, -0.1, 4)])
+    (0.0, 0.0, 3), (0.0, 0.3, 3), (0.2, 0.3, 3), (0.0, -0.3, 3), (0.2, -0.5, 3),
+    (0.2, -0.2, 4), (0.2, -0.1, 4)])
 def test_ex2_project_impulse(lam, dlam, hint):
     compare("project_impulse", hint, lam=lam, dlam=dlam)
 
 
 @pytest.mark.parametrize("v", [(0.0, -1.0), (0.4, -1.0), (5.0, -1.0), (0.0, 0.0), (0.0, 1.0)])
 def test_ex2_two_contacts_at_once(v):
-    """A ball (0) in the groove between two that nothing moves (1 and 2): what one pushes, the other need not."""
+    """A ball (0) in the groove of two that nothing moves (1, 2): they share the push."""
     compare("project_impulse", 3, lam=0.1, dlam=0.1)
     groove = [(0, 1, 0.3, 0.91 ** 0.5, 0.0), (0, 2, -0.3, 0.91 ** 0.5, 0.0)]
     problem = ([v[0], 0.0, 0.0], [v[1], 0.0, 0.0]), [1.0, 0.0, 0.0], groove, [0.0, 0.0], 50
     _, expected = contact.solve_contacts(*problem)
     with ex2.yours():
         _, got = contact.solve_contacts(*problem)
-    if not all(isinstance(a, float) and abs(a - b) <= FACTS["ex2"]["within"] for a, b in zip(got, expected)):
-        pytest.fail(f"solve_contacts with your project_impulse, one ball in a groove of two, v = {v}\n"
-                    f"  got       lam = {got}\n  expected  lam = {expected}\n  where to look: project_impulse in "
-                    f"exercises/ex2_completion_contact.py, or {HINT} 4", pytrace=False)
+    if not all(map(equal, got, expected)):
+        fail(f"solve_contacts with your project_impulse (a ball in a groove of two, v = {v})",
+             got, expected, f"project_impulse in exercises/ex2_completion_contact.py, or {HINT} 4")

@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 CHECK = "python -m curriculum.regions"
 BEGIN = re.compile(r"# --- region: ([a-z][a-z0-9_]*) ---")
 END = "# --- endregion ---"
-LOOKS_LIKE_ONE = re.compile(r"\s*#\s*(-+\s*(end)?\s*region\b.*|(end)?region\b:?\s*\w*\s*)", re.IGNORECASE)
+LOOKS_LIKE_ONE = re.compile(r"\s*#\s*(-+\s*(end)?\s*region\b.*|(end)?region\b:?\s*\w*\s*)", re.I)
 
 
 class Region(NamedTuple):
@@ -42,7 +42,7 @@ class Region(NamedTuple):
 
 
 def scan(path):
-    """(regions by name in reading order, problems): each problem reads `file:line: what; repair: command`."""
+    """(regions by name in reading order, problems as `file:line: what; repair: command`)."""
     problems = []
 
     def problem(line, what, repair=f"edit it, then {CHECK}"):
@@ -53,7 +53,8 @@ def scan(path):
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        problem(line, f"byte {data[error.start]:#x} is not UTF-8", f"save it as UTF-8, then {CHECK}")
+        problem(line, f"byte {data[error.start]:#x} is not UTF-8",
+                f"save it as UTF-8, then {CHECK}")
         return {}, problems
     if "\r" in text:
         line = text.count("\n", 0, text.index("\r")) + 1
@@ -64,11 +65,13 @@ def scan(path):
     for number, line in enumerate(lines, 1):
         begin = BEGIN.fullmatch(line)
         if begin and name is not None:
-            problem(number, f"region {begin[1]} begins inside region {name}, begun in line {first - 1}")
+            problem(number, f"region {begin[1]} begins inside region {name}, begun in line "
+                            f"{first - 1}")
         if begin:
             name, first = begin[1], number + 1
             if name in regions:
-                problem(number, f"a second region {name}; the other begins in line {regions[name].first - 1}")
+                problem(number, f"a second region {name}; the other begins in line "
+                                f"{regions[name].first - 1}")
         elif line == END and name is None:
             problem(number, "endregion, but no region is open")
         elif line == END:
@@ -78,7 +81,8 @@ def scan(path):
             regions.setdefault(name, Region(name, first, body))
             name = None
         elif LOOKS_LIKE_ONE.fullmatch(line):
-            problem(number, f"unknown marker {line.strip()!r}; allowed: '# --- region: NAME ---', '{END}'")
+            problem(number, f"unknown marker {line.strip()!r}; allowed: '# --- region: NAME ---', "
+                            f"'{END}'")
         elif name is None:
             outside.append((number, line))
     if name is not None:
@@ -103,7 +107,7 @@ def _docstring_lines(text):
 
 
 def find(path=ROOT / "contact.py"):
-    """The regions by name, in reading order. Raises ValueError, one problem a line, when malformed."""
+    """The regions by name, in reading order. Raises ValueError, one problem a line."""
     regions, problems = scan(path)
     if problems:
         raise ValueError("\n".join(problems))
@@ -124,7 +128,8 @@ def main(argv=None):
     elif len(names) == 1 and names[0] in regions:
         print(regions[names[0]].text, end="")
     else:
-        print(f"given {' '.join(names)!r}, allowed: nothing or one of {', '.join(regions)}", file=sys.stderr)
+        print(f"given {' '.join(names)!r}, allowed: nothing or one of {', '.join(regions)}",
+              file=sys.stderr)
         return 2
     return 0
 

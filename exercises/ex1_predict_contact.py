@@ -6,7 +6,7 @@ A ball falls about a metre onto the table and comes to rest, once with each mode
 height. Measured is how deep it is in the table at the worst moment and at the end, in ball radii r.
 Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
 
-    python exercises/ex1_predict_contact.py             # add --hint 1 (2, 3) for a question that helps
+    python exercises/ex1_predict_contact.py     # add --hint 1 (2, 3) for a question that helps
     pytest checks.py -k ex1
 """
 
@@ -20,8 +20,8 @@ CHOICES = {
     "A": "Nothing that matters: both stop the ball at the surface. A contact is a contact.",
     "B": "The penalty ball never gets into the table but bounces for ever; "
          "the lcp ball gets in and settles.",
-    "C": "The penalty ball gets much deeper into the table on landing and also comes to rest inside it; "
-         "the lcp ball ends on the surface.",
+    "C": "The penalty ball gets much deeper into the table on landing and also comes to rest "
+         "inside it; the lcp ball ends on the surface.",
 }
 WHY_PROMPT = "One sentence: when the ball lies still, how does each model arrive at a push of m g?"
 

@@ -6,7 +6,7 @@ The drop again, same ball, same spring, with the step raised from 0.002 s to 0.0
 highest energy of the run above the energy at the start, in units of the energy at the start.
 Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
 
-    python exercises/ex3_dt_stability.py                # add --hint 1 (2, 3) for a question that helps
+    python exercises/ex3_dt_stability.py        # add --hint 1 (2, 3) for a question that helps
     pytest checks.py -k ex3
 """
 
@@ -21,7 +21,7 @@ CHOICES = {
     "B": "The penalty ball gains energy many times over; the lcp ball stays bounded.",
     "C": "Neither blows up: a longer step costs accuracy, the ball only sinks in a little more.",
 }
-WHY_PROMPT = "One sentence: what happens within one step, between two looks at the depth, in each model?"
+WHY_PROMPT = "One sentence: in each model, what happens between two looks at the depth?"
 
 PREDICTION = None       # "A", "B" or "C"
 WHY = ""                # your sentence
@@ -32,17 +32,18 @@ def measure():
     scene = contact.build_scene("drop")
     runs = {name: {"quality": predict.quality(scene, dt, steps=2000)}
             for name, dt in (("drop", 0.002), ("drop-dt-0.03", 0.03))}
-    mass, stiffness = float(scene.mass[0]), 1e4
-    runs["drop"]["stability"] = {"dt_crit_damped": contact.critical_dt(mass, stiffness, scene.damping),
-                                 "dt_crit_penalty": contact.critical_dt(mass, stiffness, 0.0)}
+    for name, damping in (("dt_crit_damped", scene.damping), ("dt_crit_penalty", 0.0)):
+        limit = contact.critical_dt(float(scene.mass[0]), 1e4, damping)
+        runs["drop"].setdefault("stability", {})[name] = limit
     return runs
 
 
 def table(runs):
     """The measurement as text."""
     rows = [f"{'energy gained':<16}{'dt = 0.002 s':>14}{'dt = 0.03 s':>14}"]
-    rows += [f"{model:<16}{runs['drop']['quality'][model]['energy_excess']:>14.4g}"
-             f"{runs['drop-dt-0.03']['quality'][model]['energy_excess']:>14.4g}" for model in ("penalty", "lcp")]
+    for model in ("penalty", "lcp"):
+        gained = [run["quality"][model]["energy_excess"] for run in runs.values()]
+        rows.append(f"{model:<16}" + "".join(f"{value:>14.4g}" for value in gained))
     return "\n".join(rows)
 
 

@@ -1,4 +1,4 @@
-"""What ex1 and ex3 share: commit to a choice, then measure, then compare. Nothing to fill in here."""
+"""What ex1 and ex3 share: commit to a choice, then measure, then compare. Nothing to fill in."""
 
 import os
 import sys
@@ -23,7 +23,7 @@ def missing(exercise):
     """What is still to be done before the run, or None."""
     file, choices = os.path.relpath(exercise.__file__), ", ".join(map(repr, exercise.CHOICES))
     if exercise.PREDICTION is None:
-        return f"no prediction yet: set PREDICTION in {file} to one of {choices}, and WHY to your reason"
+        return f"no prediction yet: in {file} set PREDICTION to one of {choices} and say WHY"
     if exercise.PREDICTION not in exercise.CHOICES:
         return f"PREDICTION in {file}: given {exercise.PREDICTION!r}, allowed: {choices}"
     if not exercise.WHY.strip():
@@ -38,8 +38,9 @@ def verdict(name, exercise, runs):
     lines = [f"You predicted {mine}, because: {exercise.WHY.strip()}",
              "That is what happens." if mine == answer else f"What happens is {answer}."]
     for choice in [answer] + [each for each in exercise.CHOICES if each != answer]:
-        reason = f"{'Why' if choice == answer else 'Why not'} {choice}: {numbers.render(facts['reveal'][choice])}"
-        lines += ["", textwrap.fill(reason, 96)]
+        reason = numbers.render(facts["reveal"][choice])
+        word = "Why" if choice == answer else "Why not"
+        lines += ["", textwrap.fill(f"{word} {choice}: {reason}", 96)]
     return "\n".join(lines)
 
 

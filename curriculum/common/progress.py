@@ -14,7 +14,8 @@ class steps:
     def __init__(self, total, label):
         self.total, self.label = total, label
         self.start = perf_counter()
-        self.next = self.start + 1.0 if sys.stderr is not None and sys.stderr.isatty() else float("inf")
+        shown = sys.stderr is not None and sys.stderr.isatty()
+        self.next = self.start + 1.0 if shown else float("inf")
         self.drawn = False
 
     def __call__(self, done):
@@ -23,7 +24,8 @@ class steps:
         now = perf_counter()
         if now >= self.next and done > 0:
             left = (now - self.start) / done * (self.total - done)
-            sys.stderr.write(f"\r{self.label}: {done} of {self.total} steps, {left:.0f} s left \x1b[K")
+            line = f"{self.label}: {done} of {self.total} steps, {left:.0f} s left "
+            sys.stderr.write(f"\r{line}\x1b[K")
             sys.stderr.flush()
             self.next, self.drawn = now + 0.1, True
 

@@ -1,7 +1,7 @@
 """The ledger of measured wall-clock, /wallclock.csv: read it, show it, measure a row.
 
     python -m curriculum.common.wallclock              # the table, as the chapter shows it
-    python -m curriculum.common.wallclock --measure    # time the default contact.py here, write the row
+    python -m curriculum.common.wallclock --measure    # time the default contact.py, write the row
 
 Seven columns, no quoting: chapter,tier,wallclock_min,config_hash,commit,date,status. wallclock_min
 is in minutes, for a whole process (`python contact.py`, recording included, the median of several).
@@ -18,7 +18,7 @@ SHOWN = ("cpu-laptop", "mps", "t4", "4090")       # tiers the course shows, meas
 
 
 def read(path=None):
-    """The ledger's rows, dicts of str by column. No file: no rows. Raises ValueError `file:line: what`."""
+    """The ledger's rows, dicts of str; none without a file. Raises ValueError `file:line: what`."""
     path = path or LEDGER
     if not os.path.exists(path):
         return []
@@ -26,15 +26,16 @@ def read(path=None):
         lines = file.read().splitlines()
     if not lines or tuple(lines[0].split(",")) != COLUMNS:
         raise ValueError(f"{path}:1: the header must be {','.join(COLUMNS)}")
-    rows = []
+    rows, seen = [], set()
     for number, line in enumerate(lines[1:], 2):
         row = dict(zip(COLUMNS, line.split(",")))
         trouble = _trouble(row) if line.count(",") == 6 else f"{line.count(',') + 1} columns, not 7"
-        if trouble is None and any((row["chapter"], row["tier"]) == (r["chapter"], r["tier"]) for r in rows):
+        if trouble is None and (row["chapter"], row["tier"]) in seen:
             trouble = "a second row of this chapter and tier"
         if trouble:
             raise ValueError(f"{path}:{number}: {trouble}")
         rows.append(row)
+        seen.add((row["chapter"], row["tier"]))
     return rows
 
 
@@ -48,7 +49,8 @@ def _trouble(row):
     if not all(facts):
         return "a MEASURED row needs wallclock_min, config_hash, commit and date"
     try:
-        return None if 0 < float(row["wallclock_min"]) < float("inf") else "wallclock_min must be > 0"
+        fits = 0 < float(row["wallclock_min"]) < float("inf")
+        return None if fits else "wallclock_min must be > 0"
     except ValueError:
         return f"wallclock_min {row['wallclock_min']!r} is not a number"
 
@@ -79,8 +81,8 @@ def render_line(chapter, tier, path=None):
 def measure(runs):
     """Time `python contact.py` as a whole process: (median minutes, config hash).
 
-    The first run only warms the disk cache and is not counted. Raises RuntimeError when a run fails
-    or makes no recording: a run without rerun is not the default run.
+    The first run only warms the disk cache and the bytecode and is not counted. Raises RuntimeError
+    when a run fails or makes no recording: a run without rerun is not the default run.
     """
     import statistics
     import subprocess
@@ -88,30 +90,32 @@ def measure(runs):
     import tempfile
     import time
     script, times = os.path.join(ROOT, "contact.py"), []
+    env = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     with tempfile.TemporaryDirectory() as out:
         for _ in range(runs + 1):
             start = time.perf_counter()
-            run = subprocess.run([sys.executable, script, "--out", out], capture_output=True, text=True)
+            run = subprocess.run([sys.executable, script, "--out", out], env=env,
+                                 capture_output=True, text=True)
             times.append(time.perf_counter() - start)
             if run.returncode:
                 raise RuntimeError(f"contact.py failed: {run.stderr.strip()}")
             if not os.path.exists(os.path.join(out, "contact.rrd")):
-                raise RuntimeError("the default run records, and rerun is missing: pip install rerun-sdk")
+                raise RuntimeError("the default run records, and rerun is missing: "
+                                   "pip install rerun-sdk")
     return statistics.median(times[1:]) / 60, run.stdout.split()[-1]
 
 
 def write_row(tier, minutes, config_hash, commit, date, path=None):
-    """Put a MEASURED row of this chapter into the ledger; other tiers and chapters stay as they are."""
+    """Put a MEASURED row of this chapter into the ledger; other rows stay as they are."""
     from curriculum.common.files import write_whole
-    row = dict(zip(COLUMNS, (CHAPTER, tier, f"{minutes:.3g}", config_hash, commit, date, "MEASURED")))
+    values = CHAPTER, tier, f"{minutes:.3g}", config_hash, commit, date, "MEASURED"
     rows = {(r["chapter"], r["tier"]): r for r in read(path)}
     for name in SHOWN:
-        pending = dict.fromkeys(COLUMNS, "") | {"chapter": CHAPTER, "tier": name, "status": "PENDING"}
-        rows.setdefault((CHAPTER, name), pending)
-    rows[CHAPTER, tier] = row
+        pending = CHAPTER, name, "", "", "", "", "PENDING"
+        rows.setdefault((CHAPTER, name), dict(zip(COLUMNS, pending)))
+    rows[CHAPTER, tier] = dict(zip(COLUMNS, values))
     lines = [",".join(COLUMNS)] + [",".join(r.values()) for r in rows.values()]
     write_whole(path or LEDGER, "\n".join(lines) + "\n")
-    return row
 
 
 def main(argv=None):
@@ -121,16 +125,18 @@ def main(argv=None):
     import sys
     from curriculum.common.arguments import Parser, number
     from curriculum.common.device import cpu_tier
-    parser = Parser(prog="python -m curriculum.common.wallclock", description="The wall-clock ledger.")
-    parser.add_argument("--measure", action="store_true", help="time contact.py here and write the row")
-    parser.add_argument("--runs", type=number(int, low=3), default=9, help="counted runs (default: 9)")
+    parser = Parser(prog="python -m curriculum.common.wallclock",
+                    description="The wall-clock ledger.")
+    parser.add_argument("--measure", action="store_true", help="time contact.py, write the row")
+    parser.add_argument("--runs", type=number(int, low=3), default=9, help="counted runs (9)")
     args = parser.parse_args(argv)
     if args.measure:
         def git(*words):
             return subprocess.check_output(["git", "-C", ROOT, *words], text=True).strip()
         try:
             if git("status", "--porcelain", "contact.py", "curriculum/common"):
-                raise RuntimeError("contact.py or curriculum/common differs from the commit; commit it first")
+                raise RuntimeError("contact.py or curriculum/common differs from the commit; "
+                                   "commit it first")
             minutes, config_hash = measure(args.runs)
             commit = git("rev-parse", "--short", "HEAD")
         except (RuntimeError, OSError, subprocess.CalledProcessError) as error:

@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 # files
 
+
 def test_a_file_is_replaced_whole_and_nothing_else_is_left(tmp_path):
     path = tmp_path / "new folder" / "a.txt"
     files.write_whole(path, "old")
@@ -37,10 +38,15 @@ def test_a_failure_while_writing_keeps_the_old_file_and_removes_the_new(tmp_path
 def test_kill_9_in_mid_write_leaves_the_old_file_intact(tmp_path):
     path = tmp_path / "a.txt"
     files.write_whole(path, "old")
-    writer = ("import sys, time; from curriculum.common import files\n"
-              "with files.whole(sys.argv[1]) as temporary, open(temporary, 'w') as file:\n"
-              "    file.write('half' * 100000); file.flush(); print('writing', flush=True); time.sleep(60)")
-    process = subprocess.Popen([sys.executable, "-c", writer, str(path)], cwd=ROOT, stdout=subprocess.PIPE)
+    writer = (
+        "import sys, time; from curriculum.common import files\n"
+        "with files.whole(sys.argv[1]) as temporary, open(temporary, 'w') as file:\n"
+        "    file.write('half' * 100000); file.flush(); print('writing', flush=True)\n"
+        "    time.sleep(60)"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", writer, str(path)], cwd=ROOT, stdout=subprocess.PIPE
+    )
     assert process.stdout.readline() == b"writing\n"
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
@@ -54,26 +60,34 @@ def test_a_folder_that_cannot_be_written_gives_an_oserror_naming_the_file(tmp_pa
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(OSError, match="file/a.txt"):
         files.write_whole(tmp_path / "file" / "a.txt", "x")
-    assert files.why_unwritable(tmp_path / "file" / "deeper") == f"{tmp_path / 'file'} is not a folder"
+    assert (
+        files.why_unwritable(tmp_path / "file" / "deeper") == f"{tmp_path / 'file'} is not a folder"
+    )
     assert files.why_unwritable(tmp_path / "not" / "there" / "yet") is None
     assert os.listdir(tmp_path) == ["file"]
 
 
 @pytest.mark.skipif(os.name != "posix", reason="permissions are tested where there are users")
 def test_without_permission_the_error_names_the_file_and_nothing_is_written():
-    code = ("import os, sys\nfrom curriculum.common import files\nfolder = sys.argv[1]\n"
-            "if os.getuid() == 0: os.setuid(65534)\n"
-            "print(files.why_unwritable(folder))\n"
-            "try: files.write_whole(folder + '/a.txt', 'x')\nexcept PermissionError as error: print(error)")
+    code = (
+        "import os, sys\nfrom curriculum.common import files\nfolder = sys.argv[1]\n"
+        "if os.getuid() == 0: os.setuid(65534)\n"
+        "print(files.why_unwritable(folder))\n"
+        "try: files.write_whole(folder + '/a.txt', 'x')\n"
+        "except PermissionError as error: print(error)"
+    )
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o555)
-        run = subprocess.run([sys.executable, "-c", code, folder], cwd=ROOT, capture_output=True, text=True)
+        run = subprocess.run(
+            [sys.executable, "-c", code, folder], cwd=ROOT, capture_output=True, text=True
+        )
         assert os.listdir(folder) == []
     assert run.stdout.splitlines()[0] == f"no permission to write in {folder}", run.stderr
     assert f"'{folder}/a.txt'" in run.stdout.splitlines()[1]
 
 
 # arguments
+
 
 def parser():
     made = arguments.Parser(prog="try.py")
@@ -131,22 +145,37 @@ def ledger(tmp_path, *rows, header=HEADER):
 def test_a_measured_row_is_shown_in_minutes_and_seconds(tmp_path):
     path = ledger(tmp_path, ROW)
     assert wallclock.lookup("ch3.5-contact", "cpu-vm", path) == 0.0041
-    assert wallclock.render_line("ch3.5-contact", "cpu-vm", path) == \
-        "expected wall-clock on cpu-vm: 0.0041 min (0.25 s), measured"
+    assert (
+        wallclock.render_line("ch3.5-contact", "cpu-vm", path)
+        == "expected wall-clock on cpu-vm: 0.0041 min (0.25 s), measured"
+    )
 
 
 def test_a_pending_an_absent_row_and_no_ledger_are_all_not_yet_measured(tmp_path):
     path = ledger(tmp_path, "ch3.5-contact,t4,,,,,PENDING")
-    for chapter, tier, where in (("ch3.5-contact", "t4", path), ("ch3.5-contact", "mps", path),
-                                 ("ch0.1", "t4", path), ("ch3.5-contact", "t4", tmp_path / "none.csv")):
-        assert wallclock.render_line(chapter, tier, where) == f"wall-clock on {tier}: not yet measured"
+    for chapter, tier, where in (
+        ("ch3.5-contact", "t4", path),
+        ("ch3.5-contact", "mps", path),
+        ("ch0.1", "t4", path),
+        ("ch3.5-contact", "t4", tmp_path / "none.csv"),
+    ):
+        assert (
+            wallclock.render_line(chapter, tier, where) == f"wall-clock on {tier}: not yet measured"
+        )
 
 
-@pytest.mark.parametrize("row, what", [
-    ("ch3.5-contact,t4,0.1,,,,PENDING", "claims a measurement"), ("a,b,c", "3 columns, not 7"),
-    (ROW.replace("MEASURED", "GUESSED"), "status 'GUESSED'"), (ROW.replace("abc123", ""), "needs wallclock_min"),
-    (ROW.replace("0.0041", "fast"), "is not a number"), (ROW.replace("0.0041", "-1"), "must be > 0"),
-    (ROW + "\n" + ROW, "a second row")])
+@pytest.mark.parametrize(
+    "row, what",
+    [
+        ("ch3.5-contact,t4,0.1,,,,PENDING", "claims a measurement"),
+        ("a,b,c", "3 columns, not 7"),
+        (ROW.replace("MEASURED", "GUESSED"), "status 'GUESSED'"),
+        (ROW.replace("abc123", ""), "needs wallclock_min"),
+        (ROW.replace("0.0041", "fast"), "is not a number"),
+        (ROW.replace("0.0041", "-1"), "must be > 0"),
+        (ROW + "\n" + ROW, "a second row"),
+    ],
+)
 def test_a_broken_row_is_refused_with_its_line(tmp_path, row, what):
     with pytest.raises(ValueError, match=rf"wallclock.csv:[23]: .*{what}"):
         wallclock.read(ledger(tmp_path, row))
@@ -163,7 +192,9 @@ def test_writing_a_row_replaces_its_own_adds_pending_tiers_and_keeps_the_rest(tm
     rows = {(r["chapter"], r["tier"]): r for r in wallclock.read(path)}
     assert rows["ch3.5-contact", "cpu-vm"]["wallclock_min"] == "0.00512"
     assert rows["ch0.1-sim-loop", "t4"]["config_hash"] == "aa"
-    assert [tier for tier in wallclock.SHOWN if rows["ch3.5-contact", tier]["status"] == "PENDING"] == list(wallclock.SHOWN)
+    assert [
+        tier for tier in wallclock.SHOWN if rows["ch3.5-contact", tier]["status"] == "PENDING"
+    ] == list(wallclock.SHOWN)
 
 
 def test_the_banner_is_two_lines_and_names_the_device(capsys):
@@ -180,6 +211,7 @@ def test_a_machine_is_called_a_laptop_only_with_a_battery_and_no_hypervisor(monk
         monkeypatch.setattr(device.os.path, "exists", lambda _: False)
         monkeypatch.setattr(device.os, "listdir", lambda _: supplies)
         return device.cpu_tier()
+
     assert machine(b"flags: fpu hypervisor", ["BAT0"]) == "cpu-vm"
     assert machine(b"flags: fpu", ["AC", "BAT0"]) == "cpu-laptop"
     assert machine(b"flags: fpu", ["AC"]) == "cpu-desktop"
@@ -188,14 +220,19 @@ def test_a_machine_is_called_a_laptop_only_with_a_battery_and_no_hypervisor(monk
 
 
 def test_the_shared_helpers_import_only_the_standard_library_and_stay_light():
-    code = ("import sys, argparse, contextlib, re, math; before = set(sys.modules)\n"
-            "from curriculum.common import arguments, device, files, progress, wallclock\n"
-            "print(*sorted(m for m in set(sys.modules) - before if not m.startswith('curriculum')))")
-    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    code = (
+        "import sys, argparse, contextlib, re, math; before = set(sys.modules)\n"
+        "from curriculum.common import arguments, device, files, progress, wallclock\n"
+        "print(*sorted(m for m in set(sys.modules) - before if not m.startswith('curriculum')))"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     assert run.stdout.split() == []
 
 
 # progress
+
 
 class Terminal(io.StringIO):
     def isatty(self):

@@ -1,4 +1,4 @@
-"""The exercises themselves: untouched skips, the reference passes, every tempting wrong fill fails."""
+"""The exercises: untouched skips, the reference passes, every tempting wrong fill fails."""
 
 import re
 import shutil
@@ -21,12 +21,24 @@ from curriculum.numbers import Numbers, load_meta  # noqa: E402
 FACTS = load_meta()["exercises"]
 PREDICTED = {"ex1": ex1, "ex3": ex3}
 BLANKS = {"f_n": "f_n = ...", "new_lam": "new_lam = ..."}
-RIGHT = {"f_n": "f_n = max(0.0, stiffness * depth - damping * v_n)", "new_lam": "new_lam = max(0.0, lam + dlam)"}
+RIGHT = {
+    "f_n": "f_n = max(0.0, stiffness * depth - damping * v_n)",
+    "new_lam": "new_lam = max(0.0, lam + dlam)",
+}
 WRONG = {
     "penalty without the clamp": ("f_n", "f_n = stiffness * depth - damping * v_n"),
-    "penalty with the damper reversed": ("f_n", "f_n = max(0.0, stiffness * depth + damping * v_n)"),
-    "penalty with the damper's size only": ("f_n", "f_n = max(0.0, stiffness * depth - damping * abs(v_n))"),
-    "penalty clamping the spring alone": ("f_n", "f_n = max(0.0, stiffness * depth) - damping * v_n"),
+    "penalty with the damper reversed": (
+        "f_n",
+        "f_n = max(0.0, stiffness * depth + damping * v_n)",
+    ),
+    "penalty with the damper's size only": (
+        "f_n",
+        "f_n = max(0.0, stiffness * depth - damping * abs(v_n))",
+    ),
+    "penalty clamping the spring alone": (
+        "f_n",
+        "f_n = max(0.0, stiffness * depth) - damping * v_n",
+    ),
     "penalty without the damper": ("f_n", "f_n = max(0.0, stiffness * depth)"),
     "impulse without the clamp": ("new_lam", "new_lam = lam + dlam"),
     "impulse clamping the change": ("new_lam", "new_lam = lam + max(0.0, dlam)"),
@@ -42,8 +54,13 @@ def copy(tmp_path):
     for name in ("contact.py", "checks.py", "meta.yaml"):
         shutil.copy(ROOT / name, tmp_path)
     for name in ("exercises", "curriculum"):
-        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__", "tests", "bench",
-                                                                                    "stress", "page", "*.html"))
+        shutil.copytree(
+            ROOT / name,
+            tmp_path / name,
+            ignore=shutil.ignore_patterns(
+                "__pycache__", "tests", "bench", "stress", "page", "*.html"
+            ),
+        )
 
     def edit(file, old, new):
         path = tmp_path / "exercises" / file
@@ -54,20 +71,39 @@ def copy(tmp_path):
 
 
 def run(folder, *command):
-    return subprocess.run([sys.executable, "-B", *command], cwd=folder, capture_output=True, text=True)
+    return subprocess.run(
+        [sys.executable, "-B", *command], cwd=folder, capture_output=True, text=True
+    )
 
 
 def checks(folder, *options):
-    result = run(folder, "-m", "pytest", "checks.py", "-q", "-rs", "-p", "no:cacheprovider", "-c", "/dev/null",
-                 "--rootdir", str(folder), *options)
+    result = run(
+        folder,
+        "-m",
+        "pytest",
+        "checks.py",
+        "-q",
+        "-rs",
+        "-p",
+        "no:cacheprovider",
+        "-c",
+        "/dev/null",
+        "--rootdir",
+        str(folder),
+        *options,
+    )
     return result.returncode, result.stdout
 
 
 def test_untouched_every_check_skips_by_name_and_none_passes(copy):
     status, out = checks(copy[0])
     assert status == 0 and " passed" not in out and " failed" not in out, out
-    for said in ("ex1: no prediction yet", "ex2: penalty_normal_force is still a blank",
-                 "ex2: project_impulse is still a blank", "ex3: no prediction yet"):
+    for said in (
+        "ex1: no prediction yet",
+        "ex2: penalty_normal_force is still a blank",
+        "ex2: project_impulse is still a blank",
+        "ex3: no prediction yet",
+    ):
         assert said in out
 
 
@@ -94,8 +130,11 @@ def ex2_checks(monkeypatch):
         for function in ("penalty_normal_force", "project_impulse"):
             monkeypatch.setattr(module.ex2, function, space[function])
         results = []
-        for test in (module.test_ex2_penalty_normal_force, module.test_ex2_project_impulse,
-                     module.test_ex2_two_contacts_at_once):
+        for test in (
+            module.test_ex2_penalty_normal_force,
+            module.test_ex2_project_impulse,
+            module.test_ex2_two_contacts_at_once,
+        ):
             for case in cases(test):
                 try:
                     test(**case)
@@ -120,30 +159,43 @@ def cases(test):
 
 
 @pytest.mark.parametrize("name, line", WRONG.values(), ids=WRONG)
-def test_a_tempting_wrong_fill_fails_with_input_got_expected_and_where_to_look(ex2_checks, name, line):
+def test_a_tempting_wrong_fill_fails_with_input_got_expected_and_where_to_look(
+    ex2_checks, name, line
+):
     failed = [text for _, outcome, text in ex2_checks(name, line) if outcome == "failed"]
     assert failed
     for text in failed:
-        assert all(part in text for part in ("got ", "expected ", "where to look: ")) and "(" in text.split("\n")[0]
+        assert (
+            all(part in text for part in ("got ", "expected ", "where to look: "))
+            and "(" in text.split("\n")[0]
+        )
 
 
 @pytest.mark.parametrize("line", ["new_lam = lam + dlam", "new_lam = lam + max(0.0, dlam)"])
 def test_two_contacts_at_once_tell_the_clamp_on_the_total_from_the_others(ex2_checks, line):
-    assert "failed" in [outcome for test, outcome, _ in ex2_checks("new_lam", line) if "two_contacts" in test]
+    assert "failed" in [
+        outcome for test, outcome, _ in ex2_checks("new_lam", line) if "two_contacts" in test
+    ]
 
 
 def test_one_blank_filled_is_checked_while_the_other_still_skips(ex2_checks):
     outcomes = {(test, outcome) for test, outcome, _ in ex2_checks("f_n", RIGHT["f_n"])}
-    assert outcomes == {("test_ex2_penalty_normal_force", "passed"), ("test_ex2_project_impulse", "skipped"),
-                        ("test_ex2_two_contacts_at_once", "skipped")}
+    assert outcomes == {
+        ("test_ex2_penalty_normal_force", "passed"),
+        ("test_ex2_project_impulse", "skipped"),
+        ("test_ex2_two_contacts_at_once", "skipped"),
+    }
 
 
 @pytest.mark.parametrize("name", PREDICTED)
 def test_a_predict_exercise_refuses_to_run_before_choice_and_reason(name, monkeypatch, capsys):
     exercise = PREDICTED[name]
     monkeypatch.setattr(exercise, "measure", lambda: pytest.fail("it ran"))
-    for prediction, why, said in ((None, "", "no prediction yet"), ("D", "x", "given 'D', allowed: 'A', 'B', 'C'"),
-                                  ("A", " ", "no reason yet")):
+    for prediction, why, said in (
+        (None, "", "no prediction yet"),
+        ("D", "x", "given 'D', allowed: 'A', 'B', 'C'"),
+        ("A", " ", "no reason yet"),
+    ):
         monkeypatch.setattr(exercise, "PREDICTION", prediction)
         monkeypatch.setattr(exercise, "WHY", why)
         assert predict.play(name, exercise, []) == 2
@@ -153,7 +205,9 @@ def test_a_predict_exercise_refuses_to_run_before_choice_and_reason(name, monkey
 
 @pytest.mark.parametrize("mine", "ABC")
 @pytest.mark.parametrize("name", PREDICTED)
-def test_after_the_run_the_learner_sees_the_measurement_and_a_word_on_every_choice(name, mine, monkeypatch, capsys):
+def test_after_the_run_the_learner_sees_the_measurement_and_a_word_on_every_choice(
+    name, mine, monkeypatch, capsys
+):
     exercise, answer = PREDICTED[name], FACTS[name]["answer"]
     monkeypatch.setattr(exercise, "PREDICTION", mine)
     monkeypatch.setattr(exercise, "WHY", "a reason of mine")
@@ -178,12 +232,29 @@ def test_the_measurement_is_the_scripts_own_and_stands_in_its_bands(name):
             assert abs(measured.value(f"drop:{key}") - fresh.value(f"drop:{key}")) <= 1e-9
 
 
-@pytest.mark.parametrize("name, file", [("ex1", "ex1_predict_contact.py"), ("ex2", "ex2_completion_contact.py"),
-                                        ("ex3", "ex3_dt_stability.py")])
+@pytest.mark.parametrize(
+    "name, file",
+    [
+        ("ex1", "ex1_predict_contact.py"),
+        ("ex2", "ex2_completion_contact.py"),
+        ("ex3", "ex3_dt_stability.py"),
+    ],
+)
 def test_nothing_before_the_run_gives_the_answer_away(name, file):
     """No measured figure and no formula of the answer stands in an exercise file; the hints ask."""
     text = (ROOT / "exercises" / file).read_text()
-    for giveaway in ("mg/k", "m g / k", "max(", "clamp", "sqrt", "0.25", "0.0098", "0.0567", "1409", "answer"):
+    for giveaway in (
+        "mg/k",
+        "m g / k",
+        "max(",
+        "clamp",
+        "sqrt",
+        "0.25",
+        "0.0098",
+        "0.0567",
+        "1409",
+        "answer",
+    ):
         assert giveaway not in text.replace("load_meta", ""), giveaway
     assert re.search(r"\(\d+ minutes\)", text) and "--hint" in text
     assert all("?" in hint for hint in FACTS[name]["hints"])
@@ -202,7 +273,9 @@ def test_hints_are_printed_one_at_a_time_and_only_those_that_exist(copy):
 def test_ex2_as_a_script_names_the_blank_and_runs_the_drop_once_filled(copy):
     folder, edit = copy
     untouched = run(folder, "exercises/ex2_completion_contact.py")
-    assert untouched.returncode == 2 and untouched.stderr == "penalty_normal_force is still a blank\n"
+    assert (
+        untouched.returncode == 2 and untouched.stderr == "penalty_normal_force is still a blank\n"
+    )
     for name, blank in BLANKS.items():
         edit("ex2_completion_contact.py", blank, RIGHT[name])
     filled = run(folder, "exercises/ex2_completion_contact.py")
@@ -213,6 +286,7 @@ def test_ex2_as_a_script_names_the_blank_and_runs_the_drop_once_filled(copy):
 def test_the_learners_functions_are_the_ones_that_step_the_ball(ex2_checks):
     ex2_checks("f_n", "f_n = 2.0 * stiffness * depth - damping * v_n")
     import checks as module
+
     scene = contact.build_scene("drop")
     with module.ex2.yours():
         half = contact.run_model("penalty", scene, 0.002, 800)
