@@ -193,17 +193,20 @@ def check_numbers(project, numbers):
             attempt("meta.yaml", rf"^  {name}:", f"{name}, {key}", outside, key, low, high)
         for claim in exercise.get("holds") or []:
             attempt("meta.yaml", rf"^  {name}:", f"{name}, {claim}", false, claim)
-    check_reference_run(project, dict(leaves(numbers.run(numbers.reference()))))
+    name = numbers.reference()
+    check_reference_run(project, dict(leaves(numbers.run(name))), numbers.config_hash[name])
 
 
-def check_reference_run(project, measured):
+def check_reference_run(project, measured, config_hash):
     """`reference_run` of meta.yaml says what a fresh run gives, number by number."""
-    stated = (project.facts.get("reference_run") or {}).get("values") or {}
+    reference = project.facts.get("reference_run") or {}
+    measured = {**measured, "config_hash": config_hash}
+    stated = {**(reference.get("values") or {}), "config_hash": reference.get("config_hash")}
     for key in sorted(measured.keys() | stated.keys()):
         fresh, said = measured.get(key, "missing"), stated.get(key, "missing")
         numeric = isinstance(fresh, float) and isinstance(said, (int, float))
         if fresh != said and not (numeric and abs(fresh - said) <= TOLERANCE):
-            project.say("meta.yaml", rf"^    {re.escape(key)}:", f"reference_run says {key} is "
+            project.say("meta.yaml", rf"^ +{re.escape(key)}:", f"reference_run says {key} is "
                         f"{said}, a fresh run gives {fresh}", f"{NUMBERS} --record")
 
 

@@ -201,7 +201,7 @@ def record(root=ROOT):
              "  provenance: measured by `python -m curriculum.numbers --record`,",
              f"    {datetime.date.today()}, numpy {numpy.__version__}, "
              f"Python {platform.python_version()}",
-             f"  config_hash: {numbers.config_hash[numbers.reference()]}", "  values:"]
+             f'  config_hash: "{numbers.config_hash[numbers.reference()]}"', "  values:"]
     block += [f"    {key}: {json.dumps(value)}" for key, value in leaves(metrics)]
     path = Path(root) / "meta.yaml"
     old = path.read_text("utf-8")

@@ -2,8 +2,9 @@
 
 You will compare two contact models by what they do to the surface they are there to keep.
 
-A ball falls about a metre onto the table and comes to rest, once with each model, from the same
-height. Measured is how deep it is in the table at the worst moment and at the end, in ball radii r.
+A ball falls about a metre onto the table and is followed for 1.6 s, once with each model, from the
+same height. Measured is how deep it is in the table at the worst moment and at the end, in ball
+radii r.
 Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
 
     python exercises/ex1_predict_contact.py     # add --hint 1 (2, 3) for a question that helps
@@ -15,7 +16,7 @@ import sys
 import predict
 from predict import contact
 
-QUESTION = "A ball drops onto the table and settles. What do the two contact models do differently?"
+QUESTION = "A ball drops onto the table. What do the two contact models do differently?"
 CHOICES = {
     "A": "Nothing that matters: both stop the ball at the surface. A contact is a contact.",
     "B": "The penalty ball never gets into the table but bounces for ever; "
@@ -26,7 +27,7 @@ CHOICES = {
 WHY_PROMPT = "One sentence: when the ball lies still, how does each model arrive at a push of m g?"
 
 PREDICTION = None       # "A", "B" or "C"
-WHY = ""                # your sentence
+WHY = ""                # your sentence, see WHY_PROMPT
 
 
 def measure():

@@ -24,7 +24,7 @@ CHOICES = {
 WHY_PROMPT = "One sentence: in each model, what happens between two looks at the depth?"
 
 PREDICTION = None       # "A", "B" or "C"
-WHY = ""                # your sentence
+WHY = ""                # your sentence, see WHY_PROMPT
 
 
 def measure():

@@ -27,7 +27,7 @@ def missing(exercise):
     if exercise.PREDICTION not in exercise.CHOICES:
         return f"PREDICTION in {file}: given {exercise.PREDICTION!r}, allowed: {choices}"
     if not exercise.WHY.strip():
-        return f"no reason yet: set WHY in {file} to one sentence"
+        return f"no reason yet: set WHY in {file}. {exercise.WHY_PROMPT}"
     return None
 
 

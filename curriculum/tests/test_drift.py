@@ -261,6 +261,10 @@ DRIFT = {
         ("meta.yaml", "    steps: 2000", "    steps: 2001"),
         r"meta.yaml:\d+: .*steps is 2001, a fresh run gives 2000",
     ),
+    "another default run": (
+        ("contact.py", "c0ffee", "decaff"),
+        r"meta.yaml:\d+: reference_run says config_hash is c0ffee, a fresh run gives decaff",
+    ),
     "an answer out of its band": (
         ("meta.yaml", "[0.25, 0.26]", "[0.26, 0.27]"),
         r"meta.yaml:\d+: ex1, .* outside 0.26 to 0.27",
