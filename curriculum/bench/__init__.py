@@ -1,0 +1,1 @@
+"""Run time against error: contact.py's models and other engines, on problems with a known answer."""

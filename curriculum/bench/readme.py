@@ -1,0 +1,96 @@
+"""The README's generated blocks, made from results.json.
+
+A block stands between `<!-- generated: NAME by COMMAND -->` and `<!-- end -->`. Blocks whose COMMAND
+is not ours are left alone. A block of ours that results.json can't fill yet says so, and is filled by
+the command that it names.
+"""
+
+import re
+import sys
+
+from curriculum.bench import report, store
+from curriculum.common.files import write_whole
+
+README = store.ROOT / "README.md"
+COMMAND = "python -m curriculum.bench readme"
+BLOCK = re.compile(r"(<!-- generated: (?P<name>[\w-]+) by (?P<command>[^>]*?) -->\n)(?P<body>.*?)(?=<!-- end -->)",
+                   re.DOTALL)
+HEADLINE = ("exact", "lcp", "penalty", "box2d", "box2d3", "pymunk", "mujoco_stiff", "mujoco")
+
+
+def headline(sections):
+    """Error and time at dt 0.002 s, drop and bounce: the rows that matter most."""
+    section = sections["error"]
+    data, rows = report.Points(section), []
+    for name in filter(section["methods"].get, HEADLINE):
+        method = section["methods"][name]
+        if name not in data.present:
+            rows.append([method["label"], method["missing"], "", "", ""])
+            continue
+        cells = []
+        for problem in ("drop", "bounce"):
+            point = data.by_key[problem, name, 0.002]
+            cells += [report.number(point["height_error"]["median"]) if not point["diverged"] else "diverged",
+                      report.number(1e3 * point["times"]["read"]["min"])]
+        rows.append([method["label"], *cells])
+    return report.table(["", "drop: error / r", "drop: ms", "bounce: error / r", "bounce: ms"], rows)
+
+
+def bounce(sections):
+    """The bounce figure with its checked sentences."""
+    where = (store.RESULTS / "error-bounce.svg").relative_to(store.ROOT).as_posix()
+    said = " ".join(map(str, report.error_claims(sections["error"], "bounce")))
+    return f"![Bounce: run time against error]({where})\n\n{said}\n"
+
+
+def goals(name):
+    """A maker of the table of goals of one section."""
+    return lambda sections: report.table(
+        ["goal", "measured", ""], [goal.row() for goal in getattr(report, f"{name}_goals")(sections[name])])
+
+
+def machine(sections):
+    """The footer of the error section."""
+    return store.footer(sections["error"]) + "\n"
+
+
+BLOCKS = {"bench-headline": ("error", headline), "bench-bounce": ("error", bounce),
+          "bench-goals": ("error", goals("error")), "bench-skip": ("skip", goals("skip")),
+          "bench-pile": ("pile", goals("pile")), "bench-machine": ("error", machine)}
+
+
+def fill(text, sections):
+    """The README's text with our blocks made anew. Raises ValueError for a name that is none of ours."""
+    def made(match):
+        if "curriculum.bench" not in match["command"]:
+            return match[0]
+        if match["name"] not in BLOCKS:
+            line = text.count("\n", 0, match.start()) + 1
+            raise ValueError(f"README.md:{line}: no generated block {match['name']!r}; there are: {', '.join(BLOCKS)}")
+        section, maker = BLOCKS[match["name"]]
+        body = (maker(sections) if section in sections
+                else f"Not measured yet: `python -m curriculum.bench{'' if section == 'error' else ' ' + section}`.\n")
+        return f"{match[1]}{body}"
+    return BLOCK.sub(made, text)
+
+
+def main(folder, check):
+    """Write the README's blocks, or with `check` only compare them. Returns the exit status."""
+    if not README.exists():
+        print("README.md is missing", file=sys.stderr)
+        return 1
+    text = README.read_text(encoding="utf-8")
+    try:
+        new = fill(text, store.load(folder))
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        return 1
+    if check and new != text:
+        old, now = text.splitlines(), new.splitlines()
+        line = next((k for k, (a, b) in enumerate(zip(old, now)) if a != b), min(len(old), len(now)))
+        print(f"README.md:{line + 1}: a generated block is out of date; to repair: {COMMAND}", file=sys.stderr)
+        return 1
+    if not check and new != text:
+        write_whole(str(README), new)
+    print(f"README.md: {len(BLOCK.findall(text))} generated blocks {'are up to date' if check else 'written'}")
+    return 0
