@@ -1,9 +1,9 @@
 """Contact between bodies, built three times and measured honestly (robotics course, chapter 3.5).
 
 A table pushes a ball up while they touch and never pulls it down. Three models of that push:
-    penalty   a stiff spring and a damper: simple; it sinks, rings, and explodes past a critical dt
+    penalty   a stiff spring and a damper: simple; sinks, rings, explodes past a critical dt
     lcp       impulses from a complementarity problem, by projected Gauss-Seidel, step by step
-    exact     event to event: each impact at its own time, impulses and resting forces by a pivot
+    exact     event to event: every impact at its own time, impulses and forces by a pivot
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
 
     symbol    meaning                              unit    sign
@@ -26,7 +26,6 @@ balls, an array for many: the same lines compute both, to the same bits.
 
 # --- region: setup ---
 import argparse
-import functools
 import math
 import operator
 import os
@@ -35,18 +34,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from curriculum.common import arguments, device, memory, neighbours, progress, results
+from curriculum.common import arguments, balls, device, memory, progress, results, roots
 
 GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; penetration is told in units of it
 CONTACT_MARGIN = 1e-3   # m: lcp lists a contact this far before it touches, so resting ones stay
-FEW = 12                # balls: up to here floats over all pairs are faster than arrays over near ones
+FEW = 12                # balls: up to here floats over all pairs beat arrays over near ones
 EXPLODED = 10.0         # gaining more than this times the start energy is an explosion
 DT_GRID = (1, 2, 4, 8, 16, 32)      # multiples of --dt that the stability line tries
 SCENES = ("drop", "bounce", "stack", "pile")
 MODELS = ("penalty", "lcp", "exact")
 COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "exact": "#009e73"}   # told apart by all eyes
-
 
 def parse_flags(argv):
     """The checked command line. Bad input: one line on stderr, exit status 2, nothing written."""
@@ -55,10 +53,10 @@ def parse_flags(argv):
     flag("--seed", type=number(int, low=0), default=0, help="draws the start height (0)")
     flag("--scene", choices=SCENES, default="drop")
     flag("--contact", choices=("all", *MODELS), default="all")
-    flag("--stiffness", type=number(float, low=0), default=1e4, help="k of penalty [N/m] (1e4)")
-    flag("--damping", type=number(float, low=0), help="c of penalty [N s/m] (80; bounce 0)")
-    flag("--restitution", type=number(float, low=0, high=1), help="e, lcp and exact (0; bounce 0.7)")
-    flag("--baumgarte", type=number(float, low=0, high=1), default=0.2, help="beta of lcp (0.2)")
+    flag("--stiffness", type=number(float, low=0), default=1e4, help="k, penalty [N/m] (1e4)")
+    flag("--damping", type=number(float, low=0), help="c, penalty [N s/m] (80; bounce 0)")
+    flag("--restitution", type=number(float, 0, 1), help="e, lcp and exact (0; bounce 0.7)")
+    flag("--baumgarte", type=number(float, 0, 1), default=0.2, help="beta, lcp (0.2)")
     flag("--iters", type=number(int, low=1), default=20, help="Gauss-Seidel sweeps a step (20)")
     flag("--dt", type=number(float, above=0), default=0.002, help="time step [s] (0.002)")
     flag("--steps", type=number(int, low=0), default=2000, help="how many (2000)")
@@ -70,17 +68,12 @@ def parse_flags(argv):
     flag("--skip", action=switch, default=True, help="leave out work that changes no bit")
     args = parser.parse_args(argv)
     if args.bodies and args.scene in ("drop", "bounce"):
-        parser.error(f"argument --bodies: given {args.bodies}; allowed: --scene stack or pile only, "
-                     f"{args.scene} has one ball")
+        parser.error(f"argument --bodies: given {args.bodies}; allowed: stack and pile only")
     args.steps = 800 if args.smoke else args.steps
     count = args.bodies or {"stack": 3, "pile": 200}.get(args.scene, 1)
-    need = 200 * (args.steps + 1) * count * (3 if args.contact == "all" else 1)     # bytes, about
-    if need > 1e8 and need > memory.available():
-        parser.error(f"{count} balls over --steps {args.steps} need {need / 1e9:.3g} GB of memory; "
-                     f"allowed: {memory.available() / 1e9:.3g} GB, what is free here")
+    memory.need(parser, 600 * (args.steps + 1) * count, f"--steps {args.steps} of {count} balls")
     return args
 # --- endregion ---
-
 
 # --- region: scenes ---
 class Scene(NamedTuple):
@@ -93,12 +86,11 @@ class Scene(NamedTuple):
     restitution: float      # e: lcp and exact use it as it is; penalty has no such knob
     damping: float          # c of penalty [N s/m]
 
-
 def build_scene(name, seed=0, bodies=None, restitution=None, damping=None):
     """The Scene of that name (ValueError: no such scene); None means the scene's own value.
 
-    The seed makes one draw, uniform in +-0.02 m. It shifts the drop height, or lifts stack and pile
-    by its size, never down into the floor; in the pile it also numbers and nudges the balls.
+    The seed draws once, uniform in +-0.02 m: it shifts the drop height, or lifts stack and pile by
+    the draw's size, never into the floor; in the pile it also numbers and nudges the balls.
     """
     rng = np.random.default_rng(seed)
     draw = rng.uniform(-0.02, 0.02)
@@ -116,32 +108,29 @@ def build_scene(name, seed=0, bodies=None, restitution=None, damping=None):
                  np.full(len(x), RADIUS), e if restitution is None else restitution,
                  c if damping is None else damping)
 
-
 def pile_lattice(count, lift, rng):
     """x, y (count,) on a lattice 2.5 r wide, each ball nudged by up to 0.1 r, so that gaps are > 0.
 
-    Numbered at random: contacts are swept in the order of the numbers, and numbers that run along
-    the lattice would chain hundreds of contacts, each waiting for the one before.
+    Numbered at random: contacts are swept in the order of the numbers, and numbers that ran along
+    the lattice would chain hundreds of contacts that have to wait for one another.
     """
-    width = math.ceil(math.sqrt(2 * count))
-    place = rng.permutation(count)
+    place, width = rng.permutation(count), math.ceil(math.sqrt(2 * count))
     nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
     return (2.5 * RADIUS * (place % width - 0.5 * (width - 1)) + nudge[0],
             2.5 * RADIUS * (place // width + 0.5) + lift + nudge[1])
 # --- endregion ---
 
-
 # --- region: contacts ---
 def detect_contacts(q, radius, margin=CONTACT_MARGIN):
     """Where balls touch the floor or each other, or are within `margin` [m] of it.
 
-    Returns [(i, j, nx, ny, depth), ...]: floor contacts by body (j = -1), then pairs i < j in order;
+    Returns [(i, j, nx, ny, depth), ...]: the floor's by body (j = -1), then pairs i < j in order;
     the order is part of the result. From rows of floats: one contact a tuple. From arrays (N,): a
-    tuple may hold arrays, a group of contacts that share no body. Centres that coincide part along y.
+    tuple may hold arrays, a group of contacts that share no body. Coinciding centres part along y.
     """
     x, y = q
     if isinstance(y, np.ndarray):
-        return group_contacts(*contact_arrays(q, radius, margin), len(y))
+        return balls.group_contacts(*balls.contact_arrays(np.array(q), radius, margin), len(y))
     contacts = [(i, -1, 0.0, 1.0, radius[i] - y[i])
                 for i in range(len(y)) if radius[i] - y[i] > -margin]
     for i in range(len(y)):
@@ -154,65 +143,14 @@ def detect_contacts(q, radius, margin=CONTACT_MARGIN):
                 contacts.append((i, j, *n, depth))
     return contacts
 
-
-def geometry(q, radius, i, j):
-    """nx, ny, depth (..., K) of contacts i, j (K,) in states q (..., 2, N): the same bits, by arrays."""
-    zero = np.zeros(q.shape[:-1] + (1,))
-    (x, y), radius = np.moveaxis(np.append(q, zero, -1), -2, 0), np.append(radius, 0.0)
-    dx, dy = np.where(j < 0, 0.0, x[..., i] - x[..., j]), y[..., i] - y[..., j]
-    distance = np.where(j < 0, dy, np.sqrt(dx * dx + dy * dy))
-    up = (j < 0) | ~(distance > 0.0)
-    scale = np.where(up, 1.0, distance)
-    return dx / scale, np.where(up, 1.0, dy / scale), radius[i] + radius[j] - distance
-
-
-@functools.cache
-def every_pair(count):
-    """i, j of all contacts that `count` balls can have: the floor's (j = -1), then all pairs i < j."""
-    i, j = np.triu_indices(count, 1)
-    return np.append(np.arange(count), i), np.append(np.full(count, -1), j)
-
-
-def contact_arrays(q, radius, margin):
-    """i, j, nx, ny, depth as arrays (K,), in detect_contacts' order; only near pairs are looked at."""
-    i, j = neighbours.near_pairs(*q, 2.0 * radius.max() + margin)
-    i, j = np.append(np.arange(len(radius)), i), np.append(np.full(len(radius), -1), j)
-    with np.errstate(all="ignore"):
-        nx, ny, depth = geometry(np.array(q), radius, i, j)
-    listed = np.flatnonzero(depth > -margin)
-    listed = listed[np.lexsort((j[listed], i[listed], j[listed] >= 0))]
-    return tuple(a[listed] for a in (i, j, nx, ny, depth))
-
-
-def group_contacts(i, j, nx, ny, depth, bodies):
-    """Contacts as tuples of arrays, groups that share no body, in an order that gives the same bits.
-
-    Where groups would be small (a tower is one long chain) single contacts are faster: those, then.
-    """
-    groups = neighbours.independent_groups(i, j, bodies)
-    if len(i) < 50 * len(groups):
-        return list(zip(*(a.tolist() for a in (i, j, nx, ny, depth))))
-    return [tuple(a[group] for a in (i, j, nx, ny, depth)) for group in groups]
-
-
-def grouped(contacts):
-    """Whether the contacts are groups of arrays."""
-    return bool(contacts) and isinstance(contacts[0][0], np.ndarray)
-
-
 def operations(contacts):
-    """larger(a, b), choose(condition, yes, no), equal(lists): all that differs for floats and arrays."""
-    if grouped(contacts):       # fmax passes over a NaN as Python's max(0.0, NaN) does
-        return np.fmax, np.where, lambda a, b: all(map(np.array_equal, a, b))
-    return max, lambda condition, yes, no: yes if condition else no, operator.eq
-
-
-def with_floor(rows, contacts):
-    """Rows with a 0 for the floor, which index -1 then finds: it never moves. Lists or arrays to suit."""
-    if grouped(contacts):
-        return [np.append(row, 0.0) for row in rows]
-    return [(row if isinstance(row, list) else np.asarray(row).tolist()) + [0.0] for row in rows]
-
+    """What differs for contacts of floats and groups of arrays: larger(a, b), choose(if, yes, no),
+    equal(list, list), and row(values), which adds a 0 for the floor where index -1 finds it."""
+    if contacts and isinstance(contacts[0][0], np.ndarray):     # fmax is max also for NaN
+        return (np.fmax, np.where, lambda a, b: all(map(np.array_equal, a, b)),
+                lambda row: balls.with_floor(np.asarray(row)))
+    return (max, lambda which, yes, no: yes if which else no, operator.eq,
+            lambda row: (row if isinstance(row, list) else row.tolist()) + [0.0])
 
 def advance(row, rate, dt):
     """row + dt * rate."""
@@ -221,19 +159,16 @@ def advance(row, rate, dt):
     return row + dt * np.asarray(rate)
 # --- endregion ---
 
-
 # --- region: penalty ---
 def penalty_normal_force(depth, v_n, stiffness, damping, larger=max):
     """f_n >= 0 [N] of spring and damper at `depth` > 0 [m]; the clamp is the one-sidedness."""
     return larger(0.0, stiffness * depth - damping * v_n)
 
-
 def penalty_force(q, v, mass, radius, stiffness, damping):
     """Contact forces fx, fy (N,) [N]; a spring pushes only while it is compressed."""
     contacts = detect_contacts(q, radius, margin=0.0)
-    larger, _, _ = operations(contacts)
-    vx, vy = with_floor(v, contacts)
-    fx, fy = with_floor(([0.0] * len(mass),) * 2, contacts)
+    larger, _, _, row = operations(contacts)
+    vx, vy, fx, fy = map(row, (*v, [0.0] * len(mass), [0.0] * len(mass)))
     for i, j, nx, ny, depth in contacts:
         v_n = nx * (vx[i] - vx[j]) + ny * (vy[i] - vy[j])
         f_n = penalty_normal_force(depth, v_n, stiffness, damping, larger)
@@ -243,20 +178,18 @@ def penalty_force(q, v, mass, radius, stiffness, damping):
         fy[j] -= f_n * ny
     return fx[:-1], fy[:-1]
 
-
 def semi_implicit_step(q, v, mass, force, dt):
-    """Semi-implicit Euler under gravity and force(q, v): new velocity first, then position with it."""
+    """Semi-implicit Euler under gravity and force(q, v): new velocity first, then q with it."""
     fx, fy = force(q, v)
-    if isinstance(q[0], list):
+    if isinstance(mass, list):
         ax, ay = [f / m for f, m in zip(fx, mass)], [GRAVITY + f / m for f, m in zip(fy, mass)]
     else:
         ax, ay = np.asarray(fx) / mass, GRAVITY + np.asarray(fy) / mass
     v = advance(v[0], ax, dt), advance(v[1], ay, dt)
     return (advance(q[0], v[0], dt), advance(q[1], v[1], dt)), v
 
-
 def critical_dt(mass, stiffness, damping):
-    """The largest stable dt [s] of that step for a ball that stays in contact; inf without a spring.
+    """The largest stable dt [s] of that step for a ball kept in contact; inf without a spring.
 
     Jury's test on the trace and determinant of the 2x2 step matrix: k dt^2 + 2 c dt < 4 m. The
     textbook's 2 sqrt(m / k) is c = 0: a damper makes the limit smaller, not larger.
@@ -265,16 +198,15 @@ def critical_dt(mass, stiffness, damping):
     return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
 # --- endregion ---
 
-
 # --- region: lcp ---
 def contact_targets(v, contacts, restitution, baumgarte, dt):
-    """The normal velocity [m/s] each contact must at least leave with; v is from before gravity acts.
+    """The normal velocity [m/s] each contact must leave with at least; v from before gravity acts.
 
-    The correction (beta / dt) depth (Baumgarte 1972) or, where the bodies arrive closing, the bounce
-    -e v_n if that is larger; never their sum, which bounces higher than the material does.
+    The correction (beta / dt) depth (Baumgarte 1972) or, where the bodies arrive closing, the
+    bounce -e v_n if larger; never their sum, which would bounce higher than the material.
     """
-    larger, choose, _ = operations(contacts)
-    vx, vy = with_floor(v, contacts)
+    larger, choose, _, row = operations(contacts)
+    vx, vy = map(row, v)
     target = []
     for i, j, nx, ny, depth in contacts:
         push = baumgarte / dt * depth
@@ -284,26 +216,25 @@ def contact_targets(v, contacts, restitution, baumgarte, dt):
         target.append(push)
     return target
 
-
 def project_impulse(lam, dlam, larger=max):
-    """The accumulated impulse [N s] after a change: the total never pulls; a change may take back."""
+    """The accumulated impulse [N s] after a change: the total never pulls; a change may."""
     return larger(0.0, lam + dlam)
 
-
 def solve_contacts(v, inv_mass, contacts, target, iters):
-    """Projected Gauss-Seidel for lam >= 0, v_n >= target, lam (v_n - target) = 0, contact by contact.
+    """Projected Gauss-Seidel for lam >= 0, v_n >= target, lam (v_n - target) = 0.
 
-    v (2, N) [m/s]; inv_mass (N,) [1/kg], 0 for a body nothing moves. Returns the new v, and lam [N s]
-    a contact. Velocity-level time stepping: Moreau; Stewart and Trinkle 1996; Anitescu and Potra 1997.
-    Ends before `iters` sweeps when a sweep changes no impulse: no later one would.
+    v (2, N) [m/s]; inv_mass (N,) [1/kg], 0 for a body nothing moves. Returns the new v, and lam of
+    each contact [N s]. Velocity-level time stepping: Moreau; Stewart, Trinkle 1996; Anitescu, Potra
+    1997. A sweep that changes no impulse ends it before `iters` sweeps: no later one would.
     """
-    larger, choose, equal = operations(contacts)
-    vx, vy, w = with_floor((*v, inv_mass), contacts)
+    larger, choose, equal, row = operations(contacts)
+    vx, vy, w = map(row, (*v, inv_mass))
     lam, rows = [0.0] * len(contacts), []
     for (i, j, nx, ny, _), goal in zip(contacts, target):
-        total = w[i] + w[j]
-        effective_mass = 1.0 / choose(total > 0.0, total, math.inf)
-        rows.append((i, j, nx, ny, goal, effective_mass, w[i] * nx, w[i] * ny, w[j] * nx, w[j] * ny))
+        mobility = w[i] + w[j]
+        effective_mass = 1.0 / choose(mobility > 0.0, mobility, math.inf)
+        rows.append((i, j, nx, ny, goal, effective_mass,
+                     w[i] * nx, w[i] * ny, w[j] * nx, w[j] * ny))
     for _ in range(iters):
         before = lam.copy()
         for c, (i, j, nx, ny, goal, effective_mass, ix, iy, jx, jy) in enumerate(rows):
@@ -318,170 +249,140 @@ def solve_contacts(v, inv_mass, contacts, target, iters):
             break
     return (vx[:-1], vy[:-1]), lam
 
-
 def lcp_step(q, v, inv_mass, radius, dt, restitution, baumgarte, iters):
     """Predict v under gravity, solve the contacts for impulses, move with what comes out."""
     contacts = detect_contacts(q, radius)
-    target = contact_targets(v, contacts, restitution, baumgarte, dt)
-    v = v[0], advance(v[1], [GRAVITY] * len(v[1]), dt)
+    predicted = v[0], advance(v[1], [GRAVITY] * len(v[1]), dt)
     if contacts:
-        v, _ = solve_contacts(v, inv_mass, contacts, target, iters)
-    return (advance(q[0], v[0], dt), advance(q[1], v[1], dt)), v
+        target = contact_targets(v, contacts, restitution, baumgarte, dt)
+        predicted, _ = solve_contacts(predicted, inv_mass, contacts, target, iters)
+    return (advance(q[0], predicted[0], dt), advance(q[1], predicted[1], dt)), predicted
 # --- endregion ---
 
-
 # --- region: exact ---
-TOUCH = 1e-12       # of the mean radius: surfaces closer than this touch
-STILL = 1e-13       # m/s: contacts closing slower than this rest; rounding of impulses stays below
-
-
 def solve_lcp(W, b):
     """lam >= 0 with w = W lam + b >= 0 and lam w = 0. W (K, K) is the Delassus matrix, b (K,).
 
-    Active sets by the rule of Lawson and Hanson, from all contacts active, which is right for things
-    at rest. Every pass ends at the minimum of lam'W lam / 2 + b'lam on its active set, lower than the
-    pass before, so no set comes twice. A contact that enters and changes nothing is refused.
+    The criss-cross method (Terlaky; den Hertog, Roos, Terlaky 1993): exchange lam and w of the least
+    negative index. It ends for every semidefinite W, redundant contacts included. It starts from all
+    contacts active, as at rest, and ends when a table made afresh needs no exchange.
     """
-    lam, active, refused = np.zeros(len(b)), np.ones(len(b), bool), np.zeros(len(b), bool)
-    while True:
-        before, trial = lam, solve_active(W, -b, active)
-        while (bad := np.flatnonzero(active & (trial < 0.0))).size:
-            share = lam[bad] / (lam[bad] - trial[bad])      # of the way from lam to trial
-            lam = np.where(active, lam + share.min() * (trial - lam), 0.0)
-            active[bad[share == share.min()]] = False
-            trial = solve_active(W, -b, active)
-        lam = trial
-        w = np.add.reduce(W * lam[:, None]) + b             # column sums: W is symmetric
-        refused &= np.array_equal(lam, before)
-        w[active | refused] = 0.0
-        if w.min(initial=0.0) >= -1e-14 * np.abs(b).max(initial=0.0):
-            return lam
-        active[w.argmin()] = refused[w.argmin()] = True
+    scale = 1.0 / np.sqrt(W.diagonal())                     # unit diagonal: one tolerance for all
+    fresh = np.column_stack((W * scale * scale[:, None], b * scale))
+    least, active, exchanges = -1e-13 * np.abs(fresh[:, -1]).max(initial=0.0), scale > 0.0, 1
 
+    def exchange(row, column):
+        pivots, factor = table[row] / -table[row, column], table[:, column].copy()
+        table[...] += factor[:, None] * pivots
+        table[:, column], table[row] = factor / factor[row], pivots
+        table[row, column] = 1.0 / factor[row]
 
-def solve_active(W, b, active):
-    """lam with (W lam)[active] = b[active], else 0. Redundant contacts leave `active`, in place."""
-    index = np.flatnonzero(active)
-    rows = np.column_stack((W[index][:, index], b[index]))
-    for p, c in enumerate(index):                           # Gauss-Jordan on a semidefinite matrix
-        if rows[p, p] > 1e-13 * W[c, c]:
-            rows[p] /= rows[p, p]
-            factor = rows[:, p].copy()
-            factor[p] = 0.0
-            rows -= factor[:, None] * rows[p]
-        else:                                               # those before it carry this one already
-            active[c], rows[p], rows[:, p] = False, 0.0, 0.0
-    lam = np.zeros(len(b))
-    lam[index] = rows[:, -1]
-    return lam
+    while exchanges:
+        table, left, active, exchanges = fresh.copy(), active, np.zeros(len(b), bool), 0
+        while left.any() and (diagonal := table[:, :-1].diagonal() * left).max() > 1e-13:
+            k = diagonal.argmax()
+            exchange(k, k)
+            left[k], active[k] = False, True                # what stays left hangs on these
+        while (table[:, -1] < least).any():
+            k = r = (table[:, -1] < least).argmax()
+            if table[k, k] > 1e-13:
+                exchange(k, k)
+            else:                                           # only together with another index
+                r = (table[k, :-1] > 1e-13).argmax()
+                exchange(k, r)
+                exchange(r, k)
+                table[[k, r]] = table[[r, k]]
+                table[:, [k, r]] = table[:, [r, k]]
+            active[[k, r]], exchanges = ~active[[k, r]], exchanges + 1
+    return np.where(active, np.maximum(table[:, -1], 0.0), 0.0) * scale
 
+def along(rows, i, j, n):
+    """n . (rows_i - rows_j) (K,) of rows (2, N + 1)."""
+    return (n * (rows[:, i] - rows[:, j])).sum(0)
 
-def pushed(rows, inv_mass, i, j, n, b):
-    """rows (2, N) + M^-1 J' lam, and lam = solve_lcp(J M^-1 J', b), for contacts i, j, n (K,)."""
-    w, rows, noise = np.append(inv_mass, 0.0), np.append(rows, [[0.0]] * 2, 1), 1e-13 * np.abs(rows).max()
-    shared = [(a[:, None] == c) * w[a][:, None] for a, c in ((i, i), (j, j), (i, j), (j, i))]
-    lam = solve_lcp((n[0][:, None] * n[0] + n[1][:, None] * n[1])
-                    * (shared[0] + shared[1] - shared[2] - shared[3]), b)
+def react(rows, i, j, n, w, b):
+    """rows + M^-1 J' lam for lam = solve_lcp(J M^-1 J', b), and lam; rounding noise becomes 0.
+
+    Contacts i, j (K,), normals n (2, K); inverse masses w (N + 1,), the floor's 0.
+    """
+    same = [np.equal.outer(a, c) * w[a][:, None] for a, c in ((i, i), (j, j), (i, j), (j, i))]
+    normals = np.multiply.outer(n[0], n[0]) + np.multiply.outer(n[1], n[1])
+    lam = solve_lcp(normals * (same[0] + same[1] - same[2] - same[3]), b)
+    noise, rows = 1e-13 * max(np.abs(rows).max(), (lam * w[i]).max()), rows.copy()
     for row, part in zip(rows, n):
         np.add.at(row, i, lam * w[i] * part)
         np.subtract.at(row, j, lam * w[j] * part)
-    return np.where(np.abs(rows) > noise, rows, 0.0)[:, :-1], lam     # what rounding leaves is 0
+    return np.where(np.abs(rows) > noise, rows, 0.0), lam
 
+def settle(q, v, w, radius, restitution, held):
+    """At one instant: overlaps moved out, impulses, forces. Returns q, v, a, who rests, who slides.
 
-def across(rows, i, j, n):
-    """n . (rows_i - rows_j) (..., K) for directions n = nx, ny (..., K), rows (..., 2, N)."""
-    rows = np.append(rows, np.zeros(rows.shape[:-1] + (1,)), -1)
-    x, y = rows[..., 0, :], rows[..., 1, :]
-    return n[0] * (x[..., i] - x[..., j]) + n[1] * (y[..., i] - y[..., j])
+    Contacts within 1e-12 r touch. A bounce lower than 1e-15 r is the last of its series: all that
+    would follow add less. Contacts `held` until now do not bounce.
+    """
+    every_i, every_j = balls.every_contact(len(w) - 1)
+    a, r = np.array([[0.0], [GRAVITY]]) * (w > 0.0), radius[:-1].mean()
+    for _ in range(50):
+        n, depth = balls.geometry(q, radius, every_i, every_j)
+        near = np.flatnonzero(depth >= -1e-12 * r)
+        i, j, n = every_i[near], every_j[near], n[:, near]
+        if not (depth > 1e-12 * r).any():
+            break
+        q, _ = react(q, i, j, n, w, -depth[near])
+    v_n, still = along(v, i, j, n), np.zeros(len(every_i), bool)
+    if (v_n < -1e-13).any():
+        bounce = np.where(held[near], 0.0, restitution * np.maximum(-v_n, 0.0))
+        bounce[bounce * bounce < -2.0 * GRAVITY * 1e-15 * r] = 0.0
+        v, _ = react(v, i, j, n, w, v_n - bounce)
+        v_n = along(v, i, j, n)
+    rest = v_n <= 1e-13
+    if not rest.any():
+        return q, v, a, still, False
+    still[near[rest]] = True
+    i, j, n = i[rest], j[rest], n[:, rest]
+    tangent = np.array((-n[1], n[0])) * (j >= 0)            # the floor's normal never turns
+    slip = along(v, i, j, tangent)
+    turn = slip * slip / (radius[i] + radius[j])            # what keeps a turning normal in touch
+    a, f = react(a, i, j, n, w, along(a, i, j, n) + turn)
+    slides = (f > 0.0) & (np.abs(slip) + np.abs(along(a, i, j, tangent)) > 1e-9)
+    return q, v, a, still, slides.any()
 
+def next_impact(q, v, a, radius, still, horizon):
+    """Time [s] until the first contact that is not `still` closes; inf if none does by `horizon`.
 
-def simulate_exact(scene, dt, steps, report=None):
+    A pair's |d + u t + c t^2 / 2|^2 - R^2 is a quartic in t, the floor's gap a parabola.
+    """
+    i, j = (index[~still] for index in balls.every_contact(q.shape[1] - 1))
+    d, u, c = (rows[:, i] - rows[:, j] for rows in (q, v, a))
+    gap = np.maximum(-balls.geometry(q, radius, i, j)[1], 0.0)
+    pair = np.array((gap * (gap + 2.0 * (radius[i] + radius[j])), 2.0 * (d * u).sum(0),
+                     (u * u + d * c).sum(0), (u * c).sum(0), 0.25 * (c * c).sum(0)))
+    floor = np.array((gap, u[1], 0.5 * c[1], 0.0 * gap, 0.0 * gap))
+    return roots.first_fall(np.where(j < 0, floor, pair), horizon).min(initial=np.inf)
+
+def simulate_exact(scene, dt, steps, report=lambda k: None):
     """The Run from event to event, sampled at k dt: no step error; the cost follows the events.
 
     Between events bodies fly parabolas. Touching bodies that close get impulses from the LCP of
-    Newton's restitution, all contacts at once; resting ones get forces from the LCP of accelerations.
-    A bounce lower than 1e-15 r is the last: all that would follow add less. Not exact where balls
-    slide over one another in contact: the normal turns, so forces hold for one sample, and the
-    overlap left, of order dt^2, is moved out.
+    Newton's restitution, all contacts at once; resting ones forces from the LCP of accelerations.
+    Not exact where balls slide over one another in contact: the normal turns, so a force holds for
+    one sample only, and the overlap left, of order dt^2, is moved out.
     """
-    i, j = every_pair(len(scene.mass))
-    gravity = np.array([[0.0], [GRAVITY]]) + np.zeros_like(scene.q0)
-    q, v, now, k, held = scene.q0, scene.v0, 0.0, 0, np.zeros(len(i), bool)
-    t = np.arange(steps + 1) * dt
+    q, v, w, radius = map(balls.with_floor, (scene.q0, scene.v0, 1.0 / scene.mass, scene.radius))
+    now, k, t, held = 0.0, 0, np.arange(steps + 1) * dt, balls.every_contact(len(w) - 1)[0] < 0
     run = Run(t, np.empty((steps + 1, *q.shape)), np.empty((steps + 1, *q.shape)))
     with np.errstate(all="ignore"):
-        while True:
-            q, v, a, held, slides = settle(scene, q, v, gravity, held)
+        while k <= steps:
+            q, v, a, held, slides = settle(q, v, w, radius, scene.restitution, held)
             horizon = (t[min(k + (t[k] <= now), steps)] if slides else t[-1]) - now
-            span = min(next_impact(scene, q, v, a, held, horizon), horizon)
+            span = min(next_impact(q, v, a, radius, held, horizon), horizon)
             upto = int(np.searchsorted(t, now + span, "right"))
             s = (t[k:upto] - now)[:, None, None]
             run.q[k:upto], run.v[k:upto] = q + s * (v + 0.5 * s * a), v + s * a
             q, v, now, k = q + span * (v + 0.5 * span * a), v + span * a, now + span, upto
-            if report:
-                report(k)
-            if k > steps:
-                return run
-
-
-def settle(scene, q, v, gravity, held):
-    """At one instant: overlaps moved out, impulses, forces. Returns q, v, a, who rests, who slides."""
-    i, j = every_pair(len(scene.mass))
-    w, touch = 1.0 / scene.mass, TOUCH * scene.radius.mean()
-    for _ in range(50):
-        *n, depth = geometry(q, scene.radius, i, j)
-        near = np.flatnonzero(depth >= -touch)
-        i_n, j_n, n = i[near], j[near], np.array(n)[:, near]
-        if not (depth > touch).any():
-            break
-        q, _ = pushed(q, w, i_n, j_n, n, -depth[near])
-    v_n = across(v, i_n, j_n, n)
-    if (v_n < -STILL).any():
-        bounce = np.where(held[near], 0.0, scene.restitution * np.maximum(-v_n, 0.0))
-        bounce[bounce * bounce < -2.0 * GRAVITY * 1e-15 * RADIUS] = 0.0
-        v, _ = pushed(v, w, i_n, j_n, n, v_n - bounce)
-        v_n = across(v, i_n, j_n, n)
-    rest = v_n <= STILL
-    i_n, j_n, n, still = i_n[rest], j_n[rest], n[:, rest], np.zeros(len(i), bool)
-    still[near[rest]] = True
-    slip = across(v, i_n, j_n, (-n[1], n[0])) * (j_n >= 0)
-    reach = np.append(scene.radius, 0.0)
-    turn = slip * slip / (reach[i_n] + reach[j_n])          # the normal turns with the pair
-    a, f = pushed(gravity, w, i_n, j_n, n, across(gravity, i_n, j_n, n) + turn)
-    slip = np.abs(slip) + np.abs(across(a, i_n, j_n, (-n[1], n[0]))) * (j_n >= 0)
-    return q, v, a, still, bool(((f > 0.0) & (slip > 1e-9)).any())
-
-
-def next_impact(scene, q, v, a, held, horizon):
-    """Time [s] until the first contact that does not rest closes; inf when none does by `horizon`.
-
-    |d + w t + c t^2 / 2|^2 - R^2 is a quartic; the floor's gap a parabola. Newton's method made safe:
-    with the least curvature up to the horizon a step never passes a root, and a parabola takes one.
-    """
-    i, j = (index[~held] for index in every_pair(len(scene.mass)))
-    _, _, depth = geometry(q, scene.radius, i, j)
-    floor, radius = j < 0, np.append(scene.radius, 0.0)
-    d, w, c = (rows[:, i] - rows[:, j] for rows in np.append((q, v, a), np.zeros((3, 2, 1)), 2))
-    p0 = np.maximum(-depth, 0.0) * np.where(floor, 1.0, 2.0 * (radius[i] + radius[j]) - depth)
-    p1 = np.where(floor, w[1], 2.0 * (d * w).sum(0))
-    p2 = np.where(floor, 0.5 * c[1], (w * w + d * c).sum(0))
-    p3, p4 = np.where(floor, 0.0, (w * c).sum(0)), np.where(floor, 0.0, 0.25 * (c * c).sum(0))
-    t = np.zeros(len(i))
-    for _ in range(100):
-        low = np.clip(-p3 / (4.0 * p4), t, horizon)         # where the curvature is least
-        bend = [p2 + (3.0 * p3 + 6.0 * p4 * s) * s for s in (t, horizon, np.where(p4 > 0.0, low, t))]
-        bend = np.minimum.reduce(bend)
-        value = np.maximum((((p4 * t + p3) * t + p2) * t + p1) * t + p0, 0.0)
-        slope = ((4.0 * p4 * t + 3.0 * p3) * t + 2.0 * p2) * t + p1
-        root = np.sqrt(slope * slope - 4.0 * value * bend)  # NaN: never
-        step = np.where(slope < 0.0, 2.0 * value / (root - slope),
-                        np.where(bend < 0.0, (slope + root) / (-2.0 * bend), np.inf))
-        t = np.where(t + step <= horizon, t + step, np.inf)
-        if not (step > 1e-15 * t).any():
-            break
-    return t.min(initial=np.inf)
+            report(k)
+    return Run(t, run.q[:, :, :-1], run.v[:, :, :-1])
 # --- endregion ---
-
 
 # --- region: simulate ---
 class Run(NamedTuple):
@@ -490,49 +391,44 @@ class Run(NamedTuple):
     q: np.ndarray
     v: np.ndarray
 
+def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
+    """`steps` times q, v = step(q, v), as a Run; rows are lists where `takes_lists` says so.
 
-def simulate(step, scene, dt, steps, skip=True, report=None):
-    """`steps` times q, v = step(q, v), recorded as a Run; rows are lists where `takes_lists` says so.
-
-    With `skip`, two kinds of steps are not taken, and no bit changes: a flight that meets no contact
-    is summed in one go; and when a state comes back (rest, or any cycle) the rest of the run is
-    copied, since a step depends on the state alone. `report(k)` hears how far it is.
+    With `skip` two kinds of steps are not taken, and no bit changes: a flight without contact is
+    summed in one go, and when a state comes back (rest, or any cycle) the rest of the run is a
+    copy, since a step depends on the state alone. `report(k)` hears how far it is.
     """
     rows, lists = np.empty((steps + 1, 4, len(scene.mass))), takes_lists(len(scene.mass), skip)
     rows[0] = *scene.q0, *scene.v0
     state, seen, k, ask = (rows[0].tolist() if lists else list(rows[0])), {}, 0, 0
     with np.errstate(all="ignore"):                         # an explosion overflows on purpose
         while k < steps:
-            if skip:
-                first = seen.setdefault(hash(rows[k].tobytes()), k)
-                if first < k and rows[first].tobytes() == rows[k].tobytes():
-                    rows[k:] = rows[first + np.arange(steps + 1 - k) % (k - first)]
-                    break
-                if lists and k >= ask:
-                    free = free_steps(state, scene.radius, dt, steps - k)
-                    flight = fly(rows[k], scene.radius, dt, free) if free > 16 else ()
-                    ask = k + min(free, 16)                 # short flights are stepped
-                    if len(flight):
-                        rows[k + 1:k + 1 + len(flight)] = flight
-                        k += len(flight)
-                        state = rows[k].tolist()
-                        continue
+            first = seen.setdefault(hash(rows[k].tobytes()), k) if skip else k
+            if first < k and rows[first].tobytes() == rows[k].tobytes():
+                rows[k:] = rows[first + np.arange(steps + 1 - k) % (k - first)]
+                break
+            if skip and lists and k >= ask:
+                free = free_steps(state, scene.radius, dt, steps - k)
+                flight = fly(rows[k], scene.radius, dt, free) if free > 16 else ()
+                ask = k + min(free, 16)                     # short flights are stepped
+                if len(flight):
+                    rows[k + 1:k + 1 + len(flight)] = flight
+                    k += len(flight)
+                    state = rows[k].tolist()
+                    continue
             (x, y), (vx, vy) = step(state[:2], state[2:])
             rows[k + 1] = state = [x, y, vx, vy]
             k += 1
-            if report:
-                report(k)
+            report(k)
     rows += 0.0                                             # -0.0 becomes 0.0
     return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
-
 
 def takes_lists(count, skip):
     """Few balls step as lists of floats; without skips all do: every pair, contact by contact."""
     return count <= FEW or not skip
 
-
 def free_steps(state, radius, dt, most):
-    """About how many steps, up to `most`, until the first ball is at the floor; 0 when in doubt.
+    """About how many steps, up to `most`, until a ball is at the floor; 0 when in doubt.
 
     Semi-implicit flight is the parabola that starts slower by half a step of gravity.
     """
@@ -542,7 +438,6 @@ def free_steps(state, radius, dt, most):
             return 0
         most = min(most, (speed + math.sqrt(speed * speed - 2.0 * GRAVITY * gap)) / -GRAVITY / dt)
     return int(most)
-
 
 def fly(row, radius, dt, most):
     """The next states (n, 4, N), n <= most, of a flight, up to the first with a contact listed.
@@ -554,193 +449,165 @@ def fly(row, radius, dt, most):
     np.add.accumulate(block[:, 2:], out=block[:, 2:])
     block[1:, :2] = dt * block[1:, 2:]
     np.add.accumulate(block[:, :2], out=block[:, :2])
-    _, _, depth = geometry(block[:, :2], radius, *every_pair(len(radius)))
-    contact = np.flatnonzero(depth.max(-1) > -CONTACT_MARGIN)
-    return block[1:contact[0] + 1 if len(contact) else None]
+    contact = max_penetration(block[:, :2], radius, -CONTACT_MARGIN) > -CONTACT_MARGIN
+    return block[1:contact.argmax() + 1 if contact.any() else None]
 
-
-def run_model(model, scene, dt, steps, stiffness=1e4, baumgarte=0.2, iters=20, skip=True, report=None):
-    """One model's Run of a scene. Raises ValueError for an unknown model."""
-    if model == "exact":
-        return simulate_exact(scene, dt, steps, report)
-    mass, radius, inv_mass = scene.mass, scene.radius, 1.0 / scene.mass
+def run_model(model, scene, dt, steps, stiffness=1e4, baumgarte=0.2, iters=20, skip=True,
+              report=lambda k: None):
+    """The Run of a scene by one of MODELS; ValueError for any other."""
+    mass, radius, w = scene.mass, scene.radius, 1.0 / scene.mass
     if takes_lists(len(mass), skip):
-        mass, radius, inv_mass = mass.tolist(), radius.tolist(), inv_mass.tolist()
+        mass, radius, w = mass.tolist(), radius.tolist(), w.tolist()
 
     def force(q, v):
         return penalty_force(q, v, mass, radius, stiffness, scene.damping)
 
-    def penalty(q, v):
-        return semi_implicit_step(q, v, mass, force, dt)
-
-    def lcp(q, v):
-        return lcp_step(q, v, inv_mass, radius, dt, scene.restitution, baumgarte, iters)
+    def step(q, v):
+        if model == "penalty":
+            return semi_implicit_step(q, v, mass, force, dt)
+        return lcp_step(q, v, w, radius, dt, scene.restitution, baumgarte, iters)
 
     if model not in MODELS:
         raise ValueError(f"model {model!r}; allowed: {', '.join(MODELS)}")
-    return simulate(penalty if model == "penalty" else lcp, scene, dt, steps, skip, report)
-
+    if model == "exact":
+        return simulate_exact(scene, dt, steps, report)
+    return simulate(step, scene, dt, steps, skip, report)
 
 def energy(q, v, mass):
     """Kinetic plus potential energy [J] of states (..., 2, N); zero at the floor."""
     return (0.5 * mass * (v * v).sum(-2) - mass * GRAVITY * q[..., 1, :]).sum(-1)
 
-
-def max_penetration(q, radius):
-    """Deepest overlap [m], 0 if there is none, with the floor or a ball, in states (..., 2, N)."""
+def max_penetration(q, radius, least=0.0):
+    """Deepest overlap [m] with the floor or a ball, or `least`, in states (..., 2, N)."""
     if len(radius) <= FEW:
-        return np.maximum(geometry(q, radius, *every_pair(len(radius)))[2].max(-1), 0.0)
+        n, depth = balls.geometry(balls.with_floor(q), balls.with_floor(radius),
+                                  *balls.every_contact(len(radius)))
+        return depth.max(-1, initial=least)
     if q.ndim > 2:
-        return np.array([max_penetration(state, radius) for state in q])
-    return contact_arrays(q, radius, 0.0)[4].max(initial=0.0)
+        return np.array([max_penetration(state, radius, least) for state in q])
+    return balls.contact_arrays(q, radius, -least)[3].max(initial=least)
 
-
-def contact_history(q, v, i, j, scene, dt):
-    """Deepest overlap [m] (S,), and the energy [J] (S - 1,) contacts i, j put INTO the bodies a step.
-
-    A contact may leave with e times the speed it closed with, or with the speed it parts at, plus
-    what falling through its gap adds. More than that is put in: m_eff / 2 times the excess of v_n^2.
-    """
-    nx, ny, depth = geometry(q, scene.radius, i, j)
-    v_n, left = (across(rows, i, j, (nx[:-1], ny[:-1])) for rows in (v[:-1], v[1:]))
-    closing = np.maximum(-(v_n + dt * GRAVITY * (j < 0)), 0.0)
-    allowed = np.maximum(scene.restitution * closing, v_n) ** 2
-    allowed -= 2.0 * GRAVITY * np.maximum(-depth[:-1], 0.0)
-    w = np.append(1.0 / scene.mass, 0.0)
-    excess = np.where((depth[:-1] > -CONTACT_MARGIN) & (left > 0.0), left * left - allowed, 0.0)
-    return depth.max(-1, initial=0.0), (np.maximum(excess, 0.0) * 0.5 / (w[i] + w[j])).sum(-1)
-
+def contact_energy(run, scene, dt):
+    """The energy [J] that contacts put INTO the bodies in a Run: see balls.energy_put_in."""
+    few, count = len(scene.mass) <= FEW, len(run.t)
+    return sum(balls.energy_put_in(
+        run.q[k], run.v[k], scene.mass, scene.radius, balls.every_contact(len(scene.mass)) if few else
+        balls.contact_arrays(run.q[k][0], scene.radius, CONTACT_MARGIN)[:2],
+        scene.restitution, dt * GRAVITY, CONTACT_MARGIN)
+        for k in ([slice(None)] if few else [slice(k, k + 2) for k in range(count - 1)]))
 
 def contact_quality(run, scene, dt, reference=None):
     """The honesty numbers of a Run, as shares of the first ball's radius or of the start energy.
 
-    max_, rest_penetration_frac: deepest and last overlap. energy_excess: most energy above the start.
-    contact_energy: all that contacts put into the bodies, see contact_history. height_error_frac:
-    most |y - y of the Run `reference`|, None without one. rest_jitter: standard deviation of the
-    overlap over the last quarter. blew_up_step: the first with EXPLODED times the start energy
-    gained, or not finite; None, and blew_up False, if there is none.
+    max_, rest_penetration_frac: deepest, last overlap. energy_excess: most energy above the start.
+    contact_energy: as above. height_error_frac: most |y - y of the Run `reference`|. rest_jitter:
+    standard deviation of the overlap over the last quarter. blew_up_step: the first that gained
+    EXPLODED times the start energy or is not finite; None, and blew_up False, without one.
     """
     with np.errstate(all="ignore"):
-        if len(scene.mass) <= FEW:
-            depth, work = contact_history(run.q, run.v, *every_pair(len(scene.mass)), scene, dt)
-        else:
-            near = (contact_arrays(q, scene.radius, CONTACT_MARGIN)[:2] for q in run.q)
-            parts = [contact_history(run.q[k:k + 2], run.v[k:k + 2], *pair, scene, dt)
-                     for k, pair in enumerate(near)]
-            depth = np.array([part[0][0] for part in parts])
-            work = np.array([part[1][0] for part in parts[:-1]])
         total, radius = energy(run.q, run.v, scene.mass), float(scene.radius[0])
-        scale = abs(float(total[0])) or 1.0
+        scale, depth = abs(float(total[0])) or 1.0, max_penetration(run.q, scene.radius) / radius
         excess = (total - total[0]) / scale
         bad = np.flatnonzero(~(excess < EXPLODED))
-        error = reference and float(np.abs(run.q[:, 1] - reference.q[:, 1]).max()) / radius
-        return {"max_penetration_frac": float(depth.max()) / radius,
-                "rest_penetration_frac": float(depth[-1]) / radius,
+        return {"max_penetration_frac": float(depth.max()),
+                "rest_penetration_frac": float(depth[-1]),
                 "energy_excess": float(excess.max()),
-                "contact_energy": float(work.sum()) / scale,
-                "height_error_frac": error,
-                "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])) / radius,
+                "contact_energy": contact_energy(run, scene, dt) / scale,
+                "height_error_frac": reference and float(
+                    np.abs(run.q[:, 1] - reference.q[:, 1]).max()) / radius,
+                "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])),
                 "blew_up": len(bad) > 0,
                 "blew_up_step": int(bad[0]) if len(bad) else None}
 # --- endregion ---
 
-
 # --- region: report ---
+COLUMNS = {"max pen/r": "max_penetration_frac", "rest pen/r": "rest_penetration_frac",
+           "energy+": "energy_excess", "energy in": "contact_energy",
+           "height err/r": "height_error_frac", "jitter/r": "rest_jitter"}
+
 def log_rerun(path, runs, scene):
     """Write the Runs {model: Run} to a recording, whole; ImportError where rerun is missing.
 
-    One 2-D view of every model's balls on the table, side by side, y up; plots of the first ball's
-    height [m], the deepest penetration [r] and the energy above the start [J]; a colour a model.
+    The balls of every model on the table, side by side, y up, over plots of the first ball's
+    height, the deepest penetration and the energy above the start; one colour a model.
     """
     from curriculum.common import recording
-    curves = {"height": {}, "penetration": {}, "energy": {}}
-    for model, run in runs.items():
-        total = energy(run.q, run.v, scene.mass)
-        curves["height"][model] = run.q[:, 1, 0]
-        curves["penetration"][model] = max_penetration(run.q, scene.radius) / scene.radius[0]
-        curves["energy"][model] = total - total[0]
-    recording.write(path, "contact", next(iter(runs.values())).t, scene.radius,
-                    {model: run.q for model, run in runs.items()}, curves, COLORS)
+    total = {model: energy(run.q, run.v, scene.mass) for model, run in runs.items()}
+    recording.write(path, "contact", runs, scene.radius, {
+        "height [m]": {model: run.q[:, 1, 0] for model, run in runs.items()},
+        "penetration [r]": {model: max_penetration(run.q, scene.radius) / scene.radius[0]
+                            for model, run in runs.items()},
+        "energy above the start [J]": {model: e - e[0] for model, e in total.items()}}, COLORS)
 
+def measure_stability(run, scene, dt, stiffness, first):
+    """The largest dt of the grid without explosion and the penetration there; the critical dt.
 
-def measure_stability(args, scene, first):
-    """Largest stable dt of the grid and the penetration there, for penalty and lcp; both critical dt.
-
-    `first` holds the qualities at dt itself, which are not run again.
+    run(model, dt) gives a Run; `first` holds the qualities at dt x 1, which is not run again.
     """
-    grid = {"dt_crit_penalty": critical_dt(float(scene.mass[0]), args.stiffness, 0.0),
-            "dt_crit_damped": critical_dt(float(scene.mass[0]), args.stiffness, scene.damping)}
+    grid = {"dt_crit_penalty": critical_dt(float(scene.mass[0]), stiffness, 0.0),
+            "dt_crit_damped": critical_dt(float(scene.mass[0]), stiffness, scene.damping)}
     for model in ("penalty", "lcp"):
         grid[model], grid[f"{model}_penetration_frac"] = 0.0, None
-        for dt in (args.dt * factor for factor in DT_GRID):
-            quality = first[model] if dt == args.dt else contact_quality(
-                run_flags(model, scene, dt, args), scene, dt)
-            if not quality["blew_up"]:
-                grid[model] = dt
-                grid[f"{model}_penetration_frac"] = quality["max_penetration_frac"]
+        for step in [dt * factor for factor in DT_GRID]:
+            found = first[model] if step == dt else contact_quality(run(model, step), scene, step)
+            if not found["blew_up"]:
+                grid[model] = step
+                grid[f"{model}_penetration_frac"] = found["max_penetration_frac"]
     return grid
 
-
-def run_flags(model, scene, dt, args, report=None):
-    """run_model with the knobs of the command line."""
-    return run_model(model, scene, dt, args.steps, args.stiffness, args.baumgarte, args.iters,
-                     args.skip, report)
-
-
-def print_report(args, scene, metrics):
-    """The table, the verdict and the stability line."""
-    def show(value, form):
-        return format("-" if value is None else format(value, form), ">12")
-
-    print(f"scene {args.scene}: {len(scene.mass)} x r = {RADIUS} m, {args.steps} steps of {args.dt:g} s")
-    print("contact       max pen/r  rest pen/r     energy+   energy in  height err    jitter/r  state")
-    quality, grid = metrics["quality"], metrics["stability"]
+def print_report(args, quality, grid):
+    """The table, a row a model; the verdict, which claims what it tests; the stability lines."""
+    show = results.show
+    print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
+    print("contact " + "".join(f"{name:>13}" for name in COLUMNS) + "  state")
     for model, row in quality.items():
         state = f"EXPLODED at step {row['blew_up_step']}" if row["blew_up"] else "ok"
-        print(f"{model:<10}", *(show(row[key], ".4e") for key in (
-            "max_penetration_frac", "rest_penetration_frac", "energy_excess", "contact_energy",
-            "height_error_frac", "rest_jitter")), "", state)
-    if not grid:
-        return
-    deeper = all((quality["penalty"][key] is None) or quality["penalty"][key] >= quality["lcp"][key]
-                 for key in ("max_penetration_frac", "rest_penetration_frac"))
-    print("verdict: penalty goes deeper than lcp, at most and at rest:", "yes" if deeper else "NO")
-    print(f"stability: energy stays below {EXPLODED:g}x up to dt = {grid['penalty']:g} s for penalty "
-          f"(critical dt of one ball {grid['dt_crit_damped'] or math.inf:.4g} s, undamped "
-          f"{grid['dt_crit_penalty'] or math.inf:.4g} s), {grid['lcp']:g} s for lcp; deepest there: "
-          f"{show(grid['penalty_penetration_frac'], '.3g').strip()} r and "
-          f"{show(grid['lcp_penetration_frac'], '.3g').strip()} r")
-
+        print(f"{model:<8}" + "".join(f"{show(row[key], '.3e'):>13}" for key in COLUMNS.values())
+              + f"  {state}")
+    if grid:
+        spring, solve = quality["penalty"], quality["lcp"]
+        deeper = all(spring[key] is None or spring[key] > solve[key]
+                     for key in ("max_penetration_frac", "rest_penetration_frac"))
+        print("verdict: penalty goes deeper than lcp, at most and at rest:", "yes" if deeper else "NO")
+        for model in ("penalty", "lcp"):
+            print(f"stability: {model} gains less than {EXPLODED:g} x its energy up to dt = {grid[model]:g} s,"
+                  f" {show(grid[f'{model}_penetration_frac'], '.3g')} r deep there")
+        print(f"critical dt of penalty, one ball: {show(grid['dt_crit_damped'], '.4g')} s; "
+              f"without the damper, 2 sqrt(m/k), {show(grid['dt_crit_penalty'], '.4g')} s")
 
 def main(argv=None):
     """Run the command line: print the report, write metrics.json and contact.rrd. Returns 0."""
     args = parse_flags(argv)
     device.banner("ch3.5-contact", args.device)
     scene = build_scene(args.scene, args.seed, args.bodies, args.restitution, args.damping)
-    runs = {model: run_flags(model, scene, args.dt, args, progress.steps(args.steps, model))
-            for model in (MODELS if args.contact == "all" else (args.contact,))}
-    quality = {model: contact_quality(run, scene, args.dt, runs.get("exact"))
-               for model, run in runs.items()}
+
+    def run(model, dt, report=lambda k: None):
+        return run_model(model, scene, dt, args.steps, args.stiffness, args.baumgarte, args.iters,
+                         args.skip, report)
+
+    runs = {model: run(model, args.dt, progress.steps(args.steps, model))
+            for model in MODELS if args.contact in ("all", model)}
+    quality = {model: contact_quality(found, scene, args.dt, runs.get("exact"))
+               for model, found in runs.items()}
+    grid = {} if args.contact != "all" else measure_stability(
+        run, scene, args.dt, args.stiffness, quality)
     metrics = results.rounded({
         "scene": args.scene, "contact": args.contact, "dt": args.dt, "steps": args.steps,
         "seed": args.seed, "stiffness": args.stiffness, "restitution": scene.restitution,
-        "quality": quality, "stability": {}
-        if args.contact != "all" else measure_stability(args, scene, quality)})
-    print_report(args, scene, metrics)
+        "quality": quality, "stability": grid})
+    print_report(args, metrics["quality"], metrics["stability"])
     path = os.path.join(args.out, "metrics.json")
     results.write_json(path, metrics)
-    print(f"metrics: {path}")
+    print("metrics:", path)
     if args.rerun:
+        path = os.path.join(args.out, "contact.rrd")
         try:
-            path = os.path.join(args.out, "contact.rrd")
             log_rerun(path, runs, scene)
             print(f"recording: {path}, open it with: rerun {path}")
         except ImportError:
-            print("no recording: rerun is missing, install it with: pip install rerun-sdk")
-    knobs = {key: value for key, value in vars(args).items() if key not in ("out", "rerun", "skip")}
-    print(f"config_hash: {results.fingerprint(knobs)}")
+            print("no recording: rerun is not installed, pip install rerun-sdk")
+    print("config_hash:", results.fingerprint(vars(args), but=("out", "rerun", "skip")))
     return 0
-
 
 if __name__ == "__main__":
     sys.exit(main())

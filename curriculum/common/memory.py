@@ -16,3 +16,10 @@ def available():
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
         return float("inf")
+
+
+def need(parser, size, what):
+    """End with the parser's one-line error where `what` was asked for and needs more bytes than there are."""
+    if size > 1e8 and size > available():
+        parser.error(f"given {what}, which need {size / 1e9:.3g} GB of memory; "
+                     f"allowed: {available() / 1e9:.3g} GB, what is free here")

@@ -20,7 +20,13 @@ def write_json(path, value):
     write_whole(path, json.dumps(value, indent=2, sort_keys=True, allow_nan=False) + "\n")
 
 
-def fingerprint(knobs):
-    """12 hexadecimal digits that change with any knob {name: value}; the order of names doesn't count."""
+def show(value, form):
+    """`value` in that format, "-" for None."""
+    return "-" if value is None else format(value, form)
+
+
+def fingerprint(knobs, but=()):
+    """12 hexadecimal digits that change with any of the knobs {name: value}, except those in `but`."""
     import hashlib
-    return hashlib.sha256(json.dumps(knobs, sort_keys=True).encode()).hexdigest()[:12]
+    counted = {name: value for name, value in knobs.items() if name not in but}
+    return hashlib.sha256(json.dumps(counted, sort_keys=True).encode()).hexdigest()[:12]

@@ -1,0 +1,120 @@
+"""Balls over a floor by arrays: which contacts there are, and which can be solved side by side.
+
+What contact.py says of one contact after another, for all at once and to the same bits. Needs numpy.
+States are rows x, y with the floor's zeros in the last column, where index j = -1 finds them.
+"""
+
+from functools import cache
+
+import numpy as np
+
+
+def with_floor(rows):
+    """Rows (..., N) with a column of zeros added for the floor, (..., N + 1)."""
+    return np.append(rows, np.zeros(rows.shape[:-1] + (1,)), -1)
+
+
+@cache
+def every_contact(count):
+    """i, j (K,) of all contacts that `count` balls can have: the floor's (j = -1), then pairs i < j."""
+    i, j = np.triu_indices(count, 1)
+    return np.append(np.arange(count), i), np.append(np.full(count, -1), j)
+
+
+def geometry(q, radius, i, j):
+    """Normals n (..., 2, K) and depths (..., K) [m] of contacts i, j (K,).
+
+    q (..., 2, N + 1), radius (N + 1,) [m]. The floor's normal is (0, 1), and so is that of two
+    balls whose centres coincide.
+    """
+    d = q[..., i] - q[..., j]
+    dx, dy = d[..., 0, :], d[..., 1, :]
+    distance = np.where(j < 0, dy, np.sqrt(dx * dx + dy * dy))
+    up = (j < 0) | ~(distance > 0.0)
+    d /= np.where(up, 1.0, distance)[..., None, :]
+    dx[up], dy[up] = 0.0, 1.0
+    return d, radius[i] + radius[j] - distance
+
+
+def contact_arrays(q, radius, margin):
+    """i, j (K,), n (2, K), depth (K,) of the contacts with depth > -margin [m]; q (2, N), radius (N,).
+
+    The floor's by body, then pairs i < j in order. Pairs that cannot touch are not looked at.
+    """
+    i, j = near_pairs(*q, 2.0 * radius.max() + margin)
+    i, j = np.append(np.arange(len(radius)), i), np.append(np.full(len(radius), -1), j)
+    n, depth = geometry(with_floor(q), with_floor(radius), i, j)
+    listed = np.flatnonzero(depth > -margin)
+    listed = listed[np.lexsort((j[listed], i[listed], j[listed] >= 0))]
+    return i[listed], j[listed], n[:, listed], depth[listed]
+
+
+def near_pairs(x, y, reach):
+    """Index arrays i < j of all pairs closer than `reach` [m] and some others, in no set order.
+
+    Balls are sorted into square cells of side `reach`, numbered along the rows. Partners are then in
+    the same or the next cell, one run of the sorted list, or in three cells of the next row, another.
+    Balls that are nowhere (NaN, infinity) touch nothing.
+    """
+    known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    x, y = x[known] - x[known].min(initial=np.inf), y[known] - y[known].min(initial=np.inf)
+    side = max(reach, x.max(initial=0.0) / 2**30, y.max(initial=0.0) / 2**30)   # ids fit 64 bits
+    column, row = (x / side).astype(int), (y / side).astype(int)
+    width = column.max(initial=0) + 2                       # an empty cell ends every row
+    cell = row * width + column
+    order = np.argsort(cell, kind="stable")
+    cell = cell[order]
+    first = np.append(np.arange(1, len(cell) + 1), np.searchsorted(cell, cell + width - 1, "left"))
+    last = np.searchsorted(cell, np.append(cell + 1, cell + width + 1), "right")
+    count = last - first
+    a = np.repeat(np.tile(known[order], 2), count)
+    run = np.arange(len(a)) - np.repeat(np.cumsum(count) - count, count)        # 0, 1, ... in each
+    b = known[order][np.repeat(first, count) + run]
+    return np.minimum(a, b), np.maximum(a, b)
+
+
+def group_contacts(i, j, n, depth, bodies):
+    """Contacts as tuples (i, j, nx, ny, depth) of arrays, groups that share no body.
+
+    Solved group by group they give the bits of one by one in the order of the list. Where groups
+    would be small (a tower is one long chain) single contacts are faster: those, then.
+    """
+    columns = i, j, *n, depth
+    groups = independent_groups(i, j, bodies)
+    if len(i) < 50 * len(groups):
+        return list(zip(*(column.tolist() for column in columns)))
+    return [tuple(column[group] for column in columns) for group in groups]
+
+
+def independent_groups(i, j, bodies):
+    """Contacts i, j (K,) in groups that share no body: sweeping group by group is sweeping in order.
+
+    The group of a contact is one more than the largest group of an earlier contact that shares a
+    body with it. The floor (j = -1) moves for no contact, so sharing it does not count. Returns one
+    index array a group, each in the order of the list.
+    """
+    last, group = [0] * (bodies + 1), []
+    for a, b in zip(i.tolist(), j.tolist()):
+        last[a] = last[b] = max(last[a], last[b]) + 1
+        last[-1] = 0
+        group.append(last[a])
+    order = np.argsort(group, kind="stable")
+    cuts = np.flatnonzero(np.diff(np.array(group, int)[order])) + 1
+    return np.split(order, cuts) if group else []
+
+
+def energy_put_in(q, v, mass, radius, contacts, restitution, dt_gravity, margin):
+    """Energy [J] that `contacts` i, j put INTO the bodies over the steps of states q, v (S, 2, N).
+
+    Step by step, a contact within `margin` [m] may leave with `restitution` times the speed it closed
+    with (gravity's dt g [m/s] included), or with the speed it parted at, plus what falling through
+    its gap adds. Parting faster puts in m_eff / 2 times the excess of v_n^2.
+    """
+    (i, j), w = contacts, with_floor(1.0 / mass)
+    n, depth = geometry(with_floor(q[:-1]), with_floor(radius), i, j)
+    v = with_floor(v)
+    v_n, parting = ((n * (rows[..., i] - rows[..., j])).sum(-2) for rows in (v[:-1], v[1:]))
+    allowed = np.maximum(restitution * (-v_n - dt_gravity * (j < 0)), v_n) ** 2
+    fall = np.maximum(-depth, 0.0) * 2.0 * 9.81
+    excess = np.where((depth > -margin) & (parting > 0.0), parting ** 2 - allowed - fall, 0.0)
+    return float((0.5 / (w[i] + w[j]) * np.maximum(excess, 0.0)).sum())
