@@ -16,9 +16,8 @@ Left out: friction, rotation, and all shapes but balls over the line y = 0.
     k, c      penalty stiffness, damping           N/m, N s/m
     e, beta   restitution, Baumgarte gain          -       0 to 1
 
-q and v are two rows of N numbers, shape (2, N). Inside a step a row is a list of floats for a few
-balls, an array for many: the same lines compute both, to the same bits.
-
+q and v are two rows of N numbers, (2, N). Inside a step a row is a list of floats for a few balls
+and an array for many: the same lines compute both, to the same bits.
     python contact.py --scene drop                      # then: bounce, stack, pile
     python contact.py --contact penalty --dt 0.03       # past the critical time step
     python contact.py --smoke --no-rerun                # fixed length, the same bytes every time
@@ -27,7 +26,6 @@ balls, an array for many: the same lines compute both, to the same bits.
 # --- region: setup ---
 import argparse
 import math
-import operator
 import os
 import sys
 from typing import NamedTuple
@@ -39,7 +37,6 @@ from curriculum.common import arguments, balls, device, memory, progress, result
 GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; penetration is told in units of it
 CONTACT_MARGIN = 1e-3   # m: lcp lists a contact this far before it touches, so resting ones stay
-FEW = 12                # balls: up to here floats over all pairs beat arrays over near ones
 EXPLODED = 10.0         # gaining more than this times the start energy is an explosion
 DT_GRID = (1, 2, 4, 8, 16, 32)      # multiples of --dt that the stability line tries
 SCENES = ("drop", "bounce", "stack", "pile")
@@ -97,8 +94,8 @@ def build_scene(name, seed=0, bodies=None, restitution=None, damping=None):
     if name in ("drop", "bounce"):
         x, y = [0.0], [1.0 + draw]
     elif name == "stack":
-        x = [0.0] * (bodies or 3)
-        y = [(2 * i + 1) * RADIUS + abs(draw) for i in range(len(x))]
+        y = [(2 * i + 1) * RADIUS + abs(draw) for i in range(bodies or 3)]
+        x = [0.0] * len(y)
     elif name == "pile":
         x, y = pile_lattice(bodies or 200, abs(draw), rng)
     else:
@@ -111,8 +108,7 @@ def build_scene(name, seed=0, bodies=None, restitution=None, damping=None):
 def pile_lattice(count, lift, rng):
     """x, y (count,) on a lattice 2.5 r wide, each ball nudged by up to 0.1 r, so that gaps are > 0.
 
-    Numbered at random: contacts are swept in the order of the numbers, and numbers that ran along
-    the lattice would chain hundreds of contacts that have to wait for one another.
+    Numbered at random: numbers along the lattice would chain contacts, each waiting for the last.
     """
     place, width = rng.permutation(count), math.ceil(math.sqrt(2 * count))
     nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
@@ -142,21 +138,6 @@ def detect_contacts(q, radius, margin=CONTACT_MARGIN):
                 n = (dx / distance, dy / distance) if distance > 0.0 else (0.0, 1.0)
                 contacts.append((i, j, *n, depth))
     return contacts
-
-def operations(contacts):
-    """What differs for contacts of floats and groups of arrays: larger(a, b), choose(if, yes, no),
-    equal(list, list), and row(values), which adds a 0 for the floor where index -1 finds it."""
-    if contacts and isinstance(contacts[0][0], np.ndarray):     # fmax is max also for NaN
-        return (np.fmax, np.where, lambda a, b: all(map(np.array_equal, a, b)),
-                lambda row: balls.with_floor(np.asarray(row)))
-    return (max, lambda which, yes, no: yes if which else no, operator.eq,
-            lambda row: (row if isinstance(row, list) else row.tolist()) + [0.0])
-
-def advance(row, rate, dt):
-    """row + dt * rate."""
-    if isinstance(row, list):
-        return [a + dt * b for a, b in zip(row, rate)]
-    return row + dt * np.asarray(rate)
 # --- endregion ---
 
 # --- region: penalty ---
@@ -167,7 +148,7 @@ def penalty_normal_force(depth, v_n, stiffness, damping, larger=max):
 def penalty_force(q, v, mass, radius, stiffness, damping):
     """Contact forces fx, fy (N,) [N]; a spring pushes only while it is compressed."""
     contacts = detect_contacts(q, radius, margin=0.0)
-    larger, _, _, row = operations(contacts)
+    larger, _, _, row = balls.operations(contacts)
     vx, vy, fx, fy = map(row, (*v, [0.0] * len(mass), [0.0] * len(mass)))
     for i, j, nx, ny, depth in contacts:
         v_n = nx * (vx[i] - vx[j]) + ny * (vy[i] - vy[j])
@@ -181,12 +162,9 @@ def penalty_force(q, v, mass, radius, stiffness, damping):
 def semi_implicit_step(q, v, mass, force, dt):
     """Semi-implicit Euler under gravity and force(q, v): new velocity first, then q with it."""
     fx, fy = force(q, v)
-    if isinstance(mass, list):
-        ax, ay = [f / m for f, m in zip(fx, mass)], [GRAVITY + f / m for f, m in zip(fy, mass)]
-    else:
-        ax, ay = np.asarray(fx) / mass, GRAVITY + np.asarray(fy) / mass
-    v = advance(v[0], ax, dt), advance(v[1], ay, dt)
-    return (advance(q[0], v[0], dt), advance(q[1], v[1], dt)), v
+    ax, ay = balls.acceleration(0.0, fx, mass), balls.acceleration(GRAVITY, fy, mass)
+    v = balls.advance(v[0], ax, dt), balls.advance(v[1], ay, dt)
+    return (balls.advance(q[0], v[0], dt), balls.advance(q[1], v[1], dt)), v
 
 def critical_dt(mass, stiffness, damping):
     """The largest stable dt [s] of that step for a ball kept in contact; inf without a spring.
@@ -205,7 +183,7 @@ def contact_targets(v, contacts, restitution, baumgarte, dt):
     The correction (beta / dt) depth (Baumgarte 1972) or, where the bodies arrive closing, the
     bounce -e v_n if larger; never their sum, which would bounce higher than the material.
     """
-    larger, choose, _, row = operations(contacts)
+    larger, choose, _, row = balls.operations(contacts)
     vx, vy = map(row, v)
     target = []
     for i, j, nx, ny, depth in contacts:
@@ -227,19 +205,17 @@ def solve_contacts(v, inv_mass, contacts, target, iters):
     each contact [N s]. Velocity-level time stepping: Moreau; Stewart, Trinkle 1996; Anitescu, Potra
     1997. A sweep that changes no impulse ends it before `iters` sweeps: no later one would.
     """
-    larger, choose, equal, row = operations(contacts)
+    larger, choose, equal, row = balls.operations(contacts)
     vx, vy, w = map(row, (*v, inv_mass))
     lam, rows = [0.0] * len(contacts), []
     for (i, j, nx, ny, _), goal in zip(contacts, target):
-        mobility = w[i] + w[j]
-        effective_mass = 1.0 / choose(mobility > 0.0, mobility, math.inf)
-        rows.append((i, j, nx, ny, goal, effective_mass,
-                     w[i] * nx, w[i] * ny, w[j] * nx, w[j] * ny))
+        m_eff = 1.0 / choose(w[i] + w[j] > 0.0, w[i] + w[j], math.inf)      # effective mass
+        rows.append((i, j, nx, ny, goal, m_eff, w[i] * nx, w[i] * ny, w[j] * nx, w[j] * ny))
     for _ in range(iters):
         before = lam.copy()
-        for c, (i, j, nx, ny, goal, effective_mass, ix, iy, jx, jy) in enumerate(rows):
+        for c, (i, j, nx, ny, goal, m_eff, ix, iy, jx, jy) in enumerate(rows):
             v_n = nx * (vx[i] - vx[j]) + ny * (vy[i] - vy[j])
-            total = project_impulse(lam[c], (goal - v_n) * effective_mass, larger)
+            total = project_impulse(lam[c], (goal - v_n) * m_eff, larger)
             dlam, lam[c] = total - lam[c], total
             vx[i] += dlam * ix
             vy[i] += dlam * iy
@@ -252,31 +228,29 @@ def solve_contacts(v, inv_mass, contacts, target, iters):
 def lcp_step(q, v, inv_mass, radius, dt, restitution, baumgarte, iters):
     """Predict v under gravity, solve the contacts for impulses, move with what comes out."""
     contacts = detect_contacts(q, radius)
-    predicted = v[0], advance(v[1], [GRAVITY] * len(v[1]), dt)
+    predicted = v[0], balls.advance(v[1], [GRAVITY] * len(v[1]), dt)
     if contacts:
         target = contact_targets(v, contacts, restitution, baumgarte, dt)
         predicted, _ = solve_contacts(predicted, inv_mass, contacts, target, iters)
-    return (advance(q[0], predicted[0], dt), advance(q[1], predicted[1], dt)), predicted
+    return (balls.advance(q[0], predicted[0], dt), balls.advance(q[1], predicted[1], dt)), predicted
 # --- endregion ---
 
 # --- region: exact ---
 def solve_lcp(W, b):
     """lam >= 0 with w = W lam + b >= 0 and lam w = 0. W (K, K) is the Delassus matrix, b (K,).
 
-    The criss-cross method (Terlaky; den Hertog, Roos, Terlaky 1993): exchange lam and w of the least
-    negative index. It ends for every semidefinite W, redundant contacts included. It starts from all
-    contacts active, as at rest, and ends when a table made afresh needs no exchange.
+    The criss-cross method (Terlaky; den Hertog, Roos, Terlaky 1993): exchange lam and w of the
+    least negative index. It ends for every semidefinite W, redundant contacts included. It starts
+    with all contacts active, as at rest, and ends when a table made afresh needs no exchange.
     """
     scale = 1.0 / np.sqrt(W.diagonal())                     # unit diagonal: one tolerance for all
     fresh = np.column_stack((W * scale * scale[:, None], b * scale))
     least, active, exchanges = -1e-13 * np.abs(fresh[:, -1]).max(initial=0.0), scale > 0.0, 1
-
     def exchange(row, column):
         pivots, factor = table[row] / -table[row, column], table[:, column].copy()
         table[...] += factor[:, None] * pivots
         table[:, column], table[row] = factor / factor[row], pivots
         table[row, column] = 1.0 / factor[row]
-
     while exchanges:
         table, left, active, exchanges = fresh.copy(), active, np.zeros(len(b), bool), 0
         while left.any() and (diagonal := table[:, :-1].diagonal() * left).max() > 1e-13:
@@ -301,10 +275,8 @@ def along(rows, i, j, n):
     return (n * (rows[:, i] - rows[:, j])).sum(0)
 
 def react(rows, i, j, n, w, b):
-    """rows + M^-1 J' lam for lam = solve_lcp(J M^-1 J', b), and lam; rounding noise becomes 0.
-
-    Contacts i, j (K,), normals n (2, K); inverse masses w (N + 1,), the floor's 0.
-    """
+    """rows + M^-1 J' lam with lam = solve_lcp(J M^-1 J', b), and lam; what is noise becomes 0.
+    J is of the contacts i, j (K,), n (2, K); M^-1 of w (N + 1,), the floor's 0."""
     same = [np.equal.outer(a, c) * w[a][:, None] for a, c in ((i, i), (j, j), (i, j), (j, i))]
     normals = np.multiply.outer(n[0], n[0]) + np.multiply.outer(n[1], n[1])
     lam = solve_lcp(normals * (same[0] + same[1] - same[2] - same[3]), b)
@@ -317,7 +289,7 @@ def react(rows, i, j, n, w, b):
 def settle(q, v, w, radius, restitution, held):
     """At one instant: overlaps moved out, impulses, forces. Returns q, v, a, who rests, who slides.
 
-    Contacts within 1e-12 r touch. A bounce lower than 1e-15 r is the last of its series: all that
+    Within 1e-12 r is touching. A bounce lower than 1e-15 r is the last of its series, as all that
     would follow add less. Contacts `held` until now do not bounce.
     """
     every_i, every_j = balls.every_contact(len(w) - 1)
@@ -365,8 +337,8 @@ def simulate_exact(scene, dt, steps, report=lambda k: None):
 
     Between events bodies fly parabolas. Touching bodies that close get impulses from the LCP of
     Newton's restitution, all contacts at once; resting ones forces from the LCP of accelerations.
-    Not exact where balls slide over one another in contact: the normal turns, so a force holds for
-    one sample only, and the overlap left, of order dt^2, is moved out.
+    Not exact where balls slide over one another in contact: there the normal turns, a force is held
+    for one sample, and the overlap left, of order dt^2, is moved out.
     """
     q, v, w, radius = map(balls.with_floor, (scene.q0, scene.v0, 1.0 / scene.mass, scene.radius))
     now, k, t, held = 0.0, 0, np.arange(steps + 1) * dt, balls.every_contact(len(w) - 1)[0] < 0
@@ -392,15 +364,16 @@ class Run(NamedTuple):
     v: np.ndarray
 
 def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
-    """`steps` times q, v = step(q, v), as a Run; rows are lists where `takes_lists` says so.
+    """`steps` times q, v = step(q, v), as a Run. Rows are lists for few balls, and without skips.
 
     With `skip` two kinds of steps are not taken, and no bit changes: a flight without contact is
     summed in one go, and when a state comes back (rest, or any cycle) the rest of the run is a
     copy, since a step depends on the state alone. `report(k)` hears how far it is.
     """
-    rows, lists = np.empty((steps + 1, 4, len(scene.mass))), takes_lists(len(scene.mass), skip)
+    rows, lists = np.empty((steps + 1, 4, len(scene.mass))), balls.few(scene.mass) or not skip
     rows[0] = *scene.q0, *scene.v0
-    state, seen, k, ask = (rows[0].tolist() if lists else list(rows[0])), {}, 0, 0
+    state, radius = rows[0].tolist() if lists else list(rows[0]), scene.radius.tolist()
+    seen, k, ask = {}, 0, 0
     with np.errstate(all="ignore"):                         # an explosion overflows on purpose
         while k < steps:
             first = seen.setdefault(hash(rows[k].tobytes()), k) if skip else k
@@ -408,12 +381,10 @@ def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
                 rows[k:] = rows[first + np.arange(steps + 1 - k) % (k - first)]
                 break
             if skip and lists and k >= ask:
-                free = free_steps(state, scene.radius, dt, steps - k)
-                flight = fly(rows[k], scene.radius, dt, free) if free > 16 else ()
-                ask = k + min(free, 16)                     # short flights are stepped
+                free, flight = fly(state, radius, dt, steps - k)
+                ask = k + free
                 if len(flight):
-                    rows[k + 1:k + 1 + len(flight)] = flight
-                    k += len(flight)
+                    rows[k + 1:k + 1 + len(flight)], k = flight, k + len(flight)
                     state = rows[k].tolist()
                     continue
             (x, y), (vx, vy) = step(state[:2], state[2:])
@@ -423,101 +394,69 @@ def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
     rows += 0.0                                             # -0.0 becomes 0.0
     return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
 
-def takes_lists(count, skip):
-    """Few balls step as lists of floats; without skips all do: every pair, contact by contact."""
-    return count <= FEW or not skip
-
-def free_steps(state, radius, dt, most):
-    """About how many steps, up to `most`, until a ball is at the floor; 0 when in doubt.
-
-    Semi-implicit flight is the parabola that starts slower by half a step of gravity.
-    """
-    for _, y, _, vy, r in zip(*state, radius.tolist()):
-        gap, speed = y - r - CONTACT_MARGIN, vy + 0.5 * dt * GRAVITY
-        if not gap > 0.0:
-            return 0
-        most = min(most, (speed + math.sqrt(speed * speed - 2.0 * GRAVITY * gap)) / -GRAVITY / dt)
-    return int(most)
-
 def fly(row, radius, dt, most):
-    """The next states (n, 4, N), n <= most, of a flight, up to the first with a contact listed.
+    """Steps to wait before asking again, and the next states (n, 4, N), n <= most, of a flight.
 
-    np.add.accumulate adds in the order of the steps, so the bits are theirs.
+    Semi-implicit flight is the parabola that starts slower by half a step of gravity; it tells how
+    far to look. np.add.accumulate adds in the order of the steps, so the bits are theirs.
     """
-    block = np.empty((most + 1, 4, len(radius)))
+    for _, y, _, vy, r in zip(*row, radius):
+        gap, speed = y - r - CONTACT_MARGIN, vy + 0.5 * dt * GRAVITY
+        fall = math.sqrt(speed * speed - 2.0 * GRAVITY * gap) if gap > 0.0 else -speed
+        most = min(most, (speed + fall) / -GRAVITY / dt)
+    if not most > 16.0:
+        return int(most), ()                                # a short flight is stepped
+    block = np.empty((int(most) + 1, 4, len(radius)))
     block[0], block[1:, 2], block[1:, 3] = row, 0.0, dt * GRAVITY
     np.add.accumulate(block[:, 2:], out=block[:, 2:])
     block[1:, :2] = dt * block[1:, 2:]
     np.add.accumulate(block[:, :2], out=block[:, :2])
-    contact = max_penetration(block[:, :2], radius, -CONTACT_MARGIN) > -CONTACT_MARGIN
-    return block[1:contact.argmax() + 1 if contact.any() else None]
+    contact = balls.deepest(block[:, :2], np.array(radius), CONTACT_MARGIN) > -CONTACT_MARGIN
+    return 16, block[1:contact.argmax() + 1 if contact.any() else None]
 
 def run_model(model, scene, dt, steps, stiffness=1e4, baumgarte=0.2, iters=20, skip=True,
               report=lambda k: None):
     """The Run of a scene by one of MODELS; ValueError for any other."""
     mass, radius, w = scene.mass, scene.radius, 1.0 / scene.mass
-    if takes_lists(len(mass), skip):
+    if balls.few(mass) or not skip:
         mass, radius, w = mass.tolist(), radius.tolist(), w.tolist()
-
-    def force(q, v):
-        return penalty_force(q, v, mass, radius, stiffness, scene.damping)
-
-    def step(q, v):
-        if model == "penalty":
-            return semi_implicit_step(q, v, mass, force, dt)
-        return lcp_step(q, v, w, radius, dt, scene.restitution, baumgarte, iters)
-
+    steps_by = {
+        "penalty": lambda q, v: semi_implicit_step(q, v, mass, lambda q, v: penalty_force(
+            q, v, mass, radius, stiffness, scene.damping), dt),
+        "lcp": lambda q, v: lcp_step(q, v, w, radius, dt, scene.restitution, baumgarte, iters)}
     if model not in MODELS:
         raise ValueError(f"model {model!r}; allowed: {', '.join(MODELS)}")
     if model == "exact":
         return simulate_exact(scene, dt, steps, report)
-    return simulate(step, scene, dt, steps, skip, report)
+    return simulate(steps_by[model], scene, dt, steps, skip, report)
 
 def energy(q, v, mass):
     """Kinetic plus potential energy [J] of states (..., 2, N); zero at the floor."""
     return (0.5 * mass * (v * v).sum(-2) - mass * GRAVITY * q[..., 1, :]).sum(-1)
 
-def max_penetration(q, radius, least=0.0):
-    """Deepest overlap [m] with the floor or a ball, or `least`, in states (..., 2, N)."""
-    if len(radius) <= FEW:
-        n, depth = balls.geometry(balls.with_floor(q), balls.with_floor(radius),
-                                  *balls.every_contact(len(radius)))
-        return depth.max(-1, initial=least)
-    if q.ndim > 2:
-        return np.array([max_penetration(state, radius, least) for state in q])
-    return balls.contact_arrays(q, radius, -least)[3].max(initial=least)
-
-def contact_energy(run, scene, dt):
-    """The energy [J] that contacts put INTO the bodies in a Run: see balls.energy_put_in."""
-    few, count = len(scene.mass) <= FEW, len(run.t)
-    return sum(balls.energy_put_in(
-        run.q[k], run.v[k], scene.mass, scene.radius, balls.every_contact(len(scene.mass)) if few else
-        balls.contact_arrays(run.q[k][0], scene.radius, CONTACT_MARGIN)[:2],
-        scene.restitution, dt * GRAVITY, CONTACT_MARGIN)
-        for k in ([slice(None)] if few else [slice(k, k + 2) for k in range(count - 1)]))
+def max_penetration(q, radius):
+    """Deepest overlap [m] with the floor or a ball, 0 without one, in states (..., 2, N)."""
+    return np.maximum(balls.deepest(q, radius, CONTACT_MARGIN), 0.0)
 
 def contact_quality(run, scene, dt, reference=None):
     """The honesty numbers of a Run, as shares of the first ball's radius or of the start energy.
 
     max_, rest_penetration_frac: deepest, last overlap. energy_excess: most energy above the start.
-    contact_energy: as above. height_error_frac: most |y - y of the Run `reference`|. rest_jitter:
-    standard deviation of the overlap over the last quarter. blew_up_step: the first that gained
-    EXPLODED times the start energy or is not finite; None, and blew_up False, without one.
+    contact_energy: what contacts put INTO the bodies beyond their law. height_error_frac: most
+    |y - y of the Run `reference`|. rest_jitter: standard deviation of the overlap over the last
+    quarter. blew_up_step: the first that gained EXPLODED times the energy or is not finite.
     """
     with np.errstate(all="ignore"):
         total, radius = energy(run.q, run.v, scene.mass), float(scene.radius[0])
         scale, depth = abs(float(total[0])) or 1.0, max_penetration(run.q, scene.radius) / radius
         excess = (total - total[0]) / scale
         bad = np.flatnonzero(~(excess < EXPLODED))
-        return {"max_penetration_frac": float(depth.max()),
-                "rest_penetration_frac": float(depth[-1]),
-                "energy_excess": float(excess.max()),
-                "contact_energy": contact_energy(run, scene, dt) / scale,
-                "height_error_frac": reference and float(
-                    np.abs(run.q[:, 1] - reference.q[:, 1]).max()) / radius,
-                "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])),
-                "blew_up": len(bad) > 0,
-                "blew_up_step": int(bad[0]) if len(bad) else None}
+        error = reference and float(np.abs(run.q[:, 1] - reference.q[:, 1]).max()) / radius
+        put_in = balls.energy_put_in(run.q, run.v, scene, dt * GRAVITY, CONTACT_MARGIN) / scale
+    return {"max_penetration_frac": float(depth.max()), "energy_excess": float(excess.max()),
+            "rest_penetration_frac": float(depth[-1]), "contact_energy": put_in,
+            "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])), "height_error_frac": error,
+            "blew_up": len(bad) > 0, "blew_up_step": int(bad[0]) if len(bad) else None}
 # --- endregion ---
 
 # --- region: report ---
@@ -528,8 +467,7 @@ COLUMNS = {"max pen/r": "max_penetration_frac", "rest pen/r": "rest_penetration_
 def log_rerun(path, runs, scene):
     """Write the Runs {model: Run} to a recording, whole; ImportError where rerun is missing.
 
-    The balls of every model on the table, side by side, y up, over plots of the first ball's
-    height, the deepest penetration and the energy above the start; one colour a model.
+    The balls of every model side by side, y up; height of the first, penetration, energy below.
     """
     from curriculum.common import recording
     total = {model: energy(run.q, run.v, scene.mass) for model, run in runs.items()}
@@ -540,10 +478,7 @@ def log_rerun(path, runs, scene):
         "energy above the start [J]": {model: e - e[0] for model, e in total.items()}}, COLORS)
 
 def measure_stability(run, scene, dt, stiffness, first):
-    """The largest dt of the grid without explosion and the penetration there; the critical dt.
-
-    run(model, dt) gives a Run; `first` holds the qualities at dt x 1, which is not run again.
-    """
+    """Largest dt of the grid without explosion; run(model, dt) runs, `first` is known for dt."""
     grid = {"dt_crit_penalty": critical_dt(float(scene.mass[0]), stiffness, 0.0),
             "dt_crit_damped": critical_dt(float(scene.mass[0]), stiffness, scene.damping)}
     for model in ("penalty", "lcp"):
@@ -551,8 +486,7 @@ def measure_stability(run, scene, dt, stiffness, first):
         for step in [dt * factor for factor in DT_GRID]:
             found = first[model] if step == dt else contact_quality(run(model, step), scene, step)
             if not found["blew_up"]:
-                grid[model] = step
-                grid[f"{model}_penetration_frac"] = found["max_penetration_frac"]
+                grid |= {model: step, f"{model}_penetration_frac": found["max_penetration_frac"]}
     return grid
 
 def print_report(args, quality, grid):
@@ -568,10 +502,12 @@ def print_report(args, quality, grid):
         spring, solve = quality["penalty"], quality["lcp"]
         deeper = all(spring[key] is None or spring[key] > solve[key]
                      for key in ("max_penetration_frac", "rest_penetration_frac"))
-        print("verdict: penalty goes deeper than lcp, at most and at rest:", "yes" if deeper else "NO")
+        print("verdict: penalty goes deeper than lcp, at most and at the end:",
+              "yes" if deeper else "no")
         for model in ("penalty", "lcp"):
-            print(f"stability: {model} gains less than {EXPLODED:g} x its energy up to dt = {grid[model]:g} s,"
-                  f" {show(grid[f'{model}_penetration_frac'], '.3g')} r deep there")
+            print(f"stability: {model} gains no {EXPLODED:g} x energy up to dt = "
+                  f"{show(grid[model] or None, 'g')} s of the grid, and goes "
+                  f"{show(grid[f'{model}_penetration_frac'], '.3g')} r deep there")
         print(f"critical dt of penalty, one ball: {show(grid['dt_crit_damped'], '.4g')} s; "
               f"without the damper, 2 sqrt(m/k), {show(grid['dt_crit_penalty'], '.4g')} s")
 
@@ -596,14 +532,13 @@ def main(argv=None):
         "seed": args.seed, "stiffness": args.stiffness, "restitution": scene.restitution,
         "quality": quality, "stability": grid})
     print_report(args, metrics["quality"], metrics["stability"])
-    path = os.path.join(args.out, "metrics.json")
-    results.write_json(path, metrics)
-    print("metrics:", path)
+    paths = [os.path.join(args.out, name) for name in ("metrics.json", "contact.rrd")]
+    results.write_json(paths[0], metrics)
+    print("metrics:", paths[0])
     if args.rerun:
-        path = os.path.join(args.out, "contact.rrd")
         try:
-            log_rerun(path, runs, scene)
-            print(f"recording: {path}, open it with: rerun {path}")
+            log_rerun(paths[1], runs, scene)
+            print(f"recording: {paths[1]}, open it with: rerun {paths[1]}")
         except ImportError:
             print("no recording: rerun is not installed, pip install rerun-sdk")
     print("config_hash:", results.fingerprint(vars(args), but=("out", "rerun", "skip")))

@@ -4,9 +4,15 @@ What contact.py says of one contact after another, for all at once and to the sa
 States are rows x, y with the floor's zeros in the last column, where index j = -1 finds them.
 """
 
+import operator
 from functools import cache
 
 import numpy as np
+
+
+def few(row):
+    """Whether balls are so few that plain floats over all pairs beat arrays over near pairs."""
+    return len(row) <= 12
 
 
 def with_floor(rows):
@@ -103,18 +109,68 @@ def independent_groups(i, j, bodies):
     return np.split(order, cuts) if group else []
 
 
-def energy_put_in(q, v, mass, radius, contacts, restitution, dt_gravity, margin):
-    """Energy [J] that `contacts` i, j put INTO the bodies over the steps of states q, v (S, 2, N).
+def operations(contacts):
+    """The four operations in which contacts of floats and groups of arrays differ.
 
-    Step by step, a contact within `margin` [m] may leave with `restitution` times the speed it closed
-    with (gravity's dt g [m/s] included), or with the speed it parted at, plus what falling through
-    its gap adds. Parting faster puts in m_eff / 2 times the excess of v_n^2.
+    larger(a, b), choose(which, yes, no), equal(list, list), and row(values), which gives a copy with
+    a 0 for the floor at its end, where index -1 finds it.
     """
-    (i, j), w = contacts, with_floor(1.0 / mass)
-    n, depth = geometry(with_floor(q[:-1]), with_floor(radius), i, j)
-    v = with_floor(v)
+    if contacts and isinstance(contacts[0][0], np.ndarray):     # fmax meets NaN as max does
+        return np.fmax, np.where, _same_arrays, lambda row: with_floor(np.asarray(row))
+    return max, _choose, operator.eq, lambda row: (
+        row if isinstance(row, list) else np.asarray(row).tolist()) + [0.0]
+
+
+def _choose(which, yes, no):
+    return yes if which else no
+
+
+def _same_arrays(a, b):
+    return all(map(np.array_equal, a, b))
+
+
+def advance(row, rate, dt):
+    """row + dt * rate, for lists or arrays (N,)."""
+    if isinstance(row, list):
+        return [a + dt * b for a, b in zip(row, rate)]
+    return row + dt * np.asarray(rate)
+
+
+def acceleration(gravity, force, mass):
+    """gravity + force / mass, for lists or arrays (N,)."""
+    if isinstance(mass, list):
+        return [gravity + f / m for f, m in zip(force, mass)]
+    return gravity + np.asarray(force) / mass
+
+
+def deepest(q, radius, margin):
+    """The largest depth (...) [m] of states q (..., 2, N); -margin where no contact is within it."""
+    if few(radius):
+        n, depth = geometry(with_floor(q), with_floor(radius), *every_contact(len(radius)))
+        return depth.max(-1, initial=-margin)
+    if q.ndim > 2:
+        return np.array([deepest(state, radius, margin) for state in q])
+    return contact_arrays(q, radius, margin)[3].max(initial=-margin)
+
+
+def energy_put_in(q, v, scene, dt_gravity, margin):
+    """Energy [J] that contacts put INTO the bodies over the steps of states q, v (S, 2, N).
+
+    In a step, a contact within `margin` [m] may leave with the scene's restitution times the speed it
+    closed with (gravity's dt_gravity [m/s] included), or with the speed it parted at. Parting faster
+    puts in m_eff / 2 times the excess of v_n^2, less what falling through the gap gives.
+    """
+    if few(scene.mass):
+        i, j = every_contact(len(scene.mass))
+    elif len(q) == 2:
+        i, j = contact_arrays(q[0], scene.radius, margin)[:2]
+    else:
+        return sum(energy_put_in(q[k:k + 2], v[k:k + 2], scene, dt_gravity, margin)
+                   for k in range(len(q) - 1))
+    w, v = with_floor(1.0 / scene.mass), with_floor(v)
+    n, depth = geometry(with_floor(q[:-1]), with_floor(scene.radius), i, j)
     v_n, parting = ((n * (rows[..., i] - rows[..., j])).sum(-2) for rows in (v[:-1], v[1:]))
-    allowed = np.maximum(restitution * (-v_n - dt_gravity * (j < 0)), v_n) ** 2
-    fall = np.maximum(-depth, 0.0) * 2.0 * 9.81
+    allowed = np.maximum(scene.restitution * (-v_n - dt_gravity * (j < 0)), v_n) ** 2
+    fall = 2.0 * 9.81 * np.maximum(-depth, 0.0)
     excess = np.where((depth > -margin) & (parting > 0.0), parting ** 2 - allowed - fall, 0.0)
     return float((0.5 / (w[i] + w[j]) * np.maximum(excess, 0.0)).sum())
