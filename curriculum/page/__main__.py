@@ -1,0 +1,34 @@
+"""python -m curriculum.page [--out FILE]: write the chapter as one HTML file."""
+
+import sys
+from pathlib import Path
+
+from curriculum.common.arguments import Parser
+from curriculum.common.files import write_whole
+
+
+def main(argv=None):
+    """Build and write. Returns the exit status: 0 written, 1 the chapter can't be built, 2 bad usage."""
+    parser = Parser(prog="python -m curriculum.page", description="Write the chapter as one web page.")
+    parser.add_argument("--out", type=Path, default=Path("outputs/contact.html"), metavar="FILE",
+                        help="the file to write (outputs/contact.html)")
+    parser.add_argument("--root", type=Path, help="another copy of the project")
+    args = parser.parse_args(argv)
+    try:
+        from curriculum.page.build import build
+    except ImportError as error:
+        print(f"the page needs {error.name}: pip install -e '.[page]'", file=sys.stderr)
+        return 1
+    try:
+        page = build(args.root) if args.root else build()
+        args.out.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(args.out, page)
+    except (OSError, ValueError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
