@@ -3,7 +3,7 @@
 Nothing here is stepped, and nothing is taken from contact.py: the functions follow from three
 textbook facts about a ball of radius r that starts at rest with a gap h0 under it.
 
-    free fall            gap(t) = h0 - g t^2 / 2,  so the first impact is at t1 = sqrt(2 h0 / g), at speed g t1
+    free fall            gap(t) = h0 - g t^2 / 2: first impact at t1 = sqrt(2 h0 / g), speed g t1
     Newton's impact law  each impact multiplies the speed by -e, so flight k lasts 2 e^k t1
     geometric series     impact k (k = 0, 1, 2, ...) is at  t1 (1 + 2 e (1 - e^k) / (1 - e))
 
@@ -19,7 +19,7 @@ g = 9.81  # m/s^2, the magnitude of gravity
 
 
 def first_impact_time(gap):
-    """Time [s] at which a ball released at rest `gap` [m] above the floor touches it: sqrt(2 gap / g)."""
+    """Time [s] until a ball released at rest `gap` [m] above the floor touches it."""
     return np.sqrt(2.0 * gap / g)
 
 
@@ -46,15 +46,15 @@ def rest_depth(mass, stiffness):
 
 
 def flight_lag(t, dt):
-    """Height error [m] of semi-implicit Euler after a free fall of t [s]: g t dt / 2, below the parabola.
+    """How far [m] semi-implicit Euler is below the parabola after a free fall of t [s]: g t dt / 2.
 
-    v_n = -g n dt and y_n = y_0 - g dt^2 n (n + 1) / 2, where the parabola has n^2: so n dt^2 g / 2 remains.
+    v_n = -g n dt and y_n = y_0 - g dt^2 n (n + 1) / 2, where the parabola has n^2.
     """
     return 0.5 * g * t * dt
 
 
 def bounce_gap(gap, restitution, t):
-    """Gap [m] (array like t) under a ball released at rest `gap` [m] above the floor, after time t [s].
+    """Gap [m] (array like t) under a ball released at rest `gap` [m] above the floor, t [s] later.
 
     The number k of the flight under way comes from the series solved for k, not from a loop:
     t = impact_time(k) gives e^k = 1 - (t / t1 - 1) (1 - e) / (2 e).
@@ -70,27 +70,27 @@ def bounce_gap(gap, restitution, t):
     k = _flight_number(after, t1, e)
     speed = g * t1 * e ** (k + 1)  # leaving impact k
     s = after - impact_time(gap, e, k)
-    flight = np.maximum(speed * s - 0.5 * g * s * s, 0.0)  # rounding can put s just outside the flight
+    flight = np.maximum(speed * s - 0.5 * g * s * s, 0.0)  # rounding can put s just outside it
     return np.where(t < t1, fall, np.where(flying, flight, 0.0))
 
 
 def _flight_number(t, t1, e):
-    """Largest k with impact_time(k) <= t, for t1 <= t: the logarithm, then one step where it rounded wrongly."""
+    """Largest k with impact_time(k) <= t, for t1 <= t: a logarithm, one step on where it rounded."""
     if e == 1.0:
         return np.floor((t / t1 - 1.0) / 2.0)
-    left = 1.0 - (t / t1 - 1.0) * (1.0 - e) / (2.0 * e)  # e^k at an impact, smaller within the flight
+    left = 1.0 - (t / t1 - 1.0) * (1.0 - e) / (2.0 * e)  # e^k at an impact, less in flight
     k = np.floor(np.log(np.maximum(left, np.finfo(float).tiny)) / np.log(e))
     start, end = (t1 * (1.0 + 2.0 * _series(e, n)) for n in (k, k + 1))
     return np.maximum(np.where(t < start, k - 1, np.where(t >= end, k + 1, k)), 0.0)
 
 
 def ball_height(height, radius, restitution, t):
-    """Height [m] of the centre of one ball released at rest with its centre at `height` [m]: drop and bounce."""
+    """Height [m] of the centre of a ball released at rest at `height` [m]: drop and bounce."""
     return radius + bounce_gap(height - radius, restitution, t)
 
 
 def column_heights(heights, radius, t):
-    """Heights [m], shape (len(t), N), of N equal balls that start stacked on one another, at rest, e = 0.
+    """Heights [m], shape (len(t), N), of N equal balls that start stacked, at rest, with e = 0.
 
     They fall together by the gap under the lowest one, and its impact stops all of them at once:
     every ball pushes the one above, and none of the pushes can pull.
@@ -101,5 +101,5 @@ def column_heights(heights, radius, t):
 
 
 def rebound_gap(gap, restitution, k=1):
-    """Highest gap [m] after k impacts: e^(2 k) times the first one, since energy goes with speed squared."""
+    """Highest gap [m] after k impacts: e^(2 k) times the first, as energy is speed squared."""
     return gap * restitution ** (2 * k)

@@ -8,7 +8,7 @@ import textwrap
 
 import numpy as np
 
-from curriculum.bench import methods, store
+from curriculum.bench import methods, piles_page, skips, store
 
 GRAY, INK = "#c8c8c8", "#222222"
 PANELS = (("contact.py: exact", ("exact",)),
@@ -118,7 +118,8 @@ def _error(point):
 
 def _same(lines, name):
     """Whether a method's errors are those of lcp, point by point: for one ball all sweeps agree."""
-    return [p["height_error"]["all"] for p in lines[name]] == [p["height_error"]["all"] for p in lines["lcp"]]
+    ours, lcp = ([p["height_error"]["all"] for p in lines[which]] for which in (name, "lcp"))
+    return ours == lcp
 
 
 def _curve(points):
@@ -134,7 +135,7 @@ def _line(axis, method, points, label, place, edge):
         look["markersize"] = 9
     axis.plot(*_curve(points), label=label, zorder=3, **look)
     ink = method.color if method.color != "#999999" else "#666666"
-    labels, strip = [], []     # [x, y, first knob, last knob]: points that fall on one another share a label
+    labels, strip = [], []     # [x, y, first knob, last knob]: close points share a label
     for p in points:
         time, knob = p["times"]["read"], f"{p['dt'] * 1e3:g}"
         x, y = edge if p["diverged"] else _error(p), time["min"] * 1e3
@@ -143,8 +144,8 @@ def _line(axis, method, points, label, place, edge):
             axis.plot([x], [y], zorder=3, **{**look, "ls": ""})
             shift = 9 if strip and _close(axis, (x, y), (x, strip[-1])) else 0
             strip.append(y)
-            axis.annotate(f"{knob}: step {p['diverged']['step']}", (x, y), (6, -shift), va="center", zorder=4,
-                          textcoords="offset points", fontsize=7, color=ink)
+            axis.annotate(f"{knob}: step {p['diverged']['step']}", (x, y), (6, -shift), va="center",
+                          textcoords="offset points", fontsize=7, color=ink, zorder=4)
         elif labels and _close(axis, (x, y), labels[-1][:2]):
             labels[-1][3] = knob
         else:
@@ -167,8 +168,9 @@ def pile_figure(section):
     figure, axes = plt.subplots(1, 3, figsize=(13, 5.2), gridspec_kw=dict(
         wspace=0.25, left=0.055, right=0.99, top=0.84, bottom=0.3))
     _heading(figure, "A pile of N balls: time per step, and the depth each engine leaves",
-             f"Steps of {section['dt'] * 1e3:g} ms; lcp and pymunk with {section['sweeps']} sweeps, the others with "
-             "their own number. Points are medians, bars reach from the fastest turn to the slowest.")
+             f"Steps of {section['dt'] * 1e3:g} ms; lcp and pymunk with {section['sweeps']} sweeps, the "
+             "others with their own number. Points are medians, bars reach from the fastest turn to "
+             "the slowest.")
     names = list(dict.fromkeys(row["method"] for row in section["rows"]))
     sizes = sorted({row["bodies"] for row in section["rows"]})
     for axis, phase, heading in ((axes[0], "early", "Early: the first tenth, mostly free fall"),
@@ -214,22 +216,22 @@ def _depth_panel(axis, rows):
 
 
 def _pile_look(name):
+    """How a method of the pile is drawn, and its label."""
+    method = methods.BY_NAME["lcp" if name == "all pairs" else name]
+    look = dict(color=method.color, marker=method.marker, ls=method.dash)
     if name == "all pairs":
-        return dict(color=methods.BY_NAME["lcp"].color, marker="1", ls=(0, (1, 3)),
-                    markersize=8), "lcp, all pairs, one by one"
-    method = methods.BY_NAME[name]
-    return (dict(color=method.color, marker=method.marker, ls=method.dash),
-            "lcp" if name == "lcp" else method.label)
+        look.update(marker="1", ls=(0, (1, 3)), markersize=8)
+    return look, piles_page.label(name)
 
 
-def skip_figure(section, limits):
+def skip_figure(section):
     """Whole processes against their limits, and what skipping saves; bars with hatches."""
     plt = pyplot()
     figure, axes = plt.subplots(1, 2, figsize=(13, 4.8), gridspec_kw=dict(
         wspace=0.28, left=0.13, right=0.98, top=0.8, bottom=0.24))
     _heading(figure, "Skipping: what a run costs, and what it saves",
              "Left: shorter is better, and the bar should end before its limit. Right: longer is better.")
-    ratios = section["processes"]["ratios"]
+    ratios, limits = section["processes"]["ratios"], skips.LIMITS
     names = [name for name in limits if name in ratios][::-1]
     for row, name in enumerate(names):
         ratio = ratios[name]["time"]
@@ -239,9 +241,10 @@ def skip_figure(section, limits):
         axes[0].text(ratio / 2, row, f"{ratio:.2f}", color="white", ha="center", va="center",
                      fontweight="bold")
     axes[0].axvline(1.0, color="#666666", lw=0.9, ls=(0, (3, 2)))
-    axes[0].set_yticks(range(len(names)), [f"{name}\n(import {ratios[name]['base']} is 1)" for name in names])
+    axes[0].set_yticks(range(len(names)),
+                       [f"{name}\n(import {ratios[name]['base']} is 1)" for name in names])
     axes[0].set(title="Time of a whole run, as a multiple of importing its library alone",
-                xlim=(0, 1.08 * max([limits[name] for name in names] + [ratios[name]["time"] for name in names])),
+                xlim=(0, 1.08 * max(max(limits[name], ratios[name]["time"]) for name in names)),
                 ylim=(-0.5, len(names) - 0.3), xlabel="ratio of median times")
     rows = section["speed_up"][::-1]
     for row, case in enumerate(rows):
@@ -253,8 +256,8 @@ def skip_figure(section, limits):
     axes[1].set_yticks(range(len(rows)), [
         f"{case['scene']}{' of ' + str(case['bodies']) if case['bodies'] > 3 else ''}, {case['model']}"
         for case in rows])
-    axes[1].set(title="Speed-up of one run by skipping, in the process", xlabel="median time --no-skip / --skip",
-                xlim=(0, 1.12 * max(case["ratio"] for case in rows)))
+    axes[1].set(title="Speed-up of one run by skipping, in the process",
+                xlabel="median time --no-skip / --skip", xlim=(0, 1.12 * max(case["ratio"] for case in rows)))
     for axis in axes:
         axis.grid(axis="y", visible=False)
     return svg(figure, plt, section)

@@ -4,10 +4,12 @@ Every engine is optional (`pip install -e '.[bench]'`); one that is missing is a
 The same for all: balls that cannot rotate, no friction, no sleeping, no threads, the scene's masses,
 radii and restitution, gravity 9.81 m/s^2, and a floor along y = 0. What had to be chosen:
 
-    mujoco        "default": solver and softness as shipped (solref 0.02 1). "stiff": solref "2 dt, 5",
-                  the shortest time constant it accepts, overdamped so that its push out of the floor
-                  is no rebound, and solimp 0.9999 (of the three tried, the least error on a tower). A ball is two slide joints. MuJoCo has no restitution; see `rebound_ratio`.
-                  CG instead of Newton for many balls: version 4.0.0's Newton fails on sparse piles.
+    mujoco        "default": solver and softness as shipped (solref 0.02 1). "stiff": solref
+                  "2 dt, 5", the shortest time constant it accepts, overdamped so that its push out
+                  of the floor is no rebound, and solimp 0.9999 (of three tried, the least error on
+                  a tower). A ball is two slide joints. There is no restitution in it; see
+                  `rebound_ratio`. CG instead of Newton for many balls: version 4.0.0's Newton fails
+                  on sparse piles.
     pymunk        collision_slop 1e-5 r instead of 0.1 (made for pixels); collision_bias as shipped.
     box2d         version 2.3. The world is scaled x10, because its slop of 5 mm and its restitution
                   threshold of 1 m/s are compiled in; sleeping off body by body. 8 and 3 iterations.
@@ -25,6 +27,7 @@ import importlib.metadata
 import importlib.util
 import math
 import warnings
+from functools import partial
 from typing import Callable, NamedTuple
 
 import numpy as np
@@ -98,7 +101,8 @@ class Mujoco(Session):
         solimp = ' solimp="0.9999 0.9999 0.001"' if stiff else ""
         many = len(scene.mass) >= MANY
         balls = "".join(
-            f'<body pos="{x!r} 0 {y!r}"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
+            f'<body pos="{x!r} 0 {y!r}">'
+            '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
             f'<geom type="sphere" size="{r!r}" mass="{m!r}"/></body>'
             for x, y, r, m in zip(*scene.q0.tolist(), scene.radius.tolist(), scene.mass.tolist()))
         self.model = mujoco.MjModel.from_xml_string(
@@ -226,10 +230,10 @@ class Box2d3(Session):
 
 
 PEERS = (
-    Peer("mujoco", "MuJoCo default", "mujoco", "mujoco", lambda scene, dt: Mujoco(scene, dt, stiff=False)),
-    Peer("mujoco_stiff", "MuJoCo stiff", "mujoco", "mujoco", lambda scene, dt: Mujoco(scene, dt, stiff=True)),
+    Peer("mujoco", "MuJoCo default", "mujoco", "mujoco", partial(Mujoco, stiff=False)),
+    Peer("mujoco_stiff", "MuJoCo stiff", "mujoco", "mujoco", partial(Mujoco, stiff=True)),
     Peer("pymunk", "pymunk", "pymunk", "pymunk", Pymunk),
     Peer("box2d", "Box2D 2.3", "box2d", "Box2D", Box2d),
-    Peer("box2d3", "Box2D 3", "pyb2d3", "pyb2d3", lambda scene, dt: Box2d3(scene, dt, stiff=False)),
-    Peer("box2d3_stiff", "Box2D 3 stiff", "pyb2d3", "pyb2d3", lambda scene, dt: Box2d3(scene, dt, stiff=True)),
+    Peer("box2d3", "Box2D 3", "pyb2d3", "pyb2d3", partial(Box2d3, stiff=False)),
+    Peer("box2d3_stiff", "Box2D 3 stiff", "pyb2d3", "pyb2d3", partial(Box2d3, stiff=True)),
 )

@@ -8,12 +8,12 @@ the command that it names.
 import re
 import sys
 
-from curriculum.bench import report, store
+from curriculum.bench import accuracy_page, piles_page, report, skips_page, store
 from curriculum.common.files import write_whole
 
 README = store.ROOT / "README.md"
 COMMAND = "python -m curriculum.bench readme"
-BLOCK = re.compile(r"(<!-- generated: (?P<name>[\w-]+) by (?P<command>[^>]*?) -->\n)(?P<body>.*?)(?=<!-- end -->)",
+BLOCK = re.compile(r"(<!-- generated: (?P<name>[\w-]+) by (?P<command>[^>]*?) -->\n).*?(?=<!-- end -->)",
                    re.DOTALL)
 HEADLINE = ("exact", "lcp", "penalty", "box2d", "box2d3", "pymunk", "mujoco_stiff", "mujoco")
 
@@ -21,7 +21,7 @@ HEADLINE = ("exact", "lcp", "penalty", "box2d", "box2d3", "pymunk", "mujoco_stif
 def headline(sections):
     """Error and time at dt 0.002 s, drop and bounce: the rows that matter most."""
     section = sections["error"]
-    data, rows = report.Points(section), []
+    data, rows = accuracy_page.Points(section), []
     for name in filter(section["methods"].get, HEADLINE):
         method = section["methods"][name]
         if name not in data.present:
@@ -30,8 +30,9 @@ def headline(sections):
         cells = []
         for problem in ("drop", "bounce"):
             point = data.by_key[problem, name, 0.002]
-            cells += [report.number(point["height_error"]["median"]) if not point["diverged"] else "diverged",
-                      report.number(1e3 * point["times"]["read"]["min"])]
+            error = point["height_error"]["median"]
+            cells += ["diverged" if point["diverged"] else report.number(error),
+                      report.ms(point["times"]["read"]["min"])]
         rows.append([method["label"], *cells])
     return report.table(["", "drop: error / r", "drop: ms", "bounce: error / r", "bounce: ms"], rows)
 
@@ -39,14 +40,8 @@ def headline(sections):
 def bounce(sections):
     """The bounce figure with its checked sentences."""
     where = (store.RESULTS / "error-bounce.svg").relative_to(store.ROOT).as_posix()
-    said = " ".join(map(str, report.error_claims(sections["error"], "bounce")))
+    said = report.sentences(accuracy_page.claims(sections["error"], "bounce"))
     return f"![Bounce: run time against error]({where})\n\n{said}\n"
-
-
-def goals(name):
-    """A maker of the table of goals of one section."""
-    return lambda sections: report.table(
-        ["goal", "measured", ""], [goal.row() for goal in getattr(report, f"{name}_goals")(sections[name])])
 
 
 def machine(sections):
@@ -54,9 +49,15 @@ def machine(sections):
     return store.footer(sections["error"]) + "\n"
 
 
+def goals(page, name):
+    """A maker of the table of goals of one section."""
+    return name, lambda sections: report.goal_table(page.goals(sections[name]))
+
+
+MEASURE = {"error": accuracy_page.COMMAND, "skip": skips_page.COMMAND, "pile": piles_page.COMMAND}
 BLOCKS = {"bench-headline": ("error", headline), "bench-bounce": ("error", bounce),
-          "bench-goals": ("error", goals("error")), "bench-skip": ("skip", goals("skip")),
-          "bench-pile": ("pile", goals("pile")), "bench-machine": ("error", machine)}
+          "bench-goals": goals(accuracy_page, "error"), "bench-skip": goals(skips_page, "skip"),
+          "bench-pile": goals(piles_page, "pile"), "bench-machine": ("error", machine)}
 
 
 def fill(text, sections):
@@ -66,11 +67,12 @@ def fill(text, sections):
             return match[0]
         if match["name"] not in BLOCKS:
             line = text.count("\n", 0, match.start()) + 1
-            raise ValueError(f"README.md:{line}: no generated block {match['name']!r}; there are: {', '.join(BLOCKS)}")
+            raise ValueError(f"README.md:{line}: no generated block {match['name']!r}; "
+                             f"there are: {', '.join(BLOCKS)}")
         section, maker = BLOCKS[match["name"]]
-        body = (maker(sections) if section in sections
-                else f"Not measured yet: `python -m curriculum.bench{'' if section == 'error' else ' ' + section}`.\n")
-        return f"{match[1]}{body}"
+        if section in sections:
+            return match[1] + maker(sections)
+        return f"{match[1]}Not measured yet: `{MEASURE[section]}`.\n"
     return BLOCK.sub(made, text)
 
 
@@ -88,9 +90,11 @@ def main(folder, check):
     if check and new != text:
         old, now = text.splitlines(), new.splitlines()
         line = next((k for k, (a, b) in enumerate(zip(old, now)) if a != b), min(len(old), len(now)))
-        print(f"README.md:{line + 1}: a generated block is out of date; to repair: {COMMAND}", file=sys.stderr)
+        print(f"README.md:{line + 1}: a generated block is out of date; to repair: {COMMAND}",
+              file=sys.stderr)
         return 1
     if not check and new != text:
         write_whole(str(README), new)
-    print(f"README.md: {len(BLOCK.findall(text))} generated blocks {'are up to date' if check else 'written'}")
+    ours = sum("curriculum.bench" in match["command"] for match in BLOCK.finditer(text))
+    print(f"README.md: {ours} generated blocks {'are up to date' if check else 'written'}")
     return 0

@@ -49,7 +49,8 @@ def text(value, level=0):
 
 
 def _flat(value):
-    return not any(isinstance(v, (dict, list)) for v in (value.values() if isinstance(value, dict) else value))
+    items = value.values() if isinstance(value, dict) else value
+    return not any(isinstance(item, (dict, list)) for item in items)
 
 
 def _plain(value):
@@ -63,7 +64,7 @@ def _plain(value):
 
 
 def machine():
-    """Where and with what the numbers were measured: for the footer. Nothing that names a person or host."""
+    """Where and with what the numbers were measured, for the footer: nothing that names a host."""
     versions = {}
     for package in ("numpy", "matplotlib", *sorted({p.package for p in peers.PEERS}), "rerun-sdk"):
         try:
@@ -91,7 +92,8 @@ def _commit():
         run = subprocess.run(["git", *command], cwd=ROOT, capture_output=True, text=True)
         return run.stdout.strip() if run.returncode == 0 else None
     try:
-        changed = git("status", "--porcelain", "--", "contact.py", "curriculum/bench/*.py", "curriculum/common")
+        changed = git("status", "--porcelain", "--", "contact.py", "curriculum/bench/*.py",
+                      "curriculum/common")
         return dict(commit=git("rev-parse", "--short=10", "HEAD"), changed=bool(changed))
     except OSError:         # no git
         return dict(commit=None, changed=None)

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum.bench import (accuracy, closed_form, methods, peers, piles, problems, readme, report, skips,
-                              store, timing)
-from curriculum.bench.__main__ import main, pages, pictures
+from curriculum.bench import (accuracy, accuracy_page, closed_form, methods, peers, piles, problems,
+                              readme, report, skips, store, timing)
+from curriculum.bench.__main__ import PAGES, main, pages, pictures
 
 PEERS = [pytest.param(p, id=p.name, marks=pytest.mark.skipif(
-    p.version() is None, reason=f"{p.label} is not installed: pip install {p.package}")) for p in peers.PEERS]
+    p.version() is None, reason=f"{p.label} is not installed: pip install {p.package}"))
+    for p in peers.PEERS]
 BOUNCE, DROP = (next(p for p in problems.PROBLEMS if p.name == name) for name in ("bounce", "drop"))
 
 
@@ -73,7 +74,8 @@ def test_semi_implicit_flight_shows_its_lag_of_half_g_t_dt():
 
 def test_divergence_is_a_value_with_step_and_reason():
     scene = DROP.build(0)
-    told = problems.quality(DROP, scene, 0.032, contact.run_model("penalty", scene, 0.032, DROP.steps(0.032)))
+    run = contact.run_model("penalty", scene, 0.032, DROP.steps(0.032))
+    told = problems.quality(DROP, scene, 0.032, run)
     assert isinstance(told["blew_up_step"], int)
     assert told["blew_up_reason"] in ("energy above 10 x the start", "not finite")
 
@@ -176,7 +178,7 @@ def test_page_shows_divergence_with_step_and_reason(sections):
 
 
 def test_a_sentence_whose_condition_fails_is_not_printed_as_true(sections):
-    said = " ".join(map(str, report.error_claims(sections["error"], "bounce")))
+    said = " ".join(map(str, accuracy_page.claims(sections["error"], "bounce")))
     assert "exact is off by rounding alone" in said and "Smaller steps do not help penalty" in said
     changed = json.loads(json.dumps(sections["error"]))
     for point in changed["points"]:
@@ -184,20 +186,20 @@ def test_a_sentence_whose_condition_fails_is_not_printed_as_true(sections):
             point["height_error"]["median"] = 0.5
         if point["method"] == "penalty" and point["dt"] == 0.002:
             point["height_error"]["median"] = 1e-3
-    said = " ".join(map(str, report.error_claims(changed, "bounce")))
+    said = " ".join(map(str, accuracy_page.claims(changed, "bounce")))
     assert "rounding alone" not in said and "do not help" not in said
     assert "exact is off by up to 0.500 r" in said
 
 
 def test_a_goal_that_is_missed_says_missed():
-    assert report.Goal("x at most 1", "2", False).row() == ["x at most 1", "2", "**missed**"]
-    assert report.Goal("x at most 1", "1", True).row()[2] == "met"
-    assert report.Goal("x at most 1", "no peer", None).row()[2] == "not measured"
+    assert report.Goal("x at most 1", "2", False).verdict() == "**missed**"
+    assert report.Goal("x at most 1", "1", True).verdict() == "met"
+    assert report.Goal("x at most 1", "no peer", None).verdict() == "not measured"
 
 
 def test_numbers_keep_three_digits_and_no_clumsy_exponents():
-    shown = {0.25: "0.250", 1.5: "1.50", 123.4: "123", 9.996: "10.0", 4.44e-15: "4.44e-15", 0: "0", None: "-",
-             1409.4: "1409", 2.5e7: "2.50e7", math.inf: "inf"}
+    shown = {0.25: "0.250", 1.5: "1.50", 123.4: "123", 9.996: "10.0", 4.44e-15: "4.44e-15", 0: "0",
+             None: "-", 1409.4: "1409", 2.5e7: "2.50e7", math.inf: "inf"}
     assert {value: report.number(value) for value in shown} == shown
 
 
@@ -267,17 +269,19 @@ def test_readme_is_up_to_date():
     assert readme.main(store.RESULTS, check=True) == 0, f"to repair: {readme.COMMAND}"
 
 
-@pytest.mark.skipif(not (store.RESULTS / store.NAME).exists(), reason="the full benchmark has not been run yet")
+@pytest.mark.skipif(not (store.RESULTS / store.NAME).exists(),
+                    reason="the full benchmark has not been run yet")
 def test_committed_pages_are_those_of_the_committed_results():
     for name, section in store.load(store.RESULTS).items():
         assert not section["quick"], f"{name}: a quick run was kept"
         written = (store.RESULTS / f"{name}.md").read_text(encoding="utf-8")
-        assert written == getattr(report, f"{name}_page")(section), "to repair: python -m curriculum.bench draw"
+        assert written == PAGES[name].page(section), "to repair: python -m curriculum.bench draw"
 
 
 # the command line
 
-@pytest.mark.parametrize("flags", [["everything"], ["--chekc"], ["skip", "--check"], ["draw", "--out", "/dev/null/x"]])
+@pytest.mark.parametrize("flags", [["everything"], ["--chekc"], ["skip", "--check"],
+                                   ["draw", "--out", "/dev/null/x"]])
 def test_bad_flags_are_one_line_and_status_2(flags, capsys):
     with pytest.raises(SystemExit) as stop:
         main(flags)
