@@ -161,10 +161,8 @@ def penalty_force(q, v, mass, radius, stiffness, damping):
 
 def semi_implicit_step(q, v, mass, force, dt):
     """Semi-implicit Euler under gravity and force(q, v): new velocity first, then q with it."""
-    fx, fy = force(q, v)
-    ax, ay = balls.acceleration(0.0, fx, mass), balls.acceleration(GRAVITY, fy, mass)
-    v = balls.advance(v[0], ax, dt), balls.advance(v[1], ay, dt)
-    return (balls.advance(q[0], v[0], dt), balls.advance(q[1], v[1], dt)), v
+    v = balls.accelerate(v, GRAVITY, force(q, v), mass, dt)
+    return balls.advance(q, v, dt), v
 
 def critical_dt(mass, stiffness, damping):
     """The largest stable dt [s] of that step for a ball kept in contact; inf without a spring.
@@ -184,8 +182,7 @@ def contact_targets(v, contacts, restitution, baumgarte, dt):
     bounce -e v_n if larger; never their sum, which would bounce higher than the material.
     """
     larger, choose, _, row = balls.operations(contacts)
-    vx, vy = map(row, v)
-    target = []
+    (vx, vy), target = map(row, v), []
     for i, j, nx, ny, depth in contacts:
         push = baumgarte / dt * depth
         if restitution > 0.0:
@@ -223,16 +220,16 @@ def solve_contacts(v, inv_mass, contacts, target, iters):
             vy[j] -= dlam * jy
         if equal(lam, before):
             break
-    return (vx[:-1], vy[:-1]), lam
+    return [vx[:-1], vy[:-1]], lam
 
 def lcp_step(q, v, inv_mass, radius, dt, restitution, baumgarte, iters):
     """Predict v under gravity, solve the contacts for impulses, move with what comes out."""
     contacts = detect_contacts(q, radius)
-    predicted = v[0], balls.advance(v[1], [GRAVITY] * len(v[1]), dt)
+    target = contact_targets(v, contacts, restitution, baumgarte, dt)
+    v = balls.fall(v, GRAVITY, dt)
     if contacts:
-        target = contact_targets(v, contacts, restitution, baumgarte, dt)
-        predicted, _ = solve_contacts(predicted, inv_mass, contacts, target, iters)
-    return (balls.advance(q[0], predicted[0], dt), balls.advance(q[1], predicted[1], dt)), predicted
+        v, _ = solve_contacts(v, inv_mass, contacts, target, iters)
+    return balls.advance(q, v, dt), v
 # --- endregion ---
 
 # --- region: exact ---
@@ -372,8 +369,8 @@ def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
     """
     rows, lists = np.empty((steps + 1, 4, len(scene.mass))), balls.few(scene.mass) or not skip
     rows[0] = *scene.q0, *scene.v0
-    state, radius = rows[0].tolist() if lists else list(rows[0]), scene.radius.tolist()
-    seen, k, ask = {}, 0, 0
+    state, radius, seen = rows[0].tolist() if lists else list(rows[0]), scene.radius.tolist(), {}
+    k = ask = 0
     with np.errstate(all="ignore"):                         # an explosion overflows on purpose
         while k < steps:
             first = seen.setdefault(hash(rows[k].tobytes()), k) if skip else k
@@ -387,8 +384,8 @@ def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
                     rows[k + 1:k + 1 + len(flight)], k = flight, k + len(flight)
                     state = rows[k].tolist()
                     continue
-            (x, y), (vx, vy) = step(state[:2], state[2:])
-            rows[k + 1] = state = [x, y, vx, vy]
+            q, v = step(state[:2], state[2:])
+            rows[k + 1] = state = [*q, *v]
             k += 1
             report(k)
     rows += 0.0                                             # -0.0 becomes 0.0
@@ -397,13 +394,14 @@ def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
 def fly(row, radius, dt, most):
     """Steps to wait before asking again, and the next states (n, 4, N), n <= most, of a flight.
 
-    Semi-implicit flight is the parabola that starts slower by half a step of gravity; it tells how
-    far to look. np.add.accumulate adds in the order of the steps, so the bits are theirs.
+    The flight is about the parabola that starts slower by half a step of gravity.
+    np.add.accumulate adds in the order of the steps, so the bits are theirs.
     """
     for _, y, _, vy, r in zip(*row, radius):
         gap, speed = y - r - CONTACT_MARGIN, vy + 0.5 * dt * GRAVITY
-        fall = math.sqrt(speed * speed - 2.0 * GRAVITY * gap) if gap > 0.0 else -speed
-        most = min(most, (speed + fall) / -GRAVITY / dt)
+        if not gap > 0.0:
+            return 0, ()
+        most = min(most, (speed + math.sqrt(speed * speed - 2.0 * GRAVITY * gap)) / -GRAVITY / dt)
     if not most > 16.0:
         return int(most), ()                                # a short flight is stepped
     block = np.empty((int(most) + 1, 4, len(radius)))
@@ -417,9 +415,8 @@ def fly(row, radius, dt, most):
 def run_model(model, scene, dt, steps, stiffness=1e4, baumgarte=0.2, iters=20, skip=True,
               report=lambda k: None):
     """The Run of a scene by one of MODELS; ValueError for any other."""
-    mass, radius, w = scene.mass, scene.radius, 1.0 / scene.mass
-    if balls.few(mass) or not skip:
-        mass, radius, w = mass.tolist(), radius.tolist(), w.tolist()
+    mass, radius, w = (row.tolist() if balls.few(row) or not skip else row
+                       for row in (scene.mass, scene.radius, 1.0 / scene.mass))
     steps_by = {
         "penalty": lambda q, v: semi_implicit_step(q, v, mass, lambda q, v: penalty_force(
             q, v, mass, radius, stiffness, scene.damping), dt),
@@ -438,25 +435,29 @@ def max_penetration(q, radius):
     """Deepest overlap [m] with the floor or a ball, 0 without one, in states (..., 2, N)."""
     return np.maximum(balls.deepest(q, radius, CONTACT_MARGIN), 0.0)
 
+def blow_up_step(total):
+    """First of the energies [J] that gained EXPLODED times the first, or is not finite; or None."""
+    bad = ~(total - total[0] < EXPLODED * (abs(total[0]) or 1.0))
+    return int(bad.argmax()) if bad.any() else None
+
 def contact_quality(run, scene, dt, reference=None):
     """The honesty numbers of a Run, as shares of the first ball's radius or of the start energy.
 
     max_, rest_penetration_frac: deepest, last overlap. energy_excess: most energy above the start.
     contact_energy: what contacts put INTO the bodies beyond their law. height_error_frac: most
-    |y - y of the Run `reference`|. rest_jitter: standard deviation of the overlap over the last
-    quarter. blew_up_step: the first that gained EXPLODED times the energy or is not finite.
+    |y - y of Run `reference`|. rest_jitter: deviation of the overlap over the last quarter.
     """
     with np.errstate(all="ignore"):
         total, radius = energy(run.q, run.v, scene.mass), float(scene.radius[0])
         scale, depth = abs(float(total[0])) or 1.0, max_penetration(run.q, scene.radius) / radius
-        excess = (total - total[0]) / scale
-        bad = np.flatnonzero(~(excess < EXPLODED))
         error = reference and float(np.abs(run.q[:, 1] - reference.q[:, 1]).max()) / radius
         put_in = balls.energy_put_in(run.q, run.v, scene, dt * GRAVITY, CONTACT_MARGIN) / scale
-    return {"max_penetration_frac": float(depth.max()), "energy_excess": float(excess.max()),
-            "rest_penetration_frac": float(depth[-1]), "contact_energy": put_in,
-            "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])), "height_error_frac": error,
-            "blew_up": len(bad) > 0, "blew_up_step": int(bad[0]) if len(bad) else None}
+        step = blow_up_step(total)
+        jitter = float(np.std(depth[3 * len(depth) // 4:]))
+        return {"max_penetration_frac": float(depth.max()), "blew_up": step is not None,
+                "rest_penetration_frac": float(depth[-1]), "blew_up_step": step,
+                "energy_excess": float((total - total[0]).max()) / scale, "rest_jitter": jitter,
+                "contact_energy": put_in, "height_error_frac": error}
 # --- endregion ---
 
 # --- region: report ---
@@ -478,15 +479,16 @@ def log_rerun(path, runs, scene):
         "energy above the start [J]": {model: e - e[0] for model, e in total.items()}}, COLORS)
 
 def measure_stability(run, scene, dt, stiffness, first):
-    """Largest dt of the grid without explosion; run(model, dt) runs, `first` is known for dt."""
+    """Largest dt of the grid without explosion; run(model, dt) runs, `first` has the Runs at dt."""
     grid = {"dt_crit_penalty": critical_dt(float(scene.mass[0]), stiffness, 0.0),
             "dt_crit_damped": critical_dt(float(scene.mass[0]), stiffness, scene.damping)}
     for model in ("penalty", "lcp"):
         grid[model], grid[f"{model}_penetration_frac"] = 0.0, None
         for step in [dt * factor for factor in DT_GRID]:
-            found = first[model] if step == dt else contact_quality(run(model, step), scene, step)
-            if not found["blew_up"]:
-                grid |= {model: step, f"{model}_penetration_frac": found["max_penetration_frac"]}
+            found = first[model] if step == dt else run(model, step)
+            if blow_up_step(energy(found.q, found.v, scene.mass)) is None:
+                deepest = float(max_penetration(found.q, scene.radius).max() / scene.radius[0])
+                grid |= {model: step, f"{model}_penetration_frac": deepest}
     return grid
 
 def print_report(args, quality, grid):
@@ -502,8 +504,7 @@ def print_report(args, quality, grid):
         spring, solve = quality["penalty"], quality["lcp"]
         deeper = all(spring[key] is None or spring[key] > solve[key]
                      for key in ("max_penetration_frac", "rest_penetration_frac"))
-        print("verdict: penalty goes deeper than lcp, at most and at the end:",
-              "yes" if deeper else "no")
+        print("verdict: penalty is the deeper, at most and at the end:", "yes" if deeper else "no")
         for model in ("penalty", "lcp"):
             print(f"stability: {model} gains no {EXPLODED:g} x energy up to dt = "
                   f"{show(grid[model] or None, 'g')} s of the grid, and goes "
@@ -526,7 +527,7 @@ def main(argv=None):
     quality = {model: contact_quality(found, scene, args.dt, runs.get("exact"))
                for model, found in runs.items()}
     grid = {} if args.contact != "all" else measure_stability(
-        run, scene, args.dt, args.stiffness, quality)
+        run, scene, args.dt, args.stiffness, runs)
     metrics = results.rounded({
         "scene": args.scene, "contact": args.contact, "dt": args.dt, "steps": args.steps,
         "seed": args.seed, "stiffness": args.stiffness, "restitution": scene.restitution,

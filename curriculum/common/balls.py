@@ -115,32 +115,55 @@ def operations(contacts):
     larger(a, b), choose(which, yes, no), equal(list, list), and row(values), which gives a copy with
     a 0 for the floor at its end, where index -1 finds it.
     """
-    if contacts and isinstance(contacts[0][0], np.ndarray):     # fmax meets NaN as max does
-        return np.fmax, np.where, _same_arrays, lambda row: with_floor(np.asarray(row))
-    return max, _choose, operator.eq, lambda row: (
-        row if isinstance(row, list) else np.asarray(row).tolist()) + [0.0]
+    return MANY if contacts and isinstance(contacts[0][0], np.ndarray) else ONE
 
 
-def _choose(which, yes, no):
+def choose(which, yes, no):
+    """np.where for floats."""
     return yes if which else no
 
 
-def _same_arrays(a, b):
+def same_arrays(a, b):
+    """== for lists of arrays."""
     return all(map(np.array_equal, a, b))
 
 
-def advance(row, rate, dt):
-    """row + dt * rate, for lists or arrays (N,)."""
-    if isinstance(row, list):
-        return [a + dt * b for a, b in zip(row, rate)]
-    return row + dt * np.asarray(rate)
+def list_row(row):
+    """with_floor as a list of floats."""
+    return row + [0.0] if isinstance(row, list) else [*np.asarray(row).tolist(), 0.0]
 
 
-def acceleration(gravity, force, mass):
-    """gravity + force / mass, for lists or arrays (N,)."""
-    if isinstance(mass, list):
-        return [gravity + f / m for f, m in zip(force, mass)]
-    return gravity + np.asarray(force) / mass
+def array_row(row):
+    """with_floor as an array."""
+    return with_floor(np.asarray(row))
+
+
+ONE, MANY = (max, choose, operator.eq, list_row), (np.fmax, np.where, same_arrays, array_row)
+# fmax meets NaN as Python's max(0.0, NaN) does: 0.0 stays
+
+
+def advance(q, v, dt):
+    """q + dt v, for pairs of rows: lists or arrays (N,)."""
+    if isinstance(q[0], list):
+        return [[a + dt * b for a, b in zip(row, rate)] for row, rate in zip(q, v)]
+    return [row + dt * np.asarray(rate) for row, rate in zip(q, v)]
+
+
+def fall(v, gravity, dt):
+    """v after dt of gravity alone."""
+    vx, vy = v
+    if isinstance(vy, list):
+        return [vx, [b + dt * gravity for b in vy]]
+    return [vx, vy + dt * gravity]
+
+
+def accelerate(v, gravity, force, mass, dt):
+    """v + dt (gravity + force / mass), for pairs of rows."""
+    (vx, vy), (fx, fy) = v, force
+    if isinstance(vx, list):
+        return [[a + dt * (f / m) for a, f, m in zip(vx, fx, mass)],
+                [a + dt * (gravity + f / m) for a, f, m in zip(vy, fy, mass)]]
+    return [vx + dt * (np.asarray(fx) / mass), vy + dt * (gravity + np.asarray(fy) / mass)]
 
 
 def deepest(q, radius, margin):
