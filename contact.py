@@ -167,9 +167,8 @@ def semi_implicit_step(q, v, mass, force, dt):
 def critical_dt(mass, stiffness, damping):
     """The largest stable dt [s] of that step for a ball kept in contact; inf without a spring.
 
-    Jury's test on the trace and determinant of the 2x2 step matrix: k dt^2 + 2 c dt < 4 m. The
-    textbook's 2 sqrt(m / k) is c = 0: a damper makes the limit smaller, not larger.
-    """
+    Jury's test of the step matrix: k dt^2 + 2 c dt < 4 m. c = 0 is the textbook's 2 sqrt(m/k): a
+    damper makes the limit smaller, not larger."""
     root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
     return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
 # --- endregion ---
@@ -199,8 +198,8 @@ def solve_contacts(v, inv_mass, contacts, target, iters):
     """Projected Gauss-Seidel for lam >= 0, v_n >= target, lam (v_n - target) = 0.
 
     v (2, N) [m/s]; inv_mass (N,) [1/kg], 0 for a body nothing moves. Returns the new v, and lam of
-    each contact [N s]. Velocity-level time stepping: Moreau; Stewart, Trinkle 1996; Anitescu, Potra
-    1997. A sweep that changes no impulse ends it before `iters` sweeps: no later one would.
+    each contact [N s]. At velocity level: Moreau; Stewart, Trinkle 1996; Anitescu, Potra 1997.
+    A sweep that changes no impulse is the last: no later one would.
     """
     larger, choose, equal, row = balls.operations(contacts)
     vx, vy, w = map(row, (*v, inv_mass))
@@ -236,10 +235,12 @@ def lcp_step(q, v, inv_mass, radius, dt, restitution, baumgarte, iters):
 def solve_lcp(W, b):
     """lam >= 0 with w = W lam + b >= 0 and lam w = 0. W (K, K) is the Delassus matrix, b (K,).
 
-    The criss-cross method (Terlaky; den Hertog, Roos, Terlaky 1993): exchange lam and w of the
-    least negative index. It ends for every semidefinite W, redundant contacts included. It starts
-    with all contacts active, as at rest, and ends when a table made afresh needs no exchange.
+    Criss-cross (Terlaky; den Hertog, Roos, Terlaky 1993), from all contacts active, as at rest:
+    exchange lam and w of the least negative index. It ends for every semidefinite W, redundant
+    contacts included; a table made afresh that needs no exchange is the answer.
     """
+    if len(b) == 1:                                         # one contact is one clamp
+        return np.maximum(-b / W[0], 0.0)
     scale = 1.0 / np.sqrt(W.diagonal())                     # unit diagonal: one tolerance for all
     fresh = np.column_stack((W * scale * scale[:, None], b * scale))
     least, active, exchanges = -1e-13 * np.abs(fresh[:, -1]).max(initial=0.0), scale > 0.0, 1
@@ -284,7 +285,7 @@ def react(rows, i, j, n, w, b):
     return np.where(np.abs(rows) > noise, rows, 0.0), lam
 
 def settle(q, v, w, radius, restitution, held):
-    """At one instant: overlaps moved out, impulses, forces. Returns q, v, a, who rests, who slides.
+    """At an instant: overlaps moved out, impulses, forces. Returns q, v, a, gap, rests, slides.
 
     Within 1e-12 r is touching. A bounce lower than 1e-15 r is the last of its series, as all that
     would follow add less. Contacts `held` until now do not bounce.
@@ -306,7 +307,7 @@ def settle(q, v, w, radius, restitution, held):
         v_n = along(v, i, j, n)
     rest = v_n <= 1e-13
     if not rest.any():
-        return q, v, a, still, False
+        return q, v, a, -depth, still, False
     still[near[rest]] = True
     i, j, n = i[rest], j[rest], n[:, rest]
     tangent = np.array((-n[1], n[0])) * (j >= 0)            # the floor's normal never turns
@@ -314,37 +315,37 @@ def settle(q, v, w, radius, restitution, held):
     turn = slip * slip / (radius[i] + radius[j])            # what keeps a turning normal in touch
     a, f = react(a, i, j, n, w, along(a, i, j, n) + turn)
     slides = (f > 0.0) & (np.abs(slip) + np.abs(along(a, i, j, tangent)) > 1e-9)
-    return q, v, a, still, slides.any()
+    return q, v, a, -depth, still, slides.any()
 
-def next_impact(q, v, a, radius, still, horizon):
-    """Time [s] until the first contact that is not `still` closes; inf if none does by `horizon`.
-
-    A pair's |d + u t + c t^2 / 2|^2 - R^2 is a quartic in t, the floor's gap a parabola.
-    """
-    i, j = (index[~still] for index in balls.every_contact(q.shape[1] - 1))
-    d, u, c = (rows[:, i] - rows[:, j] for rows in (q, v, a))
-    gap = np.maximum(-balls.geometry(q, radius, i, j)[1], 0.0)
-    pair = np.array((gap * (gap + 2.0 * (radius[i] + radius[j])), 2.0 * (d * u).sum(0),
-                     (u * u + d * c).sum(0), (u * c).sum(0), 0.25 * (c * c).sum(0)))
-    floor = np.array((gap, u[1], 0.5 * c[1], 0.0 * gap, 0.0 * gap))
-    return roots.first_fall(np.where(j < 0, floor, pair), horizon).min(initial=np.inf)
+def next_impact(q, v, a, gap, radius, still, horizon):
+    """Time [s] until the first contact not `still` closes, inf if none does by `horizon`: the root
+    of a floor gap, a parabola in t, or of a pair's |d + u t + c t^2 / 2|^2 - R^2, a quartic."""
+    count, p = q.shape[1] - 1, np.zeros((5, len(gap)))
+    p[0], p[1, :count], p[2, :count] = np.maximum(gap, 0.0), v[1, :-1], 0.5 * a[1, :-1]
+    if count > 1:
+        i, j = (index[count:] for index in balls.every_contact(count))
+        d, u, c = (rows[:, i] - rows[:, j] for rows in (q, v, a))
+        p[0, count:] *= p[0, count:] + 2.0 * (radius[i] + radius[j])
+        p[1:, count:] = (2.0 * (d * u).sum(0), (u * u + d * c).sum(0), (u * c).sum(0),
+                          0.25 * (c * c).sum(0))
+    return roots.first_fall(p[:, ~still], horizon).min(initial=np.inf)
 
 def simulate_exact(scene, dt, steps, report=lambda k: None):
     """The Run from event to event, sampled at k dt: no step error; the cost follows the events.
 
     Between events bodies fly parabolas. Touching bodies that close get impulses from the LCP of
     Newton's restitution, all contacts at once; resting ones forces from the LCP of accelerations.
-    Not exact where balls slide over one another in contact: there the normal turns, a force is held
-    for one sample, and the overlap left, of order dt^2, is moved out.
+    Not exact where balls slide over one another in contact: there a force is held for one sample
+    while the normal turns, and the overlap left, of order dt^2, is moved out.
     """
     q, v, w, radius = map(balls.with_floor, (scene.q0, scene.v0, 1.0 / scene.mass, scene.radius))
     now, k, t, held = 0.0, 0, np.arange(steps + 1) * dt, balls.every_contact(len(w) - 1)[0] < 0
     run = Run(t, np.empty((steps + 1, *q.shape)), np.empty((steps + 1, *q.shape)))
     with np.errstate(all="ignore"):
         while k <= steps:
-            q, v, a, held, slides = settle(q, v, w, radius, scene.restitution, held)
+            q, v, a, gap, held, slides = settle(q, v, w, radius, scene.restitution, held)
             horizon = (t[min(k + (t[k] <= now), steps)] if slides else t[-1]) - now
-            span = min(next_impact(q, v, a, radius, held, horizon), horizon)
+            span = min(next_impact(q, v, a, gap, radius, held, horizon), horizon)
             upto = int(np.searchsorted(t, now + span, "right"))
             s = (t[k:upto] - now)[:, None, None]
             run.q[k:upto], run.v[k:upto] = q + s * (v + 0.5 * s * a), v + s * a
@@ -364,9 +365,8 @@ def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
     """`steps` times q, v = step(q, v), as a Run. Rows are lists for few balls, and without skips.
 
     With `skip` two kinds of steps are not taken, and no bit changes: a flight without contact is
-    summed in one go, and when a state comes back (rest, or any cycle) the rest of the run is a
-    copy, since a step depends on the state alone. `report(k)` hears how far it is.
-    """
+    summed in one go, and when a state comes back (rest, any cycle) the rest of the run is a copy,
+    since a step depends on the state alone. `report(k)` hears how far it is."""
     rows, lists = np.empty((steps + 1, 4, len(scene.mass))), balls.few(scene.mass) or not skip
     rows[0] = *scene.q0, *scene.v0
     state, radius, seen = rows[0].tolist() if lists else list(rows[0]), scene.radius.tolist(), {}

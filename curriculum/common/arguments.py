@@ -15,7 +15,7 @@ class Parser(argparse.ArgumentParser):
     """
 
     def __init__(self, *args, **kwargs):
-        super().__init__(*args, allow_abbrev=False, **kwargs)
+        super().__init__(*args, allow_abbrev=False, formatter_class=help_format, **kwargs)
         self._negative_number_matcher = re.compile(r"^-\.?(\d|inf|nan)", re.IGNORECASE)
 
     def error(self, message):
@@ -23,6 +23,11 @@ class Parser(argparse.ArgumentParser):
             flags = [flag for action in self._actions for flag in action.option_strings]
             message += f"; allowed: {' '.join(flags)}"
         self.exit(2, f"{self.prog}: error: {' '.join(message.split())}\n")
+
+
+def help_format(prog):
+    """argparse's help, 100 columns wide everywhere; asking the terminal costs an import and a while."""
+    return argparse.HelpFormatter(prog, width=100)
 
 
 def number(kind, low=None, high=None, above=None):
