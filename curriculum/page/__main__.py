@@ -10,8 +10,13 @@ from curriculum.common.files import write_whole
 def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 the chapter can't be built, 2 bad usage."""
     parser = Parser(prog="python -m curriculum.page", description="Write the chapter as one web page.")
-    parser.add_argument("--out", type=Path, default=Path("outputs/contact.html"), metavar="FILE",
-                        help="the file to write (outputs/contact.html)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("outputs/contact.html"),
+        metavar="FILE",
+        help="the file to write (outputs/contact.html)",
+    )
     parser.add_argument("--root", type=Path, help="another copy of the project")
     args = parser.parse_args(argv)
     try:

@@ -32,7 +32,8 @@ const Draw = (() => {
     if (model === "penalty") {
       return `M${round(x)} ${round(y - 1.15 * r)}L${round(x + 1.1 * r)} ${round(y + 0.85 * r)}H${round(x - 1.1 * r)}Z`;
     }
-    if (model === "lcp") return `M${round(x - 0.9 * r)} ${round(y - 0.9 * r)}h${round(1.8 * r)}v${round(1.8 * r)}h${round(-1.8 * r)}Z`;
+    if (model === "lcp")
+      return `M${round(x - 0.9 * r)} ${round(y - 0.9 * r)}h${round(1.8 * r)}v${round(1.8 * r)}h${round(-1.8 * r)}Z`;
     return `M${round(x - r)} ${round(y)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0Z`;
   }
 
@@ -71,7 +72,10 @@ const Draw = (() => {
   function linePath(xs, ys, sx, sy, top, bottom) {
     let path = "";
     let column = null;
-    let low = 0, high = 0, last = 0, pen = false;
+    let low = 0,
+      high = 0,
+      last = 0,
+      pen = false;
     const clamp = (v) => Math.min(Math.max(v, top - 40), bottom + 40);
     const flush = () => {
       if (column === null) return;
@@ -104,7 +108,12 @@ const Draw = (() => {
   function plot(node, options) {
     const { width, height, x, y } = options;
     const wide = Math.max(...y.ticks.map(([, text]) => text.length));
-    const box = { left: options.left || Math.max(30, 10 + 8 * wide), right: width - 10, top: options.top || 26, bottom: height - (x.ticks.length ? (x.label ? 42 : 24) : 6) };
+    const box = {
+      left: options.left || Math.max(30, 10 + 8 * wide),
+      right: width - 10,
+      top: options.top || 26,
+      bottom: height - (x.ticks.length ? (x.label ? 42 : 24) : 6),
+    };
     const sx = scaleOf(x, box.left, box.right);
     const sy = scaleOf(y, box.bottom, box.top);
     node.setAttribute("viewBox", `0 0 ${width} ${height}`);
@@ -112,9 +121,18 @@ const Draw = (() => {
     node.setAttribute("height", height);
     node.replaceChildren();
     const clip = `plot-clip-${++clips}`;
-    node.append(svg("clipPath", { id: clip }, svg("rect", {
-      x: box.left, y: box.top - 3, width: box.right - box.left, height: box.bottom - box.top + 6,
-    })));
+    node.append(
+      svg(
+        "clipPath",
+        { id: clip },
+        svg("rect", {
+          x: box.left,
+          y: box.top - 3,
+          width: box.right - box.left,
+          height: box.bottom - box.top + 6,
+        }),
+      ),
+    );
     const text = (content, attributes) => svg("text", attributes, content);
     if (y.label) node.append(text(y.label, { x: 0, y: 14, class: "axis-name" }));
     for (const [value, label] of y.ticks) {
@@ -126,50 +144,87 @@ const Draw = (() => {
       const at = round(sx(value));
       node.append(svg("line", { x1: at, x2: at, y1: box.bottom, y2: box.bottom + 5, class: "axis" }));
       const anchor = at > box.right - 14 ? "end" : "middle";
-      node.append(text(label, { x: anchor === "end" ? box.right : at, y: box.bottom + 20, class: "tick", "text-anchor": anchor }));
+      node.append(
+        text(label, {
+          x: anchor === "end" ? box.right : at,
+          y: box.bottom + 20,
+          class: "tick",
+          "text-anchor": anchor,
+        }),
+      );
     }
-    if (x.label) node.append(text(x.label, { x: box.right, y: height - 4, class: "axis-name", "text-anchor": "end" }));
+    if (x.label)
+      node.append(text(x.label, { x: box.right, y: height - 4, class: "axis-name", "text-anchor": "end" }));
     node.append(svg("line", { x1: box.left, x2: box.right, y1: box.bottom, y2: box.bottom, class: "axis" }));
     const inside = svg("g", { "clip-path": `url(#${clip})` });
     node.append(inside);
     for (const rule of options.rules || []) {
-      const line = rule.x !== undefined
-        ? { x1: sx(rule.x), x2: sx(rule.x), y1: box.top, y2: box.bottom }
-        : { x1: box.left, x2: box.right, y1: sy(rule.y), y2: sy(rule.y) };
+      const line =
+        rule.x !== undefined
+          ? { x1: sx(rule.x), x2: sx(rule.x), y1: box.top, y2: box.bottom }
+          : { x1: box.left, x2: box.right, y1: sy(rule.y), y2: sy(rule.y) };
       for (const key of Object.keys(line)) line[key] = round(line[key]);
       inside.append(svg("line", { ...line, class: `rule ${rule.class || ""}` }));
       if (!rule.text) continue;
       if (rule.x !== undefined) {
         const left = rule.side ? rule.side === "end" : line.x1 > (box.left + box.right) / 2;
-        node.append(text(rule.text, { x: line.x1 + (left ? -5 : 5), y: box.top + 12 + (rule.row || 0) * 18, class: "tick strong", "text-anchor": left ? "end" : "start" }));
+        node.append(
+          text(rule.text, {
+            x: line.x1 + (left ? -5 : 5),
+            y: box.top + 12 + (rule.row || 0) * 18,
+            class: "tick strong",
+            "text-anchor": left ? "end" : "start",
+          }),
+        );
       } else {
-        node.append(text(rule.text, { x: box.right - 4, y: line.y1 - 5, class: "tick strong", "text-anchor": "end" }));
+        node.append(
+          text(rule.text, { x: box.right - 4, y: line.y1 - 5, class: "tick strong", "text-anchor": "end" }),
+        );
       }
     }
     for (const line of options.lines || []) {
-      inside.append(svg("path", { d: linePath(line.xs, line.ys, sx, sy, box.top, box.bottom), class: `line m-${line.model} ${line.class || ""}` }));
+      inside.append(
+        svg("path", {
+          d: linePath(line.xs, line.ys, sx, sy, box.top, box.bottom),
+          class: `line m-${line.model} ${line.class || ""}`,
+        }),
+      );
       const markers = line.markers || [];
       for (const at of markers) {
         if (!Number.isFinite(line.ys[at])) continue;
-        inside.append(svg("path", { d: markerPath(line.model, sx(line.xs[at]), sy(line.ys[at]), 4.5), class: `mark m-${line.model}` }));
+        inside.append(
+          svg("path", {
+            d: markerPath(line.model, sx(line.xs[at]), sy(line.ys[at]), 4.5),
+            class: `mark m-${line.model}`,
+          }),
+        );
       }
     }
     for (const point of options.points || []) {
-      inside.append(svg("path", { d: markerPath(point.model, sx(point.x), sy(point.y), point.size || 5), class: `mark m-${point.model} ${point.class || ""}` }));
+      inside.append(
+        svg("path", {
+          d: markerPath(point.model, sx(point.x), sy(point.y), point.size || 5),
+          class: `mark m-${point.model} ${point.class || ""}`,
+        }),
+      );
     }
     return { sx, sy, box, inside };
   }
 
   // The key of a model: a bit of its line with its marker on it, then its name.
   function key(model) {
-    return svg("svg", { class: `key m-${model}`, width: 34, height: 14, viewBox: "0 0 34 14", "aria-hidden": "true" },
+    return svg(
+      "svg",
+      { class: `key m-${model}`, width: 34, height: 14, viewBox: "0 0 34 14", "aria-hidden": "true" },
       svg("path", { d: "M0 7H34", class: `line m-${model}` }),
-      svg("path", { d: markerPath(model, 17, 7, 5), class: `mark m-${model}` }));
+      svg("path", { d: markerPath(model, 17, 7, 5), class: `mark m-${model}` }),
+    );
   }
 
   // Decades from low to high as ticks of a log axis, at most `most` of them.
   function decades(low, high, most = 5) {
-    const from = Math.ceil(Math.log10(low) - 1e-9), to = Math.floor(Math.log10(high) + 1e-9);
+    const from = Math.ceil(Math.log10(low) - 1e-9),
+      to = Math.floor(Math.log10(high) + 1e-9);
     const every = Math.max(1, Math.ceil((to - from + 1) / most));
     const ticks = [];
     for (let p = from; p <= to; p += every) {

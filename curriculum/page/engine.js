@@ -111,7 +111,11 @@ const ContactEngine = (() => {
     });
     if (trace) {
       trace.contacts = contacts.map((c, k) => ({
-        i: c.i, j: c.j, gap: -c.depth, speed: normalSpeed(c, vx, vy), target: target[k],
+        i: c.i,
+        j: c.j,
+        gap: -c.depth,
+        speed: normalSpeed(c, vx, vy),
+        target: target[k],
       }));
       trace.sweeps = [];
     }
@@ -214,7 +218,9 @@ const ContactEngine = (() => {
         trial = solveActive(W, b, active);
       }
       lam = trial;
-      const w = b.map((value, c) => (active[c] ? 0 : W[c].reduce((sum, a, k) => sum + a * lam[k], 0) + value));
+      const w = b.map((value, c) =>
+        active[c] ? 0 : W[c].reduce((sum, a, k) => sum + a * lam[k], 0) + value,
+      );
       const same = lam.every((v, c) => v === before[c]);
       for (let c = 0; c < size; c++) refused[c] = refused[c] && same;
       let worst = 0;
@@ -245,7 +251,9 @@ const ContactEngine = (() => {
       }
     });
     const lam = b.map(() => 0);
-    index.forEach((c, p) => { lam[c] = rows[p][index.length]; });
+    index.forEach((c, p) => {
+      lam[c] = rows[p][index.length];
+    });
     return lam;
   }
 
@@ -267,31 +275,44 @@ const ContactEngine = (() => {
     for (let i = 0; i < n; i++) for (let j = i + 1; j < n; j++) pairs.push({ i, j });
     const invMass = scene.mass.map((m) => 1 / m);
     const unit = scene.radius[0];
-    let y = scene.y.slice(), v = scene.vy.slice();
+    let y = scene.y.slice(),
+      v = scene.vy.slice();
     let a = new Array(n).fill(GRAVITY);
     let held = pairs.map(() => false);
     // a pair's normal points from j to i: down when ball j is the upper one
     const side = (c) => (c.j < 0 || scene.y[c.i] >= scene.y[c.j] ? 1 : -1);
-    const gapOf = (c) => (c.j < 0 ? y[c.i] - scene.radius[c.i]
-      : Math.abs(y[c.i] - y[c.j]) - scene.radius[c.i] - scene.radius[c.j]);
+    const gapOf = (c) =>
+      c.j < 0
+        ? y[c.i] - scene.radius[c.i]
+        : Math.abs(y[c.i] - y[c.j]) - scene.radius[c.i] - scene.radius[c.j];
     const along = (c, row) => side(c) * (row[c.i] - (c.j < 0 ? 0 : row[c.j]));
 
     // row + M^-1 J' lam with lam from the complementarity problem; rounding noise becomes 0.
     function pushed(row, contacts, b) {
-      const W = contacts.map((c) => contacts.map((d) => {
-        const shared = (c.i === d.i ? invMass[c.i] : 0) + (c.j >= 0 && c.j === d.j ? invMass[c.j] : 0)
-          - (c.i === d.j ? invMass[c.i] : 0) - (c.j >= 0 && c.j === d.i ? invMass[c.j] : 0);
-        return side(c) * side(d) * shared;
-      }));
+      const W = contacts.map((c) =>
+        contacts.map((d) => {
+          const shared =
+            (c.i === d.i ? invMass[c.i] : 0) +
+            (c.j >= 0 && c.j === d.j ? invMass[c.j] : 0) -
+            (c.i === d.j ? invMass[c.i] : 0) -
+            (c.j >= 0 && c.j === d.i ? invMass[c.j] : 0);
+          return side(c) * side(d) * shared;
+        }),
+      );
       const lam = solveLcp(W, b);
       const noise = 1e-13 * Math.max(...row.map(Math.abs));
       const next = row.slice();
-      contacts.forEach((c, k) => { next[c.i] += lam[k] * invMass[c.i] * side(c); });
-      contacts.forEach((c, k) => { if (c.j >= 0) next[c.j] -= lam[k] * invMass[c.j] * side(c); });
+      contacts.forEach((c, k) => {
+        next[c.i] += lam[k] * invMass[c.i] * side(c);
+      });
+      contacts.forEach((c, k) => {
+        if (c.j >= 0) next[c.j] -= lam[k] * invMass[c.j] * side(c);
+      });
       return next.map((value) => (Math.abs(value) > noise ? value : 0));
     }
 
-    let now = 0, k = 0;
+    let now = 0,
+      k = 0;
     while (k <= steps) {
       // what happens at this instant: impulses, then the forces of what rests
       let near = pairs.map((_, c) => c).filter((c) => gapOf(pairs[c]) <= TOUCH_IN_RADII * unit);
@@ -302,10 +323,15 @@ const ContactEngine = (() => {
           const wanted = held[c] ? 0 : -scene.restitution * Math.min(speed[at], 0);
           return wanted * wanted > -2 * GRAVITY * UNSEEN_IN_RADII * unit ? wanted : 0;
         });
-        v = pushed(v, contacts, speed.map((s, at) => s - bounce[at]));
+        v = pushed(
+          v,
+          contacts,
+          speed.map((s, at) => s - bounce[at]),
+        );
         const after = contacts.map((c) => along(c, v));
         contacts.forEach((c, at) => {
-          if (speed[at] < -STILL) run.events.push({ t: now, i: c.i, j: c.j, closing: -speed[at], leaving: after[at] });
+          if (speed[at] < -STILL)
+            run.events.push({ t: now, i: c.i, j: c.j, closing: -speed[at], leaving: after[at] });
         });
         speed = after;
       }
@@ -314,14 +340,20 @@ const ContactEngine = (() => {
       for (const c of rest) still[c] = true;
       contacts = rest.map((c) => pairs[c]);
       a = new Array(n).fill(GRAVITY);
-      if (contacts.length) a = pushed(a, contacts, contacts.map((c) => along(c, a)));
+      if (contacts.length)
+        a = pushed(
+          a,
+          contacts,
+          contacts.map((c) => along(c, a)),
+        );
       held = still;
       // fly to the next impact, or to the end
       const horizon = run.t[steps] - now;
       let tau = horizon;
       if (run.events.length < MOST_EVENTS) {
         pairs.forEach((c, at) => {
-          if (!still[at]) tau = Math.min(tau, firstRoot(Math.max(gapOf(c), 0), along(c, v), 0.5 * along(c, a)));
+          if (!still[at])
+            tau = Math.min(tau, firstRoot(Math.max(gapOf(c), 0), along(c, v), 0.5 * along(c, a)));
         });
       } else run.cut = now;
       const until = now + tau;
@@ -376,9 +408,12 @@ const ContactEngine = (() => {
     const depthInRadii = new Float64Array(rows);
     const energy = new Float64Array(rows);
     const heights = [];
-    for (let i = 0; i < run.n; i++) heights.push(Float64Array.from({ length: rows }, (_, row) => run.y[row * run.n + i]));
+    for (let i = 0; i < run.n; i++)
+      heights.push(Float64Array.from({ length: rows }, (_, row) => run.y[row * run.n + i]));
     const start = energyAt(run, scene, 0);
-    let deepestRow = 0, finiteMax = 0, energyMax = 0;
+    let deepestRow = 0,
+      finiteMax = 0,
+      energyMax = 0;
     let landing = rows; // the first row in which the lowest ball has met the table
     for (let row = rows - 1; row > 0; row--) {
       if (run.vy[row * run.n] >= 0 || run.y[row * run.n] <= scene.radius[0]) landing = row;
@@ -399,12 +434,16 @@ const ContactEngine = (() => {
   // its gap adds; what is more than that is put in.
   function contactWork(run, scene, row) {
     const { n } = run;
-    const old = (row - 1) * n, now = row * n;
+    const old = (row - 1) * n,
+      now = row * n;
     let sum = 0;
     const add = (i, j, nx, ny, depth) => {
       if (!(depth > -CONTACT_MARGIN)) return;
-      const part = (at) => nx * (run.vx[at + i] - (j < 0 ? 0 : run.vx[at + j])) + ny * (run.vy[at + i] - (j < 0 ? 0 : run.vy[at + j]));
-      const before = part(old), after = part(now);
+      const part = (at) =>
+        nx * (run.vx[at + i] - (j < 0 ? 0 : run.vx[at + j])) +
+        ny * (run.vy[at + i] - (j < 0 ? 0 : run.vy[at + j]));
+      const before = part(old),
+        after = part(now);
       if (!(after > 0)) return;
       const closing = Math.max(-before - (j < 0 ? run.dt * GRAVITY : 0), 0);
       const allowed = Math.max(scene.restitution * closing, before) ** 2 - 2 * GRAVITY * Math.max(-depth, 0);
@@ -414,9 +453,16 @@ const ContactEngine = (() => {
     for (let i = 0; i < n; i++) add(i, -1, 0, 1, scene.radius[i] - run.y[old + i]);
     for (let i = 0; i < n; i++) {
       for (let j = i + 1; j < n; j++) {
-        const dx = run.x[old + i] - run.x[old + j], dy = run.y[old + i] - run.y[old + j];
+        const dx = run.x[old + i] - run.x[old + j],
+          dy = run.y[old + i] - run.y[old + j];
         const dist = Math.sqrt(dx * dx + dy * dy);
-        add(i, j, dist > 0 ? dx / dist : 0, dist > 0 ? dy / dist : 1, scene.radius[i] + scene.radius[j] - dist);
+        add(
+          i,
+          j,
+          dist > 0 ? dx / dist : 0,
+          dist > 0 ? dy / dist : 1,
+          scene.radius[i] + scene.radius[j] - dist,
+        );
       }
     }
     return sum;
@@ -429,7 +475,11 @@ const ContactEngine = (() => {
     const unit = scene.radius[0];
     const start = energyAt(run, scene, 0);
     const scale = Math.abs(start) || 1;
-    let deepest = 0, excess = -Infinity, work = 0, error = 0, blewUpStep = null;
+    let deepest = 0,
+      excess = -Infinity,
+      work = 0,
+      error = 0,
+      blewUpStep = null;
     const depth = [];
     for (let row = 0; row < rows; row++) {
       depth.push(penetrationAt(run, scene, row) / unit);
@@ -447,9 +497,14 @@ const ContactEngine = (() => {
     const mean = late.reduce((sum, d) => sum + d, 0) / late.length;
     const spread = Math.sqrt(late.reduce((sum, d) => sum + (d - mean) ** 2, 0) / late.length);
     return {
-      max_penetration_frac: deepest, rest_penetration_frac: depth[rows - 1], energy_excess: excess,
-      contact_energy: work, height_error_frac: reference ? error : null, rest_jitter: spread,
-      blew_up: blewUpStep !== null, blew_up_step: blewUpStep,
+      max_penetration_frac: deepest,
+      rest_penetration_frac: depth[rows - 1],
+      energy_excess: excess,
+      contact_energy: work,
+      height_error_frac: reference ? error : null,
+      rest_jitter: spread,
+      blew_up: blewUpStep !== null,
+      blew_up_step: blewUpStep,
     };
   }
 
@@ -462,7 +517,19 @@ const ContactEngine = (() => {
     };
   }
 
-  return { GRAVITY, CONTACT_MARGIN, MODELS, detectContacts, penaltyStep, lcpStep, runModel, stateAt, series, quality, criticalDt };
+  return {
+    GRAVITY,
+    CONTACT_MARGIN,
+    MODELS,
+    detectContacts,
+    penaltyStep,
+    lcpStep,
+    runModel,
+    stateAt,
+    series,
+    quality,
+    criticalDt,
+  };
 })();
 
 if (typeof module !== "undefined") module.exports = ContactEngine;

@@ -21,10 +21,21 @@ from curriculum.check_prose_code_drift import INCLUDE
 
 SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock)(?:\s*:\s*([\w-]+))?\s*-->\s*")
 # where a slot goes that the chapter does not place: before the panel of a region, or at a section's end
-BEFORE_REGION = {"figure:sink": "penalty", "figure:sweeps": "lcp", "figure:bounces": "exact",
-                 "figure:complementarity": "contacts"}
-AT_END_OF = {"figure:cliff": "break it", "figure:puzzle": "break it", "exercise:ex1": "practice",
-             "exercise:ex2": "practice", "exercise:ex3": "practice", "wallclock": "measurement"}
+BEFORE_REGION = {
+    "figure:sink": "penalty",
+    "figure:sweeps": "lcp",
+    "figure:bounces": "exact",
+    "figure:complementarity": "contacts",
+}
+AT_END_OF = {
+    "figure:cliff": "break it",
+    "figure:puzzle": "break it",
+    "exercise:ex1": "practice",
+    "exercise:ex2": "practice",
+    "exercise:ex3": "practice",
+    "bench:bounce": "the measurement",
+    "wallclock": "the measurement",
+}
 
 
 def slug(text):
@@ -34,9 +45,15 @@ def slug(text):
 
 def parser():
     """markdown-it with tables and formulas; raw HTML other than comments is refused by `blocks`."""
-    md = MarkdownIt("commonmark", {"html": True, "typographer": True}).enable(["table", "smartquotes", "replacements"])
-    md.use(dollarmath_plugin, renderer=lambda text, options: convert(
-        text, display="block" if options["display_mode"] else "inline"))
+    md = MarkdownIt("commonmark", {"html": True, "typographer": True}).enable(
+        ["table", "smartquotes", "replacements"]
+    )
+    md.use(
+        dollarmath_plugin,
+        renderer=lambda text, options: convert(
+            text, display="block" if options["display_mode"] else "inline"
+        ),
+    )
     md.add_render_rule("code_inline", inline_code)
     return md
 
@@ -56,7 +73,7 @@ def blocks(text):
     while index < len(tokens):
         token = tokens[index]
         if token.type == "heading_open":
-            inner = md.renderer.render(tokens[index + 1:index + 2], md.options, env)
+            inner = md.renderer.render(tokens[index + 1 : index + 2], md.options, env)
             name = base = slug(inner)
             while name in used:
                 name = f"{base}-{len(used)}"
@@ -68,25 +85,43 @@ def blocks(text):
             out.append(("include", INCLUDE.fullmatch(token.content.strip())[1]))
         elif token.type == "html_block":
             rest = token.content
-            while (slot := SLOT.match(rest)):
+            while slot := SLOT.match(rest):
                 out.append(("slot", slot[1] + (f":{slot[2]}" if slot[2] else "")))
-                rest = rest[slot.end():]
+                rest = rest[slot.end() :]
             if re.sub(r"<!--.*?-->", "", rest, flags=re.DOTALL).strip():
-                raise ValueError(f"chapter.md:{token.map[0] + 1}: raw HTML, {rest.strip()[:50]!r}; "
-                                 "allowed: Markdown, and comments that are slots")
+                raise ValueError(
+                    f"chapter.md:{token.map[0] + 1}: raw HTML, {rest.strip()[:50]!r}; "
+                    "allowed: Markdown, and comments that are slots"
+                )
         elif token.type == "table_open":
             end = next(k for k in range(index, len(tokens)) if tokens[k].type == "table_close")
-            table = md.renderer.render(tokens[index:end + 1], md.options, env).replace("<th></th>", "<td></td>")
-            out.append(("html", f'<div class="scroll" tabindex="0" role="group" aria-label="Table">{table}</div>'))
+            table = md.renderer.render(tokens[index : end + 1], md.options, env).replace(
+                "<th></th>", "<td></td>"
+            )
+            out.append(
+                ("html", f'<div class="scroll" tabindex="0" role="group" aria-label="Table">{table}</div>')
+            )
             index = end
         elif token.type == "fence":
-            out.append(("html", f'<pre class="shell" tabindex="0"><code>{escape(token.content)}</code></pre>'))
+            out.append(
+                ("html", f'<pre class="shell" tabindex="0"><code>{escape(token.content)}</code></pre>')
+            )
         else:
             depth, end = token.nesting, index
             while depth > 0:
                 end += 1
                 depth += tokens[end].nesting
-            out.append(("html", re.sub(r"<!--.*?-->", "", md.renderer.render(tokens[index:end + 1], md.options, env), flags=re.DOTALL)))
+            out.append(
+                (
+                    "html",
+                    re.sub(
+                        r"<!--.*?-->",
+                        "",
+                        md.renderer.render(tokens[index : end + 1], md.options, env),
+                        flags=re.DOTALL,
+                    ),
+                )
+            )
             index = end
         index += 1
     return out
@@ -105,8 +140,9 @@ def place(parts, known):
         if slot in known and slot not in present:
             heads = [k for k, (kind, value) in enumerate(parts) if kind == "heading" and value[0] == 2]
             here = next((k for k in heads if title in parts[k][1][2].lower()), None)
-            after = len(parts) if here is None else next((k for k in heads if k > here), len(parts))
-            while slot.startswith("figure:") and slot != "figure:puzzle" and after > 1 and here is not None and after > here + 2:
-                after = here + 2        # a small figure stands beside the section's first paragraph
-            parts.insert(after, ("slot", slot))
+            end = len(parts) if here is None else next((k for k in heads if k > here), len(parts))
+            if slot == "figure:cliff" and here is not None:
+                # a small figure stands beside the section's first paragraphs
+                end = here + 1 + (sum(kind == "html" for kind, _ in parts[here:end]) > 1)
+            parts.insert(end, ("slot", slot))
     return parts

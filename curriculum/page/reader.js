@@ -4,7 +4,9 @@
 const Reader = (() => {
   const { html, number } = Draw;
   const $ = (id) => document.getElementById(id);
-  const say = (words) => { $("said").textContent = words; };
+  const say = (words) => {
+    $("said").textContent = words;
+  };
 
   // ---- copying
 
@@ -25,7 +27,9 @@ const Reader = (() => {
     if (!button.dataset.label) button.dataset.label = label.textContent;
     label.textContent = done ? "Copied" : "Not allowed here";
     say(done ? "Copied." : "The browser does not allow copying here.");
-    setTimeout(() => { label.textContent = button.dataset.label; }, 2000);
+    setTimeout(() => {
+      label.textContent = button.dataset.label;
+    }, 2000);
   }
 
   function startCopying() {
@@ -42,7 +46,9 @@ const Reader = (() => {
     try {
       if (value === null) localStorage.removeItem(STORE + id);
       else localStorage.setItem(STORE + id, JSON.stringify(value));
-    } catch { /* a private window: the answer is kept until the page is closed */ }
+    } catch {
+      /* a private window: the answer is kept until the page is closed */
+    }
   };
   const recall = (id) => {
     try {
@@ -56,11 +62,23 @@ const Reader = (() => {
   function measure(id) {
     const { dt, steps } = PAGE.exercises[id];
     const data = PAGE.scenes.drop;
-    const scene = { x: [0], y: data.starts[0], vx: [0], vy: [0], mass: [1], radius: [PAGE.radius], restitution: data.restitution };
+    const scene = {
+      x: [0],
+      y: data.starts[0],
+      vx: [0],
+      vy: [0],
+      mass: [1],
+      radius: [PAGE.radius],
+      restitution: data.restitution,
+    };
     const knobs = { ...PAGE.defaults, dt, damping: data.damping, restitution: data.restitution };
-    const measured = ["penalty", "lcp"].map((model) => ContactEngine.quality(ContactEngine.runModel(model, scene, knobs, steps), scene, null));
-    const rows = PAGE.exercises[id].shows.map(([name, words]) => [words, ...measured.map((q) => (
-      name === "blew_up" ? (q.blew_up ? "EXPLODED" : "ok") : number(q[name])))]);
+    const measured = ["penalty", "lcp"].map((model) =>
+      ContactEngine.quality(ContactEngine.runModel(model, scene, knobs, steps), scene, null),
+    );
+    const rows = PAGE.exercises[id].shows.map(([name, words]) => [
+      words,
+      ...measured.map((q) => (name === "blew_up" ? (q.blew_up ? "EXPLODED" : "ok") : number(q[name]))),
+    ]);
     return Figure.tableOf(["measured", "penalty", "lcp"], rows);
   }
 
@@ -68,7 +86,9 @@ const Reader = (() => {
     const id = section.dataset.exercise;
     const form = section.querySelector("form");
     const result = $(`${id}-result`);
-    const reasons = [...$(`${id}-reveal`).content.querySelectorAll("[data-why]")].map((node) => node.cloneNode(true));
+    const reasons = [...$(`${id}-reveal`).content.querySelectorAll("[data-why]")].map((node) =>
+      node.cloneNode(true),
+    );
     const mine = reasons.find((node) => node.dataset.why === answer.choice);
     const right = reasons.find((node) => "right" in node.dataset);
     const good = mine === right;
@@ -86,14 +106,21 @@ const Reader = (() => {
     });
     const others = reasons.filter((node) => node !== mine && node !== right);
     result.replaceChildren(
-      html("h4", {}, good ? `You predicted ${answer.choice}. The measurement agrees.` : `You predicted ${answer.choice}. The measurement says ${right.dataset.why}.`),
+      html(
+        "h4",
+        {},
+        good
+          ? `You predicted ${answer.choice}. The measurement agrees.`
+          : `You predicted ${answer.choice}. The measurement says ${right.dataset.why}.`,
+      ),
       html("p", { class: "yours" }, `Your reason: ${answer.why}`),
       measure(id),
       html("h4", {}, "Why"),
       wrap(right),
       ...(good ? [] : [html("h4", {}, "Why not what you chose"), wrap(mine)]),
       ...(others.length ? [html("h4", {}, "Why not the others"), ...others.map(wrap)] : []),
-      again);
+      again,
+    );
     result.hidden = false;
     if (focus) result.focus();
   }
@@ -145,18 +172,28 @@ const Reader = (() => {
     const heads = [...links.keys()].map($).filter(Boolean);
     const mark = () => {
       let here = null;
-      for (const head of heads) if (head.getBoundingClientRect().top < 0.3 * window.innerHeight) here = head.id;
+      for (const head of heads)
+        if (head.getBoundingClientRect().top < 0.3 * window.innerHeight) here = head.id;
+      if (window.innerHeight + window.scrollY > document.documentElement.scrollHeight - 4)
+        here = heads[heads.length - 1].id;
       for (const [id, link] of links) {
         if (id === here) link.setAttribute("aria-current", "true");
         else link.removeAttribute("aria-current");
       }
     };
     let waiting = false;
-    window.addEventListener("scroll", () => {
-      if (waiting) return;
-      waiting = true;
-      requestAnimationFrame(() => { waiting = false; mark(); });
-    }, { passive: true });
+    window.addEventListener(
+      "scroll",
+      () => {
+        if (waiting) return;
+        waiting = true;
+        requestAnimationFrame(() => {
+          waiting = false;
+          mark();
+        });
+      },
+      { passive: true },
+    );
     mark();
   }
 

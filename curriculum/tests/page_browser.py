@@ -5,9 +5,18 @@ import shutil
 
 import pytest
 
-CHROMIUM = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
-FLAGS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-         "--disable-component-update", "--disable-sync")
+CHROMIUM = next(
+    (path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None
+)
+FLAGS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: apt-get install chromium")
 
 
@@ -15,6 +24,7 @@ needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: 
 def running():
     """A browser, closed at the end."""
     from playwright.sync_api import sync_playwright
+
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
         yield browser
@@ -24,16 +34,30 @@ def running():
 @contextlib.contextmanager
 def visiting(browser, url, width=1280, height=900, query="", motion="reduce", javascript=True, **options):
     """A fresh profile on the page. Fails if the page complains, throws, or asks for anything but itself."""
-    context = browser.new_context(viewport={"width": width, "height": height}, reduced_motion=motion,
-                                  java_script_enabled=javascript, **options)
+    context = browser.new_context(
+        viewport={"width": width, "height": height},
+        reduced_motion=motion,
+        java_script_enabled=javascript,
+        **options,
+    )
     page = context.new_page()
     page.set_default_timeout(10_000)
     trouble = []
-    page.on("console", lambda message: trouble.append(f"console: {message.text}")
-            if message.type in ("error", "warning") else None)
+    page.on(
+        "console",
+        lambda message: (
+            trouble.append(f"console: {message.text}") if message.type in ("error", "warning") else None
+        ),
+    )
     page.on("pageerror", lambda error: trouble.append(f"error: {error}"))
-    page.on("request", lambda request: trouble.append(f"request: {request.url[:100]}")
-            if not request.url.startswith(("data:", url)) else None)
+    page.on(
+        "request",
+        lambda request: (
+            trouble.append(f"request: {request.url[:100]}")
+            if not request.url.startswith(("data:", url))
+            else None
+        ),
+    )
     page.goto(url + query)
     yield page
     context.close()
