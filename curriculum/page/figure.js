@@ -38,8 +38,8 @@ const Figure = (() => {
 
   // ---- state and address
 
-  function readAddress() {
-    const query = new URLSearchParams(location.search);
+  function readAddress(text = location.search) {
+    const query = new URLSearchParams(text);
     const scene = DATA.scenes[query.get("scene")] ? query.get("scene") : DEFAULTS.scene;
     state = { ...DEFAULTS, scene, ...ownKnobs(scene) };
     for (const [name, knob] of Object.entries(KNOBS)) {
@@ -71,10 +71,18 @@ const Figure = (() => {
     return location.pathname + (text ? `?${text}` : "") + location.hash;
   }
 
+  function remember(where) {
+    try {
+      history.replaceState(null, "", where);
+    } catch {
+      // a frame without an address of its own: the state is kept until the page is closed
+    }
+  }
+
   let addressTimer = 0;
   function writeAddress() {
     clearTimeout(addressTimer);
-    addressTimer = setTimeout(() => history.replaceState(null, "", address(!playing)), 250);
+    addressTimer = setTimeout(() => remember(address(!playing)), 250);
   }
 
   // ---- computing
@@ -242,6 +250,7 @@ const Figure = (() => {
             ? "on the table"
             : `${number(gap)} m above`;
     $(`now-${model}`).textContent = words;
+    if (!playing) node.setAttribute("aria-label", `${model}: ${words}, the lens shows the lowest contact`);
   }
 
   // How far the lowest ball must sink for its spring to carry all the weight that stands on it.
@@ -716,8 +725,8 @@ const Figure = (() => {
   // A link of presets: take its state without loading the page again.
   function follow(link) {
     const query = new URL(link.href, location.href).search;
-    history.replaceState(null, "", location.pathname + query + "#figure");
-    readAddress();
+    remember(`${location.pathname + query}#figure`);
+    readAddress(query);
     showState();
     time = 0;
     refresh(true);

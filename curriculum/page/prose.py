@@ -11,6 +11,7 @@ Beside plain Markdown the chapter may hold
 
 import re
 from html import escape
+from pathlib import Path
 
 from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
@@ -43,6 +44,12 @@ def slug(text):
     return re.sub(r"[^a-z0-9]+", "-", re.sub(r"<[^>]+>", "", text).lower()).strip("-") or "section"
 
 
+def reserved_ids():
+    """Ids that the templates use; a heading of the same name gets another."""
+    texts = (path.read_text(encoding="utf-8") for path in (Path(__file__).parent / "templates").glob("*.j2"))
+    return {name for text in texts for name in re.findall(r'\bid="([\w-]+)"', text)}
+
+
 def parser():
     """markdown-it with tables and formulas; raw HTML other than comments is refused by `blocks`."""
     md = MarkdownIt("commonmark", {"html": True, "typographer": True}).enable(
@@ -69,14 +76,16 @@ def blocks(text):
     """The chapter as a list of (kind, value): kind html, heading (level, id, html), include or slot."""
     md = parser()
     tokens, env = md.parse(text), {}
-    out, used, index = [], set(), 0
+    out, used, index = [], reserved_ids(), 0
     while index < len(tokens):
         token = tokens[index]
         if token.type == "heading_open":
             inner = md.renderer.render(tokens[index + 1 : index + 2], md.options, env)
             name = base = slug(inner)
+            count = 1
             while name in used:
-                name = f"{base}-{len(used)}"
+                count += 1
+                name = f"{base}-{count}"
             used.add(name)
             out.append(("heading", (int(token.tag[1]), name, inner)))
             index += 3

@@ -205,7 +205,13 @@ const Reader = (() => {
   return { start };
 })();
 
+// What needs JavaScript is shown only where it runs to the end.
 document.documentElement.className = "js";
-Figure.start();
-Figures.start();
-Reader.start();
+try {
+  Figure.start();
+  Figures.start();
+  Reader.start();
+} catch (error) {
+  document.documentElement.className = "no-js";
+  throw error;
+}

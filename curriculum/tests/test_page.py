@@ -659,6 +659,14 @@ def test_slots_stand_where_the_chapter_puts_them_and_nowhere_else():
     assert order.count("figure:sink") == 1 and order.index("figure:sink") > order.index("penalty")
 
 
+def test_no_id_stands_twice_and_every_link_inside_the_page_has_its_target():
+    html = page_build.build(chapter=f"{SMALL}\n\n## Run\n\nOn.\n\n## Run\n\n## Figure\n")
+    ids = re.findall(r'\sid="([^"]+)"', html.split("<script>")[0])
+    assert sorted(ids) == sorted(set(ids))
+    assert {"run-2", "run-3", "figure-2"} <= set(ids)
+    assert set(re.findall(r'href="#([^"]+)"', html)) <= set(ids)
+
+
 def test_models_keep_their_look_and_comments_vanish():
     ((_, shown),) = prose.blocks("The `penalty` ball <!-- unseen --> and `other`.")
     assert (
