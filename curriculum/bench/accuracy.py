@@ -17,7 +17,7 @@ import numpy as np
 
 from curriculum.bench import timing
 from curriculum.bench.methods import BARE, METHODS, OURS, READ
-from curriculum.bench.problems import DTS, PROBLEMS, SEEDS, quality
+from curriculum.bench.problems import DTS, PROBLEMS, REFERENCE_DT, SEEDS, quality
 
 BUDGET = 3.0            # s that the runs of one point may use up before it sits out further rounds
 FIT_DTS = (0.0, 0.008)  # s, the steps whose errors the order of convergence is fitted to
@@ -63,7 +63,7 @@ def run(settings):
         problems={p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration) for p in chosen},
         methods={m.name: dict(label=m.label, theory=m.order, why=m.why, missing=m.missing)
                  for m in settings.methods},
-        points=points, orders=[fit(p.name, m.name, points) for p in chosen for m in present])
+        headline=headline(points), points=points, orders=[fit(p.name, m.name, points) for p in chosen for m in present])
 
 
 def _errors(problem, method, dt, seed, bar):
@@ -116,6 +116,21 @@ def point(problem, method, dt, errors, seconds, seeds):
     for name in ERRORS:
         values = [e[name] for e in errors]
         result[name] = dict(median=float(np.median(values)), min=min(values), max=max(values), all=values)
+    return result
+
+
+def headline(points):
+    """{problem: {method: {error, ms, bare_ms}}} at the reference step, for texts that quote a number.
+
+    error is None where the method diverged; bare_ms is None for contact.py's models.
+    """
+    result = {}
+    for p in points:
+        if p["dt"] == REFERENCE_DT:
+            bare = p["times"].get(BARE)
+            result.setdefault(p["problem"], {})[p["method"]] = dict(
+                error=None if p["diverged"] else p["height_error"]["median"],
+                ms=1e3 * p["times"][READ]["min"], bare_ms=bare and 1e3 * bare["min"])
     return result
 
 

@@ -111,9 +111,12 @@ def _exact_claim(data, problem):
 def _penalty_claim(data, problem):
     fine, coarse = min(data.dts), max(dt for dt in data.dts if dt <= 0.004)
     small, large = data.error(problem, "penalty", fine), data.error(problem, "penalty", coarse)
-    from_to = (f"{number(large)} r at {coarse * 1e3:g} ms and {number(small)} r at {fine * 1e3:g} ms")
-    return Claim(small > 0.5 * large,
-                 f"Smaller steps do not help penalty ({from_to}): what is wrong is the spring itself.",
+    from_to = f"{number(large)} r at {coarse * 1e3:g} ms and {number(small)} r at {fine * 1e3:g} ms"
+    point = data.by_key[problem, "penalty", fine]
+    own = (f"its spring gives way by {number(point['max_penetration']['median'], 2)} r"
+           if problem == "drop" else
+           f"it has no restitution to set, and rebounds with {number(point['restitution']['median'])}")
+    return Claim(small > 0.5 * large, f"Smaller steps do not help penalty ({from_to}), since {own}.",
                  f"penalty's error depends on the step: {from_to}.")
 
 

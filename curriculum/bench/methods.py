@@ -58,7 +58,8 @@ def _peer(name):
 
 
 SOFT = "its contact is soft, whatever the step"
-ONCE = "steps cut at no impact, semi-implicit flight"
+FLIGHT = "semi-implicit flight"
+ONCE = f"{FLIGHT}, and no step is cut at an impact"
 
 METHODS = (
     Method("penalty", "penalty", contact.COLORS["penalty"], "v", (0, (1, 1)), 0, SOFT, **_ours("penalty")),
@@ -71,10 +72,10 @@ METHODS = (
     Method("mujoco_stiff", color="#000000", marker="s", dash="-", order=1,
            why="its softness shrinks with the step", **_peer("mujoco_stiff")),
     Method("pymunk", color="#cc79a7", marker="D", dash=(0, (5, 1)), order=1, why=ONCE, **_peer("pymunk")),
-    Method("box2d", color="#e69f00", marker="P", dash=(0, (3, 1, 1, 1)), order=1, why=ONCE,
+    Method("box2d", color="#e69f00", marker="P", dash=(0, (3, 1, 1, 1)), order=1, why=FLIGHT,
            **_peer("box2d")),
-    Method("box2d3", color="#8b6914", marker="^", dash=(0, (1, 2)), order=1, why=ONCE, **_peer("box2d3")),
-    Method("box2d3_stiff", color="#5d3a9b", marker="h", dash="-", order=1, why=ONCE,
+    Method("box2d3", color="#8b6914", marker="^", dash=(0, (1, 2)), order=1, why=FLIGHT, **_peer("box2d3")),
+    Method("box2d3_stiff", color="#5d3a9b", marker="h", dash="-", order=1, why=FLIGHT,
            **_peer("box2d3_stiff")),
 )
 BY_NAME = {method.name: method for method in METHODS}

@@ -48,7 +48,7 @@ def measure(quick=False):
     rows = []
     for count in sizes:
         rows += _one_size(count, steps[count], quick)
-    return dict(quick=quick, dt=DT, sweeps=SWEEPS, rows=rows, exponents=exponents(rows),
+    return dict(quick=quick, dt=DT, sweeps=SWEEPS, rows=rows, headline=headline(rows), exponents=exponents(rows),
                 missing={p.name: f"not installed: pip install {p.package}" for p in peers.PEERS
                          if not p.version()})
 
@@ -109,6 +109,15 @@ def depths(q, radius):
         depth = np.concatenate([np.atleast_1d(c[4]) for c in contacts])
     return dict(contacts=len(depth), mean_depth=float(depth.mean() / radius[0]),
                 worst_depth=float(depth.max() / radius[0]), finite=True)
+
+
+def headline(rows):
+    """{balls: {method: {settled_ms, mean_depth}}}, for texts that quote a number."""
+    result = {}
+    for row in rows:
+        result.setdefault(str(row["bodies"]), {})[row["method"].replace(" ", "_")] = dict(
+            settled_ms=1e3 * row["settled"]["median"], mean_depth=row["mean_depth"])
+    return result
 
 
 def exponents(rows):
