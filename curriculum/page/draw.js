@@ -27,14 +27,20 @@ const Draw = (() => {
 
   const round = (a) => Math.round(a * 100) / 100;
 
-  // The marker of a model as a path around (x, y): triangle, square, disc.
+  // The marker of a model as a path around (x, y), as in the benchmark's figures: triangle, disc, star.
   function markerPath(model, x, y, r) {
-    if (model === "penalty") {
-      return `M${round(x)} ${round(y - 1.15 * r)}L${round(x + 1.1 * r)} ${round(y + 0.85 * r)}H${round(x - 1.1 * r)}Z`;
+    const corner = (turn, size) => {
+      const angle = 2 * Math.PI * turn;
+      return `${round(x + size * Math.sin(angle))} ${round(y - size * Math.cos(angle))}`;
+    };
+    if (model === "lcp") {
+      return `M${round(x - r)} ${round(y)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0Z`;
     }
-    if (model === "lcp")
-      return `M${round(x - 0.9 * r)} ${round(y - 0.9 * r)}h${round(1.8 * r)}v${round(1.8 * r)}h${round(-1.8 * r)}Z`;
-    return `M${round(x - r)} ${round(y)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0Z`;
+    const corners =
+      model === "penalty"
+        ? [1 / 6, 1 / 2, 5 / 6].map((turn) => corner(turn, 1.35 * r))
+        : Array.from({ length: 10 }, (_, k) => corner(k / 10, k % 2 ? 0.62 * r : 1.5 * r));
+    return `M${corners.join("L")}Z`;
   }
 
   const NOISE = 5e-13; // contact.py prints twelve decimals; less is rounding
@@ -182,22 +188,17 @@ const Draw = (() => {
         );
       }
     }
-    for (const line of options.lines || []) {
-      inside.append(
-        svg("path", {
-          d: linePath(line.xs, line.ys, sx, sy, box.top, box.bottom),
-          class: `line m-${line.model} ${line.class || ""}`,
-        }),
-      );
-      const markers = line.markers || [];
-      for (const at of markers) {
+    const lines = options.lines || [];
+    for (const line of lines) {
+      const d = linePath(line.xs, line.ys, sx, sy, box.top, box.bottom);
+      inside.append(svg("path", { d, class: `line m-${line.model} ${line.class || ""}` }));
+    }
+    // all markers over all lines, so that no line hides another model's marker
+    for (const line of lines) {
+      for (const at of line.markers || []) {
         if (!Number.isFinite(line.ys[at])) continue;
-        inside.append(
-          svg("path", {
-            d: markerPath(line.model, sx(line.xs[at]), sy(line.ys[at]), 4.5),
-            class: `mark m-${line.model}`,
-          }),
-        );
+        const d = markerPath(line.model, sx(line.xs[at]), sy(line.ys[at]), 4.5);
+        inside.append(svg("path", { d, class: `mark m-${line.model}` }));
       }
     }
     for (const point of options.points || []) {

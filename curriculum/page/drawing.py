@@ -36,14 +36,19 @@ def number(value):
 
 
 def marker(model, x, y, r):
-    """The marker of a model as an SVG path: triangle, square, disc."""
-    if model == "penalty":
-        return (
-            f"M{show(x)} {show(y - 1.15 * r)}L{show(x + 1.1 * r)} {show(y + 0.85 * r)}H{show(x - 1.1 * r)}Z"
-        )
+    """The marker of a model as an SVG path, as in the benchmark's figures: triangle, disc, star."""
+
+    def corner(turn, size):
+        angle = 2.0 * math.pi * turn
+        return f"{show(x + size * math.sin(angle))} {show(y - size * math.cos(angle))}"
+
     if model == "lcp":
-        return f"M{show(x - 0.9 * r)} {show(y - 0.9 * r)}h{show(1.8 * r)}v{show(1.8 * r)}h{show(-1.8 * r)}Z"
-    return f"M{show(x - r)} {show(y)}a{r} {r} 0 1 0 {2 * r} 0a{r} {r} 0 1 0 {-2 * r} 0Z"
+        return f"M{show(x - r)} {show(y)}a{r} {r} 0 1 0 {2 * r} 0a{r} {r} 0 1 0 {-2 * r} 0Z"
+    if model == "penalty":
+        corners = [corner(turn, 1.35 * r) for turn in (1 / 6, 1 / 2, 5 / 6)]
+    else:
+        corners = [corner(k / 10, 0.62 * r if k % 2 else 1.5 * r) for k in range(10)]
+    return f"M{'L'.join(corners)}Z"
 
 
 # ---- the poster
@@ -83,10 +88,10 @@ def lane_picture(model, run):
     every = max(1, round(0.05 / (run.t[1] - run.t[0])))
     parts += [circle(heights[k], "strobe") for k in range(0, landing, every)]
     last = float(heights[-1])
-    parts.append(circle(last, f"ball m-{model}"))
-    parts.append(f'<path d="{marker(model, w / 2, floor - scale * last, 8)}" class="ball-mark"/>')
     if depth.max() > 0.02 * R:
         parts.append(circle(heights[int(depth.argmax())], f"ghost m-{model}"))
+    parts.append(circle(last, f"ball m-{model}"))
+    parts.append(f'<path d="{marker(model, w / 2, floor - scale * last, 8)}" class="ball-mark"/>')
     parts.append(
         f'<path d="M{w / 2 - 3:g} {floor}L{show(x - 0.94 * r)} {show(y - 0.34 * r)}'
         f'M{w / 2 + 3:g} {floor}L{show(x + 0.94 * r)} {show(y - 0.34 * r)}" class="lens-ray"/>'

@@ -179,7 +179,7 @@ const Figure = (() => {
     if (row > deepest && now.series[model].depth[deepest] > 0.02 * DATA.radius) {
       const cy = top(run.y[deepest * run.n]);
       if (cy < 2000)
-        moving.append(svg("circle", { cx: LANE.width / 2, cy, r: radius, class: `ghost m-${model}` }));
+        moving.prepend(svg("circle", { cx: LANE.width / 2, cy, r: radius, class: `ghost m-${model}` }));
     }
     parts.push(moving);
     const escaped = !known || top(highest) < -radius;
