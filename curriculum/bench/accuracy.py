@@ -63,7 +63,8 @@ def run(settings):
         problems={p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration) for p in chosen},
         methods={m.name: dict(label=m.label, theory=m.order, why=m.why, missing=m.missing)
                  for m in settings.methods},
-        headline=headline(points), points=points, orders=[fit(p.name, m.name, points) for p in chosen for m in present])
+        headline=headline(points), points=points,
+        orders=[fit(p.name, m.name, points) for p in chosen for m in present])
 
 
 def _errors(problem, method, dt, seed, bar):

@@ -258,7 +258,8 @@ def skip_figure(section):
         f"{case['scene']}{' of ' + str(case['bodies']) if case['bodies'] > 3 else ''}, {case['model']}"
         for case in rows])
     axes[1].set(title="Speed-up of one run by skipping, in the process",
-                xlabel="median time --no-skip / --skip", xlim=(0, 1.12 * max(case["ratio"] for case in rows)))
+                xlabel="median time --no-skip / --skip",
+                xlim=(0, 1.12 * max(case["ratio"] for case in rows)))
     for axis in axes:
         axis.grid(axis="y", visible=False)
     return svg(figure, plt, section)
