@@ -42,6 +42,31 @@ def geometry(q, radius, i, j):
     return d, radius[i] + radius[j] - distance
 
 
+def along(rows, i, j, n):
+    """n . (rows_i - rows_j) (K,) of rows (2, N + 1)."""
+    return (n * (rows[:, i] - rows[:, j])).sum(0)
+
+
+def delassus(i, j, n, w):
+    """The Delassus matrix J M^-1 J' (K, K) of contacts i, j (K,), n (2, K); w (N + 1,) = 1 / mass.
+
+    Two contacts act on each other through the bodies that they share; the floor's w is 0.
+    """
+    shared = [np.equal.outer(a, b) * w[a][:, None] for a, b in ((i, i), (j, j), (i, j), (j, i))]
+    normals = np.multiply.outer(n[0], n[0]) + np.multiply.outer(n[1], n[1])
+    return normals * (shared[0] + shared[1] - shared[2] - shared[3])
+
+
+def pushed(rows, lam, i, j, n, w):
+    """rows (2, N + 1) + M^-1 J' lam; what is left of rounding, 1e-13 of a body's share, becomes 0."""
+    rows, size = rows.copy(), np.abs(rows).max(0)
+    for body, push in ((i, lam * w[i]), (j, -lam * w[j])):
+        np.add.at(size, body, np.abs(push))
+        for row, part in zip(rows, n):
+            np.add.at(row, body, push * part)
+    return np.where(np.abs(rows) > 1e-13 * size, rows, 0.0)
+
+
 def contact_arrays(q, radius, margin):
     """i, j (K,), n (2, K), depth (K,) of the contacts with depth > -margin [m]; q (2, N), radius (N,).
 
@@ -51,7 +76,8 @@ def contact_arrays(q, radius, margin):
     i, j = np.append(np.arange(len(radius)), i), np.append(np.full(len(radius), -1), j)
     n, depth = geometry(with_floor(q), with_floor(radius), i, j)
     listed = np.flatnonzero(depth > -margin)
-    listed = listed[np.lexsort((j[listed], i[listed], j[listed] >= 0))]
+    place = np.where(j < 0, i - len(radius), i * len(radius) + j)[listed]   # floor's first, < 0
+    listed = listed[np.argsort(place)]
     return i[listed], j[listed], n[:, listed], depth[listed]
 
 
@@ -65,6 +91,7 @@ def near_pairs(x, y, reach):
     known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     x, y = x[known] - x[known].min(initial=np.inf), y[known] - y[known].min(initial=np.inf)
     side = max(reach, x.max(initial=0.0) / 2**30, y.max(initial=0.0) / 2**30)   # ids fit 64 bits
+    side *= 1.0 + 1e-6                                      # room for the rounding of x, y and reach
     column, row = (x / side).astype(int), (y / side).astype(int)
     width = column.max(initial=0) + 2                       # an empty cell ends every row
     cell = row * width + column
@@ -99,21 +126,22 @@ def independent_groups(i, j, bodies):
     body with it. The floor (j = -1) moves for no contact, so sharing it does not count. Returns one
     index array a group, each in the order of the list.
     """
-    last, group = [0] * (bodies + 1), []
-    for a, b in zip(i.tolist(), j.tolist()):
-        last[a] = last[b] = max(last[a], last[b]) + 1
-        last[-1] = 0
-        group.append(last[a])
-    order = np.argsort(group, kind="stable")
-    cuts = np.flatnonzero(np.diff(np.array(group, int)[order])) + 1
-    return np.split(order, cuts) if group else []
+    left, groups, first = np.arange(len(i)), [], np.empty(bodies + 1, int)
+    while len(left):
+        a, b = i[left], j[left]
+        backwards = np.stack((a, b), 1)[::-1].ravel()       # of entries that repeat, the last stays:
+        first[backwards] = np.repeat(left[::-1], 2)         # the earliest contact of every body
+        ready = (first[a] == left) & ((b < 0) | (first[b] == left))
+        groups.append(left[ready])
+        left = left[~ready]
+    return groups
 
 
 def operations(contacts):
     """The four operations in which contacts of floats and groups of arrays differ.
 
-    larger(a, b), choose(which, yes, no), equal(list, list), and row(values), which gives a copy with
-    a 0 for the floor at its end, where index -1 finds it.
+    larger(a, b), choose(which, yes, no), moves(dlam): whether any of it is not 0, and row(values): a
+    copy with a 0 for the floor at its end, where index -1 finds it.
     """
     return MANY if contacts and isinstance(contacts[0][0], np.ndarray) else ONE
 
@@ -121,11 +149,6 @@ def operations(contacts):
 def choose(which, yes, no):
     """np.where for floats."""
     return yes if which else no
-
-
-def same_arrays(a, b):
-    """== for lists of arrays."""
-    return all(map(np.array_equal, a, b))
 
 
 def list_row(row):
@@ -138,7 +161,7 @@ def array_row(row):
     return with_floor(np.asarray(row))
 
 
-ONE, MANY = (max, choose, operator.eq, list_row), (np.fmax, np.where, same_arrays, array_row)
+ONE, MANY = (max, choose, operator.truth, list_row), (np.fmax, np.where, np.any, array_row)
 # fmax meets NaN as Python's max(0.0, NaN) does: 0.0 stays
 
 

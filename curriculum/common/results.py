@@ -25,6 +25,14 @@ def show(value, form):
     return "-" if value is None else format(value, form)
 
 
+def print_table(title, columns, rows, state):
+    """Print rows {name: {key: value}} under columns {heading: key}, and state(row) at the end."""
+    print(f"{title:<8}" + "".join(f"{heading:>13}" for heading in columns) + "  state")
+    for name, row in rows.items():
+        print(f"{name:<8}" + "".join(f"{show(row[key], '.3e'):>13}" for key in columns.values())
+              + f"  {state(row)}")
+
+
 def fingerprint(knobs, but=()):
     """12 hexadecimal digits that change with any of the knobs {name: value}, except those in `but`."""
     import hashlib

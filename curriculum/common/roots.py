@@ -11,7 +11,7 @@ def first_fall(p, horizon):
     """
     p0, p1, p2, p3, p4 = p
     t, curved, bend = np.zeros(p.shape[1]), (p3 != 0.0) | (p4 != 0.0), p2
-    value, slope, left = p0, p1, 200
+    value, slope, left, moving = p0, p1, 200, np.ones(p.shape[1], bool)
     while left:
         if curved.any():
             vertex = np.where(p4 > 0.0, np.clip(-p3 / (4.0 * p4), t, horizon), t)
@@ -21,6 +21,7 @@ def first_fall(p, horizon):
         root = np.sqrt(slope * slope - 4.0 * value * bend)              # NaN: no root
         step = np.where(slope < 0.0, 2.0 * value / (root - slope),
                         np.where(bend < 0.0, (slope + root) / (-2.0 * bend), np.inf))
-        t = np.where(t + step <= horizon, t + step, np.inf)
-        left = left - 1 if (curved & (step > 1e-15 * t)).any() else 0
+        t = np.where(moving, np.where(t + step <= horizon, t + step, np.inf), t)
+        moving &= curved & (step > 1e-15 * t)                           # the others have arrived
+        left = left - 1 if moving.any() else 0
     return t
