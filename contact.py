@@ -332,9 +332,9 @@ def simulate_exact(scene, dt, steps, report=lambda k: None):
 
     Between events bodies fly parabolas. Touching bodies that close get impulses from the LCP of
     Newton's restitution, all contacts at once; resting ones forces from the LCP of accelerations.
-    Not exact where balls slide over one another in contact: forces hold for a sample, contacts that
-    close slower than g dt wait for its end, the overlap, of order dt^2, is moved out. Nor after 2000
-    events in a sample: then touching becomes ten times looser, up to 1e-6 r.
+    Not exact where balls slide over one another in contact: forces hold for a sample, contacts
+    closing slower than g dt wait for its end, the overlap (of order dt^2) is moved out. Nor after
+    2000 events in a sample: then touching becomes ten times looser, up to 1e-6 r.
     """
     q, v, w, radius = map(balls.with_floor, (scene.q0, scene.v0, 1.0 / scene.mass, scene.radius))
     held, now, k, events = balls.every_contact(len(w) - 1)[0] < 0, 0.0, 0, 0
