@@ -1,12 +1,14 @@
-"""The README's generated blocks, made from results.json.
+"""The README's generated blocks, made from results.json, and what contact.py prints.
 
-A block stands between `<!-- generated: NAME by COMMAND -->` and `<!-- end -->`. Blocks whose COMMAND
-is not ours are left alone. A block of ours that results.json can't fill yet says so, and is filled by
+A block stands between `<!-- generated: NAME by COMMAND -->` and `<!-- end -->`. COMMAND is ours or a
+call of contact.py; other blocks are left alone. A block of ours that results.json can't fill yet says so, and is filled by
 the command that it names.
 """
 
 import re
+import subprocess
 import sys
+import tempfile
 
 from curriculum.bench import accuracy_page, piles_page, report, skips_page, store
 from curriculum.common.files import write_whole
@@ -60,9 +62,21 @@ BLOCKS = {"bench-headline": ("error", headline), "bench-bounce": ("error", bounc
           "bench-pile": goals(piles_page, "pile"), "bench-machine": ("error", machine)}
 
 
+def printed(flags):
+    """What contact.py prints for `flags`, fenced; without the banner and the lines that name files."""
+    with tempfile.TemporaryDirectory() as out:
+        run = subprocess.run([sys.executable, "contact.py", *flags, "--no-rerun", "--out", out],
+                             cwd=store.ROOT, capture_output=True, text=True, check=True)
+    lines = [line for line in run.stdout.splitlines()
+             if not line.startswith(("[", "metrics:", "config_hash:"))]
+    return "```text\n" + "\n".join(lines) + "\n```\n"
+
+
 def fill(text, sections):
     """The README's text with our blocks made anew. Raises ValueError for a name that is none of ours."""
     def made(match):
+        if match["command"].startswith("python contact.py"):
+            return match[1] + printed(match["command"].split()[2:])
         if "curriculum.bench" not in match["command"]:
             return match[0]
         if match["name"] not in BLOCKS:
@@ -95,6 +109,7 @@ def main(folder, check):
         return 1
     if not check and new != text:
         write_whole(str(README), new)
-    ours = sum("curriculum.bench" in match["command"] for match in BLOCK.finditer(text))
+    ours = sum(1 for match in BLOCK.finditer(text) if match["command"] == COMMAND
+               or match["command"].startswith("python contact.py"))
     print(f"README.md: {ours} generated blocks {'are up to date' if check else 'written'}")
     return 0
