@@ -207,19 +207,19 @@ def solve_contacts(v, inv_mass, contacts, target, iters):
     lam, rows = [0.0] * len(contacts), []
     for (i, j, nx, ny, _), goal in zip(contacts, target):
         m_eff = 1.0 / choose(w[i] + w[j] > 0.0, w[i] + w[j], math.inf)      # effective mass
-        rows.append((i, j, nx, ny, goal, m_eff, w[i] * nx, w[i] * ny, w[j] * nx, w[j] * ny))
+        rows.append((i, j, nx, ny, w[i], w[j], m_eff, goal))
     for _ in range(iters):
         settled = True
-        for c, (i, j, nx, ny, goal, m_eff, ix, iy, jx, jy) in enumerate(rows):
+        for c, (i, j, nx, ny, w_i, w_j, m_eff, goal) in enumerate(rows):
             v_n = nx * (vx[i] - vx[j]) + ny * (vy[i] - vy[j])
             total = project_impulse(lam[c], (goal - v_n) * m_eff, larger)
             dlam = total - lam[c]
             if moves(dlam):
                 lam[c], settled = total, False
-                vx[i] += dlam * ix
-                vy[i] += dlam * iy
-                vx[j] -= dlam * jx
-                vy[j] -= dlam * jy
+                vx[i] += dlam * w_i * nx
+                vy[i] += dlam * w_i * ny
+                vx[j] -= dlam * w_j * nx
+                vy[j] -= dlam * w_j * ny
         if settled:
             break
     return [vx[:-1], vy[:-1]], lam

@@ -168,7 +168,7 @@ ONE, MANY = (max, choose, operator.truth, list_row), (np.fmax, np.where, np.any,
 def advance(q, v, dt):
     """q + dt v, for pairs of rows: lists or arrays (N,)."""
     if isinstance(q[0], list):
-        return [[a + dt * b for a, b in zip(row, rate)] for row, rate in zip(q, v)]
+        return [[a + dt * b for a, b in zip(q[0], v[0])], [a + dt * b for a, b in zip(q[1], v[1])]]
     return [row + dt * np.asarray(rate) for row, rate in zip(q, v)]
 
 
