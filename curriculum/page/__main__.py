@@ -1,4 +1,4 @@
-"""python -m curriculum.page [--out FILE]: write the chapter as one HTML file."""
+"""python -m curriculum.page [--out FILE] [--screenshot PNG]: write the chapter as one HTML file."""
 
 import sys
 from pathlib import Path
@@ -18,6 +18,7 @@ def main(argv=None):
         help="the file to write (outputs/contact.html)",
     )
     parser.add_argument("--root", type=Path, help="another copy of the project")
+    parser.add_argument("--screenshot", type=Path, metavar="PNG", help="and its first screen as a picture")
     args = parser.parse_args(argv)
     try:
         from curriculum.page.build import build
@@ -32,7 +33,24 @@ def main(argv=None):
         print(error, file=sys.stderr)
         return 1
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
+    if args.screenshot:
+        photograph(args.out, args.screenshot)
+        print(args.screenshot)
     return 0
+
+
+def photograph(page, picture):
+    """Save the first screen of the HTML file `page` (1280 x 900, nothing moving). Needs a Chromium."""
+    from playwright.sync_api import sync_playwright
+
+    from curriculum.tests.page_browser import CHROMIUM, FLAGS
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
+        tab = browser.new_page(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+        tab.goto(page.resolve().as_uri())
+        tab.wait_for_timeout(1500)                                  # ms: the figure draws itself
+        tab.screenshot(path=picture)
+        browser.close()
 
 
 if __name__ == "__main__":
