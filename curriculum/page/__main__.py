@@ -34,23 +34,10 @@ def main(argv=None):
         return 1
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
     if args.screenshot:
+        from curriculum.page.browser import photograph
         photograph(args.out, args.screenshot)
         print(args.screenshot)
     return 0
-
-
-def photograph(page, picture):
-    """Save the first screen of the HTML file `page` (1280 x 900, nothing moving). Needs a Chromium."""
-    from playwright.sync_api import sync_playwright
-
-    from curriculum.tests.page_browser import CHROMIUM, FLAGS
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
-        tab = browser.new_page(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
-        tab.goto(page.resolve().as_uri())
-        tab.wait_for_timeout(1500)                                  # ms: the figure draws itself
-        tab.screenshot(path=picture)
-        browser.close()
 
 
 if __name__ == "__main__":

@@ -1,22 +1,11 @@
 """A real browser for the page's tests: Debian's Chromium, driven by Playwright, offline."""
 
 import contextlib
-import shutil
 
 import pytest
 
-CHROMIUM = next(
-    (path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None
-)
-FLAGS = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-)
+from curriculum.page.browser import CHROMIUM, FLAGS
+
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: apt-get install chromium")
 
 
