@@ -279,8 +279,8 @@ def react(rows, i, j, n, w, b):
 def settle(q, v, w, radius, restitution, held, touch):
     """At an instant: overlaps moved out, impulses, forces. Returns q, v, a, gap, rests, slides.
 
-    Within `touch` r, and the last bits of q, is touching. A bounce below 1e-15 r is the last of its
-    series: all that would follow add less. Contacts `held` until now do not bounce.
+    Within `touch` r, and the last bits of q, is touching. A bounce below touch / 1000 r is the last
+    of its series: all that would follow add less. Contacts `held` until now do not bounce.
     """
     every_i, every_j = balls.every_contact(len(w) - 1)
     a, last = np.array([[0.0], [GRAVITY]]) * (w > 0.0), np.spacing(np.abs(q).max(0))
@@ -293,8 +293,8 @@ def settle(q, v, w, radius, restitution, held, touch):
             break
         q, _ = react(q, i, j, n, w, -depth[near])
     v_n, still = balls.along(v, i, j, n), np.zeros(len(every_i), bool)
-    slow = np.sqrt(-2.0 * GRAVITY * 1e-15 * radius[i])
-    if (v_n < -1e-13).any():
+    slow = np.sqrt(-2.0 * GRAVITY * 1e-3 * touch * radius[i])
+    if (v_n < -0.1 * touch).any():                          # m/s; what impulses round is less
         bounce = np.where(held[near], 0.0, restitution * np.maximum(-v_n, 0.0))
         v, _ = react(v, i, j, n, w, v_n - np.where(bounce < slow, 0.0, bounce))
         v_n = balls.along(v, i, j, n)
@@ -334,14 +334,13 @@ def simulate_exact(scene, dt, steps, report=lambda k: None):
     Newton's restitution, all contacts at once; resting ones forces from the LCP of accelerations.
     Not exact where balls slide over one another in contact: forces hold for a sample, contacts
     closing slower than g dt wait for its end, the overlap (of order dt^2) is moved out. Nor after
-    2000 events in a sample: then touching becomes ten times looser, up to 1e-6 r.
+    2000 events in a sample: touching is ten times looser then, and so on, up to 1e-6 r.
     """
     q, v, w, radius = map(balls.with_floor, (scene.q0, scene.v0, 1.0 / scene.mass, scene.radius))
-    held, now, k, events = balls.every_contact(len(w) - 1)[0] < 0, 0.0, 0, 0
+    held, now, k, events, touch = balls.every_contact(len(w) - 1)[0] < 0, 0.0, 0, 0, 1e-12
     run = Run(np.arange(steps + 1) * dt, *np.empty((2, steps + 1, *q.shape)))
     while k <= steps:
-        q, v, a, gap, held, slides = settle(
-            q, v, w, radius, scene.restitution, held, 10.0 ** min(events // 2000 - 12, -6))
+        q, v, a, gap, held, slides = settle(q, v, w, radius, scene.restitution, held, touch)
         end = run.t[min(k + (run.t[k] <= now), steps)] if slides else run.t[-1]
         span = min(end - now, next_impact(q, v, a, gap, radius, held, end - now,
                                           dt * GRAVITY if slides else np.inf))
@@ -350,6 +349,7 @@ def simulate_exact(scene, dt, steps, report=lambda k: None):
         run.q[k:upto], run.v[k:upto] = q + s * (v + 0.5 * s * a), v + s * a
         q, v, now = q + span * (v + 0.5 * span * a), v + span * a, now + span
         k, events = upto, events + 1 if upto == k else 0
+        touch, events = (min(10.0 * touch, 1e-6), 0) if events > 2000 else (touch, events)
         report(k)
     return Run(run.t, run.q[:, :, :-1], run.v[:, :, :-1])
 # --- endregion ---
@@ -502,10 +502,10 @@ def print_report(args, quality, grid):
             spring[key] > solve[key] for key in list(COLUMNS.values())[:2]) else "no"
         print("verdict: penalty is the deeper, at most and at the end:", verdict)
         for model in ("penalty", "lcp"):
-            found = f"up to dt = {grid[model]:g} s of the grid, where it goes " + show(
-                grid[f"{model}_penetration_frac"], ".3g") + " r deep"
-            print(f"stability: {model} gains no {EXPLODED:g} x energy",
-                  found if grid[model] else "at no dt of the grid")
+            depth = show(grid[f"{model}_penetration_frac"], ".3g")
+            print(f"stability: {model} does not explode up to dt = {grid[model]:g} s of the grid, "
+                  f"where it goes {depth} r deep" if grid[model] else
+                  f"stability: {model} explodes at every dt of the grid")
         print(f"critical dt of penalty, one ball: {show(grid['dt_crit_damped'], '.4g')} s; "
               f"without the damper, 2 sqrt(m/k), {show(grid['dt_crit_penalty'], '.4g')} s")
 

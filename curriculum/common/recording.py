@@ -7,7 +7,7 @@ def write(path, name, runs, radius, curves, colors):
     """Write a recording, whole, in rerun's strict mode. Raises ImportError where rerun is missing.
 
     name: application id, [a-z0-9_]. runs {label: run}: run.t (S,) [s] becomes the timelines step and
-    sim_time; run.q (S, 2, N) the balls of `radius` (N,) [m], each label over its own piece of the
+    sim_time (step alone beyond 9e9 s); run.q (S, 2, N) the balls of `radius` (N,) [m], each label over its own piece of the
     line y = 0, side by side in one 2-D view. curves {title: {label: values (S,)}}: a plot a title,
     its path the title's first word. colors {label: "#rrggbb"}: one fixed colour a label. rerun's 2-D
     views have y down and no option, so y is negated here and only here. Whole columns are sent.
@@ -24,8 +24,10 @@ def write(path, name, runs, radius, curves, colors):
         recording.save(temporary, default_blueprint=layout(rrb, runs, curves, width, radius))
         for place, (label, run) in enumerate(runs.items()):
             middle, color, steps = width * place, colors[label], len(run.t)
-            times = [rr.TimeColumn("step", sequence=np.arange(steps)),      # whole nanoseconds:
-                     rr.TimeColumn("sim_time", duration=np.round(run.t * 1e9).astype("timedelta64[ns]"))]
+            times = [rr.TimeColumn("step", sequence=np.arange(steps))]
+            if run.t[-1] < 9e9:         # s; 292 years of nanoseconds are all that 64 bits hold
+                nanoseconds = np.round(run.t * 1e9).astype("timedelta64[ns]")   # whole: no stamp off
+                times.append(rr.TimeColumn("sim_time", duration=nanoseconds))
             table = [[middle - 0.45 * width, 0.0], [middle + 0.45 * width, 0.0]]
             recording.log(f"world/{label}/table", rr.LineStrips2D(
                 [table], colors=color, labels=[label], radii=[0.005]), static=True)

@@ -7,7 +7,8 @@ def first_fall(p, horizon):
     """First t in [0, horizon] at which each quartic sum p[k] t^k falls through zero; inf if it does not.
 
     p (5, K) with p[0] >= 0. Newton's method made safe: with the least curvature up to the horizon no
-    step passes a root, and a parabola takes one step. An answer is good to 1e-15 of itself.
+    step passes a root, and a parabola takes one step. An answer is good to 1e-15 of itself, or early
+    where 200 steps of next to no curvature did not get there.
     """
     p0, p1, p2, p3, p4 = p
     t, curved, bend = np.zeros(p.shape[1]), (p3 != 0.0) | (p4 != 0.0), p2
