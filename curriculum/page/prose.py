@@ -66,9 +66,11 @@ def parser():
 
 
 def inline_code(self, tokens, index, options, env):
-    """Inline code; a model's name gets the model's look."""
+    """Inline code; a model's name gets the model's look, and a short piece is kept on one line."""
     text = tokens[index].content
-    kind = f' class="model m-{text}"' if text in contact.MODELS else ""
+    kind = ' class="short"' if len(text) <= 24 else ""
+    if text in contact.MODELS:
+        kind = f' class="model m-{text}"'
     return f"<code{kind}>{escape(text)}</code>"
 
 

@@ -671,7 +671,7 @@ def test_models_keep_their_look_and_comments_vanish():
     ((_, shown),) = prose.blocks("The `penalty` ball <!-- unseen --> and `other`.")
     assert (
         '<code class="model m-penalty">penalty</code>' in shown
-        and "<code>other</code>" in shown
+        and '<code class="short">other</code>' in shown
         and "unseen" not in shown
     )
     assert "<math" in prose.blocks("Then $a < b$ holds.")[0][1]
