@@ -1,0 +1,235 @@
+"""exact, held to closed forms, to the impact law by hand, and its pivot to problems with known answers."""
+
+import signal
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+import contact
+from curriculum.bench import closed_form
+from curriculum.common import balls
+
+R = 0.1
+STEPS_OF = [1e-4, 5e-4, 0.002, 0.0137, 0.064]
+
+
+def error(run, expected):
+    """Worst height error in radii."""
+    return np.abs(run.q[:, 1] - expected.reshape(run.q[:, 1].shape)).max() / R
+
+
+def hold_physics(run, scene):
+    """Penetration and energy as issue 4 asks of every run."""
+    deepest = contact.max_penetration(run.q, scene.radius).max() / R
+    assert deepest <= 1e-12, f"penetration {deepest} r"
+    total = contact.energy(run.q, run.v, scene.mass)
+    assert (np.diff(total) <= 1e-12 * total[0]).all(), f"energy rose by {np.diff(total).max()} J"
+
+
+@pytest.mark.parametrize("dt", STEPS_OF)
+@pytest.mark.parametrize("e", [0.0, 0.3, 0.7, 0.9, 0.99, 1.0])
+def test_a_bouncing_ball_is_within_1e_10_r_of_the_closed_form(e, dt):
+    for seed in (0, 1, 5, 57):
+        scene = contact.build_scene("bounce", seed, restitution=e)
+        run = contact.run_model("exact", scene, dt, min(round(4.0 / dt), 2000))
+        got = error(run, closed_form.ball_height(scene.q0[1, 0], R, e, run.t))
+        assert got <= 1e-10, f"seed {seed}: height error {got} r"
+        hold_physics(run, scene)
+
+
+@pytest.mark.parametrize("dt", STEPS_OF)
+def test_drop_and_stack_are_within_1e_10_r_of_the_closed_form(dt):
+    for seed in range(0, 100, 9):
+        drop, stack = (contact.build_scene(name, seed) for name in ("drop", "stack"))
+        for scene in (drop, stack):
+            run = contact.run_model("exact", scene, dt, min(round(2.0 / dt), 1000))
+            got = error(run, closed_form.column_heights(scene.q0[1], R, run.t))
+            assert got <= 1e-10, f"{scene.name}, seed {seed}: height error {got} r"
+            hold_physics(run, scene)
+
+
+def test_what_is_sampled_does_not_depend_on_how_often():
+    """The same times, sampled at dt and at 8 dt, agree to rounding: there is no step error."""
+    scene = contact.build_scene("bounce", 3)
+    fine = contact.run_model("exact", scene, 0.005, 800)
+    coarse = contact.run_model("exact", scene, 0.04, 100)
+    assert np.abs(fine.q[::8] - coarse.q).max() < 1e-13
+
+
+def test_an_elastic_ball_is_back_at_its_height_after_100_bounces():
+    """Sampled once in 2 t1: each sample is the top of a flight."""
+    scene = contact.build_scene("drop", restitution=1.0)
+    height = scene.q0[1, 0]
+    period = 2.0 * closed_form.first_impact_time(height - R)
+    run = contact.run_model("exact", scene, period, 100)
+    assert np.abs(run.q[:, 1, 0] - height).max() < 1e-9
+    hold_physics(run, scene)
+
+
+def test_a_tower_of_100_at_rest_stays_at_rest():
+    scene = contact.build_scene("stack", 0, 100)
+    rest = np.array((np.zeros(100), R * (2.0 * np.arange(100) + 1.0)))
+    run = contact.run_model("exact", scene._replace(q0=rest), 0.01, 100)
+    assert np.abs(run.q - rest).max() / R < 1e-9 and np.abs(run.v).max() < 1e-9
+
+
+# The impact law
+
+
+def column(heights, speeds, e=1.0):
+    """Equal balls over one another; balls 0, 1, ... from below."""
+    n = len(heights)
+    q0, v0 = np.array((np.zeros(n), heights)), np.array((np.zeros(n), speeds))
+    return contact.Scene("column", q0, v0, np.ones(n), np.full(n, R), e, 0.0)
+
+
+def speeds_after(scene, time):
+    """Vertical speeds at `time`, less what gravity added since the start."""
+    run = contact.run_model("exact", scene, time, 1)
+    return run.v[1, 1] + 9.81 * time
+
+
+def test_a_cradle_in_free_fall_shares_the_blow_as_newtons_law_says():
+    """One ball flies into two that touch, all of mass m under the same gravity, e = 1.
+
+    Contact a (struck) closes with s, contact b (touching) with 0. Newton's law for all contacts at
+    once: lam >= 0, w = J v+ + e J v >= 0, lam w = 0; that is v1 - v0 >= s at a, v2 - v1 >= 0 at b.
+    Both active: v1 = v2 = u, v0 = u - s, and momentum 3 u - s = s: u = 2 s / 3, v0 = -s / 3, with
+    lam_b = m u > 0 and lam_a = 2 m u > 0, so it is the answer. Energy: 1/9 + 4/9 + 4/9 = 1.
+    A real cradle sends the last ball off alone (0, 0, s): the law's known limit.
+    """
+    s = 1.2
+    scene = column([50.0, 50.25, 50.45], [s, 0.0, 0.0])
+    assert speeds_after(scene, 0.1) == pytest.approx([-s / 3, 2 * s / 3, 2 * s / 3], abs=1e-10)
+
+
+def test_a_cradle_with_gaps_passes_the_blow_on_ball_by_ball():
+    """Two equal balls, e = 1, exchange their speeds; one impact after the other: (0, 0, s)."""
+    s = 1.2
+    scene = column([50.0, 50.21, 50.42], [s, 0.0, 0.0])
+    assert speeds_after(scene, 0.1) == pytest.approx([0.0, 0.0, s], abs=1e-10)
+
+
+def test_a_touching_column_lands_and_rises_as_one():
+    """All fall with s; the floor contact closes with s, the others with 0. w = 0 at all contacts
+    gives v = (s, s, s), with lam = (6, 4, 2) m s > 0: the column bounces without coming apart."""
+    scene = column([0.3, 0.5, 0.7], [-2.0] * 3)
+    time = (np.sqrt(4.0 + 2 * 9.81 * 0.2) - 2.0) / 9.81
+    s = 2.0 + 9.81 * time
+    after = speeds_after(scene, 2 * time) - 9.81 * 2 * time
+    assert after == pytest.approx([s - 9.81 * time] * 3, abs=1e-10)
+
+
+def test_a_ball_thrown_on_a_standing_column_comes_back_alone():
+    """The floor and the middle contact close with 0, the top one with s: v = (0, 0, s), and every
+    contact passes lam = 2 m s on to the floor."""
+    scene = column([0.1, 0.3, 0.6], [0.0, 0.0, -1.0])
+    time = (np.sqrt(1.0 + 2 * 9.81 * 0.1) - 1.0) / 9.81
+    run = contact.run_model("exact", scene, 2 * time, 1)
+    assert run.v[1, 1] == pytest.approx([0.0, 0.0, 1.0], abs=1e-10)
+    assert run.q[1, 1] == pytest.approx([0.1, 0.3, 0.6], abs=1e-11)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+def test_unequal_balls_part_with_e_times_their_closing_speed_and_keep_momentum(e):
+    mass = np.array([0.2, 7.0])
+    scene = column([50.0, 50.3], [1.0, -0.5], e)._replace(mass=mass)
+    after = speeds_after(scene, 0.1)
+    assert after[1] - after[0] == pytest.approx(1.5 * e, abs=1e-10)
+    assert mass @ after == pytest.approx(0.2 - 3.5, abs=1e-10)
+
+
+# The pivot
+
+
+@contextmanager
+def seconds(limit):
+    """Fail instead of hanging, where the system has alarms."""
+
+    def late(*_):
+        pytest.fail(f"no end within {limit} s")
+
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, limit)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def hold_complementarity(W, b, limit=10):
+    """max |min(lam, W lam + b)| at most 1e-10, in units that make W's diagonal 1, of b's size."""
+    with seconds(limit):
+        lam = contact.solve_lcp(W, b)
+    unit = 1.0 / np.sqrt(W.diagonal())
+    residual = np.abs(np.minimum(lam / unit, (W @ lam + b) * unit)).max()
+    assert (lam >= 0.0).all() and residual <= 1e-10 * np.abs(b * unit).max(), residual
+
+
+@pytest.mark.parametrize("contacts, rank, again", [(5, 5, 0), (20, 8, 0), (20, 8, 5), (40, 20, 10)])
+def test_pivot_ends_on_dense_rank_deficient_and_repeated_contacts(contacts, rank, again):
+    """b = J u: a least-squares problem over a cone, which always has an answer."""
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        J = rng.normal(size=(contacts, rank))
+        J = np.vstack((J, J[:again]))
+        hold_complementarity(J @ J.T, J @ rng.normal(size=rank), limit=2)
+
+
+def test_pivot_ends_on_500_contacts_of_rank_467():
+    """The size on which plain block principal pivoting was seen to cycle for ever."""
+    rng = np.random.default_rng(0)
+    J = rng.normal(size=(500, 467))
+    hold_complementarity(J @ J.T, J @ rng.normal(size=467), limit=30)
+
+
+@pytest.mark.parametrize("closing", ["lands", "random"])
+@pytest.mark.parametrize("ratio", [0.0, 6.0])
+def test_pivot_ends_on_the_contacts_of_a_dense_pile(ratio, closing):
+    """Close packed balls, more contacts than they can move ways; masses up to 10^ratio apart."""
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        count, width = 40, 8
+        place = rng.permutation(count)
+        q = 0.1 + 0.2 * np.array((place % width, place // width))
+        i, j, n, _ = balls.contact_arrays(q, np.full(count, R), 1e-9)
+        w = balls.with_floor(10.0 ** rng.uniform(-ratio, 0.0, count))
+        v = np.zeros((2, count)) if closing == "lands" else rng.normal(size=(2, count))
+        b = balls.along(balls.with_floor(v - [[0.0], [1.0]]), i, j, n)
+        assert len(i) > 70
+        hold_complementarity(balls.delassus(i, j, n, w), b)
+
+
+def test_pivot_of_a_column_gives_each_contact_the_weight_above_it():
+    count = 30
+    i, j = np.arange(count), np.arange(count) - 1
+    n = np.array((np.zeros(count), np.ones(count)))
+    w = balls.with_floor(np.ones(count))
+    b = np.where(i == 0, -9.81, 0.0)
+    lam = contact.solve_lcp(balls.delassus(i, j, n, w), b)
+    assert lam == pytest.approx(9.81 * (count - i), rel=1e-12)
+
+
+def test_a_contact_that_parts_gets_no_impulse():
+    assert contact.solve_lcp(np.array([[2.0]]), np.array([3.0])).tolist() == [0.0]
+    assert contact.solve_lcp(np.eye(3), np.array([1.0, -2.0, 0.0])).tolist() == [0.0, 2.0, 0.0]
+
+
+# Not exact
+
+
+def test_overlap_of_a_sliding_pile_falls_with_the_square_of_dt():
+    """A pile of 12 lands and slides apart; the force is held for a sample while the normal turns."""
+    scene = contact.build_scene("pile", 0, 12)
+    deepest = []
+    for dt in (0.004, 0.002):
+        with seconds(30):
+            run = contact.run_model("exact", scene, dt, round(0.6 / dt))
+        deepest.append(contact.max_penetration(run.q, scene.radius).max() / R)
+    print(f"overlap {deepest} r, ratio {deepest[0] / deepest[1]:.2f}")
+    assert 3.0 < deepest[0] / deepest[1] < 5.0 and deepest[0] < 0.01
