@@ -82,7 +82,7 @@ def test_a_ball_at_the_very_reach_is_found_wherever_the_cells_lie(seed):
 
 
 def test_near_pairs_do_not_grow_with_the_square_of_the_balls():
-    """A lattice 2.5 r wide has at most 8 neighbours a ball within two cells' reach, 9 cells of it."""
+    """A lattice 2.5 r wide has few balls in the cells around a ball, however many there are."""
     for count in (1000, 4000):
         scene = contact.build_scene("pile", bodies=count)
         i, j = balls.near_pairs(*scene.q0, 0.2)
@@ -91,7 +91,7 @@ def test_near_pairs_do_not_grow_with_the_square_of_the_balls():
 
 
 def test_balls_with_one_centre_part_along_y():
-    """Published fault: a distance under 1e-12 dropped the contact, and merged balls never parted."""
+    """Published fault: below a distance of 1e-12 there was no contact, so they never parted."""
     ((i, j, nx, ny, depth),) = [c for c in as_list((np.ones((2, 2)), np.full(2, 0.1), 0.0))]
     assert (i, j, nx, ny, depth) == (0, 1, 0.0, 1.0, 0.2)
 
@@ -156,7 +156,7 @@ def test_a_ball_that_touches_and_closes_falls_at_once_and_one_that_rests_or_part
 
 
 def test_two_balls_that_fly_apart_or_miss_never_touch_and_a_graze_is_told_to_the_bit():
-    """d = (-1, b), u = (1, 0): |d + u t|^2 - R^2 = t^2 - 2 t + 1 + b^2 - R^2, roots 1 +- sqrt(R^2 - b^2)."""
+    """d = (-1, b), u = (1, 0), R = 0.2: t^2 - 2 t + 1 + b^2 - R^2 has 1 +- sqrt(R^2 - b^2)."""
     for b in (0.2000001, 0.3):
         assert first_fall(1.0 + b * b - 0.04, -2.0, 1.0) == math.inf
     for b in (0.0, 0.1, 0.19999, 0.1999999):
@@ -182,7 +182,7 @@ ROOT = st.floats(0.05, 3.0)
     st.floats(0.01, 100.0),
 )
 def test_first_root_of_a_quartic_is_the_least_of_the_roots_it_was_made_of(real, pairs, size):
-    """(r1 - t)(r2 - t).. times (t - a)^2 + b^2 > 0: the first fall is at the least root, if simple."""
+    """(r1 - t)(r2 - t).. ((t - a)^2 + b^2): the first fall is at the least root, if simple."""
     real = sorted(real)[: 4 - 2 * len(pairs)]
     if any(b - a < 1e-3 for a, b in zip(real, real[1:])):
         return

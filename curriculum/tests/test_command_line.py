@@ -327,7 +327,7 @@ def test_the_names_that_the_next_chapter_imports_are_there():
 
 
 def test_killed_while_writing_metrics_the_old_ones_are_intact(tmp_path):
-    """The process is stopped for good in os.fsync, when the new file is written but has no name yet."""
+    """The process is stopped in os.fsync: the new file is written but has no name yet."""
     assert contact.main([*SHORT, "--out", str(tmp_path)]) == 0
     old = (tmp_path / "metrics.json").read_bytes()
     code = (

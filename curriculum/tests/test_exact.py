@@ -1,4 +1,4 @@
-"""exact, held to closed forms, to the impact law by hand, and its pivot to problems with known answers."""
+"""exact, held to closed forms and to the impact law by hand; its pivot, to degenerate problems."""
 
 import signal
 from contextlib import contextmanager
@@ -224,7 +224,7 @@ def test_a_contact_that_parts_gets_no_impulse():
 
 
 def test_overlap_of_a_sliding_pile_falls_with_the_square_of_dt():
-    """A pile of 12 lands and slides apart; the force is held for a sample while the normal turns."""
+    """A pile of 12 lands and slides: a force is held for a sample while the normal turns."""
     scene = contact.build_scene("pile", 0, 12)
     deepest = []
     for dt in (0.004, 0.002):

@@ -139,7 +139,7 @@ def test_critical_dt_is_where_bisected_simulations_stop_settling(stiffness, damp
 
 @pytest.mark.parametrize("mass, stiffness, damping", [(1.0, 1e4, 80.0), (2.0, 300.0, 7.0)])
 def test_step_matrix_has_an_eigenvalue_minus_one_at_the_critical_dt(mass, stiffness, damping):
-    """v+ = v - dt (c v + k x) / m, x+ = x + dt v+; in (x, v), its spectral radius passes 1 there."""
+    """v+ = v - dt (c v + k x) / m, x+ = x + dt v+: its spectral radius passes 1 there."""
 
     def radius(dt):
         a, b = dt * stiffness / mass, 1.0 - dt * damping / mass

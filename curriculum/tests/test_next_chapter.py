@@ -12,7 +12,7 @@ DT, SPEED = 0.01, 0.4
 
 
 def lattice():
-    """A pusher of radius 0.2 left of a row of six discs of radius 0.1, a triangle with one in front.
+    """A pusher of radius 0.2 left of six discs of radius 0.1, a triangle with one in front.
 
     A long way from y = 0, which is no table here.
     """
@@ -53,7 +53,7 @@ def test_a_disc_that_nothing_moves_pushes_a_cluster_and_keeps_its_own_speed():
 
 
 def test_what_the_discs_gain_along_x_is_what_the_contacts_gave_them():
-    """Change of momentum = impulse, body by body; sum of lam n_x over the pusher's contacts = total."""
+    """Change of momentum = impulse, body by body; the pusher's impulses sum to the total."""
     mass = np.array([1.0, 2.0, 0.5, 1.0, 3.0, 1.0])
     states, given = push([0.0, *(1.0 / mass)], 200)
     _, v, _ = states[-1]

@@ -160,6 +160,14 @@ def test_a_run_that_overflows_is_recorded_too(tmp_path, read_recording):
     assert len(read_recording(tmp_path / "burst.rrd").series["/height/penalty"]["step"]) == 301
 
 
+def test_a_run_longer_than_64_bit_nanoseconds_is_recorded_by_step(tmp_path, read_recording):
+    scene = contact.build_scene("drop")
+    run = contact.run_model("exact", scene, 1e200, 20)
+    contact.log_rerun(tmp_path / "long.rrd", {"exact": run}, scene)
+    series = read_recording(tmp_path / "long.rrd").series
+    assert series["/height/exact"]["step"] == list(range(21))
+
+
 def test_a_wrong_call_raises_instead_of_warning(tmp_path):
     """Strict mode is on: what lost the published recording its curves would now stop the run."""
     code = (

@@ -60,7 +60,7 @@ def test_same_bytes_for_steps_that_are_tiny_or_overflow(model, dt):
 
 @pytest.mark.parametrize("model", ["penalty", "lcp"])
 def test_same_bytes_for_thrown_balls_of_mixed_size_and_mass(model):
-    """Rising, falling, meeting in flight, one outside of everything; a flight must stop for each."""
+    """Rising, falling, meeting in flight: a flight must stop for each."""
     rng = np.random.default_rng(11)
     for count in (1, 2, 5, 9, 16):
         radius = rng.uniform(0.03, 0.2, count)
@@ -145,7 +145,7 @@ def test_a_run_that_rests_costs_no_more_steps_when_it_is_longer(monkeypatch):
 
 @pytest.mark.parametrize("period, start", [(1, 5), (2, 0), (3, 17), (7, 1), (30, 100)])
 def test_a_cycle_of_any_period_is_recognised_and_copied(period, start):
-    """A made-up step, of which the answer is known: up by one until `start`, then round and round."""
+    """A made-up step with a known answer: up by one until `start`, then round and round."""
     calls = []
 
     def step(q, v):
@@ -173,7 +173,7 @@ def test_a_sweep_that_changes_nothing_is_the_last(monkeypatch):
 
 
 def test_what_can_be_swept_further_is_swept_further():
-    """Stopping early is only ever stopping at a fixed point: 1000 sweeps go on from where 20 were."""
+    """Only a fixed point stops the sweeps: 1000 go on from where 20 were."""
     contacts = [(0, -1, 0.0, 1.0, 0.0), *[(k, k - 1, 0.0, 1.0, 0.0) for k in range(1, 8)]]
     v, w = [[0.0] * 8, [-1.0] * 8], [1.0] * 8
     twenty, thousand = (
