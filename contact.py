@@ -238,38 +238,42 @@ def lcp_step(q, v, inv_mass, radius, dt, restitution, baumgarte, iters):
 def solve_lcp(W, b):
     """lam >= 0 with w = W lam + b >= 0 and lam w = 0. W (K, K) is the Delassus matrix, b (K,).
 
-    Criss-cross (Terlaky; den Hertog, Roos, Terlaky 1993), from all contacts active, as at rest:
-    exchange lam and w of the least negative index. It ends for every semidefinite W, redundant
-    contacts included; a table made afresh that needs no exchange is the answer.
+    Pivoting by the rule of Lawson and Hanson (1974), from all contacts active, as at rest: one more
+    contact pushes, or one less, so that lam'W lam / 2 + b'lam falls; no active set comes twice, and
+    redundant contacts stay out. The table is made afresh, at most nine times, until it needs none.
     """
-    if len(b) == 1:                                         # one contact is one clamp
-        return np.maximum(-b / W[0], 0.0)
+    if len(b) < 2:                                          # one contact is one clamp
+        return np.maximum(-b / W.diagonal(), 0.0)
     scale = np.ldexp(1.0, -np.frexp(W.diagonal())[1] // 2)  # diagonal near 1: one tolerance for all
     fresh = np.column_stack((W * scale * scale[:, None], b * scale))
-    least, active, exchanges = -1e-13 * np.abs(fresh[:, -1]).max(initial=0.0), scale > 0.0, 1
-    def exchange(row, column):
-        pivots, factor = table[row] / -table[row, column], table[:, column].copy()
-        table[...] += factor[:, None] * pivots
-        table[:, column], table[row] = factor / factor[row], pivots
-        table[row, column] = 1.0 / factor[row]
-    while exchanges:
-        table, left, active, exchanges = fresh.copy(), active, np.zeros(len(b), bool), 0
-        while left.any() and (diagonal := table[:, :-1].diagonal() * left).max() > 1e-13:
-            k = diagonal.argmax()
-            exchange(k, k)
-            left[k], active[k] = False, True                # what stays left hangs on these
-        while (table[:, -1] < least).any():
-            k = r = (table[:, -1] < least).argmax()
-            if table[k, k] > 1e-13:
-                exchange(k, k)
-            else:                                           # only together with another index
-                r = (table[k, :-1] > 1e-13).argmax()
-                exchange(k, r)
-                exchange(r, k)
-                table[[k, r]] = table[[r, k]]
-                table[:, [k, r]] = table[:, [r, k]]
-            active[[k, r]], exchanges = ~active[[k, r]], exchanges + 1
-    return np.where(active, np.maximum(table[:, -1], 0.0), 0.0) * scale
+    least, active, lam = -1e-13 * np.abs(b * scale).max(initial=0.0), scale > 0.0, np.zeros(len(b))
+    def exchange(k):
+        row, column, pivot = table[k] / -table[k, k], table[:, k].copy(), table[k, k]
+        table[...] += column[:, None] * row
+        table[:, k], table[k], table[k, k] = column / pivot, row, 1.0 / pivot
+        active[k] = ~active[k]
+    for _ in range(9):
+        table, left, active, last = fresh.copy(), active, np.zeros(len(b), bool), None
+        while (diagonal := table[:, :-1].diagonal() * left).max() > 1e-12:
+            left[k := diagonal.argmax()] = False            # what stays left hangs on the others
+            exchange(k)
+        while True:
+            trial = np.where(active, table[:, -1], 0.0)
+            bad = np.flatnonzero(trial < least)
+            if len(bad):                                    # towards trial until one would pull
+                share = lam[bad] / (lam[bad] - trial[bad])
+                lam = np.where(active, lam + share.min() * (trial - lam), 0.0)
+                last = bad[share.argmin()]
+            else:                                           # let the one push that closes fastest
+                free = ~active & (table[:, :-1].diagonal() > 1e-12)
+                lam, w = trial, np.where(free, table[:, -1], 0.0)
+                if w.min() >= least:
+                    break
+                last = w.argmin()
+            exchange(last)
+        if last is None:
+            break
+    return np.maximum(lam, 0.0) * scale
 
 def react(rows, i, j, n, w, b):
     """rows + M^-1 J' lam with lam = solve_lcp(J M^-1 J', b), and lam; what is noise becomes 0."""
@@ -278,10 +282,8 @@ def react(rows, i, j, n, w, b):
 
 def settle(q, v, w, radius, restitution, held, touch):
     """At an instant: overlaps moved out, impulses, forces. Returns q, v, a, gap, rests, slides.
-
     Within `touch` r, and the last bits of q, is touching. A bounce below touch / 1000 r is the last
-    of its series: all that would follow add less. Contacts `held` until now do not bounce.
-    """
+    of its series: all that would follow add less. Contacts `held` until now do not bounce."""
     every_i, every_j = balls.every_contact(len(w) - 1)
     a, last = np.array([[0.0], [GRAVITY]]) * (w > 0.0), np.spacing(np.abs(q).max(0))
     small = touch * radius[every_i] + 4.0 * np.maximum(last[every_i], last[every_j])
@@ -311,9 +313,8 @@ def settle(q, v, w, radius, restitution, held, touch):
     return q, v, a, -depth, still, slides.any()
 
 def next_impact(q, v, a, gap, radius, still, horizon, slow):
-    """Time [s] until the first contact not `still` that closes, and faster than -`slow`, does so;
-    inf if none does by `horizon`: the root of a floor gap, a parabola in t, or of a pair's
-    |d + u t + c t^2 / 2|^2 - R^2, a quartic."""
+    """Time until a contact not `still`, with v_n <= `slow`, closes; inf: not by `horizon`. Roots
+    of floor gaps, parabolas in t, and of |d + u t + c t^2 / 2|^2 - R^2 of pairs, quartics."""
     count, p = q.shape[1] - 1, np.zeros((5, len(gap)))
     i, j = (index[count:] for index in balls.every_contact(count))
     p[0], p[1, :count], p[2, :count] = np.maximum(gap, 0.0), v[1, :-1], 0.5 * a[1, :-1]
@@ -330,11 +331,11 @@ def next_impact(q, v, a, gap, radius, still, horizon, slow):
 def simulate_exact(scene, dt, steps, report=lambda k: None):
     """The Run from event to event, sampled at k dt: no step error; the cost follows the events.
 
-    Between events bodies fly parabolas. Touching bodies that close get impulses from the LCP of
-    Newton's restitution, all contacts at once; resting ones forces from the LCP of accelerations.
-    Not exact where balls slide over one another in contact: forces hold for a sample, contacts
-    closing slower than g dt wait for its end, the overlap (of order dt^2) is moved out. Nor after
-    2000 events in a sample: touching is ten times looser then, and so on, up to 1e-6 r.
+    Parabolas between events. Touching bodies that close get impulses from the LCP of Newton's
+    restitution, all at once; resting ones forces from the LCP of accelerations. Not exact where
+    balls slide over one another in contact: forces hold for a sample, contacts closing slower than
+    g dt wait for its end, the overlap (of order dt^2) is moved out. Nor after 2000 events in a
+    sample: touching is ten times looser then, and so on, up to 1e-6 r.
     """
     q, v, w, radius = map(balls.with_floor, (scene.q0, scene.v0, 1.0 / scene.mass, scene.radius))
     held, now, k, events, touch = balls.every_contact(len(w) - 1)[0] < 0, 0.0, 0, 0, 1e-12
@@ -445,9 +446,9 @@ def blow_up_step(total):
 def contact_quality(run, scene, dt, reference=None):
     """The honesty numbers of a Run, as shares of the first ball's radius or of the start energy.
 
-    max_, rest_penetration_frac: deepest, last overlap. energy_excess: most energy above the start.
-    contact_energy: what contacts put INTO the bodies beyond their law. height_error_frac: most
-    |y - y of Run `reference`|. rest_jitter: deviation of the overlap over the last quarter.
+    max_, rest_penetration_frac: deepest, last overlap; rest_jitter: its deviation, last quarter.
+    energy_excess: most energy above the start; contact_energy: what contacts put INTO the bodies
+    beyond their law. height_error_frac: most |y - y of Run `reference`|.
     """
     total, radius = energy(run.q, run.v, scene.mass), float(scene.radius[0])
     scale, depth = abs(float(total[0])) or 1.0, max_penetration(run.q, scene.radius) / radius
@@ -467,8 +468,7 @@ COLUMNS = {"max pen/r": "max_penetration_frac", "rest pen/r": "rest_penetration_
            "height err/r": "height_error_frac", "jitter/r": "rest_jitter"}
 
 def log_rerun(path, runs, scene):
-    """Write the Runs {model: Run} to a recording, whole; ImportError where rerun is missing. The
-    balls of every model side by side, y up; height of the first, penetration, energy below."""
+    """Write the Runs {model: Run} to a recording, whole; ImportError where rerun is missing."""
     from curriculum.common import recording
     total = {model: energy(run.q, run.v, scene.mass) for model, run in runs.items()}
     recording.write(path, "contact", runs, scene.radius, {
