@@ -1,0 +1,551 @@
+"""Cases far from the defaults; what must happen is written before the run, from closed forms.
+
+Each case is a generator of rows (jobs.row). Lengths in m, masses in kg, times in s; `quick` leaves
+out the longest settings. A row of status "limit" misses what one would wish for and meets a weaker
+statement that says by how much.
+"""
+
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from curriculum.bench import closed_form
+from curriculum.stress import engine, jobs
+from curriculum.stress.engine import ROOT, contact
+
+CASES = {}
+G, R = closed_form.g, contact.RADIUS
+POWERS = (-6, -4, -2, -1, 0, 1, 2, 4, 6)
+
+
+def case(function):
+    """Register a case under its name."""
+    CASES[function.__name__] = function
+    return function
+
+
+def extreme_jobs(quick):
+    return [jobs.job("extreme", name, name=name, quick=quick) for name in CASES]
+
+
+def run(name, quick):
+    """Result of one case."""
+    with np.errstate(all="ignore"):
+        rows = list(CASES[name](quick))
+    return {"cells": len(rows), "rows": rows}
+
+
+def scene(x, y, vx=0.0, vy=0.0, mass=1.0, radius=R, restitution=0.0, damping=0.0):
+    """A contact.Scene from rows or numbers; everything is stretched to the length of x or y."""
+    n = max(len(np.atleast_1d(row)) for row in (x, y))
+
+    def stretch(value):
+        return np.array(np.broadcast_to(np.asarray(value, dtype=float), n))
+
+    return contact.Scene("stress", np.array([stretch(x), stretch(y)]), np.array([stretch(vx), stretch(vy)]),
+                         stretch(mass), stretch(radius), float(restitution), float(damping))
+
+
+def run_model(model, scene_, dt, steps, **knobs):
+    """engine.run_model; a run whose events pile up is all NaN, which no expectation accepts."""
+    try:
+        return engine.run_model(model, scene_, dt, steps, **knobs)
+    except engine.PileUp:
+        nothing = np.full((steps + 1, *scene_.q0.shape), np.nan)
+        return contact.Run(np.arange(steps + 1) * dt, nothing, nothing)
+
+
+def column(mass, radius=R, **options):
+    """A tower at rest: every ball touches the one below, the lowest the table."""
+    n = max(len(np.atleast_1d(mass)), len(np.atleast_1d(radius)))
+    r = np.broadcast_to(np.asarray(radius, dtype=float), n)
+    return scene(0.0, np.cumsum(2 * r) - r, mass=mass, radius=r, **options)
+
+
+def load(mass):
+    """Force [N] that each contact of a tower carries: the weight of everything above it."""
+    return G * np.cumsum(np.asarray(mass)[::-1])[::-1]
+
+
+def delassus(mass):
+    """W = J M^-1 J^T of a tower's contacts (table and ball 0, balls 0 and 1, ...), tridiagonal."""
+    w = 1.0 / np.asarray(mass, dtype=float)
+    return np.diag(w + np.append(0.0, w[:-1])) - np.diag(w[:-1], 1) - np.diag(w[:-1], -1)
+
+
+def sweep_matrix(W):
+    """G of one Gauss-Seidel sweep, error -> G error: I - L^-1 W with L the lower triangle of W."""
+    return np.eye(len(W)) - np.linalg.solve(np.tril(W), W)
+
+
+def quality(run_, scene_, dt):
+    return contact.contact_quality(run_, scene_, dt)
+
+
+def ends(run_):
+    """Words for how a run ended: when it exploded, or that it did not."""
+    return "stays finite" if np.isfinite(run_.q).all() else "not finite"
+
+
+# --- towers -----------------------------------------------------------------------------------
+
+@case
+def mass_ratio_penalty(quick):
+    """A ball on another, kept in contact: stable up to the critical dt of the fastest mode.
+
+    Springs and dampers act on the same gaps, so modes decouple: eigenvalues mu of M^-1 A, with A the
+    incidence matrix, each a ball of mass 1 / mu on one spring.
+    """
+    for power in POWERS:
+        mass = np.array([1.0, 10.0 ** power])
+        A = np.array([[2.0, -1.0], [-1.0, 1.0]])
+        half = np.diag(mass ** -0.5)
+        mu, modes = np.linalg.eigh(half @ A @ half)
+        k = 100.0 * load(mass)[0] / R
+        c = 0.3 * math.sqrt(k / mu[-1])
+        theory = contact.critical_dt(1.0 / mu[-1], k, c)
+        depth = load(mass) / k
+        rest = column(mass, damping=c)
+        rest.q0[1] -= np.cumsum(depth)
+        mode = half @ modes[:, -1]
+        start = mode / np.abs(mode).max() * 0.005 * min(depth.min(), G * theory ** 2)
+        moved = {}
+        for share in (0.98, 1.02):
+            off = rest._replace(q0=rest.q0 + [[0.0], [1.0]] * start)
+            run_ = run_model("penalty", off, share * theory, 2000, stiffness=k)
+            moved[share] = float(np.abs(run_.q[-200:, 1] - rest.q0[1]).max() / np.abs(start).max())
+        ok = moved[0.98] < 1.0 < 20.0 < moved[1.02]
+        yield jobs.row(f"upper / lower mass 1e{power}", f"comes to rest at 0.98 and leaves at 1.02 of {theory:.4g} s",
+                       f"{moved[0.98]:.2g} and {moved[1.02]:.2g} times its start", ok)
+
+
+@case
+def mass_ratio_sweeps(quick):
+    """Each sweep of lcp shrinks the error of two stacked balls by M / (M + m), M above: Gauss-Seidel's rate."""
+    for power in POWERS:
+        mass = np.array([1.0, 10.0 ** power])
+        rate = mass[1] / mass.sum()
+        contacts = [(0, -1, 0.0, 1.0, 0.0), (1, 0, 0.0, 1.0, 0.0)]
+        right = load(mass) * 0.01                                 # impulses of one step of 0.01 s
+        v = [[0.0, 0.0], [-0.01 * G, -0.01 * G]]
+        error = [abs(contact.solve_contacts(v, (1.0 / mass).tolist(), contacts, [0.0, 0.0], s)[1][1] - right[1])
+                 for s in (1, 2)]
+        got = error[1] / error[0] if error[0] else 0.0
+        ok = abs(got - rate) < 1e-6 or error[1] < 1e-12 * right[1]
+        yield jobs.row(f"upper / lower mass 1e{power}", f"error times {rate:.7g} a sweep", f"{got:.7g}", ok)
+
+
+@case
+def mass_ratio_lcp(quick):
+    """lcp at rest, 20 sweeps: the depth of the fixed point below (resting_depth), while that is shallow."""
+    for power in POWERS:
+        mass = np.array([1.0, 10.0 ** power])
+        predicted = float(resting_depth(mass, 20).max()) / R
+        tower = column(mass)
+        run_ = run_model("lcp", tower, 0.002, 2000)
+        q = quality(run_, tower, 0.002)
+        got = q["rest_penetration_frac"]
+        at, words = f"upper / lower mass 1e{power}", f"{got:.4g} r deep, worst {q['max_penetration_frac']:.3g} r"
+        if predicted < 0.05:
+            yield jobs.row(at, f"rests {predicted:.4g} r deep", words, abs(got - predicted) <= 0.02 * predicted + 1e-9)
+        else:
+            yield jobs.row(at, "holds to 0.01 r", f"{words}, {ends(run_)}, energy excess {q['energy_excess']:.2g}",
+                           got < 0.01, limit=not q["blew_up"] and np.isfinite(run_.q).all())
+
+
+def resting_depth(mass, sweeps, dt=0.002, baumgarte=0.2):
+    """Depth (N,) [m] of a tower at rest under lcp: what the pushes must make up for unfinished sweeps.
+
+    From lam = 0, s sweeps reach (I - G^s) W^-1 b. At rest that is the load times dt, so with
+    b = W load dt + (beta / dt) depth:  depth = (dt / beta) W G^s (I - G^s)^-1 load dt.
+    """
+    W = delassus(mass)
+    left = np.linalg.matrix_power(sweep_matrix(W), sweeps)
+    return dt / baumgarte * W @ left @ np.linalg.solve(np.eye(len(W)) - left, load(mass) * dt)
+
+
+@case
+def mass_ratio_exact(quick):
+    """exact: two balls, and ten with every second one light, stay where they are within 1e-9 r.
+
+    Limit: at ratios of 1e6 the forces lose six digits, and the towers creep by up to 1e-6 r.
+    """
+    for power in POWERS:
+        for mass in ([1.0, 10.0 ** power], [1.0, 10.0 ** power] * 5):
+            tower = column(np.array(mass))
+            run_ = run_model("exact", tower, 0.01, 100)
+            off = float(np.abs(run_.q - tower.q0).max() / R)
+            yield jobs.row(f"{len(mass)} balls, upper / lower mass 1e{power}", "moves at most 1e-9 r in 1 s",
+                           f"{off:.2g} r", off <= 1e-9, limit=off <= 1e-6)
+
+
+@case
+def tower_sweeps_are_gauss_seidel(quick):
+    """20 sweeps on a tower of N leave G^20 of the error, G with the known rate cos^2(pi / 2N)."""
+    for n in (3, 10, 30, 100) if quick else (3, 10, 30, 100, 300):
+        W = delassus(np.ones(n))
+        G_, right = sweep_matrix(W), load(np.ones(n)) * 0.01
+        contacts = [(i, i - 1, 0.0, 1.0, 0.0) for i in range(n)]
+        v = [[0.0] * n, [-0.01 * G] * n]
+        lam = np.array(contact.solve_contacts(v, [1.0] * n, contacts, [0.0] * n, 20)[1])
+        off = np.abs(right - lam - np.linalg.matrix_power(G_, 20) @ right).max() / right[0]
+        rate, theory = np.abs(np.linalg.eigvals(G_)).max(), math.cos(math.pi / (2 * n)) ** 2
+        yield jobs.row(f"{n} balls", f"rate {theory:.8f}: {math.log(1e3) / -math.log(theory):.4g} sweeps for a factor 1000",
+                       f"rate {rate:.8f}, impulses off by {off:.1g}", off < 1e-11 and abs(rate - theory) < 1e-6)
+
+
+@case
+def tower_sweeps_law(quick):
+    """Sweeps that hold N balls to 1e-3 r at rest: about N g dt^2 / (beta tolerance), 2 N at dt 0.002.
+
+    A push of depth makes up for what sweeps leave undone (resting_depth), so the law is linear in N
+    although convergence needs N^2 sweeps. Half as many sweeps must not hold, one and a half must.
+    """
+    tolerance = 1e-3 * R
+    for n in (3, 10, 30) if quick else (3, 10, 30, 100, 300):
+        mass = np.ones(n)
+        low, high = 1, 4 * n + 8                                  # least sweeps by the fixed point
+        while low < high:
+            middle = (low + high) // 2
+            low, high = (low, middle) if resting_depth(mass, middle).max() <= tolerance else (middle + 1, high)
+        law = n * G * 0.002 ** 2 / (0.2 * tolerance)
+        depths = {s: rested(mass, s) / R for s in (max(1, low // 2), math.ceil(1.5 * low))}
+        (few, deep), (many, shallow) = depths.items()
+        ok = (deep > 1e-3 or few == low) and shallow <= 1e-3 and low <= 1.25 * law + 2
+        yield jobs.row(f"{n} balls", f"{low} sweeps hold them (law {law:.1f})",
+                       f"{few} leave {deep:.2e} r, {many} leave {shallow:.2e} r", ok)
+
+
+def rested(mass, sweeps, dt=0.002):
+    """Deepest overlap [m] of a tower after settling from its fixed point moved by a tenth."""
+    tower = column(mass)
+    tower.q0[1] -= 1.1 * np.cumsum(resting_depth(mass, sweeps))
+    run_ = run_model("lcp", tower, dt, 400 if len(mass) < 100 else 150, iters=sweeps)
+    return float(np.max(contact.max_penetration(run_.q[-1], tower.radius)))
+
+
+@case
+def tower_rest_lcp(quick):
+    """A tower laid down touching, 20 sweeps: after 4 s as deep as the fixed point says (resting_depth)."""
+    for n in (3, 10) if quick else (3, 10, 30, 100):
+        predicted = float(resting_depth(np.ones(n), 20).max() / R)
+        tower = column(np.ones(n))
+        run_ = run_model("lcp", tower, 0.002, 2000)
+        got = quality(run_, tower, 0.002)["rest_penetration_frac"]
+        yield jobs.row(f"{n} balls", f"{predicted:.4g} r", f"{got:.4g} r", abs(got - predicted) <= 0.02 * predicted + 1e-9)
+
+
+@case
+def tower_rest_penalty(quick):
+    """A tower at its static depths (m g / k times the balls above) stays, while those are under r / 2."""
+    k = 1e4
+    for n in (3, 30, 100) if quick else (3, 30, 100, 200, 300):
+        tower = column(np.ones(n), damping=80.0)
+        depth = load(np.ones(n)) / k
+        tower.q0[1] -= np.cumsum(depth)
+        run_ = run_model("penalty", tower, 0.002, 300, stiffness=k)
+        off, deepest = float(np.abs(run_.q[-1] - tower.q0).max() / R), depth[0] / R
+        yield jobs.row(f"{n} balls, {deepest:.3g} r deep at the table", "stays within 1e-6 r", f"{off:.2g} r",
+                       off < 1e-6, limit=deepest > 2.0)
+
+
+@case
+def tower_rest_exact(quick):
+    """exact: a tower of N at rest stays at rest within 1e-9 r."""
+    for n in (3, 30) if quick else (3, 30, 100, 300):
+        tower = column(np.ones(n))
+        run_ = run_model("exact", tower, 0.01, 100)
+        off = float(np.abs(run_.q - tower.q0).max() / R)
+        yield jobs.row(f"{n} balls", "moves at most 1e-9 r in 1 s", f"{off:.2g} r", off <= 1e-9)
+
+
+# --- scales -----------------------------------------------------------------------------------
+
+@case
+def radii(quick):
+    """One ball of radius 1e-6 to 1e3 m, laid down or dropped from 0.1 r: where each model rests.
+
+    penalty at m g / k for k = 100 m g / r; lcp and exact touching. lcp's contact margin is a length,
+    1 mm: a ball much smaller than that slows down a margin above the table and creeps to it.
+    """
+    for power in (-6, -4, -2, 0, 2, 3):
+        r = 10.0 ** power
+        k, dt = 100.0 * G / r, 0.02 * math.sqrt(r / G)
+        ball = scene(0.0, 1.1 * r, radius=r, damping=0.8 * math.sqrt(k))
+        for model in contact.MODELS:
+            run_ = run_model(model, ball, dt, 3000, stiffness=k)
+            depth = (r - run_.q[:, 1, 0]) / r
+            want = 0.01 if model == "penalty" else 0.0
+            off = float(abs(depth[-1] - want))
+            least = 1e-12 / r if model == "exact" else 1e-9
+            yield jobs.row(f"{model}, r = 1e{power} m", f"rests {want:g} r deep within {least:.0e}", f"off by {off:.2g} r",
+                           off <= least)
+
+
+@case
+def margin_of_lcp(quick):
+    """e = 0.5, dropped from 10 r: lcp turns the ball around within its margin, so at most 1 mm + v dt early.
+
+    For radii under a millimetre that is many radii: a limit, with its number.
+    """
+    for power in (-5, -3, -1, 1):
+        r = 10.0 ** power
+        dt = 0.002 * math.sqrt(r / R)
+        ball = scene(0.0, 11.0 * r, radius=r, restitution=0.5)
+        run_ = run_model("lcp", ball, dt, 600)
+        truth = closed_form.ball_height(11.0 * r, r, 0.5, run_.t)
+        turned = int(np.argmax(run_.v[:, 1, 0] > 0))
+        early = float((run_.q[turned - 1, 1, 0] - r) / r)
+        error = float(np.abs(run_.q[:, 1, 0] - truth).max() / r)
+        bound = contact.CONTACT_MARGIN / r
+        yield jobs.row(f"r = 1e{power} m", "turns within 0.01 r of the table", f"turns {early:.3g} r above, height error {error:.3g} r",
+                       abs(early) <= 0.01 or bound <= 0.0101, limit=early <= bound * (1 + 1e-9))
+
+
+@case
+def mixed_radii(quick):
+    """A column of balls from 1 mm to 1 km, either end up: rests within 1e-8 of what its height resolves."""
+    for label, power in (("growing", (-3, -1, 1, 3)), ("shrinking", (3, 1, -1, -3))):
+        r = 10.0 ** np.array(power, dtype=float)
+        for model in ("lcp", "exact"):
+            tower = column(np.ones(4), radius=r)
+            run_ = run_model(model, tower, 0.002, 500, iters=200)
+            off = float(np.abs(run_.q - tower.q0).max())
+            yield jobs.row(f"{model}, {label}", "moves at most 1e-6 m in 1 s", f"{off:.2g} m", off <= 1e-6)
+
+
+@case
+def far_from_the_origin(quick):
+    """Shifted by X along x: y keeps its bits; x is as good as its last bit, ulp(X) / 2 a step.
+
+    Two balls on the table meet head on: the same velocities after it, and momentum kept.
+    """
+    for power in (3, 5, 7, 9):
+        X = 10.0 ** power
+        for model in contact.MODELS:
+            pair = dict(y=[R, R], vx=[1.0, -1.0], restitution=0.5, damping=20.0)
+            near, far = scene([0.0, 0.501234], **pair), scene([X, X + 0.501234], **pair)
+            a, b = (run_model(model, s, 0.002, 300) for s in (near, far))
+            same_y = np.array_equal(a.q[:, 1], b.q[:, 1])
+            speed = float(np.abs(a.v[-1, 0] - b.v[-1, 0]).max())
+            off = float(np.abs(b.q[:, 0] - X - a.q[:, 0]).max())
+            # the start 0.5 apart is itself off by an ulp, and so is each step's sum
+            allowed = 302 * float(np.spacing(X)) * (1.0 if model != "exact" else 0.1)
+            slow = 1e-9 if model != "penalty" else 2e4 * 2 * float(np.spacing(X)) + 1e-9
+            ok = same_y and speed <= slow and off <= allowed + slow * 0.6
+            yield jobs.row(f"{model}, X = 1e{power} m", f"y the same bits, x within {allowed:.1e} m, speeds within {slow:.0e} m/s",
+                           f"y {'the same' if same_y else 'differs'}, x off by {off:.1e} m, speeds by {speed:.1e} m/s", ok)
+
+
+@case
+def dt_from_microseconds_to_a_second(quick):
+    """The drop for two seconds or ten steps: landing depth of lcp in closed form, penalty by its critical dt."""
+    from curriculum.stress import maps
+
+    drop = contact.build_scene("drop")
+    limit_dt = maps.critical_dt(1e4, 80.0)
+    for dt in (1e-4, 0.04, 1.0) if quick else (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.04, 0.064, 0.1, 1.0):
+        steps = max(10, round(2.0 / dt))
+        for model in contact.MODELS:
+            run_ = run_model(model, drop, dt, steps)
+            q = quality(run_, drop, dt)
+            if model == "lcp":
+                first = maps.landing_depth(dt) / R
+                ok = abs(q["max_penetration_frac"] - first) <= 1e-9 * max(1.0, first) + 2e-9 / dt * 1e-6
+                yield jobs.row(f"lcp, dt {dt:g}", f"deepest {first:.6g} r", f"{q['max_penetration_frac']:.6g} r", ok)
+            elif model == "penalty":
+                calm = abs(q["rest_penetration_frac"] - 0.00981) < 1e-4
+                ok = calm and not q["blew_up"] if dt < limit_dt else not calm
+                want = "rests 0.00981 r deep" if dt < limit_dt else f"does not rest (critical dt {limit_dt:.4g} s)"
+                yield jobs.row(f"penalty, dt {dt:g}", want, f"{q['rest_penetration_frac']:.5g} r at the end, "
+                               + (f"EXPLODED at step {q['blew_up_step']}" if q["blew_up"] else "bounded"), ok)
+            else:
+                truth = closed_form.ball_height(float(drop.q0[1, 0]), R, 0.0, run_.t)
+                off = float(np.abs(run_.q[:, 1, 0] - truth).max() / R)
+                yield jobs.row(f"exact, dt {dt:g}", "height error at most 1e-10 r", f"{off:.2g} r", off <= 1e-10)
+
+
+@case
+def stiffness_from_1_to_1e12(quick):
+    """A ball laid on the table sinks to m g / k, to the last bits that its height has."""
+    for power in range(0, 13, 2):
+        k = 10.0 ** power
+        c = 0.8 * math.sqrt(k)
+        dt = 0.2 * contact.critical_dt(1.0, k, c)
+        run_ = run_model("penalty", scene(0.0, R, damping=c), dt, 2000, stiffness=k)
+        depth, got = closed_form.rest_depth(1.0, k), R - float(run_.q[-1, 1, 0])
+        bits = 4.0 * float(np.spacing(max(R, depth)))
+        yield jobs.row(f"k = 1e{power} N/m", f"{depth:.6g} m within 1e-9 or {bits:.1g} m", f"off by {abs(got - depth):.2g} m",
+                       abs(got - depth) <= max(1e-9 * depth, bits))
+
+
+@case
+def restitution_0_and_1(quick):
+    """lcp with e = 1 retraces its steps: back at the drop height after every bounce, at any dt.
+
+    The step with -v_n takes back the one before it, so only rounding adds up. With e = 0 and
+    baumgarte 0 the ball never rises again. exact, e = 1: 100 bounces, back within 1e-9 m.
+    """
+    for dt in (0.0005, 0.002, 0.008, 0.032):
+        ball = contact.build_scene("bounce", restitution=1.0)
+        run_ = run_model("lcp", ball, dt, round(9.0 / dt))
+        y = run_.q[:, 1, 0]
+        tops = y[1:-1][(y[1:-1] >= y[:-2]) & (y[1:-1] >= y[2:])]
+        off = float(np.abs(tops - y[0]).max() / R) if len(tops) else math.inf
+        yield jobs.row(f"lcp, e = 1, dt {dt:g}", "every top within 1e-9 r of the start", f"{len(tops)} tops, off by {off:.2g} r", off <= 1e-9)
+        ball = contact.build_scene("bounce", restitution=0.0)
+        run_ = run_model("lcp", ball, dt, round(2.0 / dt), baumgarte=0.0)
+        rise = float(np.diff(run_.q[:, 1, 0]).max())
+        yield jobs.row(f"lcp, e = 0, baumgarte 0, dt {dt:g}", "never rises", f"rises by {rise:.2g} m a step", rise <= 0.0)
+    ball = contact.build_scene("bounce", restitution=1.0)
+    gap = float(ball.q0[1, 0]) - R
+    period = 2.0 * float(closed_form.first_impact_time(gap))
+    run_ = run_model("exact", ball, period, 100)
+    off = float(np.abs(run_.q[:, 1, 0] - ball.q0[1, 0]).max())
+    yield jobs.row("exact, e = 1", "after each of 100 bounces within 1e-9 m of the start", f"{off:.2g} m", off <= 1e-9)
+
+
+# --- overlaps ---------------------------------------------------------------------------------
+
+@case
+def start_overlap(quick):
+    """Two balls in the air, 1 to 100 % inside one another: how fast they part.
+
+    penalty: the spring's energy, k d^2 / 2, becomes motion: relative speed d sqrt(2 k / m) at most.
+    lcp: one push, beta d / dt, however small dt: a limit of Baumgarte's push. exact: moved apart, no speed.
+    """
+    for share in (0.01, 0.1, 0.5, 0.9, 1.0):
+        d = 2 * R * share
+        pair = scene([0.0, 2 * R - d], 60.0)
+        for model in contact.MODELS:
+            run_ = run_model(model, pair, 0.001, 300)
+            across = run_.q[-1, :, 1] - run_.q[-1, :, 0]
+            gap = float(np.sqrt((across ** 2).sum()) - 2 * R)
+            speed = float(np.sqrt(((run_.v[-1, :, 1] - run_.v[-1, :, 0]) ** 2).sum()))
+            want = {"penalty": d * math.sqrt(2e4), "lcp": 0.2 * d / 0.001, "exact": 0.0}[model]
+            parted = gap > -1e-9 and np.isfinite(run_.q).all()
+            kept = float(np.abs(run_.v[-1, 0].sum()))
+            near = {"penalty": 0.9 * want < speed < 1.1 * want, "lcp": abs(speed - want) < 1e-9 * want + 1e-12,
+                    "exact": speed <= 1e-9}[model]
+            words = f"gap {gap / R:.2g} r, {speed:.4g} m/s"
+            if model == "lcp":
+                yield jobs.row(f"lcp, overlap {share:.0%}", "parts without speed", words + f" = beta d / dt ({want:.4g})",
+                               parted and speed <= 1e-9, limit=parted and near and kept < 1e-12)
+            else:
+                yield jobs.row(f"{model}, overlap {share:.0%}", f"parts, relative speed {want:.4g} m/s", words, parted and near and kept < 1e-9)
+
+
+@case
+def coincident_centres(quick):
+    """Two and ten balls in one place, in the air and on the table: they part, all numbers finite."""
+    for n in (2, 10):
+        for height in (3.0, R):
+            for model in contact.MODELS:
+                pile = scene(0.0, [height] * n, damping=80.0)
+                run_ = run_model(model, pile, 0.001, 2000)
+                finite = bool(np.isfinite(run_.q).all() and np.isfinite(run_.v).all())
+                deepest = float(np.max(contact.max_penetration(run_.q[-1], pile.radius)) / R) if finite else math.nan
+                apart = min((abs(a - b) for k, a in enumerate(run_.q[-1, 1]) for b in run_.q[-1, 1, :k]), default=0)
+                allowed = 0.02 * n if model == "penalty" else 0.01
+                yield jobs.row(f"{model}, {n} balls, {'in the air' if height > 1 else 'on the table'}",
+                               f"apart: at most {allowed:g} r of overlap after 2 s", f"{deepest:.2g} r, {'finite' if finite else 'NOT finite'}",
+                               finite and deepest <= allowed and apart > 0)
+
+
+# --- many, long, tiny, huge -------------------------------------------------------------------
+
+@case
+def thousands_of_contacts(quick):
+    """A row of touching balls on the table stays to the bit; a pile of thousands stays finite, same bits."""
+    n = 500 if quick else 5000
+    line = scene(0.25 * np.arange(n), 0.125, radius=0.125)
+    for model in ("penalty", "lcp"):
+        run_ = run_model(model, line, 0.002, 50)
+        moved = float(np.abs(run_.q[:, 0] - line.q0[0]).max())
+        contacts = sum(np.size(c[0]) for c in contact.detect_contacts(line.q0, line.radius))
+        yield jobs.row(f"{model}, a row of {n}: {contacts} contacts", "x does not move at all", f"{moved:.2g} m", moved == 0.0)
+    count = 200 if quick else 2000
+    pile = contact.build_scene("pile", bodies=count)
+    for model in ("penalty", "lcp"):
+        run_ = run_model(model, pile, 0.004, 100 if quick else 400)
+        q = quality(run_, pile, 0.004)
+        touching = sum(np.size(c[0]) for c in contact.detect_contacts(run_.q[-1], pile.radius))
+        ok = np.isfinite(run_.q).all() and not q["blew_up"]
+        yield jobs.row(f"{model}, pile of {count}, {touching} contacts at the end", "finite, not exploded",
+                       f"worst {q['max_penetration_frac']:.3g} r, energy excess {q['energy_excess']:.2g}", ok)
+        middle = pile._replace(q0=run_.q[-1], v0=run_.v[-1])
+        a, b = (run_model(model, middle, 0.004, 3, skip=skip) for skip in (True, False))
+        yield jobs.row(f"{model}, pile of {count}, 3 steps on", "skip and no skip: the same bits",
+                       "the same" if np.array_equal(a.q, b.q) and np.array_equal(a.v, b.v) else "different",
+                       np.array_equal(a.q, b.q) and np.array_equal(a.v, b.v))
+
+
+@case
+def a_million_steps_at_rest(quick):
+    """Every step taken (no skip): the state at the end is the state after 10,000 steps, bit for bit.
+
+    A cycle of short period counts as rest: then the state of one period earlier.
+    """
+    steps = 20_000 if quick else 1_000_000
+    for name in ("drop", "stack"):
+        for model in ("penalty", "lcp"):
+            run_ = run_model(model, contact.build_scene(name), 0.002, steps, skip=False)
+            state = np.concatenate((run_.q, run_.v), axis=1)
+            period = next((p for p in range(1, 65) if np.array_equal(state[-1], state[-1 - p])), None)
+            early = max(10_000, steps // 100)
+            ok = period is not None and np.array_equal(state[early:-period], state[early + period:])
+            yield jobs.row(f"{model}, {name}, {steps} steps", "the same bits again and again, no drift",
+                           f"period {period}" + ("" if ok else ", not kept"), ok)
+
+
+@case
+def denormal_speeds(quick):
+    """Speeds of 5e-324 and 1e-310 m/s along x: kept to the bit, and y as if they were not there."""
+    for speed in (5e-324, 1e-310):
+        for model in contact.MODELS:
+            still, moving = scene(0.0, R), scene(0.0, R, vx=speed)
+            a, b = (run_model(model, s, 0.002, 200) for s in (still, moving))
+            ok = np.array_equal(a.q[:, 1], b.q[:, 1]) and (b.v[:, 0, 0] == speed).all() and np.isfinite(b.q).all()
+            near = bool(np.array_equal(a.q[:, 1], b.q[:, 1]) and np.isin(b.v[:, 0, 0], (0.0, speed)).all())
+            yield jobs.row(f"{model}, v_x = {speed:g} m/s", "v_x kept, y the same bits", f"v_x ends at {b.v[-1, 0, 0]:g}", ok, limit=near)
+
+
+OVERFLOWS = {
+    "a stiffness of 1e308": ["--contact", "penalty", "--stiffness", "1e308"],
+    "a stiffness of 1e300, dt 0.05": ["--contact", "penalty", "--stiffness", "1e300", "--dt", "0.05"],
+    "a damping of 1e308": ["--contact", "penalty", "--damping", "1e308"],
+    "dt 1e200": ["--contact", "penalty", "--dt", "1e200"],
+    "dt 1e308, all models": ["--dt", "1e308"],
+    "dt 1e-320, all models": ["--dt", "1e-320"],
+    "dt 0.03 for 5000 steps, undamped": ["--contact", "penalty", "--dt", "0.03", "--damping", "0", "--steps", "5000"],
+}
+
+
+@case
+def overflow_on_purpose(quick):
+    """The command line on inputs that overflow: exit 0, strict JSON, blew_up with its step, no traceback."""
+    for label, flags in OVERFLOWS.items():
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, str(ROOT / "contact.py"), "--no-rerun", "--steps", "100", *flags, "--out", folder],
+                                  capture_output=True, text=True, timeout=120, cwd=folder)
+            path = Path(folder) / "metrics.json"
+            trouble = "" if done.returncode == 0 else f"exit {done.returncode}: {done.stderr.strip().splitlines()[-1:]}"
+            exploded, said = {}, False
+            if path.exists():
+                try:
+                    metrics = json.loads(path.read_text(), parse_constant=lambda word: 1 / 0)
+                    exploded = {model: q["blew_up_step"] for model, q in metrics["quality"].items() if q["blew_up"]}
+                except (ValueError, ZeroDivisionError):
+                    trouble += " metrics.json is not strict JSON"
+            elif not trouble:
+                trouble = "no metrics.json"
+            said = "EXPLODED" in done.stdout
+            trouble += " stderr: " + done.stderr.strip()[-80:] if done.stderr.strip() and done.returncode == 0 else ""
+            ok = not trouble and said == bool(exploded) and all(step is not None for step in exploded.values())
+            got = trouble.strip() or ", ".join(f"{model} EXPLODED at step {step}" for model, step in exploded.items()) or "no explosion"
+            yield jobs.row(label, "ends, says EXPLODED at which step, writes valid JSON", got, ok)
