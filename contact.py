@@ -25,6 +25,7 @@ and an array for many: the same lines compute both, to the same bits.
 
 # --- region: setup ---
 import argparse
+import itertools
 import math
 import os
 import sys
@@ -130,14 +131,13 @@ def detect_contacts(q, radius, margin=CONTACT_MARGIN):
         return balls.group_contacts(*balls.contact_arrays(np.array(q), radius, margin), len(y))
     contacts = [(i, -1, 0.0, 1.0, radius[i] - y[i])
                 for i in range(len(y)) if radius[i] - y[i] > -margin]
-    for i in range(len(y)):
-        for j in range(i + 1, len(y)):
-            dx, dy = x[i] - x[j], y[i] - y[j]
-            distance = math.sqrt(dx * dx + dy * dy)
-            depth = radius[i] + radius[j] - distance
-            if depth > -margin:
-                n = (dx / distance, dy / distance) if distance > 0.0 else (0.0, 1.0)
-                contacts.append((i, j, *n, depth))
+    for i, j in itertools.combinations(range(len(y)), 2):
+        dx, dy = x[i] - x[j], y[i] - y[j]
+        distance = math.sqrt(dx * dx + dy * dy)
+        depth = radius[i] + radius[j] - distance
+        if depth > -margin:
+            n = (dx / distance, dy / distance) if distance > 0.0 else (0.0, 1.0)
+            contacts.append((i, j, *n, depth))
     return contacts
 # --- endregion ---
 
