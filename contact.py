@@ -108,10 +108,8 @@ def build_scene(name, seed=0, bodies=None, restitution=None, damping=None):
                  c if damping is None else damping)
 
 def pile_lattice(count, lift, rng):
-    """x, y (count,) on a lattice 2.5 r wide, each ball nudged by up to 0.1 r, so that gaps are > 0.
-
-    Numbered at random: numbers along the lattice would chain contacts, each waiting for the last.
-    """
+    """x, y (count,) on a lattice 2.5 r wide, nudged by up to 0.1 r, gaps > 0. Numbered at random:
+    numbers along the lattice would chain contacts, each waiting for the one before."""
     place, width = rng.permutation(count), math.ceil(math.sqrt(2 * count))
     nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
     return (2.5 * RADIUS * (place % width - 0.5 * (width - 1)) + nudge[0],
@@ -176,11 +174,9 @@ def critical_dt(mass, stiffness, damping):
 
 # --- region: lcp ---
 def contact_targets(v, contacts, restitution, baumgarte, dt):
-    """The normal velocity [m/s] each contact must leave with at least; v from before gravity acts.
-
-    The correction (beta / dt) depth (Baumgarte 1972) or, where the bodies arrive closing, the
-    bounce -e v_n if larger; never their sum, which would bounce higher than the material.
-    """
+    """The normal velocity [m/s] each contact must leave with at least; v from before gravity acts:
+    the correction (beta / dt) depth (Baumgarte 1972) or, where the bodies arrive closing, the
+    bounce -e v_n if larger; never their sum, which would bounce higher than the material."""
     larger, choose, _, row = balls.operations(contacts)
     (vx, vy), target = map(row, v), []
     for i, j, nx, ny, depth in contacts:
@@ -238,9 +234,9 @@ def lcp_step(q, v, inv_mass, radius, dt, restitution, baumgarte, iters):
 def solve_lcp(W, b):
     """lam >= 0 with w = W lam + b >= 0 and lam w = 0. W (K, K) is the Delassus matrix, b (K,).
 
-    Pivoting by the rule of Lawson and Hanson (1974), from all contacts active, as at rest: one more
-    contact pushes, or one less, so that lam'W lam / 2 + b'lam falls; no active set comes twice, and
-    redundant contacts stay out. The table is made afresh, at most nine times, until it needs none.
+    Pivoting as Lawson and Hanson (1974), from all contacts active, as at rest: one more contact
+    pushes, or one less, so that lam'W lam / 2 + b'lam falls and no active set comes twice. The
+    table is made afresh until it needs no more, at most nine times.
     """
     if len(b) < 2:                                          # one contact is one clamp
         return np.maximum(-b / W.diagonal(), 0.0)
@@ -265,11 +261,17 @@ def solve_lcp(W, b):
                 lam = np.where(active, lam + share.min() * (trial - lam), 0.0)
                 last = bad[share.argmin()]
             else:                                           # let the one push that closes fastest
-                free = ~active & (table[:, :-1].diagonal() > 1e-12)
-                lam, w = trial, np.where(free, table[:, -1], 0.0)
+                lam, w = trial, np.where(active, 0.0, table[:, -1])
                 if w.min() >= least:
                     break
                 last = w.argmin()
+                if table[last, last] < 1e-12:               # it hangs on others: one of them stops
+                    column = np.where(active, table[:, last], 0.0)
+                    fall = np.flatnonzero(column < -1e-9)
+                    share = lam[fall] / -column[fall]
+                    lam = lam + share.min() * column
+                    lam[last] = share.min()
+                    exchange(fall[share.argmin()])
             exchange(last)
         if last is None:
             break
@@ -393,11 +395,9 @@ def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
     return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
 
 def fly(row, radius, dt, most):
-    """Steps to wait before asking again, and the next states (n, 4, N), n <= most, of a flight.
-
-    The flight is about the parabola that starts slower by half a step of gravity.
-    np.add.accumulate adds in the order of the steps, so the bits are theirs.
-    """
+    """Steps to wait before asking again, and the next states (n, 4, N), n <= most, of a flight:
+    near a parabola that starts slower by half a step of gravity, up to the first contact listed. Its
+    bits are the steps', since np.add.accumulate adds in their order."""
     for _, y, _, vy, r in zip(*row, radius):
         gap, speed = y - r - CONTACT_MARGIN, vy + 0.5 * dt * GRAVITY
         if not gap > 0.0:
