@@ -396,7 +396,7 @@ def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
 
 def fly(row, radius, dt, most):
     """Steps to wait before asking again, and the next states (n, 4, N), n <= most, of a flight:
-    near a parabola that starts slower by half a step of gravity, up to the first contact listed. Its
+    near a parabola that starts slower by half a step of gravity, to the first contact listed. Its
     bits are the steps', since np.add.accumulate adds in their order."""
     for _, y, _, vy, r in zip(*row, radius):
         gap, speed = y - r - CONTACT_MARGIN, vy + 0.5 * dt * GRAVITY
