@@ -3,6 +3,7 @@
 import hashlib
 import importlib
 import sys
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -35,6 +36,7 @@ def run_model(model, scene, dt, steps, events=20_000, **knobs):
 MEASURING = ("engine", "jobs", "scenes", "maps", "extremes", "invariants", "samebytes")
 
 
+@cache
 def code_hash():
     """sha256 (16 digits) of contact.py, what it imports, and every module here that makes numbers.
 

@@ -38,7 +38,7 @@ class Trial:
     """A spec and the runs of it that were asked for, each made once."""
 
     def __init__(self, spec):
-        self.spec, self.scene, self.runs = spec, scenes.to_scene(spec), {}
+        self.spec, self.scene, self.runs, self.qualities = spec, scenes.to_scene(spec), {}, {}
 
     def run(self, model, **changes):
         made = (model, repr(sorted(changes.items())))
@@ -52,8 +52,13 @@ class Trial:
             raise self.runs[made]
         return self.runs[made]
 
+    def quality(self, model):
+        if model not in self.qualities:
+            self.qualities[model] = contact.contact_quality(self.run(model), self.scene, self.spec["dt"])
+        return self.qualities[model]
+
     def exploded(self, model):
-        return contact.contact_quality(self.run(model), self.scene, self.spec["dt"])["blew_up"]
+        return self.quality(model)["blew_up"]
 
     def overlaps(self):
         return contact.max_penetration(self.scene.q0, self.scene.radius) > 1e-12
@@ -97,7 +102,7 @@ def finite_unless_reported(trial):
     """Every number of a run is finite, or contact_quality reports blew_up and the step."""
     for model in trial.models():
         run = trial.run(model)
-        quality = contact.contact_quality(run, trial.scene, trial.spec["dt"])
+        quality = trial.quality(model)
         finite = bool(np.isfinite(run.q).all() and np.isfinite(run.v).all())
         if not finite and not quality["blew_up"]:
             return f"{model}: not finite, yet not reported"

@@ -13,7 +13,7 @@ from multiprocessing.connection import wait
 from time import monotonic
 
 from curriculum.common.files import write_whole
-from curriculum.stress import jobs
+from curriculum.stress import engine, jobs
 
 PATIENCE = 1800.0                                                 # s a job may take on processes
 
@@ -120,14 +120,23 @@ def on_processes(todo, workers):
 
 
 def on_dask(todo, address):
-    """Jobs on the Dask cluster at `address`, whose workers must be able to import this package.
+    """Jobs on the Dask cluster at `address`; its workers run in a checkout of the same code.
 
-    A worker that dies takes the jobs it held with it, once each (retries are off).
+    A worker with other code, Python or numpy refuses its jobs: its cells would not be the same. One
+    that dies takes the jobs it held with it, once each (retries are off).
     """
     from dask.distributed import Client, as_completed
 
+    here = engine.code_hash()
+
+    def there(job):                                               # pickled whole: the scheduler imports nothing
+        from curriculum.stress import engine as its_engine, runner as its_runner
+        if its_engine.code_hash() != here:
+            return its_runner.dead("other code, Python or numpy on the worker than here"), False
+        return its_runner.attempt(job)
+
     with Client(address) as client:
-        futures = {client.submit(attempt, job, pure=False, retries=0): job for job in todo}
+        futures = {client.submit(there, job, pure=False, retries=0): job for job in todo}
         try:
             for future in as_completed(futures):
                 if future.status == "finished":

@@ -27,8 +27,8 @@ def byte_jobs(quick, pythons):
     """One job for the settings of this interpreter, one for each interpreter and numpy at hand."""
     result = [jobs.job("bytes", "same bytes: this Python", quick=quick)]
     if not quick:
-        result += [jobs.job("bytes", f"same bytes: Python {version}, {which} numpy", quick=False, python=path, which=which)
-                   for version, path in pythons.items() for which in ("oldest", "newest")]
+        result += [jobs.job("bytes", f"same bytes: Python {version}, {which} numpy", quick=False, python=version, which=which)
+                   for version in pythons for which in ("oldest", "newest")]
     return result
 
 
@@ -112,7 +112,10 @@ def settings():
 
 
 def run(quick, python=None, which=None):
-    """Result of one job: a row for each setting, or one for the interpreter and numpy named."""
+    """Result of one job: a row for each setting, or one for the version of Python and the numpy named.
+
+    Raises KeyError where that Python is not at hand (on another machine of a cluster).
+    """
     scenes = ("drop", "stack") if quick else contact.SCENES
     right = {scene: reference(scene) for scene in scenes}
     cells = {}
@@ -121,7 +124,7 @@ def run(quick, python=None, which=None):
             cells[label] = {scene: digest(sys.executable, scene, **options) for scene in scenes}
     else:
         with tempfile.TemporaryDirectory() as folder:
-            inside, error = environment(python, which, folder)
+            inside, error = environment(pythons_at_hand((3, 0))[python], which, folder)
             if inside is None:
                 return {"cells": 0, "rows": [jobs.row(f"{which} numpy", "installs or is named as not installing",
                                                       f"does not install: {error[-150:]}", True)]}
