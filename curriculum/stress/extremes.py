@@ -358,7 +358,7 @@ def dt_from_microseconds_to_a_second(quick):
             run_ = run_model(model, drop, dt, steps)
             q = quality(run_, drop, dt)
             if model == "lcp":
-                first = maps.landing_depth(dt) / R
+                first = maps.landing_depth(maps.GAP, dt) / R
                 ok = abs(q["max_penetration_frac"] - first) <= 1e-9 * max(1.0, first) + 2e-9 / dt * 1e-6
                 yield jobs.row(f"lcp, dt {dt:g}", f"deepest {first:.6g} r", f"{q['max_penetration_frac']:.6g} r", ok)
             elif model == "penalty":

@@ -98,7 +98,7 @@ def heat_map(title, subtitle, panels, x, y, legend, colours, line_names=None, no
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     width = LEFT + columns * (WIDTH + GAP) + 6
-    height = TOP + rows * (HEIGHT + 64) + LEGEND
+    height = TOP + rows * (HEIGHT + 78) + LEGEND
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
            f'font-family="{FONT}" role="img" aria-label="{escape(title)}">',
            f"<title>{escape(title)}</title>", f"<desc>{escape(subtitle)}</desc>",
@@ -107,7 +107,7 @@ def heat_map(title, subtitle, panels, x, y, legend, colours, line_names=None, no
     out += [text(16, 50 + 16 * k, line, 12, colour=PALE) for k, line in enumerate(wrap(subtitle, width / 6.6))]
     for number, panel in enumerate(panels):
         left = LEFT + (number % columns) * (WIDTH + GAP)
-        top = TOP + (number // columns) * (HEIGHT + 64)
+        top = TOP + (number // columns) * (HEIGHT + 78)
         out += draw_panel(panel, x, y, left, top, colours, first=number % columns == 0)
     out += draw_legend(legend, colours, line_names or {}, height - LEGEND + 2, width)
     notes = wrap(note, width / 5.6)

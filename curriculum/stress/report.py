@@ -128,7 +128,7 @@ def facts(results):
         out["penalty_boundary_worst_error"] = max(
             abs(result["measured"] / result["theory"] - 1.0) if isinstance(result["measured"], float) else 1.0
             for _, result in penalty)
-        out["penalty_map_cells"] = sum(len(params["dts"]) for params, _ in penalty)
+        out["penalty_map_cells"] = sum(params["dt"][2] for params, _ in penalty)
     for name in ("depth", "height_error", "contact_energy", "energy_excess") if lcp else ():
         value, dt, params = most(lcp, name)
         out[f"lcp_{name}"] = {"value": value, "dt": dt, "baumgarte": params["baumgarte"], "restitution": params["restitution"]}
@@ -141,7 +141,7 @@ def facts(results):
 
 def most(rows, name):
     """(largest value, dt, params) of a column over all rows of a map."""
-    return max(((value, params["dts"][k], params) for params, result in rows
+    return max(((value, steps_of(params)[k], params) for params, result in rows
                 for k, value in enumerate(result[name]) if isinstance(value, float)), key=lambda found: found[0])
 
 
@@ -220,6 +220,11 @@ def map_sections(results, pictures):
     return out
 
 
+def steps_of(params):
+    """The time steps [s] of a row of a map."""
+    return maps.log_grid(*params["dt"])
+
+
 def penalty_table(rows):
     lines = []
     for c in sorted({params["damping"] for params, _ in rows}):
@@ -228,7 +233,7 @@ def penalty_table(rows):
                     if isinstance(result["measured"], float))
         counts = {True: Counter(), False: Counter()}
         for params, result in mine:
-            for dt, outcome in zip(params["dts"], result["outcomes"]):
+            for dt, outcome in zip(steps_of(params), result["outcomes"]):
                 counts[dt < result["theory"]][outcome] += 1
 
         def shares(counter):
@@ -251,7 +256,7 @@ def penalty_reading(rows):
             for outcome in (maps.GAINS, maps.EXPLODES):
                 at = result["outcomes"].find(outcome)
                 if at >= 0:
-                    first.setdefault(outcome, []).append(params["dts"][at] / result["theory"])
+                    first.setdefault(outcome, []).append(steps_of(params)[at] / result["theory"])
         words = [f"{what} from {min(first[o]):.2g} times the critical dt on (earliest stiffness; median {sorted(first[o])[len(first[o]) // 2]:.2g})"
                  for o, what in ((maps.GAINS, "gains energy"), (maps.EXPLODES, "explodes")) if o in first]
         if words:
@@ -266,7 +271,7 @@ def lcp_reading(rows):
                               ("highest energy above the start", "energy_excess", "of the start energy")):
         value, dt, params = most(rows, name)
         out.append(f"- {label}: {value:.3g} {unit}, at dt {dt:.4g} s, beta {params['baumgarte']:g}, e {params['restitution']:g}")
-    centre = min((dt for params, result in rows for dt, depth in zip(params["dts"], result["depth"]) if depth > 1.0), default=None)
+    centre = min((dt for params, result in rows for dt, depth in zip(steps_of(params), result["depth"]) if depth > 1.0), default=None)
     if centre:
         out.append(f"- from dt {centre:.4g} s on the ball's centre can get under the table in the landing step; "
                    f"impact speed times dt is r at {maps.RADIUS / maps.IMPACT_SPEED:.4g} s")
@@ -332,7 +337,7 @@ def draw(results, note):
 
 
 def penalty_figure(rows, note):
-    dts, stiffness = rows[0][0]["dts"], sorted({params["stiffness"] for params, _ in rows})
+    dts, stiffness = steps_of(rows[0][0]), sorted({params["stiffness"] for params, _ in rows})
     found = {(params["damping"], params["stiffness"]): result for params, result in rows}
     panels = []
     for c in sorted({damping for damping, _ in found}):
@@ -346,7 +351,7 @@ def penalty_figure(rows, note):
             lines.insert(1, figures.Line([(2.0 / c, stiffness[0] / 2), (2.0 / c, stiffness[-1] * 2)], "other"))
         panels.append(figures.Panel(f"damping c = {c:g} N s/m", cells, lines))
     return figures.heat_map(
-        "penalty: what a ball dropped 1 m does", "Left of the line a ball that stays in contact is stable. Stiffening moves the line left; so does damping.",
+        "penalty: what a ball dropped 1 m does", "Left of the line a ball that stays in contact is stable. Stiffening moves the line left; so does damping. The speckle is luck: where in a step the table is met.",
         panels, figures.Axis("time step dt [s]", dts), figures.Axis("stiffness k [N/m]", stiffness),
         [maps.OUTCOMES[o] for o in OUTCOME_ORDER], figures.CLASSES,
         {"theory": "theory: k dt² + 2 c dt = 4 m", "other": "c dt = 2 m", "measured": "measured, ball kept in contact"}, note)
@@ -354,27 +359,27 @@ def penalty_figure(rows, note):
 
 LCP_FIGURES = (
     ("lcp-depth.svg", "depth", DEPTH_BOUNDS, "lcp: how deep the ball gets",
-     "Deepest penetration over 4 s. The landing step alone decides it: up to impact speed times dt, wherever in the step the table is met.",
+     "Deepest penetration over 4 s, worst of {heights} start heights. The landing step decides it: up to impact speed times dt.",
      {"theory": "impact speed times dt = r", "measured": "first dt of the grid that gets deeper than r"}),
     ("lcp-error.svg", "height_error", ERROR_BOUNDS, "lcp: how wrong the height gets",
-     "Worst distance from the closed form over 4 s. With e = 0 it grows with beta: the push pops the ball off the table.",
+     "Worst distance from the closed form over 4 s and {heights} start heights. With e = 0 it grows with beta: the push pops the ball.",
      {"theory": "e = 0: the highest pop, beta² times the drop height, is r"}),
     ("lcp-energy.svg", "contact_energy", ENERGY_BOUNDS, "lcp: energy that contact puts into the ball",
-     "Sum over 4 s as a share of the start energy, beyond what the restitution allows.",
+     "Sum over 4 s as a share of the start energy, beyond what the restitution allows; worst of {heights} start heights.",
      {"theory": "beta = e: above it the push can be faster than the bounce"}),
 )
 UNITS = {"depth": " r", "height_error": " r", "contact_energy": ""}
 
 
 def lcp_figure(rows, column, bounds, title, words, line_names, note):
-    dts, gains = rows[0][0]["dts"], sorted({params["baumgarte"] for params, _ in rows})
+    dts, gains = steps_of(rows[0][0]), sorted({params["baumgarte"] for params, _ in rows})
     found = {(params["restitution"], params["baumgarte"]): result for params, result in rows}
     panels = []
     for e in sorted({restitution for restitution, _ in found}):
         cells = [[figures.levels(value, bounds) for value in found[e, b][column]] if (e, b) in found else [None] * len(dts)
                  for b in gains]
         panels.append(figures.Panel(f"restitution e = {e:g}", cells, lcp_lines(column, e, dts, gains, found)))
-    return figures.heat_map(title, words, panels, figures.Axis("time step dt [s]", dts), figures.Axis("Baumgarte gain beta", gains, log=False),
+    return figures.heat_map(title, words.format(heights=rows[0][0]["heights"]), panels, figures.Axis("time step dt [s]", dts), figures.Axis("Baumgarte gain beta", gains, log=False),
                             interval_words(bounds, UNITS[column]), figures.RAMP, line_names, note)
 
 
@@ -397,7 +402,7 @@ def interval_words(bounds, unit):
 
 
 def exact_figure(rows, note):
-    dts, gains = rows[0][0]["dts"], sorted({params["restitution"] for params, _ in rows})
+    dts, gains = steps_of(rows[0][0]), sorted({params["restitution"] for params, _ in rows})
     found = {params["restitution"]: result for params, result in rows}
     panels = [figures.Panel(title, [[figures.levels(value, EXACT_BOUNDS) for value in found[e][column]] for e in gains])
               for title, column in (("height error", "height_error"), ("deepest penetration", "depth"))]

@@ -17,9 +17,9 @@ FAST_CASES = ("mass_ratio_sweeps", "mass_ratio_lcp", "tower_sweeps_are_gauss_sei
 LITTLE = [
     *(jobs.job("extreme", name, name=name, quick=True) for name in ("tower_rest_exact", "margin_of_lcp")),
     jobs.job("scenes", "scenes 5 to 7", start=5, stop=8),
-    jobs.job("penalty-map", "penalty k=1e+04 c=80", stiffness=1e4, damping=80.0, dts=[0.002, 0.01, 0.03]),
-    jobs.job("lcp-map", "lcp e=0 beta=0.2", restitution=0.0, baumgarte=0.2, dts=[0.002, 0.04]),
-    jobs.job("exact-map", "exact e=0.7", restitution=0.7, dts=[0.002, 0.04]),
+    jobs.job("penalty-map", "penalty k=1e+04 c=80", stiffness=1e4, damping=80.0, dt=[0.002, 0.03, 3]),
+    jobs.job("lcp-map", "lcp e=0 beta=0.2", restitution=0.0, baumgarte=0.2, dt=[0.002, 0.04, 2], heights=2),
+    jobs.job("exact-map", "exact e=0.7", restitution=0.7, dt=[0.002, 0.04, 2]),
     jobs.job("seeds", "drop, seeds 0 to 1", scene="drop", start=0, stop=2),
 ]
 
@@ -89,8 +89,9 @@ def test_job_names_are_unique_and_only_selects_by_them(monkeypatch):
     for quick in (True, False):
         names = [job["name"] for job in command.all_jobs(quick, 100)]
         assert len(set(names)) == len(names)
-    grids = maps.FULL["penalty"]
-    assert [len(grids[name]) for name in ("dt", "stiffness", "damping")] >= [60, 60, 4]
+    grid = maps.FULL["penalty"]
+    assert grid["dt"][2] >= 60 and len(grid["stiffness"]) >= 60 and len(grid["damping"]) >= 4
+    assert sum(job["kind"] == "penalty-map" for job in maps.map_jobs(maps.FULL)) >= 240
 
 
 # --- every check can fail ---------------------------------------------------------------------
@@ -157,18 +158,18 @@ def test_events_that_pile_up_are_a_limit_and_end(monkeypatch):
 
 def test_the_textbook_critical_dt_is_refuted_where_there_is_a_damper(monkeypatch):
     monkeypatch.setattr(contact, "critical_dt", lambda mass, k, c: 2.0 * math.sqrt(mass / k))
-    row, *_ = maps.penalty_row(1e4, 80.0, [0.002])["rows"]
+    row, *_ = maps.penalty_row(1e4, 80.0, [0.002, 0.003, 2])["rows"]
     assert row["status"] == jobs.VIOLATION and "0.0135" in row["got"]
 
 
 def test_a_push_five_times_too_strong_shows_in_the_lcp_map(monkeypatch):
     spoil(monkeypatch, "contact_targets", lambda goals, args, options: [5.0 * goal for goal in goals])
-    assert jobs.VIOLATION in statuses(maps.lcp_row(0.0, 0.6, [0.01, 0.02]))
+    assert jobs.VIOLATION in statuses(maps.lcp_row(0.0, 0.6, [0.01, 0.02, 2], 1))
 
 
 def test_a_drop_off_by_a_nanometre_shows_in_the_exact_map(monkeypatch):
     spoil(monkeypatch, "run_model", shifted("exact", dy=1e-9))
-    assert jobs.VIOLATION in statuses(maps.exact_row(0.7, [0.002]))
+    assert jobs.VIOLATION in statuses(maps.exact_row(0.7, [0.002, 0.004, 2]))
 
 
 def test_a_seed_with_the_wrong_order_is_named(monkeypatch):
@@ -212,7 +213,7 @@ def test_landing_depth_closed_form_is_the_stepped_one():
         while y - maps.RADIUS >= contact.CONTACT_MARGIN:
             v -= 9.81 * dt
             y += v * dt
-        assert maps.landing_depth(dt) == pytest.approx(max(0.0, maps.RADIUS - y), abs=1e-12)
+        assert maps.landing_depth(maps.GAP, dt) == pytest.approx(max(0.0, maps.RADIUS - y), abs=1e-12)
 
 
 # --- running ----------------------------------------------------------------------------------
