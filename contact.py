@@ -47,7 +47,7 @@ COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "exact": "#009e73"}   # told a
 
 def parse_flags(argv):
     """The checked command line. Bad input: one line on stderr, exit status 2, nothing written."""
-    parser = arguments.Parser(prog="contact.py", description=__doc__.split("\n")[0])
+    parser = arguments.Parser(prog="contact.py", description="Contact, built three times.")
     flag, number, switch = parser.add_argument, arguments.number, argparse.BooleanOptionalAction
     flag("--seed", type=number(int, low=0), default=0, help="draws the start height (0)")
     flag("--scene", choices=SCENES, default="drop")
@@ -175,15 +175,15 @@ def critical_dt(mass, stiffness, damping):
 # --- region: lcp ---
 def contact_targets(v, contacts, restitution, baumgarte, dt):
     """The normal velocity [m/s] each contact must leave with at least; v from before gravity acts:
-    the correction (beta / dt) depth (Baumgarte 1972) or, where the bodies arrive closing, the
-    bounce -e v_n if larger; never their sum, which would bounce higher than the material."""
+    the bounce -e v_n, of parting bodies too, or energy could rise (Moreau 1988); in an overlap the
+    correction (beta / dt) depth (Baumgarte 1972) if larger; never their sum, a higher bounce."""
     larger, choose, _, row = balls.operations(contacts)
     (vx, vy), target = map(row, v), []
     for i, j, nx, ny, depth in contacts:
         push = baumgarte / dt * depth
         if restitution > 0.0:
             v_n = nx * (vx[i] - vx[j]) + ny * (vy[i] - vy[j])
-            push = choose(v_n < 0.0, larger(push, -restitution * v_n), push)
+            push = choose(push > 0.0, larger(push, -restitution * v_n), -restitution * v_n)
         target.append(push)
     return target
 
@@ -203,19 +203,19 @@ def solve_contacts(v, inv_mass, contacts, target, iters):
     lam, rows = [0.0] * len(contacts), []
     for (i, j, nx, ny, _), goal in zip(contacts, target):
         m_eff = 1.0 / choose(w[i] + w[j] > 0.0, w[i] + w[j], math.inf)      # effective mass
-        rows.append((i, j, nx, ny, w[i], w[j], m_eff, goal))
+        rows.append((i, j, nx, ny, w[i] * nx, w[i] * ny, w[j] * nx, w[j] * ny, m_eff, goal))
     for _ in range(iters):
         settled = True
-        for c, (i, j, nx, ny, w_i, w_j, m_eff, goal) in enumerate(rows):
+        for c, (i, j, nx, ny, ix, iy, jx, jy, m_eff, goal) in enumerate(rows):
             v_n = nx * (vx[i] - vx[j]) + ny * (vy[i] - vy[j])
             total = project_impulse(lam[c], (goal - v_n) * m_eff, larger)
             dlam = total - lam[c]
             if moves(dlam):
                 lam[c], settled = total, False
-                vx[i] += dlam * w_i * nx
-                vy[i] += dlam * w_i * ny
-                vx[j] -= dlam * w_j * nx
-                vy[j] -= dlam * w_j * ny
+                vx[i] += dlam * ix
+                vy[i] += dlam * iy
+                vx[j] -= dlam * jx
+                vy[j] -= dlam * jy
         if settled:
             break
     return [vx[:-1], vy[:-1]], lam
@@ -299,10 +299,10 @@ def settle(q, v, w, radius, restitution, held, touch):
     v_n, still = balls.along(v, i, j, n), np.zeros(len(every_i), bool)
     slow = np.sqrt(-2.0 * GRAVITY * 1e-3 * touch * radius[i])
     if (v_n < -0.1 * touch).any():                          # m/s; what impulses round is less
-        bounce = np.where(held[near], 0.0, restitution * np.maximum(-v_n, 0.0))
-        v, _ = react(v, i, j, n, w, v_n - np.where(bounce < slow, 0.0, bounce))
+        bounce = np.where(held[near], 0.0, -restitution * v_n)
+        v, _ = react(v, i, j, n, w, v_n - np.where(np.abs(bounce) < slow, 0.0, bounce))
         v_n = balls.along(v, i, j, n)
-    rest = v_n < slow
+    rest = np.abs(v_n) < slow                               # what closes again is the next event
     if not rest.any():
         return q, v, a, -depth, still, False
     still[near[rest]] = True

@@ -98,12 +98,10 @@ def region_cells(root):
     path = root / "contact.py"
     found = {name: f"# contact.py, region {name}\n{region.text.strip()}"
              for name, region in regions.find(path).items()}
-    doc = ast.get_docstring(ast.parse(path.read_text("utf-8")), clean=False)
-    first, last = next(iter(found)), list(found)[-1]
+    last = list(found)[-1]
     if not found[last].endswith(ENTRY.strip()):
         raise ValueError(f"contact.py: region {last} does not end in {ENTRY!r}")
     found[last] = found[last][:-len(ENTRY)].rstrip()
-    found[first] = f"__doc__ = {literal(doc)}\n\n{found[first]}"
     return found
 
 

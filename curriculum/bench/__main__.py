@@ -49,7 +49,7 @@ def pictures(sections):
 
 def main(argv=None):
     """Returns the exit status."""
-    parser = Parser(prog="python -m curriculum.bench", description=__doc__.split("\n")[0])
+    parser = Parser(prog="python -m curriculum.bench", description="Run time against error.")
     parser.add_argument("what", nargs="?", default="error", choices=(*MEASURE, "draw", "readme"))
     parser.add_argument("--quick", action="store_true", help="reduced settings, in seconds, for CI")
     parser.add_argument("--check", action="store_true", help="readme: only look, exit 1 if stale")

@@ -99,10 +99,9 @@ const ContactEngine = (() => {
     const lam = contacts.map(() => 0);
     const target = contacts.map((c) => {
       const push = (baumgarte / dt) * c.depth;
-      const before = normalSpeed(c, state.vx, state.vy);
-      if (!(before < 0 && restitution > 0)) return push;
-      const bounce = -restitution * before;
-      return bounce > push ? bounce : push;
+      if (!(restitution > 0)) return push;
+      const bounce = -restitution * normalSpeed(c, state.vx, state.vy);
+      return push > 0 && push > bounce ? push : bounce;
     });
     const rows = contacts.map((c) => {
       const wi = invMass[c.i];
@@ -320,7 +319,7 @@ const ContactEngine = (() => {
       let speed = contacts.map((c) => along(c, v));
       if (speed.some((s) => s < -STILL)) {
         const bounce = near.map((c, at) => {
-          const wanted = held[c] ? 0 : -scene.restitution * Math.min(speed[at], 0);
+          const wanted = held[c] ? 0 : -scene.restitution * speed[at];
           return wanted * wanted > -2 * GRAVITY * UNSEEN_IN_RADII * unit ? wanted : 0;
         });
         v = pushed(
@@ -335,7 +334,7 @@ const ContactEngine = (() => {
         });
         speed = after;
       }
-      const rest = near.filter((_, at) => speed[at] <= STILL);
+      const rest = near.filter((_, at) => Math.abs(speed[at]) <= STILL);
       const still = pairs.map(() => false);
       for (const c of rest) still[c] = true;
       contacts = rest.map((c) => pairs[c]);

@@ -46,7 +46,10 @@ def code_hash():
 
     digest = hashlib.sha256(f"{sys.version} numpy {numpy.__version__}".encode())
     folder = Path(__file__).parent
-    for path in [Path(contact.__file__), *sorted((folder.parent / "common").glob("*.py")),
-                 *(folder / f"{name}.py" for name in MEASURING)]:
+    for path in [
+        Path(contact.__file__),
+        *sorted((folder.parent / "common").glob("*.py")),
+        *(folder / f"{name}.py" for name in MEASURING),
+    ]:
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

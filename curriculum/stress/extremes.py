@@ -47,8 +47,15 @@ def scene(x, y, vx=0.0, vy=0.0, mass=1.0, radius=R, restitution=0.0, damping=0.0
     def stretch(value):
         return np.array(np.broadcast_to(np.asarray(value, dtype=float), n))
 
-    return contact.Scene("stress", np.array([stretch(x), stretch(y)]), np.array([stretch(vx), stretch(vy)]),
-                         stretch(mass), stretch(radius), float(restitution), float(damping))
+    return contact.Scene(
+        "stress",
+        np.array([stretch(x), stretch(y)]),
+        np.array([stretch(vx), stretch(vy)]),
+        stretch(mass),
+        stretch(radius),
+        float(restitution),
+        float(damping),
+    )
 
 
 def run_model(model, scene_, dt, steps, **knobs):
@@ -94,6 +101,7 @@ def ends(run_):
 
 # --- towers -----------------------------------------------------------------------------------
 
+
 @case
 def mass_ratio_penalty(quick):
     """A ball on another, kept in contact: stable up to the critical dt of the fastest mode.
@@ -102,9 +110,9 @@ def mass_ratio_penalty(quick):
     incidence matrix, each a ball of mass 1 / mu on one spring.
     """
     for power in POWERS:
-        mass = np.array([1.0, 10.0 ** power])
+        mass = np.array([1.0, 10.0**power])
         A = np.array([[2.0, -1.0], [-1.0, 1.0]])
-        half = np.diag(mass ** -0.5)
+        half = np.diag(mass**-0.5)
         mu, modes = np.linalg.eigh(half @ A @ half)
         k = 100.0 * load(mass)[0] / R
         c = 0.3 * math.sqrt(k / mu[-1])
@@ -113,49 +121,73 @@ def mass_ratio_penalty(quick):
         rest = column(mass, damping=c)
         rest.q0[1] -= np.cumsum(depth)
         mode = half @ modes[:, -1]
-        start = mode / np.abs(mode).max() * 0.005 * min(depth.min(), G * theory ** 2)
+        start = mode / np.abs(mode).max() * 0.005 * min(depth.min(), G * theory**2)
         moved = {}
         for share in (0.98, 1.02):
             off = rest._replace(q0=rest.q0 + [[0.0], [1.0]] * start)
             run_ = run_model("penalty", off, share * theory, 2000, stiffness=k)
             moved[share] = float(np.abs(run_.q[-200:, 1] - rest.q0[1]).max() / np.abs(start).max())
         ok = moved[0.98] < 1.0 < 20.0 < moved[1.02]
-        yield jobs.row(f"upper / lower mass 1e{power}", f"comes to rest at 0.98 and leaves at 1.02 of {theory:.4g} s",
-                       f"{moved[0.98]:.2g} and {moved[1.02]:.2g} times its start", ok)
+        yield jobs.row(
+            f"upper / lower mass 1e{power}",
+            f"comes to rest at 0.98 and leaves at 1.02 of {theory:.4g} s",
+            f"{moved[0.98]:.2g} and {moved[1.02]:.2g} times its start",
+            ok,
+        )
 
 
 @case
 def mass_ratio_sweeps(quick):
     """Each sweep of lcp shrinks the error of two stacked balls by M / (M + m), M above: Gauss-Seidel's rate."""
     for power in POWERS:
-        mass = np.array([1.0, 10.0 ** power])
+        mass = np.array([1.0, 10.0**power])
         rate = mass[1] / mass.sum()
         contacts = [(0, -1, 0.0, 1.0, 0.0), (1, 0, 0.0, 1.0, 0.0)]
-        right = load(mass) * 0.01                                 # impulses of one step of 0.01 s
+        right = load(mass) * 0.01  # impulses of one step of 0.01 s
         v = [[0.0, 0.0], [-0.01 * G, -0.01 * G]]
-        error = [abs(contact.solve_contacts(v, (1.0 / mass).tolist(), contacts, [0.0, 0.0], s)[1][1] - right[1])
-                 for s in (1, 2)]
+        error = [
+            abs(
+                contact.solve_contacts(v, (1.0 / mass).tolist(), contacts, [0.0, 0.0], s)[1][1]
+                - right[1]
+            )
+            for s in (1, 2)
+        ]
         got = error[1] / error[0] if error[0] else 0.0
         ok = abs(got - rate) < 1e-6 or error[1] < 1e-12 * right[1]
-        yield jobs.row(f"upper / lower mass 1e{power}", f"error times {rate:.7g} a sweep", f"{got:.7g}", ok)
+        yield jobs.row(
+            f"upper / lower mass 1e{power}", f"error times {rate:.7g} a sweep", f"{got:.7g}", ok
+        )
 
 
 @case
 def mass_ratio_lcp(quick):
     """lcp at rest, 20 sweeps: the depth of the fixed point below (resting_depth), while that is shallow."""
     for power in POWERS:
-        mass = np.array([1.0, 10.0 ** power])
+        mass = np.array([1.0, 10.0**power])
         predicted = float(resting_depth(mass, 20).max()) / R
         tower = column(mass)
         run_ = run_model("lcp", tower, 0.002, 2000)
         q = quality(run_, tower, 0.002)
         got = q["rest_penetration_frac"]
-        at, words = f"upper / lower mass 1e{power}", f"{got:.4g} r deep, worst {q['max_penetration_frac']:.3g} r"
+        at, words = (
+            f"upper / lower mass 1e{power}",
+            f"{got:.4g} r deep, worst {q['max_penetration_frac']:.3g} r",
+        )
         if predicted < 0.05:
-            yield jobs.row(at, f"rests {predicted:.4g} r deep", words, abs(got - predicted) <= 0.02 * predicted + 1e-9)
+            yield jobs.row(
+                at,
+                f"rests {predicted:.4g} r deep",
+                words,
+                abs(got - predicted) <= 0.02 * predicted + 1e-9,
+            )
         else:
-            yield jobs.row(at, "holds to 0.01 r", f"{words}, {ends(run_)}, energy excess {q['energy_excess']:.2g}",
-                           got < 0.01, limit=not q["blew_up"] and np.isfinite(run_.q).all())
+            yield jobs.row(
+                at,
+                "holds to 0.01 r",
+                f"{words}, {ends(run_)}, energy excess {q['energy_excess']:.2g}",
+                got < 0.01,
+                limit=not q["blew_up"] and np.isfinite(run_.q).all(),
+            )
 
 
 def resting_depth(mass, sweeps, dt=0.002, baumgarte=0.2):
@@ -176,12 +208,17 @@ def mass_ratio_exact(quick):
     Limit: at ratios of 1e6 the forces lose six digits, and the towers creep by up to 1e-6 r.
     """
     for power in POWERS:
-        for mass in ([1.0, 10.0 ** power], [1.0, 10.0 ** power] * 5):
+        for mass in ([1.0, 10.0**power], [1.0, 10.0**power] * 5):
             tower = column(np.array(mass))
             run_ = run_model("exact", tower, 0.01, 100)
             off = float(np.abs(run_.q - tower.q0).max() / R)
-            yield jobs.row(f"{len(mass)} balls, upper / lower mass 1e{power}", "moves at most 1e-9 r in 1 s",
-                           f"{off:.2g} r", off <= 1e-9, limit=off <= 1e-6)
+            yield jobs.row(
+                f"{len(mass)} balls, upper / lower mass 1e{power}",
+                "moves at most 1e-9 r in 1 s",
+                f"{off:.2g} r",
+                off <= 1e-9,
+                limit=off <= 1e-6,
+            )
 
 
 @case
@@ -195,8 +232,12 @@ def tower_sweeps_are_gauss_seidel(quick):
         lam = np.array(contact.solve_contacts(v, [1.0] * n, contacts, [0.0] * n, 20)[1])
         off = np.abs(right - lam - np.linalg.matrix_power(G_, 20) @ right).max() / right[0]
         rate, theory = np.abs(np.linalg.eigvals(G_)).max(), math.cos(math.pi / (2 * n)) ** 2
-        yield jobs.row(f"{n} balls", f"rate {theory:.8f}: {math.log(1e3) / -math.log(theory):.4g} sweeps for a factor 1000",
-                       f"rate {rate:.8f}, impulses off by {off:.1g}", off < 1e-11 and abs(rate - theory) < 1e-6)
+        yield jobs.row(
+            f"{n} balls",
+            f"rate {theory:.8f}: {math.log(1e3) / -math.log(theory):.4g} sweeps for a factor 1000",
+            f"rate {rate:.8f}, impulses off by {off:.1g}",
+            off < 1e-11 and abs(rate - theory) < 1e-6,
+        )
 
 
 @case
@@ -209,16 +250,24 @@ def tower_sweeps_law(quick):
     tolerance = 1e-3 * R
     for n in (3, 10, 30) if quick else (3, 10, 30, 100, 300):
         mass = np.ones(n)
-        low, high = 1, 4 * n + 8                                  # least sweeps by the fixed point
+        low, high = 1, 4 * n + 8  # least sweeps by the fixed point
         while low < high:
             middle = (low + high) // 2
-            low, high = (low, middle) if resting_depth(mass, middle).max() <= tolerance else (middle + 1, high)
-        law = n * G * 0.002 ** 2 / (0.2 * tolerance)
+            low, high = (
+                (low, middle)
+                if resting_depth(mass, middle).max() <= tolerance
+                else (middle + 1, high)
+            )
+        law = n * G * 0.002**2 / (0.2 * tolerance)
         depths = {s: rested(mass, s) / R for s in (max(1, low // 2), math.ceil(1.5 * low))}
         (few, deep), (many, shallow) = depths.items()
         ok = (deep > 1e-3 or few == low) and shallow <= 1e-3 and low <= 1.25 * law + 2
-        yield jobs.row(f"{n} balls", f"{low} sweeps hold them (law {law:.1f})",
-                       f"{few} leave {deep:.2e} r, {many} leave {shallow:.2e} r", ok)
+        yield jobs.row(
+            f"{n} balls",
+            f"{low} sweeps hold them (law {law:.1f})",
+            f"{few} leave {deep:.2e} r, {many} leave {shallow:.2e} r",
+            ok,
+        )
 
 
 def rested(mass, sweeps, dt=0.002):
@@ -237,7 +286,12 @@ def tower_rest_lcp(quick):
         tower = column(np.ones(n))
         run_ = run_model("lcp", tower, 0.002, 2000)
         got = quality(run_, tower, 0.002)["rest_penetration_frac"]
-        yield jobs.row(f"{n} balls", f"{predicted:.4g} r", f"{got:.4g} r", abs(got - predicted) <= 0.02 * predicted + 1e-9)
+        yield jobs.row(
+            f"{n} balls",
+            f"{predicted:.4g} r",
+            f"{got:.4g} r",
+            abs(got - predicted) <= 0.02 * predicted + 1e-9,
+        )
 
 
 @case
@@ -253,8 +307,13 @@ def tower_rest_penalty(quick):
         tower.q0[1] -= np.cumsum(depth)
         run_ = run_model("penalty", tower, 0.002, 300, stiffness=k)
         off, deepest = float(np.abs(run_.q[-1] - tower.q0).max() / R), depth[0] / R
-        yield jobs.row(f"{n} balls, {deepest:.3g} r deep at the table", "stays within 1e-6 r", f"{off:.2g} r",
-                       off < 1e-6, limit=deepest > 1.0)
+        yield jobs.row(
+            f"{n} balls, {deepest:.3g} r deep at the table",
+            "stays within 1e-6 r",
+            f"{off:.2g} r",
+            off < 1e-6,
+            limit=deepest > 1.0,
+        )
 
 
 @case
@@ -269,6 +328,7 @@ def tower_rest_exact(quick):
 
 # --- scales -----------------------------------------------------------------------------------
 
+
 @case
 def radii(quick):
     """One ball of radius 1e-6 to 1e3 m, laid down or dropped from 0.1 r: where each model rests.
@@ -277,7 +337,7 @@ def radii(quick):
     1 mm: a ball much smaller than that slows down a margin above the table and creeps to it.
     """
     for power in (-6, -4, -2, 0, 2, 3):
-        r = 10.0 ** power
+        r = 10.0**power
         k, dt = 100.0 * G / r, 0.02 * math.sqrt(r / G)
         ball = scene(0.0, 1.1 * r, radius=r, damping=0.8 * math.sqrt(k))
         for model in contact.MODELS:
@@ -286,8 +346,12 @@ def radii(quick):
             want = 0.01 if model == "penalty" else 0.0
             off = float(abs(depth[-1] - want))
             least = 1e-12 / r if model == "exact" else 1e-9
-            yield jobs.row(f"{model}, r = 1e{power} m", f"rests {want:g} r deep within {least:.0e}", f"off by {off:.2g} r",
-                           off <= least)
+            yield jobs.row(
+                f"{model}, r = 1e{power} m",
+                f"rests {want:g} r deep within {least:.0e}",
+                f"off by {off:.2g} r",
+                off <= least,
+            )
 
 
 @case
@@ -297,7 +361,7 @@ def margin_of_lcp(quick):
     For radii under a millimetre that is many radii: a limit, with its number.
     """
     for power in (-5, -3, -1, 1):
-        r = 10.0 ** power
+        r = 10.0**power
         dt = 0.002 * math.sqrt(r / R)
         ball = scene(0.0, 11.0 * r, radius=r, restitution=0.5)
         run_ = run_model("lcp", ball, dt, 600)
@@ -306,8 +370,13 @@ def margin_of_lcp(quick):
         early = float((run_.q[turned - 1, 1, 0] - r) / r)
         error = float(np.abs(run_.q[:, 1, 0] - truth).max() / r)
         bound = contact.CONTACT_MARGIN / r
-        yield jobs.row(f"r = 1e{power} m", "turns within 0.01 r of the table", f"turns {early:.3g} r above, height error {error:.3g} r",
-                       abs(early) <= 0.01 or bound <= 0.0101, limit=early <= bound * (1 + 1e-9))
+        yield jobs.row(
+            f"r = 1e{power} m",
+            "turns within 0.01 r of the table",
+            f"turns {early:.3g} r above, height error {error:.3g} r",
+            abs(early) <= 0.01 or bound <= 0.0101,
+            limit=early <= bound * (1 + 1e-9),
+        )
 
 
 @case
@@ -319,7 +388,9 @@ def mixed_radii(quick):
             tower = column(np.ones(4), radius=r)
             run_ = run_model(model, tower, 0.002, 500, iters=200)
             off = float(np.abs(run_.q - tower.q0).max())
-            yield jobs.row(f"{model}, {label}", "moves at most 1e-6 m in 1 s", f"{off:.2g} m", off <= 1e-6)
+            yield jobs.row(
+                f"{model}, {label}", "moves at most 1e-6 m in 1 s", f"{off:.2g} m", off <= 1e-6
+            )
 
 
 @case
@@ -329,7 +400,7 @@ def far_from_the_origin(quick):
     Two balls on the table meet head on: the same velocities after it, and momentum kept.
     """
     for power in (3, 5, 7, 9):
-        X = 10.0 ** power
+        X = 10.0**power
         for model in contact.MODELS:
             pair = dict(y=[R, R], vx=[1.0, -1.0], restitution=0.5, damping=20.0)
             near, far = scene([0.0, 0.501234], **pair), scene([X, X + 0.501234], **pair)
@@ -341,8 +412,12 @@ def far_from_the_origin(quick):
             allowed = 302 * float(np.spacing(X)) * (1.0 if model != "exact" else 0.1)
             slow = 1e-9 if model != "penalty" else 2e4 * 2 * float(np.spacing(X)) + 1e-9
             ok = same_y and speed <= slow and off <= allowed + slow * 0.6
-            yield jobs.row(f"{model}, X = 1e{power} m", f"y the same bits, x within {allowed:.1e} m, speeds within {slow:.0e} m/s",
-                           f"y {'the same' if same_y else 'differs'}, x off by {off:.1e} m, speeds by {speed:.1e} m/s", ok)
+            yield jobs.row(
+                f"{model}, X = 1e{power} m",
+                f"y the same bits, x within {allowed:.1e} m, speeds within {slow:.0e} m/s",
+                f"y {'the same' if same_y else 'differs'}, x off by {off:.1e} m, speeds by {speed:.1e} m/s",
+                ok,
+            )
 
 
 @case
@@ -359,32 +434,58 @@ def dt_from_microseconds_to_a_second(quick):
             q = quality(run_, drop, dt)
             if model == "lcp":
                 first = maps.landing_depth(maps.GAP, dt) / R
-                ok = abs(q["max_penetration_frac"] - first) <= 1e-9 * max(1.0, first) + 2e-9 / dt * 1e-6
-                yield jobs.row(f"lcp, dt {dt:g}", f"deepest {first:.6g} r", f"{q['max_penetration_frac']:.6g} r", ok)
+                ok = (
+                    abs(q["max_penetration_frac"] - first)
+                    <= 1e-9 * max(1.0, first) + 2e-9 / dt * 1e-6
+                )
+                yield jobs.row(
+                    f"lcp, dt {dt:g}",
+                    f"deepest {first:.6g} r",
+                    f"{q['max_penetration_frac']:.6g} r",
+                    ok,
+                )
             elif model == "penalty":
                 calm = abs(q["rest_penetration_frac"] - 0.00981) < 1e-4
                 ok = calm and not q["blew_up"] if dt < limit_dt else not calm
-                want = "rests 0.00981 r deep" if dt < limit_dt else f"does not rest (critical dt {limit_dt:.4g} s)"
-                yield jobs.row(f"penalty, dt {dt:g}", want, f"{q['rest_penetration_frac']:.5g} r at the end, "
-                               + (f"EXPLODED at step {q['blew_up_step']}" if q["blew_up"] else "bounded"), ok)
+                want = (
+                    "rests 0.00981 r deep"
+                    if dt < limit_dt
+                    else f"does not rest (critical dt {limit_dt:.4g} s)"
+                )
+                yield jobs.row(
+                    f"penalty, dt {dt:g}",
+                    want,
+                    f"{q['rest_penetration_frac']:.5g} r at the end, "
+                    + (f"EXPLODED at step {q['blew_up_step']}" if q["blew_up"] else "bounded"),
+                    ok,
+                )
             else:
                 truth = closed_form.ball_height(float(drop.q0[1, 0]), R, 0.0, run_.t)
                 off = float(np.abs(run_.q[:, 1, 0] - truth).max() / R)
-                yield jobs.row(f"exact, dt {dt:g}", "height error at most 1e-10 r", f"{off:.2g} r", off <= 1e-10)
+                yield jobs.row(
+                    f"exact, dt {dt:g}",
+                    "height error at most 1e-10 r",
+                    f"{off:.2g} r",
+                    off <= 1e-10,
+                )
 
 
 @case
 def stiffness_from_1_to_1e12(quick):
     """A ball laid on the table sinks to m g / k, to the last bits that its height has."""
     for power in range(0, 13, 2):
-        k = 10.0 ** power
+        k = 10.0**power
         c = 0.8 * math.sqrt(k)
         dt = 0.2 * contact.critical_dt(1.0, k, c)
         run_ = run_model("penalty", scene(0.0, R, damping=c), dt, 2000, stiffness=k)
         depth, got = closed_form.rest_depth(1.0, k), R - float(run_.q[-1, 1, 0])
         bits = 4.0 * float(np.spacing(max(R, depth)))
-        yield jobs.row(f"k = 1e{power} N/m", f"{depth:.6g} m within 1e-9 or {bits:.1g} m", f"off by {abs(got - depth):.2g} m",
-                       abs(got - depth) <= max(1e-9 * depth, bits))
+        yield jobs.row(
+            f"k = 1e{power} N/m",
+            f"{depth:.6g} m within 1e-9 or {bits:.1g} m",
+            f"off by {abs(got - depth):.2g} m",
+            abs(got - depth) <= max(1e-9 * depth, bits),
+        )
 
 
 @case
@@ -400,20 +501,36 @@ def restitution_0_and_1(quick):
         y = run_.q[:, 1, 0]
         tops = y[1:-1][(y[1:-1] >= y[:-2]) & (y[1:-1] >= y[2:])]
         off = float(np.abs(tops - y[0]).max() / R) if len(tops) else math.inf
-        yield jobs.row(f"lcp, e = 1, dt {dt:g}", "every top within 1e-9 r of the start", f"{len(tops)} tops, off by {off:.2g} r", off <= 1e-9)
+        yield jobs.row(
+            f"lcp, e = 1, dt {dt:g}",
+            "every top within 1e-9 r of the start",
+            f"{len(tops)} tops, off by {off:.2g} r",
+            off <= 1e-9,
+        )
         ball = contact.build_scene("bounce", restitution=0.0)
         run_ = run_model("lcp", ball, dt, round(2.0 / dt), baumgarte=0.0)
         rise = float(np.diff(run_.q[:, 1, 0]).max())
-        yield jobs.row(f"lcp, e = 0, baumgarte 0, dt {dt:g}", "never rises", f"rises by {rise:.2g} m a step", rise <= 0.0)
+        yield jobs.row(
+            f"lcp, e = 0, baumgarte 0, dt {dt:g}",
+            "never rises",
+            f"rises by {rise:.2g} m a step",
+            rise <= 0.0,
+        )
     ball = contact.build_scene("bounce", restitution=1.0)
     gap = float(ball.q0[1, 0]) - R
     period = 2.0 * float(closed_form.first_impact_time(gap))
     run_ = run_model("exact", ball, period, 100)
     off = float(np.abs(run_.q[:, 1, 0] - ball.q0[1, 0]).max())
-    yield jobs.row("exact, e = 1", "after each of 100 bounces within 1e-9 m of the start", f"{off:.2g} m", off <= 1e-9)
+    yield jobs.row(
+        "exact, e = 1",
+        "after each of 100 bounces within 1e-9 m of the start",
+        f"{off:.2g} m",
+        off <= 1e-9,
+    )
 
 
 # --- overlaps ---------------------------------------------------------------------------------
+
 
 @case
 def start_overlap(quick):
@@ -428,19 +545,32 @@ def start_overlap(quick):
         for model in contact.MODELS:
             run_ = run_model(model, pair, 0.001, 300)
             across = run_.q[-1, :, 1] - run_.q[-1, :, 0]
-            gap = float(np.sqrt((across ** 2).sum()) - 2 * R)
+            gap = float(np.sqrt((across**2).sum()) - 2 * R)
             speed = float(np.sqrt(((run_.v[-1, :, 1] - run_.v[-1, :, 0]) ** 2).sum()))
             want = {"penalty": d * math.sqrt(2e4), "lcp": 0.2 * d / 0.001, "exact": 0.0}[model]
             parted = gap > -1e-9 and np.isfinite(run_.q).all()
             kept = float(np.abs(run_.v[-1, 0].sum()))
-            near = {"penalty": 0.9 * want < speed < 1.1 * want, "lcp": abs(speed - want) < 1e-9 * want + 1e-12,
-                    "exact": speed <= 1e-9}[model]
+            near = {
+                "penalty": 0.9 * want < speed < 1.1 * want,
+                "lcp": abs(speed - want) < 1e-9 * want + 1e-12,
+                "exact": speed <= 1e-9,
+            }[model]
             words = f"gap {gap / R:.2g} r, {speed:.4g} m/s"
             if model == "lcp":
-                yield jobs.row(f"lcp, overlap {share:.0%}", "parts without speed", words + f" = beta d / dt ({want:.4g})",
-                               parted and speed <= 1e-9, limit=parted and near and kept < 1e-12)
+                yield jobs.row(
+                    f"lcp, overlap {share:.0%}",
+                    "parts without speed",
+                    words + f" = beta d / dt ({want:.4g})",
+                    parted and speed <= 1e-9,
+                    limit=parted and near and kept < 1e-12,
+                )
             else:
-                yield jobs.row(f"{model}, overlap {share:.0%}", f"parts, relative speed {want:.4g} m/s", words, parted and near and kept < 1e-9)
+                yield jobs.row(
+                    f"{model}, overlap {share:.0%}",
+                    f"parts, relative speed {want:.4g} m/s",
+                    words,
+                    parted and near and kept < 1e-9,
+                )
 
 
 @case
@@ -452,15 +582,26 @@ def coincident_centres(quick):
                 pile = scene(0.0, [height] * n, damping=80.0)
                 run_ = run_model(model, pile, 0.001, 2000)
                 finite = bool(np.isfinite(run_.q).all() and np.isfinite(run_.v).all())
-                deepest = float(np.max(contact.max_penetration(run_.q[-1], pile.radius)) / R) if finite else math.nan
-                apart = min((abs(a - b) for k, a in enumerate(run_.q[-1, 1]) for b in run_.q[-1, 1, :k]), default=0)
+                deepest = (
+                    float(np.max(contact.max_penetration(run_.q[-1], pile.radius)) / R)
+                    if finite
+                    else math.nan
+                )
+                apart = min(
+                    (abs(a - b) for k, a in enumerate(run_.q[-1, 1]) for b in run_.q[-1, 1, :k]),
+                    default=0,
+                )
                 allowed = 0.02 * n if model == "penalty" else 0.01
-                yield jobs.row(f"{model}, {n} balls, {'in the air' if height > 1 else 'on the table'}",
-                               f"apart: at most {allowed:g} r of overlap after 2 s", f"{deepest:.2g} r, {'finite' if finite else 'NOT finite'}",
-                               finite and deepest <= allowed and apart > 0)
+                yield jobs.row(
+                    f"{model}, {n} balls, {'in the air' if height > 1 else 'on the table'}",
+                    f"apart: at most {allowed:g} r of overlap after 2 s",
+                    f"{deepest:.2g} r, {'finite' if finite else 'NOT finite'}",
+                    finite and deepest <= allowed and apart > 0,
+                )
 
 
 # --- many, long, tiny, huge -------------------------------------------------------------------
+
 
 @case
 def thousands_of_contacts(quick):
@@ -471,7 +612,12 @@ def thousands_of_contacts(quick):
         run_ = run_model(model, line, 0.002, 50)
         moved = float(np.abs(run_.q[:, 0] - line.q0[0]).max())
         contacts = sum(np.size(c[0]) for c in contact.detect_contacts(line.q0, line.radius))
-        yield jobs.row(f"{model}, a row of {n}: {contacts} contacts", "x does not move at all", f"{moved:.2g} m", moved == 0.0)
+        yield jobs.row(
+            f"{model}, a row of {n}: {contacts} contacts",
+            "x does not move at all",
+            f"{moved:.2g} m",
+            moved == 0.0,
+        )
     count = 200 if quick else 2000
     pile = contact.build_scene("pile", bodies=count)
     for model in ("penalty", "lcp"):
@@ -479,13 +625,20 @@ def thousands_of_contacts(quick):
         q = quality(run_, pile, 0.004)
         touching = sum(np.size(c[0]) for c in contact.detect_contacts(run_.q[-1], pile.radius))
         ok = np.isfinite(run_.q).all() and not q["blew_up"]
-        yield jobs.row(f"{model}, pile of {count}, {touching} contacts at the end", "finite, not exploded",
-                       f"worst {q['max_penetration_frac']:.3g} r, energy excess {q['energy_excess']:.2g}", ok)
+        yield jobs.row(
+            f"{model}, pile of {count}, {touching} contacts at the end",
+            "finite, not exploded",
+            f"worst {q['max_penetration_frac']:.3g} r, energy excess {q['energy_excess']:.2g}",
+            ok,
+        )
         middle = pile._replace(q0=run_.q[-1], v0=run_.v[-1])
         a, b = (run_model(model, middle, 0.004, 3, skip=skip) for skip in (True, False))
-        yield jobs.row(f"{model}, pile of {count}, 3 steps on", "skip and no skip: the same bits",
-                       "the same" if np.array_equal(a.q, b.q) and np.array_equal(a.v, b.v) else "different",
-                       np.array_equal(a.q, b.q) and np.array_equal(a.v, b.v))
+        yield jobs.row(
+            f"{model}, pile of {count}, 3 steps on",
+            "skip and no skip: the same bits",
+            "the same" if np.array_equal(a.q, b.q) and np.array_equal(a.v, b.v) else "different",
+            np.array_equal(a.q, b.q) and np.array_equal(a.v, b.v),
+        )
 
 
 @case
@@ -499,11 +652,19 @@ def a_million_steps_at_rest(quick):
         for model in ("penalty", "lcp"):
             run_ = run_model(model, contact.build_scene(name), 0.002, steps, skip=False)
             state = np.concatenate((run_.q, run_.v), axis=1)
-            period = next((p for p in range(1, 65) if np.array_equal(state[-1], state[-1 - p])), None)
+            period = next(
+                (p for p in range(1, 65) if np.array_equal(state[-1], state[-1 - p])), None
+            )
             early = max(10_000, steps // 100)
-            ok = period is not None and np.array_equal(state[early:-period], state[early + period:])
-            yield jobs.row(f"{model}, {name}, {steps} steps", "the same bits again and again, no drift",
-                           f"period {period}" + ("" if ok else ", not kept"), ok)
+            ok = period is not None and np.array_equal(
+                state[early:-period], state[early + period :]
+            )
+            yield jobs.row(
+                f"{model}, {name}, {steps} steps",
+                "the same bits again and again, no drift",
+                f"period {period}" + ("" if ok else ", not kept"),
+                ok,
+            )
 
 
 @case
@@ -513,19 +674,47 @@ def denormal_speeds(quick):
         for model in contact.MODELS:
             still, moving = scene(0.0, R), scene(0.0, R, vx=speed)
             a, b = (run_model(model, s, 0.002, 200) for s in (still, moving))
-            ok = np.array_equal(a.q[:, 1], b.q[:, 1]) and (b.v[:, 0, 0] == speed).all() and np.isfinite(b.q).all()
-            near = bool(np.array_equal(a.q[:, 1], b.q[:, 1]) and np.isin(b.v[:, 0, 0], (0.0, speed)).all())
-            yield jobs.row(f"{model}, v_x = {speed:g} m/s", "v_x kept, y the same bits", f"v_x ends at {b.v[-1, 0, 0]:g}", ok, limit=near)
+            ok = (
+                np.array_equal(a.q[:, 1], b.q[:, 1])
+                and (b.v[:, 0, 0] == speed).all()
+                and np.isfinite(b.q).all()
+            )
+            near = bool(
+                np.array_equal(a.q[:, 1], b.q[:, 1]) and np.isin(b.v[:, 0, 0], (0.0, speed)).all()
+            )
+            yield jobs.row(
+                f"{model}, v_x = {speed:g} m/s",
+                "v_x kept, y the same bits",
+                f"v_x ends at {b.v[-1, 0, 0]:g}",
+                ok,
+                limit=near,
+            )
 
 
 OVERFLOWS = {
     "a stiffness of 1e308": ["--contact", "penalty", "--stiffness", "1e308"],
-    "a stiffness of 1e300, dt 0.05": ["--contact", "penalty", "--stiffness", "1e300", "--dt", "0.05"],
+    "a stiffness of 1e300, dt 0.05": [
+        "--contact",
+        "penalty",
+        "--stiffness",
+        "1e300",
+        "--dt",
+        "0.05",
+    ],
     "a damping of 1e308": ["--contact", "penalty", "--damping", "1e308"],
     "dt 1e200": ["--contact", "penalty", "--dt", "1e200"],
     "dt 1e308, all models": ["--dt", "1e308"],
     "dt 1e-320, all models": ["--dt", "1e-320"],
-    "dt 0.03 for 5000 steps, undamped": ["--contact", "penalty", "--dt", "0.03", "--damping", "0", "--steps", "5000"],
+    "dt 0.03 for 5000 steps, undamped": [
+        "--contact",
+        "penalty",
+        "--dt",
+        "0.03",
+        "--damping",
+        "0",
+        "--steps",
+        "5000",
+    ],
 }
 
 
@@ -534,21 +723,55 @@ def overflow_on_purpose(quick):
     """The command line on inputs that overflow: exit 0, strict JSON, blew_up with its step, no traceback."""
     for label, flags in OVERFLOWS.items():
         with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run([sys.executable, str(ROOT / "contact.py"), "--no-rerun", "--steps", "100", *flags, "--out", folder],
-                                  capture_output=True, text=True, timeout=120, cwd=folder)
+            done = subprocess.run(
+                [
+                    sys.executable,
+                    str(ROOT / "contact.py"),
+                    "--no-rerun",
+                    "--steps",
+                    "100",
+                    *flags,
+                    "--out",
+                    folder,
+                ],
+                capture_output=True,
+                text=True,
+                timeout=120,
+                cwd=folder,
+            )
             path = Path(folder) / "metrics.json"
-            trouble = "" if done.returncode == 0 else f"exit {done.returncode}: {done.stderr.strip().splitlines()[-1:]}"
+            trouble = (
+                ""
+                if done.returncode == 0
+                else f"exit {done.returncode}: {done.stderr.strip().splitlines()[-1:]}"
+            )
             exploded, said = {}, False
             if path.exists():
                 try:
                     metrics = json.loads(path.read_text(), parse_constant=lambda word: 1 / 0)
-                    exploded = {model: q["blew_up_step"] for model, q in metrics["quality"].items() if q["blew_up"]}
+                    exploded = {
+                        model: q["blew_up_step"]
+                        for model, q in metrics["quality"].items()
+                        if q["blew_up"]
+                    }
                 except (ValueError, ZeroDivisionError):
                     trouble += " metrics.json is not strict JSON"
             elif not trouble:
                 trouble = "no metrics.json"
             said = "EXPLODED" in done.stdout
-            trouble += " stderr: " + done.stderr.strip()[-80:] if done.stderr.strip() and done.returncode == 0 else ""
-            ok = not trouble and said == bool(exploded) and all(step is not None for step in exploded.values())
-            got = trouble.strip() or ", ".join(f"{model} EXPLODED at step {step}" for model, step in exploded.items()) or "no explosion"
+            trouble += (
+                " stderr: " + done.stderr.strip()[-80:]
+                if done.stderr.strip() and done.returncode == 0
+                else ""
+            )
+            ok = (
+                not trouble
+                and said == bool(exploded)
+                and all(step is not None for step in exploded.values())
+            )
+            got = (
+                trouble.strip()
+                or ", ".join(f"{model} EXPLODED at step {step}" for model, step in exploded.items())
+                or "no explosion"
+            )
             yield jobs.row(label, "ends, says EXPLODED at which step, writes valid JSON", got, ok)

@@ -15,13 +15,17 @@ from time import monotonic
 from curriculum.common.files import write_whole
 from curriculum.stress import engine, jobs
 
-PATIENCE = 1800.0                                                 # s a job may take on processes
+PATIENCE = 1800.0  # s a job may take on processes
 
 
 def dead(reason):
     """The result that stands in for that of a job which did not end by itself."""
-    return {"cells": 0, "rows": [{"at": "the job itself", "expected": "a result", "got": reason,
-                                  "status": jobs.DIED}]}
+    return {
+        "cells": 0,
+        "rows": [
+            {"at": "the job itself", "expected": "a result", "got": reason, "status": jobs.DIED}
+        ],
+    }
 
 
 def attempt(job):
@@ -69,8 +73,11 @@ class Worker:
             result, finished = self.pipe.recv()
         except (EOFError, ConnectionError):
             self.process.join()
-            reason = (f"no end after {PATIENCE:g} s" if self.overdue
-                      else f"its process ended with exit code {self.process.exitcode}")
+            reason = (
+                f"no end after {PATIENCE:g} s"
+                if self.overdue
+                else f"its process ended with exit code {self.process.exitcode}"
+            )
             result, finished = dead(reason), False
         job, self.job = self.job, None
         return job, result, finished
@@ -129,8 +136,9 @@ def on_dask(todo, address):
 
     here = engine.code_hash()
 
-    def there(job):                                               # pickled whole: the scheduler imports nothing
+    def there(job):  # pickled whole: the scheduler imports nothing
         from curriculum.stress import engine as its_engine, runner as its_runner
+
         if its_engine.code_hash() != here:
             return its_runner.dead("other code, Python or numpy on the worker than here"), False
         return its_runner.attempt(job)
@@ -157,7 +165,7 @@ class Memory:
         if os.path.exists(self.path):
             with open(self.path, encoding="utf-8") as file:
                 text = file.read()
-            whole = text[:text.rfind("\n") + 1]                   # the last line may be cut off
+            whole = text[: text.rfind("\n") + 1]  # the last line may be cut off
             if whole != text:
                 write_whole(self.path, whole)
             for entry in map(json.loads, whole.splitlines()):

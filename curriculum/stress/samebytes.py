@@ -19,7 +19,7 @@ from curriculum.stress import jobs
 from curriculum.stress.engine import ROOT, contact
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-OLDEST = ("2.0.0", "2.1.0", "2.2.0", "2.3.0")                     # tried in this order
+OLDEST = ("2.0.0", "2.1.0", "2.2.0", "2.3.0")  # tried in this order
 ASK = "import sys, numpy; print('.'.join(map(str, sys.version_info[:3])), numpy.__version__)"
 
 
@@ -27,8 +27,17 @@ def byte_jobs(quick, pythons):
     """One job for the settings of this interpreter, one for each interpreter and numpy at hand."""
     result = [jobs.job("bytes", "same bytes: this Python", quick=quick)]
     if not quick:
-        result += [jobs.job("bytes", f"same bytes: Python {version}, {which} numpy", quick=False, python=version, which=which)
-                   for version in pythons for which in ("oldest", "newest")]
+        result += [
+            jobs.job(
+                "bytes",
+                f"same bytes: Python {version}, {which} numpy",
+                quick=False,
+                python=version,
+                which=which,
+            )
+            for version in pythons
+            for which in ("oldest", "newest")
+        ]
     return result
 
 
@@ -39,11 +48,16 @@ def pythons_at_hand(least=None):
     root = os.environ.get("PYENV_ROOT") or Path.home() / ".pyenv"
     places += sorted(str(path) for path in Path(root).glob("versions/*/bin/python"))
     if shutil.which("uv"):
-        places += subprocess.run(["uv", "python", "find"], capture_output=True, text=True).stdout.split("\n")
+        places += subprocess.run(
+            ["uv", "python", "find"], capture_output=True, text=True
+        ).stdout.split("\n")
     found = {}
     for place in filter(None, places):
-        done = subprocess.run([place, "-c", "import sys; print('.'.join(map(str, sys.version_info[:3])))"],
-                              capture_output=True, text=True)
+        done = subprocess.run(
+            [place, "-c", "import sys; print('.'.join(map(str, sys.version_info[:3])))"],
+            capture_output=True,
+            text=True,
+        )
         version = done.stdout.strip()
         if done.returncode == 0 and tuple(map(int, version.split("."))) >= least:
             found.setdefault(version, place)
@@ -54,7 +68,9 @@ def required_python():
     """The least Python that pyproject.toml allows, as a tuple."""
     try:
         text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-        return tuple(map(int, re.search(r'requires-python\s*=\s*">=\s*([\d.]+)', text)[1].split(".")))
+        return tuple(
+            map(int, re.search(r'requires-python\s*=\s*">=\s*([\d.]+)', text)[1].split("."))
+        )
     except (OSError, TypeError):
         return (3, 10)
 
@@ -65,8 +81,21 @@ def environment(python, which, folder):
     inside = str(Path(folder) / ("Scripts" if os.name == "nt" else "bin") / "python")
     error = ""
     for wanted in [f"numpy=={version}" for version in OLDEST] if which == "oldest" else ["numpy"]:
-        done = subprocess.run([inside, "-m", "pip", "install", "-q", "--disable-pip-version-check",
-                               "--only-binary", "numpy", wanted], capture_output=True, text=True)
+        done = subprocess.run(
+            [
+                inside,
+                "-m",
+                "pip",
+                "install",
+                "-q",
+                "--disable-pip-version-check",
+                "--only-binary",
+                "numpy",
+                wanted,
+            ],
+            capture_output=True,
+            text=True,
+        )
         if done.returncode == 0:
             return inside, ""
         error = done.stderr.strip().splitlines()[-1]
@@ -76,19 +105,28 @@ def environment(python, which, folder):
 def digest(python, scene, env=None, cwd=None):
     """sha256 (16 digits) of stdout and metrics.json of one smoke run, or words for why there is none.
 
-    It runs in a fresh folder unless `cwd` names one.
+    It runs in a fresh folder unless `cwd` names one; the relative path of its results is the same
+    in both, since stdout names it.
     """
     with tempfile.TemporaryDirectory() as folder:
-        where = Path(cwd or folder)
-        out = f"outputs/same-bytes-{os.getpid()}" if cwd else "out"    # relative: no path gets into stdout
+        where, out = Path(cwd or folder), f"outputs/same-bytes-{os.getpid()}"
         try:
-            command = [python, str(ROOT / "contact.py"), "--smoke", "--no-rerun", "--scene", scene, "--out", out]
-            command += ["--bodies", "20"] if scene == "pile" else []        # a full pile takes half a minute
-            done = subprocess.run(command, cwd=where, env={**os.environ, **(env or {})}, capture_output=True, timeout=600)
+            command = [python, str(ROOT / "contact.py"), "--smoke", "--no-rerun"]
+            command += ["--scene", scene, "--out", out]
+            command += (
+                ["--bodies", "20"] if scene == "pile" else []
+            )  # a full pile takes half a minute
+            done = subprocess.run(
+                command,
+                cwd=where,
+                env={**os.environ, **(env or {})},
+                capture_output=True,
+                timeout=600,
+            )
             if done.returncode:
                 return f"exit {done.returncode}: {done.stderr.decode().strip()[-100:]}"
-            said = done.stdout.replace(out.encode(), b"OUT")
-            return hashlib.sha256(said + (where / out / "metrics.json").read_bytes()).hexdigest()[:16]
+            metrics = (where / out / "metrics.json").read_bytes()
+            return hashlib.sha256(done.stdout + metrics).hexdigest()[:16]
         finally:
             if cwd:
                 shutil.rmtree(where / out, ignore_errors=True)
@@ -107,7 +145,9 @@ def settings():
         "2 threads": dict(env=dict.fromkeys(THREADS, "2")),
         "64 threads": dict(env=dict.fromkeys(THREADS, "64")),
         "from the project's folder": dict(cwd=ROOT),
-        "optimised, other locale and time zone": dict(env={"PYTHONOPTIMIZE": "2", "LC_ALL": "C", "TZ": "Asia/Tokyo"}),
+        "optimised, other locale and time zone": dict(
+            env={"PYTHONOPTIMIZE": "2", "LC_ALL": "C", "TZ": "Asia/Tokyo"}
+        ),
     }
 
 
@@ -120,20 +160,37 @@ def run(quick, python=None, which=None):
     right = {scene: reference(scene) for scene in scenes}
     cells = {}
     if python is None:
-        for label, options in list(settings().items())[:3 if quick else None]:
+        for label, options in list(settings().items())[: 3 if quick else None]:
             cells[label] = {scene: digest(sys.executable, scene, **options) for scene in scenes}
     else:
         with tempfile.TemporaryDirectory() as folder:
             inside, error = environment(pythons_at_hand((3, 0))[python], which, folder)
             if inside is None:
-                return {"cells": 0, "rows": [jobs.row(f"{which} numpy", "installs or is named as not installing",
-                                                      f"does not install: {error[-150:]}", True)]}
-            versions = subprocess.run([inside, "-c", ASK], capture_output=True, text=True, check=True).stdout.split()
+                return {
+                    "cells": 0,
+                    "rows": [
+                        jobs.row(
+                            f"{which} numpy",
+                            "installs or is named as not installing",
+                            f"does not install: {error[-150:]}",
+                            True,
+                        )
+                    ],
+                }
+            versions = subprocess.run(
+                [inside, "-c", ASK], capture_output=True, text=True, check=True
+            ).stdout.split()
             label = "Python {}, numpy {}".format(*versions)
             cells[label] = {scene: digest(inside, scene) for scene in scenes}
     rows = []
     for label, got in cells.items():
         unlike = {scene: got[scene] for scene in scenes if got[scene] != right[scene]}
-        rows.append(jobs.row(label, f"the bytes of {', '.join(scenes)} as with seed 0, one thread",
-                             "the same" if not unlike else json.dumps(unlike), not unlike))
+        rows.append(
+            jobs.row(
+                label,
+                f"the bytes of {', '.join(scenes)} as with seed 0, one thread",
+                "the same" if not unlike else json.dumps(unlike),
+                not unlike,
+            )
+        )
     return {"cells": len(rows) * len(scenes), "rows": rows}

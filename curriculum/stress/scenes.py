@@ -11,24 +11,35 @@ from curriculum.stress import engine
 from curriculum.stress.engine import contact
 
 BODY = ("x", "y", "vx", "vy", "mass", "radius")
-EVENTS = 500                                                      # of exact in one random scene
 KNOBS = ("stiffness", "baumgarte", "iters")
 
 
 def to_scene(spec):
     """The contact.Scene of a spec."""
     rows = {name: np.array(spec[name], dtype=float) for name in BODY}
-    return contact.Scene("random", np.array([rows["x"], rows["y"]]),
-                         np.array([rows["vx"], rows["vy"]]), rows["mass"], rows["radius"],
-                         spec["restitution"], spec["damping"])
+    return contact.Scene(
+        "random",
+        np.array([rows["x"], rows["y"]]),
+        np.array([rows["vx"], rows["vy"]]),
+        rows["mass"],
+        rows["radius"],
+        spec["restitution"],
+        spec["damping"],
+    )
 
 
 def run(model, spec, **changes):
     """engine.run_model on a spec; `changes` override its entries, or are flags (skip)."""
     skip = changes.pop("skip", True)
     spec = {**spec, **changes}
-    return engine.run_model(model, to_scene(spec), spec["dt"], spec["steps"], events=EVENTS,
-                            **{name: spec[name] for name in KNOBS}, skip=skip)
+    return engine.run_model(
+        model,
+        to_scene(spec),
+        spec["dt"],
+        spec["steps"],
+        skip=skip,
+        **{name: spec[name] for name in KNOBS},
+    )
 
 
 def scattered(rng, n, radius):
@@ -85,11 +96,18 @@ def random_spec(rng, n=None, steps=None):
     vx, vy = speed * rng.standard_normal((2, n))
     return {
         "layout": layout.__name__,
-        "x": x.tolist(), "y": y.tolist(), "vx": vx.tolist(), "vy": vy.tolist(),
-        "mass": mass.tolist(), "radius": radius.tolist(),
-        "restitution": pick(0.0, 0.0, 1.0, (0.0, 1.0)), "damping": pick(0.0, 80.0, (0.0, 150.0)),
-        "dt": float(10.0 ** rng.uniform(-3.3, -1.7)), "steps": int(steps or rng.integers(20, 81)),
-        "stiffness": float(10.0 ** rng.uniform(2, 5)), "baumgarte": pick(0.0, 0.2, 1.0, (0.0, 1.0)),
+        "x": x.tolist(),
+        "y": y.tolist(),
+        "vx": vx.tolist(),
+        "vy": vy.tolist(),
+        "mass": mass.tolist(),
+        "radius": radius.tolist(),
+        "restitution": pick(0.0, 0.0, 1.0, (0.0, 1.0)),
+        "damping": pick(0.0, 80.0, (0.0, 150.0)),
+        "dt": float(10.0 ** rng.uniform(-3.3, -1.7)),
+        "steps": int(steps or rng.integers(20, 81)),
+        "stiffness": float(10.0 ** rng.uniform(2, 5)),
+        "baumgarte": pick(0.0, 0.2, 1.0, (0.0, 1.0)),
         "iters": int(pick(1, 5, 20, 100)),
     }
 

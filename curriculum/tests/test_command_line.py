@@ -122,15 +122,23 @@ def test_an_unwritable_folder_is_refused_in_one_line():
 
 
 def test_smoke_writes_the_same_bytes_whatever_hash_seed_folder_and_threads(run_script, tmp_path):
-    """A relative --out in another folder, so that stdout, which names it, can be compared too."""
+    """A relative --out in another folder, so that stdout, which names it, can be compared too.
+
+    PYTHONOPTIMIZE 2 is python -OO: no docstrings, no assertions.
+    """
     seen = []
-    for name, seed, threads in (("a", "0", "1"), ("b", "4242", "2"), ("b", "random", "7")):
+    for name, seed, threads, optimize in (
+        ("a", "0", "1", ""),
+        ("b", "4242", "2", ""),
+        ("b", "random", "7", "2"),
+    ):
         folder = tmp_path / name
         folder.mkdir(exist_ok=True)
         run = run_script(
             *("--smoke", "--no-rerun", "--out", "out"),
             cwd=folder,
             PYTHONHASHSEED=seed,
+            PYTHONOPTIMIZE=optimize,
             OMP_NUM_THREADS=threads,
             OPENBLAS_NUM_THREADS=threads,
             MKL_NUM_THREADS=threads,
