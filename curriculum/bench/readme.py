@@ -5,6 +5,7 @@ call of contact.py; other blocks are left alone. A block of ours that results.js
 the command that it names.
 """
 
+import json
 import re
 import subprocess
 import sys
@@ -51,15 +52,41 @@ def machine(sections):
     return store.footer(sections["error"]) + "\n"
 
 
+def stress(sections):
+    """What the stress report counts, and its most telling numbers."""
+    found, place, count = (sections["stress"][name] for name in ("facts", "machine", "counts"))
+    at = "dt {dt:.3g} s, beta {baumgarte:g}, e {restitution:g}".format
+    deepest, wrong = found["lcp_depth"], found["lcp_height_error"]
+    scenes = found["finite_unless_reported"]["scenes"]
+    rows = [[f"{count['cells']:,} cells, {count['judgements']:,} judgements: violations",
+             f"{count['violations'] + count['died']:,}"],
+            ["known limits, each with its number in the report", f"{count['limits']:,}"],
+            ["penalty: measured critical dt against theory, worst of the map",
+             f"{100 * found['penalty_boundary_worst_error']:.2f} %"],
+            ["lcp: deepest penetration of the map", f"{deepest['value']:.3g} r, at {at(**deepest)}"],
+            ["lcp: worst height error of the map", f"{wrong['value']:.3g} r, at {at(**wrong)}"],
+            ["exact: worst height error of the map", f"{found['exact_height_error']:.2g} r"],
+            ["random scenes in which lcp without Baumgarte's push gains energy",
+             f"{found['lcp_without_push_never_gains_energy']['limits']} of {scenes:,}"],
+            ["exact: deepest overlap it leaves where balls slide, over those scenes",
+             f"{found['exact_never_penetrates']['worst']:.2g} r"]]
+    return report.table(["", "measured"], rows) + (
+        f"\nMeasured on {place['date']} at commit {place['commit']}, {place['cores']} cores of "
+        f"{place['processor']}, Python {place['python']}, numpy {place['packages']['numpy']}.\n")
+
+
 def goals(page, name):
     """A maker of the table of goals of one section."""
     return name, lambda sections: report.goal_table(page.goals(sections[name]))
 
 
-MEASURE = {"error": accuracy_page.COMMAND, "skip": skips_page.COMMAND, "pile": piles_page.COMMAND}
+STRESS = store.ROOT / "curriculum" / "stress" / "results" / "results.json"
+MEASURE = {"error": accuracy_page.COMMAND, "skip": skips_page.COMMAND, "pile": piles_page.COMMAND,
+           "stress": "python -m curriculum.stress"}
 BLOCKS = {"bench-headline": ("error", headline), "bench-bounce": ("error", bounce),
           "bench-goals": goals(accuracy_page, "error"), "bench-skip": goals(skips_page, "skip"),
-          "bench-pile": goals(piles_page, "pile"), "bench-machine": ("error", machine)}
+          "bench-pile": goals(piles_page, "pile"), "bench-machine": ("error", machine),
+          "stress": ("stress", stress)}
 
 
 def printed(flags):
@@ -96,8 +123,11 @@ def main(folder, check):
         print("README.md is missing", file=sys.stderr)
         return 1
     text = README.read_text(encoding="utf-8")
+    sections = store.load(folder)
+    if STRESS.exists():
+        sections["stress"] = json.loads(STRESS.read_text(encoding="utf-8"))
     try:
-        new = fill(text, store.load(folder))
+        new = fill(text, sections)
     except ValueError as error:
         print(error, file=sys.stderr)
         return 1

@@ -132,7 +132,7 @@ def results_json(results, place):
     def line(value):
         return json.dumps(shortened(value), sort_keys=True, allow_nan=False)
 
-    head = {"machine": place, **summary(results), "facts": facts(results)}
+    head = {"machine": place, "counts": summary(results), "facts": facts(results)}
     lines = ",\n".join(line({**job, "result": result}) for job, result in results)
     return (
         "{\n"

@@ -82,8 +82,8 @@ def strict(path):
 def test_a_clean_run_exits_0_and_writes_report_results_and_figures(little, tmp_path, capsys):
     assert little() == 0
     data = strict(tmp_path / "out" / "results.json")
-    assert data["violations"] == data["died"] == 0
-    assert data["cells"] > 15 and len(data["jobs"]) == len(LITTLE)
+    assert data["counts"]["violations"] == data["counts"]["died"] == 0
+    assert data["counts"]["cells"] > 15 and len(data["jobs"]) == len(LITTLE)
     page = (tmp_path / "out" / "report.md").read_text()
     for name in ("penalty-map", "lcp-depth", "lcp-error", "lcp-energy", "exact-error"):
         assert f"({name}.svg)" in page
