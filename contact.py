@@ -310,8 +310,8 @@ def settle(q, v, w, radius, restitution, held, touch):
     tangent = np.array((-n[1], n[0])) * (j >= 0)            # the floor's normal never turns
     slip = balls.along(v, i, j, tangent)
     turn = slip * slip / (radius[i] + radius[j])            # what keeps a turning normal in touch
-    a, f = react(a, i, j, n, w, balls.along(a, i, j, n) + turn)
-    slides = (f > 0.0) & (np.abs(slip) + np.abs(balls.along(a, i, j, tangent)) > 1e-9)
+    a, _ = react(a, i, j, n, w, balls.along(a, i, j, n) + turn)
+    slides = np.abs(slip) + np.abs(balls.along(a, i, j, tangent)) > 1e-9    # pushed, or turning off
     return q, v, a, -depth, still, slides.any()
 
 def next_impact(q, v, a, gap, radius, still, horizon, slow):

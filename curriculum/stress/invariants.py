@@ -318,11 +318,9 @@ def exact_never_penetrates(trial):
 
 
 def overlap_bound(trial, run):
-    """4 (v^2 / r + g) dt^2 [m]: the overlap that exact may leave where balls slide."""
-    speed = float(np.abs(run.v).max())
-    return (
-        4.0 * (speed**2 / float(trial.scene.radius.min()) - contact.GRAVITY) * trial.spec["dt"] ** 2
-    )
+    """4 (v^2 / r + g) dt^2 [m], a radius at most: the overlap exact may leave where balls slide."""
+    speed, r = float(np.abs(run.v).max()), float(trial.scene.radius.min())
+    return min(r, 4.0 * (speed**2 / r - contact.GRAVITY) * trial.spec["dt"] ** 2)
 
 
 @check

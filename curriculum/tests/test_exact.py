@@ -9,6 +9,7 @@ import pytest
 import contact
 from curriculum.bench import closed_form
 from curriculum.common import balls
+from curriculum.stress import scenes
 
 R = 0.1
 STEPS_OF = [1e-4, 5e-4, 0.002, 0.0137, 0.064]
@@ -251,3 +252,17 @@ def test_overlap_of_a_sliding_pile_falls_with_the_square_of_dt():
         deepest.append(contact.max_penetration(run.q, scene.radius).max() / R)
     print(f"overlap {deepest} r, ratio {deepest[0] / deepest[1]:.2f}")
     assert 3.0 < deepest[0] / deepest[1] < 5.0 and deepest[0] < 0.01
+
+
+def test_a_ball_that_slides_off_another_is_seen_when_it_falls_back():
+    """Its contact pushes no more, since the normal turns away faster than the bodies close; it has
+    to be watched again from the next sample on. It was not, and the ball fell through by 3 r."""
+    spec = scenes.numbered_spec(2786)
+    deepest = []
+    for finer in (1, 8):
+        fine = {**spec, "dt": spec["dt"] / finer, "steps": spec["steps"] * finer}
+        run = scenes.run("exact", fine)
+        radius = np.array(spec["radius"])
+        deepest.append(contact.max_penetration(run.q, radius).max() / radius.min())
+    print(f"overlap {deepest} r, ratio {deepest[0] / deepest[1]:.0f}")
+    assert deepest[0] < 0.1 and deepest[1] < deepest[0] / 30
