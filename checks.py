@@ -17,7 +17,7 @@ import ex1_predict_contact as ex1  # noqa: E402
 import ex2_completion_contact as ex2  # noqa: E402
 import ex3_dt_stability as ex3  # noqa: E402
 import predict  # noqa: E402
-from curriculum.numbers import Numbers, load_meta  # noqa: E402
+from curriculum.quoted import Numbers, load_meta  # noqa: E402
 
 FACTS = load_meta()["exercises"]
 HINT = "python exercises/ex2_completion_contact.py --hint"

@@ -9,7 +9,7 @@ regions   the markers of contact.py are well formed (curriculum/regions.py has t
           regions in contact.py = `region_hashes` of meta.yaml = regions the chapter includes. An
           include is a fence that holds one line: [include-by-region: contact.py#NAME]
 numbers   every {{reference}} of the chapter and of meta.yaml resolves on a fresh run
-          (curriculum/numbers.py has the syntax), every `holds:` comment is true, `reference_run` is
+          (curriculum/quoted.py has the syntax), every `holds:` comment is true, `reference_run` is
           what the fresh run gives, and the exercises' answers stand in their bands.
 typed     no number is typed into the prose, nor into what an exercise tells the learner. A typed
           number is a token that begins with a digit (or is a fraction in one sign), except: after
@@ -37,12 +37,12 @@ from pathlib import Path
 from curriculum import regions
 from curriculum.common import wallclock
 from curriculum.common.files import write_whole
-from curriculum.numbers import HOLDS, REFERENCE, Numbers, leaves, load_meta
+from curriculum.quoted import HOLDS, REFERENCE, Numbers, leaves, load_meta
 
 ROOT = regions.ROOT
 CHAPTER = "curriculum/prose/chapter.md"
 GATE = "python -m curriculum.check_prose_code_drift"
-NUMBERS = "python -m curriculum.numbers"
+NUMBERS = "python -m curriculum.quoted"
 INCLUDE = re.compile(r"\[include-by-region: contact\.py#(\w+)\]")
 FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"(`+)[^`]+\1|\$[^$\n]+\$")

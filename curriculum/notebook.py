@@ -19,7 +19,7 @@ from curriculum import regions
 from curriculum.check_prose_code_drift import CHAPTER, INCLUDE
 from curriculum.common.arguments import Parser
 from curriculum.common.files import write_whole
-from curriculum.numbers import Numbers, load_meta
+from curriculum.quoted import Numbers, load_meta
 
 SLOT = re.compile(r"<!-- exercise: (\w+) -->")
 COMMAND = re.compile(r"python contact\.py(.*)")

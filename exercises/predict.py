@@ -10,7 +10,7 @@ sys.path.insert(0, str(ROOT))
 
 import contact  # noqa: E402
 from curriculum.common.arguments import Parser, number  # noqa: E402
-from curriculum.numbers import Numbers, load_meta  # noqa: E402
+from curriculum.quoted import Numbers, load_meta  # noqa: E402
 
 
 def quality(scene, dt, steps, models=("penalty", "lcp")):

@@ -18,7 +18,7 @@ import contact
 from curriculum import regions
 from curriculum.check_prose_code_drift import CHAPTER
 from curriculum.common import wallclock
-from curriculum.numbers import Numbers, load_meta
+from curriculum.quoted import Numbers, load_meta
 from curriculum.page import drawing, prose
 
 HERE = Path(__file__).resolve().parent

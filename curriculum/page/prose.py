@@ -2,7 +2,7 @@
 
 Beside plain Markdown the chapter may hold
 - an include, a fence with the one line [include-by-region: contact.py#NAME]: becomes a code panel;
-- references to numbers in double braces (curriculum/numbers.py): become the numbers of fresh runs;
+- references to numbers in double braces (curriculum/quoted.py): become the numbers of fresh runs;
 - formulas between dollar signs: become MathML;
 - slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
   <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. A slot that the chapter does not

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from curriculum import check_prose_code_drift as gate
-from curriculum import numbers, regions
+from curriculum import quoted, regions
 from curriculum.common import wallclock
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -105,7 +105,7 @@ def project(tmp_path, capsys):
         (tmp_path / file).write_text(text)
     for name in ("setup", "report"):
         gate.accept(tmp_path, name)
-    numbers.record(tmp_path)
+    quoted.record(tmp_path)
     capsys.readouterr()
     return tmp_path
 
@@ -251,7 +251,7 @@ DRIFT = {
     "numbers that moved": (
         ("contact.py", "0.251329", "0.251330"),
         r"meta.yaml:\d+: reference_run says quality.penalty.depth is "
-        r"0.251329, a fresh run gives 0.25133; repair: python -m curriculum.numbers --record",
+        r"0.251329, a fresh run gives 0.25133; repair: python -m curriculum.quoted --record",
     ),
     "a reference number removed": (
         ("meta.yaml", "    quality.penalty.depth:", "    # "),
@@ -368,7 +368,7 @@ def test_accepting_shows_the_change_and_the_section_that_quotes_it_and_records_o
         subprocess.run(["git", *command], cwd=project, check=True)
     edit(project, "contact.py", "import sys", "import sys  # changed")
     edit(project, "contact.py", "def main(flags):", "def main(flags):  # also")
-    before = numbers.load_meta(project)["region_hashes"]
+    before = quoted.load_meta(project)["region_hashes"]
     assert gate.main(["--root", str(project), "--accept", "setup"]) == 0
     out = capsys.readouterr().out
     assert "-import sys\n+import sys  # changed\n" in out and "# also" not in out
@@ -376,7 +376,7 @@ def test_accepting_shows_the_change_and_the_section_that_quotes_it_and_records_o
         f"{CHAPTER}:6 shows it; the section, lines 1 to 8, says:" in out
         and "The script sets up like this." in out
     )
-    after = numbers.load_meta(project)["region_hashes"]
+    after = quoted.load_meta(project)["region_hashes"]
     assert after["setup"] == regions.find(project / "contact.py")["setup"].sha256 != before["setup"]
     assert after["report"] == before["report"]
     assert [line for line in gate.check(project) if "setup" in line] == []
@@ -418,7 +418,7 @@ def test_accepting_what_is_in_order_or_unknown_or_malformed_changes_nothing(proj
 
 def test_recording_the_reference_run_twice_changes_nothing_and_keeps_the_rest_of_meta(project):
     before = (project / "meta.yaml").read_text()
-    assert numbers.record(project) == []
+    assert quoted.record(project) == []
     assert (
         before.replace(before[before.index("reference_run:") : before.index("exercises:")], "")
         == META.replace(META[META.index("reference_run:") : META.index("exercises:")], "")
@@ -427,7 +427,7 @@ def test_recording_the_reference_run_twice_changes_nothing_and_keeps_the_rest_of
 
 
 def test_a_text_is_rendered_with_generated_numbers(project):
-    shown = numbers.Numbers(project).render(
+    shown = quoted.Numbers(project).render(
         (project / CHAPTER).read_text() + "{{= 1972 | year}} {{steps}}"
     )
     assert "lets in 0.251 r, 0.9 r if soft,\n4.4 times" in shown
@@ -435,7 +435,7 @@ def test_a_text_is_rendered_with_generated_numbers(project):
 
 
 def test_keys_that_hold_dots_and_list_places_are_found(project):
-    made = numbers.Numbers(project, runs={"first": {"a": {"0.002": [{"b": 7}]}}})
+    made = quoted.Numbers(project, runs={"first": {"a": {"0.002": [{"b": 7}]}}})
     assert made.value("a.0.002.0.b") == 7 and made.text("a.0.002.0.b") == "7"
 
 

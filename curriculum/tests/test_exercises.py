@@ -16,7 +16,7 @@ import ex1_predict_contact as ex1  # noqa: E402
 import ex3_dt_stability as ex3  # noqa: E402
 import predict  # noqa: E402
 from curriculum.check_prose_code_drift import typed_numbers  # noqa: E402
-from curriculum.numbers import Numbers, load_meta  # noqa: E402
+from curriculum.quoted import Numbers, load_meta  # noqa: E402
 
 FACTS = load_meta()["exercises"]
 PREDICTED = {"ex1": ex1, "ex3": ex3}

@@ -9,7 +9,7 @@ import pytest
 
 from curriculum import check_prose_code_drift as gate
 from curriculum.common import device, wallclock
-from curriculum.numbers import Numbers
+from curriculum.quoted import Numbers
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = """import sys, pathlib

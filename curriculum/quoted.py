@@ -1,8 +1,8 @@
 """The generated numbers that the chapter quotes, and the text of a reference to one.
 
-    python -m curriculum.numbers                    # every number that can be quoted, with its name
-    python -m curriculum.numbers 'EXPRESSION|FORMAT'   # one reference, as the chapter would show it
-    python -m curriculum.numbers --record           # run, and put the reference run into meta.yaml
+    python -m curriculum.quoted                    # every number that can be quoted, with its name
+    python -m curriculum.quoted 'EXPRESSION|FORMAT'   # one reference, as the chapter would show it
+    python -m curriculum.quoted --record           # run, and put the reference run into meta.yaml
 
 A reference stands in the text in double braces and is replaced by a number of a fresh run:
 
@@ -198,7 +198,7 @@ def record(root=ROOT):
     numbers = Numbers(root)
     metrics = numbers.run(numbers.reference())
     block = ["reference_run:",
-             "  provenance: measured by `python -m curriculum.numbers --record`,",
+             "  provenance: measured by `python -m curriculum.quoted --record`,",
              f"    {datetime.date.today()}, numpy {numpy.__version__}, "
              f"Python {platform.python_version()}",
              f'  config_hash: "{numbers.config_hash[numbers.reference()]}"', "  values:"]
@@ -217,7 +217,7 @@ def record(root=ROOT):
 def main(argv=None):
     """List the numbers, show one, or record the reference run. Returns the exit status."""
     from curriculum.common.arguments import Parser
-    parser = Parser(prog="python -m curriculum.numbers",
+    parser = Parser(prog="python -m curriculum.quoted",
                     description="The numbers that the chapter quotes.")
     parser.add_argument("reference", nargs="?", help="an expression; a fraction needs |FORMAT")
     parser.add_argument("--record", action="store_true",
