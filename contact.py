@@ -1,26 +1,30 @@
-"""Contact between bodies, built three times and measured honestly (robotics course, chapter 3.5).
+"""Contact between bodies, built four times and measured honestly (robotics course, chapter 3.5).
 
-A table pushes a ball up while they touch and never pulls it down. Three models of that push:
-    penalty   a stiff spring and a damper: simple; sinks, rings, explodes past a critical dt
-    lcp       impulses from a complementarity problem, by projected Gauss-Seidel, step by step
-    exact     event to event: every impact at its own time, impulses and forces by a pivot
+A table pushes a ball up while they touch, and it never pulls it down. Four models of that push:
+    penalty   a stiff spring and a damper: one more force under an unchanged integrator
+    lcp       impulses that solve a complementarity problem, by projected Gauss-Seidel sweeps
+    soft      MuJoCo's contact: the same sweeps, with a spring as target and softness added
+    exact     event to event, every impact at its own time (curriculum/exact.py)
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
 
     symbol    meaning                              unit    sign
-    q, v      positions, velocities; x, y = q      m, m/s  y is up
+    x, y      position of a ball's centre; q both  m       y is up
+    vx, vy    its velocity; v both                 m/s
     gap       distance of two surfaces             m       > 0 apart
     depth     -gap                                 m       > 0 overlapping
-    n         normal of a contact, a unit vector   -       from j to i; the floor is j = -1
-    v_n       n . (v_i - v_j)                      m/s     > 0 separating
-    f_n, lam  contact force, contact impulse       N, N s  >= 0: a contact only pushes
-    k, c      penalty stiffness, damping           N/m, N s/m
-    e, beta   restitution, Baumgarte gain          -       0 to 1
+    n         normal of a contact, a unit vector   -       from body b to body a; from the floor up
+    v_n       n . (v_a - v_b)                      m/s     > 0 separating
+    f_n       contact force of penalty             N       >= 0: a contact only pushes
+    lam       contact impulse over one step        N s     >= 0: a contact only pushes
+    k, c      stiffness and damping of penalty     N/m, N s/m
+    e         restitution: share of the speed that a bounce gives back, 0 to 1
+    beta      Baumgarte gain: share of an overlap that a step of lcp removes, 0 to 1
+    d         impedance of soft: 0 gives way, 1 is hard
 
-q and v are two rows of N numbers, (2, N). Inside a step a row is a list of floats for a few balls
-and an array for many: the same lines compute both, to the same bits.
-    python contact.py --scene drop                      # then: bounce, stack, pile
-    python contact.py --contact penalty --dt 0.03       # past the critical time step
-    python contact.py --smoke --no-rerun                # fixed length, the same bytes every time
+Run it:
+    python contact.py --scene drop                  # then: bounce, stack, pile
+    python contact.py --contact penalty --dt 0.03   # one model, a longer step
+    python contact.py --smoke --no-rerun            # fixed length, the same bytes every time
 """
 
 # --- region: setup ---
@@ -33,30 +37,606 @@ from typing import NamedTuple
 
 import numpy as np
 
-from curriculum.common import arguments, balls, device, memory, progress, results, roots
-
 GRAVITY = -9.81         # m/s^2, along y
-RADIUS = 0.1            # m, of every ball in the scenes; penetration is told in units of it
-CONTACT_MARGIN = 1e-3   # m: lcp lists a contact this far before it touches, so resting ones stay
-SLIDING = 24            # balls: a larger pile slides for long, and exact with it: only when asked
-EXPLODED = 10.0         # gaining more than this times the start energy is an explosion
-DT_GRID = (1, 2, 4, 8, 16, 32)      # multiples of --dt that the stability line tries
+RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
+CONTACT_MARGIN = 1e-3   # m: lcp treats a smaller gap as contact, so a resting ball stays listed
+FEW = 12                # balls: up to so many, looking at every pair is the fastest way
+EXPLODED = 10.0         # a run that gains more than this many times its start energy has exploded
+SOLREF = (0.02, 1.0)    # of soft, MuJoCo's default: time constant [s], damping ratio
+SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)   # of soft, MuJoCo's default: see impedance
+HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # of soft, the hardest contact that MuJoCo allows
+MOST_SWEEPS = 10_000    # of soft in one step, should its impulses never come to rest
+LAST_BITS = 2.0**-51    # of soft: an impulse that changes by a smaller share has come to rest
 SCENES = ("drop", "bounce", "stack", "pile")
-MODELS = ("penalty", "lcp", "exact")
-COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "exact": "#009e73"}   # told apart by all eyes
+MODELS = ("penalty", "lcp", "soft", "exact")
+# --- endregion ---
 
+
+# --- region: scenes ---
+class Scene(NamedTuple):
+    """Balls over the floor: q0, v0 (2, N) [m, m/s]; mass [kg] and radius [m], both (N,)."""
+
+    name: str
+    q0: np.ndarray
+    v0: np.ndarray
+    mass: np.ndarray        # a ball of infinite mass is held where it is
+    radius: np.ndarray
+    restitution: float      # e, of lcp, soft and exact; penalty has no such knob
+    damping: float          # c of penalty [N s/m]
+
+
+def build_scene(name: str, seed: int = 0, bodies: int | None = None,
+                restitution: float | None = None, damping: float | None = None) -> Scene:
+    """The scene of that name, all balls at rest. None stands for the scene's own value.
+
+    The seed draws one height, uniform in +-0.02 m. It shifts the start of drop and bounce. It only
+    lifts stack and pile, so that they never start inside the floor. In a pile it also numbers and
+    nudges the balls. Raises ValueError for an unknown name.
+    """
+    rng = np.random.default_rng(seed)
+    draw = rng.uniform(-0.02, 0.02)
+    if name in ("drop", "bounce"):
+        x, y = [0.0], [1.0 + draw]
+    elif name == "stack":
+        y = [(2 * i + 1) * RADIUS + abs(draw) for i in range(bodies or 3)]
+        x = [0.0] * len(y)
+    elif name == "pile":
+        x, y = pile_lattice(bodies or 200, abs(draw), rng)
+    else:
+        raise ValueError(f"scene {name!r}; allowed: {', '.join(SCENES)}")
+    own_restitution, own_damping = (0.7, 0.0) if name == "bounce" else (0.0, 80.0)
+    return Scene(name, np.array((x, y)), np.zeros((2, len(x))), np.ones(len(x)),
+                 np.full(len(x), RADIUS),
+                 own_restitution if restitution is None else restitution,
+                 own_damping if damping is None else damping)
+
+
+def pile_lattice(count, lift, rng):
+    """x and y (count,) [m] on a lattice 2.5 r wide, each nudged by up to 0.1 r, all gaps open.
+
+    The balls are numbered at random, so that the order of the contacts has no pattern.
+    """
+    place = rng.permutation(count)
+    width = math.ceil(math.sqrt(2 * count))
+    nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
+    x = 2.5 * RADIUS * (place % width - 0.5 * (width - 1)) + nudge[0]
+    y = 2.5 * RADIUS * (place // width + 0.5) + lift + nudge[1]
+    return x, y
+# --- endregion ---
+
+
+# --- region: ball ---
+class Ball:
+    """A ball: position [m], velocity [m/s], mass [kg], radius [m], and the force on it [N]."""
+
+    def __init__(self, x, y, vx, vy, mass, radius):
+        self.x, self.y = x, y
+        self.vx, self.vy = vx, vy
+        self.fx, self.fy = 0.0, 0.0
+        self.mass = mass
+        self.inv_mass = 1.0 / mass      # 0 for infinite mass: nothing moves that ball
+        self.radius = radius
+
+
+FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)
+
+
+class Contact:
+    """Balls a and b, how deep they overlap [m], and the unit normal (nx, ny) from b to a."""
+
+    def __init__(self, a, b, nx, ny, depth):
+        self.a, self.b = a, b
+        self.nx, self.ny = nx, ny
+        self.depth = depth
+        inv_mass = a.inv_mass + b.inv_mass
+        self.m_eff = 1.0 / inv_mass if inv_mass > 0.0 else 0.0      # effective mass [kg]
+        self.target = 0.0       # the v_n [m/s] to leave with at least
+        self.softness = 0.0     # R [1/kg] of soft; 0 is hard
+        self.lam = 0.0          # the impulse [N s] so far
+
+    def v_n(self):
+        """Normal velocity [m/s], positive when the balls separate."""
+        return self.nx * (self.a.vx - self.b.vx) + self.ny * (self.a.vy - self.b.vy)
+
+    def push(self, impulse):
+        """Give ball a this impulse [N s] along the normal, and ball b the opposite one."""
+        a, b = self.a, self.b
+        a.vx += impulse * (a.inv_mass * self.nx)
+        a.vy += impulse * (a.inv_mass * self.ny)
+        if b is not FLOOR:
+            b.vx -= impulse * (b.inv_mass * self.nx)
+            b.vy -= impulse * (b.inv_mass * self.ny)
+# --- endregion ---
+
+
+# --- region: contacts ---
+def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
+    """The contacts of balls that touch the floor or each other, or are within `margin` [m] of it.
+
+    The floor's contacts come first, by ball, then those of pairs, by the first ball and then the
+    second: a solver takes them in this order, so the order is part of the result. Two balls with
+    the same centre get the normal (0, 1), since some direction must be chosen.
+    """
+    contacts = []
+    for ball in balls:
+        depth = ball.radius - ball.y
+        if depth > -margin:
+            contacts.append(Contact(ball, FLOOR, 0.0, 1.0, depth))
+    for a, b in possible_pairs(balls, margin):
+        dx = a.x - b.x
+        dy = a.y - b.y
+        distance = math.sqrt(dx * dx + dy * dy)
+        depth = a.radius + b.radius - distance
+        if depth > -margin:
+            nx, ny = (dx / distance, dy / distance) if distance > 0.0 else (0.0, 1.0)
+            contacts.append(Contact(a, b, nx, ny, depth))
+    return contacts
+# --- endregion ---
+
+
+# --- region: pairs ---
+def possible_pairs(balls, margin):
+    """The pairs of balls that are worth a look, in order: all of them while the balls are few.
+
+    Of many balls only those pairs are looked at whose shadows on the x axis come within `margin`
+    [m] of each other. The others cannot touch, so the list of contacts stays the same.
+    """
+    if len(balls) <= FEW:
+        return itertools.combinations(balls, 2)
+    known = [i for i, ball in enumerate(balls) if math.isfinite(ball.x)]
+    known.sort(key=lambda i: balls[i].x)
+    reach = 1.000001 * (2.0 * max(ball.radius for ball in balls) + margin)  # room for rounding
+    pairs = []
+    for place, i in enumerate(known):
+        for j in itertools.islice(known, place + 1, None):
+            if balls[j].x - balls[i].x > reach:
+                break
+            if abs(balls[j].y - balls[i].y) <= reach:
+                pairs.append((min(i, j), max(i, j)))
+    return [(balls[i], balls[j]) for i, j in sorted(pairs)]
+# --- endregion ---
+
+
+# --- region: penalty ---
+def penalty_normal_force(depth, v_n, stiffness, damping):
+    """f_n [N] of a spring and a damper at `depth` > 0 [m]. The clamp makes it one-sided."""
+    return max(0.0, stiffness * depth - damping * v_n)
+
+
+def penalty_force(contacts, stiffness, damping):
+    """Add the force of a spring and a damper to the two balls of every contact."""
+    for c in contacts:
+        f_n = penalty_normal_force(c.depth, c.v_n(), stiffness, damping)
+        c.a.fx += f_n * c.nx
+        c.a.fy += f_n * c.ny
+        c.b.fx -= f_n * c.nx        # equal and opposite
+        c.b.fy -= f_n * c.ny
+
+
+def penalty_step(balls, dt, stiffness, damping):
+    """One step [s] in which contact is one more force, and the integrator stays what it was."""
+    for ball in balls:
+        ball.fx = ball.fy = 0.0
+    penalty_force(detect_contacts(balls, margin=0.0), stiffness, damping)
+    semi_implicit_step(balls, dt)
+# --- endregion ---
+
+
+# --- region: integrator ---
+def semi_implicit_step(balls, dt):
+    """Semi-implicit Euler under gravity and the forces: the new velocity first, then x and y."""
+    for ball in balls:
+        if ball.inv_mass > 0.0:
+            ball.vx += dt * (ball.fx / ball.mass)
+            ball.vy += dt * (GRAVITY + ball.fy / ball.mass)
+    move(balls, dt)
+
+
+def fall(balls, dt):
+    """Give every ball that can move the velocity that gravity adds in one step."""
+    for ball in balls:
+        if ball.inv_mass > 0.0:
+            ball.vy += dt * GRAVITY
+
+
+def move(balls, dt):
+    """Move every ball with its velocity for one step."""
+    for ball in balls:
+        ball.x += dt * ball.vx
+        ball.y += dt * ball.vy
+# --- endregion ---
+
+
+# --- region: critical-dt ---
+def critical_dt(mass: float, stiffness: float, damping: float) -> float:
+    """The largest stable step [s] of penalty for a ball kept in contact; inf without a spring.
+
+    The step is linear there, and Jury's test of its matrix asks for k dt^2 + 2 c dt < 4 m.
+    Without a damper that is the textbook's dt < 2 sqrt(m / k).
+    """
+    root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
+    return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
+# --- endregion ---
+
+
+# --- region: lcp-target ---
+def contact_target(c, restitution, baumgarte, dt):
+    """The normal velocity [m/s] with which contact c must leave at least; before gravity acts.
+
+    Bodies that touch, or would meet within this step, get the bounce -e v_n. Across a wider gap
+    they may come as close as touching, so that nothing bounces on air. No target is above
+    -e v_n, also between bodies that part already, and so impulses cannot add energy (Moreau
+    1988). Only the bias velocity that ends an overlap (Baumgarte 1972) can. It replaces the
+    bounce where it is larger; their sum would bounce too high.
+    """
+    bias = baumgarte / dt * c.depth         # < 0 across a gap
+    if restitution == 0.0:
+        return bias
+    v_n = c.v_n()
+    bounce = -restitution * v_n
+    if bias > 0.0:
+        return max(bias, bounce)
+    meets = dt * v_n <= c.depth
+    return bounce if meets else min(bounce, c.depth / dt)
+# --- endregion ---
+
+
+# --- region: lcp-sweep ---
+def project_impulse(lam, dlam):
+    """The impulse after a correction: the sum may not become negative, a correction may."""
+    return max(0.0, lam + dlam)
+
+
+def solve_contacts(contacts, iters: int, last_bits: float = 0.0) -> None:
+    """Find impulses with lam >= 0, w >= 0 and lam w = 0, where w = v_n + softness lam - target.
+
+    Projected Gauss-Seidel: each sweep mends one contact after the other, by the impulse that
+    brings it to its target, and disturbs its neighbours; the next sweep mends those. Changes lam
+    of the contacts and the velocities of their balls. Stops after a sweep that changes no impulse
+    by more than `last_bits` of itself: every further sweep would repeat it. In velocities and
+    impulses: Moreau (1988); Stewart and Trinkle (1996); Anitescu and Potra (1997).
+    """
+    for _ in range(iters):
+        settled = True
+        for c in contacts:
+            missing = c.target - c.v_n() - c.softness * c.lam
+            lam = project_impulse(c.lam, missing * c.m_eff)
+            if lam != c.lam:
+                change = lam - c.lam
+                c.push(change)
+                c.lam = lam
+                if not abs(change) <= last_bits * lam:
+                    settled = False
+        if settled:
+            break
+# --- endregion ---
+
+
+# --- region: lcp ---
+def lcp_step(balls, dt, restitution, baumgarte, iters):
+    """One step [s]: gravity predicts the velocities, impulses correct them, the balls move."""
+    contacts = detect_contacts(balls)
+    for c in contacts:
+        c.target = contact_target(c, restitution, baumgarte, dt)
+    fall(balls, dt)
+    solve_contacts(contacts, iters)
+    move(balls, dt)
+# --- endregion ---
+
+
+# --- region: soft-impedance ---
+def impedance(depth, solimp):
+    """How hard the contact is at that depth [m]: d between 0 and 1 (MuJoCo's getimpedance).
+
+    It grows from d0 at the surface to d1 at the depth `width` [m], along an S made of two powers
+    that meet at the share `mid` of the width.
+    """
+    d0, d1, width, mid, power = solimp
+    if width <= 1e-15:                                  # m; MuJoCo takes the mean then
+        return 0.5 * (d0 + d1)
+    if depth >= width:
+        return d1
+    x = depth / width
+    if x <= mid:
+        y = raised(x, power) / raised(mid, power - 1.0)
+    else:
+        y = 1.0 - raised(1.0 - x, power) / raised(1.0 - mid, power - 1.0)
+    return d0 + y * (d1 - d0)
+
+
+def raised(x, power):
+    """x to that power; a whole power by products, whose bits are the same in every language."""
+    if power != int(power):
+        return x**power
+    product = 1.0
+    for _ in range(int(power)):
+        product *= x
+    return product
+
+
+def soft_defaults(restitution, dt, solref=None, solimp=None):
+    """The solref and solimp that a run uses, within MuJoCo's bounds. None stands for the default.
+
+    Restitution needs the direct form of solref, minus stiffness and minus damping, and a hard
+    contact: the damping (1 + e) / dt turns v_n into -e v_n within one step.
+    """
+    if solref is None and restitution > 0.0:
+        solref, solimp = (0.0, -(1.0 + restitution) / dt), solimp or HARD
+    elif solref is None or solref[0] > 0.0:
+        timeconst, dampratio = solref or SOLREF
+        solref = max(timeconst, 2.0 * dt), dampratio    # refsafe: no faster than two steps
+    d0, d1, width, mid, power = solimp or SOLIMP
+    d0, d1, mid = (min(max(share, 0.0001), 0.9999) for share in (d0, d1, mid))
+    return solref, (d0, d1, width, mid, power)
+# --- endregion ---
+
+
+# --- region: soft ---
+def soften(c, dt, solref, solimp):
+    """Give contact c the target and the softness that MuJoCo's contact has.
+
+    A spring K [1/s^2] and a damper B [1/s] ask for the acceleration a_ref = K d depth - B v_n
+    (mj_makeImpedance, mj_referenceConstraint). They act per unit of mass, so any ball follows
+    them alike. The softness R [1/kg] lets the contact give way: the harder, the less.
+    """
+    d = impedance(c.depth, solimp)
+    d1 = solimp[1]
+    if solref[0] > 0.0:                                 # time constant [s] and damping ratio
+        timeconst, dampratio = solref
+        K = 1.0 / (d1 * d1 * timeconst * timeconst * dampratio * dampratio)
+        B = 2.0 / (d1 * timeconst)
+    else:                                               # direct: minus stiffness, minus damping
+        K = -solref[0] / (d1 * d1)
+        B = -solref[1] / d1
+    v_n = c.v_n()                                       # before gravity acts
+    inv_mass = c.a.inv_mass + c.b.inv_mass
+    c.target = v_n + dt * (K * d * c.depth - B * v_n)
+    c.softness = max(1e-15, (1.0 - d) / d * inv_mass)
+    c.m_eff = 1.0 / (inv_mass + c.softness)
+
+
+def soft_step(balls, dt, solref, solimp):
+    """One step [s] of MuJoCo's contact: lcp's step with another target, and softness.
+
+    The softness makes the problem strictly convex: it has one answer. So the sweeps go on until
+    the impulses keep all but their last bits, which takes more sweeps the harder the contacts.
+    """
+    contacts = detect_contacts(balls, margin=0.0)
+    for c in contacts:
+        soften(c, dt, solref, solimp)
+    fall(balls, dt)
+    solve_contacts(contacts, MOST_SWEEPS, LAST_BITS)
+    move(balls, dt)
+# --- endregion ---
+
+
+# --- region: simulate ---
+class Run(NamedTuple):
+    """A recording: t (steps + 1,) [s]; q and v (steps + 1, 2, N) [m, m/s]."""
+
+    t: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+
+
+def make_balls(scene):
+    """The scene's balls, as the steps move them."""
+    columns = (*scene.q0, *scene.v0, scene.mass, scene.radius)
+    return [Ball(*values) for values in np.transpose(columns).tolist()]
+
+
+def state_of(balls):
+    """Four rows of N numbers: x, y, vx, vy."""
+    return list(zip(*[(ball.x, ball.y, ball.vx, ball.vy) for ball in balls]))
+
+
+def set_state(balls, rows):
+    """Put the balls where four rows of N numbers say."""
+    for ball, values in zip(balls, rows.T.tolist()):
+        ball.x, ball.y, ball.vx, ball.vy = values
+
+
+@np.errstate(all="ignore")
+def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True,
+             report=lambda k: None) -> Run:
+    """Take that many steps, `step(balls)` each, and record every state.
+
+    With `skip` two kinds of steps are not taken, and no bit changes. A flight without contact is
+    summed up in one go. And when a state comes back (rest, or any cycle), the rest of the run is
+    a copy, since a step depends on the state alone. `report(k)` is called with the steps done.
+    """
+    balls = make_balls(scene)
+    rows = np.empty((steps + 1, 4, len(balls)))
+    rows[0] = state_of(balls)
+    seen = {}                                           # hash of a state: the step it came at
+    k = 0
+    while k < steps:
+        if skip:
+            first = seen.setdefault(hash(rows[k].tobytes()), k)
+            if first < k and rows[first].tobytes() == rows[k].tobytes():
+                rows[k:] = rows[first + np.arange(steps + 1 - k) % (k - first)]
+                break
+            flight = fly(balls, dt, steps - k)
+            if len(flight) > 0:
+                rows[k + 1:k + 1 + len(flight)] = flight
+                k += len(flight)
+                set_state(balls, rows[k])
+                continue
+        step(balls)
+        k += 1
+        rows[k] = state_of(balls)
+        report(k)
+    rows += 0.0                                         # turns -0.0 into 0.0
+    return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
+# --- endregion ---
+
+
+# --- region: flight ---
+def fly(balls, dt, most):
+    """The next states (n, 4, N), n <= most, of balls that touch nothing.
+
+    Short flights are left to the steps, and n is 0. np.add.accumulate adds in the same order as
+    the steps do, so the bits agree.
+    """
+    count = min(most, *[steps_to_floor(ball, dt) for ball in balls])
+    if count < 16 or detect_contacts(balls):
+        return ()
+    rows = np.empty((int(count) + 1, 4, len(balls)))
+    rows[0] = state_of(balls)
+    rows[1:, 2] = 0.0
+    rows[1:, 3] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
+    np.add.accumulate(rows[:, 2:], out=rows[:, 2:])     # v, v + dt g, v + dt g + dt g, ...
+    rows[1:, :2] = dt * rows[1:, 2:]
+    np.add.accumulate(rows[:, :2], out=rows[:, :2])
+    gap = smallest_gap(rows[:, :2], np.array([ball.radius for ball in balls]))
+    contact = np.flatnonzero(gap < CONTACT_MARGIN)
+    return rows[1:contact[0] + 1] if len(contact) > 0 else rows[1:]
+
+
+def steps_to_floor(ball, dt):
+    """About how many steps the ball falls freely until it is within the margin of the floor."""
+    gap = ball.y - ball.radius - CONTACT_MARGIN
+    if not gap > 0.0:
+        return 0
+    if ball.inv_mass == 0.0:
+        return math.inf
+    return (ball.vy + math.sqrt(ball.vy * ball.vy - 2.0 * GRAVITY * gap)) / -GRAVITY / dt
+# --- endregion ---
+
+
+# --- region: run ---
+def run_model(model: str, scene: Scene, dt: float, steps: int, stiffness: float = 1e4,
+              baumgarte: float = 0.2, iters: int = 20, skip: bool = True,
+              report=lambda k: None, solref=None, solimp=None) -> Run:
+    """The run of a scene by one of MODELS. Raises ValueError for any other name.
+
+    Many balls are stepped by curriculum/piles.py where it can be had, to the same bits.
+    """
+    if model not in MODELS:
+        raise ValueError(f"model {model!r}; allowed: {', '.join(MODELS)}")
+    if model == "exact":
+        from curriculum import exact
+        times = np.arange(steps + 1) * dt
+        return Run(times, *exact.simulate_exact(scene, times, GRAVITY, report))
+    e = scene.restitution
+    solref, solimp = soft_defaults(e, dt, solref, solimp)
+    steps_by = {
+        "penalty": lambda balls: penalty_step(balls, dt, stiffness, scene.damping),
+        "lcp": lambda balls: lcp_step(balls, dt, e, baumgarte, iters),
+        "soft": lambda balls: soft_step(balls, dt, solref, solimp)}
+    return simulate(steps_by[model], scene, dt, steps, skip, report)
+# --- endregion ---
+
+
+# --- region: measure ---
+@np.errstate(all="ignore")
+def energy(q, v, mass):
+    """Kinetic plus potential energy [J] of states (..., 2, N), zero at the floor.
+
+    Balls of infinite mass are held, so they do not count.
+    """
+    mass = np.where(np.isfinite(mass), mass, 0.0)
+    return (0.5 * mass * (v * v).sum(-2) - mass * GRAVITY * q[..., 1, :]).sum(-1)
+
+
+@np.errstate(all="ignore")
+def smallest_gap(q, radius):
+    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N).
+
+    Ball i is compared with ball i + lag, for all i and all states at once, and for every lag.
+    """
+    gap = (q[:, 1] - radius).min(-1)
+    for lag in range(1, len(radius)):
+        dx = q[:, 0, lag:] - q[:, 0, :-lag]
+        dy = q[:, 1, lag:] - q[:, 1, :-lag]
+        reach = radius[lag:] + radius[:-lag]
+        gap = np.minimum(gap, (np.sqrt(dx * dx + dy * dy) - reach).min(-1))
+    return gap
+
+
+def max_penetration(q, radius):
+    """The deepest overlap [m] with the floor or a ball, 0 without one, in states (..., 2, N)."""
+    states = q.reshape(-1, *q.shape[-2:])
+    return np.maximum(-smallest_gap(states, radius), 0.0).reshape(q.shape[:-2])
+
+
+def blow_up_step(total):
+    """The first step at which the energy [J] has gained EXPLODED times its start, or None.
+
+    An energy that is not a number counts as exploded.
+    """
+    bad = ~(total - total[0] < EXPLODED * (abs(total[0]) or 1.0))
+    return int(bad.argmax()) if bad.any() else None
+# --- endregion ---
+
+
+# --- region: quality ---
+@np.errstate(all="ignore")
+def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None) -> dict:
+    """The error measures of a run: lengths in radii of the first ball, energies in start energies.
+
+    max_penetration_frac, rest_penetration_frac: the deepest overlap, and the one at the end
+    rest_gap_frac: the smallest gap at the end; below 0 sunk in, above 0 hanging in the air
+    rebound_frac: the largest value of the smallest gap after the first contact
+    rest_jitter: standard deviation of the overlap over the last quarter
+    energy_excess: the most energy above the start; blew_up, blew_up_step: whether, when it exploded
+    contact_energy: the energy that contacts put into the bodies: all its rises, step by step
+    height_error_frac: the worst height error against the run `reference`, which is the sum of
+    flight_error_frac, the worst before the first contact, and contact_error_frac, what is added
+    """
+    total = energy(run.q, run.v, scene.mass)
+    scale = abs(float(total[0])) or 1.0
+    radius = float(scene.radius[0])
+    gap = smallest_gap(run.q, scene.radius) / radius
+    depth = np.maximum(-gap, 0.0)
+    touching = np.flatnonzero(~(gap * radius > CONTACT_MARGIN))
+    landing = int(touching[0]) if len(touching) > 0 else len(gap)
+    step = blow_up_step(total)
+    quality = {
+        "max_penetration_frac": float(depth.max()),
+        "rest_penetration_frac": float(depth[-1]),
+        "rest_gap_frac": float(gap[-1]),
+        "rebound_frac": float(gap[landing:].max(initial=0.0)),
+        "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])),
+        "energy_excess": float((total - total[0]).max()) / scale,
+        "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
+        "blew_up": step is not None,
+        "blew_up_step": step}
+    return quality | height_errors(run, reference, landing, radius)
+
+
+def height_errors(run, reference, landing, radius):
+    """The worst height error [radius], and its parts: before step `landing`, and what is added."""
+    worst = flight = added = None
+    if reference is not None:
+        error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / radius
+        worst = float(error.max())
+        flight = float(error[:landing].max(initial=0.0))
+        added = worst - flight
+    return {"height_error_frac": worst, "flight_error_frac": flight, "contact_error_frac": added}
+# --- endregion ---
+
+
+# --- region: flags ---
 def parse_flags(argv):
-    """The checked command line. Bad input: one line on stderr, exit status 2, nothing written."""
-    parser = arguments.Parser(prog="contact.py", description="Contact, built three times.")
+    """The checked command line. Bad input ends with one line on stderr and exit status 2."""
+    from curriculum.common import arguments, memory
+    parser = arguments.Parser(prog="contact.py", description="Contact, built four times.")
     flag, number, switch = parser.add_argument, arguments.number, argparse.BooleanOptionalAction
     flag("--seed", type=number(int, low=0), default=0, help="draws the start height (0)")
     flag("--scene", choices=SCENES, default="drop")
     flag("--contact", choices=("all", *MODELS), default="all")
     flag("--stiffness", type=number(float, low=0), default=1e4, help="k, penalty [N/m] (1e4)")
     flag("--damping", type=number(float, low=0), help="c, penalty [N s/m] (80; bounce 0)")
-    flag("--restitution", type=number(float, 0, 1), help="e, lcp and exact (0; bounce 0.7)")
+    flag("--restitution", type=number(float, 0, 1), help="e, lcp, soft, exact (0; bounce 0.7)")
     flag("--baumgarte", type=number(float, 0, 1), default=0.2, help="beta, lcp (0.2)")
     flag("--iters", type=number(int, low=1), default=20, help="Gauss-Seidel sweeps a step (20)")
+    flag("--solref", type=number(float), nargs=2, metavar=("T", "ZETA"),
+         help="soft: time constant [s] and damping ratio (0.02 1), or minus stiffness and minus "
+              "damping; with restitution 0 and -(1 + e) / dt")
+    flag("--solimp", type=number(float, low=0), nargs=5,
+         metavar=("D0", "D1", "WIDTH", "MID", "POWER"),
+         help="soft: the impedance (0.9 0.95 0.001 0.5 2; with restitution it is 0.9999)")
     flag("--dt", type=number(float, above=0), default=0.002, help="time step [s] (0.002)")
     flag("--steps", type=number(int, low=0), default=2000, help="how many (2000)")
     flag("--bodies", type=number(int, low=1), help="balls of stack (3) and pile (200)")
@@ -70,405 +650,80 @@ def parse_flags(argv):
         parser.error(f"argument --bodies: given {args.bodies}; allowed: stack and pile only")
     args.steps = 800 if args.smoke else args.steps
     count = args.bodies or {"stack": 3, "pile": 200}.get(args.scene, 1)
-    memory.need(parser, 600 * (args.steps + 1) * count, f"--steps {args.steps} of {count} balls")
+    memory.need(parser, 800 * (args.steps + 1) * count, f"--steps {args.steps} of {count} balls")
     return args
 # --- endregion ---
 
-# --- region: scenes ---
-class Scene(NamedTuple):
-    """Balls at rest over the floor: q0, v0 (2, N) [m, m/s]; mass [kg], radius [m] (N,)."""
-    name: str
-    q0: np.ndarray
-    v0: np.ndarray
-    mass: np.ndarray
-    radius: np.ndarray
-    restitution: float      # e: lcp and exact use it as it is; penalty has no such knob
-    damping: float          # c of penalty [N s/m]
 
-def build_scene(name, seed=0, bodies=None, restitution=None, damping=None):
-    """The Scene of that name (ValueError: no such scene); None means the scene's own value.
+# --- region: stability ---
+DT_GRID = (1, 2, 4, 8, 16, 32)      # multiples of --dt that the stability lines try
 
-    The seed draws once, uniform in +-0.02 m: it shifts the drop height, or lifts stack and pile by
-    the draw's size, never into the floor; in the pile it also numbers and nudges the balls.
+
+def measure_stability(run, scene, dt, stiffness, first):
+    """The largest step of the grid without an explosion, by model, and the depth reached there.
+
+    `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model.
     """
-    rng = np.random.default_rng(seed)
-    draw = rng.uniform(-0.02, 0.02)
-    if name in ("drop", "bounce"):
-        x, y = [0.0], [1.0 + draw]
-    elif name == "stack":
-        y = [(2 * i + 1) * RADIUS + abs(draw) for i in range(bodies or 3)]
-        x = [0.0] * len(y)
-    elif name == "pile":
-        x, y = pile_lattice(bodies or 200, abs(draw), rng)
-    else:
-        raise ValueError(f"scene {name!r}; allowed: {', '.join(SCENES)}")
-    e, c = (0.7, 0.0) if name == "bounce" else (0.0, 80.0)
-    return Scene(name, np.array((x, y)), np.zeros((2, len(x))), np.ones(len(x)),
-                 np.full(len(x), RADIUS), e if restitution is None else restitution,
-                 c if damping is None else damping)
-
-def pile_lattice(count, lift, rng):
-    """x, y (count,) on a lattice 2.5 r wide, nudged by up to 0.1 r, gaps > 0. Numbered at random:
-    numbers along the lattice would chain contacts, each waiting for the one before."""
-    place, width = rng.permutation(count), math.ceil(math.sqrt(2 * count))
-    nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
-    return (2.5 * RADIUS * (place % width - 0.5 * (width - 1)) + nudge[0],
-            2.5 * RADIUS * (place // width + 0.5) + lift + nudge[1])
+    mass = float(scene.mass[0])
+    grid = {"dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
+            "dt_crit_damped": critical_dt(mass, stiffness, scene.damping)}
+    for model in ("penalty", "lcp", "soft"):
+        grid[model], grid[f"{model}_penetration_frac"] = 0.0, None
+        for step in [dt * factor for factor in DT_GRID]:
+            found = first[model] if step == dt else run(model, step)
+            if blow_up_step(energy(found.q, found.v, scene.mass)) is None:
+                depth = float(max_penetration(found.q, scene.radius).max() / scene.radius[0])
+                grid[model], grid[f"{model}_penetration_frac"] = step, depth
+    return grid
 # --- endregion ---
 
-# --- region: contacts ---
-def detect_contacts(q, radius, margin=CONTACT_MARGIN):
-    """Where balls touch the floor or each other, or are within `margin` [m] of it.
-
-    Returns [(i, j, nx, ny, depth), ...]: the floor's by body (j = -1), then pairs i < j in order;
-    the order is part of the result. From rows of floats: one contact a tuple. From arrays (N,): a
-    tuple may hold arrays, a group of contacts that share no body. Coinciding centres part along y.
-    """
-    x, y = q
-    if isinstance(y, np.ndarray):
-        return balls.group_contacts(*balls.contact_arrays(np.array(q), radius, margin), len(y))
-    contacts = [(i, -1, 0.0, 1.0, radius[i] - y[i])
-                for i in range(len(y)) if radius[i] - y[i] > -margin]
-    for i, j in itertools.combinations(range(len(y)), 2):
-        dx, dy = x[i] - x[j], y[i] - y[j]
-        distance = math.sqrt(dx * dx + dy * dy)
-        depth = radius[i] + radius[j] - distance
-        if depth > -margin:
-            n = (dx / distance, dy / distance) if distance > 0.0 else (0.0, 1.0)
-            contacts.append((i, j, *n, depth))
-    return contacts
-# --- endregion ---
-
-# --- region: penalty ---
-def penalty_normal_force(depth, v_n, stiffness, damping, larger=max):
-    """f_n >= 0 [N] of spring and damper at `depth` > 0 [m]; the clamp is the one-sidedness."""
-    return larger(0.0, stiffness * depth - damping * v_n)
-
-def penalty_force(q, v, mass, radius, stiffness, damping):
-    """Contact forces fx, fy (N,) [N]; a spring pushes only while it is compressed."""
-    contacts = detect_contacts(q, radius, margin=0.0)
-    larger, _, _, row = balls.operations(contacts)
-    vx, vy, fx, fy = map(row, (*v, [0.0] * len(mass), [0.0] * len(mass)))
-    for i, j, nx, ny, depth in contacts:
-        v_n = nx * (vx[i] - vx[j]) + ny * (vy[i] - vy[j])
-        f_n = penalty_normal_force(depth, v_n, stiffness, damping, larger)
-        fx[i] += f_n * nx
-        fy[i] += f_n * ny
-        fx[j] -= f_n * nx           # equal and opposite; what the floor gets is never read
-        fy[j] -= f_n * ny
-    return fx[:-1], fy[:-1]
-
-def semi_implicit_step(q, v, mass, force, dt):
-    """Semi-implicit Euler under gravity and force(q, v): new velocity first, then q with it."""
-    v = balls.accelerate(v, GRAVITY, force(q, v), mass, dt)
-    return balls.advance(q, v, dt), v
-
-def critical_dt(mass, stiffness, damping):
-    """The largest stable dt [s] of that step for a ball kept in contact; inf without a spring.
-
-    Jury's test of the step matrix: k dt^2 + 2 c dt < 4 m. c = 0 is the textbook's 2 sqrt(m/k): a
-    damper makes the limit smaller, not larger."""
-    root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
-    return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
-# --- endregion ---
-
-# --- region: lcp ---
-def contact_targets(v, contacts, restitution, baumgarte, dt):
-    """The normal velocity [m/s] each contact must leave with at least; v from before gravity acts:
-    the bounce -e v_n, of parting bodies too, or energy could rise (Moreau 1988); in an overlap the
-    correction (beta / dt) depth (Baumgarte 1972) if larger; never their sum, a higher bounce."""
-    larger, choose, _, row = balls.operations(contacts)
-    (vx, vy), target = map(row, v), []
-    for i, j, nx, ny, depth in contacts:
-        push = baumgarte / dt * depth
-        if restitution > 0.0:
-            v_n = nx * (vx[i] - vx[j]) + ny * (vy[i] - vy[j])
-            push = choose(push > 0.0, larger(push, -restitution * v_n), -restitution * v_n)
-        target.append(push)
-    return target
-
-def project_impulse(lam, dlam, larger=max):
-    """The accumulated impulse [N s] after a change: the total never pulls; a change may."""
-    return larger(0.0, lam + dlam)
-
-def solve_contacts(v, inv_mass, contacts, target, iters):
-    """Projected Gauss-Seidel for lam >= 0, v_n >= target, lam (v_n - target) = 0.
-
-    v (2, N) [m/s]; inv_mass (N,) [1/kg], 0 for a body nothing moves. Returns the new v, and lam of
-    each contact [N s]. At velocity level: Moreau; Stewart, Trinkle 1996; Anitescu, Potra 1997.
-    A sweep that changes no impulse is the last: no later one would.
-    """
-    larger, choose, moves, row = balls.operations(contacts)
-    vx, vy, w = map(row, (*v, inv_mass))
-    lam, rows = [0.0] * len(contacts), []
-    for (i, j, nx, ny, _), goal in zip(contacts, target):
-        m_eff = 1.0 / choose(w[i] + w[j] > 0.0, w[i] + w[j], math.inf)      # effective mass
-        rows.append((i, j, nx, ny, w[i] * nx, w[i] * ny, w[j] * nx, w[j] * ny, m_eff, goal))
-    for _ in range(iters):
-        settled = True
-        for c, (i, j, nx, ny, ix, iy, jx, jy, m_eff, goal) in enumerate(rows):
-            v_n = nx * (vx[i] - vx[j]) + ny * (vy[i] - vy[j])
-            total = project_impulse(lam[c], (goal - v_n) * m_eff, larger)
-            dlam = total - lam[c]
-            if moves(dlam):
-                lam[c], settled = total, False
-                vx[i] += dlam * ix
-                vy[i] += dlam * iy
-                vx[j] -= dlam * jx
-                vy[j] -= dlam * jy
-        if settled:
-            break
-    return [vx[:-1], vy[:-1]], lam
-
-def lcp_step(q, v, inv_mass, radius, dt, restitution, baumgarte, iters):
-    """Predict v under gravity, solve the contacts for impulses, move with what comes out."""
-    contacts = detect_contacts(q, radius)
-    target = contact_targets(v, contacts, restitution, baumgarte, dt)
-    v = balls.fall(v, GRAVITY, dt)
-    if contacts:
-        v, _ = solve_contacts(v, inv_mass, contacts, target, iters)
-    return balls.advance(q, v, dt), v
-# --- endregion ---
-
-# --- region: exact ---
-def solve_lcp(W, b):
-    """lam >= 0 with w = W lam + b >= 0 and lam w = 0. W (K, K) is the Delassus matrix, b (K,).
-
-    Pivoting as Lawson and Hanson (1974), from all contacts active, as at rest: one more contact
-    pushes, or one less, so that lam'W lam / 2 + b'lam falls and no active set comes twice. The
-    table is made afresh until it needs no more, at most nine times.
-    """
-    if len(b) < 2:                                          # one contact is one clamp
-        return np.maximum(-b / W.diagonal(), 0.0)
-    scale = np.ldexp(1.0, -np.frexp(W.diagonal())[1] // 2)  # diagonal near 1: one tolerance for all
-    fresh = np.column_stack((W * scale * scale[:, None], b * scale))
-    least, active, lam = -1e-13 * np.abs(b * scale).max(initial=0.0), scale > 0.0, np.zeros(len(b))
-    def exchange(k):
-        row, column, pivot = table[k] / -table[k, k], table[:, k].copy(), table[k, k]
-        table[...] += column[:, None] * row
-        table[:, k], table[k], table[k, k] = column / pivot, row, 1.0 / pivot
-        active[k] = ~active[k]
-    for _ in range(9):
-        table, left, active, last = fresh.copy(), active, np.zeros(len(b), bool), None
-        while (diagonal := table[:, :-1].diagonal() * left).max() > 1e-12:
-            left[k := diagonal.argmax()] = False            # what stays left hangs on the others
-            exchange(k)
-        while True:
-            trial = np.where(active, table[:, -1], 0.0)
-            bad = np.flatnonzero(trial < least)
-            if len(bad):                                    # towards trial until one would pull
-                share = lam[bad] / (lam[bad] - trial[bad])
-                lam = np.where(active, lam + share.min() * (trial - lam), 0.0)
-                last = bad[share.argmin()]
-            else:                                           # let the one push that closes fastest
-                lam, w = trial, np.where(active, 0.0, table[:, -1])
-                if w.min() >= least:
-                    break
-                last = w.argmin()
-                if table[last, last] < 1e-12:               # it hangs on others: one of them stops
-                    column = np.where(active, table[:, last], 0.0)
-                    fall = np.flatnonzero(column < -1e-9)
-                    share = lam[fall] / -column[fall]
-                    lam = lam + share.min() * column
-                    lam[last] = share.min()
-                    exchange(fall[share.argmin()])
-            exchange(last)
-        if last is None:
-            break
-    return np.maximum(lam, 0.0) * scale
-
-def react(rows, i, j, n, w, b):
-    """rows + M^-1 J' lam with lam = solve_lcp(J M^-1 J', b), and lam; what is noise becomes 0."""
-    lam = solve_lcp(balls.delassus(i, j, n, w), b)
-    return balls.pushed(rows, lam, i, j, n, w), lam
-
-def settle(q, v, w, radius, restitution, held, touch):
-    """At an instant: overlaps moved out, impulses, forces. Returns q, v, a, gap, rests, slides.
-    Within `touch` r, and the last bits of q, is touching. A bounce below touch / 1000 r is the last
-    of its series: all that would follow add less. Contacts `held` until now do not bounce."""
-    every_i, every_j = balls.every_contact(len(w) - 1)
-    a, last = np.array([[0.0], [GRAVITY]]) * (w > 0.0), np.spacing(np.abs(q).max(0))
-    small = touch * radius[every_i] + 4.0 * np.maximum(last[every_i], last[every_j])
-    for _ in range(50):
-        n, depth = balls.geometry(q, radius, every_i, every_j)
-        near = np.flatnonzero(depth >= -small)
-        i, j, n = every_i[near], every_j[near], n[:, near]
-        if not (depth > small).any():
-            break
-        q, _ = react(q, i, j, n, w, -depth[near])
-    v_n, still = balls.along(v, i, j, n), np.zeros(len(every_i), bool)
-    slow = np.sqrt(-2.0 * GRAVITY * 1e-3 * touch * radius[i])
-    if (v_n < -0.1 * touch).any():                          # m/s; what impulses round is less
-        bounce = np.where(held[near], 0.0, -restitution * v_n)
-        v, _ = react(v, i, j, n, w, v_n - np.where(np.abs(bounce) < slow, 0.0, bounce))
-        v_n = balls.along(v, i, j, n)
-    rest = np.abs(v_n) < slow                               # what closes again is the next event
-    if not rest.any():
-        return q, v, a, -depth, still, False
-    still[near[rest]] = True
-    i, j, n = i[rest], j[rest], n[:, rest]
-    tangent = np.array((-n[1], n[0])) * (j >= 0)            # the floor's normal never turns
-    slip = balls.along(v, i, j, tangent)
-    turn = slip * slip / (radius[i] + radius[j])            # what keeps a turning normal in touch
-    a, _ = react(a, i, j, n, w, balls.along(a, i, j, n) + turn)
-    slides = np.abs(slip) + np.abs(balls.along(a, i, j, tangent)) > 1e-9    # pushed, or turning off
-    return q, v, a, -depth, still, slides.any()
-
-def next_impact(q, v, a, gap, radius, still, horizon, slow):
-    """Time until a contact not `still`, with v_n <= `slow`, closes; inf: not by `horizon`. Roots
-    of floor gaps, parabolas in t, and of |d + u t + c t^2 / 2|^2 - R^2 of pairs, quartics."""
-    count, p = q.shape[1] - 1, np.zeros((5, len(gap)))
-    i, j = (index[count:] for index in balls.every_contact(count))
-    p[0], p[1, :count], p[2, :count] = np.maximum(gap, 0.0), v[1, :-1], 0.5 * a[1, :-1]
-    reach = p[0, count:] + radius[i] + radius[j]
-    if count > 1:
-        d, u, c = (rows[:, i] - rows[:, j] for rows in (q, v, a))
-        p[0, count:] *= reach + radius[i] + radius[j]
-        p[1:, count:] = (2.0 * (d * u).sum(0), (u * u + d * c).sum(0), (u * c).sum(0),
-                         0.25 * (c * c).sum(0))
-    due = ~still & (p[1] <= slow * np.append(np.ones(count), 2.0 * reach))
-    return roots.first_fall(p[:, due], horizon).min(initial=np.inf)
-
-@np.errstate(all="ignore")
-def simulate_exact(scene, dt, steps, report=lambda k: None):
-    """The Run from event to event, sampled at k dt: no step error; the cost follows the events.
-
-    Parabolas between events. Touching bodies that close get impulses from the LCP of Newton's
-    restitution, all at once; resting ones forces from the LCP of accelerations. Not exact where
-    balls slide over one another in contact: forces hold for a sample, contacts closing slower than
-    g dt wait for its end, the overlap (of order dt^2) is moved out. Nor after 2000 events in a
-    sample: touching is ten times looser then, and so on, up to 1e-6 r.
-    """
-    q, v, w, radius = map(balls.with_floor, (scene.q0, scene.v0, 1.0 / scene.mass, scene.radius))
-    held, now, k, events, touch = balls.every_contact(len(w) - 1)[0] < 0, 0.0, 0, 0, 1e-12
-    run = Run(np.arange(steps + 1) * dt, *np.empty((2, steps + 1, *q.shape)))
-    while k <= steps:
-        q, v, a, gap, held, slides = settle(q, v, w, radius, scene.restitution, held, touch)
-        end = run.t[min(k + (run.t[k] <= now), steps)] if slides else run.t[-1]
-        span = min(end - now, next_impact(q, v, a, gap, radius, held, end - now,
-                                          dt * GRAVITY if slides else np.inf))
-        upto = int(np.searchsorted(run.t, now + span, "right"))
-        s = (run.t[k:upto] - now)[:, None, None]
-        run.q[k:upto], run.v[k:upto] = q + s * (v + 0.5 * s * a), v + s * a
-        q, v, now = q + span * (v + 0.5 * span * a), v + span * a, now + span
-        k, events = upto, events + 1 if upto == k else 0
-        touch, events = (min(10.0 * touch, 1e-6), 0) if events > 2000 else (touch, events)
-        report(k)
-    return Run(run.t, run.q[:, :, :-1], run.v[:, :, :-1])
-# --- endregion ---
-
-# --- region: simulate ---
-class Run(NamedTuple):
-    """A recording: t (steps + 1,) [s]; q, v (steps + 1, 2, N) [m, m/s]."""
-    t: np.ndarray
-    q: np.ndarray
-    v: np.ndarray
-
-@np.errstate(all="ignore")
-def simulate(step, scene, dt, steps, skip=True, report=lambda k: None):
-    """`steps` times q, v = step(q, v), as a Run. Rows are lists for few balls, and without skips.
-
-    With `skip` two kinds of steps are not taken, and no bit changes: a flight without contact is
-    summed in one go, and when a state comes back (rest, any cycle) the rest of the run is a copy,
-    since a step depends on the state alone. `report(k)` hears how far it is."""
-    rows, lists = np.empty((steps + 1, 4, len(scene.mass))), balls.few(scene.mass) or not skip
-    rows[0] = *scene.q0, *scene.v0
-    state, radius, seen = rows[0].tolist() if lists else list(rows[0]), scene.radius.tolist(), {}
-    k = ask = 0
-    while k < steps:
-        first = seen.setdefault(hash(rows[k].tobytes()), k) if skip else k
-        if first < k and rows[first].tobytes() == rows[k].tobytes():
-            rows[k:] = rows[first + np.arange(steps + 1 - k) % (k - first)]
-            break
-        if skip and lists and k >= ask:
-            free, flight = fly(state, radius, dt, steps - k)
-            ask = k + free
-            if len(flight):
-                rows[k + 1:k + 1 + len(flight)], k = flight, k + len(flight)
-                state = rows[k].tolist()
-                continue
-        q, v = step(state[:2], state[2:])
-        rows[k + 1] = state = [*q, *v]
-        k += 1
-        report(k)
-    rows += 0.0                                             # -0.0 becomes 0.0
-    return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
-
-def fly(row, radius, dt, most):
-    """Steps to wait before asking again, and the next states (n, 4, N), n <= most, of a flight:
-    near a parabola that starts slower by half a step of gravity, to the first contact listed. Its
-    bits are the steps', since np.add.accumulate adds in their order."""
-    for _, y, _, vy, r in zip(*row, radius):
-        gap, speed = y - r - CONTACT_MARGIN, vy + 0.5 * dt * GRAVITY
-        if not gap > 0.0:
-            return 0, ()
-        most = min(most, (speed + math.sqrt(speed * speed - 2.0 * GRAVITY * gap)) / -GRAVITY / dt)
-    if not most > 16.0:
-        return int(most), ()                                # a short flight is stepped
-    block = np.empty((int(most) + 1, 4, len(radius)))
-    block[0], block[1:, 2], block[1:, 3] = row, 0.0, dt * GRAVITY
-    np.add.accumulate(block[:, 2:], out=block[:, 2:])
-    block[1:, :2] = dt * block[1:, 2:]
-    np.add.accumulate(block[:, :2], out=block[:, :2])
-    contact = balls.deepest(block[:, :2], np.array(radius), CONTACT_MARGIN) > -CONTACT_MARGIN
-    return 16, block[1:contact.argmax() + 1 if contact.any() else None]
-
-def run_model(model, scene, dt, steps, stiffness=1e4, baumgarte=0.2, iters=20, skip=True,
-              report=lambda k: None):
-    """The Run of a scene by one of MODELS; ValueError for any other."""
-    mass, radius, w = (row.tolist() if balls.few(row) or not skip else row
-                       for row in (scene.mass, scene.radius, 1.0 / scene.mass))
-    steps_by = {
-        "penalty": lambda q, v: semi_implicit_step(q, v, mass, lambda q, v: penalty_force(
-            q, v, mass, radius, stiffness, scene.damping), dt),
-        "lcp": lambda q, v: lcp_step(q, v, w, radius, dt, scene.restitution, baumgarte, iters)}
-    if model not in MODELS:
-        raise ValueError(f"model {model!r}; allowed: {', '.join(MODELS)}")
-    if model == "exact":
-        return simulate_exact(scene, dt, steps, report)
-    return simulate(steps_by[model], scene, dt, steps, skip, report)
-
-@np.errstate(all="ignore")
-def energy(q, v, mass):
-    """Kinetic plus potential energy [J] of states (..., 2, N); zero at the floor."""
-    return (0.5 * mass * (v * v).sum(-2) - mass * GRAVITY * q[..., 1, :]).sum(-1)
-
-def max_penetration(q, radius):
-    """Deepest overlap [m] with the floor or a ball, 0 without one, in states (..., 2, N)."""
-    return np.maximum(balls.deepest(q, radius, CONTACT_MARGIN), 0.0)
-
-def blow_up_step(total):
-    """First of the energies [J] that gained EXPLODED times the first, or is not finite; or None."""
-    bad = ~(total - total[0] < EXPLODED * (abs(total[0]) or 1.0))
-    return int(bad.argmax()) if bad.any() else None
-
-@np.errstate(all="ignore")
-def contact_quality(run, scene, dt, reference=None):
-    """The honesty numbers of a Run, as shares of the first ball's radius or of the start energy.
-
-    max_, rest_penetration_frac: deepest, last overlap; rest_jitter: its deviation, last quarter.
-    energy_excess: most energy above the start; contact_energy: what contacts put INTO the bodies
-    beyond their law. height_error_frac: most |y - y of Run `reference`|.
-    """
-    total, radius = energy(run.q, run.v, scene.mass), float(scene.radius[0])
-    scale, depth = abs(float(total[0])) or 1.0, max_penetration(run.q, scene.radius) / radius
-    error = reference and float(np.abs(run.q[:, 1] - reference.q[:, 1]).max()) / radius
-    put_in = balls.energy_put_in(run.q, run.v, scene, dt * GRAVITY, CONTACT_MARGIN) / scale
-    step = blow_up_step(total)
-    jitter = float(np.std(depth[3 * len(depth) // 4:]))
-    return {"max_penetration_frac": float(depth.max()), "blew_up": step is not None,
-            "rest_penetration_frac": float(depth[-1]), "blew_up_step": step,
-            "energy_excess": float((total - total[0]).max()) / scale, "rest_jitter": jitter,
-            "contact_energy": put_in, "height_error_frac": error}
-# --- endregion ---
 
 # --- region: report ---
-COLUMNS = {"max pen/r": "max_penetration_frac", "rest pen/r": "rest_penetration_frac",
-           "energy+": "energy_excess", "energy in": "contact_energy",
-           "height err/r": "height_error_frac", "jitter/r": "rest_jitter"}
+COLUMNS = {"max pen/r": "max_penetration_frac", "rest gap/r": "rest_gap_frac",
+           "rebound/r": "rebound_frac", "energy+": "energy_excess", "energy in": "contact_energy",
+           "flight err/r": "flight_error_frac", "contact err/r": "contact_error_frac",
+           "jitter/r": "rest_jitter"}
 
-def log_rerun(path, runs, scene):
-    """Write the Runs {model: Run} to a recording, whole; ImportError where rerun is missing."""
+
+def print_report(args, quality, grid):
+    """Print one row per model, a verdict that claims what it tests, and the stability lines."""
+    from curriculum.common import results
+    print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
+    results.print_table("contact", COLUMNS, quality, lambda row: (
+        f"EXPLODED at step {row['blew_up_step']}" if row["blew_up"] else "ok"))
+    if not grid:
+        return
+    spring, solve = quality["penalty"], quality["lcp"]
+    deeper = all(spring[key] > solve[key]
+                 for key in ("max_penetration_frac", "rest_penetration_frac"))
+    verdict = "yes" if deeper else "no"
+    if spring["blew_up"] or solve["blew_up"]:
+        verdict = "a run exploded"
+    print("verdict: penalty penetrates deeper than lcp, at worst and at rest:", verdict)
+    for model in ("penalty", "lcp", "soft"):
+        if grid[model]:
+            depth = results.show(grid[f"{model}_penetration_frac"], ".3g")
+            print(f"stability: {model} does not explode up to dt = {grid[model]:g} s of the grid, "
+                  f"where it goes {depth} r deep")
+        else:
+            print(f"stability: {model} explodes at every dt of the grid")
+    damped, textbook = (results.show(grid[key], ".4g")
+                        for key in ("dt_crit_damped", "dt_crit_penalty"))
+    print(f"critical dt of penalty, one ball: {damped} s; "
+          f"without the damper, 2 sqrt(m/k), {textbook} s")
+# --- endregion ---
+
+
+# --- region: record ---
+COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "soft": "#cc79a7",
+          "exact": "#009e73"}       # safe for colour-blind readers (Okabe and Ito)
+
+
+def log_rerun(path, runs: dict[str, Run], scene: Scene) -> None:
+    """Write the runs {model: Run} to a recording, whole or not at all.
+
+    Raises ImportError where rerun is missing.
+    """
     from curriculum.common import recording
     total = {model: energy(run.q, run.v, scene.mass) for model, run in runs.items()}
     recording.write(path, "contact", runs, scene.radius, {
@@ -476,74 +731,61 @@ def log_rerun(path, runs, scene):
         "penetration [r]": {model: max_penetration(run.q, scene.radius) / scene.radius[0]
                             for model, run in runs.items()},
         "energy above the start [J]": {model: e - e[0] for model, e in total.items()}}, COLORS)
+# --- endregion ---
 
-def measure_stability(run, scene, dt, stiffness, first):
-    """Largest dt of the grid without explosion; run(model, dt) runs, `first` has the Runs at dt."""
-    grid = {"dt_crit_penalty": critical_dt(float(scene.mass[0]), stiffness, 0.0),
-            "dt_crit_damped": critical_dt(float(scene.mass[0]), stiffness, scene.damping)}
-    for model in ("penalty", "lcp"):
-        grid[model], grid[f"{model}_penetration_frac"] = 0.0, None
-        for step in [dt * factor for factor in DT_GRID]:
-            found = first[model] if step == dt else run(model, step)
-            if blow_up_step(energy(found.q, found.v, scene.mass)) is None:
-                deepest = float(max_penetration(found.q, scene.radius).max() / scene.radius[0])
-                grid |= {model: step, f"{model}_penetration_frac": deepest}
-    return grid
 
-def print_report(args, quality, grid):
-    """The table, a row a model; the verdict, which claims what it tests; the stability lines."""
-    show = results.show
-    print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
-    results.print_table("contact", COLUMNS, quality, lambda row: (
-        f"EXPLODED at step {row['blew_up_step']}" if row["blew_up"] else "ok"))
-    if grid:
-        spring, solve = quality["penalty"], quality["lcp"]
-        verdict = "a run exploded" if spring["blew_up"] or solve["blew_up"] else "yes" if all(
-            spring[key] > solve[key] for key in list(COLUMNS.values())[:2]) else "no"
-        print("verdict: penalty is the deeper, at most and at the end:", verdict)
-        for model in ("penalty", "lcp"):
-            depth = show(grid[f"{model}_penetration_frac"], ".3g")
-            print(f"stability: {model} does not explode up to dt = {grid[model]:g} s of the grid, "
-                  f"where it goes {depth} r deep" if grid[model] else
-                  f"stability: {model} explodes at every dt of the grid")
-        print(f"critical dt of penalty, one ball: {show(grid['dt_crit_damped'], '.4g')} s; "
-              f"without the damper, 2 sqrt(m/k), {show(grid['dt_crit_penalty'], '.4g')} s")
-
+# --- region: main ---
 def main(argv=None):
     """Run the command line: print the report, write metrics.json and contact.rrd. Returns 0."""
+    try:
+        from curriculum.common import device, progress, results
+    except ModuleNotFoundError as error:
+        print(f"contact.py: the command line needs the course's folder beside it ({error}); "
+              "as a module, import contact works without", file=sys.stderr)
+        return 2
     args = parse_flags(argv)
     device.banner("ch3.5-contact", args.device)
     scene = build_scene(args.scene, args.seed, args.bodies, args.restitution, args.damping)
 
     def run(model, dt):
+        label = f"{model}, dt = {dt:g} s"
         return run_model(model, scene, dt, args.steps, args.stiffness, args.baumgarte, args.iters,
-                         args.skip, progress.steps(args.steps, f"{model}, dt = {dt:g} s"))
+                         args.skip, progress.steps(args.steps, label), args.solref, args.solimp)
 
-    names = [model for model in MODELS if args.contact in ("all", model)]
-    if len(names) > 1 and args.scene == "pile" and len(scene.mass) > SLIDING:
-        names.remove("exact")
-        print(f"exact is left out of piles of more than {SLIDING}; ask for it by --contact exact")
-    runs = {model: run(model, args.dt) for model in names}
+    models = [model for model in MODELS if args.contact in ("all", model)]
+    if args.contact == "all" and len(scene.mass) > 24:
+        models.remove("exact")
+        print("exact is left out of piles of more than 24 balls; ask for it by --contact exact")
+    runs = {model: run(model, args.dt) for model in models}
     quality = {model: contact_quality(found, scene, args.dt, runs.get("exact"))
                for model, found in runs.items()}
-    grid = {} if args.contact != "all" else measure_stability(
-        run, scene, args.dt, args.stiffness, runs)
+    grid = {}
+    if args.contact == "all" and args.scene != "pile":
+        grid = measure_stability(run, scene, args.dt, args.stiffness, runs)
     metrics = results.rounded({
         "scene": args.scene, "contact": args.contact, "dt": args.dt, "steps": args.steps,
         "seed": args.seed, "stiffness": args.stiffness, "restitution": scene.restitution,
         "quality": quality, "stability": grid})
     print_report(args, metrics["quality"], metrics["stability"])
-    paths = [os.path.join(args.out, name) for name in ("metrics.json", "contact.rrd")]
-    results.write_json(paths[0], metrics)
-    print("metrics:", paths[0])
-    if args.rerun:
-        try:
-            log_rerun(paths[1], runs, scene)
-            print(f"recording: {paths[1]}, open it with: rerun {paths[1]}")
-        except ImportError:
-            print("no recording: rerun is not installed, pip install rerun-sdk")
+    write_results(args, metrics, runs, scene)
     print("config_hash:", results.fingerprint(vars(args), but=("out", "rerun", "skip")))
     return 0
+
+
+def write_results(args, metrics, runs, scene):
+    """Write metrics.json, and contact.rrd unless that is switched off or rerun is missing."""
+    from curriculum.common import results
+    numbers = os.path.join(args.out, "metrics.json")
+    recording = os.path.join(args.out, "contact.rrd")
+    results.write_json(numbers, metrics)
+    print("metrics:", numbers)
+    if args.rerun:
+        try:
+            log_rerun(recording, runs, scene)
+            print(f"recording: {recording}, open it with: rerun {recording}")
+        except ImportError:
+            print("no recording: rerun is not installed, pip install rerun-sdk")
+
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
 CHECK = "python -m curriculum.regions"
-BEGIN = re.compile(r"# --- region: ([a-z][a-z0-9_]*) ---")
+BEGIN = re.compile(r"# --- region: ([a-z][a-z0-9_-]*) ---")
 END = "# --- endregion ---"
 LOOKS_LIKE_ONE = re.compile(r"\s*#\s*(-+\s*(end)?\s*region\b.*|(end)?region\b:?\s*\w*\s*)", re.I)
 
