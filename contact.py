@@ -46,7 +46,7 @@ SOLREF = (0.02, 1.0)    # of soft, MuJoCo's default: time constant [s], damping 
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)   # of soft, MuJoCo's default: see impedance
 HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # of soft, the hardest contact that MuJoCo allows
 MOST_SWEEPS = 10_000    # of soft in one step, should its impulses never come to rest
-LAST_BITS = 2.0**-51    # of soft: an impulse that changes by a smaller share has come to rest
+LAST_BITS = 2.0**-48    # of soft: a correction below this share of the speeds is rounding
 SCENES = ("drop", "bounce", "stack", "pile")
 MODELS = ("penalty", "lcp", "soft", "exact")
 # --- endregion ---
@@ -89,8 +89,10 @@ def build_scene(name: str, seed: int = 0, bodies: int | None = None,
                  np.full(len(x), RADIUS),
                  own_restitution if restitution is None else restitution,
                  own_damping if damping is None else damping)
+# --- endregion ---
 
 
+# --- region: lattice ---
 def pile_lattice(count, lift, rng):
     """x and y (count,) [m] on a lattice 2.5 r wide, each nudged by up to 0.1 r, all gaps open.
 
@@ -287,14 +289,15 @@ def project_impulse(lam, dlam):
     return max(0.0, lam + dlam)
 
 
-def solve_contacts(contacts, iters: int, last_bits: float = 0.0) -> None:
+def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> None:
     """Find impulses with lam >= 0, w >= 0 and lam w = 0, where w = v_n + softness lam - target.
 
     Projected Gauss-Seidel: each sweep mends one contact after the other, by the impulse that
     brings it to its target, and disturbs its neighbours; the next sweep mends those. Changes lam
-    of the contacts and the velocities of their balls. Stops after a sweep that changes no impulse
-    by more than `last_bits` of itself: every further sweep would repeat it. In velocities and
-    impulses: Moreau (1988); Stewart and Trinkle (1996); Anitescu and Potra (1997).
+    of the contacts and the velocities of their balls. Stops after a sweep in which no correction
+    changed a velocity by more than `tolerance` [m/s]. After a sweep without any change, every
+    further sweep would repeat it. In velocities and impulses: Moreau (1988); Stewart and Trinkle
+    (1996); Anitescu and Potra (1997).
     """
     for _ in range(iters):
         settled = True
@@ -305,7 +308,7 @@ def solve_contacts(contacts, iters: int, last_bits: float = 0.0) -> None:
                 change = lam - c.lam
                 c.push(change)
                 c.lam = lam
-                if not abs(change) <= last_bits * lam:
+                if not abs(change) <= tolerance * c.m_eff:
                     settled = False
         if settled:
             break
@@ -399,18 +402,22 @@ def soft_step(balls, dt, solref, solimp):
     """One step [s] of MuJoCo's contact: lcp's step with another target, and softness.
 
     The softness makes the problem strictly convex: it has one answer. So the sweeps go on until
-    the impulses keep all but their last bits, which takes more sweeps the harder the contacts.
+    their corrections drown in the rounding of the velocities, which takes the longer, the harder
+    the contacts are.
     """
     contacts = detect_contacts(balls, margin=0.0)
     for c in contacts:
         soften(c, dt, solref, solimp)
     fall(balls, dt)
-    solve_contacts(contacts, MOST_SWEEPS, LAST_BITS)
+    fastest = max([abs(c.target) for c in contacts], default=0.0)
+    for ball in balls:
+        fastest = max(fastest, abs(ball.vx), abs(ball.vy))
+    solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * fastest)
     move(balls, dt)
 # --- endregion ---
 
 
-# --- region: simulate ---
+# --- region: state ---
 class Run(NamedTuple):
     """A recording: t (steps + 1,) [s]; q and v (steps + 1, 2, N) [m, m/s]."""
 
@@ -434,8 +441,10 @@ def set_state(balls, rows):
     """Put the balls where four rows of N numbers say."""
     for ball, values in zip(balls, rows.T.tolist()):
         ball.x, ball.y, ball.vx, ball.vy = values
+# --- endregion ---
 
 
+# --- region: simulate ---
 @np.errstate(all="ignore")
 def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True,
              report=lambda k: None) -> Run:
