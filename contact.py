@@ -743,6 +743,23 @@ def log_rerun(path, runs: dict[str, Run], scene: Scene) -> None:
 # --- endregion ---
 
 
+# --- region: write ---
+def write_results(args, metrics, runs, scene):
+    """Write metrics.json, and contact.rrd unless that is switched off or rerun is missing."""
+    from curriculum.common import results
+    numbers = os.path.join(args.out, "metrics.json")
+    recording = os.path.join(args.out, "contact.rrd")
+    results.write_json(numbers, metrics)
+    print("metrics:", numbers)
+    if args.rerun:
+        try:
+            log_rerun(recording, runs, scene)
+            print(f"recording: {recording}, open it with: rerun {recording}")
+        except ImportError:
+            print("no recording: rerun is not installed, pip install rerun-sdk")
+# --- endregion ---
+
+
 # --- region: main ---
 def main(argv=None):
     """Run the command line: print the report, write metrics.json and contact.rrd. Returns 0."""
@@ -779,21 +796,6 @@ def main(argv=None):
     write_results(args, metrics, runs, scene)
     print("config_hash:", results.fingerprint(vars(args), but=("out", "rerun", "skip")))
     return 0
-
-
-def write_results(args, metrics, runs, scene):
-    """Write metrics.json, and contact.rrd unless that is switched off or rerun is missing."""
-    from curriculum.common import results
-    numbers = os.path.join(args.out, "metrics.json")
-    recording = os.path.join(args.out, "contact.rrd")
-    results.write_json(numbers, metrics)
-    print("metrics:", numbers)
-    if args.rerun:
-        try:
-            log_rerun(recording, runs, scene)
-            print(f"recording: {recording}, open it with: rerun {recording}")
-        except ImportError:
-            print("no recording: rerun is not installed, pip install rerun-sdk")
 
 
 if __name__ == "__main__":

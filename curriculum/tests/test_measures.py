@@ -1,0 +1,91 @@
+"""What contact_quality measures: on recordings made by hand, whose answers are plain."""
+
+import contact
+import numpy as np
+import pytest
+
+R = contact.RADIUS
+SCENE = contact.build_scene("drop")
+
+
+def recording(heights, speeds=None):
+    """A Run of one ball at these heights [m] and vertical speeds [m/s] (0), a step of 1 s."""
+    q = np.zeros((len(heights), 2, 1))
+    v = np.zeros_like(q)
+    q[:, 1, 0] = heights
+    v[:, 1, 0] = 0.0 if speeds is None else speeds
+    return contact.Run(np.arange(len(heights)) * 1.0, q, v)
+
+
+def test_the_rest_gap_tells_hanging_from_sinking():
+    for gap in (0.3 * R, 0.0, -0.2 * R):
+        quality = contact.contact_quality(recording([1.0, R + gap]), SCENE, 1.0)
+        assert quality["rest_gap_frac"] == pytest.approx(gap / R, abs=1e-15)
+        assert quality["rest_penetration_frac"] == pytest.approx(max(0.0, -gap / R), abs=1e-15)
+
+
+def test_the_rebound_is_the_highest_gap_after_the_first_contact():
+    quality = contact.contact_quality(recording([1.0, R, R + 0.05, R + 0.02, R]), SCENE, 1.0)
+    assert quality["rebound_frac"] == pytest.approx(0.5)
+
+
+def test_energy_in_is_the_sum_of_its_rises():
+    heights = [1.0, 0.4, 0.5, 0.3, 0.35]                # rises of 0.1 and 0.05 m, start at 1 m
+    quality = contact.contact_quality(recording(heights), SCENE, 1.0)
+    assert quality["contact_energy"] == pytest.approx(0.15)
+    assert quality["energy_excess"] == 0.0
+
+
+def test_energy_in_is_zero_for_exact_and_sees_an_elastic_gain():
+    scene = contact.build_scene("pile", bodies=6, restitution=0.9)
+    quality = contact.contact_quality(contact.run_model("exact", scene, 0.002, 600), scene, 0.002)
+    assert quality["contact_energy"] < 1e-12
+    scene = contact.build_scene("drop", restitution=1.0)
+    quality = contact.contact_quality(contact.run_model("lcp", scene, 0.002, 2000), scene, 0.002)
+    assert quality["contact_energy"] >= quality["energy_excess"] > 1e-3
+
+
+def test_the_height_error_is_split_where_the_run_first_touches():
+    run = recording([1.0, 0.6, R, R + 0.03, R])
+    truth = recording([1.0, 0.62, R, R, R])
+    quality = contact.contact_quality(run, SCENE, 1.0, truth)
+    assert quality["flight_error_frac"] == pytest.approx(0.2)
+    assert quality["height_error_frac"] == pytest.approx(0.3)
+    assert quality["contact_error_frac"] == pytest.approx(0.1)
+
+
+def test_in_the_drop_the_whole_flight_error_is_the_lag_of_semi_implicit_euler():
+    exact = contact.run_model("exact", SCENE, 0.002, 500)
+    for model in ("penalty", "lcp", "soft"):
+        run = contact.run_model(model, SCENE, 0.002, 500)
+        quality = contact.contact_quality(run, SCENE, 0.002, exact)
+        landing = np.flatnonzero(run.q[:, 1, 0] - R <= contact.CONTACT_MARGIN)[0]
+        lag = 9.81 * 0.002 * run.t[landing - 1] / 2.0
+        assert quality["flight_error_frac"] == pytest.approx(lag / R, rel=1e-9)
+
+
+def test_the_smallest_gap_is_that_of_the_closest_pair_or_the_floor():
+    rng = np.random.default_rng(1)
+    q = rng.uniform(0.0, 2.0, (20, 2, 7))
+    radius = rng.uniform(0.05, 0.3, 7)
+    gaps = contact.smallest_gap(q, radius)
+    for state, gap in zip(q, gaps):
+        balls = [contact.Ball(*xy, 0.0, 0.0, 1.0, r) for *xy, r in zip(*state, radius)]
+        depths = [c.depth for c in contact.detect_contacts(balls, margin=9.0)]
+        assert gap == pytest.approx(-max(depths), abs=1e-15)
+
+
+def test_near_pairs_of_many_balls_list_the_contacts_of_all_pairs(monkeypatch):
+    rng = np.random.default_rng(2)
+    for trial in range(60):
+        q = rng.uniform(0.0, 1.5, (2, 40)) * 10.0 ** rng.integers(-1, 2)
+        q[rng.random((2, 40)) < 0.05] = rng.choice([np.nan, np.inf, -np.inf, 1e300, 0.5])
+        balls = [contact.Ball(*xy, 0.0, 0.0, 1.0, r) for *xy, r in zip(*q.tolist(),
+                                                                     rng.uniform(0, 0.3, 40))]
+        found = []
+        for few in (12, 100):
+            monkeypatch.setattr(contact, "FEW", few)
+            listed = contact.detect_contacts(balls)
+            found.append([(balls.index(c.a), -1 if c.b is contact.FLOOR else balls.index(c.b),
+                           c.nx, c.ny, c.depth) for c in listed])
+        assert repr(found[0]) == repr(found[1]), trial
