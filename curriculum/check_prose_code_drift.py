@@ -1,52 +1,61 @@
-"""The gate: what the chapter says, against what contact.py is and does. Check writes nothing.
+"""The gate: what the chapter says, against what the code is and does. Check writes nothing.
 
     python -m curriculum.check_prose_code_drift                 # exit 1, one line a problem
     python -m curriculum.check_prose_code_drift --accept NAME   # the prose of NAME has been re-read
+    python -m curriculum.check_prose_code_drift --fuzz 200      # mutate everything, list what passes
 
 It holds together, each failing with `file:line: what; repair: command`:
 
-regions   the markers of contact.py are well formed (curriculum/regions.py has the hash rule), and
-          regions in contact.py = `region_hashes` of meta.yaml = regions the chapter includes. An
-          include is a fence that holds one line: [include-by-region: contact.py#NAME]
+regions   the markers of the literate files are well formed (curriculum/regions.py has the hash
+          rule), and their regions = `region_hashes` of meta.yaml, in their order, = regions that
+          the chapter includes or `not_shown` of meta.yaml names. An include is a fence that holds
+          one line: [include-by-region: FILE#NAME]
+passages  what only a reader can judge (order of the chapter, formulas, numbers in words, claims,
+          exercises, promises) has the hash that was accepted: curriculum/drift/passages.py
 numbers   every {{reference}} of the chapter and of meta.yaml resolves on a fresh run
-          (curriculum/quoted.py has the syntax), every `holds:` comment is true, `reference_run` is
-          what the fresh run gives, and the exercises' answers stand in their bands.
+          (curriculum/quoted.py has the syntax), every `holds:` comment is true, and
+          `reference_run` is what the fresh run gives.
+exercises the answers stand in their bands, a band is narrow, every choice has its `true_if`, and
+          those of the answer, and of no other choice, are true. Each has one slot in the chapter.
 typed     no number is typed into the prose, nor into what an exercise tells the learner. A typed
           number is a token that begins with a digit (or is a fraction in one sign), except: after
           "chapter", "phase", "version", "tag", "Python" or "numpy"; a version with two dots; the
-          number of a heading or list item; inside a link's target, a tag or a comment. Symbols such
-          as ex2 begin with a letter. In code and $math$ one digit is an index or a formula's, and a
-          flag's value (--dt 0.03) is an input; any other number there is typed too. The way out
-          carries its reason: {{= 1972 | year of the paper}}. Numbers in words ("twice") are beyond
-          the rule: hold such a sentence to the run by a `holds:` comment.
-ledger    every MEASURED row of wallclock.csv has the config hash of the script's default run; the
-          chapter can only quote the ledger, since a typed number is refused.
+          number of a heading or list item; inside a link's target, a tag or a comment; in a try:
+          or drag: link. Symbols such as ex2 begin with a letter. In code and $math$ one digit is
+          an index or a formula's, and a flag's value (--dt 0.03) is an input; any other number
+          there is typed too. The way out carries its reason: {{= 1972 | year of the paper}}.
+names     code, flags, commands, files and images that chapter, README, exercises and docstrings
+          name are there (curriculum/drift/names.py has the rule).
+measured  results of bench and stress, and every MEASURED row of wallclock.csv, are of the code as
+          it is now, or `stale` of meta.yaml names them; the text then says "stale". A row is the
+          median of the times in wallclock_runs.json.
 scope     what this chapter leaves to others is said in one place: the words of `scope.words` in
           meta.yaml occur in the section `scope.section` of the chapter and nowhere else.
 
-Accepting goes by one name: it shows the region's change since the accepted text (from git, where
-there is one) and the section of the chapter that shows it, then records that one hash.
+Accepting goes by name: it shows what changed since the accepted text (from git, where there is
+one), the section of the chapter that shows a region and every other paragraph that names what the
+region defines, then records the hash. CONTRIBUTING.md says what no gate can catch.
 """
 
-import difflib
 import re
-import subprocess
 import sys
 from pathlib import Path
 
-from curriculum import regions
+from curriculum import measured, regions
 from curriculum.common import wallclock
-from curriculum.common.files import write_whole
-from curriculum.quoted import HOLDS, REFERENCE, Numbers, leaves, load_meta
+from curriculum.drift import names as naming
+from curriculum.drift import passages, texts
+from curriculum.drift.passages import GATE, accept
+from curriculum.drift.texts import CHAPTER, INCLUDE, line_at, typed_numbers
+from curriculum.quoted import HOLDS, REFERENCE, RESULTS, Numbers, command_of, is_number, leaves, \
+    load_meta
 
+__all__ = ["CHAPTER", "GATE", "INCLUDE", "accept", "check", "main", "typed_numbers"]
 ROOT = regions.ROOT
-CHAPTER = "curriculum/prose/chapter.md"
-GATE = "python -m curriculum.check_prose_code_drift"
 NUMBERS = "python -m curriculum.quoted"
-INCLUDE = re.compile(r"\[include-by-region: contact\.py#(\w+)\]")
-FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)
-CODE = re.compile(r"(`+)[^`]+\1|\$[^$\n]+\$")
 TOLERANCE = 1e-9        # of the reference run: one machine repeats its bytes, another may round
+NARROW = 0.01, 1e-6     # a band is at most so wide, as a share of its upper end, or so wide at all
+TEXTS = (CHAPTER, "README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 
 
 class Project:
@@ -58,7 +67,7 @@ class Project:
         self.chapter, self.meta = self.read(CHAPTER), self.read("meta.yaml")
         self.facts = load_meta(root)
         self.exercises = self.facts.get("exercises") or {}
-        self.includes = list(find_includes(self.chapter))
+        self.includes = list(texts.find_includes(self.chapter))
 
     def read(self, file):
         """A file's text. What is not UTF-8 or has carriage returns is a problem, and replaced."""
@@ -77,91 +86,186 @@ class Project:
             line = line_at(self.meta, found.start()) if found else 1
         self.problems.append(f"{file}:{line}: {what}; repair: {repair}")
 
-
-def line_at(text, index):
-    """The number of the line that holds text[index]."""
-    return text.count("\n", 0, index) + 1
-
-
-def find_includes(chapter):
-    """(line, region) of every well-formed include."""
-    for fence in FENCE.finditer(chapter):
-        lines = fence[0].split("\n")
-        found = INCLUDE.fullmatch(lines[1]) if len(lines) == 3 else None
-        if found:
-            yield line_at(chapter, fence.start()) + 1, found[1]
+    def scripts(self):
+        """(path from the root, text) of the exercises' scripts."""
+        for path in sorted(self.root.glob("exercises/*.py")):
+            yield path.relative_to(self.root).as_posix(), path.read_text("utf-8", "replace")
 
 
 def check_regions(project):
-    """Regions = hashes = includes, and all markers and includes well formed."""
-    found, problems = regions.scan(project.root / "contact.py")
+    """Regions = hashes = includes, in order, and all markers and includes well formed."""
+    found, problems = regions.scan_all(project.root)
     project.problems += problems
-    hashes, shown = project.facts.get("region_hashes") or {}, project.includes
+    by_file = {file: each if isinstance(each, dict) else {}
+               for file, each in (project.facts.get("region_hashes") or {}).items()}
+    hashes = {name: (file, sha) for file, each in by_file.items() for name, sha in each.items()}
     for name, region in found.items():
-        what = None if hashes.get(name) == region.sha256 else "has no hash in meta.yaml" \
-            if name not in hashes else "has changed since its prose was last read"
+        _, sha = hashes.get(name, (None, None))
+        what = None if sha == region.sha256 else "has no hash in meta.yaml" if sha is None \
+            else "has changed since its prose was last read"
         if what:
-            project.say("contact.py", region.first - 1, f"region {name} {what}",
+            project.say(region.file, region.first - 1, f"region {name} {what}",
                         f"{GATE} --accept {name}")
-        if name not in {each for _, each in shown}:
+    for name, (file, _) in hashes.items():
+        if name not in found or found[name].file != file:
+            project.say("meta.yaml", rf"^ +{name}:", f"a hash of {name}, and {file} has no such "
+                        "region", f"{GATE} --accept {name}")
+    for file, each in by_file.items():
+        order = [name for name in found if found[name].file == file]
+        if set(order) == set(each) and order != list(each):
+            project.say("meta.yaml", rf"^  {file}:", f"the regions of {file} are no longer in the "
+                        "order in which they were read", "put them back, or their hashes in order")
+    check_includes(project, found)
+
+
+def check_includes(project, found):
+    """Every region is included once, or named in `not_shown`."""
+    hidden = project.facts.get("not_shown") or []
+    shown = [include.name for include in project.includes]
+    for name, region in found.items():
+        if name not in shown and name not in hidden and name != regions.docstring_name(region.file):
             project.say(CHAPTER, 1, f"region {name} is never shown",
-                        f"add a fence with [include-by-region: contact.py#{name}], then {GATE}")
-    for name in hashes.keys() - found.keys():
-        project.say("meta.yaml", rf"^  {name}:", f"a hash of {name}, and contact.py has no such "
-                    "region", f"{GATE} --accept {name}")
-    for k, (line, name) in enumerate(shown):
-        if name not in found:
-            project.say(CHAPTER, line, f"includes {name}, and contact.py has no such region",
-                        f"name one of {', '.join(found)}, then {GATE}")
-        if name in {each for _, each in shown[:k]}:
+                        f"add a fence with [include-by-region: {region.file}#{name}], or name it "
+                        f"in `not_shown` of meta.yaml, then {GATE}")
+    for name in hidden:
+        wrong = "is no region" if name not in found else "is shown" if name in shown else None
+        if wrong:
+            project.say("meta.yaml", "^not_shown:", f"not_shown names {name}, which {wrong}",
+                        f"take it out, then {GATE}")
+    for k, (line, file, name) in enumerate(project.includes):
+        if name not in found or found[name].file != file:
+            allowed = ", ".join(each for each in found if found[each].file == file)
+            project.say(CHAPTER, line, f"includes {name}, and {file} has no such region",
+                        f"name one of {allowed or 'a literate file'}, then {GATE}")
+        if name in shown[:k]:
             project.say(CHAPTER, line, f"includes {name} a second time", f"delete one, then {GATE}")
+    lines = {include.line for include in project.includes}
     for line, text in enumerate(project.chapter.split("\n"), 1):
-        if "include-by-region" in text and line not in {each for each, _ in shown}:
+        if "include-by-region" in text and line not in lines:
             project.say(CHAPTER, line, "an include that is not alone in its fence or not of the "
-                        "form [include-by-region: contact.py#NAME]", f"edit it, then {GATE}")
+                        "form [include-by-region: FILE#NAME]", f"edit it, then {GATE}")
 
 
-def blank(pattern, text, flags=re.MULTILINE):
-    """The text with every match replaced by spaces; lines and places stay."""
-    return re.sub(pattern, lambda match: re.sub(r"[^\n]", " ", match[0]), text, flags=flags)
-
-
-def typed_numbers(text):
-    """(index, token) of every number typed into a text; the rule stands at the top of this file."""
-    names = "chapters?|phase|version|tag|python|numpy"
-    text = blank(r"<!--.*?-->", text, re.DOTALL)
-    text = blank(rf"{REFERENCE.pattern}|^\[include-by-region:.*", text)
-    text = blank(r"\]\([^)]*\)|^\[[^]]*\]:.*|https?://\S+|</?[a-zA-Z][^>]*>", text)
-    text = blank(rf"\b({names}) \d+(\.\d+)*((, | and |, and | to )\d+\.\d+)*", text, re.IGNORECASE)
-    text = blank(r"(?<![\w.])\d+(\.\d+){2,}", text)
-    unfenced = blank(FENCE.pattern, text, FENCE.flags)
-    found = []
-    for code in [*FENCE.finditer(text), *CODE.finditer(unfenced)]:
-        inside = blank(r"--[a-z][a-z-]*[ =][^\s`]+|\b[0-9a-f]{7,64}\b", code[0])
-        found += [(code.start() + token.start(), token[0])
-                  for token in re.finditer(r"(?<![\w.])\.?\d[\w.]*", inside)
-                  if not re.fullmatch(r"\d\.?", token[0])]
-    prose = blank(r"^#+ +\d[\d.]*|^[ >]*\d+[.)] ", blank(CODE.pattern, unfenced))
-    found += [(token.start(), token[0].rstrip(".,"))
-              for token in re.finditer(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*", prose)]
-    return sorted(found)
+def check_passages(project):
+    """Every passage has the hash that was accepted, and meta.yaml has no hash of anything else."""
+    found = passages.of(*passages.reader(project.root))
+    hashes = project.facts.get("passage_hashes") or {}
+    for name, passage in found.items():
+        if passage.file is None and hashes.get(name) != passage.sha256:
+            file = CHAPTER if name in passages.CHAPTER_PASSAGES else "meta.yaml"
+            what = "has changed since it was last read" if name in hashes else "was never accepted"
+            project.say(file, rf"^  {name}:" if file == "meta.yaml" else 1,
+                        f"passage {name} {what}", f"{GATE} --accept {name}")
+    for name in hashes.keys() - found.keys():
+        project.say("meta.yaml", rf"^  {name}:", f"a hash of {name}, and there is no such passage",
+                    f"{GATE} --accept {name}")
 
 
 def check_typed(project):
     """No number is typed into the chapter, nor into what an exercise tells the learner."""
-    texts = [(CHAPTER, None, project.chapter)]
+    told = [(CHAPTER, None, project.chapter)]
     for name, exercise in project.exercises.items():
         said = {key: exercise.get(key) for key in ("reveal", "hints")}
-        texts += [("meta.yaml", rf"^  {name}:", text or "") for _, text in leaves(said)]
-    for file, line, text in texts:
+        told += [("meta.yaml", rf"^  {name}:", text or "") for _, text in leaves(said)]
+    for file, line, text in told:
         for index, token in typed_numbers(text):
             project.say(file, line or line_at(text, index), f"a typed number, {token}",
                         f"write {{{{KEY|FORMAT}}}} (the keys: {NUMBERS}) or "
                         f"{{{{= {token} | REASON}}}}")
 
 
+def check_exercises(project):
+    """Slots, choices, letters and bands fit together; nothing is run for it."""
+    slots = re.findall(r"<!--\s*exercise:\s*([\w-]+)\s*-->", project.chapter)
+    scripts = {Path(file).name.split("_")[0]: (file, text) for file, text in project.scripts()}
+    for name, exercise in project.exercises.items():
+        def say(what, name=name):
+            project.say("meta.yaml", rf"^  {name}:", f"{name}: {what}", f"correct it, then {GATE}")
+
+        if slots.count(name) != 1:
+            say(f"{CHAPTER} has {slots.count(name)} slots <!-- exercise: {name} -->, not one")
+        for key, (low, high) in (exercise.get("bands") or {}).items():
+            if not 0 <= high - low <= max(NARROW[0] * abs(high), NARROW[1]):
+                say(f"the band [{low}, {high}] of {key} is wider than {NARROW[0]:.0%} of its end")
+        if "answer" in exercise:
+            told = passages.exercise_words(scripts[name][1]) if name in scripts else {}
+            letters = [*(told.get("CHOICES") or exercise.get("true_if") or {})]
+            for key in ("true_if", "reveal"):
+                if sorted(exercise.get(key) or {}) != sorted(letters):
+                    say(f"{key} has {sorted(exercise.get(key) or {})}, the choices are {letters}")
+            if exercise["answer"] not in letters:
+                say(f"the answer {exercise['answer']!r} is none of the choices {letters}")
+    for name in set(slots) - set(project.exercises):
+        project.say(CHAPTER, 1, f"a slot of {name}, and meta.yaml has no such exercise",
+                    f"correct it, then {GATE}")
+
+
+def check_names(project):
+    """What texts, exercises and docstrings name is there."""
+    known = naming.Names(project.root, project.facts, project.metrics)
+    scripts = [*project.scripts(), *((file, (project.root / file).read_text("utf-8", "replace"))
+                                     for file in regions.LITERATE if (project.root / file).exists())]
+    mentioned = {file: (project.root / file).read_text("utf-8", "replace") for file in TEXTS
+                 if (project.root / file).exists()}
+    flags = naming.all_flags(project.root, mentioned.values())
+
+    def say(file, line, what):
+        project.say(file, line, what, f"correct it, then {GATE}")
+
+    for file, text in mentioned.items():
+        for line, command in naming.commands(text):
+            what = naming.command_problem(project.root, command)
+            if what:
+                say(file, line, f"the command `{command}`: {what}")
+        for line, flag in naming.loose_flags(text):
+            if flag not in flags:
+                say(file, line, f"no command here has a flag {flag}")
+        for line, target in naming.links(text):
+            path = (project.root / file).parent / target.split("#")[0]
+            if not path.exists():
+                say(file, line, f"a link to {target}, and there is no such file")
+        for line, span in naming.spans(text) if file == CHAPTER else ():
+            for word in known.unknown(span):
+                say(file, line, f"`{span}` names {word}, which no code here defines (other "
+                                "people's names: `foreign_names` of meta.yaml)")
+    for file, text in scripts:
+        for line, command in naming.docstring_commands(text):
+            what = naming.command_problem(project.root, command)
+            if what:
+                say(file, line, f"the command `{command}`: {what}")
+    check_live_links(project, flags)
+    check_reading(project)
+
+
+def check_live_links(project, flags):
+    """try: links set flags of contact.py to what they take; drag: links name flags."""
+    help_text = naming.help_for(project.root, "contact.py") or ""
+    for line, kind, value in naming.live_links(project.chapter):
+        pairs = value.split("&") if kind == "try" else [value]
+        for pair in pairs:
+            key, _, given = pair.partition("=")
+            words = [f"--{key}"] + ([given] if kind == "try" else [])
+            what = naming._flags_problem("contact.py", words, help_text) \
+                if kind == "try" or f"--{key}" not in flags | {"--impedance"} else None
+            if what:
+                project.say(CHAPTER, line, f"a {kind}: link to {value}: {what}",
+                            f"correct it, then {GATE}")
+
+
+def check_reading(project):
+    """The chapter names what `reading` of meta.yaml promises: repository, tag, commit, files."""
+    reading = project.facts.get("reading") or {}
+    wanted = [str(reading[key]) for key in ("repo", "tag", "commit") if key in reading]
+    for file, functions in (reading.get("files") or {}).items():
+        wanted += [Path(file).name, *(functions or {})]
+    for each in wanted:
+        if each not in project.chapter:
+            project.say("meta.yaml", "^reading:", f"reading promises {each}, and {CHAPTER} does "
+                        "not name it", f"correct either, then {GATE}")
+
+
 def check_numbers(project, numbers):
-    """References, claims, the reference run and the exercises' bands, against fresh runs."""
+    """References, claims, the reference run and the exercises' answers, against fresh runs."""
     numbers.run_all(project.chapter + str(project.exercises))
 
     def attempt(file, line, claim, wrong, *inputs):
@@ -181,7 +285,14 @@ def check_numbers(project, numbers):
 
     def outside(key, low, high):
         value = numbers.value(key)
-        return None if low <= value <= high else f"{value} is outside {low} to {high}"
+        return None if is_number(value) and low <= value <= high \
+            else f"{value} is outside {low} to {high}"
+
+    def misplaced(letter, claims, answer):
+        true = all([numbers.holds(claim) for claim in claims])
+        if true and letter != answer:
+            return f"choice {letter} is true, and the answer is said to be {answer}"
+        return None if true == (letter == answer) else f"choice {letter}, the answer, is not true"
 
     for file, text in ((CHAPTER, project.chapter), ("meta.yaml", project.meta)):
         for match in REFERENCE.finditer(text):
@@ -189,21 +300,25 @@ def check_numbers(project, numbers):
     for match in HOLDS.finditer(project.chapter):
         attempt(CHAPTER, line_at(project.chapter, match.start()), match[1], false, match[1])
     for name, exercise in project.exercises.items():
+        line = rf"^  {name}:"
         for key, (low, high) in (exercise.get("bands") or {}).items():
-            attempt("meta.yaml", rf"^  {name}:", f"{name}, {key}", outside, key, low, high)
+            attempt("meta.yaml", line, f"{name}, {key}", outside, key, low, high)
         for claim in exercise.get("holds") or []:
-            attempt("meta.yaml", rf"^  {name}:", f"{name}, {claim}", false, claim)
+            attempt("meta.yaml", line, f"{name}, {claim}", false, claim)
+        for letter, claims in (exercise.get("true_if") or {}).items():
+            attempt("meta.yaml", line, f"{name}, {'; '.join(claims)}", misplaced, letter, claims,
+                    exercise.get("answer"))
     name = numbers.reference()
-    check_reference_run(project, dict(leaves(numbers.run(name))), numbers.config_hash[name])
+    check_reference_run(project, dict(leaves(numbers.run(name))), numbers.config_hash.get(name))
 
 
-def check_reference_run(project, measured, config_hash):
+def check_reference_run(project, fresh_run, config_hash):
     """`reference_run` of meta.yaml says what a fresh run gives, number by number."""
     reference = project.facts.get("reference_run") or {}
-    measured = {**measured, "config_hash": config_hash}
+    fresh_run = {**fresh_run, "config_hash": config_hash}
     stated = {**(reference.get("values") or {}), "config_hash": reference.get("config_hash")}
-    for key in sorted(measured.keys() | stated.keys()):
-        fresh, said = measured.get(key, "missing"), stated.get(key, "missing")
+    for key in sorted(fresh_run.keys() | stated.keys()):
+        fresh, said = fresh_run.get(key, "missing"), stated.get(key, "missing")
         numeric = isinstance(fresh, float) and isinstance(said, (int, float))
         if fresh != said and not (numeric and abs(fresh - said) <= TOLERANCE):
             project.say("meta.yaml", rf"^ +{re.escape(key)}:", f"reference_run says {key} is "
@@ -211,28 +326,42 @@ def check_reference_run(project, measured, config_hash):
 
 
 def check_ledger(project, numbers):
-    """Every measured wall-clock is of the script as it is now."""
+    """Every measured wall-clock has its times beside it; {name: command} of the stale ones."""
+    ledger = project.root / "wallclock.csv"
     try:
-        rows = wallclock.read(project.root / "wallclock.csv")
+        rows = wallclock.read(ledger)
+        stale = numbers.stale_tiers()
     except ValueError as error:
         where, line, what = str(error).split(":", 2)
-        return project.say(Path(where).name, line, what.strip(), f"correct it, then {GATE}")
-    numbers.run(numbers.reference())
-    now = numbers.config_hash[numbers.reference()]
+        project.say(Path(where).name, int(line), what.strip(), f"correct it, then {GATE}")
+        return {}
+    runs = wallclock.read_runs(ledger)
     for line, row in enumerate(rows, 2):
-        ours = row["chapter"] == wallclock.CHAPTER and row["status"] == "MEASURED"
-        if ours and row["config_hash"] != now:
-            project.say("wallclock.csv", line, f"{row['tier']} was measured at config "
-                        f"{row['config_hash']}, the default run is now {now}",
-                        "python -m curriculum.common.wallclock --measure (on that tier)")
+        if row["chapter"] == wallclock.CHAPTER and row["status"] == "MEASURED":
+            what = wallclock.unfounded(row, runs)
+            if what:
+                project.say("wallclock.csv", line, f"{row['tier']}: {what}",
+                            f"{wallclock.COMMAND} (on that tier)")
+    return {f"wallclock:{tier}": wallclock.COMMAND for tier in stale}
 
 
-def section(text, line):
-    """(first, last) line of the section (heading to next heading) around a line."""
-    lines = text.rstrip("\n").split("\n")
-    headings = [k for k, each in enumerate(lines, 1) if re.match(r"#+ ", each)]
-    first = max([k for k in headings if k <= line], default=1)
-    return first, min([k - 1 for k in headings if k > line], default=len(lines))
+def check_measured(project, numbers):
+    """What was measured on other code is named in `stale` of meta.yaml, and nothing else is."""
+    stale = check_ledger(project, numbers)
+    for name in RESULTS:
+        sections = measured.load(project.root / "curriculum" / name / "results")
+        for section, said in sections.items():
+            if isinstance(said, dict) and measured.is_stale(said, project.root):
+                stale[f"{name}:{section}"] = command_of(said, name)
+    named = project.facts.get("stale") or []
+    for name, command in stale.items():
+        if name not in named:
+            project.say("meta.yaml", "^stale:", f"{name} was measured on other code than today's",
+                        f"{command}, or name {name} in `stale` of meta.yaml and the text says so")
+    for name in named:
+        if name not in stale:
+            project.say("meta.yaml", "^stale:", f"stale names {name}, which is not",
+                        f"take it out, then {GATE}")
 
 
 def check_scope(project):
@@ -241,10 +370,11 @@ def check_scope(project):
     title, words = scope.get("section", ""), scope.get("words") or []
     heading = re.search(rf"^#+ .*{re.escape(title)}.*", project.chapter, re.MULTILINE)
     if not title or not heading:
-        return project.say("meta.yaml", "^scope:", f"scope.section {title!r} is no heading of "
-                           f"{CHAPTER}", f"name the heading, then {GATE}")
-    first, last = section(project.chapter, line_at(project.chapter, heading.start()))
-    paths = [project.root / file for file in (CHAPTER, "contact.py", "checks.py", "README.md")]
+        project.say("meta.yaml", "^scope:", f"scope.section {title!r} is no heading of {CHAPTER}",
+                    f"name the heading, then {GATE}")
+        return
+    first, last = texts.section(project.chapter, line_at(project.chapter, heading.start()))
+    paths = [project.root / file for file in (CHAPTER, *regions.LITERATE, "checks.py", "README.md")]
     for path in paths + sorted(project.root.glob("exercises/*.py")):
         file = path.relative_to(project.root).as_posix()
         text = path.read_text("utf-8", "replace").lower() if path.exists() else ""
@@ -255,89 +385,60 @@ def check_scope(project):
                             f"move it there or point there, then {GATE}")
 
 
-def check(root=ROOT):
-    """Every problem of the project at `root`, one line each. Writes nothing."""
+STATIC = (check_regions, check_passages, check_typed, check_exercises, check_scope)
+RUNNING = (check_numbers, check_measured)
+
+
+def check(root=ROOT, numbers=None, first=False):
+    """Every problem of the project at `root`, one line each. Writes nothing.
+
+    `numbers` may hold runs already made. With `first`, the parts after the first problem are left
+    out, and so are the runs when reading alone finds one.
+    """
     missing = [f for f in ("contact.py", "meta.yaml", CHAPTER) if not (Path(root) / f).exists()]
     if missing:
         return [f"{file}:1: missing; repair: git checkout {file}" for file in missing]
-    problems, numbers = [], Numbers(root)
+    problems, numbers = [], numbers or Numbers(root)
     try:
         project = Project(root)
         problems = project.problems
-        for part in (check_regions, check_typed, check_scope):
-            part(project)
-        for part in (check_numbers, check_ledger):
-            part(project, numbers)
+        for part in STATIC:
+            if not (first and problems):
+                part(project)
+        for part in RUNNING:
+            if not (first and problems):
+                part(project, numbers)
+        project.metrics = list(numbers.runs.values())
+        if not (first and problems):
+            check_names(project)
     except ValueError as error:         # not YAML, no runs, or the script fails
         at = "" if re.match(r"[\w./]+:\d+: ", str(error)) else "contact.py:1: "
         problems.append(f"{at}{error}; repair: correct it, then {GATE}")
     return problems
 
 
-def accepted_text(root, name, sha256):
-    """The text of the region when it had that hash, from git; or None and why there is none."""
-    def git(*words):
-        command = ["git", "-C", str(root), *words]
-        return subprocess.run(command, capture_output=True, check=True).stdout.decode("utf-8")
-
-    marked = re.compile(rf"^# --- region: {name} ---\n(.*?)^{regions.END}$", re.M | re.S)
-    try:
-        for commit in git("log", "--format=%H", "--", "contact.py").split():
-            found = marked.search(git("show", f"{commit}:./contact.py"))
-            if found and regions.Region(name, 0, found[1]).sha256 == sha256:
-                return found[1], None
-    except (OSError, subprocess.CalledProcessError, UnicodeDecodeError):
-        return None, "no git history here"
-    return None, "the accepted text is in no commit"
-
-
-def accept(root, name):
-    """Show what changed and what quotes it, then record the one hash. Raises ValueError."""
-    root = Path(root)
-    found, hashes = regions.find(root / "contact.py"), load_meta(root).get("region_hashes") or {}
-    if name not in found and name not in hashes:
-        raise ValueError(f"given {name!r}, allowed: {', '.join(found)}")
-    new = found.get(name)
-    if new and new.sha256 == hashes.get(name):
-        return print(f"{name}: nothing to accept, the hash is already recorded")
-    old, why = None, "there was no hash before"
-    if name in hashes:
-        old, why = accepted_text(root, name, hashes[name])
-    if old is None:
-        print(f"{name}: {why}, so the whole region is shown instead of a change")
-    print(*difflib.unified_diff((old or "").splitlines(), (new.text if new else "").splitlines(),
-                                f"{name}, accepted", f"{name}, now", lineterm=""), sep="\n")
-    chapter = (root / CHAPTER).read_text("utf-8") if (root / CHAPTER).exists() else ""
-    for line in [line for line, each in find_includes(chapter) if each == name]:
-        first, last = section(chapter, line)
-        print(f"\n{CHAPTER}:{line} shows it; the section, lines {first} to {last}, says:\n")
-        for number, text in enumerate(chapter.split("\n")[first - 1:last], first):
-            print(f"{number:>5}  {text}")
-    hashes[name] = new.sha256 if new else None
-    order = [*found, *(each for each in hashes if each not in found)]
-    lines = [f"  {each}: {hashes[each]}\n" for each in order if hashes.get(each)]
-    block = "".join(["region_hashes:\n", *lines])
-    text = (root / "meta.yaml").read_text("utf-8")
-    text, count = re.subn(r"^region_hashes:.*\n(?: .*(\n|$))*", lambda _: block, text, flags=re.M)
-    write_whole(root / "meta.yaml", text if count else f"{text.rstrip()}\n\n{block}")
-    print(f"\n{name}: {'recorded ' + new.sha256 if new else 'its hash is removed'}")
-
-
 def main(argv=None):
-    """Check, or accept one region. Returns the exit status: 0 in order, 1 drift, 2 bad usage."""
-    from curriculum.common.arguments import Parser
+    """Check, accept passages, or fuzz. Returns the exit status: 0 in order, 1 drift, 2 bad usage."""
+    from curriculum.common.arguments import Parser, number
     parser = Parser(prog=GATE, description="Hold chapter, code, numbers and ledger together.")
-    parser.add_argument("--accept", metavar="NAME",
-                        help="record one region's hash, showing what changed")
+    parser.add_argument("--accept", metavar="NAME", nargs="+",
+                        help="record the hash of these, showing what changed and where it is told")
+    parser.add_argument("--fuzz", metavar="N", type=number(int, low=1),
+                        help="make N random mutations, one at a time, and list those that pass")
+    parser.add_argument("--seed", type=number(int, low=0), default=0, help="of --fuzz (0)")
     parser.add_argument("--root", default=ROOT, type=Path, help="another copy of the project")
     args = parser.parse_args(argv)
     if args.accept:
         try:
-            accept(args.root, args.accept)
+            for name in args.accept:
+                accept(args.root, name)
         except (OSError, ValueError) as error:
             print(error, file=sys.stderr)
             return 2
         return 0
+    if args.fuzz:
+        from curriculum.drift import fuzz
+        return fuzz.main(args.root, args.fuzz, args.seed)
     problems = check(args.root)
     print(*(problems or ["chapter, code, numbers and ledger agree"]), sep="\n",
           file=sys.stderr if problems else sys.stdout)

@@ -145,7 +145,7 @@ def cells(root):
         prose(text[done:found.start()])
         done = found.end()
         if region:
-            out.append(("code", code.pop(region[1])))
+            out.append(("code", code.pop(region["name"])))
             runs = not code                         # main is the last region's
         elif command:
             out.append(("code", f"main({shlex.split(command[1])!r})".replace("'", '"')))

@@ -8,18 +8,24 @@ A reference stands in the text in double braces and is replaced by a number of a
 
     {{quality.penalty.rest_penetration_frac|.5f}}   metrics.json of the reference run
     {{drop-dt-0.03:quality.penalty.energy_excess|,.0f}}     of another run that meta.yaml names
-    {{bench.skip.cases}}  {{stress.violations}}      results.json of the benchmark, of the report
+    {{contact.CONTACT_MARGIN}}       a constant of contact.py; exact. and piles. are the other two files
+    {{contact.run_model.iters}}      the default of a function's argument
+    {{bench:skip.cases}}  {{stress:maps.cells}}      results of the benchmark, of the stress report
     {{wallclock.cpu-laptop}}         the ledger: minutes, or "not yet measured"
     {{quality.penalty.max_penetration_frac / quality.lcp.max_penetration_frac|.1f}}
     {{= 1972 | year of the paper}}   a typed number, allowed for the reason given
 
-FORMAT is Python's; a fraction needs one, a whole number or a text does not. Operands are numbers or
-references, joined by + - * / with spaces around, taken from left to right. A key that itself holds
-dots is found too. And a sentence in words can be held to the numbers by a comment that nobody sees:
+FORMAT is Python's; a fraction needs one, a whole number or a text does not. Two more put a number
+that is whole, or nearly, into words: |words says "three", |times says "three times" or "twice".
+Operands are numbers or references, joined by + - * / with spaces around, taken from left to right.
+A key that itself holds dots is found too. What was measured on other code than today's is followed
+by "(stale: COMMAND)", the command that measures it again. And a sentence in words can be held to
+the numbers by a comment that nobody sees:
 
     <!-- holds: quality.penalty.max_penetration_frac > 4 * quality.lcp.max_penetration_frac -->
 """
 
+import ast
 import json
 import operator
 import os
@@ -30,6 +36,7 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from curriculum import measured
 from curriculum.common import wallclock
 from curriculum.common.files import write_whole
 
@@ -40,7 +47,10 @@ HOLDS = re.compile(r"<!--\s*holds:\s*(.*?)\s*-->")
 COMPARE = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge,
            "==": operator.eq}
 COMBINE = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
-GENERATED = ("bench", "stress")     # curriculum/NAME/**/results.json, by python -m curriculum.NAME
+RESULTS = ("bench", "stress")       # curriculum/NAME/results/results.json
+WORDS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
+         "eleven", "twelve")
+NEARLY = 0.05           # a number this close to a whole one, relatively, may be put into words
 
 
 def load_meta(root=ROOT):
@@ -72,7 +82,7 @@ class Numbers:
     def __init__(self, root=ROOT, runs=None):
         """`runs` by name (dicts like metrics.json) stand in for fresh ones, as in an exercise."""
         self.root, self.runs, self.config_hash = Path(root), dict(runs or {}), {}
-        self.flags = None
+        self.flags, self.constants, self.results = None, {}, {}
 
     def known_runs(self):
         """Flags by name: the runs of meta.yaml. Raises ValueError when there are none."""
@@ -120,13 +130,51 @@ class Numbers:
         if space == "wallclock":
             ledger = self.root / "wallclock.csv"
             return wallclock.show(wallclock.lookup(wallclock.CHAPTER, key, ledger))
-        if space in GENERATED:
-            found = sorted((self.root / "curriculum" / space).glob("**/results.json"))
-            if not found:
-                raise ValueError(f"curriculum/{space} has no results.json: "
-                                 f"python -m curriculum.{space}")
-            return dig(json.loads(found[0].read_text("utf-8")), key, text)
+        if colon and name in RESULTS:
+            return dig(self.sections(name), in_run, text)
+        for file in measured.LITERATE:
+            if space == Path(file).stem and (self.root / file).exists():
+                return dig(self._constants(file), key, text)
         return dig(self.run(name if colon else self.reference()), in_run if colon else text, text)
+
+    def _constants(self, file):
+        """The constants of a literate file, and the defaults of its functions' arguments."""
+        if file not in self.constants:
+            self.constants[file] = constants((self.root / file).read_text("utf-8"))
+        return self.constants[file]
+
+    def sections(self, name):
+        """The sections of one results file. Raises ValueError when there are none."""
+        if name not in self.results:
+            self.results[name] = measured.load(self.root / "curriculum" / name / "results")
+        if not self.results[name]:
+            raise ValueError(f"curriculum/{name} has no results yet: python -m curriculum.{name}")
+        return self.results[name]
+
+    def stale(self, expression):
+        """{name: command} of what an expression quotes that was measured on other code."""
+        found = {}
+        for text in re.split(r" [-+*/] ", expression.strip()):
+            name, colon, key = text.strip().partition(":")
+            if colon and name in RESULTS:
+                section = key.split(".")[0]
+                said = self.sections(name).get(section)
+                if isinstance(said, dict) and measured.is_stale(said, self.root):
+                    found[f"{name}:{section}"] = command_of(said, name)
+            tier = text.strip().partition("wallclock.")[2]
+            if tier and tier in self.stale_tiers():
+                found[f"wallclock:{tier}"] = wallclock.COMMAND
+        return found
+
+    def stale_tiers(self):
+        """The tiers whose ledger row was measured on another default run, or on other code."""
+        rows = [row for row in wallclock.read(self.root / "wallclock.csv")
+                if row["chapter"] == wallclock.CHAPTER and row["status"] == "MEASURED"]
+        if not rows:
+            return {}
+        self.run(self.reference())
+        now = wallclock.run_hash(self.config_hash.get(self.reference(), ""), self.root)
+        return {row["tier"]: row for row in rows if row["config_hash"] != now}
 
     def text(self, reference):
         """What a reader sees in place of {{reference}}. Raises ValueError when it can't be made."""
@@ -141,7 +189,9 @@ class Numbers:
             raise ValueError(f"{expression!r} is {str(value)[:40]}, no number")
         if isinstance(value, float) and not form:
             raise ValueError(f"{expression!r} is a fraction and needs a format, such as |.3f")
-        return format(value, form)
+        shown = in_words(value, form) if form in ("words", "times") else format(value, form)
+        again = list(self.stale(expression).values())
+        return f"{shown} (stale: `{again[0]}`)" if again else shown
 
     def holds(self, claim):
         """Whether EXPRESSION < EXPRESSION (or <= > >= ==). Raises ValueError on nonsense."""
@@ -163,6 +213,47 @@ def is_number(value):
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
+def in_words(value, form):
+    """A whole number in words, "three", or as a multiple, "three times". Raises ValueError."""
+    whole = round(value) if is_number(value) else -1
+    if not 0 <= whole < len(WORDS) or abs(value - whole) > NEARLY * max(whole, NEARLY):
+        raise ValueError(f"{value} is no whole number from 0 to {len(WORDS) - 1}, or nearly one")
+    if form == "words":
+        return WORDS[whole]
+    return {1: "once", 2: "twice"}.get(whole, f"{WORDS[whole]} times")
+
+
+def constants(text):
+    """{name: value} of a module's constants, and {function: {argument: default}}, from its text.
+
+    Values that are not literals are left out; nothing is run.
+    """
+    found = {}
+    for node in ast.parse(text).body:
+        if isinstance(node, (ast.Assign, ast.AnnAssign)):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            pairs = [(target.id, node.value) for target in targets if isinstance(target, ast.Name)]
+            where = found
+        elif isinstance(node, ast.FunctionDef):
+            last = node.args.args[len(node.args.args) - len(node.args.defaults):]
+            pairs = [(argument.arg, value) for argument, value in zip(last, node.args.defaults)]
+            where = found.setdefault(node.name, {})
+        else:
+            continue
+        for name, value in pairs:
+            try:
+                where[name] = ast.literal_eval(value)
+            except ValueError:
+                if isinstance(value, ast.Name) and value.id in found:
+                    where[name] = found[value.id]
+    return found
+
+
+def command_of(section, name):
+    """What measures a section of results again."""
+    return section.get("measured", {}).get("command") or f"python -m curriculum.{name}"
+
+
 def dig(value, key, whole):
     """value["a"]["b.c"][3] for the key "a.b.c.3". Raises ValueError saying what is known there."""
     parts = key.split(".") if key else []
@@ -170,11 +261,11 @@ def dig(value, key, whole):
         head, rest = ".".join(parts[:cut]), ".".join(parts[cut:])
         if isinstance(value, dict) and head in value:
             return dig(value[head], rest, whole)
-        if isinstance(value, list) and head.isdigit() and int(head) < len(value):
+        if isinstance(value, (list, tuple)) and head.isdigit() and int(head) < len(value):
             return dig(value[int(head)], rest, whole)
     if parts:
         known = list(value) if isinstance(value, dict) else []
-        known = range(len(value)) if isinstance(value, list) else known
+        known = range(len(value)) if isinstance(value, (list, tuple)) else known
         raise ValueError(f"{whole!r} is not among the generated numbers: no {key!r}; "
                          f"known there: {', '.join(map(str, known)) or 'nothing'}")
     return value

@@ -24,8 +24,9 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
+from curriculum.measured import LITERATE
+
 ROOT = Path(__file__).resolve().parents[1]
-LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
 CHECK = "python -m curriculum.regions"
 NAME = r"[a-z][a-z0-9_-]*"
 BEGIN = re.compile(rf"# --- region: ({NAME}) ---")

@@ -6,14 +6,22 @@
 Seven columns, no quoting: chapter,tier,wallclock_min,config_hash,commit,date,status. wallclock_min
 is in minutes, for a whole process (`python contact.py`, recording included, the median of several).
 status is MEASURED or PENDING; a PENDING row holds nothing else, and no time is ever guessed.
+
+config_hash is over the flags of the default run (what contact.py prints) and over the code that
+was timed, so a row is stale as soon as either changes. The single times of each measured row are
+kept beside the ledger, in wallclock_runs.json, so that no row can be typed or edited alone.
 """
 
+import hashlib
+import json
 import os
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 LEDGER = os.path.join(ROOT, "wallclock.csv")
 CHAPTER = "ch3.5-contact"
 COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", "status")
+COMMAND = "python -m curriculum.common.wallclock --measure"
+RUNS = "wallclock_runs.json"                      # beside the ledger: the times behind each row
 SHOWN = ("cpu-laptop", "mps", "t4", "4090")       # tiers the course shows, measured or not
 
 
@@ -78,13 +86,43 @@ def render_line(chapter, tier, path=None):
     return f"expected wall-clock on {tier}: {show(minutes)}, measured"
 
 
+def run_hash(config_hash, root=ROOT):
+    """The hash of a ledger row: of the config hash that contact.py prints, and of the code."""
+    from curriculum import measured
+    code = {file: measured.code_hash(file, root) for file in measured.LITERATE}
+    text = json.dumps([config_hash, code], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def read_runs(path=None):
+    """{tier: {"seconds": [...], "config_hash", "commit", "date"}}, {} without a file."""
+    path = os.path.join(os.path.dirname(path or LEDGER), RUNS)
+    if not os.path.exists(path):
+        return {}
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def unfounded(row, runs):
+    """What a MEASURED row says that its recorded times do not, or None."""
+    import statistics
+    record = runs.get(row["tier"])
+    if not record:
+        return f"no times of {row['tier']} in {RUNS}"
+    minutes = f"{statistics.median(record['seconds']) / 60:.3g}"
+    for name, said in (("wallclock_min", minutes), *((key, record[key]) for key in
+                                                     ("config_hash", "commit", "date"))):
+        if row[name] != said:
+            return f"{name} is {row[name]}, but {RUNS} has {said}"
+    return None
+
+
 def measure(runs):
-    """Time `python contact.py` as a whole process: (median minutes, config hash).
+    """Time `python contact.py` as a whole process: (seconds of each run, config hash).
 
     The first run only warms the disk cache and the bytecode and is not counted. Raises RuntimeError
     when a run fails or makes no recording: a run without rerun is not the default run.
     """
-    import statistics
     import subprocess
     import sys
     import tempfile
@@ -102,20 +140,30 @@ def measure(runs):
             if not os.path.exists(os.path.join(out, "contact.rrd")):
                 raise RuntimeError("the default run records, and rerun is missing: "
                                    "pip install rerun-sdk")
-    return statistics.median(times[1:]) / 60, run.stdout.split()[-1]
+    return [round(seconds, 4) for seconds in times[1:]], run.stdout.split()[-1]
 
 
-def write_row(tier, minutes, config_hash, commit, date, path=None):
-    """Put a MEASURED row of this chapter into the ledger; other rows stay as they are."""
+def write_row(tier, seconds, config_hash, commit, date, path=None):
+    """Put a MEASURED row of this chapter into the ledger, and its times beside it.
+
+    Other rows stay as they are.
+    """
+    import statistics
     from curriculum.common.files import write_whole
-    values = CHAPTER, tier, f"{minutes:.3g}", config_hash, commit, date, "MEASURED"
+    path = path or LEDGER
+    minutes = f"{statistics.median(seconds) / 60:.3g}"
+    values = CHAPTER, tier, minutes, config_hash, commit, date, "MEASURED"
+    times = {**read_runs(path), tier: {"seconds": list(seconds), "config_hash": config_hash,
+                                       "commit": commit, "date": date}}
     rows = {(r["chapter"], r["tier"]): r for r in read(path)}
     for name in SHOWN:
         pending = CHAPTER, name, "", "", "", "", "PENDING"
         rows.setdefault((CHAPTER, name), dict(zip(COLUMNS, pending)))
     rows[CHAPTER, tier] = dict(zip(COLUMNS, values))
     lines = [",".join(COLUMNS)] + [",".join(r.values()) for r in rows.values()]
-    write_whole(path or LEDGER, "\n".join(lines) + "\n")
+    write_whole(os.path.join(os.path.dirname(path), RUNS),
+                json.dumps(times, indent=1, sort_keys=True) + "\n")
+    write_whole(path, "\n".join(lines) + "\n")
 
 
 def main(argv=None):
@@ -134,15 +182,15 @@ def main(argv=None):
         def git(*words):
             return subprocess.check_output(["git", "-C", ROOT, *words], text=True).strip()
         try:
-            if git("status", "--porcelain", "contact.py", "curriculum/common"):
-                raise RuntimeError("contact.py or curriculum/common differs from the commit; "
-                                   "commit it first")
-            minutes, config_hash = measure(args.runs)
+            if git("status", "--porcelain", "*.py"):
+                raise RuntimeError("the code differs from the commit; commit it first")
+            seconds, config_hash = measure(args.runs)
             commit = git("rev-parse", "--short", "HEAD")
         except (RuntimeError, OSError, subprocess.CalledProcessError) as error:
             print(f"nothing written: {error}", file=sys.stderr)
             return 1
-        write_row(cpu_tier(), minutes, config_hash, commit, datetime.date.today().isoformat())
+        write_row(cpu_tier(), seconds, run_hash(config_hash), commit,
+                  datetime.date.today().isoformat())
     for row in read():
         minutes = float(row["wallclock_min"]) if row["status"] == "MEASURED" else None
         print(f"{row['tier']:<12}{show(minutes)}")

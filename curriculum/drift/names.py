@@ -34,6 +34,7 @@ FLAG = re.compile(r"(?<![\w-])--[a-z][\w-]*")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)|<img[^>]*\bsrc=\"([^\"]+)\"")
 PYTHON = re.compile(r"(\S*/)?(python[\d.]*|pytest|pip|uv|rerun)")
 PLACEHOLDER = re.compile(r"[A-Z][A-Z_:]*|\.\.\.|\[.*\]|<.*>|'?[A-Z]+\|?[A-Z]*'?")
+HELP = {}               # (target, its text): what --help prints
 OTHERS = ("pytest", "pip", "uv", "rerun", "git", "venv", "http")    # commands with flags of their own
 
 
@@ -93,21 +94,21 @@ def code_words(text):
     return frozenset(found)
 
 
-@lru_cache(maxsize=256)
-def help_of(root, target, stamp):
-    """What `python TARGET --help` prints, None when it fails. `stamp` tells copies apart."""
-    words = ["-m", target] if not target.endswith(".py") else [target]
-    run = subprocess.run([sys.executable, "-B", *words, "--help"], cwd=root, text=True,
-                         capture_output=True, env=os.environ | {"COLUMNS": "400"})
-    return run.stdout if run.returncode == 0 else None
-
-
 def help_for(root, target):
-    """The help of a script or module below `root`, None when there is none such."""
+    """What the --help of a script or module below `root` prints; None without one, or if it fails.
+
+    Kept by the text of the file, so that copies of a project need not ask again.
+    """
     path = module_path(root, target)
     if path is None:
         return None
-    return help_of(str(root), target, path.stat().st_mtime_ns)
+    key = target, path.read_bytes()
+    if key not in HELP:
+        words = [target] if target.endswith(".py") else ["-m", target]
+        run = subprocess.run([sys.executable, "-B", *words, "--help"], cwd=root, text=True,
+                             capture_output=True, env=os.environ | {"COLUMNS": "400"})
+        HELP[key] = run.stdout if run.returncode == 0 else None
+    return HELP[key]
 
 
 def module_path(root, target):
@@ -245,8 +246,11 @@ def docstring_commands(text):
             if re.match(r" {4,}(python|pytest)\b", line)]
 
 
-def all_flags(root, targets):
-    """Every flag of the commands below `root`, from their help."""
+def all_flags(root, texts):
+    """Every flag of contact.py and of the modules that commands in the texts run, from their help."""
+    targets = {"contact.py"} | {word for text in texts for _, line in commands(text)
+                                for word in re.findall(r"-m (curriculum[\w.]*)|(\S+\.py)", line)
+                                for word in word if word and word != "checks.py"}
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         texts = pool.map(lambda target: help_for(root, target) or "", targets)
         return {flag for text in texts for flag in FLAG.findall(text)}

@@ -93,7 +93,7 @@ def blocks(text):
             index += 3
             continue
         if token.type == "fence" and INCLUDE.fullmatch(token.content.strip()):
-            out.append(("include", INCLUDE.fullmatch(token.content.strip())[1]))
+            out.append(("include", INCLUDE.fullmatch(token.content.strip())["name"]))
         elif token.type == "html_block":
             rest = token.content
             while slot := SLOT.match(rest):

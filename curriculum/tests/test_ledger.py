@@ -20,12 +20,12 @@ print("config_hash: c0ffee")
 
 
 def ledger_problems(root, numbers):
+    """What the gate finds wrong with the ledger at `root`, and which rows it calls stale."""
     project = SimpleNamespace(root=root, problems=[])
     project.say = lambda file, line, what, repair: project.problems.append(
         f"{file}:{line}: {what}; repair: {repair}"
     )
-    gate.check_ledger(project, numbers)
-    return project.problems
+    return project.problems, gate.check_ledger(project, numbers)
 
 
 def test_the_ledger_shows_every_tier_of_the_course_and_claims_only_what_was_measured():
@@ -41,21 +41,51 @@ def test_the_ledger_shows_every_tier_of_the_course_and_claims_only_what_was_meas
             )
 
 
-def test_every_measured_row_is_of_the_scripts_default_run_as_it_is_now():
-    assert ledger_problems(ROOT, Numbers()) == []
+def test_every_measured_row_has_its_times_beside_it():
+    assert ledger_problems(ROOT, Numbers())[0] == []
 
 
-def test_a_row_whose_config_hash_no_longer_matches_is_refused(tmp_path):
+@pytest.fixture
+def ledger(tmp_path):
+    """A ledger with one row, the numbers of a run with that hash, and what the gate says."""
     shutil.copy(ROOT / "meta.yaml", tmp_path)
-    wallclock.write_row(
-        "cpu-vm", 0.004, "0ldc0nf19", "1234567", "2026-01-02", tmp_path / "wallclock.csv"
-    )
-    numbers = Numbers(tmp_path, runs={"drop": {}})
-    numbers.config_hash["drop"] = "c0ffee"
-    (problem,) = ledger_problems(tmp_path, numbers)
-    assert problem.startswith(
-        "wallclock.csv:6: cpu-vm was measured at config 0ldc0nf19, the default run is now c0ffee"
-    )
+    (tmp_path / "contact.py").write_text("x = 1  # a comment\n")
+    wallclock.write_row("cpu-vm", [0.3, 0.2, 0.25], wallclock.run_hash("c0ffee", tmp_path),
+                        "1234567", "2026-01-02", str(tmp_path / "wallclock.csv"))
+
+    def check(printed="c0ffee"):
+        numbers = Numbers(tmp_path, runs={"drop": {}})
+        numbers.config_hash["drop"] = printed
+        return ledger_problems(tmp_path, numbers)
+
+    return check
+
+
+def test_a_row_is_the_median_of_its_times_and_fresh(ledger, tmp_path):
+    assert wallclock.lookup(wallclock.CHAPTER, "cpu-vm", tmp_path / "wallclock.csv") == 0.00417
+    assert ledger() == ([], {})
+
+
+def test_a_row_of_other_flags_or_of_other_code_is_stale(ledger, tmp_path):
+    stale = {"wallclock:cpu-vm": "python -m curriculum.common.wallclock --measure"}
+    assert ledger(printed="decaff") == ([], stale)
+    (tmp_path / "contact.py").write_text("x = 1  # another comment\n")
+    assert ledger() == ([], {})
+    (tmp_path / "contact.py").write_text("x = 2\n")
+    assert ledger() == ([], stale)
+
+
+@pytest.mark.parametrize("old, new, said", [
+    ("0.00417", "0.00317", "wallclock_min is 0.00317, but wallclock_runs.json has 0.00417"),
+    ("1234567", "7654321", "commit is 7654321, but wallclock_runs.json has 1234567"),
+    ("2026-01-02", "2026-01-03", "date is 2026-01-03, but wallclock_runs.json has 2026-01-02"),
+    ("mps,,,,,PENDING", "mps,1,c0ffee,1234567,2026-01-02,MEASURED", "no times of mps"),
+])
+def test_what_is_typed_into_the_ledger_is_refused(ledger, tmp_path, old, new, said):
+    path = tmp_path / "wallclock.csv"
+    path.write_text(path.read_text().replace(old, new))
+    (problem,), _ = ledger()
+    assert said in problem and problem.startswith("wallclock.csv:")
 
 
 @pytest.fixture
@@ -83,9 +113,11 @@ def test_measuring_writes_this_machines_row_with_the_hash_that_the_script_prints
     (row,) = [row for row in wallclock.read() if row["status"] == "MEASURED"]
     assert (row["tier"], row["config_hash"], row["commit"]) == (
         device.cpu_tier(),
-        "c0ffee",
+        wallclock.run_hash("c0ffee"),
         "1234567",
     )
+    times = wallclock.read_runs()[row["tier"]]["seconds"]
+    assert len(times) == 3 and row["wallclock_min"] == f"{sorted(times)[1] / 60:.3g}"
     assert 0 < float(row["wallclock_min"]) < 0.1
     assert re.search(rf"^{row['tier']} +[\d.e-]+ min \(.* s\)$", capsys.readouterr().out, re.M)
     assert len((folder / "wallclock.csv").read_text().splitlines()) == 6

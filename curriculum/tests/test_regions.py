@@ -108,18 +108,42 @@ def test_a_comment_that_merely_talks_of_a_region_is_no_marker(tmp_path):
     )
 
 
-def test_every_line_of_contact_py_is_in_a_region_and_the_design_names_them():
-    found = regions.find(ROOT / "contact.py")
-    assert list(found) == [
-        "setup",
-        "scenes",
-        "contacts",
-        "penalty",
-        "lcp",
-        "exact",
-        "simulate",
-        "report",
-    ]
+def test_every_line_of_the_literate_files_is_in_a_region_and_no_two_share_a_name():
+    found = regions.find_all()
+    assert {"setup", "scenes", "contacts", "penalty", "lcp", "simulate", "report"} <= set(found)
+    every, problems = regions.scan_all()
+    assert problems == [] and "contact-docstring" in every and "contact-docstring" not in found
+    assert "v_n" in every["contact-docstring"].text
+
+
+def test_regions_of_several_files_are_found_in_order_and_share_no_name(tmp_path):
+    (tmp_path / "curriculum").mkdir()
+    write(tmp_path, GOOD)
+    other = tmp_path / "curriculum/exact.py"
+    other.write_text("# --- region: next-impact ---\nx = 1\n# --- endregion ---\n")
+    assert list(regions.find_all(tmp_path)) == ["one", "two", "next-impact"]
+    assert regions.find_all(tmp_path)["next-impact"].file == "curriculum/exact.py"
+    other.write_text("# --- region: one ---\nx = 1\n# --- endregion ---\n")
+    with pytest.raises(ValueError) as caught:
+        regions.find_all(tmp_path)
+    assert "curriculum/exact.py:1: a second region one; the other is in contact.py" in str(
+        caught.value
+    )
+
+
+def test_what_stands_outside_is_hashed_and_blank_lines_do_not_count(tmp_path):
+    (outside,) = [r for r in regions.scan_all(write(tmp_path, GOOD).parent)[0].values()
+                  if r.name == "contact-docstring"]
+    assert outside.text == '"""Docstring,\ntwo lines."""\n# a comment may stand outside\n'
+    moved = regions.scan_all(write(tmp_path, GOOD.replace("\n\n# ---", "\n\n\n# ---")).parent)[0]
+    assert moved["contact-docstring"].sha256 == outside.sha256
+
+
+def test_a_file_without_markers_is_not_literate_yet(tmp_path):
+    write(tmp_path, GOOD)
+    (tmp_path / "curriculum").mkdir()
+    (tmp_path / "curriculum/piles.py").write_text("x = 1\n")
+    assert list(regions.find_all(tmp_path)) == ["one", "two"]
 
 
 def test_the_command_lists_prints_and_refuses(capsys):
@@ -128,4 +152,4 @@ def test_the_command_lists_prints_and_refuses(capsys):
     assert regions.main(["penalty"]) == 0
     assert hashlib.sha256(capsys.readouterr().out.encode()).hexdigest() in listed
     assert regions.main(["nonsense"]) == 2
-    assert "given 'nonsense', allowed: nothing or one of setup, scenes" in capsys.readouterr().err
+    assert "given 'nonsense', allowed: nothing or one of contact-docstring, setup" in capsys.readouterr().err
