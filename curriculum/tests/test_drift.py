@@ -788,6 +788,9 @@ def test_the_real_project_is_in_order():
 def test_one_character_changed_in_any_region_of_the_real_scripts_is_caught(copy):
     found, problems = regions.scan_all(copy)
     assert len(found) > 8 and problems == []
+    for name in found:
+        gate.accept(copy, name)
+    before_all = region_problems(copy)
     for region in found.values():
         before = (copy / region.file).read_text()
         line = next(line for line in region.text.splitlines() if re.search(r"\w{3}", line))
@@ -799,4 +802,4 @@ def test_one_character_changed_in_any_region_of_the_real_scripts_is_caught(copy)
         caught = [each for each in region_problems(copy) if f"region {region.name} " in each]
         assert caught and caught[0].startswith(f"{region.file}:{region.first - 1}: "), region.name
         (copy / region.file).write_text(before)
-    assert region_problems(copy) == []
+    assert region_problems(copy) == before_all
