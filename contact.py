@@ -514,6 +514,15 @@ def steps_to_floor(ball, dt):
 
 
 # --- region: run ---
+def fast_twin():
+    """curriculum/piles.py, the compiled steps for many balls; None where it or numba is missing."""
+    try:
+        from curriculum import piles
+    except ImportError:
+        return None
+    return piles
+
+
 def run_model(model: str, scene: Scene, dt: float, steps: int, stiffness: float = 1e4,
               baumgarte: float = 0.2, iters: int = 20, skip: bool = True,
               report=lambda k: None, solref=None, solimp=None) -> Run:
@@ -529,6 +538,11 @@ def run_model(model: str, scene: Scene, dt: float, steps: int, stiffness: float 
         return Run(times, *exact.simulate_exact(scene, times, GRAVITY, report))
     e = scene.restitution
     solref, solimp = soft_defaults(e, dt, solref, solimp)
+    if skip and len(scene.mass) > FEW and (piles := fast_twin()):
+        rows = piles.simulate(
+            model, scene, dt, steps, report, GRAVITY, CONTACT_MARGIN, stiffness, baumgarte, iters,
+            MOST_SWEEPS, LAST_BITS, solref, solimp)
+        return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
     steps_by = {
         "penalty": lambda balls: penalty_step(balls, dt, stiffness, scene.damping),
         "lcp": lambda balls: lcp_step(balls, dt, e, baumgarte, iters),
@@ -554,6 +568,8 @@ def smallest_gap(q, radius):
 
     Ball i is compared with ball i + lag, for all i and all states at once, and for every lag.
     """
+    if len(radius) > FEW and (piles := fast_twin()):
+        return piles.smallest_gap(q, radius)
     gap = (q[:, 1] - radius).min(-1)
     for lag in range(1, len(radius)):
         dx = q[:, 0, lag:] - q[:, 0, :-lag]
@@ -762,6 +778,20 @@ def write_results(args, metrics, runs, scene):
 
 
 # --- region: main ---
+def choose_models(args, count):
+    """The models to run. Says what is left out of a scene of so many balls, and what is slow."""
+    models = [model for model in MODELS if args.contact in ("all", model)]
+    if args.contact == "all" and count > 24:
+        models.remove("exact")
+        print("exact is left out of piles of more than 24 balls; ask for it by --contact exact")
+    if args.skip and count > FEW and fast_twin() is None:
+        print("the extra `fast` is missing (pip install numba): many balls take longer, and soft "
+              "is left out of piles of more than 24 unless asked for", file=sys.stderr)
+        if args.contact == "all" and count > 24:
+            models.remove("soft")
+    return models
+
+
 def main(argv=None):
     """Run the command line: print the report, write metrics.json and contact.rrd. Returns 0."""
     try:
@@ -779,11 +809,7 @@ def main(argv=None):
         return run_model(model, scene, dt, args.steps, args.stiffness, args.baumgarte, args.iters,
                          args.skip, progress.steps(args.steps, label), args.solref, args.solimp)
 
-    models = [model for model in MODELS if args.contact in ("all", model)]
-    if args.contact == "all" and len(scene.mass) > 24:
-        models.remove("exact")
-        print("exact is left out of piles of more than 24 balls; ask for it by --contact exact")
-    runs = {model: run(model, args.dt) for model in models}
+    runs = {model: run(model, args.dt) for model in choose_models(args, len(scene.mass))}
     quality = {model: contact_quality(found, scene, args.dt, runs.get("exact"))
                for model, found in runs.items()}
     grid = {}

@@ -36,12 +36,13 @@ class Knobs(NamedTuple):
     restitution: float
     baumgarte: float
     iters: int
-    last_bits: float        # of soft
+    most_sweeps: int        # of soft
+    last_bits: float
     solref: tuple
     solimp: tuple
 
 
-def kept(function):
+def compiled(function):
     """The function compiled, and kept on disk for the next process if there is a place for it."""
     try:
         return numba.njit(function, cache=True)
@@ -51,20 +52,20 @@ def kept(function):
 
 
 # --- region: piles-cells ---
-@numba.njit
+@compiled
 def finite(ball):
     """Whether the ball is somewhere. One that is not touches nothing, now and for ever."""
     return math.isfinite(ball.x) and math.isfinite(ball.y)
 
 
-@numba.njit
+@compiled
 def cell_at(distance, side):
     """The number of a cell. Where cells would be finer than floats, all are one."""
     number = distance / side
     return int(number) if number < 2.0**44 else 2**44
 
 
-@numba.njit
+@compiled
 def find_cells(balls, side):
     """Column and row of the cell of every ball, counted from the lowest ball."""
     left = low = math.inf
@@ -80,13 +81,13 @@ def find_cells(balls, side):
     return cells
 
 
-@numba.njit
+@compiled
 def bucket_of(column, row, buckets):
     """The bucket of a cell, one of a power of two. Several cells may share it."""
     return (column * 73856093 ^ row * 19349663) & (buckets - 1)
 
 
-@numba.njit
+@compiled
 def look_around(cell, cells, newest, older, found):
     """Write to `found` the balls in the nine cells around this one, and return how many."""
     count = 0
@@ -103,7 +104,7 @@ def look_around(cell, cells, newest, older, found):
 
 
 # --- region: piles-pairs ---
-@numba.njit
+@compiled
 def list_pairs(balls, reach):
     """The pairs (2, M) of balls whose gap is at most `reach` [m] now: first < second, in order.
 
@@ -137,9 +138,11 @@ def list_pairs(balls, reach):
             older[i] = newest[bucket]
             newest[bucket] = i
     return pairs[:, :size][:, ::-1].copy()
+# --- endregion ---
 
 
-@numba.njit
+# --- region: piles-near ---
+@compiled
 def keep_near(i, found, balls, reach):
     """Keep the balls near ball i at the front of `found`, the largest first; return how many."""
     count = 0
@@ -157,7 +160,7 @@ def keep_near(i, found, balls, reach):
     return count
 
 
-@numba.njit
+@compiled
 def make_room(pairs, size):
     """The pairs, copied to a table twice as wide if `size` of them do not fit."""
     if size <= pairs.shape[1]:
@@ -165,9 +168,11 @@ def make_room(pairs, size):
     wider = np.empty((2, 2 * size), np.int64)
     wider[:, :pairs.shape[1]] = pairs
     return wider
+# --- endregion ---
 
 
-@numba.njit
+# --- region: piles-moves ---
+@compiled
 def farthest_move(balls):
     """How far [m] the farthest ball has moved since the pairs were listed; 0 for one nowhere."""
     farthest = 0.0
@@ -180,13 +185,13 @@ def farthest_move(balls):
 
 
 # --- region: piles-contacts ---
-@numba.njit
+@compiled
 def larger(first, second):
     """Python's max of two floats: the first unless the second is larger, so never NaN for 0."""
     return second if second > first else first
 
 
-@numba.njit
+@compiled
 def set_contact(c, balls, a, b, nx, ny, depth):
     """Make row c the contact of balls a and b."""
     c.a, c.b = a, b
@@ -197,7 +202,7 @@ def set_contact(c, balls, a, b, nx, ny, depth):
     c.target = c.softness = c.lam = 0.0
 
 
-@numba.njit
+@compiled
 def detect_contacts(balls, pairs, margin, contacts):
     """The contacts as the first rows of `contacts`: the floor's by ball, then those of pairs."""
     floor = len(balls) - 1
@@ -219,16 +224,18 @@ def detect_contacts(balls, pairs, margin, contacts):
             set_contact(contacts[count], balls, i, j, nx, ny, depth)
             count += 1
     return contacts[:count]
+# --- endregion ---
 
 
-@numba.njit
+# --- region: piles-impulse ---
+@compiled
 def normal_velocity(c, balls):
     """v_n [m/s] of a contact."""
     a, b = balls[c.a], balls[c.b]
     return c.nx * (a.vx - b.vx) + c.ny * (a.vy - b.vy)
 
 
-@numba.njit
+@compiled
 def push(c, balls, impulse):
     """Give the first ball this impulse [N s] along the normal, the second the opposite one."""
     a, b = balls[c.a], balls[c.b]
@@ -241,7 +248,7 @@ def push(c, balls, impulse):
 
 
 # --- region: piles-penalty ---
-@numba.njit
+@compiled
 def penalty_step(balls, contacts, knobs):
     """One step with the force of a spring and a damper."""
     for ball in balls:
@@ -260,7 +267,7 @@ def penalty_step(balls, contacts, knobs):
     move(balls, knobs.dt)
 
 
-@numba.njit
+@compiled
 def fall(balls, speed):
     """Add `speed` [m/s] to vy of every ball that can move."""
     for ball in balls[:-1]:
@@ -268,7 +275,7 @@ def fall(balls, speed):
             ball.vy += speed
 
 
-@numba.njit
+@compiled
 def move(balls, dt):
     """Move every ball with its velocity for one step."""
     for ball in balls[:-1]:
@@ -278,7 +285,7 @@ def move(balls, dt):
 
 
 # --- region: piles-lcp ---
-@numba.njit
+@compiled
 def contact_target(depth, v_n, restitution, baumgarte, dt):
     """The normal velocity [m/s] with which a contact must leave at least."""
     bias = baumgarte / dt * depth
@@ -292,9 +299,9 @@ def contact_target(depth, v_n, restitution, baumgarte, dt):
     return depth / dt
 
 
-@numba.njit
-def solve_contacts(balls, contacts, iters, last_bits):
-    """Projected Gauss-Seidel until a sweep changes no impulse by more than its last bits."""
+@compiled
+def solve_contacts(balls, contacts, iters, tolerance):
+    """Projected Gauss-Seidel until no correction of a sweep is above `tolerance` [m/s]."""
     for _ in range(iters):
         settled = True
         for c in contacts:
@@ -304,13 +311,13 @@ def solve_contacts(balls, contacts, iters, last_bits):
                 change = lam - c.lam
                 push(c, balls, change)
                 c.lam = lam
-                if not abs(change) <= last_bits * lam:
+                if not abs(change) <= tolerance * c.m_eff:
                     settled = False
         if settled:
             break
 
 
-@numba.njit
+@compiled
 def lcp_step(balls, contacts, knobs):
     """One step: gravity predicts the velocities, impulses correct them, the balls move."""
     for c in contacts:
@@ -323,7 +330,7 @@ def lcp_step(balls, contacts, knobs):
 
 
 # --- region: piles-soft ---
-@numba.njit
+@compiled
 def impedance(depth, solimp):
     """How hard a contact of MuJoCo is at that depth [m]."""
     d0, d1, width, mid, power = solimp
@@ -339,7 +346,7 @@ def impedance(depth, solimp):
     return d0 + y * (d1 - d0)
 
 
-@numba.njit
+@compiled
 def raised(x, power):
     """x to that power; a whole power by products."""
     if power != int(power):
@@ -350,7 +357,7 @@ def raised(x, power):
     return product
 
 
-@numba.njit
+@compiled
 def soften(c, balls, dt, solref, solimp):
     """Give contact c the target and the softness that MuJoCo's contact has."""
     d = impedance(c.depth, solimp)
@@ -369,19 +376,24 @@ def soften(c, balls, dt, solref, solimp):
     c.m_eff = 1.0 / (inv_mass + c.softness)
 
 
-@numba.njit
+@compiled
 def soft_step(balls, contacts, knobs):
     """One step of MuJoCo's contact: lcp's step with another target, and softness."""
     for c in contacts:
         soften(c, balls, knobs.dt, knobs.solref, knobs.solimp)
     fall(balls, knobs.dt * knobs.gravity)
-    solve_contacts(balls, contacts, knobs.iters, knobs.last_bits)
+    fastest = abs(contacts[0].target) if len(contacts) > 0 else 0.0
+    for c in contacts:
+        fastest = larger(fastest, abs(c.target))
+    for ball in balls[:-1]:
+        fastest = larger(larger(fastest, abs(ball.vx)), abs(ball.vy))
+    solve_contacts(balls, contacts, knobs.most_sweeps, knobs.last_bits * fastest)
     move(balls, knobs.dt)
 # --- endregion ---
 
 
-# --- region: piles-run ---
-@numba.njit
+# --- region: piles-states ---
+@compiled
 def make_balls(state, mass, radius):
     """The balls of a state (4, N): x, y, vx, vy. The floor comes last."""
     balls = np.zeros(len(mass) + 1, BALL)
@@ -393,7 +405,7 @@ def make_balls(state, mass, radius):
     return balls
 
 
-@numba.njit
+@compiled
 def write_state(balls, state):
     """Write x, y, vx, vy of all balls to a state (4, N)."""
     for i in range(len(balls) - 1):
@@ -401,7 +413,7 @@ def write_state(balls, state):
         state[2, i], state[3, i] = balls[i].vx, balls[i].vy
 
 
-@numba.njit
+@compiled
 def same(state, other):
     """Whether two states are equal. Then their futures are, but for the signs of zeros."""
     for row in range(4):
@@ -409,9 +421,11 @@ def same(state, other):
             if state[row, i] != other[row, i]:
                 return False
     return True
+# --- endregion ---
 
 
-@kept
+# --- region: piles-steps ---
+@compiled
 def take_steps(rows, first, last, mass, radius, knobs):
     """Fill rows[first + 1:last + 1] with the states (4, N) after rows[first].
 
@@ -444,17 +458,20 @@ def take_steps(rows, first, last, mass, radius, knobs):
                 rows[later] = rows[later - k + mark]
             return len(rows) - 1
     return last
+# --- endregion ---
 
 
-def simulate(model, scene, dt, steps, report=lambda k: None, *, gravity, margin, stiffness=1e4,
-             baumgarte=0.2, iters=20, solref=(0.0, 0.0), solimp=(0.9,) * 5, last_bits=0.0):
-    """The states (steps + 1, 4, N) of a run of scene by penalty, lcp or soft.
+# --- region: piles-simulate ---
+def simulate(model, scene, dt, steps, report, gravity, margin, stiffness, baumgarte, iters,
+             most_sweeps, last_bits, solref, solimp):
+    """The states (steps + 1, 4, N) of a run by penalty, lcp or soft: x, y, vx, vy of each ball.
 
-    `report(k)` is called with the steps done, some times.
+    `report(k)` is called with the steps done, now and then.
     """
     knobs = Knobs(MODELS.index(model), float(dt), float(gravity), float(margin), float(stiffness),
                   float(scene.damping), float(scene.restitution), float(baumgarte), int(iters),
-                  float(last_bits), tuple(map(float, solref)), tuple(map(float, solimp)))
+                  int(most_sweeps), float(last_bits), tuple(map(float, solref)),
+                  tuple(map(float, solimp)))
     rows = np.empty((steps + 1, 4, len(scene.mass)))
     rows[0, :2] = scene.q0
     rows[0, 2:] = scene.v0
@@ -466,4 +483,74 @@ def simulate(model, scene, dt, steps, report=lambda k: None, *, gravity, margin,
         report(done)
     rows += 0.0                                         # turns -0.0 into 0.0
     return rows
+# --- endregion ---
+
+
+# --- region: piles-gap ---
+def smallest_gap(q, radius):
+    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
+    return find_gaps(np.array(q, float), np.array(radius, float))
+
+
+@compiled
+def find_gaps(q, radius):
+    """The smallest gap in each state.
+
+    No pair that is not listed can be as near as `reach` when they were listed, less what two
+    balls have moved. If that does not decide, the pairs are listed anew, as far as it takes.
+    """
+    gaps = np.empty(len(q))
+    nothing = np.zeros((4, len(radius)))
+    balls = make_balls(nothing, radius, radius)
+    reach = 0.0
+    pairs = list_pairs(balls, reach)
+    for k in range(len(q)):
+        place_balls(balls, q[k])
+        if not np.isfinite(q[k]).all():
+            gaps[k] = gap_of_all(balls)
+            continue
+        gaps[k] = gap_of_listed(balls, pairs)
+        if not gaps[k] <= 0.999 * reach - 2.0 * farthest_move(balls):
+            reach = 2.0 * max(gaps[k], 0.0) + SKIN * np.max(radius)
+            pairs = list_pairs(balls, reach)
+            gaps[k] = gap_of_listed(balls, pairs)
+    return gaps
+
+
+@compiled
+def place_balls(balls, q):
+    """Put the balls at the places (2, N)."""
+    for i in range(len(balls) - 1):
+        balls[i].x, balls[i].y = q[0, i], q[1, i]
+
+
+@compiled
+def gap_between(a, b):
+    """The gap [m] between two balls."""
+    dx = b.x - a.x
+    dy = b.y - a.y
+    return math.sqrt(dx * dx + dy * dy) - (b.radius + a.radius)
+
+
+@compiled
+def gap_of_listed(balls, pairs):
+    """The smallest gap to the floor or between listed balls."""
+    gap = math.inf
+    for ball in balls[:-1]:
+        gap = min(gap, ball.y - ball.radius)
+    for k in range(pairs.shape[1]):
+        gap = min(gap, gap_between(balls[pairs[0, k]], balls[pairs[1, k]]))
+    return gap
+
+
+@compiled
+def gap_of_all(balls):
+    """The smallest gap of all; NaN if any gap is."""
+    count = len(balls) - 1
+    gap = math.inf
+    for i in range(count):
+        gap = np.minimum(gap, balls[i].y - balls[i].radius)
+        for j in range(i + 1, count):
+            gap = np.minimum(gap, gap_between(balls[i], balls[j]))
+    return gap
 # --- endregion ---

@@ -1,0 +1,189 @@
+"""The compiled twin of contact.py gives the bytes of the plain reference, and is really taken."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+
+import contact
+
+piles = pytest.importorskip("curriculum.piles", reason="numba is not installed: the extra `fast`",
+                            exc_type=ImportError)
+MODELS = ("penalty", "lcp", "soft")
+WILD = (math.nan, math.inf, -math.inf, 1e200, -1e308, 1e-200, -0.0)
+
+
+def reference(*arguments, **knobs):
+    """The run by contact.py's own steps, none left out, looking at every pair."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(contact, "FEW", 10**9)
+        patch.setattr(contact, "MOST_SWEEPS", 60)
+        return contact.run_model(*arguments, skip=False, **knobs)
+
+
+def compiled(*arguments, **knobs):
+    """The run by the twin, whatever the number of balls."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(contact, "FEW", 0)
+        patch.setattr(contact, "MOST_SWEEPS", 60)
+        return contact.run_model(*arguments, **knobs)
+
+
+def check_same(model, scene, dt, steps, **knobs):
+    """Both give the same bytes, or both stop at the same error. Returns the run."""
+    runs = []
+    for way in (reference, compiled):
+        try:
+            runs.append(way(model, scene, dt, steps, **knobs))
+        except ArithmeticError as error:
+            runs.append(type(error))
+    plain, fast = runs
+    if isinstance(plain, type) or isinstance(fast, type):
+        assert plain is fast
+        return None
+    for name in ("q", "v"):
+        one, other = getattr(plain, name), getattr(fast, name)
+        differ = (one.view(np.int64) != other.view(np.int64)).any((1, 2))
+        assert not differ.any(), f"{name} of {model} first differs at step {differ.argmax()}"
+    assert fast.t.tobytes() == plain.t.tobytes()
+    return fast
+
+
+# Scenes of every kind
+
+PLACE = st.one_of(st.integers(-6, 6).map(lambda k: 0.1 * k), st.floats(-0.7, 0.7))
+SPEED = st.one_of(st.just(0.0), st.floats(-5.0, 5.0))
+MASS = st.one_of(st.just(1.0), st.floats(-6.0, 6.0).map(lambda power: 10.0**power),
+                 st.just(math.inf))
+RADIUS = st.sampled_from((0.1, 0.1, 0.1, 0.05, 0.3, 0.0123, 2.0))
+OFFSET = st.sampled_from((0.0, 0.0, 0.0, 1e5, -1e9, 1e15))
+
+
+@st.composite
+def scenes(draw):
+    """1 to 60 balls in a small box, so that many touch; some are placed or thrown anywhere."""
+    count = draw(st.one_of(st.integers(1, 6), st.integers(1, 60)))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    few = min(count, 8)
+    columns = [st.lists(kind, min_size=few, max_size=few)
+               for kind in (PLACE, PLACE, SPEED, SPEED, MASS, RADIUS)]
+    x, y, vx, vy, mass, radius = (np.resize(np.array(draw(column), float), count)
+                                  for column in columns)
+    side = 0.1 * math.sqrt(count)
+    q0 = np.array((x, abs(y))) + (rng.uniform(-side, side, (2, count)) if count > few else 0.0)
+    v0 = np.array((vx, vy))
+    if draw(st.integers(0, 3)) == 0:
+        state = draw(st.sampled_from((q0, v0)))
+        state[draw(st.integers(0, 1)), draw(st.integers(0, count - 1))] = draw(
+            st.sampled_from(WILD))
+    q0[0] += draw(OFFSET)
+    e = draw(st.sampled_from((0.0, 0.0, 0.5, 1.0)))
+    return contact.Scene("drawn", q0, v0, mass, radius, e, draw(st.sampled_from((0.0, 80.0))))
+
+
+@settings(max_examples=100, deadline=None, derandomize=True,
+          suppress_health_check=[HealthCheck.too_slow])
+@given(scene=scenes(), model=st.sampled_from(MODELS),
+       dt=st.sampled_from((0.002, 0.002, 1e-4, 0.03, 1e154)),
+       stiffness=st.sampled_from((1e4, 0.0, 1e300)), baumgarte=st.floats(0.0, 1.0),
+       iters=st.integers(1, 20))
+def test_the_twin_has_the_bytes_of_the_reference(scene, model, dt, stiffness, baumgarte, iters):
+    check_same(model, scene, dt, 25, stiffness=stiffness, baumgarte=baumgarte, iters=iters)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_twin_has_the_bytes_of_the_reference_on_the_scenes_of_the_book(model):
+    """Long enough that every ball comes to rest, or bounces on."""
+    for name in ("drop", "bounce", "stack"):
+        check_same(model, contact.build_scene(name, 3), 0.002, 1200)
+    check_same(model, contact.build_scene("pile", 1, 40, restitution=0.4), 0.004, 150)
+
+
+def crowd(count, seed):
+    """Balls packed closely in rows of 20 and numbered at random: nearly all neighbours overlap."""
+    rng = np.random.default_rng(seed)
+    place = rng.permutation(count)
+    q0 = np.array((0.196 * (place % 20), 0.097 + 0.196 * (place // 20)))
+    q0 += rng.uniform(-0.003, 0.003, q0.shape)
+    return contact.Scene("crowd", q0, rng.normal(size=(2, count)), 10.0**rng.uniform(-3, 3, count),
+                         np.full(count, 0.1), 0.4, 80.0)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_twin_has_the_bytes_of_the_reference_in_a_crowd(model):
+    scene = crowd(300, 4)
+    assert len(contact.detect_contacts(contact.make_balls(scene))) > 500
+    check_same(model, scene, 0.002, 4)
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0, 2.5, 3.7, 6.0])
+def test_powers_of_the_impedance_have_the_bits_of_python(power):
+    """numba and Python may take x**p from different places."""
+    rng = np.random.default_rng(1)
+    for x in rng.uniform(0.0, 1.0, 300).tolist():
+        solimp = (0.3, 0.95, 1.0, 0.37, power)
+        assert piles.impedance(x, solimp) == contact.impedance(x, solimp)
+
+
+def test_a_state_that_comes_back_ends_the_steps_and_changes_no_bit():
+    """After 838 steps the drop rests: a long run costs no more than a short one, and ends alike."""
+    scene = contact.build_scene("drop")
+    ask = (contact.GRAVITY, contact.CONTACT_MARGIN, 1e4, 0.2, 20, 60, 0.0, (0.0, 0.0), (0.9,) * 5)
+    heard = []
+    rows = piles.simulate("penalty", scene, 0.002, 500_000, heard.append, *ask)
+    assert heard == [500_000]
+    plain = contact.run_model("penalty", scene, 0.002, 2000, skip=False)
+    assert rows[:2001, :2].tobytes() == plain.q.tobytes()
+    assert (rows[2000:] == rows[2000]).all()
+
+
+# Near balls
+
+def all_pairs(scene, reach):
+    """The pairs whose gap is at most `reach`, found by looking at all."""
+    (x, y), r = scene.q0.tolist(), scene.radius.tolist()
+    count = len(r)
+    return [(i, j) for i in range(count) for j in range(i + 1, count)
+            if math.sqrt((x[i] - x[j])**2 + (y[i] - y[j])**2) - (r[i] + r[j]) <= reach]
+
+
+def tabled(scene):
+    """The scene's balls as rows of the twin's table."""
+    return piles.make_balls(np.vstack((scene.q0, scene.v0)), scene.mass, scene.radius)
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(scenes(), st.sampled_from((0.0, 1e-3, 0.5)))
+def test_cells_find_every_near_pair_once_and_in_order(scene, reach):
+    q0 = np.where(np.abs(scene.q0) > 1e100, math.nan, scene.q0)     # whose squares overflow above
+    scene = scene._replace(q0=q0)
+    pairs = list(zip(*piles.list_pairs(tabled(scene), reach).tolist()))
+    assert pairs == sorted(set(pairs)) and all(i < j for i, j in pairs)
+    assert set(pairs) >= set(all_pairs(scene, reach))
+    assert set(pairs) <= set(all_pairs(scene, 1.01 * (reach + scene.radius.max())))
+
+
+def test_the_list_of_pairs_does_not_grow_with_the_square_of_the_balls():
+    for count in (1000, 4000):
+        pairs = piles.list_pairs(tabled(contact.build_scene("pile", bodies=count)), 0.1)
+        assert pairs.shape[1] < 4 * count
+
+
+def test_many_balls_in_one_place_fit():
+    """Far more contacts than a ball can have neighbours: the tables grow."""
+    scene = crowd(150, 0)._replace(q0=np.full((2, 150), 0.3))
+    assert piles.list_pairs(tabled(scene), 0.0).shape == (2, 150 * 149 // 2)
+    check_same("lcp", scene, 0.002, 3, iters=3)
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(scenes(), st.floats(1e-3, 0.5))
+def test_the_smallest_gap_has_the_bits_of_the_reference(scene, dt):
+    """Of balls that fly apart, so that pairs are listed anew, or stay."""
+    with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
+        patch.setattr(contact, "FEW", 10**9)
+        q = scene.q0 + np.arange(12)[:, None, None] * dt * scene.v0
+        plain = contact.smallest_gap(q, scene.radius)
+    assert repr(piles.smallest_gap(q, scene.radius).tolist()) == repr(plain.tolist())
