@@ -777,7 +777,7 @@ def write_results(args, metrics, runs, scene):
 # --- endregion ---
 
 
-# --- region: main ---
+# --- region: models ---
 def choose_models(args, count):
     """The models to run. Says what is left out of a scene of so many balls, and what is slow."""
     models = [model for model in MODELS if args.contact in ("all", model)]
@@ -790,8 +790,10 @@ def choose_models(args, count):
         if args.contact == "all" and count > 24:
             models.remove("soft")
     return models
+# --- endregion ---
 
 
+# --- region: main ---
 def main(argv=None):
     """Run the command line: print the report, write metrics.json and contact.rrd. Returns 0."""
     try:
