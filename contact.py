@@ -539,10 +539,9 @@ def run_model(model: str, scene: Scene, dt: float, steps: int, stiffness: float 
     e = scene.restitution
     solref, solimp = soft_defaults(e, dt, solref, solimp)
     if skip and len(scene.mass) > FEW and (piles := fast_twin()):
-        rows = piles.simulate(
+        return Run(np.arange(steps + 1) * dt, *piles.simulate(
             model, scene, dt, steps, report, GRAVITY, CONTACT_MARGIN, stiffness, baumgarte, iters,
-            MOST_SWEEPS, LAST_BITS, solref, solimp)
-        return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
+            MOST_SWEEPS, LAST_BITS, solref, solimp))
     steps_by = {
         "penalty": lambda balls: penalty_step(balls, dt, stiffness, scene.damping),
         "lcp": lambda balls: lcp_step(balls, dt, e, baumgarte, iters),

@@ -79,8 +79,10 @@ def find_cells(balls, side):
             cells[i, 0] = cell_at(balls[i].x - left, side)
             cells[i, 1] = cell_at(balls[i].y - low, side)
     return cells
+# --- endregion ---
 
 
+# --- region: piles-buckets ---
 @compiled
 def bucket_of(column, row, buckets):
     """The bucket of a cell, one of a power of two. Several cells may share it."""
@@ -315,8 +317,10 @@ def solve_contacts(balls, contacts, iters, tolerance):
                     settled = False
         if settled:
             break
+# --- endregion ---
 
 
+# --- region: piles-lcp-step ---
 @compiled
 def lcp_step(balls, contacts, knobs):
     """One step: gravity predicts the velocities, impulses correct them, the balls move."""
@@ -329,7 +333,7 @@ def lcp_step(balls, contacts, knobs):
 # --- endregion ---
 
 
-# --- region: piles-soft ---
+# --- region: piles-impedance ---
 @compiled
 def impedance(depth, solimp):
     """How hard a contact of MuJoCo is at that depth [m]."""
@@ -355,8 +359,10 @@ def raised(x, power):
     for _ in range(int(power)):
         product *= x
     return product
+# --- endregion ---
 
 
+# --- region: piles-soft ---
 @compiled
 def soften(c, balls, dt, solref, solimp):
     """Give contact c the target and the softness that MuJoCo's contact has."""
@@ -464,7 +470,7 @@ def take_steps(rows, first, last, mass, radius, knobs):
 # --- region: piles-simulate ---
 def simulate(model, scene, dt, steps, report, gravity, margin, stiffness, baumgarte, iters,
              most_sweeps, last_bits, solref, solimp):
-    """The states (steps + 1, 4, N) of a run by penalty, lcp or soft: x, y, vx, vy of each ball.
+    """q and v (steps + 1, 2, N) [m, m/s] of a run by penalty, lcp or soft.
 
     `report(k)` is called with the steps done, now and then.
     """
@@ -482,7 +488,7 @@ def simulate(model, scene, dt, steps, report, gravity, margin, stiffness, baumga
         done = take_steps(rows, done, min(done + chunk, steps), mass, radius, knobs)
         report(done)
     rows += 0.0                                         # turns -0.0 into 0.0
-    return rows
+    return rows[:, :2], rows[:, 2:]
 # --- endregion ---
 
 
@@ -515,8 +521,10 @@ def find_gaps(q, radius):
             pairs = list_pairs(balls, reach)
             gaps[k] = gap_of_listed(balls, pairs)
     return gaps
+# --- endregion ---
 
 
+# --- region: piles-gap-of ---
 @compiled
 def place_balls(balls, q):
     """Put the balls at the places (2, N)."""
