@@ -196,22 +196,24 @@ def find_all(root=ROOT):
 
 def main(argv=None):
     """List the regions, or print one. Returns the exit status: 1 malformed, 2 no such region."""
-    names = sys.argv[1:] if argv is None else argv
+    from curriculum.common.arguments import Parser
+    parser = Parser(prog=CHECK, description="The regions of the literate files.")
+    parser.add_argument("name", nargs="?", metavar="NAME", help="print this one")
+    name = parser.parse_args(argv).name
     found, problems = scan_all()
     if problems:
         print(*problems, sep="\n", file=sys.stderr)
         return 1
-    if not names:
+    if name is None:
         for region in found.values():
             lines = f"lines {region.first:>3} to {region.last:>3}"
             if region.name == docstring_name(region.file):
                 lines = "outside the regions"
             print(f"{region.file:<20} {region.name:<18} {lines:<20} {region.sha256}")
-    elif len(names) == 1 and names[0] in found:
-        print(found[names[0]].text, end="")
+    elif name in found:
+        print(found[name].text, end="")
     else:
-        print(f"given {' '.join(names)!r}, allowed: nothing or one of {', '.join(found)}",
-              file=sys.stderr)
+        print(f"given {name!r}, allowed: nothing or one of {', '.join(found)}", file=sys.stderr)
         return 2
     return 0
 
