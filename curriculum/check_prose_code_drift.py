@@ -8,7 +8,7 @@ It holds together, each failing with `file:line: what; repair: command`:
 
 regions   the markers of the literate files are well formed (curriculum/regions.py has the hash
           rule), and their regions = `region_hashes` of meta.yaml, in their order, = regions that
-          the chapter includes or `not_shown` of meta.yaml names. An include is a fence that holds
+          the chapter includes or `not_shown` of meta.yaml names (piles-* stands for many). An include is a fence that holds
           one line: [include-by-region: FILE#NAME]
 passages  what only a reader can judge (order of the chapter, formulas, numbers in words, claims,
           exercises, promises) has the hash that was accepted: curriculum/drift/passages.py
@@ -39,6 +39,7 @@ region defines, then records the hash. CONTRIBUTING.md says what no gate can cat
 
 import re
 import sys
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 from curriculum import measured, regions
@@ -119,18 +120,21 @@ def check_regions(project):
 
 
 def check_includes(project, found):
-    """Every region is included once, or named in `not_shown`."""
+    """Every region is included once, or a name or pattern in `not_shown` covers it."""
     hidden = project.facts.get("not_shown") or []
     shown = [include.name for include in project.includes]
     for name, region in found.items():
-        if name not in shown and name not in hidden and name != regions.docstring_name(region.file):
+        covered = any(fnmatchcase(name, pattern) for pattern in hidden)
+        if name not in shown and not covered and name != regions.docstring_name(region.file):
             project.say(CHAPTER, 1, f"region {name} is never shown",
                         f"add a fence with [include-by-region: {region.file}#{name}], or name it "
                         f"in `not_shown` of meta.yaml, then {GATE}")
-    for name in hidden:
-        wrong = "is no region" if name not in found else "is shown" if name in shown else None
-        if wrong:
-            project.say("meta.yaml", "^not_shown:", f"not_shown names {name}, which {wrong}",
+    for pattern in hidden:
+        covered = [name for name in found if fnmatchcase(name, pattern)]
+        both = [name for name in covered if name in shown]
+        if both or not covered:
+            what = f"{both[0]}, which is shown" if both else f"{pattern}, which is no region"
+            project.say("meta.yaml", "^not_shown:", f"not_shown names {what}",
                         f"take it out, then {GATE}")
     for k, (line, file, name) in enumerate(project.includes):
         if name not in found or found[name].file != file:
