@@ -621,12 +621,21 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
         "rest_penetration_frac": float(depth[-1]),
         "rest_gap_frac": float(gap[-1]),
         "rebound_frac": float(gap[landing:].max(initial=0.0)),
-        "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])),
+        "rest_jitter": deviation(depth[3 * len(depth) // 4:]),
         "energy_excess": float((total - total[0]).max()) / scale,
         "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
         "blew_up": step is not None,
         "blew_up_step": step}
     return quality | height_errors(run, reference, landing, radius)
+
+
+def deviation(values):
+    """The standard deviation; a power of two is taken out, lest squares of large values overflow.
+
+    That changes no other bit.
+    """
+    power = math.frexp(float(values.max()))[1]
+    return float(np.ldexp(np.std(np.ldexp(values, -power)), power))
 
 
 def height_errors(run, reference, landing, radius):
@@ -642,40 +651,103 @@ def height_errors(run, reference, landing, radius):
 
 
 # --- region: flags ---
+EXPLAINED = """\
+scenes:
+  drop     one ball falls about a metre onto the table, restitution 0
+  bounce   the same ball with restitution 0.7
+  stack    balls one upon the other, let go just above the table, restitution 0
+  pile     many balls on a lattice fall into a heap, restitution 0
+models:
+  penalty  a stiff spring and a damper: contact is one more force
+  lcp      impulses that solve a complementarity problem, by projected Gauss-Seidel sweeps
+  soft     MuJoCo's contact: the same sweeps, with a spring as target and softness added
+  exact    from event to event, every impact at its own time; what the others are measured against
+examples:
+  contact.py --contact exact                what should happen, and what the exercises ask about
+  contact.py --contact penalty --dt 0.03    one model, a longer step
+  contact.py --scene bounce --plot          a picture of the run: contact.svg, by matplotlib
+  contact.py --seeds 0:20                   median and range over the seeds 0 to 19
+"""
+
+
 def parse_flags(argv):
     """The checked command line. Bad input ends with one line on stderr and exit status 2."""
     from curriculum.common import arguments, memory
-    parser = arguments.Parser(prog="contact.py", description="Contact, built four times.")
-    flag, number, switch = parser.add_argument, arguments.number, argparse.BooleanOptionalAction
-    flag("--seed", type=number(int, low=0), default=0, help="draws the start height (0)")
-    flag("--scene", choices=SCENES, default="drop")
-    flag("--contact", choices=("all", *MODELS), default="all")
-    flag("--stiffness", type=number(float, low=0), default=1e4, help="k, penalty [N/m] (1e4)")
-    flag("--damping", type=number(float, low=0), help="c, penalty [N s/m] (80; bounce 0)")
-    flag("--restitution", type=number(float, 0, 1), help="e, lcp, soft, exact (0; bounce 0.7)")
-    flag("--baumgarte", type=number(float, 0, 1), default=0.2, help="beta, lcp (0.2)")
-    flag("--iters", type=number(int, low=1), default=20, help="Gauss-Seidel sweeps a step (20)")
-    flag("--solref", type=number(float), nargs=2, metavar=("T", "ZETA"),
-         help="soft: time constant [s] and damping ratio (0.02 1), or minus stiffness and minus "
-              "damping; with restitution 0 and -(1 + e) / dt")
-    flag("--solimp", type=number(float, low=0), nargs=5,
-         metavar=("D0", "D1", "WIDTH", "MID", "POWER"),
-         help="soft: the impedance (0.9 0.95 0.001 0.5 2; with restitution it is 0.9999)")
-    flag("--dt", type=number(float, above=0), default=0.002, help="time step [s] (0.002)")
-    flag("--steps", type=number(int, low=0), default=2000, help="how many (2000)")
-    flag("--bodies", type=number(int, low=1), help="balls of stack (3) and pile (200)")
-    flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
-    flag("--device", choices=("cpu",), default="cpu")
-    flag("--out", type=arguments.writable_folder, default="outputs/ch3.5-contact", help="a folder")
-    flag("--rerun", action=switch, default=True, help="write contact.rrd")
-    flag("--skip", action=switch, default=True, help="leave out work that changes no bit")
+    parser = arguments.Parser(prog="contact.py", epilog=EXPLAINED, description=(
+        "Contact between balls and a table, built four times and measured.\n"
+        "In parentheses: what a flag is when it is not given."))
+    add_run_flags(parser.add_argument_group("what runs"))
+    add_model_flags(parser.add_argument_group("the models' knobs"))
+    add_output_flags(parser.add_argument_group("what is written"))
     args = parser.parse_args(argv)
+    usual = parser.parse_args(["--out", args.out])
+    args.usual = knobs(args) == knobs(usual)    # the run whose time the ledger knows
     if args.bodies and args.scene in ("drop", "bounce"):
         parser.error(f"argument --bodies: given {args.bodies}; allowed: stack and pile only")
     args.steps = 800 if args.smoke else args.steps
     count = args.bodies or {"stack": 3, "pile": 200}.get(args.scene, 1)
     memory.need(parser, 800 * (args.steps + 1) * count, f"--steps {args.steps} of {count} balls")
     return args
+# --- endregion ---
+
+
+# --- region: flags-run ---
+def knobs(args):
+    """The flags that decide what comes out, {name: value}."""
+    apart = ("out", "rerun", "skip", "plot", "usual")
+    return {name: value for name, value in vars(args).items()
+            if name not in apart and (name != "seeds" or value)}
+
+
+def add_run_flags(group):
+    """The flags that say what runs: scene, model, seed and steps."""
+    from curriculum.common import arguments
+    flag, number = group.add_argument, arguments.number
+    flag("--scene", choices=SCENES, default="drop", help="see below (drop)")
+    flag("--contact", choices=("all", *MODELS), default="all", help="the model, see below (all)")
+    flag("--seed", type=number(int, low=0), default=0, help="draws the start height (0)")
+    flag("--seeds", type=arguments.whole_range, metavar="A:B",
+         help="every seed from A to B - 1 instead: prints median and range, writes seeds.json")
+    flag("--dt", type=number(float, above=0), default=0.002, help="time step [s] (0.002)")
+    flag("--steps", type=number(int, low=0), default=2000, metavar="N", help="how many (2000)")
+    flag("--bodies", type=number(int, low=1), metavar="N", help="balls of stack (3), pile (200)")
+    flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
+    flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
+# --- endregion ---
+
+
+# --- region: flags-model ---
+def add_model_flags(group):
+    """The knobs of the models."""
+    from curriculum.common import arguments
+    flag, number = group.add_argument, arguments.number
+    flag("--stiffness", type=number(float, low=0), default=1e4, metavar="K",
+         help="penalty: stiffness [N/m] (1e4)")
+    flag("--damping", type=number(float, low=0), metavar="C",
+         help="penalty: damping [N s/m] (80; bounce 0)")
+    flag("--restitution", type=number(float, 0, 1), metavar="E",
+         help="lcp, soft, exact: share of the speed that a bounce gives back (0; bounce 0.7)")
+    flag("--baumgarte", type=number(float, 0, 1), default=0.2, metavar="BETA",
+         help="lcp: share of an overlap that a step removes (0.2)")
+    flag("--iters", type=number(int, low=1), default=20, metavar="N",
+         help="lcp: Gauss-Seidel sweeps a step (20)")
+    flag("--solref", type=number(float), nargs=2, metavar=("T", "ZETA"),
+         help="soft: time constant [s] and damping ratio (0.02 1), or minus stiffness and minus "
+              "damping; with restitution 0 and -(1 + e) / dt")
+    flag("--solimp", type=number(float, low=0), nargs=5,
+         metavar=("D0", "D1", "WIDTH", "MID", "POWER"),
+         help="soft: the impedance (0.9 0.95 0.001 0.5 2; with restitution it is 0.9999)")
+
+
+def add_output_flags(group):
+    """The flags that say what is written, and where."""
+    from curriculum.common import arguments
+    flag, switch = group.add_argument, argparse.BooleanOptionalAction
+    flag("--out", type=arguments.writable_folder, default="outputs/ch3.5-contact",
+         metavar="FOLDER", help="for metrics.json, contact.rrd, contact.svg (%(default)s)")
+    flag("--rerun", action=switch, default=True, help="write the recording contact.rrd (yes)")
+    flag("--plot", action="store_true", help="draw contact.svg, by matplotlib (no)")
+    flag("--skip", action=switch, default=True, help="leave out work that changes no bit (yes)")
 # --- endregion ---
 
 
@@ -686,19 +758,26 @@ DT_GRID = (1, 2, 4, 8, 16, 32)      # multiples of --dt that the stability lines
 def measure_stability(run, scene, dt, stiffness, first):
     """The largest step of the grid without an explosion, by model, and the depth reached there.
 
-    `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model. soft is left out:
-    its time constant is never below two steps, so it stays bounded at any step.
+    0.0 stands for a model that explodes at every step, None for one that never comes to a
+    contact, so that nothing was tried. `run(model, dt)` makes a run; `first` holds the runs at dt
+    itself, by model. The largest step comes first, and no run is made that cannot be the answer.
+    soft is left out: its time constant is never below two steps, so it stays bounded at any step.
     """
     mass = float(scene.mass[0])
     grid = {"dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
             "dt_crit_damped": critical_dt(mass, stiffness, scene.damping)}
     for model in ("penalty", "lcp"):
-        grid[model], grid[f"{model}_penetration_frac"] = 0.0, None
-        for step in [dt * factor for factor in DT_GRID]:
+        grid[model], grid[f"{model}_penetration_frac"] = None, None
+        for step in sorted((dt * factor for factor in DT_GRID), reverse=True):
             found = first[model] if step == dt else run(model, step)
-            if blow_up_step(energy(found.q, found.v, scene.mass)) is None:
-                depth = float(max_penetration(found.q, scene.radius).max() / scene.radius[0])
+            exploded = blow_up_step(energy(found.q, found.v, scene.mass)) is not None
+            gap = smallest_gap(found.q, scene.radius)
+            if exploded:
+                grid[model] = 0.0
+            elif (gap < CONTACT_MARGIN).any():
+                depth = float(max(-gap.min(), 0.0) / scene.radius[0])
                 grid[model], grid[f"{model}_penetration_frac"] = step, depth
+                break
     return grid
 # --- endregion ---
 
@@ -708,31 +787,99 @@ COLUMNS = {"max pen/r": "max_penetration_frac", "rest gap/r": "rest_gap_frac",
            "rebound/r": "rebound_frac", "energy+": "energy_excess", "energy in": "contact_energy",
            "flight err/r": "flight_error_frac", "contact err/r": "contact_error_frac",
            "jitter/r": "rest_jitter"}
+LEGEND = {
+    "max pen/r": "the deepest overlap of two surfaces; r is the radius of a ball",
+    "rest gap/r": "the smallest gap at the end: below 0 it is an overlap",
+    "rebound/r": "how high the balls come off all surfaces after the first contact",
+    "energy+": "the most energy above the start, as a share of the start's",
+    "energy in": "all rises of the energy, step by step, added up: what contacts put in",
+    "flight err/r": "the worst height error before the first contact, against exact",
+    "contact err/r": "what contact adds to the worst height error",
+    "jitter/r": "standard deviation of the overlap over the last quarter of the run"}
 
 
-def print_report(args, quality, grid):
-    """Print one row per model, a verdict that claims what it tests, and the stability lines."""
+def print_report(args, quality, grid, critical=None):
+    """Print one row per model, a legend, a verdict that claims what it tests, and stability.
+
+    critical: the critical step of penalty [s], printed beside its explosion.
+    """
     from curriculum.common import results
+
+    def state(row):
+        if not row["blew_up"]:
+            return "ok"
+        known = critical is not None and row is quality.get("penalty")
+        beside = f", critical dt of one ball: {critical:.4g} s" if known else ""
+        return f"EXPLODED at step {row['blew_up_step']}{beside}"
+
     print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
-    results.print_table("contact", COLUMNS, quality, lambda row: (
-        f"EXPLODED at step {row['blew_up_step']}" if row["blew_up"] else "ok"))
-    if not grid:
-        return
-    spring, solve = quality["penalty"], quality["lcp"]
-    deeper = all(spring[key] > solve[key]
-                 for key in ("max_penetration_frac", "rest_penetration_frac"))
-    verdict = "yes" if deeper else "no"
-    if spring["blew_up"] or solve["blew_up"]:
-        verdict = "a run exploded"
-    print("verdict: penalty penetrates deeper than lcp, at worst and at rest:", verdict)
-    for model in ("penalty", "lcp"):
-        if grid[model]:
-            depth = results.show(grid[f"{model}_penetration_frac"], ".3g")
-            print(f"stability: {model} does not explode up to dt = {grid[model]:g} s of the grid, "
-                  f"where it goes {depth} r deep")
+    marks = best_and_worst(quality)
+    results.print_table("contact", COLUMNS, quality, state, marks)
+    print_legend("exact" in quality, bool(marks))
+    if grid:
+        print_verdict(quality["penalty"], quality["lcp"])
+        print_stability(grid)
+
+
+def print_legend(compared, marked):
+    """Say in a line each what the columns are, and what the marks."""
+    for title, meaning in LEGEND.items():
+        print(f"  {title:<15}{meaning}")
+    aim = "to exact" if compared else "to 0"
+    if marked:
+        print(f"  {'* and !':<15}the nearest {aim} and the farthest, of the models that take steps")
+
+
+def best_and_worst(quality):
+    """{(model, key): "*" or "!"}: the rows nearest to exact and farthest from it, by column.
+
+    Without a run of exact the aim is 0, except for the rebound. A run that exploded is far off.
+    """
+    marks, exact = {}, quality.get("exact")
+    for key in COLUMNS.values():
+        aim = exact[key] if exact else None if key == "rebound_frac" else 0.0
+        if aim is None:
+            continue
+        off = {model: math.inf if row["blew_up"] or row[key] is None else abs(row[key] - aim)
+               for model, row in quality.items() if model != "exact"}
+        best, worst = min(off.values(), default=0.0), max(off.values(), default=0.0)
+        for model in off:
+            if best < worst and off[model] in (best, worst):
+                marks[model, key] = "*" if off[model] == best else "!"
+    return marks
+# --- endregion ---
+
+
+# --- region: verdict ---
+def print_verdict(spring, solve):
+    """Compare the depths of penalty and lcp, if these rows can be compared."""
+    deeper = False
+    said = "a run exploded"
+    if not (spring["blew_up"] or solve["blew_up"]):
+        deeper = all(spring[key] > solve[key]
+                     for key in ("max_penetration_frac", "rest_penetration_frac"))
+        said = "yes" if deeper else "no"
+        if spring["max_penetration_frac"] == solve["max_penetration_frac"] == 0.0:
+            said = "neither overlaps at any step"
+    print("verdict: penalty penetrates deeper than lcp, at worst and at rest:", said)
+
+
+def print_stability(grid):
+    """Print the largest step that each model stood, and the critical steps of penalty."""
+    from curriculum.common import results
+    print("stability: tried at", ", ".join(map(str, DT_GRID)), "times --dt")
+    for model in ("penalty", "lcp", "soft"):
+        if model not in grid:
+            continue
+        if grid[model] is None:
+            print(f"stability: {model} comes to no contact within these steps: nothing to say")
+        elif grid[model] == 0.0:
+            print(f"stability: {model} explodes at every dt tried")
         else:
-            print(f"stability: {model} explodes at every dt of the grid")
-    damped, textbook = (results.show(grid[key], ".4g")
+            depth = results.figure(grid[f"{model}_penetration_frac"])
+            print(f"stability: {model} does not explode up to dt = {grid[model]:g} s, "
+                  f"where it goes {depth} r deep")
+    damped, textbook = (results.figure(grid[key], 4)
                         for key in ("dt_crit_damped", "dt_crit_penalty"))
     print(f"critical dt of penalty, one ball: {damped} s; "
           f"without the damper, 2 sqrt(m/k), {textbook} s")
@@ -744,35 +891,139 @@ COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "soft": "#cc79a7",
           "exact": "#009e73"}       # safe for colour-blind readers (Okabe and Ito)
 
 
+@np.errstate(all="ignore")
+def contact_impulses(run, scene):
+    """The impulse [N s] that all contacts of a ball give it in each step, (steps + 1, 2, N).
+
+    It is the change of momentum that gravity does not explain, so it is there for every model.
+    """
+    fall = np.diff(run.t)[:, None, None] * np.array([[0.0], [GRAVITY]])
+    mass = np.where(np.isfinite(scene.mass), scene.mass, 0.0)
+    return np.concatenate((np.zeros_like(run.v[:1]), mass * (np.diff(run.v, axis=0) - fall)))
+
+
+@np.errstate(all="ignore")
+def curves(runs, scene):
+    """What is plotted of the runs, {title: {model: values (steps + 1,)}}."""
+    titles = ("height [m], mean", "penetration [r]", "impulse of floor [N s]",
+              "energy above start [J]", "rises of energy [J]")
+    made = {title: {} for title in titles}
+    for model, run in runs.items():
+        total = energy(run.q, run.v, scene.mass)
+        values = (run.q[:, 1].mean(-1), max_penetration(run.q, scene.radius) / scene.radius[0],
+                  contact_impulses(run, scene)[:, 1].sum(-1), total - total[0],
+                  np.maximum(np.diff(total, prepend=total[0]), 0.0).cumsum())
+        for title, line in zip(titles, values):
+            made[title][model] = line
+    return made
+
+
 def log_rerun(path, runs: dict[str, Run], scene: Scene) -> None:
     """Write the runs {model: Run} to a recording, whole or not at all.
 
     Raises ImportError where rerun is missing.
     """
     from curriculum.common import recording
-    total = {model: energy(run.q, run.v, scene.mass) for model, run in runs.items()}
-    recording.write(path, "contact", runs, scene.radius, {
-        "height [m]": {model: run.q[:, 1, 0] for model, run in runs.items()},
-        "penetration [r]": {model: max_penetration(run.q, scene.radius) / scene.radius[0]
-                            for model, run in runs.items()},
-        "energy above the start [J]": {model: e - e[0] for model, e in total.items()}}, COLORS)
+    weight = -GRAVITY * scene.mass * np.diff(next(iter(runs.values())).t[:2]).sum()
+    pushes = {model: contact_impulses(run, scene) / weight for model, run in runs.items()}
+    bursts = {model: blow_up_step(energy(run.q, run.v, scene.mass)) for model, run in runs.items()}
+    recording.write(path, "contact", runs, scene.radius, curves(runs, scene), COLORS,
+                    pushes, bursts)
 # --- endregion ---
 
 
 # --- region: write ---
 def write_results(args, metrics, runs, scene):
-    """Write metrics.json, and contact.rrd unless that is switched off or rerun is missing."""
+    """Write metrics.json, and recording and picture as asked. Returns the exit status.
+
+    A folder that turns out unwritable costs the files and nothing else: the report is printed.
+    """
+    from curriculum.common import picture, results, shell
+    numbers, recording, drawing = (os.path.join(args.out, name)
+                                   for name in ("metrics.json", "contact.rrd", "contact.svg"))
+    try:
+        results.write_json(numbers, metrics)
+        print("metrics:", numbers)
+        if args.rerun:
+            try:
+                log_rerun(recording, runs, scene)
+                print(f"recording: {recording}, open it with: {shell.tool('rerun')} {recording}")
+            except ImportError:
+                print("no recording: rerun is not installed,", shell.install("rerun-sdk"))
+        if args.plot:
+            try:
+                title = f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
+                picture.write(drawing, title, runs, curves(runs, scene), COLORS)
+                print("picture:", drawing)
+            except ImportError:
+                print("no picture: matplotlib is not installed,", shell.install("matplotlib"))
+    except OSError as error:
+        print(f"contact.py: error: cannot write {error.filename}: {error.strerror}; the report is "
+              "whole, give another --out to keep its files", file=sys.stderr)
+        return 2
+    return 0
+
+
+def print_next(argv):
+    """The last line of a run: what to do next, as commands that work as printed."""
+    from curriculum.common import shell
+    here = os.path.dirname(os.path.abspath(__file__))
+    exercise = shell.python(os.path.join(here, "exercises", "ex1_predict_contact.py"))
+    same = [word for word in argv if word not in ("--skip", "--no-skip")]
+    again = shell.python(os.path.join(here, "contact.py"), *same, "--plot")
+    picture = "" if "--plot" in argv else f"; see a picture of this run: {again}"
+    print(f"next: make a bet: {exercise}{picture}")
+# --- endregion ---
+
+
+# --- region: seeds ---
+def seed_quality(args, models, seed):
+    """{model: contact_quality} of one seed; a process of its own may run it."""
+    scene = build_scene(args.scene, seed, args.bodies, args.restitution, args.damping)
+    runs = {model: run_model(model, scene, args.dt, args.steps, args.stiffness, args.baumgarte,
+                             args.iters, args.skip, lambda k: None, args.solref, args.solimp)
+            for model in models}
+    return {model: contact_quality(run, scene, args.dt, runs.get("exact"))
+            for model, run in runs.items()}
+
+
+def run_seeds(args, models):
+    """Print median, lowest and highest of every measure over the seeds, and write seeds.json."""
+    from curriculum.common import results, workers
+    seeds = range(*args.seeds)
+    found = workers.spread(seed_quality, [(args, models, seed) for seed in seeds], "seeds")
+    rows = {}
+    for model in models:
+        ordered = {key: sorted(math.inf if row[model][key] is None else row[model][key]
+                               for row in found)
+                   for key in COLUMNS.values() if found[0][model][key] is not None}
+        burst = sum(row[model]["blew_up"] for row in found)
+        for name, pick in (("median", np.median), ("lowest", min), ("highest", max)):
+            row = {key: float(pick(ordered[key])) if key in ordered else None
+                   for key in COLUMNS.values()}
+            rows[f"{model} {name}"] = row | {"blew_up_count": burst}
+    rows = results.rounded(rows)
+    print(f"scene {args.scene}, seeds {seeds[0]} to {seeds[-1]}: {args.steps} steps of "
+          f"{args.dt:g} s")
+    results.print_table("contact", COLUMNS, rows, lambda row: (
+        f"{row['blew_up_count']} of {len(seeds)} EXPLODED" if row["blew_up_count"] else "ok"))
+    print_legend("exact" in models, False)
+    return write_seeds(args, rows)
+
+
+def write_seeds(args, rows):
+    """Write seeds.json. Returns the exit status."""
     from curriculum.common import results
-    numbers = os.path.join(args.out, "metrics.json")
-    recording = os.path.join(args.out, "contact.rrd")
-    results.write_json(numbers, metrics)
-    print("metrics:", numbers)
-    if args.rerun:
-        try:
-            log_rerun(recording, runs, scene)
-            print(f"recording: {recording}, open it with: rerun {recording}")
-        except ImportError:
-            print("no recording: rerun is not installed, pip install rerun-sdk")
+    path = os.path.join(args.out, "seeds.json")
+    try:
+        results.write_json(path, {"scene": args.scene, "dt": args.dt, "steps": args.steps,
+                                  "seeds": list(args.seeds), "rows": rows})
+    except OSError as error:
+        print(f"contact.py: error: cannot write {error.filename}: {error.strerror}; the report is "
+              "whole, give another --out to keep it", file=sys.stderr)
+        return 2
+    print("seeds:", path)
+    return 0
 # --- endregion ---
 
 
@@ -792,9 +1043,23 @@ def choose_models(args, count):
 # --- endregion ---
 
 
+# --- region: collect ---
+def collect(args, scene, runs, run):
+    """What metrics.json holds: the flags that matter, the measures and the stability grid."""
+    grid = {}
+    if args.contact == "all" and args.scene != "pile":
+        grid = measure_stability(run, scene, args.dt, args.stiffness, runs)
+    return {"scene": args.scene, "contact": args.contact, "dt": args.dt, "steps": args.steps,
+            "seed": args.seed, "stiffness": args.stiffness, "restitution": scene.restitution,
+            "stability": grid,
+            "quality": {model: contact_quality(found, scene, args.dt, runs.get("exact"))
+                        for model, found in runs.items()}}
+# --- endregion ---
+
+
 # --- region: main ---
 def main(argv=None):
-    """Run the command line: print the report, write metrics.json and contact.rrd. Returns 0."""
+    """Run the command line: print the report, write its files. Returns the exit status."""
     try:
         from curriculum.common import device, progress, results
     except ModuleNotFoundError as error:
@@ -802,28 +1067,28 @@ def main(argv=None):
               "as a module, import contact works without", file=sys.stderr)
         return 2
     args = parse_flags(argv)
-    device.banner("ch3.5-contact", args.device)
+    config_hash = results.fingerprint(knobs(args))
+    device.banner("ch3.5-contact", args.device, args.usual)
     scene = build_scene(args.scene, args.seed, args.bodies, args.restitution, args.damping)
+    models = choose_models(args, len(scene.mass))
+    if args.seeds:
+        status = run_seeds(args, models)
+        print("config_hash:", config_hash)
+        return status
 
     def run(model, dt):
         label = f"{model}, dt = {dt:g} s"
         return run_model(model, scene, dt, args.steps, args.stiffness, args.baumgarte, args.iters,
                          args.skip, progress.steps(args.steps, label), args.solref, args.solimp)
 
-    runs = {model: run(model, args.dt) for model in choose_models(args, len(scene.mass))}
-    quality = {model: contact_quality(found, scene, args.dt, runs.get("exact"))
-               for model, found in runs.items()}
-    grid = {}
-    if args.contact == "all" and args.scene != "pile":
-        grid = measure_stability(run, scene, args.dt, args.stiffness, runs)
-    metrics = results.rounded({
-        "scene": args.scene, "contact": args.contact, "dt": args.dt, "steps": args.steps,
-        "seed": args.seed, "stiffness": args.stiffness, "restitution": scene.restitution,
-        "quality": quality, "stability": grid})
-    print_report(args, metrics["quality"], metrics["stability"])
-    write_results(args, metrics, runs, scene)
-    print("config_hash:", results.fingerprint(vars(args), but=("out", "rerun", "skip")))
-    return 0
+    runs = {model: run(model, args.dt) for model in models}
+    metrics = results.rounded(collect(args, scene, runs, run), steps=("dt", *MODELS))
+    limit = critical_dt(float(scene.mass[0]), args.stiffness, scene.damping)
+    print_report(args, metrics["quality"], metrics["stability"], limit)
+    status = write_results(args, metrics, runs, scene)
+    print("config_hash:", config_hash)
+    print_next(sys.argv[1:] if argv is None else argv)
+    return status
 
 
 if __name__ == "__main__":

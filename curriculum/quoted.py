@@ -73,7 +73,7 @@ def fresh_run(root, flags):
         if run.returncode:
             raise ValueError(f"contact.py {' '.join(flags)} fails: {run.stderr.strip()[-300:]}")
         metrics = json.loads((Path(out) / "metrics.json").read_text("utf-8"))
-    return metrics, run.stdout.split()[-1]
+    return metrics, wallclock.printed_hash(run.stdout)
 
 
 class Numbers:

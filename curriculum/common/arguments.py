@@ -26,8 +26,11 @@ class Parser(argparse.ArgumentParser):
 
 
 def help_format(prog):
-    """argparse's help, 100 columns wide everywhere; asking the terminal costs an import and a while."""
-    return argparse.HelpFormatter(prog, width=100)
+    """argparse's help, 100 columns wide, so that asking the terminal costs no import.
+
+    Lines of description and epilog stay as they were written.
+    """
+    return argparse.RawDescriptionHelpFormatter(prog, max_help_position=30, width=100)
 
 
 def number(kind, low=None, high=None, above=None):
@@ -53,6 +56,15 @@ def number(kind, low=None, high=None, above=None):
         return value + 0                                          # -0.0 becomes 0.0
 
     return parse
+
+
+def whole_range(text):
+    """An argparse `type=`: "A:B" as (A, B), whole numbers with 0 <= A < B, at most 10,000 of them."""
+    first, _, last = text.partition(":")
+    if not (first.isdecimal() and last.isdecimal() and 0 < int(last) - int(first) <= 10_000):
+        raise argparse.ArgumentTypeError(
+            f"given {text!r}, allowed: A:B, whole numbers with A < B, such as 0:20 for 0 to 19")
+    return int(first), int(last)
 
 
 def writable_folder(text):

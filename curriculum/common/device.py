@@ -25,8 +25,11 @@ def cpu_tier():
     return "cpu-laptop" if any(name.startswith("BAT") for name in supplies) else "cpu-desktop"
 
 
-def banner(chapter_id, device="cpu"):
-    """Print device and tier, then the ledger's wall-clock for that tier or "not yet measured"."""
+def banner(chapter_id, device="cpu", usual=True):
+    """Print device and tier, then what the ledger knows about the time of this run.
+
+    usual: whether it is the default run, the one that was measured.
+    """
     tier = cpu_tier() if device == "cpu" else device
     print(f"[{chapter_id}] device: {device} | tier: {tier}")
-    print(f"[{chapter_id}] {wallclock.render_line(chapter_id, tier)}")
+    print(f"[{chapter_id}] {wallclock.render_line(chapter_id, tier, usual=usual)}")

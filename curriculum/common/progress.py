@@ -11,8 +11,8 @@ class steps:
     and wiped when the last step is done, so that nothing of it stays on the screen.
     """
 
-    def __init__(self, total, label):
-        self.total, self.label = total, label
+    def __init__(self, total, label, unit="steps"):
+        self.total, self.label, self.unit = total, label, unit
         self.start = perf_counter()
         shown = sys.stderr is not None and sys.stderr.isatty()
         self.next = self.start + 1.0 if shown else float("inf")
@@ -24,7 +24,7 @@ class steps:
         now = perf_counter()
         if now >= self.next and done > 0:
             left = (now - self.start) / done * (self.total - done)
-            line = f"{self.label}: {done} of {self.total} steps, {left:.0f} s left "
+            line = f"{self.label}: {done} of {self.total} {self.unit}, {left:.0f} s left "
             sys.stderr.write(f"\r{line}\x1b[K")
             sys.stderr.flush()
             self.next, self.drawn = now + 0.1, True

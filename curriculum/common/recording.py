@@ -1,59 +1,159 @@
-"""A run as a rerun recording: balls that move in one view, curves beside them. Imports rerun when asked."""
+"""Runs as a rerun recording: balls in a view a run, curves below. Imports rerun when asked.
+
+rerun's 2-D views have y down and no option, so y is negated here and only here.
+"""
 
 from curriculum.common.files import whole
 
+PUSH = "#f0e442"        # colour of the arrows
+GROUND, LINE = "#3a3f4a", "#ffffff"
+WIDTHS = (5.0, 3.5, 2.2, 1.2)   # of curves, in points: lines that coincide are seen beneath
+FEW = 24                # balls: more have no arrows, and no magnified view
 
-def write(path, name, runs, radius, curves, colors):
+
+def write(path, name, runs, radius, curves, colors, pushes=None, bursts=None):
     """Write a recording, whole, in rerun's strict mode. Raises ImportError where rerun is missing.
 
-    name: application id, [a-z0-9_]. runs {label: run}: run.t (S,) [s] becomes the timelines step and
-    sim_time (step alone beyond 9e9 s); run.q (S, 2, N) the balls of `radius` (N,) [m], each label over its own piece of the
-    line y = 0, side by side in one 2-D view. curves {title: {label: values (S,)}}: a plot a title,
-    its path the title's first word. colors {label: "#rrggbb"}: one fixed colour a label. rerun's 2-D
-    views have y down and no option, so y is negated here and only here. Whole columns are sent.
+    name: application id, [a-z0-9_]. runs {label: run}: run.t (S,) [s] becomes the timelines step
+    and sim_time (step alone beyond 9e9 s); run.q (S, 2, N) the balls of `radius` (N,) [m].
+    curves {title: {label: values (S,)}}: a plot a title, its path the title's first word.
+    colors {label: "#rrggbb"}: one colour a label. pushes {label: (S, 2, N)}: the push on each ball
+    as a multiple of its weight, drawn as an arrow. bursts {label: step or None}: when it exploded.
+    Whole columns are sent.
     """
-    import numpy as np
     import rerun as rr
     import rerun.blueprint as rrb
 
-    colors = {label: np.array([int(colors[label][1:] + "ff", 16)], np.uint32) for label in runs}
-    width = max(float(np.ptp(run.q[0, 0])) for run in runs.values()) + 12.0 * float(radius.max())
     recording = rr.RecordingStream(name)
     rr.set_strict_mode(True)                            # a wrong call raises instead of warning
     with whole(path) as temporary:
-        recording.save(temporary, default_blueprint=layout(rrb, runs, curves, width, radius))
-        for place, (label, run) in enumerate(runs.items()):
-            middle, color, steps = width * place, colors[label], len(run.t)
-            times = [rr.TimeColumn("step", sequence=np.arange(steps))]
-            if run.t[-1] < 9e9:         # s; 292 years of nanoseconds are all that 64 bits hold
-                nanoseconds = np.round(run.t * 1e9).astype("timedelta64[ns]")   # whole: no stamp off
-                times.append(rr.TimeColumn("sim_time", duration=nanoseconds))
-            table = [[middle - 0.45 * width, 0.0], [middle + 0.45 * width, 0.0]]
-            recording.log(f"world/{label}/table", rr.LineStrips2D(
-                [table], colors=color, labels=[label], radii=[0.005]), static=True)
-            balls = f"world/{label}/balls"
-            recording.log(balls, rr.Points2D.from_fields(
-                radii=radius, colors=np.repeat(color, len(radius))), static=True)
-            spots = np.stack((run.q[:, 0] + middle, -run.q[:, 1]), axis=-1).reshape(-1, 2)
-            recording.send_columns(balls, times, rr.Points2D.columns(positions=spots).partition(
-                [len(radius)] * steps))
+        recording.save(temporary, default_blueprint=layout(rrb, runs, radius, curves, bursts or {}))
+        for label, run in runs.items():
+            times = timelines(rr, run.t)
+            send_table(rr, recording, label)
+            send_balls(rr, recording, label, run, radius, times, colors[label])
+            if pushes and len(radius) <= FEW:
+                send_pushes(rr, recording, label, run, radius, times, pushes[label])
+        for place, label in enumerate(sorted(runs)):
+            times = timelines(rr, runs[label].t)
             for title, lines in curves.items():
                 curve = f"{title.split()[0]}/{label}"
-                recording.log(curve, rr.SeriesLines(colors=color, names=[label]), static=True)
+                recording.log(curve, rr.SeriesLines(
+                    colors=rgba(colors[label]), names=[label], widths=WIDTHS[place % len(WIDTHS)],
+                    aggregation_policy="MinMax"), static=True)      # an average hides the peaks
                 recording.send_columns(curve, times, rr.Scalars.columns(scalars=lines[label]))
         recording.disconnect()
 
 
-def layout(rrb, runs, curves, width, radius):
-    """The blueprint that travels in the file: the balls on top, the plots in a row below, at t = 0."""
-    high = max(float(run.q[0, 1].max()) for run in runs.values()) + 2.0 * float(radius.max())
-    bounds = rrb.VisualBounds2D(x_range=[-0.5 * width, (len(runs) - 0.5) * width],
-                                y_range=[-high, 0.15 * high])
-    plots = [rrb.TimeSeriesView(origin=title.split()[0], name=title,
-                                plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop))
-             for title in curves]
-    return rrb.Blueprint(
-        rrb.Vertical(rrb.Spatial2DView(origin="world", name="balls on the table", visual_bounds=bounds),
-                     rrb.Horizontal(*plots)),
-        rrb.TimePanel(timeline="sim_time", play_state="paused", state="collapsed"),
-        collapse_panels=True)
+def rgba(color):
+    """The colour "#rrggbb" as rerun stores it."""
+    import numpy as np
+    return np.array([int(color[1:] + "ff", 16)], np.uint32)
+
+
+def timelines(rr, t):
+    """The columns of time: step, and sim_time where 64 bits of nanoseconds can hold it."""
+    import numpy as np
+    times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
+    if t[-1] < 9e9:
+        nanoseconds = np.round(t * 1e9).astype("timedelta64[ns]")   # whole: no stamp is off
+        times.append(rr.TimeColumn("sim_time", duration=nanoseconds))
+    return times
+
+
+def send_table(rr, recording, label):
+    """The table: a grey body under the balls, and a thin line over them, so that a sink is seen."""
+    deep, wide = 50.0, 1e3          # m
+    recording.log(f"world/{label}/ground", rr.LineStrips2D(
+        [[[-wide, deep], [wide, deep]]], colors=rgba(GROUND), radii=[deep], draw_order=-10.0),
+        static=True)
+    recording.log(f"world/{label}/table", rr.LineStrips2D(
+        [[[-wide, 0.0], [wide, 0.0]]], colors=rgba(LINE), radii=[rr.Radius.ui_points(0.6)],
+        draw_order=40.0), static=True)
+
+
+def send_balls(rr, recording, label, run, radius, times, color):
+    """The balls, where the run had them."""
+    import numpy as np
+    balls = f"world/{label}/balls"
+    recording.log(balls, rr.Points2D.from_fields(
+        radii=radius, colors=np.repeat(rgba(color), len(radius)), draw_order=20.0), static=True)
+    spots = np.stack((run.q[:, 0], -run.q[:, 1]), axis=-1).reshape(-1, 2)
+    recording.send_columns(balls, times, rr.Points2D.columns(positions=spots).partition(
+        [len(radius)] * len(run.t)))
+
+
+def send_pushes(rr, recording, label, run, radius, times, pushes):
+    """The push on each ball as an arrow from its centre, r log2(1 + push / weight) long.
+
+    So a ball at rest has an arrow as long as its radius, and an impact still fits in the view.
+    """
+    import numpy as np
+    arrows = f"world/{label}/pushes"
+    with np.errstate(all="ignore"):
+        size = np.hypot(pushes[:, 0], pushes[:, 1])
+        size = np.where((size > 1e-6) & np.isfinite(size), size, np.inf)
+        reach = np.where(np.isfinite(size), radius * np.log2(1.0 + size), 0.0)
+        vectors = np.where(np.isfinite(size)[:, None], pushes, 0.0) * (reach / size)[:, None]
+    recording.log(arrows, rr.Arrows2D.from_fields(
+        colors=np.repeat(rgba(PUSH), len(radius)), radii=np.full(len(radius), 0.06) * radius,
+        draw_order=30.0), static=True)
+    starts, ends = (np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2)
+                    for rows in (run.q, vectors))
+    recording.send_columns(arrows, times, rr.Arrows2D.columns(
+        origins=starts, vectors=ends).partition([len(radius)] * len(run.t)))
+
+
+def layout(rrb, runs, radius, curves, bursts):
+    """The blueprint that travels in the file: the balls, the table magnified, the plots, at t = 0.
+
+    Every run has views of its own, so balls that roll far never cross into another run's.
+    """
+    first = next(iter(runs.values()))
+    large = float(radius.max())
+    low, high = float(first.q[0, 0].min()), float(first.q[0, 0].max())
+    middle, half = 0.5 * (low + high), 0.5 * (high - low) + 2.5 * large
+    if len(radius) > 1:
+        half = min(2.0 * half, max(half, *[roamed(run.q[:, 0], middle) + large
+                                           for run in runs.values()]))
+    top = float(first.q[0, 1].max()) + 2.0 * large
+    whole_view = rrb.VisualBounds2D(x_range=[middle - half, middle + half],
+                                    y_range=[-top, 0.12 * top])
+    near = float(first.q[0, 0, 0])
+    close_view = rrb.VisualBounds2D(x_range=[near - 1.2 * large, near + 1.2 * large],
+                                    y_range=[-0.3 * large, 0.5 * large])
+    lanes = [rrb.Spatial2DView(origin=f"world/{label}", name=told(label, bursts.get(label)),
+                               visual_bounds=whole_view) for label in runs]
+    wide = half > 0.6 * top and len(lanes) > 1
+    rows = [rrb.Grid(*lanes, grid_columns=1 + (len(lanes) > 2)) if wide else rrb.Horizontal(*lanes)]
+    if len(radius) <= FEW:
+        rows.append(rrb.Horizontal(*[
+            rrb.Spatial2DView(origin=f"world/{label}", name="the table, magnified",
+                              visual_bounds=close_view) for label in runs]))
+    rows.append(rrb.Horizontal(*[
+        rrb.TimeSeriesView(origin=title.split()[0], name=title,
+                           plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop))
+        for title in curves]))
+    shares = [5, 2, 3] if len(rows) == 3 else [5, 3]
+    return rrb.Blueprint(rrb.Vertical(*rows, row_shares=shares), time_panel(rrb),
+                         collapse_panels=True)
+
+
+def roamed(x, middle):
+    """How far from the middle the balls ever are [m]; 0 for a run that overflows."""
+    import numpy as np
+    far = np.abs(x - middle).max()
+    return float(far) if np.isfinite(far) else 0.0
+
+
+def told(label, burst):
+    """The name of a view: the model, and whether it exploded."""
+    return label if burst is None else f"{label}: EXPLODED at step {burst}"
+
+
+def time_panel(rrb):
+    """Opens at t = 0. rerun-sdk before 0.28 cannot be told to wait there; it starts at once."""
+    try:
+        return rrb.TimePanel(timeline="sim_time", play_state="paused", state="collapsed")
+    except TypeError:
+        return rrb.TimePanel(timeline="sim_time", state="collapsed", duration_cursor=0.0)

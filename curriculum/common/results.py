@@ -2,14 +2,21 @@
 
 import json
 import math
+import os
+import sys
 
 from curriculum.common.files import write_whole
 
 
-def rounded(value, digits=12):
-    """`value` with every float in it rounded; None where it is not finite, and 0.0 for -0.0."""
+def rounded(value, digits=12, steps=()):
+    """`value` with every float in it rounded; None where it is not finite, and 0.0 for -0.0.
+
+    Floats under the keys `steps` are time steps, which may be tiny: they keep that many leading
+    digits instead of decimals.
+    """
     if isinstance(value, dict):
-        return {key: rounded(item, digits) for key, item in value.items()}
+        return {key: float(f"{item:.{digits}g}") if key in steps and isinstance(item, float)
+                else rounded(item, digits, steps) for key, item in value.items()}
     if isinstance(value, float):
         return round(value, digits) + 0.0 if math.isfinite(value) else None
     return value
@@ -20,17 +27,50 @@ def write_json(path, value):
     write_whole(path, json.dumps(value, indent=2, sort_keys=True, allow_nan=False) + "\n")
 
 
-def show(value, form):
-    """`value` in that format, "-" for None."""
-    return "-" if value is None else format(value, form)
+def figure(value, digits=3):
+    """A number as a person reads it, "-" for None: an exponent only where zeros would hide it."""
+    if value is None or value != value:
+        return "-"
+    size = abs(value)
+    if size == 0.0:
+        return "0"
+    if size < 1e-4 or size >= 1e6:
+        return f"{value:.{digits - 2}e}"
+    return f"{value:,.0f}" if size >= 10**digits else f"{value:.{digits}g}"
 
 
-def print_table(title, columns, rows, state):
-    """Print rows {name: {key: value}} under columns {heading: key}, and state(row) at the end."""
-    print(f"{title:<8}" + "".join(f"{heading:>13}" for heading in columns) + "  state")
+def print_table(title, columns, rows, state, marks=None):
+    """Print rows {name: {key: value}} under columns {heading: key}, and state(row) at the end.
+
+    A heading stands in two lines, its last word below. marks {(name, key): "*" or "!"} stand
+    behind the best and the worst figures, which a terminal shows in green and red besides.
+    """
+    marks = marks or {}
+    cells = {(name, key): figure(row[key]) + marks.get((name, key), " ")
+             for name, row in rows.items() for key in columns.values()}
+    above, below = [""], [title]
+    wide = [max(map(len, [title, *rows]))]
+    for heading, key in columns.items():
+        top, _, bottom = heading.rpartition(" ")
+        above.append(f"{top} ")
+        below.append(f"{bottom} ")
+        wide.append(1 + max(len(text) for text in (
+            above[-1], below[-1], *(cells[name, key] for name in rows))))
+    for line in (above, below):
+        text = "".join(f"{part:>{width}}" for part, width in zip(line[1:], wide[1:]))
+        print(f"{line[0]:<{wide[0]}}{text}".rstrip() + (" state" if line is below else ""))
     for name, row in rows.items():
-        print(f"{name:<8}" + "".join(f"{show(row[key], '.3e'):>13}" for key in columns.values())
-              + f"  {state(row)}")
+        text = "".join(colored(f"{cells[name, key]:>{width}}", marks.get((name, key)))
+                       for key, width in zip(columns.values(), wide[1:]))
+        print(f"{name:<{wide[0]}}{text} {state(row)}")
+
+
+def colored(text, mark):
+    """The text in green for "*" and red for "!", on a terminal that wants colour; else as it is."""
+    code = {"*": 32, "!": 31}.get(mark)
+    if code is None or not sys.stdout.isatty() or "NO_COLOR" in os.environ:
+        return text
+    return f"\x1b[{code}m{text}\x1b[0m"
 
 
 def fingerprint(knobs, but=()):

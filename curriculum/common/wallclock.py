@@ -12,7 +12,6 @@ was timed, so a row is stale as soon as either changes. The single times of each
 kept beside the ledger, in wallclock_runs.json, so that no row can be typed or edited alone.
 """
 
-import hashlib
 import json
 import os
 
@@ -78,16 +77,25 @@ def show(minutes):
     return f"{minutes:.2g} min" + (f" ({60 * minutes:.2g} s)" if minutes < 1 else "")
 
 
-def render_line(chapter, tier, path=None):
-    """The banner's second line."""
+def render_line(chapter, tier, path=None, usual=True):
+    """The banner's second line. usual: whether it is the default run, the one that was measured."""
     minutes = lookup(chapter, tier, path)
     if minutes is None:
         return f"wall-clock on {tier}: not yet measured"
-    return f"expected wall-clock on {tier}: {show(minutes)}, measured"
+    if usual:
+        return f"expected wall-clock on {tier}: {show(minutes)}, measured"
+    return (f"wall-clock on {tier}: not measured for these flags (the default run: "
+            f"{show(minutes)}); a terminal shows the time left")
+
+
+def printed_hash(printed):
+    """The fingerprint in what contact.py has printed."""
+    return printed.rpartition("config_hash: ")[2].split()[0]
 
 
 def run_hash(config_hash, root=ROOT):
     """The hash of a ledger row: of the config hash that contact.py prints, and of the code."""
+    import hashlib
     from curriculum import measured
     code = {file: measured.code_hash(file, root) for file in measured.LITERATE}
     text = json.dumps([config_hash, code], sort_keys=True)
@@ -140,7 +148,7 @@ def measure(runs):
             if not os.path.exists(os.path.join(out, "contact.rrd")):
                 raise RuntimeError("the default run records, and rerun is missing: "
                                    "pip install rerun-sdk")
-    return [round(seconds, 4) for seconds in times[1:]], run.stdout.split()[-1]
+    return [round(seconds, 4) for seconds in times[1:]], printed_hash(run.stdout)
 
 
 def write_row(tier, seconds, config_hash, commit, date, path=None):

@@ -9,10 +9,10 @@ import pytest
 
 import contact
 
-pytest.importorskip("rerun", reason="rerun is not installed")
+rr = pytest.importorskip("rerun", reason="rerun is not installed")
 
 DT, STEPS = 0.002, 600
-CURVES = ("height", "penetration", "energy")
+CURVES = ("height", "penetration", "impulse", "energy", "rises")
 
 
 def runs_of(name, **made):
@@ -34,11 +34,11 @@ def positions(recording, model):
     return np.array(recording.series[f"/world/{model}/balls"]["Points2D:positions"])
 
 
-def test_it_holds_balls_table_and_three_curves_of_every_model_and_nothing_else(stack):
+def test_it_holds_balls_pushes_table_and_curves_of_every_model_and_nothing_else(stack):
     recording = stack[0]
-    moving = {f"/world/{model}/balls" for model in contact.MODELS}
+    moving = {f"/world/{model}/{kind}" for model in contact.MODELS for kind in ("balls", "pushes")}
     curves = {f"/{curve}/{model}" for curve in CURVES for model in contact.MODELS}
-    tables = {f"/world/{model}/table" for model in contact.MODELS}
+    tables = {f"/world/{model}/{kind}" for model in contact.MODELS for kind in ("table", "ground")}
     assert set(recording.series) == moving | curves
     assert set(recording.static) == moving | curves | tables
     assert re.fullmatch("[a-z0-9_]+", recording.application)  # others are renamed with a warning
@@ -64,28 +64,54 @@ def test_the_balls_are_where_the_run_had_them_and_up_is_up(stack):
         assert (shown[:, 0, 1] > shown[:, 2, 1]).all(), "the lowest ball is not drawn lowest"
 
 
-def test_the_models_stand_side_by_side_over_their_own_tables(stack):
+def test_every_model_has_its_own_view_in_which_the_table_is_a_line_over_the_balls(stack):
+    """The line is thin and above the balls, the ground below them: a sink of 1 mm is seen."""
     recording, scene, runs = stack
-    right = -np.inf
-    for model in runs:
-        ((left_end, right_end),) = recording.static[f"/world/{model}/table"]["LineStrips2D:strips"]
-        assert left_end[1] == right_end[1] == 0.0
-        across = positions(recording, model)[..., 0]
-        assert right < left_end[0] < across.min() - 0.1 and across.max() + 0.1 < right_end[0]
-        right = right_end[0]
-        assert recording.static[f"/world/{model}/table"]["LineStrips2D:labels"] == [model]
-        drawn = recording.static[f"/world/{model}/balls"]["Points2D:radii"]
+    for model, run in runs.items():
+        static = recording.static
+        order = [
+            static[f"/world/{model}/{kind}"][f"{shape}:draw_order"][0]
+            for kind, shape in (
+                ("ground", "LineStrips2D"), ("balls", "Points2D"),
+                ("pushes", "Arrows2D"), ("table", "LineStrips2D"),
+            )
+        ]  # fmt: skip
+        assert order == sorted(order)
+        ((left, right),) = static[f"/world/{model}/table"]["LineStrips2D:strips"]
+        assert left[1] == right[1] == 0.0
+        (thick,) = static[f"/world/{model}/table"]["LineStrips2D:radii"]
+        assert -1.0 < thick < 0.0, "below 0 it is in points of the screen, not in metres"
+        (deep,) = static[f"/world/{model}/ground"]["LineStrips2D:radii"]
+        ((left, right),) = static[f"/world/{model}/ground"]["LineStrips2D:strips"]
+        assert left[1] - deep == 0.0, "the ground ends at the table"
+        assert np.array_equal(positions(recording, model)[..., 0], run.q[:, 0].astype(np.float32))
+        drawn = static[f"/world/{model}/balls"]["Points2D:radii"]
         assert np.allclose(drawn, scene.radius, rtol=1e-7)
+
+
+def test_an_arrow_starts_at_its_ball_points_along_the_push_and_has_the_stated_length(stack):
+    recording, scene, runs = stack
+    for model, run in runs.items():
+        rows = recording.series[f"/world/{model}/pushes"]
+        vectors = np.array(rows["Arrows2D:vectors"])
+        assert np.array_equal(np.array(rows["Arrows2D:origins"]), positions(recording, model))
+        weight = 9.81 * scene.mass
+        force = np.diff(run.v[:, 1], axis=0) / DT * scene.mass + weight
+        length = 0.1 * np.log2(1.0 + np.abs(force) / weight) * np.sign(force)
+        assert np.abs(-vectors[1:, :, 1] - length).max() < 1e-5
+        assert np.abs(-vectors[-1, :, 1] - 0.1).max() < 0.02, "a ball at rest: one radius"
 
 
 def test_curves_hold_the_runs_own_numbers_bit_for_bit(stack):
     recording, scene, runs = stack
     for model, run in runs.items():
         total = contact.energy(run.q, run.v, scene.mass)
+        rises = [max(0.0, after - before) for before, after in zip(total, total[1:])]
         expected = {
-            "height": run.q[:, 1, 0],
+            "height": run.q[:, 1].mean(-1),
             "penetration": contact.max_penetration(run.q, scene.radius) / 0.1,
             "energy": total - total[0],
+            "rises": np.cumsum([0.0, *rises]),
         }
         for curve, values in expected.items():
             logged = recording.series[f"/{curve}/{model}"]["Scalars:scalars"]
@@ -101,28 +127,73 @@ def test_a_model_has_its_one_colour_everywhere(stack):
             assert series["SeriesLines:colors"] == [rgba]
             assert series["SeriesLines:names"] == [model]
         assert set(recording.static[f"/world/{model}/balls"]["Points2D:colors"]) == {rgba}
-        assert recording.static[f"/world/{model}/table"]["LineStrips2D:colors"] == [rgba]
 
 
-def test_a_blueprint_inside_shows_the_balls_and_three_plots_from_t_0(stack):
-    recording = stack[0]
+def blueprint_facts(recording):
+    """{column: [value, ...]} of all rows of the blueprint."""
     facts = {}
     for _, row in recording.blueprint:
         for column, value in row.items():
             facts.setdefault(column, []).append(value)
-    origins = sum(facts["ViewBlueprint:space_origin"], [])
-    assert sorted(origin.strip("/") for origin in origins) == sorted(("world", *CURVES))
+    return facts
+
+
+def test_a_blueprint_inside_shows_the_balls_the_table_magnified_and_five_plots_from_t_0(stack):
+    recording = stack[0]
+    facts = blueprint_facts(recording)
+    origins = [origin.strip("/") for origin in sum(facts["ViewBlueprint:space_origin"], [])]
+    worlds = [f"world/{model}" for model in contact.MODELS] * 2
+    assert sorted(origins) == sorted((*worlds, *CURVES))
     names = sum(facts["ViewBlueprint:display_name"], [])
-    assert any("[r]" in name for name in names) and any("[J]" in name for name in names)
+    for unit in ("[m]", "[r]", "[N s]", "[J]"):
+        assert any(unit in name for name in names), unit
+    assert set(contact.MODELS) < set(names)
     assert facts["TimePanelBlueprint:timeline"] == [["sim_time"]]
     assert "TimePanelBlueprint:play_state" in facts
-    (((x, y),),) = (
-        [(bounds["x_range"], bounds["y_range"]) for bounds in seen]
-        for seen in facts["VisualBounds2D:range"]
-    )
+    bounds = [seen[0] for seen in facts["VisualBounds2D:range"]]
+    assert len(bounds) == 8
+    large = max(bounds, key=lambda view: view["y_range"][1] - view["y_range"][0])
+    (left, right), (top, bottom) = large["x_range"], large["y_range"]
     for model in contact.MODELS:
-        spots = positions(recording, model).reshape(-1, 2)
-        assert (spots > [x[0], y[0]]).all() and (spots < [x[1], y[1]]).all(), f"{model} not in view"
+        x, y = np.moveaxis(positions(recording, model), -1, 0)
+        assert left < x.min() - 0.1 and x.max() + 0.1 < right, f"{model} not in view"
+        assert top < y.min() - 0.1 and y.max() < bottom, f"{model} not in view"
+
+
+def test_curves_are_drawn_with_their_peaks_and_wide_beneath_thin(stack):
+    """rerun averages many samples a pixel unless told otherwise, which hid half of a peak."""
+    recording = stack[0]
+    for curve in CURVES:
+        wide = []
+        for model in sorted(contact.MODELS):
+            series = recording.static[f"/{curve}/{model}"]
+            ((policy),) = series["SeriesLines:aggregation_policy"]
+            assert policy == rr.components.AggregationPolicy.MinMax.value
+            wide += series["SeriesLines:widths"]
+        assert wide == sorted(wide, reverse=True) and len(set(wide)) == len(wide)
+
+
+def test_balls_that_roll_far_stay_in_view_up_to_twice_the_width(tmp_path, read_recording):
+    """In the first edition the two models' balls ran through each other's lanes."""
+    scene = contact.build_scene("pile", bodies=12)
+    runs = {model: contact.run_model(model, scene, 0.002, 900) for model in ("penalty", "lcp")}
+    contact.log_rerun(tmp_path / "pile.rrd", runs, scene)
+    facts = blueprint_facts(read_recording(tmp_path / "pile.rrd"))
+    views = [seen[0] for seen in facts["VisualBounds2D:range"]]
+    left, right = max((view["x_range"] for view in views), key=lambda ends: ends[1] - ends[0])
+    start = np.ptp(scene.q0[0])
+    roamed = max(np.abs(run.q[:, 0]).max() for run in runs.values())
+    assert right - left >= min(2.0 * start, 2.0 * roamed) and roamed > 0.6 * start
+
+
+def test_an_exploded_ball_is_said_so_in_the_name_of_its_view(tmp_path, read_recording):
+    scene = contact.build_scene("drop")
+    runs = {model: contact.run_model(model, scene, 0.03, 200) for model in ("penalty", "lcp")}
+    contact.log_rerun(tmp_path / "burst.rrd", runs, scene)
+    names = sum(blueprint_facts(read_recording(tmp_path / "burst.rrd"))[
+        "ViewBlueprint:display_name"], [])  # fmt: skip
+    step = contact.contact_quality(runs["penalty"], scene, 0.03)["blew_up_step"]
+    assert f"penalty: EXPLODED at step {step}" in names and "lcp" in names
 
 
 def test_two_recordings_of_a_run_hold_equal_content(tmp_path, read_recording):
@@ -141,7 +212,8 @@ def test_one_model_alone_is_recorded_alone(tmp_path, read_recording):
     scene, runs = runs_of("drop")
     contact.log_rerun(tmp_path / "one.rrd", {"lcp": runs["lcp"]}, scene)
     recording = read_recording(tmp_path / "one.rrd")
-    assert set(recording.series) == {"/world/lcp/balls", *(f"/{curve}/lcp" for curve in CURVES)}
+    moving = {"/world/lcp/balls", "/world/lcp/pushes"}
+    assert set(recording.series) == {*moving, *(f"/{curve}/lcp" for curve in CURVES)}
 
 
 def test_a_pile_is_recorded_with_all_its_balls(tmp_path, read_recording):
@@ -195,3 +267,37 @@ def test_a_failure_while_recording_keeps_the_old_file(tmp_path):
     with pytest.raises(Exception):
         contact.log_rerun(path, {"lcp": broken}, scene)
     assert path.read_bytes() == b"old" and [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+PIN = "0.26.2"  # what the course pins
+
+
+@pytest.mark.skipif(rr.__version__ != PIN, reason=f"rerun-sdk {PIN}, the course's pin, is not here")
+def test_the_courses_pin_of_rerun_records_the_same_values(tmp_path):
+    """Its time panel has no play_state, on which the first edition ended in a TypeError."""
+    import rerun.dataframe
+
+    scene, runs = runs_of("stack")
+    contact.log_rerun(tmp_path / "pin.rrd", runs, scene)
+    recording = rerun.dataframe.load_recording(str(tmp_path / "pin.rrd"))
+    for model, run in runs.items():
+        view = recording.view(index="step", contents=f"/penetration/{model}")
+        rows = view.select("/penetration/" + model + ":Scalars:scalars").read_all().column(0)
+        depth = contact.max_penetration(run.q, scene.radius) / scene.radius[0]
+        assert [value[0] for value in rows.to_pylist()] == depth.tolist()
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_a_time_panel_without_play_state_is_no_error(known):
+    """What rerun-sdk 0.26.2 does, played here where it is not installed."""
+    from types import SimpleNamespace
+
+    from curriculum.common import recording
+
+    def panel(**given):
+        if "play_state" in given and not known:
+            raise TypeError("unexpected keyword argument 'play_state'")
+        return given
+
+    made = recording.time_panel(SimpleNamespace(TimePanel=panel))
+    assert made["timeline"] == "sim_time" and ("play_state" in made) == known
