@@ -12,7 +12,6 @@ was timed, so a row is stale as soon as either changes. The single times of each
 kept beside the ledger, in wallclock_runs.json, so that no row can be typed or edited alone.
 """
 
-import json
 import os
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -96,6 +95,7 @@ def printed_hash(printed):
 def run_hash(config_hash, root=ROOT):
     """The hash of a ledger row: of the config hash that contact.py prints, and of the code."""
     import hashlib
+    import json
     from curriculum import measured
     code = {file: measured.code_hash(file, root) for file in measured.LITERATE}
     text = json.dumps([config_hash, code], sort_keys=True)
@@ -104,6 +104,7 @@ def run_hash(config_hash, root=ROOT):
 
 def read_runs(path=None):
     """{tier: {"seconds": [...], "config_hash", "commit", "date"}}, {} without a file."""
+    import json
     path = os.path.join(os.path.dirname(path or LEDGER), RUNS)
     if not os.path.exists(path):
         return {}
@@ -156,6 +157,7 @@ def write_row(tier, seconds, config_hash, commit, date, path=None):
 
     Other rows stay as they are.
     """
+    import json
     import statistics
     from curriculum.common.files import write_whole
     path = path or LEDGER

@@ -188,7 +188,7 @@ def test_a_wrong_header_is_refused(tmp_path):
 
 def test_writing_a_row_replaces_its_own_adds_pending_tiers_and_keeps_the_rest(tmp_path):
     path = ledger(tmp_path, ROW, "ch0.1-sim-loop,t4,0.1,aa,bb,2026-01-01,MEASURED")
-    wallclock.write_row("cpu-vm", 0.00512345, "ffff", "7654321", "2026-02-03", path)
+    wallclock.write_row("cpu-vm", [0.3, 0.307407, 0.4], "ffff", "7654321", "2026-02-03", path)
     rows = {(r["chapter"], r["tier"]): r for r in wallclock.read(path)}
     assert rows["ch3.5-contact", "cpu-vm"]["wallclock_min"] == "0.00512"
     assert rows["ch0.1-sim-loop", "t4"]["config_hash"] == "aa"
