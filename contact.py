@@ -627,8 +627,10 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
         "blew_up": step is not None,
         "blew_up_step": step}
     return quality | height_errors(run, reference, landing, radius)
+# --- endregion ---
 
 
+# --- region: quality-parts ---
 def deviation(values):
     """The standard deviation; a power of two is taken out, lest squares of large values overflow.
 
@@ -696,7 +698,7 @@ def knobs(args):
     """The flags that decide what comes out, {name: value}."""
     apart = ("out", "rerun", "skip", "plot", "usual")
     return {name: value for name, value in vars(args).items()
-            if name not in apart and (name != "seeds" or value)}
+            if name not in apart and (name not in ("seeds", "mass") or value)}
 
 
 def add_run_flags(group):
@@ -711,6 +713,7 @@ def add_run_flags(group):
     flag("--dt", type=number(float, above=0), default=0.002, help="time step [s] (0.002)")
     flag("--steps", type=number(int, low=0), default=2000, metavar="N", help="how many (2000)")
     flag("--bodies", type=number(int, low=1), metavar="N", help="balls of stack (3), pile (200)")
+    flag("--mass", type=number(float, above=0), metavar="M", help="of every ball [kg] (1)")
     flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
     flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
 # --- endregion ---
@@ -782,7 +785,7 @@ def measure_stability(run, scene, dt, stiffness, first):
 # --- endregion ---
 
 
-# --- region: report ---
+# --- region: columns ---
 COLUMNS = {"max pen/r": "max_penetration_frac", "rest gap/r": "rest_gap_frac",
            "rebound/r": "rebound_frac", "energy+": "energy_excess", "energy in": "contact_energy",
            "flight err/r": "flight_error_frac", "contact err/r": "contact_error_frac",
@@ -796,8 +799,10 @@ LEGEND = {
     "flight err/r": "the worst height error before the first contact, against exact",
     "contact err/r": "what contact adds to the worst height error",
     "jitter/r": "standard deviation of the overlap over the last quarter of the run"}
+# --- endregion ---
 
 
+# --- region: report ---
 def print_report(args, quality, grid, critical=None):
     """Print one row per model, a legend, a verdict that claims what it tests, and stability.
 
@@ -813,40 +818,14 @@ def print_report(args, quality, grid, critical=None):
         return f"EXPLODED at step {row['blew_up_step']}{beside}"
 
     print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
-    marks = best_and_worst(quality)
+    marks = results.best_and_worst(quality, COLUMNS.values(), "exact", unknown="rebound_frac")
     results.print_table("contact", COLUMNS, quality, state, marks)
-    print_legend("exact" in quality, bool(marks))
+    results.print_legend(LEGEND)
+    if marks:
+        results.print_legend({"* and !": "nearest to exact, and farthest; without exact, to 0"})
     if grid:
         print_verdict(quality["penalty"], quality["lcp"])
         print_stability(grid)
-
-
-def print_legend(compared, marked):
-    """Say in a line each what the columns are, and what the marks."""
-    for title, meaning in LEGEND.items():
-        print(f"  {title:<15}{meaning}")
-    aim = "to exact" if compared else "to 0"
-    if marked:
-        print(f"  {'* and !':<15}the nearest {aim} and the farthest, of the models that take steps")
-
-
-def best_and_worst(quality):
-    """{(model, key): "*" or "!"}: the rows nearest to exact and farthest from it, by column.
-
-    Without a run of exact the aim is 0, except for the rebound. A run that exploded is far off.
-    """
-    marks, exact = {}, quality.get("exact")
-    for key in COLUMNS.values():
-        aim = exact[key] if exact else None if key == "rebound_frac" else 0.0
-        if aim is None:
-            continue
-        off = {model: math.inf if row["blew_up"] or row[key] is None else abs(row[key] - aim)
-               for model, row in quality.items() if model != "exact"}
-        best, worst = min(off.values(), default=0.0), max(off.values(), default=0.0)
-        for model in off:
-            if best < worst and off[model] in (best, worst):
-                marks[model, key] = "*" if off[model] == best else "!"
-    return marks
 # --- endregion ---
 
 
@@ -868,9 +847,7 @@ def print_stability(grid):
     """Print the largest step that each model stood, and the critical steps of penalty."""
     from curriculum.common import results
     print("stability: tried at", ", ".join(map(str, DT_GRID)), "times --dt")
-    for model in ("penalty", "lcp", "soft"):
-        if model not in grid:
-            continue
+    for model in ("penalty", "lcp"):
         if grid[model] is None:
             print(f"stability: {model} comes to no contact within these steps: nothing to say")
         elif grid[model] == 0.0:
@@ -933,97 +910,87 @@ def log_rerun(path, runs: dict[str, Run], scene: Scene) -> None:
 
 
 # --- region: write ---
-def write_results(args, metrics, runs, scene):
-    """Write metrics.json, and recording and picture as asked. Returns the exit status.
+def written(what, path, write, *content, needs=None):
+    """Have a file written, and say so. Returns the exit status.
 
-    A folder that turns out unwritable costs the files and nothing else: the report is printed.
+    A folder that turns out unwritable costs the file and nothing else, since the report is
+    printed. needs: the package that may be missing.
     """
-    from curriculum.common import picture, results, shell
-    numbers, recording, drawing = (os.path.join(args.out, name)
-                                   for name in ("metrics.json", "contact.rrd", "contact.svg"))
     try:
-        results.write_json(numbers, metrics)
-        print("metrics:", numbers)
-        if args.rerun:
-            try:
-                log_rerun(recording, runs, scene)
-                print(f"recording: {recording}, open it with: {shell.tool('rerun')} {recording}")
-            except ImportError:
-                print("no recording: rerun is not installed,", shell.install("rerun-sdk"))
-        if args.plot:
-            try:
-                title = f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
-                picture.write(drawing, title, runs, curves(runs, scene), COLORS)
-                print("picture:", drawing)
-            except ImportError:
-                print("no picture: matplotlib is not installed,", shell.install("matplotlib"))
+        write(path, *content)
+    except ImportError:
+        from curriculum.common import shell
+        print(f"no {what}: {needs} is not installed, {shell.install(needs)}")
+        return 0
     except OSError as error:
         print(f"contact.py: error: cannot write {error.filename}: {error.strerror}; the report is "
               "whole, give another --out to keep its files", file=sys.stderr)
         return 2
+    print(f"{what}:", path)
     return 0
 
 
-def print_next(argv):
+def write_results(args, metrics, runs, scene):
+    """Write metrics.json, and recording and picture as asked. Returns the exit status."""
+    from curriculum.common import picture, results
+    numbers, recording, drawing = (os.path.join(args.out, name)
+                                   for name in ("metrics.json", "contact.rrd", "contact.svg"))
+    status = written("metrics", numbers, results.write_json, metrics)
+    if args.rerun and not status:
+        status = written("recording", recording, log_rerun, runs, scene, needs="rerun-sdk")
+    if args.plot and not status:
+        title = f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
+        status = written("picture", drawing, picture.write, title, runs, curves(runs, scene),
+                         COLORS, needs="matplotlib")
+    return status
+# --- endregion ---
+
+
+# --- region: next ---
+def print_next(args, argv):
     """The last line of a run: what to do next, as commands that work as printed."""
     from curriculum.common import shell
     here = os.path.dirname(os.path.abspath(__file__))
-    exercise = shell.python(os.path.join(here, "exercises", "ex1_predict_contact.py"))
+    recording = os.path.join(args.out, "contact.rrd")
+    recorded = args.rerun and os.path.exists(recording)
     same = [word for word in argv if word not in ("--skip", "--no-skip")]
     again = shell.python(os.path.join(here, "contact.py"), *same, "--plot")
-    picture = "" if "--plot" in argv else f"; see a picture of this run: {again}"
-    print(f"next: make a bet: {exercise}{picture}")
+    bet = shell.python(os.path.join(here, "exercises", "ex1_predict_contact.py"))
+    see = f"watch it: {shell.tool('rerun')} {recording}" if recorded else f"see it: {again}"
+    print(f"next: {see}; make a bet: {bet}")
 # --- endregion ---
 
 
 # --- region: seeds ---
 def seed_quality(args, models, seed):
     """{model: contact_quality} of one seed; a process of its own may run it."""
-    scene = build_scene(args.scene, seed, args.bodies, args.restitution, args.damping)
-    runs = {model: run_model(model, scene, args.dt, args.steps, args.stiffness, args.baumgarte,
-                             args.iters, args.skip, lambda k: None, args.solref, args.solimp)
-            for model in models}
+    scene = chosen_scene(args, seed)
+    runs = {model: chosen_run(args, model, scene, args.dt) for model in models}
     return {model: contact_quality(run, scene, args.dt, runs.get("exact"))
             for model, run in runs.items()}
 
 
 def run_seeds(args, models):
-    """Print median, lowest and highest of every measure over the seeds, and write seeds.json."""
+    """Print median, lowest and highest of every measure over the seeds, and write seeds.json.
+
+    Returns the exit status.
+    """
     from curriculum.common import results, workers
     seeds = range(*args.seeds)
     found = workers.spread(seed_quality, [(args, models, seed) for seed in seeds], "seeds")
     rows = {}
     for model in models:
-        ordered = {key: sorted(math.inf if row[model][key] is None else row[model][key]
-                               for row in found)
-                   for key in COLUMNS.values() if found[0][model][key] is not None}
-        burst = sum(row[model]["blew_up"] for row in found)
-        for name, pick in (("median", np.median), ("lowest", min), ("highest", max)):
-            row = {key: float(pick(ordered[key])) if key in ordered else None
-                   for key in COLUMNS.values()}
-            rows[f"{model} {name}"] = row | {"blew_up_count": burst}
+        rows |= results.summary(model, [each[model] for each in found], COLUMNS.values())
     rows = results.rounded(rows)
     print(f"scene {args.scene}, seeds {seeds[0]} to {seeds[-1]}: {args.steps} steps of "
           f"{args.dt:g} s")
     results.print_table("contact", COLUMNS, rows, lambda row: (
-        f"{row['blew_up_count']} of {len(seeds)} EXPLODED" if row["blew_up_count"] else "ok"))
-    print_legend("exact" in models, False)
-    return write_seeds(args, rows)
-
-
-def write_seeds(args, rows):
-    """Write seeds.json. Returns the exit status."""
-    from curriculum.common import results
+        f"{row['blew_up']} of {len(seeds)} EXPLODED" if row["blew_up"] else "ok"))
+    results.print_legend(LEGEND)
     path = os.path.join(args.out, "seeds.json")
-    try:
-        results.write_json(path, {"scene": args.scene, "dt": args.dt, "steps": args.steps,
-                                  "seeds": list(args.seeds), "rows": rows})
-    except OSError as error:
-        print(f"contact.py: error: cannot write {error.filename}: {error.strerror}; the report is "
-              "whole, give another --out to keep it", file=sys.stderr)
-        return 2
-    print("seeds:", path)
-    return 0
+    return written("seeds", path, results.write_json, {
+        "scene": args.scene, "dt": args.dt, "steps": args.steps, "seeds": list(args.seeds),
+        "rows": rows})
 # --- endregion ---
 
 
@@ -1044,6 +1011,18 @@ def choose_models(args, count):
 
 
 # --- region: collect ---
+def chosen_scene(args, seed):
+    """The scene that the flags ask for."""
+    scene = build_scene(args.scene, seed, args.bodies, args.restitution, args.damping)
+    return scene if args.mass is None else scene._replace(mass=args.mass * scene.mass)
+
+
+def chosen_run(args, model, scene, dt, report=lambda k: None):
+    """A run of the scene with the knobs that the flags give."""
+    return run_model(model, scene, dt, args.steps, args.stiffness, args.baumgarte, args.iters,
+                     args.skip, report, args.solref, args.solimp)
+
+
 def collect(args, scene, runs, run):
     """What metrics.json holds: the flags that matter, the measures and the stability grid."""
     grid = {}
@@ -1069,7 +1048,7 @@ def main(argv=None):
     args = parse_flags(argv)
     config_hash = results.fingerprint(knobs(args))
     device.banner("ch3.5-contact", args.device, args.usual)
-    scene = build_scene(args.scene, args.seed, args.bodies, args.restitution, args.damping)
+    scene = chosen_scene(args, args.seed)
     models = choose_models(args, len(scene.mass))
     if args.seeds:
         status = run_seeds(args, models)
@@ -1078,8 +1057,7 @@ def main(argv=None):
 
     def run(model, dt):
         label = f"{model}, dt = {dt:g} s"
-        return run_model(model, scene, dt, args.steps, args.stiffness, args.baumgarte, args.iters,
-                         args.skip, progress.steps(args.steps, label), args.solref, args.solimp)
+        return chosen_run(args, model, scene, dt, progress.steps(args.steps, label))
 
     runs = {model: run(model, args.dt) for model in models}
     metrics = results.rounded(collect(args, scene, runs, run), steps=("dt", *MODELS))
@@ -1087,7 +1065,7 @@ def main(argv=None):
     print_report(args, metrics["quality"], metrics["stability"], limit)
     status = write_results(args, metrics, runs, scene)
     print("config_hash:", config_hash)
-    print_next(sys.argv[1:] if argv is None else argv)
+    print_next(args, sys.argv[1:] if argv is None else argv)
     return status
 
 

@@ -39,6 +39,51 @@ def figure(value, digits=3):
     return f"{value:,.0f}" if size >= 10**digits else f"{value:.{digits}g}"
 
 
+def best_and_worst(rows, keys, reference, unknown):
+    """{(name, key): "*" or "!"}: the rows nearest to the row `reference` and farthest from it.
+
+    Where that row is missing the aim is 0, except for the key `unknown`. A row that blew up, or a
+    value that is None, is farthest.
+    """
+    marks = {}
+    for key in keys:
+        if reference not in rows and key == unknown:
+            continue
+        aim = rows[reference][key] if reference in rows else 0.0
+        off = {name: math.inf if row["blew_up"] or row[key] is None else abs(row[key] - aim)
+               for name, row in rows.items() if name != reference}
+        best, worst = min(off.values(), default=0.0), max(off.values(), default=0.0)
+        marks |= {(name, key): "*" if off[name] == best else "!" for name in off
+                  if best < worst and off[name] in (best, worst)}
+    return marks
+
+
+def summary(name, rows, keys):
+    """{"name median": row, "name lowest": row, "name highest": row} of many rows, by key.
+
+    A value that is not finite counts as larger than any other. blew_up counts the rows that did.
+    """
+    made = {f"{name} {what}": {} for what in ("median", "lowest", "highest")}
+    for key in keys:
+        found = [row[key] for row in rows]
+        if None in found:
+            values = None, None, None
+        else:
+            found = sorted(value if math.isfinite(value) else math.inf for value in found)
+            half = len(found) // 2
+            values = 0.5 * (found[half] + found[-1 - half]), found[0], found[-1]
+        for row, value in zip(made.values(), values):
+            row[key] = value
+    burst = sum(row["blew_up"] for row in rows)
+    return {what: row | {"blew_up": burst} for what, row in made.items()}
+
+
+def print_legend(meanings):
+    """Print {heading: meaning}, a line each."""
+    for heading, meaning in meanings.items():
+        print(f"  {heading:<15}{meaning}")
+
+
 def print_table(title, columns, rows, state, marks=None):
     """Print rows {name: {key: value}} under columns {heading: key}, and state(row) at the end.
 
