@@ -476,6 +476,7 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True,
         rows[k] = state_of(balls)
         report(k)
     rows += 0.0                                         # turns -0.0 into 0.0
+    rows[np.isnan(rows)] = math.nan                     # which has a sign too, left to chance
     return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
 # --- endregion ---
 

@@ -488,6 +488,7 @@ def simulate(model, scene, dt, steps, report, gravity, margin, stiffness, baumga
         done = take_steps(rows, done, min(done + chunk, steps), mass, radius, knobs)
         report(done)
     rows += 0.0                                         # turns -0.0 into 0.0
+    rows[np.isnan(rows)] = math.nan                     # which has a sign too, left to chance
     return rows[:, :2], rows[:, 2:]
 # --- endregion ---
 

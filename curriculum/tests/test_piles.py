@@ -1,6 +1,12 @@
 """The compiled twin of contact.py gives the bytes of the plain reference, and is really taken."""
 
+import json
 import math
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +17,7 @@ import contact
 
 piles = pytest.importorskip("curriculum.piles", reason="numba is not installed: the extra `fast`",
                             exc_type=ImportError)
+ROOT = Path(__file__).resolve().parents[2]
 MODELS = ("penalty", "lcp", "soft")
 WILD = (math.nan, math.inf, -math.inf, 1e200, -1e308, 1e-200, -0.0)
 
@@ -139,6 +146,17 @@ def test_a_state_that_comes_back_ends_the_steps_and_changes_no_bit():
     assert (q[2000:] == q[2000]).all() and (v[2000:] == v[2000]).all()
 
 
+def test_what_is_not_a_number_has_one_sign():
+    """The sign that a processor gives inf - inf is its own affair, and is not recorded."""
+    scene = contact.build_scene("pile", 0, 13)
+    scene.q0[0, 4], scene.v0[0, 4] = math.inf, -math.inf        # whose sum is not a number
+    scene.q0[0, 5] = math.copysign(math.nan, -1.0)
+    for model in MODELS:
+        run = check_same(model, scene, 0.002, 4)
+        bits = run.q[np.isnan(run.q)].view(np.uint64)
+        assert len(bits) == 9 and (bits == np.array(math.nan).view(np.uint64)).all()
+
+
 # Near balls
 
 def all_pairs(scene, reach):
@@ -187,3 +205,50 @@ def test_the_smallest_gap_has_the_bits_of_the_reference(scene, dt):
         q = scene.q0 + np.arange(12)[:, None, None] * dt * scene.v0
         plain = contact.smallest_gap(q, scene.radius)
     assert repr(piles.smallest_gap(q, scene.radius).tolist()) == repr(plain.tolist())
+
+
+# Where it is installed, and where not
+
+def python(code, *arguments, cwd=ROOT, **environment):
+    """A finished process that ran this code."""
+    return subprocess.run([sys.executable, "-c", code, *map(str, arguments)], cwd=cwd, text=True,
+                          env=os.environ | environment, capture_output=True, timeout=60)
+
+
+def test_the_command_line_takes_the_twin_and_says_when_it_cannot(tmp_path):
+    """The same numbers either way; the extra is named on stderr, in one line."""
+    block = "import sys; sys.modules['numba'] = None; "
+    ask = "import contact, sys; sys.exit(contact.main(sys.argv[1:]))"
+    flags = ("--scene", "pile", "--bodies", 13, "--steps", 40, "--contact", "lcp", "--no-rerun",
+             "--out")
+    fast = python(ask, *flags, tmp_path / "fast")
+    slow = python(block + ask, *flags, tmp_path / "slow")
+    assert (fast.returncode, fast.stderr, slow.returncode) == (0, "", 0), slow.stderr
+    assert slow.stderr.count("\n") == 1 and "numba" in slow.stderr
+    one, other = ((tmp_path / way / "metrics.json").read_bytes() for way in ("fast", "slow"))
+    assert one == other and json.loads(one)["scene"] == "pile"
+
+
+def test_run_model_takes_the_twin_for_many_balls_only(monkeypatch):
+    asked = []
+    simulate = piles.simulate
+    monkeypatch.setattr(piles, "simulate",
+                        lambda model, *rest: asked.append(model) or simulate(model, *rest))
+    for model in MODELS:
+        for bodies in (contact.FEW, contact.FEW + 1):
+            contact.run_model(model, contact.build_scene("pile", 0, bodies), 0.002, 2)
+    contact.run_model("lcp", contact.build_scene("pile", 0, 13), 0.002, 2, skip=False)
+    assert asked == list(MODELS)
+
+
+def test_where_nothing_can_be_written_the_compiled_code_is_not_kept(tmp_path):
+    """A file stands where the folder of the cache would be, and there is no home."""
+    (tmp_path / "curriculum").mkdir()
+    for name in ("__init__.py", "piles.py"):
+        shutil.copy(ROOT / "curriculum" / name, tmp_path / "curriculum")
+    (tmp_path / "curriculum" / "__pycache__").touch()
+    nowhere = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/dev/null/nothing")
+    done = python("from curriculum import piles\n"
+                  "print(piles.larger(0.0, float('nan')), piles.larger.stats.cache_path)",
+                  cwd=tmp_path, **nowhere)
+    assert (done.stdout, done.returncode) == ("0.0 None\n", 0), done.stderr
