@@ -2,52 +2,53 @@
 
     python -m curriculum.notebook [--out FILE]          # outputs/contact.ipynb
 
-Prose with its numbers, the regions as code cells in their order, the bets with their answers folded
-away. It needs numpy and rerun-sdk, which its first cell installs where they are missing, and carries
-curriculum/common itself: its second cell writes those files to a folder of its own and imports from
-there, never from the working directory. Same inputs, same bytes; the id of a cell comes from its content.
+Prose with its numbers; the regions of contact.py and curriculum/exact.py as code cells; pictures where
+the chapter has its figures (curriculum/notebook_cells.py); the bets with their answers folded away.
+It needs numpy and matplotlib, which its first code cell installs where they are missing. Regions
+that the chapter shows at its end or not at all come as folded cells before their first use; those of
+the command line are left out. The first picture is there before anything has run. Same inputs and
+versions, same bytes; the id of a cell comes from its content.
 """
 
 import ast
+import base64
 import hashlib
+import io
 import re
-import shlex
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 from curriculum import regions
-from curriculum.check_prose_code_drift import CHAPTER, INCLUDE
 from curriculum.common.arguments import Parser
 from curriculum.common.files import write_whole
+from curriculum.drift.texts import CHAPTER, FENCE, INCLUDE
 from curriculum.quoted import Numbers, load_meta
 
-SLOT = re.compile(r"<!-- exercise: (\w+) -->")
-COMMAND = re.compile(r"python contact\.py(.*)")
-BLOCK = re.compile(r"^```\n(.*)\n```$", re.MULTILINE)
-ENTRY = 'if __name__ == "__main__":\n    sys.exit(main())\n'
+CELLS = "curriculum/notebook_cells.py"
+SLOT = re.compile(r"<!-- (figure|exercise): ([\w-]+) -->")
+LIVE = re.compile(r"\[([^\]]*)\]\((?:try|drag):[^)]*\)")
+REST = "## The rest of the file"        # of the chapter; a notebook has it in folded cells
+COMMAND_LINE = ("flags", "stability", "report", "record", "write", "models", "main")
+SCRIPTS = ("contact.py", "curriculum/exact.py")
 HIDDEN = {"jupyter": {"source_hidden": True}, "cellView": "form"}
+AFTER = {"first": "3.5: Contact", "mujoco": "Way three: soft"}   # a cell behind a section, no figure
 
 INSTALL = '''\
-#@title Install what is missing
+#@title Install numpy and matplotlib where they are missing; the colours of the models
 import importlib.util, subprocess, sys
-missing = [package for module, package in (("numpy", "numpy"), ("rerun", "rerun-sdk"))
-           if importlib.util.find_spec(module) is None]
+tested = {"numpy": "2.4.6", "matplotlib": "3.11.2"}
+missing = [f"{name}=={tested[name]}" for name in tested if importlib.util.find_spec(name) is None]
 if missing:
-    subprocess.check_call([sys.executable, "-m", "pip", "install", "--quiet", *missing])'''
+    subprocess.check_call([sys.executable, "-m", "pip", "install", "--quiet", *missing])
+COLORS = {colors}'''
 
-SHARED = '''\
-#@title What the chapters of the course share: curriculum/common, written to a folder and imported
-import pathlib, sys, tempfile
-FILES = {{
-{files}
-}}
-folder = pathlib.Path(tempfile.mkdtemp(prefix="contact-"))
-for name, text in FILES.items():
-    (folder / name).parent.mkdir(parents=True, exist_ok=True)
-    (folder / name).write_text(text, encoding="utf-8")
-for name in [name for name in sys.modules if name.split(".")[0] == "curriculum"]:
-    del sys.modules[name]
-sys.path.insert(0, str(folder))'''
+EXACT = '''\
+#@title run_model looks for exact.py in the folder of the course; here it finds it in this notebook
+import sys, types
+exact = types.SimpleNamespace(simulate_exact=simulate_exact)
+sys.modules["curriculum"] = types.ModuleType("curriculum")
+sys.modules["curriculum"].exact = exact'''
 
 EX2 = '''\
 def my_penalty_normal_force(depth, v_n, stiffness, damping):
@@ -58,117 +59,235 @@ def my_project_impulse(lam, dlam):
 
 for mine, reference, tries in (
         (my_penalty_normal_force, penalty_normal_force,
-         ((0.01, 0.0, 1e4, 80.0), (0.01, -0.5, 1e4, 80.0), (0.001, 2.0, 1e4, 80.0))),
+         ((0.01, 0.0, 1e4, 80.0), (0.01, -0.5, 3e3, 80.0), (0.001, 2.0, 1e4, 80.0))),
         (my_project_impulse, project_impulse, ((0.0, 0.3), (0.2, -0.1), (0.2, -0.5)))):
     for inputs in tries:
         got, expected = mine(*inputs), reference(*inputs)
         print(f"{mine.__name__}{inputs}:", "still a blank" if got is ... else "right"
               if abs(got - expected) <= 1e-12 else f"got {got!r}, expected {expected!r}")'''
 
-LAST = "## Run it\n\nThe default run, as `python contact.py` makes it: the table, `metrics.json`, and a recording."
-TABLE = '''\
-import json
-from IPython.display import Markdown
-with open("outputs/ch3.5-contact/metrics.json", encoding="utf-8") as file:
-    quality = json.load(file)["quality"]
-rows = ["| | " + " | ".join(quality) + " |", "| --- " * (len(quality) + 1) + "|"]
-rows += [f"| {title} | " + " | ".join("-" if row[key] is None else f"{row[key]:.4f}"
-                                      for row in quality.values()) + " |"
-         for title, key in COLUMNS.items()]
-Markdown("\\n".join(rows))'''
+
+class Cell(NamedTuple):
+    """A cell: kind markdown or code, its source, whether it is folded, what it defines and uses."""
+
+    kind: str
+    source: str
+    folded: bool = False
+    defines: frozenset = frozenset()
+    uses: frozenset = frozenset()
 
 
-def literal(text):
-    """The text as a Python literal, readable where it can be."""
-    plain = "'''" not in text and "\\" not in text and not text.endswith("'")
-    return f"'''\\\n{text}'''" if plain and text else repr(text)
+def code_cell(source, folded=False):
+    """A code Cell that knows its names."""
+    return Cell("code", source, folded, *names_of(source))
 
 
-def shared_files(root):
-    """The cell that makes curriculum.common importable: its sources, and the ledger it reads."""
-    paths = [root / "curriculum/__init__.py", *sorted((root / "curriculum/common").glob("*.py")),
-             root / "wallclock.csv"]
-    return SHARED.format(files=",\n".join(
-        f'"{path.relative_to(root).as_posix()}": {literal(path.read_text("utf-8"))}'
-        for path in paths))
+def names_of(source):
+    """(names that the top level of the source defines, all names that it uses)."""
+    tree, defined = ast.parse(source), set()
+    for node in tree.body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            defined.add(node.name)
+        elif isinstance(node, ast.Assign):
+            defined |= {name.id for target in node.targets for name in ast.walk(target)
+                        if isinstance(name, ast.Name)}
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    return frozenset(defined), frozenset(used)
 
 
-def region_cells(root):
-    """The source of a code cell by region; the script's last lines start main, here a cell does."""
-    path = root / "contact.py"
-    found = {name: f"# contact.py, region {name}\n{region.text.strip()}"
-             for name, region in regions.find(path).items()}
-    last = list(found)[-1]
-    if not found[last].endswith(ENTRY.strip()):
-        raise ValueError(f"contact.py: region {last} does not end in {ENTRY!r}")
-    found[last] = found[last][:-len(ENTRY)].rstrip()
-    return found
+def own_cells(root):
+    """The cells of notebook_cells.py by name."""
+    parts = re.split(r"^# %% ([\w-]+)\n", (root / CELLS).read_text("utf-8"), flags=re.MULTILINE)
+    return {name: code_cell(source.strip()) for name, source in zip(parts[1::2], parts[2::2])}
+
+
+class Builder:
+    """Takes the chapter from top to bottom and collects the cells."""
+
+    def __init__(self, root):
+        self.root, self.out = root, []
+        self.regions = {script: {name: code_cell(f"# {script}, region {name}\n{region.text.strip()}")
+                                 for name, region in regions.find(root / script).items()}
+                        for script in SCRIPTS}
+        for name in COMMAND_LINE:
+            self.regions["contact.py"].pop(name, None)
+        self.late, self.done, self.waiting = set(), set(), []
+        self.own = own_cells(root)
+
+    def all_regions(self):
+        """Every region's cell, of both scripts, and the one that joins them."""
+        return [cell for found in self.regions.values() for cell in found.values()] + [
+            Cell("code", EXACT, True, frozenset({"exact"}), frozenset({"simulate_exact"}))]
+
+    def add(self, cell):
+        """Add a cell, and after it the pictures that waited for what it defines."""
+        self.out.append(cell)
+        self.done |= cell.defines
+        ready = [each for each in self.waiting if not self.lacks(each)]
+        self.waiting = [each for each in self.waiting if each not in ready]
+        for each in ready:
+            self.add(each)
+
+    def lacks(self, cell):
+        """The names of regions that a cell needs, also through others, and that are not there yet."""
+        homes = {name: each for each in self.all_regions() for name in each.defines}
+        needed, todo = set(), list(cell.uses)
+        while todo:
+            name = todo.pop()
+            if name in homes and name not in needed:
+                needed.add(name)
+                todo.extend(homes[name].uses)
+        return needed - self.done
+
+    def include(self, script, name):
+        """The cell of a region, after those before it in its file that the chapter shows late."""
+        found = self.regions[script]
+        before = []
+        for each in list(found):
+            if each == name:
+                break
+            if each in self.late:
+                before.append(each)
+                self.late.discard(each)
+        if before:
+            source = "\n\n\n".join(found[each].source for each in before)
+            self.add(code_cell(f"#@title {script}: {', '.join(before)}\n{source}", folded=True))
+        self.add(found[name])
+        left = [each for each in found if not found[each].defines <= self.done]
+        if script == SCRIPTS[1] and not left:
+            self.add(Cell("code", EXACT, True, frozenset({"exact"})))
+
+    def figure(self, name):
+        """The picture of a slot, now or as soon as all that it uses is there. The page has more."""
+        cell = self.own.pop(name, None)
+        if cell and self.lacks(cell):
+            self.waiting.append(cell)
+        elif cell:
+            self.add(cell)
+
+    def prose(self, text):
+        """Markdown, a cell a section; comments and live links are for the page."""
+        text = LIVE.sub(r"\1", re.sub(r"<!--.*?-->\n*", "", text, flags=re.DOTALL))
+        for piece in re.split(r"^(?=#{1,3} )", text, flags=re.MULTILINE):
+            if piece.strip():
+                self.add(Cell("markdown", piece.strip()))
+
+    def chapter(self, text, numbers):
+        """All cells of the chapter."""
+        shown = text.partition(REST)[0]
+        visible = {match["name"] for match in INCLUDE.finditer(shown)}
+        self.late = {name for found in self.regions.values() for name in found} - visible
+        if REST not in text:
+            raise ValueError(f"{CHAPTER}: no section {REST!r}")
+        marks = re.compile(f"{FENCE.pattern}|{SLOT.pattern}|^(?=#{{1,3}} )", FENCE.flags)
+        done, heading = 0, ""
+        for found in marks.finditer(shown):
+            include = INCLUDE.search(found[0])
+            if not (include or found[3] or found[0] == ""):
+                continue
+            self.prose(shown[done:found.start()])
+            done = found.end()
+            if include:
+                self.include(include["file"], include["name"])
+            elif found[2] == "figure":
+                self.figure(found[3])
+            elif found[2] == "exercise":
+                for cell in exercise_cells(self.root, found[3], numbers):
+                    self.add(cell)
+            else:
+                for name, title in AFTER.items():
+                    if heading.endswith(title):
+                        self.figure(name)
+                heading = shown[done:].split("\n", 1)[0]
+        self.prose(shown[done:])
+        return self.out
 
 
 def exercise_cells(root, name, numbers):
-    """(kind, source) of an exercise: question and choices, then the answer folded away."""
-    path = next((root / "exercises").glob(f"{name}_*.py"))
-    tree = ast.parse(path.read_text("utf-8"))
-    words = {node.targets[0].id: ast.literal_eval(node.value) for node in tree.body
-             if isinstance(node, ast.Assign) and node.targets[0].id.isupper()}
-    title, _, text = ast.get_docstring(tree).partition("\n")
+    """The cells of an exercise: question and choices, then the answer folded away."""
+    path = next((root / "exercises").glob(f"{name}_*.py"), None)
+    facts = (load_meta(root).get("exercises") or {}).get(name)
+    if path is None or facts is None:
+        return []
+    words, title, text = exercise_words(path)
     if "CHOICES" not in words:
-        return [("markdown", f"**{title}** {text.strip().split(chr(10) * 2)[0]}"), ("code", EX2)]
-    facts = load_meta(root)["exercises"][name]
+        return [Cell("markdown", f"**{title}** {text.split(chr(10) * 2)[0]}"), code_cell(EX2)]
     reasons = "\n\n".join(f"**{letter}.** {' '.join(numbers.render(reason).split())}"
                           for letter, reason in facts["reveal"].items())
     choices = "\n".join(f"- **{letter}.** {choice}" for letter, choice in words["CHOICES"].items())
-    return [("markdown", f"**{title}** {words['QUESTION']}\n\n{choices}\n\n{words['WHY_PROMPT']} Write "
-             "your letter and your sentence into this cell before you unfold the next."),
-            ("markdown", f"<details><summary>What happens: unfold when you have chosen</summary>\n\n"
-             f"The answer is {facts['answer']}.\n\n{reasons}\n\n</details>")]
+    return [Cell("markdown", f"**{title}** {words['QUESTION']}\n\n{choices}\n\n{words['WHY_PROMPT']} "
+                 "Write your letter and your sentence into this cell before you unfold the next."),
+            Cell("markdown", "<details><summary>What happens: unfold when you have chosen</summary>"
+                 f"\n\nThe answer is {facts['answer']}.\n\n{reasons}\n\n</details>")]
 
 
-def cells(root):
-    """(kind, source) of every cell, in order."""
-    numbers, code = Numbers(root), region_cells(root)
+def exercise_words(path):
+    """(constants in capitals, title, the rest of the docstring) of an exercise's script."""
+    tree = ast.parse(path.read_text("utf-8"))
+    words = {}
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and node.targets[0].id.isupper():
+            try:
+                words[node.targets[0].id] = ast.literal_eval(node.value)
+            except ValueError:
+                continue                                # reckoned, so no words
+    title, _, text = ast.get_docstring(tree).partition("\n")
+    return words, title, text.strip()
+
+
+def cells(root, numbers):
+    """Every cell, in order."""
     text = (root / CHAPTER).read_text("utf-8")
     numbers.run_all(text + str(load_meta(root).get("exercises")))
-    text, runs, out = numbers.render(text), False, [("code", INSTALL), ("code", shared_files(root))]
-
-    def prose(piece):
-        """Markdown, a cell a section; comments are for the page."""
-        plain = re.sub(r"<!--.*?-->\n*", "", piece, flags=re.DOTALL).strip()
-        out.extend(("markdown", each.strip()) for each in re.split(r"^(?=#{1,3} )", plain, flags=re.M)
-                   if each.strip())
-
-    done = 0
-    for found in re.finditer(f"{BLOCK.pattern}|{SLOT.pattern}", text, re.MULTILINE):
-        region, command = (pattern.fullmatch(found[1] or "") for pattern in (INCLUDE, COMMAND))
-        if not (region or (command and runs) or found[2]):
-            continue
-        prose(text[done:found.start()])
-        done = found.end()
-        if region:
-            out.append(("code", code.pop(region["name"])))
-            runs = not code                         # main is the last region's
-        elif command:
-            out.append(("code", f"main({shlex.split(command[1])!r})".replace("'", '"')))
-        else:
-            out.extend(exercise_cells(root, found[2], numbers))
-    prose(text[done:])
-    if code:
-        raise ValueError(f"{CHAPTER}: never shows {', '.join(code)}, so the notebook can't run")
-    title = next(k for k, (kind, _) in enumerate(out) if kind == "markdown")
-    return [out.pop(title), *out, ("markdown", LAST), ("code", "main([])"), ("code", TABLE)]
+    builder = Builder(root)
+    out = builder.chapter(numbers.render(text), numbers)
+    if builder.waiting:
+        raise ValueError(f"{CELLS}: a cell uses what no cell before it defines: "
+                         f"{sorted(builder.lacks(builder.waiting[0]))}")
+    colors = repr(model_colors(root))
+    return [*out[:1], code_cell(INSTALL.replace("{colors}", colors), folded=True), *out[1:]]
 
 
-def build(root=regions.ROOT):
-    """The notebook as text. Raises ValueError where the chapter can't be shown as it is."""
+def model_colors(root):
+    """COLORS of contact.py, whose region is left out."""
+    for node in ast.parse((root / "contact.py").read_text("utf-8")).body:
+        if isinstance(node, ast.Assign) and node.targets[0].id == "COLORS":
+            return ast.literal_eval(node.value)
+    raise ValueError("contact.py: no COLORS")
+
+
+def first_picture(source):
+    """What the first picture's cell shows when it runs, as the output of a code cell."""
+    import matplotlib
+    from matplotlib import pyplot
+    from nbformat import v4
+    matplotlib.use("Agg")
+    pyplot.close("all")
+    exec(compile(source, CELLS, "exec"), {})
+    file = io.BytesIO()
+    pyplot.savefig(file, format="png", metadata={"Software": None})
+    pyplot.close("all")
+    data = {"image/png": base64.b64encode(file.getvalue()).decode() + "\n",
+            "text/plain": "<Figure: the drop, without a table>"}
+    return v4.new_output("display_data", data)
+
+
+def build(root=regions.ROOT, numbers=None):
+    """The notebook as text. Raises ValueError where the chapter can't be shown as it is.
+
+    `numbers` are the generated numbers that the text quotes; without them they are made.
+    """
     from nbformat import v4, validate, writes
-    made, ids = [], set()
-    for kind, source in cells(Path(root)):
-        base = name = hashlib.sha256(f"{kind}\n{source}".encode()).hexdigest()[:16]
+    made, ids, first = [], set(), own_cells(Path(root))["first"].source
+    for cell in cells(Path(root), numbers or Numbers(root)):
+        base = name = hashlib.sha256(f"{cell.kind}\n{cell.source}".encode()).hexdigest()[:16]
         while name in ids:
             name = f"{base}-{len(ids)}"
         ids.add(name)
-        new = v4.new_markdown_cell if kind == "markdown" else v4.new_code_cell
-        made.append(new(source, id=name, metadata=HIDDEN if source.startswith("#@title") else {}))
+        new = v4.new_markdown_cell if cell.kind == "markdown" else v4.new_code_cell
+        made.append(new(cell.source, id=name, metadata=HIDDEN if cell.folded else {}))
+        if cell.source == first:
+            made[-1].outputs = [first_picture(first)]
     notebook = v4.new_notebook(cells=made, metadata={
         "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
         "language_info": {"name": "python"}})
