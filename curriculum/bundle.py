@@ -35,7 +35,7 @@ PARTS = Path(__file__).resolve().parent / "course"
 CHAPTER = "phase3_advanced/ch3.5_contact"
 CAP = 450               # lines of a chapter's script
 KEPT = ("scenes", "ball", "contacts", "penalty", "integrator", "critical-dt", "lcp-target",
-        "lcp-sweep", "lcp", "simulate", "measure", "quality", "report")
+        "lcp-sweep", "lcp", "simulate", "measure", "quality", "quality-parts", "report")
 CONSTANTS = ("GRAVITY", "RADIUS", "CONTACT_MARGIN", "EXPLODED")
 LEFT_OUT = {
     "soft-impedance": "MuJoCo's contact is 90 lines that the cap has no room for",
@@ -62,7 +62,7 @@ EDITS = (
 ''', ""),
     ("quality", ", reference: Run | None = None)", ")"),
 )
-DROPPED = {"quality": "height_errors"}      # functions that only exact, the reference, needs
+DROPPED = {"quality-parts": "height_errors"}      # functions that only exact, the reference, needs
 NOTE = """> The script beside this text, `contact.py`, holds `penalty` and `lcp`: this course keeps a chapter in one
 > script of at most {cap} lines. What the text says of `soft`, of `exact` and of piles of many balls runs in the
 > chapter's own repository, as do the commands that begin with `python -m curriculum`.
@@ -256,9 +256,12 @@ def ledger(path):
     return "".join(",".join(row) + "\n" for row in [header, *rows])
 
 
-def files(root, out):
-    """{path below the folder: text} of the whole bundle. Raises ValueError where it can't be made."""
-    numbers, made = CourseNumbers(root), region_texts(root)
+def files(root, out, runs=None):
+    """{path below the folder: text} of the whole bundle. Raises ValueError where it can't be made.
+
+    `runs` may hold runs of meta.yaml that have been made already.
+    """
+    numbers, made = CourseNumbers(root, runs), region_texts(root)
     written = {f"{CHAPTER}/contact.py": script(root),
                f"{CHAPTER}/meta.yaml": meta(root, made, numbers),
                f"{CHAPTER}/prose/chapter.md": chapter(root, numbers),

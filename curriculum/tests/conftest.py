@@ -12,6 +12,17 @@ ROOT = Path(__file__).resolve().parents[2]
 Recording = namedtuple("Recording", "series static blueprint application")
 
 
+@pytest.fixture(scope="session")
+def real_numbers():
+    """The runs that this repository's chapter quotes, made once for all tests that need them."""
+    from curriculum.check_prose_code_drift import CHAPTER
+    from curriculum.quoted import Numbers
+
+    numbers = Numbers(ROOT)
+    numbers.run_all((ROOT / CHAPTER).read_text("utf-8") + (ROOT / "meta.yaml").read_text("utf-8"))
+    return numbers
+
+
 @pytest.fixture
 def run_script():
     """A function that runs `python contact.py FLAGS` and returns the finished process, as bytes."""

@@ -781,8 +781,8 @@ def region_problems(folder):
     return project.problems
 
 
-def test_the_real_project_is_in_order():
-    assert gate.check(ROOT) == []
+def test_the_real_project_is_in_order(real_numbers):
+    assert gate.check(ROOT, real_numbers) == []
 
 
 def test_one_character_changed_in_any_region_of_the_real_scripts_is_caught(copy):
