@@ -16,6 +16,7 @@ import hashlib
 import io
 import re
 import sys
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,7 +30,6 @@ CELLS = "curriculum/notebook_cells.py"
 SLOT = re.compile(r"<!-- (figure|exercise): ([\w-]+) -->")
 LIVE = re.compile(r"\[([^\]]*)\]\((?:try|drag):[^)]*\)")
 REST = "## The rest of the file"        # of the chapter; a notebook has it in folded cells
-COMMAND_LINE = ("flags", "stability", "report", "record", "write", "models", "main")
 SCRIPTS = ("contact.py", "curriculum/exact.py")
 HIDDEN = {"jupyter": {"source_hidden": True}, "cellView": "form"}
 AFTER = {"first": "3.5: Contact", "mujoco": "Way three: soft"}   # a cell behind a section, no figure
@@ -101,6 +101,13 @@ def own_cells(root):
     return {name: code_cell(source.strip()) for name, source in zip(parts[1::2], parts[2::2])}
 
 
+def command_line(root):
+    """The regions of contact.py that neither chapter nor notebook shows: `not_shown` of meta.yaml."""
+    hidden = load_meta(root).get("not_shown") or []
+    return [name for name in regions.find(root / "contact.py")
+            if any(fnmatchcase(name, pattern) for pattern in hidden)]
+
+
 class Builder:
     """Takes the chapter from top to bottom and collects the cells."""
 
@@ -109,8 +116,8 @@ class Builder:
         self.regions = {script: {name: code_cell(f"# {script}, region {name}\n{region.text.strip()}")
                                  for name, region in regions.find(root / script).items()}
                         for script in SCRIPTS}
-        for name in COMMAND_LINE:
-            self.regions["contact.py"].pop(name, None)
+        for name in command_line(root):
+            del self.regions["contact.py"][name]
         self.late, self.done, self.waiting = set(), set(), []
         self.own = own_cells(root)
 
@@ -123,10 +130,10 @@ class Builder:
         """Add a cell, and after it the pictures that waited for what it defines."""
         self.out.append(cell)
         self.done |= cell.defines
-        ready = [each for each in self.waiting if not self.lacks(each)]
-        self.waiting = [each for each in self.waiting if each not in ready]
-        for each in ready:
-            self.add(each)
+        for each in list(self.waiting):
+            if each in self.waiting and self.can_come(each):
+                self.waiting.remove(each)
+                self.bring(each)
 
     def lacks(self, cell):
         """The names of regions that a cell needs, also through others, and that are not there yet."""
@@ -139,31 +146,37 @@ class Builder:
                 todo.extend(homes[name].uses)
         return needed - self.done
 
+    def can_come(self, cell):
+        """Whether all that a cell still lacks are regions that the chapter shows late."""
+        late = [found[name].defines for found in self.regions.values() for name in found
+                if name in self.late]
+        return self.lacks(cell) <= set().union(*late)
+
+    def bring(self, cell):
+        """Add a cell, and before it, folded, the late regions that it needs."""
+        lacking = self.lacks(cell)
+        for script, found in self.regions.items():
+            names = [name for name in found if name in self.late and found[name].defines & lacking]
+            self.late -= set(names)
+            if names:
+                source = "\n\n\n".join(found[name].source for name in names)
+                self.add(code_cell(f"#@title {script}: {', '.join(names)}\n{source}", folded=True))
+        self.add(cell)
+
     def include(self, script, name):
-        """The cell of a region, after those before it in its file that the chapter shows late."""
-        found = self.regions[script]
-        before = []
-        for each in list(found):
-            if each == name:
-                break
-            if each in self.late:
-                before.append(each)
-                self.late.discard(each)
-        if before:
-            source = "\n\n\n".join(found[each].source for each in before)
-            self.add(code_cell(f"#@title {script}: {', '.join(before)}\n{source}", folded=True))
-        self.add(found[name])
-        left = [each for each in found if not found[each].defines <= self.done]
-        if script == SCRIPTS[1] and not left:
+        """The cell of a region; after the last of exact.py the one that lets run_model find it."""
+        self.bring(self.regions[script][name])
+        exact = self.regions[SCRIPTS[1]].values()
+        if script == SCRIPTS[1] and all(cell.defines <= self.done for cell in exact):
             self.add(Cell("code", EXACT, True, frozenset({"exact"})))
 
     def figure(self, name):
         """The picture of a slot, now or as soon as all that it uses is there. The page has more."""
         cell = self.own.pop(name, None)
-        if cell and self.lacks(cell):
-            self.waiting.append(cell)
+        if cell and self.can_come(cell):
+            self.bring(cell)
         elif cell:
-            self.add(cell)
+            self.waiting.append(cell)
 
     def prose(self, text):
         """Markdown, a cell a section; comments and live links are for the page."""
