@@ -1,9 +1,13 @@
 """Checks of the exercises: `pytest checks.py`, or one of them, `pytest checks.py -k ex2`.
 
+    python checks.py                # the same, and writes results.json, for programs that ask
+    python checks.py --watch        # again whenever an exercise is saved
+
 What is not done yet is skipped by name; what is wrong fails with input, got, expected and where to
 look. The answers are contact.py (imported) and meta.yaml, which also holds the bands.
 """
 
+import importlib
 import sys
 from pathlib import Path
 
@@ -12,88 +16,186 @@ import pytest
 ROOT = Path(__file__).resolve().parent
 sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
-import contact  # noqa: E402
-import ex1_predict_contact as ex1  # noqa: E402
-import ex2_completion_contact as ex2  # noqa: E402
-import ex3_dt_stability as ex3  # noqa: E402
 import predict  # noqa: E402
-from curriculum.quoted import Numbers, load_meta  # noqa: E402
+import trials  # noqa: E402
+from predict import contact  # noqa: E402
 
-FACTS = load_meta()["exercises"]
-HINT = "python exercises/ex2_completion_contact.py --hint"
+FILES = {"ex1": "ex1_predict_contact", "ex2": "ex2_completion_contact", "ex3": "ex3_dt_stability",
+         "ex4": "ex4_predict_soft"}
+HINT = "exercises/ex2_completion_contact.py --hint"
+HINTS = {"penalty_normal_force": 1, "project_impulse": 3}
 
 
-def check_prediction(name, exercise):
+def load(name):
+    """The module of an exercise; a file that is no Python fails its own check and no other."""
+    try:
+        return importlib.import_module(FILES[name])
+    except (NameError, SyntaxError) as error:
+        pytest.fail(f"{name}: {predict.unreadable(f'exercises/{FILES[name]}.py', error)}",
+                    pytrace=False)
+
+
+def check_prediction(name):
     """Skip before a prediction; then measure again, hold the bands, and compare."""
+    from curriculum.quoted import Numbers
+    exercise, facts = load(name), predict.meta(name)
     todo = predict.missing(exercise)
     if todo:
         pytest.skip(f"{name}: {todo}")
     runs = exercise.measure()
     numbers = Numbers(runs=runs)
-    for key, (low, high) in FACTS[name]["bands"].items():
+    for key, (low, high) in facts["bands"].items():
         value = numbers.value(key)
         assert low <= value <= high, f"{key} is {value}, outside {low} to {high}"
-    for claim in FACTS[name]["holds"]:
+    for claim in facts["holds"]:
         assert numbers.holds(claim), f"{claim} does not hold"
-    if exercise.PREDICTION != FACTS[name]["answer"]:
+    if predict.chosen(exercise) != facts["answer"]:
         said = f"{exercise.table(runs)}\n\n{predict.verdict(name, exercise, runs)}"
         pytest.fail(said, pytrace=False)
 
 
 def test_ex1_prediction():
-    check_prediction("ex1", ex1)
+    check_prediction("ex1")
 
 
 def test_ex3_prediction():
-    check_prediction("ex3", ex3)
+    check_prediction("ex3")
 
 
-def compare(blank, hint, **inputs):
-    """Skip while blank, else hold the learner's function to contact.py's on one input."""
-    call = f"{blank}({', '.join(f'{key}={value!r}' for key, value in inputs.items())})"
-    got, expected = getattr(ex2, blank)(**inputs), getattr(contact, blank)(**inputs)
-    if got is ...:
-        pytest.skip(f"ex2: {blank} is still a blank")
-    if not equal(got, expected):
-        fail(call, got, expected, f"{blank} in exercises/ex2_completion_contact.py, the sign table "
-             f"at the top of contact.py, or {HINT} {hint}")
+def test_ex4_prediction():
+    check_prediction("ex4")
 
 
-def equal(got, expected):
-    """Whether it is a number, and that number but for the last bits."""
-    return isinstance(got, (int, float)) and abs(got - expected) <= FACTS["ex2"]["within"]
+def values(blank):
+    """(inputs, what the learner's function gives for each); skips a blank, fails one that raises."""
+    function, cases, found = getattr(load("ex2"), blank), trials.inputs(blank), []
+    for case in cases:
+        got, trouble = trials.called(function, blank, case)
+        if trouble:
+            pytest.fail(trouble, pytrace=False)
+        if got is ...:
+            pytest.skip(f"ex2: {blank} is still a blank")
+        found.append(got)
+    return cases, found
 
 
-def fail(call, got, expected, where):
+def check_blank(blank):
+    """Hold the learner's function to contact.py's on every input; say the first that is wrong."""
+    cases, found = values(blank)
+    within = predict.meta("ex2")["within"]
+    expected = [getattr(contact, blank)(**case) for case in cases]
+    wrong = [place for place, (got, right) in enumerate(zip(found, expected))
+             if not abs(got - right) <= within * max(1.0, abs(right))]
+    if wrong:
+        first = wrong[0]
+        fail(f"{blank}({', '.join(f'{key}={value!r}' for key, value in cases[first].items())})",
+             found[first], expected[first], blank, trials.slip(blank, found),
+             f"wrong on {len(wrong)} of {len(cases)} inputs, of which this is the first")
+
+
+def fail(call, got, expected, blank, likely, note=None):
     """Fail with what a learner needs, and no traceback."""
-    pytest.fail(f"{call}\n  got       {got!r}\n  expected  {expected!r}\n  where to look: {where}",
-                pytrace=False)
+    lines = [call, f"  got       {got!r}", f"  expected  {expected!r}"]
+    lines += [f"  {note}"] if note else []
+    lines += [f"  likely: {likely}"] if likely else []
+    lines += [f"  where to look: {blank} in exercises/ex2_completion_contact.py, the sign table at "
+              f"the top of contact.py, or {HINT} {HINTS[blank]}"]
+    pytest.fail("\n".join(lines), pytrace=False)
 
 
-@pytest.mark.parametrize("depth, v_n, hint", [
-    (0.0, 0.0, 1), (0.01, 0.0, 1), (0.01, -0.5, 1), (0.01, 0.5, 1), (0.0, -1.0, 1),
-    (0.0, 1.0, 2), (0.001, 2.0, 2), (0.01, 1.25, 2)])
-@pytest.mark.parametrize("damping", [0.0, 80.0])
-def test_ex2_penalty_normal_force(depth, v_n, damping, hint):
-    compare("penalty_normal_force", hint, depth=depth, v_n=v_n, stiffness=1e4, damping=damping)
+@pytest.mark.parametrize("blank", trials.BLANKS)
+def test_ex2_one_input_at_a_time(blank):
+    check_blank(blank)
 
 
-@pytest.mark.parametrize("lam, dlam, hint", [
-    (0.0, 0.0, 3), (0.0, 0.3, 3), (0.2, 0.3, 3), (0.0, -0.3, 3), (0.2, -0.5, 3),
-    (0.2, -0.2, 4), (0.2, -0.1, 4)])
-def test_ex2_project_impulse(lam, dlam, hint):
-    compare("project_impulse", hint, lam=lam, dlam=dlam)
+@pytest.mark.parametrize("trial", [trial.__name__ for trial in sum(trials.TRIALS.values(), ())])
+def test_ex2_trial(trial):
+    """The trial must go as with contact.py's own line: see the script of exercise 2."""
+    blank = next(name for name, found in trials.TRIALS.items()
+                 if trial in [each.__name__ for each in found])
+    likely = trials.slip(blank, values(blank)[1])
+    run = getattr(trials, trial)
+    expected = run()[1]
+    with trials.yours(load("ex2")):
+        got = run()[1]
+    for name, value in expected.items():
+        if not abs(got[name] - value) <= 1e-4 * max(1.0, abs(value)):
+            fail(f"the trial {trial!r}: {name}", got[name], value, blank, likely)
 
 
-@pytest.mark.parametrize("v", [(0.0, -1.0), (0.4, -1.0), (5.0, -1.0), (0.0, 0.0), (0.0, 1.0)])
-def test_ex2_two_contacts_at_once(v):
-    """A ball (0) in the groove of two that nothing moves (1, 2): they share the push."""
-    compare("project_impulse", 3, lam=0.1, dlam=0.1)
-    groove = [(0, 1, 0.3, 0.91 ** 0.5, 0.0), (0, 2, -0.3, 0.91 ** 0.5, 0.0)]
-    problem = ([v[0], 0.0, 0.0], [v[1], 0.0, 0.0]), [1.0, 0.0, 0.0], groove, [0.0, 0.0], 50
-    _, expected = contact.solve_contacts(*problem)
-    with ex2.yours():
-        _, got = contact.solve_contacts(*problem)
-    if not all(map(equal, got, expected)):
-        fail(f"solve_contacts with your project_impulse (a ball in a groove of two, v = {v})",
-             got, expected, f"project_impulse in exercises/ex2_completion_contact.py, or {HINT} 4")
+class Results:
+    """Collects what pytest finds, in the shape that exercism's test runners write."""
+
+    def __init__(self):
+        self.tests = []
+
+    def pytest_runtest_logreport(self, report):
+        """Keep one entry a test: what it said in its call, or that it was skipped."""
+        if report.when != "call" and not report.skipped and report.passed:
+            return
+        name = report.nodeid.rpartition("::")[2]
+        status = {"passed": "pass", "skipped": "fail"}.get(
+            report.outcome, "fail" if report.when == "call" else "error")
+        message = None
+        if report.skipped:
+            message = f"not done yet: {report.longrepr[2].removeprefix('Skipped: ')}"
+        elif report.failed:
+            message = str(report.longrepr)
+        self.tests.append({"name": name, "status": status, "message": message, "output": None,
+                           "task_id": int(name.removeprefix("test_ex")[0])})
+
+    def as_dict(self):
+        """version 3: status, message, and the tests, each with the exercise it belongs to."""
+        states = {test["status"] for test in self.tests}
+        status = "pass" if states == {"pass"} else "fail"
+        return {"version": 3, "status": status, "message": None, "tests": self.tests}
+
+
+def run_once(selected, path):
+    """Run the checks, print what is skipped and why, write results.json. Returns pytest's status."""
+    from curriculum.common.results import write_json
+    results = Results()
+    words = ["-q", "-rs", *(["-k", selected] if selected else [])]
+    status = pytest.main([str(ROOT / "checks.py"), *words], plugins=[results])
+    try:
+        write_json(path, results.as_dict())
+    except OSError as error:
+        print(f"checks.py: error: cannot write {error.filename}: {error.strerror}", file=sys.stderr)
+        return 2
+    print("results:", path)
+    return int(status)
+
+
+def watch(argv):
+    """Run the checks again, each time in a new process, whenever an exercise is saved."""
+    import subprocess
+    import time
+    before = None
+    while True:
+        now = {file: file.stat().st_mtime_ns for file in ROOT.glob("exercises/*.py")}
+        if now != before:
+            before = now
+            subprocess.run([sys.executable, str(ROOT / "checks.py"), *argv], check=False)
+            print("\nwaiting for an exercise to be saved; Ctrl-C ends\n", flush=True)
+        time.sleep(0.2)
+
+
+def main(argv=None):
+    """Run the checks once, or again and again. Returns the exit status."""
+    from curriculum.common.arguments import Parser
+    parser = Parser(prog="checks.py", description="Check the exercises.")
+    parser.add_argument("-k", default="", metavar="WORDS", help="only those, as pytest's -k")
+    parser.add_argument("--watch", action="store_true", help="again whenever an exercise is saved")
+    parser.add_argument("--json", default="outputs/ch3.5-contact/results.json", metavar="FILE",
+                        help="where the results go (%(default)s)")
+    args = parser.parse_args(argv)
+    if not args.watch:
+        return run_once(args.k, args.json)
+    try:
+        watch(["--json", args.json, *(["-k", args.k] if args.k else [])])
+    except KeyboardInterrupt:
+        return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,50 @@
+"""Exercise 4, predict then run (10 minutes): where does a ball rest in MuJoCo's contact?
+
+You will predict a place of rest from one line of a model, before the model has run.
+
+Two balls of one size drop onto the table and come to rest, one of them ten times as heavy as the
+other. The contact is `soft`, MuJoCo's, as MuJoCo sets it when nobody says otherwise. Measured is
+how deep each lies in the table at the end, in ball radii r, and the same for `penalty`.
+Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
+
+    python exercises/ex4_predict_soft.py        # add --hint 1 (2, 3) for a question that helps
+    pytest checks.py -k ex4
+"""
+
+import sys
+
+import predict
+from predict import contact
+
+QUESTION = ("A ball and one ten times as heavy come to rest in MuJoCo's contact. "
+            "Where does each of them lie?")
+CHOICES = {
+    "A": "Both lie a little way inside the table, equally deep.",
+    "B": "Both lie inside the table, the heavy one ten times as deep.",
+    "C": "Both lie on the surface, since the sweeps go on until nothing changes any more.",
+}
+WHY_PROMPT = "One sentence: at rest nothing accelerates. In which term does the mass stand?"
+
+PREDICTION = None       # "A", "B" or "C"
+WHY = ""                # your sentence, see WHY_PROMPT
+
+
+def measure():
+    """The drop of both balls, in both models, at the default step and length."""
+    light = contact.build_scene("drop")
+    heavy = light._replace(mass=10.0 * light.mass)
+    return {name: {"quality": predict.quality(scene, 0.002, 2000, models=("penalty", "soft"))}
+            for name, scene in (("drop", light), ("heavy", heavy))}
+
+
+def table(runs):
+    """The measurement as text."""
+    rows = [f"{'depth at rest':<16}{'1 kg':>14}{'10 kg':>14}"]
+    for model in ("soft", "penalty"):
+        depths = [run["quality"][model]["rest_penetration_frac"] for run in runs.values()]
+        rows.append(f"{model:<16}" + "".join(f"{depth:>12.5f} r" for depth in depths))
+    return "\n".join(rows)
+
+
+if __name__ == "__main__":
+    sys.exit(predict.play("ex4", sys.modules[__name__]))
