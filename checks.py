@@ -31,8 +31,8 @@ def load(name):
     try:
         return importlib.import_module(FILES[name])
     except (NameError, SyntaxError) as error:
-        pytest.fail(f"{name}: {predict.unreadable(f'exercises/{FILES[name]}.py', error)}",
-                    pytrace=False)
+        trouble = predict.unreadable(f"exercises/{FILES[name]}.py", error)
+    pytest.fail(f"{name}: {trouble}", pytrace=False)
 
 
 def check_prediction(name):
