@@ -88,6 +88,8 @@ def names_of(source):
     for node in tree.body:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
             defined.add(node.name)
+        elif isinstance(node, (ast.Import, ast.ImportFrom)):
+            defined |= {name.asname or name.name for name in node.names}
         elif isinstance(node, ast.Assign):
             defined |= {name.id for target in node.targets for name in ast.walk(target)
                         if isinstance(name, ast.Name)}
@@ -137,7 +139,7 @@ class Builder:
 
     def lacks(self, cell):
         """The names of regions that a cell needs, also through others, and that are not there yet."""
-        homes = {name: each for each in self.all_regions() for name in each.defines}
+        homes = {name: each for each in reversed(self.all_regions()) for name in each.defines}
         needed, todo = set(), list(cell.uses)
         while todo:
             name = todo.pop()
@@ -154,8 +156,8 @@ class Builder:
 
     def bring(self, cell):
         """Add a cell, and before it, folded, the late regions that it needs."""
-        lacking = self.lacks(cell)
         for script, found in self.regions.items():
+            lacking = self.lacks(cell)
             names = [name for name in found if name in self.late and found[name].defines & lacking]
             self.late -= set(names)
             if names:
