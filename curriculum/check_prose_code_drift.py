@@ -340,6 +340,10 @@ def check_ledger(project, numbers):
         project.say(Path(where).name, int(line), what.strip(), f"correct it, then {GATE}")
         return {}
     runs = wallclock.read_runs(ledger)
+    ours = {row["tier"] for row in rows if row["chapter"] == wallclock.CHAPTER}
+    for tier in sorted(ours ^ {*wallclock.SHOWN, *runs} if rows else ()):
+        project.say("wallclock.csv", 1, f"tier {tier} has a row and nothing measured, or no row; the "
+                    f"course shows {', '.join(wallclock.SHOWN)}", f"correct it, then {GATE}")
     for line, row in enumerate(rows, 2):
         if row["chapter"] == wallclock.CHAPTER and row["status"] == "MEASURED":
             what = wallclock.unfounded(row, runs)

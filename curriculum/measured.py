@@ -29,6 +29,7 @@ import sys
 import tokenize
 from contextlib import contextmanager
 from datetime import date
+from functools import lru_cache
 from pathlib import Path
 
 from curriculum.common.files import write_whole
@@ -42,6 +43,7 @@ DIGITS = 6      # significant digits that a results file keeps
 
 # the code that was measured
 
+@lru_cache(maxsize=32)
 def code_of(text: str) -> str:
     """Python source without what does not run: comments, docstrings, blank lines, trailing blanks."""
     lines = text.splitlines()

@@ -57,7 +57,8 @@ def load_meta(root=ROOT):
     """meta.yaml as a dict. Raises ValueError `file:line: what` when it is not YAML."""
     import yaml
     try:
-        return yaml.safe_load((Path(root) / "meta.yaml").read_text("utf-8", "replace")) or {}
+        text = (Path(root) / "meta.yaml").read_text("utf-8", "replace")
+        return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader)) or {}
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         raise ValueError(f"meta.yaml:{mark.line + 1 if mark else 1}: not YAML: {error}"
