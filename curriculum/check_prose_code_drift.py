@@ -26,6 +26,7 @@ typed     no number is typed into the prose, nor into what an exercise tells the
           there is typed too. The way out carries its reason: {{= 1972 | year of the paper}}.
 names     code, flags, commands, files and images that chapter, README, exercises and docstrings
           name are there (curriculum/drift/names.py has the rule).
+readme    the README's generated blocks are what their commands make now.
 measured  results of bench and stress, and every MEASURED row of wallclock.csv, are of the code as
           it is now, or `stale` of meta.yaml names them; the text then says "stale". A row is the
           median of the times in wallclock_runs.json.
@@ -372,6 +373,38 @@ def check_measured(project, numbers):
                         f"take it out, then {GATE}")
 
 
+def check_readme(project):
+    """The README's generated blocks are what their commands make now."""
+    path = project.root / "README.md"
+    text = path.read_text("utf-8", "replace") if path.exists() else ""
+    if "<!-- generated:" not in text:
+        return
+    try:
+        from curriculum import readme
+    except ImportError as error:
+        project.say("README.md", 1, f"its generated blocks need {error.name}", "pip install -e '.[test]'")
+        return
+    for block in readme.BLOCK.finditer(text):
+        if block[0] != made_again(readme, block[0]):
+            project.say("README.md", line_at(text, block.start()), f"the generated block "
+                        f"{block['name']} is not what `{block['command']}` makes", readme.COMMAND)
+
+
+BLOCKS = {}             # the text of a generated block: what its command makes of it
+
+
+def made_again(readme, block):
+    """A generated block of the README, made anew; each one once."""
+    head = block.split("\n")[0]
+    if head not in BLOCKS:
+        end = "<!-- end -->"
+        try:
+            BLOCKS[head] = readme.fill(f"{head}\n{end}").removesuffix(end)
+        except ValueError as error:
+            BLOCKS[head] = str(error)
+    return BLOCKS[head]
+
+
 def check_scope(project):
     """What is left to other chapters is said in one section of the chapter alone."""
     scope = project.facts.get("scope") or {}
@@ -417,8 +450,9 @@ def check(root=ROOT, numbers=None, first=False):
             if not (first and problems):
                 part(project, numbers)
         project.metrics = list(numbers.runs.values())
-        if not (first and problems):
-            check_names(project)
+        for part in (check_names, check_readme):
+            if not (first and problems):
+                part(project)
     except ValueError as error:         # not YAML, no runs, or the script fails
         at = "" if re.match(r"[\w./]+:\d+: ", str(error)) else "contact.py:1: "
         problems.append(f"{at}{error}; repair: correct it, then {GATE}")

@@ -201,6 +201,13 @@ def docstring(rng, text):
     return put(text, head, put(head[1], found, new), 1)
 
 
+def block_digit(rng, text):
+    """Another digit in a generated block of the README."""
+    block = pick(rng, r"<!-- generated: .*?<!-- end -->", text, re.DOTALL)
+    found = pick(rng, r"\d+\.\d+", block[0]) if block else None
+    return put(text, block, put(block[0], found, another_digit(rng, found[0]))) if found else None
+
+
 META, README = ("meta.yaml",), ("README.md",)
 PROSE = (CHAPTER,)
 KINDS = (
@@ -220,6 +227,7 @@ KINDS = (
     Kind("a command", PROSE + README, command),
     Kind("a live link", PROSE, typo_in(r"\]\((?:try|drag):(\w{2,})", 1)),
     Kind("an image or link", PROSE + README, typo_in(r"\]\((?!http|try|drag|#)[^)]*?(\w{4,})\.\w+\)", 1)),
+    Kind("a number of a README block", README, block_digit),
     Kind("an answer", META, letter),
     Kind("a band", META, band),
     Kind("a hint or reveal", META, typo_in(r"^ {6,}(?:- |[A-Z]: )?.*?\b([a-z]{4,})\b", 1)),

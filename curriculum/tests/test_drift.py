@@ -12,7 +12,7 @@ import pytest
 from curriculum import check_prose_code_drift as gate
 from curriculum import measured, quoted, regions
 from curriculum.common import wallclock
-from curriculum.drift import names, passages
+from curriculum.drift import fuzz, names, passages
 
 ROOT = Path(__file__).resolve().parents[2]
 CHAPTER = gate.CHAPTER
@@ -804,3 +804,39 @@ def test_one_character_changed_in_any_region_of_the_real_scripts_is_caught(copy)
         assert any(each.startswith(where) for each in region_problems(copy)), region.name
         (copy / region.file).write_text(before)
     assert region_problems(copy) == before_all
+
+
+# Random changes
+
+
+def test_the_fuzzer_changes_what_it_says_catches_it_and_lists_what_passes(project, capsys):
+    edit(project, CHAPTER, "The script sets up", "It never sinks deeper. The script sets up")
+    assert gate.main(["--root", str(project), "--fuzz", "60"]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"^an answer +[1-9]\d* +[1-9]", out, re.M)
+    print(out)
+    assert re.search(rf"^passed \(open\): {CHAPTER}:\d+: a plain word of the text: ", out, re.M)
+    assert "60 changes, seed 0: " in out and out.endswith("0 of them of a kind that the gate must catch\n")
+
+
+def test_the_fuzzer_makes_the_same_changes_again_and_leaves_the_project_as_it_is(project):
+    before = snapshot(project)
+    first, second = (fuzz.run(project, 25, seed=3) for _ in range(2))
+    assert first == second and sum(first[0].values()) == 25
+    assert snapshot(project) == before
+
+
+def test_a_hole_in_the_gate_is_found_and_fails(project, capsys, monkeypatch):
+    """Without the check of passages, changes of formulas and of numbers in words would pass."""
+    monkeypatch.setattr(gate, "STATIC", tuple(
+        part for part in gate.STATIC if part is not gate.check_passages))
+    assert gate.main(["--root", str(project), "--fuzz", "60"]) == 1
+    out = capsys.readouterr().out
+    assert re.search(rf"^passed: {CHAPTER}:23: a formula: ", out, re.M)
+    assert re.search(rf"^passed: {CHAPTER}:19: a number in words: ", out, re.M)
+
+
+def test_a_project_that_is_not_in_order_is_not_fuzzed(project, capsys):
+    edit(project, CHAPTER, "2 c dt", "4 c dt")
+    assert gate.main(["--root", str(project), "--fuzz", "5"]) == 1
+    assert "not in order before any change:" in capsys.readouterr().err
