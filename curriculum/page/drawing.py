@@ -9,6 +9,7 @@ import math
 import numpy as np
 
 import contact
+from curriculum import terminal
 
 # A lane of the live figure, in SVG units; the page hands these to figure.js, too.
 LANE = {"width": 200, "height": 452, "floor": 297, "scale": 250, "lens_x": 100, "lens_y": 374, "lens_r": 68}
@@ -16,7 +17,7 @@ ZOOM = 50
 WIDE = 312  # px of a small figure: never scaled, so that its text stays at 14 px
 R = contact.RADIUS
 WEIGHT = -contact.GRAVITY
-FLAGS = contact.parse_flags([])  # what contact.py runs with when nothing is said
+FLAGS = terminal.parse_flags([])  # what contact.py runs with when nothing is said
 
 
 def show(value):
