@@ -527,8 +527,10 @@ def find_gaps(q, radius):
                 pairs = list_pairs(balls, reach)
                 gaps[k] = gap_of_listed(balls, pairs)
     return gaps
+# --- endregion ---
 
 
+# --- region: piles-gap-of ---
 @compiled
 def gap_between(a, b):
     """The gap [m] between two balls."""
