@@ -114,6 +114,8 @@ def read_runs(path=None):
 
 def digest(record):
     """12 hexadecimal digits of what is recorded of one measurement, but for the digest itself."""
+    import hashlib
+    import json
     facts = {key: value for key, value in record.items() if key != "digest"}
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:12]
 
