@@ -1,15 +1,23 @@
 """The chapter as one web page: `python -m curriculum.page [--out FILE]`.
 
 The page is a single HTML file that asks the network for nothing. Its text is prose/chapter.md, its
-code comes from contact.py by region, its numbers from fresh runs, its exercises from exercises/ and
-meta.yaml, its clock times from wallclock.csv. Its first figure is live: engine.js computes the three
-models in the reader's browser, penalty and lcp bit for bit as contact.py does.
+code comes from the literate files by region, its numbers from fresh runs, its exercises from
+exercises/ and meta.yaml, its clock times from wallclock.csv. Its figures are live: engine.js
+computes penalty, lcp and soft in the reader's browser bit for bit as contact.py does, and exact.js
+the exact model.
+
+The picture is written once, in JavaScript that makes SVG as text. What computes and draws touches no
+document, so the same files run in an embedded V8 while the page is built, and draw the stills that a
+reader without scripts sees (still.py, still.js). No second drawing in Python has to be kept equal.
 
     build.py      collects all that and writes the file
-    prose.py      chapter.md to HTML, with its slots for figures and exercises
-    drawing.py    what is seen with JavaScript off: the poster and the small figures, as SVG
-    engine.js     the three models            draw.js      the look of a model; a small plotter
-    figure.js     the live figure             figures.js   small figures and the puzzle
-    reader.js     copying, exercises, contents
+    prose.py      chapter.md to HTML, with its slots, its links that set the figure, its numbers to drag
+    browser.py    a real browser, for the pictures of the README
+    engine.js, exact.js                     the models
+    plot.js, lane.js, small_figures.js      numbers, plots, balls; the lanes; the small figures
+    state.js, controls.js, live_figure.js   what is set; the knobs; the live figure
+    links.js, live_small.js, puzzle.js      what the text sets; the small figures' knobs; the puzzle
+    bets.js, arithmetic.js, blank.js        exercises: bets, and the blank that is filled in the page
+    sandbox.js, reader.js                   balls to throw; copying, contents, and the start
     style.css  templates/
 """

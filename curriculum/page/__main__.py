@@ -9,7 +9,9 @@ from curriculum.common.files import write_whole
 
 def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 the chapter can't be built, 2 bad usage."""
-    parser = Parser(prog="python -m curriculum.page", description="Write the chapter as one web page.")
+    parser = Parser(
+        prog="python -m curriculum.page", description="Write the chapter as one web page."
+    )
     parser.add_argument(
         "--out",
         type=Path,
@@ -18,7 +20,9 @@ def main(argv=None):
         help="the file to write (outputs/contact.html)",
     )
     parser.add_argument("--root", type=Path, help="another copy of the project")
-    parser.add_argument("--screenshot", type=Path, metavar="PNG", help="and its first screen as a picture")
+    parser.add_argument(
+        "--screenshot", type=Path, metavar="PNG", help="and its first screen as a picture"
+    )
     args = parser.parse_args(argv)
     try:
         from curriculum.page.build import build
@@ -35,6 +39,7 @@ def main(argv=None):
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
     if args.screenshot:
         from curriculum.page.browser import photograph
+
         photograph(args.out, args.screenshot)
         print(args.screenshot)
     return 0

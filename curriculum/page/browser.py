@@ -3,7 +3,8 @@
 import shutil
 
 CHROMIUM = next(
-    (path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None
+    (path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path),
+    None,
 )
 FLAGS = (
     "--no-sandbox",

@@ -3,10 +3,13 @@
 import ast
 import base64
 import hashlib
+import importlib
 import json
 import re
+import sys
 from html import escape
 from pathlib import Path
+from unittest.mock import patch
 
 import jinja2
 from markupsafe import Markup
@@ -18,38 +21,68 @@ import contact
 from curriculum import regions
 from curriculum.check_prose_code_drift import CHAPTER
 from curriculum.common import wallclock
+from curriculum.page import prose
+from curriculum.page.still import DRAWING, stills
 from curriculum.quoted import Numbers, load_meta
-from curriculum.page import drawing, prose
 
 HERE = Path(__file__).resolve().parent
-SCRIPTS = ("engine.js", "draw.js", "figure.js", "figures.js", "reader.js")
-SEEDS = 10  # start heights that the live figure offers
-PRESETS = (
-    ("", "the chapter’s run"),
-    ("dt=0.03", "dt past penalty’s limit"),
-    ("stiffness=1000000", "a spring a hundred times stiffer"),
-    ("scene=bounce&dt=0.005", "a bounce that gains height"),
-    ("scene=stack", "a stack of three"),
-    ("scene=stack&sweeps=1", "a stack and a single sweep"),
-    ("scene=stack&zoom=500", "the stack under the strong lens"),
+SCRIPTS = (
+    *DRAWING,
+    "bets.js",
+    "controls.js",
+    "live_figure.js",
+    "links.js",
+    "live_small.js",
+    "puzzle.js",
+    "arithmetic.js",
+    "blank.js",
+    "sandbox.js",
+    "reader.js",
 )
-# what an exercise measures on the page: its run, and which numbers it shows
+SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
+SEEDS = 10  # start heights that it offers
+FOLDED = 45  # lines: a longer excerpt is folded
+MACHINERY = "the rest of the file"  # the section whose excerpts are all folded
+# what a bet measures on the page: its drop, the columns (title, model, mass) and the rows shown
 EXERCISES = {
     "ex1": {
         "dt": 0.002,
         "steps": 800,
-        "shows": [["max_penetration_frac", "deepest / r"], ["rest_penetration_frac", "at the end / r"]],
+        "columns": [["penalty", "penalty", 1], ["lcp", "lcp", 1]],
+        "shows": [
+            ["max_penetration_frac", "deepest / r"],
+            ["rest_penetration_frac", "at the end / r"],
+        ],
     },
     "ex3": {
         "dt": 0.03,
         "steps": 2000,
+        "columns": [["penalty", "penalty", 1], ["lcp", "lcp", 1]],
         "shows": [
             ["energy_excess", "energy gained / start"],
             ["max_penetration_frac", "deepest / r"],
             ["blew_up", "verdict"],
         ],
     },
+    "ex4": {
+        "dt": 0.002,
+        "steps": 2000,
+        "columns": [
+            ["soft, 1 kg", "soft", 1],
+            ["soft, 10 kg", "soft", 10],
+            ["penalty, 1 kg", "penalty", 1],
+            ["penalty, 10 kg", "penalty", 10],
+        ],
+        "shows": [["rest_penetration_frac", "at the end / r"]],
+    },
 }
+# what stands over the live figure while it would tell the answer of a bet
+VEILS = {
+    "ex1": "The same ball, four ways for the table to push. How deep will each let it in, and where "
+    "will it rest? Bet before you see it: exercise 1.",
+    "ex3": "A time step this long is what exercise 3 is about. Bet before you see it.",
+}
+BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2
 
 
 def markdown(text):
@@ -61,27 +94,52 @@ def inline(text):
     return Markup(prose.parser().renderInline(text))
 
 
+# ---- code
+
+
+# of Pygments' classes those that the style tells apart; the others would only make the page heavy
+STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
+
+
+def code_lines(text):
+    """Highlighted code, a block a line; a line too long for its column goes on further in."""
+    shown = highlight(text, PythonLexer(stripnl=False), HtmlFormatter(nowrap=True))
+    shown = re.sub(
+        r'<span class="(\w+)">([^<]*)</span>', lambda m: m[0] if m[1] in STYLED else m[2], shown
+    )
+    lines = shown.rstrip("\n").split("\n")
+    indents = [len(line) - len(line.lstrip(" ")) for line in text.rstrip("\n").split("\n")]
+    out = []
+    for line, indent in zip(lines, indents):
+        kind = "ln doc" if '<span class="sd">' in line else "ln"
+        out.append(f'<span class="{kind}" style="--i:{indent}">{line}\n</span>')
+    return Markup("".join(out))
+
+
 def panels(root):
-    """Every region with its highlighted code, in reading order."""
-    found = []
-    for region in regions.find(root / "contact.py").values():
-        code = highlight(region.text, PythonLexer(stripnl=False), HtmlFormatter(nowrap=True)).rstrip("\n")
-        found.append(
-            {
-                "name": region.name,
-                "first": region.first,
-                "last": region.last,
-                "sha256": region.sha256,
-                "html": Markup(code),
-            }
-        )
+    """Every region of the literate files by (file, name), with its highlighted code."""
+    found = {}
+    for region in regions.find_all(root).values():
+        count = region.last - region.first + 1
+        found[region.file, region.name] = {
+            "name": region.name,
+            "file": region.file,
+            "first": region.first,
+            "last": region.last,
+            "sha256": region.sha256,
+            "folded": count > FOLDED,
+            "html": code_lines(region.text),
+        }
     return found
+
+
+# ---- data for the scripts
 
 
 def scenes():
     """What the live figure must know of the scenes: start heights by seed, and their own knobs."""
     known = {}
-    for name in ("drop", "bounce", "stack"):
+    for name in SCENES:
         starts = [contact.build_scene(name, seed) for seed in range(SEEDS)]
         known[name] = {
             "starts": [scene.q0[1].tolist() for scene in starts],
@@ -91,38 +149,67 @@ def scenes():
     return known
 
 
-def page_data():
-    """Everything the scripts read: one object, PAGE."""
-    flags = drawing.FLAGS
-    defaults = {
-        "dt": flags.dt,
-        "stiffness": flags.stiffness,
-        "sweeps": flags.iters,
-        "baumgarte": flags.baumgarte,
+def blank_cases(root):
+    """The inputs on which checks.py tries the blanks of exercise 2, from exercises/trials.py."""
+    with patch.object(sys, "path", [str(root / "exercises"), *sys.path]):
+        trials = importlib.import_module("trials")
+    return {
+        blank: [{key: float(value) for key, value in case.items()} for case in trials.inputs(blank)]
+        for blank in BLANKS
     }
+
+
+def page_data(root):
+    """Everything the scripts read: one object, PAGE."""
+    flags = contact.parse_flags([])
+    defaults = {name: getattr(flags, name) for name in ("dt", "stiffness", "iters", "baumgarte")}
     return {
         "scenes": scenes(),
         "radius": contact.RADIUS,
         "defaults": defaults,
-        "lane": drawing.LANE,
         "exercises": EXERCISES,
+        "veils": VEILS,
+        "blank": blank_cases(root),
     }
 
 
+# ---- exercises
+
+
+def exercise_words(path):
+    """(docstring, {QUESTION, CHOICES, WHY_PROMPT}) of an exercise's file."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    words = {
+        target.id: ast.literal_eval(node.value)
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name) and target.id in ("QUESTION", "CHOICES", "WHY_PROMPT")
+    }
+    return ast.get_docstring(tree), words
+
+
+def reveals(name, facts, choices, numbers):
+    """The reasons by choice, as HTML. Raises ValueError where they are not for the choices."""
+    reveal = {
+        letter: markdown(numbers.render(reason))
+        for letter, reason in (facts.get("reveal") or {}).items()
+    }
+    if set(reveal) != set(choices):
+        raise ValueError(
+            f"meta.yaml:1: the reveals of {name} are for {sorted(reveal)}, "
+            f"its choices are {sorted(choices)}"
+        )
+    return reveal
+
+
 def exercise_facts(root, numbers):
-    """The exercises as the template wants them: words from exercises/, answers and reasons from meta.yaml."""
+    """The exercises as the template wants them: words from exercises/, answers from meta.yaml."""
     found = {}
     for name, facts in (load_meta(root).get("exercises") or {}).items():
         path = next((root / "exercises").glob(f"{name}_*.py"))
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        words = {
-            target.id: ast.literal_eval(node.value)
-            for node in tree.body
-            if isinstance(node, ast.Assign)
-            for target in node.targets
-            if target.id in ("QUESTION", "CHOICES", "WHY_PROMPT")
-        }
-        title, _, text = ast.get_docstring(tree).partition("\n")
+        docstring, words = exercise_words(path)
+        title, _, text = docstring.partition("\n")
         parts = re.fullmatch(r"Exercise \d+, (.+?) \((\d+) minutes\): (.+?)\.?", title.strip())
         if not parts:
             raise ValueError(
@@ -130,33 +217,50 @@ def exercise_facts(root, numbers):
                 "'Exercise N, KIND (M minutes): TITLE'"
             )
         # the docstring's prose, without how to run it in the terminal
-        paragraphs = [each for each in re.split(r"\n\s*\n", text.strip()) if not each.startswith("    ")]
-        if words.get("CHOICES"):
-            paragraphs = [re.sub(r"\s*Read CHOICES.*", "", each, flags=re.DOTALL) for each in paragraphs]
-            paragraphs.append(words["QUESTION"])
-        commands = re.findall(r"^    (\S.*?)(?:\s{2,}#.*)?$", text, re.MULTILINE)
+        paragraphs = [
+            each for each in re.split(r"\n\s*\n", text.strip()) if not each.startswith("    ")
+        ]
         choices = words.get("CHOICES") or {}
-        reveal = {
-            letter: markdown(numbers.render(reason))
-            for letter, reason in (facts.get("reveal") or {}).items()
-        }
-        if set(reveal) != set(choices):
+        if choices and name not in EXERCISES:
             raise ValueError(
-                f"meta.yaml:1: the reveals of {name} are for {sorted(reveal)}, its choices are {sorted(choices)}"
+                f"meta.yaml:1: the page cannot measure {name}; "
+                f"it knows the bets {', '.join(EXERCISES)}"
             )
+        if choices:
+            paragraphs = [
+                re.sub(r"\s*Read CHOICES.*", "", each, flags=re.DOTALL) for each in paragraphs
+            ] + [words["QUESTION"]]
+        commands = re.findall(r"^    (\S.*?)(?:\s{2,}#.*)?$", text, re.MULTILINE)
         found[name] = {
             "id": name,
             "title": f"Exercise {name[2:]}: {parts[3]}",
             "kind": parts[1],
             "minutes": parts[2],
+            "blank": not choices,
             "task": Markup("").join(markdown(each) for each in paragraphs if each.strip()),
             "choices": list(choices.items()),
             "why_label": words.get("WHY_PROMPT", ""),
             "answer": facts["answer"] if choices else None,
-            "reveal": reveal,
+            "reveal": reveals(name, facts, choices, numbers),
+            "hints": [inline(" ".join(hint.split())) for hint in facts.get("hints") or []],
             "command": "\n".join(commands),
         }
     return found
+
+
+# ---- generated figures and tables
+
+
+def thinned(svg):
+    """An SVG whose paths are rounded to a hundredth of a pixel, without blanks between elements."""
+    paths = re.sub(r'(?<= d=")[^"]+', lambda d: re.sub(r"(\.\d\d)\d+", r"\1", d[0]), svg)
+    return re.sub(r">\s+<", "><", re.sub(r"\s+", " ", paths))
+
+
+def data_address(svg):
+    """An SVG as an address that holds it, readable and a quarter shorter than base64."""
+    escaped = svg.replace("%", "%25").replace("#", "%23").replace("'", "%27").replace('"', "'")
+    return Markup("data:image/svg+xml," + escaped.replace("&", "&amp;"))
 
 
 def generated_figures(root):
@@ -166,19 +270,23 @@ def generated_figures(root):
         for path in sorted((root / "curriculum" / kind).rglob("*.svg")):
             text = path.read_text(encoding="utf-8")
             size = re.search(
-                r"<svg\b[^>]*?\bviewBox=\"[\d.eE+-]+ [\d.eE+-]+ ([\d.]+) ([\d.]+)\"", text, re.DOTALL
+                r"<svg\b[^>]*?\bviewBox=\"[\d.eE+-]+ [\d.eE+-]+ ([\d.]+) ([\d.]+)\"",
+                text,
+                re.DOTALL,
             )
             title = re.search(r"<title[^>]*>(.*?)</title>", text, re.DOTALL)
-            name = re.sub("^(error|map)-", "", path.stem.replace("_", "-"))  # error-drop.svg is bench:drop
+            name = re.sub(
+                "^(error|map)-", "", path.stem.replace("_", "-")
+            )  # error-drop: bench:drop
             what = title[1].strip() if title else name.replace("-", " ")
             told = ("Run time against error" if kind == "bench" else "Stability") + f": {what}"
             found[f"{kind}:{name}"] = {
                 "id": f"{kind}-{name}",
                 "alt": told,
                 "caption": Markup(
-                    f"{escape(told)}. Measured by <code>python -m " f"curriculum.{kind}</code>."
+                    f"{escape(told)}. Measured by <code>python -m curriculum.{kind}</code>."
                 ),
-                "src": "data:image/svg+xml;base64," + base64.b64encode(text.encode()).decode(),
+                "src": data_address(thinned(text)),
                 "width": round(float(size[1])) if size else None,
                 "height": round(float(size[2])) if size else None,
             }
@@ -192,20 +300,152 @@ def ledger(root):
         for row in wallclock.read(root / "wallclock.csv")
         if row["chapter"] == wallclock.CHAPTER
     }
+    shown = [*wallclock.SHOWN, *sorted(rows.keys() - set(wallclock.SHOWN))]
     return [
         {
             "tier": tier,
-            "time": wallclock.show(wallclock.lookup(wallclock.CHAPTER, tier, root / "wallclock.csv")),
+            "time": wallclock.show(
+                wallclock.lookup(wallclock.CHAPTER, tier, root / "wallclock.csv")
+            ),
             "config_hash": rows.get(tier, {}).get("config_hash"),
             "date": rows.get(tier, {}).get("date"),
         }
-        for tier in [*wallclock.SHOWN, *sorted(rows.keys() - set(wallclock.SHOWN))]
+        for tier in shown
     ]
+
+
+# ---- the page
+
+
+def templates():
+    """The templates' environment."""
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE / "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+    )
+
+
+def fill_slots(root, macros, drawn, exercises):
+    """What stands in each slot that a chapter may hold, as HTML by name."""
+    slots = {
+        "wallclock": macros.wallclock(ledger(root)),
+        "figure:puzzle": macros.puzzle(),
+        "figure:sandbox": macros.sandbox(),
+        "figure:lanes": macros.recall(),
+    }
+    for name, figure in drawn["small"].items():
+        slots[f"figure:{name}"] = macros.small(figure | {"svg": Markup(figure["svg"])})
+    for name, exercise in exercises.items():
+        slots[f"exercise:{name}"] = macros.exercise(exercise)
+    for name, figure in generated_figures(root).items():
+        slots[name] = macros.generated(figure)
+    return {name: str(html) for name, html in slots.items()}
+
+
+def assemble(parts, slots, code, macros, bets):
+    """(body, contents): the chapter's HTML, and (level, id, text) of its headings.
+
+    What follows a bet, up to the next heading, is its answer: it is put into a veil.
+    """
+    body, contents, veiled, machinery = [], [], False, False
+    for kind, value in parts:
+        if kind == "heading":
+            body += ["</div></div>"] * veiled
+            veiled = False
+            level, name, inner = value
+            if level <= 2:
+                machinery = MACHINERY in inner.lower()
+            if level > 1:
+                body.append(str(macros.heading(level, name, Markup(inner))))
+                contents.append((level, name, Markup(re.sub(r"</?(code|a)[^>]*>", "", inner))))
+        elif kind == "include":
+            if value not in code:
+                raise ValueError(
+                    f"{CHAPTER}: includes {'#'.join(value)}, and there is no such region"
+                )
+            panel = code[value] | {"folded": machinery or code[value]["folded"]}
+            body.append(str(macros.panel(panel)))
+        elif kind == "slot":
+            if value not in slots and not value.startswith(("bench:", "stress:")):
+                raise ValueError(
+                    f"{CHAPTER}: a slot for {value!r}; allowed: {', '.join(sorted(slots))}"
+                )
+            body.append(slots.get(value, ""))
+            if value.removeprefix("exercise:") in bets and not veiled:
+                body.append(str(macros.veil(value.removeprefix("exercise:"))))
+                veiled = True
+        else:
+            body.append(value)
+    body += ["</div></div>"] * veiled
+    return "\n".join(body), contents
+
+
+def script_texts(data):
+    """(name, text) of the page's scripts, the data before the first."""
+    found = []
+    for name in SCRIPTS:
+        source = (HERE / name).read_text(encoding="utf-8")
+        if not found:
+            source = f"const PAGE = {json.dumps(data, sort_keys=True)};\n{source}"
+        if "</script" in source.lower():
+            raise ValueError(f"curriculum/page/{name}: the text '</script' would end the script")
+        found.append((name, source))
+    return found
+
+
+def early_script(bets):
+    """What must run before the first paint, so that nothing moves after it."""
+    return (
+        'document.documentElement.className = "js";\n'
+        f"for (const id of {json.dumps(list(bets))})\n"
+        '  try { if (localStorage.getItem("contact-chapter:" + id)) '
+        'document.documentElement.classList.add("open-" + id); } catch {}\n'
+    )
+
+
+def sha256(text):
+    """A text's fingerprint."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def policy(scripts):
+    """The page may run these scripts and nothing else, and ask the network for nothing."""
+    allowed = " ".join(
+        "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
+        for text in scripts
+    )
+    return (
+        "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; "
+        f"style-src 'unsafe-inline'; script-src {allowed}"
+    )
 
 
 def minified(css):
     """CSS without comments and indentation."""
     return re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL))
+
+
+def stylesheet():
+    """The page's style, with the models' colours from contact.py, and what veils each bet."""
+    colors = "".join(f"--{model}: {color}; " for model, color in contact.COLORS.items())
+    veils = "".join(
+        f".js:not(.open-{name}) .veiled-{name} > .answer, .open-{name} .veiled-{name} > "
+        f".veil-bar {{ display: none; }}\n"
+        for name in EXERCISES
+    )
+    return f":root {{ {colors}}}\n" + minified((HERE / "style.css").read_text("utf-8")) + veils
+
+
+def favicon():
+    """A ball on a table, as a data address."""
+    svg = (
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'>"
+        "<path d='M0 11h16v5H0z' fill='#888'/>"
+        f"<circle cx='8' cy='7.5' r='5' fill='{contact.COLORS['penalty']}'/></svg>"
+    )
+    return data_address(svg)
 
 
 def build(root=regions.ROOT, chapter=None):
@@ -214,113 +454,39 @@ def build(root=regions.ROOT, chapter=None):
     text = (root / CHAPTER).read_text(encoding="utf-8") if chapter is None else chapter
     meta, numbers = load_meta(root), Numbers(root)
     numbers.run_all(text + json.dumps(meta.get("exercises") or {}))
-    scene, dt, steps = contact.build_scene("drop"), drawing.FLAGS.dt, drawing.FLAGS.steps
-    runs = {model: contact.run_model(model, scene, dt, steps) for model in contact.MODELS}
-    qualities = {
-        model: contact.contact_quality(run, scene, dt, runs["exact"]) for model, run in runs.items()
-    }
-
-    shown = panels(root)
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE / "templates"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-    )
+    data = page_data(root)
+    drawn = stills(data)
+    environment = templates()
     environment.globals.update(
         models=contact.MODELS,
-        marker=drawing.marker,
         radius=contact.RADIUS,
-        presets=PRESETS,
-        starts=[start[0] for start in scenes()["drop"]["starts"]],
+        scenes=SCENES,
+        size=drawn["size"],
+        keys={model: Markup(key) for model, key in drawn["keys"].items()},
+        starts=[start[0] for start in data["scenes"]["drop"]["starts"]],
     )
-    poster = drawing.poster(runs, qualities)
-    for lane in poster["lanes"]:
-        lane["svg"] = Markup(lane["svg"])
     macros = environment.get_template("parts.html.j2").module
-
-    slots = {"wallclock": Markup(macros.wallclock(ledger(root))), "figure:puzzle": Markup(macros.puzzle())}
-    for name, figure in drawing.small_figures(runs).items():
-        slots[f"figure:{name}"] = Markup(
-            macros.small({"kind": "", "slider": None, **figure, "svg": Markup(figure["svg"])})
-        )
-    exercises = exercise_facts(root, numbers)
-    bets = [
-        (name, each["title"][0].lower() + each["title"][1:].partition(":")[0])
-        for name, each in exercises.items()
-        if each["choices"]
-    ]
-    for name, exercise in exercises.items():
-        slots[f"exercise:{name}"] = Markup(macros.exercise(exercise))
-    for name, figure in generated_figures(root).items():
-        slots[name] = Markup(macros.generated(figure))
-    by_name = {region["name"]: region for region in shown}
-
-    parts = prose.place(prose.blocks(numbers.render(text)), slots)
+    exercises, code = exercise_facts(root, numbers), panels(root)
+    bets = [name for name, each in exercises.items() if each["choices"]]
+    parts = prose.blocks(numbers.render(text), drawn["knobs"])
+    body, contents = assemble(parts, fill_slots(root, macros, drawn, exercises), code, macros, bets)
     title = next((value for kind, value in parts if kind == "heading" and value[0] == 1), None)
     heading = re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title[2]) if title else escape(meta["title"])
-    body, contents = [], [("objectives", "What you will be able to do")]
-    for kind, value in parts:
-        if kind == "html":
-            body.append(value)
-        elif kind == "include":
-            if value not in by_name:
-                raise ValueError(f"{CHAPTER}: includes {value}, and contact.py has no such region")
-            body.append(str(macros.panel(by_name[value])))
-        elif kind == "slot":
-            if value not in slots and not value.startswith(("bench:", "stress:")):
-                raise ValueError(f"{CHAPTER}: a slot for {value!r}; allowed: {', '.join(sorted(slots))}")
-            body.append(str(slots.get(value, "")))
-        elif value[0] > 1:
-            level, name, inner = value
-            body.append(f'<h{level} id="{name}">{inner}</h{level}>')
-            if level == 2:
-                contents.append((name, Markup(re.sub(r"</?code[^>]*>", "", inner))))
-    contents.append(("colophon", "Colophon"))
-
-    scripts = []
-    for name in SCRIPTS:
-        source = (HERE / name).read_text(encoding="utf-8")
-        if name == "draw.js":
-            source = f"const PAGE = {json.dumps(page_data(), sort_keys=True)};\n{source}"
-        if "</script" in source.lower():
-            raise ValueError(f"curriculum/page/{name}: the text '</script' would end the script")
-        scripts.append((name, Markup(source)))
-    colors = "".join(f"--{model}: {color}; " for model, color in contact.COLORS.items())
-    style = f":root {{ {colors}}}\n" + minified((HERE / "style.css").read_text(encoding="utf-8"))
-
-    def allowed(text):
-        return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
-
-    policy = (
-        "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; style-src 'unsafe-inline'; "
-        "script-src " + " ".join(allowed(text) for _, text in scripts)
-    )
-    hashes = [
-        ("contact.py", hashlib.sha256((root / "contact.py").read_bytes()).hexdigest()),
-        ("chapter.md", hashlib.sha256(text.encode()).hexdigest()),
-        ("engine.js", hashlib.sha256((HERE / "engine.js").read_bytes()).hexdigest()),
-    ]
-    icon = (
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'><path d='M0 11h16v5H0z' fill='#888'/>"
-        f"<circle cx='8' cy='7.5' r='5' fill='{contact.COLORS['penalty']}'/></svg>"
-    )
-    page = environment.get_template("page.html.j2").render(
+    scripts, early = script_texts(data), early_script(bets)
+    return environment.get_template("page.html.j2").render(
         title=f"{re.sub('<[^>]+>', '', heading)} (chapter 3.5)",
         heading=Markup(heading),
-        kicker="Phase 3, chapter 3.5: build a physics engine",
-        lead="A ball, a table, and one question with three answers: what force does the table apply?",
-        description="Contact between bodies, built three times and measured: penalty, lcp and exact, live in the page.",
-        policy=policy,
-        icon="data:image/svg+xml," + re.sub(r"[<>#\"%]", lambda m: f"%{ord(m[0]):02x}", icon),
-        style=Markup(style),
-        scripts=scripts,
-        poster=poster,
+        policy=policy([early, *(source for _, source in scripts)]),
+        icon=favicon(),
+        style=Markup(stylesheet()),
+        early=Markup(early),
+        scripts=[(name, Markup(source)) for name, source in scripts],
+        lanes=drawn,
         contents=contents,
-        body=Markup("\n".join(body)),
+        body=Markup(body),
         objectives=[inline(" ".join(item.split())) for item in meta["objectives"]],
-        regions=shown,
-        hashes=hashes,
-        bets=bets,
+        bets=[(name, exercises[name]["title"].partition(":")[0]) for name in bets],
+        regions=list(code.values()),
+        hashes=[("chapter.md", sha256(text))]
+        + [(name, sha256((HERE / name).read_text("utf-8"))) for name in ("exact.js", "engine.js")],
     )
-    return page

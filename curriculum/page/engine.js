@@ -1,21 +1,27 @@
-/* The three contact models of contact.py, in plain JavaScript.
+/* The contact models of contact.py in plain JavaScript: penalty, lcp and soft; exact is in exact.js.
  *
  * JavaScript numbers are the same 64-bit doubles that Python uses, and + - * / and sqrt are rounded
- * the same way in both. So penalty and lcp, written here in the same order of operations, give the
- * same trajectories bit for bit; exact agrees to 1e-12. A browser test holds both claims.
+ * the same way in both. So the three, written here in the same order of operations, give the same
+ * trajectories bit for bit; exact agrees with curriculum/exact.py to 1e-10 r. Tests hold both claims.
  *
  * Names and signs are those of contact.py: gap > 0 apart; depth = -gap; n is a unit vector pointing
  * from j to i (the floor is j = -1); v_n > 0 separating; lam >= 0. Units: m, kg, s, N*s.
  *
  * A scene is {x, y, vx, vy, mass, radius, restitution, damping}: arrays with one number a ball.
- * The knobs are {dt, stiffness, damping, restitution, sweeps, baumgarte}.
+ * The knobs are {dt, stiffness, damping, restitution, iters, baumgarte, solref, solimp}.
+ * A ball of infinite mass is held where it is.
  */
 "use strict";
 
 const ContactEngine = (() => {
   const GRAVITY = -9.81;
   const CONTACT_MARGIN = 1e-3;
-  const MODELS = ["penalty", "lcp", "exact"];
+  const MODELS = ["penalty", "lcp", "soft", "exact"];
+  const SOLREF = [0.02, 1]; // MuJoCo's defaults; HARD is the hardest contact it allows
+  const SOLIMP = [0.9, 0.95, 0.001, 0.5, 2];
+  const HARD = [0.9999, 0.9999, 0.001, 0.5, 2];
+  const MOST_SWEEPS = 10000; // of soft in one step
+  const LAST_BITS = 2 ** -48; // of soft: a correction below this share of the speeds is rounding
 
   // max(0, a) as Python computes it: what is not greater than zero, NaN included, becomes +0.
   const positive = (a) => (a > 0 ? a : 0);
@@ -50,19 +56,15 @@ const ContactEngine = (() => {
   }
 
   // One step of penalty: a clamped spring and damper a contact, under semi-implicit Euler.
-  // `trace`, when given, receives what each contact did.
+  // `trace`, when given, receives what each contact did. knobs.clampForce stands in for the clamp.
   function penaltyStep(state, scene, knobs, trace) {
     const { x, y, vx, vy } = state;
-    const { mass, radius } = scene;
-    const { dt, stiffness, damping } = knobs;
-    const n = y.length;
-    const fx = new Array(n);
-    const fy = new Array(n);
-    fx.fill(0);
-    fy.fill(0);
-    for (const c of detectContacts(x, y, radius, 0)) {
+    const { dt, stiffness, damping, clampForce = penaltyNormalForce } = knobs;
+    const fx = y.map(() => 0);
+    const fy = y.map(() => 0);
+    for (const c of detectContacts(x, y, scene.radius, 0)) {
       const speed = normalSpeed(c, vx, vy);
-      const f = positive(stiffness * c.depth - damping * speed);
+      const f = clampForce(c.depth, speed, stiffness, damping);
       fx[c.i] += f * c.nx;
       fy[c.i] += f * c.ny;
       if (c.j >= 0) {
@@ -71,81 +73,193 @@ const ContactEngine = (() => {
       }
       if (trace) trace.push({ i: c.i, j: c.j, gap: -c.depth, speed, force: f });
     }
-    const next = { x: new Array(n), y: new Array(n), vx: new Array(n), vy: new Array(n) };
-    for (let i = 0; i < n; i++) {
-      next.vx[i] = vx[i] + dt * (fx[i] / mass[i]);
-      next.vy[i] = vy[i] + dt * (GRAVITY + fy[i] / mass[i]);
-      next.x[i] = x[i] + dt * next.vx[i];
-      next.y[i] = y[i] + dt * next.vy[i];
-    }
-    return next;
+    const held = scene.mass.map((m) => m === Infinity);
+    return move(state, dt, {
+      vx: vx.map((v, i) => (held[i] ? v : v + dt * (fx[i] / scene.mass[i]))),
+      vy: vy.map((v, i) => (held[i] ? v : v + dt * (GRAVITY + fy[i] / scene.mass[i]))),
+    });
   }
 
-  // One step of lcp: predict, then sweep over the contacts (projected Gauss-Seidel), then move.
-  // `trace`, when given, receives the contacts and the impulses after every sweep.
-  function lcpStep(state, scene, knobs, trace) {
-    const { x, y } = state;
-    const { mass, radius } = scene;
-    const { dt, restitution, baumgarte, sweeps } = knobs;
-    const n = y.length;
-    const contacts = detectContacts(x, y, radius, CONTACT_MARGIN);
-    const vx = new Array(n);
-    const vy = new Array(n);
-    for (let i = 0; i < n; i++) {
-      vx[i] = state.vx[i];
-      vy[i] = state.vy[i] + dt * GRAVITY;
-    }
-    const invMass = mass.map((m) => 1 / m);
-    const lam = contacts.map(() => 0);
-    const target = contacts.map((c) => {
-      const push = (baumgarte / dt) * c.depth;
-      if (!(restitution > 0)) return push;
-      const bounce = -restitution * normalSpeed(c, state.vx, state.vy);
-      return push > 0 && push > bounce ? push : bounce;
-    });
-    const rows = contacts.map((c) => {
-      const wi = invMass[c.i];
-      const wj = c.j < 0 ? 0 : invMass[c.j];
-      return { effectiveMass: 1 / (wi + wj), ix: wi * c.nx, iy: wi * c.ny, jx: wj * c.nx, jy: wj * c.ny };
-    });
-    if (trace) {
-      trace.contacts = contacts.map((c, k) => ({
+  const penaltyNormalForce = (depth, speed, stiffness, damping) =>
+    positive(stiffness * depth - damping * speed);
+
+  function move({ x, y }, dt, { vx, vy }) {
+    return { x: x.map((a, i) => a + dt * vx[i]), y: y.map((a, i) => a + dt * vy[i]), vx, vy };
+  }
+
+  // ---- lcp and soft: one problem, one sweep
+
+  // A contact with its target velocity and its softness (0 for lcp), ready for the sweeps: what an
+  // impulse of 1 does to its two balls, and the effective mass.
+  function makeRows(contacts, mass, targets, softness) {
+    return contacts.map((c, k) => {
+      const wi = 1 / mass[c.i];
+      const wj = c.j < 0 ? 0 : 1 / mass[c.j];
+      const mobility = wi + wj;
+      const whole = softness[k] > 0 ? mobility + softness[k] : mobility;
+      return {
         i: c.i,
         j: c.j,
-        gap: -c.depth,
-        speed: normalSpeed(c, vx, vy),
-        target: target[k],
-      }));
-      trace.sweeps = [];
-    }
-    for (let sweep = 0; sweep < sweeps && contacts.length; sweep++) {
-      let changed = false;
-      for (let k = 0; k < contacts.length; k++) {
-        const c = contacts[k];
-        const row = rows[k];
-        const total = positive(lam[k] + (target[k] - normalSpeed(c, vx, vy)) * row.effectiveMass);
-        const dlam = total - lam[k];
-        if (total !== lam[k]) changed = true;
-        lam[k] = total;
-        vx[c.i] += dlam * row.ix;
-        vy[c.i] += dlam * row.iy;
-        if (c.j >= 0) {
-          vx[c.j] -= dlam * row.jx;
-          vy[c.j] -= dlam * row.jy;
-        }
-      }
-      if (trace) trace.sweeps.push(lam.slice());
-      if (!changed) break;
-    }
-    const next = { x: new Array(n), y: new Array(n), vx, vy };
-    for (let i = 0; i < n; i++) {
-      next.x[i] = x[i] + dt * vx[i];
-      next.y[i] = y[i] + dt * vy[i];
-    }
-    return next;
+        nx: c.nx,
+        ny: c.ny,
+        depth: c.depth,
+        target: targets[k],
+        softness: softness[k],
+        effectiveMass: whole > 0 ? 1 / whole : 0,
+        ix: wi * c.nx,
+        iy: wi * c.ny,
+        jx: wj * c.nx,
+        jy: wj * c.ny,
+        lam: 0,
+      };
+    });
   }
 
-  const STEP = { penalty: penaltyStep, lcp: lcpStep };
+  // Projected Gauss-Seidel. Changes vx, vy and the lam of the rows; stops after a sweep in which no
+  // correction changed a velocity by more than `tolerance`. `project` is the clamp, on the sum.
+  function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = projectImpulse }, trace) {
+    for (let sweep = 0; sweep < iters && rows.length; sweep++) {
+      let settled = true;
+      for (const c of rows) {
+        const missing = c.target - normalSpeed(c, vx, vy) - c.softness * c.lam;
+        const lam = project(c.lam, missing * c.effectiveMass);
+        if (lam === c.lam) continue;
+        const change = lam - c.lam;
+        push(c, change, vx, vy);
+        c.lam = lam;
+        if (!(Math.abs(change) <= tolerance * c.effectiveMass)) settled = false;
+      }
+      if (trace) trace.push(rows.map((c) => c.lam));
+      if (settled) break;
+    }
+  }
+
+  // The impulse after a correction: the sum may not become negative, a correction may.
+  const projectImpulse = (lam, dlam) => positive(lam + dlam);
+
+  function push(c, impulse, vx, vy) {
+    vx[c.i] += impulse * c.ix;
+    vy[c.i] += impulse * c.iy;
+    if (c.j < 0) return;
+    vx[c.j] -= impulse * c.jx;
+    vy[c.j] -= impulse * c.jy;
+  }
+
+  // The largest speed in sight, as soft wants it: of the targets, and of the balls.
+  function fastest(rows, vx, vy) {
+    let most = rows.length ? Math.abs(rows[0].target) : 0;
+    const see = (v) => {
+      if (Math.abs(v) > most) most = Math.abs(v);
+    };
+    for (const c of rows) see(c.target);
+    vx.forEach((v, i) => {
+      see(v);
+      see(vy[i]);
+    });
+    return most;
+  }
+
+  // Gravity predicts the velocities, impulses correct them, the balls move.
+  function solveStep(state, scene, dt, rows, options, trace) {
+    const vx = state.vx.slice();
+    const vy = state.vy.map((v, i) => (scene.mass[i] === Infinity ? v : v + dt * GRAVITY));
+    if (trace) {
+      const told = ({ i, j, depth, target }, speed) => ({ i, j, gap: -depth, speed, target });
+      trace.contacts = rows.map((c) => told(c, normalSpeed(c, vx, vy)));
+      trace.sweeps = [];
+    }
+    const { share, ...rest } = options;
+    const tolerance = share ? share * fastest(rows, vx, vy) : 0;
+    solveContacts(rows, vx, vy, { ...rest, tolerance }, trace && trace.sweeps);
+    return move(state, dt, { vx, vy });
+  }
+
+  // The normal velocity with which a contact of lcp must leave at least.
+  function contactTarget(c, state, { dt, restitution, baumgarte }) {
+    const bias = (baumgarte / dt) * c.depth;
+    if (restitution === 0) return bias;
+    const speed = normalSpeed(c, state.vx, state.vy);
+    const bounce = -restitution * speed;
+    if (bias > 0) return bounce > bias ? bounce : bias;
+    const meets = dt * speed <= c.depth;
+    return meets || !(c.depth / dt < bounce) ? bounce : c.depth / dt;
+  }
+
+  // One step of lcp. `trace`, when given, receives the contacts and the impulses after every sweep.
+  // knobs.target and knobs.project stand in for the target and the clamp.
+  function lcpStep(state, scene, knobs, trace) {
+    const { dt, iters, project, target = contactTarget } = knobs;
+    const contacts = detectContacts(state.x, state.y, scene.radius, CONTACT_MARGIN);
+    const targets = contacts.map((c) => target(c, state, knobs));
+    const hard = contacts.map(() => 0);
+    const rows = makeRows(contacts, scene.mass, targets, hard);
+    return solveStep(state, scene, dt, rows, { iters, project }, trace);
+  }
+
+  // ---- soft, MuJoCo's contact
+
+  // x to that power; a whole power by products, whose bits are the same in every language.
+  function raised(x, power) {
+    if (power !== Math.trunc(power)) return x ** power;
+    let product = 1;
+    for (let k = 0; k < power; k++) product *= x;
+    return product;
+  }
+
+  // The impedance d of a contact `depth` deep; solimp is [d0, d1, width, mid, power].
+  function impedance(depth, [d0, d1, width, mid, power]) {
+    if (width <= 1e-15) return 0.5 * (d0 + d1);
+    if (depth >= width) return d1;
+    const x = depth / width;
+    const y =
+      x <= mid
+        ? raised(x, power) / raised(mid, power - 1)
+        : 1 - raised(1 - x, power) / raised(1 - mid, power - 1);
+    return d0 + y * (d1 - d0);
+  }
+
+  const between = (low, a, high) => Math.min(Math.max(a, low), high);
+
+  // The solref and solimp that a run uses, within MuJoCo's bounds.
+  function softDefaults({ restitution, dt, solref, solimp }) {
+    if (!solref && restitution > 0) {
+      solref = [0, -(1 + restitution) / dt];
+      solimp = solimp || HARD;
+    } else if (!solref || solref[0] > 0) {
+      const [timeconst, dampratio] = solref || SOLREF;
+      solref = [Math.max(timeconst, 2 * dt), dampratio];
+    }
+    const [d0, d1, width, mid, power] = solimp || SOLIMP;
+    const share = (a) => between(0.0001, a, 0.9999);
+    return { solref, solimp: [share(d0), share(d1), width, share(mid), power] };
+  }
+
+  // K [1/s^2] and B [1/s] of the reference acceleration, from either form of solref.
+  function springOf([first, second], d1) {
+    if (first > 0) return [1 / (d1 * d1 * first * first * second * second), 2 / (d1 * first)];
+    return [-first / (d1 * d1), -second / d1];
+  }
+
+  // One step of soft: lcp's step with another target, and softness.
+  function softStep(state, scene, knobs, trace) {
+    const { dt } = knobs;
+    const { solref, solimp } = softDefaults(knobs);
+    const [K, B] = springOf(solref, solimp[1]);
+    const contacts = detectContacts(state.x, state.y, scene.radius, 0);
+    const softness = [];
+    const targets = contacts.map((c) => {
+      const d = impedance(c.depth, solimp);
+      const speed = normalSpeed(c, state.vx, state.vy);
+      const mobility = 1 / scene.mass[c.i] + (c.j < 0 ? 0 : 1 / scene.mass[c.j]);
+      const soft = ((1 - d) / d) * mobility;
+      softness.push(soft > 1e-15 ? soft : 1e-15);
+      return speed + dt * (K * d * c.depth - B * speed);
+    });
+    const rows = makeRows(contacts, scene.mass, targets, softness);
+    return solveStep(state, scene, dt, rows, { iters: MOST_SWEEPS, share: LAST_BITS }, trace);
+  }
+
+  const STEP = { penalty: penaltyStep, lcp: lcpStep, soft: softStep };
 
   // A recording: n balls, steps + 1 rows; x, y, vx, vy are flat, row by row.
   function blank(n, dt, steps) {
@@ -171,203 +285,39 @@ const ContactEngine = (() => {
     return { x: part(run.x), y: part(run.y), vx: part(run.vx), vy: part(run.vy) };
   }
 
+  const same = (a, b) => ["x", "y", "vx", "vy"].every((key) => a[key].every((v, i) => v === b[key][i]));
+
   function runModel(model, scene, knobs, steps) {
     if (model === "exact") return runExact(scene, knobs, steps);
     const step = STEP[model];
     const run = blank(scene.y.length, knobs.dt, steps);
     let state = { x: scene.x, y: scene.y, vx: scene.vx, vy: scene.vy };
+    let before = state;
     write(run, 0, state);
     for (let row = 1; row <= steps; row++) {
-      state = step(state, scene, knobs);
-      write(run, row, state);
+      const next = step(state, scene, knobs);
+      write(run, row, next);
+      // a step depends on the state alone: where the one or the two before come back, all is known
+      if (row > 1 && same(next, state)) return repeat(run, row, 1);
+      if (row > 1 && same(next, before)) return repeat(run, row, 2);
+      [before, state] = [state, next];
     }
     return run;
   }
 
-  // ---- exact: from event to event, in a column (every ball on one vertical line)
-
-  const TOUCH_IN_RADII = 1e-12; // closer than this touches
-  const STILL = 1e-13; // m/s: closing slower than this is resting
-  const UNSEEN_IN_RADII = 1e-15; // a bounce lower than this is the last of its series
-  const MOST_EVENTS = 20000; // a page must answer: past this many events the run is cut short
-
-  // lam >= 0 with w = W lam + b >= 0 and lam w = 0: the active-set rule of Lawson and Hanson,
-  // started from all contacts active.
-  function solveLcp(W, b) {
-    const size = b.length;
-    let lam = b.map(() => 0);
-    const active = b.map(() => true);
-    const refused = b.map(() => false);
-    const small = 1e-14 * Math.max(0, ...b.map(Math.abs));
-    for (;;) {
-      const before = lam;
-      let trial = solveActive(W, b, active);
-      for (;;) {
-        let share = Infinity;
-        const bad = [];
-        for (let c = 0; c < size; c++) {
-          if (!(active[c] && trial[c] < 0)) continue;
-          bad.push(c);
-          share = Math.min(share, lam[c] / (lam[c] - trial[c]));
-        }
-        if (!bad.length) break;
-        const old = lam;
-        lam = lam.map((v, c) => (active[c] ? v + share * (trial[c] - v) : 0));
-        for (const c of bad) if (old[c] / (old[c] - trial[c]) <= share) active[c] = false;
-        trial = solveActive(W, b, active);
-      }
-      lam = trial;
-      const w = b.map((value, c) =>
-        active[c] ? 0 : W[c].reduce((sum, a, k) => sum + a * lam[k], 0) + value,
-      );
-      const same = lam.every((v, c) => v === before[c]);
-      for (let c = 0; c < size; c++) refused[c] = refused[c] && same;
-      let worst = 0;
-      const shown = w.map((v, c) => (refused[c] ? 0 : v));
-      for (let c = 1; c < size; c++) if (shown[c] < shown[worst]) worst = c;
-      if (!size || shown[worst] >= -small || refused[worst]) return lam;
-      active[worst] = refused[worst] = true;
-    }
+  // Fills the rows after `row` with what comes back every `period` rows.
+  function repeat(run, row, period) {
+    for (const key of ["x", "y", "vx", "vy"])
+      for (let at = (row + 1) * run.n; at < run[key].length; at++)
+        run[key][at] = run[key][at - period * run.n];
+    return run;
   }
 
-  // lam with (W lam + b) = 0 where active, 0 elsewhere; redundant contacts leave `active`.
-  function solveActive(W, b, active) {
-    const index = b.map((_, c) => c).filter((c) => active[c]);
-    const rows = index.map((c) => [...index.map((k) => W[c][k]), -b[c]]);
-    index.forEach((c, p) => {
-      if (rows[p][p] > 1e-13 * W[c][c]) {
-        const pivot = rows[p][p];
-        rows[p] = rows[p].map((v) => v / pivot);
-        rows.forEach((row, q) => {
-          if (q === p) return;
-          const factor = row[p];
-          rows[q] = row.map((v, k) => v - factor * rows[p][k]);
-        });
-      } else {
-        active[c] = false;
-        rows[p] = rows[p].map(() => 0);
-        for (const row of rows) row[p] = 0;
-      }
-    });
-    const lam = b.map(() => 0);
-    index.forEach((c, p) => {
-      lam[c] = rows[p][index.length];
-    });
-    return lam;
-  }
-
-  // First t >= 0 at which c0 + c1 t + c2 t^2 (c0 >= 0) falls through zero; infinite where it never does.
-  function firstRoot(c0, c1, c2) {
-    const root = Math.sqrt(c1 * c1 - 4 * c0 * c2);
-    const t = c1 < 0 ? (2 * c0) / (root - c1) : c2 < 0 ? (c1 + root) / (-2 * c2) : Infinity;
-    return Number.isNaN(t) ? Infinity : t;
-  }
-
-  function runExact(scene, knobs, steps) {
-    const n = scene.y.length;
-    const { dt } = knobs;
-    const run = blank(n, dt, steps);
+  function runExact(scene, knobs, steps, gravity = -GRAVITY) {
+    const run = blank(scene.y.length, knobs.dt, steps);
     run.events = [];
     run.cut = null;
-    const pairs = [];
-    for (let i = 0; i < n; i++) pairs.push({ i, j: -1 });
-    for (let i = 0; i < n; i++) for (let j = i + 1; j < n; j++) pairs.push({ i, j });
-    const invMass = scene.mass.map((m) => 1 / m);
-    const unit = scene.radius[0];
-    let y = scene.y.slice(),
-      v = scene.vy.slice();
-    let a = new Array(n).fill(GRAVITY);
-    let held = pairs.map(() => false);
-    // a pair's normal points from j to i: down when ball j is the upper one
-    const side = (c) => (c.j < 0 || scene.y[c.i] >= scene.y[c.j] ? 1 : -1);
-    const gapOf = (c) =>
-      c.j < 0
-        ? y[c.i] - scene.radius[c.i]
-        : Math.abs(y[c.i] - y[c.j]) - scene.radius[c.i] - scene.radius[c.j];
-    const along = (c, row) => side(c) * (row[c.i] - (c.j < 0 ? 0 : row[c.j]));
-
-    // row + M^-1 J' lam with lam from the complementarity problem; rounding noise becomes 0.
-    function pushed(row, contacts, b) {
-      const W = contacts.map((c) =>
-        contacts.map((d) => {
-          const shared =
-            (c.i === d.i ? invMass[c.i] : 0) +
-            (c.j >= 0 && c.j === d.j ? invMass[c.j] : 0) -
-            (c.i === d.j ? invMass[c.i] : 0) -
-            (c.j >= 0 && c.j === d.i ? invMass[c.j] : 0);
-          return side(c) * side(d) * shared;
-        }),
-      );
-      const lam = solveLcp(W, b);
-      const noise = 1e-13 * Math.max(...row.map(Math.abs));
-      const next = row.slice();
-      contacts.forEach((c, k) => {
-        next[c.i] += lam[k] * invMass[c.i] * side(c);
-      });
-      contacts.forEach((c, k) => {
-        if (c.j >= 0) next[c.j] -= lam[k] * invMass[c.j] * side(c);
-      });
-      return next.map((value) => (Math.abs(value) > noise ? value : 0));
-    }
-
-    let now = 0,
-      k = 0;
-    while (k <= steps) {
-      // what happens at this instant: impulses, then the forces of what rests
-      let near = pairs.map((_, c) => c).filter((c) => gapOf(pairs[c]) <= TOUCH_IN_RADII * unit);
-      let contacts = near.map((c) => pairs[c]);
-      let speed = contacts.map((c) => along(c, v));
-      if (speed.some((s) => s < -STILL)) {
-        const bounce = near.map((c, at) => {
-          const wanted = held[c] ? 0 : -scene.restitution * speed[at];
-          return wanted * wanted > -2 * GRAVITY * UNSEEN_IN_RADII * unit ? wanted : 0;
-        });
-        v = pushed(
-          v,
-          contacts,
-          speed.map((s, at) => s - bounce[at]),
-        );
-        const after = contacts.map((c) => along(c, v));
-        contacts.forEach((c, at) => {
-          if (speed[at] < -STILL)
-            run.events.push({ t: now, i: c.i, j: c.j, closing: -speed[at], leaving: after[at] });
-        });
-        speed = after;
-      }
-      const rest = near.filter((_, at) => Math.abs(speed[at]) <= STILL);
-      const still = pairs.map(() => false);
-      for (const c of rest) still[c] = true;
-      contacts = rest.map((c) => pairs[c]);
-      a = new Array(n).fill(GRAVITY);
-      if (contacts.length)
-        a = pushed(
-          a,
-          contacts,
-          contacts.map((c) => along(c, a)),
-        );
-      held = still;
-      // fly to the next impact, or to the end
-      const horizon = run.t[steps] - now;
-      let tau = horizon;
-      if (run.events.length < MOST_EVENTS) {
-        pairs.forEach((c, at) => {
-          if (!still[at])
-            tau = Math.min(tau, firstRoot(Math.max(gapOf(c), 0), along(c, v), 0.5 * along(c, a)));
-        });
-      } else run.cut = now;
-      const until = now + tau;
-      for (; k <= steps && (run.t[k] <= until || run.cut !== null); k++) {
-        const s = run.cut === null ? run.t[k] - now : 0;
-        for (let i = 0; i < n; i++) {
-          run.x[k * n + i] = scene.x[i];
-          run.y[k * n + i] = y[i] + s * (v[i] + 0.5 * s * a[i]);
-          run.vy[k * n + i] = v[i] + s * a[i];
-        }
-      }
-      y = y.map((value, i) => value + tau * (v[i] + 0.5 * tau * a[i]));
-      v = v.map((value, i) => value + tau * a[i]);
-      now = until;
-    }
+    ContactExact.run(scene, run.t, gravity, run);
     return run;
   }
 
@@ -376,6 +326,7 @@ const ContactEngine = (() => {
   function energyAt(run, scene, row) {
     let sum = 0;
     for (let i = 0; i < run.n; i++) {
+      if (scene.mass[i] === Infinity) continue;
       const at = row * run.n + i;
       const speed2 = run.vx[at] * run.vx[at] + run.vy[at] * run.vy[at];
       sum += 0.5 * scene.mass[i] * speed2 - scene.mass[i] * GRAVITY * run.y[at];
@@ -383,127 +334,104 @@ const ContactEngine = (() => {
     return sum;
   }
 
-  // Deepest overlap with the floor or one another [m]; NaN once a ball is nowhere.
-  function penetrationAt(run, scene, row) {
+  // The smallest gap [m] to the floor or between two balls; NaN once a ball is nowhere.
+  function smallestGap(run, scene, row) {
     const { n } = run;
-    let deepest = 0;
+    let least = Infinity;
+    const add = (gap) => {
+      if (!(gap >= least)) least = gap;
+    };
     for (let i = 0; i < n; i++) {
       const at = row * n + i;
       if (Number.isNaN(run.y[at])) return NaN;
-      deepest = Math.max(deepest, scene.radius[i] - run.y[at]);
+      add(run.y[at] - scene.radius[i]);
       for (let j = i + 1; j < n; j++) {
         const dx = run.x[at] - run.x[row * n + j];
         const dy = run.y[at] - run.y[row * n + j];
-        deepest = Math.max(deepest, scene.radius[i] + scene.radius[j] - Math.sqrt(dx * dx + dy * dy));
+        add(Math.sqrt(dx * dx + dy * dy) - (scene.radius[i] + scene.radius[j]));
       }
     }
-    return deepest;
+    return least;
   }
 
-  // What the charts show: heights by ball, depth, energy over its start.
+  // The push of the table [N] on all that stands on it, averaged over the step that ends in `row`:
+  // what changed the momentum and was not gravity.
+  function pushOfTable(run, scene, row) {
+    let sum = 0;
+    for (let i = 0; i < run.n; i++) {
+      if (scene.mass[i] === Infinity) continue;
+      const change = run.vy[row * run.n + i] - run.vy[(row - 1) * run.n + i];
+      sum += scene.mass[i] * (change / run.dt - GRAVITY);
+    }
+    return Math.abs(sum) < 1e-9 * Math.abs(GRAVITY) ? 0 : sum;
+  }
+
+  // What the charts show, row by row: depth and gap [r], energy over its start, push in weights.
   function series(run, scene) {
     const rows = run.steps + 1;
-    const depth = new Float64Array(rows);
-    const depthInRadii = new Float64Array(rows);
-    const energy = new Float64Array(rows);
-    const heights = [];
-    for (let i = 0; i < run.n; i++)
-      heights.push(Float64Array.from({ length: rows }, (_, row) => run.y[row * run.n + i]));
+    const column = () => new Float64Array(rows);
+    const found = { gap: column(), depth: column(), energy: column(), push: column() };
+    const weight = scene.mass.reduce((sum, m) => sum - (m < Infinity ? m * GRAVITY : 0), 0);
     const start = energyAt(run, scene, 0);
-    let deepestRow = 0,
-      finiteMax = 0,
-      energyMax = 0;
-    let landing = rows; // the first row in which the lowest ball has met the table
-    for (let row = rows - 1; row > 0; row--) {
-      if (run.vy[row * run.n] >= 0 || run.y[row * run.n] <= scene.radius[0]) landing = row;
-    }
+    let landing = rows; // the first row in which something touches
     for (let row = 0; row < rows; row++) {
-      depth[row] = penetrationAt(run, scene, row);
-      depthInRadii[row] = depth[row] / scene.radius[0];
-      energy[row] = energyAt(run, scene, row) / start;
-      if (depth[row] > depth[deepestRow]) deepestRow = row;
-      if (Number.isFinite(depth[row])) finiteMax = Math.max(finiteMax, depth[row]);
-      if (Number.isFinite(energy[row])) energyMax = Math.max(energyMax, energy[row]);
+      const gap = smallestGap(run, scene, row);
+      found.gap[row] = gap / scene.radius[0];
+      found.depth[row] = Math.max(-gap, 0) / scene.radius[0];
+      found.energy[row] = energyAt(run, scene, row) / start;
+      if (row > 0) found.push[row] = pushOfTable(run, scene, row) / weight;
+      if (landing === rows && !(gap > CONTACT_MARGIN)) landing = row;
     }
-    return { heights, depth, depthInRadii, energy, deepestRow, finiteMax, energyMax, landing };
-  }
-
-  // Energy [J] that contacts put INTO the bodies in the step that ends in `row`. A contact may leave
-  // with e times the speed it closed with, or with the speed it parts at, plus what falling through
-  // its gap adds; what is more than that is put in.
-  function contactWork(run, scene, row) {
-    const { n } = run;
-    const old = (row - 1) * n,
-      now = row * n;
-    let sum = 0;
-    const add = (i, j, nx, ny, depth) => {
-      if (!(depth > -CONTACT_MARGIN)) return;
-      const part = (at) =>
-        nx * (run.vx[at + i] - (j < 0 ? 0 : run.vx[at + j])) +
-        ny * (run.vy[at + i] - (j < 0 ? 0 : run.vy[at + j]));
-      const before = part(old),
-        after = part(now);
-      if (!(after > 0)) return;
-      const closing = Math.max(-before - (j < 0 ? run.dt * GRAVITY : 0), 0);
-      const allowed = Math.max(scene.restitution * closing, before) ** 2 - 2 * GRAVITY * Math.max(-depth, 0);
-      const mobility = 1 / scene.mass[i] + (j < 0 ? 0 : 1 / scene.mass[j]);
-      sum += (0.5 / mobility) * Math.max(after * after - allowed, 0);
-    };
-    for (let i = 0; i < n; i++) add(i, -1, 0, 1, scene.radius[i] - run.y[old + i]);
-    for (let i = 0; i < n; i++) {
-      for (let j = i + 1; j < n; j++) {
-        const dx = run.x[old + i] - run.x[old + j],
-          dy = run.y[old + i] - run.y[old + j];
-        const dist = Math.sqrt(dx * dx + dy * dy);
-        add(
-          i,
-          j,
-          dist > 0 ? dx / dist : 0,
-          dist > 0 ? dy / dist : 1,
-          scene.radius[i] + scene.radius[j] - dist,
-        );
-      }
-    }
-    return sum;
+    return { ...found, landing };
   }
 
   const EXPLODED = 10; // times the start energy: more than this gained is an explosion
 
-  function quality(run, scene, reference) {
-    const rows = run.steps + 1;
-    const unit = scene.radius[0];
-    const start = energyAt(run, scene, 0);
-    const scale = Math.abs(start) || 1;
-    let deepest = 0,
-      excess = -Infinity,
-      work = 0,
-      error = 0,
-      blewUpStep = null;
-    const depth = [];
-    for (let row = 0; row < rows; row++) {
-      depth.push(penetrationAt(run, scene, row) / unit);
-      deepest = Math.max(deepest, depth[row]);
-      const above = (energyAt(run, scene, row) - start) / scale;
-      excess = Math.max(excess, above);
-      if (blewUpStep === null && !(above < EXPLODED)) blewUpStep = row;
-      for (let i = 0; i < run.n; i++) {
-        const at = row * run.n + i;
-        if (reference) error = Math.max(error, Math.abs(run.y[at] - reference.y[at]) / unit);
-      }
-      if (row > 0) work += contactWork(run, scene, row) / scale;
-    }
-    const late = depth.slice(Math.floor((3 * rows) / 4));
+  // The standard deviation of the last quarter.
+  function jitter(depth) {
+    const late = depth.slice(Math.floor((3 * depth.length) / 4));
     const mean = late.reduce((sum, d) => sum + d, 0) / late.length;
-    const spread = Math.sqrt(late.reduce((sum, d) => sum + (d - mean) ** 2, 0) / late.length);
+    return Math.sqrt(late.reduce((sum, d) => sum + (d - mean) ** 2, 0) / late.length);
+  }
+
+  // The worst height error, in radii, and its parts: before `landing`, and what is added after.
+  function heightErrors(run, reference, landing, unit) {
+    if (!reference) return { height_error_frac: null, flight_error_frac: null, contact_error_frac: null };
+    let worst = 0;
+    let flight = 0;
+    for (let at = 0; at < run.y.length; at++) {
+      const error = Math.abs(run.y[at] - reference.y[at]) / unit;
+      if (error > worst) worst = error;
+      if (at < landing * run.n) flight = worst;
+    }
+    return { height_error_frac: worst, flight_error_frac: flight, contact_error_frac: worst - flight };
+  }
+
+  function quality(run, scene, reference, known = series(run, scene)) {
+    const { gap, depth, energy, landing } = known;
+    const start = energyAt(run, scene, 0);
+    const sign = start < 0 ? -1 : 1;
+    let [deepest, excess, risen, rebound] = [0, 0, 0, 0];
+    let blewUpStep = null;
+    for (let row = 0; row < depth.length; row++) {
+      if (!(depth[row] <= deepest)) deepest = depth[row];
+      const above = sign * (energy[row] - 1);
+      if (above > excess) excess = above;
+      if (blewUpStep === null && !(above < EXPLODED)) blewUpStep = row;
+      if (row >= landing && gap[row] > rebound) rebound = gap[row];
+      if (row > 0) risen += Math.max(sign * (energy[row] - energy[row - 1]), 0);
+    }
     return {
       max_penetration_frac: deepest,
-      rest_penetration_frac: depth[rows - 1],
+      rest_penetration_frac: depth[depth.length - 1],
+      rest_gap_frac: gap[gap.length - 1],
+      rebound_frac: rebound,
+      rest_jitter: jitter(depth),
       energy_excess: excess,
-      contact_energy: work,
-      height_error_frac: reference ? error : null,
-      rest_jitter: spread,
+      contact_energy: risen,
       blew_up: blewUpStep !== null,
       blew_up_step: blewUpStep,
+      ...heightErrors(run, reference, landing, scene.radius[0]),
     };
   }
 
@@ -520,15 +448,26 @@ const ContactEngine = (() => {
     GRAVITY,
     CONTACT_MARGIN,
     MODELS,
+    SOLREF,
+    SOLIMP,
     detectContacts,
+    normalSpeed,
+    penaltyNormalForce,
     penaltyStep,
+    makeRows,
+    solveContacts,
+    projectImpulse,
     lcpStep,
+    impedance,
+    softStep,
+    softDefaults,
+    STEP,
     runModel,
+    runExact,
     stateAt,
+    pushOfTable,
     series,
     quality,
     criticalDt,
   };
 })();
-
-if (typeof module !== "undefined") module.exports = ContactEngine;

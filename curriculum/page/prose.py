@@ -1,42 +1,29 @@
 """chapter.md to HTML.
 
 Beside plain Markdown the chapter may hold
-- an include, a fence with the one line [include-by-region: contact.py#NAME]: becomes a code panel;
+- an include, a fence with the one line [include-by-region: FILE#NAME]: becomes a code panel;
 - references to numbers in double braces (curriculum/quoted.py): become the numbers of fresh runs;
 - formulas between dollar signs: become MathML;
 - slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
-  <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. A slot that the chapter does not
-  place goes where DEFAULTS says. Other comments vanish.
+  <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. Other comments vanish;
+- links that set the live figure, [words](try:scene=drop&dt=0.03), and numbers that can be dragged,
+  [0.002](drag:dt). Their names are those of contact.py's flags.
 """
 
 import re
 from html import escape
 from pathlib import Path
+from urllib.parse import parse_qsl
 
 from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 import contact
-from curriculum.check_prose_code_drift import INCLUDE
+from curriculum.check_prose_code_drift import CHAPTER, INCLUDE
 
 SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock)(?:\s*:\s*([\w-]+))?\s*-->\s*")
-# where a slot goes that the chapter does not place: before the panel of a region, or at a section's end
-BEFORE_REGION = {
-    "figure:sink": "penalty",
-    "figure:sweeps": "lcp",
-    "figure:bounces": "exact",
-    "figure:complementarity": "contacts",
-}
-AT_END_OF = {
-    "figure:cliff": "break it",
-    "figure:puzzle": "break it",
-    "exercise:ex1": "practice",
-    "exercise:ex2": "practice",
-    "exercise:ex3": "practice",
-    "bench:bounce": "the measurement",
-    "wallclock": "the measurement",
-}
+SETTINGS = ("scene", "contact", "seed", "solref", "t")  # of a try link, beside the knobs
 
 
 def slug(text):
@@ -46,7 +33,10 @@ def slug(text):
 
 def reserved_ids():
     """Ids that the templates use; a heading of the same name gets another."""
-    texts = (path.read_text(encoding="utf-8") for path in (Path(__file__).parent / "templates").glob("*.j2"))
+    texts = (
+        path.read_text(encoding="utf-8")
+        for path in (Path(__file__).parent / "templates").glob("*.j2")
+    )
     return {name for text in texts for name in re.findall(r'\bid="([\w-]+)"', text)}
 
 
@@ -55,14 +45,14 @@ def parser():
     md = MarkdownIt("commonmark", {"html": True, "typographer": True}).enable(
         ["table", "smartquotes", "replacements"]
     )
-    md.use(
-        dollarmath_plugin,
-        renderer=lambda text, options: convert(
-            text, display="block" if options["display_mode"] else "inline"
-        ),
-    )
+    md.use(dollarmath_plugin, renderer=formula)
     md.add_render_rule("code_inline", inline_code)
     return md
+
+
+def formula(text, options):
+    """A formula as MathML."""
+    return convert(text, display="block" if options["display_mode"] else "inline")
 
 
 def inline_code(self, tokens, index, options, env):
@@ -74,86 +64,146 @@ def inline_code(self, tokens, index, options, env):
     return f"<code{kind}>{escape(text)}</code>"
 
 
-def blocks(text):
-    """The chapter as a list of (kind, value): kind html, heading (level, id, html), include or slot."""
+# ---- links that steer the live figure
+
+
+def steer(tokens, knobs):
+    """Give try links and draggable numbers their markup. Raises ValueError at an unknown name."""
+    for token in tokens:
+        opened = []
+        line = token.map[0] + 1 if token.map else 1
+        for k, child in enumerate(token.children or []):
+            if child.type == "link_open":
+                opened.append(child)
+                scheme, _, rest = child.attrGet("href").partition(":")
+                if scheme == "try":
+                    follow(child, rest, knobs, line)
+                elif scheme == "drag":
+                    drag(child, token.children[k + 1].content, rest, knobs, line)
+            elif child.type == "link_close":
+                child.tag = opened.pop().tag
+
+
+def follow(link, query, knobs, line):
+    """A try link: an address of the page itself."""
+    query = query.replace("&amp;", "&")
+    given = parse_qsl(query, keep_blank_values=True)
+    for name, value in given:
+        if name in knobs:
+            in_range(name, value, knobs, line)
+        elif name not in SETTINGS:
+            raise ValueError(
+                f"{CHAPTER}:{line}: try:{query} sets {name!r}; allowed: "
+                f"{', '.join((*SETTINGS, *knobs))}"
+            )
+    if not given:
+        raise ValueError(
+            f"{CHAPTER}:{line}: try:{query} sets nothing; write try:NAME=VALUE&NAME=VALUE"
+        )
+    link.attrs = {"class": "try", "href": f"?{query}"}
+
+
+def drag(link, text, name, knobs, line):
+    """A number that can be dragged."""
+    if name not in knobs:
+        raise ValueError(f"{CHAPTER}:{line}: drag:{name} is no knob; allowed: {', '.join(knobs)}")
+    value = in_range(name, text, knobs, line)
+    link.tag, link.attrs = (
+        "span",
+        {"class": "drag", "data-knob": name, "data-value": f"{value:.12g}"},
+    )
+
+
+def in_range(name, text, knobs, line):
+    """The number in `text`, which knob `name` must be able to take."""
+    low, high = knobs[name]
+    try:
+        value = float(text.replace(",", ""))
+    except ValueError:
+        value = None
+    if value is None or not low <= value <= high:
+        raise ValueError(
+            f"{CHAPTER}:{line}: {name} cannot be {text!r}; allowed: {low:g} to {high:g}"
+        )
+    return value
+
+
+# ---- blocks
+
+
+def heading_name(inner, used):
+    """An id for a heading that no other has."""
+    name = base = slug(inner)
+    count = 1
+    while name in used:
+        count += 1
+        name = f"{base}-{count}"
+    used.add(name)
+    return name
+
+
+def slots_of(token):
+    """The slots in a block of HTML, which may hold comments and nothing else."""
+    found, rest = [], token.content
+    while slot := SLOT.match(rest):
+        found.append(("slot", slot[1] + (f":{slot[2]}" if slot[2] else "")))
+        rest = rest[slot.end() :]
+    if re.sub(r"<!--.*?-->", "", rest, flags=re.DOTALL).strip():
+        raise ValueError(
+            f"{CHAPTER}:{token.map[0] + 1}: raw HTML, {rest.strip()[:50]!r}; "
+            "allowed: Markdown, and comments that are slots"
+        )
+    return found
+
+
+def end_of(tokens, index):
+    """The index of the token that closes the block which tokens[index] opens."""
+    depth = tokens[index].nesting
+    while depth > 0:
+        index += 1
+        depth += tokens[index].nesting
+    return index
+
+
+def blocks(text, knobs=None):
+    """The chapter as a list of (kind, value): kind html, heading (level, id, html), slot, or include
+    (file, region). `knobs` are the ranges of what links may set, {name: (low, high)}."""
     md = parser()
     tokens, env = md.parse(text), {}
+    steer(tokens, knobs or {})
     out, used, index = [], reserved_ids(), 0
+
+    def html(first, last):
+        shown = md.renderer.render(tokens[first : last + 1], md.options, env)
+        return re.sub(r"<!--.*?-->", "", shown, flags=re.DOTALL)
+
     while index < len(tokens):
-        token = tokens[index]
+        token, end = tokens[index], end_of(tokens, index)
+        include = INCLUDE.fullmatch(token.content.strip()) if token.type == "fence" else None
         if token.type == "heading_open":
-            inner = md.renderer.render(tokens[index + 1 : index + 2], md.options, env)
-            name = base = slug(inner)
-            count = 1
-            while name in used:
-                count += 1
-                name = f"{base}-{count}"
-            used.add(name)
-            out.append(("heading", (int(token.tag[1]), name, inner)))
-            index += 3
-            continue
-        if token.type == "fence" and INCLUDE.fullmatch(token.content.strip()):
-            out.append(("include", INCLUDE.fullmatch(token.content.strip())["name"]))
+            inner = html(index + 1, index + 1)
+            out.append(("heading", (int(token.tag[1]), heading_name(inner, used), inner)))
+        elif include:
+            out.append(("include", (include["file"], include["name"])))
         elif token.type == "html_block":
-            rest = token.content
-            while slot := SLOT.match(rest):
-                out.append(("slot", slot[1] + (f":{slot[2]}" if slot[2] else "")))
-                rest = rest[slot.end() :]
-            if re.sub(r"<!--.*?-->", "", rest, flags=re.DOTALL).strip():
-                raise ValueError(
-                    f"chapter.md:{token.map[0] + 1}: raw HTML, {rest.strip()[:50]!r}; "
-                    "allowed: Markdown, and comments that are slots"
-                )
+            out += slots_of(token)
         elif token.type == "table_open":
-            end = next(k for k in range(index, len(tokens)) if tokens[k].type == "table_close")
-            table = md.renderer.render(tokens[index : end + 1], md.options, env).replace(
-                "<th></th>", "<td></td>"
-            )
-            out.append(
-                ("html", f'<div class="scroll" tabindex="0" role="group" aria-label="Table">{table}</div>')
-            )
-            index = end
-        elif token.type == "fence":
-            out.append(
-                ("html", f'<pre class="shell" tabindex="0"><code>{escape(token.content)}</code></pre>')
-            )
-        else:
-            depth, end = token.nesting, index
-            while depth > 0:
-                end += 1
-                depth += tokens[end].nesting
+            table = html(index, end).replace("<th></th>", "<td></td>")
             out.append(
                 (
                     "html",
-                    re.sub(
-                        r"<!--.*?-->",
-                        "",
-                        md.renderer.render(tokens[index : end + 1], md.options, env),
-                        flags=re.DOTALL,
-                    ),
+                    '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
+                    f"{table}</div>",
                 )
             )
-            index = end
-        index += 1
+        elif token.type == "fence":
+            out.append(
+                (
+                    "html",
+                    f'<pre class="shell" tabindex="0"><code>{escape(token.content)}</code></pre>',
+                )
+            )
+        else:
+            out.append(("html", html(index, end)))
+        index = end + 1
     return out
-
-
-def place(parts, known):
-    """Add the slots that the chapter does not place, if the page knows them (`known`)."""
-    present = {value for kind, value in parts if kind == "slot"}
-    for slot, region in BEFORE_REGION.items():
-        if slot in known and slot not in present:
-            at = next((k for k, part in enumerate(parts) if part == ("include", region)), None)
-            if at is not None:
-                head = max((k for k in range(at) if parts[k][0] == "heading"), default=at)
-                parts.insert(min(head + 2, at) if at - head > 2 else min(head + 1, at), ("slot", slot))
-    for slot, title in AT_END_OF.items():
-        if slot in known and slot not in present:
-            heads = [k for k, (kind, value) in enumerate(parts) if kind == "heading" and value[0] == 2]
-            here = next((k for k in heads if title in parts[k][1][2].lower()), None)
-            end = len(parts) if here is None else next((k for k in heads if k > here), len(parts))
-            if slot == "figure:cliff" and here is not None:
-                # a small figure stands beside the section's first paragraphs
-                end = here + 1 + (sum(kind == "html" for kind, _ in parts[here:end]) > 1)
-            parts.insert(end, ("slot", slot))
-    return parts

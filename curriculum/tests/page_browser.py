@@ -6,7 +6,11 @@ import pytest
 
 from curriculum.page.browser import CHROMIUM, FLAGS
 
-needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: apt-get install chromium")
+needs_chromium = pytest.mark.skipif(
+    CHROMIUM is None, reason="no Chromium here: apt-get install chromium"
+)
+SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
+  localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
 
 
 @contextlib.contextmanager
@@ -21,21 +25,38 @@ def running():
 
 
 @contextlib.contextmanager
-def visiting(browser, url, width=1280, height=900, query="", motion="reduce", javascript=True, **options):
-    """A fresh profile on the page. Fails if the page complains, throws, or asks for anything but itself."""
+def visiting(
+    browser,
+    url,
+    width=1280,
+    height=900,
+    query="",
+    motion="reduce",
+    javascript=True,
+    shown=True,
+    **options,
+):
+    """A fresh profile on the page. Fails if the page complains, throws, or asks for anything but itself.
+
+    `shown`: as for a reader who has asked to see the answers of the bets.
+    """
     context = browser.new_context(
         viewport={"width": width, "height": height},
         reduced_motion=motion,
         java_script_enabled=javascript,
         **options,
     )
+    if shown:
+        context.add_init_script(f"if (!sessionStorage.seen) {{ sessionStorage.seen = 1; {SHOWN} }}")
     page = context.new_page()
     page.set_default_timeout(10_000)
     trouble = []
     page.on(
         "console",
         lambda message: (
-            trouble.append(f"console: {message.text}") if message.type in ("error", "warning") else None
+            trouble.append(f"console: {message.text}")
+            if message.type in ("error", "warning")
+            else None
         ),
     )
     page.on("pageerror", lambda error: trouble.append(f"error: {error}"))
