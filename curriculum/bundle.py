@@ -212,7 +212,7 @@ def meta(root, made, numbers):
 
 def exercises(root):
     """{file name: text} of exercises/suggested."""
-    import contact
+    from curriculum import terminal
     folder, facts, made = Path(root) / "exercises", load_meta(root), {"checks.py": part("checks")}
     for path in sorted(folder.glob("ex[123]_*.py")):
         name, text = path.name.split("_")[0], path.read_text("utf-8")
@@ -230,7 +230,7 @@ def exercises(root):
         bands = course_bands(facts["exercises"][name])
         runs = {}
         for run in dict.fromkeys(key.partition(":")[0] for key in bands):
-            args = contact.parse_flags([str(flag) for flag in facts["runs"][run]])
+            args = terminal.parse_flags([str(flag) for flag in facts["runs"][run]])
             runs[run] = (args.scene, args.dt, args.steps)
         choices = "\n".join(f"  {letter}) {each}" for letter, each in words["CHOICES"].items())
         made[path.name] = part("predict").format(

@@ -15,7 +15,7 @@ import numpy as np
 
 MODELS = ("penalty", "lcp", "soft")
 PENALTY, LCP, SOFT = range(3)
-SKIN = 0.2      # of the largest radius: how much farther the list of pairs looks than it must
+SKIN = 1.0      # of the largest radius: how much farther the list of pairs looks than it must
 BALL = np.dtype([(name, float) for name in (
     "vx", "vy", "inv_mass", "radius", "x", "y",
     "listed_x", "listed_y",                     # where it was when the pairs were listed
@@ -503,36 +503,34 @@ def smallest_gap(q, radius):
 def find_gaps(q, radius):
     """The smallest gap in each state.
 
-    No pair that is not listed can be as near as `reach` when they were listed, less what two
-    balls have moved. If that does not decide, the pairs are listed anew, as far as it takes.
+    A pair that is not listed was farther apart than `reach`, and may have come nearer by what two
+    balls have moved. Where that does not decide, the pairs are listed anew, as far as it takes.
     """
     gaps = np.empty(len(q))
-    nothing = np.zeros((4, len(radius)))
-    balls = make_balls(nothing, radius, radius)
-    reach = 0.0
-    pairs = list_pairs(balls, reach)
+    nowhere = np.full((4, len(radius)), math.nan)
+    balls = make_balls(nowhere, radius, radius)
+    pairs = list_pairs(balls, 0.0)
+    reach = -math.inf
     for k in range(len(q)):
-        place_balls(balls, q[k])
-        if not np.isfinite(q[k]).all():
+        for i in range(len(radius)):
+            balls[i].x, balls[i].y = q[k, 0, i], q[k, 1, i]
+        if not (np.isfinite(q[k]).all() and np.isfinite(radius).all()):
             gaps[k] = gap_of_all(balls)
             continue
         gaps[k] = gap_of_listed(balls, pairs)
-        if not gaps[k] <= 0.999 * reach - 2.0 * farthest_move(balls):
-            reach = 2.0 * max(gaps[k], 0.0) + SKIN * np.max(radius)
+        if not gaps[k] < 0.999 * reach - 2.0 * farthest_move(balls):
+            reach = SKIN * np.max(radius) + 1e-150
             pairs = list_pairs(balls, reach)
             gaps[k] = gap_of_listed(balls, pairs)
+            while not gaps[k] < 0.999 * reach:
+                reach *= 2.0
+                pairs = list_pairs(balls, reach)
+                gaps[k] = gap_of_listed(balls, pairs)
     return gaps
 # --- endregion ---
 
 
 # --- region: piles-gap-of ---
-@compiled
-def place_balls(balls, q):
-    """Put the balls at the places (2, N)."""
-    for i in range(len(balls) - 1):
-        balls[i].x, balls[i].y = q[0, i], q[1, i]
-
-
 @compiled
 def gap_between(a, b):
     """The gap [m] between two balls."""

@@ -103,7 +103,7 @@ def run_hash(config_hash, root=ROOT):
 
 
 def read_runs(path=None):
-    """{tier: {"seconds": [...], "config_hash", "commit", "date"}}, {} without a file."""
+    """{tier: {"seconds": [...], "config_hash", "commit", "date", "digest"}}, {} without a file."""
     import json
     path = os.path.join(os.path.dirname(path or LEDGER), RUNS)
     if not os.path.exists(path):
@@ -112,12 +112,22 @@ def read_runs(path=None):
         return json.load(file)
 
 
+def digest(record):
+    """12 hexadecimal digits of what is recorded of one measurement, but for the digest itself."""
+    import hashlib
+    import json
+    facts = {key: value for key, value in record.items() if key != "digest"}
+    return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:12]
+
+
 def unfounded(row, runs):
     """What a MEASURED row says that its recorded times do not, or None."""
     import statistics
     record = runs.get(row["tier"])
     if not record:
         return f"no times of {row['tier']} in {RUNS}"
+    if record.get("digest") != digest(record):
+        return f"{RUNS} was edited: its digest no longer fits"
     minutes = f"{statistics.median(record['seconds']) / 60:.3g}"
     for name, said in (("wallclock_min", minutes), *((key, record[key]) for key in
                                                      ("config_hash", "commit", "date"))):
@@ -163,8 +173,8 @@ def write_row(tier, seconds, config_hash, commit, date, path=None):
     path = path or LEDGER
     minutes = f"{statistics.median(seconds) / 60:.3g}"
     values = CHAPTER, tier, minutes, config_hash, commit, date, "MEASURED"
-    times = {**read_runs(path), tier: {"seconds": list(seconds), "config_hash": config_hash,
-                                       "commit": commit, "date": date}}
+    record = {"seconds": list(seconds), "config_hash": config_hash, "commit": commit, "date": date}
+    times = {**read_runs(path), tier: {**record, "digest": digest(record)}}
     rows = {(r["chapter"], r["tier"]): r for r in read(path)}
     for name in SHOWN:
         pending = CHAPTER, name, "", "", "", "", "PENDING"

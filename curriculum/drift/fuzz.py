@@ -232,7 +232,7 @@ KINDS = (
     Kind("a band", META, band),
     Kind("a hint or reveal", META, typo_in(r"^ {6,}(?:- |[A-Z]: )?.*?\b([a-z]{4,})\b", 1)),
     Kind("an objective", META, typo_in(r"^  - .*?\b([a-z]{4,})\b", 1)),
-    Kind("a reference number", META, digit_of(r"^    \S+: (-?\d+\.\d+)$", 1)),
+    Kind("a reference number", META, digit_of(r"^    \S+: (-?\d+\.\d{1,8})", 1)),
     Kind("a run's flags", META, digit_of(r"^  [\w.-]+: \[.*\]$")),
     Kind("a hash", META, digit_of(r"^ +[\w-]+: ([0-9a-f]{64})$", 1)),
     Kind("what is read", META, digit_of(r"^  (?:tag|commit): (\S+)", 1)),

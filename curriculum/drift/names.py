@@ -33,6 +33,7 @@ WORD = re.compile(r"[A-Za-z_]\w*")
 FLAG = re.compile(r"(?<![\w-])--[a-z][\w-]*")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)|<img[^>]*\bsrc=\"([^\"]+)\"")
 PYTHON = re.compile(r"(\S*/)?(python[\d.]*|pytest|pip|uv|rerun)")
+GENERATED = re.compile(r"<!-- generated: [\w-]+ by ([^>]*?) -->")
 PLACEHOLDER = re.compile(r"[A-Z][A-Z_:]*|\.\.\.|\[.*\]|<.*>|'?[A-Z]+\|?[A-Z]*'?")
 HELP = {}               # (target, its text): what --help prints
 OTHERS = ("pytest", "pip", "uv", "rerun", "git", "venv", "http")    # commands with flags of their own
@@ -223,8 +224,8 @@ def _extras_problem(root, words):
 
 
 def commands(text):
-    """(line number, command) of every command in fences, code spans and indented examples."""
-    found = []
+    """(line number, command) of every command in fences, code spans and heads of generated blocks."""
+    found = [(line_at(text, match.start()), match[1]) for match in GENERATED.finditer(text)]
     for fence in FENCE.finditer(text):
         first = line_at(text, fence.start())
         lines = re.sub(r"\\\n", "  ", fence[0]).split("\n")

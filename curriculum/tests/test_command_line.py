@@ -107,7 +107,8 @@ def test_out_at_a_file_or_below_one_is_refused_and_the_file_is_left_alone(tmp_pa
 def test_an_unwritable_folder_is_refused_in_one_line():
     code = (
         "import os, sys, contact\n"
-        "contact.parse_flags([])\n"  # loads what other users may not be allowed to read
+        "from curriculum import terminal\n"
+        "terminal.parse_flags([])\n"  # loads what other users may not be allowed to read
         "from curriculum.common import device, progress, results\n"
         "if os.getuid() == 0: os.setuid(65534)\n"
         "contact.main(sys.argv[1:])"

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import contact
+from curriculum import terminal
 from curriculum.bench import closed_form
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -167,7 +168,7 @@ def test_11_every_region_has_its_hash_in_meta_yaml():
     names = re.findall(r"^# --- region: ([\w-]+) ---$", (ROOT / "contact.py").read_text(), re.M)
     assert {"setup", "scenes", "contacts", "penalty", "lcp", "simulate", "report"} <= set(names)
     for name in names:
-        assert re.search(rf"^  {name}: \W?[0-9a-f]{{64}}", text, re.M), f"no hash of {name}"
+        assert re.search(rf"^ +{name}: \W?[0-9a-f]{{64}}", text, re.M), f"no hash of {name}"
 
 
 @pytest.mark.parametrize("model", contact.MODELS)
@@ -189,7 +190,7 @@ def test_13_the_verdict_claims_only_the_depths_it_tests(swap, said, capsys):
     grid = dict.fromkeys(("penalty", "lcp", "soft", "dt_crit_penalty", "dt_crit_damped"), 0.01)
     grid |= dict.fromkeys(("penalty_penetration_frac", "lcp_penetration_frac"), 0.1)
     grid["soft_penetration_frac"] = 0.1
-    contact.print_report(SimpleNamespace(scene="drop", seed=0, steps=800, dt=DT), rows, grid)
+    terminal.print_report(SimpleNamespace(scene="drop", seed=0, steps=800, dt=DT), rows, grid)
     (line,) = [line for line in capsys.readouterr().out.splitlines() if "verdict" in line]
     assert line.endswith(said) and "jitter" not in line and "sink" not in line
 

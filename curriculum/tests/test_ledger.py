@@ -88,6 +88,20 @@ def test_what_is_typed_into_the_ledger_is_refused(ledger, tmp_path, old, new, sa
     assert said in problem and problem.startswith("wallclock.csv:")
 
 
+def test_times_that_were_edited_are_refused_even_if_the_median_stays(ledger, tmp_path):
+    path = tmp_path / wallclock.RUNS
+    path.write_text(path.read_text().replace("0.3,", "0.9,"))
+    (problem,), _ = ledger()
+    assert "wallclock_runs.json was edited: its digest no longer fits" in problem
+
+
+def test_a_tier_that_the_course_does_not_show_is_refused(ledger, tmp_path):
+    path = tmp_path / "wallclock.csv"
+    path.write_text(path.read_text().replace(",4090,", ",4097,"))
+    problems, _ = ledger()
+    assert len(problems) == 2 and "tier 4090 has" in problems[0] and "tier 4097" in problems[1]
+
+
 @pytest.fixture
 def project(tmp_path, monkeypatch):
     """A project whose contact.py is a stand-in: what it does, and what git finds changed."""
