@@ -29,28 +29,28 @@ from curriculum.quoted import Numbers, load_meta
 CELLS = "curriculum/notebook_cells.py"
 SLOT = re.compile(r"<!-- (figure|exercise): ([\w-]+) -->")
 LIVE = re.compile(r"\[([^\]]*)\]\((?:try|drag):[^)]*\)")
-REST = "## The rest of the file"        # of the chapter; a notebook has it in folded cells
+REST = "## The rest of the file"  # of the chapter; a notebook has it in folded cells
 SCRIPTS = ("contact.py", "curriculum/exact.py")
 HIDDEN = {"jupyter": {"source_hidden": True}, "cellView": "form"}
-AFTER = {"first": "3.5: Contact", "mujoco": "Way three: soft"}   # a cell behind a section, no figure
+AFTER = {"first": "3.5: Contact", "mujoco": "Way three: soft"}  # a cell behind a section, no figure
 
-INSTALL = '''\
+INSTALL = """\
 #@title Install numpy and matplotlib where they are missing; the colours of the models
 import importlib.util, subprocess, sys
 tested = {"numpy": "2.4.6", "matplotlib": "3.11.2"}
 missing = [f"{name}=={tested[name]}" for name in tested if importlib.util.find_spec(name) is None]
 if missing:
     subprocess.check_call([sys.executable, "-m", "pip", "install", "--quiet", *missing])
-COLORS = {colors}'''
+COLORS = {colors}"""
 
-EXACT = '''\
+EXACT = """\
 #@title run_model looks for exact.py in the folder of the course; here it finds it in this notebook
 import sys, types
 exact = types.SimpleNamespace(simulate_exact=simulate_exact)
 sys.modules["curriculum"] = types.ModuleType("curriculum")
-sys.modules["curriculum"].exact = exact'''
+sys.modules["curriculum"].exact = exact"""
 
-EX2 = '''\
+EX2 = """\
 def my_penalty_normal_force(depth, v_n, stiffness, damping):
     return ...          # yours
 
@@ -64,7 +64,7 @@ for mine, reference, tries in (
     for inputs in tries:
         got, expected = mine(*inputs), reference(*inputs)
         print(f"{mine.__name__}{inputs}:", "still a blank" if got is ... else "right"
-              if abs(got - expected) <= 1e-12 else f"got {got!r}, expected {expected!r}")'''
+              if abs(got - expected) <= 1e-12 else f"got {got!r}, expected {expected!r}")"""
 
 
 class Cell(NamedTuple):
@@ -91,8 +91,12 @@ def names_of(source):
         elif isinstance(node, (ast.Import, ast.ImportFrom)):
             defined |= {name.asname or name.name for name in node.names}
         elif isinstance(node, ast.Assign):
-            defined |= {name.id for target in node.targets for name in ast.walk(target)
-                        if isinstance(name, ast.Name)}
+            defined |= {
+                name.id
+                for target in node.targets
+                for name in ast.walk(target)
+                if isinstance(name, ast.Name)
+            }
     used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     return frozenset(defined), frozenset(used)
 
@@ -106,8 +110,11 @@ def own_cells(root):
 def command_line(root):
     """The regions of contact.py that neither chapter nor notebook shows: `not_shown` of meta.yaml."""
     hidden = load_meta(root).get("not_shown") or []
-    return [name for name in regions.find(root / "contact.py")
-            if any(fnmatchcase(name, pattern) for pattern in hidden)]
+    return [
+        name
+        for name in regions.find(root / "contact.py")
+        if any(fnmatchcase(name, pattern) for pattern in hidden)
+    ]
 
 
 class Builder:
@@ -115,9 +122,13 @@ class Builder:
 
     def __init__(self, root):
         self.root, self.out = root, []
-        self.regions = {script: {name: code_cell(f"# {script}, region {name}\n{region.text.strip()}")
-                                 for name, region in regions.find(root / script).items()}
-                        for script in SCRIPTS}
+        self.regions = {
+            script: {
+                name: code_cell(f"# {script}, region {name}\n{region.text.strip()}")
+                for name, region in regions.find(root / script).items()
+            }
+            for script in SCRIPTS
+        }
         for name in command_line(root):
             del self.regions["contact.py"][name]
         self.late, self.done, self.waiting = set(), set(), []
@@ -126,7 +137,8 @@ class Builder:
     def all_regions(self):
         """Every region's cell, of both scripts, and the one that joins them."""
         return [cell for found in self.regions.values() for cell in found.values()] + [
-            Cell("code", EXACT, True, frozenset({"exact"}), frozenset({"simulate_exact"}))]
+            Cell("code", EXACT, True, frozenset({"exact"}), frozenset({"simulate_exact"}))
+        ]
 
     def add(self, cell):
         """Add a cell, and after it the pictures that waited for what it defines."""
@@ -150,8 +162,12 @@ class Builder:
 
     def can_come(self, cell):
         """Whether all that a cell still lacks are regions that the chapter shows late."""
-        late = [found[name].defines for found in self.regions.values() for name in found
-                if name in self.late]
+        late = [
+            found[name].defines
+            for found in self.regions.values()
+            for name in found
+            if name in self.late
+        ]
         return self.lacks(cell) <= set().union(*late)
 
     def bring(self, cell):
@@ -200,7 +216,7 @@ class Builder:
             include = INCLUDE.search(found[0])
             if not (include or found[3] or found[0] == ""):
                 continue
-            self.prose(shown[done:found.start()])
+            self.prose(shown[done : found.start()])
             done = found.end()
             if include:
                 self.include(include["file"], include["name"])
@@ -227,13 +243,23 @@ def exercise_cells(root, name, numbers):
     words, title, text = exercise_words(path)
     if "CHOICES" not in words:
         return [Cell("markdown", f"**{title}** {text.split(chr(10) * 2)[0]}"), code_cell(EX2)]
-    reasons = "\n\n".join(f"**{letter}.** {' '.join(numbers.render(reason).split())}"
-                          for letter, reason in facts["reveal"].items())
+    reasons = "\n\n".join(
+        f"**{letter}.** {' '.join(numbers.render(reason).split())}"
+        for letter, reason in facts["reveal"].items()
+    )
     choices = "\n".join(f"- **{letter}.** {choice}" for letter, choice in words["CHOICES"].items())
-    return [Cell("markdown", f"**{title}** {words['QUESTION']}\n\n{choices}\n\n{words['WHY_PROMPT']} "
-                 "Write your letter and your sentence into this cell before you unfold the next."),
-            Cell("markdown", "<details><summary>What happens: unfold when you have chosen</summary>"
-                 f"\n\nThe answer is {facts['answer']}.\n\n{reasons}\n\n</details>")]
+    return [
+        Cell(
+            "markdown",
+            f"**{title}** {words['QUESTION']}\n\n{choices}\n\n{words['WHY_PROMPT']} "
+            "Write your letter and your sentence into this cell before you unfold the next.",
+        ),
+        Cell(
+            "markdown",
+            "<details><summary>What happens: unfold when you have chosen</summary>"
+            f"\n\nThe answer is {facts['answer']}.\n\n{reasons}\n\n</details>",
+        ),
+    ]
 
 
 def exercise_words(path):
@@ -245,7 +271,7 @@ def exercise_words(path):
             try:
                 words[node.targets[0].id] = ast.literal_eval(node.value)
             except ValueError:
-                continue                                # reckoned, so no words
+                continue  # reckoned, so no words
     title, _, text = ast.get_docstring(tree).partition("\n")
     return words, title, text.strip()
 
@@ -257,8 +283,10 @@ def cells(root, numbers):
     builder = Builder(root)
     out = builder.chapter(numbers.render(text), numbers)
     if builder.waiting:
-        raise ValueError(f"{CELLS}: a cell uses what no cell before it defines: "
-                         f"{sorted(builder.lacks(builder.waiting[0]))}")
+        raise ValueError(
+            f"{CELLS}: a cell uses what no cell before it defines: "
+            f"{sorted(builder.lacks(builder.waiting[0]))}"
+        )
     colors = repr(model_colors(root))
     return [*out[:1], code_cell(INSTALL.replace("{colors}", colors), folded=True), *out[1:]]
 
@@ -276,14 +304,17 @@ def first_picture(source):
     import matplotlib
     from matplotlib import pyplot
     from nbformat import v4
+
     matplotlib.use("Agg")
     pyplot.close("all")
     exec(compile(source, CELLS, "exec"), {})
     file = io.BytesIO()
     pyplot.savefig(file, format="png", metadata={"Software": None})
     pyplot.close("all")
-    data = {"image/png": base64.b64encode(file.getvalue()).decode() + "\n",
-            "text/plain": "<Figure: the drop, without a table>"}
+    data = {
+        "image/png": base64.b64encode(file.getvalue()).decode() + "\n",
+        "text/plain": "<Figure: the drop, without a table>",
+    }
     return v4.new_output("display_data", data)
 
 
@@ -293,6 +324,7 @@ def build(root=regions.ROOT, numbers=None):
     `numbers` are the generated numbers that the text quotes; without them they are made.
     """
     from nbformat import v4, validate, writes
+
     made, ids, first = [], set(), own_cells(Path(root))["first"].source
     for cell in cells(Path(root), numbers or Numbers(root)):
         base = name = hashlib.sha256(f"{cell.kind}\n{cell.source}".encode()).hexdigest()[:16]
@@ -303,9 +335,13 @@ def build(root=regions.ROOT, numbers=None):
         made.append(new(cell.source, id=name, metadata=HIDDEN if cell.folded else {}))
         if cell.source == first:
             made[-1].outputs = [first_picture(first)]
-    notebook = v4.new_notebook(cells=made, metadata={
-        "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
-        "language_info": {"name": "python"}})
+    notebook = v4.new_notebook(
+        cells=made,
+        metadata={
+            "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+            "language_info": {"name": "python"},
+        },
+    )
     validate(notebook)
     return writes(notebook) + "\n"
 
@@ -313,8 +349,13 @@ def build(root=regions.ROOT, numbers=None):
 def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 the notebook can't be built."""
     parser = Parser(prog="python -m curriculum.notebook", description="The chapter as a notebook.")
-    parser.add_argument("--out", type=Path, default=Path("outputs/contact.ipynb"), metavar="FILE",
-                        help="the file to write (outputs/contact.ipynb)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("outputs/contact.ipynb"),
+        metavar="FILE",
+        help="the file to write (outputs/contact.ipynb)",
+    )
     args = parser.parse_args(argv)
     try:
         text = build()

@@ -4,7 +4,8 @@ Each cell begins with a line `# %% NAME`. curriculum/notebook.py puts it where t
 figure of that name, or as soon as everything it uses is defined. The names that are not defined
 here are those of contact.py and curriculum/exact.py, whose regions are cells before it.
 """
-# ruff: noqa: F821, F811, E402
+# ruff: noqa: B007, E402, F811, F821
+# fmt: off
 
 # %% first
 # A ball falls, and the integrator of chapter 3.3 has never heard of a table.

@@ -18,19 +18,19 @@ pytest.importorskip("yaml", reason="PyYAML is missing: pip install -e '.[page]'"
 from curriculum import notebook, regions  # noqa: E402
 
 ROOT = regions.ROOT
-ASKED = '''\
+ASKED = """\
 import json
 def plainly(quality):
     return {key: round(value, 12) if isinstance(value, float) else value
             for key, value in quality.items()}
 print(json.dumps({model: plainly(quality) for model, quality in qualities.items()}))
-'''
-GROOVE = '''\
+"""
+GROOVE = """\
 path = {clamp: fall_into_groove(rule) for clamp, rule in
         (("sum", lambda lam, dlam: max(0.0, lam + dlam)),
          ("change", lambda lam, dlam: lam + max(0.0, dlam)))}
 print(json.dumps({clamp: float(abs(found[0]).max()) for clamp, found in path.items()}))
-'''
+"""
 
 
 @pytest.fixture(scope="module")
@@ -56,8 +56,9 @@ def executed(text, tmp_path_factory):
     for question in (ASKED, GROOVE):
         book.cells.append(nbformat.v4.new_code_cell(question))
     folder = tmp_path_factory.mktemp("notebook")
-    nbclient.NotebookClient(book, timeout=300, kernel_name="python3",
-                            resources={"metadata": {"path": str(folder)}}).execute()
+    nbclient.NotebookClient(
+        book, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
+    ).execute()
     return book
 
 
@@ -70,19 +71,27 @@ def code_of(book):
 
 
 def pictures(cell):
-    return [output.data["image/png"] for output in cell.outputs
-            if "image/png" in output.get("data", {})]
+    return [
+        output.data["image/png"] for output in cell.outputs if "image/png" in output.get("data", {})
+    ]
 
 
 def test_two_builds_are_the_same_bytes_whatever_the_hash_seed(text, numbers, tmp_path):
     """The runs are handed over: that they repeat is tested with the script."""
     (tmp_path / "runs.json").write_text(json.dumps(numbers.runs), encoding="utf-8")
-    again = ("import json, sys; from curriculum import notebook; "
-             "runs = json.load(open(sys.argv[1], encoding='utf-8')); "
-             "sys.stdout.buffer.write(notebook.build("
-             "numbers=notebook.Numbers(notebook.regions.ROOT, runs)).encode())")
-    run = subprocess.run([sys.executable, "-B", "-c", again, tmp_path / "runs.json"], cwd=ROOT,
-                         env=os.environ | {"PYTHONHASHSEED": "7"}, capture_output=True, check=True)
+    again = (
+        "import json, sys; from curriculum import notebook; "
+        "runs = json.load(open(sys.argv[1], encoding='utf-8')); "
+        "sys.stdout.buffer.write(notebook.build("
+        "numbers=notebook.Numbers(notebook.regions.ROOT, runs)).encode())"
+    )
+    run = subprocess.run(
+        [sys.executable, "-B", "-c", again, tmp_path / "runs.json"],
+        cwd=ROOT,
+        env=os.environ | {"PYTHONHASHSEED": "7"},
+        capture_output=True,
+        check=True,
+    )
     assert run.stdout == text.encode()
 
 
@@ -114,9 +123,15 @@ def test_no_name_stands_in_both_scripts():
 
     Modules that both import are the same in both.
     """
-    first, second = (set().union(*[notebook.code_cell(region.text).defines
-                                   for region in regions.find(ROOT / script).values()])
-                     for script in notebook.SCRIPTS)
+    first, second = (
+        set().union(
+            *[
+                notebook.code_cell(region.text).defines
+                for region in regions.find(ROOT / script).values()
+            ]
+        )
+        for script in notebook.SCRIPTS
+    )
     assert first & second == {"math", "np", "NamedTuple"}
 
 
@@ -148,8 +163,11 @@ def test_it_runs_from_top_to_bottom_beside_no_project_and_shows_its_pictures(exe
 
 
 def test_its_numbers_are_those_of_the_script(executed, tmp_path):
-    subprocess.run([sys.executable, ROOT / "contact.py", "--no-rerun", "--out", tmp_path],
-                   check=True, capture_output=True)
+    subprocess.run(
+        [sys.executable, ROOT / "contact.py", "--no-rerun", "--out", tmp_path],
+        check=True,
+        capture_output=True,
+    )
     script = json.loads((tmp_path / "metrics.json").read_text("utf-8"))["quality"]
     assert json.loads(printed(executed.cells[-2])) == script
 
