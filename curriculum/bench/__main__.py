@@ -1,14 +1,18 @@
 """The benchmark's command line.
 
-    python -m curriculum.bench            run time against error, all problems and methods
+    python -m curriculum.bench            everything below, one after the other
+    python -m curriculum.bench accuracy   run time against error, on problems with a known answer
+    python -m curriculum.bench solvers    the complementarity problem alone: time against residual
+    python -m curriculum.bench cradle     Newton's cradle by gap, and the forces in a tower
+    python -m curriculum.bench soft       from MuJoCo's contact to lcp, on one line
+    python -m curriculum.bench pile       time per step of 12 to 10,000 balls
     python -m curriculum.bench skip       same bytes with and without skips; what skipping saves
-    python -m curriculum.bench pile       time per step of piles of 100, 1,000 and 10,000 balls
-    python -m curriculum.bench draw       pages and figures again, from results.json alone
-    python -m curriculum.bench readme     the README's generated blocks again, from results.json
-    python -m curriculum.bench readme --check     or only say whether they are up to date
+    python -m curriculum.bench draw       pages and figures again, from the results alone
 
-The first three write results.json, a page and figures into curriculum/bench/results. With --quick
-they take seconds, measure less, and write to outputs/bench-quick, which nothing quotes.
+Each writes its section of results.json, a page and figures into curriculum/bench/results. A run
+that is stopped goes on where it was; --fresh begins anew. With --quick it takes seconds, measures
+less, and writes to outputs/bench-quick, which nothing quotes. `python -m curriculum.readme` puts
+the results into the README.
 """
 
 import os
@@ -17,67 +21,97 @@ import sys
 for _library in ("OMP", "OPENBLAS", "MKL"):     # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
+from importlib import import_module
 from pathlib import Path
 
-from curriculum.bench import (accuracy, accuracy_page, figures, piles, piles_page, readme, skips,
-                              skips_page, store)
+from curriculum import measured
+from curriculum.bench import problems
 from curriculum.common.arguments import Parser, writable_folder
 from curriculum.common.files import write_whole
 
-MEASURE = {"error": accuracy, "skip": skips, "pile": piles}
-PAGES = {"error": accuracy_page, "skip": skips_page, "pile": piles_page}
+WHAT = ("accuracy", "solvers", "cradle", "soft", "pile", "skip")
+MODULES = {"pile": "piles", "skip": "skips"}
+RESULTS = Path(__file__).resolve().parent / "results"       # the full runs, which are kept
+QUICK = measured.ROOT / "outputs" / "bench-quick"           # the short ones, which are not
+CELLS = measured.ROOT / "outputs" / "bench-cells"           # what a stopped run has done so far
+PACKAGES = ("matplotlib", "mujoco", "pymunk", "box2d", "pyb2d3", "drake", "scipy", "quadprog",
+            "numba", "rerun-sdk")
 
 
-def pages(sections):
-    """{file name: text} of every page that the sections give."""
-    return {f"{name}.md": PAGES[name].page(section) for name, section in sections.items()}
+def module(what):
+    """What measures a section."""
+    return import_module(f"curriculum.bench.{MODULES.get(what, what)}")
 
 
-def pictures(sections):
-    """{file name: text} of every figure that the sections give. ImportError without matplotlib."""
-    made = {}
-    for name, section in sections.items():
-        if name == "error":
-            for problem in section["problems"]:
-                made[f"error-{problem}.svg"] = figures.error_figure(section, problem)
-        elif name == "skip":
-            made["skip.svg"] = figures.skip_figure(section)
-        else:
-            made["pile.svg"] = figures.pile_figure(section)
-    return made
+def report(what):
+    """What writes about it."""
+    return import_module(f"curriculum.bench.reports.{MODULES.get(what, what)}")
 
 
-def main(argv=None):
-    """Returns the exit status."""
-    parser = Parser(prog="python -m curriculum.bench", description="Run time against error.")
-    parser.add_argument("what", nargs="?", default="error", choices=(*MEASURE, "draw", "readme"))
-    parser.add_argument("--quick", action="store_true", help="reduced settings, in seconds, for CI")
-    parser.add_argument("--check", action="store_true", help="readme: only look, exit 1 if stale")
-    parser.add_argument("--out", type=writable_folder, help="folder of results.json and what it gives")
-    args = parser.parse_args(argv)
-    if args.check and args.what != "readme":
-        parser.error("argument --check: allowed with readme only")
-    folder = Path(args.out or (store.QUICK if args.quick else store.RESULTS))
-    if args.what == "readme":
-        return readme.main(folder, args.check)
-    if args.what == "draw":
-        sections = store.load(folder)
-        if not sections:
-            parser.error(f"nothing to draw: {folder / store.NAME} is missing; "
-                         "run python -m curriculum.bench")
-    else:
-        measured = store.save(folder, args.what, MEASURE[args.what].measure(args.quick))[args.what]
-        sections = {args.what: measured}
-        for goal in PAGES[args.what].goals(measured):
-            print(f"{goal.verdict().strip('*'):12} {goal.wanted}: {goal.measured}")
-    made, trouble = pages(sections), None
+def measure(what, args):
+    """Measure one section and save it; returns it as read back."""
+    work = module(what)
+    options = {"only": args.only} if args.only else {}
+    cells = {}
+    if not args.quick:
+        path = CELLS / f"{what}.jsonl"
+        if args.fresh and path.exists():
+            path.unlink()
+        cells = measured.Cells(path, work.CODE, about=_versions())
+    section = work.measure(args.quick, cells=cells, **options)
+    return measured.save(args.folder, what, section, work.COMMAND, work.CODE, PACKAGES)
+
+
+def _versions():
+    """What else a cell depends on: a new engine is measured anew."""
+    return measured.provenance((), PACKAGES)["versions"]
+
+
+def write(folder, what, section):
+    """Write the page and the figures of one section; returns what could not be drawn, or None."""
+    trouble, made = None, {f"{what}.md": report(what).page(section)}
     try:
-        made |= pictures(sections)
+        made |= report(what).figures(section)
     except ImportError as error:
         trouble = error
     for name, text in made.items():
         write_whole(str(folder / name), text)
-    print(f"wrote {folder}: {', '.join([store.NAME, *made])}")
+    print(f"wrote {folder}: {', '.join(made)}")
+    return trouble
+
+
+def parse(argv):
+    parser = Parser(prog="python -m curriculum.bench", description="Run time against error.")
+    parser.add_argument("what", nargs="?", default="all", choices=("all", *WHAT, "draw"))
+    parser.add_argument("--quick", action="store_true", help="reduced settings, in seconds, for CI")
+    parser.add_argument("--only", metavar="PROBLEM", help="accuracy: one problem, the rest is reused")
+    parser.add_argument("--fresh", action="store_true", help="forget what a stopped run has done")
+    parser.add_argument("--out", type=writable_folder, help="folder of results.json and what it gives")
+    args = parser.parse_args(argv)
+    if args.only and args.what != "accuracy":
+        parser.error("argument --only: allowed with accuracy only")
+    if args.only and args.only not in problems.BY_NAME:
+        parser.error(f"argument --only: given {args.only!r}; allowed: {', '.join(problems.BY_NAME)}")
+    args.folder = Path(args.out or (QUICK if args.quick else RESULTS))
+    if args.what == "draw" and not measured.load(args.folder):
+        parser.error(f"nothing to draw: {args.folder / measured.NAME} is missing; "
+                     "run python -m curriculum.bench")
+    return args
+
+
+def main(argv=None):
+    """Returns the exit status: 1 when figures could not be drawn."""
+    args, trouble = parse(argv), None
+    if args.what == "draw":
+        sections = measured.load(args.folder)
+        chosen = [what for what in WHAT if what in sections]
+    else:
+        chosen = WHAT if args.what == "all" else (args.what,)
+    for what in chosen:
+        section = sections[what] if args.what == "draw" else measure(what, args)
+        for goal in report(what).goals(section):
+            print(f"{goal.verdict().strip('*'):12} {goal.wanted}: {goal.measured}")
+        trouble = write(args.folder, what, section) or trouble
     if trouble:
         print(f"no figures: {trouble}", file=sys.stderr)
     return 1 if trouble else 0

@@ -1,150 +1,154 @@
-"""Run time against error: every problem, method and time step, over nine start heights.
+"""Run time against error: every problem, contestant and time step, over nine starts.
 
-A point is one problem, method and dt. Its error is the median over the start heights; its time, in
-each round, is the median over the start heights too, and of the rounds the least is plotted and the
-rest drawn as spread. Rounds are interleaved over all points. Two times are kept:
+A point is one problem, contestant and dt. Its errors are medians over the starts. Its time in one
+process is the median over the starts too; the point has the median over the processes. Two times
+are kept:
 
     read    whole run with every height read after every step: the same sampling for all, plotted
     bare    the engines' stepping loop alone, nothing read. contact.py's models have no such form:
             they always record, so where a bare time is compared with, theirs is still the read one
 """
 
-import math
-import statistics
-from typing import NamedTuple
-
 import numpy as np
 
-from curriculum.bench import timing
-from curriculum.bench.methods import BARE, METHODS, OURS, READ
-from curriculum.bench.problems import DTS, PROBLEMS, REFERENCE_DT, SEEDS, quality
+from curriculum import measured
+from curriculum.bench import contestants, problems, tables, timing
 
-BUDGET = 3.0            # s that the runs of one point may use up before it sits out further rounds
+COMMAND = "python -m curriculum.bench accuracy"
+CODE = ("contact.py", "curriculum/exact.py")
+ERRORS = ("position_error", "final_error", "energy_error", "final_energy_error", "max_penetration",
+          "rest_gap", "contact_energy", "impact_time_error", "restitution", "phase_error")
+BUDGET = 1.0            # s: once the runs of a cell have taken so long, no further start is timed
+TIMED_SEEDS = 5         # starts that are timed
 FIT_DTS = (0.0, 0.008)  # s, the steps whose errors the order of convergence is fitted to
-ERRORS = ("height_error", "max_penetration", "rest_penetration", "contact_energy", "energy_excess",
-          "restitution", "impact_time_error")
+QUICK_PROBLEMS, QUICK_DTS = ("drop", "bounce", "pyramid"), (0.002, 0.008)
 
 
-class Settings(NamedTuple):
-    """How much to measure."""
-    problems: tuple = PROBLEMS
-    methods: tuple = METHODS
-    dts: tuple = DTS
-    seeds: tuple = SEEDS
-    rounds: int = 9
+def measure(quick=False, cells=None, only=None):
+    """The whole benchmark as one section.
 
-
-QUICK = Settings(problems=tuple(p._replace(duration=0.25) if p.name == "tower" else p for p in PROBLEMS),
-                 dts=(0.002, 0.008), seeds=SEEDS[:3], rounds=2)
-
-
-def measure(quick=False):
-    """The whole benchmark; returns a JSON-ready dict, whose points are described in `point` below."""
-    return dict(quick=quick, **run(QUICK if quick else Settings()))
-
-
-def run(settings):
-    """Errors first, then the interleaved rounds of timing."""
-    chosen, _, dts, seeds, rounds = settings
-    present = [m for m in settings.methods if not m.missing]
-    keys = [(p, m, dt) for p in chosen for m in present for dt in dts]
-    bar = timing.Progress(len(keys) * len(seeds) * (1 + rounds), "run time against error")
-    try:
-        errors = {key: [_errors(*key, seed, bar) for seed in seeds] for key in keys}
-        for p, m, dt in keys[::len(dts)]:                       # warm-up: first calls cost more
-            for call in m.prepare(p.build(0), dts[-1], 10).values():
-                call()
-        seconds = _times(keys, seeds, rounds, bar)
-    finally:
-        bar.close()
-    points = [point(p, m, dt, errors[p, m, dt], seconds[p, m, dt], seeds) for p, m, dt in keys]
-    return dict(
-        seeds=list(seeds), rounds=rounds, dts=list(dts),
-        problems={p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration) for p in chosen},
-        methods={m.name: dict(label=m.label, theory=m.order, why=m.why, missing=m.missing)
-                 for m in settings.methods},
-        headline=headline(points), points=points,
-        orders=[fit(p.name, m.name, points) for p in chosen for m in present])
-
-
-def _errors(problem, method, dt, seed, bar):
-    scene = problem.build(seed)
-    run = method.record(scene, dt, problem.steps(dt))
-    bar(f"{problem.name} {method.label} dt {dt} errors")
-    return quality(problem, scene, dt, run)
-
-
-def _times(keys, seeds, rounds, bar):
-    """{key: {way: [seconds, median over the start heights, one a round]}}"""
-    result = {key: {} for key in keys}
-    for _ in range(rounds):
-        tasks = {}
-        for p, m, dt in keys:
-            spent = sum(sum(times) for times in result[p, m, dt].values()) * len(seeds)
-            if spent > BUDGET:
-                continue
-            ways = (READ,) if m.name in OURS else (READ, BARE)
-            for seed in seeds:
-                for way in ways:
-                    tasks[p, m, dt, way, seed] = _task(p, m, dt, way, seed)
-        one = timing.interleave(tasks, 1, math.inf, lambda key: key[3] == READ and bar(
-            f"{key[0].name} {key[1].label} dt {key[2]}"))
-        for p, m, dt in keys:
-            for way in (READ, BARE):
-                values = [one[p, m, dt, way, s][0] for s in seeds if (p, m, dt, way, s) in one]
-                if values:
-                    result[p, m, dt].setdefault(way, []).append(statistics.median(values))
-    return result
-
-
-def _task(problem, method, dt, way, seed):
-    return lambda: method.prepare(problem.build(seed), dt, problem.steps(dt))[way]
-
-
-def point(problem, method, dt, errors, seconds, seeds):
-    """One point as a dict: for each error its values over the start heights and their median.
-
-    diverged is None, or the first start height that did: {seed, step, reason, count, of}.
-    times: {way: {min, median, max, rounds, all}} of a whole run [s].
+    only: measure this problem alone; of the others the section has those that `cells` hold whole.
     """
-    blown = [(seed, e) for seed, e in zip(seeds, errors) if e["blew_up_step"] is not None]
-    first = blown[0] if blown else None
-    result = dict(
-        problem=problem.name, method=method.name, dt=dt, steps=problem.steps(dt),
-        diverged=first and dict(seed=first[0], step=first[1]["blew_up_step"],
-                                reason=first[1]["blew_up_reason"], count=len(blown), of=len(errors)),
-        times={way: dict(timing.spread(values), all=values) for way, values in seconds.items()})
-    for name in ERRORS:
-        values = [e[name] for e in errors]
-        result[name] = dict(median=float(np.median(values)), min=min(values), max=max(values), all=values)
-    return result
+    processes, seeds = (1, 2) if quick else (5, 9)
+    cells = {} if cells is None else cells
+    chosen = [p for p in problems.PROBLEMS if not quick or p.name in QUICK_PROBLEMS]
+    keys = {p.name: list(_keys(p, seeds, quick)) for p in chosen}
+    work = [key for name, some in keys.items() if only in (None, name) for key in some]
+    timing.beside(error_cell, work, cells, "error", "errors")
+    timing.in_fresh_processes(time_cell, work, processes, cells, "run times")
+    whole = [p for p in chosen if all(timing.place("time", 0, key) in cells for key in keys[p.name])]
+    done = [key for p in whole for key in keys[p.name]]
+    times = timing.merged(cells, done, processes)
+    points = [point(key, cells[timing.place("error", 0, key)], times[key]) for key in done]
+    return dict(
+        quick=quick, processes=processes, seeds=seeds,
+        problems={p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration)
+                  for p in whole},
+        left_out=left_out(whole), points=tables.pack(points),
+        headline=headline(points),
+        orders=[order for order in fits(points) if order["order"] is not None])
+
+
+def _keys(problem, seeds, quick):
+    """(problem, contestant, dt, starts) of every cell of one problem."""
+    scene = problem.build(0)
+    for c in contestants.CONTESTANTS:
+        if c.takes(problem) and not c.refuses(scene) and not (quick and c.family == "drake"):
+            for dt in c.dts(problem):
+                if not quick or dt in QUICK_DTS:
+                    yield problem.name, c.name, dt, min(seeds, len(problem.seeds))
 
 
 def headline(points):
-    """{problem: {method: {error, ms, bare_ms}}} at the reference step, for texts that quote a number.
-
-    error is None where the method diverged; bare_ms is None for contact.py's models.
-    """
+    """{problem: {family: {words, error, ms}}}: the best setting of each at the reference step."""
     result = {}
-    for p in points:
-        if p["dt"] == REFERENCE_DT:
-            bare = p["times"].get(BARE)
-            result.setdefault(p["problem"], {})[p["method"]] = dict(
-                error=None if p["diverged"] else p["height_error"]["median"],
-                ms=1e3 * p["times"][READ]["min"], bare_ms=bare and 1e3 * bare["min"])
+    for p in sorted(points, key=lambda p: p["position_error"] or 0.0, reverse=True):
+        if p["dt"] == problems.REFERENCE_DT and not p["diverged"] and p["words"] != contestants.FLYING:
+            result.setdefault(p["problem"], {})[p["family"]] = dict(
+                words=p["words"], error=p["position_error"], ms=1e3 * p["read_median"])
     return result
 
 
-def fit(problem, method, points):
-    """Observed order of convergence: slope of log(median height error) over log(dt) by least squares.
+def error_cell(key):
+    """The errors of a cell: a list of problems.quality's dicts, one a start."""
+    problem, contestant, dt, seeds = _parts(key)
+    found = []
+    for seed in problem.seeds[:seeds]:
+        scene = problem.build(seed)
+        run = contestant.record(scene, dt, problem.steps(dt))
+        found.append(measured.plain(problems.quality(problem, scene, dt, run)))
+    return found
 
-    Only steps in FIT_DTS that did not diverge count. None where fewer than three are left, or where
-    all errors are rounding (under 1e-9 r): then there is nothing left to converge.
+
+def time_cell(key):
+    """{way: seconds, median over the starts} of a cell, after a short run as a warm-up."""
+    problem, contestant, dt, seeds = _parts(key)
+    scene, seconds = problem.build(0), {}
+    for call in contestant.prepare(scene, dt, min(50, problem.steps(dt))).values():
+        call()
+    for seed in problem.seeds[:min(seeds, TIMED_SEEDS)]:
+        for way, call in contestant.prepare(problem.build(seed), dt, problem.steps(dt)).items():
+            seconds.setdefault(way, []).append(timing.timed(call))
+        if sum(map(sum, seconds.values())) > BUDGET:
+            break
+    return {way: float(np.median(values)) for way, values in seconds.items()}
+
+
+def _parts(key):
+    problem, contestant, dt, seeds = key
+    return problems.BY_NAME[problem], contestants.BY_NAME[contestant], dt, seeds
+
+
+def point(key, errors, times):
+    """One point as a flat dict; an error that does not apply or is not finite is None.
+
+    diverged is None, or "step K: why (so many of so many starts)", of the first start that did.
     """
-    used = [(p["dt"], p["height_error"]["median"]) for p in points
-            if (p["problem"], p["method"]) == (problem, method) and not p["diverged"]
-            and FIT_DTS[0] <= p["dt"] <= FIT_DTS[1]]
-    slope = None
-    if len(used) >= 3 and max(e for _, e in used) > 1e-9:
-        slope = float(np.polyfit(*np.log(np.array(used)).T, 1)[0])
-    return dict(problem=problem, method=method, order=slope, points=len(used))
+    problem, contestant, dt, _ = key
+    found = contestants.BY_NAME[contestant]
+    blown = [e for e in errors if e["blew_up_step"] is not None]
+    result = dict(problem=problem, family=found.family, words=found.words, dt=dt,
+                  diverged=None if not blown else (
+                      f"step {blown[0]['blew_up_step']}: {blown[0]['blew_up_reason']} "
+                      f"({len(blown)} of {len(errors)} starts)"))
+    for name in ERRORS:
+        values = [e.get(name) for e in errors]
+        values = [value for value in values if value is not None]
+        result[name] = float(np.median(values)) if len(values) == len(errors) else None
+    worst = [e["position_error"] for e in errors if e["position_error"] is not None]
+    result["least_error"], result["greatest_error"] = min(worst, default=None), max(worst, default=None)
+    for way in (contestants.READ, contestants.BARE):
+        about = times.get(way) or {}
+        for which in ("median", "min", "max"):
+            result[f"{way}_{which}"] = about.get(which)
+    return result
+
+
+def left_out(chosen):
+    """[(problem, family, why)] of whoever does not run a problem."""
+    found = {}
+    for p in chosen:
+        for c in contestants.CONTESTANTS:
+            why = c.takes(p) and c.refuses(p.build(0))
+            if why:
+                found.setdefault((c.family, why), []).append(p.name)
+    return [dict(family=family, why=why, problems=sorted(set(names), key=names.index))
+            for (family, why), names in found.items()]
+
+
+def fits(points):
+    """Observed order of convergence of every contestant on every problem: {problem, ..., order}.
+
+    The slope of log(median worst error) over log(dt) by least squares, for steps in FIT_DTS that
+    did not diverge. None where fewer than three are left, or where all errors are rounding
+    (under 1e-9 r): then there is nothing left to converge.
+    """
+    names = dict.fromkeys((p["problem"], p["family"], p["words"]) for p in points)
+    for problem, family, words in names:
+        used = [(p["dt"], p["position_error"]) for p in points
+                if (p["problem"], p["family"], p["words"]) == (problem, family, words)
+                and not p["diverged"] and FIT_DTS[0] <= p["dt"] <= FIT_DTS[1]]
+        slope = None
+        if len(used) >= 3 and max(e for _, e in used) > 1e-9:
+            slope = float(np.polyfit(*np.log(np.array(used)).T, 1)[0])
+        yield dict(problem=problem, family=family, words=words, order=slope)

@@ -1,82 +1,105 @@
-"""The contestants: contact.py's models and the peers behind one interface, each with its fixed look.
+"""The contestants: contact.py's models and the engines' settings behind one interface.
 
-A look is colour, marker and dash together, so that lines are told apart in black and white.
+A contestant belongs to a family (lcp, mujoco, ...), which gives it its colour and marker, and has
+words for its setting. Our own settings stand at the end of this file, those of the engines in
+engines.py.
 """
 
-from typing import Callable, NamedTuple, Optional
+import importlib.util
+from typing import Callable, NamedTuple
 
 import numpy as np
 
 import contact
-from curriculum.bench import peers
+from curriculum.bench import engines
 
-READ, BARE = "read", "bare"     # the two ways to time: see Method.prepare
+READ, BARE = "read", "bare"     # the two ways to time: see Contestant.prepare
 
 
-class Method(NamedTuple):
-    """One way of stepping a scene. `order` is the theoretical order of convergence, with its reason."""
-    name: str
-    label: str
-    color: str
-    marker: str
-    dash: object
-    order: Optional[int]
-    why: str
+class Contestant(NamedTuple):
+    """One way of stepping a scene."""
+    family: str
+    words: str              # its setting, for a reader
     prepare: Callable       # (scene, dt, steps) -> {READ: call, BARE: call}; the calls step, no more
     record: Callable        # (scene, dt, steps) -> contact.Run, not timed
-    missing: Optional[str] = None       # what to install, when it can't run
+    refuses: Callable       # scene -> why it does not run it, or None
+    adaptive: bool = False  # chooses its own steps: dt is only how often it is looked at
+    only: tuple = ()        # the problems it is for; none means all
+
+    @property
+    def name(self):
+        return f"{self.family}: {self.words}"
+
+    def dts(self, problem):
+        """The steps to measure: all, or the middle one where dt is only a sampling."""
+        return (0.002,) if self.adaptive else problem.dts
+
+    def takes(self, problem):
+        return not self.only or problem.name in self.only
 
 
-def _ours(model, **options):
+def ours(family, words, step=None, only=(), adaptive=False, **options):
+    """A model of contact.py with these options, or a step of our own under its simulate."""
     def run(scene, dt, steps):
-        return contact.run_model(model, scene, dt, steps, **options)
+        if step is not None:
+            return contact.simulate(step(scene, dt), scene, dt, steps, skip=False)
+        return contact.run_model(family, scene, dt, steps, **options)
 
     def prepare(scene, dt, steps):
         return {READ: lambda: run(scene, dt, steps)}    # it always records: there is no bare form
 
-    return dict(prepare=prepare, record=run)
+    missing = None
+    if family == "exact" and importlib.util.find_spec("curriculum.exact") is None:
+        missing = "curriculum/exact.py is missing"
+    return Contestant(family, words, prepare, run, lambda scene: missing, adaptive, only)
 
 
-def _peer(name):
-    peer = next(p for p in peers.PEERS if p.name == name)
-
+def theirs(setting):
+    """A setting of another engine."""
     def prepare(scene, dt, steps):
-        read, bare = peer.build(scene, dt), peer.build(scene, dt)
+        read, bare = setting.build(scene, dt), setting.build(scene, dt)
         return {READ: lambda: read.trace(steps), BARE: lambda: bare.advance(steps)}
 
     def record(scene, dt, steps):
-        session = peer.build(scene, dt)
-        states = [session.state()]
-        for _ in range(steps):
-            session.advance(1)
-            states.append(session.state())
-        q, v = (np.array(rows) for rows in zip(*states))
-        return contact.Run(np.arange(steps + 1) * dt, q, v)
+        return contact.Run(np.arange(steps + 1) * dt, *setting.build(scene, dt).states(steps))
 
-    missing = None if peer.version() else f"not installed: pip install {peer.package}"
-    return dict(prepare=prepare, record=record, label=peer.label, missing=missing)
+    missing = engines.missing(setting.engine)
+    return Contestant(setting.engine, setting.words, prepare, record,
+                      lambda scene: missing or setting.refuses(scene), setting.adaptive)
 
 
-SOFT = "its contact is soft, whatever the step"
-FLIGHT = "semi-implicit flight"
-ONCE = f"{FLIGHT}, and no step is cut at an impact"
+def flying_exactly(scene, dt):
+    """lcp's step, but a ball that nothing pushed flies along its parabola: q + dt v + dt^2 g / 2.
 
-METHODS = (
-    Method("penalty", "penalty", contact.COLORS["penalty"], "v", (0, (1, 1)), 0, SOFT, **_ours("penalty")),
-    Method("lcp10", "lcp, 10 sweeps", "#56b4e9", "<", (0, (4, 2)), 1, ONCE, **_ours("lcp", iters=10)),
-    Method("lcp", "lcp, 20 sweeps", contact.COLORS["lcp"], "o", "-", 1, ONCE, **_ours("lcp", iters=20)),
-    Method("lcp100", "lcp, 100 sweeps", "#003f6b", ">", (0, (6, 2, 1, 2)), 1, ONCE,
-           **_ours("lcp", iters=100)),
-    Method("exact", "exact", contact.COLORS["exact"], "*", "-", None, "no step error", **_ours("exact")),
-    Method("mujoco", color="#999999", marker="x", dash=(0, (2, 2)), order=0, why=SOFT, **_peer("mujoco")),
-    Method("mujoco_stiff", color="#000000", marker="s", dash="-", order=1,
-           why="its softness shrinks with the step", **_peer("mujoco_stiff")),
-    Method("pymunk", color="#cc79a7", marker="D", dash=(0, (5, 1)), order=1, why=ONCE, **_peer("pymunk")),
-    Method("box2d", color="#e69f00", marker="P", dash=(0, (3, 1, 1, 1)), order=1, why=FLIGHT,
-           **_peer("box2d")),
-    Method("box2d3", color="#8b6914", marker="^", dash=(0, (1, 2)), order=1, why=FLIGHT, **_peer("box2d3")),
-    Method("box2d3_stiff", color="#5d3a9b", marker="h", dash="-", order=1, why=FLIGHT,
-           **_peer("box2d3_stiff")),
+    It tells flight and contact apart: what error is left is the contact's.
+    """
+    def step(balls):
+        before = [ball.vy for ball in balls]
+        contact.lcp_step(balls, dt, scene.restitution, 0.2, 20)
+        for ball, vy in zip(balls, before):
+            if ball.vy == vy + dt * contact.GRAVITY:
+                ball.y -= 0.5 * dt * dt * contact.GRAVITY
+    return step
+
+
+MANY_CONTACTS = ("stack", "tower", "pyramid")       # where the number of sweeps matters
+ONE_BALL = ("drop", "bounce", "elastic")
+BRIEF = ("drop", "bounce", "stack", "elastic", "slide", "pyramid")      # not the tower
+FLYING = "20 sweeps, flying exactly"
+
+CONTESTANTS = (
+    ours("penalty", "k 1e4"),
+    ours("lcp", "20 sweeps", iters=20),
+    ours("lcp", "10 sweeps", iters=10, only=MANY_CONTACTS),
+    ours("lcp", "100 sweeps", iters=100, only=MANY_CONTACTS),
+    ours("lcp", "no push", baumgarte=0.0, only=BRIEF),
+    ours("lcp", FLYING, step=flying_exactly, only=ONE_BALL),
+    ours("soft", "as shipped by MuJoCo, or direct where e > 0", only=BRIEF),
+    ours("soft", "time constant 2 dt, ratio 5, d 0.9999", solref=(1e-9, 5.0), solimp=contact.HARD,
+         only=("drop", "stack", "slide", "pyramid")),
+    ours("exact", "event to event", adaptive=True),
+    *map(theirs, engines.SETTINGS),
 )
-BY_NAME = {method.name: method for method in METHODS}
-OURS = tuple(m.name for m in METHODS if not any(m.name == p.name for p in peers.PEERS))
+BY_NAME = {contestant.name: contestant for contestant in CONTESTANTS}
+OURS = ("penalty", "lcp", "soft", "exact")
+LABELS = {name: name for name in OURS} | {name: about[0] for name, about in engines.ENGINES.items()}

@@ -5,8 +5,8 @@ the front of all settings of an engine, and names the best. Nothing else has to 
 
 Every engine is optional (`pip install -e '.[bench]'`); one that is missing is a row that says so.
 The same for all: balls that cannot rotate, no friction, no sleeping, no threads, the scene's
-masses, radii and restitution, gravity 9.81 m/s^2, and a floor along y = 0. A ball of more than
-1e9 kg is one that nothing moves. What had to be chosen:
+masses, radii and restitution, gravity 9.81 m/s^2, and a floor along y = 0. A ball of infinite
+mass is one that nothing moves. What had to be chosen:
 
     mujoco    solref: a time constant and a damping ratio, or, both negative, a stiffness and a
               damping given directly. "0 -(1+e)/dt" with solimp near 1 is Newton's impact law:
@@ -47,7 +47,6 @@ GRAVITY = 9.81       # m/s^2, downwards
 SCALE = 10.0         # both Box2Ds see a world this much larger
 FLOOR = 1000.0       # m, half the length of the floor, where an engine wants an end to it
 MANY = 60            # balls: from here on MuJoCo gets CG and a sparse Jacobian
-FIXED = 1e9          # kg: a ball heavier than this is one that nothing moves
 
 
 class Session:
@@ -78,7 +77,7 @@ class Session:
 def balls_of(scene):
     """(x, y, vx, vy, mass, radius, fixed) of every ball, as plain floats."""
     rows = (*scene.q0.tolist(), *scene.v0.tolist(), scene.mass.tolist(), scene.radius.tolist())
-    return [(*row, row[4] > FIXED) for row in zip(*rows)]
+    return [(*row, math.isinf(row[4])) for row in zip(*rows)]
 
 
 # MuJoCo
@@ -272,7 +271,8 @@ class Box2d(Session):
             body = (world.CreateStaticBody(position=place) if fixed else
                     world.CreateDynamicBody(position=place, fixedRotation=True, allowSleep=False,
                                             linearVelocity=(vx * SCALE, vy * SCALE)))
-            body.CreateCircleFixture(radius=r, density=mass / (math.pi * r * r), friction=0.0,
+            density = 1.0 if fixed else mass / (math.pi * r * r)
+            body.CreateCircleFixture(radius=r, density=density, friction=0.0,
                                      restitution=scene.restitution)
             self.bodies.append(body)
         self.step = partial(world.Step, dt, *iterations)
@@ -336,8 +336,7 @@ class Drake(Session):
 
     def __init__(self, scene, dt, scheme=None, accuracy=1e-5, stiffness=1e8):
         import logging
-        from pydrake.geometry import (AddCompliantHydroelasticProperties, HalfSpace,  # noqa: F401
-                                      ProximityProperties, Sphere)
+        from pydrake.geometry import HalfSpace, Sphere
         from pydrake.math import RigidTransform
         from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
         from pydrake.multibody.tree import PlanarJoint, SpatialInertia

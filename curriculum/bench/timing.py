@@ -1,13 +1,26 @@
-"""Timing: interleaved rounds of calls in this process, and whole processes with their peak memory."""
+"""Timing: several processes, each in an order of its own; and whole processes with their memory.
+
+One process can be lucky with its memory layout, and one order can favour whoever runs after a
+pause. So every cell is timed in several fresh processes, each of which shuffles the cells anew;
+the figure is the median over the processes, its spread reaches from the least to the greatest.
+"""
 
 import gc
+import multiprocessing
+import random
 import statistics
 import subprocess
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
+
+from curriculum import measured
+
+SLOW = 2.0      # s: a cell that took longer in a process is not timed in more than TWO of them
+TWO = 2
 
 
-def timed(call):
+def timed(call) -> float:
     """Seconds that call() takes, with the garbage collector held back."""
     gc.disable()
     try:
@@ -18,25 +31,79 @@ def timed(call):
         gc.enable()
 
 
-def interleave(tasks, rounds, budget, tick=lambda label: None):
-    """Time every task once a round, `rounds` times: {key: [seconds, one a round]}.
+def spread(values) -> dict:
+    """Median, least and greatest of a list."""
+    return dict(median=statistics.median(values), min=min(values), max=max(values))
 
-    tasks: {key: prepare}, where prepare() makes what one timed call needs and returns that call; it
-    is not timed. A slow spell of the machine then falls on all tasks alike. A task that has used up
-    `budget` seconds sits out the further rounds (but never the first), so its list is shorter.
+
+def in_fresh_processes(work, keys, processes, cells, title):
+    """work(key) in every one of so many fresh processes, one after the other, into `cells`.
+
+    Each process takes the keys in its own random order. cells["time K KEY"] holds what work gave
+    in process K; what is there already is not done again.
+    """
+    spawn = multiprocessing.get_context("spawn")
+    with measured.progress(processes * len(keys), title) as tick:
+        for number in range(processes):
+            order = list(keys)
+            random.Random(number).shuffle(order)
+            todo = [key for key in order if place("time", number, key) not in cells
+                    and not (number >= TWO and _slow(cells, key))]
+            tick(done=len(keys) - len(todo))
+            if not todo:
+                continue
+            with spawn.Pool(1) as pool:
+                for key, value in zip(todo, pool.imap(work, todo)):
+                    cells[place("time", number, key)] = value
+                    tick(key[1])
+
+
+def _slow(cells, key):
+    return sum(cells[place("time", 0, key)].values()) > SLOW
+
+
+def place(kind, number, key) -> str:
+    """Under which name a cell is kept."""
+    return f"{kind} {number} {key}"
+
+
+def merged(cells, keys, processes) -> dict:
+    """{key: {way: {median, min, max}}} over the processes."""
+    result = {}
+    for key in keys:
+        found = [cells[name] for name in (place("time", k, key) for k in range(processes))
+                 if name in cells]
+        result[key] = {way: spread([one[way] for one in found]) for way in found[0]}
+    return result
+
+
+def beside(work, keys, cells, kind, title, workers=2):
+    """work(key) for every key, in `workers` processes at once: for what is not timed."""
+    todo = [key for key in keys if place(kind, 0, key) not in cells]
+    spawn = multiprocessing.get_context("spawn")
+    with measured.progress(len(keys), title) as tick:
+        tick(done=len(keys) - len(todo))
+        with ProcessPoolExecutor(workers, mp_context=spawn) as pool:
+            for key, value in zip(todo, pool.map(work, todo)):
+                cells[place(kind, 0, key)] = value
+                tick(key[1])
+    return {key: cells[place(kind, 0, key)] for key in keys}
+
+
+def interleave(tasks, rounds, tick=lambda label: None) -> dict:
+    """Time every task once a round: {key: [seconds, one a round]}. tasks: {key: prepare}.
+
+    prepare() makes what one timed call needs and returns that call; it is not timed. The order
+    changes from round to round.
     """
     seconds = {key: [] for key in tasks}
-    for _ in range(rounds):
-        for key, prepare in tasks.items():
-            if not seconds[key] or sum(seconds[key]) <= budget:
-                seconds[key].append(timed(prepare()))
+    for number in range(rounds):
+        order = list(tasks)
+        random.Random(number).shuffle(order)
+        for key in order:
+            seconds[key].append(timed(tasks[key]()))
             tick(key)
     return seconds
-
-
-def spread(values):
-    """Least, median and greatest of a list, and how many there are."""
-    return dict(min=min(values), median=statistics.median(values), max=max(values), rounds=len(values))
 
 
 LAUNCH = """
@@ -60,25 +127,3 @@ def whole_process(command, cwd):
     if int(status):
         raise RuntimeError(f"{' '.join(command)} fails: {run.stderr.strip()[-300:]}")
     return float(seconds), int(memory) * (1 if sys.platform == "darwin" else 1024)
-
-
-class Progress:
-    """A progress bar on a terminal (tqdm, where it is installed), nothing when piped."""
-
-    def __init__(self, total, title):
-        self.bar = None
-        if sys.stderr.isatty():
-            try:
-                from tqdm import tqdm
-                self.bar = tqdm(total=total, desc=title, leave=False)
-            except ImportError:
-                print(f"{title} ... (a progress bar needs tqdm)", file=sys.stderr)
-
-    def __call__(self, label=""):
-        if self.bar is not None:
-            self.bar.set_postfix_str(str(label), refresh=False)
-            self.bar.update()
-
-    def close(self):
-        if self.bar is not None:
-            self.bar.close()
