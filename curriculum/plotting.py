@@ -147,8 +147,10 @@ def svg(figure, section=None) -> str:
 
 def _small(text):
     """Two decimals are enough for a pixel; a <title>, and a style for dark mode, at the front."""
-    text = re.sub(r"-?\d+\.\d{3,}", lambda match: f"{float(match[0]):.2f}".rstrip("0").rstrip("."),
-                  text)
+    def shorter(match):
+        return f"{float(match[0]):.2f}".rstrip("0").rstrip(".")
+
+    text = re.sub(r"<[^>]*>", lambda tag: re.sub(r"-?\d+\.\d{3,}", shorter, tag[0]), text)
     rules = "".join(f'[style*="{part}: {day}"]{{{part}:{night}!important}}'
                     for day, night in IN_THE_DARK.items() for part in ("fill", "stroke"))
     style = f"<style>@media (prefers-color-scheme: dark) {{svg{{background:#14161b}}{rules}}}</style>"

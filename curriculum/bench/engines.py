@@ -126,20 +126,23 @@ def rebound_ratio(restitution):
 class Mujoco(Session):
     """Spring and damper made implicit and convex. `contact(scene, dt)` gives solref and solimp."""
 
-    def __init__(self, scene, dt, contact, integrator="Euler", flags="", tolerance=1e-8):
+    def __init__(self, scene, dt, contact, integrator="Euler", flags="", tolerance=1e-8,
+                 solver=None, iterations=100, margin=0.0):
         import mujoco
         from mujoco import rollout
         self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
         mujoco.set_mju_user_warning(lambda text: None)      # its default writes a log file where it runs
         solref, solimp = contact(scene, dt)
         many = len(scene.mass) >= MANY
+        solver = solver or ("CG" if many else "Newton")
         self.moving = [k for k, ball in enumerate(balls_of(scene)) if not ball[6]]
         self.model = mujoco.MjModel.from_xml_string(
             f'<mujoco><size memory="{"4G" if many else "-1"}"/>'
-            f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" solver="{"CG" if many else "Newton"}" '
+            f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" solver="{solver}" '
             f'jacobian="{"sparse" if many else "auto"}" integrator="{integrator}" '
-            f'tolerance="{tolerance!r}"><flag autoreset="disable"{flags}/></option>'
-            f'<default><geom condim="1" solref="{solref}" solimp="{solimp}"/></default>'
+            f'tolerance="{tolerance!r}" iterations="{iterations}"><flag autoreset="disable"{flags}/></option>'
+            f'<default><geom condim="1" solref="{solref}" solimp="{solimp}" margin="{margin!r}"/>'
+            f'</default>'
             f'<worldbody><geom type="plane" size="0 0 1"/>'
             f'{"".join(map(self.body, balls_of(scene)))}</worldbody></mujoco>')
         self.data = mujoco.MjData(self.model)

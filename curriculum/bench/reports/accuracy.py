@@ -240,17 +240,18 @@ def _figure(section, problem):
         columns=2, share=(1, 6), height=3.6, below=1.9, title=about["title"],
         explained="Left and down is better. A faint dot is one setting at one step; lines join the "
                   "best of an engine, whose best setting at 2 ms is named. Numbers: lcp's dt in ms.")
+    for panel in (left, axis):
+        panel.set(xscale="log", yscale="log")
     for family in contestants.LABELS:
         points = [dict(p, shown=max(p["position_error"], LEAST)) for p in data.of(problem, family)
                   if p["words"] != FLYING]
         if points:
             _family(left if family == "exact" else axis, data, problem, family, points)
     _flying_line(axis, data, problem)
-    left.set(xscale="log", xlim=(1e-17, 1e-9), xticks=[1e-15, 1e-11],
+    left.set(xlim=(1e-17, 1e-9), xticks=[1e-15, 1e-11],
              ylabel=f"time for {about['duration']:g} s of motion [ms]")
     low, high = axis.get_xlim()
-    axis.set(xscale="log", yscale="log", xlabel="worst position error / r", xlim=(low, min(high, 30)))
-    left.set_yscale("log")
+    axis.set(xlabel="worst position error / r", xlim=(low, min(high, 30)))
     left.minorticks_off()
     everything = [p["read_median"] * 1e3 for p in data.of(problem)]
     for panel in (left, axis):
