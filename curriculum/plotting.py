@@ -65,7 +65,7 @@ def figure(rows=1, title="", explained="", height=3.4, columns=1, share=None, be
     """
     plt = pyplot()
     said = textwrap.wrap(explained, 84)
-    top, bottom = 0.42 + 0.17 * len(said) + 0.12, 0.62 + below
+    top, bottom = 0.42 + 0.17 * len(said) + 0.26, 0.62 + below
     tall = top + bottom + rows * height
     made, axes = plt.subplots(rows, columns, figsize=(WIDTH, tall), squeeze=False, gridspec_kw=dict(
         width_ratios=share or [1] * columns, left=0.125, right=0.98, top=1 - top / tall,

@@ -1,70 +1,79 @@
 """What skipping costs and saves: same bytes with and without, and the time of runs and processes."""
 
 import contextlib
+import importlib.util
 import io
+import random
 import statistics
 import sys
 import tempfile
 from pathlib import Path
 
 import contact
-from curriculum.bench import methods, timing
+from curriculum import measured
+from curriculum.bench import contestants, timing
 
-ROOT = Path(contact.__file__).resolve().parent
 SCENES = ("drop", "bounce", "stack")
-SMOKE, FULL, DT = 800, 2000, 0.002
+STEPPED = ("penalty", "lcp", "soft")    # the models that step, and so can skip
+SMOKE, FULL, DT, STEPS_AT_REST = 800, 2000, 0.002, 1000
+COMMAND = "python -m curriculum.bench skip"
+CODE = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
 RECORDED, BARE_PEER = "drop, recorded", "pymunk, nothing read"
 # whole processes, as multiples of importing numpy (RECORDED: rerun): to reach, and the published script's
-LIMITS = {"drop": 1.8, "bounce": 2.0, "stack": 2.5, RECORDED: 1.5}
+LIMITS = {"drop": 1.5, "bounce": 1.6, "stack": 2.2, RECORDED: 1.5}
 PUBLISHED = {"drop": 20.0, "bounce": 12.0, "stack": 61.0, RECORDED: 11.0}
 MEMORY_LIMIT = 1.5
+REST_LIMIT = 2e-6       # s a step of one resting ball, every step taken
 
 
-def measure(quick=False):
-    """All parts; returns a JSON-ready dict: same_bytes, processes, in_process, speed_up."""
-    return dict(quick=quick, same_bytes=same_bytes(quick), processes=processes(quick),
-                in_process=in_process(quick), speed_up=speed_up(quick))
+def measure(quick=False, cells=None):
+    """All parts; returns a JSON-ready dict: same_bytes, processes, in_process, resting, speed_up."""
+    cells = {} if cells is None else cells
+    parts = dict(same_bytes=same_bytes, processes=processes, in_process=in_process, resting=resting,
+                 speed_up=speed_up)
+    for name, part in parts.items():
+        if name not in cells:
+            cells[name] = measured.plain(part(quick))
+    return dict(quick=quick, **{name: cells[name] for name in parts})
 
 
 def bytes_cases(quick):
     """(scene, seed, bodies, model, dt, steps) of every pair of runs to compare."""
-    seeds = range(2) if quick else range(10)
-    grid = (1, 8, 32) if quick else contact.DT_GRID
+    seeds, grid = (2, (1, 8, 32)) if quick else (5, contact.DT_GRID)
     for scene in SCENES:
-        for seed in seeds:
-            for model in contact.MODELS:
+        for seed in range(seeds):
+            for model in STEPPED:
                 for factor in grid:
-                    for steps in (SMOKE,) if quick else (SMOKE, FULL):
-                        yield scene, seed, None, model, factor * DT, steps
+                    yield scene, seed, None, model, factor * DT, SMOKE if quick else FULL
     for seed, bodies in ((0, 50),) if quick else ((0, 50), (1, 50), (0, 300)):
         for model in ("penalty", "lcp"):
             for factor in (1, 8) if quick else contact.DT_GRID:
-                yield "pile", seed, bodies, model, factor * DT, 100 if quick else 500
+                yield "pile", seed, bodies, model, factor * DT, 50 if quick else 300
 
 
 def same_bytes(quick):
     """Every run with and without skips: how many pairs, and which of them differ in any bit.
 
-    Arrays first (every position and velocity of every step), then whole runs of the command line:
-    standard output and metrics.json.
+    Arrays first (every position and velocity of every step; of a pile, by the compiled twin and by
+    the plain loops), then whole runs of the command line: standard output and metrics.json.
     """
     cases, differing = list(bytes_cases(quick)), []
     lines = [["--scene", scene, "--seed", str(seed), *length]
-             for scene in SCENES for seed in (range(1) if quick else range(10))
+             for scene in SCENES for seed in (range(1) if quick else range(3))
              for length in ((["--smoke"],) if quick else (["--smoke"], []))]
-    bar = timing.Progress(len(cases) + len(lines), "same bytes")
-    for scene, seed, bodies, model, dt, steps in cases:
-        built = contact.build_scene(scene, seed, bodies)
-        one, other = (contact.run_model(model, built, dt, steps, skip=skip) for skip in (True, False))
-        if any(getattr(one, part).tobytes() != getattr(other, part).tobytes() for part in "tqv"):
-            differing.append(f"{scene}{' ' + str(bodies) if bodies else ''} {model} dt {dt:g} "
-                             f"seed {seed} steps {steps}")
-        bar(scene)
-    for flags in lines:
-        if _command_line(flags) != _command_line([*flags, "--no-skip"]):
-            differing.append("contact.py " + " ".join(flags))
-        bar("contact.py")
-    bar.close()
+    with measured.progress(len(cases) + len(lines), "same bytes") as tick:
+        for scene, seed, bodies, model, dt, steps in cases:
+            built = contact.build_scene(scene, seed, bodies)
+            one, other = (contact.run_model(model, built, dt, steps, skip=skip)
+                          for skip in (True, False))
+            if any(getattr(one, part).tobytes() != getattr(other, part).tobytes() for part in "tqv"):
+                differing.append(f"{scene}{' ' + str(bodies) if bodies else ''} {model} dt {dt:g} "
+                                 f"seed {seed} steps {steps}")
+            tick(scene)
+        for flags in lines:
+            if _command_line(flags) != _command_line([*flags, "--no-skip"]):
+                differing.append("contact.py " + " ".join(flags))
+            tick("contact.py")
     return dict(runs=len(cases), command_lines=len(lines), differing=differing)
 
 
@@ -78,50 +87,71 @@ def _command_line(flags):
 
 
 def processes(quick):
-    """Whole processes, interleaved: {name: {seconds: [...], memory: [...]}}, and ratios of medians."""
+    """Whole processes, in rounds of random order: {name: {seconds: [...], memory: [...]}}, ratios."""
     python = sys.executable
     with tempfile.TemporaryDirectory() as out:
         run = [python, "contact.py", "--out", out]
         commands = {"numpy": [python, "-c", "import numpy"],
                     **{scene: [*run, "--no-rerun", "--scene", scene] for scene in SCENES}}
-        if _has_rerun():
+        if importlib.util.find_spec("rerun") is not None:
             commands["rerun"] = [python, "-c", "import rerun"]
             commands[RECORDED] = [*run, "--rerun", "--scene", "drop"]
         rounds = 3 if quick else 15
-        measured = {name: dict(seconds=[], memory=[]) for name in commands}
-        bar = timing.Progress((rounds + 1) * len(commands), "whole processes")
-        for round_ in range(rounds + 1):                    # the first one warms the disk cache
-            for name, command in commands.items():
-                seconds, memory = timing.whole_process(command, ROOT)
-                if round_:
-                    measured[name]["seconds"].append(seconds)
-                    measured[name]["memory"].append(memory)
-                bar(name)
-        bar.close()
+        found = {name: dict(seconds=[], memory=[]) for name in commands}
+        with measured.progress((rounds + 1) * len(commands), "whole processes") as tick:
+            for number in range(rounds + 1):                    # the first one warms the disk cache
+                for name in random.Random(number).sample(list(commands), len(commands)):
+                    seconds, memory = timing.whole_process(commands[name], measured.ROOT)
+                    if number:
+                        found[name]["seconds"].append(seconds)
+                        found[name]["memory"].append(memory)
+                    tick(name)
     median = {name: {part: statistics.median(values) for part, values in parts.items()}
-              for name, parts in measured.items()}
+              for name, parts in found.items()}
     ratios = {name: dict(base=base, time=median[name]["seconds"] / median[base]["seconds"],
                          memory=median[name]["memory"] / median[base]["memory"])
               for name, base in [(s, "numpy") for s in SCENES] + [(RECORDED, "rerun")]
               if name in median}
-    return dict(measured=measured, ratios=ratios)
-
-
-def _has_rerun():
-    from importlib.util import find_spec
-    return find_spec("rerun") is not None
+    return dict(measured=found, ratios=ratios)
 
 
 def in_process(quick):
     """2000 steps of the drop in this process: lcp with skips, against pymunk stepping the same ball."""
-    scene, lcp = contact.build_scene("drop"), methods.BY_NAME["lcp"]
-    tasks = {"lcp": lambda: lcp.prepare(scene, DT, FULL)[methods.READ]}
-    pymunk = methods.BY_NAME["pymunk"]
-    if not pymunk.missing:
-        for way, name in ((methods.READ, "pymunk"), (methods.BARE, BARE_PEER)):
+    scene = contact.build_scene("drop")
+    lcp = contestants.BY_NAME["lcp: 20 sweeps"]
+    pymunk = contestants.BY_NAME["pymunk: 10 iterations"]
+    tasks = {"lcp": lambda: lcp.prepare(scene, DT, FULL)[contestants.READ]}
+    missing = pymunk.refuses(scene)
+    if not missing:
+        for way, name in ((contestants.READ, "pymunk"), (contestants.BARE, BARE_PEER)):
             tasks[name] = lambda way=way: pymunk.prepare(scene, DT, FULL)[way]
-    seconds = timing.interleave(tasks, 5 if quick else 31, 60.0)
-    return dict(missing=pymunk.missing, times={name: timing.spread(v) for name, v in seconds.items()})
+    seconds = timing.interleave(tasks, 5 if quick else 31)
+    return dict(missing=missing, times={name: timing.spread(v) for name, v in seconds.items()})
+
+
+def resting(quick):
+    """Seconds a step of one ball that rests on the table, by model: every step taken, none recorded."""
+    rest = contact.build_scene("drop")
+    rest.q0[1] = contact.RADIUS
+    solref, solimp = contact.soft_defaults(0.0, DT)
+    steps = {"penalty": lambda balls: contact.penalty_step(balls, DT, 1e4, rest.damping),
+             "lcp": lambda balls: contact.lcp_step(balls, DT, 0.0, 0.2, 20),
+             "soft": lambda balls: contact.soft_step(balls, DT, solref, solimp)}
+
+    def task(step):
+        balls = contact.make_balls(rest)
+        for _ in range(500):
+            step(balls)
+
+        def call():
+            for _ in range(STEPS_AT_REST):
+                step(balls)
+        return call
+
+    seconds = timing.interleave({name: lambda step=step: task(step) for name, step in steps.items()},
+                                3 if quick else 15)
+    return {name: timing.spread([value / STEPS_AT_REST for value in values])
+            for name, values in seconds.items()}
 
 
 def speed_up(quick):
@@ -135,7 +165,7 @@ def speed_up(quick):
                 tasks[scene, model, skip] = (
                     lambda built=built, model=model, steps=steps, skip=skip:
                     lambda: contact.run_model(model, built, DT, steps, skip=skip))
-    seconds = timing.interleave(tasks, 3 if quick else 11, 10.0)
+    seconds = timing.interleave(tasks, 3 if quick else 11)
     for scene, bodies, steps in cases:
         for model in ("penalty", "lcp"):
             skipped, taken = (timing.spread(seconds[scene, model, skip]) for skip in (True, False))
