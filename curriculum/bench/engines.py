@@ -244,9 +244,9 @@ class Pymunk(Session):
         """{(upper, lower): normal force [N]} of the last step."""
         number, found = {body: k for k, body in enumerate(self.bodies)}, {}
 
-        def told(arbiter, k):
-            pair = sorted((number[k], *(number.get(shape.body, -1) for shape in arbiter.shapes
-                                        if shape.body is not self.bodies[k])), reverse=True)
+        def told(arbiter, mine):
+            others = [number.get(shape.body, -1) for shape in arbiter.shapes]
+            pair = sorted({mine, *others} if -1 in others else others, reverse=True)
             found[tuple(pair)] = arbiter.total_impulse.length / self.dt
 
         for k, body in enumerate(self.bodies):

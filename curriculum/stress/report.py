@@ -10,7 +10,7 @@ from datetime import date
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from curriculum.bench import store
+from curriculum import measured
 from curriculum.common.files import write_whole
 from curriculum.stress import extremes, figures, invariants, jobs, maps
 
@@ -79,7 +79,7 @@ def case_files(results, folder):
 def shown(path):
     """The path as a reader at the project's root would type it."""
     try:
-        return str(Path(path).resolve().relative_to(store.ROOT))
+        return str(Path(path).resolve().relative_to(measured.ROOT))
     except ValueError:
         return str(path)
 
@@ -92,7 +92,7 @@ def machine(command):
             packages[package] = version(package)
         except PackageNotFoundError:
             packages[package] = None
-    place = store.machine()
+    place = measured.provenance()
     return {
         "command": command,
         "date": date.today().isoformat(),

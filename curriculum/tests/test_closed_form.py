@@ -104,3 +104,70 @@ def test_one_ball_is_a_column_of_one():
     t = np.linspace(0.0, 1.0, 101)
     column = closed_form.column_heights(np.array([1.0055]), RADIUS, t)[:, 0]
     assert (column == closed_form.ball_height(1.0055, RADIUS, 0.0, t)).all()
+
+
+def runge_kutta(slope, state, duration, steps):
+    """The classical method of order four; state and slope(state) are arrays."""
+    h = duration / steps
+    for _ in range(steps):
+        a = slope(state)
+        b = slope(state + 0.5 * h * a)
+        c = slope(state + 0.5 * h * b)
+        state = state + h / 6.0 * (a + 2.0 * b + 2.0 * c + slope(state + h * c))
+    return state
+
+
+def test_a_ball_on_a_ball_turns_as_the_pendulum_equation_says():
+    theta, length = 0.1, 0.2
+    end = runge_kutta(lambda s: np.array([s[1], 9.81 / length * math.sin(s[0])]),
+                      np.array([theta, 0.0]), 0.3, 2000)
+    q, v = closed_form.slide_motion(theta, length, RADIUS, RADIUS, np.array([0.3]))
+    assert q[0] == pytest.approx([length * math.sin(end[0]), RADIUS + length * math.cos(end[0])],
+                                 abs=1e-12)
+    assert v[0, 0] == pytest.approx(length * math.cos(end[0]) * end[1], abs=1e-11)
+
+
+def test_a_ball_leaves_a_fixed_one_where_gravity_alone_just_turns_it():
+    """At the release the centripetal part of gravity is all that bends the path: g cos = speed^2 / l."""
+    theta, length = 0.1, 0.2
+    end = closed_form.slide_release(theta)
+    assert math.cos(end) == pytest.approx(2.0 / 3.0 * math.cos(theta), rel=1e-15)
+    speed_squared = 2.0 * 9.81 * length * (math.cos(theta) - math.cos(end))
+    assert 9.81 * math.cos(end) == pytest.approx(speed_squared / length, rel=1e-14)
+
+
+def test_pyramid_of_three_releases_at_31_885_degrees_and_lands_at_0_32161_s():
+    theta = math.radians(60.0)
+    assert math.degrees(closed_form.pyramid_release(theta)) == pytest.approx(31.885, abs=5e-4)
+    t = np.linspace(0.3, 0.34, 40001)
+    q, _ = closed_form.pyramid_motion(theta, 0.2, RADIUS, t)
+    assert t[np.argmax(q[:, 1, 2] <= RADIUS)] == pytest.approx(0.32161, abs=5e-6)
+
+
+def test_sliding_balls_keep_energy_and_the_touch_until_they_let_go():
+    theta, t = math.radians(55.0), np.linspace(0.0, 0.15, 151)
+    q, v = closed_form.pyramid_motion(theta, 0.2, RADIUS, t)
+    total = 0.5 * (v**2).sum((1, 2)) + 9.81 * q[:, 1].sum(1)
+    assert np.ptp(total) < 1e-14
+    assert np.hypot(*(q[:, :, 2] - q[:, :, 0]).T) == pytest.approx(np.full(151, 0.2), abs=1e-14)
+
+
+def test_velocity_is_the_slope_of_the_path():
+    t, h = np.linspace(0.05, 0.65, 200), 1e-6
+    for motion in (lambda t: closed_form.bounce_motion(0.9, 0.7, t),
+                   lambda t: closed_form.slide_motion(0.2, 0.2, RADIUS, RADIUS, t),
+                   lambda t: closed_form.pyramid_motion(1.0, 0.2, RADIUS, t)):
+        slope = (motion(t + h)[0] - motion(t - h)[0]) / (2.0 * h)
+        off = np.abs(slope - motion(t)[1]).reshape(len(t), -1).max(1)
+        assert np.median(off) < 1e-8 and (off > 1e-6).sum() <= 2        # impacts apart
+
+
+def test_the_floor_carries_a_whole_tower_and_each_ball_those_above_it():
+    forces = closed_form.tower_forces(4, 2.0)
+    assert forces == pytest.approx(2.0 * 9.81 * np.array([4, 3, 2, 1]))
+    assert np.diff(forces) == pytest.approx(-2.0 * 9.81 * np.ones(3))
+
+
+def test_a_cradle_keeps_momentum_and_energy():
+    speeds = closed_form.cradle_speeds(5, 3.0)
+    assert speeds.sum() == 3.0 and (speeds**2).sum() == 9.0 and speeds[-1] == 3.0

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from curriculum.bench import readme
+from curriculum import readme
 
 ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -20,7 +20,7 @@ def test_table_in_the_readme_is_what_contact_py_prints():
 
 def test_a_changed_digit_in_the_table_is_noticed():
     wrong = TEXT.replace("-0.00981", "-0.00982", 1)
-    assert wrong != TEXT and readme.fill(wrong, {}) != wrong
+    assert wrong != TEXT and readme.fill(wrong) != wrong
 
 
 @pytest.mark.parametrize("target", re.findall(r"\]\(([^)#:]+)\)", TEXT))
