@@ -108,7 +108,7 @@ def printed(flags):
         run = subprocess.run([sys.executable, "contact.py", *flags, "--no-rerun", "--out", out],
                              cwd=measured.ROOT, capture_output=True, text=True, check=True)
     lines = [line for line in run.stdout.splitlines()
-             if not line.startswith(("[", "metrics:", "config_hash:"))]
+             if not line.startswith(("[", "metrics:", "config_hash:", "next:"))]
     return "```text\n" + "\n".join(lines) + "\n```\n"
 
 
