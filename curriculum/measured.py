@@ -36,19 +36,20 @@ from curriculum.common.files import write_whole
 
 ROOT = Path(__file__).resolve().parents[1]
 LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
-FOLDERS = ("curriculum/bench/results", "curriculum/stress/results")   # what the repository keeps
+FOLDERS = ("curriculum/bench/results", "curriculum/stress/results")  # what the repository keeps
 NAME = "results.json"
-DIGITS = 6      # significant digits that a results file keeps
+DIGITS = 6  # significant digits that a results file keeps
 
 
 # the code that was measured
+
 
 @lru_cache(maxsize=32)
 def code_of(text: str) -> str:
     """Python source without what does not run: comments, docstrings, blank lines, trailing blanks."""
     lines = text.splitlines()
     for first, last in _docstrings(ast.parse(text)):
-        lines[first - 1:last] = [""] * (last - first + 1)
+        lines[first - 1 : last] = [""] * (last - first + 1)
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         row, column = token.start
         if token.type == tokenize.COMMENT and lines[row - 1]:
@@ -59,7 +60,9 @@ def code_of(text: str) -> str:
 def _docstrings(tree):
     """First and last line of every docstring."""
     for node in ast.walk(tree):
-        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(
+            node
+        ):
             yield node.body[0].lineno, node.body[0].end_lineno
 
 
@@ -104,6 +107,7 @@ def listed(items) -> str:
 
 # results files
 
+
 def load(folder) -> dict:
     """{section: results} of the file in `folder`, {} where there is none yet."""
     path = Path(folder) / NAME
@@ -131,10 +135,17 @@ def provenance(code=LITERATE, packages=()) -> dict:
         except importlib.metadata.PackageNotFoundError:
             versions[package] = None
     hashes = {name: code_hash(name) for name in code}
-    return {"date": date.today().isoformat(), **_commit(code), "code": hashes,
-            "processor": _processor(), "cores": os.cpu_count(), "system": platform.system(),
-            "architecture": platform.machine(), "python": platform.python_version(),
-            "versions": versions}
+    return {
+        "date": date.today().isoformat(),
+        **_commit(code),
+        "code": hashes,
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "system": platform.system(),
+        "architecture": platform.machine(),
+        "python": platform.python_version(),
+        "versions": versions,
+    }
 
 
 def footer(section: dict) -> str:
@@ -144,11 +155,13 @@ def footer(section: dict) -> str:
     commit = f"commit {about['commit']}" if about["commit"] else "no commit known"
     changed = " with uncommitted changes" if about["changed"] else ""
     short = " A quick run, on reduced settings: not for quoting." if section.get("quick") else ""
-    return (f"Measured on {about['date']} at {commit}{changed}, on {about['cores']} cores of "
-            f"{about['processor']} ({about['system']}, {about['architecture']}), with Python "
-            f"{about['python']}, {versions}. Code measured: "
-            + ", ".join(f"{name} {digits}" for name, digits in about["code"].items() if digits)
-            + f".{short}")
+    return (
+        f"Measured on {about['date']} at {commit}{changed}, on {about['cores']} cores of "
+        f"{about['processor']} ({about['system']}, {about['architecture']}), with Python "
+        f"{about['python']}, {versions}. Code measured: "
+        + ", ".join(f"{name} {digits}" for name, digits in about["code"].items() if digits)
+        + f".{short}"
+    )
 
 
 def text(value, level: int = 0) -> str:
@@ -159,8 +172,11 @@ def text(value, level: int = 0) -> str:
     if not isinstance(value, (dict, list, tuple)) or level > 3 or _is_flat(value):
         line = json.dumps(plain(value), allow_nan=False)
     else:
-        items = ([f"{json.dumps(str(key))}: {text(item, level + 1)}" for key, item in value.items()]
-                 if isinstance(value, dict) else [text(item, level + 1) for item in value])
+        items = (
+            [f"{json.dumps(str(key))}: {text(item, level + 1)}" for key, item in value.items()]
+            if isinstance(value, dict)
+            else [text(item, level + 1) for item in value]
+        )
         indent = "\n" + " " * (level + 1)
         opening, closing = "{}" if isinstance(value, dict) else "[]"
         line = opening + indent + ("," + indent).join(items) + "\n" + " " * level + closing
@@ -197,17 +213,20 @@ def _processor():
 
 def _commit(code):
     """Short hash of the commit, and whether the measured files differed from it."""
+
     def git(*words):
         run = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
         return run.stdout.strip() if run.returncode == 0 else None
+
     try:
         commit = git("rev-parse", "--short=10", "HEAD")
         return {"commit": commit, "changed": bool(git("status", "--porcelain", "--", *code))}
-    except OSError:         # no git
+    except OSError:  # no git
         return {"commit": None, "changed": None}
 
 
 # raw cells, so that a long measurement can go on where it stopped
+
 
 class Cells:
     """Finished cells of a long measurement, one JSON line each, in a file outside the repository.
@@ -252,6 +271,7 @@ class Cells:
 
 # how far it is
 
+
 @contextmanager
 def progress(total: int, title: str):
     """`with progress(n, "piles") as tick: ... tick("12 balls")`: a bar on a terminal, else nothing.
@@ -265,9 +285,11 @@ def progress(total: int, title: str):
         yield lambda label="", done=1: None
         return
     with tqdm(total=total, desc=title, leave=False, disable=None) as bar:
+
         def tick(label="", done=1):
             bar.set_postfix_str(str(label), refresh=False)
             bar.update(done)
+
         yield tick
 
 
@@ -280,8 +302,9 @@ def all_sections(root: Path = ROOT):
 
 def main(argv=None) -> int:
     """List the results and say what is stale. Returns the exit status."""
-    parser = argparse.ArgumentParser(prog="python -m curriculum.measured",
-                                     description="Which measured results still hold.")
+    parser = argparse.ArgumentParser(
+        prog="python -m curriculum.measured", description="Which measured results still hold."
+    )
     parser.add_argument("--check", action="store_true", help="exit 1 when a section is stale")
     args = parser.parse_args(argv)
     stale = 0
@@ -289,7 +312,9 @@ def main(argv=None) -> int:
         section = section if isinstance(section, dict) else {}
         files, about = stale_files(section), section.get("measured", {})
         stale += bool(files)
-        state = f"stale ({listed(files)}), measure again: {about.get('command')}" if files else "holds"
+        state = (
+            f"stale ({listed(files)}), measure again: {about.get('command')}" if files else "holds"
+        )
         print(f"{file}: {name}, measured on {about.get('date', 'an unknown day')}: {state}")
     return 1 if args.check and stale else 0
 

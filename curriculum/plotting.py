@@ -17,9 +17,17 @@ import textwrap
 import contact
 
 INK, PALE, GRID, FAINT = "#222222", "#666666", "#e2e2e2", "#c0c0c0"
-RAMP = ("#fde9c9", "#f7c987", "#ec9c5a", "#cf6a4f", "#9c4058", "#612a5c", "#2b1741")  # light to dark
-WIDTH = 6.0         # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
-LARGEST = 100_000   # bytes that a figure may have
+RAMP = (
+    "#fde9c9",
+    "#f7c987",
+    "#ec9c5a",
+    "#cf6a4f",
+    "#9c4058",
+    "#612a5c",
+    "#2b1741",
+)  # light to dark
+WIDTH = 6.0  # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
+LARGEST = 100_000  # bytes that a figure may have
 
 # colour, marker, dash: told apart without colour too. Colours are safe for colour-blind readers.
 LOOKS = {
@@ -33,9 +41,18 @@ LOOKS = {
     "box2d3": ("#7b5ea7", "^", (0, (1, 2))),
     "drake": ("#56b4e9", "X", (0, (6, 2, 1, 2))),
 }
-IN_THE_DARK = {INK: "#e6e6e6", PALE: "#a8a8a8", GRID: "#3a3f4a", FAINT: "#666c78",
-               "#0072b2": "#56a8e0", "#7b5ea7": "#b59ae0", "#a6611a": "#cf8f4f",
-               "#d55e00": "#ef7a2a", "#009e73": "#2fc79a", "#cc79a7": "#e096bd"}
+IN_THE_DARK = {
+    INK: "#e6e6e6",
+    PALE: "#a8a8a8",
+    GRID: "#3a3f4a",
+    FAINT: "#666c78",
+    "#0072b2": "#56a8e0",
+    "#7b5ea7": "#b59ae0",
+    "#a6611a": "#cf8f4f",
+    "#d55e00": "#ef7a2a",
+    "#009e73": "#2fc79a",
+    "#cc79a7": "#e096bd",
+}
 
 
 def pyplot():
@@ -45,15 +62,35 @@ def pyplot():
     except ImportError:
         raise ImportError("figures need matplotlib: pip install -e '.[bench]'") from None
     matplotlib.use("svg")
-    matplotlib.rcParams.update({
-        "svg.hashsalt": "contact", "svg.fonttype": "none", "font.size": 10,
-        "font.family": "DejaVu Sans", "text.color": INK, "axes.labelcolor": INK,
-        "xtick.color": INK, "ytick.color": INK, "axes.titlesize": 10.5, "axes.titlelocation": "left",
-        "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": INK,
-        "axes.grid": True, "grid.color": GRID, "grid.linewidth": 0.6, "axes.axisbelow": True,
-        "legend.frameon": False, "legend.fontsize": 9, "lines.linewidth": 1.5,
-        "lines.markersize": 5.5, "figure.facecolor": "none", "axes.facecolor": "none"})
+    matplotlib.rcParams.update(
+        {
+            "svg.hashsalt": "contact",
+            "svg.fonttype": "none",
+            "font.size": 10,
+            "font.family": "DejaVu Sans",
+            "text.color": INK,
+            "axes.labelcolor": INK,
+            "xtick.color": INK,
+            "ytick.color": INK,
+            "axes.titlesize": 10.5,
+            "axes.titlelocation": "left",
+            "axes.spines.top": False,
+            "axes.spines.right": False,
+            "axes.edgecolor": INK,
+            "axes.grid": True,
+            "grid.color": GRID,
+            "grid.linewidth": 0.6,
+            "axes.axisbelow": True,
+            "legend.frameon": False,
+            "legend.fontsize": 9,
+            "lines.linewidth": 1.5,
+            "lines.markersize": 5.5,
+            "figure.facecolor": "none",
+            "axes.facecolor": "none",
+        }
+    )
     from matplotlib import pyplot as plt
+
     return plt
 
 
@@ -67,9 +104,21 @@ def figure(rows=1, title="", explained="", height=3.4, columns=1, share=None, be
     said = textwrap.wrap(explained, 84)
     top, bottom = 0.42 + 0.17 * len(said) + 0.26, 0.62 + below
     tall = top + bottom + rows * height
-    made, axes = plt.subplots(rows, columns, figsize=(WIDTH, tall), squeeze=False, gridspec_kw=dict(
-        width_ratios=share or [1] * columns, left=0.125, right=0.98, top=1 - top / tall,
-        bottom=bottom / tall, hspace=0.42, wspace=0.08 if share else 0.3))
+    made, axes = plt.subplots(
+        rows,
+        columns,
+        figsize=(WIDTH, tall),
+        squeeze=False,
+        gridspec_kw=dict(
+            width_ratios=share or [1] * columns,
+            left=0.125,
+            right=0.98,
+            top=1 - top / tall,
+            bottom=bottom / tall,
+            hspace=0.42,
+            wspace=0.08 if share else 0.3,
+        ),
+    )
     made.text(0.01, 1 - 0.26 / tall, title, fontsize=12, fontweight="bold")
     for k, line_ in enumerate(said):
         made.text(0.01, 1 - (0.46 + 0.17 * k) / tall, line_, fontsize=9, color=PALE)
@@ -91,8 +140,15 @@ def line(axis, x, y, name, label=None, **changes):
 
 def legend_below(axis, columns=2, **options):
     """The legend under a panel, where it covers nothing."""
-    axis.legend(loc="upper left", bbox_to_anchor=(-0.1, -0.16), ncols=columns, handlelength=3.4,
-                borderaxespad=0, columnspacing=1.2, **options)
+    axis.legend(
+        loc="upper left",
+        bbox_to_anchor=(-0.1, -0.16),
+        ncols=columns,
+        handlelength=3.4,
+        borderaxespad=0,
+        columnspacing=1.2,
+        **options,
+    )
 
 
 def heat(axis, x, y, cells, bounds, label, words=None):
@@ -103,24 +159,52 @@ def heat(axis, x, y, cells, bounds, label, words=None):
     """
     import numpy as np
     from matplotlib.colors import BoundaryNorm, ListedColormap
+
     count = len(bounds) + 1
     colours = [RAMP[round(k * (len(RAMP) - 1) / max(1, count - 1))] for k in range(count)]
-    values = np.array([[np.nan if cell is None else np.searchsorted(bounds, cell, side="right")
-                        for cell in row] for row in cells], dtype=float)
-    axis.pcolormesh(_edges(x), _edges(y), np.ma.masked_invalid(values), cmap=ListedColormap(colours),
-                    norm=BoundaryNorm(np.arange(count + 1) - 0.5, count), edgecolors="face", linewidth=0.3)
+    values = np.array(
+        [
+            [
+                np.nan if cell is None else np.searchsorted(bounds, cell, side="right")
+                for cell in row
+            ]
+            for row in cells
+        ],
+        dtype=float,
+    )
+    axis.pcolormesh(
+        _edges(x),
+        _edges(y),
+        np.ma.masked_invalid(values),
+        cmap=ListedColormap(colours),
+        norm=BoundaryNorm(np.arange(count + 1) - 0.5, count),
+        edgecolors="face",
+        linewidth=0.3,
+    )
     axis.set(xscale="log", yscale="log")
     axis.grid(False)
-    names = words or [f"under {bounds[0]:g}", *(f"{low:g} to {high:g}" for low, high
-                                                in zip(bounds, bounds[1:])), f"over {bounds[-1]:g}"]
+    names = words or [
+        f"under {bounds[0]:g}",
+        *(f"{low:g} to {high:g}" for low, high in zip(bounds, bounds[1:])),
+        f"over {bounds[-1]:g}",
+    ]
     handles = [pyplot().Rectangle((0, 0), 1, 1, color=colour) for colour in colours]
-    axis.legend(handles, names, title=label, loc="upper left", bbox_to_anchor=(-0.1, -0.16), ncols=3,
-                borderaxespad=0, alignment="left")
+    axis.legend(
+        handles,
+        names,
+        title=label,
+        loc="upper left",
+        bbox_to_anchor=(-0.1, -0.16),
+        ncols=3,
+        borderaxespad=0,
+        alignment="left",
+    )
 
 
 def _edges(values):
     """Borders of cells around `values`, halfway between neighbours on a logarithmic axis."""
     import numpy as np
+
     logs = np.log(np.asarray(values, dtype=float))
     middle = (logs[1:] + logs[:-1]) / 2
     return np.exp(np.concatenate([[2 * logs[0] - middle[0]], middle, [2 * logs[-1] - middle[-1]]]))
@@ -133,11 +217,16 @@ def svg(figure, section=None) -> str:
     """
     if section is not None:
         about = section["measured"]
-        note = f"{about['date']}, {about['cores']} cores of {about['processor']}, {about['command']}"
+        note = (
+            f"{about['date']}, {about['cores']} cores of {about['processor']}, {about['command']}"
+        )
         figure.text(0.01, 0.06 / figure.get_figheight(), note, fontsize=7, color=PALE, va="bottom")
     out, (title, explained) = io.StringIO(), figure.told
-    figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Title": title,
-                                                "Description": explained})
+    figure.savefig(
+        out,
+        format="svg",
+        metadata={"Date": None, "Creator": None, "Title": title, "Description": explained},
+    )
     pyplot().close(figure)
     made = _small(out.getvalue())
     if len(made.encode()) > LARGEST:
@@ -147,14 +236,18 @@ def svg(figure, section=None) -> str:
 
 def _small(text):
     """Two decimals are enough for a pixel; a <title>, and a style for dark mode, at the front."""
+
     def shorter(match):
         return f"{float(match[0]):.2f}".rstrip("0").rstrip(".")
 
     text = re.sub(r"<[^>]*>", lambda tag: re.sub(r"-?\d+\.\d{3,}", shorter, tag[0]), text)
-    rules = "".join(f'[style*="{part}: {day}"]{{{part}:{night}!important}}'
-                    for day, night in IN_THE_DARK.items() for part in ("fill", "stroke"))
-    style = f"<style>@media (prefers-color-scheme: dark) {{svg{{background:#14161b}}{rules}}}</style>"
+    rules = "".join(
+        f'[style*="{part}: {day}"]{{{part}:{night}!important}}'
+        for day, night in IN_THE_DARK.items()
+        for part in ("fill", "stroke")
+    )
+    style = (
+        f"<style>@media (prefers-color-scheme: dark) {{svg{{background:#14161b}}{rules}}}</style>"
+    )
     text = re.sub(r"(<svg\b[^>]*>)", lambda match: match[1] + "\n" + style, text, count=1)
     return "\n".join(line_.rstrip() for line_ in text.splitlines()) + "\n"
-
-

@@ -21,15 +21,18 @@ from curriculum.common.files import write_whole
 README = measured.ROOT / "README.md"
 COMMAND = "python -m curriculum.readme"
 BENCH, STRESS = (measured.ROOT / folder for folder in measured.FOLDERS)
-BLOCK = re.compile(r"(<!-- generated: (?P<name>[\w-]+) by (?P<command>[^>]*?) -->\n).*?(?=<!-- end -->)",
-                   re.DOTALL)
+BLOCK = re.compile(
+    r"(<!-- generated: (?P<name>[\w-]+) by (?P<command>[^>]*?) -->\n).*?(?=<!-- end -->)", re.DOTALL
+)
 
 
 # the blocks of the benchmark
 
+
 def headline(section):
     """Error and time at dt 0.002 s on drop, bounce and stack: the best setting of each."""
     from curriculum.bench.contestants import LABELS
+
     found = section["headline"]
     chosen = [problem for problem in ("drop", "bounce", "stack") if problem in found]
     rows = []
@@ -38,7 +41,10 @@ def headline(section):
             cells = []
             for problem in chosen:
                 best = found[problem].get(family) or {}
-                cells += [reporting.number(best.get("error"), 2), reporting.number(best.get("ms"), 2)]
+                cells += [
+                    reporting.number(best.get("error"), 2),
+                    reporting.number(best.get("ms"), 2),
+                ]
             rows.append([label, *cells])
     head = [f"{problem}: {what}" for problem in chosen for what in ("error / r", "ms")]
     return reporting.table(["", *head], rows)
@@ -46,10 +52,12 @@ def headline(section):
 
 def figure(name, report, *arguments):
     """A maker of a figure with its checked sentences."""
+
     def made(section):
         where = (BENCH / f"{name}.svg").relative_to(measured.ROOT).as_posix()
         said = reporting.sentences(report_on(report).claims(section, *arguments))
         return f"![{name}]({where})\n\n{said}\n"
+
     return made
 
 
@@ -67,7 +75,7 @@ def machine(section):
     return measured.footer(section) + "\n"
 
 
-BLOCKS = {      # name: section of the benchmark's results, what makes the block from it
+BLOCKS = {  # name: section of the benchmark's results, what makes the block from it
     "bench-headline": ("accuracy", headline),
     "bench-bounce": ("accuracy", figure("error-bounce", "accuracy", "bounce")),
     "bench-goals": ("accuracy", goals("accuracy")),
@@ -102,18 +110,28 @@ def stress():
 
 # filling them in
 
+
 def printed(flags):
     """What contact.py prints for `flags`, fenced; without the banner and the lines that name files."""
     with tempfile.TemporaryDirectory() as out:
-        run = subprocess.run([sys.executable, "contact.py", *flags, "--no-rerun", "--out", out],
-                             cwd=measured.ROOT, capture_output=True, text=True, check=True)
-    lines = [line for line in run.stdout.splitlines()
-             if not line.startswith(("[", "metrics:", "config_hash:", "next:"))]
+        run = subprocess.run(
+            [sys.executable, "contact.py", *flags, "--no-rerun", "--out", out],
+            cwd=measured.ROOT,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+    lines = [
+        line
+        for line in run.stdout.splitlines()
+        if not line.startswith(("[", "metrics:", "config_hash:", "next:"))
+    ]
     return "```text\n" + "\n".join(lines) + "\n```\n"
 
 
 def fill(text):
     """The README's text with our blocks made anew. Raises ValueError for a name that is none of ours."""
+
     def made(match):
         if match["command"].startswith("python contact.py"):
             return match[1] + printed(match["command"].split()[2:])
@@ -121,9 +139,12 @@ def fill(text):
             return match[0]
         if match["name"] not in (*BLOCKS, "stress"):
             line = text.count("\n", 0, match.start()) + 1
-            raise ValueError(f"README.md:{line}: no generated block {match['name']!r}; "
-                             f"there are: {', '.join((*BLOCKS, 'stress'))}")
+            raise ValueError(
+                f"README.md:{line}: no generated block {match['name']!r}; "
+                f"there are: {', '.join((*BLOCKS, 'stress'))}"
+            )
         return match[1] + block(match["name"])
+
     return BLOCK.sub(made, text)
 
 
@@ -140,14 +161,20 @@ def main(argv=None):
         return 1
     if args.check and new != text:
         old, now = text.splitlines(), new.splitlines()
-        line = next((k for k, (a, b) in enumerate(zip(old, now)) if a != b), min(len(old), len(now)))
-        print(f"README.md:{line + 1}: a generated block is out of date; to repair: {COMMAND}",
-              file=sys.stderr)
+        line = next(
+            (k for k, (a, b) in enumerate(zip(old, now)) if a != b), min(len(old), len(now))
+        )
+        print(
+            f"README.md:{line + 1}: a generated block is out of date; to repair: {COMMAND}",
+            file=sys.stderr,
+        )
         return 1
     if new != text:
         write_whole(str(README), new)
-    count = sum(match["command"] == COMMAND or match["command"].startswith("python contact.py")
-                for match in BLOCK.finditer(text))
+    count = sum(
+        match["command"] == COMMAND or match["command"].startswith("python contact.py")
+        for match in BLOCK.finditer(text)
+    )
     print(f"README.md: {count} generated blocks {'are up to date' if args.check else 'written'}")
     return 0
 

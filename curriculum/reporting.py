@@ -6,17 +6,28 @@ carries the condition it stands on; where that fails, the other sentence is prin
 """
 
 import math
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 from curriculum import measured
-from curriculum.measured import listed      # part of this vocabulary too
+from curriculum.measured import listed  # part of this vocabulary too
 
-__all__ = ["Claim", "Goal", "goal_table", "listed", "ms", "number", "page", "sentences", "spread",
-           "table"]
+__all__ = [
+    "Claim",
+    "Goal",
+    "goal_table",
+    "listed",
+    "ms",
+    "number",
+    "page",
+    "sentences",
+    "spread",
+    "table",
+]
 
 
 class Claim(NamedTuple):
     """`said` where it holds, `instead` where it does not."""
+
     holds: bool
     said: str
     instead: str = ""
@@ -27,9 +38,10 @@ class Claim(NamedTuple):
 
 class Goal(NamedTuple):
     """A number to reach, what was measured, and whether that reaches it (None: not measured)."""
+
     wanted: str
     measured: str
-    met: Optional[bool]
+    met: bool | None
 
     def verdict(self) -> str:
         return {None: "not measured", True: "met", False: "**missed**"}[self.met]
@@ -55,8 +67,13 @@ def sentences(claims) -> str:
 def table(head, rows) -> str:
     """A Markdown table. A cell may be anything that str() can show; | is escaped."""
     lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in line) + " |"
-                     for line in lines) + "\n"
+    return (
+        "\n".join(
+            "| " + " | ".join(str(cell).replace("|", "\\|") for cell in line) + " |"
+            for line in lines
+        )
+        + "\n"
+    )
 
 
 def number(value, digits: int = 3) -> str:

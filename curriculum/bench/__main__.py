@@ -18,7 +18,7 @@ the results into the README.
 import os
 import sys
 
-for _library in ("OMP", "OPENBLAS", "MKL"):     # one thread each; said before numpy is loaded
+for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
 from importlib import import_module
@@ -31,11 +31,21 @@ from curriculum.common.files import write_whole
 
 WHAT = ("accuracy", "solvers", "cradle", "soft", "pile", "skip")
 MODULES = {"pile": "piles", "skip": "skips"}
-RESULTS = Path(__file__).resolve().parent / "results"       # the full runs, which are kept
-QUICK = measured.ROOT / "outputs" / "bench-quick"           # the short ones, which are not
-CELLS = measured.ROOT / "outputs" / "bench-cells"           # what a stopped run has done so far
-PACKAGES = ("matplotlib", "mujoco", "pymunk", "box2d", "pyb2d3", "drake", "scipy", "quadprog",
-            "numba", "rerun-sdk")
+RESULTS = Path(__file__).resolve().parent / "results"  # the full runs, which are kept
+QUICK = measured.ROOT / "outputs" / "bench-quick"  # the short ones, which are not
+CELLS = measured.ROOT / "outputs" / "bench-cells"  # what a stopped run has done so far
+PACKAGES = (
+    "matplotlib",
+    "mujoco",
+    "pymunk",
+    "box2d",
+    "pyb2d3",
+    "drake",
+    "scipy",
+    "quadprog",
+    "numba",
+    "rerun-sdk",
+)
 
 
 def module(what):
@@ -84,18 +94,26 @@ def parse(argv):
     parser = Parser(prog="python -m curriculum.bench", description="Run time against error.")
     parser.add_argument("what", nargs="?", default="all", choices=("all", *WHAT, "draw"))
     parser.add_argument("--quick", action="store_true", help="reduced settings, in seconds, for CI")
-    parser.add_argument("--only", metavar="PROBLEM", help="accuracy: one problem, the rest is reused")
+    parser.add_argument(
+        "--only", metavar="PROBLEM", help="accuracy: one problem, the rest is reused"
+    )
     parser.add_argument("--fresh", action="store_true", help="forget what a stopped run has done")
-    parser.add_argument("--out", type=writable_folder, help="folder of results.json and what it gives")
+    parser.add_argument(
+        "--out", type=writable_folder, help="folder of results.json and what it gives"
+    )
     args = parser.parse_args(argv)
     if args.only and args.what != "accuracy":
         parser.error("argument --only: allowed with accuracy only")
     if args.only and args.only not in problems.BY_NAME:
-        parser.error(f"argument --only: given {args.only!r}; allowed: {', '.join(problems.BY_NAME)}")
+        parser.error(
+            f"argument --only: given {args.only!r}; allowed: {', '.join(problems.BY_NAME)}"
+        )
     args.folder = Path(args.out or (QUICK if args.quick else RESULTS))
     if args.what == "draw" and not measured.load(args.folder):
-        parser.error(f"nothing to draw: {args.folder / measured.NAME} is missing; "
-                     "run python -m curriculum.bench")
+        parser.error(
+            f"nothing to draw: {args.folder / measured.NAME} is missing; "
+            "run python -m curriculum.bench"
+        )
     return args
 
 

@@ -16,10 +16,20 @@ from curriculum.bench import contestants, problems, tables, timing
 
 COMMAND = "python -m curriculum.bench accuracy"
 CODE = ("contact.py", "curriculum/exact.py")
-ERRORS = ("position_error", "final_error", "energy_error", "final_energy_error", "max_penetration",
-          "rest_gap", "contact_energy", "impact_time_error", "restitution", "phase_error")
-BUDGET = 1.0            # s: once the runs of a cell have taken so long, no further start is timed
-TIMED_SEEDS = 5         # starts that are timed
+ERRORS = (
+    "position_error",
+    "final_error",
+    "energy_error",
+    "final_energy_error",
+    "max_penetration",
+    "rest_gap",
+    "contact_energy",
+    "impact_time_error",
+    "restitution",
+    "phase_error",
+)
+BUDGET = 1.0  # s: once the runs of a cell have taken so long, no further start is timed
+TIMED_SEEDS = 5  # starts that are timed
 FIT_DTS = (0.0, 0.008)  # s, the steps whose errors the order of convergence is fitted to
 QUICK_PROBLEMS, QUICK_DTS = ("drop", "bounce", "pyramid"), (0.002, 0.008)
 
@@ -36,17 +46,24 @@ def measure(quick=False, cells=None, only=None):
     work = [key for name, some in keys.items() if only in (None, name) for key in some]
     timing.beside(error_cell, work, cells, "error", "errors")
     timing.in_fresh_processes(time_cell, work, processes, cells, "run times")
-    whole = [p for p in chosen if all(timing.place("time", 0, key) in cells for key in keys[p.name])]
+    whole = [
+        p for p in chosen if all(timing.place("time", 0, key) in cells for key in keys[p.name])
+    ]
     done = [key for p in whole for key in keys[p.name]]
     times = timing.merged(cells, done, processes)
     points = [point(key, cells[timing.place("error", 0, key)], times[key]) for key in done]
     return dict(
-        quick=quick, processes=processes, seeds=seeds,
-        problems={p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration)
-                  for p in whole},
-        left_out=left_out(whole), points=tables.pack(points),
+        quick=quick,
+        processes=processes,
+        seeds=seeds,
+        problems={
+            p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration) for p in whole
+        },
+        left_out=left_out(whole),
+        points=tables.pack(points),
         headline=headline(points),
-        orders=[order for order in fits(points) if order["order"] is not None])
+        orders=[order for order in fits(points) if order["order"] is not None],
+    )
 
 
 def _keys(problem, seeds, quick):
@@ -63,9 +80,14 @@ def headline(points):
     """{problem: {family: {words, error, ms}}}: the best setting of each at the reference step."""
     result = {}
     for p in sorted(points, key=lambda p: p["position_error"] or 0.0, reverse=True):
-        if p["dt"] == problems.REFERENCE_DT and not p["diverged"] and p["words"] != contestants.FLYING:
+        if (
+            p["dt"] == problems.REFERENCE_DT
+            and not p["diverged"]
+            and p["words"] != contestants.FLYING
+        ):
             result.setdefault(p["problem"], {})[p["family"]] = dict(
-                words=p["words"], error=p["position_error"], ms=1e3 * p["read_median"])
+                words=p["words"], error=p["position_error"], ms=1e3 * p["read_median"]
+            )
     return result
 
 
@@ -86,7 +108,7 @@ def time_cell(key):
     scene, seconds = problem.build(0), {}
     for call in contestant.prepare(scene, dt, min(50, problem.steps(dt))).values():
         call()
-    for seed in problem.seeds[:min(seeds, TIMED_SEEDS)]:
+    for seed in problem.seeds[: min(seeds, TIMED_SEEDS)]:
         for way, call in contestant.prepare(problem.build(seed), dt, problem.steps(dt)).items():
             seconds.setdefault(way, []).append(timing.timed(call))
         if sum(map(sum, seconds.values())) > BUDGET:
@@ -107,16 +129,27 @@ def point(key, errors, times):
     problem, contestant, dt, _ = key
     found = contestants.BY_NAME[contestant]
     blown = [e for e in errors if e["blew_up_step"] is not None]
-    result = dict(problem=problem, family=found.family, words=found.words, dt=dt,
-                  diverged=None if not blown else (
-                      f"step {blown[0]['blew_up_step']}: {blown[0]['blew_up_reason']} "
-                      f"({len(blown)} of {len(errors)} starts)"))
+    result = dict(
+        problem=problem,
+        family=found.family,
+        words=found.words,
+        dt=dt,
+        diverged=None
+        if not blown
+        else (
+            f"step {blown[0]['blew_up_step']}: {blown[0]['blew_up_reason']} "
+            f"({len(blown)} of {len(errors)} starts)"
+        ),
+    )
     for name in ERRORS:
         values = [e.get(name) for e in errors]
         values = [value for value in values if value is not None]
         result[name] = float(np.median(values)) if len(values) == len(errors) else None
     worst = [e["position_error"] for e in errors if e["position_error"] is not None]
-    result["least_error"], result["greatest_error"] = min(worst, default=None), max(worst, default=None)
+    result["least_error"], result["greatest_error"] = (
+        min(worst, default=None),
+        max(worst, default=None),
+    )
     for way in (contestants.READ, contestants.BARE):
         about = times.get(way) or {}
         for which in ("median", "min", "max"):
@@ -132,8 +165,10 @@ def left_out(chosen):
             why = c.takes(p) and c.refuses(p.build(0))
             if why:
                 found.setdefault((c.family, why), []).append(p.name)
-    return [dict(family=family, why=why, problems=sorted(set(names), key=names.index))
-            for (family, why), names in found.items()]
+    return [
+        dict(family=family, why=why, problems=sorted(set(names), key=names.index))
+        for (family, why), names in found.items()
+    ]
 
 
 def fits(points):
@@ -145,9 +180,13 @@ def fits(points):
     """
     names = dict.fromkeys((p["problem"], p["family"], p["words"]) for p in points)
     for problem, family, words in names:
-        used = [(p["dt"], p["position_error"]) for p in points
-                if (p["problem"], p["family"], p["words"]) == (problem, family, words)
-                and not p["diverged"] and FIT_DTS[0] <= p["dt"] <= FIT_DTS[1]]
+        used = [
+            (p["dt"], p["position_error"])
+            for p in points
+            if (p["problem"], p["family"], p["words"]) == (problem, family, words)
+            and not p["diverged"]
+            and FIT_DTS[0] <= p["dt"] <= FIT_DTS[1]
+        ]
         slope = None
         if len(used) >= 3 and max(e for _, e in used) > 1e-9:
             slope = float(np.polyfit(*np.log(np.array(used)).T, 1)[0])

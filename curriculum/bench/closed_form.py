@@ -77,8 +77,10 @@ def bounce_motion(gap, restitution, t):
     speed = g * t1 * e ** (k + 1)  # leaving impact k
     s = after - impact_time(gap, e, k)
     flight = np.maximum(speed * s - 0.5 * g * s * s, 0.0)  # rounding can put s just outside it
-    return (np.where(falling, gap - 0.5 * g * t * t, np.where(flying, flight, 0.0)),
-            np.where(falling, -g * t, np.where(flying, speed - g * s, 0.0)))
+    return (
+        np.where(falling, gap - 0.5 * g * t * t, np.where(flying, flight, 0.0)),
+        np.where(falling, -g * t, np.where(flying, speed - g * s, 0.0)),
+    )
 
 
 def bounce_gap(gap, restitution, t):
@@ -124,6 +126,7 @@ def apex_time(gap, restitution, k):
 
 # balls that slide off one another
 
+
 def slide_release(theta0):
     """Angle from the vertical [rad] at which a ball leaves a fixed one: cos = 2/3 cos(theta0)."""
     return np.arccos(2.0 / 3.0 * np.cos(theta0))
@@ -136,6 +139,7 @@ def slide_motion(theta0, length, radius, height, t):
     touch; height: of the fixed centre, which stands at x = 0. On the floor it loses its vertical
     speed and slides on. Sliding: theta'^2 = 2 g / length (cos theta0 - cos theta).
     """
+
     def rate(theta):
         """theta' / sqrt(theta - theta0), which has no root at the start."""
         half = 0.5 * (theta - theta0)
@@ -152,7 +156,7 @@ def slide_motion(theta0, length, radius, height, t):
 
 def pyramid_release(theta0):
     """Angle over the horizontal [rad] at which the upper ball of three leaves the lower two."""
-    p, s0 = 1.0, np.sin(theta0)         # s^3 + 3 p s - 2 s0 = 0, by Cardano's formula
+    p, s0 = 1.0, np.sin(theta0)  # s^3 + 3 p s - 2 s0 = 0, by Cardano's formula
     root = np.sqrt(s0 * s0 + p)
     return np.arcsin(np.cbrt(s0 + root) + np.cbrt(s0 - root))
 
@@ -164,10 +168,11 @@ def pyramid_motion(theta0, length, radius, t):
     at the start, at rest; length: distance of the centres while they touch.
     theta'^2 = 2 g (sin theta0 - sin theta) / (length (1 + sin^2 theta)), theta falling.
     """
+
     def rate(fall):
         """theta' / sqrt(fall), fall = theta0 - theta."""
         theta, half = theta0 - fall, 0.5 * fall
-        share = np.cos(theta0 - half) * np.sinc(half / np.pi)       # (s0 - s) / fall
+        share = np.cos(theta0 - half) * np.sinc(half / np.pi)  # (s0 - s) / fall
         return np.sqrt(2.0 * g / length * share / (1.0 + np.sin(theta) ** 2))
 
     release, fall = _angle_at(0.0, theta0 - pyramid_release(theta0), rate, t)
@@ -175,8 +180,13 @@ def pyramid_motion(theta0, length, radius, t):
     sine, cosine, none = np.sin(theta), np.cos(theta), np.zeros_like(theta)
     side, drift = length * cosine, length * sine * speed
     free = np.maximum(t - release, 0.0)
-    upper, upper_v = _thrown(np.stack([none, radius + length * sine], axis=1),
-                             np.stack([none, -length * cosine * speed], axis=1), t, release, radius)
+    upper, upper_v = _thrown(
+        np.stack([none, radius + length * sine], axis=1),
+        np.stack([none, -length * cosine * speed], axis=1),
+        t,
+        release,
+        radius,
+    )
     x, vx = side + drift * free, drift
     floor = np.full_like(x, radius)
     q = np.stack([np.stack([-x, floor], 1), np.stack([x, floor], 1), upper], axis=2)
@@ -208,7 +218,7 @@ def _angle_at(start, end, rate, t):
 def _thrown(q, v, t, release, radius):
     """The motion of a ball that flies from `release` on, lands without a rebound, and slides on."""
     free = np.maximum(np.asarray(t, dtype=float) - release, 0.0)
-    fall = q[:, 1] - radius                    # constant from the release on, as q and v are held
+    fall = q[:, 1] - radius  # constant from the release on, as q and v are held
     land = (v[:, 1] + np.sqrt(np.maximum(v[:, 1] ** 2 + 2.0 * g * fall, 0.0))) / g
     down = free >= land
     x = q[:, 0] + v[:, 0] * free
@@ -218,6 +228,7 @@ def _thrown(q, v, t, release, radius):
 
 
 # forces at rest, and a row of balls
+
 
 def tower_forces(count, mass):
     """Normal force [N] under each of `count` equal balls, the lowest first: (N - k + 1) m g."""

@@ -15,8 +15,8 @@ from curriculum.bench import closed_form, contestants, engines
 COMMAND = "python -m curriculum.bench cradle"
 CODE = ("contact.py", "curriculum/exact.py")
 BALLS, SPEED, DT, R = 5, 1.0, 0.002, contact.RADIUS
-GAPS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)     # m; a step of 2 ms at 1 m/s crosses 2e-3 m
-TOWER, SETTLE = 10, 4.0                         # balls; s until the forces are read
+GAPS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)  # m; a step of 2 ms at 1 m/s crosses 2e-3 m
+TOWER, SETTLE = 10, 4.0  # balls; s until the forces are read
 
 
 def cradle(gap):
@@ -24,15 +24,25 @@ def cradle(gap):
     x = (2.0 * R + gap) * np.arange(BALLS)
     v = np.zeros((2, BALLS))
     v[0, 0] = SPEED
-    return contact.Scene(f"cradle {gap:g}", np.array([x, np.full(BALLS, R)]), v, np.ones(BALLS),
-                         np.full(BALLS, R), 1.0, 0.0)
+    return contact.Scene(
+        f"cradle {gap:g}",
+        np.array([x, np.full(BALLS, R)]),
+        v,
+        np.ones(BALLS),
+        np.full(BALLS, R),
+        1.0,
+        0.0,
+    )
 
 
 def measure(quick=False, cells=None):
     """outcomes: for every contestant and gap the last speeds and their error; forces of the tower."""
     cells = {} if cells is None else cells
-    chosen = [c for c in contestants.CONTESTANTS
-              if not c.only or c.family == "soft" and "elastic" in c.only]
+    chosen = [
+        c
+        for c in contestants.CONTESTANTS
+        if not c.only or c.family == "soft" and "elastic" in c.only
+    ]
     chosen = [c for c in chosen if not (quick and c.family == "drake")]
     with measured.progress(len(chosen) * (len(GAPS) + 1), "cradle and tower") as tick:
         for c in chosen:
@@ -44,11 +54,19 @@ def measure(quick=False, cells=None):
             if f"{c.name} forces" not in cells:
                 cells[f"{c.name} forces"] = tower(c)
             tick(c.name)
-    outcomes = [dict(family=c.family, words=c.words, gap=gap, **cells[f"{c.name} {gap:g}"])
-                for c in chosen for gap in GAPS if f"{c.name} {gap:g}" in cells]
+    outcomes = [
+        dict(family=c.family, words=c.words, gap=gap, **cells[f"{c.name} {gap:g}"])
+        for c in chosen
+        for gap in GAPS
+        if f"{c.name} {gap:g}" in cells
+    ]
     forces = [dict(family=c.family, words=c.words, **cells[f"{c.name} forces"]) for c in chosen]
-    return dict(quick=quick, outcomes=outcomes, forces=[row for row in forces if row["worst"] is not None],
-                untold=[f"{c.name}" for c in chosen if cells[f"{c.name} forces"]["worst"] is None])
+    return dict(
+        quick=quick,
+        outcomes=outcomes,
+        forces=[row for row in forces if row["worst"] is not None],
+        untold=[f"{c.name}" for c in chosen if cells[f"{c.name} forces"]["worst"] is None],
+    )
 
 
 def outcome(contestant, gap):
@@ -75,11 +93,13 @@ def forces_of(contestant, scene):
     """The normal force [N] under every ball, lowest first, after SETTLE; None where it is not told."""
     if contestant.family == "exact":
         from curriculum import exact
+
         return exact.solve_lcp(*delassus(scene))
     if contestant.family in ("penalty", "lcp", "soft"):
         return own_forces(contestant, scene)
-    setting = next(s for s in engines.SETTINGS if (s.engine, s.words)
-                   == (contestant.family, contestant.words))
+    setting = next(
+        s for s in engines.SETTINGS if (s.engine, s.words) == (contestant.family, contestant.words)
+    )
     if engines.missing(setting.engine):
         return None
     session = setting.build(scene, DT)

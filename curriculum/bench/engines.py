@@ -38,15 +38,16 @@ import importlib.metadata
 import importlib.util
 import math
 import warnings
+from collections.abc import Callable
 from functools import partial
-from typing import Callable, NamedTuple, Optional
+from typing import NamedTuple
 
 import numpy as np
 
-GRAVITY = 9.81       # m/s^2, downwards
-SCALE = 10.0         # both Box2Ds see a world this much larger
-FLOOR = 1000.0       # m, half the length of the floor, where an engine wants an end to it
-MANY = 60            # balls: from here on MuJoCo gets CG and a sparse Jacobian
+GRAVITY = 9.81  # m/s^2, downwards
+SCALE = 10.0  # both Box2Ds see a world this much larger
+FLOOR = 1000.0  # m, half the length of the floor, where an engine wants an end to it
+MANY = 60  # balls: from here on MuJoCo gets CG and a sparse Jacobian
 
 
 class Session:
@@ -81,6 +82,7 @@ def balls_of(scene):
 
 
 # MuJoCo
+
 
 def shipped(scene, dt):
     """solref and solimp as MuJoCo ships them: no restitution."""
@@ -126,12 +128,25 @@ def rebound_ratio(restitution):
 class Mujoco(Session):
     """Spring and damper made implicit and convex. `contact(scene, dt)` gives solref and solimp."""
 
-    def __init__(self, scene, dt, contact, integrator="Euler", flags="", tolerance=1e-8,
-                 solver=None, iterations=100, margin=0.0):
+    def __init__(
+        self,
+        scene,
+        dt,
+        contact,
+        integrator="Euler",
+        flags="",
+        tolerance=1e-8,
+        solver=None,
+        iterations=100,
+        margin=0.0,
+    ):
         import mujoco
         from mujoco import rollout
+
         self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
-        mujoco.set_mju_user_warning(lambda text: None)      # its default writes a log file where it runs
+        mujoco.set_mju_user_warning(
+            lambda text: None
+        )  # its default writes a log file where it runs
         solref, solimp = contact(scene, dt)
         many = len(scene.mass) >= MANY
         solver = solver or ("CG" if many else "Newton")
@@ -142,9 +157,10 @@ class Mujoco(Session):
             f'jacobian="{"sparse" if many else "auto"}" integrator="{integrator}" '
             f'tolerance="{tolerance!r}" iterations="{iterations}"><flag autoreset="disable"{flags}/></option>'
             f'<default><geom condim="1" solref="{solref}" solimp="{solimp}" margin="{margin!r}"/>'
-            f'</default>'
+            f"</default>"
             f'<worldbody><geom type="plane" size="0 0 1"/>'
-            f'{"".join(map(self.body, balls_of(scene)))}</worldbody></mujoco>')
+            f"{''.join(map(self.body, balls_of(scene)))}</worldbody></mujoco>"
+        )
         self.data = mujoco.MjData(self.model)
         self.data.qvel[:] = scene.v0[:, self.moving].T.ravel()
         self.full = mujoco.mjtState.mjSTATE_FULLPHYSICS
@@ -154,8 +170,10 @@ class Mujoco(Session):
     def body(ball):
         x, y, _, _, mass, radius, fixed = ball
         joints = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
-        return (f'<body pos="{x!r} 0 {y!r}">{"" if fixed else joints}'
-                f'<geom type="sphere" size="{radius!r}" mass="{1.0 if fixed else mass!r}"/></body>')
+        return (
+            f'<body pos="{x!r} 0 {y!r}">{"" if fixed else joints}'
+            f'<geom type="sphere" size="{radius!r}" mass="{1.0 if fixed else mass!r}"/></body>'
+        )
 
     def advance(self, n):
         self.mujoco.mj_step(self.model, self.data, nstep=n)
@@ -167,15 +185,16 @@ class Mujoco(Session):
 
     def trace(self, n):
         y0 = self.scene.q0[1, self.moving]
-        return np.vstack([y0, y0 + self.rolled(n)[:, 2:1 + 2 * len(y0):2]])
+        return np.vstack([y0, y0 + self.rolled(n)[:, 2 : 1 + 2 * len(y0) : 2]])
 
     def states(self, n):
         count, start = len(self.moving), self.state()
         rows = self.rolled(n)
         q, v = (np.repeat(part[None], n + 1, axis=0) for part in start)
-        moves, speeds = (rows[:, 1 + k * 2 * count:1 + (k + 1) * 2 * count] for k in (0, 1))
-        q[1:, :, self.moving] = (self.scene.q0[:, self.moving]
-                                 + moves.reshape(n, count, 2).transpose(0, 2, 1))
+        moves, speeds = (rows[:, 1 + k * 2 * count : 1 + (k + 1) * 2 * count] for k in (0, 1))
+        q[1:, :, self.moving] = self.scene.q0[:, self.moving] + moves.reshape(
+            n, count, 2
+        ).transpose(0, 2, 1)
         v[1:, :, self.moving] = speeds.reshape(n, count, 2).transpose(0, 2, 1)
         return q, v
 
@@ -197,18 +216,20 @@ class Mujoco(Session):
 
 # pymunk
 
+
 class Pymunk(Session):
     """Chipmunk: sequential impulses with cached sums, position error pushed out beside the velocity."""
 
     def __init__(self, scene, dt, iterations=10, bias=None):
         import pymunk
         import pymunk.batch
+
         self.batch, self.dt = pymunk.batch, dt
         self.space = space = pymunk.Space()
         space.gravity, space.iterations, space.collision_slop = (0, -GRAVITY), iterations, 1e-6
         if bias is not None:
             space.collision_bias = bias
-        bounce = math.sqrt(scene.restitution)      # the engine multiplies the two bodies' values
+        bounce = math.sqrt(scene.restitution)  # the engine multiplies the two bodies' values
         floor = pymunk.Segment(space.static_body, (-FLOOR, 0), (FLOOR, 0), 0)
         floor.elasticity, floor.friction = bounce, 0.0
         space.add(floor)
@@ -216,8 +237,9 @@ class Pymunk(Session):
             space.use_spatial_hash(2.0 * scene.radius.max(), 10 * len(scene.mass))
         self.bodies = []
         for x, y, vx, vy, mass, radius, fixed in balls_of(scene):
-            body = (pymunk.Body(body_type=pymunk.Body.STATIC) if fixed
-                    else pymunk.Body(mass, math.inf))
+            body = (
+                pymunk.Body(body_type=pymunk.Body.STATIC) if fixed else pymunk.Body(mass, math.inf)
+            )
             body.position, body.velocity = (x, y), (vx, vy)
             ball = pymunk.Circle(body, radius)
             ball.elasticity, ball.friction = bounce, 0.0
@@ -256,27 +278,41 @@ class Pymunk(Session):
 
 # Box2D
 
+
 class Box2d(Session):
     """Box2D 2.3: sequential impulses with warm starting, then position error removed on its own."""
 
     def __init__(self, scene, dt, iterations=(8, 3)):
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)     # of its binding's, on newer Pythons
+            warnings.simplefilter(
+                "ignore", DeprecationWarning
+            )  # of its binding's, on newer Pythons
             import Box2D
         self.dt = dt
         self.world = world = Box2D.b2World(gravity=(0, -GRAVITY * SCALE), doSleep=False)
         floor = world.CreateStaticBody()
-        floor.CreateEdgeFixture(vertices=[(-FLOOR * SCALE, 0), (FLOOR * SCALE, 0)], friction=0.0,
-                                restitution=scene.restitution)
+        floor.CreateEdgeFixture(
+            vertices=[(-FLOOR * SCALE, 0), (FLOOR * SCALE, 0)],
+            friction=0.0,
+            restitution=scene.restitution,
+        )
         self.bodies = []
         for x, y, vx, vy, mass, radius, fixed in balls_of(scene):
             place, r = (x * SCALE, y * SCALE), radius * SCALE
-            body = (world.CreateStaticBody(position=place) if fixed else
-                    world.CreateDynamicBody(position=place, fixedRotation=True, allowSleep=False,
-                                            linearVelocity=(vx * SCALE, vy * SCALE)))
+            body = (
+                world.CreateStaticBody(position=place)
+                if fixed
+                else world.CreateDynamicBody(
+                    position=place,
+                    fixedRotation=True,
+                    allowSleep=False,
+                    linearVelocity=(vx * SCALE, vy * SCALE),
+                )
+            )
             density = 1.0 if fixed else mass / (math.pi * r * r)
-            body.CreateCircleFixture(radius=r, density=density, friction=0.0,
-                                     restitution=scene.restitution)
+            body.CreateCircleFixture(
+                radius=r, density=density, friction=0.0, restitution=scene.restitution
+            )
             self.bodies.append(body)
         self.step = partial(world.Step, dt, *iterations)
         self.heights = lambda: [body.position[1] / SCALE for body in self.bodies]
@@ -302,24 +338,36 @@ class Box2d3(Session):
 
     def __init__(self, scene, dt, substeps=4, hertz=None):
         import pyb2d3
-        self.world = world = pyb2d3.World(gravity=(0, -GRAVITY * SCALE), restitution_threshold=0.0,
-                                          maximum_linear_speed=1e6)
+
+        self.world = world = pyb2d3.World(
+            gravity=(0, -GRAVITY * SCALE), restitution_threshold=0.0, maximum_linear_speed=1e6
+        )
         world.sleeping_enabled = False
-        if hertz is not None:               # frequency [Hz], damping ratio, push-out speed
+        if hertz is not None:  # frequency [Hz], damping ratio, push-out speed
             world.set_contact_tuning(hertz, 10.0, 1e9)
         material = pyb2d3.surface_material(friction=0.0, restitution=scene.restitution)
         floor = world.create_static_body(position=(0, 0))
-        floor.create_shape(pyb2d3.shape_def(material=material),
-                           pyb2d3.segment((-FLOOR * SCALE, 0), (FLOOR * SCALE, 0)))
+        floor.create_shape(
+            pyb2d3.shape_def(material=material),
+            pyb2d3.segment((-FLOOR * SCALE, 0), (FLOOR * SCALE, 0)),
+        )
         self.bodies = pyb2d3.Bodies()
         for x, y, vx, vy, mass, radius, fixed in balls_of(scene):
             place, r = (x * SCALE, y * SCALE), radius * SCALE
-            body = (world.create_static_body(position=place) if fixed else
-                    world.create_dynamic_body(position=place, fixed_rotation=True, enable_sleep=False,
-                                              linear_velocity=(vx * SCALE, vy * SCALE)))
+            body = (
+                world.create_static_body(position=place)
+                if fixed
+                else world.create_dynamic_body(
+                    position=place,
+                    fixed_rotation=True,
+                    enable_sleep=False,
+                    linear_velocity=(vx * SCALE, vy * SCALE),
+                )
+            )
             density = 1.0 if fixed else mass / (math.pi * r * r)
-            body.create_shape(pyb2d3.shape_def(density=density, material=material),
-                              pyb2d3.circle(radius=r))
+            body.create_shape(
+                pyb2d3.shape_def(density=density, material=material), pyb2d3.circle(radius=r)
+            )
             self.bodies.append(body)
         self.step = partial(world.step, dt, substeps)
         if len(scene.mass) == 1:
@@ -334,17 +382,20 @@ class Box2d3(Session):
 
 # Drake
 
+
 class Drake(Session):
     """Compliant point contact. scheme None: its discrete solver; else an integrator and its accuracy."""
 
     def __init__(self, scene, dt, scheme=None, accuracy=1e-5, stiffness=1e8):
         import logging
+
         from pydrake.geometry import HalfSpace, Sphere
         from pydrake.math import RigidTransform
         from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
         from pydrake.multibody.tree import PlanarJoint, SpatialInertia
         from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
         from pydrake.systems.framework import DiagramBuilder
+
         logging.getLogger("drake").setLevel(logging.ERROR)
         builder = DiagramBuilder()
         plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=0.0 if scheme else dt)
@@ -355,12 +406,21 @@ class Drake(Session):
         self.scene, self.dt, self.joints = scene, dt, []
         for k, (x, y, vx, vy, mass, radius, fixed) in enumerate(balls_of(scene)):
             if fixed:
-                plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform([x, y, 0.0]),
-                                                Sphere(radius), f"ball {k}", skin)
+                plant.RegisterCollisionGeometry(
+                    plant.world_body(),
+                    RigidTransform([x, y, 0.0]),
+                    Sphere(radius),
+                    f"ball {k}",
+                    skin,
+                )
                 continue
             body = plant.AddRigidBody(f"ball {k}", SpatialInertia.SolidSphereWithMass(mass, radius))
-            plant.RegisterCollisionGeometry(body, RigidTransform(), Sphere(radius), f"ball {k}", skin)
-            joint = plant.AddJoint(PlanarJoint(f"joint {k}", plant.world_frame(), body.body_frame()))
+            plant.RegisterCollisionGeometry(
+                body, RigidTransform(), Sphere(radius), f"ball {k}", skin
+            )
+            joint = plant.AddJoint(
+                PlanarJoint(f"joint {k}", plant.world_frame(), body.body_frame())
+            )
             self.joints.append((k, joint, (x, y), (vx, vy)))
         plant.Finalize()
         self.simulator = Simulator(builder.Build())
@@ -379,10 +439,14 @@ class Drake(Session):
         """Stiffness and dissipation of every surface: none for e = 1, strong for e = 0."""
         from pydrake.geometry import AddContactMaterial, ProximityProperties
         from pydrake.multibody.plant import CoulombFriction
+
         skin = ProximityProperties()
-        AddContactMaterial(dissipation=0.0 if scene.restitution == 1.0 else 1e3,
-                           point_stiffness=2.0 * stiffness,     # two surfaces in series: half of it
-                           friction=CoulombFriction(0.0, 0.0), properties=skin)
+        AddContactMaterial(
+            dissipation=0.0 if scene.restitution == 1.0 else 1e3,
+            point_stiffness=2.0 * stiffness,  # two surfaces in series: half of it
+            friction=CoulombFriction(0.0, 0.0),
+            properties=skin,
+        )
         if scheme is None or scheme == "cenic":
             skin.AddProperty("material", "relaxation_time", 0.0 if scene.restitution == 1.0 else dt)
         return skin
@@ -414,44 +478,67 @@ def no_coefficient(scene):
 
 # what is measured
 
+
 class Setting(NamedTuple):
     """One engine with one set of choices; build(scene, dt) -> a session."""
-    engine: str             # a key of ENGINES
-    words: str              # the setting, for a reader
+
+    engine: str  # a key of ENGINES
+    words: str  # the setting, for a reader
     build: Callable
     adaptive: bool = False  # it chooses its own steps, so dt is only how often it is looked at
-    refuses: Callable = lambda scene: None      # why it does not run a scene, or None
+    refuses: Callable = lambda scene: None  # why it does not run a scene, or None
 
 
-ENGINES = {     # label, package on PyPI, module
+ENGINES = {  # label, package on PyPI, module
     "mujoco": ("MuJoCo", "mujoco", "mujoco"),
     "pymunk": ("pymunk", "pymunk", "pymunk"),
     "box2d": ("Box2D 2.3", "box2d", "Box2D"),
     "box2d3": ("Box2D 3", "pyb2d3", "pyb2d3"),
     "drake": ("Drake", "drake", "pydrake"),
 }
-SHIPPED_BIAS = 0.9**60      # pymunk's own
+SHIPPED_BIAS = 0.9**60  # pymunk's own
 
 SETTINGS = (
     Setting("mujoco", "as shipped", partial(Mujoco, contact=shipped)),
-    Setting("mujoco", "first edition: 2 dt, ratio 5 or by rebound, d 0.9999",
-            partial(Mujoco, contact=first_edition)),
-    Setting("mujoco", "time constant 2 dt, ratio 1, d 0.9999",
-            partial(Mujoco, contact=partial(standard, 2.0, 1.0, 0.9999))),
-    Setting("mujoco", "direct, no push, d 0.99", partial(Mujoco, contact=partial(direct, 0.0, 0.99))),
-    Setting("mujoco", "direct, no push, d 0.9999",
-            partial(Mujoco, contact=partial(direct, 0.0, 0.9999))),
-    Setting("mujoco", "direct, push 0.2, d 0.9999",
-            partial(Mujoco, contact=partial(direct, 0.2, 0.9999))),
-    Setting("mujoco", "direct, no push, d 0.9999, speculative",
-            partial(Mujoco, contact=partial(direct, 0.0, 0.9999), flags=' speculative="enable"')),
-    Setting("mujoco", "direct, no push, d 0.9999, discrete",
-            partial(Mujoco, contact=partial(direct, 0.0, 0.9999), integrator="discrete")),
+    Setting(
+        "mujoco",
+        "first edition: 2 dt, ratio 5 or by rebound, d 0.9999",
+        partial(Mujoco, contact=first_edition),
+    ),
+    Setting(
+        "mujoco",
+        "time constant 2 dt, ratio 1, d 0.9999",
+        partial(Mujoco, contact=partial(standard, 2.0, 1.0, 0.9999)),
+    ),
+    Setting(
+        "mujoco", "direct, no push, d 0.99", partial(Mujoco, contact=partial(direct, 0.0, 0.99))
+    ),
+    Setting(
+        "mujoco", "direct, no push, d 0.9999", partial(Mujoco, contact=partial(direct, 0.0, 0.9999))
+    ),
+    Setting(
+        "mujoco",
+        "direct, push 0.2, d 0.9999",
+        partial(Mujoco, contact=partial(direct, 0.2, 0.9999)),
+    ),
+    Setting(
+        "mujoco",
+        "direct, no push, d 0.9999, speculative",
+        partial(Mujoco, contact=partial(direct, 0.0, 0.9999), flags=' speculative="enable"'),
+    ),
+    Setting(
+        "mujoco",
+        "direct, no push, d 0.9999, discrete",
+        partial(Mujoco, contact=partial(direct, 0.0, 0.9999), integrator="discrete"),
+    ),
     Setting("pymunk", "10 iterations", Pymunk),
     Setting("pymunk", "30 iterations", partial(Pymunk, iterations=30)),
     Setting("pymunk", "100 iterations", partial(Pymunk, iterations=100)),
-    Setting("pymunk", "10 iterations, bias 0.2 a step",
-            lambda scene, dt: Pymunk(scene, dt, bias=0.8**(1.0 / dt))),
+    Setting(
+        "pymunk",
+        "10 iterations, bias 0.2 a step",
+        lambda scene, dt: Pymunk(scene, dt, bias=0.8 ** (1.0 / dt)),
+    ),
     Setting("box2d", "8 and 3 iterations", Box2d),
     Setting("box2d", "30 and 10 iterations", partial(Box2d, iterations=(30, 10))),
     Setting("box2d3", "1 substep", partial(Box2d3, substeps=1)),
@@ -461,18 +548,38 @@ SETTINGS = (
     Setting("box2d3", "16 substeps, hardest", partial(Box2d3, substeps=16, hertz=1e9)),
     Setting("box2d3", "16 substeps, 120 Hz", partial(Box2d3, substeps=16, hertz=120.0)),
     Setting("drake", "discrete, k 1e8", Drake, refuses=no_coefficient),
-    Setting("drake", "CENIC, accuracy 1e-3", partial(Drake, scheme="cenic", accuracy=1e-3),
-            True, no_coefficient),
-    Setting("drake", "CENIC, accuracy 1e-5", partial(Drake, scheme="cenic", accuracy=1e-5),
-            True, no_coefficient),
-    Setting("drake", "CENIC, accuracy 1e-7", partial(Drake, scheme="cenic", accuracy=1e-7),
-            True, no_coefficient),
-    Setting("drake", "RK3, k 1e8, accuracy 1e-6",
-            partial(Drake, scheme="runge_kutta3", accuracy=1e-6), True, no_coefficient),
+    Setting(
+        "drake",
+        "CENIC, accuracy 1e-3",
+        partial(Drake, scheme="cenic", accuracy=1e-3),
+        True,
+        no_coefficient,
+    ),
+    Setting(
+        "drake",
+        "CENIC, accuracy 1e-5",
+        partial(Drake, scheme="cenic", accuracy=1e-5),
+        True,
+        no_coefficient,
+    ),
+    Setting(
+        "drake",
+        "CENIC, accuracy 1e-7",
+        partial(Drake, scheme="cenic", accuracy=1e-7),
+        True,
+        no_coefficient,
+    ),
+    Setting(
+        "drake",
+        "RK3, k 1e8, accuracy 1e-6",
+        partial(Drake, scheme="runge_kutta3", accuracy=1e-6),
+        True,
+        no_coefficient,
+    ),
 )
 
 
-def missing(engine) -> Optional[str]:
+def missing(engine) -> str | None:
     """What to install for an engine that is not there, or None."""
     _, package, module = ENGINES[engine]
     if importlib.util.find_spec(module) is None:
@@ -480,6 +587,6 @@ def missing(engine) -> Optional[str]:
     return None
 
 
-def version(engine) -> Optional[str]:
+def version(engine) -> str | None:
     """The installed version, or None."""
     return None if missing(engine) else importlib.metadata.version(ENGINES[engine][1])

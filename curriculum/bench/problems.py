@@ -1,27 +1,29 @@
 """The problems: a scene, how long, what it is hard on, and the right answer at any time."""
 
 import math
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 import contact
 from curriculum.bench import closed_form
 
-DTS = (0.0005, 0.001, 0.002, 0.004, 0.008, 0.016)    # s
-SEEDS = tuple(range(9))     # nine starts: the error of one is a lottery of where a step falls
-REFERENCE_DT = 0.002        # s, the step of contact.py's own default run
+DTS = (0.0005, 0.001, 0.002, 0.004, 0.008, 0.016)  # s
+SEEDS = tuple(range(9))  # nine starts: the error of one is a lottery of where a step falls
+REFERENCE_DT = 0.002  # s, the step of contact.py's own default run
 R = contact.RADIUS
 
 
 class Problem(NamedTuple):
     """A scene for each seed, run for `duration` seconds, and its true motion."""
+
     name: str
     title: str
-    stresses: str           # what it is hard on, for the reader
+    stresses: str  # what it is hard on, for the reader
     duration: float
-    build: Callable         # seed -> contact.Scene
-    truth: Callable         # (scene, t) -> q, v, shape (len(t), 2, N)
+    build: Callable  # seed -> contact.Scene
+    truth: Callable  # (scene, t) -> q, v, shape (len(t), 2, N)
     dts: tuple = DTS
     seeds: tuple = SEEDS
 
@@ -42,8 +44,15 @@ def slide_scene(seed):
     """A ball at rest on a fixed one, off the top by an angle that the seed chooses."""
     theta = slide_angle(seed)
     x, y = [0.0, 2.0 * R * math.sin(theta)], [R, R + 2.0 * R * math.cos(theta)]
-    return contact.Scene(f"slide {seed}", np.array([x, y]), np.zeros((2, 2)),
-                         np.array([math.inf, 1.0]), np.full(2, R), 0.0, 80.0)
+    return contact.Scene(
+        f"slide {seed}",
+        np.array([x, y]),
+        np.zeros((2, 2)),
+        np.array([math.inf, 1.0]),
+        np.full(2, R),
+        0.0,
+        80.0,
+    )
 
 
 def slide_angle(seed):
@@ -61,8 +70,15 @@ def pyramid_scene(seed):
     """Two balls on the floor and one on both, at 60 degrees less what the seed takes off."""
     theta = pyramid_angle(seed)
     side, top = 2.0 * R * math.cos(theta), R + 2.0 * R * math.sin(theta)
-    return contact.Scene(f"pyramid {seed}", np.array([[-side, side, 0.0], [R, R, top]]),
-                         np.zeros((2, 3)), np.ones(3), np.full(3, R), 0.0, 80.0)
+    return contact.Scene(
+        f"pyramid {seed}",
+        np.array([[-side, side, 0.0], [R, R, top]]),
+        np.zeros((2, 3)),
+        np.ones(3),
+        np.full(3, R),
+        0.0,
+        80.0,
+    )
 
 
 def pyramid_angle(seed):
@@ -78,27 +94,64 @@ def scene_of(name, bodies=None, restitution=None):
 
 
 PROBLEMS = (
-    Problem("drop", "Drop: one ball, no rebound, 4 s",
-            "a free fall, one impact that must stop the ball, then rest at no depth",
-            4.0, scene_of("drop"), column),
-    Problem("bounce", "Bounce: one ball, restitution 0.7, 4 s",
-            "infinitely many impacts in 2.4 s: an error in any impact time shifts all later flights",
-            4.0, scene_of("bounce"), column),
-    Problem("stack", "Stack: three balls, no rebound, 4 s",
-            "three contacts that share bodies: the impact stops all at once, then nothing may sink",
-            4.0, scene_of("stack"), column),
-    Problem("tower", "Tower: thirty balls, no rebound, 2 s",
-            "thirty contacts in a chain: sweeps and substeps that are too few let it sag",
-            2.0, scene_of("stack", 30), column, (0.002, 0.004, 0.008, 0.016), SEEDS[:3]),
-    Problem("elastic", "Elastic bounce: one ball, restitution 1, 20 s",
-            "two dozen impacts that may neither take nor give energy, and whose times add up",
-            20.0, scene_of("bounce", restitution=1.0), column),
-    Problem("slide", "Slide: a ball off a fixed ball, 0.7 s",
-            "a contact that turns while it pushes, and must let go at cos = 2/3 of its start",
-            0.7, slide_scene, slide_truth),
-    Problem("pyramid", "Pyramid: a ball between two others, 0.5 s",
-            "two turning contacts that share a ball, a release, and a landing at its own time",
-            0.5, pyramid_scene, pyramid_truth),
+    Problem(
+        "drop",
+        "Drop: one ball, no rebound, 4 s",
+        "a free fall, one impact that must stop the ball, then rest at no depth",
+        4.0,
+        scene_of("drop"),
+        column,
+    ),
+    Problem(
+        "bounce",
+        "Bounce: one ball, restitution 0.7, 4 s",
+        "infinitely many impacts in 2.4 s: an error in any impact time shifts all later flights",
+        4.0,
+        scene_of("bounce"),
+        column,
+    ),
+    Problem(
+        "stack",
+        "Stack: three balls, no rebound, 4 s",
+        "three contacts that share bodies: the impact stops all at once, then nothing may sink",
+        4.0,
+        scene_of("stack"),
+        column,
+    ),
+    Problem(
+        "tower",
+        "Tower: thirty balls, no rebound, 2 s",
+        "thirty contacts in a chain: sweeps and substeps that are too few let it sag",
+        2.0,
+        scene_of("stack", 30),
+        column,
+        (0.002, 0.004, 0.008, 0.016),
+        SEEDS[:3],
+    ),
+    Problem(
+        "elastic",
+        "Elastic bounce: one ball, restitution 1, 20 s",
+        "two dozen impacts that may neither take nor give energy, and whose times add up",
+        20.0,
+        scene_of("bounce", restitution=1.0),
+        column,
+    ),
+    Problem(
+        "slide",
+        "Slide: a ball off a fixed ball, 0.7 s",
+        "a contact that turns while it pushes, and must let go at cos = 2/3 of its start",
+        0.7,
+        slide_scene,
+        slide_truth,
+    ),
+    Problem(
+        "pyramid",
+        "Pyramid: a ball between two others, 0.5 s",
+        "two turning contacts that share a ball, a release, and a landing at its own time",
+        0.5,
+        pyramid_scene,
+        pyramid_truth,
+    ),
 )
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
 
@@ -121,10 +174,16 @@ def quality(problem, scene, dt, run):
         distance = np.sqrt(((run.q - q) ** 2).sum(axis=1)).max(axis=1) / R
         total = contact.energy(run.q, run.v, scene.mass)
         energy = np.abs(total - contact.energy(q, v, scene.mass)) / abs(total[0])
-    result = dict(position_error=float(distance.max()), final_error=float(distance[-1]),
-                  energy_error=float(energy.max()), final_energy_error=float(energy[-1]),
-                  max_penetration=told["max_penetration_frac"], rest_gap=told["rest_gap_frac"],
-                  contact_energy=told["contact_energy"], **_blow_up(run, told))
+    result = dict(
+        position_error=float(distance.max()),
+        final_error=float(distance[-1]),
+        energy_error=float(energy.max()),
+        final_energy_error=float(energy[-1]),
+        max_penetration=told["max_penetration_frac"],
+        rest_gap=told["rest_gap_frac"],
+        contact_energy=told["contact_energy"],
+        **_blow_up(run, told),
+    )
     if problem.truth is column:
         result |= _impacts(run, scene, dt)
     return result
@@ -142,7 +201,7 @@ def _impacts(run, scene, dt):
     """Rebound, first impact and phase of the lowest ball."""
     gap = run.q[:, 1, 0] - R
     impact = float(closed_form.first_impact_time(gap[0]))
-    after = gap[np.searchsorted(run.t, impact) + 1:]
+    after = gap[np.searchsorted(run.t, impact) + 1 :]
     with np.errstate(all="ignore"):
         rebound = np.sqrt(max(after.max(initial=0.0), 0.0) / gap[0])
     found = dict(impact_time_error=abs(first_impact(run, dt) - impact))
@@ -150,10 +209,16 @@ def _impacts(run, scene, dt):
         found["restitution"] = float(rebound)
     if scene.restitution == 1.0:
         apexes = apex_times(run)
-        known = int((run.t[-1] / impact) // 2)          # one apex every two fall times
+        known = int((run.t[-1] / impact) // 2)  # one apex every two fall times
         found["apexes"] = min(len(apexes), known)
-        found["phase_error"] = (abs(float(apexes[found["apexes"] - 1]) - closed_form.apex_time(
-            gap[0], 1.0, found["apexes"] - 1)) if found["apexes"] else None)
+        found["phase_error"] = (
+            abs(
+                float(apexes[found["apexes"] - 1])
+                - closed_form.apex_time(gap[0], 1.0, found["apexes"] - 1)
+            )
+            if found["apexes"]
+            else None
+        )
     return found
 
 
@@ -172,7 +237,7 @@ def first_impact(run, dt):
     kept within the step; so a model that resolves impacts is not charged for being sampled.
     """
     y, v, g = run.q[:, 1, 0], run.v[:, 1, 0], contact.GRAVITY
-    change = np.diff(v) / dt                                # mean acceleration of each step
+    change = np.diff(v) / dt  # mean acceleration of each step
     steps = np.flatnonzero(change > 0.999 * g)
     if len(steps) == 0 or not np.isfinite(y[steps[0] + 1]):
         return float("nan")

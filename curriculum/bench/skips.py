@@ -14,7 +14,7 @@ from curriculum import measured
 from curriculum.bench import contestants, timing
 
 SCENES = ("drop", "bounce", "stack")
-STEPPED = ("penalty", "lcp", "soft")    # the models that step, and so can skip
+STEPPED = ("penalty", "lcp", "soft")  # the models that step, and so can skip
 SMOKE, FULL, DT, STEPS_AT_REST = 800, 2000, 0.002, 1000
 COMMAND = "python -m curriculum.bench skip"
 CODE = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
@@ -23,14 +23,19 @@ RECORDED, BARE_PEER = "drop, recorded", "pymunk, nothing read"
 LIMITS = {"drop": 1.5, "bounce": 1.6, "stack": 2.2, RECORDED: 1.5}
 PUBLISHED = {"drop": 20.0, "bounce": 12.0, "stack": 61.0, RECORDED: 11.0}
 MEMORY_LIMIT = 1.5
-REST_LIMIT = 2e-6       # s a step of one resting ball, every step taken
+REST_LIMIT = 2e-6  # s a step of one resting ball, every step taken
 
 
 def measure(quick=False, cells=None):
     """All parts; returns a JSON-ready dict: same_bytes, processes, in_process, resting, speed_up."""
     cells = {} if cells is None else cells
-    parts = dict(same_bytes=same_bytes, processes=processes, in_process=in_process, resting=resting,
-                 speed_up=speed_up)
+    parts = dict(
+        same_bytes=same_bytes,
+        processes=processes,
+        in_process=in_process,
+        resting=resting,
+        speed_up=speed_up,
+    )
     for name, part in parts.items():
         if name not in cells:
             cells[name] = measured.plain(part(quick))
@@ -58,17 +63,25 @@ def same_bytes(quick):
     the plain loops), then whole runs of the command line: standard output and metrics.json.
     """
     cases, differing = list(bytes_cases(quick)), []
-    lines = [["--scene", scene, "--seed", str(seed), *length]
-             for scene in SCENES for seed in (range(1) if quick else range(3))
-             for length in ((["--smoke"],) if quick else (["--smoke"], []))]
+    lines = [
+        ["--scene", scene, "--seed", str(seed), *length]
+        for scene in SCENES
+        for seed in (range(1) if quick else range(3))
+        for length in ((["--smoke"],) if quick else (["--smoke"], []))
+    ]
     with measured.progress(len(cases) + len(lines), "same bytes") as tick:
         for scene, seed, bodies, model, dt, steps in cases:
             built = contact.build_scene(scene, seed, bodies)
-            one, other = (contact.run_model(model, built, dt, steps, skip=skip)
-                          for skip in (True, False))
-            if any(getattr(one, part).tobytes() != getattr(other, part).tobytes() for part in "tqv"):
-                differing.append(f"{scene}{' ' + str(bodies) if bodies else ''} {model} dt {dt:g} "
-                                 f"seed {seed} steps {steps}")
+            one, other = (
+                contact.run_model(model, built, dt, steps, skip=skip) for skip in (True, False)
+            )
+            if any(
+                getattr(one, part).tobytes() != getattr(other, part).tobytes() for part in "tqv"
+            ):
+                differing.append(
+                    f"{scene}{' ' + str(bodies) if bodies else ''} {model} dt {dt:g} "
+                    f"seed {seed} steps {steps}"
+                )
             tick(scene)
         for flags in lines:
             if _command_line(flags) != _command_line([*flags, "--no-skip"]):
@@ -91,27 +104,36 @@ def processes(quick):
     python = sys.executable
     with tempfile.TemporaryDirectory() as out:
         run = [python, "contact.py", "--out", out]
-        commands = {"numpy": [python, "-c", "import numpy"],
-                    **{scene: [*run, "--no-rerun", "--scene", scene] for scene in SCENES}}
+        commands = {
+            "numpy": [python, "-c", "import numpy"],
+            **{scene: [*run, "--no-rerun", "--scene", scene] for scene in SCENES},
+        }
         if importlib.util.find_spec("rerun") is not None:
             commands["rerun"] = [python, "-c", "import rerun"]
             commands[RECORDED] = [*run, "--rerun", "--scene", "drop"]
         rounds = 3 if quick else 15
         found = {name: dict(seconds=[], memory=[]) for name in commands}
         with measured.progress((rounds + 1) * len(commands), "whole processes") as tick:
-            for number in range(rounds + 1):                    # the first one warms the disk cache
+            for number in range(rounds + 1):  # the first one warms the disk cache
                 for name in random.Random(number).sample(list(commands), len(commands)):
                     seconds, memory = timing.whole_process(commands[name], measured.ROOT)
                     if number:
                         found[name]["seconds"].append(seconds)
                         found[name]["memory"].append(memory)
                     tick(name)
-    median = {name: {part: statistics.median(values) for part, values in parts.items()}
-              for name, parts in found.items()}
-    ratios = {name: dict(base=base, time=median[name]["seconds"] / median[base]["seconds"],
-                         memory=median[name]["memory"] / median[base]["memory"])
-              for name, base in [(s, "numpy") for s in SCENES] + [(RECORDED, "rerun")]
-              if name in median}
+    median = {
+        name: {part: statistics.median(values) for part, values in parts.items()}
+        for name, parts in found.items()
+    }
+    ratios = {
+        name: dict(
+            base=base,
+            time=median[name]["seconds"] / median[base]["seconds"],
+            memory=median[name]["memory"] / median[base]["memory"],
+        )
+        for name, base in [(s, "numpy") for s in SCENES] + [(RECORDED, "rerun")]
+        if name in median
+    }
     return dict(measured=found, ratios=ratios)
 
 
@@ -134,9 +156,11 @@ def resting(quick):
     rest = contact.build_scene("drop")
     rest.q0[1] = contact.RADIUS
     solref, solimp = contact.soft_defaults(0.0, DT)
-    steps = {"penalty": lambda balls: contact.penalty_step(balls, DT, 1e4, rest.damping),
-             "lcp": lambda balls: contact.lcp_step(balls, DT, 0.0, 0.2, 20),
-             "soft": lambda balls: contact.soft_step(balls, DT, solref, solimp)}
+    steps = {
+        "penalty": lambda balls: contact.penalty_step(balls, DT, 1e4, rest.damping),
+        "lcp": lambda balls: contact.lcp_step(balls, DT, 0.0, 0.2, 20),
+        "soft": lambda balls: contact.soft_step(balls, DT, solref, solimp),
+    }
 
     def task(step):
         balls = contact.make_balls(rest)
@@ -146,12 +170,16 @@ def resting(quick):
         def call():
             for _ in range(STEPS_AT_REST):
                 step(balls)
+
         return call
 
-    seconds = timing.interleave({name: lambda step=step: task(step) for name, step in steps.items()},
-                                3 if quick else 15)
-    return {name: timing.spread([value / STEPS_AT_REST for value in values])
-            for name, values in seconds.items()}
+    seconds = timing.interleave(
+        {name: lambda step=step: task(step) for name, step in steps.items()}, 3 if quick else 15
+    )
+    return {
+        name: timing.spread([value / STEPS_AT_REST for value in values])
+        for name, values in seconds.items()
+    }
 
 
 def speed_up(quick):
@@ -163,13 +191,23 @@ def speed_up(quick):
         for model in ("penalty", "lcp"):
             for skip in (True, False):
                 tasks[scene, model, skip] = (
-                    lambda built=built, model=model, steps=steps, skip=skip:
-                    lambda: contact.run_model(model, built, DT, steps, skip=skip))
+                    lambda built=built, model=model, steps=steps, skip=skip: (
+                        lambda: contact.run_model(model, built, DT, steps, skip=skip)
+                    )
+                )
     seconds = timing.interleave(tasks, 3 if quick else 11)
     for scene, bodies, steps in cases:
         for model in ("penalty", "lcp"):
             skipped, taken = (timing.spread(seconds[scene, model, skip]) for skip in (True, False))
-            rows.append(dict(scene=scene, bodies=bodies or len(contact.build_scene(scene).mass),
-                             model=model, steps=steps, skip=skipped, no_skip=taken,
-                             ratio=taken["median"] / skipped["median"]))
+            rows.append(
+                dict(
+                    scene=scene,
+                    bodies=bodies or len(contact.build_scene(scene).mass),
+                    model=model,
+                    steps=steps,
+                    skip=skipped,
+                    no_skip=taken,
+                    ratio=taken["median"] / skipped["median"],
+                )
+            )
     return rows

@@ -22,13 +22,31 @@ from curriculum.bench import engines
 COMMAND = "python -m curriculum.bench soft"
 CODE = ("contact.py",)
 DT, STEPS, BETA, STIFFNESS = 0.002, 2000, 0.2, 1e4
-DS = (1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.97, 0.99, 0.997, 0.999, 0.9997, 0.9999)
+DS = (
+    1e-4,
+    1e-3,
+    0.01,
+    0.03,
+    0.1,
+    0.3,
+    0.5,
+    0.7,
+    0.9,
+    0.95,
+    0.97,
+    0.99,
+    0.997,
+    0.999,
+    0.9997,
+    0.9999,
+)
 PENALTY_END, LCP_END = "spring of penalty", "spring of lcp"
-BETWEEN = "from MuJoCo to lcp"      # the spring moves with d, from solref 0.02 1 at d = 0.95
-ORDERS = 20             # orders of the sweeps that are tried
+BETWEEN = "from MuJoCo to lcp"  # the spring moves with d, from solref 0.02 1 at d = 0.95
+ORDERS = 20  # orders of the sweeps that are tried
 
 
 # the line
+
 
 def constant(d):
     """An impedance that does not depend on the depth."""
@@ -46,8 +64,8 @@ def settings(end, d, dt, scene, beta=BETA):
     if end == BETWEEN:
         timeconst = contact.SOLREF[0]
         shipped = 1.0 / timeconst**2, 2.0 / timeconst
-        share = math.log(d / (1.0 - d) / 19.0) / math.log(0.9999 / 0.0001 / 19.0)   # 19: d = 0.95
-        return tuple(-a**(1.0 - share) * b**share for a, b in zip(shipped, hard)), constant(d)
+        share = math.log(d / (1.0 - d) / 19.0) / math.log(0.9999 / 0.0001 / 19.0)  # 19: d = 0.95
+        return tuple(-(a ** (1.0 - share)) * b**share for a, b in zip(shipped, hard)), constant(d)
     mass = float(scene.mass[0])
     return (-STIFFNESS / mass, -scene.damping / mass), constant(d)
 
@@ -60,28 +78,45 @@ def run_soft(end, d, scene, beta=BETA):
 def point(run, scene):
     """What a run is judged by: lengths in radii, energy in start energies."""
     told = contact.contact_quality(run, scene, DT)
-    return dict(rest_gap=told["rest_gap_frac"], deepest=told["max_penetration_frac"],
-                energy_in=told["contact_energy"])
+    return dict(
+        rest_gap=told["rest_gap_frac"],
+        deepest=told["max_penetration_frac"],
+        energy_in=told["contact_energy"],
+    )
 
 
 def the_line():
     """The points of both lines, and the models at their ends, on the drop."""
     scene = contact.build_scene("drop")
-    models = {"penalty": contact.run_model("penalty", scene, DT, STEPS, stiffness=STIFFNESS),
-              "lcp": contact.run_model("lcp", scene, DT, STEPS, baumgarte=BETA),
-              "soft": contact.run_model("soft", scene, DT, STEPS)}
+    models = {
+        "penalty": contact.run_model("penalty", scene, DT, STEPS, stiffness=STIFFNESS),
+        "lcp": contact.run_model("lcp", scene, DT, STEPS, baumgarte=BETA),
+        "soft": contact.run_model("soft", scene, DT, STEPS),
+    }
     plain = contact.run_model("lcp", scene, DT, STEPS, baumgarte=0.0)
     rows = []
     for end, d in itertools.product((PENALTY_END, BETWEEN, LCP_END), DS):
         if end == BETWEEN and d < 0.95:
             continue
         run = run_soft(end, d, scene)
-        near = (distance(run_soft(end, d, scene, beta=0.0), plain) if end == LCP_END
-                else distance(run, models["penalty" if end == PENALTY_END else "lcp"]))
-        rows.append(dict(end=end, d=d, **point(run, scene), distance=near,
-                         critical_dt=critical_step(end, d, scene)))
-    return rows, {name: point(run, scene) | dict(critical_dt=known_critical(name, scene))
-                  for name, run in models.items()}
+        near = (
+            distance(run_soft(end, d, scene, beta=0.0), plain)
+            if end == LCP_END
+            else distance(run, models["penalty" if end == PENALTY_END else "lcp"])
+        )
+        rows.append(
+            dict(
+                end=end,
+                d=d,
+                **point(run, scene),
+                distance=near,
+                critical_dt=critical_step(end, d, scene),
+            )
+        )
+    return rows, {
+        name: point(run, scene) | dict(critical_dt=known_critical(name, scene))
+        for name, run in models.items()
+    }
 
 
 def distance(run, other):
@@ -117,15 +152,18 @@ def comes_to_rest(end, d, scene, dt, steps=400):
     """
     solref, solimp = settings(end, d, dt, scene)
     depth = (1.0 - d) * -contact.GRAVITY / -solref[0]
-    balls = contact.make_balls(scene._replace(q0=np.array([[0.0], [contact.RADIUS - depth - 1e-9]])))
+    balls = contact.make_balls(
+        scene._replace(q0=np.array([[0.0], [contact.RADIUS - depth - 1e-9]]))
+    )
     swings = []
     for _ in range(steps):
         contact.soft_step(balls, dt, solref, solimp)
         swings.append(abs(balls[0].y - contact.RADIUS + depth))
-    return max(swings) < 1e-6 and max(swings[steps // 2:]) <= max(swings[:steps // 2])
+    return max(swings) < 1e-6 and max(swings[steps // 2 :]) <= max(swings[: steps // 2])
 
 
 # the bill: one answer in any order, and where it rests
+
 
 def vault():
     """Four balls in a row between two held ones, and three in the grooves above: 15 contacts.
@@ -136,7 +174,9 @@ def vault():
     x = [0.0, 10 * R, *(2 * R * k for k in range(1, 5)), *(2 * R * k + R for k in range(1, 4))]
     y = [R] * 6 + [R + math.sqrt(3.0) * R] * 3
     mass = np.array([math.inf] * 2 + [1.0] * 7)
-    return contact.Scene("vault", np.array([x, y]), np.zeros((2, 9)), mass, np.full(9, R), 0.0, 80.0)
+    return contact.Scene(
+        "vault", np.array([x, y]), np.zeros((2, 9)), mass, np.full(9, R), 0.0, 80.0
+    )
 
 
 def orders():
@@ -145,14 +185,20 @@ def orders():
     rest = start._replace(q0=contact.run_model("soft", start, DT, 1000).q[-1])
     rows = []
     for name, model, scene, sweeps in (
-            ("soft, as shipped", "soft", rest, contact.MOST_SWEEPS),
-            ("lcp, 20 sweeps", "lcp", start, 20),
-            ("lcp, 10,000 sweeps", "lcp", start, 10_000)):
+        ("soft, as shipped", "soft", rest, contact.MOST_SWEEPS),
+        ("lcp, 20 sweeps", "lcp", start, 20),
+        ("lcp, 10,000 sweeps", "lcp", start, 10_000),
+    ):
         found = [solved(scene, model, sweeps, order) for order in range(ORDERS)]
         lam, speed = (np.array(part) for part in zip(*found))
-        rows.append(dict(name=name, contacts=lam.shape[1],
-                         impulses=float(np.ptp(lam, axis=0).max() / lam.max()),
-                         speeds=float(np.ptp(speed, axis=0).max())))
+        rows.append(
+            dict(
+                name=name,
+                contacts=lam.shape[1],
+                impulses=float(np.ptp(lam, axis=0).max() / lam.max()),
+                speeds=float(np.ptp(speed, axis=0).max()),
+            )
+        )
     return rows
 
 
@@ -174,7 +220,7 @@ def solved(scene, model, sweeps, order):
 
 # against the engine itself
 
-MATCHES = (     # scene, balls, restitution, dt, steps, solref, solimp
+MATCHES = (  # scene, balls, restitution, dt, steps, solref, solimp
     ("drop", None, None, 0.002, 2000, None, None),
     ("stack", None, None, 0.002, 2000, None, None),
     ("bounce", None, None, 0.002, 2000, None, None),
@@ -198,10 +244,21 @@ def matches():
         ours = contact.run_model("soft", scene, dt, steps, solref=solref, solimp=solimp, skip=False)
         used = contact.soft_defaults(scene.restitution, dt, solref, solimp)
         words = [" ".join(map(repr, map(float, part))) for part in used]
-        engine = engines.Mujoco(scene, dt, lambda scene, dt: words, tolerance=0.0, iterations=1000)
+        engine = engines.Mujoco(
+            scene, dt, lambda scene, dt, words=words: words, tolerance=0.0, iterations=1000
+        )
         q, _ = engine.states(steps)
-        rows.append(dict(scene=name, balls=len(scene.mass), dt=dt, steps=steps, solref=words[0],
-                         solimp=words[1], distance=float(np.abs(ours.q - q).max())))
+        rows.append(
+            dict(
+                scene=name,
+                balls=len(scene.mass),
+                dt=dt,
+                steps=steps,
+                solref=words[0],
+                solimp=words[1],
+                distance=float(np.abs(ours.q - q).max()),
+            )
+        )
     return dict(missing=None, version=engines.version("mujoco"), rows=rows)
 
 

@@ -10,8 +10,9 @@ own, and those of its compiled twin; the pivot is that of curriculum/exact.py.
 
 import importlib.util
 import multiprocessing
+from collections.abc import Callable
 from functools import lru_cache
-from typing import Callable, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,22 +22,31 @@ from curriculum.bench import engines, timing
 
 COMMAND = "python -m curriculum.bench solvers"
 CODE = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
-DT = 0.002              # s, the step of which the problem is taken
+DT = 0.002  # s, the step of which the problem is taken
 SWEEPS = (1, 3, 10, 30, 100, 300, 1000, 3000, 10000)
-CASES = ("tower of 10", "tower of 30", "tower of 100", "tower of 300",
-         "pile of 50", "pile of 100", "pile of 200", "pile of 300")
+CASES = (
+    "tower of 10",
+    "tower of 30",
+    "tower of 100",
+    "tower of 300",
+    "pile of 50",
+    "pile of 100",
+    "pile of 200",
+    "pile of 300",
+)
 TARGETS = (1e-3, 1e-9)  # m/s, residuals at which the profiles are drawn
-START_UP = 20.0         # s that a fresh process may take beside it
-LIMIT = 10.0            # s: a solver that takes longer on a problem is stopped
+START_UP = 20.0  # s that a fresh process may take beside it
+LIMIT = 10.0  # s: a solver that takes longer on a problem is stopped
 
 
 class Case(NamedTuple):
     """One problem: its balls and contacts as contact.py has them, and its matrices."""
+
     name: str
-    balls: list             # after gravity has acted
-    contacts: list          # with target 0
-    J: np.ndarray           # (K, 2 N): v_n = J (vx, vy)
-    inv_mass: np.ndarray    # (2 N,)
+    balls: list  # after gravity has acted
+    contacts: list  # with target 0
+    J: np.ndarray  # (K, 2 N): v_n = J (vx, vy)
+    inv_mass: np.ndarray  # (2 N,)
     W: np.ndarray
     b: np.ndarray
 
@@ -47,13 +57,20 @@ class Case(NamedTuple):
     def scene(self):
         """The balls as an engine takes them, before gravity."""
         q, v = np.reshape(contact.state_of(self.balls), (2, 2, -1))
-        return contact.Scene(self.name, q, np.zeros_like(v),
-                             np.array([ball.mass for ball in self.balls]),
-                             np.array([ball.radius for ball in self.balls]), 0.0, 0.0)
+        return contact.Scene(
+            self.name,
+            q,
+            np.zeros_like(v),
+            np.array([ball.mass for ball in self.balls]),
+            np.array([ball.radius for ball in self.balls]),
+            0.0,
+            0.0,
+        )
 
 
 class Solver(NamedTuple):
     """prepare(case) -> a call that returns impulses (K,); only the call is timed."""
+
     name: str
     prepare: Callable
     missing: str = ""
@@ -87,27 +104,35 @@ def case(name):
         tower.q0[1] -= tower.q0[1, 0] - contact.RADIUS
         return case_of(name, tower)
     pile = contact.build_scene("pile", int(count) % 7, int(count))
-    return case_of(name, pile._replace(q0=contact.run_model("lcp", pile, 0.004, 250, iters=30).q[-1]))
+    return case_of(
+        name, pile._replace(q0=contact.run_model("lcp", pile, 0.004, 250, iters=30).q[-1])
+    )
 
 
 # the solvers
 
+
 def sweeps(count):
     """So many of contact.py's sweeps, from zero."""
+
     def prepare(case):
         fresh = case_of(case.name, case.scene())
 
         def call():
             contact.solve_contacts(fresh.contacts, count)
             return [c.lam for c in fresh.contacts]
+
         return call
+
     return prepare
 
 
 def compiled_sweeps(count):
     """The same sweeps by the compiled twin."""
+
     def prepare(case):
         from curriculum import piles
+
         balls = np.zeros(len(case.balls) + 1, piles.BALL)
         for row, ball in zip(balls, case.balls):
             row["vx"], row["vy"], row["inv_mass"] = ball.vx, ball.vy, ball.inv_mass
@@ -120,18 +145,22 @@ def compiled_sweeps(count):
         def call():
             piles.solve_contacts(balls, contacts, count, 0.0)
             return contacts["lam"]
+
         return call
+
     return prepare
 
 
 def pivot(case):
     from curriculum import exact
+
     return lambda: exact.solve_lcp(case.W, case.b)
 
 
 def quadprog(case):
     """min lam'W lam / 2 + b'lam over lam >= 0. It wants W definite: 1e-12 on the diagonal."""
     from quadprog import solve_qp
+
     definite, unit = case.W + 1e-12 * np.eye(len(case.b)), np.eye(len(case.b))
     none = np.zeros(len(case.b))
     return lambda: solve_qp(definite, -case.b, unit, none)[0]
@@ -140,6 +169,7 @@ def quadprog(case):
 def nnls(case):
     """min |M^-1/2 J' lam + M^1/2 v| over lam >= 0: the same answer, for any rank of W."""
     from scipy.optimize import nnls as solve
+
     root = np.sqrt(case.inv_mass)
     matrix = (case.J * root).T
     v = np.array([[ball.vx for ball in case.balls], [ball.vy for ball in case.balls]]).ravel()
@@ -150,6 +180,7 @@ def nnls_cholesky(case):
     """min |L' lam + L^-1 b| with W = L L': for W of full rank only."""
     from scipy.linalg import solve_triangular
     from scipy.optimize import nnls as solve
+
     lower = np.linalg.cholesky(case.W)
     right = -solve_triangular(lower, case.b, lower=True)
     return lambda: solve(np.ascontiguousarray(lower.T), right, maxiter=100 * len(case.b))[0]
@@ -158,6 +189,7 @@ def nnls_cholesky(case):
 def lemke(case):
     """Lemke's complementary pivoting, as Drake has it (after Moby)."""
     from pydrake.solvers import MathematicalProgram, MobyLcpSolver
+
     program = MathematicalProgram()
     lam = program.NewContinuousVariables(len(case.b))
     program.AddLinearComplementarityConstraint(case.W, case.b, lam)
@@ -167,11 +199,20 @@ def lemke(case):
 
 def mujoco_dual(count):
     """MuJoCo's PGS on its dual: hard as its solimp allows, so many sweeps, no warm start."""
+
     def prepare(case):
         import mujoco
+
         world = engines.Mujoco(
-            case.scene(), DT, lambda scene, dt: (f"0 {-1.0 / dt!r}", "0.9999 0.9999 0.001"),
-            solver="PGS", iterations=count, tolerance=0.0, flags=' warmstart="disable"', margin=0.5 * contact.CONTACT_MARGIN)    # of two geoms the margins add
+            case.scene(),
+            DT,
+            lambda scene, dt: (f"0 {-1.0 / dt!r}", "0.9999 0.9999 0.001"),
+            solver="PGS",
+            iterations=count,
+            tolerance=0.0,
+            flags=' warmstart="disable"',
+            margin=0.5 * contact.CONTACT_MARGIN,
+        )  # of two geoms the margins add
         model, data = world.model, world.data
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_fwdVelocity(model, data)
@@ -179,6 +220,7 @@ def mujoco_dual(count):
         mujoco.mj_fwdAcceleration(model, data)
         rows = order_of(case, data)
         return MujocoCall(model, data, rows)
+
     return prepare
 
 
@@ -187,6 +229,7 @@ class MujocoCall:
 
     def __init__(self, model, data, rows):
         from mujoco import mj_fwdConstraint
+
         self.solve, self.model, self.data, self.rows = mj_fwdConstraint, model, data, rows
 
     def __call__(self):
@@ -200,8 +243,9 @@ def order_of(case, data):
     """Which of MuJoCo's rows is each of our contacts."""
     number = {id(ball): k for k, ball in enumerate(case.balls)}
     number[id(contact.FLOOR)] = -1
-    theirs = {tuple(sorted(int(geom) - 1 for geom in data.contact[k].geom)): k
-              for k in range(data.ncon)}
+    theirs = {
+        tuple(sorted(int(geom) - 1 for geom in data.contact[k].geom)): k for k in range(data.ncon)
+    }
     return [theirs[tuple(sorted((number[id(c.a)], number[id(c.b)])))] for c in case.contacts]
 
 
@@ -229,6 +273,7 @@ def solvers():
 
 # measuring
 
+
 def measure(quick=False, cells=None):
     """{cases, rows, missing}: for every case and solver the residual and the time [s].
 
@@ -243,15 +288,25 @@ def measure(quick=False, cells=None):
             if f"{key[0]}: {key[1]}" not in cells:
                 cells[f"{key[0]}: {key[1]}"] = worker(solve, key)
             tick(key[1])
-    rows = [dict(case=name, solver=solver, **cells[f"{name}: {solver}"]) for name, solver, _ in keys]
-    return dict(quick=quick, rounds=rounds, rows=rows, cases={name: about(name) for name in names},
-                missing={s.name: s.missing for s in chosen if s.missing})
+    rows = [
+        dict(case=name, solver=solver, **cells[f"{name}: {solver}"]) for name, solver, _ in keys
+    ]
+    return dict(
+        quick=quick,
+        rounds=rounds,
+        rows=rows,
+        cases={name: about(name) for name in names},
+        missing={s.name: s.missing for s in chosen if s.missing},
+    )
 
 
 def about(name):
     found = case(name)
-    return dict(balls=len(found.balls), contacts=len(found.contacts),
-                rank=int(np.linalg.matrix_rank(found.W)))
+    return dict(
+        balls=len(found.balls),
+        contacts=len(found.contacts),
+        rank=int(np.linalg.matrix_rank(found.W)),
+    )
 
 
 class Worker:
@@ -291,7 +346,8 @@ def solve(key):
         lam = call.impulses() if hasattr(call, "impulses") else lam
         more = rounds - 1 if first < 0.3 else 1
         seconds = [first, *(timing.timed(solver.prepare(posed)) for _ in range(more))]
-    except Exception as error:      # a solver that gives up is a result, whatever it raises
+    except Exception as error:  # a solver that gives up is a result, whatever it raises
         return failure(f"{type(error).__name__}: {error}"[:120])
-    return dict(residual=posed.residual(np.array(lam, dtype=float)), failed=None,
-                **timing.spread(seconds))
+    return dict(
+        residual=posed.residual(np.array(lam, dtype=float)), failed=None, **timing.spread(seconds)
+    )

@@ -16,7 +16,7 @@ from concurrent.futures import ProcessPoolExecutor
 
 from curriculum import measured
 
-SLOW = 2.0      # s: a cell that took longer in a process is not timed in more than TWO of them
+SLOW = 2.0  # s: a cell that took longer in a process is not timed in more than TWO of them
 TWO = 2
 
 
@@ -47,8 +47,12 @@ def in_fresh_processes(work, keys, processes, cells, title):
         for number in range(processes):
             order = list(keys)
             random.Random(number).shuffle(order)
-            todo = [key for key in order if place("time", number, key) not in cells
-                    and not (number >= TWO and _slow(cells, key))]
+            todo = [
+                key
+                for key in order
+                if place("time", number, key) not in cells
+                and not (number >= TWO and _slow(cells, key))
+            ]
             tick(done=len(keys) - len(todo))
             if not todo:
                 continue
@@ -71,8 +75,11 @@ def merged(cells, keys, processes) -> dict:
     """{key: {way: {median, min, max}}} over the processes."""
     result = {}
     for key in keys:
-        found = [cells[name] for name in (place("time", k, key) for k in range(processes))
-                 if name in cells]
+        found = [
+            cells[name]
+            for name in (place("time", k, key) for k in range(processes))
+            if name in cells
+        ]
         result[key] = {way: spread([one[way] for one in found]) for way in found[0]}
     return result
 
@@ -121,8 +128,12 @@ def whole_process(command, cwd):
     It is started from a bare interpreter, since a process is charged with the memory of the one that
     forked it until it becomes its own program, and this one is large.
     """
-    run = subprocess.run([sys.executable, "-I", "-S", "-c", LAUNCH, *command], cwd=cwd,
-                         capture_output=True, text=True)
+    run = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", LAUNCH, *command],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+    )
     seconds, memory, status = run.stdout.split() if run.returncode == 0 else (0, 0, run.returncode)
     if int(status):
         raise RuntimeError(f"{' '.join(command)} fails: {run.stderr.strip()[-300:]}")

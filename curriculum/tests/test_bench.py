@@ -11,16 +11,41 @@ import pytest
 
 import contact
 from curriculum import measured, readme
-from curriculum.bench import (__main__ as command, accuracy, closed_form, contestants, cradle, engines,
-                              piles, problems, skips, soft, solvers, tables, timing)
+from curriculum.bench import __main__ as command
+from curriculum.bench import (
+    accuracy,
+    closed_form,
+    contestants,
+    cradle,
+    engines,
+    piles,
+    problems,
+    skips,
+    soft,
+    solvers,
+    tables,
+    timing,
+)
 from curriculum.bench.reports import accuracy as accuracy_report
 
-SETTINGS = [pytest.param(s, id=f"{s.engine} {s.words}", marks=pytest.mark.skipif(
-    engines.missing(s.engine) is not None, reason=f"{s.engine}: {engines.missing(s.engine)}"))
-    for s in engines.SETTINGS]
+SETTINGS = [
+    pytest.param(
+        s,
+        id=f"{s.engine} {s.words}",
+        marks=pytest.mark.skipif(
+            engines.missing(s.engine) is not None, reason=f"{s.engine}: {engines.missing(s.engine)}"
+        ),
+    )
+    for s in engines.SETTINGS
+]
 BOUNCE, DROP, STACK = (problems.BY_NAME[name] for name in ("bounce", "drop", "stack"))
-OURS = ("penalty: k 1e4", "lcp: 20 sweeps", "soft: as shipped by MuJoCo, or direct where e > 0",
-        "exact: event to event", f"lcp: {contestants.FLYING}")
+OURS = (
+    "penalty: k 1e4",
+    "lcp: 20 sweeps",
+    "soft: as shipped by MuJoCo, or direct where e > 0",
+    "exact: event to event",
+    f"lcp: {contestants.FLYING}",
+)
 
 
 def run_of(problem, scene, t):
@@ -36,16 +61,35 @@ def section():
         for name in OURS:
             for dt in (0.002, 0.016):
                 key = (problem.name, name, dt, 1)
-                points.append(accuracy.point(key, accuracy.error_cell(key), {
-                    way: timing.spread([value]) for way, value in accuracy.time_cell(key).items()}))
-    made = dict(quick=True, processes=1, seeds=1, left_out=[], points=tables.pack(points),
-                problems={p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration)
-                          for p in (DROP, BOUNCE)}, orders=[], headline=accuracy.headline(points))
+                points.append(
+                    accuracy.point(
+                        key,
+                        accuracy.error_cell(key),
+                        {
+                            way: timing.spread([value])
+                            for way, value in accuracy.time_cell(key).items()
+                        },
+                    )
+                )
+    made = dict(
+        quick=True,
+        processes=1,
+        seeds=1,
+        left_out=[],
+        points=tables.pack(points),
+        problems={
+            p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration)
+            for p in (DROP, BOUNCE)
+        },
+        orders=[],
+        headline=accuracy.headline(points),
+    )
     about = {"command": accuracy.COMMAND, **measured.provenance(accuracy.CODE)}
     return json.loads(measured.text({"measured": about, **made}))
 
 
 # the problems
+
 
 @pytest.mark.parametrize("problem", problems.PROBLEMS, ids=lambda p: p.name)
 def test_the_known_answer_itself_has_no_error_and_starts_where_the_scene_does(problem):
@@ -58,7 +102,9 @@ def test_the_known_answer_itself_has_no_error_and_starts_where_the_scene_does(pr
     assert q[0] == pytest.approx(scene.q0, abs=1e-15) and v[0] == pytest.approx(scene.v0, abs=1e-15)
 
 
-@pytest.mark.parametrize("name", ["drop", "bounce", "stack", "tower", "elastic", "slide", "pyramid"])
+@pytest.mark.parametrize(
+    "name", ["drop", "bounce", "stack", "tower", "elastic", "slide", "pyramid"]
+)
 def test_exact_meets_every_known_answer_within_1e_10_r(name):
     problem = problems.BY_NAME[name]
     scene, dt = problem.build(2), 0.008
@@ -76,9 +122,11 @@ def test_position_error_is_in_radii_and_counts_both_directions():
 
 def test_semi_implicit_flight_shows_its_lag_of_half_g_t_dt_and_flying_exactly_does_not():
     scene = DROP.build(0)
-    for name, lag in (("lcp: 20 sweeps", closed_form.flight_lag(0.4, 0.002) / 0.1),
-                      (f"lcp: {contestants.FLYING}", 0.0)):
-        run = contestants.BY_NAME[name].record(scene, 0.002, 200)       # still falling at the end
+    for name, lag in (
+        ("lcp: 20 sweeps", closed_form.flight_lag(0.4, 0.002) / 0.1),
+        (f"lcp: {contestants.FLYING}", 0.0),
+    ):
+        run = contestants.BY_NAME[name].record(scene, 0.002, 200)  # still falling at the end
         told = problems.quality(DROP, scene, 0.002, run)
         assert told["position_error"] == pytest.approx(lag, rel=1e-9, abs=1e-12)
 
@@ -87,7 +135,7 @@ def test_phase_of_an_elastic_ball_is_the_time_by_which_its_last_apex_is_late():
     problem = problems.BY_NAME["elastic"]
     scene = problem.build(0)
     t = np.arange(0.0, 20.0, 0.002)
-    q, v = problem.truth(scene, t * 0.999)                              # a clock that runs slow
+    q, v = problem.truth(scene, t * 0.999)  # a clock that runs slow
     told = problems.quality(problem, scene, 0.002, contact.Run(t, q, 0.999 * v))
     last = closed_form.apex_time(scene.q0[1, 0] - 0.1, 1.0, told["apexes"] - 1)
     assert told["apexes"] >= 22
@@ -103,13 +151,16 @@ def test_divergence_is_a_value_with_step_and_reason():
 
 
 def test_order_of_a_first_order_method_is_fitted_as_one():
-    made = [dict(problem="p", family="f", words="w", dt=dt, diverged=None, position_error=3.0 * dt)
-            for dt in problems.DTS]
+    made = [
+        dict(problem="p", family="f", words="w", dt=dt, diverged=None, position_error=3.0 * dt)
+        for dt in problems.DTS
+    ]
     assert next(accuracy.fits(made))["order"] == pytest.approx(1.0)
     assert next(accuracy.fits([{**p, "position_error": 1e-15} for p in made]))["order"] is None
 
 
 # how it is timed
+
 
 def double(key):
     """What the worker processes of the test below do."""
@@ -121,13 +172,17 @@ def test_cells_are_timed_in_fresh_processes_and_a_stopped_run_goes_on():
     cells = {timing.place("time", 0, keys[0]): {"read": -1.0}}
     timing.in_fresh_processes(double, keys, 2, cells, "test")
     assert cells[timing.place("time", 0, keys[0])] == {"read": -1.0}, "done already"
-    first, second = ({cells[timing.place("time", k, key)].get("process") for key in keys} - {None}
-                     for k in (0, 1))
+    first, second = (
+        {cells[timing.place("time", k, key)].get("process") for key in keys} - {None}
+        for k in (0, 1)
+    )
     assert len(first) == len(second) == 1 and first != second and os.getpid() not in first | second
 
 
 def test_a_time_is_the_median_over_processes_with_its_spread():
-    cells = {timing.place("time", k, "key"): {"read": value} for k, value in enumerate((3.0, 1.0, 9.0))}
+    cells = {
+        timing.place("time", k, "key"): {"read": value} for k, value in enumerate((3.0, 1.0, 9.0))
+    }
     assert timing.merged(cells, ["key"], 3)["key"]["read"] == dict(median=3.0, min=1.0, max=9.0)
 
 
@@ -138,11 +193,12 @@ def test_rounds_are_shuffled_and_preparation_is_not_timed():
         def prepare():
             seen.append(f"prepare {name}")
             return lambda: seen.append(name)
+
         return prepare
 
     seconds = timing.interleave({name: task(name) for name in "abc"}, 4)
     assert all(seen[k] == f"prepare {seen[k + 1]}" for k in range(0, len(seen), 2))
-    assert len({tuple(seen[k:k + 6]) for k in range(0, len(seen), 6)}) > 1
+    assert len({tuple(seen[k : k + 6]) for k in range(0, len(seen), 6)}) > 1
     assert [len(values) for values in seconds.values()] == [4, 4, 4]
 
 
@@ -154,6 +210,7 @@ def test_whole_process_reports_time_and_memory_and_a_failure():
 
 
 # the engines
+
 
 @pytest.mark.parametrize("setting", SETTINGS)
 @pytest.mark.parametrize("name", ["stack", "bounce"])
@@ -168,7 +225,7 @@ def test_an_engine_runs_the_same_scene_and_reading_changes_nothing(setting, name
     assert rows.shape == (steps + 1, len(scene.mass))
     assert q[:, 1] == pytest.approx(rows, abs=2e-6)
     truth = problems.BY_NAME[name].truth(scene, np.arange(steps + 1) * dt)[0]
-    assert np.abs(q - truth).max() < 0.03                       # within 0.3 r: the same motion
+    assert np.abs(q - truth).max() < 0.03  # within 0.3 r: the same motion
 
 
 @pytest.mark.parametrize("engine", engines.ENGINES)
@@ -207,6 +264,7 @@ def test_damping_ratio_for_a_rebound_gives_that_rebound():
 
 # the complementarity problem alone
 
+
 @pytest.mark.parametrize("name", ["pivot of exact", "quadprog", "nnls", "Lemke (Drake)"])
 def test_a_solver_meets_the_forces_of_a_tower_and_the_residual_says_so(name):
     solver = next(s for s in solvers.solvers() if s.name == name)
@@ -224,8 +282,9 @@ def test_sweeps_come_closer_the_more_there_are_and_the_compiled_ones_agree():
     few, many = (case.residual(np.array(solvers.sweeps(n)(case)())) for n in (10, 300))
     assert many < 1e-2 * few
     pytest.importorskip("numba", reason="not installed: pip install numba")
-    assert (np.array(solvers.compiled_sweeps(10)(case)())
-            == np.array(solvers.sweeps(10)(case)())).all()
+    assert (
+        np.array(solvers.compiled_sweeps(10)(case)()) == np.array(solvers.sweeps(10)(case)())
+    ).all()
 
 
 def test_a_solver_that_fails_is_a_result_with_its_reason():
@@ -241,14 +300,23 @@ def test_a_solver_that_fails_is_a_result_with_its_reason():
 
 # cradle and tower, soft, skips, piles
 
+
 def test_exact_passes_the_speed_on_at_any_gap_and_a_long_step_of_lcp_shares_it_out():
     exact, lcp = (contestants.BY_NAME[name] for name in ("exact: event to event", "lcp: 20 sweeps"))
     assert cradle.outcome(exact, 1e-6)["error"] < 1e-12
     assert cradle.outcome(lcp, 0.1)["error"] < 1e-12 < 0.1 < cradle.outcome(lcp, 1e-6)["error"]
 
 
-@pytest.mark.parametrize("name", ["exact: event to event", "lcp: 20 sweeps", "pymunk: 10 iterations",
-                                  "box2d: 8 and 3 iterations", "mujoco: as shipped"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "exact: event to event",
+        "lcp: 20 sweeps",
+        "pymunk: 10 iterations",
+        "box2d: 8 and 3 iterations",
+        "mujoco: as shipped",
+    ],
+)
 def test_the_forces_of_a_tower_are_read_where_they_are_told(name):
     contestant = contestants.BY_NAME[name]
     if contestant.refuses(DROP.build(0)):
@@ -261,7 +329,9 @@ def test_the_line_begins_at_penalty_and_ends_at_lcp():
     penalty = contact.run_model("penalty", scene, soft.DT, soft.STEPS)
     lcp = contact.run_model("lcp", scene, soft.DT, soft.STEPS, baumgarte=0.0)
     near = [soft.distance(soft.run_soft(soft.PENALTY_END, d, scene), penalty) for d in (1e-3, 1e-4)]
-    far = [soft.distance(soft.run_soft(soft.LCP_END, d, scene, beta=0.0), lcp) for d in (0.999, 0.9999)]
+    far = [
+        soft.distance(soft.run_soft(soft.LCP_END, d, scene, beta=0.0), lcp) for d in (0.999, 0.9999)
+    ]
     assert near[1] == pytest.approx(0.1 * near[0], rel=0.05) and near[1] < 1e-4
     assert far[1] == pytest.approx(0.1 * far[0], rel=0.05) and far[1] < 1e-4
 
@@ -275,7 +345,9 @@ def test_the_critical_step_along_the_line_is_that_of_the_spring():
 def test_soft_has_one_answer_in_any_order_and_lcp_has_not_where_contacts_are_redundant():
     told = {row["name"]: row for row in soft.orders()}
     assert told["soft, as shipped"]["impulses"] < 1e-12
-    assert told["lcp, 10,000 sweeps"]["impulses"] > 0.01 > 1e-12 > told["lcp, 10,000 sweeps"]["speeds"]
+    assert (
+        told["lcp, 10,000 sweeps"]["impulses"] > 0.01 > 1e-12 > told["lcp, 10,000 sweeps"]["speeds"]
+    )
 
 
 def test_skipping_changes_no_byte_in_the_short_form():
@@ -283,7 +355,9 @@ def test_skipping_changes_no_byte_in_the_short_form():
     cases = [case for case in skips.bytes_cases(quick=True) if case[1] == 0]
     for scene, seed, bodies, model, dt, steps in cases:
         built = contact.build_scene(scene, seed, bodies)
-        one, other = (contact.run_model(model, built, dt, steps, skip=skip) for skip in (True, False))
+        one, other = (
+            contact.run_model(model, built, dt, steps, skip=skip) for skip in (True, False)
+        )
         assert all(getattr(one, part).tobytes() == getattr(other, part).tobytes() for part in "tqv")
 
 
@@ -298,6 +372,7 @@ def test_the_timed_pile_has_the_bits_of_a_recorded_run():
 
 
 # what is printed
+
 
 def test_page_shows_divergence_with_step_and_reason(section):
     page = accuracy_report.page(section)
@@ -369,7 +444,7 @@ def test_a_block_of_results_older_than_the_code_says_stale_and_names_the_command
     old["measured"]["code"]["contact.py"] = "0" * 12
     (results / measured.NAME).write_text(measured.text({"accuracy": old}))
     new = readme.fill(TEXT.format("bench-headline", readme.COMMAND))
-    assert f"**Stale**: contact.py has changed" in new and accuracy.COMMAND in new
+    assert "**Stale**: contact.py has changed" in new and accuracy.COMMAND in new
 
 
 def test_readme_block_not_measured_yet_names_its_command(results):
@@ -394,13 +469,24 @@ def test_committed_pages_are_those_of_the_committed_results(what):
     section = measured.load(command.RESULTS)[what]
     assert not section["quick"], f"{what}: a quick run was kept"
     written = (command.RESULTS / f"{what}.md").read_text(encoding="utf-8")
-    assert written == command.report(what).page(section), "to repair: python -m curriculum.bench draw"
+    assert written == command.report(what).page(section), (
+        "to repair: python -m curriculum.bench draw"
+    )
 
 
 # the command line
 
-@pytest.mark.parametrize("flags", [["everything"], ["--chekc"], ["skip", "--only", "drop"],
-                                   ["accuracy", "--only", "nothing"], ["draw", "--out", "/dev/null/x"]])
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        ["everything"],
+        ["--chekc"],
+        ["skip", "--only", "drop"],
+        ["accuracy", "--only", "nothing"],
+        ["draw", "--out", "/dev/null/x"],
+    ],
+)
 def test_bad_flags_are_one_line_and_status_2(flags, capsys):
     with pytest.raises(SystemExit) as stop:
         command.main(flags)

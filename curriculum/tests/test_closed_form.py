@@ -48,7 +48,9 @@ def test_height_is_continuous_at_every_impact_and_zero_after_the_last(restitutio
     around = np.concatenate([np.nextafter(impacts, 0), impacts, np.nextafter(impacts, 9e9)])
     assert np.abs(closed_form.bounce_gap(gap, restitution, around)).max() < 5e-14
     end = closed_form.rest_time(gap, restitution)
-    assert (closed_form.bounce_gap(gap, restitution, end * np.array([1.0, 1.1, 100.0])) == 0.0).all()
+    assert (
+        closed_form.bounce_gap(gap, restitution, end * np.array([1.0, 1.1, 100.0])) == 0.0
+    ).all()
 
 
 def test_first_impact_after_a_fall_of_one_g_half_is_at_one_second():
@@ -59,7 +61,7 @@ def test_rest_time_is_the_limit_of_the_impact_times():
     for e in (0.3, 0.7, 0.9):
         limit = closed_form.impact_time(0.9, e, 2000.0)
         assert closed_form.rest_time(0.9, e) == pytest.approx(limit, rel=1e-14)
-    assert closed_form.rest_time(9.81 / 2, 0.5) == pytest.approx(3.0, rel=1e-15)    # 1 s (1.5 / 0.5)
+    assert closed_form.rest_time(9.81 / 2, 0.5) == pytest.approx(3.0, rel=1e-15)  # 1 s (1.5 / 0.5)
     assert closed_form.rest_time(0.9, 0.0) == closed_form.first_impact_time(0.9)
     assert closed_form.rest_time(0.9, 1.0) == math.inf
 
@@ -119,11 +121,16 @@ def runge_kutta(slope, state, duration, steps):
 
 def test_a_ball_on_a_ball_turns_as_the_pendulum_equation_says():
     theta, length = 0.1, 0.2
-    end = runge_kutta(lambda s: np.array([s[1], 9.81 / length * math.sin(s[0])]),
-                      np.array([theta, 0.0]), 0.3, 2000)
+    end = runge_kutta(
+        lambda s: np.array([s[1], 9.81 / length * math.sin(s[0])]),
+        np.array([theta, 0.0]),
+        0.3,
+        2000,
+    )
     q, v = closed_form.slide_motion(theta, length, RADIUS, RADIUS, np.array([0.3]))
-    assert q[0] == pytest.approx([length * math.sin(end[0]), RADIUS + length * math.cos(end[0])],
-                                 abs=1e-12)
+    assert q[0] == pytest.approx(
+        [length * math.sin(end[0]), RADIUS + length * math.cos(end[0])], abs=1e-12
+    )
     assert v[0, 0] == pytest.approx(length * math.cos(end[0]) * end[1], abs=1e-11)
 
 
@@ -154,12 +161,14 @@ def test_sliding_balls_keep_energy_and_the_touch_until_they_let_go():
 
 def test_velocity_is_the_slope_of_the_path():
     t, h = np.linspace(0.05, 0.65, 200), 1e-6
-    for motion in (lambda t: closed_form.bounce_motion(0.9, 0.7, t),
-                   lambda t: closed_form.slide_motion(0.2, 0.2, RADIUS, RADIUS, t),
-                   lambda t: closed_form.pyramid_motion(1.0, 0.2, RADIUS, t)):
+    for motion in (
+        lambda t: closed_form.bounce_motion(0.9, 0.7, t),
+        lambda t: closed_form.slide_motion(0.2, 0.2, RADIUS, RADIUS, t),
+        lambda t: closed_form.pyramid_motion(1.0, 0.2, RADIUS, t),
+    ):
         slope = (motion(t + h)[0] - motion(t - h)[0]) / (2.0 * h)
         off = np.abs(slope - motion(t)[1]).reshape(len(t), -1).max(1)
-        assert np.median(off) < 1e-8 and (off > 1e-6).sum() <= 2        # impacts apart
+        assert np.median(off) < 1e-8 and (off > 1e-6).sum() <= 2  # impacts apart
 
 
 def test_the_floor_carries_a_whole_tower_and_each_ball_those_above_it():

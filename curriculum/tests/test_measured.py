@@ -23,6 +23,7 @@ def section(tmp_path):
 
 # results and the code they measured
 
+
 def test_a_changed_constant_makes_results_stale_and_the_note_says_how_to_repair(section, tmp_path):
     assert not measured.is_stale(section, tmp_path)
     assert measured.stale_note(section, tmp_path) == ""
@@ -84,7 +85,9 @@ def test_cells_of_other_code_or_settings_are_not_used(tmp_path):
     measured.Cells(tmp_path / "cells.jsonl", about={"seeds": 3})["a"] = 1
     assert "a" in measured.Cells(tmp_path / "cells.jsonl", about={"seeds": 3})
     assert "a" not in measured.Cells(tmp_path / "cells.jsonl", about={"seeds": 9})
-    (tmp_path / "cells.jsonl").write_text('{"code": {"contact.py": "0"}, "about": null}\n["a", 1]\n')
+    (tmp_path / "cells.jsonl").write_text(
+        '{"code": {"contact.py": "0"}, "about": null}\n["a", 1]\n'
+    )
     assert "a" not in measured.Cells(tmp_path / "cells.jsonl")
 
 
@@ -96,6 +99,7 @@ def test_the_list_of_results_names_what_is_stale_and_fails_the_check(monkeypatch
 
 
 # pages
+
 
 def test_a_claim_whose_condition_fails_is_not_printed_as_true():
     claims = [reporting.Claim(False, "all is well", "it is not"), reporting.Claim(True, "so.")]
@@ -109,8 +113,18 @@ def test_a_goal_that_is_missed_says_missed():
 
 
 def test_numbers_keep_three_digits_and_no_clumsy_exponents():
-    shown = {0.25: "0.250", 1.5: "1.50", 123.4: "123", 9.996: "10.0", 4.44e-15: "4.44e-15", 0: "0",
-             None: "-", 1409.4: "1409", 2.5e7: "2.50e7", math.inf: "inf"}
+    shown = {
+        0.25: "0.250",
+        1.5: "1.50",
+        123.4: "123",
+        9.996: "10.0",
+        4.44e-15: "4.44e-15",
+        0: "0",
+        None: "-",
+        1409.4: "1409",
+        2.5e7: "2.50e7",
+        math.inf: "inf",
+    }
     assert {value: reporting.number(value) for value in shown} == shown
 
 
@@ -119,6 +133,7 @@ def test_a_bar_in_a_cell_does_not_break_the_table():
 
 
 # figures
+
 
 def drawn(section):
     figure, (upper, lower) = plotting.figure(rows=2, title="Title", explained="0.9999 " * 30)

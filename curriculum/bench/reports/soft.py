@@ -7,8 +7,8 @@ from curriculum.bench.soft import BETWEEN, LCP_END, PENALTY_END
 from curriculum.reporting import Claim, Goal, number
 
 LOOKS = {PENALTY_END: "penalty", BETWEEN: "soft", LCP_END: "lcp"}
-WITHIN = 1e-11      # m, how far soft may be from the engine
-LAST = 1e-12        # of the largest impulse: one answer, but for rounding
+WITHIN = 1e-11  # m, how far soft may be from the engine
+LAST = 1e-12  # of the largest impulse: one answer, but for rounding
 
 
 def goals(section):
@@ -18,7 +18,9 @@ def goals(section):
     if match["missing"]:
         return [Goal(wanted, match["missing"], None)]
     worst = max(row["distance"] for row in match["rows"] if row["balls"] < 30)
-    return [Goal(wanted, f"{number(worst, 2)} m at most, version {match['version']}", worst <= WITHIN)]
+    return [
+        Goal(wanted, f"{number(worst, 2)} m at most, version {match['version']}", worst <= WITHIN)
+    ]
 
 
 def line(section, end):
@@ -28,41 +30,77 @@ def line(section, end):
 def claims(section):
     models = section["models"]
     first, last = line(section, PENALTY_END)[0], line(section, LCP_END)[-1]
-    yield Claim(first["distance"] < 1e-3, f"With the spring of penalty and d = {first['d']:g}, soft is "
-                f"within {number(first['distance'], 2)} r of penalty over the whole drop.")
-    yield Claim(last["distance"] < 1e-3, f"With that of lcp and d = {last['d']:g} it is within "
-                f"{number(last['distance'], 2)} r of lcp (both without a push).")
-    yield Claim(True, f"At rest the ball is {number(-models['penalty']['rest_gap'], 3)} r deep in penalty, "
-                f"{number(-models['soft']['rest_gap'], 3)} r as MuJoCo ships it, and "
-                f"{number(abs(models['lcp']['rest_gap']), 2)} r off in lcp.")
+    yield Claim(
+        first["distance"] < 1e-3,
+        f"With the spring of penalty and d = {first['d']:g}, soft is "
+        f"within {number(first['distance'], 2)} r of penalty over the whole drop.",
+    )
+    yield Claim(
+        last["distance"] < 1e-3,
+        f"With that of lcp and d = {last['d']:g} it is within "
+        f"{number(last['distance'], 2)} r of lcp (both without a push).",
+    )
+    yield Claim(
+        True,
+        f"At rest the ball is {number(-models['penalty']['rest_gap'], 3)} r deep in penalty, "
+        f"{number(-models['soft']['rest_gap'], 3)} r as MuJoCo ships it, and "
+        f"{number(abs(models['lcp']['rest_gap']), 2)} r off in lcp.",
+    )
     soft, hard = section["orders"][0], section["orders"][-1]
-    yield Claim(soft["impulses"] < LAST < hard["impulses"],
-                f"In any order of sweeps soft gives the same impulses to {number(soft['impulses'], 1)}, "
-                f"lcp's differ by {number(100 * hard['impulses'], 2)} % where contacts are redundant.")
+    yield Claim(
+        soft["impulses"] < LAST < hard["impulses"],
+        f"In any order of sweeps soft gives the same impulses to {number(soft['impulses'], 1)}, "
+        f"lcp's differ by {number(100 * hard['impulses'], 2)} % where contacts are redundant.",
+    )
 
 
 def page(section):
     """The whole page."""
-    head = ["d", "rest gap / r", "deepest / r", "energy in / E0", "distance from its end / r",
-            "critical step [ms]"]
+    head = [
+        "d",
+        "rest gap / r",
+        "deepest / r",
+        "energy in / E0",
+        "distance from its end / r",
+        "critical step [ms]",
+    ]
     keys = ("rest_gap", "deepest", "energy_in", "distance")
 
     def rows_of(end):
-        return [[f"{row['d']:g}", *(number(row[key]) for key in keys),
-                 reporting.ms(row["critical_dt"])] for row in line(section, end)]
+        return [
+            [f"{row['d']:g}", *(number(row[key]) for key in keys), reporting.ms(row["critical_dt"])]
+            for row in line(section, end)
+        ]
 
-    models = [[name, *(number(row[key]) for key in keys[:3]), reporting.ms(row["critical_dt"])]
-              for name, row in section["models"].items()]
-    orders = [[row["name"], row["contacts"], number(row["impulses"], 2), number(row["speeds"], 2)]
-              for row in section["orders"]]
-    match = [[row["scene"], row["balls"], f"{1e3 * row['dt']:g}", row["steps"], row["solref"],
-              row["solimp"], number(row["distance"], 2)] for row in section["match"]["rows"]]
+    models = [
+        [name, *(number(row[key]) for key in keys[:3]), reporting.ms(row["critical_dt"])]
+        for name, row in section["models"].items()
+    ]
+    orders = [
+        [row["name"], row["contacts"], number(row["impulses"], 2), number(row["speeds"], 2)]
+        for row in section["orders"]
+    ]
+    match = [
+        [
+            row["scene"],
+            row["balls"],
+            f"{1e3 * row['dt']:g}",
+            row["steps"],
+            row["solref"],
+            row["solimp"],
+            number(row["distance"], 2),
+        ]
+        for row in section["match"]["rows"]
+    ]
     return reporting.page(
-        "From penalty over MuJoCo to lcp, on one line", section,
+        "From penalty over MuJoCo to lcp, on one line",
+        section,
         "While a ball touches, soft is a spring k = m d^2 K and a damper c = m d B that carry the share "
         "1 - d of the load. The runs are the drop, 2000 steps of 2 ms.",
-        "![The line](soft.svg)", reporting.sentences(claims(section)),
-        "## The models themselves", reporting.table(["", *head[1:4], head[5]], models),
+        "![The line](soft.svg)",
+        reporting.sentences(claims(section)),
+        "## The models themselves",
+        reporting.table(["", *head[1:4], head[5]], models),
         "## With the spring of penalty (k = 1e4 N/m, c = 80 N s/m)",
         "d -> 0 is penalty. The critical step does not move: it is that of the spring.",
         reporting.table(head, rows_of(PENALTY_END)),
@@ -81,40 +119,69 @@ def page(section):
         "order. Seven balls wedged between two held ones, twenty orders, largest differences:",
         reporting.table(["", "contacts", "impulses [of the largest]", "speeds [m/s]"], orders),
         "## Against the engine",
-        section["match"]["missing"] or f"MuJoCo {section['match']['version']}, integrator Euler, solver "
+        section["match"]["missing"]
+        or f"MuJoCo {section['match']['version']}, integrator Euler, solver "
         "Newton, tolerance 0, 1000 iterations, condim 1. The tower of thirty falls in touch: at r = 0 the "
         "force jumps when d0 is not 0, so the last bits grow there.",
-        reporting.table(["scene", "balls", "dt [ms]", "steps", "solref", "solimp", "distance [m]"], match))
+        reporting.table(
+            ["scene", "balls", "dt [ms]", "steps", "solref", "solimp", "distance [m]"], match
+        ),
+    )
 
 
-PANELS = (("rest_gap", "rest depth / r", "log"), ("deepest", "deepest / r", "log"),
-          ("energy_in", "energy in / E0", "log"), ("distance", "distance from its end / r", "log"))
+PANELS = (
+    ("rest_gap", "rest depth / r", "log"),
+    ("deepest", "deepest / r", "log"),
+    ("energy_in", "energy in / E0", "log"),
+    ("distance", "distance from its end / r", "log"),
+)
 
 
 def figures(section):
     """{file name: SVG text}: four measures over d, with the three models marked."""
     figure, axes = plotting.figure(
-        rows=2, columns=2, height=2.3, below=0.55, title="One line: penalty, MuJoCo, lcp",
+        rows=2,
+        columns=2,
+        height=2.3,
+        below=0.55,
+        title="One line: penalty, MuJoCo, lcp",
         explained="One ball dropped, soft with the spring of penalty or of lcp, and its impedance d moved. "
-                  "Left end 0.0001, right end 0.9999. Marks: the models themselves.")
+        "Left end 0.0001, right end 0.9999. Marks: the models themselves.",
+    )
     figure.subplots_adjust(wspace=0.42)
     for axis, (key, label, scale) in zip(axes, PANELS):
         for end, name in LOOKS.items():
             rows = line(section, end)
-            plotting.line(axis, [_place(row["d"]) for row in rows],
-                          [max(abs(row[key]), 1e-9) for row in rows], name, label=f"soft, {end}",
-                          marker="")
+            plotting.line(
+                axis,
+                [_place(row["d"]) for row in rows],
+                [max(abs(row[key]), 1e-9) for row in rows],
+                name,
+                label=f"soft, {end}",
+                marker="",
+            )
         for name, d in (("penalty", 1e-4), ("soft", 0.95), ("lcp", 0.9999)):
             if key in section["models"][name]:
-                axis.plot([_place(d)], [max(abs(section["models"][name][key]), 1e-9)],
-                          label={"soft": "MuJoCo as shipped"}.get(name, name),
-                          **{**plotting.look(name), "ls": ""})
+                axis.plot(
+                    [_place(d)],
+                    [max(abs(section["models"][name][key]), 1e-9)],
+                    label={"soft": "MuJoCo as shipped"}.get(name, name),
+                    **{**plotting.look(name), "ls": ""},
+                )
         axis.set(yscale=scale, title=label)
-        axis.set_xticks([_place(d) for d in (0.001, 0.1, 0.9, 0.999)], ["0.001", "0.1", "0.9", "0.999"])
+        axis.set_xticks(
+            [_place(d) for d in (0.001, 0.1, 0.9, 0.999)], ["0.001", "0.1", "0.9", "0.999"]
+        )
     for axis in axes[2:]:
         axis.set_xlabel("impedance d")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="lower left", ncols=2, fontsize=8.5,
-                  bbox_to_anchor=(0.02, 0.2 / figure.get_figheight()), borderaxespad=0)
+    figure.legend(
+        *axes[0].get_legend_handles_labels(),
+        loc="lower left",
+        ncols=2,
+        fontsize=8.5,
+        bbox_to_anchor=(0.02, 0.2 / figure.get_figheight()),
+        borderaxespad=0,
+    )
     return {"soft.svg": plotting.svg(figure, section)}
 
 
