@@ -2,29 +2,35 @@
 
 Balls over the line y = 0, frictionless. Between two events the set of pushing contacts stays the
 same, and the motion is smooth. Where no ball slides along another it is a parabola in time; where
-one does, the pushing contacts are equations, gap = 0, and the motion is a Taylor series of order 14.
-An event is a gap that closes or a force that falls to zero. At an event
+one does, the pushing contacts are equations, gap = 0, and the motion is a Taylor series in time.
+An event is a gap that closes, a force that falls to zero, or a series that comes to its end. It
+concerns the balls that touch one another there, an island; all other balls go on as they were.
 
     separate   closes what rounding has left of overlaps,
     collide    gives impulses to the contacts that close: an LCP of velocities,
-    support    gives forces to the contacts that rest: an LCP of accelerations.
+    support    gives forces to the contacts that rest: an LCP of accelerations,
+    slide      expands the motion under these forces in time,
+    predict    finds the next event of every contact of the island.
 
 Samples are read from the series, so when they are taken does not enter the motion.
 
-    symbol   meaning                                       unit
-    q, v, a  positions, velocities, accelerations          m, m/s, m/s^2   rows x, y: (2, N + 1)
-    w        1 / mass; 0 for the floor and for a fixed ball  1/kg
-    i, j     balls of a contact; the floor is the last column, j = -1
-    n        unit normal of a contact, from j to i         -
-    depth    -gap, > 0 overlapping                         m
-    lam      impulse or force of a contact, >= 0           N s or N
+    symbol   meaning                                          unit
+    q, v, a  positions, velocities, accelerations             m, m/s, m/s^2; rows x, y: (2, N + 1)
+    w        1 / mass; 0 for the floor and for a fixed ball   1/kg
+    i, j     the balls of a contact; the floor is ball -1, the last column
+    n        unit normal of a contact, from j to i
+    gap      distance of the surfaces; depth = -gap           m
+    v_n      n . (v_i - v_j), > 0 separating                  m/s
+    lam      impulse or force of a contact, >= 0              N s or N
 
-Why every loop ends. The pivot (solve_lcp) and the search for a root (first_fall) count their steps
-and stop. The events have no such bound of their own: bounces can follow one another ever faster.
-A bounce that would rise less than LAST r is the last of its series, which ends the usual ones. The
-clock ends the others: after EVENTS events per ball within TICK seconds of motion every further
-event of that tick waits until the hundredth part of a tick has passed. That is a limit of run time:
-what closes in the meantime overlaps and is moved apart again.
+Why every loop ends. The pivot (solve_lcp), the separation of overlaps and the search for a root
+(first_fall) count their steps and stop. Events have no such bound of their own, since bounces can
+follow one another ever faster. A bounce that rises less than LAST radii is the last of its series,
+and so is one of a contact that opened less than TOUCH radii since the bounce before: a light ball
+between a heavy one and the floor is struck infinitely often in finite time, and the limit is rest.
+The clock ends what is left: after EVENTS events per ball within a tick of motion, events come at
+most once in a hundredth of a tick. That is a limit of run time: what closes in the meantime
+overlaps, and is moved apart when its turn comes.
 """
 
 # --- region: exact-setup ---
@@ -35,14 +41,16 @@ import numpy as np
 
 ORDER = 14      # of the Taylor series in time
 TOUCH = 1e-12   # of a radius: a smaller gap is none
-LAST = 1e-15    # of a radius: a bounce that rises less is the last of its series
-GRAZE = 1e-12   # of the weight of a contact's effective mass: a smaller force is none
+LAST = 1e-13    # of a radius: a bounce that rises less is the last of its series
+NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
+GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does not push
 EVENTS = 1000   # per ball and tick, before the clock waits
 TICK = 0.1      # of sqrt(r / g), r the smallest radius
+BINOMIAL = np.array([[math.comb(m, k) for m in range(ORDER + 1)] for k in range(ORDER + 1)])
 
 
 class System(NamedTuple):
-    """What stays the same during a run; the floor is the last column."""
+    """What stays the same during a run; the floor is the last of N + 1 bodies."""
 
     w: np.ndarray       # (N + 1,) 1 / mass [1/kg]
     radius: np.ndarray  # (N + 1,) [m]
@@ -51,22 +59,24 @@ class System(NamedTuple):
     i: np.ndarray       # (K,) of all contacts that can be: the floor's first, then pairs i < j
     j: np.ndarray
 
-    def contacts(self, q, which):
-        """The Contacts `which` (an index array or mask) of all in the positions q (2, N + 1)."""
+    def contacts(self, q, which=slice(None)):
+        """The Contacts `which` (an index array or a mask) in the positions q (2, N + 1)."""
         i, j = self.i[which], self.j[which]
         d = q[:, i] - q[:, j]
         distance = np.where(j < 0, d[1], np.sqrt(d[0] * d[0] + d[1] * d[1]))
         up = (j < 0) | ~(distance > 0.0)        # two balls with one centre: some normal is needed
         d /= np.where(up, 1.0, distance)
         d[:, up] = [[0.0], [1.0]]
-        return Contacts(self.w, i, j, d, self.radius[i] + self.radius[j] - distance)
+        speed = np.sqrt(-self.gravity * self.radius[i])
+        return Contacts(self.w, i, j, d, self.radius[i] + self.radius[j] - distance, speed)
 
 
 def build_system(scene, gravity):
     """The System of a scene. Two bodies that nothing moves have no contact."""
+    count = len(scene.mass)
     w, radius = np.append(1.0 / scene.mass, 0.0), np.append(scene.radius, 0.0)
-    i, j = np.triu_indices(len(scene.mass), 1)
-    i, j = np.append(np.arange(len(scene.mass)), i), np.append(np.full(len(scene.mass), -1), j)
+    i, j = np.triu_indices(count, 1)
+    i, j = np.append(np.arange(count), i), np.append(np.full(count, -1), j)
     moves = w[i] + w[j] > 0.0
     return System(w, radius, scene.restitution, gravity, i[moves], j[moves])
 # --- endregion ---
@@ -74,17 +84,19 @@ def build_system(scene, gravity):
 
 # --- region: exact-contacts ---
 class Contacts(NamedTuple):
-    """Some contacts in the same positions: i, j (K,), normals n (2, K), depth (K,) [m]."""
+    """Some contacts in one set of positions: i, j, depth (K,), normals n (2, K)."""
 
     w: np.ndarray
     i: np.ndarray
     j: np.ndarray
     n: np.ndarray
     depth: np.ndarray
+    speed: np.ndarray   # sqrt(g r) (K,) [m/s]: what a ball gains as it falls half a radius
 
     def only(self, which):
         """These of the contacts."""
-        return Contacts(self.w, self.i[which], self.j[which], self.n[:, which], self.depth[which])
+        return Contacts(self.w, self.i[which], self.j[which], self.n[:, which], self.depth[which],
+                        self.speed[which])
 
     def along(self, rows, n=None):
         """n . (rows_i - rows_j) (K,) of rows (2, N + 1): with v, the normal velocity v_n."""
@@ -109,6 +121,17 @@ class Contacts(NamedTuple):
             for row, part in zip(rows, self.n):
                 np.add.at(row, body, push * part)
         return np.where(np.abs(rows) > 1e-13 * size, rows, 0.0)
+
+    def spread(self, force):
+        """M^-1 (2, N + 1) of forces (2, K) on the bodies i, and their opposites on j."""
+        body, count = np.append(self.i, self.j % len(self.w)), len(self.w)
+        return np.array([np.bincount(body, np.append(f, -f), count) for f in force]) * self.w
+
+    def corrected(self, rows, error):
+        """rows changed by the one set of pushes that takes `error` (K,) from n . rows."""
+        if not error.any():
+            return rows
+        return rows - self.spread(self.n * (inverted(self.delassus()) @ error))
 # --- endregion ---
 
 
@@ -165,8 +188,8 @@ class Table:
 def solve_lcp(W, b):
     """lam (K,) >= 0 with w = W lam + b >= 0 and lam w = 0; W (K, K) the Delassus matrix, b (K,).
 
-    Pivoting after Lawson and Hanson (1974), from all contacts active, as at rest. With each exchange
-    lam'W lam / 2 + b'lam falls, so no active set comes twice. Rounding can break that, so the
+    Pivoting after Lawson and Hanson (1974), from all contacts active, as at rest. With each
+    exchange lam'W lam / 2 + b'lam falls, so no active set comes twice. Rounding can break that, so
     exchanges are counted; and the table is made afresh until it needs no more, at most nine times.
     """
     if len(b) < 2:
@@ -204,123 +227,133 @@ def inverted(W):
 # --- endregion ---
 
 
-# --- region: exact-settle ---
-class Instant(NamedTuple):
-    """After an event: q, v, a (2, N + 1); gap (K,) [m]; which contacts push; whether they slide."""
+# --- region: exact-island ---
+def island(system, i, j, woken):
+    """The balls that hang together with those `woken` through contacts i, j: masks (N + 1,).
 
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-    gap: np.ndarray
-    pushes: np.ndarray
-    slides: bool
-
-
-def settle(system, q, v):
-    """The Instant after an event in the positions q and velocities v."""
-    q, near, contacts, gap = separate(system, q)
-    v = collide(system, contacts, v)
-    a, rests, pushes, slides = support(system, contacts, v)
-    gap[near[rests]] += 3.0 * TOUCH * system.radius[contacts.i[rests]]  # round-off makes no event
-    active = np.zeros(len(gap), bool)
-    active[near[pushes]] = True
-    return Instant(q, v, a, gap, active, slides)
-
-
-def separate(system, q):
-    """q without overlaps; the index and the Contacts of those that touch; all gaps (K,) [m].
-
-    A gap within TOUCH radii, or within the last bits of the positions, touches.
+    What nothing moves, as the floor, passes nothing on and belongs to no island.
     """
-    last = np.spacing(np.abs(q).max(0))
-    small = TOUCH * system.radius[system.i] + 4.0 * np.maximum(last[system.i], last[system.j])
+    partners = [[] for _ in woken]
+    passes = (system.w[i] > 0.0) & (system.w[j] > 0.0)
+    for a, b in zip(i[passes].tolist(), j[passes].tolist()):
+        partners[a].append(b)
+        partners[b].append(a)
+    found, left = np.zeros(len(woken), bool), np.flatnonzero(woken & (system.w > 0.0)).tolist()
+    while left:
+        ball = left.pop()
+        if not found[ball]:
+            found[ball] = True
+            left += partners[ball]
+    return found
+
+
+def separate(system, q, which, small):
+    """q without overlaps of more than `small` (K,) [m] at the contacts `which`, a mask.
+
+    Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less.
+    """
     for _ in range(50):
-        depth = system.contacts(q, slice(None)).depth
-        near = np.flatnonzero(depth >= -small)
-        contacts = system.contacts(q, near)
-        if not (depth > small).any():
+        contacts = system.contacts(q, which)
+        if not (contacts.depth > small).any():
             break
+        contacts = contacts.only(contacts.depth >= -small)
         q, _ = react(contacts, q, -contacts.depth)
-    return q, near, contacts, np.maximum(-depth, 0.0)
+    return q
+# --- endregion ---
 
 
-def slow(system, contacts):
-    """The speed [m/s] (K,) whose bounce rises LAST radii."""
-    return np.sqrt(-2.0 * system.gravity * LAST * system.radius[contacts.i])
+# --- region: exact-collide ---
+def collide(system, contacts, v, thin):
+    """v after the impulses of the contacts that close: v_n becomes -e v_n where they push.
 
-
-def collide(system, contacts, v):
-    """v after the impulses of the contacts that close: v_n becomes -e v_n where they push."""
-    v_n = contacts.along(v)
-    if not (v_n < -0.1 * TOUCH).any():          # [m/s] round-off of earlier impulses
+    The contacts touch. Those `thin` (K,), and those whose bounce is slow, end their series here.
+    """
+    v_n, noise = contacts.along(v), NOISE * contacts.speed
+    if not (v_n < -noise).any():
         return v
     bounce = -system.restitution * v_n
-    bounce = np.where(np.abs(bounce) < slow(system, contacts), 0.0, bounce)
-    return react(contacts, v, v_n - bounce)[0]
+    bounce = np.where((np.abs(bounce) < slow(contacts)) | thin, 0.0, bounce)
+    v, lam = react(contacts, v, v_n - bounce)
+    struck, bounce, noise = contacts.only(lam > 0.0), bounce[lam > 0.0], noise[lam > 0.0]
+    for _ in range(3):                          # unequal masses: once more, for the last digits
+        error = struck.along(v) - bounce
+        if not (np.abs(error) > noise).any():
+            break
+        v = struck.corrected(v, error)
+    return v
+
+
+def slow(contacts):
+    """The speed [m/s] (K,) of a bounce that rises LAST radii."""
+    return math.sqrt(2.0 * LAST) * contacts.speed
 # --- endregion ---
 
 
 # --- region: exact-support ---
 def support(system, contacts, v):
-    """Accelerations a (2, N + 1), which of the contacts rest, which push, and whether any slides.
+    """v and accelerations a (2, N + 1), and which of the contacts push (K,).
 
-    The bodies of a resting contact do not part: n . a plus what the turning normal asks, slip^2 over
-    the distance of the centres, is at least 0. A contact slides if its normal turns.
+    The bodies of a resting contact do not part: n . a plus what the turning normal asks, slip^2
+    over the distance of the centres, is at least 0.
     """
     a = np.array([[0.0], [system.gravity]]) * (system.w > 0.0)
-    rests = np.flatnonzero(np.abs(contacts.along(v)) < slow(system, contacts))
-    if not len(rests):
-        return a, rests, rests, False
-    contacts = contacts.only(rests)
-    i, j = contacts.i, contacts.j
-    slip = contacts.along(v, contacts.tangents())
-    turn = slip * slip / (system.radius[i] + system.radius[j])
-    a, lam = react(contacts, a, contacts.along(a) + turn)
-    pushes = lam * (system.w[i] + system.w[j]) > -GRAZE * system.gravity
-    slides = (slip != 0.0) | (contacts.along(a, contacts.tangents()) != 0.0)
-    return a, rests, rests[pushes], (pushes & slides).any()
+    pushes = np.abs(contacts.along(v)) < slow(contacts)
+    if not pushes.any():
+        return v, a, pushes
+    rests = contacts.only(pushes)
+    slip = rests.along(v, rests.tangents())
+    turn = slip * slip / (system.radius[rests.i] + system.radius[rests.j])
+    a, lam = react(rests, a, rests.along(a) + turn)
+    pushes[pushes] = loaded = lam * (system.w[rests.i] + system.w[rests.j]) > grazing(system)
+    held = rests.only(loaded)
+    v = held.corrected(v, held.along(v))        # round-off, or the last of a series of bounces
+    return v, held.corrected(a, held.along(a) + turn[loaded]), pushes
+
+
+def grazing(system):
+    """The acceleration [m/s^2] that a contact gives to its bodies at least if it pushes."""
+    return -GRAZE * system.gravity
 # --- endregion ---
 
 
 # --- region: exact-slide ---
-def project(held, q, v, inverse):
-    """q and v with gap = 0 and v_n = 0 at the contacts `held`: round-off of the step before."""
-    q = q + spread(held, held.n * (inverse @ held.depth))
-    return q, v - spread(held, held.n * (inverse @ held.along(v)))
-
-
-def spread(held, force):
-    """M^-1 (2, N + 1) of the forces (2, K) on the bodies i, and their opposites on j."""
-    body, count = np.append(held.i, held.j % len(held.w)), len(held.w)
-    return np.array([np.bincount(body, np.append(f, -f), count) for f in force]) * held.w
-
-
 def slide(system, held, q, v):
-    """The series Q (ORDER + 1, 2, N + 1) of q and lam (ORDER - 1, K) while the K contacts push.
+    """While the K contacts push: the series Q (ORDER + 1, 2, N + 1) of q and lam (ORDER - 1, K).
 
     q'' = g + M^-1 J' lam with n = (q_i - q_j) / (r_i + r_j), a series too. n . n = 1 gives for each
     order of lam a linear system, always with the Delassus matrix.
     """
-    inverse = inverted(held.delassus())
-    reach, pair = system.radius[held.i] + system.radius[held.j], held.j >= 0
+    inverse, pair = inverted(held.delassus()), held.j >= 0
+    reach = system.radius[held.i] + system.radius[held.j]
     Q, lam = np.zeros((ORDER + 1, *q.shape)), np.zeros((ORDER - 1, len(pair)))
     n = np.zeros((ORDER + 1, *held.n.shape))
-    Q[0], Q[1] = project(held, q, v, inverse)
+    Q[0] = q + held.spread(held.n * (inverse @ held.depth))     # gap = 0 and, below, v_n = 0
     n[0] = np.where(pair, (Q[0][:, held.i] - Q[0][:, held.j]) / reach, held.n)
+    Q[1] = v - held.spread(n[0] * (inverse @ held.along(v, n[0])))
     for k in range(ORDER - 1):
         n[k + 1] = (Q[k + 1][:, held.i] - Q[k + 1][:, held.j]) / reach * pair
-        a = spread(held, (lam[:k, None] * n[k:0:-1]).sum(0))    # of the forces that are known
+        a = held.spread((lam[:k, None] * n[k:0:-1]).sum(0))     # of the orders that are known
         a[1] += system.gravity * (system.w > 0.0) * (k == 0)
         turn = 0.5 * reach * (n[1:k + 2] * n[k + 1:0:-1]).sum((0, 1))
         lam[k] = -inverse @ (held.along(a, n[0]) + (k + 1) * (k + 2) * turn)
-        Q[k + 2] = (a + spread(held, lam[k] * n[0])) / ((k + 1) * (k + 2))
+        Q[k + 2] = (a + held.spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
     return Q, lam
 
 
-def trusted(system, Q):
-    """A time [s], a power of 2, in which the last two terms of the series stay below 2^-54 r."""
+def expand(system, held, q, v, a):
+    """The series Q (M, 2, N + 1) of q, those of the forces (5 or more, K), and how long they last.
+
+    A parabola, forces that do not change, and for ever, where no held contact slides. Elsewhere a
+    power of 2 [s], in which the last two terms of Q stay below 2^-54 r.
+    """
+    tangents = held.tangents()
+    if not (held.along(v, tangents).any() or held.along(a, tangents).any()):
+        return np.array((q, v, 0.5 * a)), np.ones((5, len(held.i))), np.inf
+    Q, lam = slide(system, held, q, v)
+    lam[0] = np.maximum(lam[0], 0.0) + grazing(system) / (system.w[held.i] + system.w[held.j])
     size = (np.abs(Q[-2:, :, :-1]) / system.radius[:-1]).max((1, 2))
-    return math.ldexp(1.0, int(((-54 - np.frexp(size)[1]) // (ORDER - 1, ORDER)).min()))
+    power = ((-54 - np.frexp(size)[1]) // (ORDER - 1, ORDER)).min()
+    return Q, lam, math.ldexp(1.0, int(power))
 # --- endregion ---
 
 
@@ -338,9 +371,18 @@ def rate(p):
     return np.arange(1, len(p)).reshape(-1, *[1] * (p.ndim - 1)) * p[1:]
 
 
+def shifted(Q, s):
+    """The series Q (M, 2, N + 1) written about a time s (N + 1,) later, by the binomial theorem."""
+    if len(Q) == 3:
+        return np.array((Q[0] + s * (Q[1] + s * Q[2]), Q[1] + 2.0 * s * Q[2], Q[2]))
+    k = np.arange(len(Q))
+    power = s ** np.maximum(k - k[:, None], 0)[..., None]       # s^(m - k)
+    return np.einsum("kmb,mcb->kcb", BINOMIAL[..., None] * power, Q)
+
+
 def gap_series(system, Q, gap, which):
-    """Series (5 or more, K) with the signs of the gaps `which`: y_i - r_i for the floor's, and
-    |q_i - q_j|^2 - (r_i + r_j)^2 for pairs."""
+    """Series (5 or more, K) with the signs of the gaps `which`, which are gap (K,) at t = 0:
+    y_i - r_i for the floor's, and |q_i - q_j|^2 - (r_i + r_j)^2 for pairs."""
     i, j = system.i[which], system.j[which]
     d, pair = Q[:, :, i] - Q[:, :, j], j >= 0
     p = np.concatenate((d[:, 1], np.zeros((max(0, 5 - len(Q)), len(i)))))
@@ -349,8 +391,7 @@ def gap_series(system, Q, gap, which):
         low, half = max(0, k - len(d) + 1), (k + 1) // 2
         square = 2.0 * (d[low:half] * d[k - half + 1:k - low + 1][::-1]).sum(0)
         p[k, pair] = (square + d[half] * d[half] if k % 2 == 0 else square).sum(0)
-    p[0] = gap[which]
-    p[0] *= np.where(pair, p[0] + 2.0 * (system.radius[i] + system.radius[j]), 1.0)
+    p[0] = gap * np.where(pair, gap + 2.0 * (system.radius[i] + system.radius[j]), 1.0)
     return p
 # --- endregion ---
 
@@ -359,19 +400,16 @@ def gap_series(system, Q, gap, which):
 def first_fall(p, horizon):
     """First t in [0, horizon] at which each sum p[k] t^k falls through zero; inf if it does not.
 
-    p (5 or more, K) with p[0] >= 0. Newton's method made safe: with the least curvature up to the
-    horizon (above t^4, a bound of it) no step passes a root, and a parabola takes one step. An
-    answer is good to 1e-15 of itself, or early where 200 steps of next to no curvature did not get
-    there.
+    p (5 or more, K) with p[0] >= 0, horizon (K,). Newton's method made safe: with the least
+    curvature up to the horizon no step passes a root, and a parabola takes one step. An answer is
+    good to 1e-15 of itself, or early where 200 steps of next to no curvature did not get there.
     """
     slopes, bends = rate(p), 0.5 * rate(rate(p))
-    rest = evaluate(np.abs(bends[3:]), horizon) * horizon**3 if len(p) > 5 else 0.0
     t, curved, bend = np.zeros(p.shape[1]), (p[3:] != 0.0).any(0), p[2]
     value, slope, left, moving = p[0], p[1], 200, np.ones(p.shape[1], bool)
     while left:
         if curved.any():
-            vertex = np.where(p[4] > 0.0, np.clip(-p[3] / (4.0 * p[4]), t, horizon), t)
-            bend = np.fmin.reduce([evaluate(bends[:3], s) for s in (t, horizon, vertex)]) - rest
+            bend = lower_bound(bends, t, horizon)
             value, slope = np.maximum(evaluate(p, t), 0.0), evaluate(slopes, t)
         root = np.sqrt(slope * slope - 4.0 * value * bend)      # NaN: no root
         step = np.where(slope < 0.0, 2.0 * value / (root - slope),
@@ -382,21 +420,145 @@ def first_fall(p, horizon):
     return t
 
 
-def motion(system, now):
-    """The series Q of the motion after the Instant `now`, and the time [s] until its next event."""
-    due, lam, span = ~now.pushes, np.zeros((0, 0)), np.inf
-    Q = np.array((now.q, now.v, 0.5 * now.a))
-    if now.slides:
-        held = system.contacts(now.q, now.pushes)
-        Q, lam = slide(system, held, now.q, now.v)
-        grazing = -GRAZE * system.gravity / (system.w[held.i] + system.w[held.j])
-        lam[0] = np.maximum(lam[0], 0.0) + grazing              # it ends where support ends it
-        span = trusted(system, Q)
-        far = span * evaluate(np.abs(Q[1:]), span).sum(0)       # no ball gets farther
-        due &= now.gap <= far[system.i] + far[system.j]
-    p = gap_series(system, Q, now.gap, due)
-    lam = np.concatenate((lam, np.zeros((len(p) - len(lam), lam.shape[1]))))
-    return Q, first_fall(np.concatenate((p, lam), 1), span).min(initial=span)
+def lower_bound(p, t, horizon):
+    """No sum p[k] s^k is less while t <= s <= horizon; exact for parabolas, p (3 or more, K)."""
+    vertex = np.where(p[2] > 0.0, np.clip(-p[1] / (2.0 * p[2]), t, horizon), t)
+    least = np.fmin.reduce([evaluate(p[:3], s) for s in (t, vertex, horizon)])
+    curved = (p[3:] != 0.0).any(0)
+    if not curved.any():
+        return least
+    return np.where(curved, least - evaluate(np.abs(p[3:]), horizon) * horizon**3, least)
+# --- endregion ---
+
+
+# --- region: exact-motion ---
+class Motion:
+    """What the balls do until their next events: (N + 1,) of bodies and (K,) of contacts."""
+
+    def __init__(self, system, scene):
+        bodies, contacts = len(system.w), len(system.i)
+        self.system = system
+        self.series = np.zeros((ORDER + 1, 2, bodies))          # of each body's position,
+        self.series[0, :, :-1], self.series[1, :, :-1] = scene.q0, scene.v0
+        self.start = np.zeros(bodies)                           # written about this time [s]
+        self.until = np.where(system.w > 0.0, 0.0, np.inf)      # and trusted up to this
+        self.due = np.full(contacts, np.inf)                    # when it closes, or stops pushing
+        self.pushes = np.zeros(contacts, bool)
+        self.rests = np.ones(contacts, bool)                    # it did not part when it touched
+        self.left = np.full(contacts, -np.inf)                  # last, at this time,
+        self.parting = np.zeros(contacts)                       # or with this speed [m/s]
+        self.thin = np.full(contacts, -np.inf)                  # when it closed, hardly opened
+
+    def rows(self):
+        """The series, without the orders that are 0 while no ball slides."""
+        return self.series if np.isfinite(self.until).any() else self.series[:3]
+
+    def at(self, time):
+        """q, v (..., 2, N + 1) at a time [s] or at times (S, 1, 1)."""
+        s, rows = time - self.start, self.rows()
+        return evaluate(rows, s), evaluate(rate(rows), s)
+
+    def next(self):
+        """The time [s] of the next event."""
+        return min(self.due.min(initial=np.inf), self.until.min())
+
+    def opened(self, now, which, v_n):
+        """A bound [m] (K,) of how far the contacts were open since they touched last."""
+        return (self.parting[which] + np.abs(v_n)) * (now - self.left[which])
+
+    def go_on(self, now, balls, Q, until):
+        """From now on the balls (a mask) move by the series Q, trusted until that time."""
+        self.series[:, :, balls] = 0.0
+        self.series[:len(Q), :, balls] = Q[:, :, balls]
+        self.start[balls], self.until[balls] = now, until
+
+    def concerns(self, balls):
+        """The contacts (K,) that have one of the balls: masks."""
+        return balls[self.system.i] | balls[self.system.j]
+
+    def remember(self, now, balls, touch, contacts, v_n, pushes):
+        """How the contacts of the balls (a mask) are left; those of index `touch` touch."""
+        mine = self.concerns(balls)
+        self.rests[mine] = self.pushes[mine] = False
+        self.due[mine] = np.inf
+        struck = v_n < -NOISE * contacts.speed      # while it parted: it closes at once, anew
+        self.left[touch], self.parting[touch] = now, np.where(struck, np.inf, np.abs(v_n))
+        self.rests[touch], self.pushes[touch] = np.abs(v_n) < slow(contacts), pushes
+# --- endregion ---
+
+
+# --- region: exact-touch ---
+def gather(motion, now, q, v):
+    """q without overlaps, the mask of the island's balls, what touches in it: index and Contacts.
+
+    A gap of less than TOUCH radii touches if that is less than a ten thousandth of what it was
+    since the contact touched last: where a light ball rattles between two others, it need not be.
+    """
+    system = motion.system
+    bits = 4.0 * np.spacing(np.abs(q).max(0))
+    bits = np.maximum(bits[system.i], bits[system.j])
+    small = bits + TOUCH * system.radius[system.i]
+    late = motion.due <= now
+    contacts, late = system.contacts(q), motion.due <= now
+    near = np.flatnonzero((contacts.depth >= -small) | late)
+    woken = motion.until <= now
+    woken[system.i[late]] = woken[system.j[late]] = True
+    balls = island(system, system.i[near], system.j[near], woken)
+    mine = motion.concerns(balls)
+    near = near[mine[near]]
+    if (contacts.depth > small)[near].any():
+        q = separate(system, q, mine, small[mine])
+        contacts = system.contacts(q)
+    opened = motion.opened(now, near, contacts.only(near).along(v))
+    tie = bits[near] + np.fmin(TOUCH * system.radius[system.i[near]], 1e-4 * opened)
+    touch = near[motion.rests[near] | late[near] | (-contacts.depth[near] <= tie)]
+    return q, balls, touch, contacts.only(touch)
+
+
+def hardly_opened(motion, now, touch, contacts, v):
+    """Which of the contacts `touch` close although they have opened less than TOUCH radii.
+
+    Bounces so small come from a cascade that is infinite: the limit is rest. Once it has stopped at
+    one contact, it stops at all that were open just then, if by less than 1000 TOUCH radii.
+    """
+    v_n = contacts.along(v)
+    cascade = motion.thin[touch].max(initial=-np.inf) > motion.left[touch]
+    widest = np.where(cascade, 1000.0 * TOUCH, TOUCH) * motion.system.radius[contacts.i]
+    thin = (v_n < -NOISE * contacts.speed) & (motion.opened(now, touch, v_n) < widest)
+    motion.thin[touch[thin]] = now
+    return thin
+# --- endregion ---
+
+
+# --- region: exact-event ---
+def event(motion, now):
+    """Settle the island in which something falls due by the time `now`, and send it on its way."""
+    system, (q, v) = motion.system, motion.at(now)
+    q, balls, touch, contacts = gather(motion, now, q, v)
+    v = collide(system, contacts, v, hardly_opened(motion, now, touch, contacts, v))
+    v, a, pushes = support(system, contacts, v)
+    motion.remember(now, balls, touch, contacts, contacts.along(v), pushes)
+    held = contacts.only(pushes)
+    Q, force, span = expand(system, held, q, v, a)
+    motion.go_on(now, balls, Q, now + span)
+    if span < np.inf:
+        motion.due[touch[pushes]] = now + first_fall(force, np.full(len(held.i), span))
+    predict(motion, now, balls)
+
+
+def predict(motion, now, balls):
+    """Find when the contacts of the balls (a mask), which have new series, will close.
+
+    Those at rest count as 3 TOUCH radii open, so that round-off is no event.
+    """
+    system = motion.system
+    which = np.flatnonzero(motion.concerns(balls) & ~motion.pushes)
+    Q = shifted(motion.rows(), now - motion.start)
+    contacts = system.contacts(Q[0], which)
+    gap = np.maximum(-contacts.depth, 0.0)
+    gap += 3.0 * TOUCH * system.radius[contacts.i] * motion.rests[which]
+    horizon = np.minimum(motion.until[contacts.i], motion.until[contacts.j]) - now
+    motion.due[which] = now + first_fall(gap_series(system, Q, gap, which), horizon)
 # --- endregion ---
 
 
@@ -406,22 +568,23 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
     """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, from event to event.
 
     The scene has q0, v0 (2, N), mass (inf: a fixed ball), radius (N,) and restitution; gravity
-    [m/s^2] is along y, negative. report(k) is called after each event with the number of samples done.
+    [m/s^2] is along y, negative. report(k) is called after each event with the samples done.
     """
-    system = build_system(scene, gravity)
-    q, v = (np.append(rows, np.zeros((2, 1)), 1) for rows in (scene.q0, scene.v0))
-    out = np.empty((2, len(times), *q.shape))
+    motion = Motion(build_system(scene, gravity), scene)
+    out = np.empty((2, len(times), 2, len(scene.mass) + 1))
     tick = TICK * math.sqrt(scene.radius.min() / -gravity)
     now, done, events, until = 0.0, 0, 0, tick
+    event(motion, now)
     while done < len(times):
-        Q, span = motion(system, settle(system, q, v))
-        if events > EVENTS * len(system.w):
-            span = max(span, 0.01 * tick)
-        upto = int(np.searchsorted(times, now + span, "right"))
-        s = (times[done:upto] - now)[:, None, None]
-        out[0, done:upto], out[1, done:upto] = evaluate(Q, s), evaluate(rate(Q), s)
-        q, v, now = evaluate(Q, span), evaluate(rate(Q), span), now + span
-        done, events = upto, events + 1
+        soon = max(now, motion.next())
+        if events > EVENTS * len(scene.mass):
+            soon = max(soon, now + 0.01 * tick)
+        upto = int(np.searchsorted(times, soon, "right"))
+        if upto > done:
+            out[:, done:upto] = motion.at(times[done:upto, None, None])
+        now, done, events = soon, upto, events + 1
+        if done < len(times):
+            event(motion, now)
         if now >= until:
             events, until = 0, now + tick
         report(done)
