@@ -18,7 +18,7 @@ from pygments.formatters import HtmlFormatter
 from pygments.lexers import PythonLexer
 
 import contact
-from curriculum import regions
+from curriculum import regions, terminal
 from curriculum.check_prose_code_drift import CHAPTER
 from curriculum.common import wallclock
 from curriculum.page import prose
@@ -161,7 +161,7 @@ def blank_cases(root):
 
 def page_data(root):
     """Everything the scripts read: one object, PAGE."""
-    flags = contact.parse_flags([])
+    flags = terminal.parse_flags([])
     defaults = {name: getattr(flags, name) for name in ("dt", "stiffness", "iters", "baumgarte")}
     return {
         "scenes": scenes(),

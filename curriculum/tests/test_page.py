@@ -20,6 +20,7 @@ pytest.importorskip(
 )
 
 import contact  # noqa: E402
+from curriculum import terminal  # noqa: E402
 from curriculum.page import build as page_build  # noqa: E402
 from curriculum.page import prose  # noqa: E402
 from curriculum.page.__main__ import main as build_main  # noqa: E402
@@ -162,7 +163,7 @@ def test_every_knob_moves_the_run_the_address_and_the_command(browser, url):
         command = page.inner_text("#command")
     with visiting(browser, link) as page:
         assert {name: state(page)[name] for name in FLAGS} == {name: wanted[name] for name in FLAGS}
-    contact.parse_flags(command.split()[2:])  # the command is one that contact.py takes
+    terminal.parse_flags(command.split()[2:])  # the command is one that contact.py takes
 
 
 @needs_chromium
