@@ -10,13 +10,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, example, given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import contact
 
-piles = pytest.importorskip("curriculum.piles", reason="numba is not installed: the extra `fast`",
-                            exc_type=ImportError)
+piles = pytest.importorskip(
+    "curriculum.piles", reason="numba is not installed: the extra `fast`", exc_type=ImportError
+)
 ROOT = Path(__file__).resolve().parents[2]
 MODELS = ("penalty", "lcp", "soft")
 WILD = (math.nan, math.inf, -math.inf, 1e200, -1e308, 1e-200, -0.0)
@@ -62,8 +63,9 @@ def check_same(model, scene, dt, steps, **knobs):
 
 PLACE = st.one_of(st.integers(-6, 6).map(lambda k: 0.1 * k), st.floats(-0.7, 0.7))
 SPEED = st.one_of(st.just(0.0), st.floats(-5.0, 5.0))
-MASS = st.one_of(st.just(1.0), st.floats(-6.0, 6.0).map(lambda power: 10.0**power),
-                 st.just(math.inf))
+MASS = st.one_of(
+    st.just(1.0), st.floats(-6.0, 6.0).map(lambda power: 10.0**power), st.just(math.inf)
+)
 RADIUS = st.sampled_from((0.1, 0.1, 0.1, 0.05, 0.3, 0.0123, 2.0))
 OFFSET = st.sampled_from((0.0, 0.0, 0.0, 1e5, -1e9, 1e15))
 
@@ -74,28 +76,37 @@ def scenes(draw):
     count = draw(st.one_of(st.integers(1, 6), st.integers(1, 60)))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     few = min(count, 8)
-    columns = [st.lists(kind, min_size=few, max_size=few)
-               for kind in (PLACE, PLACE, SPEED, SPEED, MASS, RADIUS)]
-    x, y, vx, vy, mass, radius = (np.resize(np.array(draw(column), float), count)
-                                  for column in columns)
+    columns = [
+        st.lists(kind, min_size=few, max_size=few)
+        for kind in (PLACE, PLACE, SPEED, SPEED, MASS, RADIUS)
+    ]
+    x, y, vx, vy, mass, radius = (
+        np.resize(np.array(draw(column), float), count) for column in columns
+    )
     side = 0.1 * math.sqrt(count)
     q0 = np.array((x, abs(y))) + (rng.uniform(-side, side, (2, count)) if count > few else 0.0)
     v0 = np.array((vx, vy))
     if draw(st.integers(0, 3)) == 0:
         state = draw(st.sampled_from((q0, v0)))
         state[draw(st.integers(0, 1)), draw(st.integers(0, count - 1))] = draw(
-            st.sampled_from(WILD))
+            st.sampled_from(WILD)
+        )
     q0[0] += draw(OFFSET)
     e = draw(st.sampled_from((0.0, 0.0, 0.5, 1.0)))
     return contact.Scene("drawn", q0, v0, mass, radius, e, draw(st.sampled_from((0.0, 80.0))))
 
 
-@settings(max_examples=100, deadline=None, derandomize=True,
-          suppress_health_check=[HealthCheck.too_slow])
-@given(scene=scenes(), model=st.sampled_from(MODELS),
-       dt=st.sampled_from((0.002, 0.002, 1e-4, 0.03, 1e154)),
-       stiffness=st.sampled_from((1e4, 0.0, 1e300)), baumgarte=st.floats(0.0, 1.0),
-       iters=st.integers(1, 20))
+@settings(
+    max_examples=100, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+)
+@given(
+    scene=scenes(),
+    model=st.sampled_from(MODELS),
+    dt=st.sampled_from((0.002, 0.002, 1e-4, 0.03, 1e154)),
+    stiffness=st.sampled_from((1e4, 0.0, 1e300)),
+    baumgarte=st.floats(0.0, 1.0),
+    iters=st.integers(1, 20),
+)
 def test_the_twin_has_the_bytes_of_the_reference(scene, model, dt, stiffness, baumgarte, iters):
     check_same(model, scene, dt, 25, stiffness=stiffness, baumgarte=baumgarte, iters=iters)
 
@@ -114,8 +125,15 @@ def crowd(count, seed):
     place = rng.permutation(count)
     q0 = np.array((0.196 * (place % 20), 0.097 + 0.196 * (place // 20)))
     q0 += rng.uniform(-0.003, 0.003, q0.shape)
-    return contact.Scene("crowd", q0, rng.normal(size=(2, count)), 10.0**rng.uniform(-3, 3, count),
-                         np.full(count, 0.1), 0.4, 80.0)
+    return contact.Scene(
+        "crowd",
+        q0,
+        rng.normal(size=(2, count)),
+        10.0 ** rng.uniform(-3, 3, count),
+        np.full(count, 0.1),
+        0.4,
+        80.0,
+    )
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -149,7 +167,7 @@ def test_a_state_that_comes_back_ends_the_steps_and_changes_no_bit():
 def test_what_is_not_a_number_has_one_sign():
     """The sign that a processor gives inf - inf is its own affair, and is not recorded."""
     scene = contact.build_scene("pile", 0, 13)
-    scene.q0[0, 4], scene.v0[0, 4] = math.inf, -math.inf        # whose sum is not a number
+    scene.q0[0, 4], scene.v0[0, 4] = math.inf, -math.inf  # whose sum is not a number
     scene.q0[0, 5] = math.copysign(math.nan, -1.0)
     for model in MODELS:
         run = check_same(model, scene, 0.002, 4)
@@ -159,12 +177,17 @@ def test_what_is_not_a_number_has_one_sign():
 
 # Near balls
 
+
 def all_pairs(scene, reach):
     """The pairs whose gap is at most `reach`, found by looking at all."""
     (x, y), r = scene.q0.tolist(), scene.radius.tolist()
     count = len(r)
-    return [(i, j) for i in range(count) for j in range(i + 1, count)
-            if math.sqrt((x[i] - x[j])**2 + (y[i] - y[j])**2) - (r[i] + r[j]) <= reach]
+    return [
+        (i, j)
+        for i in range(count)
+        for j in range(i + 1, count)
+        if math.sqrt((x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2) - (r[i] + r[j]) <= reach
+    ]
 
 
 def tabled(scene):
@@ -175,7 +198,7 @@ def tabled(scene):
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(scenes(), st.sampled_from((0.0, 1e-3, 0.5)))
 def test_cells_find_every_near_pair_once_and_in_order(scene, reach):
-    q0 = np.where(np.abs(scene.q0) > 1e100, math.nan, scene.q0)     # whose squares overflow above
+    q0 = np.where(np.abs(scene.q0) > 1e100, math.nan, scene.q0)  # whose squares overflow above
     scene = scene._replace(q0=q0)
     pairs = list(zip(*piles.list_pairs(tabled(scene), reach).tolist()))
     assert pairs == sorted(set(pairs)) and all(i < j for i, j in pairs)
@@ -209,18 +232,35 @@ def test_the_smallest_gap_has_the_bits_of_the_reference(scene, dt):
 
 # Where it is installed, and where not
 
+
 def python(code, *arguments, cwd=ROOT, **environment):
     """A finished process that ran this code."""
-    return subprocess.run([sys.executable, "-c", code, *map(str, arguments)], cwd=cwd, text=True,
-                          env=os.environ | environment, capture_output=True, timeout=60)
+    return subprocess.run(
+        [sys.executable, "-c", code, *map(str, arguments)],
+        cwd=cwd,
+        text=True,
+        env=os.environ | environment,
+        capture_output=True,
+        timeout=60,
+    )
 
 
 def test_the_command_line_takes_the_twin_and_says_when_it_cannot(tmp_path):
     """The same numbers either way; the extra is named on stderr, in one line."""
     block = "import sys; sys.modules['numba'] = None; "
     ask = "import contact, sys; sys.exit(contact.main(sys.argv[1:]))"
-    flags = ("--scene", "pile", "--bodies", 13, "--steps", 40, "--contact", "lcp", "--no-rerun",
-             "--out")
+    flags = (
+        "--scene",
+        "pile",
+        "--bodies",
+        13,
+        "--steps",
+        40,
+        "--contact",
+        "lcp",
+        "--no-rerun",
+        "--out",
+    )
     fast = python(ask, *flags, tmp_path / "fast")
     slow = python(block + ask, *flags, tmp_path / "slow")
     assert (fast.returncode, fast.stderr, slow.returncode) == (0, "", 0), slow.stderr
@@ -232,8 +272,9 @@ def test_the_command_line_takes_the_twin_and_says_when_it_cannot(tmp_path):
 def test_run_model_takes_the_twin_for_many_balls_only(monkeypatch):
     asked = []
     simulate = piles.simulate
-    monkeypatch.setattr(piles, "simulate",
-                        lambda model, *rest: asked.append(model) or simulate(model, *rest))
+    monkeypatch.setattr(
+        piles, "simulate", lambda model, *rest: asked.append(model) or simulate(model, *rest)
+    )
     for model in MODELS:
         for bodies in (contact.FEW, contact.FEW + 1):
             contact.run_model(model, contact.build_scene("pile", 0, bodies), 0.002, 2)
@@ -248,7 +289,10 @@ def test_where_nothing_can_be_written_the_compiled_code_is_not_kept(tmp_path):
         shutil.copy(ROOT / "curriculum" / name, tmp_path / "curriculum")
     (tmp_path / "curriculum" / "__pycache__").touch()
     nowhere = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"), "/dev/null/nothing")
-    done = python("from curriculum import piles\n"
-                  "print(piles.larger(0.0, float('nan')), piles.larger.stats.cache_path)",
-                  cwd=tmp_path, **nowhere)
+    done = python(
+        "from curriculum import piles\n"
+        "print(piles.larger(0.0, float('nan')), piles.larger.stats.cache_path)",
+        cwd=tmp_path,
+        **nowhere,
+    )
     assert (done.stdout, done.returncode) == ("0.0 None\n", 0), done.stderr

@@ -21,7 +21,8 @@ def same(a, b):
 def both_ways(model, scene, dt, steps, **knobs):
     """The run with skips, which has the bytes of the run without."""
     skipped, stepped = (
-        contact.run_model(model, scene, dt, steps, skip=skip, **knobs) for skip in (True, False))
+        contact.run_model(model, scene, dt, steps, skip=skip, **knobs) for skip in (True, False)
+    )
     if not same(skipped, stepped):
         differ = (skipped.q != stepped.q).any((1, 2)) | (skipped.v != stepped.v).any((1, 2))
         pytest.fail(f"{model} of {scene.name} at dt {dt}: first differs at step {differ.argmax()}")
@@ -43,14 +44,21 @@ def test_same_bytes_of_a_stack_that_bounces(e, model):
         both_ways(model, scene, DT, 400)
 
 
-@pytest.mark.parametrize("model, knobs", [
-    ("lcp", {"baumgarte": 0.0}), ("lcp", {"baumgarte": 1.0}),
-    ("lcp", {"iters": 1}), ("lcp", {"iters": 200}),
-    ("penalty", {"stiffness": 0.0}), ("penalty", {"stiffness": 1e300}),
-    ("penalty", {"stiffness": 7.0}),
-    ("soft", {"solref": (0.05, 0.3)}), ("soft", {"solref": (-1e4, -50.0)}),
-    ("soft", {"solimp": (0.0, 0.99, 0.01, 0.3, 3.5)}),
-])
+@pytest.mark.parametrize(
+    "model, knobs",
+    [
+        ("lcp", {"baumgarte": 0.0}),
+        ("lcp", {"baumgarte": 1.0}),
+        ("lcp", {"iters": 1}),
+        ("lcp", {"iters": 200}),
+        ("penalty", {"stiffness": 0.0}),
+        ("penalty", {"stiffness": 1e300}),
+        ("penalty", {"stiffness": 7.0}),
+        ("soft", {"solref": (0.05, 0.3)}),
+        ("soft", {"solref": (-1e4, -50.0)}),
+        ("soft", {"solimp": (0.0, 0.99, 0.01, 0.3, 3.5)}),
+    ],
+)
 def test_same_bytes_at_the_ends_of_every_knob(model, knobs):
     for name in ("drop", "bounce", "stack"):
         both_ways(model, contact.build_scene(name), DT, 500, **knobs)
@@ -75,9 +83,14 @@ def test_same_bytes_for_thrown_balls_of_mixed_size_and_mass(model):
 
 
 @settings(max_examples=40, deadline=None, derandomize=True)
-@given(name=st.sampled_from(["drop", "bounce", "stack"]), model=st.sampled_from(MODELS),
-       seed=st.integers(0, 10**6), dt=st.floats(1e-5, 0.1), e=st.floats(0.0, 1.0),
-       knob=st.floats(0.0, 1.0))
+@given(
+    name=st.sampled_from(["drop", "bounce", "stack"]),
+    model=st.sampled_from(MODELS),
+    seed=st.integers(0, 10**6),
+    dt=st.floats(1e-5, 0.1),
+    e=st.floats(0.0, 1.0),
+    knob=st.floats(0.0, 1.0),
+)
 def test_same_bytes_for_any_knobs(name, model, seed, dt, e, knob):
     scene = contact.build_scene(name, seed, restitution=e, damping=100.0 * knob)
     both_ways(model, scene, dt, 200, baumgarte=knob, stiffness=10.0 ** (5.0 * knob))
@@ -97,9 +110,16 @@ def steps_taken(model, scene, dt, steps, skip):
     return len(taken)
 
 
-@pytest.mark.parametrize("name, model, most", [
-    ("drop", "penalty", 500), ("drop", "lcp", 200), ("drop", "soft", 500),
-    ("bounce", "lcp", 300), ("stack", "lcp", 200)])
+@pytest.mark.parametrize(
+    "name, model, most",
+    [
+        ("drop", "penalty", 500),
+        ("drop", "lcp", 200),
+        ("drop", "soft", 500),
+        ("bounce", "lcp", 300),
+        ("stack", "lcp", 200),
+    ],
+)
 def test_flights_and_rest_are_not_stepped(name, model, most):
     """Measured 442, 145, 370, 235 and 158, where 2000 are asked for."""
     scene = contact.build_scene(name)
