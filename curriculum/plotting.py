@@ -102,7 +102,7 @@ def figure(rows=1, title="", explained="", height=3.4, columns=1, share=None, be
     """
     plt = pyplot()
     said = textwrap.wrap(explained, 84)
-    top, bottom = 0.42 + 0.17 * len(said) + 0.26, 0.62 + below
+    top, bottom = 0.42 + 0.17 * len(said) + 0.28, 0.62 + below
     tall = top + bottom + rows * height
     made, axes = plt.subplots(
         rows,
@@ -158,7 +158,6 @@ def heat(axis, x, y, cells, bounds, label, words=None):
     words: what the classes are called in the legend; the numbers by default.
     """
     import numpy as np
-    from matplotlib.colors import BoundaryNorm, ListedColormap
 
     count = len(bounds) + 1
     colours = [RAMP[round(k * (len(RAMP) - 1) / max(1, count - 1))] for k in range(count)]
@@ -172,15 +171,7 @@ def heat(axis, x, y, cells, bounds, label, words=None):
         ],
         dtype=float,
     )
-    axis.pcolormesh(
-        _edges(x),
-        _edges(y),
-        np.ma.masked_invalid(values),
-        cmap=ListedColormap(colours),
-        norm=BoundaryNorm(np.arange(count + 1) - 0.5, count),
-        edgecolors="face",
-        linewidth=0.3,
-    )
+    _tiles(axis, _edges(x), _edges(y), values, colours)
     axis.set(xscale="log", yscale="log")
     axis.grid(False)
     names = words or [
@@ -195,10 +186,45 @@ def heat(axis, x, y, cells, bounds, label, words=None):
         title=label,
         loc="upper left",
         bbox_to_anchor=(-0.1, -0.16),
-        ncols=3,
+        ncols=2 if words else 3,
         borderaxespad=0,
         alignment="left",
     )
+
+
+def _tiles(axis, x, y, values, colours):
+    """Draw cells as one path a colour, neighbours in a row as one tile, so that files stay small."""
+    import numpy as np
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    corners = {number: [] for number in range(len(colours))}
+    for row, (low, high) in zip(values, zip(y, y[1:])):
+        changes = [0, *(np.flatnonzero(row[1:] != row[:-1]) + 1), len(row)]
+        for first, last in zip(changes, changes[1:]):
+            if np.isfinite(row[first]):
+                left, right = x[first], x[last]
+                corners[int(row[first])] += [
+                    (left, low),
+                    (right, low),
+                    (right, high),
+                    (left, high),
+                    (left, low),
+                ]
+    codes = [Path.MOVETO, *[Path.LINETO] * 3, Path.CLOSEPOLY]
+    for number, points in corners.items():
+        if points:
+            path = Path(points, codes * (len(points) // 5))
+            axis.add_patch(
+                PathPatch(
+                    path,
+                    facecolor=colours[number],
+                    edgecolor=colours[number],
+                    linewidth=0.3,
+                    zorder=0.5,
+                )
+            )
+    axis.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
 
 
 def _edges(values):

@@ -1,261 +1,197 @@
-"""Heat maps as SVG text: no library, no date, the same bytes for the same results.
+"""The stress report's figures, from the sections of results.json alone."""
 
-Colours are told apart by lightness alone, so they read in black and white and by every eye.
-"""
+from curriculum import plotting
+from curriculum.stress import maps
+from curriculum.stress.under_test import contact
 
-import math
-from typing import NamedTuple
-from xml.sax.saxutils import escape
-
-FONT = "DejaVu Sans, Verdana, sans-serif"
-INK, PALE = "#222222", "#666666"
-RAMP = (
-    "#fde9c9",
-    "#f7c987",
-    "#ec9c5a",
-    "#cf6a4f",
-    "#9c4058",
-    "#612a5c",
-    "#2b1741",
-)  # light to dark
-MISSING = "#ffffff"
-CLASSES = ("#e3eef5", "#93bfdc", "#cf7f1b", "#3c1533")  # calm to exploded
-WIDTH, HEIGHT, LEFT, TOP, GAP = 300, 260, 74, 98, 26
-LEGEND = 96
+ORDER = maps.SETTLES + maps.RESTLESS + maps.GAINS + maps.EXPLODES
+ERRORS = (0.03, 0.1, 0.3, 1.0, 3.0)  # r
+DEPTHS = (0.03, 0.1, 0.3, 1.0)  # r
 
 
-class Axis(NamedTuple):
-    """One axis of every panel: label with unit, the values of the cells' centres, log or not.
-
-    names: words for the values, one a cell, where the values only number the cells.
-    """
-
-    label: str
-    values: list
-    log: bool = True
-    names: tuple = ()
-
-
-class Line(NamedTuple):
-    """A curve over a panel: points (x, y) in the axes' units, and how it is drawn."""
-
-    points: list
-    style: str
-
-
-class Panel(NamedTuple):
-    """cells[row][column] are indices into the legend's colours (None: blank); row 0 is lowest."""
-
-    title: str
-    cells: list
-    lines: list = []
+def draw(section):
+    """{file name: SVG text} of every figure that the section `maps` gives."""
+    makers = {
+        "penalty": penalty_map,
+        "lcp": lcp_error,
+        "depth": lcp_depth,
+        "converges": lcp_converges,
+        "soft": soft_map,
+    }
+    names = {
+        "penalty": "penalty-map",
+        "lcp": "lcp-error",
+        "depth": "lcp-depth",
+        "converges": "lcp-converges",
+        "soft": "soft-map",
+    }
+    return {f"{names[key]}.svg": make(section) for key, make in makers.items() if key in section}
 
 
-STYLES = {
-    "theory": f'stroke="{INK}" stroke-width="1.8" stroke-dasharray="6 4" fill="none"',
-    "other": f'stroke="{INK}" stroke-width="1.4" stroke-dasharray="1.5 3" fill="none"',
-}
-
-
-def edges(axis):
-    """Borders of the cells, one more than there are values, halfway between neighbours."""
-    values = [math.log(v) for v in axis.values] if axis.log else list(axis.values)
-    middle = [(a + b) / 2 for a, b in zip(values, values[1:])]
-    first = values[0] - (middle[0] - values[0] if middle else 0.5)
-    last = values[-1] + (values[-1] - middle[-1] if middle else 0.5)
-    return [first, *middle, last]
-
-
-def scale(axis, start, stop):
-    """A function from a value on the axis to pixels."""
-    low, *_, high = edges(axis)
-
-    def to_pixels(value):
-        at = math.log(value) if axis.log else value
-        return start + (stop - start) * (at - low) / (high - low)
-
-    return to_pixels
-
-
-def ticks(axis):
-    """(value, label) of the ticks: powers of ten, or at most six round numbers."""
-    low, *_, high = edges(axis)
-    if axis.names:
-        return list(zip(axis.values, axis.names))
-    if not axis.log:
-        step = next(s for s in (0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0) if (high - low) / s <= 6)
-        first = math.ceil(low / step - 1e-9)
-        return [(k * step, f"{k * step:g}") for k in range(first, int(high / step + 1e-9) + 1)]
-    powers = range(math.ceil(low / math.log(10) - 1e-9), math.floor(high / math.log(10) + 1e-9) + 1)
-    return [(10.0**p, power_label(p)) for p in powers]
-
-
-def power_label(p):
-    """10^p as a reader likes it: 0.001 to 1000 in full, else with a raised exponent."""
-    raised = "".join(
-        "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"[int(digit)]
-        for digit in str(abs(p))
+def penalty_map(section):
+    """What the drop does over dt and stiffness, a panel for each of two dampers, with the theory."""
+    found = section["penalty"]
+    dampings = [c for c in (0.0, 80.0) if f"{c:g}" in found["outcomes"]]
+    figure, axes = plotting.figure(
+        rows=len(dampings),
+        title="penalty: what a ball dropped 1 m does",
+        below=0.6,
+        explained="Left of the line a ball that stays in contact is stable. The speckle is luck: "
+        "where in a step the table is met.",
     )
-    return f"{10.0**p:g}" if -3 <= p <= 3 else f"10{chr(0x207B) * (p < 0)}{raised}"
-
-
-def text(x, y, words, size=11, anchor="start", colour=INK, extra=""):
-    return (
-        f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" text-anchor="{anchor}" fill="{colour}"{extra}>'
-        f"{escape(words)}</text>"
-    )
-
-
-def heat_map(title, subtitle, panels, x, y, legend, colours, line_names=None, note="", columns=2):
-    """The SVG text of some panels that share axes. legend: words for each colour, in order.
-
-    line_names: {style: words} for the legend, of the styles that any panel's lines use.
-    """
-    columns = min(columns, len(panels))
-    rows = -(-len(panels) // columns)
-    width = LEFT + columns * (WIDTH + GAP) + 6
-    height = TOP + rows * (HEIGHT + 78) + LEGEND
-    out = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
-        f'font-family="{FONT}" role="img" aria-label="{escape(title)}">',
-        f"<title>{escape(title)}</title>",
-        f"<desc>{escape(subtitle)}</desc>",
-        f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
-        text(16, 28, title, 17, extra=' font-weight="bold"'),
-    ]
-    out += [
-        text(16, 50 + 16 * k, line, 12, colour=PALE)
-        for k, line in enumerate(wrap(subtitle, width / 6.6))
-    ]
-    for number, panel in enumerate(panels):
-        left = LEFT + (number % columns) * (WIDTH + GAP)
-        top = TOP + (number // columns) * (HEIGHT + 78)
-        out += draw_panel(panel, x, y, left, top, colours, first=number % columns == 0)
-    out += draw_legend(legend, colours, line_names or {}, height - LEGEND + 2, width)
-    notes = wrap(note, width / 5.6)
-    out += [
-        text(16, height - 8 - 13 * (len(notes) - 1 - k), line, 9.5, colour=PALE)
-        for k, line in enumerate(notes)
-    ]
-    return "\n".join([*out, "</svg>"]) + "\n"
-
-
-def draw_panel(panel, x, y, left, top, colours, first):
-    """One panel: cells (equal neighbours in a row drawn as one), frame, ticks, lines, title."""
-    right, bottom = left + WIDTH, top + HEIGHT
-    to_x, to_y = scale(x, left, right), scale(y, bottom, top)
-    ex = [left + (right - left) * share for share in shares(x)]
-    ey = [bottom + (top - bottom) * share for share in shares(y)]
-    out = [text((left + right) / 2, top - 8, panel.title, 12, "middle")]
-    out.append('<g shape-rendering="crispEdges">')
-    for row, cells in enumerate(panel.cells):
-        start = 0
-        for column in range(1, len(cells) + 1):
-            if column == len(cells) or cells[column] != cells[start]:
-                fill = MISSING if cells[start] is None else colours[cells[start]]
-                out.append(
-                    f'<rect x="{ex[start]:.2f}" y="{ey[row + 1]:.2f}" width="{ex[column] - ex[start]:.2f}" '
-                    f'height="{ey[row] - ey[row + 1]:.2f}" fill="{fill}"/>'
-                )
-                start = column
-    out.append("</g>")
-    clip = f"clip-{left:.0f}-{top:.0f}"
-    out.append(
-        f'<clipPath id="{clip}"><rect x="{left}" y="{top}" width="{WIDTH}" height="{HEIGHT}"/></clipPath>'
-    )
-    for line in panel.lines:
-        points = [(to_x(a), to_y(b)) for a, b in line.points]
-        if line.style == "measured":
-            out += [
-                f'<circle cx="{a:.1f}" cy="{b:.1f}" r="2.6" fill="#ffffff" stroke="{INK}" stroke-width="1"/>'
-                for a, b in points
-                if left <= a <= right and top <= b <= bottom
-            ]
-        else:
-            path = " ".join(f"{a:.1f},{b:.1f}" for a, b in points)
-            halo = f'<polyline points="{path}" stroke="#ffffff" stroke-width="3.6" stroke-opacity="0.75" fill="none" clip-path="url(#{clip})"/>'
-            out += [
-                halo,
-                f'<polyline points="{path}" {STYLES[line.style]} clip-path="url(#{clip})"/>',
-            ]
-    out.append(
-        f'<rect x="{left}" y="{top}" width="{WIDTH}" height="{HEIGHT}" fill="none" stroke="{INK}"/>'
-    )
-    for value, label in ticks(x):
-        at = to_x(value)
-        out += [
-            f'<path d="M{at:.1f} {bottom}v5" stroke="{INK}"/>',
-            text(at, bottom + 19, label, 11, "middle"),
-        ]
-    out.append(text((left + right) / 2, bottom + 38, x.label, 12, "middle"))
-    for value, label in ticks(y):
-        at = to_y(value)
-        out.append(f'<path d="M{left} {at:.1f}h-5" stroke="{INK}"/>')
-        if first:
-            out.append(text(left - 8, at + 4, label, 11, "end"))
-    if first:
-        middle = (top + bottom) / 2
-        out.append(
-            text(
-                22, middle, y.label, 12, "middle", extra=f' transform="rotate(-90 22 {middle:.1f})"'
-            )
+    stiffness = found["stiffness"]
+    for axis, c in zip(axes, dampings):
+        rows = found["outcomes"][f"{c:g}"]
+        cells = [[ORDER.index(letter) for letter in row] for row in rows]
+        plotting.heat(
+            axis,
+            found["dt"],
+            stiffness,
+            cells,
+            (0.5, 1.5, 2.5),
+            "",
+            [maps.OUTCOMES[letter] for letter in ORDER],
         )
-    return out
-
-
-def shares(axis):
-    """The cells' borders as shares of the axis, 0 to 1."""
-    low, *_, high = at = edges(axis)
-    return [(value - low) / (high - low) for value in at]
-
-
-def draw_legend(legend, colours, line_names, top, width):
-    """Swatches, then the lines; each kind starts a row, and goes on in the next where one is full."""
-    swatches = [
-        (
-            f'<rect x="0" y="0" width="18" height="14" fill="{colour}" stroke="{INK}" stroke-width="0.6"/>',
-            24,
-            words,
+        theory = [contact.critical_dt(1.0, k, c) for k in stiffness]
+        axis.plot(theory, stiffness, color="white", lw=4)
+        axis.plot(theory, stiffness, color=plotting.INK, lw=1.8)
+        axis.plot(
+            found["measured"][f"{c:g}"][::5],
+            stiffness[::5],
+            "o",
+            color=plotting.INK,
+            mfc="white",
+            markersize=5,
         )
-        for words, colour in zip(legend, colours)
-    ]
-    strokes = [
-        (
-            f'<circle cx="16" cy="7" r="2.6" fill="#ffffff" stroke="{INK}"/>'
-            if style == "measured"
-            else f'<path d="M0 7h32" {STYLES[style]}/>',
-            40,
-            words,
+        axis.set(
+            ylabel="stiffness k [N/m]",
+            title=f"damping c = {c:g} N s/m; line: k dt² + 2 c dt = 4 m; circles: measured",
+            xlim=(found["dt"][0], found["dt"][-1]),
         )
-        for style, words in line_names.items()
-    ]
-    out = []
-    for items in filter(None, (swatches, strokes)):
-        at = 20.0
-        for mark, indent, words in items:
-            room = indent + 22 + 6.9 * len(words)
-            if at > 20.0 and at + room > width:
-                at, top = 20.0, top + 22
-            out.append(
-                f'<g transform="translate({at:.1f} {top})">{mark}{text(indent, 11, words, 11.5)}</g>'
-            )
-            at += room
-        top += 24
-    return out
+    only_the_last_legend(axes)
+    return plotting.svg(figure, section)
 
 
-def wrap(words, width):
-    """Lines of at most `width` characters."""
-    lines = [""]
-    for word in words.split():
-        if len(lines[-1]) + len(word) + 1 > width:
-            lines.append("")
-        lines[-1] = f"{lines[-1]} {word}".strip()
-    return lines
+def only_the_last_legend(axes):
+    """One legend serves all panels; the time axis is named under the last."""
+    for axis in axes[:-1]:
+        axis.get_legend().remove()
+    for axis in axes:
+        plain_ticks(axis)
+    axes[-1].set_xlabel("time step dt [ms]", loc="right")
 
 
-def levels(value, bounds):
-    """Which of the classes cut at `bounds` a value is in; the last one for NaN or words."""
-    if not isinstance(value, (int, float)) or math.isnan(value):
-        return len(bounds)
-    return sum(value >= bound for bound in bounds)
+def plain_ticks(axis):
+    """Time steps in milliseconds, as numbers one reads; no labels between them."""
+    from matplotlib.ticker import NullLocator
+
+    low, high = axis.get_xlim()
+    marks = [mark for mark in (0.1, 0.3, 1, 3, 10, 30, 100, 300) if low <= 1e-3 * mark <= high]
+    axis.set_xticks([1e-3 * mark for mark in marks], [f"{mark:g}" for mark in marks])
+    axis.xaxis.set_minor_locator(NullLocator())
+    axis.yaxis.set_minor_locator(NullLocator())
+
+
+def lcp_error(section):
+    """Height error of the drop under lcp over dt and beta, without and with bounces."""
+    found = section["lcp"]
+    given = list(found["height_error"])
+    figure, axes = plotting.figure(
+        rows=len(given),
+        title="lcp: how wrong the height gets",
+        below=0.75,
+        explained=f"Worst distance from the closed form over 4 s and {maps.SEEDS} start heights. "
+        "Without a bounce the bias velocity pops the ball off the table, the higher the "
+        "larger beta.",
+    )
+    for axis, e in zip(axes, given):
+        plotting.heat(
+            axis,
+            found["dt"],
+            [beta + 0.025 for beta in found["baumgarte"]],
+            found["height_error"][e],
+            ERRORS,
+            "height error [r]",
+        )
+        axis.set(
+            yscale="linear",
+            ylabel="Baumgarte gain beta",
+            title=f"restitution e = {e}",
+            ylim=(0.0, 1.05),
+        )
+    only_the_last_legend(axes)
+    return plotting.svg(figure, section)
+
+
+def lcp_depth(section):
+    """How deep lcp gets over dt: one curve for all e and beta, with its theory."""
+    found = section["depth"]
+    figure, (axis,) = plotting.figure(
+        title="lcp: how deep the ball gets",
+        below=0.55,
+        explained="The landing step decides it: no Baumgarte gain changes it, and no restitution makes it "
+        "deeper than the line. "
+        f"Worst of {maps.SEEDS} start heights.",
+    )
+    dt = found["dt"]
+    axis.plot(
+        dt,
+        [maps.IMPACT_SPEED * step / maps.RADIUS for step in dt],
+        color=plotting.PALE,
+        label="impact speed times dt",
+    )
+    shown = {"e=0 beta=0.2": "e = 0, beta = 0.2", "e=0.7 beta=1": "e = 0.7, beta = 1"}
+    for (name, label), marker in zip(shown.items(), ("o", "x")):
+        if name in found["rows"]:
+            plotting.line(axis, dt, found["rows"][name], "lcp", label, ls="", marker=marker)
+    axis.set(xscale="log", yscale="log", ylabel="deepest penetration [r]")
+    axis.set_yticks([0.01, 0.1, 1.0], ["0.01", "0.1", "1"])
+    axis.set_xlabel("time step dt [ms]", loc="right")
+    plain_ticks(axis)
+    plotting.legend_below(axis)
+    return plotting.svg(figure, section)
+
+
+def lcp_converges(section):
+    """Height error of the bounce over dt, down to 0.06 ms, with a line of first order."""
+    found = section["converges"]
+    figure, (axis,) = plotting.figure(
+        title="lcp: the bounce converges",
+        below=0.55,
+        explained=f"Worst height error over 4 s, e = 0.7, median of {maps.SEEDS} start heights.",
+    )
+    dt, error = found["dt"], found["height_error"]
+    axis.plot(
+        dt, [error[-1] * step / dt[-1] for step in dt], color=plotting.PALE, label="first order"
+    )
+    plotting.line(axis, dt, error, "lcp", "lcp, 20 sweeps")
+    axis.set(xscale="log", yscale="log", ylabel="height error [r]")
+    marks = [mark for mark in (0.003, 0.01, 0.03, 0.1, 0.3) if error[-1] / 2 < mark]
+    axis.set_yticks(marks, [f"{mark:g}" for mark in marks])
+    axis.set_xlabel("time step dt [ms]", loc="right")
+    plain_ticks(axis)
+    plotting.legend_below(axis)
+    return plotting.svg(figure, section)
+
+
+def soft_map(section):
+    """How deep the drop gets under soft over dt and the time constant."""
+    found = section["soft"]
+    figure, (axis,) = plotting.figure(
+        title="soft: how deep the ball gets",
+        below=0.75,
+        explained="MuJoCo's contact, damping ratio 1. Below the line T = 2 dt the time constant "
+        "that counts is 2 dt, and the depth is that of the step.",
+    )
+    plotting.heat(
+        axis, found["dt"], found["timeconst"], found["depth"], DEPTHS, "deepest penetration [r]"
+    )
+    axis.plot(found["dt"], [2 * step for step in found["dt"]], color="white", lw=4)
+    axis.plot(found["dt"], [2 * step for step in found["dt"]], color=plotting.INK, lw=1.8)
+    axis.set(
+        ylabel="time constant T [s]",
+        xlim=(found["dt"][0], found["dt"][-1]),
+        ylim=(found["timeconst"][0], found["timeconst"][-1]),
+    )
+    only_the_last_legend([axis])
+    return plotting.svg(figure, section)

@@ -12,11 +12,14 @@ from importlib import import_module
 KINDS = {
     "penalty-map": "maps:penalty_row",
     "lcp-map": "maps:lcp_row",
+    "lcp-depth": "maps:depth_row",
+    "lcp-converges": "maps:converges_row",
+    "soft-map": "maps:soft_row",
     "exact-map": "maps:exact_row",
     "extreme": "extremes:run",
     "scenes": "invariants:run_batch",
     "scene": "invariants:run_scene",
-    "seeds": "invariants:run_seeds",
+    "seeds": "maps:run_seeds",
     "bytes": "samebytes:run",
 }
 HOLDS, LIMIT, VIOLATION, DIED = "holds", "limit", "VIOLATION", "DIED"
@@ -24,7 +27,8 @@ HOLDS, LIMIT, VIOLATION, DIED = "holds", "limit", "VIOLATION", "DIED"
 
 def job(kind, label, /, **params):
     """A job of a kind in KINDS; `label` is unique within a report."""
-    assert kind in KINDS, kind
+    if kind not in KINDS:
+        raise ValueError(f"kind {kind!r}; allowed: {', '.join(KINDS)}")
     return {"kind": kind, "name": label, "params": params}
 
 
@@ -43,11 +47,16 @@ def run(a_job):
 def row(at, expected, got, ok, limit=None):
     """One judgement: where, what was expected, what came out, and a status.
 
-    ok: the expectation is met. limit: a weaker statement, true or false, that is known to be all
-    that can be had there; met instead, the row is a limit of the model and not a violation.
+    limit: words that name a limit of the model, given when the expectation is missed by no more
+    than that limit's derived bound. Such a row is listed as a limit, any other miss is a violation.
     """
-    status = HOLDS if ok else LIMIT if limit else VIOLATION
-    return {"at": at, "expected": expected, "got": got, "status": status}
+    found = {
+        "at": at,
+        "expected": expected,
+        "got": got,
+        "status": HOLDS if ok else LIMIT if limit else VIOLATION,
+    }
+    return found | {"limit": limit} if found["status"] == LIMIT else found
 
 
 def plain(value):

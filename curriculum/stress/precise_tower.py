@@ -126,8 +126,10 @@ class Tower:
                 a_n, a, rests = self.settle()
                 v_n = self.closing()
                 held = [k for k in rests if abs(a_n[k]) <= SAME]
-                due = [mp.inf if k in held else first_root(self.gap[k], v_n[k], a_n[k] / 2)
-                       for k in range(len(self.v))]
+                due = [
+                    mp.inf if k in held else first_root(self.gap[k], v_n[k], a_n[k] / 2)
+                    for k in range(len(self.v))
+                ]
                 soonest = min(due)
                 span = min(soonest, goal - now)
                 for k in range(len(self.v)):
@@ -139,7 +141,8 @@ class Tower:
                     if due[k] <= span * (1 + SAME) or self.gap[k] < SAME:
                         self.gap[k] = mpf(0)
                 self.v = [x + span * y for x, y in zip(self.v, a)]
-                now += span; self.now=now
+                now += span
+                self.now = now
                 self.events += 1
                 if soonest > span or now >= goal:
                     break

@@ -1,63 +1,269 @@
 """results.json, report.md and the figures, from the results of the jobs.
 
-Everything but `machine` depends on the jobs alone: one process, many or a cluster give the same.
+Everything but "measured" depends on the jobs alone: one process, many or a cluster give the same.
+The page and the figures are made from the sections of results.json alone.
 """
 
 import json
-import platform
 from collections import Counter
-from datetime import date
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from curriculum import measured
+from curriculum import measured, reporting
 from curriculum.common.files import write_whole
+from curriculum.reporting import Claim, number, table
 from curriculum.stress import extremes, figures, invariants, jobs, maps
 
 BAD = (jobs.VIOLATION, jobs.DIED)
-OUTCOME_ORDER = maps.SETTLES + maps.RESTLESS + maps.GAINS + maps.EXPLODES
-DEPTH_BOUNDS = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0)  # r
-ERROR_BOUNDS = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)  # r
-ENERGY_BOUNDS = (1e-9, 1e-3, 1e-2, 0.1, 1.0, 10.0)  # of the start energy
-EXACT_BOUNDS = (1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-10)  # r
+UNFINISHED = "energy_rises_by_unfinished_sweeps_alone"
+
+
+# --- the sections of results.json ---------------------------------------------------------------
 
 
 def summary(results):
     """Counts over all jobs."""
     statuses = Counter(row["status"] for _, result in results for row in result["rows"])
+    checked = sum(sum(result.get("applied", {}).values()) for _, result in results)
     return {
         "jobs": len(results),
         "cells": sum(result["cells"] for _, result in results),
-        "judgements": sum(statuses.values()) + sum(applied(results).values()),
-        "limits": statuses[jobs.LIMIT] + sum(limits(results).values()),
+        "judgements": sum(statuses.values()) + checked,
+        "limits": statuses[jobs.LIMIT],
         "violations": statuses[jobs.VIOLATION],
         "died": statuses[jobs.DIED],
     }
 
 
-def merged(results):
-    """The invariants' data of all batches as one: {check: {applied, limits, worst, words, scene}}."""
-    total = {}
-    for job, result in results:
-        if job["kind"] != "scenes":
-            continue
-        for name, entry in result.get("data", {}).items():
-            mine = total.setdefault(
-                name, {"applied": 0, "limits": 0, "worst": 0.0, "words": "", "scene": None}
-            )
-            mine["applied"] += entry["applied"]
-            mine["limits"] += entry["limits"]
-            if entry["worst"] > mine["worst"]:
-                mine.update({key: entry[key] for key in ("worst", "words", "scene")})
-    return total
+def of_kind(results, kind):
+    """(params, result) of the finished jobs of one kind."""
+    return [
+        (job["params"], result)
+        for job, result in results
+        if job["kind"] == kind and not any(row["status"] == jobs.DIED for row in result["rows"])
+    ]
 
 
-def applied(results):
-    return {name: entry["applied"] for name, entry in merged(results).items()}
+def sections(results):
+    """{name: section} of everything that was run."""
+    made = {"counts": summary(results) | {"limits_by_kind": limits(results)}}
+    made["maps"] = {name: section for name, section in map_sections(results).items() if section}
+    made["scenes"] = scene_section(results)
+    made["extremes"] = {
+        job["params"]["name"]: rows_of(result)
+        for job, result in results
+        if job["kind"] == "extreme"
+    }
+    for kind in ("seeds", "bytes"):
+        made[kind] = {
+            "rows": [
+                row for job, result in results if job["kind"] == kind for row in rows_of(result)
+            ]
+        }
+    return {name: section for name, section in made.items() if section}
+
+
+def rows_of(result):
+    """Judgements as lists: where, expected, got, status."""
+    return [[row[key] for key in ("at", "expected", "got", "status")] for row in result["rows"]]
 
 
 def limits(results):
-    return {name: entry["limits"] for name, entry in merged(results).items()}
+    """{name of the limit: how often}; what comes before a colon names it."""
+    found = Counter(
+        row["limit"].split(":")[0]
+        for _, result in results
+        for row in result["rows"]
+        if row["status"] == jobs.LIMIT
+    )
+    return dict(sorted(found.items()))
+
+
+def map_sections(results):
+    """The data of every map and curve that was run."""
+    penalty, lcp, depth, converges, soft, exact = (
+        of_kind(results, kind)
+        for kind in (
+            "penalty-map",
+            "lcp-map",
+            "lcp-depth",
+            "lcp-converges",
+            "soft-map",
+            "exact-map",
+        )
+    )
+    return {
+        "penalty": penalty and penalty_section(penalty),
+        "lcp": lcp
+        and {
+            "dt": maps.log_grid(*lcp[0][0]["dt"]),
+            "baumgarte": sorted({params["baumgarte"] for params, _ in lcp}),
+            **{
+                name: grid(lcp, name)
+                for name in ("height_error", "contact_energy", "energy_excess")
+            },
+            "most": {
+                name: most(lcp, name)
+                for name in ("height_error", "contact_energy", "energy_excess")
+            },
+        },
+        "depth": depth
+        and {
+            "dt": maps.log_grid(*depth[0][0]["dt"]),
+            "rows": {
+                f"e={p['restitution']:g} beta={p['baumgarte']:g}": r["depth"] for p, r in depth
+            },
+        },
+        "converges": converges
+        and {
+            "dt": [params["dt"] for params, _ in converges],
+            **{
+                name: [result[name] for _, result in converges]
+                for name in ("height_error", "rest_gap")
+            },
+        },
+        "soft": soft
+        and {
+            "dt": maps.log_grid(*soft[0][0]["dt"]),
+            "timeconst": [params["timeconst"] for params, _ in soft],
+            **{name: [result[name] for _, result in soft] for name in ("depth", "energy_excess")},
+        },
+        "exact": exact
+        and {
+            name: max(max(result[name]) for _, result in exact)
+            for name in ("height_error", "depth", "energy_excess")
+        },
+    }
+
+
+def penalty_section(rows):
+    """Outcomes and boundaries by damping, rows of rising stiffness."""
+    rows = sorted(rows, key=lambda row: (row[0]["damping"], row[0]["stiffness"]))
+    by = {
+        f"{c:g}": [result for params, result in rows if params["damping"] == c]
+        for c in sorted({params["damping"] for params, _ in rows})
+    }
+    errors = [
+        abs(result["measured"] / result["theory"] - 1) if result["measured"] != "nan" else None
+        for _, result in rows
+    ]
+    return {
+        "dt": maps.log_grid(*rows[0][0]["dt"]),
+        "stiffness": sorted({params["stiffness"] for params, _ in rows}),
+        "outcomes": {c: [result["outcomes"] for result in found] for c, found in by.items()},
+        "measured": {c: [result["measured"] for result in found] for c, found in by.items()},
+        "boundaries": len(errors),
+        "boundary_worst_error": None if None in errors else max(errors),
+    }
+
+
+def grid(rows, name):
+    """{e: [[value over dt] for each beta]}."""
+    found = {}
+    for params, result in sorted(
+        rows, key=lambda row: (row[0]["restitution"], row[0]["baumgarte"])
+    ):
+        found.setdefault(f"{params['restitution']:g}", []).append(result[name])
+    return found
+
+
+def most(rows, name):
+    """The largest value of a column over a map, and where."""
+    value, dt, params = max(
+        (
+            (value, step, params)
+            for params, result in rows
+            for value, step in zip(result[name], maps.log_grid(*params["dt"]))
+        ),
+        key=lambda found: found[0],
+    )
+    return {
+        "value": value,
+        "dt": dt,
+        "baumgarte": params["baumgarte"],
+        "restitution": params["restitution"],
+    }
+
+
+def scene_section(results):
+    """What the checks said over the random scenes, and what they counted."""
+    batches = of_kind(results, "scenes")
+    if not batches:
+        return {}
+    applied = Counter()
+    for _, result in batches:
+        applied.update(result["applied"])
+    bad = Counter(
+        row["at"].split(",")[0]
+        for _, result in batches
+        for row in result["rows"]
+        if row["status"] in BAD
+    )
+    told = {
+        name: [item for _, result in batches for item in result["counted"].get(name, [])]
+        for name in invariants.CHECKS
+    }
+    cut = told["exact_ends"]
+    return {
+        "count": sum(params["stop"] - params["start"] for params, _ in batches),
+        "checks": {
+            name: {"scenes": applied[name], "violations": bad[name]} for name in invariants.CHECKS
+        },
+        "unfinished": unfinished_section(told[UNFINISHED], applied[UNFINISHED]),
+        "exact_cut": len(cut),
+        "exact_run": applied["exact_ends"],
+        "exact_cut_to": sorted(round(1.0 - what["cut"], 3) for _, what in cut),
+    }
+
+
+def unfinished_section(told, applied):
+    """Energy that unfinished sweeps add: how many scenes, how much, how many sweeps end it."""
+    if not told:
+        return {"scenes": applied, "rises": 0}
+    worst, above = (max(told, key=lambda item: item[1][key]) for key in ("rise", "above_start"))
+    sweeps = sorted(what["sweeps"] for _, what in told)
+    return {
+        "scenes": applied,
+        "rises": len(told),
+        "notable": sum(what["rise"] > invariants.NOTABLE for _, what in told),
+        "above_start": sum(what["above_start"] > invariants.NOTABLE for _, what in told),
+        "worst_rise": worst[1]["rise"],
+        "worst_rise_scene": worst[0],
+        "worst_above_start": above[1]["above_start"],
+        "worst_above_start_scene": above[0],
+        "sweeps_median": sweeps[len(sweeps) // 2],
+        "sweeps_most": sweeps[-1],
+        "ended_by": {
+            f"{count}": sum(s <= count for s in sweeps)
+            for count in (10, 100, 1000, 10_000, 100_000, 1_000_000)
+        },
+    }
+
+
+# --- writing ------------------------------------------------------------------------------------
+
+
+def write(results, folder, command, cases):
+    """Write results.json, report.md and the figures into `folder`; case files into `cases`."""
+    commands, folder = case_files(results, cases), Path(folder)
+    made = sections(results)
+    failures = [
+        [job["name"], row["at"], row["expected"], row["got"], commands[id(row)]]
+        for job, row in failed(results)
+    ]
+    made["counts"]["failed"] = failures[:50]
+    saved = {
+        name: measured.save(folder, name, section, command, packages=("numba",))
+        for name, section in made.items()
+    }
+    redraw(saved, folder)
+
+
+def redraw(saved, folder):
+    """report.md and the figures, from the sections of results.json."""
+    pictures = figures.draw(saved["maps"]) if "maps" in saved else {}
+    for name, svg in pictures.items():
+        write_whole(str(Path(folder) / name), svg)
+    write_whole(str(Path(folder) / "report.md"), page(saved))
 
 
 def failed(results):
@@ -68,10 +274,9 @@ def failed(results):
 def case_files(results, folder):
     """Write a case file for every failed row; {id(row): the command that runs it again}."""
     commands = {}
-    for number, (job, row) in enumerate(failed(results)):
-        case = row.get("case", job)
-        path = Path(folder) / f"case-{number:03d}.json"
-        write_whole(str(path), json.dumps(case, indent=1) + "\n")
+    for count, (job, row) in enumerate(failed(results)):
+        path = Path(folder) / f"case-{count:03d}.json"
+        write_whole(str(path), json.dumps(row.get("case", job), indent=1) + "\n")
         commands[id(row)] = f"python -m curriculum.stress --case {shown(path)}"
     return commands
 
@@ -84,582 +289,339 @@ def shown(path):
         return str(path)
 
 
-def machine(command):
-    """Where, with what and how it was run."""
-    packages = {}
-    for package in ("numpy", "distributed"):
-        try:
-            packages[package] = version(package)
-        except PackageNotFoundError:
-            packages[package] = None
-    place = measured.provenance()
-    return {
-        "command": command,
-        "date": date.today().isoformat(),
-        "python": platform.python_version(),
-        "packages": packages,
-        **{
-            key: place[key]
-            for key in ("processor", "cores", "system", "architecture", "commit", "changed")
-        },
-    }
+# --- the page -----------------------------------------------------------------------------------
 
 
-def footer(place):
-    versions = ", ".join(f"{name} {number}" for name, number in place["packages"].items() if number)
-    commit = f"commit {place['commit']}" if place["commit"] else "no commit known"
-    changed = " with uncommitted changes" if place["changed"] else ""
-    return (
-        f"{place['date']}, {commit}{changed}, {place['cores']} cores of {place['processor']} ({place['system']}, "
-        f"{place['architecture']}), Python {place['python']}, {versions}."
-    )
-
-
-def write(results, folder, command, cases):
-    """Write results.json, report.md and the figures into `folder`; case files into `cases`."""
-    place, folder = machine(command), Path(folder)
-    commands = case_files(results, cases)
-    pictures = draw(results, footer(place))
-    for name, svg in pictures.items():
-        write_whole(str(folder / name), svg)
-    write_whole(str(folder / "results.json"), results_json(results, place))
-    write_whole(str(folder / "report.md"), page(results, place, commands, pictures))
-
-
-def results_json(results, place):
-    """Strict JSON: machine, counts, facts that texts may quote, then one line a job."""
-
-    def line(value):
-        return json.dumps(shortened(value), sort_keys=True, allow_nan=False)
-
-    head = {"machine": place, "counts": summary(results), "facts": facts(results)}
-    lines = ",\n".join(line({**job, "result": result}) for job, result in results)
-    return (
-        "{\n"
-        + "".join(f"{json.dumps(key)}: {line(value)},\n" for key, value in head.items())
-        + f'"jobs": [\n{lines}\n]\n}}\n'
-    )
-
-
-def facts(results):
-    """Headline numbers {name: value}, for quoting; those of maps that were not run are left out."""
-    out = {}
-    penalty, lcp, exact = (kind(results, f"{model}-map") for model in ("penalty", "lcp", "exact"))
-    if penalty:
-        out["penalty_boundary_worst_error"] = max(
-            abs(result["measured"] / result["theory"] - 1.0)
-            if isinstance(result["measured"], float)
-            else 1.0
-            for _, result in penalty
-        )
-        out["penalty_map_cells"] = sum(params["dt"][2] for params, _ in penalty)
-    for name in ("depth", "height_error", "contact_energy", "energy_excess") if lcp else ():
-        value, dt, params = most(lcp, name)
-        out[f"lcp_{name}"] = {
-            "value": value,
-            "dt": dt,
-            "baumgarte": params["baumgarte"],
-            "restitution": params["restitution"],
-        }
-    for name in ("height_error", "depth", "energy_excess") if exact else ():
-        out[f"exact_{name}"] = most(exact, name)[0]
-    for name, entry in merged(results).items():
-        out[name] = {"scenes": entry["applied"], "limits": entry["limits"], "worst": entry["worst"]}
-    return out
-
-
-def most(rows, name):
-    """(largest value, dt, params) of a column over all rows of a map."""
-    return max(
-        (
-            (value, steps_of(params)[k], params)
-            for params, result in rows
-            for k, value in enumerate(result[name])
-            if isinstance(value, float)
-        ),
-        key=lambda found: found[0],
-    )
-
-
-def shortened(value):
-    """Floats to six digits, but in params, which must name the job exactly."""
-    if isinstance(value, dict):
-        return {
-            key: item if key in ("params", "case") else shortened(item)
-            for key, item in value.items()
-        }
-    if isinstance(value, list):
-        return [shortened(item) for item in value]
-    return float(f"{value:.6g}") if isinstance(value, float) else value
-
-
-# --- page -------------------------------------------------------------------------------------
-
-
-def page(results, place, commands, pictures):
+def page(saved):
     """report.md."""
-    parts = [
-        "# Stress report: where each contact model breaks, and proof that nothing else does",
-        "",
-        f"Generated by `{place['command']}`; do not edit. {footer(place)}",
-        "",
-        *headline(results),
-        "",
-    ]
-    parts += [
-        *violation_section(results, commands),
-        *map_sections(results, pictures),
-        *extreme_section(results),
-        *invariant_section(results),
-        *plain_table(
-            results,
-            "seeds",
+    return reporting.page(
+        "Stress report: where each contact model breaks, and proof that nothing else does",
+        saved["counts"],
+        headline(saved["counts"]),
+        violation_part(saved["counts"]),
+        map_part(saved.get("maps")),
+        scene_part(saved.get("scenes")),
+        extreme_part(saved.get("extremes")),
+        rows_part(
+            saved.get("seeds"),
             "## Ordering over the seeds",
-            "Penalty deeper than lcp, lcp no less deep than exact, on the way and at rest, nothing explodes.",
+            "The scenes drop and stack at the length of `--smoke`.",
         ),
-        *plain_table(
-            results,
-            "bytes",
+        rows_part(
+            saved.get("bytes"),
             "## Same bytes",
-            "`--smoke` of each scene in a process of its own; stdout and metrics.json compared byte for byte with hash seed 0 and one thread.",
+            "`--smoke` of each scene in a process of its own; stdout and metrics.json "
+            "compared byte for byte with hash seed 0 and one thread.",
         ),
-    ]
-    return "\n".join(parts) + "\n"
-
-
-def headline(results):
-    count = summary(results)
-    verdict = (
-        "No violation."
-        if not count["violations"] + count["died"]
-        else f"**{count['violations']} violations, {count['died']} jobs died.**"
     )
-    return [
-        f"{count['cells']:,} cells run in {count['jobs']:,} jobs, {count['judgements']:,} judgements: {verdict} "
-        f"{count['limits']:,} are limits: known, bounded, each with its number below."
-    ]
 
 
-def table(header, rows):
-    """Markdown lines of a table."""
-
-    def cell(value):
-        return str(value).replace("|", "\\|").replace("\n", " ")
-
-    return [
-        "| " + " | ".join(header) + " |",
-        "| " + " | ".join("---" for _ in header) + " |",
-        *("| " + " | ".join(map(cell, row)) + " |" for row in rows),
-        "",
-    ]
-
-
-def violation_section(results, commands):
+def readme_block(saved):
+    """What the README shows: what was judged, and the most telling numbers."""
+    count, scenes, found = (saved.get(name, {}) for name in ("counts", "scenes", "maps"))
     rows = [
-        (job["name"], row["at"], row["expected"], row["got"], f"`{commands[id(row)]}`")
-        for job, row in failed(results)
+        [
+            f"{count['cells']:,} runs, {count['judgements']:,} judgements: violations",
+            f"{count['violations'] + count['died']:,}",
+        ],
+        ["limits of a model, each named in its row of the report", f"{count['limits']:,}"],
     ]
-    if not rows:
-        return []
-    left = [f"and {len(rows) - 50} more, in results.json", ""] if len(rows) > 50 else []
-    return [
-        "## Violations",
-        "",
-        *table(("job", "where", "expected", "got", "run it again"), rows[:50]),
-        *left,
-    ]
-
-
-def kind(results, name):
-    return [
-        (job["params"], result)
-        for job, result in results
-        if job["kind"] == name
-        and "data" not in result
-        and any(row["status"] != jobs.DIED for row in result["rows"])
-    ]
-
-
-def map_sections(results, pictures):
-    """The three maps: what the figures show, in sentences made from the data."""
-    out = ["## Stability maps", "", "One ball dropped 1 m (scene drop, seed 0)."]
-    penalty, lcp, exact = (kind(results, f"{model}-map") for model in ("penalty", "lcp", "exact"))
-    if penalty:
-        out += [
-            "",
-            "### penalty: time step, stiffness, damping",
-            "",
-            "![Outcome of the drop](penalty-map.svg)",
-            "",
-            "The line is `critical_dt`: k dt² + 2 c dt = 4 m. A ball **kept in contact** (started half a percent off its rest "
-            "depth, so that no clamp acts) loses its place at the circles, found by bisection. The **drop** itself only obeys "
-            "that line once it has stopped bouncing; the table says what it does on both sides of it.",
-            "",
-            *penalty_table(penalty),
-            *penalty_reading(penalty),
-        ]
-    if lcp:
-        out += [
-            "### lcp: time step, Baumgarte gain, restitution",
-            "",
-            "![How deep](lcp-depth.svg)",
-            "",
-            "![Height error](lcp-error.svg)",
-            "",
-            "![Energy put in by contact](lcp-energy.svg)",
-            "",
-            *lcp_reading(lcp),
-        ]
-    if exact:
-        worst = {name: most(exact, name)[0] for name in ("height_error", "depth", "energy_excess")}
-        cells = sum(result["cells"] for _, result in exact)
-        out += [
-            "### exact: time step, restitution",
-            "",
-            "![Height error of exact](exact-error.svg)",
-            "",
-            f"Over {cells} cells the height is off by at most {worst['height_error']:.1e} r from the closed form, the ball is at most "
-            f"{worst['depth']:.1e} r deep, and energy rises by at most {worst['energy_excess']:.1e} of the start.",
-            "",
-        ]
-    return out
-
-
-def steps_of(params):
-    """The time steps [s] of a row of a map."""
-    return maps.log_grid(*params["dt"])
-
-
-def penalty_table(rows):
-    lines = []
-    for c in sorted({params["damping"] for params, _ in rows}):
-        mine = [(params, result) for params, result in rows if params["damping"] == c]
-        error = max(
-            abs(result["measured"] / result["theory"] - 1.0)
-            for _, result in mine
-            if isinstance(result["measured"], float)
+    if "penalty" in found:
+        error = found["penalty"]["boundary_worst_error"]
+        rows.append(
+            [
+                "penalty: measured critical dt against theory, worst of "
+                f"{found['penalty']['boundaries']} boundaries",
+                f"{number(None if error is None else 100 * error, 2)} %",
+            ]
         )
-        counts = {True: Counter(), False: Counter()}
-        for params, result in mine:
-            for dt, outcome in zip(steps_of(params), result["outcomes"]):
-                counts[dt < result["theory"]][outcome] += 1
-
-        def shares(counter):
-            total = sum(counter.values()) or 1
-            return ", ".join(f"{100 * counter[o] / total:.0f} %" for o in OUTCOME_ORDER)
-
-        lines.append(
-            (f"{c:g}", f"{100 * error:.2f} %", shares(counts[True]), shares(counts[False]))
+    if "converges" in found:
+        at = found["converges"]
+        rows += [
+            [
+                f"lcp: height error of the bounce at {1e3 * at['dt'][k]:g} ms",
+                f"{number(at['height_error'][k])} r",
+            ]
+            for k in (0, -1)
+        ]
+    if "exact" in found:
+        rows.append(
+            [
+                "exact: worst height error of the drop, any dt and e",
+                f"{found['exact']['height_error']:.1e} r",
+            ]
         )
-    return table(
-        (
-            "damping [N s/m]",
-            "boundary against theory, worst",
-            "drop, dt below critical: settles, moves on, gains, explodes",
-            "drop, dt above critical",
-        ),
-        lines,
+    if scenes:
+        unfinished = scenes["unfinished"]
+        rows += [
+            ["random scenes for each model", f"{scenes['count']:,}"],
+            [
+                "of them with energy that unfinished sweeps of lcp add (above the start)",
+                f"{unfinished['rises']:,} ({unfinished.get('above_start', 0):,})",
+            ],
+            [
+                "runs of exact that were cut short by their number of events",
+                f"{scenes['exact_cut']:,} of {scenes['exact_run']:,}",
+            ],
+        ]
+    note = measured.stale_note(saved["counts"])
+    return (f"{note}\n\n" if note else "") + table(["", "measured"], rows)
+
+
+def headline(count):
+    """The verdict in a paragraph."""
+    clean = not count["violations"] + count["died"]
+    verdict = Claim(
+        clean, "No violation.", f"**{count['violations']} violations, {count['died']} jobs died.**"
+    )
+    named = "; ".join(f"{name}: {times}" for name, times in count["limits_by_kind"].items())
+    return (
+        f"{count['cells']:,} runs in {count['jobs']:,} jobs, {count['judgements']:,} "
+        f"judgements: {verdict} {count['limits']:,} of them are limits of a model, each named, "
+        f"with what bounds it, in its row below" + (f" ({named})." if named else ".")
     )
 
 
-def penalty_reading(rows):
-    """Sentences on where the drop departs from the line."""
-    out = []
-    for c in sorted({params["damping"] for params, _ in rows}):
-        first = {}
-        for params, result in rows:
-            if params["damping"] != c:
-                continue
-            for outcome in (maps.GAINS, maps.EXPLODES):
-                at = result["outcomes"].find(outcome)
-                if at >= 0:
-                    first.setdefault(outcome, []).append(steps_of(params)[at] / result["theory"])
-        words = [
-            f"{what} from {min(first[o]):.2g} times the critical dt on (earliest stiffness; median {sorted(first[o])[len(first[o]) // 2]:.2g})"
-            for o, what in ((maps.GAINS, "gains energy"), (maps.EXPLODES, "explodes"))
-            if o in first
-        ]
-        if words:
-            out.append(f"- c = {c:g}: the drop {', '.join(words)}.")
-    return [*out, ""]
+def violation_part(count):
+    """The failed judgements with the commands that run them again."""
+    if not count["failed"]:
+        return ""
+    return "## Violations\n\n" + table(
+        ["job", "where", "expected", "got", "run it again"],
+        [[*row[:4], f"`{row[4]}`"] for row in count["failed"]],
+    )
 
 
-def lcp_reading(rows):
-    out = []
-    for label, name, unit in (
-        ("deepest", "depth", "r"),
-        ("worst height error", "height_error", "r"),
-        ("most energy put in by contact", "contact_energy", "of the start energy"),
-        ("highest energy above the start", "energy_excess", "of the start energy"),
+def map_part(found):
+    """The figures, with what they show in sentences made from the data."""
+    if not found:
+        return ""
+    parts = ["## Maps\n\nOne ball dropped 1 m (scene drop)."]
+    for name, said in (
+        ("penalty", penalty_words),
+        ("depth", depth_words),
+        ("converges", converges_words),
+        ("lcp", lcp_words),
+        ("soft", soft_words),
+        ("exact", exact_words),
     ):
-        value, dt, params = most(rows, name)
-        out.append(
-            f"- {label}: {value:.3g} {unit}, at dt {dt:.4g} s, beta {params['baumgarte']:g}, e {params['restitution']:g}"
+        if name in found:
+            parts.append(said(found[name]))
+    return "\n\n".join(parts)
+
+
+def penalty_words(found):
+    """The stability map of penalty."""
+    rows = []
+    for c, outcomes in found["outcomes"].items():
+        inside, outside = Counter(), Counter()
+        for k, letters in zip(found["stiffness"], outcomes):
+            theory = figures.contact.critical_dt(1.0, k, float(c))
+            for dt, letter in zip(found["dt"], letters):
+                (inside if dt < theory else outside)[letter] += 1
+        rows.append(
+            [
+                c,
+                *(
+                    ", ".join(
+                        f"{100 * counts[o] / (sum(counts.values()) or 1):.0f} %"
+                        for o in figures.ORDER
+                    )
+                    for counts in (inside, outside)
+                ),
+            ]
         )
-    centre = min(
-        (
-            dt
-            for params, result in rows
-            for dt, depth in zip(steps_of(params), result["depth"])
-            if depth > 1.0
-        ),
-        default=None,
+    error = found["boundary_worst_error"]
+    return (
+        "### penalty: time step, stiffness, damping\n\n![Outcome of the drop](penalty-map.svg)\n\n"
+        "The line is `critical_dt`: k dt² + 2 c dt = 4 m. A ball kept in contact, started half a "
+        "percent off its rest depth so that no clamp acts, leaves its place at the circles, found "
+        f"by bisection: {found['boundaries']} boundaries, off by at most "
+        f"{number(None if error is None else 100 * error, 2)} %. The drop itself only obeys the "
+        "line once it has stopped bouncing: each impact that the steps cut short can add energy.\n\n"
+        + table(
+            [
+                "damping [N s/m]",
+                "below the critical dt: settles, moves on, gains, explodes",
+                "above it",
+            ],
+            rows,
+        )
     )
-    if centre:
-        out.append(
-            f"- from dt {centre:.4g} s on the ball's centre can get under the table in the landing step; "
-            f"impact speed times dt is r at {maps.RADIUS / maps.IMPACT_SPEED:.4g} s"
-        )
-    pops = [
-        value
-        for params, result in rows
-        if params["restitution"] == 0.0 and params["baumgarte"] == 0.2
-        for value in result["height_error"]
-    ]
-    if pops:
-        out.append(
-            f"- e = 0 and the default beta = 0.2: height error up to {max(pops):.3g} r, the push that pops the ball off the table "
-            "and the landing step's depth"
-        )
-    return [*out, ""]
 
 
-def extreme_section(results):
-    out = [
-        "## Extremes",
-        "",
-        "Each expectation was written before the run. `limit`: missed, with a weaker statement that holds.",
-        "",
+def depth_words(found):
+    """The depth of lcp."""
+    still = [row for name, row in found["rows"].items() if name.startswith("e=0 ")]
+    same = Claim(
+        all(row == still[0] for row in still),
+        "No Baumgarte gain changes it (the same numbers at beta 0, 0.2 and 1).",
+        "It changes with the Baumgarte gain.",
+    )
+    return (
+        "### lcp: how deep\n\n![How deep](lcp-depth.svg)\n\nThe landing step decides it: the ball "
+        "goes in by at most the impact speed times dt, and is r deep from "
+        f"dt = {maps.RADIUS / maps.IMPACT_SPEED:.3g} s on. {same} A ball that bounces lands again and "
+        "again, once of them late in a step."
+    )
+
+
+def converges_words(found):
+    """The error of the bounce."""
+    error, dt = found["height_error"], found["dt"]
+    falling = all(a > b for a, b in zip(error, error[1:]))
+    listed = reporting.listed(f"{number(e)} r at {1e3 * step:g} ms" for e, step in zip(error, dt))
+    said = Claim(
+        falling,
+        f"The error falls at every halving: {listed}.",
+        f"The error does not fall at every halving: {listed}.",
+    )
+    return (
+        "### lcp: the bounce converges\n\n![Error of the bounce](lcp-converges.svg)\n\n"
+        f"{said} At rest the gap is 0 within {max(found['rest_gap']):.1e} r."
+    )
+
+
+def lcp_words(found):
+    """The map of lcp's height errors."""
+    lines = []
+    for name, label in (
+        ("height_error", "worst height error, in r"),
+        ("contact_energy", "most energy in (all rises, step by step), as a share of the start's"),
+        ("energy_excess", "most energy above the start, as a share of it"),
+    ):
+        at = found["most"][name]
+        lines.append(
+            f"- {label}: {number(at['value'])}, at dt {at['dt']:.3g} s, "
+            f"beta {at['baumgarte']:g}, e {at['restitution']:g}"
+        )
+    return (
+        "### lcp: time step, Baumgarte gain, restitution\n\n![Height error](lcp-error.svg)\n\n"
+        + "\n".join(lines)
+    )
+
+
+def soft_words(found):
+    """The map of soft."""
+    worst = max(max(row) for row in found["energy_excess"])
+    return (
+        "### soft: time step and time constant\n\n![Depth of soft](soft-map.svg)\n\n"
+        f"The energy rises above the start by at most {number(worst, 2)} of it."
+    )
+
+
+def exact_words(found):
+    """The numbers of exact."""
+    return (
+        "### exact\n\nOver all dt and restitutions the height is off by at most "
+        f"{found['height_error']:.1e} r from the closed form, the ball is at most "
+        f"{found['depth']:.1e} r deep, and the energy is at most {found['energy_excess']:.1e} "
+        "of the start's above it."
+    )
+
+
+def scene_part(found):
+    """The invariants over random scenes, each with how its bound follows."""
+    if not found:
+        return ""
+    rows = [
+        [name.replace("_", " "), statement(name), f"{entry['scenes']:,}", entry["violations"]]
+        for name, entry in found["checks"].items()
     ]
-    for job, result in results:
-        if job["kind"] != "extreme":
+    bounds = "\n".join(
+        f"- **{name.replace('_', ' ')}.** {reason(name)}"
+        for name in invariants.CHECKS
+        if reason(name)
+    )
+    return "\n\n".join(
+        [
+            "## Invariants over random scenes",
+            f"{found['count']:,} scenes of 1 to 30 balls for each model, numbered from 0: scattered, "
+            "touching, in towers, overlapping; equal and unequal masses and radii; all knobs. "
+            "`python -m curriculum.stress --case scene:NUMBER` runs one again.",
+            table(["invariant", "statement", "scenes", "violations"], rows),
+            "How each bound follows (U = 2⁻⁵³, the largest relative rounding error of one "
+            "operation):",
+            bounds,
+            unfinished_words(found["unfinished"]),
+            cut_words(found),
+        ]
+    )
+
+
+def statement(name):
+    """The first line of a check's docstring."""
+    return invariants.CHECKS[name].__doc__.splitlines()[0]
+
+
+def reason(name):
+    """The rest of a check's docstring as one paragraph."""
+    return " ".join(" ".join(invariants.CHECKS[name].__doc__.splitlines()[1:]).split())
+
+
+def unfinished_words(found):
+    """How often and by how much unfinished sweeps add energy."""
+    title = "### Energy that unfinished sweeps add\n\n"
+    if not found["rises"]:
+        return title + f"In none of {found['scenes']:,} scenes."
+    ended = [
+        [f"{int(count):,}", f"{times:,} of {found['rises']:,}"]
+        for count, times in found["ended_by"].items()
+    ]
+    return title + (
+        f"Without bias velocity F rises in {found['rises']:,} of {found['scenes']:,} scenes, in "
+        f"{found['notable']:,} of them by more than {invariants.NOTABLE:g} of the energies there "
+        f"are; in {found['above_start']:,} the energy rises above the start. Every rise is lam.w "
+        "of contacts whose sweeps had not finished, to rounding: when a contact is solved last, "
+        "its neighbours are left with an impulse that pushes apart bodies that already part. The "
+        f"largest rise in a step is {number(found['worst_rise'])} of the energies (scene "
+        f"{found['worst_rise_scene']}); the most above the start is "
+        f"{number(found['worst_above_start'])} (scene {found['worst_above_start_scene']}). The "
+        f"median scene needs {found['sweeps_median']:,} sweeps to end it, the slowest "
+        f"{found['sweeps_most']:,}:\n\n" + table(["sweeps a step", "rises that are over"], ended)
+    )
+
+
+def cut_words(found):
+    """How many runs of exact were cut short."""
+    if not found["exact_cut"]:
+        return f"Every run of exact ended within {limit_events()} events."
+    middle = found["exact_cut_to"][len(found["exact_cut_to"]) // 2]
+    return (
+        f"{found['exact_cut']:,} of {found['exact_run']:,} runs of exact pass {limit_events()} "
+        "events and are judged up to there (the median of them for "
+        f"{100 * middle:.0f} % of its steps). That is a limit of time, not of accuracy."
+    )
+
+
+def limit_events():
+    """How many events a run of exact may have here."""
+    from curriculum.stress.trial import EVENTS
+
+    return EVENTS
+
+
+def extreme_part(found):
+    """Every case with its docstring and its rows."""
+    if not found:
+        return ""
+    parts = [
+        "## Extremes\n\nEach expectation was written before the run. `limit`: missed, by no "
+        "more than the limit named in the case allows."
+    ]
+    for name, rows in found.items():
+        if name == "measured":
             continue
-        out += [
-            f"### {job['name'].replace('_', ' ')}",
-            "",
-            clean(extremes.CASES[job["params"]["name"]].__doc__),
-            "",
-            *table(
-                ("case", "expected", "got", ""),
-                [(row["at"], row["expected"], row["got"], row["status"]) for row in result["rows"]],
-            ),
-        ]
-    return out if len(out) > 4 else []
-
-
-def clean(docstring):
-    """A docstring as paragraphs of Markdown."""
-    lines = [line.strip() for line in docstring.strip().splitlines()]
-    return "\n".join(lines).replace("|", "\\|").replace("*", "\\*")
-
-
-def invariant_section(results):
-    data = merged(results)
-    if not data:
-        return []
-    scenes = sum(result["cells"] for job, result in results if job["kind"] == "scenes")
-    bad = Counter(row["at"].split(",")[0] for _, row in failed(results))
-    rows = [
-        (
-            name.replace("_", " "),
-            invariants.CHECKS[name].__doc__.splitlines()[0],
-            f"{entry['applied']:,}",
-            f"{entry['limits']:,}"
-            + (f" (worst, scene {entry['scene']}: {entry['words']})" if entry["limits"] else ""),
-            bad[name],
+        words = " ".join(extremes.CASES[name].__doc__.split()).replace("*", "\\*")
+        parts.append(
+            f"### {name.replace('_', ' ')}\n\n{words}\n\n"
+            + table(["case", "expected", "got", ""], rows)
         )
-        for name, entry in data.items()
-    ]
-    return [
-        "## Invariants over random scenes",
-        "",
-        f"{scenes:,} scenes of 1 to 30 balls, numbered 0 to {scenes - 1}: scattered, touching, in towers, overlapping; equal and unequal "
-        "masses and radii; all knobs. `python -m curriculum.stress --case scene:NUMBER` runs one again.",
-        "",
-        *table(("invariant", "statement", "scenes", "limits", "violations"), rows),
-    ]
+    return "\n\n".join(parts)
 
 
-def plain_table(results, of_kind, title, words):
-    rows = [
-        (row["at"], row["expected"], row["got"], row["status"])
-        for job, result in results
-        if job["kind"] == of_kind
-        for row in result["rows"]
-    ]
-    return [title, "", words, "", *table(("cell", "expected", "got", ""), rows)] if rows else []
-
-
-# --- figures ----------------------------------------------------------------------------------
-
-
-def draw(results, note):
-    """{file name: SVG text} of the maps that were run."""
-    out = {}
-    penalty, lcp, exact = (kind(results, f"{model}-map") for model in ("penalty", "lcp", "exact"))
-    if penalty:
-        out["penalty-map.svg"] = penalty_figure(penalty, note)
-    if lcp:
-        for name, *look in LCP_FIGURES:
-            out[name] = lcp_figure(lcp, *look, note)
-    if exact:
-        out["exact-error.svg"] = exact_figure(exact, note)
-    return out
-
-
-def penalty_figure(rows, note):
-    dts, stiffness = steps_of(rows[0][0]), sorted({params["stiffness"] for params, _ in rows})
-    found = {(params["damping"], params["stiffness"]): result for params, result in rows}
-    panels = []
-    for c in sorted({damping for damping, _ in found}):
-        cells = [
-            [OUTCOME_ORDER.index(o) for o in found[c, k]["outcomes"]]
-            if (c, k) in found
-            else [None] * len(dts)
-            for k in stiffness
-        ]
-        fine = maps.log_grid(stiffness[0] / 2, stiffness[-1] * 2, 200)
-        lines = [
-            figures.Line([(maps.critical_dt(k, c), k) for k in fine], "theory"),
-            figures.Line(
-                [
-                    (found[c, k]["measured"], k)
-                    for k in stiffness[2 :: max(1, len(stiffness) // 12)]
-                    if (c, k) in found and isinstance(found[c, k]["measured"], float)
-                ],
-                "measured",
-            ),
-        ]
-        if c:
-            lines.insert(
-                1,
-                figures.Line([(2.0 / c, stiffness[0] / 2), (2.0 / c, stiffness[-1] * 2)], "other"),
-            )
-        panels.append(figures.Panel(f"damping c = {c:g} N s/m", cells, lines))
-    return figures.heat_map(
-        "penalty: what a ball dropped 1 m does",
-        "Left of the line a ball that stays in contact is stable. Stiffening moves the line left; so does damping. The speckle is luck: where in a step the table is met.",
-        panels,
-        figures.Axis("time step dt [s]", dts),
-        figures.Axis("stiffness k [N/m]", stiffness),
-        [maps.OUTCOMES[o] for o in OUTCOME_ORDER],
-        figures.CLASSES,
-        {
-            "theory": "theory: k dt² + 2 c dt = 4 m",
-            "other": "c dt = 2 m",
-            "measured": "measured, ball kept in contact",
-        },
-        note,
-    )
-
-
-LCP_FIGURES = (
-    (
-        "lcp-depth.svg",
-        "depth",
-        DEPTH_BOUNDS,
-        "lcp: how deep the ball gets",
-        "Deepest penetration over 4 s, worst of {heights} start heights. The landing step decides it: up to impact speed times dt.",
-        {
-            "theory": "impact speed times dt = r",
-            "measured": "first dt of the grid that gets deeper than r",
-        },
-    ),
-    (
-        "lcp-error.svg",
-        "height_error",
-        ERROR_BOUNDS,
-        "lcp: how wrong the height gets",
-        "Worst distance from the closed form over 4 s and {heights} start heights. With e = 0 it grows with beta: the push pops the ball.",
-        {"theory": "e = 0: the highest pop, beta² times the drop height, is r"},
-    ),
-    (
-        "lcp-energy.svg",
-        "contact_energy",
-        ENERGY_BOUNDS,
-        "lcp: energy that contact puts into the ball",
-        "Sum over 4 s as a share of the start energy, beyond what the restitution allows; worst of {heights} start heights.",
-        {"theory": "beta = e: above it the push can be faster than the bounce"},
-    ),
-)
-UNITS = {"depth": " r", "height_error": " r", "contact_energy": ""}
-
-
-def lcp_figure(rows, column, bounds, title, words, line_names, note):
-    dts, gains = steps_of(rows[0][0]), sorted({params["baumgarte"] for params, _ in rows})
-    found = {(params["restitution"], params["baumgarte"]): result for params, result in rows}
-    panels = []
-    for e in sorted({restitution for restitution, _ in found}):
-        cells = [
-            [figures.levels(value, bounds) for value in found[e, b][column]]
-            if (e, b) in found
-            else [None] * len(dts)
-            for b in gains
-        ]
-        panels.append(
-            figures.Panel(f"restitution e = {e:g}", cells, lcp_lines(column, e, dts, gains, found))
-        )
-    return figures.heat_map(
-        title,
-        words.format(heights=rows[0][0]["heights"]),
-        panels,
-        figures.Axis("time step dt [s]", dts),
-        figures.Axis("Baumgarte gain beta", gains, log=False),
-        interval_words(bounds, UNITS[column]),
-        figures.RAMP,
-        line_names,
-        note,
-    )
-
-
-def lcp_lines(column, e, dts, gains, found):
-    """The boundary over one panel of an lcp figure; its closed form is what the legend says."""
-    across = dts[0] / 2, dts[-1] * 2
-    if column == "depth":
-        at = maps.RADIUS / maps.IMPACT_SPEED
-        crossing = [
-            (next((dt for dt, value in zip(dts, found[e, b][column]) if value > 1.0), None), b)
-            for b in gains[:: max(1, len(gains) // 8)]
-            if (e, b) in found
-        ]
-        return [
-            figures.Line([(at, -1.0), (at, 2.0)], "theory"),
-            figures.Line([p for p in crossing if p[0]], "measured"),
-        ]
-    if column == "contact_energy":
-        return [figures.Line([(dt, e) for dt in across], "theory")]
-    pop = (maps.RADIUS / maps.GAP) ** 0.5
-    return [figures.Line([(dt, pop) for dt in across], "theory")] if e == 0.0 else []
-
-
-def interval_words(bounds, unit):
-    return [
-        f"< {bounds[0]:g}{unit}",
-        *(f"{a:g} to {b:g}" for a, b in zip(bounds, bounds[1:])),
-        f"> {bounds[-1]:g}{unit}",
-    ]
-
-
-def exact_figure(rows, note):
-    dts, gains = steps_of(rows[0][0]), sorted({params["restitution"] for params, _ in rows})
-    found = {params["restitution"]: result for params, result in rows}
-    panels = [
-        figures.Panel(
-            title,
-            [[figures.levels(value, EXACT_BOUNDS) for value in found[e][column]] for e in gains],
-        )
-        for title, column in (("height error", "height_error"), ("deepest penetration", "depth"))
-    ]
-    return figures.heat_map(
-        "exact: no step error",
-        "Worst distance from the closed form, and deepest penetration, over 4 s.",
-        panels,
-        figures.Axis("time step dt [s]", dts),
-        figures.Axis(
-            "restitution e", list(range(len(gains))), False, tuple(f"{e:g}" for e in gains)
-        ),
-        interval_words(EXACT_BOUNDS, " r"),
-        figures.RAMP,
-        None,
-        note,
-    )
+def rows_part(section, title, words):
+    """A plain table of judgements."""
+    if not section or not section["rows"]:
+        return ""
+    return f"{title}\n\n{words}\n\n" + table(["cell", "expected", "got", ""], section["rows"])

@@ -1,19 +1,18 @@
-"""Run jobs in this process, in many, or on a Dask cluster; remember what is finished.
+"""Run jobs in this process, in many, or on a Dask cluster; finished ones are kept.
 
-A job whose process dies, or that raises, becomes a result with one row of status DIED and the
-rest goes on. Finished jobs are appended to a file as they come, so that an interrupted run takes
-up where it stopped; dead ones are not remembered and are tried again.
+A job whose process dies, or that raises, becomes a result with one row of status DIED, and the
+rest goes on. Finished jobs are kept as they come, so that an interrupted run takes up where it
+stopped; dead ones are tried again.
 """
 
-import json
 import multiprocessing
 import os
 import traceback
 from multiprocessing.connection import wait
 from time import monotonic
 
-from curriculum.common.files import write_whole
-from curriculum.stress import engine, jobs
+from curriculum import measured
+from curriculum.stress import jobs, under_test
 
 PATIENCE = 1800.0  # s a job may take on processes
 
@@ -134,12 +133,13 @@ def on_dask(todo, address):
     """
     from dask.distributed import Client, as_completed
 
-    here = engine.code_hash()
+    here = under_test.code_hash()
 
     def there(job):  # pickled whole: the scheduler imports nothing
-        from curriculum.stress import engine as its_engine, runner as its_runner
+        from curriculum.stress import runner as its_runner
+        from curriculum.stress import under_test as its_under_test
 
-        if its_engine.code_hash() != here:
+        if its_under_test.code_hash() != here:
             return its_runner.dead("other code, Python or numpy on the worker than here"), False
         return its_runner.attempt(job)
 
@@ -156,66 +156,28 @@ def on_dask(todo, address):
             client.cancel(list(futures))
 
 
-class Memory:
-    """Finished jobs on disk: one JSON line each, in a file named after the code's hash."""
-
-    def __init__(self, folder, code_hash):
-        self.path = os.path.join(folder, f"finished-{code_hash}.jsonl")
-        self.known = {}
-        if os.path.exists(self.path):
-            with open(self.path, encoding="utf-8") as file:
-                text = file.read()
-            whole = text[: text.rfind("\n") + 1]  # the last line may be cut off
-            if whole != text:
-                write_whole(self.path, whole)
-            for entry in map(json.loads, whole.splitlines()):
-                self.known[jobs.key(entry["job"])] = entry["result"]
-
-    def forget(self):
-        self.known.clear()
-        if os.path.exists(self.path):
-            os.unlink(self.path)
-
-    def keep(self, job, result):
-        os.makedirs(os.path.dirname(self.path), exist_ok=True)
-        with open(self.path, "a", encoding="utf-8") as file:
-            file.write(json.dumps({"job": job, "result": result}, allow_nan=False) + "\n")
+def source_of(todo, workers, dask):
+    """The jobs as they finish: (job, result, finished)."""
+    if dask:
+        return on_dask(todo, dask)
+    workers = (os.cpu_count() or 1) if workers is None else workers
+    return on_processes(todo, workers) if workers else here(todo)
 
 
-def bar(todo, finished):
-    """tqdm's bar with the time left, on a terminal only; None where tqdm is not installed."""
-    try:
-        from tqdm import tqdm
-    except ImportError:
-        return None
-    return tqdm(total=todo, initial=finished, unit="job", disable=None, dynamic_ncols=True)
-
-
-def run_all(todo, workers=None, dask=None, memory=None):
+def run_all(todo, workers=None, dask=None, kept=None):
     """Results of all jobs, in the order of `todo`: a list of (job, result).
 
     workers: processes (default: one a core; 0: none, run in this process). dask: a scheduler's
-    address, then workers is not used. memory: a Memory to resume from and to add to.
+    address, then workers is not used. kept: the measured.Cells to resume from and to add to.
     """
-    known = memory.known if memory else {}
-    results = {jobs.key(job): known[jobs.key(job)] for job in todo if jobs.key(job) in known}
+    kept = {} if kept is None else kept
+    results = {jobs.key(job): kept[jobs.key(job)] for job in todo if jobs.key(job) in kept}
     left = [job for job in todo if jobs.key(job) not in results]
-    workers = (os.cpu_count() or 1) if workers is None else workers
-    if dask:
-        source = on_dask(left, dask)
-    elif workers == 0:
-        source = here(left)
-    else:
-        source = on_processes(left, workers)
-    progress = bar(len(todo), len(results))
-    try:
-        for job, result, finished in source if left else ():
+    with measured.progress(len(todo), "stress") as tick:
+        tick("kept from before", len(results))
+        for job, result, finished in source_of(left, workers, dask) if left else ():
             results[jobs.key(job)] = result
-            if memory and finished:
-                memory.keep(job, result)
-            if progress is not None:
-                progress.update()
-    finally:
-        if progress is not None:
-            progress.close()
+            if finished:
+                kept[jobs.key(job)] = result
+            tick(job["name"])
     return [(job, results[jobs.key(job)]) for job in todo]

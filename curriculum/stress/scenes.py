@@ -1,17 +1,18 @@
 """Random scenes, and scenes as JSON: what a violation is reproduced from.
 
 A spec is a dict of plain values: x, y [m], vx, vy [m/s], mass [kg], radius [m] (lists),
-restitution, damping [N s/m], dt [s], steps, stiffness [N/m], baumgarte, iters. JSON keeps every
-bit of a double (Python writes the shortest text that reads back the same).
+restitution, damping [N s/m], dt [s], steps, stiffness [N/m], baumgarte, iters, and of soft solref
+(None, or a time constant [s] and a damping ratio). JSON keeps every bit of a double (Python writes
+the shortest text that reads back the same).
 """
 
 import numpy as np
 
-from curriculum.stress import engine
-from curriculum.stress.engine import contact
+from curriculum.stress import under_test
+from curriculum.stress.under_test import contact
 
 BODY = ("x", "y", "vx", "vy", "mass", "radius")
-KNOBS = ("stiffness", "baumgarte", "iters")
+KNOBS = {"penalty": ("stiffness",), "lcp": ("baumgarte", "iters"), "soft": ("solref",), "exact": ()}
 
 
 def to_scene(spec):
@@ -29,17 +30,11 @@ def to_scene(spec):
 
 
 def run(model, spec, **changes):
-    """engine.run_model on a spec; `changes` override its entries, or are flags (skip)."""
-    skip = changes.pop("skip", True)
+    """under_test.run_model on a spec; `changes` override its entries, or are its flags (skip)."""
+    flags = {name: changes.pop(name) for name in ("skip",) if name in changes}
     spec = {**spec, **changes}
-    return engine.run_model(
-        model,
-        to_scene(spec),
-        spec["dt"],
-        spec["steps"],
-        skip=skip,
-        **{name: spec[name] for name in KNOBS},
-    )
+    knobs = {name: spec.get(name) for name in KNOBS[model]}
+    return under_test.run_model(model, to_scene(spec), spec["dt"], spec["steps"], **knobs, **flags)
 
 
 def scattered(rng, n, radius):
@@ -80,36 +75,31 @@ LAYOUTS = (scattered, scattered, touching, tower, overlapping)
 
 
 def random_spec(rng, n=None, steps=None):
-    """A spec drawn from `rng`: 1 to 30 balls, every layout, knobs at their ends as well as between."""
+    """A spec drawn from `rng`: 1 to 30 balls, every layout, knobs at their ends and between."""
     n = int(rng.integers(1, 31)) if n is None else n
 
     def pick(*values):
         value = values[rng.integers(len(values))]
         return float(rng.uniform(*value)) if isinstance(value, tuple) else value
 
-    equal = rng.random() < 0.5
-    radius = np.full(n, 0.1) if equal else rng.uniform(0.03, 0.2, n)
+    radius = np.full(n, 0.1) if rng.random() < 0.5 else rng.uniform(0.03, 0.2, n)
     mass = np.ones(n) if rng.random() < 0.5 else 10.0 ** rng.uniform(-1, 1, n)
     layout = LAYOUTS[rng.integers(len(LAYOUTS))]
     x, y = layout(rng, n, radius)
     speed = pick(0.0, (0.0, 3.0))
     vx, vy = speed * rng.standard_normal((2, n))
-    return {
-        "layout": layout.__name__,
-        "x": x.tolist(),
-        "y": y.tolist(),
-        "vx": vx.tolist(),
-        "vy": vy.tolist(),
-        "mass": mass.tolist(),
-        "radius": radius.tolist(),
-        "restitution": pick(0.0, 0.0, 1.0, (0.0, 1.0)),
-        "damping": pick(0.0, 80.0, (0.0, 150.0)),
-        "dt": float(10.0 ** rng.uniform(-3.3, -1.7)),
-        "steps": int(steps or rng.integers(20, 81)),
-        "stiffness": float(10.0 ** rng.uniform(2, 5)),
-        "baumgarte": pick(0.0, 0.2, 1.0, (0.0, 1.0)),
-        "iters": int(pick(1, 5, 20, 100)),
-    }
+    spec = {"layout": layout.__name__}
+    spec |= zip(BODY, (row.tolist() for row in (x, y, vx, vy, mass, radius)))
+    spec["restitution"] = pick(0.0, 0.0, 1.0, (0.0, 1.0))
+    spec["damping"] = pick(0.0, 80.0, (0.0, 150.0))
+    spec["dt"] = float(10.0 ** rng.uniform(-3.3, -1.7))
+    spec["steps"] = int(steps or rng.integers(20, 81))
+    spec["stiffness"] = float(10.0 ** rng.uniform(2, 5))
+    spec["baumgarte"] = pick(0.0, 0.2, 1.0, (0.0, 1.0))
+    spec["iters"] = int(pick(1, 5, 20, 100))
+    spring = [float(10.0 ** rng.uniform(-2.5, -1.0)), float(rng.uniform(0.2, 2.0))]
+    spec["solref"] = pick(None, spring)
+    return spec
 
 
 def numbered_spec(number):

@@ -55,8 +55,9 @@ def test_2_the_lcp_bounce_converges_at_first_order():
     assert medians[2] < 0.08, "published: 2.71"
 
 
-@pytest.mark.parametrize("v_n, bias, expected", [
-    (-2.0, 1.0, 1.4), (-1.0, 1.0, 1.0), (-2.0, 0.0, 1.4), (2.0, 1.0, 1.0)])
+@pytest.mark.parametrize(
+    "v_n, bias, expected", [(-2.0, 1.0, 1.4), (-1.0, 1.0, 1.0), (-2.0, 0.0, 1.4), (2.0, 1.0, 1.0)]
+)
 def test_2_bounce_and_bias_velocity_are_never_added(v_n, bias, expected):
     """In an overlap of 0.01 m, e = 0.7: the larger of the two is the target."""
     ball = contact.Ball(0.0, 0.09, 0.0, v_n, 1.0, 0.1)

@@ -196,7 +196,9 @@ def test_first_lcp_bounce_has_the_materials_restitution():
 @pytest.mark.parametrize("name", ["drop", "stack"])
 def test_penalty_is_the_deeper_for_seeds_0_to_99(name):
     for seed in range(100):
-        spring, solve = (measured(name, model, seed=seed, steps=800) for model in ("penalty", "lcp"))
+        spring, solve = (
+            measured(name, model, seed=seed, steps=800) for model in ("penalty", "lcp")
+        )
         assert spring.max_penetration_frac > solve.max_penetration_frac, f"seed {seed}: at worst"
         assert spring.rest_penetration_frac > solve.rest_penetration_frac, f"seed {seed}: at rest"
         assert solve.energy_excess < 1e-12, f"seed {seed}: lcp gained energy"

@@ -1,0 +1,66 @@
+"""The contact.py under test: the one beside the curriculum folder, wherever it is run from."""
+
+import hashlib
+import importlib
+import sys
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+if str(ROOT) not in sys.path:
+    sys.path.insert(0, str(ROOT))
+contact = importlib.import_module("contact")
+
+MEASURING = ("under_test", "jobs", "scenes", "trial", "maps", "extremes", "invariants", "samebytes")
+
+
+class PileUp(Exception):
+    """exact met more events than the caller wanted to wait for; `samples` were done by then."""
+
+    def __init__(self, samples):
+        super().__init__(f"{samples} samples done")
+        self.samples = samples
+
+
+def run_model(model, scene, dt, steps, **knobs):
+    """contact.run_model, by the compiled twin for any number of balls where it can be had.
+
+    The twin has the reference's bits; invariants.plain_steps_give_the_same_bits looks.
+    """
+    few, contact.FEW = contact.FEW, 0
+    try:
+        return contact.run_model(model, scene, dt, steps, **knobs)
+    finally:
+        contact.FEW = few
+
+
+def run_exact(scene, dt, steps, most):
+    """(run of exact, its events). Raises PileUp after `most` of them.
+
+    A count, not a time, so that what comes out is the same on every machine.
+    """
+    events = 0
+
+    def count(samples):
+        nonlocal events
+        events += 1
+        if events > most and samples <= steps:
+            raise PileUp(samples)
+
+    return run_model("exact", scene, dt, steps, report=count), events
+
+
+@cache
+def code_hash():
+    """sha256 (16 digits) of everything that makes numbers here, and of Python's and numpy's version.
+
+    What is kept under it is valid as long as none of them changes.
+    """
+    import numpy
+
+    digest = hashlib.sha256(f"{sys.version} numpy {numpy.__version__}".encode())
+    folder = Path(__file__).parent
+    measured = [ROOT / "contact.py", *sorted((ROOT / "curriculum").glob("[ep]*.py"))]
+    for path in [*measured, *(folder / f"{name}.py" for name in MEASURING)]:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
