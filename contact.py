@@ -22,7 +22,8 @@ Left out: friction, rotation, and all shapes but balls over the line y = 0.
     d         impedance of soft: 0 gives way, 1 is hard
 
 Run it:
-    python contact.py --scene drop                  # then: bounce, stack, pile
+    python contact.py --contact exact               # what should happen; then make your bets
+    python contact.py --scene drop                  # all models; then: bounce, stack, pile
     python contact.py --contact penalty --dt 0.03   # one model, a longer step
     python contact.py --smoke --no-rerun            # fixed length, the same bytes every time
 """
@@ -512,6 +513,24 @@ def steps_to_floor(ball, dt):
 # --- endregion ---
 
 
+# --- region: shapes ---
+def check_shapes(scene, *runs):
+    """Raise ValueError, in one line, where the arrays of a scene and its runs do not fit."""
+    count = np.size(scene.mass)
+    if count == 0:
+        raise ValueError("the scene has no ball; allowed: one or more")
+    checked = [("q0", scene.q0, (2, count)), ("v0", scene.v0, (2, count)),
+               ("mass", scene.mass, (count,)), ("radius", scene.radius, (count,))]
+    for run in runs:
+        shape = (np.size(runs[0].t), 2, count)
+        checked += [("q of a run", run.q, shape), ("v of a run", run.v, shape)]
+    for name, array, allowed in checked:
+        if np.shape(array) != allowed:
+            raise ValueError(f"{name}: given an array of shape {np.shape(array)}; allowed for "
+                             f"{count} balls: {allowed}")
+# --- endregion ---
+
+
 # --- region: run ---
 def fast_twin():
     """curriculum/piles.py, the compiled steps for many balls; None where it or numba is missing."""
@@ -531,6 +550,7 @@ def run_model(model: str, scene: Scene, dt: float, steps: int, stiffness: float 
     """
     if model not in MODELS:
         raise ValueError(f"model {model!r}; allowed: {', '.join(MODELS)}")
+    check_shapes(scene)
     if model == "exact":
         from curriculum import exact
         with np.errstate(over="ignore"):
@@ -608,6 +628,7 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     height_error_frac: the worst height error against the run `reference`, which is the sum of
     flight_error_frac, the worst before the first contact, and contact_error_frac, what is added
     """
+    check_shapes(scene, *[each for each in (run, reference) if each is not None])
     total = energy(run.q, run.v, scene.mass)
     scale = abs(float(total[0])) or 1.0
     radius = float(scene.radius[0])

@@ -194,13 +194,13 @@ def written(what, path, write, *content, needs=None):
 
 def write_results(args, metrics, runs, scene):
     """Write metrics.json, and recording and picture as asked. Returns the exit status."""
-    from curriculum.common import picture
     numbers, recording, drawing = (os.path.join(args.out, name)
                                    for name in ("metrics.json", "contact.rrd", "contact.svg"))
     status = written("metrics", numbers, results.write_json, metrics)
     if args.rerun and not status:
         status = written("recording", recording, contact.log_rerun, runs, scene, needs="rerun-sdk")
     if args.plot and not status:
+        from curriculum.common import picture
         title = f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
         status = written("picture", drawing, picture.write, title, runs,
                          contact.curves(runs, scene), contact.COLORS, needs="matplotlib")
@@ -214,7 +214,7 @@ def print_next(args, argv):
     recorded = args.rerun and os.path.exists(recording)
     same = [word for word in argv if word not in ("--skip", "--no-skip")]
     again = shell.python(os.path.join(here, "contact.py"), *same, "--plot")
-    bet = shell.python(os.path.join(here, "exercises", "ex1_predict_contact.py"))
+    bet = shell.python(os.path.join(here, "exercises", "ex1_predict_contact.py"), extra="learn")
     see = f"watch it: {shell.tool('rerun')} {recording}" if recorded else f"see it: {again}"
     print(f"next: {see}; make a bet: {bet}")
 

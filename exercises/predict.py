@@ -128,4 +128,4 @@ def follow_up(name):
     """The command of the exercise after this one."""
     files = sorted(Path(__file__).parent.glob("ex[0-9]_*.py"))
     later = [file for file in files if file.name[:3] > name]
-    return shell.python(str(later[0])) if later else shell.python(str(ROOT / "checks.py"))
+    return shell.python(str(later[0] if later else ROOT / "checks.py"), extra="learn")

@@ -34,15 +34,21 @@ def tool(name):
     return short(beside)
 
 
-def python(*words):
-    """How to run this Python with these words: the script comes first."""
+def python(*words, extra=None):
+    """How to run this Python with these words: the script comes first.
+
+    extra: what the script needs of pyproject.toml's optional dependencies.
+    """
     words = " ".join(short(word) if os.path.isabs(word) else shlex.quote(word) for word in words)
     if under_uv():
-        return f"uv run {words}" if words.endswith(".py") else f"uv run python {words}"
+        run = f"uv run --extra {extra}" if extra else "uv run"
+        return f"{run} python {words}"
     name = os.path.basename(sys.executable)
     return f"{tool(name)} {words}"
 
 
 def install(package):
-    """How to install a package that is missing."""
-    return f"uv pip install {package}" if under_uv() else python("-m", "pip", "install", package)
+    """How to install packages that are missing."""
+    if under_uv():
+        return f"uv pip install {package}"
+    return f"{python('-m', 'pip', 'install')} {package}"
