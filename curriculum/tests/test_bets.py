@@ -16,7 +16,7 @@ from curriculum.quoted import load_meta
 ROOT = regions.ROOT
 SUNK = (
     r"\bsinks?\b|rests? (a little )?inside|m g ?/ ?k|\brings?\b|\bhops?\b|pops? up|"
-    r"penalty.{0,60}\b(deeper|deepest)|sag"
+    r"penalty.{0,60}\b(deeper|deepest)|\bsags?\b"
 )
 BLOWN = (
     r"\b(penalty|spring|step)\b.{0,80}(explod|blows? up)|critical (time )?step|critical dt|unstable|stays? bounded|"

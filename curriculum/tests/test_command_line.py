@@ -1,5 +1,6 @@
 """The command line: bad input, equal bytes, strict JSON, rerun wanted, unwanted and missing."""
 
+import io
 import json
 import os
 import re
@@ -9,9 +10,13 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import contact
+from curriculum import terminal
+from curriculum.common import results, shell, wallclock, workers
+from curriculum.tests import test_bets
 
 ROOT = Path(__file__).resolve().parents[2]
 SHORT = ("--steps", "50", "--no-rerun")
@@ -369,3 +374,292 @@ def test_ctrl_c_in_a_long_run_leaves_no_file(tmp_path, monkeypatch, capsys):
     with pytest.raises(KeyboardInterrupt):
         contact.main([*SHORT, "--out", str(tmp_path / "new")])
     assert list(tmp_path.iterdir()) == []
+
+
+# The first command
+
+
+def first_commands():
+    """The commands of README's first block of code, from contact.py on."""
+    text = (ROOT / "README.md").read_text("utf-8")
+    block = re.search(r"```sh\n(.*?)```", text.split("## Set up and run")[1], re.DOTALL)[1]
+    assert len(block.splitlines()) == 2, "two commands"
+    (line,) = [line for line in block.splitlines() if "contact.py" in line]
+    return line.split("contact.py")[1].split()
+
+
+def test_the_first_command_of_the_readme_and_the_help_tell_no_answer_of_a_bet(run_script, tmp_path):
+    run = run_script(*first_commands(), "--no-rerun", "--out", "out", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    printed = run.stdout.decode()
+    shown = printed + run_script("--help").stdout.decode()
+    for name in test_bets.ANSWERS:
+        assert test_bets.told(shown, name) == []
+    rows = [line.split()[0] for line in printed.splitlines() if re.match(r"\w+ +[\d-]", line)]
+    assert rows == ["exact"], "no row of a model that is bet on"
+    assert "exercises/ex1_predict_contact.py" in printed.splitlines()[-1]
+
+
+# The report
+
+
+def test_no_headings_collide_and_every_figure_stands_under_its_own(tmp_path, capsys):
+    assert contact.main([*SHORT, "--dt", "0.01", "--out", str(tmp_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    (place,) = [k for k, line in enumerate(lines) if line.startswith("contact ")]
+    above, below = lines[place - 1], lines[place]
+    ends = [match.end() for match in re.finditer(r"\S+", below)][1:-1]
+    assert len(ends) == len(terminal.COLUMNS)
+    for title, end in zip(terminal.COLUMNS, ends):
+        *upper, lower = title.split()
+        assert below[:end].endswith(" " + lower)
+        assert not upper or above[:end].endswith(" " + " ".join(upper))
+    metrics = strict_json(tmp_path / "metrics.json")["quality"]
+    for line, model in zip(lines[place + 1 :], contact.MODELS):
+        for key, end in zip(terminal.COLUMNS.values(), ends):
+            cell = line[:end].split()[-1].replace(",", "")
+            value = metrics[model][key]
+            assert abs(float(cell) - value) <= 5e-3 * abs(value), (model, key)
+
+
+def test_every_column_has_a_line_in_the_legend(tmp_path, capsys):
+    assert contact.main([*SHORT, "--contact", "lcp", "--out", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert all(f"\n  {title} " in out for title in terminal.COLUMNS)
+    assert set(terminal.LEGEND) == set(terminal.COLUMNS)
+
+
+@pytest.mark.parametrize("value, text", [
+    (None, "-"), (0.0, "0"), (0.251329183485, "0.251"), (-0.00981, "-0.00981"), (1409.4, "1,409"),
+    (4.1611e-06, "4.2e-06"), (0.0002, "0.0002"), (1e202, "1.0e+202"), (float("nan"), "-"),
+])  # fmt: skip
+def test_a_figure_is_written_as_a_person_reads_it(value, text):
+    assert results.figure(value) == text
+
+
+def test_the_nearest_to_exact_and_the_farthest_are_marked_and_exploded_rows_are_never_best():
+    row = {"blew_up": False}
+    rows = {
+        "penalty": row | {"a": 1.5, "b": 0.0, "c": 1.0},
+        "lcp": row | {"a": 0.9, "b": 0.0, "c": 2.0},
+        "soft": row | {"a": 0.0, "b": 0.0, "c": None},
+        "exact": row | {"a": 1.0, "b": 0.0, "c": 0.0},
+    }
+    marks = results.best_and_worst(rows, "abc", "exact", unknown="a")
+    assert marks == {("lcp", "a"): "*", ("soft", "a"): "!", ("penalty", "c"): "*", ("soft", "c"): "!"}
+    del rows["exact"]
+    rows["lcp"]["blew_up"] = True
+    marks = results.best_and_worst(rows, "abc", "exact", unknown="a")
+    assert {key: mark for key, mark in marks.items() if key[0] == "lcp"} == {
+        ("lcp", "b"): "!", ("lcp", "c"): "!"}  # fmt: skip
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_colour_is_for_a_terminal_that_wants_it_and_adds_nothing_else(monkeypatch, tmp_path):
+    printed = {}
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    for name, stream in (("pipe", io.StringIO()), ("terminal", Terminal()), ("plain", Terminal())):
+        if name == "plain":
+            monkeypatch.setenv("NO_COLOR", "1")
+        monkeypatch.setattr(sys, "stdout", stream)
+        assert contact.main([*SHORT, "--dt", "0.01", "--out", str(tmp_path)]) == 0
+        printed[name] = stream.getvalue()
+    assert "\x1b" not in printed["pipe"] and printed["plain"] == printed["pipe"]
+    assert "\x1b[32m" in printed["terminal"] and "\x1b[31m" in printed["terminal"]
+    assert re.sub(r"\x1b\[\d+m", "", printed["terminal"]) == printed["pipe"]
+
+
+def test_the_critical_step_stands_beside_an_explosion_also_when_penalty_runs_alone(
+    tmp_path, capsys
+):
+    flags = ["--contact", "penalty", "--dt", "0.03", "--no-rerun", "--out", str(tmp_path)]
+    assert contact.main(flags) == 0
+    out = capsys.readouterr().out
+    limit = contact.critical_dt(1.0, 1e4, 80.0)
+    (line,) = [line for line in out.splitlines() if "EXPLODED" in line]
+    assert line.startswith("penalty") and f"critical dt of one ball: {limit:.4g} s" in line
+
+
+def test_a_time_is_expected_only_of_the_run_that_was_measured(tmp_path, capsys, monkeypatch):
+    """A pile takes longer than the drop whose time the ledger knows."""
+    monkeypatch.setattr(wallclock, "lookup", lambda *_: 0.0087)
+    said = {}
+    for flags in ([], ["--scene", "drop"], ["--scene", "pile", "--bodies", "14"], ["--dt", "0.001"]):
+        known = flags if flags and flags[0] != "--dt" else flags
+        args = terminal.parse_flags([*known, "--out", str(tmp_path)])
+        said[" ".join(flags)] = args.usual
+    assert said == {"": True, "--scene drop": True, "--scene pile --bodies 14": False,
+                    "--dt 0.001": False}  # fmt: skip
+    assert "expected wall-clock on x: 0.0087 min" in wallclock.render_line("ch", "x")
+    other = wallclock.render_line("ch", "x", usual=False)
+    assert "expected" not in other and "not measured for these flags" in other
+
+
+@pytest.mark.parametrize("dt", ["1e-300", "1e-14", "1e100", "1e300"])
+def test_absurd_steps_give_no_warning_and_no_false_claim(dt, tmp_path, capsys):
+    """Steps too short to reach the table try nothing; metrics.json keeps their digits."""
+    assert contact.main([*SHORT, "--dt", dt, "--out", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    metrics = strict_json(tmp_path / "metrics.json")
+    assert metrics["dt"] == float(dt)
+    rows = metrics["quality"]
+    if float(dt) < 1.0:
+        assert metrics["stability"]["penalty"] is metrics["stability"]["lcp"] is None
+        assert out.count("comes to no contact") == 2 and "explode" not in out
+        assert "neither overlaps" in out
+    else:
+        assert rows["penalty"]["blew_up"] and "at every dt tried" in out
+        for row in rows.values():
+            assert row["blew_up"] or None not in [row[key] for key in ("rest_jitter", "rest_gap_frac")]
+
+
+def test_a_pile_runs_no_stability_grid(tmp_path, capsys):
+    flags = ["--scene", "pile", "--bodies", "8", *SHORT, "--out", str(tmp_path)]
+    assert contact.main(flags) == 0
+    assert "stability:" not in capsys.readouterr().out
+    assert strict_json(tmp_path / "metrics.json")["stability"] == {}
+
+
+def test_a_folder_that_turns_out_unwritable_costs_the_files_and_not_the_report(capsys, monkeypatch):
+    """A folder under /proc looks writable and is not."""
+    def refuse(path):
+        raise OSError(28, "No space left on device", path)
+
+    monkeypatch.setattr(results, "write_whole", lambda path, data: refuse(path))
+    assert contact.main([*SHORT, "--plot", "--out", "/tmp/full"]) == 2
+    out, err = capsys.readouterr()
+    assert "verdict:" in out and "metrics:" not in out and "picture" not in out
+    assert err.count("\n") == 1 and "/tmp/full/metrics.json: No space left on device" in err
+
+
+# --seeds and --plot
+
+
+def test_seeds_print_median_and_range_and_leave_the_single_seed_alone(tmp_path, capsys):
+    flags = [*SHORT, "--dt", "0.01", "--contact", "lcp", "--out", str(tmp_path)]
+    singles = []
+    for seed in range(3):
+        assert contact.main([*flags, "--seed", str(seed)]) == 0
+        singles.append(strict_json(tmp_path / "metrics.json")["quality"]["lcp"])
+    before = (tmp_path / "metrics.json").read_bytes()
+    capsys.readouterr()
+    assert contact.main([*flags, "--seeds", "0:3"]) == 0
+    out = capsys.readouterr().out
+    assert (tmp_path / "metrics.json").read_bytes() == before
+    rows = strict_json(tmp_path / "seeds.json")["rows"]
+    for key in ("max_penetration_frac", "rebound_frac", "contact_energy"):
+        low, middle, high = sorted(single[key] for single in singles)
+        assert rows["lcp lowest"][key] == low
+        assert rows["lcp median"][key] == middle
+        assert rows["lcp highest"][key] == high
+    assert [line.split()[:2] for line in out.splitlines() if line.startswith("lcp ")] == [
+        ["lcp", "median"], ["lcp", "lowest"], ["lcp", "highest"]]  # fmt: skip
+
+
+def test_seeds_do_not_depend_on_the_number_of_cores(tmp_path, capsys, monkeypatch):
+    seen = []
+    for cores in (1, 2):
+        monkeypatch.setattr(workers.os, "cpu_count", lambda: cores)  # noqa: B023
+        flags = [*SHORT, "--seeds", "0:3", "--contact", "penalty", "--out", str(tmp_path)]
+        assert contact.main(flags) == 0
+        seen.append((capsys.readouterr().out, (tmp_path / "seeds.json").read_bytes()))
+    assert seen[0] == seen[1]
+
+
+def test_a_picture_is_the_same_bytes_twice_and_shows_every_curve_and_model(tmp_path, capsys):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
+    seen = []
+    for _ in range(2):
+        assert contact.main(["--steps", "400", "--no-rerun", "--plot", "--out", str(tmp_path)]) == 0
+        seen.append((tmp_path / "contact.svg").read_bytes())
+    assert seen[0] == seen[1]
+    text = seen[0].decode()
+    scene = contact.build_scene("drop")
+    runs = {model: contact.run_model(model, scene, 0.002, 3) for model in contact.MODELS}
+    for word in (*contact.curves(runs, scene), *contact.MODELS):
+        assert f">{word}</text>" in text, word
+    for color in contact.COLORS.values():
+        assert color in text
+
+
+def test_without_matplotlib_one_line_says_how_to_install_it(tmp_path):
+    code = "import sys; sys.modules['matplotlib'] = None\nimport contact\n"
+    run = python(code + "sys.exit(contact.main(sys.argv[1:]))", *SHORT, "--plot", "--out", tmp_path)
+    assert run.returncode == 0 and run.stderr == "", run.stderr
+    (line,) = [line for line in run.stdout.splitlines() if "picture" in line]
+    assert "pip install matplotlib" in line
+    assert os.listdir(tmp_path) == ["metrics.json"]
+
+
+def test_matplotlib_and_processes_are_loaded_only_when_asked_for(tmp_path):
+    code = (
+        "import sys, contact; contact.main(sys.argv[1:])\n"
+        "heavy = {'matplotlib', 'multiprocessing', 'concurrent', 'yaml', 'rerun', 'subprocess'}\n"
+        "print('LOADED', sorted(heavy & set(sys.modules)))"
+    )
+    assert "LOADED []" in python(code, *SHORT, "--out", tmp_path).stdout
+
+
+# Commands as printed
+
+
+def test_commands_work_as_printed_beside_an_environment_in_an_active_one_and_under_uv(
+    monkeypatch, tmp_path
+):
+    venv = tmp_path / ".venv" / "bin"
+    venv.mkdir(parents=True)
+    for name in ("python", "rerun"):
+        (venv / name).touch()
+    script = str(tmp_path / "exercises" / "ex1.py")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "executable", str(venv / "python"))
+    for variable in ("UV", "UV_RUN_RECURSION_DEPTH"):
+        monkeypatch.delenv(variable, raising=False)
+    assert shell.python(script) == ".venv/bin/python exercises/ex1.py"
+    assert shell.tool("rerun") == ".venv/bin/rerun"
+    assert shell.install("matplotlib") == ".venv/bin/python -m pip install matplotlib"
+    monkeypatch.setenv("PATH", f"{venv}{os.pathsep}{os.environ['PATH']}")
+    assert shell.python(script) == "python exercises/ex1.py" and shell.tool("rerun") == "rerun"
+    monkeypatch.setenv("UV", "/usr/bin/uv")
+    assert shell.python(script, extra="learn") == "uv run --extra learn python exercises/ex1.py"
+    assert shell.tool("rerun") == "uv run rerun"
+    assert shell.install("matplotlib") == "uv pip install matplotlib"
+
+
+# Arrays that do not fit
+
+
+@pytest.mark.parametrize("name, array, said", [
+    ("q0", np.zeros((1, 2)), "q0: given an array of shape (1, 2); allowed for 1 balls: (2, 1)"),
+    ("v0", np.zeros(2), "v0: given an array of shape (2,); allowed"),
+    ("radius", np.zeros((1, 1)), "radius: given an array of shape (1, 1); allowed"),
+    ("mass", np.ones((1, 1)), "mass: given an array of shape (1, 1); allowed"),
+    ("mass", np.ones(0), "the scene has no ball; allowed: one or more"),
+])  # fmt: skip
+def test_a_scene_whose_arrays_do_not_fit_is_refused_in_one_line(name, array, said):
+    """Rows taken for columns gave no contacts, without a word."""
+    scene = contact.build_scene("drop")
+    run = contact.run_model("lcp", scene, 0.002, 3)
+    wrong = scene._replace(**{name: array})
+    for call in (
+        lambda: contact.run_model("lcp", wrong, 0.002, 3),
+        lambda: contact.run_model("exact", wrong, 0.002, 3),
+        lambda: contact.contact_quality(run, wrong, 0.002),
+    ):
+        with pytest.raises(ValueError) as caught:
+            call()
+        assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_run_that_does_not_fit_its_scene_or_its_reference_is_refused():
+    scene = contact.build_scene("drop")
+    run = contact.run_model("lcp", scene, 0.002, 3)
+    longer = contact.run_model("exact", scene, 0.002, 4)
+    with pytest.raises(ValueError, match=r"q of a run: given an array of shape \(5, 2, 1\)"):
+        contact.contact_quality(run, scene, 0.002, longer)
+    with pytest.raises(ValueError, match=r"v of a run: .*allowed for 1 balls: \(4, 2, 1\)"):
+        contact.contact_quality(run._replace(v=run.v[:, :, 0]), scene, 0.002)
