@@ -11,8 +11,8 @@ It writes, below FOLDER,
     common/wallclock.csv          the course's ledger, with this chapter's rows
 
 The course allows a chapter one script and 450 lines. So the script holds the regions of penalty and
-lcp as they are, and the course's own short command line; LEFT_OUT says what it does not hold, and why.
-Its rows in the ledger say "not yet measured": the script is another one than that which was timed here.
+lcp as they are, and the course's own short command line. LEFT_OUT says what it does not hold, and
+why. Its rows in the ledger say "not yet measured": the script timed here is another one.
 """
 
 import ast
@@ -33,9 +33,23 @@ from curriculum.quoted import Numbers, load_meta
 ROOT = regions.ROOT
 PARTS = Path(__file__).resolve().parent / "course"
 CHAPTER = "phase3_advanced/ch3.5_contact"
-CAP = 450               # lines of a chapter's script
-KEPT = ("scenes", "ball", "contacts", "penalty", "integrator", "critical-dt", "lcp-target",
-        "lcp-sweep", "lcp", "simulate", "measure", "quality", "quality-parts", "report")
+CAP = 450  # lines of a chapter's script
+KEPT = (
+    "scenes",
+    "ball",
+    "contacts",
+    "penalty",
+    "integrator",
+    "critical-dt",
+    "lcp-target",
+    "lcp-sweep",
+    "lcp",
+    "simulate",
+    "measure",
+    "quality",
+    "quality-parts",
+    "report",
+)
 CONSTANTS = ("GRAVITY", "RADIUS", "CONTACT_MARGIN", "EXPLODED")
 LEFT_OUT = {
     "soft-impedance": "MuJoCo's contact is 90 lines that the cap has no room for",
@@ -45,27 +59,43 @@ LEFT_OUT = {
     "lattice": "the scene pile belongs to many balls",
     "curriculum/exact.py": "the reference is a script of its own, almost as long as the cap",
     "curriculum/piles.py": "the compiled twin is for many balls",
+    "exercises/ex4_predict_soft.py": "a bet on soft",
 }
 # What differs where a region speaks of what is left out: (region, text here, text there)
 EDITS = (
-    ("scenes", '''    elif name == "pile":
+    (
+        "scenes",
+        """    elif name == "pile":
         x, y = pile_lattice(bodies or 200, abs(draw), rng)
-''', ""),
+""",
+        "",
+    ),
     ("contacts", "possible_pairs(balls, margin)", "itertools.combinations(balls, 2)"),
-    ("measure", '''    if len(radius) > FEW and (piles := fast_twin()):
+    (
+        "measure",
+        """    if len(radius) > FEW and (piles := fast_twin()):
         return piles.smallest_gap(q, radius)
-''', ""),
-    ("quality", "    return quality | height_errors(run, reference, landing, radius)\n",
-     "    return quality\n"),
-    ("quality", '''    height_error_frac: the worst height error against the run `reference`, which is the sum of
+""",
+        "",
+    ),
+    (
+        "quality",
+        "    return quality | height_errors(run, reference, landing, radius)\n",
+        "    return quality\n",
+    ),
+    (
+        "quality",
+        """    height_error_frac: the worst height error against the run `reference`, which is the sum of
     flight_error_frac, the worst before the first contact, and contact_error_frac, what is added
-''', ""),
+""",
+        "",
+    ),
     ("quality", ", reference: Run | None = None)", ")"),
 )
-DROPPED = {"quality-parts": "height_errors"}      # functions that only exact, the reference, needs
-NOTE = """> The script beside this text, `contact.py`, holds `penalty` and `lcp`: this course keeps a chapter in one
-> script of at most {cap} lines. What the text says of `soft`, of `exact` and of piles of many balls runs in the
-> chapter's own repository, as do the commands that begin with `python -m curriculum`.
+DROPPED = {"quality-parts": "height_errors"}  # functions that only exact, the reference, needs
+NOTE = """> The script beside this text, `contact.py`, holds `penalty` and `lcp`: this course keeps a chapter
+> in one script of at most {cap} lines. What the text says of `soft`, of `exact` and of piles of many
+> balls runs in the chapter's own repository, as do commands that begin with `python -m curriculum`.
 """
 ELSEWHERE = "*In the chapter's own repository, {file}, region {name}: {why}.*"
 
@@ -100,9 +130,11 @@ def region_texts(root):
         made[name] = part(name) if (PARTS / f"{name}.txt").exists() else found[name].text
     for name, here, there in EDITS:
         if made[name].count(here) != 1:
-            raise ValueError(f"contact.py:{found[name].first}: region {name} no longer has the "
-                             f"lines that the course's script changes, {here.strip()[:60]!r}; "
-                             "correct EDITS in curriculum/bundle.py")
+            raise ValueError(
+                f"contact.py:{found[name].first}: region {name} no longer has the "
+                f"lines that the course's script changes, {here.strip()[:60]!r}; "
+                "correct EDITS in curriculum/bundle.py"
+            )
         made[name] = made[name].replace(here, there)
     for name, function in DROPPED.items():
         made[name] = without(made[name], function)
@@ -114,7 +146,7 @@ def without(text, function):
     for node in ast.parse(text).body:
         if isinstance(node, ast.FunctionDef) and node.name == function:
             lines = text.split("\n")
-            del lines[node.lineno - 1:node.end_lineno]
+            del lines[node.lineno - 1 : node.end_lineno]
             return "\n".join(lines)
     raise ValueError(f"contact.py: no function {function}; correct DROPPED in curriculum/bundle.py")
 
@@ -143,8 +175,10 @@ def script(root):
         pieces.append(f"# --- region: {course_name(name)} ---\n{text}{regions.END}\n")
     made = "".join(pieces)
     if made.count("\n") > CAP:
-        raise ValueError(f"the course's contact.py has {made.count(chr(10))} lines, allowed: {CAP}; "
-                         "leave a region out in curriculum/bundle.py")
+        raise ValueError(
+            f"the course's contact.py has {made.count(chr(10))} lines, allowed: {CAP}; "
+            "leave a region out in curriculum/bundle.py"
+        )
     return made
 
 
@@ -167,7 +201,7 @@ def chapter(root, numbers):
     text = texts.FENCE.sub(include, text)
     text = texts.COMMENT.sub("", text)
     text = texts.DRAGGED.sub(lambda match: match[1], text)
-    text = re.sub(r"(?<![\w/])exercises/(?=ex\d)", "exercises/suggested/", text)
+    text = re.sub(r"(?<![\w/])exercises/(?=ex[123]_)", "exercises/suggested/", text)
     text = re.sub(r"(?<![\w/])checks\.py", "exercises/suggested/checks.py", text)
     title, _, rest = text.partition("\n")
     return re.sub(r"\n{3,}", "\n\n", f"{title}\n\n{NOTE.format(cap=CAP)}\n{rest.lstrip()}")
@@ -175,8 +209,11 @@ def chapter(root, numbers):
 
 def course_bands(exercise):
     """The bands of an exercise that the course's two models can be held to."""
-    return {key: band for key, band in (exercise.get("bands") or {}).items()
-            if re.search(r"quality\.(penalty|lcp)\.", key)}
+    return {
+        key: band
+        for key, band in (exercise.get("bands") or {}).items()
+        if re.search(r"quality\.(penalty|lcp)\.", key)
+    }
 
 
 def meta(root, made, numbers):
@@ -187,45 +224,71 @@ def meta(root, made, numbers):
     checks = {}
     for name, exercise in facts["exercises"].items():
         if name in ("ex1", "ex2", "ex3"):
-            checks[name] = {key: exercise[key] for key in ("provenance", "answer", "within")
-                            if key in exercise}
+            checks[name] = {
+                key: exercise[key] for key in ("provenance", "answer", "within") if key in exercise
+            }
             checks[name] |= {"bands": course_bands(exercise)} if course_bands(exercise) else {}
-    focus = [f"{name}: {what}" for functions in facts["reading"]["files"].values()
-             for name, what in functions.items()]
+    focus = [
+        f"{name}: {what}"
+        for functions in facts["reading"]["files"].values()
+        for name, what in functions.items()
+    ]
     told = {
-        "id": facts["id"], "title": "Build a Physics Engine III: Contact", "track": "elective",
-        "artifact": "contact.py", "task": "bodies-on-a-table", "objectives": facts["objectives"],
-        "scale_lab": False, "read_the_real_thing": True,
-        "rtrt": {"repo": facts["reading"]["repo"], "commit": facts["reading"]["commit"],
-                 "focus": focus},
+        "id": facts["id"],
+        "title": "Build a Physics Engine III: Contact",
+        "track": "elective",
+        "artifact": "contact.py",
+        "task": "bodies-on-a-table",
+        "objectives": facts["objectives"],
+        "scale_lab": False,
+        "read_the_real_thing": True,
+        "rtrt": {
+            "repo": facts["reading"]["repo"],
+            "commit": facts["reading"]["commit"],
+            "focus": focus,
+        },
         "demo": "contact_quality",
-        "reference_run": {"provenance": facts["reference_run"]["provenance"], **{
-            f"{model}_{key}": reference["quality"][model][key] for model in ("penalty", "lcp")
-            for key in ("max_penetration_frac", "rest_penetration_frac", "energy_excess")}},
+        "reference_run": {
+            "provenance": facts["reference_run"]["provenance"],
+            **{
+                f"{model}_{key}": reference["quality"][model][key]
+                for model in ("penalty", "lcp")
+                for key in ("max_penetration_frac", "rest_penetration_frac", "energy_excess")
+            },
+        },
         "exercise_checks": checks,
-        "region_hashes": {course_name(name): regions.Region(name, 0, text).sha256
-                          for name, text in made.items()}}
+        "region_hashes": {
+            course_name(name): regions.Region(name, 0, text).sha256 for name, text in made.items()
+        },
+    }
     import yaml
-    return (f"# Made by `python -m curriculum.bundle`; do not edit it here.\n"
-            + yaml.safe_dump(told, sort_keys=False, allow_unicode=True, width=100))
+
+    return "# Made by `python -m curriculum.bundle`; do not edit it here.\n" + yaml.safe_dump(
+        told, sort_keys=False, allow_unicode=True, width=100
+    )
 
 
 def exercises(root):
     """{file name: text} of exercises/suggested."""
     from curriculum import terminal
+
     folder, facts, made = Path(root) / "exercises", load_meta(root), {"checks.py": part("checks")}
     for path in sorted(folder.glob("ex[123]_*.py")):
         name, text = path.name.split("_")[0], path.read_text("utf-8")
         words = exercise_words(text)
         title = words["docstring"].split("\n")[0].partition(": ")[2]
         if "CHOICES" not in words:
-            functions = [ast.get_source_segment(text, node) for node in ast.parse(text).body
-                         if isinstance(node, ast.FunctionDef)
-                         and node.name in ("penalty_normal_force", "project_impulse")]
+            functions = [
+                ast.get_source_segment(text, node)
+                for node in ast.parse(text).body
+                if isinstance(node, ast.FunctionDef)
+                and node.name in ("penalty_normal_force", "project_impulse")
+            ]
             if len(functions) != 2:
                 raise ValueError(f"exercises/{path.name}: the two blanks are no longer there")
             made["ex2_completion_contact.py"] = part("blanks").format(
-                title=title, functions="\n\n\n".join(functions))
+                title=title, functions="\n\n\n".join(functions)
+            )
             continue
         bands = course_bands(facts["exercises"][name])
         runs = {}
@@ -234,23 +297,34 @@ def exercises(root):
             runs[run] = (args.scene, args.dt, args.steps)
         choices = "\n".join(f"  {letter}) {each}" for letter, each in words["CHOICES"].items())
         made[path.name] = part("predict").format(
-            title=title, question=words["QUESTION"], choices=choices, why=words["WHY_PROMPT"],
-            letters=json.dumps([*words["CHOICES"]]), dictionary=listed(words["CHOICES"]),
-            runs=listed(runs), keys=sorted({key.split(".")[-1] for key in bands}))
+            title=title,
+            question=words["QUESTION"],
+            choices=choices,
+            why=words["WHY_PROMPT"],
+            letters=json.dumps([*words["CHOICES"]]),
+            dictionary=listed(words["CHOICES"]),
+            runs=listed(runs),
+            keys=sorted({key.split(".")[-1] for key in bands}),
+        )
     return made
 
 
 def listed(values):
     """A dict as Python source, an item a line."""
-    return "{\n" + "".join(f"    {json.dumps(key)}: {value!r},\n" for key, value in values.items()) + "}"
+    return (
+        "{\n"
+        + "".join(f"    {json.dumps(key)}: {value!r},\n" for key, value in values.items())
+        + "}"
+    )
 
 
 def ledger(path):
-    """The course's ledger at `path` with this chapter's rows not yet measured, and all others kept."""
+    """The course's ledger at `path`: this chapter's rows not yet measured, all others kept."""
     rows = list(csv.reader(io.StringIO(path.read_text("utf-8")))) if path.exists() else []
     header, *rows = rows or [list(wallclock.COLUMNS)]
-    ours = dict.fromkeys([row[1] for row in rows if row and row[0] == wallclock.CHAPTER]
-                         + list(wallclock.SHOWN))
+    ours = dict.fromkeys(
+        [row[1] for row in rows if row and row[0] == wallclock.CHAPTER] + list(wallclock.SHOWN)
+    )
     rows = [row for row in rows if row and row[0] != wallclock.CHAPTER]
     rows += [[wallclock.CHAPTER, tier, "", "", "", "", "PENDING"] for tier in ours]
     return "".join(",".join(row) + "\n" for row in [header, *rows])
@@ -262,21 +336,32 @@ def files(root, out, runs=None):
     `runs` may hold runs of meta.yaml that have been made already.
     """
     numbers, made = CourseNumbers(root, runs), region_texts(root)
-    written = {f"{CHAPTER}/contact.py": script(root),
-               f"{CHAPTER}/meta.yaml": meta(root, made, numbers),
-               f"{CHAPTER}/prose/chapter.md": chapter(root, numbers),
-               "common/wallclock.csv": ledger(Path(out) / "common/wallclock.csv")}
-    return written | {f"{CHAPTER}/exercises/suggested/{name}": text
-                      for name, text in exercises(root).items()}
+    written = {
+        f"{CHAPTER}/contact.py": script(root),
+        f"{CHAPTER}/meta.yaml": meta(root, made, numbers),
+        f"{CHAPTER}/prose/chapter.md": chapter(root, numbers),
+        "common/wallclock.csv": ledger(Path(out) / "common/wallclock.csv"),
+    }
+    return written | {
+        f"{CHAPTER}/exercises/suggested/{name}": text for name, text in exercises(root).items()
+    }
 
 
 def main(argv=None):
     """Write the bundle. Returns the exit status: 0 written, 1 it can't be made, 2 bad usage."""
     from curriculum.common.arguments import Parser, writable_folder
-    parser = Parser(prog="python -m curriculum.bundle",
-                    description="The chapter as the course zero2robot keeps it.")
-    parser.add_argument("--out", type=writable_folder, required=True, metavar="FOLDER",
-                        help="the course's folder `curriculum`, or an empty one")
+
+    parser = Parser(
+        prog="python -m curriculum.bundle",
+        description="The chapter as the course zero2robot keeps it.",
+    )
+    parser.add_argument(
+        "--out",
+        type=writable_folder,
+        required=True,
+        metavar="FOLDER",
+        help="the course's folder `curriculum`, or an empty one",
+    )
     args = parser.parse_args(argv)
     try:
         written = files(ROOT, args.out)

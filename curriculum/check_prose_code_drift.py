@@ -2,14 +2,14 @@
 
     python -m curriculum.check_prose_code_drift                 # exit 1, one line a problem
     python -m curriculum.check_prose_code_drift --accept NAME   # the prose of NAME has been re-read
-    python -m curriculum.check_prose_code_drift --fuzz 200      # mutate everything, list what passes
+    python -m curriculum.check_prose_code_drift --fuzz 200      # change things, list what passes
 
 It holds together, each failing with `file:line: what; repair: command`:
 
 regions   the markers of the literate files are well formed (curriculum/regions.py has the hash
           rule), and their regions = `region_hashes` of meta.yaml, in their order, = regions that
-          the chapter includes or `not_shown` of meta.yaml names (piles-* stands for many). An include is a fence that holds
-          one line: [include-by-region: FILE#NAME]
+          the chapter includes or `not_shown` of meta.yaml names (piles-* stands for many). An
+          include is a fence that holds one line: [include-by-region: FILE#NAME]
 passages  what only a reader can judge (order of the chapter, formulas, numbers in words, claims,
           exercises, promises) has the hash that was accepted: curriculum/drift/passages.py
 numbers   every {{reference}} of the chapter and of meta.yaml resolves on a fresh run
@@ -49,14 +49,22 @@ from curriculum.drift import names as naming
 from curriculum.drift import passages, texts
 from curriculum.drift.passages import GATE, accept
 from curriculum.drift.texts import CHAPTER, INCLUDE, line_at, typed_numbers
-from curriculum.quoted import HOLDS, REFERENCE, RESULTS, Numbers, command_of, is_number, leaves, \
-    load_meta
+from curriculum.quoted import (
+    HOLDS,
+    REFERENCE,
+    RESULTS,
+    Numbers,
+    command_of,
+    is_number,
+    leaves,
+    load_meta,
+)
 
 __all__ = ["CHAPTER", "GATE", "INCLUDE", "accept", "check", "main", "typed_numbers"]
 ROOT = regions.ROOT
 NUMBERS = "python -m curriculum.quoted"
-TOLERANCE = 1e-9        # of the reference run: one machine repeats its bytes, another may round
-NARROW = 0.01, 1e-6     # a band is at most so wide, as a share of its upper end, or so wide at all
+TOLERANCE = 1e-9  # of the reference run: one machine repeats its bytes, another may round
+NARROW = 0.01, 1e-6  # a band is at most so wide, as a share of its upper end, or so wide at all
 TEXTS = (CHAPTER, "README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 
 
@@ -98,25 +106,41 @@ def check_regions(project):
     """Regions = hashes = includes, in order, and all markers and includes well formed."""
     found, problems = regions.scan_all(project.root)
     project.problems += problems
-    by_file = {file: each if isinstance(each, dict) else {}
-               for file, each in (project.facts.get("region_hashes") or {}).items()}
+    by_file = {
+        file: each if isinstance(each, dict) else {}
+        for file, each in (project.facts.get("region_hashes") or {}).items()
+    }
     hashes = {name: (file, sha) for file, each in by_file.items() for name, sha in each.items()}
     for name, region in found.items():
         _, sha = hashes.get(name, (None, None))
-        what = None if sha == region.sha256 else "has no hash in meta.yaml" if sha is None \
+        what = (
+            None
+            if sha == region.sha256
+            else "has no hash in meta.yaml"
+            if sha is None
             else "has changed since its prose was last read"
+        )
         if what:
-            project.say(region.file, region.first - 1, f"region {name} {what}",
-                        f"{GATE} --accept {name}")
+            project.say(
+                region.file, region.first - 1, f"region {name} {what}", f"{GATE} --accept {name}"
+            )
     for name, (file, _) in hashes.items():
         if name not in found or found[name].file != file:
-            project.say("meta.yaml", rf"^ +{name}:", f"a hash of {name}, and {file} has no such "
-                        "region", f"{GATE} --accept {name}")
+            project.say(
+                "meta.yaml",
+                rf"^ +{name}:",
+                f"a hash of {name}, and {file} has no such region",
+                f"{GATE} --accept {name}",
+            )
     for file, each in by_file.items():
         order = [name for name in found if found[name].file == file]
         if set(order) == set(each) and order != list(each):
-            project.say("meta.yaml", rf"^  {file}:", f"the regions of {file} are no longer in the "
-                        "order in which they were read", "put them back, or their hashes in order")
+            project.say(
+                "meta.yaml",
+                rf"^  {file}:",
+                f"the regions of {file} are no longer in the order in which they were read",
+                "put them back, or their hashes in order",
+            )
     check_includes(project, found)
 
 
@@ -127,28 +151,42 @@ def check_includes(project, found):
     for name, region in found.items():
         covered = any(fnmatchcase(name, pattern) for pattern in hidden)
         if name not in shown and not covered and name != regions.docstring_name(region.file):
-            project.say(CHAPTER, 1, f"region {name} is never shown",
-                        f"add a fence with [include-by-region: {region.file}#{name}], or name it "
-                        f"in `not_shown` of meta.yaml, then {GATE}")
+            project.say(
+                CHAPTER,
+                1,
+                f"region {name} is never shown",
+                f"add a fence with [include-by-region: {region.file}#{name}], or name it "
+                f"in `not_shown` of meta.yaml, then {GATE}",
+            )
     for pattern in hidden:
         covered = [name for name in found if fnmatchcase(name, pattern)]
         both = [name for name in covered if name in shown]
         if both or not covered:
             what = f"{both[0]}, which is shown" if both else f"{pattern}, which is no region"
-            project.say("meta.yaml", "^not_shown:", f"not_shown names {what}",
-                        f"take it out, then {GATE}")
+            project.say(
+                "meta.yaml", "^not_shown:", f"not_shown names {what}", f"take it out, then {GATE}"
+            )
     for k, (line, file, name) in enumerate(project.includes):
         if name not in found or found[name].file != file:
             allowed = ", ".join(each for each in found if found[each].file == file)
-            project.say(CHAPTER, line, f"includes {name}, and {file} has no such region",
-                        f"name one of {allowed or 'a literate file'}, then {GATE}")
+            project.say(
+                CHAPTER,
+                line,
+                f"includes {name}, and {file} has no such region",
+                f"name one of {allowed or 'a literate file'}, then {GATE}",
+            )
         if name in shown[:k]:
             project.say(CHAPTER, line, f"includes {name} a second time", f"delete one, then {GATE}")
     lines = {include.line for include in project.includes}
     for line, text in enumerate(project.chapter.split("\n"), 1):
         if "include-by-region" in text and line not in lines:
-            project.say(CHAPTER, line, "an include that is not alone in its fence or not of the "
-                        "form [include-by-region: FILE#NAME]", f"edit it, then {GATE}")
+            project.say(
+                CHAPTER,
+                line,
+                "an include that is not alone in its fence or not of the "
+                "form [include-by-region: FILE#NAME]",
+                f"edit it, then {GATE}",
+            )
 
 
 def check_passages(project):
@@ -159,11 +197,19 @@ def check_passages(project):
         if passage.file is None and hashes.get(name) != passage.sha256:
             file = CHAPTER if name in passages.CHAPTER_PASSAGES else "meta.yaml"
             what = "has changed since it was last read" if name in hashes else "was never accepted"
-            project.say(file, rf"^  {name}:" if file == "meta.yaml" else 1,
-                        f"passage {name} {what}", f"{GATE} --accept {name}")
+            project.say(
+                file,
+                rf"^  {name}:" if file == "meta.yaml" else 1,
+                f"passage {name} {what}",
+                f"{GATE} --accept {name}",
+            )
     for name in hashes.keys() - found.keys():
-        project.say("meta.yaml", rf"^  {name}:", f"a hash of {name}, and there is no such passage",
-                    f"{GATE} --accept {name}")
+        project.say(
+            "meta.yaml",
+            rf"^  {name}:",
+            f"a hash of {name}, and there is no such passage",
+            f"{GATE} --accept {name}",
+        )
 
 
 def check_typed(project):
@@ -174,9 +220,12 @@ def check_typed(project):
         told += [("meta.yaml", rf"^  {name}:", text or "") for _, text in leaves(said)]
     for file, line, text in told:
         for index, token in typed_numbers(text):
-            project.say(file, line or line_at(text, index), f"a typed number, {token}",
-                        f"write {{{{KEY|FORMAT}}}} (the keys: {NUMBERS}) or "
-                        f"{{{{= {token} | REASON}}}}")
+            project.say(
+                file,
+                line or line_at(text, index),
+                f"a typed number, {token}",
+                f"write {{{{KEY|FORMAT}}}} (the keys: {NUMBERS}) or {{{{= {token} | REASON}}}}",
+            )
 
 
 def check_exercises(project):
@@ -184,6 +233,7 @@ def check_exercises(project):
     slots = re.findall(r"<!--\s*exercise:\s*([\w-]+)\s*-->", project.chapter)
     scripts = {Path(file).name.split("_")[0]: (file, text) for file, text in project.scripts()}
     for name, exercise in project.exercises.items():
+
         def say(what, name=name):
             project.say("meta.yaml", rf"^  {name}:", f"{name}: {what}", f"correct it, then {GATE}")
 
@@ -201,17 +251,30 @@ def check_exercises(project):
             if exercise["answer"] not in letters:
                 say(f"the answer {exercise['answer']!r} is none of the choices {letters}")
     for name in set(slots) - set(project.exercises):
-        project.say(CHAPTER, 1, f"a slot of {name}, and meta.yaml has no such exercise",
-                    f"correct it, then {GATE}")
+        project.say(
+            CHAPTER,
+            1,
+            f"a slot of {name}, and meta.yaml has no such exercise",
+            f"correct it, then {GATE}",
+        )
 
 
 def check_names(project):
     """What texts, exercises and docstrings name is there."""
     known = naming.Names(project.root, project.facts, project.metrics)
-    scripts = [*project.scripts(), *((file, (project.root / file).read_text("utf-8", "replace"))
-                                     for file in regions.LITERATE if (project.root / file).exists())]
-    mentioned = {file: (project.root / file).read_text("utf-8", "replace") for file in TEXTS
-                 if (project.root / file).exists()}
+    scripts = [
+        *project.scripts(),
+        *(
+            (file, (project.root / file).read_text("utf-8", "replace"))
+            for file in regions.LITERATE
+            if (project.root / file).exists()
+        ),
+    ]
+    mentioned = {
+        file: (project.root / file).read_text("utf-8", "replace")
+        for file in TEXTS
+        if (project.root / file).exists()
+    }
     flags = naming.all_flags(project.root, mentioned.values())
 
     def say(file, line, what):
@@ -231,8 +294,12 @@ def check_names(project):
                 say(file, line, f"a link to {target}, and there is no such file")
         for line, span in naming.spans(text) if file == CHAPTER else ():
             for word in known.unknown(span):
-                say(file, line, f"`{span}` names {word}, which no code here defines (other "
-                                "people's names: `foreign_names` of meta.yaml)")
+                say(
+                    file,
+                    line,
+                    f"`{span}` names {word}, which no code here defines (other "
+                    "people's names: `foreign_names` of meta.yaml)",
+                )
     for file, text in scripts:
         for line, command in naming.docstring_commands(text):
             what = naming.command_problem(project.root, command)
@@ -250,11 +317,15 @@ def check_live_links(project, flags):
         for pair in pairs:
             key, _, given = pair.partition("=")
             words = [f"--{key}"] + ([given] if kind == "try" else [])
-            what = naming._flags_problem("contact.py", words, help_text) \
-                if kind == "try" or f"--{key}" not in flags | {"--impedance"} else None
+            what = (
+                naming._flags_problem("contact.py", words, help_text)
+                if kind == "try" or f"--{key}" not in flags | {"--impedance"}
+                else None
+            )
             if what:
-                project.say(CHAPTER, line, f"a {kind}: link to {value}: {what}",
-                            f"correct it, then {GATE}")
+                project.say(
+                    CHAPTER, line, f"a {kind}: link to {value}: {what}", f"correct it, then {GATE}"
+                )
 
 
 def check_reading(project):
@@ -265,8 +336,12 @@ def check_reading(project):
         wanted += [Path(file).name, *(functions or {})]
     for each in wanted:
         if each not in project.chapter:
-            project.say("meta.yaml", "^reading:", f"reading promises {each}, and {CHAPTER} does "
-                        "not name it", f"correct either, then {GATE}")
+            project.say(
+                "meta.yaml",
+                "^reading:",
+                f"reading promises {each}, and {CHAPTER} does not name it",
+                f"correct either, then {GATE}",
+            )
 
 
 def check_numbers(project, numbers):
@@ -290,8 +365,11 @@ def check_numbers(project, numbers):
 
     def outside(key, low, high):
         value = numbers.value(key)
-        return None if is_number(value) and low <= value <= high \
+        return (
+            None
+            if is_number(value) and low <= value <= high
             else f"{value} is outside {low} to {high}"
+        )
 
     def misplaced(letter, claims, answer):
         true = all([numbers.holds(claim) for claim in claims])
@@ -311,8 +389,15 @@ def check_numbers(project, numbers):
         for claim in exercise.get("holds") or []:
             attempt("meta.yaml", line, f"{name}, {claim}", false, claim)
         for letter, claims in (exercise.get("true_if") or {}).items():
-            attempt("meta.yaml", line, f"{name}, {'; '.join(claims)}", misplaced, letter, claims,
-                    exercise.get("answer"))
+            attempt(
+                "meta.yaml",
+                line,
+                f"{name}, {'; '.join(claims)}",
+                misplaced,
+                letter,
+                claims,
+                exercise.get("answer"),
+            )
     name = numbers.reference()
     check_reference_run(project, dict(leaves(numbers.run(name))), numbers.config_hash.get(name))
 
@@ -326,8 +411,12 @@ def check_reference_run(project, fresh_run, config_hash):
         fresh, said = fresh_run.get(key, "missing"), stated.get(key, "missing")
         numeric = isinstance(fresh, float) and isinstance(said, (int, float))
         if fresh != said and not (numeric and abs(fresh - said) <= TOLERANCE):
-            project.say("meta.yaml", rf"^ +{re.escape(key)}:", f"reference_run says {key} is "
-                        f"{said}, a fresh run gives {fresh}", f"{NUMBERS} --record")
+            project.say(
+                "meta.yaml",
+                rf"^ +{re.escape(key)}:",
+                f"reference_run says {key} is {said}, a fresh run gives {fresh}",
+                f"{NUMBERS} --record",
+            )
 
 
 def check_ledger(project, numbers):
@@ -343,14 +432,23 @@ def check_ledger(project, numbers):
     runs = wallclock.read_runs(ledger)
     ours = {row["tier"] for row in rows if row["chapter"] == wallclock.CHAPTER}
     for tier in sorted(ours ^ {*wallclock.SHOWN, *runs} if rows else ()):
-        project.say("wallclock.csv", 1, f"tier {tier} has a row and nothing measured, or no row; the "
-                    f"course shows {', '.join(wallclock.SHOWN)}", f"correct it, then {GATE}")
+        project.say(
+            "wallclock.csv",
+            1,
+            f"tier {tier} has a row and nothing measured, or no row; the "
+            f"course shows {', '.join(wallclock.SHOWN)}",
+            f"correct it, then {GATE}",
+        )
     for line, row in enumerate(rows, 2):
         if row["chapter"] == wallclock.CHAPTER and row["status"] == "MEASURED":
             what = wallclock.unfounded(row, runs)
             if what:
-                project.say("wallclock.csv", line, f"{row['tier']}: {what}",
-                            f"{wallclock.COMMAND} (on that tier)")
+                project.say(
+                    "wallclock.csv",
+                    line,
+                    f"{row['tier']}: {what}",
+                    f"{wallclock.COMMAND} (on that tier)",
+                )
     return {f"wallclock:{tier}": wallclock.COMMAND for tier in stale}
 
 
@@ -365,12 +463,20 @@ def check_measured(project, numbers):
     named = project.facts.get("stale") or []
     for name, command in stale.items():
         if name not in named:
-            project.say("meta.yaml", "^stale:", f"{name} was measured on other code than today's",
-                        f"{command}, or name {name} in `stale` of meta.yaml and the text says so")
+            project.say(
+                "meta.yaml",
+                "^stale:",
+                f"{name} was measured on other code than today's",
+                f"{command}, or name {name} in `stale` of meta.yaml and the text says so",
+            )
     for name in named:
         if name not in stale:
-            project.say("meta.yaml", "^stale:", f"stale names {name}, which is not",
-                        f"take it out, then {GATE}")
+            project.say(
+                "meta.yaml",
+                "^stale:",
+                f"stale names {name}, which is not",
+                f"take it out, then {GATE}",
+            )
 
 
 def check_readme(project):
@@ -380,13 +486,18 @@ def check_readme(project):
     if "<!-- generated:" not in text or not (project.root / "curriculum/readme.py").exists():
         return
     from curriculum import readme
+
     for block in readme.BLOCK.finditer(text):
         if block[0] != made_again(readme, block[0]):
-            project.say("README.md", line_at(text, block.start()), f"the generated block "
-                        f"{block['name']} is not what `{block['command']}` makes", readme.COMMAND)
+            project.say(
+                "README.md",
+                line_at(text, block.start()),
+                f"the generated block {block['name']} is not what `{block['command']}` makes",
+                readme.COMMAND,
+            )
 
 
-BLOCKS = {}             # the text of a generated block: what its command makes of it
+BLOCKS = {}  # the text of a generated block: what its command makes of it
 
 
 def made_again(readme, block):
@@ -407,8 +518,12 @@ def check_scope(project):
     title, words = scope.get("section", ""), scope.get("words") or []
     heading = re.search(rf"^#+ .*{re.escape(title)}.*", project.chapter, re.MULTILINE)
     if not title or not heading:
-        project.say("meta.yaml", "^scope:", f"scope.section {title!r} is no heading of {CHAPTER}",
-                    f"name the heading, then {GATE}")
+        project.say(
+            "meta.yaml",
+            "^scope:",
+            f"scope.section {title!r} is no heading of {CHAPTER}",
+            f"name the heading, then {GATE}",
+        )
         return
     first, last = texts.section(project.chapter, line_at(project.chapter, heading.start()))
     paths = [project.root / file for file in (CHAPTER, *regions.LITERATE, "checks.py", "README.md")]
@@ -418,8 +533,12 @@ def check_scope(project):
         for line, here in enumerate(text.split("\n"), 1):
             said = next((word for word in words if word.lower() in here), None)
             if said and not (file == CHAPTER and first <= line <= last):
-                project.say(file, line, f"{said!r} is said outside {CHAPTER}, section {title!r}",
-                            f"move it there or point there, then {GATE}")
+                project.say(
+                    file,
+                    line,
+                    f"{said!r} is said outside {CHAPTER}, section {title!r}",
+                    f"move it there or point there, then {GATE}",
+                )
 
 
 STATIC = (check_regions, check_passages, check_typed, check_exercises, check_scope)
@@ -449,20 +568,29 @@ def check(root=ROOT, numbers=None, first=False):
         for part in (check_names, check_readme):
             if not (first and problems):
                 part(project)
-    except ValueError as error:         # not YAML, no runs, or the script fails
+    except ValueError as error:  # not YAML, no runs, or the script fails
         at = "" if re.match(r"[\w./]+:\d+: ", str(error)) else "contact.py:1: "
         problems.append(f"{at}{error}; repair: correct it, then {GATE}")
     return problems
 
 
 def main(argv=None):
-    """Check, accept passages, or fuzz. Returns the exit status: 0 in order, 1 drift, 2 bad usage."""
+    """Check, accept, or fuzz. Returns the exit status: 0 in order, 1 drift, 2 bad usage."""
     from curriculum.common.arguments import Parser, number
+
     parser = Parser(prog=GATE, description="Hold chapter, code, numbers and ledger together.")
-    parser.add_argument("--accept", metavar="NAME", nargs="+",
-                        help="record the hash of these, showing what changed and where it is told")
-    parser.add_argument("--fuzz", metavar="N", type=number(int, low=1),
-                        help="make N random mutations, one at a time, and list those that pass")
+    parser.add_argument(
+        "--accept",
+        metavar="NAME",
+        nargs="+",
+        help="record the hash of these, showing what changed and where it is told",
+    )
+    parser.add_argument(
+        "--fuzz",
+        metavar="N",
+        type=number(int, low=1),
+        help="make N random mutations, one at a time, and list those that pass",
+    )
     parser.add_argument("--seed", type=number(int, low=0), default=0, help="of --fuzz (0)")
     parser.add_argument("--root", default=ROOT, type=Path, help="another copy of the project")
     args = parser.parse_args(argv)
@@ -476,10 +604,14 @@ def main(argv=None):
         return 0
     if args.fuzz:
         from curriculum.drift import fuzz
+
         return fuzz.main(args.root, args.fuzz, args.seed)
     problems = check(args.root)
-    print(*(problems or ["chapter, code, numbers and ledger agree"]), sep="\n",
-          file=sys.stderr if problems else sys.stdout)
+    print(
+        *(problems or ["chapter, code, numbers and ledger agree"]),
+        sep="\n",
+        file=sys.stderr if problems else sys.stdout,
+    )
     return 1 if problems else 0
 
 

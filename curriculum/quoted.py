@@ -8,7 +8,7 @@ A reference stands in the text in double braces and is replaced by a number of a
 
     {{quality.penalty.rest_penetration_frac|.5f}}   metrics.json of the reference run
     {{drop-dt-0.03:quality.penalty.energy_excess|,.0f}}     of another run that meta.yaml names
-    {{contact.CONTACT_MARGIN}}       a constant of contact.py; exact. and piles. are the other two files
+    {{contact.CONTACT_MARGIN}}       a constant of contact.py; exact. and piles. are the other files
     {{contact.run_model.iters}}      the default of a function's argument
     {{bench:skip.cases}}  {{stress:maps.cells}}      results of the benchmark, of the stress report
     {{wallclock.cpu-laptop}}         the ledger: minutes, or "not yet measured"
@@ -44,25 +44,45 @@ ROOT = Path(__file__).resolve().parents[1]
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")
 TYPED = re.compile(r"=\s*(.+?)\s*\|\s*(.*?)\s*")
 HOLDS = re.compile(r"<!--\s*holds:\s*(.*?)\s*-->")
-COMPARE = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge,
-           "==": operator.eq}
+COMPARE = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "==": operator.eq,
+}
 COMBINE = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
-RESULTS = ("bench", "stress")       # curriculum/NAME/results/results.json
-WORDS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
-         "eleven", "twelve")
-NEARLY = 0.05           # a number this close to a whole one, relatively, may be put into words
+RESULTS = ("bench", "stress")  # curriculum/NAME/results/results.json
+WORDS = (
+    "zero",
+    "one",
+    "two",
+    "three",
+    "four",
+    "five",
+    "six",
+    "seven",
+    "eight",
+    "nine",
+    "ten",
+    "eleven",
+    "twelve",
+)
+NEARLY = 0.05  # a number this close to a whole one, relatively, may be put into words
 
 
 def load_meta(root=ROOT):
     """meta.yaml as a dict. Raises ValueError `file:line: what` when it is not YAML."""
     import yaml
+
     try:
         text = (Path(root) / "meta.yaml").read_text("utf-8", "replace")
         return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader)) or {}
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        raise ValueError(f"meta.yaml:{mark.line + 1 if mark else 1}: not YAML: {error}"
-                         .replace("\n", " ")) from None
+        raise ValueError(
+            f"meta.yaml:{mark.line + 1 if mark else 1}: not YAML: {error}".replace("\n", " ")
+        ) from None
 
 
 def fresh_run(root, flags):
@@ -106,8 +126,11 @@ class Numbers:
 
     def run_all(self, text=None):
         """Make the runs that `text` names (without one: all), side by side on the cores."""
-        wanted = [name for name in self.known_runs()
-                  if text is None or re.search(rf"(?<![\w-]){re.escape(name)}:", text)]
+        wanted = [
+            name
+            for name in self.known_runs()
+            if text is None or re.search(rf"(?<![\w-]){re.escape(name)}:", text)
+        ]
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(self.run, wanted))
 
@@ -169,8 +192,11 @@ class Numbers:
 
     def stale_tiers(self):
         """The tiers whose ledger row was measured on another default run, or on other code."""
-        rows = [row for row in wallclock.read(self.root / "wallclock.csv")
-                if row["chapter"] == wallclock.CHAPTER and row["status"] == "MEASURED"]
+        rows = [
+            row
+            for row in wallclock.read(self.root / "wallclock.csv")
+            if row["chapter"] == wallclock.CHAPTER and row["status"] == "MEASURED"
+        ]
         if not rows:
             return {}
         self.run(self.reference())
@@ -236,7 +262,7 @@ def constants(text):
             pairs = [(target.id, node.value) for target in targets if isinstance(target, ast.Name)]
             where = found
         elif isinstance(node, ast.FunctionDef):
-            last = node.args.args[len(node.args.args) - len(node.args.defaults):]
+            last = node.args.args[len(node.args.args) - len(node.args.defaults) :]
             pairs = [(argument.arg, value) for argument, value in zip(last, node.args.defaults)]
             where = found.setdefault(node.name, {})
         else:
@@ -267,8 +293,10 @@ def dig(value, key, whole):
     if parts:
         known = list(value) if isinstance(value, dict) else []
         known = range(len(value)) if isinstance(value, (list, tuple)) else known
-        raise ValueError(f"{whole!r} is not among the generated numbers: no {key!r}; "
-                         f"known there: {', '.join(map(str, known)) or 'nothing'}")
+        raise ValueError(
+            f"{whole!r} is not among the generated numbers: no {key!r}; "
+            f"known there: {', '.join(map(str, known)) or 'nothing'}"
+        )
     return value
 
 
@@ -286,34 +314,46 @@ def record(root=ROOT):
     import datetime
     import difflib
     import platform
+
     import numpy
+
     numbers = Numbers(root)
     metrics = numbers.run(numbers.reference())
-    block = ["reference_run:",
-             "  provenance: measured by `python -m curriculum.quoted --record`,",
-             f"    {datetime.date.today()}, numpy {numpy.__version__}, "
-             f"Python {platform.python_version()}",
-             f'  config_hash: "{numbers.config_hash[numbers.reference()]}"', "  values:"]
+    block = [
+        "reference_run:",
+        "  provenance: measured by `python -m curriculum.quoted --record`,",
+        f"    {datetime.date.today()}, numpy {numpy.__version__}, "
+        f"Python {platform.python_version()}",
+        f'  config_hash: "{numbers.config_hash[numbers.reference()]}"',
+        "  values:",
+    ]
     block += [f"    {key}: {json.dumps(value)}" for key, value in leaves(metrics)]
     path = Path(root) / "meta.yaml"
     old = path.read_text("utf-8")
-    new, found = re.subn(r"^reference_run:.*\n(?: .*\n)*", lambda _: "\n".join(block) + "\n", old,
-                         flags=re.MULTILINE)
+    new, found = re.subn(
+        r"^reference_run:.*\n(?: .*\n)*", lambda _: "\n".join(block) + "\n", old, flags=re.MULTILINE
+    )
     if found != 1:
         raise ValueError("meta.yaml:1: no block `reference_run`")
     write_whole(path, new)
-    return list(difflib.unified_diff(old.splitlines(), new.splitlines(), "before", "after",
-                                     n=0, lineterm=""))
+    return list(
+        difflib.unified_diff(
+            old.splitlines(), new.splitlines(), "before", "after", n=0, lineterm=""
+        )
+    )
 
 
 def main(argv=None):
     """List the numbers, show one, or record the reference run. Returns the exit status."""
     from curriculum.common.arguments import Parser
-    parser = Parser(prog="python -m curriculum.quoted",
-                    description="The numbers that the chapter quotes.")
+
+    parser = Parser(
+        prog="python -m curriculum.quoted", description="The numbers that the chapter quotes."
+    )
     parser.add_argument("reference", nargs="?", help="an expression; a fraction needs |FORMAT")
-    parser.add_argument("--record", action="store_true",
-                        help="write the reference run into meta.yaml")
+    parser.add_argument(
+        "--record", action="store_true", help="write the reference run into meta.yaml"
+    )
     args = parser.parse_args(argv)
     try:
         if args.record:

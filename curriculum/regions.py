@@ -61,7 +61,7 @@ class Scan:
     def __init__(self, data, file):
         """`data` is the file's bytes; `file` is its path from the root, for the problems."""
         self.file, self.problems, self.regions = file, [], {}
-        self.outside = []                               # (line number, line), 1-based
+        self.outside = []  # (line number, line), 1-based
         text = self._decode(data)
         if text is not None:
             self._split(text.split("\n"))
@@ -82,13 +82,17 @@ class Scan:
             text = data.decode("utf-8")
         except UnicodeDecodeError as error:
             line = data.count(b"\n", 0, error.start) + 1
-            self.problem(line, f"byte {data[error.start]:#x} is not UTF-8",
-                         f"save it as UTF-8, then {CHECK}")
+            self.problem(
+                line, f"byte {data[error.start]:#x} is not UTF-8", f"save it as UTF-8, then {CHECK}"
+            )
             return None
         if "\r" in text:
             line = text.count("\n", 0, text.index("\r")) + 1
-            self.problem(line, "a carriage return: lines must end in \\n alone",
-                         f"sed -i 's/\\r//g' {self.file}")
+            self.problem(
+                line,
+                "a carriage return: lines must end in \\n alone",
+                f"sed -i 's/\\r//g' {self.file}",
+            )
         return text.replace("\r\n", "\n").replace("\r", "\n")
 
     def _split(self, lines):
@@ -97,18 +101,25 @@ class Scan:
             begin = BEGIN.fullmatch(line)
             if begin:
                 if name is not None:
-                    self.problem(number, f"region {begin[1]} begins inside region {name}, begun "
-                                         f"in line {first - 1}")
+                    self.problem(
+                        number,
+                        f"region {begin[1]} begins inside region {name}, begun in line {first - 1}",
+                    )
                 name, first = begin[1], number + 1
                 if name in self.regions:
-                    self.problem(number, f"a second region {name}; the other begins in line "
-                                         f"{self.regions[name].first - 1}")
+                    self.problem(
+                        number,
+                        f"a second region {name}; the other begins in line "
+                        f"{self.regions[name].first - 1}",
+                    )
             elif line == END:
                 self._close(name, first, number, lines)
                 name = None
             elif LOOKS_LIKE_ONE.fullmatch(line):
-                self.problem(number, f"unknown marker {line.strip()!r}; allowed: "
-                                     f"'# --- region: NAME ---', '{END}'")
+                self.problem(
+                    number,
+                    f"unknown marker {line.strip()!r}; allowed: '# --- region: NAME ---', '{END}'",
+                )
             elif name is None:
                 self.outside.append((number, line))
         if name is not None:
@@ -118,7 +129,7 @@ class Scan:
         if name is None:
             self.problem(number, "endregion, but no region is open")
             return
-        body = "".join(f"{each}\n" for each in lines[first - 1:number - 1])
+        body = "".join(f"{each}\n" for each in lines[first - 1 : number - 1])
         if not body.strip():
             self.problem(first - 1, f"region {name} is empty")
         self.regions.setdefault(name, Region(name, first, body, self.file))
@@ -163,9 +174,11 @@ def scan_all(root=ROOT, read=None):
         problems += scan.problems
         for region in (scan.docstring, *scan.regions.values()):
             if region.name in found:
-                problems.append(f"{file}:{region.first - 1}: a second region {region.name}; the "
-                                f"other is in {found[region.name].file}; repair: rename one, then "
-                                f"{CHECK}")
+                problems.append(
+                    f"{file}:{region.first - 1}: a second region {region.name}; the "
+                    f"other is in {found[region.name].file}; repair: rename one, then "
+                    f"{CHECK}"
+                )
             found.setdefault(region.name, region)
     return found, problems
 
@@ -197,6 +210,7 @@ def find_all(root=ROOT):
 def main(argv=None):
     """List the regions, or print one. Returns the exit status: 1 malformed, 2 no such region."""
     from curriculum.common.arguments import Parser
+
     parser = Parser(prog=CHECK, description="The regions of the literate files.")
     parser.add_argument("name", nargs="?", metavar="NAME", help="print this one")
     name = parser.parse_args(argv).name

@@ -19,8 +19,8 @@ LEDGER = os.path.join(ROOT, "wallclock.csv")
 CHAPTER = "ch3.5-contact"
 COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", "status")
 COMMAND = "python -m curriculum.common.wallclock --measure"
-RUNS = "wallclock_runs.json"                      # beside the ledger: the times behind each row
-SHOWN = ("cpu-laptop", "mps", "t4", "4090")       # tiers the course shows, measured or not
+RUNS = "wallclock_runs.json"  # beside the ledger: the times behind each row
+SHOWN = ("cpu-laptop", "mps", "t4", "4090")  # tiers the course shows, measured or not
 
 
 def read(path=None):
@@ -83,8 +83,10 @@ def render_line(chapter, tier, path=None, usual=True):
         return f"wall-clock on {tier}: not yet measured"
     if usual:
         return f"expected wall-clock on {tier}: {show(minutes)}, measured"
-    return (f"wall-clock on {tier}: not measured for these flags (the default run: "
-            f"{show(minutes)}); a terminal shows the time left")
+    return (
+        f"wall-clock on {tier}: not measured for these flags (the default run: "
+        f"{show(minutes)}); a terminal shows the time left"
+    )
 
 
 def printed_hash(printed):
@@ -96,7 +98,9 @@ def run_hash(config_hash, root=ROOT):
     """The hash of a ledger row: of the config hash that contact.py prints, and of the code."""
     import hashlib
     import json
+
     from curriculum import measured
+
     code = {file: measured.code_hash(file, root) for file in measured.LITERATE}
     text = json.dumps([config_hash, code], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
@@ -105,6 +109,7 @@ def run_hash(config_hash, root=ROOT):
 def read_runs(path=None):
     """{tier: {"seconds": [...], "config_hash", "commit", "date", "digest"}}, {} without a file."""
     import json
+
     path = os.path.join(os.path.dirname(path or LEDGER), RUNS)
     if not os.path.exists(path):
         return {}
@@ -116,6 +121,7 @@ def digest(record):
     """12 hexadecimal digits of what is recorded of one measurement, but for the digest itself."""
     import hashlib
     import json
+
     facts = {key: value for key, value in record.items() if key != "digest"}
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:12]
 
@@ -123,14 +129,17 @@ def digest(record):
 def unfounded(row, runs):
     """What a MEASURED row says that its recorded times do not, or None."""
     import statistics
+
     record = runs.get(row["tier"])
     if not record:
         return f"no times of {row['tier']} in {RUNS}"
     if record.get("digest") != digest(record):
         return f"{RUNS} was edited: its digest no longer fits"
     minutes = f"{statistics.median(record['seconds']) / 60:.3g}"
-    for name, said in (("wallclock_min", minutes), *((key, record[key]) for key in
-                                                     ("config_hash", "commit", "date"))):
+    for name, said in (
+        ("wallclock_min", minutes),
+        *((key, record[key]) for key in ("config_hash", "commit", "date")),
+    ):
         if row[name] != said:
             return f"{name} is {row[name]}, but {RUNS} has {said}"
     return None
@@ -146,19 +155,22 @@ def measure(runs):
     import sys
     import tempfile
     import time
+
     script, times = os.path.join(ROOT, "contact.py"), []
     env = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     with tempfile.TemporaryDirectory() as out:
         for _ in range(runs + 1):
             start = time.perf_counter()
-            run = subprocess.run([sys.executable, script, "--out", out], env=env,
-                                 capture_output=True, text=True)
+            run = subprocess.run(
+                [sys.executable, script, "--out", out], env=env, capture_output=True, text=True
+            )
             times.append(time.perf_counter() - start)
             if run.returncode:
                 raise RuntimeError(f"contact.py failed: {run.stderr.strip()}")
             if not os.path.exists(os.path.join(out, "contact.rrd")):
-                raise RuntimeError("the default run records, and rerun is missing: "
-                                   "pip install rerun-sdk")
+                raise RuntimeError(
+                    "the default run records, and rerun is missing: pip install rerun-sdk"
+                )
     return [round(seconds, 4) for seconds in times[1:]], printed_hash(run.stdout)
 
 
@@ -169,7 +181,9 @@ def write_row(tier, seconds, config_hash, commit, date, path=None):
     """
     import json
     import statistics
+
     from curriculum.common.files import write_whole
+
     path = path or LEDGER
     minutes = f"{statistics.median(seconds) / 60:.3g}"
     values = CHAPTER, tier, minutes, config_hash, commit, date, "MEASURED"
@@ -181,8 +195,10 @@ def write_row(tier, seconds, config_hash, commit, date, path=None):
         rows.setdefault((CHAPTER, name), dict(zip(COLUMNS, pending)))
     rows[CHAPTER, tier] = dict(zip(COLUMNS, values))
     lines = [",".join(COLUMNS)] + [",".join(r.values()) for r in rows.values()]
-    write_whole(os.path.join(os.path.dirname(path), RUNS),
-                json.dumps(times, indent=1, sort_keys=True) + "\n")
+    write_whole(
+        os.path.join(os.path.dirname(path), RUNS),
+        json.dumps(times, indent=1, sort_keys=True) + "\n",
+    )
     write_whole(path, "\n".join(lines) + "\n")
 
 
@@ -191,16 +207,21 @@ def main(argv=None):
     import datetime
     import subprocess
     import sys
+
     from curriculum.common.arguments import Parser, number
     from curriculum.common.device import cpu_tier
-    parser = Parser(prog="python -m curriculum.common.wallclock",
-                    description="The wall-clock ledger.")
+
+    parser = Parser(
+        prog="python -m curriculum.common.wallclock", description="The wall-clock ledger."
+    )
     parser.add_argument("--measure", action="store_true", help="time contact.py, write the row")
     parser.add_argument("--runs", type=number(int, low=3), default=9, help="counted runs (9)")
     args = parser.parse_args(argv)
     if args.measure:
+
         def git(*words):
             return subprocess.check_output(["git", "-C", ROOT, *words], text=True).strip()
+
         try:
             if git("status", "--porcelain", "*.py"):
                 raise RuntimeError("the code differs from the commit; commit it first")
@@ -209,8 +230,9 @@ def main(argv=None):
         except (RuntimeError, OSError, subprocess.CalledProcessError) as error:
             print(f"nothing written: {error}", file=sys.stderr)
             return 1
-        write_row(cpu_tier(), seconds, run_hash(config_hash), commit,
-                  datetime.date.today().isoformat())
+        write_row(
+            cpu_tier(), seconds, run_hash(config_hash), commit, datetime.date.today().isoformat()
+        )
     for row in read():
         minutes = float(row["wallclock_min"]) if row["status"] == "MEASURED" else None
         print(f"{row['tier']:<12}{show(minutes)}")

@@ -1,1 +1,1 @@
-"""What the gate looks at in texts: numbers, formulas, names, commands, and the passages it hashes."""
+"""What the gate reads in texts: numbers, formulas, names, commands, and passages it hashes."""

@@ -2,9 +2,9 @@
 
     python -m curriculum.check_prose_code_drift --fuzz 200 --seed 1
 
-A change is one that an author could make by accident: a digit, a sign, a letter, a name, a line that
-goes or changes place. Each is made in a copy of the project, where all runs are reused. Changes are
-of a kind that the gate must catch, or of an open kind (plain words), which are only counted and
+A change is one that an author could make by accident: a digit, a sign, a letter, a name, a line
+that goes or changes place. Each is made in a copy of the project, where all runs are reused. It is
+of a kind that the gate must catch, or of an open kind (plain words), which is only counted and
 listed. The same N and seed give the same changes to the same project.
 """
 
@@ -23,11 +23,35 @@ from curriculum.drift import texts
 from curriculum.drift.texts import CHAPTER
 from curriculum.quoted import HOLDS, Numbers
 
-IGNORED = shutil.ignore_patterns(".git", "__pycache__", "outputs", ".venv", "*.png", "*.rrd", "build",
-                                 ".hypothesis", ".pytest_cache", ".ruff_cache", "*.egg-info", "tests")
-TURNED = {"deeper": "shallower", "more": "less", "larger": "smaller", "never": "always", "up": "down",
-          "above": "below", "longer": "shorter", "stiffer": "softer", "faster": "slower",
-          "is": "is not", "does": "does not", "can": "cannot", "positive": "negative"}
+IGNORED = shutil.ignore_patterns(
+    ".git",
+    "__pycache__",
+    "outputs",
+    ".venv",
+    "*.png",
+    "*.rrd",
+    "build",
+    ".hypothesis",
+    ".pytest_cache",
+    ".ruff_cache",
+    "*.egg-info",
+    "tests",
+)
+TURNED = {
+    "deeper": "shallower",
+    "more": "less",
+    "larger": "smaller",
+    "never": "always",
+    "up": "down",
+    "above": "below",
+    "longer": "shorter",
+    "stiffer": "softer",
+    "faster": "slower",
+    "is": "is not",
+    "does": "does not",
+    "can": "cannot",
+    "positive": "negative",
+}
 COMPARED = {">": "<", "<": ">", ">=": "<", "<=": ">", "==": ">"}
 NUMERALS = ("two", "three", "four", "five", "ten", "hundred", "twice", "half", "third")
 
@@ -37,7 +61,7 @@ class Kind(NamedTuple):
 
     name: str
     files: tuple
-    change: object          # (rng, text) -> another text, or None where there is nothing to change
+    change: object  # (rng, text) -> another text, or None where there is nothing to change
     open: bool = False
 
 
@@ -49,58 +73,73 @@ def pick(rng, pattern, text, flags=re.MULTILINE):
 
 def put(text, match, new, group=0):
     """The text with one match, or a group of it, replaced."""
-    return text[:match.start(group)] + new + text[match.end(group):]
+    return text[: match.start(group)] + new + text[match.end(group) :]
 
 
 def another_digit(rng, token):
     """A number with one of its digits changed; the first stays above zero."""
     place = rng.choice([k for k, letter in enumerate(token) if letter.isdigit()])
-    return token[:place] + rng.choice([d for d in "123456789" if d != token[place]]) + token[place + 1:]
+    return (
+        token[:place]
+        + rng.choice([d for d in "123456789" if d != token[place]])
+        + token[place + 1 :]
+    )
 
 
 def typo(rng, word):
     """A word with a letter left out, doubled, or changed with its neighbour."""
     place = rng.randrange(len(word) - 1)
-    slips = [word[:place] + word[place + 1:], word[:place] + word[place] + word[place:],
-             word[:place] + word[place + 1] + word[place] + word[place + 2:]]
+    slips = [
+        word[:place] + word[place + 1 :],
+        word[:place] + word[place] + word[place:],
+        word[:place] + word[place + 1] + word[place] + word[place + 2 :],
+    ]
     slips = [slip for slip in slips if slip != word]
     return rng.choice(slips)
 
 
 def digit_of(pattern, group=0):
     """Change one digit within a match."""
+
     def change(rng, text):
         found = pick(rng, pattern, text)
         if not found or not any(map(str.isdigit, found[group])):
             return None
         return put(text, found, another_digit(rng, found[group]), group)
+
     return change
 
 
 def typo_in(pattern, group=0):
     """Slip in a word that a match holds."""
+
     def change(rng, text):
         found = pick(rng, pattern, text)
         return put(text, found, typo(rng, found[group]), group) if found else None
+
     return change
 
 
 def leave_out(pattern):
     """Delete a match."""
+
     def change(rng, text):
         found = pick(rng, pattern, text)
         return put(text, found, "") if found else None
+
     return change
 
 
 def swap_two(pattern, group=0):
     """Let two matches change places."""
+
     def change(rng, text):
         found = list(re.finditer(pattern, text, re.MULTILINE))
         if len({match[group] for match in found}) < 2:
             return None
         one, two = sorted(rng.sample(found, 2), key=lambda match: match.start())
         return put(put(text, two, one[group], group), one, two[group], group)
+
     return change
 
 
@@ -114,8 +153,11 @@ def number_word(rng, text):
 
 def formula(rng, text):
     """Another digit, sign or letter in a formula."""
-    found = [match for match in texts.MATH.finditer(texts.blank(
-        texts.FENCE.pattern, text, texts.FENCE.flags)) if len(match[0]) > 8]
+    found = [
+        match
+        for match in texts.MATH.finditer(texts.blank(texts.FENCE.pattern, text, texts.FENCE.flags))
+        if len(match[0]) > 8
+    ]
     if not found:
         return None
     whole = rng.choice(found)
@@ -123,8 +165,11 @@ def formula(rng, text):
     if not part:
         return None
     new = {"+": "-", "-": "+", "<": ">", ">": "<", r"\ge": r"\le", r"\le": r"\ge"}.get(part[0])
-    new = new or (another_digit(rng, part[0]) if part[0].isdigit() else
-                  rng.choice([letter for letter in "abcdkmxv" if letter != part[0]]))
+    new = new or (
+        another_digit(rng, part[0])
+        if part[0].isdigit()
+        else rng.choice([letter for letter in "abcdkmxv" if letter != part[0]])
+    )
     return put(text, whole, put(whole[0], part, new))
 
 
@@ -145,16 +190,20 @@ def plain_word(rng, text):
 
 def code_name(rng, text):
     """A slip in a name of a code span of the prose."""
-    prose = texts.blank(texts.FENCE.pattern, texts.blank(texts.COMMENT.pattern, text, re.DOTALL),
-                        texts.FENCE.flags)
+    prose = texts.blank(
+        texts.FENCE.pattern, texts.blank(texts.COMMENT.pattern, text, re.DOTALL), texts.FENCE.flags
+    )
     found = pick(rng, r"(?<!`)`([a-z]\w{4,})(\(\))?`(?!`)", prose)
     return put(text, found, typo(rng, found[1]), 1) if found else None
 
 
 def command(rng, text):
     """A slip in the file, module or flag of a command in a fence."""
-    found = pick(rng, r"^(?:\S*/)?python\S* (?:-m )?(?:curriculum\.)?(\w+)|^[^#\n]*?python[^\n]* --([a-z]\w+)",
-                 text)
+    found = pick(
+        rng,
+        r"^(?:\S*/)?python\S* (?:-m )?(?:curriculum\.)?(\w+)|^[^#\n]*?python[^\n]* --([a-z]\w+)",
+        text,
+    )
     group = next((k for k in (1, 2) if found and found[k]), None)
     if not group or found[group] in ("m", "venv", "pip", "pytest"):
         return None
@@ -164,7 +213,11 @@ def command(rng, text):
 def letter(rng, text):
     """Another answer."""
     found = pick(rng, r"^ +answer: ([A-Z])", text)
-    return put(text, found, rng.choice([each for each in "ABC" if each != found[1]]), 1) if found else None
+    return (
+        put(text, found, rng.choice([each for each in "ABC" if each != found[1]]), 1)
+        if found
+        else None
+    )
 
 
 def band(rng, text):
@@ -176,17 +229,37 @@ def band(rng, text):
 def measured_row(rng, text):
     """A tier that was not measured, with a row."""
     found = pick(rng, r"^([\w.-]+,[\w-]+),,,,,PENDING$", text)
-    return put(text, found, f"{found[1]},0.01,007f6310bb5b,a771e72,2026-01-02,MEASURED") if found else None
+    return (
+        put(text, found, f"{found[1]},0.01,007f6310bb5b,a771e72,2026-01-02,MEASURED")
+        if found
+        else None
+    )
 
 
 def code(rng, text):
     """Another digit, sign or word in code, outside docstring and markers."""
-    found = pick(rng, r"^(?! *#)(?=.*[=(]).*?([0-9]|[<>]| [+-] |\b(?:and|or|min|max|all|any|True|False)\b)", text)
+    found = pick(
+        rng,
+        r"^(?! *#)(?=.*[=(]).*?([0-9]|[<>]| [+-] |\b(?:and|or|min|max|all|any|True|False)\b)",
+        text,
+    )
     if not found:
         return None
     old = found[1]
-    turned = {"<": ">", ">": "<", " + ": " - ", " - ": " + ", "and": "or", "or": "and", "min": "max",
-              "max": "min", "all": "any", "any": "all", "True": "False", "False": "True"}
+    turned = {
+        "<": ">",
+        ">": "<",
+        " + ": " - ",
+        " - ": " + ",
+        "and": "or",
+        "or": "and",
+        "min": "max",
+        "max": "min",
+        "all": "any",
+        "any": "all",
+        "True": "False",
+        "False": "True",
+    }
     return put(text, found, turned.get(old) or another_digit(rng, old), 1)
 
 
@@ -196,8 +269,9 @@ def docstring(rng, text):
     found = pick(rng, r"\b[a-z]{4,}\b|\d|[<>]", head[1]) if head else None
     if not found:
         return None
-    new = {"<": ">", ">": "<"}.get(found[0]) or (another_digit(rng, found[0])
-                                                 if found[0].isdigit() else typo(rng, found[0]))
+    new = {"<": ">", ">": "<"}.get(found[0]) or (
+        another_digit(rng, found[0]) if found[0].isdigit() else typo(rng, found[0])
+    )
     return put(text, head, put(head[1], found, new), 1)
 
 
@@ -226,7 +300,11 @@ KINDS = (
     Kind("a flag in the text", PROSE, typo_in(r"`--([a-z]{4,})", 1)),
     Kind("a command", PROSE + README, command),
     Kind("a live link", PROSE, typo_in(r"\]\((?:try|drag):(\w{2,})", 1)),
-    Kind("an image or link", PROSE + README, typo_in(r"\]\((?!http|try|drag|#)[^)]*?(\w{4,})\.\w+\)", 1)),
+    Kind(
+        "an image or link",
+        PROSE + README,
+        typo_in(r"\]\((?!http|try|drag|#)[^)]*?(\w{4,})\.\w+\)", 1),
+    ),
     Kind("a number of a README block", README, block_digit),
     Kind("an answer", META, letter),
     Kind("a band", META, band),
@@ -262,7 +340,9 @@ class Fuzz:
         self.made = Numbers(self.root)
         problems = gate.check(self.root, self.made)
         if problems:
-            raise ValueError("\n".join(["the project is not in order before any change:", *problems]))
+            raise ValueError(
+                "\n".join(["the project is not in order before any change:", *problems])
+            )
 
     def caught(self, file, text):
         """The first problem that the gate finds once `file` has this text; None when it passes."""
@@ -278,8 +358,11 @@ class Fuzz:
 
     def change(self, rng, kind):
         """(file, before, after) of one change of that kind, or None where there is none to make."""
-        files = [path.relative_to(self.root).as_posix() for pattern in kind.files
-                 for path in sorted(self.root.glob(pattern))]
+        files = [
+            path.relative_to(self.root).as_posix()
+            for pattern in kind.files
+            for path in sorted(self.root.glob(pattern))
+        ]
         for file in rng.sample(files, len(files)):
             before = (self.root / file).read_text("utf-8")
             after = kind.change(rng, before)
@@ -300,7 +383,7 @@ def around(old, new, width=60):
     """The part of two lines where they differ."""
     start = next((k for k, pair in enumerate(zip(old, new)) if pair[0] != pair[1]), 0)
     start = max(start - width // 2, 0)
-    return old[start:start + width].strip(), new[start:start + width].strip()
+    return old[start : start + width].strip(), new[start : start + width].strip()
 
 
 def run(root, count, seed):
@@ -331,15 +414,21 @@ def main(root, count, seed):
     through = Counter(kind for kind, *_ in passed)
     print(f"{'change':<30}{'made':>6}{'caught':>8}")
     for kind, number in made.items():
-        print(f"{kind.name:<30}{number:>6}{number - through[kind]:>8}{'  open' if kind.open else ''}")
+        print(
+            f"{kind.name:<30}{number:>6}{number - through[kind]:>8}{'  open' if kind.open else ''}"
+        )
     for kind, file, line, old, new in passed:
         before, after = around(old, new)
-        print(f"passed{' (open)' if kind.open else ''}: {file}:{line}: {kind.name}: "
-              f"{before!r} became {after!r}")
+        print(
+            f"passed{' (open)' if kind.open else ''}: {file}:{line}: {kind.name}: "
+            f"{before!r} became {after!r}"
+        )
     missing = [kind.name for kind in KINDS if not made[kind]]
     if missing and count >= len(KINDS):
         print("nothing to change:", ", ".join(missing))
     closed = [each for each in passed if not each[0].open]
-    print(f"{sum(made.values())} changes, seed {seed}: {len(passed)} passed, {len(closed)} of them of a "
-          "kind that the gate must catch")
+    print(
+        f"{sum(made.values())} changes, seed {seed}: {len(passed)} passed, {len(closed)} of them of "
+        "a kind that the gate must catch"
+    )
     return 1 if closed else 0

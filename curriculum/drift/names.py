@@ -35,8 +35,8 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)|<img[^>]*\bsrc=\"([^\"]+)\"")
 PYTHON = re.compile(r"(\S*/)?(python[\d.]*|pytest|pip|uv|rerun)")
 GENERATED = re.compile(r"<!-- generated: [\w-]+ by ([^>]*?) -->")
 PLACEHOLDER = re.compile(r"[A-Z][A-Z_:]*|\.\.\.|\[.*\]|<.*>|'?[A-Z]+\|?[A-Z]*'?")
-HELP = {}               # (target, its text): what --help prints
-OTHERS = ("pytest", "pip", "uv", "rerun", "git", "venv", "http")    # commands with flags of their own
+HELP = {}  # (target, its text): what --help prints
+OTHERS = ("pytest", "pip", "uv", "rerun", "git", "venv", "http")  # commands with flags of their own
 
 
 class Names:
@@ -62,16 +62,27 @@ class Names:
         if (self.root / span.strip("/")).exists() or PYTHON.match(span):
             return []
         text = re.sub(r"\{\{.*?\}\}|\"[^\"]*\"|'[^']*'|--[a-z][\w-]*([ =][^\s`]+)?", " ", span)
-        text = re.sub(r"[\w./-]+\.(py|md|json|yaml|csv|rrd|toml|c|h|html|ipynb|lock)\b"
-                      r"|\b[0-9a-f]{7,64}\b", self._file, text)
-        return [word for word in WORD.findall(re.sub(r"(?<=\d)e[-+]?\d+", "", text))
-                if word not in self.words and len(word) > 1]
+        text = re.sub(
+            r"[\w./-]+\.(py|md|json|yaml|csv|rrd|toml|c|h|html|ipynb|lock)\b"
+            r"|\b[0-9a-f]{7,64}\b",
+            self._file,
+            text,
+        )
+        return [
+            word
+            for word in WORD.findall(re.sub(r"(?<=\d)e[-+]?\d+", "", text))
+            if word not in self.words and len(word) > 1
+        ]
 
     def _file(self, match):
         """Blank when the file is there or is one that a run writes, else its name as it stands."""
         name = match[0]
-        there = (self.root / name).exists() or name in self.words or not name[-1].isalpha() \
+        there = (
+            (self.root / name).exists()
+            or name in self.words
+            or not name[-1].isalpha()
             or any((self.root / folder / name).exists() for folder in ("curriculum", "exercises"))
+        )
         hexadecimal = re.fullmatch(r"[0-9a-f]{7,64}", name)
         made = Path(name).suffix in (".rrd", ".json", ".html", ".ipynb") or "outputs" in name
         foreign = any(name in key for key, _ in leaves(self.facts.get("reading") or {}))
@@ -87,8 +98,12 @@ def code_words(text):
             if token.type == tokenize.NAME:
                 found.add(token.string)
         for node in ast.walk(ast.parse(text)):
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) \
-                    and len(node.value) < 40 and "\n" not in node.value:
+            if (
+                isinstance(node, ast.Constant)
+                and isinstance(node.value, str)
+                and len(node.value) < 40
+                and "\n" not in node.value
+            ):
                 found |= set(WORD.findall(node.value))
     except (SyntaxError, tokenize.TokenError):
         found |= set(WORD.findall(text))
@@ -106,8 +121,13 @@ def help_for(root, target):
     key = target, path.read_bytes()
     if key not in HELP:
         words = [target] if target.endswith(".py") else ["-m", target]
-        run = subprocess.run([sys.executable, "-B", *words, "--help"], cwd=root, text=True,
-                             capture_output=True, env=os.environ | {"COLUMNS": "400"})
+        run = subprocess.run(
+            [sys.executable, "-B", *words, "--help"],
+            cwd=root,
+            text=True,
+            capture_output=True,
+            env=os.environ | {"COLUMNS": "400"},
+        )
         HELP[key] = run.stdout if run.returncode == 0 else None
     return HELP[key]
 
@@ -128,9 +148,11 @@ def command_problem(root, line, facts=None):
     except ValueError as error:
         return f"cannot be read: {error}"
     for cut in [k for k, word in enumerate(words) if word in ("&&", "||", ";", "|", ">")][:1]:
-        return (command_problem(root, shlex.join(words[:cut]))
-                or (command_problem(root, shlex.join(words[cut + 1:]))
-                    if words[cut] in ("&&", "||", ";") else None))
+        return command_problem(root, shlex.join(words[:cut])) or (
+            command_problem(root, shlex.join(words[cut + 1 :]))
+            if words[cut] in ("&&", "||", ";")
+            else None
+        )
     while words and re.fullmatch(r"[A-Z_]+=.*", words[0]):
         words = words[1:]
     program = Path(words[0]).name if words else ""
@@ -188,12 +210,17 @@ def _flags_problem(target, words, text):
         if flag not in flags:
             return f"{target} has no {flag}; it has {' '.join(sorted(flags))}"
         choices = re.search(rf"{flag} \{{([^}}]*)\}}", text)
-        value = value or next(iter(words[k + 1:k + 2]), "")
+        value = value or next(iter(words[k + 1 : k + 2]), "")
         if choices and value not in choices[1].split(",") and not PLACEHOLDER.fullmatch(value):
             return f"{target} {flag} takes {choices[1]}, not {value!r}"
     first = re.search(r"^usage:.*? \{([^}]*)\}( |$)", re.sub(r"\[[^\]]*\]", "", text), re.M)
-    if first and words and not words[0].startswith("-") and words[0] not in first[1].split(",") \
-            and not PLACEHOLDER.fullmatch(words[0]):
+    if (
+        first
+        and words
+        and not words[0].startswith("-")
+        and words[0] not in first[1].split(",")
+        and not PLACEHOLDER.fullmatch(words[0])
+    ):
         return f"{target} takes {first[1]}, not {words[0]!r}"
     return None
 
@@ -211,20 +238,27 @@ def _files_problem(root, words):
 
 def _extras_problem(root, words):
     project = Path(root) / "pyproject.toml"
-    named = {name for word in words for name in
-             (re.search(r"\.\[([\w,-]+)\]", word) or ["", ""])[1].split(",") if name}
+    named = {
+        name
+        for word in words
+        for name in (re.search(r"\.\[([\w,-]+)\]", word) or ["", ""])[1].split(",")
+        if name
+    }
     if not named:
         return None
     text = project.read_text("utf-8") if project.exists() else ""
     block = re.search(r"^\[project\.optional-dependencies\]\n(.*?)(?=^\[|\Z)", text, re.M | re.S)
     known = set(re.findall(r"^([\w-]+) *=", block[1] if block else "", re.M))
     missing = sorted(named - known)
-    return f"pyproject.toml has no extra {missing[0]!r}; it has {' '.join(sorted(known))}" \
-        if missing else None
+    return (
+        f"pyproject.toml has no extra {missing[0]!r}; it has {' '.join(sorted(known))}"
+        if missing
+        else None
+    )
 
 
 def commands(text):
-    """(line number, command) of every command in fences, code spans and heads of generated blocks."""
+    """(line number, command) of every one in fences, code spans and heads of generated blocks."""
     found = [(line_at(text, match.start()), match[1]) for match in GENERATED.finditer(text)]
     for fence in FENCE.finditer(text):
         first = line_at(text, fence.start())
@@ -243,15 +277,23 @@ def docstring_commands(text):
     """(line number, command) of every indented example in a Python file's docstring."""
     found = re.match(r'\s*"""(.*?)"""', text, re.DOTALL)
     lines = found[1].split("\n") if found else []
-    return [(number, line.strip()) for number, line in enumerate(lines, 1)
-            if re.match(r" {4,}(python|pytest)\b", line)]
+    return [
+        (number, line.strip())
+        for number, line in enumerate(lines, 1)
+        if re.match(r" {4,}(python|pytest)\b", line)
+    ]
 
 
 def all_flags(root, texts):
-    """Every flag of contact.py and of the modules that commands in the texts run, from their help."""
-    targets = {"contact.py"} | {word for text in texts for _, line in commands(text)
-                                for word in re.findall(r"-m (curriculum[\w.]*)|(\S+\.py)", line)
-                                for word in word if word and word != "checks.py"}
+    """Every flag of contact.py and of what commands in the texts run, from their help."""
+    targets = {"contact.py"} | {
+        word
+        for text in texts
+        for _, line in commands(text)
+        for word in re.findall(r"-m (curriculum[\w.]*)|(\S+\.py)", line)
+        for word in word
+        if word and word != "checks.py"
+    }
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         texts = pool.map(lambda target: help_for(root, target) or "", targets)
         return {flag for text in texts for flag in FLAG.findall(text)}
@@ -260,28 +302,36 @@ def all_flags(root, texts):
 def loose_flags(text):
     """(line number, flag) of every flag in a code span or fence outside of a command."""
     shown = blank(COMMENT.pattern, text, re.DOTALL)
-    for line, command in commands(text):
+    for _, command in commands(text):
         shown = shown.replace(command, " " * len(command))
     spans = [*FENCE.finditer(shown), *CODE.finditer(blank(FENCE.pattern, shown, FENCE.flags))]
-    return [(line_at(shown, span.start() + flag.start()), flag[0]) for span in spans
-            for flag in FLAG.finditer(span[0]) if not any(
-                re.search(rf"(^|[\s`/]){other}\b", span[0]) for other in OTHERS)]
+    return [
+        (line_at(shown, span.start() + flag.start()), flag[0])
+        for span in spans
+        for flag in FLAG.finditer(span[0])
+        if not any(re.search(rf"(^|[\s`/]){other}\b", span[0]) for other in OTHERS)
+    ]
 
 
 def spans(text):
     """(line number, inside) of every code span of the prose."""
     prose = blank(FENCE.pattern, blank(COMMENT.pattern, text, re.DOTALL), FENCE.flags)
     prose = blank(REFERENCE.pattern, prose)
-    return [(line_at(prose, span.start()), " ".join(span[0].strip("`").split()))
-            for span in CODE.finditer(prose) if span[1]]
+    return [
+        (line_at(prose, span.start()), " ".join(span[0].strip("`").split()))
+        for span in CODE.finditer(prose)
+        if span[1]
+    ]
 
 
 def links(text):
     """(line number, target) of every relative link and image."""
     shown = blank(FENCE.pattern, text, FENCE.flags)
-    return [(line_at(shown, match.start()), match[1] or match[2])
-            for match in LINK.finditer(shown)
-            if not re.match(r"(https?|mailto|try|drag):|#", match[1] or match[2])]
+    return [
+        (line_at(shown, match.start()), match[1] or match[2])
+        for match in LINK.finditer(shown)
+        if not re.match(r"(https?|mailto|try|drag):|#", match[1] or match[2])
+    ]
 
 
 def live_links(text):

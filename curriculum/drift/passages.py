@@ -32,8 +32,13 @@ from curriculum.drift import texts
 from curriculum.drift.texts import CHAPTER
 
 META = "meta.yaml"
-CHAPTER_PASSAGES = {"outline": texts.outline, "claims": texts.claims, "formulas": texts.formulas,
-                    "number-words": texts.number_words, "typed-numbers": texts.typed_by_reason}
+CHAPTER_PASSAGES = {
+    "outline": texts.outline,
+    "claims": texts.claims,
+    "formulas": texts.formulas,
+    "number-words": texts.number_words,
+    "typed-numbers": texts.typed_by_reason,
+}
 NOT_PROMISES = ("exercises", "reference_run", "region_hashes", "passage_hashes", "stale")
 GATE = "python -m curriculum.check_prose_code_drift"
 
@@ -55,6 +60,7 @@ def of(read, files):
 
     `read(file)` gives a file's text, None where there is none; `files` are all paths there.
     """
+
     def data(file):
         text = read(file)
         return None if text is None else text.encode("utf-8", "surrogateescape")
@@ -62,10 +68,14 @@ def of(read, files):
     found, _ = regions.scan_all(read=data)
     made = [Passage(name, region.file, region.text) for name, region in found.items()]
     chapter, meta = read(CHAPTER) or "", load(read(META))
-    made += [Passage(name, None, "".join(f"{line}\n" for line in make(chapter)))
-             for name, make in CHAPTER_PASSAGES.items()]
+    made += [
+        Passage(name, None, "".join(f"{line}\n" for line in make(chapter)))
+        for name, make in CHAPTER_PASSAGES.items()
+    ]
     for name, facts in (meta.get("exercises") or {}).items():
-        script = next((file for file in files if re.fullmatch(rf"exercises/{name}_\w+\.py", file)), "")
+        script = next(
+            (file for file in files if re.fullmatch(rf"exercises/{name}_\w+\.py", file)), ""
+        )
         told = exercise_words(read(script) or "") if script else {}
         made.append(Passage(name, None, show({"script": told, META: facts})))
     rest = {key: value for key, value in meta.items() if key not in NOT_PROMISES}
@@ -76,6 +86,7 @@ def of(read, files):
 def load(text):
     """meta.yaml's text as a dict; {} where it is none."""
     import yaml
+
     try:
         found = yaml.load(text or "", getattr(yaml, "CSafeLoader", yaml.SafeLoader))
         return found if isinstance(found, dict) else {}
@@ -135,6 +146,7 @@ def accepted_text(root, name, sha256, where):
 
     `where` are the files whose commits are looked at.
     """
+
     def git(*words):
         command = ["git", "-C", str(root), *words]
         return subprocess.run(command, capture_output=True, check=True).stdout
@@ -162,16 +174,26 @@ def defined_names(text):
         tree = ast.parse(text)
     except SyntaxError:
         return set()
-    names = {node.name for node in ast.walk(tree)
-             if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("__")}
-    return names | {target.id for node in tree.body if isinstance(node, ast.Assign)
-                    for target in node.targets if isinstance(target, ast.Name)}
+    names = {
+        node.name
+        for node in ast.walk(tree)
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("__")
+    }
+    return names | {
+        target.id
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
 
 
 def passages_naming(root, names, skip=range(0)):
     """(file, line, text) of every paragraph of chapter, README and exercises that names any."""
     files = [CHAPTER, "README.md", META, *reader(root)[1]]
-    pattern = re.compile(rf"(?<![\w.-])(contact\.)?({'|'.join(map(re.escape, sorted(names)))})(?!\w)")
+    pattern = re.compile(
+        rf"(?<![\w.-])(contact\.)?({'|'.join(map(re.escape, sorted(names)))})(?!\w)"
+    )
     for file in files if names else []:
         text = reader(root)[0](file) or ""
         for found in re.finditer(r"(?:^.*\S.*\n?)+", text, re.MULTILINE):
@@ -201,25 +223,38 @@ def accept(root, name):
         old, why = accepted_text(root, name, hashes[name], where)
     if old is None:
         print(f"{name}: {why}, so the whole passage is shown instead of a change")
-    print(*difflib.unified_diff((old or "").splitlines(), (new.text if new else "").splitlines(),
-                                f"{name}, accepted", f"{name}, now", lineterm="", n=2), sep="\n")
+    print(
+        *difflib.unified_diff(
+            (old or "").splitlines(),
+            (new.text if new else "").splitlines(),
+            f"{name}, accepted",
+            f"{name}, now",
+            lineterm="",
+            n=2,
+        ),
+        sep="\n",
+    )
     if new and new.file:
         show_where_told(root, new, old)
     record(root, found, name, new)
     before = hashes.get(name, "none")
-    print(f"\n{name}: {f'recorded {new.sha256}' if new else 'its hash is removed'} (before: {before})")
+    print(
+        f"\n{name}: {f'recorded {new.sha256}' if new else 'its hash is removed'} (before: {before})"
+    )
 
 
 def show_where_told(root, region, old):
-    """Print the section that shows a region, and every other paragraph that names what it defines."""
+    """Print the section that shows a region, and all other paragraphs that name what it defines."""
     chapter = reader(root)[0](CHAPTER) or ""
     shown = range(0)
     for include in texts.find_includes(chapter):
         if include.name == region.name:
             first, last = texts.section(chapter, include.line)
             shown = range(first, last + 1)
-            print(f"\n{CHAPTER}:{include.line} shows it; the section, lines {first} to {last}, "
-                  "says:\n")
+            print(
+                f"\n{CHAPTER}:{include.line} shows it; the section, lines {first} to {last}, "
+                "says:\n"
+            )
             for number in shown:
                 print(f"{number:>5}  {chapter.splitlines()[number - 1]}")
     names = defined_names(region.text) | defined_names(old or "")
@@ -243,14 +278,22 @@ def record(root, found, name, new):
         (by_file.setdefault(new.file, {}) if new.file else plain)[name] = new.sha256
     order = {each: place for place, each in enumerate(found)}
     lines = ["region_hashes:\n"]
-    for file in sorted(by_file, key=lambda file: regions.LITERATE.index(file)
-                       if file in regions.LITERATE else len(regions.LITERATE)):
+    for file in sorted(
+        by_file,
+        key=lambda file: (
+            regions.LITERATE.index(file) if file in regions.LITERATE else len(regions.LITERATE)
+        ),
+    ):
         if by_file[file]:
-            lines += [f"  {file}:\n"] + [f"    {each}: {by_file[file][each]}\n" for each in sorted(
-                by_file[file], key=lambda each: order.get(each, len(order)))]
+            lines += [f"  {file}:\n"] + [
+                f"    {each}: {by_file[file][each]}\n"
+                for each in sorted(by_file[file], key=lambda each: order.get(each, len(order)))
+            ]
     text = put_block(text, "region_hashes", "".join(lines))
-    lines = ["passage_hashes:\n"] + [f"  {each}: {plain[each]}\n" for each in sorted(
-        plain, key=lambda each: order.get(each, len(order)))]
+    lines = ["passage_hashes:\n"] + [
+        f"  {each}: {plain[each]}\n"
+        for each in sorted(plain, key=lambda each: order.get(each, len(order)))
+    ]
     write_whole(path, put_block(text, "passage_hashes", "".join(lines)))
 
 

@@ -16,9 +16,11 @@ DRAGGED = re.compile(r"\[([^\]]*)\]\((try|drag):([^)]*)\)")
 HEADING = re.compile(r"^#+ .*", re.MULTILINE)
 
 TENS = "twenty|thirty|forty|fifty|sixty|seventy|eighty|ninety"
-NUMERAL = ("zero|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fifteen|"
-           f"{TENS}|hundreds?|thousands?|thousandths?|hundredths?|tenths?|millions?|millionths?|"
-           "once|twice|thrice|half|halves|thirds?|fourth|fifth|quarters?|double|triple|dozens?")
+NUMERAL = (
+    "zero|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fifteen|"
+    f"{TENS}|hundreds?|thousands?|thousandths?|hundredths?|tenths?|millions?|millionths?|"
+    "once|twice|thrice|half|halves|thirds?|fourth|fifth|quarters?|double|triple|dozens?"
+)
 NUMBER_WORD = re.compile(rf"(?<![\w-])({NUMERAL})(?![\w-])", re.IGNORECASE)
 
 
@@ -71,35 +73,49 @@ def typed_numbers(text):
     found = []
     for code in [*FENCE.finditer(text), *CODE.finditer(unfenced)]:
         inside = blank(r"--[a-z][a-z-]*[ =][^\s`]+|\b[0-9a-f]{7,64}\b", code[0])
-        found += [(code.start() + token.start(), token[0])
-                  for token in re.finditer(r"(?<![\w.])\.?\d[\w.]*", inside)
-                  if not re.fullmatch(r"\d\.?", token[0])]
+        found += [
+            (code.start() + token.start(), token[0])
+            for token in re.finditer(r"(?<![\w.])\.?\d[\w.]*", inside)
+            if not re.fullmatch(r"\d\.?", token[0])
+        ]
     prose = blank(r"^#+ +\d[\d.]*|^[ >]*\d+[.)] ", blank(CODE.pattern, unfenced))
-    found += [(token.start(), token[0].rstrip(".,"))
-              for token in re.finditer(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*", prose)]
+    found += [
+        (token.start(), token[0].rstrip(".,"))
+        for token in re.finditer(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*", prose)
+    ]
     return sorted(found)
 
 
 def plain_prose(text):
     """The text with code, formulas, comments and references blanked out."""
-    for pattern, flags in ((COMMENT.pattern, re.DOTALL), (FENCE.pattern, FENCE.flags),
-                           (REFERENCE.pattern, 0), (MATH.pattern, MATH.flags), (CODE.pattern, 0)):
+    for pattern, flags in (
+        (COMMENT.pattern, re.DOTALL),
+        (FENCE.pattern, FENCE.flags),
+        (REFERENCE.pattern, 0),
+        (MATH.pattern, MATH.flags),
+        (CODE.pattern, 0),
+    ):
         text = blank(pattern, text, flags)
     return text
 
 
 def formulas(text):
     """Every formula, one a line; a lone symbol such as $x$ or $v_n$ is none."""
-    found = (" ".join((match[1] or match[2]).split()) for match in MATH.finditer(
-        blank(FENCE.pattern, text, FENCE.flags)))
+    found = (
+        " ".join((match[1] or match[2]).split())
+        for match in MATH.finditer(blank(FENCE.pattern, text, FENCE.flags))
+    )
     return [each for each in found if not re.fullmatch(r"\\?\w+(_\\?\w)?", each)]
 
 
 def number_words(text):
     """Every number in words, with two words on each side, one a line."""
     words = [(match[0], match.start()) for match in re.finditer(r"[\w'{}-]+", plain_prose(text))]
-    return [" ".join(word for word, _ in words[max(k - 2, 0):k + 3])
-            for k, (word, _) in enumerate(words) if NUMBER_WORD.fullmatch(word)]
+    return [
+        " ".join(word for word, _ in words[max(k - 2, 0) : k + 3])
+        for k, (word, _) in enumerate(words)
+        if NUMBER_WORD.fullmatch(word)
+    ]
 
 
 def typed_by_reason(text):
@@ -110,8 +126,10 @@ def typed_by_reason(text):
 
 def outline(text):
     """Headings, includes, slots and live links in their order, one a line; claims are no slots."""
-    found = [(match.start(), match[0].strip()) for match in HEADING.finditer(
-        blank(FENCE.pattern, text, FENCE.flags))]
+    found = [
+        (match.start(), match[0].strip())
+        for match in HEADING.finditer(blank(FENCE.pattern, text, FENCE.flags))
+    ]
     found += [(match.start(), match[0]) for match in INCLUDE.finditer(text)]
     found += [(match.start(), match[0]) for match in SLOT.finditer(text)]
     found += [(match.start(), match[0]) for match in DRAGGED.finditer(text)]
@@ -124,5 +142,7 @@ def claims(text):
     A claim that is loosened or left out still holds, so the claims themselves are accepted.
     """
     marks = re.compile(f"{HEADING.pattern}|{HOLDS.pattern}|{REFERENCE.pattern}", re.MULTILINE)
-    return [" ".join(match[0].split()) for match in marks.finditer(
-        blank(FENCE.pattern, text, FENCE.flags))]
+    return [
+        " ".join(match[0].split())
+        for match in marks.finditer(blank(FENCE.pattern, text, FENCE.flags))
+    ]

@@ -31,9 +31,9 @@ def ledger_problems(root, numbers):
 def test_the_ledger_shows_every_tier_of_the_course_and_claims_only_what_was_measured():
     rows = {row["tier"]: row for row in wallclock.read() if row["chapter"] == wallclock.CHAPTER}
     assert set(wallclock.SHOWN) <= set(rows)
-    assert [
-        tier for tier, row in rows.items() if row["status"] == "MEASURED"
-    ], "no row is measured yet"
+    assert [tier for tier, row in rows.items() if row["status"] == "MEASURED"], (
+        "no row is measured yet"
+    )
     for row in rows.values():
         if row["status"] == "MEASURED":
             assert re.fullmatch(r"[0-9a-f]{7,40}", row["commit"]) and re.fullmatch(
@@ -50,8 +50,14 @@ def ledger(tmp_path):
     """A ledger with one row, the numbers of a run with that hash, and what the gate says."""
     shutil.copy(ROOT / "meta.yaml", tmp_path)
     (tmp_path / "contact.py").write_text("x = 1  # a comment\n")
-    wallclock.write_row("cpu-vm", [0.3, 0.2, 0.25], wallclock.run_hash("c0ffee", tmp_path),
-                        "1234567", "2026-01-02", str(tmp_path / "wallclock.csv"))
+    wallclock.write_row(
+        "cpu-vm",
+        [0.3, 0.2, 0.25],
+        wallclock.run_hash("c0ffee", tmp_path),
+        "1234567",
+        "2026-01-02",
+        str(tmp_path / "wallclock.csv"),
+    )
 
     def check(printed="c0ffee"):
         numbers = Numbers(tmp_path, runs={"drop": {}})
@@ -75,12 +81,15 @@ def test_a_row_of_other_flags_or_of_other_code_is_stale(ledger, tmp_path):
     assert ledger() == ([], stale)
 
 
-@pytest.mark.parametrize("old, new, said", [
-    ("0.00417", "0.00317", "wallclock_min is 0.00317, but wallclock_runs.json has 0.00417"),
-    ("1234567", "7654321", "commit is 7654321, but wallclock_runs.json has 1234567"),
-    ("2026-01-02", "2026-01-03", "date is 2026-01-03, but wallclock_runs.json has 2026-01-02"),
-    ("mps,,,,,PENDING", "mps,1,c0ffee,1234567,2026-01-02,MEASURED", "no times of mps"),
-])
+@pytest.mark.parametrize(
+    "old, new, said",
+    [
+        ("0.00417", "0.00317", "wallclock_min is 0.00317, but wallclock_runs.json has 0.00417"),
+        ("1234567", "7654321", "commit is 7654321, but wallclock_runs.json has 1234567"),
+        ("2026-01-02", "2026-01-03", "date is 2026-01-03, but wallclock_runs.json has 2026-01-02"),
+        ("mps,,,,,PENDING", "mps,1,c0ffee,1234567,2026-01-02,MEASURED", "no times of mps"),
+    ],
+)
 def test_what_is_typed_into_the_ledger_is_refused(ledger, tmp_path, old, new, said):
     path = tmp_path / "wallclock.csv"
     path.write_text(path.read_text().replace(old, new))

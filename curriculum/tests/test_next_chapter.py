@@ -14,8 +14,8 @@ import contact
 from contact import Ball, Contact
 
 DT = 0.01
-ROD = 0.06                      # m, between the two discs of the T
-BAR, STEM = 0.06, 0.045         # kg
+ROD = 0.06  # m, between the two discs of the T
+BAR, STEM = 0.06, 0.045  # kg
 
 
 def make_table(angle=0.0, pusher_mass=0.5, speed=0.0):
@@ -38,8 +38,11 @@ def rod_force(bar, stem, stiffen=20.0):
 
 def push_contacts(table):
     """The contacts of the pusher alone: no floor here, and the rod holds the other two."""
-    return [c for c in contact.detect_contacts(table.balls) if c.a is table.pusher
-            and c.b is not contact.FLOOR]
+    return [
+        c
+        for c in contact.detect_contacts(table.balls)
+        if c.a is table.pusher and c.b is not contact.FLOOR
+    ]
 
 
 def step(table, command=None, gain=20.0, drag=0.0):
@@ -62,8 +65,11 @@ def step(table, command=None, gain=20.0, drag=0.0):
 
 def momentum(balls):
     """Along x, along y, and angular about the origin."""
-    return (sum(b.mass * b.vx for b in balls), sum(b.mass * b.vy for b in balls),
-            sum(b.mass * (b.x * b.vy - b.y * b.vx) for b in balls))
+    return (
+        sum(b.mass * b.vx for b in balls),
+        sum(b.mass * b.vy for b in balls),
+        sum(b.mass * (b.x * b.vy - b.y * b.vx) for b in balls),
+    )
 
 
 def turn(table):
@@ -99,7 +105,7 @@ def test_the_t_turns_about_its_centre_of_mass_after_the_push_and_the_rod_holds()
         pass
     for _ in range(10):
         step(table)
-    table.pusher.vx = -1.0                  # taken away
+    table.pusher.vx = -1.0  # taken away
     block, total = [table.bar, table.stem], BAR + STEM
     vx, vy = (part / total for part in momentum(block)[:2])
     cx = sum(b.mass * b.x for b in block) / total
@@ -112,7 +118,8 @@ def test_the_t_turns_about_its_centre_of_mass_after_the_push_and_the_rod_holds()
     swept = (turn(table) - start) % (2.0 * math.pi)
     assert swept == pytest.approx(spin * steps * DT, rel=0.02)
     assert math.hypot(table.bar.x - table.stem.x, table.bar.y - table.stem.y) == pytest.approx(
-        ROD, rel=0.02)
+        ROD, rel=0.02
+    )
 
 
 @pytest.mark.parametrize("angle", [0.5, -0.5])
@@ -166,7 +173,7 @@ class CornerContact(Contact):
 
     def __init__(self, block, rx, ry, depth=0.0):
         super().__init__(block, contact.FLOOR, 0.0, 1.0, depth)
-        self.lever = rx * self.ny - ry * self.nx            # r x n
+        self.lever = rx * self.ny - ry * self.nx  # r x n
         self.m_eff = 1.0 / (block.inv_mass + self.lever * self.lever / block.inertia)
 
     def v_n(self):
@@ -202,7 +209,8 @@ def test_a_block_at_rest_shares_its_weight_between_its_corners_by_the_lever_rule
     contact.solve_contacts(corners, 500)
     weight = 2.0 * -contact.GRAVITY * 0.002
     assert [c.lam for c in corners] == pytest.approx(
-        [weight * b / (a + b), weight * a / (a + b)], rel=1e-9)
+        [weight * b / (a + b), weight * a / (a + b)], rel=1e-9
+    )
     assert abs(block.vy) < 1e-12 and abs(block.spin) < 1e-10
 
 

@@ -14,7 +14,8 @@ USE = """
 import contact
 run = contact.run_model("lcp", contact.build_scene("drop"), 0.002, 2000)
 print(contact.__file__)
-print(round(float(contact.max_penetration(run.q, contact.build_scene("drop").radius).max() / 0.1), 12))
+radius = contact.build_scene("drop").radius
+print(round(float(contact.max_penetration(run.q, radius).max() / 0.1), 12))
 """
 
 
@@ -27,8 +28,9 @@ def site(tmp_path_factory):
         shutil.copy(ROOT / name, source)
     shutil.copytree(ROOT / "curriculum/common", source / "curriculum/common")
     build = "import sys; from setuptools import build_meta; build_meta.build_wheel(sys.argv[1])"
-    subprocess.run([sys.executable, "-c", build, str(made)], cwd=source, check=True,
-                   capture_output=True)
+    subprocess.run(
+        [sys.executable, "-c", build, str(made)], cwd=source, check=True, capture_output=True
+    )
     (wheel,) = made.glob("*.whl")
     zipfile.ZipFile(wheel).extractall(made / "site")
     return made / "site"
@@ -36,9 +38,13 @@ def site(tmp_path_factory):
 
 def run(site, folder, *words):
     """Python in a folder of its own, which finds the installed files and not this repository."""
-    return subprocess.run([sys.executable, "-P", *words] if sys.version_info >= (3, 11)
-                          else [sys.executable, *words], cwd=folder, env={"PYTHONPATH": str(site)},
-                          capture_output=True, text=True)
+    return subprocess.run(
+        [sys.executable, "-P", *words] if sys.version_info >= (3, 11) else [sys.executable, *words],
+        cwd=folder,
+        env={"PYTHONPATH": str(site)},
+        capture_output=True,
+        text=True,
+    )
 
 
 def test_the_wheel_puts_contact_py_and_nothing_else_into_site_packages(site):

@@ -132,8 +132,11 @@ def test_regions_of_several_files_are_found_in_order_and_share_no_name(tmp_path)
 
 
 def test_what_stands_outside_is_hashed_and_blank_lines_do_not_count(tmp_path):
-    (outside,) = [r for r in regions.scan_all(write(tmp_path, GOOD).parent)[0].values()
-                  if r.name == "contact-docstring"]
+    (outside,) = [
+        r
+        for r in regions.scan_all(write(tmp_path, GOOD).parent)[0].values()
+        if r.name == "contact-docstring"
+    ]
     assert outside.text == '"""Docstring,\ntwo lines."""\n# a comment may stand outside\n'
     moved = regions.scan_all(write(tmp_path, GOOD.replace("\n\n# ---", "\n\n\n# ---")).parent)[0]
     assert moved["contact-docstring"].sha256 == outside.sha256
@@ -152,4 +155,7 @@ def test_the_command_lists_prints_and_refuses(capsys):
     assert regions.main(["penalty"]) == 0
     assert hashlib.sha256(capsys.readouterr().out.encode()).hexdigest() in listed
     assert regions.main(["nonsense"]) == 2
-    assert "given 'nonsense', allowed: nothing or one of contact-docstring, setup" in capsys.readouterr().err
+    assert (
+        "given 'nonsense', allowed: nothing or one of contact-docstring, setup"
+        in capsys.readouterr().err
+    )
