@@ -784,7 +784,6 @@ def test_one_character_changed_in_any_region_of_the_real_scripts_changes_its_has
     read = passages.reader(ROOT)[0]
     found, problems = regions.scan_all(ROOT)
     assert len(found) > 40 and problems == []
-    assert set(found) <= set(passages.recorded(quoted.load_meta(ROOT)))
     for region in found.values():
         before = read(region.file)
         start = before.index(region.text) if region.text in before else 0
