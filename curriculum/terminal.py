@@ -42,6 +42,11 @@ def parse_flags(argv):
     args.usual = knobs(args) == knobs(usual)    # the run whose time the ledger knows
     if args.bodies and args.scene in ("drop", "bounce"):
         parser.error(f"argument --bodies: given {args.bodies}; allowed: stack and pile only")
+    if args.solref and not (min(args.solref) > 0.0 or max(args.solref) <= 0.0):
+        parser.error("argument --solref: given {:g} {:g}; allowed: two numbers > 0, or two that "
+                     "are not".format(*args.solref))
+    if args.solimp and not 1.0 <= args.solimp[4] <= 100.0:
+        parser.error(f"argument --solimp: given the power {args.solimp[4]:g}; allowed: 1 to 100")
     args.steps = 800 if args.smoke else args.steps
     count = args.bodies or {"stack": 3, "pile": 200}.get(args.scene, 1)
     memory.need(parser, 800 * (args.steps + 1) * count, f"--steps {args.steps} of {count} balls")

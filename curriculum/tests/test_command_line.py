@@ -90,6 +90,19 @@ def test_bodies_are_refused_where_the_scene_has_one_ball(scene, tmp_path, monkey
     assert "4" in err and "stack and pile" in err and list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("given, allowed", [
+    (["--solref", "0.02", "0"], "> 0"), (["--solref", "-5000", "3"], "> 0"),
+    (["--solimp", "0.9", "0.95", "0.001", "0.5", "0.5"], "1 to 100"),
+    (["--solimp", "0.9", "0.95", "0.001", "0.5", "2000"], "1 to 100"),
+])  # fmt: skip
+def test_settings_of_soft_that_divide_by_zero_are_refused(given, allowed, tmp_path, capsys):
+    with pytest.raises(SystemExit) as caught:
+        contact.main([*given, "--out", str(tmp_path / "new")])
+    err = capsys.readouterr().err
+    assert caught.value.code == 2 and err.count("\n") == 1
+    assert given[0] in err and allowed in err and list(tmp_path.iterdir()) == []
+
+
 def test_a_pile_that_does_not_fit_in_memory_is_refused_before_it_is_built(tmp_path, capsys):
     with pytest.raises(SystemExit) as caught:
         contact.main(["--scene", "pile", "--bodies", str(10**10), "--out", str(tmp_path / "new")])
