@@ -11,6 +11,7 @@ ids, and so the same results give the same bytes.
 """
 
 import io
+import math
 import re
 import textwrap
 
@@ -247,6 +248,9 @@ def svg(figure, section=None) -> str:
             f"{about['date']}, {about['cores']} cores of {about['processor']}, {about['command']}"
         )
         figure.text(0.01, 0.06 / figure.get_figheight(), note, fontsize=7, color=PALE, va="bottom")
+    for axis in figure.axes:
+        _whole_decades(axis.xaxis)
+        _whole_decades(axis.yaxis)
     out, (title, explained) = io.StringIO(), figure.told
     figure.savefig(
         out,
@@ -258,6 +262,18 @@ def svg(figure, section=None) -> str:
     if len(made.encode()) > LARGEST:
         raise ValueError(f"{title}: {len(made.encode()):,} bytes; a figure may have {LARGEST:,}")
     return made
+
+
+def _whole_decades(axis):
+    """Words at powers of ten only on a logarithmic axis, and room for at least two of them."""
+    from matplotlib.ticker import NullFormatter
+
+    if axis.get_scale() != "log":
+        return
+    axis.set_minor_formatter(NullFormatter())
+    low, high = (math.log10(value) for value in axis.get_view_interval())
+    if math.floor(high) - math.ceil(low) < 1:
+        axis.set_view_interval(10 ** math.floor(low), 10 ** math.ceil(high), ignore=True)
 
 
 def _small(text):

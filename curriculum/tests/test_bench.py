@@ -343,7 +343,7 @@ def test_the_critical_step_along_the_line_is_that_of_the_spring():
 
 
 def test_soft_has_one_answer_in_any_order_and_lcp_has_not_where_contacts_are_redundant():
-    told = {row["name"]: row for row in soft.orders()}
+    told = {row["name"]: row for row in soft.orders(count=4)}
     assert told["soft, as shipped"]["impulses"] < 1e-12
     assert (
         told["lcp, 10,000 sweeps"]["impulses"] > 0.01 > 1e-12 > told["lcp, 10,000 sweeps"]["speeds"]

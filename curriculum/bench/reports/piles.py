@@ -153,7 +153,7 @@ def figures(section):
     figure, (upper, lower) = plotting.figure(
         rows=2,
         height=3.0,
-        below=0.9,
+        below=1.05,
         title="A pile of N balls: time per settled step",
         explained=f"lcp and pymunk with {section['sweeps']} sweeps a step, the others with their own "
         "number. Hollow: the hardest setting, or MuJoCo's direct one. Below: what the speed "
