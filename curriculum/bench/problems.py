@@ -246,5 +246,6 @@ def first_impact(run, dt):
     # y[k] + v[k] s + g s^2 / 2 = y[k+1] - v[k+1] (dt - s) + leaving (dt - s)^2 / 2, for s >= 0
     c2, c1 = 0.5 * (g - leaving), v[k] - v[k + 1] + leaving * dt
     c0 = y[k] - y[k + 1] + v[k + 1] * dt - 0.5 * leaving * dt * dt
-    s = 2.0 * c0 / (-c1 + np.sqrt(max(c1 * c1 - 4.0 * c2 * c0, 0.0)))
+    with np.errstate(all="ignore"):
+        s = 2.0 * c0 / (-c1 + np.sqrt(max(c1 * c1 - 4.0 * c2 * c0, 0.0)))
     return float(run.t[k] + min(max(s, 0.0), dt))

@@ -17,7 +17,6 @@ import numpy as np
 
 import contact
 from curriculum import measured
-from curriculum.bench import engines
 
 COMMAND = "python -m curriculum.bench soft"
 CODE = ("contact.py",)
@@ -218,58 +217,14 @@ def solved(scene, model, sweeps, order):
     return [c.lam for c in contacts], [(ball.vx, ball.vy) for ball in balls]
 
 
-# against the engine itself
-
-MATCHES = (  # scene, balls, restitution, dt, steps, solref, solimp
-    ("drop", None, None, 0.002, 2000, None, None),
-    ("stack", None, None, 0.002, 2000, None, None),
-    ("bounce", None, None, 0.002, 2000, None, None),
-    ("pile", 8, None, 0.002, 300, None, None),
-    ("drop", None, None, 0.0005, 2000, None, None),
-    ("drop", None, None, 0.016, 500, None, None),
-    ("drop", None, None, 0.002, 2000, (-1e4, -80.0), None),
-    ("drop", None, None, 0.002, 2000, (0.05, 0.5), (0.5, 0.9, 0.01, 0.3, 3.0)),
-    ("stack", 30, None, 0.002, 500, None, None),
-)
-
-
-def matches():
-    """Greatest distance [m] of soft from the real engine, run by run; what is missing otherwise."""
-    missing = engines.missing("mujoco")
-    if missing:
-        return dict(missing=missing, version=None, rows=[])
-    rows = []
-    for name, bodies, restitution, dt, steps, solref, solimp in MATCHES:
-        scene = contact.build_scene(name, 0, bodies, restitution)
-        ours = contact.run_model("soft", scene, dt, steps, solref=solref, solimp=solimp, skip=False)
-        used = contact.soft_defaults(scene.restitution, dt, solref, solimp)
-        words = [" ".join(map(repr, map(float, part))) for part in used]
-        engine = engines.Mujoco(
-            scene, dt, lambda scene, dt, words=words: words, tolerance=0.0, iterations=1000
-        )
-        q, _ = engine.states(steps)
-        rows.append(
-            dict(
-                scene=name,
-                balls=len(scene.mass),
-                dt=dt,
-                steps=steps,
-                solref=words[0],
-                solimp=words[1],
-                distance=float(np.abs(ours.q - q).max()),
-            )
-        )
-    return dict(missing=None, version=engines.version("mujoco"), rows=rows)
-
-
 def measure(quick=False, cells=None):
-    """line, models, orders, match."""
+    """line, models, orders."""
     cells = {} if cells is None else cells
-    parts = dict(line=the_line, orders=orders, match=matches)
+    parts = dict(line=the_line, orders=orders)
     with measured.progress(len(parts), "soft") as tick:
         for name, part in parts.items():
             if name not in cells:
                 cells[name] = measured.plain(part())
             tick(name)
     rows, models = cells["line"]
-    return dict(quick=quick, line=rows, models=models, orders=cells["orders"], match=cells["match"])
+    return dict(quick=quick, line=rows, models=models, orders=cells["orders"])
