@@ -16,10 +16,12 @@ why. Its rows in the ledger say "not yet measured": the script timed here is ano
 """
 
 import ast
+import builtins
 import csv
 import io
 import json
 import re
+import symtable
 import sys
 from pathlib import Path
 
@@ -57,6 +59,7 @@ LEFT_OUT = {
     "flight": "a speed-up that changes no bit",
     "pairs": "a speed-up for many balls that changes no bit",
     "lattice": "the scene pile belongs to many balls",
+    "shapes": "a check of arrays for those who bring their own",
     "curriculum/exact.py": "the reference is a script of its own, almost as long as the cap",
     "curriculum/piles.py": "the compiled twin is for many balls",
     "exercises/ex4_predict_soft.py": "a bet on soft",
@@ -91,6 +94,11 @@ EDITS = (
         "",
     ),
     ("quality", ", reference: Run | None = None)", ")"),
+    (
+        "quality",
+        "    check_shapes(scene, *[each for each in (run, reference) if each is not None])\n",
+        "",
+    ),
 )
 DROPPED = {"quality-parts": "height_errors"}  # functions that only exact, the reference, needs
 NOTE = """> The script beside this text, `contact.py`, holds `penalty` and `lcp`: this course keeps a chapter
@@ -179,7 +187,25 @@ def script(root):
             f"the course's contact.py has {made.count(chr(10))} lines, allowed: {CAP}; "
             "leave a region out in curriculum/bundle.py"
         )
+    missing = undefined_names(made)
+    if missing:
+        raise ValueError(
+            f"the course's contact.py uses {', '.join(missing)}, which no region that it keeps "
+            "defines; correct EDITS or KEPT in curriculum/bundle.py"
+        )
     return made
+
+
+def undefined_names(text):
+    """The global names that the functions of a script use and that it does not define."""
+    table = symtable.symtable(text, "contact.py", "exec")
+    defined = set(table.get_identifiers()) | set(dir(builtins)) | {"__file__"}
+    found, tables = set(), table.get_children()
+    while tables:
+        each = tables.pop()
+        tables += each.get_children()
+        found |= {symbol.get_name() for symbol in each.get_symbols() if symbol.is_global()}
+    return sorted(found - defined)
 
 
 def chapter(root, numbers):

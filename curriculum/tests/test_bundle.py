@@ -20,6 +20,7 @@ import pytest
 
 import contact
 from curriculum import bundle, regions
+from curriculum.drift import texts
 from curriculum.quoted import load_meta
 
 yaml = pytest.importorskip("yaml")
@@ -100,10 +101,13 @@ def test_the_text_includes_regions_of_the_script_alone_and_leaves_nothing_unreso
 def test_what_is_left_out_is_named_where_the_text_shows_it_and_is_not_in_the_script(made):
     text = made[f"{bundle.CHAPTER}/prose/chapter.md"]
     found = read_regions(made[f"{bundle.CHAPTER}/contact.py"])
+    shown = list(texts.find_includes((ROOT / texts.CHAPTER).read_text("utf-8")))
+    assert any(include.file == "curriculum/exact.py" for include in shown)
     for name, why in bundle.LEFT_OUT.items():
         assert bundle.course_name(name) not in found
         assert name.endswith(".py") or name in regions.find_all()
-        assert why in text or name.endswith(("piles.py", "ex4_predict_soft.py")), name
+        if any(name in (include.name, include.file) for include in shown):
+            assert why in text, name
 
 
 def test_no_module_is_imported_but_the_standard_ones_numpy_rerun_and_the_courses_banner(made):
@@ -254,4 +258,11 @@ def test_a_script_above_the_cap_is_not_written(tmp_path, monkeypatch, capsys):
 def test_an_edit_that_no_longer_fits_is_told_with_its_region(monkeypatch):
     monkeypatch.setattr(bundle, "EDITS", (("scenes", "no such line", ""),))
     with pytest.raises(ValueError, match=r"contact.py:\d+: region scenes no longer has the lines"):
+        bundle.script(ROOT)
+
+
+def test_a_name_that_no_kept_region_defines_is_told(monkeypatch):
+    edits = tuple(edit for edit in bundle.EDITS if "possible_pairs" not in edit[1])
+    monkeypatch.setattr(bundle, "EDITS", edits)
+    with pytest.raises(ValueError, match="uses possible_pairs, which no region that it keeps"):
         bundle.script(ROOT)
