@@ -77,6 +77,9 @@ class Cell(NamedTuple):
     uses: frozenset = frozenset()
 
 
+JOIN = Cell("code", EXACT, True, frozenset({"exact"}), frozenset({"simulate_exact"}))
+
+
 def code_cell(source, folded=False):
     """A code Cell that knows its names."""
     return Cell("code", source, folded, *names_of(source))
@@ -136,9 +139,7 @@ class Builder:
 
     def all_regions(self):
         """Every region's cell, of both scripts, and the one that joins them."""
-        return [cell for found in self.regions.values() for cell in found.values()] + [
-            Cell("code", EXACT, True, frozenset({"exact"}), frozenset({"simulate_exact"}))
-        ]
+        return [cell for found in self.regions.values() for cell in found.values()] + [JOIN]
 
     def add(self, cell):
         """Add a cell, and after it the pictures that waited for what it defines."""
@@ -184,9 +185,10 @@ class Builder:
     def include(self, script, name):
         """The cell of a region; after the last of exact.py the one that lets run_model find it."""
         self.bring(self.regions[script][name])
-        exact = self.regions[SCRIPTS[1]].values()
-        if script == SCRIPTS[1] and all(cell.defines <= self.done for cell in exact):
-            self.add(Cell("code", EXACT, True, frozenset({"exact"})))
+        exact = self.regions[SCRIPTS[1]]
+        shown = [cell for each, cell in exact.items() if each not in self.late]
+        if script == SCRIPTS[1] and all(cell.defines <= self.done for cell in shown):
+            self.bring(JOIN)
 
     def figure(self, name):
         """The picture of a slot, now or as soon as all that it uses is there. The page has more."""
