@@ -306,7 +306,8 @@ def main(argv=None):
         return status
 
     def run(model, dt):
-        label = f"{model}, dt = {dt:g} s"
+        place = f"model {1 + models.index(model)} of {len(models)}"
+        label = f"{place}, {model}, dt = {dt:g} s"
         return chosen_run(args, model, scene, dt, progress.steps(args.steps, label))
 
     runs = {model: run(model, args.dt) for model in models}

@@ -38,22 +38,27 @@ def number(kind, low=None, high=None, above=None):
 
     NaN and infinities are refused. The error says what was given and what is allowed.
     """
-    limits = [f"{sign} {limit:g}" for sign, limit in ((">", above), (">=", low), ("<=", high))
-              if limit is not None]
+    limits = [
+        f"{sign} {limit:g}"
+        for sign, limit in ((">", above), (">=", low), ("<=", high))
+        if limit is not None
+    ]
     allowed = " ".join(["a whole number" if kind is int else "a number", " and ".join(limits)])
 
     def parse(text):
         try:
             value = kind(text)
             fits = math.isfinite(value) and not (
-                (low is not None and value < low) or (high is not None and value > high)
-                or (above is not None and value <= above))
+                (low is not None and value < low)
+                or (high is not None and value > high)
+                or (above is not None and value <= above)
+            )
         except (ValueError, OverflowError):
             fits = False
         if not fits:
             given = text if len(text) <= 40 else text[:37] + "..."
             raise argparse.ArgumentTypeError(f"given {given!r}, allowed: {allowed.strip()}")
-        return value + 0                                          # -0.0 becomes 0.0
+        return value + 0  # -0.0 becomes 0.0
 
     return parse
 
@@ -63,7 +68,8 @@ def whole_range(text):
     first, _, last = text.partition(":")
     if not (first.isdecimal() and last.isdecimal() and 0 < int(last) - int(first) <= 10_000):
         raise argparse.ArgumentTypeError(
-            f"given {text!r}, allowed: A:B, whole numbers with A < B, such as 0:20 for 0 to 19")
+            f"given {text!r}, allowed: A:B, whole numbers with A < B, such as 0:20 for 0 to 19"
+        )
     return int(first), int(last)
 
 
@@ -72,5 +78,6 @@ def writable_folder(text):
     trouble = why_unwritable(text)
     if trouble:
         raise argparse.ArgumentTypeError(
-            f"given {text!r}, but {trouble}; allowed: a folder that can be made and written to")
+            f"given {text!r}, but {trouble}; allowed: a folder that can be made and written to"
+        )
     return text

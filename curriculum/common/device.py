@@ -16,7 +16,7 @@ def cpu_tier():
         return "cpu"
     try:
         with open("/proc/cpuinfo", "rb") as file:
-            first_core = file.read(4096)          # one core is enough; all of them can take 10 ms
+            first_core = file.read(4096)  # one core is enough; all of them can take 10 ms
         if b" hypervisor" in first_core or os.path.exists("/sys/hypervisor/type"):
             return "cpu-vm"
         supplies = os.listdir("/sys/class/power_supply")

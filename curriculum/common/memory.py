@@ -21,5 +21,7 @@ def available():
 def need(parser, size, what):
     """End with the parser's one-line error where `what` was asked for and needs more bytes than there are."""
     if size > 1e8 and size > available():
-        parser.error(f"given {what}, which need {size / 1e9:.3g} GB of memory; "
-                     f"allowed: {available() / 1e9:.3g} GB, what is free here")
+        parser.error(
+            f"given {what}, which need {size / 1e9:.3g} GB of memory; "
+            f"allowed: {available() / 1e9:.3g} GB, what is free here"
+        )

@@ -2,7 +2,7 @@
 
 from curriculum.common.files import whole
 
-DASHES = ("-", (0, (6, 2)), (0, (2, 1)), (0, (1, 2)))   # lines that coincide are seen beneath
+DASHES = ("-", (0, (6, 2)), (0, (2, 1)), (0, (1, 2)))  # lines that coincide are seen beneath
 
 
 def write(path, title, runs, curves, colors):
@@ -13,17 +13,30 @@ def write(path, title, runs, curves, colors):
     import matplotlib
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context({"svg.hashsalt": "run", "svg.fonttype": "none", "font.size": 9,
-                                "axes.spines.top": False, "axes.spines.right": False,
-                                "path.simplify_threshold": 0.2}):
+    with matplotlib.rc_context(
+        {
+            "svg.hashsalt": "run",
+            "svg.fonttype": "none",
+            "font.size": 9,
+            "axes.spines.top": False,
+            "axes.spines.right": False,
+            "path.simplify_threshold": 0.2,
+        }
+    ):
         figure = Figure(figsize=(7.0, 1.0 + 1.7 * len(curves)), layout="constrained")
         axes = figure.subplots(len(curves), sharex=True, squeeze=False)[:, 0]
         for axis, (name, lines) in zip(axes, curves.items()):
             axis.set_title(name, loc="left", fontsize=9)
             axis.axhline(0.0, color="#999999", linewidth=0.6)
             for place, (label, values) in enumerate(lines.items()):
-                axis.plot(runs[label].t, finite(values), label=label, color=colors[label],
-                          linestyle=DASHES[place % len(DASHES)], linewidth=2.6 - 0.5 * place)
+                axis.plot(
+                    runs[label].t,
+                    finite(values),
+                    label=label,
+                    color=colors[label],
+                    linestyle=DASHES[place % len(DASHES)],
+                    linewidth=2.6 - 0.5 * place,
+                )
         axes[0].legend(loc="upper right", ncols=len(runs), frameon=False)
         axes[-1].set_xlabel("time [s]")
         figure.suptitle(title, x=0.01, ha="left", fontsize=11)
@@ -34,4 +47,5 @@ def write(path, title, runs, curves, colors):
 def finite(values):
     """The values with a gap where a run has overflowed what can be drawn."""
     import numpy as np
+
     return np.where(np.abs(values) < 1e30, values, np.nan)

@@ -5,10 +5,10 @@ rerun's 2-D views have y down and no option, so y is negated here and only here.
 
 from curriculum.common.files import whole
 
-PUSH = "#f0e442"        # colour of the arrows
+PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"
-WIDTHS = (5.0, 3.5, 2.2, 1.2)   # of curves, in points: lines that coincide are seen beneath
-FEW = 24                # balls: more have no arrows, and no magnified view
+WIDTHS = (5.0, 3.5, 2.2, 1.2)  # of curves, in points: lines that coincide are seen beneath
+FEW = 24  # balls: more have no arrows, and no magnified view
 
 
 def write(path, name, runs, radius, curves, colors, pushes=None, bursts=None):
@@ -25,7 +25,7 @@ def write(path, name, runs, radius, curves, colors, pushes=None, bursts=None):
     import rerun.blueprint as rrb
 
     recording = rr.RecordingStream(name)
-    rr.set_strict_mode(True)                            # a wrong call raises instead of warning
+    rr.set_strict_mode(True)  # a wrong call raises instead of warning
     with whole(path) as temporary:
         recording.save(temporary, default_blueprint=layout(rrb, runs, radius, curves, bursts or {}))
         for label, run in runs.items():
@@ -38,9 +38,16 @@ def write(path, name, runs, radius, curves, colors, pushes=None, bursts=None):
             times = timelines(rr, runs[label].t)
             for title, lines in curves.items():
                 curve = f"{title.split()[0]}/{label}"
-                recording.log(curve, rr.SeriesLines(
-                    colors=rgba(colors[label]), names=[label], widths=WIDTHS[place % len(WIDTHS)],
-                    aggregation_policy="MinMax"), static=True)      # an average hides the peaks
+                recording.log(
+                    curve,
+                    rr.SeriesLines(
+                        colors=rgba(colors[label]),
+                        names=[label],
+                        widths=WIDTHS[place % len(WIDTHS)],
+                        aggregation_policy="MinMax",
+                    ),
+                    static=True,
+                )  # an average hides the peaks
                 recording.send_columns(curve, times, rr.Scalars.columns(scalars=lines[label]))
         recording.disconnect()
 
@@ -48,39 +55,59 @@ def write(path, name, runs, radius, curves, colors, pushes=None, bursts=None):
 def rgba(color):
     """The colour "#rrggbb" as rerun stores it."""
     import numpy as np
+
     return np.array([int(color[1:] + "ff", 16)], np.uint32)
 
 
 def timelines(rr, t):
     """The columns of time: step, and sim_time where 64 bits of nanoseconds can hold it."""
     import numpy as np
+
     times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
     if t[-1] < 9e9:
-        nanoseconds = np.round(t * 1e9).astype("timedelta64[ns]")   # whole: no stamp is off
+        nanoseconds = np.round(t * 1e9).astype("timedelta64[ns]")  # whole: no stamp is off
         times.append(rr.TimeColumn("sim_time", duration=nanoseconds))
     return times
 
 
 def send_table(rr, recording, label):
     """The table: a grey body under the balls, and a thin line over them, so that a sink is seen."""
-    deep, wide = 50.0, 1e3          # m
-    recording.log(f"world/{label}/ground", rr.LineStrips2D(
-        [[[-wide, deep], [wide, deep]]], colors=rgba(GROUND), radii=[deep], draw_order=-10.0),
-        static=True)
-    recording.log(f"world/{label}/table", rr.LineStrips2D(
-        [[[-wide, 0.0], [wide, 0.0]]], colors=rgba(LINE), radii=[rr.Radius.ui_points(0.6)],
-        draw_order=40.0), static=True)
+    deep, wide = 50.0, 1e3  # m
+    recording.log(
+        f"world/{label}/ground",
+        rr.LineStrips2D(
+            [[[-wide, deep], [wide, deep]]], colors=rgba(GROUND), radii=[deep], draw_order=-10.0
+        ),
+        static=True,
+    )
+    recording.log(
+        f"world/{label}/table",
+        rr.LineStrips2D(
+            [[[-wide, 0.0], [wide, 0.0]]],
+            colors=rgba(LINE),
+            radii=[rr.Radius.ui_points(0.6)],
+            draw_order=40.0,
+        ),
+        static=True,
+    )
 
 
 def send_balls(rr, recording, label, run, radius, times, color):
     """The balls, where the run had them."""
     import numpy as np
+
     balls = f"world/{label}/balls"
-    recording.log(balls, rr.Points2D.from_fields(
-        radii=radius, colors=np.repeat(rgba(color), len(radius)), draw_order=20.0), static=True)
+    recording.log(
+        balls,
+        rr.Points2D.from_fields(
+            radii=radius, colors=np.repeat(rgba(color), len(radius)), draw_order=20.0
+        ),
+        static=True,
+    )
     spots = np.stack((run.q[:, 0], -run.q[:, 1]), axis=-1).reshape(-1, 2)
-    recording.send_columns(balls, times, rr.Points2D.columns(positions=spots).partition(
-        [len(radius)] * len(run.t)))
+    recording.send_columns(
+        balls, times, rr.Points2D.columns(positions=spots).partition([len(radius)] * len(run.t))
+    )
 
 
 def send_pushes(rr, recording, label, run, radius, times, pushes):
@@ -89,19 +116,30 @@ def send_pushes(rr, recording, label, run, radius, times, pushes):
     So a ball at rest has an arrow as long as its radius, and an impact still fits in the view.
     """
     import numpy as np
+
     arrows = f"world/{label}/pushes"
     with np.errstate(all="ignore"):
         size = np.hypot(pushes[:, 0], pushes[:, 1])
         size = np.where((size > 1e-6) & np.isfinite(size), size, np.inf)
         reach = np.where(np.isfinite(size), radius * np.log2(1.0 + size), 0.0)
         vectors = np.where(np.isfinite(size)[:, None], pushes, 0.0) * (reach / size)[:, None]
-    recording.log(arrows, rr.Arrows2D.from_fields(
-        colors=np.repeat(rgba(PUSH), len(radius)), radii=np.full(len(radius), 0.06) * radius,
-        draw_order=30.0), static=True)
-    starts, ends = (np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2)
-                    for rows in (run.q, vectors))
-    recording.send_columns(arrows, times, rr.Arrows2D.columns(
-        origins=starts, vectors=ends).partition([len(radius)] * len(run.t)))
+    recording.log(
+        arrows,
+        rr.Arrows2D.from_fields(
+            colors=np.repeat(rgba(PUSH), len(radius)),
+            radii=np.full(len(radius), 0.06) * radius,
+            draw_order=30.0,
+        ),
+        static=True,
+    )
+    starts, ends = (
+        np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2) for rows in (run.q, vectors)
+    )
+    recording.send_columns(
+        arrows,
+        times,
+        rr.Arrows2D.columns(origins=starts, vectors=ends).partition([len(radius)] * len(run.t)),
+    )
 
 
 def layout(rrb, runs, radius, curves, bursts):
@@ -114,34 +152,60 @@ def layout(rrb, runs, radius, curves, bursts):
     low, high = float(first.q[0, 0].min()), float(first.q[0, 0].max())
     middle, half = 0.5 * (low + high), 0.5 * (high - low) + 2.5 * large
     if len(radius) > 1:
-        half = min(2.0 * half, max(half, *[roamed(run.q[:, 0], middle) + large
-                                           for run in runs.values()]))
+        half = min(
+            2.0 * half, max(half, *[roamed(run.q[:, 0], middle) + large for run in runs.values()])
+        )
     top = float(first.q[0, 1].max()) + 2.0 * large
-    whole_view = rrb.VisualBounds2D(x_range=[middle - half, middle + half],
-                                    y_range=[-top, 0.12 * top])
+    whole_view = rrb.VisualBounds2D(
+        x_range=[middle - half, middle + half], y_range=[-top, 0.12 * top]
+    )
     near = float(first.q[0, 0, 0])
-    close_view = rrb.VisualBounds2D(x_range=[near - 1.2 * large, near + 1.2 * large],
-                                    y_range=[-0.3 * large, 0.5 * large])
-    lanes = [rrb.Spatial2DView(origin=f"world/{label}", name=told(label, bursts.get(label)),
-                               visual_bounds=whole_view) for label in runs]
+    close_view = rrb.VisualBounds2D(
+        x_range=[near - 1.2 * large, near + 1.2 * large], y_range=[-0.3 * large, 0.5 * large]
+    )
+    lanes = [
+        rrb.Spatial2DView(
+            origin=f"world/{label}", name=told(label, bursts.get(label)), visual_bounds=whole_view
+        )
+        for label in runs
+    ]
     wide = half > 0.6 * top and len(lanes) > 1
     rows = [rrb.Grid(*lanes, grid_columns=1 + (len(lanes) > 2)) if wide else rrb.Horizontal(*lanes)]
     if len(radius) <= FEW:
-        rows.append(rrb.Horizontal(*[
-            rrb.Spatial2DView(origin=f"world/{label}", name="the table, magnified",
-                              visual_bounds=close_view) for label in runs]))
-    rows.append(rrb.Horizontal(*[
-        rrb.TimeSeriesView(origin=title.split()[0], name=title,
-                           plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop))
-        for title in curves]))
+        rows.append(
+            rrb.Horizontal(
+                *[
+                    rrb.Spatial2DView(
+                        origin=f"world/{label}",
+                        name="the table, magnified",
+                        visual_bounds=close_view,
+                    )
+                    for label in runs
+                ]
+            )
+        )
+    rows.append(
+        rrb.Horizontal(
+            *[
+                rrb.TimeSeriesView(
+                    origin=title.split()[0],
+                    name=title,
+                    plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop),
+                )
+                for title in curves
+            ]
+        )
+    )
     shares = [5, 2, 3] if len(rows) == 3 else [5, 3]
-    return rrb.Blueprint(rrb.Vertical(*rows, row_shares=shares), time_panel(rrb),
-                         collapse_panels=True)
+    return rrb.Blueprint(
+        rrb.Vertical(*rows, row_shares=shares), time_panel(rrb), collapse_panels=True
+    )
 
 
 def roamed(x, middle):
     """How far from the middle the balls ever are [m]; 0 for a run that overflows."""
     import numpy as np
+
     far = np.abs(x - middle).max()
     return float(far) if np.isfinite(far) else 0.0
 

@@ -15,8 +15,12 @@ def rounded(value, digits=12, steps=()):
     digits instead of decimals.
     """
     if isinstance(value, dict):
-        return {key: float(f"{item:.{digits}g}") if key in steps and isinstance(item, float)
-                else rounded(item, digits, steps) for key, item in value.items()}
+        return {
+            key: float(f"{item:.{digits}g}")
+            if key in steps and isinstance(item, float)
+            else rounded(item, digits, steps)
+            for key, item in value.items()
+        }
     if isinstance(value, float):
         return round(value, digits) + 0.0 if math.isfinite(value) else None
     return value
@@ -50,11 +54,17 @@ def best_and_worst(rows, keys, reference, unknown):
         if reference not in rows and key == unknown:
             continue
         aim = rows[reference][key] if reference in rows else 0.0
-        off = {name: math.inf if row["blew_up"] or row[key] is None else abs(row[key] - aim)
-               for name, row in rows.items() if name != reference}
+        off = {
+            name: math.inf if row["blew_up"] or row[key] is None else abs(row[key] - aim)
+            for name, row in rows.items()
+            if name != reference
+        }
         best, worst = min(off.values(), default=0.0), max(off.values(), default=0.0)
-        marks |= {(name, key): "*" if off[name] == best else "!" for name in off
-                  if best < worst and off[name] in (best, worst)}
+        marks |= {
+            (name, key): "*" if off[name] == best else "!"
+            for name in off
+            if best < worst and off[name] in (best, worst)
+        }
     return marks
 
 
@@ -91,22 +101,31 @@ def print_table(title, columns, rows, state, marks=None):
     behind the best and the worst figures, which a terminal shows in green and red besides.
     """
     marks = marks or {}
-    cells = {(name, key): figure(row[key]) + marks.get((name, key), " ")
-             for name, row in rows.items() for key in columns.values()}
+    cells = {
+        (name, key): figure(row[key]) + marks.get((name, key), " ")
+        for name, row in rows.items()
+        for key in columns.values()
+    }
     above, below = [""], [title]
     wide = [max(map(len, [title, *rows]))]
     for heading, key in columns.items():
         top, _, bottom = heading.rpartition(" ")
         above.append(f"{top} ")
         below.append(f"{bottom} ")
-        wide.append(1 + max(len(text) for text in (
-            above[-1], below[-1], *(cells[name, key] for name in rows))))
+        wide.append(
+            1
+            + max(
+                len(text) for text in (above[-1], below[-1], *(cells[name, key] for name in rows))
+            )
+        )
     for line in (above, below):
         text = "".join(f"{part:>{width}}" for part, width in zip(line[1:], wide[1:]))
         print(f"{line[0]:<{wide[0]}}{text}".rstrip() + (" state" if line is below else ""))
     for name, row in rows.items():
-        text = "".join(colored(f"{cells[name, key]:>{width}}", marks.get((name, key)))
-                       for key, width in zip(columns.values(), wide[1:]))
+        text = "".join(
+            colored(f"{cells[name, key]:>{width}}", marks.get((name, key)))
+            for key, width in zip(columns.values(), wide[1:])
+        )
         print(f"{name:<{wide[0]}}{text} {state(row)}")
 
 
@@ -121,5 +140,6 @@ def colored(text, mark):
 def fingerprint(knobs, but=()):
     """12 hexadecimal digits that change with any of the knobs {name: value}, except those in `but`."""
     import hashlib
+
     counted = {name: value for name, value in knobs.items() if name not in but}
     return hashlib.sha256(json.dumps(counted, sort_keys=True).encode()).hexdigest()[:12]

@@ -15,6 +15,7 @@ def spread(function, inputs, label):
     if count < 2:
         return [function(*each) for each, _ in zip(inputs, tick)]
     from concurrent.futures import ProcessPoolExecutor
+
     with ProcessPoolExecutor(count) as pool:
         found = []
         for result in pool.map(function, *zip(*inputs)):

@@ -459,7 +459,12 @@ def test_the_nearest_to_exact_and_the_farthest_are_marked_and_exploded_rows_are_
         "exact": row | {"a": 1.0, "b": 0.0, "c": 0.0},
     }
     marks = results.best_and_worst(rows, "abc", "exact", unknown="a")
-    assert marks == {("lcp", "a"): "*", ("soft", "a"): "!", ("penalty", "c"): "*", ("soft", "c"): "!"}
+    assert marks == {
+        ("lcp", "a"): "*",
+        ("soft", "a"): "!",
+        ("penalty", "c"): "*",
+        ("soft", "c"): "!",
+    }
     del rows["exact"]
     rows["lcp"]["blew_up"] = True
     marks = results.best_and_worst(rows, "abc", "exact", unknown="a")
@@ -501,7 +506,12 @@ def test_a_time_is_expected_only_of_the_run_that_was_measured(tmp_path, capsys, 
     """A pile takes longer than the drop whose time the ledger knows."""
     monkeypatch.setattr(wallclock, "lookup", lambda *_: 0.0087)
     said = {}
-    for flags in ([], ["--scene", "drop"], ["--scene", "pile", "--bodies", "14"], ["--dt", "0.001"]):
+    for flags in (
+        [],
+        ["--scene", "drop"],
+        ["--scene", "pile", "--bodies", "14"],
+        ["--dt", "0.001"],
+    ):
         known = flags if flags and flags[0] != "--dt" else flags
         args = terminal.parse_flags([*known, "--out", str(tmp_path)])
         said[" ".join(flags)] = args.usual
@@ -527,7 +537,9 @@ def test_absurd_steps_give_no_warning_and_no_false_claim(dt, tmp_path, capsys):
     else:
         assert rows["penalty"]["blew_up"] and "at every dt tried" in out
         for row in rows.values():
-            assert row["blew_up"] or None not in [row[key] for key in ("rest_jitter", "rest_gap_frac")]
+            assert row["blew_up"] or None not in [
+                row[key] for key in ("rest_jitter", "rest_gap_frac")
+            ]
 
 
 def test_a_pile_runs_no_stability_grid(tmp_path, capsys):
@@ -539,6 +551,7 @@ def test_a_pile_runs_no_stability_grid(tmp_path, capsys):
 
 def test_a_folder_that_turns_out_unwritable_costs_the_files_and_not_the_report(capsys, monkeypatch):
     """A folder under /proc looks writable and is not."""
+
     def refuse(path):
         raise OSError(28, "No space left on device", path)
 

@@ -13,13 +13,14 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
-import contact  # noqa: E402
 import ex1_predict_contact as ex1  # noqa: E402
 import ex2_completion_contact as ex2  # noqa: E402
 import ex3_dt_stability as ex3  # noqa: E402
 import ex4_predict_soft as ex4  # noqa: E402
 import predict  # noqa: E402
 import trials  # noqa: E402
+
+import contact  # noqa: E402
 from curriculum.check_prose_code_drift import typed_numbers  # noqa: E402
 from curriculum.quoted import Numbers, load_meta  # noqa: E402
 

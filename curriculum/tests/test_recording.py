@@ -264,7 +264,7 @@ def test_a_failure_while_recording_keeps_the_old_file(tmp_path):
     path = tmp_path / "contact.rrd"
     path.write_bytes(b"old")
     broken = runs["lcp"]._replace(q=runs["lcp"].q[:-1])
-    with pytest.raises(Exception):
+    with pytest.raises(ValueError):
         contact.log_rerun(path, {"lcp": broken}, scene)
     assert path.read_bytes() == b"old" and [file.name for file in tmp_path.iterdir()] == [path.name]
 
