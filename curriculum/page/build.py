@@ -344,42 +344,72 @@ def fill_slots(root, macros, drawn, exercises):
     return {name: str(html) for name, html in slots.items()}
 
 
-def assemble(parts, slots, code, macros, bets):
-    """(body, contents): the chapter's HTML, and (level, id, text) of its headings.
+class Body:
+    """The chapter's HTML as it grows, and (level, id, text) of its headings.
 
-    What follows a bet, up to the next heading, is its answer: it is put into a veil.
+    What follows a bet, up to the next heading, is its answer: it is put into a veil. What follows the
+    puzzle is veiled as well, up to the map that shows its answer.
     """
-    body, contents, veiled, machinery = [], [], False, False
+
+    def __init__(self, slots, code, macros, bets):
+        self.slots, self.code, self.macros, self.bets = slots, code, macros, bets
+        self.html, self.contents = [], []
+        self.veils, self.puzzle_depth, self.machinery = 0, 0, False
+
+    def lift(self, keep=0):
+        """Close the veils that are open, but for `keep` of them."""
+        self.html += ["</div></div>"] * (self.veils - keep)
+        self.veils = min(self.veils, keep)
+
+    def veil(self, name):
+        self.html.append(str(self.macros.veil(name)))
+        self.veils += 1
+
+    def heading(self, level, name, inner):
+        self.lift()
+        if level <= 2:
+            self.machinery = MACHINERY in inner.lower()
+        if level > 1:
+            self.html.append(str(self.macros.heading(level, name, Markup(inner))))
+            self.contents.append((level, name, Markup(re.sub(r"</?(code|a)[^>]*>", "", inner))))
+
+    def include(self, file, name):
+        if (file, name) not in self.code:
+            raise ValueError(f"{CHAPTER}: includes {file}#{name}, and there is no such region")
+        panel = self.code[file, name]
+        panel = panel | {"folded": self.machinery or panel["folded"]}
+        self.html.append(str(self.macros.panel(panel)))
+
+    def slot(self, name):
+        if name not in self.slots and not name.startswith(("bench:", "stress:")):
+            raise ValueError(
+                f"{CHAPTER}: a slot for {name!r}; allowed: {', '.join(sorted(self.slots))}"
+            )
+        self.html.append(self.slots.get(name, ""))
+        exercise = name.removeprefix("exercise:")
+        if exercise in self.bets and self.veils == 0:
+            self.veil(exercise)
+        elif name == "figure:puzzle":
+            self.veil("puzzle")
+            self.puzzle_depth = self.veils - 1
+        elif name.startswith("stress:") and self.veils > self.puzzle_depth:
+            self.lift(keep=self.puzzle_depth)
+
+
+def assemble(parts, slots, code, macros, bets):
+    """(body, contents): the chapter's HTML, and (level, id, text) of its headings."""
+    body = Body(slots, code, macros, bets)
     for kind, value in parts:
         if kind == "heading":
-            body += ["</div></div>"] * veiled
-            veiled = False
-            level, name, inner = value
-            if level <= 2:
-                machinery = MACHINERY in inner.lower()
-            if level > 1:
-                body.append(str(macros.heading(level, name, Markup(inner))))
-                contents.append((level, name, Markup(re.sub(r"</?(code|a)[^>]*>", "", inner))))
+            body.heading(*value)
         elif kind == "include":
-            if value not in code:
-                raise ValueError(
-                    f"{CHAPTER}: includes {'#'.join(value)}, and there is no such region"
-                )
-            panel = code[value] | {"folded": machinery or code[value]["folded"]}
-            body.append(str(macros.panel(panel)))
+            body.include(*value)
         elif kind == "slot":
-            if value not in slots and not value.startswith(("bench:", "stress:")):
-                raise ValueError(
-                    f"{CHAPTER}: a slot for {value!r}; allowed: {', '.join(sorted(slots))}"
-                )
-            body.append(slots.get(value, ""))
-            if value.removeprefix("exercise:") in bets and not veiled:
-                body.append(str(macros.veil(value.removeprefix("exercise:"))))
-                veiled = True
+            body.slot(value)
         else:
-            body.append(value)
-    body += ["</div></div>"] * veiled
-    return "\n".join(body), contents
+            body.html.append(value)
+    body.lift()
+    return "\n".join(body.html), body.contents
 
 
 def script_texts(data):
@@ -399,7 +429,7 @@ def early_script(bets):
     """What must run before the first paint, so that nothing moves after it."""
     return (
         'document.documentElement.className = "js";\n'
-        f"for (const id of {json.dumps(list(bets))})\n"
+        f"for (const id of {json.dumps([*bets, 'puzzle'])})\n"
         '  try { if (localStorage.getItem("contact-chapter:" + id)) '
         'document.documentElement.classList.add("open-" + id); } catch {}\n'
     )
@@ -433,7 +463,7 @@ def stylesheet():
     veils = "".join(
         f".js:not(.open-{name}) .veiled-{name} > .answer, .open-{name} .veiled-{name} > "
         f".veil-bar {{ display: none; }}\n"
-        for name in EXERCISES
+        for name in (*EXERCISES, "puzzle")
     )
     return f":root {{ {colors}}}\n" + minified((HERE / "style.css").read_text("utf-8")) + veils
 

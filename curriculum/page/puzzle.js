@@ -179,6 +179,7 @@ const Puzzle = (() => {
         map = result;
         draw();
         explain();
+        Bets.show("puzzle");
       });
     });
     show();
