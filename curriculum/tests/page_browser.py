@@ -1,6 +1,8 @@
 """A real browser for the page's tests: Debian's Chromium, driven by Playwright, offline."""
 
 import contextlib
+import functools
+from pathlib import Path
 
 import pytest
 
@@ -11,6 +13,14 @@ needs_chromium = pytest.mark.skipif(
 )
 SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
   localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
+
+
+@functools.cache
+def small_page():
+    """The page of a short chapter that holds every kind of slot, link and number; built once."""
+    from curriculum.page.build import build
+
+    return build(chapter=Path(__file__).with_name("page_chapter.md").read_text("utf-8"))
 
 
 @contextlib.contextmanager
