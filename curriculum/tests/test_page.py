@@ -486,6 +486,7 @@ def test_the_puzzle_has_no_answer_and_says_why_after_a_try(browser, url):
         page.keyboard.press("Home")
         page.locator("#goal-rest[data-met]").wait_for()
         assert page.get_attribute("#goal-sink", "data-met") is None
+        assert page.locator(".veiled-puzzle > .answer").count() <= 1
         page.click("#puzzle-give")
         why = page.locator("#puzzle-why")
         why.wait_for(timeout=30_000)
@@ -536,7 +537,7 @@ def test_nothing_shows_a_bets_answer_before_the_bet(browser, url):
         page.evaluate("Figure.set({dt: 0.03})")
         assert page.locator("#veil").is_visible(), "a long step is exercise 3's answer"
         assert page.locator(".veiled-ex3 > .answer").is_hidden()
-        page.locator(".veiled-ex3 button[data-show]").click()
+        page.locator("button[data-show=ex3]").click()
         assert (
             page.locator("#veil").is_hidden() and page.locator(".veiled-ex3 > .answer").is_visible()
         )

@@ -6,8 +6,12 @@ import io
 import numpy as np
 import pytest
 
-pytest.importorskip("markdown_it", reason="the page's libraries are missing: pip install -e '.[page]'")
-pytest.importorskip("py_mini_racer", reason="the page's libraries are missing: pip install -e '.[page]'")
+pytest.importorskip(
+    "markdown_it", reason="the page's libraries are missing: pip install -e '.[page]'"
+)
+pytest.importorskip(
+    "py_mini_racer", reason="the page's libraries are missing: pip install -e '.[page]'"
+)
 
 import contact  # noqa: E402
 from curriculum.tests.page_browser import small_page  # noqa: E402
