@@ -31,6 +31,7 @@ SLOT = re.compile(r"<!-- (figure|exercise): ([\w-]+) -->")
 LIVE = re.compile(r"\[([^\]]*)\]\((?:try|drag):[^)]*\)")
 REST = "## The rest of the file"  # of the chapter; a notebook has it in folded cells
 SCRIPTS = ("contact.py", "curriculum/exact.py")
+SIGNS, SIGNS_HERE = "the table at the top of contact.py", "Two bodies, one contact"
 HIDDEN = {"jupyter": {"source_hidden": True}, "cellView": "form"}
 AFTER = {"first": "3.5: Contact", "mujoco": "Way three: soft"}  # a cell behind a section, no figure
 

@@ -150,6 +150,13 @@ def test_prose_has_its_numbers_and_no_page_marks(book):
     assert "## Break it" in prose and "<details>" in prose
 
 
+def test_it_cites_nothing_that_it_does_not_hold(book):
+    """The signs stand in a section of the text; a table at the top of a file is not here."""
+    prose = "\n".join(cell.source for cell in book.cells if cell.cell_type == "markdown")
+    assert "at the top of" not in prose
+    assert f"### {notebook.SIGNS_HERE}\n" in prose and prose.count(repr(notebook.SIGNS_HERE)) == 1
+
+
 def test_all_cells_of_the_pictures_are_used(book):
     code = code_of(book)
     assert all(cell.source in code for cell in notebook.own_cells(ROOT).values())
