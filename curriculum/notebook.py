@@ -245,7 +245,8 @@ def exercise_cells(root, name, numbers):
         return []
     words, title, text = exercise_words(path)
     if "CHOICES" not in words:
-        return [Cell("markdown", f"**{title}** {text.split(chr(10) * 2)[0]}"), code_cell(EX2)]
+        told = text.split("\n\n")[0].replace(SIGNS, f"the section {SIGNS_HERE!r}")
+        return [Cell("markdown", f"**{title}** {told}"), code_cell(EX2)]
     reasons = "\n\n".join(
         f"**{letter}.** {' '.join(numbers.render(reason).split())}"
         for letter, reason in facts["reveal"].items()
