@@ -1,4 +1,4 @@
-"""python -m curriculum.page [--out FILE] [--screenshot PNG]: write the chapter as one HTML file."""
+"""python -m curriculum.page [--out FILE] [--pictures FOLDER]: write the chapter as one HTML file."""
 
 import sys
 from pathlib import Path
@@ -21,7 +21,7 @@ def main(argv=None):
     )
     parser.add_argument("--root", type=Path, help="another copy of the project")
     parser.add_argument(
-        "--screenshot", type=Path, metavar="PNG", help="and its first screen as a picture"
+        "--pictures", type=Path, metavar="FOLDER", help="and the README's pictures of it"
     )
     args = parser.parse_args(argv)
     try:
@@ -37,11 +37,10 @@ def main(argv=None):
         print(error, file=sys.stderr)
         return 1
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
-    if args.screenshot:
+    if args.pictures:
         from curriculum.page.browser import photograph
 
-        photograph(args.out, args.screenshot)
-        print(args.screenshot)
+        print(*photograph(args.out, args.pictures), sep="\n")
     return 0
 
 

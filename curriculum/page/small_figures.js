@@ -403,18 +403,23 @@ const SmallFigures = (() => {
   // Runs of the four models, and the angle at which the ball leaves each time.
   function slideRuns() {
     return once("slide", () => {
-      const { angle, dt } = SLIDE;
+      const { angle: from, dt } = SLIDE;
       const scene = {
-        x: [0, 2 * R * Math.sin(angle)], y: [5, 5 + 2 * R * Math.cos(angle)], vx: [0, 0], vy: [0, 0],
+        x: [0, 2 * R * Math.sin(from)], y: [5, 5 + 2 * R * Math.cos(from)], vx: [0, 0], vy: [0, 0],
         mass: [Infinity, 1], radius: [R, R], restitution: 0,
       };
       return MODELS.map((model) => {
         const run = runModel(model, scene, { ...DEFAULTS, dt, iters: 50 }, SLIDE.steps);
         const place = (row) => ({ x: run.x[2 * row + 1], y: run.y[2 * row + 1] - 5 });
+        // the last step in which something else than gravity changed the velocity
+        const pushed = (at) => {
+          const [now, before] = [2 * at + 1, 2 * at - 1];
+          return Math.hypot(run.vx[now] - run.vx[before], run.vy[now] - run.vy[before] + G * dt) > 1e-6 * G * dt;
+        };
         let row = SLIDE.steps;
-        while (row > 0 && Math.hypot(place(row).x, place(row).y) > 2 * R + 1e-7 * R) row--;
-        const { x, y } = place(row);
-        return { model, place, leaves: Math.atan2(x, y) };
+        while (row > 0 && !pushed(row)) row--;
+        const angle = (at) => Math.atan2(place(at).x, place(at).y);
+        return { model, place, leaves: 0.5 * (angle(row - 1) + angle(row)) };
       });
     });
   }
@@ -423,7 +428,7 @@ const SmallFigures = (() => {
     const runs = slideRuns();
     const row = Math.round(time / SLIDE.dt);
     const scale = Math.min(width / 0.62, 560);
-    const [cx, cy] = [0.2 * scale, 0.36 * scale];
+    const [cx, cy] = [0.2 * scale, 0.31 * scale];
     const release = Math.acos((2 / 3) * Math.cos(SLIDE.angle));
     const ray = (angle, from, to) =>
       `M${Plot.round(cx + from * scale * Math.sin(angle))} ${Plot.round(cy - from * scale * Math.cos(angle))}` +
@@ -434,7 +439,7 @@ const SmallFigures = (() => {
       return ball(model, cx + x * scale, cy - y * scale, R * scale, model === "exact" ? "ball" : "ghost");
     });
     const marks = runs.map(({ model, leaves }, k) => {
-      const far = (0.115 + 0.018 * k) * scale;
+      const far = (0.12 + 0.022 * k) * scale;
       return mark(model, cx + far * Math.sin(leaves), cy - far * Math.cos(leaves), 5);
     });
     return {
@@ -442,7 +447,7 @@ const SmallFigures = (() => {
       markup: [
         ball("fixed", cx, cy, R * scale, "body"),
         el("path", { d: ray(release, 0, 0.32), class: "rule dashed" }),
-        words("cos θ = ⅔ cos θ₀", { x: width, y: cy - 0.3 * scale * Math.cos(release) - 4, class: "tick strong", "text-anchor": "end" }),
+        words("cos θ = ⅔ cos θ₀", { x: Math.min(width - 108, cx + 0.33 * scale * Math.sin(release)), y: cy - 0.33 * scale * Math.cos(release), class: "tick strong" }),
         ...balls, ...marks,
       ].join(""),
       output: `t = ${time.toFixed(2)} s`,
