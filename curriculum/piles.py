@@ -86,7 +86,7 @@ def find_cells(balls, side):
 @compiled
 def bucket_of(column, row, buckets):
     """The bucket of a cell, one of a power of two. Several cells may share it."""
-    return (column * 73856093 ^ row * 19349663) & (buckets - 1)
+    return (column + row * 19349663) & (buckets - 1)
 
 
 @compiled
@@ -152,7 +152,7 @@ def keep_near(i, found, balls, reach):
         dx = balls[i].x - balls[j].x
         dy = balls[i].y - balls[j].y
         limit = (balls[i].radius + balls[j].radius + reach) * (1.0 + 1e-9)
-        if math.sqrt(dx * dx + dy * dy) <= limit:
+        if dx * dx + dy * dy <= limit * limit:
             place = count
             while place > 0 and found[place - 1] < j:
                 found[place] = found[place - 1]
