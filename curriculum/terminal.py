@@ -220,8 +220,8 @@ def print_next(args, argv):
     same = [word for word in argv if word not in ("--skip", "--no-skip")]
     again = shell.python(os.path.join(here, "contact.py"), *same, "--plot")
     bet = shell.python(os.path.join(here, "exercises", "ex1_predict_contact.py"), extra="learn")
-    see = f"watch it: {shell.tool('rerun')} {recording}" if recorded else f"see it: {again}"
-    print(f"next: {see}; make a bet: {bet}")
+    see = f"watch it: {shell.tool('rerun')} {recording}; " if recorded else f"see it: {again}; "
+    print(f"next: {see if recorded or not args.plot else ''}make a bet: {bet}")
 
 
 def seed_quality(args, models, seed):

@@ -8,7 +8,7 @@ from curriculum.common.files import whole
 PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"
 WIDTHS = (5.0, 3.5, 2.2, 1.2)  # of curves, in points: lines that coincide are seen beneath
-FEW = 24  # balls: more have no arrows, and no magnified view
+FEW = 24  # balls: more have no arrows
 
 
 def write(path, name, runs, radius, curves, colors, pushes=None, bursts=None):
@@ -145,7 +145,8 @@ def send_pushes(rr, recording, label, run, radius, times, pushes):
 def layout(rrb, runs, radius, curves, bursts):
     """The blueprint that travels in the file: the balls, the table magnified, the plots, at t = 0.
 
-    Every run has views of its own, so balls that roll far never cross into another run's.
+    Every run has views of its own, so balls that roll far never cross into another run's. The
+    table is magnified under balls that stand above one another, and not under those that roll.
     """
     first = next(iter(runs.values()))
     large = float(radius.max())
@@ -171,7 +172,7 @@ def layout(rrb, runs, radius, curves, bursts):
     ]
     wide = half > 0.6 * top and len(lanes) > 1
     rows = [rrb.Grid(*lanes, grid_columns=1 + (len(lanes) > 2)) if wide else rrb.Horizontal(*lanes)]
-    if len(radius) <= FEW:
+    if high - low < large:
         rows.append(
             rrb.Horizontal(
                 *[
