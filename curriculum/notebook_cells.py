@@ -262,6 +262,31 @@ axes.set(xlabel="dt [s]", ylabel="energy gained [start]", title="the cliff", yli
 axes.legend()
 figure.tight_layout()
 
+# %% long-step
+# One step from deep inside: the push belongs to the depth at its start, for the whole of the step.
+steps = np.geomspace(0.001, 0.03, 200)
+figure, axes = plt.subplots(figsize=(6, 3))
+leaves = []
+for dt in steps:
+    ball = Ball(0.0, 0.8 * RADIUS, 0.0, 0.0, 1.0, RADIUS)
+    penalty_step([ball], float(dt), 1e4, 0.0)
+    leaves.append(ball.vy)
+axes.loglog(steps, leaves, color="#d55e00", label="penalty")
+most = math.sqrt(1e4) * 0.2 * RADIUS
+axes.axhline(most, color="0.6", label="all that the spring has stored")
+axes.set(xlabel="dt [s]", ylabel="speed after it [m/s]", title="one step, from 0.2 r deep at rest")
+axes.legend()
+figure.tight_layout()
+
+# %% puzzle
+stiffness, damping = 1e4, 80.0          # yours
+run = run_model("penalty", build_scene("drop", damping=damping), 0.01, 2000, stiffness)
+depth = max_penetration(run.q, np.array([RADIUS])) / RADIUS
+still = np.abs(np.diff(run.q[-200:, 1, 0])).max() < 1e-6
+print(f"sinks {-GRAVITY / stiffness / RADIUS:.5f} r (less than 0.001 wanted), critical dt "
+      f"{critical_dt(1.0, stiffness, damping):.4f} s,",
+      f"at rest {depth[-1]:.5f} r deep" if still else "does not come to rest")
+
 # %% one-line
 scene = build_scene("drop")
 shares = [0.0001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 0.9999]
