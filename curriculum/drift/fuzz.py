@@ -277,9 +277,13 @@ def docstring(rng, text):
 
 def block_digit(rng, text):
     """Another digit in a generated block of the README."""
-    block = pick(rng, r"<!-- generated: .*?<!-- end -->", text, re.DOTALL)
-    found = pick(rng, r"\d+\.\d+", block[0]) if block else None
-    return put(text, block, put(block[0], found, another_digit(rng, found[0]))) if found else None
+    blocks = re.finditer(r"<!-- generated: .*?<!-- end -->", text, re.DOTALL)
+    numbered = [block for block in blocks if re.search(r"\d\.\d", block[0])]
+    if not numbered:
+        return None
+    block = rng.choice(numbered)
+    found = pick(rng, r"\d+\.\d+", block[0])
+    return put(text, block, put(block[0], found, another_digit(rng, found[0])))
 
 
 META, README = ("meta.yaml",), ("README.md",)

@@ -85,6 +85,8 @@ The margin is {{contact.MARGIN|.3f}} m; {{contact.main.sweeps}} sweeps. A stack 
 
 <!-- exercise: ex1 -->
 
+<!-- figure: corner -->
+
 The limit is $k dt^2 + 2 c dt < 4 m$, and [a long step](try:scene=drop&dt=0.03) shows it.
 
 ```
@@ -273,7 +275,7 @@ DRIFT = {
     ),
     "an include from the wrong file": (
         (CHAPTER, "curriculum/exact.py#events", "contact.py#events"),
-        rf"{CHAPTER}:26: includes events, and contact.py has no such region",
+        rf"{CHAPTER}:28: includes events, and contact.py has no such region",
     ),
     "a region never shown": (
         (CHAPTER, "```\n[include-by-region: contact.py#setup]\n```", ""),
@@ -317,6 +319,10 @@ DRIFT = {
     "a slot left out": (
         (CHAPTER, "<!-- exercise: ex1 -->", ""),
         rf"meta.yaml:\d+: ex1: {CHAPTER} has 0 slots <!-- exercise: ex1 -->, not one",
+    ),
+    "a figure left out": (
+        (CHAPTER, "<!-- figure: corner -->", ""),
+        rf"{CHAPTER}:1: passage outline has changed",
     ),
     "a slot of no exercise": (
         (CHAPTER, "exercise: ex1", "exercise: ex7"),
@@ -382,7 +388,7 @@ DRIFT = {
     ),
     "a typed table in a fence": (
         (CHAPTER, "## What comes", "```\npenalty 0.25\n```\n\n## What comes"),
-        rf"{CHAPTER}:30: a typed number, 0.25",
+        rf"{CHAPTER}:32: a typed number, 0.25",
     ),
     "a typed number without a reason": (
         (CHAPTER, "{{wallclock.cpu-laptop}}", "{{= 3 |}}"),
@@ -521,7 +527,7 @@ DRIFT = {
     ),
     "a live link to a flag that is not there": (
         (CHAPTER, "scene=drop&dt", "scene=drop&td"),
-        rf"{CHAPTER}:23: a try: link to scene=drop&td=0.03: contact.py has no --td",
+        rf"{CHAPTER}:25: a try: link to scene=drop&td=0.03: contact.py has no --td",
     ),
     "a missing image": (
         (CHAPTER, "ball.svg", "bowl.svg"),
@@ -650,10 +656,10 @@ def test_accepting_shows_the_change_and_every_passage_that_names_it_and_records_
     out = capsys.readouterr().out
     assert '-    print("config_hash:", "c0ffee")\n+    print("config_hash: ", "c0ffee")\n' in out
     assert "1.5" not in out
-    assert f"{CHAPTER}:12 shows it; the section, lines 9 to 28, says:" in out
+    assert f"{CHAPTER}:12 shows it; the section, lines 9 to 30, says:" in out
     assert "The spring lets in" in out
     assert f"{CHAPTER}:3 names what it defines:\n\n       The script sets up like this" in out
-    assert f"{CHAPTER}:31 names what it defines:\n\n       Friction is for" in out
+    assert f"{CHAPTER}:33 names what it defines:\n\n       Friction is for" in out
     assert "README.md:3 names what it defines:\n\n       All begins with main()." in out
     after = passages.recorded(quoted.load_meta(project))
     assert f"(before: {before['report-it']})" in out
@@ -829,7 +835,7 @@ def test_a_hole_in_the_gate_is_found_and_fails(project, capsys, monkeypatch):
     )
     assert gate.main(["--root", str(project), "--fuzz", "60"]) == 1
     out = capsys.readouterr().out
-    assert re.search(rf"^passed: {CHAPTER}:23: a formula: ", out, re.M)
+    assert re.search(rf"^passed: {CHAPTER}:25: a formula: ", out, re.M)
     assert re.search(rf"^passed: {CHAPTER}:19: a number in words: ", out, re.M)
 
 
