@@ -82,7 +82,8 @@ def test_3_the_bias_velocity_that_pops_the_ball_off_the_table_is_reported():
 
 def test_3_exact_does_not_pop():
     row = quality("drop", "exact")
-    assert row["rebound_frac"] == row["contact_energy"] == 0.0
+    assert row["rebound_frac"] == 0.0
+    assert row["contact_energy"] < 1e-13, "rounding: an ulp of the energy at some of 800 samples"
 
 
 def test_4_no_seed_starts_a_stack_or_pile_inside_the_floor():

@@ -49,7 +49,7 @@ def test_contact_py_imports_the_course_inside_functions_only():
     modules = [alias.name for node in tree.body if isinstance(node, ast.Import)
                for alias in node.names]
     modules += [node.module for node in tree.body if isinstance(node, ast.ImportFrom)]
-    assert sorted(modules) == ["argparse", "itertools", "math", "numpy", "os", "sys", "typing"]
+    assert sorted(modules) == ["itertools", "math", "numpy", "sys", "typing"]
 
 
 @pytest.fixture
