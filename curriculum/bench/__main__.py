@@ -28,8 +28,10 @@ from curriculum import measured
 from curriculum.bench import problems
 from curriculum.common.arguments import Parser, writable_folder
 from curriculum.common.files import write_whole
+from curriculum.reporting import listed
 
 WHAT = ("accuracy", "solvers", "cradle", "soft", "pile", "skip")
+HARNESS = ("engines.py", "contestants.py", "problems.py", "closed_form.py", "timing.py")
 MODULES = {"pile": "piles", "skip": "skips"}
 RESULTS = Path(__file__).resolve().parent / "results"  # the full runs, which are kept
 QUICK = measured.ROOT / "outputs" / "bench-quick"  # the short ones, which are not
@@ -59,22 +61,35 @@ def report(what):
 
 
 def measure(what, args):
-    """Measure one section and save it; returns it as read back."""
+    """Measure one section and save it; returns it as read back.
+
+    Raises RuntimeError when the measured code was changed while it was measured.
+    """
     work = module(what)
     options = {"only": args.only} if args.only else {}
-    cells = {}
+    cells, before = {}, hashes(work.CODE)
     if not args.quick:
         path = CELLS / f"{what}.jsonl"
         if args.fresh and path.exists():
             path.unlink()
-        cells = measured.Cells(path, work.CODE, about=_versions())
+        cells = measured.Cells(path, work.CODE, about=depends_on(work))
     section = work.measure(args.quick, cells=cells, **options)
+    if hashes(work.CODE) != before:
+        raise RuntimeError(f"{listed(work.CODE)} changed while {what} was measured")
     return measured.save(args.folder, what, section, work.COMMAND, work.CODE, PACKAGES)
 
 
-def _versions():
-    """What else a cell depends on: a new engine is measured anew."""
-    return measured.provenance((), PACKAGES)["versions"]
+def hashes(names):
+    return {name: measured.code_hash(name) for name in names}
+
+
+def depends_on(work):
+    """What a cell depends on beside the measured code: the engines' versions, and how we measure."""
+    ours = (f"{work.__name__.rpartition('.')[2]}.py", *HARNESS)
+    return {
+        "versions": measured.provenance((), PACKAGES)["versions"],
+        "harness": hashes(f"curriculum/bench/{name}" for name in ours),
+    }
 
 
 def write(folder, what, section):
@@ -126,7 +141,11 @@ def main(argv=None):
     else:
         chosen = WHAT if args.what == "all" else (args.what,)
     for what in chosen:
-        section = sections[what] if args.what == "draw" else measure(what, args)
+        try:
+            section = sections[what] if args.what == "draw" else measure(what, args)
+        except RuntimeError as error:
+            print(f"nothing written: {error}", file=sys.stderr)
+            return 1
         for goal in report(what).goals(section):
             print(f"{goal.verdict().strip('*'):12} {goal.wanted}: {goal.measured}")
         trouble = write(args.folder, what, section) or trouble

@@ -494,6 +494,15 @@ def test_bad_flags_are_one_line_and_status_2(flags, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
+def test_code_that_changes_while_it_is_measured_is_not_written(tmp_path, monkeypatch, capsys):
+    rising = iter(range(100))
+    monkeypatch.setattr(measured, "code_hash", lambda name, root=None: str(next(rising)))
+    monkeypatch.setattr(cradle, "measure", lambda quick, cells: {})
+    assert command.main(["cradle", "--quick", "--out", str(tmp_path)]) == 1
+    assert "changed while cradle was measured" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_draw_without_results_says_what_to_run(tmp_path, capsys):
     with pytest.raises(SystemExit) as stop:
         command.main(["draw", "--out", str(tmp_path)])
