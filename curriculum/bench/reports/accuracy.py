@@ -332,7 +332,7 @@ def _figure(section, problem):
     _flying_line(axis, data, problem)
     left.set(
         xlim=(1e-17, 1e-9),
-        xticks=[1e-15, 1e-11],
+        xticks=[1e-16, 1e-10],
         ylabel=f"time for {about['duration']:g} s of motion [ms]",
     )
     low, high = axis.get_xlim()
