@@ -46,7 +46,9 @@ def read_recording():
     series {entity: {column: [value, ...]}}, rows in order of the timeline step;
     static {entity: {column: value}}; blueprint: the same as static, of all its rows in a list.
     """
-    chunk = pytest.importorskip("rerun.chunk", reason="a rerun that can read its recordings is not installed")
+    chunk = pytest.importorskip(
+        "rerun.chunk", reason="a rerun that can read its recordings is not installed"
+    )
 
     def rows(reader, store):
         dull = ("rerun.controls.RowId", "log_time", "log_tick", "blueprint")

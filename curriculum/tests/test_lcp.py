@@ -2,11 +2,12 @@
 
 import math
 
-import contact
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+import contact
 
 RADIUS = contact.RADIUS
 
@@ -26,8 +27,8 @@ def test_a_listed_contact_across_a_gap_does_not_bounce_on_air():
     ball = contact.Ball(0.0, RADIUS + 5e-4, 0.0, -0.1, 1.0, RADIUS)
     (listed,) = contact.detect_contacts([ball])
     target = contact.contact_target(listed, 0.7, 0.2, dt=0.002)
-    assert target == pytest.approx(-5e-4 / 0.002)       # it may close the gap, and no more
-    ball.vy = -1.0                                      # now it would meet the floor in the step
+    assert target == pytest.approx(-5e-4 / 0.002)  # it may close the gap, and no more
+    ball.vy = -1.0  # now it would meet the floor in the step
     assert contact.contact_target(listed, 0.7, 0.2, dt=0.002) == 0.7
 
 
@@ -43,8 +44,12 @@ def test_without_push_no_target_is_above_minus_e_v_n(gap, v_n, e):
 def test_solved_impulses_without_push_never_add_kinetic_energy(seed, e):
     """Moreau: with targets of at most -e v_n, and sweeps that finish, |v'| <= |v| in the mass norm."""
     rng = np.random.default_rng(seed)
-    balls = [contact.Ball(*rng.uniform(0.1, 0.25, 2), *rng.normal(0.0, 2.0, 2),
-                          10.0**rng.uniform(-1, 1), RADIUS) for _ in range(int(rng.integers(2, 6)))]
+    balls = [
+        contact.Ball(
+            *rng.uniform(0.1, 0.25, 2), *rng.normal(0.0, 2.0, 2), 10.0 ** rng.uniform(-1, 1), RADIUS
+        )
+        for _ in range(int(rng.integers(2, 6)))
+    ]
     contacts = contact.detect_contacts(balls, margin=0.02)
     for c in contacts:
         c.target = contact.contact_target(c, e, 0.0, 0.002)

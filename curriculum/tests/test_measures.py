@@ -1,8 +1,9 @@
 """What contact_quality measures: on recordings made by hand, whose answers are plain."""
 
-import contact
 import numpy as np
 import pytest
+
+import contact
 
 R = contact.RADIUS
 SCENE = contact.build_scene("drop")
@@ -30,7 +31,7 @@ def test_the_rebound_is_the_highest_gap_after_the_first_contact():
 
 
 def test_energy_in_is_the_sum_of_its_rises():
-    heights = [1.0, 0.4, 0.5, 0.3, 0.35]                # rises of 0.1 and 0.05 m, start at 1 m
+    heights = [1.0, 0.4, 0.5, 0.3, 0.35]  # rises of 0.1 and 0.05 m, start at 1 m
     quality = contact.contact_quality(recording(heights), SCENE, 1.0)
     assert quality["contact_energy"] == pytest.approx(0.15)
     assert quality["energy_excess"] == 0.0
@@ -80,12 +81,24 @@ def test_near_pairs_of_many_balls_list_the_contacts_of_all_pairs(monkeypatch):
     for trial in range(60):
         q = rng.uniform(0.0, 1.5, (2, 40)) * 10.0 ** rng.integers(-1, 2)
         q[rng.random((2, 40)) < 0.05] = rng.choice([np.nan, np.inf, -np.inf, 1e300, 0.5])
-        balls = [contact.Ball(*xy, 0.0, 0.0, 1.0, r) for *xy, r in zip(*q.tolist(),
-                                                                     rng.uniform(0, 0.3, 40))]
+        balls = [
+            contact.Ball(*xy, 0.0, 0.0, 1.0, r)
+            for *xy, r in zip(*q.tolist(), rng.uniform(0, 0.3, 40))
+        ]
         found = []
         for few in (12, 100):
             monkeypatch.setattr(contact, "FEW", few)
             listed = contact.detect_contacts(balls)
-            found.append([(balls.index(c.a), -1 if c.b is contact.FLOOR else balls.index(c.b),
-                           c.nx, c.ny, c.depth) for c in listed])
+            found.append(
+                [
+                    (
+                        balls.index(c.a),
+                        -1 if c.b is contact.FLOOR else balls.index(c.b),
+                        c.nx,
+                        c.ny,
+                        c.depth,
+                    )
+                    for c in listed
+                ]
+            )
         assert repr(found[0]) == repr(found[1]), trial

@@ -23,17 +23,25 @@ def functions(name):
 
 def names_of(function):
     """The names a reader has to keep in mind: arguments and what is assigned."""
-    assigned = {node.id for node in ast.walk(function)
-                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    assigned = {
+        node.id
+        for node in ast.walk(function)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    }
     return assigned | {argument.arg for argument in function.args.args}
 
 
 @pytest.mark.parametrize("name", LITERATE)
 def test_functions_have_at_most_40_lines_and_regions_fit_a_screen(name):
-    long = {f.name: f.end_lineno - f.lineno + 1 for f in functions(name)
-            if f.end_lineno - f.lineno + 1 > 40}
+    long = {
+        f.name: f.end_lineno - f.lineno + 1
+        for f in functions(name)
+        if f.end_lineno - f.lineno + 1 > 40
+    }
     assert not long, f"functions over 40 lines: {long}"
-    screens = {region.name: region.text.count("\n") for region in regions.find(ROOT / name).values()}
+    screens = {
+        region.name: region.text.count("\n") for region in regions.find(ROOT / name).values()
+    }
     assert not {key: lines for key, lines in screens.items() if lines > 48}, screens
     wide = [line for line in (ROOT / name).read_text("utf-8").splitlines() if len(line) > 100]
     assert not wide, wide
@@ -46,8 +54,9 @@ def test_functions_of_contact_py_juggle_at_most_15_names():
 
 def test_contact_py_imports_the_course_inside_functions_only():
     tree = ast.parse((ROOT / "contact.py").read_text("utf-8"))
-    modules = [alias.name for node in tree.body if isinstance(node, ast.Import)
-               for alias in node.names]
+    modules = [
+        alias.name for node in tree.body if isinstance(node, ast.Import) for alias in node.names
+    ]
     modules += [node.module for node in tree.body if isinstance(node, ast.ImportFrom)]
     assert sorted(modules) == ["itertools", "math", "numpy", "sys", "typing"]
 
@@ -58,29 +67,38 @@ def alone(tmp_path):
     shutil.copy(ROOT / "contact.py", tmp_path)
 
     def run(*arguments):
-        return subprocess.run([sys.executable, *arguments], cwd=tmp_path, capture_output=True,
-                              text=True, timeout=60)
+        return subprocess.run(
+            [sys.executable, *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=60
+        )
 
     return run
 
 
 def test_a_copy_alone_in_a_folder_gives_the_published_figures(alone):
-    done = alone("-c", "import contact as c\n"
-                 "scene = c.build_scene('drop')\n"
-                 "for model in ('penalty', 'lcp'):\n"
-                 "    run = c.run_model(model, scene, 0.002, 2000)\n"
-                 "    print(c.contact_quality(run, scene, 0.002)['max_penetration_frac'])\n")
+    done = alone(
+        "-c",
+        "import contact as c\n"
+        "scene = c.build_scene('drop')\n"
+        "for model in ('penalty', 'lcp'):\n"
+        "    run = c.run_model(model, scene, 0.002, 2000)\n"
+        "    print(c.contact_quality(run, scene, 0.002)['max_penetration_frac'])\n",
+    )
     assert done.returncode == 0, done.stderr
     assert [round(float(line), 12) for line in done.stdout.split()] == [
-        0.251329183485, 0.056743325071]
+        0.251329183485,
+        0.056743325071,
+    ]
 
 
 def test_a_copy_alone_steps_soft_and_a_pile(alone):
-    done = alone("-c", "import contact as c\n"
-                 "for name, model in (('drop', 'soft'), ('pile', 'lcp')):\n"
-                 "    scene = c.build_scene(name, bodies=20 if name == 'pile' else None)\n"
-                 "    run = c.run_model(model, scene, 0.002, 30)\n"
-                 "    print(c.contact_quality(run, scene, 0.002)['blew_up'])\n")
+    done = alone(
+        "-c",
+        "import contact as c\n"
+        "for name, model in (('drop', 'soft'), ('pile', 'lcp')):\n"
+        "    scene = c.build_scene(name, bodies=20 if name == 'pile' else None)\n"
+        "    run = c.run_model(model, scene, 0.002, 30)\n"
+        "    print(c.contact_quality(run, scene, 0.002)['blew_up'])\n",
+    )
     assert done.stdout.split() == ["False", "False"], done.stderr
 
 

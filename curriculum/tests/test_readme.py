@@ -14,7 +14,9 @@ TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_table_in_the_readme_is_what_contact_py_prints():
-    shown = re.search(r"by python contact.py --scene drop -->\n(.*?)<!-- end -->", TEXT, re.DOTALL)[1]
+    shown = re.search(r"by python contact.py --scene drop -->\n(.*?)<!-- end -->", TEXT, re.DOTALL)[
+        1
+    ]
     assert shown == readme.printed(["--scene", "drop"])
 
 
@@ -30,5 +32,7 @@ def test_every_file_that_the_readme_links_is_there(target):
 
 @pytest.mark.parametrize("module", sorted(set(re.findall(r"-m (curriculum[\w.]*)", TEXT))))
 def test_every_command_that_the_readme_names_answers_help(module):
-    run = subprocess.run([sys.executable, "-m", module, "--help"], cwd=ROOT, capture_output=True, text=True)
+    run = subprocess.run(
+        [sys.executable, "-m", module, "--help"], cwd=ROOT, capture_output=True, text=True
+    )
     assert run.returncode == 0, run.stderr

@@ -1,8 +1,9 @@
 """soft, MuJoCo's contact: what its formulas promise, found again in runs."""
 
-import contact
 import numpy as np
 import pytest
+
+import contact
 
 DT = 0.002
 
@@ -33,7 +34,7 @@ def test_impedance_is_an_s_from_d0_to_d1():
     values = [contact.impedance(depth, solimp) for depth in depths]
     assert (np.diff(values) > 0.0).all()
     slopes = np.diff(values)
-    assert slopes.argmax() == pytest.approx(0.3 * 199, abs=2)       # steepest where the parts meet
+    assert slopes.argmax() == pytest.approx(0.3 * 199, abs=2)  # steepest where the parts meet
 
 
 def test_a_width_of_zero_takes_the_mean_as_mujoco_does():
@@ -60,8 +61,9 @@ def test_soft_becomes_lcp_as_d_goes_to_one():
     hard = contact.run_model("lcp", scene, DT, 400, baumgarte=0.0)
     apart = []
     for d in (0.9, 0.99, 0.999, 0.9999):
-        run = contact.run_model("soft", scene, DT, 400, solref=(0.0, -d / DT),
-                                solimp=(d, d, 0.001, 0.5, 2.0))
+        run = contact.run_model(
+            "soft", scene, DT, 400, solref=(0.0, -d / DT), solimp=(d, d, 0.001, 0.5, 2.0)
+        )
         apart.append(np.abs(run.q - hard.q).max() / 0.1)
     assert all(later < 0.15 * earlier for earlier, later in zip(apart, apart[1:])), apart
     assert apart[-1] < 2e-4
@@ -97,8 +99,9 @@ def test_sweeps_of_soft_end_long_before_the_cap():
     balls = contact.make_balls(scene)
     for ball in balls:
         ball.y -= 0.01
-    contacts = [Counted(c.a, c.b, c.nx, c.ny, c.depth + 1e-4)
-                for c in contact.detect_contacts(balls)]
+    contacts = [
+        Counted(c.a, c.b, c.nx, c.ny, c.depth + 1e-4) for c in contact.detect_contacts(balls)
+    ]
     for c in contacts:
         contact.soften(c, DT, contact.SOLREF, contact.SOLIMP)
     contact.fall(balls, DT)
