@@ -22,8 +22,7 @@ from predict import contact  # noqa: E402
 
 FILES = {"ex1": "ex1_predict_contact", "ex2": "ex2_completion_contact", "ex3": "ex3_dt_stability",
          "ex4": "ex4_predict_soft"}
-HINT = "exercises/ex2_completion_contact.py --hint"
-HINTS = {"penalty_normal_force": 1, "project_impulse": 3}
+HINTS = {"penalty_normal_force": "1 or 2", "project_impulse": "3 or 4"}
 
 
 def load(name):
@@ -98,8 +97,9 @@ def fail(call, got, expected, blank, likely, note=None):
     lines = [call, f"  got       {got!r}", f"  expected  {expected!r}"]
     lines += [f"  {note}"] if note else []
     lines += [f"  likely: {likely}"] if likely else []
-    lines += [f"  where to look: {blank} in exercises/ex2_completion_contact.py, the sign table at "
-              f"the top of contact.py, or {HINT} {HINTS[blank]}"]
+    script = predict.shell.python(str(ROOT / "exercises" / f"{FILES['ex2']}.py"), extra="learn")
+    lines += [f"  where to look: {blank} in exercises/{FILES['ex2']}.py, the sign table at the top "
+              f"of contact.py, or {script} --hint {HINTS[blank]}"]
     pytest.fail("\n".join(lines), pytrace=False)
 
 

@@ -5,6 +5,7 @@ Detection, normals, masses and time stepping are given, in contact.py; the two l
 signs are those of the table at the top of contact.py. Do not call its functions of these names.
 
     python exercises/ex2_completion_contact.py          # three trials, yours beside contact.py's
+    python exercises/ex2_completion_contact.py --record     # and recordings of them, for rerun
     python exercises/ex2_completion_contact.py --hint 1     # 1, 2: first blank; 3, 4: second
     pytest checks.py -k ex2                             # many inputs; skips what is still a blank
 

@@ -97,21 +97,23 @@ def verdict(name, exercise, runs):
     return "\n".join(lines)
 
 
-def hint(name, argv=None):
-    """Parse the command line of an exercise; with --hint print it and return True."""
+def parse(name, argv=None, **switches):
+    """The command line of an exercise, with more switches {name: help}. A hint is printed here."""
     hints = meta(name)["hints"]
     parser = Parser(description=f"Exercise {name}.")
     parser.add_argument("--hint", type=number(int, low=1, high=len(hints)), metavar="N",
                         help=f"print hint N, 1 to {len(hints)}, and do nothing else")
+    for switch, said in switches.items():
+        parser.add_argument(f"--{switch}", action="store_true", help=said)
     args = parser.parse_args(argv)
     if args.hint:
         print(f"hint {args.hint} of {len(hints)}: {hints[args.hint - 1]}")
-    return bool(args.hint)
+    return args
 
 
 def play(name, exercise, argv=None):
     """Ask; refuse before a choice; then measure, show, explain. Returns the exit status."""
-    if hint(name, argv):
+    if parse(name, argv).hint:
         return 0
     todo = missing(exercise)
     if todo:

@@ -163,21 +163,22 @@ def pressed():
     scene = balls("pressed", (0.0, 0.07))
     run = contact.run_model("penalty", scene, 0.001, 1000, stiffness=8e3)
     pull = max(0.0, -float(contact.contact_impulses(run, scene)[:, 1].min()) / 0.001)
-    return run, {"it jumps": (run.q[:, 1, 0].max() - 0.1) / 0.1,
-                 "the table pulls [N]": pull if pull > 1e-6 else 0.0}
+    jump = float(run.q[:, 1, 0].max() - 0.1) / 0.1
+    return run, {"it jumps": jump, "the table pulls [N]": pull if pull > 1e-6 else 0.0}, scene
 
 
 def thrown():
     """A ball is thrown up from the table: how high it comes."""
-    run = contact.run_model("lcp", balls("thrown", (0.0, 0.1), speed=2.0), 0.002, 500)
-    return run, {"it rises": (run.q[:, 1, 0].max() - 0.1) / 0.1}
+    scene = balls("thrown", (0.0, 0.1), speed=2.0)
+    run = contact.run_model("lcp", scene, 0.002, 500)
+    return run, {"it rises": float(run.q[:, 1, 0].max() - 0.1) / 0.1}, scene
 
 
 def groove():
     """A ball drops into the groove of two balls that are held: where it ends."""
     scene = balls("groove", (0.0, 0.6), (-0.07, 0.1), (0.07, 0.1), held=2)
     run = contact.run_model("lcp", scene, 0.002, 600)
-    return run, {"it ends off the groove by": abs(run.q[-1, 0, 0]) / 0.1}
+    return run, {"it ends off the groove by": abs(float(run.q[-1, 0, 0])) / 0.1}, scene
 
 
 TRIALS = {"penalty_normal_force": (pressed,), "project_impulse": (thrown, groove)}
@@ -193,12 +194,27 @@ def yours(exercise):
 
 def play(exercise, argv=None):
     """The three trials with the two fills. Exit status: 0 right, 1 wrong, 2 not filled yet."""
-    if predict.hint("ex2", argv):
+    args = predict.parse("ex2", argv, record="write a recording of every trial, for rerun")
+    if args.hint:
         return 0
-    return max([tried(exercise, blank) for blank in BLANKS])
+    return max([tried(exercise, blank, args.record) for blank in BLANKS])
 
 
-def tried(exercise, blank):
+def record(name, runs, scene):
+    """Write outputs/ch3.5-contact/ex2-NAME.rrd: yours beside contact.py's, called reference."""
+    path = f"outputs/ch3.5-contact/ex2-{name}.rrd"
+    try:
+        with patch.dict(contact.COLORS, yours="#e69f00", reference="#56b4e9"):
+            contact.log_rerun(path, runs, scene)
+    except ImportError:
+        print(f"    no recording: {predict.shell.install('rerun-sdk')}")
+    except OSError as error:
+        print(f"    no recording: cannot write {error.filename}: {error.strerror}")
+    else:
+        print(f"    watch it: {predict.shell.tool('rerun')} {path}")
+
+
+def tried(exercise, blank, recorded=False):
     """The trials of one blank, and a word on each. Returns the exit status."""
     function = getattr(exercise, blank)
     got, trouble = called(function, blank, inputs(blank)[2])
@@ -208,10 +224,10 @@ def tried(exercise, blank):
     status = 0
     print(f"{'lengths in ball radii':<52}{'yours':>10}{'contact.py':>12}")
     for trial in TRIALS[blank]:
-        theirs, expected = trial()
+        theirs, expected, scene = trial()
         try:
             with yours(exercise), np.errstate(all="ignore"):
-                mine, seen = trial()
+                mine, seen, _ = trial()
         except Exception as error:
             print(f"{blank} raised {type(error).__name__}: {error}", file=sys.stderr)
             return 2
@@ -221,6 +237,8 @@ def tried(exercise, blank):
             print(f"    {name:<48}{seen[name]:>10.3g}{value:>12.3g}")
         print("    " + ("the same run" if same else f"another run: look at {blank}"))
         status = max(status, 0 if same else 1)
+        if recorded:
+            record(trial.__name__, {"yours": mine, "reference": theirs}, scene)
     if status:
         values = [called(function, blank, case)[0] for case in inputs(blank)]
         likely = None if None in values else slip(blank, values)

@@ -330,6 +330,18 @@ def test_ex2_as_a_script_names_the_blanks_and_runs_its_trials_once_filled(copy):
     assert done.returncode == 0 and done.stdout.count("the same run") == 3, done.stderr
 
 
+def test_each_trial_can_be_recorded_yours_beside_the_reference(monkeypatch, tmp_path, capsys):
+    pytest.importorskip("rerun", reason="rerun is not installed")
+    monkeypatch.chdir(tmp_path)
+    wrong = trials.SLIPS["project_impulse"][1][0]
+    monkeypatch.setattr(ex2, "project_impulse", wrong)
+    assert trials.tried(ex2, "project_impulse", recorded=True) == 1
+    assert capsys.readouterr().out.count("watch it: ") == 2
+    made = sorted(path.name for path in (tmp_path / "outputs/ch3.5-contact").iterdir())
+    assert made == ["ex2-groove.rrd", "ex2-thrown.rrd"]
+    assert "yours" not in contact.COLORS
+
+
 def test_the_learners_functions_are_the_ones_that_step_the_ball():
     """A spring twice as stiff sinks half as deep."""
     stiff = SimpleNamespace(
