@@ -634,8 +634,7 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     radius = float(scene.radius[0])
     gap = smallest_gap(run.q, scene.radius) / radius
     depth = np.maximum(-gap, 0.0)
-    touching = np.flatnonzero(~(gap * radius > CONTACT_MARGIN))
-    landing = int(touching[0]) if len(touching) > 0 else len(gap)
+    landing = first_contact(run, scene, dt)
     step = blow_up_step(total)
     quality = {
         "max_penetration_frac": float(depth.max()),
@@ -647,7 +646,7 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
         "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
         "blew_up": step is not None,
         "blew_up_step": step}
-    return quality | height_errors(run, reference, landing, radius)
+    return quality | height_errors(run, scene, dt, reference)
 # --- endregion ---
 
 
@@ -661,11 +660,22 @@ def deviation(values):
     return float(np.ldexp(np.std(np.ldexp(values, -power)), power))
 
 
-def height_errors(run, reference, landing, radius):
-    """The worst height error [radius], and its parts: before step `landing`, and what is added."""
+def first_contact(run, scene, dt):
+    """The first step after which surfaces touch, or a velocity shows more than gravity's change."""
+    fall = np.zeros((2, len(scene.mass)))
+    fall[1] = dt * GRAVITY * np.isfinite(scene.mass)
+    rounding = 1e-9 * (np.abs(run.v[:-1]) + np.abs(fall))
+    touched = smallest_gap(run.q, scene.radius) <= 0.0
+    touched[1:] |= (np.abs(np.diff(run.v, axis=0) - fall) > rounding).any((1, 2))
+    return int(touched.argmax()) if touched.any() else len(touched)
+
+
+def height_errors(run, scene, dt, reference):
+    """The worst height error [radius]; its part before the first contact, and what is added."""
     worst = flight = added = None
     if reference is not None:
-        error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / radius
+        error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius[0])
+        landing = min(first_contact(run, scene, dt), first_contact(reference, scene, dt))
         worst = float(error.max())
         flight = float(error[:landing].max(initial=0.0))
         added = worst - flight

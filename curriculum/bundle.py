@@ -83,7 +83,7 @@ EDITS = (
     ),
     (
         "quality",
-        "    return quality | height_errors(run, reference, landing, radius)\n",
+        "    return quality | height_errors(run, scene, dt, reference)\n",
         "    return quality\n",
     ),
     (
