@@ -250,13 +250,14 @@ def island(system, i, j, woken):
 def separate(system, q, which, small):
     """q without overlaps of more than `small` (K,) [m] at the contacts `which`, a mask.
 
-    Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less.
+    Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less. A gap
+    twice as wide as the deepest overlap may close on the way, but not more.
     """
     for _ in range(50):
         contacts = system.contacts(q, which)
         if not (contacts.depth > small).any():
             break
-        contacts = contacts.only(contacts.depth >= -small)
+        contacts = contacts.only(contacts.depth >= -2.0 * contacts.depth.max())
         q, _ = react(contacts, q, -contacts.depth)
     return q
 # --- endregion ---
@@ -291,23 +292,25 @@ def slow(contacts):
 
 # --- region: exact-support ---
 def support(system, contacts, v):
-    """v and accelerations a (2, N + 1), and which of the contacts push (K,).
+    """v and accelerations a (2, N + 1); which of the contacts rest, and which of those push (K,).
 
     The bodies of a resting contact do not part: n . a plus what the turning normal asks, slip^2
     over the distance of the centres, is at least 0.
     """
     a = np.array([[0.0], [system.gravity]]) * (system.w > 0.0)
-    pushes = np.abs(contacts.along(v)) < slow(contacts)
-    if not pushes.any():
-        return v, a, pushes
-    rests = contacts.only(pushes)
-    slip = rests.along(v, rests.tangents())
-    turn = slip * slip / (system.radius[rests.i] + system.radius[rests.j])
-    a, lam = react(rests, a, rests.along(a) + turn)
-    pushes[pushes] = loaded = lam * (system.w[rests.i] + system.w[rests.j]) > grazing(system)
-    held = rests.only(loaded)
+    rests = np.abs(contacts.along(v)) < slow(contacts)
+    pushes = rests.copy()
+    if not rests.any():
+        return v, a, rests, pushes
+    contacts = contacts.only(rests)
+    slip = contacts.along(v, contacts.tangents())
+    turn = slip * slip / (system.radius[contacts.i] + system.radius[contacts.j])
+    a, lam = react(contacts, a, contacts.along(a) + turn)
+    loaded = lam * (system.w[contacts.i] + system.w[contacts.j]) > grazing(system)
+    pushes[rests] = loaded
+    held = contacts.only(loaded)
     v = held.corrected(v, held.along(v))        # round-off, or the last of a series of bounces
-    return v, held.corrected(a, held.along(a) + turn[loaded]), pushes
+    return v, held.corrected(a, held.along(a) + turn[loaded]), rests, pushes
 
 
 def grazing(system):
@@ -476,14 +479,14 @@ class Motion:
         """The contacts (K,) that have one of the balls: masks."""
         return balls[self.system.i] | balls[self.system.j]
 
-    def remember(self, now, balls, touch, contacts, v_n, pushes):
+    def remember(self, now, balls, touch, contacts, v_n, rests, pushes):
         """How the contacts of the balls (a mask) are left; those of index `touch` touch."""
         mine = self.concerns(balls)
         self.rests[mine] = self.pushes[mine] = False
         self.due[mine] = np.inf
         struck = v_n < -NOISE * contacts.speed      # while it parted: it closes at once, anew
         self.left[touch], self.parting[touch] = now, np.where(struck, np.inf, np.abs(v_n))
-        self.rests[touch], self.pushes[touch] = np.abs(v_n) < slow(contacts), pushes
+        self.rests[touch], self.pushes[touch] = rests, pushes
 # --- endregion ---
 
 
@@ -505,10 +508,10 @@ def gather(motion, now, q, v):
     woken[system.i[late]] = woken[system.j[late]] = True
     balls = island(system, system.i[near], system.j[near], woken)
     mine = motion.concerns(balls)
-    near = near[mine[near]]
-    if (contacts.depth > small)[near].any():
+    if (contacts.depth[mine] > small[mine]).any():
         q = separate(system, q, mine, small[mine])
         contacts = system.contacts(q)
+    near = np.flatnonzero(mine & ((contacts.depth >= -small) | late))
     opened = motion.opened(now, near, contacts.only(near).along(v))
     tie = bits[near] + np.fmin(TOUCH * system.radius[system.i[near]], 1e-4 * opened)
     touch = near[motion.rests[near] | late[near] | (-contacts.depth[near] <= tie)]
@@ -536,8 +539,8 @@ def event(motion, now):
     system, (q, v) = motion.system, motion.at(now)
     q, balls, touch, contacts = gather(motion, now, q, v)
     v = collide(system, contacts, v, hardly_opened(motion, now, touch, contacts, v))
-    v, a, pushes = support(system, contacts, v)
-    motion.remember(now, balls, touch, contacts, contacts.along(v), pushes)
+    v, a, rests, pushes = support(system, contacts, v)
+    motion.remember(now, balls, touch, contacts, contacts.along(v), rests, pushes)
     held = contacts.only(pushes)
     Q, force, span = expand(system, held, q, v, a)
     motion.go_on(now, balls, Q, now + span)
