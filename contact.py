@@ -192,7 +192,7 @@ def possible_pairs(balls, margin):
         for j in itertools.islice(known, place + 1, None):
             if balls[j].x - balls[i].x > reach:
                 break
-            if abs(balls[j].y - balls[i].y) <= reach:
+            if not abs(balls[j].y - balls[i].y) > reach:
                 pairs.append((min(i, j), max(i, j)))
     return [(balls[i], balls[j]) for i, j in sorted(pairs)]
 # --- endregion ---

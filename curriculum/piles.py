@@ -48,6 +48,12 @@ def compiled(function):
         return numba.njit(function, cache=True)
     except RuntimeError:                        # none of the folders that numba tries is writable
         return numba.njit(function)
+
+
+@compiled
+def larger(first, second):
+    """Python's max of two floats: the first unless the second is larger, so never NaN for 0."""
+    return second if second > first else first
 # --- endregion ---
 
 
@@ -56,6 +62,15 @@ def compiled(function):
 def finite(ball):
     """Whether the ball is somewhere. One that is not touches nothing, now and for ever."""
     return math.isfinite(ball.x) and math.isfinite(ball.y)
+
+
+@compiled
+def largest_radius(balls):
+    """The radius [m] of the largest ball."""
+    largest = 0.0
+    for ball in balls[:-1]:
+        largest = larger(largest, ball.radius)
+    return largest
 
 
 @compiled
@@ -114,12 +129,10 @@ def list_pairs(balls, reach):
     cell is a little wider than two listed balls can be apart, because of rounding.
     """
     count = len(balls) - 1
-    largest = 0.0
     for ball in balls[:-1]:
-        largest = max(largest, ball.radius)
         ball.listed_x = ball.x
         ball.listed_y = ball.y
-    cells = find_cells(balls, max(1.02 * (2.0 * largest + reach), 1e-150))
+    cells = find_cells(balls, max(1.02 * (2.0 * largest_radius(balls) + reach), 1e-150))
     buckets = 16
     while buckets < 2 * count:
         buckets *= 2
@@ -181,18 +194,12 @@ def farthest_move(balls):
     for ball in balls[:-1]:
         dx = ball.x - ball.listed_x
         dy = ball.y - ball.listed_y
-        farthest = max(farthest, dx * dx + dy * dy)
+        farthest = larger(farthest, dx * dx + dy * dy)
     return math.sqrt(farthest)
 # --- endregion ---
 
 
 # --- region: piles-contacts ---
-@compiled
-def larger(first, second):
-    """Python's max of two floats: the first unless the second is larger, so never NaN for 0."""
-    return second if second > first else first
-
-
 @compiled
 def set_contact(c, balls, a, b, nx, ny, depth):
     """Make row c the contact of balls a and b."""
@@ -441,7 +448,7 @@ def take_steps(rows, first, last, mass, radius, knobs):
     balls = make_balls(rows[first], mass, radius)
     contacts = np.empty(0, CONTACT)
     margin = knobs.margin if knobs.model == LCP else 0.0
-    skin = SKIN * np.max(radius)
+    skin = SKIN * largest_radius(balls)
     pairs = list_pairs(balls, margin + skin)
     mark = 1
     for k in range(first + 1, last + 1):
@@ -508,7 +515,7 @@ def find_gaps(q, radius):
     """
     gaps = np.empty(len(q))
     nowhere = np.full((4, len(radius)), math.nan)
-    balls = make_balls(nowhere, radius, radius)
+    balls = make_balls(nowhere, np.ones(len(radius)), radius)
     pairs = list_pairs(balls, 0.0)
     reach = -math.inf
     for k in range(len(q)):
@@ -519,7 +526,7 @@ def find_gaps(q, radius):
             continue
         gaps[k] = gap_of_listed(balls, pairs)
         if not gaps[k] < 0.999 * reach - 2.0 * farthest_move(balls):
-            reach = SKIN * np.max(radius) + 1e-150
+            reach = SKIN * largest_radius(balls) + 1e-150
             pairs = list_pairs(balls, reach)
             gaps[k] = gap_of_listed(balls, pairs)
             while not gaps[k] < 0.999 * reach:

@@ -175,6 +175,17 @@ def test_what_is_not_a_number_has_one_sign():
         assert len(bits) == 9 and (bits == np.array(math.nan).view(np.uint64)).all()
 
 
+def test_a_radius_that_is_no_number_hides_no_other_contact():
+    """Neither from the cells nor from the sorted shadows of contact.py."""
+    for place in (0, 7):
+        scene = crowd(30, 2)
+        scene.radius[place] = math.nan
+        run = check_same("lcp", scene, 0.002, 3)
+        sorted_shadows = contact.run_model("lcp", scene, 0.002, 3, skip=False)
+        assert sorted_shadows.q.tobytes() == run.q.tobytes()
+        assert contact.max_penetration(run.q[:, :, place + 1 :], scene.radius[place + 1 :])[0] > 0
+
+
 # Near balls
 
 
