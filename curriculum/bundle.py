@@ -17,10 +17,12 @@ why. Its rows in the ledger say "not yet measured": the script timed here is ano
 
 import ast
 import builtins
+import contextlib
 import csv
 import io
 import json
 import re
+import shlex
 import symtable
 import sys
 from pathlib import Path
@@ -225,12 +227,29 @@ def chapter(root, numbers):
         return ELSEWHERE.format(file=file, name=name, why=why)
 
     text = texts.FENCE.sub(include, text)
-    text = texts.COMMENT.sub("", text)
+    text = mark_commands(texts.COMMENT.sub("", text), script(root))
     text = texts.DRAGGED.sub(lambda match: match[1], text)
     text = re.sub(r"(?<![\w/])exercises/(?=ex[123]_)", "exercises/suggested/", text)
     text = re.sub(r"(?<![\w/])checks\.py", "exercises/suggested/checks.py", text)
     title, _, rest = text.partition("\n")
     return re.sub(r"\n{3,}", "\n\n", f"{title}\n\n{NOTE.format(cap=CAP)}\n{rest.lstrip()}")
+
+
+def mark_commands(text, made):
+    """The text with a word beside every command in a fence that the course's script does not take."""
+    course = {"__name__": "the course's contact.py"}
+    exec(compile(made, "contact.py", "exec"), course)
+
+    def mark(match):
+        with contextlib.redirect_stderr(io.StringIO()):
+            try:
+                course["parse_flags"](shlex.split(match[0], comments=True)[2:])
+            except SystemExit:
+                return f"{match[0].rstrip()}     # in the chapter's own repository"
+        return match[0]
+
+    command = re.compile(r"^python contact\.py\b.*", re.MULTILINE)
+    return texts.FENCE.sub(lambda fence: command.sub(mark, fence[0]), text)
 
 
 def course_bands(exercise):

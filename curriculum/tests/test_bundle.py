@@ -110,6 +110,17 @@ def test_what_is_left_out_is_named_where_the_text_shows_it_and_is_not_in_the_scr
             assert why in text, name
 
 
+def test_a_command_that_the_courses_script_does_not_take_says_where_it_runs(made):
+    elsewhere = "# in the chapter's own repository"
+    commands = re.findall(
+        r"^python contact\.py.*", made[f"{bundle.CHAPTER}/prose/chapter.md"], re.MULTILINE
+    )
+    exact = [line for line in commands if "--contact exact" in line]
+    spring = [line for line in commands if "--contact penalty" in line]
+    assert exact and all(line.endswith(elsewhere) for line in exact)
+    assert spring and not any(elsewhere in line for line in spring)
+
+
 def test_no_module_is_imported_but_the_standard_ones_numpy_rerun_and_the_courses_banner(made):
     for name, text in made.items():
         if not name.endswith(".py"):
