@@ -21,7 +21,7 @@ const Blank = (() => {
     for (const inputs of PAGE.blank[name]) {
       const [got, wanted] = [yours(inputs), LAW[name].right(inputs)];
       if (Math.abs(got - wanted) <= 1e-9) continue;
-      const told = Object.entries(inputs).map(([key, value]) => `${key} = ${plain(value)}`);
+      const told = LAW[name].names.map((key) => `${key} = ${plain(inputs[key])}`);
       return `With ${told.join(", ")} it gives ${number(got)}; right is ${number(wanted)}.`;
     }
     return null;
@@ -40,7 +40,7 @@ const Blank = (() => {
     const chart = plot({
       id: "blank-spring", width, height: 190,
       x: { domain: [0.4, 1.2], ticks: Plot.steps(0.4, 1.2, 4), label: "time (s)" },
-      y: { domain: [-0.5, 1], ticks: Plot.steps(-0.5, 1, 3), label: "gap / r" },
+      y: { domain: [-0.5, 1], ticks: Plot.steps(-0.5, 1, 3), label: "gap / r; dashed green: the right one" },
       rules: [{ y: 0 }],
       lines: [
         { model: "exact", xs: runs[0].t, ys: gap(runs[0]), class: "thin" },

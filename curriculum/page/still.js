@@ -11,6 +11,8 @@ const Stills = (() => {
   const runs = MODELS.map((model) => ContactEngine.runModel(model, scene, State.knobsOf(state), steps));
   const series = runs.map((run) => ContactEngine.series(run, scene));
 
+  const first = Math.min(...series.map((each) => each.landing)) - 1; // just before the landing
+
   // The four lanes at one row: air and lens of each, and words.
   function lanes(row) {
     const gaps = series.map((each) => each.gap[row]);
@@ -40,7 +42,8 @@ const Stills = (() => {
 
   return {
     all: () => ({
-      start: lanes(Math.min(...series.map((each) => each.landing)) - 1),
+      reach: Lane.fittingLens(series.map((each) => each.gap[first])),
+      start: lanes(first),
       end: lanes(steps),
       small: small(),
       keys: keys(),
