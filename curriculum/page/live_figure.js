@@ -141,7 +141,79 @@ const Figure = (() => {
       axis: ([low, high]) => {
         const bottom = Math.min(low, -0.002);
         const top = Math.max(Math.min(high, 1), 0.25 * -bottom);
-        sizes.height = beside() ? Math.round(Math.min(280, Math.max(110, roomForChart()))) : 132;
+        const room = 0.08 * (top - bottom);
+        return { domain: [bottom - room, top + room], ticks: steps(bottom - room, top + room, 4) };
+      },
+    },
+    push: {
+      label: "push / weight (root scale)",
+      axis: ([, high]) => {
+        const top = Math.max(2, Math.min(high, 1e9));
+        const ticks = [0, 1, 10, 100, 1000, 1e4, 1e5, 1e6, 1e7].filter((v) => v <= top);
+        return { domain: [0, top], root: true, ticks: (ticks.length > 4 ? [0, 1, ...ticks.slice(-2)] : ticks).map((v) => [v, plain(v)]) };
+      },
+    },
+    energy: {
+      label: "energy / start",
+      axis: ([low, high]) => {
+        if (high > 5) {
+          const top = Math.min(1e12, 10 ** Math.ceil(Math.log10(high)));
+          return { domain: [0.1, top], log: true, zero: true, ticks: decades(0.1, top, 4) };
+        }
+        const [bottom, top] = [Math.min(low, 0.98 * high), high];
+        const room = 0.08 * (top - bottom);
+        return { domain: [bottom - room, top + room], ticks: steps(bottom - room, top + room, 4) };
+      },
+    },
+  };
+
+  function drawChart() {
+    const node = $("chart");
+    const { width, height } = sizes;
+    const [from, to] = [rowAt(view[0]), Math.min(now.steps, rowAt(view[1]) + 1)];
+    const columns = MODELS.map((model) => now.series[model][kind]);
+    const y = { ...CHARTS[kind].axis(range(columns, from, to)), label: CHARTS[kind].label };
+    const xs = now.runs.exact.t;
+    const veiled = hiddenBy() !== null;
+    const lines = MODELS.map((model, m) => {
+      const marks = [0.12, 0.37, 0.62, 0.87].map((share) => rowAt(view[0] + (share + 0.06 * m) * (view[1] - view[0])));
+      return { model, xs, ys: columns[m], from, to: to + 1, markers: marks };
+    });
+    const options = {
+      id: "chart", width, height, left: 52, y,
+      x: { domain: view, ticks: steps(view[0], view[1], width < 420 ? 4 : 6), label: "time (s)" },
+      lines: veiled ? [] : lines,
+      rules: kind === "gap" ? [{ y: 0 }] : kind === "push" ? [{ y: 1, class: "dashed" }] : [],
+    };
+    chart = plot(options);
+    node.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    node.setAttribute("width", width);
+    node.setAttribute("height", height);
+    node.innerHTML = `${chart.markup}<line id="cursor" class="${veiled ? "none" : "cursor"}" y1="${chart.box.top}" y2="${chart.box.bottom}"/>`;
+    node.setAttribute("aria-label", `${CHARTS[kind].label} against time for each model; the values at the time shown stand below`);
+  }
+
+  // The values of all models at one time, in words below the chart.
+  function readOut(row) {
+    if (hiddenBy() !== null) return ($("readout").textContent = "");
+    const values = MODELS.map((model) => `${model} ${number(now.series[model][kind][row])}`);
+    $("readout").textContent = `${(row * state.dt).toFixed(4)} s: ${values.join(", ")}`;
+  }
+
+  const sizes = { width: 0, height: 0, axis: 0 };
+  const beside = () => window.innerWidth >= 1024;
+  // What is left of the window below the chart's upper edge, for the chart, the scrubber and the values.
+  function roomForChart() {
+    const above = $("chart").getBoundingClientRect().top - root.getBoundingClientRect().top + root.scrollTop;
+    return window.innerHeight - above - $("scrub").clientHeight - 44;
+  }
+
+  // Widths are read when the layout changes, not at every redraw: reading them is the slow part.
+  function measure() {
+    const before = JSON.stringify(sizes);
+    const box = $("chart").parentElement;
+    sizes.width = Math.max(260, Math.floor(box.clientWidth));
+    sizes.height = beside() ? Math.round(Math.min(280, Math.max(110, roomForChart()))) : 132;
     sizes.axis = Math.max(100, Math.floor($("dt-range").clientWidth));
     return before !== JSON.stringify(sizes);
   }

@@ -308,6 +308,12 @@ def functions_of(text):
             yield start + 1, end - start + 1
 
 
+def test_every_script_can_be_read():
+    v8 = engine(scripts=())
+    for path in sorted(HERE.glob("*.js")):
+        v8.eval(f"new Function({json.dumps(path.read_text('utf-8'))})")
+
+
 def test_no_function_is_longer_than_sixty_lines():
     seen = 0
     for path in sorted(HERE.glob("*.js")):
