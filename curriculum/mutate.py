@@ -1,0 +1,559 @@
+"""How strong the tests are: small faults put into the code, one at a time, and what notices them.
+
+    python -m curriculum.mutate                             contact.py, curriculum/exact.py, piles.py
+    python -m curriculum.mutate contact.py                  one file
+    python -m curriculum.mutate contact.py --sample 200     so many of its mutants, drawn by --seed
+    python -m curriculum.mutate contact.py --only lcp_step  those in functions of that name
+    python -m curriculum.mutate contact.py --list           the mutants, without running any
+
+A mutant is the file with one operator, number, condition or call changed. It is killed when a test
+fails or does not end; the tests that run the changed function go first. Tests that compare hashes
+of the text, or look at pages, are left out, since they would notice any change. A survivor is
+either named in curriculum/equivalent_mutants.txt, with the reason why nothing can notice it, or it
+is a hole in the tests. The report is curriculum/stress/results/mutation.md, and the numbers are the
+section "mutation" of the results there; parts of a run are kept in outputs, to go on from.
+
+Each mutant runs in a forked process in a copy of the repository. Forking needs Linux or macOS.
+Exit status 0: no survivor without a reason and at least 95 % of the others killed; else 1.
+"""
+
+import argparse
+import ast
+import math
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+from curriculum import measured, reporting
+from curriculum.common.files import write_whole
+
+ROOT = Path(__file__).resolve().parents[1]
+TARGETS = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
+EQUIVALENT = ROOT / "curriculum" / "equivalent_mutants.txt"
+RESULTS = ROOT / "curriculum" / "stress" / "results"
+WORK = ROOT / "outputs" / "mutate"
+WANTED = 0.95
+TESTS = {
+    "contact.py": "figures faults closed_form lcp measures skips soft next_chapter command_line "
+    "recording plain_source common stress invariants soft_mujoco",
+    "curriculum/exact.py": "exact exact_sliding closed_form stress figures",
+    "curriculum/piles.py": "piles",
+}
+LEFT_OUT = (
+    "test_11_every_region",
+    "dask",
+    "processes",
+    "killed",
+    "never_ends",
+    "interrupted",
+    "clean_run",
+)
+SWAPS = {
+    ast.Lt: ("<", "<="), ast.LtE: ("<=", "<"), ast.Gt: (">", ">="), ast.GtE: (">=", ">"),
+    ast.Eq: ("==", "!="), ast.NotEq: ("!=", "=="), ast.Is: ("is", "is not"),
+    ast.IsNot: ("is not", "is"), ast.In: ("in", "not in"), ast.NotIn: ("not in", "in"),
+    ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"),
+    ast.FloorDiv: ("//", "*"), ast.Mod: ("%", "*"), ast.Pow: ("**", "*"),
+    ast.And: ("and", "or"), ast.Or: ("or", "and"),
+}  # fmt: skip
+CALLS = {"min": "max", "max": "min", "all": "any", "any": "all", "ceil": "floor", "floor": "ceil",
+         "minimum": "maximum", "maximum": "minimum"}  # fmt: skip
+
+
+class Mutant(NamedTuple):
+    """One change: bytes start to stop of the file become `new`. `where` is the function it is in."""
+
+    file: str
+    where: str
+    line: int
+    start: int
+    stop: int
+    new: str
+    said: str  # old line -> new line, without the blanks around
+
+
+# --- making mutants -------------------------------------------------------------------------------
+
+
+def mutants_of(file, text):
+    """Every mutant of a file, in the order of its lines."""
+    return sorted(Maker(file, text).made, key=lambda m: (m.start, m.stop, m.new))
+
+
+class Maker(ast.NodeVisitor):
+    """Walks a file and collects its mutants in `made`."""
+
+    def __init__(self, file, text):
+        self.file, self.data, self.made, self.path = file, text.encode(), [], []
+        self.starts = [0]
+        for line in self.data.splitlines(keepends=True):
+            self.starts.append(self.starts[-1] + len(line))
+        self.visit(ast.parse(text))
+
+    def offset(self, node, end=False):
+        """Where a node begins or ends, in bytes."""
+        line, column = (
+            (node.end_lineno, node.end_col_offset) if end else (node.lineno, node.col_offset)
+        )
+        return self.starts[line - 1] + column
+
+    def add(self, start, stop, new):
+        """A mutant that puts `new` in place of bytes start to stop."""
+        line = self.data.count(b"\n", 0, start) + 1
+        low = self.starts[line - 1]
+        high = max(self.data.find(b"\n", stop), stop)
+        old = self.data[low:high].decode()
+        now = (self.data[low:start] + new.encode() + self.data[stop:high]).decode()
+        said = " -> ".join(" ".join(part.split("  #")[0].split()) for part in (old, now))
+        where = ".".join(self.path) or "module"
+        self.made.append(Mutant(self.file, where, line, start, stop, new, said))
+
+    def between(self, left, right, operator):
+        """Change the operator between two nodes."""
+        if type(operator) not in SWAPS:
+            return
+        old, new = SWAPS[type(operator)]
+        low, high = self.offset(left, end=True), self.offset(right)
+        at = self.data.find(old.encode(), low, high)
+        if at >= 0:
+            self.add(at, at + len(old), new)
+
+    def inside(self, node):
+        self.path.append(node.name)
+        self.generic_visit(node)
+        self.path.pop()
+
+    visit_FunctionDef = visit_ClassDef = inside
+
+    def visit_Compare(self, node):
+        for left, operator, right in zip(
+            [node.left, *node.comparators], node.ops, node.comparators
+        ):
+            self.between(left, right, operator)
+        self.generic_visit(node)
+
+    def visit_BinOp(self, node):
+        if not is_text(node.left):
+            self.between(node.left, node.right, node.op)
+        self.generic_visit(node)
+
+    def visit_BoolOp(self, node):
+        for left, right in zip(node.values, node.values[1:]):
+            self.between(left, right, node.op)
+        self.generic_visit(node)
+
+    def visit_AugAssign(self, node):
+        self.between(node.target, node.value, node.op)
+        self.generic_visit(node)
+
+    def visit_AnnAssign(self, node):
+        if node.value is not None:
+            self.visit(node.value)
+
+    def visit_arguments(self, node):
+        for default in [*node.defaults, *filter(None, node.kw_defaults)]:
+            self.visit(default)
+
+    def visit_UnaryOp(self, node):
+        if isinstance(node.op, (ast.USub, ast.Not)):
+            self.add(self.offset(node), self.offset(node.operand), "")
+        self.generic_visit(node)
+
+    def visit_Constant(self, node):
+        if isinstance(node.value, bool):
+            self.add(self.offset(node), self.offset(node, end=True), str(not node.value))
+        elif isinstance(node.value, (int, float)) and math.isfinite(node.value):
+            new = node.value + 1 if isinstance(node.value, int) or node.value == 0.0 else None
+            new = repr(new if new is not None else 1.1 * node.value)
+            self.add(self.offset(node), self.offset(node, end=True), new)
+
+    def visit_Call(self, node):
+        name = node.func
+        word = name.id if isinstance(name, ast.Name) else getattr(name, "attr", "")
+        if word in CALLS:
+            stop = self.offset(name, end=True)
+            self.add(stop - len(word), stop, CALLS[word])
+        self.generic_visit(node)
+
+    def visit_Expr(self, node):
+        if isinstance(node.value, ast.Call):
+            self.add(self.offset(node), self.offset(node, end=True), "pass")
+        self.generic_visit(node)
+
+    def visit_JoinedStr(self, node):
+        pass  # what is printed is not mutated
+
+    def visit_Break(self, node):
+        self.add(self.offset(node), self.offset(node, end=True), "pass")
+
+    visit_Continue = visit_Break
+
+    def negate(self, node):
+        if not isinstance(node.test, (ast.Compare, ast.UnaryOp, ast.Constant)):
+            low, high = self.offset(node.test), self.offset(node.test, end=True)
+            self.add(low, high, f"not ({self.data[low:high].decode()})")
+        self.generic_visit(node)
+
+    visit_If = visit_IfExp = visit_While = negate
+
+
+def is_text(node):
+    """Whether + or % on this node makes a text."""
+    return isinstance(node, ast.JoinedStr) or (
+        isinstance(node, ast.Constant) and isinstance(node.value, str)
+    )
+
+
+def names_of_module_line(text, line):
+    """Names that the module-level statement on this line defines, and the functions using them."""
+    tree = ast.parse(text)
+    defined = {
+        name.id
+        for statement in tree.body
+        if statement.lineno <= line <= statement.end_lineno
+        for name in ast.walk(statement)
+        if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)
+    }
+    return {
+        function.name
+        for function in ast.walk(tree)
+        if isinstance(function, (ast.FunctionDef, ast.ClassDef))
+        and any(isinstance(n, ast.Name) and n.id in defined for n in ast.walk(function))
+    }
+
+
+# --- which tests run what -------------------------------------------------------------------------
+
+
+class Watcher:
+    """A pytest plugin: for each test its seconds, its outcome, and the functions of `file` it ran."""
+
+    def __init__(self, file):
+        self.file, self.found = str(file), {}
+
+    def pytest_collection_modifyitems(self, items):
+        kept = [item for item in items if not any(word in item.nodeid for word in LEFT_OUT)]
+        items[:] = kept
+
+    def pytest_runtest_logreport(self, report):
+        entry = self.found.setdefault(report.nodeid, {"seconds": 0.0, "ran": [], "passed": True})
+        entry["seconds"] += report.duration
+        entry["passed"] &= not report.failed
+
+    def pytest_runtest_setup(self, item):
+        ran = set()
+        self.found.setdefault(item.nodeid, {"seconds": 0.0, "ran": [], "passed": True})
+        self.found[item.nodeid]["process"] = "run_script" in item.fixturenames
+
+        def watch(frame, event, argument):
+            if frame.f_code.co_filename == self.file:
+                ran.add(frame.f_code.co_name)
+
+        self.ran = ran
+        sys.settrace(watch)
+
+    def pytest_runtest_teardown(self, item):
+        sys.settrace(None)
+        self.found[item.nodeid]["ran"] = sorted(self.ran)
+
+
+def run_tests(folder, arguments, plugins=()):
+    """pytest's exit status in `folder`, in this process."""
+    import pytest
+
+    os.chdir(folder)
+    sys.path[:] = [str(folder), *(entry for entry in sys.path if entry not in ("", str(ROOT)))]
+    os.environ |= {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg"}
+    sys.dont_write_bytecode = True
+    for name in [n for n in sys.modules if n.split(".")[0] in ("contact", "curriculum", "checks")]:
+        del sys.modules[name]
+    return int(pytest.main(["-q", "-p", "no:cacheprovider", *arguments], plugins=list(plugins)))
+
+
+def watch_tests(file, folder):
+    """{test: what Watcher found} of the tests of one file, all of which must pass."""
+    path = Path(folder) / "watched.json"
+
+    def watched():
+        watcher = Watcher(Path(folder) / file)
+        status = run_tests(folder, test_files(file, folder), [watcher])
+        write_whole(str(path), measured.text(watcher.found))
+        return status
+
+    if finish(start(watched, Path(folder) / "log.txt"), 1800) != 0:
+        raise SystemExit(
+            f"the tests of {file} fail before any change: "
+            f"{(Path(folder) / 'log.txt').read_text()[-1500:]}"
+        )
+    import json
+
+    return json.loads(path.read_text())
+
+
+def test_files(file, folder):
+    """The test files of a target that are there."""
+    names = [f"curriculum/tests/test_{name}.py" for name in TESTS[file].split()]
+    return [name for name in names if (Path(folder) / name).exists()]
+
+
+def tests_for(mutant, text, found):
+    """The tests to try on a mutant: those that run its function, quick ones first."""
+    functions = set(mutant.where.split("."))
+    if mutant.where == "module":
+        functions = names_of_module_line(text, mutant.line)
+    ran = [test for test, entry in found.items() if functions & set(entry["ran"])]
+    apart = [test for test, entry in found.items() if entry.get("process") and test not in ran]
+
+    def quick(test):
+        return found[test]["seconds"]
+
+    return sorted(ran, key=quick) + sorted(apart, key=quick)
+
+
+# --- processes ------------------------------------------------------------------------------------
+
+
+def start(work, log):
+    """Fork a process group that does work() and exits with what it returns; its id."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    child = os.fork()
+    if child:
+        return child
+    try:
+        os.setsid()
+        out = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(out, 1)
+        os.dup2(out, 2)
+        status = work()
+    except BaseException:
+        status = 1
+    os._exit(status)
+
+
+def finish(child, seconds):
+    """The exit status of a child, None when it does not end in time and is ended."""
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        done, status = os.waitpid(child, os.WNOHANG)
+        if done:
+            return os.waitstatus_to_exitcode(status)
+        time.sleep(0.02)
+    os.killpg(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return None
+
+
+def copy_of_the_repository(folder):
+    """The files that git knows, and new ones, in `folder`."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-co", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split("\n")
+    for name in filter(None, listed):
+        if (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, folder / name)
+
+
+def try_mutant(mutant, data, tests, folder, seconds):
+    """ "killed", "survived", "late" (killed by not ending) or "untested"."""
+    if not tests:
+        return "untested"
+    path = folder / mutant.file
+    path.write_bytes(data[: mutant.start] + mutant.new.encode() + data[mutant.stop :])
+    try:
+        status = finish(
+            start(lambda: run_tests(folder, ["-x", *tests]), folder / "log.txt"), seconds
+        )
+    finally:
+        path.write_bytes(data)
+    return "late" if status is None else "killed" if status else "survived"
+
+
+# --- a run ----------------------------------------------------------------------------------------
+
+
+def run_file(file, chosen, folder):
+    """[[where, line, said, outcome]] of the chosen mutants of a file; kept as they come."""
+    data = (folder / file).read_bytes()
+    text = data.decode()
+    found = watch_tests(file, folder)
+    whole = sum(entry["seconds"] for entry in found.values())
+    kept = measured.Cells(
+        WORK / f"{file.replace('/', '-')}.jsonl", code=(file,), about=tests_hash()
+    )
+    rows = []
+    with measured.progress(len(chosen), f"mutants of {file}") as tick:
+        for mutant in chosen:
+            key = f"{mutant.start}-{mutant.stop} {mutant.new}"
+            if key not in kept:
+                tests = tests_for(mutant, text, found)
+                kept[key] = try_mutant(mutant, data, tests, folder, 30 + 4 * whole)
+            rows.append([mutant.where, mutant.line, mutant.said, kept[key]])
+            tick(mutant.where)
+    return rows
+
+
+def tests_hash():
+    """Digits that change when a test does: what was killed may then not be."""
+    import hashlib
+
+    digest = hashlib.sha256()
+    for path in sorted((ROOT / "curriculum" / "tests").glob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def reasons():
+    """{"file: where: old -> new": why nothing can notice it}, from equivalent_mutants.txt."""
+    found = {}
+    if EQUIVALENT.exists():
+        lines = EQUIVALENT.read_text("utf-8").splitlines()
+        entries = [line for line in lines if line.strip() and not line.startswith("#")]
+        for change, why in zip(entries[::2], entries[1::2]):
+            found[change.strip()] = why.strip()
+    return found
+
+
+def section_of(rows_by_file, known, sizes):
+    """The section "mutation" of results.json."""
+    found = {}
+    for file, rows in rows_by_file.items():
+        alive = [row for row in rows if row[3] in ("survived", "untested")]
+        named = [row for row in alive if f"{file}: {row[0]}: {row[2]}" in known]
+        killed = len(rows) - len(alive)
+        found[file] = {
+            "mutants": sizes[file],
+            "tried": len(rows),
+            "killed": killed,
+            "late": sum(row[3] == "late" for row in rows),
+            "equivalent": len(named),
+            "share": killed / max(1, len(rows) - len(named)),
+            "named": [[*row[:3], known[f"{file}: {row[0]}: {row[2]}"]] for row in named],
+            "survivors": [row for row in alive if row not in named],
+        }
+    return {"files": found}
+
+
+def page(section):
+    """mutation.md."""
+    files = section["files"]
+    rows = [
+        [
+            file,
+            f"{one['tried']:,} of {one['mutants']:,}",
+            f"{one['killed']:,}",
+            one["equivalent"],
+            len(one["survivors"]),
+            f"{100 * one['share']:.1f} %",
+        ]
+        for file, one in files.items()
+    ]
+    parts = [
+        "A mutant is the code with one operator, number, condition or call changed. Tests of hashes "
+        "and pages are left out. The share is of the mutants that are not equivalent.",
+        reporting.table(["file", "tried", "killed", "equivalent", "survivors", "share"], rows),
+    ]
+    for file, one in files.items():
+        if one["survivors"]:
+            parts.append(
+                f"## Survivors in {file}\n\n"
+                + reporting.table(
+                    ["function", "line", "change"],
+                    [[where, line, f"`{said}`"] for where, line, said, _ in one["survivors"]],
+                )
+            )
+        if one["named"]:
+            parts.append(
+                f"## Equivalent in {file}\n\n"
+                + reporting.table(
+                    ["function", "change", "why nothing can notice it"],
+                    [[where, f"`{said}`", why] for where, _, said, why in one["named"]],
+                )
+            )
+    return reporting.page("Mutants: how strong the tests are", section, *parts)
+
+
+def parse(argv):
+    """The checked command line."""
+    from curriculum.common.arguments import Parser, number
+
+    parser = Parser(prog="python -m curriculum.mutate", description="How strong the tests are.")
+    parser.add_argument("files", nargs="*", metavar="FILE", help=", ".join(TARGETS))
+    parser.add_argument("--sample", type=number(int, low=1), help="try so many of each file")
+    parser.add_argument("--seed", type=number(int, low=0), default=0, help="draws the sample (0)")
+    parser.add_argument("--only", metavar="NAME", help="only mutants in functions of this name")
+    parser.add_argument("--list", action="store_true", help="list the mutants, run none")
+    parser.add_argument("--out", type=Path, default=RESULTS, help=argparse.SUPPRESS)
+    args = parser.parse_args(argv)
+    args.files = args.files or list(TARGETS)
+    unknown = [file for file in args.files if file not in TARGETS]
+    if unknown:
+        parser.error(f"argument FILE: given {unknown[0]!r}; allowed: {', '.join(TARGETS)}")
+    return args
+
+
+def choose(file, args):
+    """(all mutants of a file, those to try)."""
+    every = mutants_of(file, (ROOT / file).read_text("utf-8"))
+    chosen = [m for m in every if args.only is None or args.only in m.where.split(".")]
+    if args.sample is not None and args.sample < len(chosen):
+        chosen = random.Random(args.seed).sample(chosen, args.sample)
+    return every, sorted(chosen, key=lambda m: (m.start, m.new))
+
+
+def main(argv=None):
+    """Returns the exit status."""
+    args = parse(argv)
+    chosen, sizes = {}, {}
+    for file in args.files:
+        every, chosen[file] = choose(file, args)
+        sizes[file] = len(every)
+    if args.list:
+        for file, mutants in chosen.items():
+            for m in mutants:
+                print(f"{file}:{m.line}: {m.where}: {m.said}")
+        return 0
+    rows = {}
+    with tempfile.TemporaryDirectory(prefix="mutate-") as folder:
+        copy_of_the_repository(Path(folder))
+        for file in args.files:
+            if file == "curriculum/piles.py":
+                os.environ["NUMBA_DISABLE_JIT"] = "1"  # a mutant need not be compiled to be wrong
+            rows[file] = run_file(file, chosen[file], Path(folder))
+    section = section_of(rows, reasons(), sizes)
+    before = measured.load(args.out).get("mutation", {}).get("files", {})
+    section["files"] = {**before, **section["files"]}
+    command = " ".join(["python -m curriculum.mutate", *(sys.argv[1:] if argv is None else argv)])
+    saved = measured.save(args.out, "mutation", section, command)
+    write_whole(str(args.out / "mutation.md"), page(saved))
+    return show(saved["files"])
+
+
+def show(files):
+    """Print the survivors and the shares; 1 when there are survivors or too few are killed."""
+    bad = False
+    for file, one in files.items():
+        for where, line, said, outcome in one["survivors"]:
+            print(f"{file}:{line}: {where}: {outcome}: {said}")
+        print(
+            f"{file}: {one['killed']} of {one['tried']} killed, {one['equivalent']} equivalent, "
+            f"{len(one['survivors'])} survivors: {100 * one['share']:.1f} %"
+        )
+        bad |= one["share"] < WANTED or bool(one["survivors"])
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
