@@ -19,6 +19,10 @@ Exit status 0: no survivor without a reason and at least 95 % of the others kill
 
 import argparse
 import ast
+import contextlib
+import hashlib
+import importlib
+import json
 import math
 import os
 import random
@@ -28,6 +32,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 from pathlib import Path
 from typing import NamedTuple
 
@@ -41,11 +46,12 @@ RESULTS = ROOT / "curriculum" / "stress" / "results"
 WORK = ROOT / "outputs" / "mutate"
 WANTED = 0.95
 TESTS = {
-    "contact.py": "figures faults closed_form lcp measures skips soft next_chapter command_line "
-    "recording plain_source common stress invariants soft_mujoco",
-    "curriculum/exact.py": "exact exact_sliding closed_form stress figures",
+    "contact.py": "lcp figures faults closed_form measures skips soft next_chapter stress "
+    "invariants command_line recording",
+    "curriculum/exact.py": "exact exact_sliding closed_form stress",
     "curriculum/piles.py": "piles",
 }
+PRELOADED = ("numpy", "hypothesis", "pytest", "numba", "matplotlib")  # shared by all that is forked
 LEFT_OUT = (
     "test_11_every_region",
     "dask",
@@ -163,7 +169,8 @@ class Maker(ast.NodeVisitor):
 
     def visit_UnaryOp(self, node):
         if isinstance(node.op, (ast.USub, ast.Not)):
-            self.add(self.offset(node), self.offset(node.operand), "")
+            low = self.offset(node)
+            self.add(low, low + (1 if isinstance(node.op, ast.USub) else len("not ")), "")
         self.generic_visit(node)
 
     def visit_Constant(self, node):
@@ -248,20 +255,17 @@ class Watcher:
         entry["passed"] &= not report.failed
 
     def pytest_runtest_setup(self, item):
-        ran = set()
-        self.found.setdefault(item.nodeid, {"seconds": 0.0, "ran": [], "passed": True})
-        self.found[item.nodeid]["process"] = "run_script" in item.fixturenames
+        self.ran = ran = set()
 
         def watch(frame, event, argument):
             if frame.f_code.co_filename == self.file:
                 ran.add(frame.f_code.co_name)
 
-        self.ran = ran
         sys.settrace(watch)
 
     def pytest_runtest_teardown(self, item):
         sys.settrace(None)
-        self.found[item.nodeid]["ran"] = sorted(self.ran)
+        self.found[item.nodeid]["ran"] = sorted(self.ran)  # an entry: its call was reported
 
 
 def run_tests(folder, arguments, plugins=()):
@@ -274,27 +278,33 @@ def run_tests(folder, arguments, plugins=()):
     sys.dont_write_bytecode = True
     for name in [n for n in sys.modules if n.split(".")[0] in ("contact", "curriculum", "checks")]:
         del sys.modules[name]
-    return int(pytest.main(["-q", "-p", "no:cacheprovider", *arguments], plugins=list(plugins)))
+    return int(
+        pytest.main(
+            ["-q", "-p", "no:cacheprovider", "--assert=plain", *arguments], plugins=list(plugins)
+        )
+    )
 
 
-def watch_tests(file, folder):
-    """{test: what Watcher found} of the tests of one file, all of which must pass."""
-    path = Path(folder) / "watched.json"
+def watch_tests(file, folder, kept):
+    """{test: what Watcher found} of the tests of one file that pass before any change."""
 
     def watched():
         watcher = Watcher(Path(folder) / file)
-        status = run_tests(folder, test_files(file, folder), [watcher])
-        write_whole(str(path), measured.text(watcher.found))
-        return status
+        run_tests(folder, test_files(file, folder), [watcher])
+        write_whole(str(path), json.dumps(watcher.found))
+        return 0
 
-    if finish(start(watched, Path(folder) / "log.txt"), 1800) != 0:
-        raise SystemExit(
-            f"the tests of {file} fail before any change: "
-            f"{(Path(folder) / 'log.txt').read_text()[-1500:]}"
-        )
-    import json
-
-    return json.loads(path.read_text())
+    path = Path(folder) / "watched.json"
+    if "tests" not in kept:
+        finish(start(watched, Path(folder) / "log.txt"), 1800)
+        if not path.exists():
+            log = (Path(folder) / "log.txt").read_text()
+            raise SystemExit(f"the tests of {file} do not run: {log[-1500:]}")
+        kept["tests"] = json.loads(path.read_text("utf-8"))
+    failing = [test for test, entry in kept["tests"].items() if not entry["passed"]]
+    if failing:
+        print(f"left out, since they fail before any change: {', '.join(failing)}", file=sys.stderr)
+    return {test: entry for test, entry in kept["tests"].items() if entry["passed"]}
 
 
 def test_files(file, folder):
@@ -309,12 +319,7 @@ def tests_for(mutant, text, found):
     if mutant.where == "module":
         functions = names_of_module_line(text, mutant.line)
     ran = [test for test, entry in found.items() if functions & set(entry["ran"])]
-    apart = [test for test, entry in found.items() if entry.get("process") and test not in ran]
-
-    def quick(test):
-        return found[test]["seconds"]
-
-    return sorted(ran, key=quick) + sorted(apart, key=quick)
+    return sorted(ran, key=lambda test: found[test]["seconds"])
 
 
 # --- processes ------------------------------------------------------------------------------------
@@ -334,7 +339,10 @@ def start(work, log):
         os.dup2(out, 2)
         status = work()
     except BaseException:
+        traceback.print_exc()
         status = 1
+    sys.stdout.flush()
+    sys.stderr.flush()
     os._exit(status)
 
 
@@ -388,18 +396,18 @@ def run_file(file, chosen, folder):
     """[[where, line, said, outcome]] of the chosen mutants of a file; kept as they come."""
     data = (folder / file).read_bytes()
     text = data.decode()
-    found = watch_tests(file, folder)
-    whole = sum(entry["seconds"] for entry in found.values())
     kept = measured.Cells(
         WORK / f"{file.replace('/', '-')}.jsonl", code=(file,), about=tests_hash()
     )
+    found = watch_tests(file, folder, kept)
     rows = []
     with measured.progress(len(chosen), f"mutants of {file}") as tick:
         for mutant in chosen:
             key = f"{mutant.start}-{mutant.stop} {mutant.new}"
             if key not in kept:
                 tests = tests_for(mutant, text, found)
-                kept[key] = try_mutant(mutant, data, tests, folder, 30 + 4 * whole)
+                seconds = 60 + 10 * sum(found[test]["seconds"] for test in tests)
+                kept[key] = try_mutant(mutant, data, tests, folder, seconds)
             rows.append([mutant.where, mutant.line, mutant.said, kept[key]])
             tick(mutant.where)
     return rows
@@ -407,8 +415,6 @@ def run_file(file, chosen, folder):
 
 def tests_hash():
     """Digits that change when a test does: what was killed may then not be."""
-    import hashlib
-
     digest = hashlib.sha256()
     for path in sorted((ROOT / "curriculum" / "tests").glob("*.py")):
         digest.update(path.read_bytes())
@@ -525,6 +531,9 @@ def main(argv=None):
             for m in mutants:
                 print(f"{file}:{m.line}: {m.where}: {m.said}")
         return 0
+    for name in PRELOADED:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
     rows = {}
     with tempfile.TemporaryDirectory(prefix="mutate-") as folder:
         copy_of_the_repository(Path(folder))

@@ -92,7 +92,7 @@ def parse(argv):
     flag = parser.add_argument
     flag("--quick", action="store_true", help="reduced settings, under a minute, for CI")
     flag("--workers", type=number(int, low=0), help="processes (one a core); 0: all in this one")
-    flag("--dask", metavar="ADDRESS", help="of a running scheduler: pip install -e '.[stress]'")
+    flag("--dask", metavar="ADDRESS", help="of a running scheduler; needs dask[distributed]")
     flag(
         "--scenes",
         type=number(int, low=0),

@@ -424,7 +424,7 @@ def test_processes_give_the_same_results_as_this_process():
 
 def test_a_dask_scheduler_that_is_running_gives_the_same_results(tmp_path):
     distributed = pytest.importorskip(
-        "distributed", reason="Dask is optional: pip install -e '.[stress]'"
+        "distributed", reason="Dask is optional: pip install 'dask[distributed]'"
     )
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None

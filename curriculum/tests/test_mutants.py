@@ -1,0 +1,95 @@
+"""The mutants: how they are made, and the edges of the code that they showed to be untested."""
+
+import ast
+
+import numpy as np
+import pytest
+
+import contact
+from curriculum import mutate
+
+
+def ball_over_floor(v_n, depth):
+    """A contact of a ball with the floor, as detect_contacts lists it."""
+    ball = contact.Ball(0.0, 0.1 - depth, 0.0, v_n, 1.0, 0.1)
+    return contact.Contact(ball, contact.FLOOR, 0.0, 1.0, depth)
+
+
+def mutants(text):
+    return {mutant.said for mutant in mutate.mutants_of("f.py", text)}
+
+
+# --- making them --------------------------------------------------------------------------------
+
+
+def test_operators_numbers_calls_and_conditions_are_changed():
+    text = "def f(a, b=2):\n    if a and b < 1:\n        a += min(b, 3.0)\n    return -a * b\n"
+    assert mutants(text) == {
+        "def f(a, b=2): -> def f(a, b=3):",
+        "if a and b < 1: -> if a or b < 1:",
+        "if a and b < 1: -> if a and b <= 1:",
+        "if a and b < 1: -> if a and b < 2:",
+        "if a and b < 1: -> if not (a and b < 1):",
+        "a += min(b, 3.0) -> a -= min(b, 3.0)",
+        "a += min(b, 3.0) -> a += max(b, 3.0)",
+        "a += min(b, 3.0) -> a += min(b, 3.3000000000000003)",
+        "return -a * b -> return a * b",
+        "return -a * b -> return -a / b",
+    }
+
+
+def test_texts_annotations_and_what_is_printed_are_left_alone():
+    assert not mutants('"""Two < three."""\n\n\ndef f(a: int | None):\n    return f"{a + 1}"\n')
+
+
+@pytest.mark.parametrize("file", mutate.TARGETS)
+def test_every_mutant_of_the_code_is_python_and_another_program(file):
+    text = (mutate.ROOT / file).read_text()
+    data, before = text.encode(), ast.dump(ast.parse(text))
+    made = mutate.mutants_of(file, text)
+    assert len(made) > 300 and len(set(made)) == len(made)
+    for mutant in made[::7]:
+        new = (data[: mutant.start] + mutant.new.encode() + data[mutant.stop :]).decode()
+        assert ast.dump(ast.parse(new)) != before, mutant.said
+
+
+def test_a_constant_is_tried_by_the_tests_of_the_functions_that_use_it():
+    text = "LIMIT = 2\n\n\ndef f():\n    return LIMIT\n\n\ndef g():\n    return 1\n"
+    found = {
+        "uses it": {"seconds": 2.0, "ran": ["f"]},
+        "quick": {"seconds": 1.0, "ran": ["f", "g"]},
+        "does not": {"seconds": 0.1, "ran": ["g"]},
+    }
+    (constant, *_) = mutate.mutants_of("f.py", text)
+    assert mutate.tests_for(constant, text, found) == ["quick", "uses it"]
+
+
+def test_a_survivor_without_a_reason_fails_and_a_named_one_does_not(capsys):
+    rows = {"f.py": [["f", 1, "a -> b", "killed"]] * 19 + [["g", 2, "c -> d", "survived"]]}
+    section = mutate.section_of(rows, {}, {"f.py": 20})
+    assert mutate.show(section["files"]) == 1
+    section = mutate.section_of(rows, {"f.py: g: c -> d": "no difference"}, {"f.py": 20})
+    assert mutate.show(section["files"]) == 0
+    assert "1 equivalent" in capsys.readouterr().out
+    assert section["files"]["f.py"]["named"] == [["g", 2, "c -> d", "no difference"]]
+
+
+def test_every_reason_names_a_mutant_that_there_is():
+    known = mutate.reasons()
+    made = {
+        f"{file}: {m.where}: {m.said}"
+        for file in mutate.TARGETS
+        for m in mutate.mutants_of(file, (mutate.ROOT / file).read_text())
+    }
+    assert not set(known) - made
+    assert all(len(why.split()) > 3 for why in known.values())
+
+
+# --- edges that they showed ---------------------------------------------------------------------
+
+
+def test_a_ball_that_just_reaches_the_floor_within_the_step_bounces():
+    """gap + dt v_n = 0 exactly: that is meeting."""
+    assert contact.contact_target(ball_over_floor(-1.0, -0.5), 0.5, 0.2, 0.5) == 0.5
+    near = np.nextafter(-0.5, -1.0)
+    assert contact.contact_target(ball_over_floor(-1.0, near), 0.5, 0.2, 0.5) == near / 0.5
