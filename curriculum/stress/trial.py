@@ -13,8 +13,8 @@ from curriculum.stress.under_test import contact
 
 U = 2.0**-53  # the largest relative rounding error of one operation
 STEPPED = ("penalty", "lcp", "soft")
-EVENTS = 400  # of exact, then the rest of a run is not waited for
-FEW_EVENTS = 100  # of a run of exact that is made again, in a mirror or at another dt
+EVENTS = 250  # of exact, then the rest of a run is not waited for
+FEW_EVENTS = 60  # of a run of exact that is made again, in a mirror or at another dt
 
 
 class Trial:
