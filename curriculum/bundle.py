@@ -103,9 +103,9 @@ EDITS = (
     ),
 )
 DROPPED = {"quality-parts": "height_errors"}  # functions that only exact, the reference, needs
-NOTE = """> The script beside this text, `contact.py`, holds `penalty` and `lcp`: this course keeps a chapter
-> in one script of at most {cap} lines. What the text says of `soft`, of `exact` and of piles of many
-> balls runs in the chapter's own repository, as do commands that begin with `python -m curriculum`.
+NOTE = """> The script beside this text, `contact.py`, holds `penalty` and `lcp`: this course keeps a
+> chapter in one script of at most {cap} lines. What the text says of `soft`, of `exact` and of piles
+> of many balls runs in the chapter's own repository, as do commands that begin with `python -m curriculum`.
 """
 ELSEWHERE = "*In the chapter's own repository, {file}, region {name}: {why}.*"
 
@@ -236,7 +236,7 @@ def chapter(root, numbers):
 
 
 def mark_commands(text, made):
-    """The text with a word beside every command in a fence that the course's script does not take."""
+    """The text with a word beside every fenced command that the course's script does not take."""
     course = {"__name__": "the course's contact.py"}
     exec(compile(made, "contact.py", "exec"), course)
 
@@ -263,19 +263,13 @@ def course_bands(exercise):
 
 def meta(root, made, numbers):
     """The course's meta.yaml: what its gates, its page and its grader read."""
+    import yaml
+
     facts = load_meta(root)
-    numbers.run(numbers.reference())
-    reference = numbers.runs[numbers.reference()]
-    checks = {}
-    for name, exercise in facts["exercises"].items():
-        if name in ("ex1", "ex2", "ex3"):
-            checks[name] = {
-                key: exercise[key] for key in ("provenance", "answer", "within") if key in exercise
-            }
-            checks[name] |= {"bands": course_bands(exercise)} if course_bands(exercise) else {}
+    reading = facts["reading"]
     focus = [
         f"{name}: {what}"
-        for functions in facts["reading"]["files"].values()
+        for functions in reading["files"].values()
         for name, what in functions.items()
     ]
     told = {
@@ -287,30 +281,36 @@ def meta(root, made, numbers):
         "objectives": facts["objectives"],
         "scale_lab": False,
         "read_the_real_thing": True,
-        "rtrt": {
-            "repo": facts["reading"]["repo"],
-            "commit": facts["reading"]["commit"],
-            "focus": focus,
-        },
+        "rtrt": {"repo": reading["repo"], "commit": reading["commit"], "focus": focus},
         "demo": "contact_quality",
-        "reference_run": {
-            "provenance": facts["reference_run"]["provenance"],
-            **{
-                f"{model}_{key}": reference["quality"][model][key]
-                for model in ("penalty", "lcp")
-                for key in ("max_penetration_frac", "rest_penetration_frac", "energy_excess")
-            },
-        },
-        "exercise_checks": checks,
+        "reference_run": reference_run(facts, numbers),
+        "exercise_checks": exercise_checks(facts),
         "region_hashes": {
             course_name(name): regions.Region(name, 0, text).sha256 for name, text in made.items()
         },
     }
-    import yaml
+    head = "# Made by `python -m curriculum.bundle`; do not edit it here.\n"
+    return head + yaml.safe_dump(told, sort_keys=False, allow_unicode=True, width=100)
 
-    return "# Made by `python -m curriculum.bundle`; do not edit it here.\n" + yaml.safe_dump(
-        told, sort_keys=False, allow_unicode=True, width=100
-    )
+
+def reference_run(facts, numbers):
+    """The figures of the reference run that the course's two models have, and where they are from."""
+    quality = numbers.run(numbers.reference())["quality"]
+    keys = ("max_penetration_frac", "rest_penetration_frac", "energy_excess")
+    found = {f"{model}_{key}": quality[model][key] for model in ("penalty", "lcp") for key in keys}
+    return {"provenance": facts["reference_run"]["provenance"], **found}
+
+
+def exercise_checks(facts):
+    """What the course's checks.py and its grader read: answers, tolerances, bands."""
+    checks = {}
+    for name in ("ex1", "ex2", "ex3"):
+        exercise = facts["exercises"][name]
+        kept = [key for key in ("provenance", "answer", "within") if key in exercise]
+        checks[name] = {key: exercise[key] for key in kept}
+        if course_bands(exercise):
+            checks[name]["bands"] = course_bands(exercise)
+    return checks
 
 
 def exercises(root):

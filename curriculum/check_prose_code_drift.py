@@ -151,42 +151,36 @@ def check_includes(project, found):
     for name, region in found.items():
         covered = any(fnmatchcase(name, pattern) for pattern in hidden)
         if name not in shown and not covered and name != regions.docstring_name(region.file):
-            project.say(
-                CHAPTER,
-                1,
-                f"region {name} is never shown",
-                f"add a fence with [include-by-region: {region.file}#{name}], or name it "
-                f"in `not_shown` of meta.yaml, then {GATE}",
-            )
+            include = f"[include-by-region: {region.file}#{name}]"
+            repair = f"add a fence with {include}, or name it in `not_shown` of meta.yaml"
+            project.say(CHAPTER, 1, f"region {name} is never shown", f"{repair}, then {GATE}")
     for pattern in hidden:
         covered = [name for name in found if fnmatchcase(name, pattern)]
         both = [name for name in covered if name in shown]
         if both or not covered:
             what = f"{both[0]}, which is shown" if both else f"{pattern}, which is no region"
-            project.say(
-                "meta.yaml", "^not_shown:", f"not_shown names {what}", f"take it out, then {GATE}"
-            )
+            what = f"not_shown names {what}"
+            project.say("meta.yaml", "^not_shown:", what, f"take it out, then {GATE}")
     for k, (line, file, name) in enumerate(project.includes):
         if name not in found or found[name].file != file:
             allowed = ", ".join(each for each in found if found[each].file == file)
-            project.say(
-                CHAPTER,
-                line,
-                f"includes {name}, and {file} has no such region",
-                f"name one of {allowed or 'a literate file'}, then {GATE}",
-            )
+            what = f"includes {name}, and {file} has no such region"
+            project.say(CHAPTER, line, what, f"name one of {allowed or 'a literate file'}")
         if name in shown[:k]:
             project.say(CHAPTER, line, f"includes {name} a second time", f"delete one, then {GATE}")
+    check_stray_includes(project)
+
+
+def check_stray_includes(project):
+    """No include stands where it would not be shown."""
     lines = {include.line for include in project.includes}
     for line, text in enumerate(project.chapter.split("\n"), 1):
         if "include-by-region" in text and line not in lines:
-            project.say(
-                CHAPTER,
-                line,
-                "an include that is not alone in its fence or not of the "
-                "form [include-by-region: FILE#NAME]",
-                f"edit it, then {GATE}",
+            what = (
+                "an include that is not alone in its fence or not of the form "
+                "[include-by-region: FILE#NAME]"
             )
+            project.say(CHAPTER, line, what, f"edit it, then {GATE}")
 
 
 def check_passages(project):
@@ -262,51 +256,45 @@ def check_exercises(project):
 def check_names(project):
     """What texts, exercises and docstrings name is there."""
     known = naming.Names(project.root, project.facts, project.metrics)
-    scripts = [
-        *project.scripts(),
-        *(
-            (file, (project.root / file).read_text("utf-8", "replace"))
-            for file in regions.LITERATE
-            if (project.root / file).exists()
-        ),
-    ]
     mentioned = {
         file: (project.root / file).read_text("utf-8", "replace")
         for file in TEXTS
         if (project.root / file).exists()
     }
     flags = naming.all_flags(project.root, mentioned.values())
-
-    def say(file, line, what):
-        project.say(file, line, what, f"correct it, then {GATE}")
-
     for file, text in mentioned.items():
-        for line, command in naming.commands(text):
-            what = naming.command_problem(project.root, command)
-            if what:
-                say(file, line, f"the command `{command}`: {what}")
+        check_commands(project, file, naming.commands(text))
         for line, flag in naming.loose_flags(text):
             if flag not in flags:
-                say(file, line, f"no command here has a flag {flag}")
+                correct(project, file, line, f"no command here has a flag {flag}")
         for line, target in naming.links(text):
-            path = (project.root / file).parent / target.split("#")[0]
-            if not path.exists():
-                say(file, line, f"a link to {target}, and there is no such file")
-        for line, span in naming.spans(text) if file == CHAPTER else ():
-            for word in known.unknown(span):
-                say(
-                    file,
-                    line,
-                    f"`{span}` names {word}, which no code here defines (other "
-                    "people's names: `foreign_names` of meta.yaml)",
-                )
-    for file, text in scripts:
-        for line, command in naming.docstring_commands(text):
-            what = naming.command_problem(project.root, command)
-            if what:
-                say(file, line, f"the command `{command}`: {what}")
+            if not ((project.root / file).parent / target.split("#")[0]).exists():
+                correct(project, file, line, f"a link to {target}, and there is no such file")
+    for line, span in naming.spans(project.chapter):
+        for word in known.unknown(span):
+            what = f"`{span}` names {word}, which no code here defines"
+            correct(
+                project, CHAPTER, line, f"{what} (other people's: `foreign_names` of meta.yaml)"
+            )
+    literate = [file for file in regions.LITERATE if (project.root / file).exists()]
+    for file in (*dict(project.scripts()), *literate):
+        text = (project.root / file).read_text("utf-8", "replace")
+        check_commands(project, file, naming.docstring_commands(text))
     check_live_links(project, flags)
     check_reading(project)
+
+
+def check_commands(project, file, commands):
+    """Every command (line, text) would run as it is printed."""
+    for line, command in commands:
+        what = naming.command_problem(project.root, command)
+        if what:
+            correct(project, file, line, f"the command `{command}`: {what}")
+
+
+def correct(project, file, line, what):
+    """Note a problem that only an author can mend."""
+    project.say(file, line, what, f"correct it, then {GATE}")
 
 
 def check_live_links(project, flags):
@@ -347,59 +335,58 @@ def check_reading(project):
 def check_numbers(project, numbers):
     """References, claims, the reference run and the exercises' answers, against fresh runs."""
     numbers.run_all(project.chapter + str(project.exercises))
-
-    def attempt(file, line, claim, wrong, *inputs):
-        """Note what `wrong(*inputs)` returns or raises."""
-        try:
-            what = wrong(*inputs)
-        except (ValueError, ZeroDivisionError) as error:
-            what = f"{error} (the keys: {NUMBERS})"
-        if what:
-            project.say(file, line, f"{claim}: {what}", f"correct what is wrong, then {GATE}")
-
-    def unquotable(reference):
-        return numbers.text(reference) and None
-
-    def false(claim):
-        return None if numbers.holds(claim) else "does not hold"
-
-    def outside(key, low, high):
-        value = numbers.value(key)
-        return (
-            None
-            if is_number(value) and low <= value <= high
-            else f"{value} is outside {low} to {high}"
-        )
-
-    def misplaced(letter, claims, answer):
-        true = all([numbers.holds(claim) for claim in claims])
-        if true and letter != answer:
-            return f"choice {letter} is true, and the answer is said to be {answer}"
-        return None if true == (letter == answer) else f"choice {letter}, the answer, is not true"
-
     for file, text in ((CHAPTER, project.chapter), ("meta.yaml", project.meta)):
         for match in REFERENCE.finditer(text):
-            attempt(file, line_at(text, match.start()), match[0], unquotable, match[1])
+            attempt(project, file, line_at(text, match.start()), match[0], numbers.text, match[1])
     for match in HOLDS.finditer(project.chapter):
-        attempt(CHAPTER, line_at(project.chapter, match.start()), match[1], false, match[1])
+        line = line_at(project.chapter, match.start())
+        attempt(project, CHAPTER, line, match[1], hold, numbers, match[1])
     for name, exercise in project.exercises.items():
-        line = rf"^  {name}:"
-        for key, (low, high) in (exercise.get("bands") or {}).items():
-            attempt("meta.yaml", line, f"{name}, {key}", outside, key, low, high)
+        line, answer = rf"^  {name}:", exercise.get("answer")
+        for key, band in (exercise.get("bands") or {}).items():
+            attempt(project, "meta.yaml", line, f"{name}, {key}", stay, numbers, key, band)
         for claim in exercise.get("holds") or []:
-            attempt("meta.yaml", line, f"{name}, {claim}", false, claim)
+            attempt(project, "meta.yaml", line, f"{name}, {claim}", hold, numbers, claim)
         for letter, claims in (exercise.get("true_if") or {}).items():
-            attempt(
-                "meta.yaml",
-                line,
-                f"{name}, {'; '.join(claims)}",
-                misplaced,
-                letter,
-                claims,
-                exercise.get("answer"),
-            )
+            said = f"{name}, {'; '.join(claims)}"
+            attempt(project, "meta.yaml", line, said, choose, numbers, letter, claims, answer)
     name = numbers.reference()
     check_reference_run(project, dict(leaves(numbers.run(name))), numbers.config_hash.get(name))
+
+
+def attempt(project, file, line, claim, call, *inputs):
+    """Note the ValueError that `call(*inputs)` raises."""
+    try:
+        call(*inputs)
+    except (ValueError, ZeroDivisionError) as error:
+        project.say(
+            file,
+            line,
+            f"{claim}: {error} (the keys: {NUMBERS})",
+            f"correct what is wrong, then {GATE}",
+        )
+
+
+def hold(numbers, claim):
+    """Raise ValueError unless the claim is true."""
+    if not numbers.holds(claim):
+        raise ValueError("does not hold")
+
+
+def stay(numbers, key, band):
+    """Raise ValueError unless the number is in the band."""
+    value, (low, high) = numbers.value(key), band
+    if not (is_number(value) and low <= value <= high):
+        raise ValueError(f"{value} is outside {low} to {high}")
+
+
+def choose(numbers, letter, claims, answer):
+    """Raise ValueError unless a choice's claims are all true just when it is the answer."""
+    true = all([numbers.holds(claim) for claim in claims])
+    if true and letter != answer:
+        raise ValueError(f"choice {letter} is true, and the answer is said to be {answer}")
+    if letter == answer and not true:
+        raise ValueError(f"choice {letter}, the answer, is not true")
 
 
 def check_reference_run(project, fresh_run, config_hash):
