@@ -147,6 +147,7 @@ PROBLEMS = (
         20.0,
         scene_of("bounce", restitution=1.0),
         column,
+        DTS[1:],
     ),
     Problem(
         "slide",

@@ -201,7 +201,8 @@ def page(section):
     parts = [
         f"Each problem has a known answer (`closed_form.py`). An error is the median over up to "
         f"{section['seeds']} starts; a time is the median over {section['processes']} processes, "
-        "each of which runs everything in a random order of its own, after a warm-up. In all alike "
+        "each of which runs everything in a random order of its own, after a warm-up (CPU time, one "
+        "thread). In all alike "
         'every height is read after every step; "bare" is an engine\'s stepping loop alone. The '
         "closed forms are right to about 1e-14 r, the engines in float32 to about 1e-6 r.",
         "An engine that could do better: add a line to `SETTINGS` in "
