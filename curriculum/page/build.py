@@ -2,6 +2,7 @@
 
 import ast
 import base64
+import functools
 import hashlib
 import importlib
 import json
@@ -101,6 +102,7 @@ def inline(text):
 STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
 
 
+@functools.cache
 def code_lines(text):
     """Highlighted code, a block a line; a line too long for its column goes on further in."""
     shown = highlight(text, PythonLexer(stripnl=False), HtmlFormatter(nowrap=True))

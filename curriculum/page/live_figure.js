@@ -57,7 +57,7 @@ const Figure = (() => {
   // The exercise whose answer the figure would show now, or null.
   function hiddenBy() {
     if (!Bets.open("ex1")) return "ex1";
-    if (state.scene === "drop" && state.dt > 0.0134 && !Bets.open("ex3")) return "ex3";
+    if (state.scene === "drop" && state.dt >= criticalDt().damped && !Bets.open("ex3")) return "ex3";
     return null;
   }
 

@@ -4,6 +4,7 @@ The picture is written once, in JavaScript. Here the same files run in an embedd
 the parts that compute and draw touch no document, so they need no browser.
 """
 
+import functools
 import json
 from pathlib import Path
 
@@ -24,5 +25,11 @@ def engine(data=None, scripts=DRAWING):
 
 def stills(data):
     """{start, end: the lanes; small: the small figures; keys; knobs: ranges; size} as still.js has them."""
-    v8 = engine(data, (*DRAWING, "still.js"))
-    return json.loads(v8.eval("JSON.stringify(Stills.all())"))
+    return json.loads(_drawn(json.dumps(data, sort_keys=True)))
+
+
+@functools.cache
+def _drawn(data):
+    """The stills for some data, as text: drawn once however often the page is built."""
+    v8 = engine(json.loads(data), (*DRAWING, "still.js"))
+    return v8.eval("JSON.stringify(Stills.all())")
