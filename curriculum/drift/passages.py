@@ -188,18 +188,29 @@ def defined_names(text):
     }
 
 
-def passages_naming(root, names, skip=range(0)):
+def naming(names):
+    """A pattern that finds any of these names where it is meant as a name.
+
+    One that could be a plain word counts in a code span, in a call or after its module alone.
+    """
+    plain = [re.escape(name) for name in sorted(names) if re.fullmatch(r"[a-z]+", name)]
+    other = [re.escape(name) for name in sorted(names) if not re.fullmatch(r"[a-z]+", name)]
+    modules = "|".join(Path(file).stem for file in regions.LITERATE)
+    found = [rf"(?<![\w.-])({'|'.join(other)})(?!\w)"] if other else []
+    if plain:
+        word = rf"({'|'.join(plain)})"
+        found += [rf"`[^`\n]*\b{word}\b[^`\n]*`", rf"\b{word}\(", rf"\b({modules})\.{word}\b"]
+    return re.compile("|".join(found))
+
+
+def passages_naming(root, names):
     """(file, line, text) of every paragraph of chapter, README and exercises that names any."""
-    files = [CHAPTER, "README.md", META, *reader(root)[1]]
-    pattern = re.compile(
-        rf"(?<![\w.-])(contact\.)?({'|'.join(map(re.escape, sorted(names)))})(?!\w)"
-    )
-    for file in files if names else []:
-        text = reader(root)[0](file) or ""
+    read, exercises = reader(root)
+    for file in [CHAPTER, "README.md", META, *exercises] if names else []:
+        text = read(file) or ""
         for found in re.finditer(r"(?:^.*\S.*\n?)+", text, re.MULTILINE):
-            line = texts.line_at(text, found.start())
-            if pattern.search(found[0]) and line not in skip:
-                yield file, line, found[0].rstrip("\n")
+            if naming(names).search(found[0]):
+                yield file, texts.line_at(text, found.start()), found[0].rstrip("\n")
 
 
 def accept(root, name):
