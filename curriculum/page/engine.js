@@ -366,6 +366,21 @@ const ContactEngine = (() => {
     return Math.abs(sum) < 1e-9 * Math.abs(GRAVITY) ? 0 : sum;
   }
 
+  // The first row at which surfaces touch, or a velocity shows more than gravity's change.
+  function firstContact(run, scene) {
+    const { n, dt } = run;
+    const shows = (v, at, fall) =>
+      Math.abs(v[at] - v[at - n] - fall) > 1e-9 * (Math.abs(v[at - n]) + Math.abs(fall));
+    for (let row = 0; row <= run.steps; row++) {
+      if (smallestGap(run, scene, row) <= 0) return row;
+      for (let at = row * n; row > 0 && at < (row + 1) * n; at++) {
+        const fall = scene.mass[at - row * n] === Infinity ? 0 : dt * GRAVITY;
+        if (shows(run.vx, at, 0) || shows(run.vy, at, fall)) return row;
+      }
+    }
+    return run.steps + 1;
+  }
+
   // What the charts show, row by row: depth and gap [r], energy over its start, push in weights.
   function series(run, scene) {
     const rows = run.steps + 1;
@@ -373,16 +388,14 @@ const ContactEngine = (() => {
     const found = { gap: column(), depth: column(), energy: column(), push: column() };
     const weight = scene.mass.reduce((sum, m) => sum - (m < Infinity ? m * GRAVITY : 0), 0);
     const start = energyAt(run, scene, 0);
-    let landing = rows; // the first row in which something touches
     for (let row = 0; row < rows; row++) {
       const gap = smallestGap(run, scene, row);
       found.gap[row] = gap / scene.radius[0];
       found.depth[row] = Math.max(-gap, 0) / scene.radius[0];
       found.energy[row] = energyAt(run, scene, row) / start;
       if (row > 0) found.push[row] = pushOfTable(run, scene, row) / weight;
-      if (landing === rows && !(gap > CONTACT_MARGIN)) landing = row;
     }
-    return { ...found, landing };
+    return { ...found, landing: firstContact(run, scene) };
   }
 
   const EXPLODED = 10; // times the start energy: more than this gained is an explosion
@@ -394,13 +407,13 @@ const ContactEngine = (() => {
     return Math.sqrt(late.reduce((sum, d) => sum + (d - mean) ** 2, 0) / late.length);
   }
 
-  // The worst height error, in radii, and its parts: before `landing`, and what is added after.
-  function heightErrors(run, reference, landing, unit) {
+  // The worst height error, in radii, and its parts: before the first contact, and what is added after.
+  function heightErrors(run, scene, reference, landed) {
     if (!reference) return { height_error_frac: null, flight_error_frac: null, contact_error_frac: null };
-    let worst = 0;
-    let flight = 0;
+    const landing = Math.min(landed, firstContact(reference, scene));
+    let [worst, flight] = [0, 0];
     for (let at = 0; at < run.y.length; at++) {
-      const error = Math.abs(run.y[at] - reference.y[at]) / unit;
+      const error = Math.abs(run.y[at] - reference.y[at]) / scene.radius[0];
       if (error > worst) worst = error;
       if (at < landing * run.n) flight = worst;
     }
@@ -431,7 +444,7 @@ const ContactEngine = (() => {
       contact_energy: risen,
       blew_up: blewUpStep !== null,
       blew_up_step: blewUpStep,
-      ...heightErrors(run, reference, landing, scene.radius[0]),
+      ...heightErrors(run, scene, reference, landing),
     };
   }
 
