@@ -424,6 +424,15 @@ const Figure = (() => {
     });
     node.addEventListener("pointerleave", () => readOut(rowAt(time)));
     node.addEventListener("dblclick", () => zoom(0.5));
+    // a wheel turned sideways, or with Shift, moves the window; plain turning scrolls the page
+    const turn = (event) => {
+      const sideways = event.shiftKey ? event.deltaY || event.deltaX : event.deltaX;
+      if (Math.abs(sideways) < (event.shiftKey ? 1 : Math.abs(event.deltaY))) return;
+      event.preventDefault();
+      const by = (0.1 * Math.sign(sideways)) * (view[1] - view[0]);
+      lookAt(view[0] + by, view[1] + by);
+    };
+    node.addEventListener("wheel", turn, { passive: false });
   }
 
   function listenTime() {

@@ -216,6 +216,14 @@ def test_it_opens_on_the_contact_and_zooms(browser, url):
         assert landing - 0.1 < low < landing < high < landing + 1.0
         page.click("#zoom-in")
         assert state(page)["view"][1] - state(page)["view"][0] == pytest.approx((high - low) / 2)
+        box = page.locator("#chart").bounding_box()
+        page.mouse.move(box["x"] + 200, box["y"] + 60)
+        zoomed = state(page)["view"]
+        page.keyboard.down("Shift")
+        page.mouse.wheel(0, 100)
+        page.keyboard.up("Shift")
+        page.wait_for_function(f"Figure.view[0] > {zoomed[0]}")
+        assert np.ptp(state(page)["view"]) == pytest.approx(np.ptp(zoomed)), "moved, not stretched"
         page.click("#view-all")
         assert state(page)["view"] == [0, 4]
         page.click("#view-contact")
@@ -361,6 +369,9 @@ def test_the_figure_stays_beside_the_text_on_a_wide_screen_and_docks_on_a_phone(
         link.tap()
         box = page.locator("#lanes-box").bounding_box()
         assert 0 <= box["y"] and box["y"] + box["height"] <= 740, "lanes in sight beside the link"
+        for knob in ("#dt-range", "#baumgarte-range"):
+            box = page.locator(knob).bounding_box()
+            assert box["y"] + box["height"] <= 740, "and the knobs in use"
         page.locator("#undock").tap()
         assert page.locator(".docked").count() == 0
 
