@@ -217,6 +217,16 @@ def test_cells_find_every_near_pair_once_and_in_order(scene, reach):
     assert set(pairs) <= set(all_pairs(scene, 1.01 * (reach + scene.radius.max())))
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_cells_of_equal_balls_miss_no_pair_across_their_borders(seed):
+    """Each cell is hardly wider than a pair can be apart, so a narrower one would miss some."""
+    rng = np.random.default_rng(seed)
+    scene = crowd(300, seed)._replace(q0=rng.uniform(0.0, 3.0, (2, 300)))
+    for reach in (0.0, 0.07):
+        pairs = set(zip(*piles.list_pairs(tabled(scene), reach).tolist()))
+        assert pairs == set(all_pairs(scene, reach)) and len(pairs) > 500
+
+
 def test_the_list_of_pairs_does_not_grow_with_the_square_of_the_balls():
     for count in (1000, 4000):
         pairs = piles.list_pairs(tabled(contact.build_scene("pile", bodies=count)), 0.1)
