@@ -220,7 +220,7 @@ def main():
         "match": [compare(case) for case in cases()],
         "touch": [compare(case) for case in touching_cases()],
     }
-    section = measured.save(FOLDER, "mujoco_match", section, COMMAND, packages=("mujoco",))
+    section = measured.save(FOLDER, "mujoco_match", section, COMMAND, ("contact.py",), ("mujoco",))
     write_whole(str(FOLDER / "mujoco_match.md"), page(section))
     print(FOLDER / "mujoco_match.md")
     return 0

@@ -313,6 +313,9 @@ def page(saved):
             "`--smoke` of each scene in a process of its own; stdout and metrics.json "
             "compared byte for byte with hash seed 0 and one thread.",
         ),
+        "## soft and MuJoCo\n\nHow far soft is from the engine that it rebuilds stands in "
+        "`mujoco_match.md`, beside the full report; `python -m curriculum.stress.mujoco_match` "
+        "writes it.",
     )
 
 

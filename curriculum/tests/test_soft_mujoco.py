@@ -43,3 +43,8 @@ def test_the_page_has_every_row_and_names_the_engine():
     assert "missed" in match.page(
         {"measured": about, "options": "", "touch": [], "match": [row | {"free_q": 1e-10}]}
     )
+
+
+def test_the_page_that_is_kept_is_that_of_the_kept_numbers():
+    kept = match.measured.load(match.FOLDER)["mujoco_match"]
+    assert (match.FOLDER / "mujoco_match.md").read_text("utf-8") == match.page(kept)
