@@ -3,7 +3,7 @@
 A table pushes a ball up while they touch, and it never pulls it down. Four models of that push:
     penalty   a stiff spring and a damper: one more force under an unchanged integrator
     lcp       impulses that solve a complementarity problem, by projected Gauss-Seidel sweeps
-    soft      MuJoCo's contact: the same sweeps, with a spring as target and softness added
+    soft      MuJoCo's contact: lcp's sweeps, but each contact aims like a spring and gives way
     exact     event to event, every impact at its own time (curriculum/exact.py)
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
 
@@ -16,6 +16,8 @@ Left out: friction, rotation, and all shapes but balls over the line y = 0.
     v_n       n . (v_a - v_b)                      m/s     > 0 separating
     f_n       contact force of penalty             N       >= 0: a contact only pushes
     lam       contact impulse over one step        N s     >= 0: a contact only pushes
+    target    the least v_n to leave a step with   m/s     > 0 separating
+    m_eff     effective mass, what a push moves    kg      1 / (1 / m_a + 1 / m_b)
     k, c      stiffness and damping of penalty     N/m, N s/m
     e         restitution: share of the speed that a bounce gives back, 0 to 1
     beta      Baumgarte gain: share of an overlap that a step of lcp removes, 0 to 1
@@ -44,7 +46,7 @@ EXPLODED = 10.0         # a run that gains more than this many times its start e
 SOLREF = (0.02, 1.0)    # of soft, MuJoCo's default: time constant [s], damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)   # of soft, MuJoCo's default: see impedance
 HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # of soft, the hardest contact that MuJoCo allows
-MOST_SWEEPS = 10_000    # of soft in one step, should its impulses never come to rest
+MOST_SWEEPS = 10_000    # soft stops here in one step, if its impulses have not settled
 LAST_BITS = 2.0**-48    # of soft: a correction below this share of the speeds is rounding
 SCENES = ("drop", "bounce", "stack", "pile")
 MODELS = ("penalty", "lcp", "soft", "exact")
@@ -58,7 +60,7 @@ class Scene(NamedTuple):
     name: str
     q0: np.ndarray
     v0: np.ndarray
-    mass: np.ndarray        # a ball of infinite mass is held where it is
+    mass: np.ndarray        # nothing changes the velocity of a ball of infinite mass
     radius: np.ndarray
     restitution: float      # e, of lcp, soft and exact; penalty has no such knob
     damping: float          # c of penalty [N s/m]
@@ -133,7 +135,7 @@ class Contact:
         self.m_eff = 1.0 / inv_mass if inv_mass > 0.0 else 0.0      # effective mass [kg]
         self.target = 0.0       # the v_n [m/s] to leave with at least
         self.softness = 0.0     # R [1/kg] of soft; 0 is hard
-        self.lam = 0.0          # the impulse [N s] so far
+        self.lam = 0.0          # the impulse [N s] so far; a new step starts again from 0
 
     def v_n(self):
         """Normal velocity [m/s], positive when the balls separate."""
@@ -144,7 +146,7 @@ class Contact:
         a, b = self.a, self.b
         a.vx += impulse * (a.inv_mass * self.nx)
         a.vy += impulse * (a.inv_mass * self.ny)
-        if b is not FLOOR:
+        if b is not FLOOR:      # all contacts share the floor, and it never moves
             b.vx -= impulse * (b.inv_mass * self.nx)
             b.vy -= impulse * (b.inv_mass * self.ny)
 # --- endregion ---
@@ -152,11 +154,12 @@ class Contact:
 
 # --- region: contacts ---
 def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
-    """The contacts of balls that touch the floor or each other, or are within `margin` [m] of it.
+    """The contacts of balls with the floor and with each other whose gap is below `margin` [m].
 
     The floor's contacts come first, by ball, then those of pairs, by the first ball and then the
     second: a solver takes them in this order, so the order is part of the result. Two balls with
-    the same centre get the normal (0, 1), since some direction must be chosen.
+    the same centre get the normal (0, 1), since some direction must be chosen. For another floor
+    or a wall, add its contacts here and its gap to smallest_gap, where a flight looks for it.
     """
     contacts = []
     for ball in balls:
@@ -217,7 +220,7 @@ def penalty_force(contacts, stiffness, damping):
 def penalty_step(balls, dt, stiffness, damping):
     """One step [s] in which contact is one more force, and the integrator stays what it was."""
     for ball in balls:
-        ball.fx = ball.fy = 0.0
+        ball.fx = ball.fy = 0.0     # not the floor's: nobody reads what it adds up
     penalty_force(detect_contacts(balls, margin=0.0), stiffness, damping)
     semi_implicit_step(balls, dt)
 # --- endregion ---
@@ -252,8 +255,8 @@ def move(balls, dt):
 def critical_dt(mass: float, stiffness: float, damping: float) -> float:
     """The largest stable step [s] of penalty for a ball kept in contact; inf without a spring.
 
-    The step is linear there, and Jury's test of its matrix asks for k dt^2 + 2 c dt < 4 m.
-    Without a damper that is the textbook's dt < 2 sqrt(m / k).
+    In contact a step is a 2 x 2 matrix. Its eigenvalues stay within 1 (Jury's test) while
+    k dt^2 + 2 c dt < 4 m. Without a damper that is the textbook's dt < 2 sqrt(m / k).
     """
     root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
     return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
@@ -262,22 +265,23 @@ def critical_dt(mass: float, stiffness: float, damping: float) -> float:
 
 # --- region: lcp-target ---
 def contact_target(c, restitution, baumgarte, dt):
-    """The normal velocity [m/s] with which contact c must leave at least; before gravity acts.
+    """The least normal velocity [m/s] with which contact c may leave the step.
 
-    Bodies that touch, or would meet within this step, get the bounce -e v_n. Across a wider gap
-    they may come as close as touching, so that nothing bounces on air. No target is above
-    -e v_n, also between bodies that part already, and so impulses cannot add energy (Moreau
-    1988). Only the bias velocity that ends an overlap (Baumgarte 1972) can. It replaces the
-    bounce where it is larger; their sum would bounce too high.
+    Call it before gravity acts. With e = 0 it is the bias velocity (Baumgarte 1972): an overlap
+    opens by the share beta in a step, and a gap may close by that share. With e > 0 bodies that
+    touch, or would meet within this step, get the bounce -e v_n. Across a wider gap they may
+    come as close as touching, so that nothing bounces on air. In an overlap the larger of bias
+    and bounce counts, since their sum would bounce too high. Where the bias does not, no target
+    is above -e v_n, also between bodies that part, so impulses add no energy (Moreau 1988).
     """
-    bias = baumgarte / dt * c.depth         # < 0 across a gap
+    bias = baumgarte / dt * c.depth     # < 0 across a gap
     if restitution == 0.0:
         return bias
     v_n = c.v_n()
     bounce = -restitution * v_n
     if bias > 0.0:
         return max(bias, bounce)
-    meets = dt * v_n <= c.depth
+    meets = dt * v_n <= c.depth         # what the step closes, -dt v_n, is at least the gap
     return bounce if meets else min(bounce, c.depth / dt)
 # --- endregion ---
 
@@ -307,7 +311,7 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> None:
                 change = lam - c.lam
                 c.push(change)
                 c.lam = lam
-                if not abs(change) <= tolerance * c.m_eff:
+                if not abs(change) <= tolerance * c.m_eff:      # not-a-number never settles
                     settled = False
         if settled:
             break
@@ -338,12 +342,12 @@ def impedance(depth, solimp):
         return 0.5 * (d0 + d1)
     if depth >= width:
         return d1
-    x = depth / width
-    if x <= mid:
-        y = raised(x, power) / raised(mid, power - 1.0)
+    share = depth / width
+    if share <= mid:
+        rise = raised(share, power) / raised(mid, power - 1.0)
     else:
-        y = 1.0 - raised(1.0 - x, power) / raised(1.0 - mid, power - 1.0)
-    return d0 + y * (d1 - d0)
+        rise = 1.0 - raised(1.0 - share, power) / raised(1.0 - mid, power - 1.0)
+    return d0 + rise * (d1 - d0)
 
 
 def raised(x, power):
@@ -366,7 +370,7 @@ def soft_defaults(restitution, dt, solref=None, solimp=None):
         solref, solimp = (0.0, -(1.0 + restitution) / dt), solimp or HARD
     elif solref is None or solref[0] > 0.0:
         timeconst, dampratio = solref or SOLREF
-        solref = max(timeconst, 2.0 * dt), dampratio    # refsafe: no faster than two steps
+        solref = max(timeconst, 2.0 * dt), dampratio    # MuJoCo's refsafe: no faster than two steps
     d0, d1, width, mid, power = solimp or SOLIMP
     d0, d1, mid = (min(max(share, 0.0001), 0.9999) for share in (d0, d1, mid))
     return solref, (d0, d1, width, mid, power)
@@ -532,7 +536,7 @@ def check_shapes(scene, *runs):
 
 
 # --- region: run ---
-def fast_twin():
+def compiled_piles():
     """curriculum/piles.py, the compiled steps for many balls; None where it or numba is missing."""
     try:
         from curriculum import piles
@@ -558,10 +562,11 @@ def run_model(model: str, scene: Scene, dt: float, steps: int, stiffness: float 
         return Run(times, *exact.simulate_exact(scene, times, GRAVITY, report))
     e = scene.restitution
     solref, solimp = soft_defaults(e, dt, solref, solimp)
-    if skip and len(scene.mass) > FEW and (piles := fast_twin()):
+    if skip and len(scene.mass) > FEW and (piles := compiled_piles()):
         return Run(np.arange(steps + 1) * dt, *piles.simulate(
-            model, scene, dt, steps, report, GRAVITY, CONTACT_MARGIN, stiffness, baumgarte, iters,
-            MOST_SWEEPS, LAST_BITS, solref, solimp))
+            model, scene, dt, steps, report, gravity=GRAVITY, margin=CONTACT_MARGIN,
+            stiffness=stiffness, baumgarte=baumgarte, iters=iters, most_sweeps=MOST_SWEEPS,
+            last_bits=LAST_BITS, solref=solref, solimp=solimp))
     steps_by = {
         "penalty": lambda balls: penalty_step(balls, dt, stiffness, scene.damping),
         "lcp": lambda balls: lcp_step(balls, dt, e, baumgarte, iters),
@@ -587,7 +592,7 @@ def smallest_gap(q, radius):
 
     Ball i is compared with ball i + lag, for all i and all states at once, and for every lag.
     """
-    if len(radius) > FEW and (piles := fast_twin()):
+    if len(radius) > FEW and (piles := compiled_piles()):
         return piles.smallest_gap(q, radius)
     gap = (q[:, 1] - radius).min(-1)
     for lag in range(1, len(radius)):
@@ -662,11 +667,11 @@ def deviation(values):
 
 def first_contact(run, scene, dt):
     """The first step after which surfaces touch, or a velocity shows more than gravity's change."""
-    fall = np.zeros((2, len(scene.mass)))
-    fall[1] = dt * GRAVITY * np.isfinite(scene.mass)
-    rounding = 1e-9 * (np.abs(run.v[:-1]) + np.abs(fall))
+    gained = np.zeros((2, len(scene.mass)))             # from gravity, in one step
+    gained[1] = dt * GRAVITY * np.isfinite(scene.mass)
+    rounding = 1e-9 * (np.abs(run.v[:-1]) + np.abs(gained))
     touched = smallest_gap(run.q, scene.radius) <= 0.0
-    touched[1:] |= (np.abs(np.diff(run.v, axis=0) - fall) > rounding).any((1, 2))
+    touched[1:] |= (np.abs(np.diff(run.v, axis=0) - gained) > rounding).any((1, 2))
     return int(touched.argmax()) if touched.any() else len(touched)
 
 
@@ -725,9 +730,9 @@ def contact_impulses(run, scene):
 
     It is the change of momentum that gravity does not explain, so it is there for every model.
     """
-    fall = np.diff(run.t[:2]).sum() * np.array([[0.0], [GRAVITY]])
+    gained = np.diff(run.t[:2]).sum() * np.array([[0.0], [GRAVITY]])
     mass = np.where(np.isfinite(scene.mass), scene.mass, 0.0)
-    return np.concatenate((np.zeros_like(run.v[:1]), mass * (np.diff(run.v, axis=0) - fall)))
+    return np.concatenate((np.zeros_like(run.v[:1]), mass * (np.diff(run.v, axis=0) - gained)))
 
 
 @np.errstate(all="ignore")

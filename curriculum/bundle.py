@@ -78,7 +78,7 @@ EDITS = (
     ("contacts", "possible_pairs(balls, margin)", "itertools.combinations(balls, 2)"),
     (
         "measure",
-        """    if len(radius) > FEW and (piles := fast_twin()):
+        """    if len(radius) > FEW and (piles := compiled_piles()):
         return piles.smallest_gap(q, radius)
 """,
         "",

@@ -261,7 +261,7 @@ def choose_models(args, count):
     if args.contact == "all" and count > 24:
         models.remove("exact")
         print("exact is left out of piles of more than 24 balls; ask for it by --contact exact")
-    if args.skip and count > contact.FEW and contact.fast_twin() is None:
+    if args.skip and count > contact.FEW and contact.compiled_piles() is None:
         print("the extra `fast` is missing (pip install numba): many balls take longer, and soft "
               "is left out of piles of more than 24 unless asked for", file=sys.stderr)
         if args.contact == "all" and count > 24:

@@ -69,7 +69,7 @@ def command_with(monkeypatch, tmp_path):
 @pytest.fixture
 def plain(monkeypatch):
     """Runs by contact.py's own loops, so that what a test breaks there is felt."""
-    monkeypatch.setattr(contact, "fast_twin", lambda: None)
+    monkeypatch.setattr(contact, "compiled_piles", lambda: None)
 
 
 def statuses(result):
