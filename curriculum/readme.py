@@ -103,7 +103,7 @@ def stress():
     """The stress report's own block."""
     report = import_module("curriculum.stress.report")
     sections = measured.load(STRESS)
-    if not sections or not hasattr(report, "readme_block"):
+    if "counts" not in sections or not hasattr(report, "readme_block"):
         return "Not measured yet: `python -m curriculum.stress`.\n"
     return report.readme_block(sections)
 
