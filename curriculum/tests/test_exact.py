@@ -237,8 +237,9 @@ def test_pivot_ends_on_the_contacts_of_a_dense_pile(ratio, closing):
 
 def test_pivot_of_a_column_gives_each_contact_the_weight_above_it():
     count = 30
-    J = jacobian(np.array((np.zeros(count), R * (2 * np.arange(count) + 1))),
-                 np.full(count, R), 1e-9)
+    J = jacobian(
+        np.array((np.zeros(count), R * (2 * np.arange(count) + 1))), np.full(count, R), 1e-9
+    )
     lam = exact.solve_lcp(J @ J.T, np.where(np.arange(count) == 0, -9.81, 0.0))
     assert lam == pytest.approx(9.81 * (count - np.arange(count)), rel=1e-12)
 

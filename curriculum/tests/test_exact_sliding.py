@@ -45,7 +45,8 @@ def test_a_ball_on_a_fixed_ball_slides_as_the_pendulum_upside_down():
     for k in (1, 2, 3, 4):
         theta, _ = angle_at(times[k], theta0, length)
         assert q[k, :, 1] / R == pytest.approx(
-            [length / R * np.sin(theta), (1.0 + length * np.cos(theta)) / R], abs=1e-12)
+            [length / R * np.sin(theta), (1.0 + length * np.cos(theta)) / R], abs=1e-12
+        )
     assert (q[:, :, 0] == scn.q0[:, 0]).all() and (v[:, :, 0] == 0.0).all()
 
 
