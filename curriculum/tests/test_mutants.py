@@ -93,3 +93,33 @@ def test_a_ball_that_just_reaches_the_floor_within_the_step_bounces():
     assert contact.contact_target(ball_over_floor(-1.0, -0.5), 0.5, 0.2, 0.5) == 0.5
     near = np.nextafter(-0.5, -1.0)
     assert contact.contact_target(ball_over_floor(-1.0, near), 0.5, 0.2, 0.5) == near / 0.5
+
+
+def test_the_impedance_without_a_width_is_the_mean_of_its_ends():
+    assert contact.impedance(0.001, (0.2, 0.6, 0.0, 0.5, 2.0)) == pytest.approx(0.4, rel=1e-15)
+
+
+@pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 3.0, 4.7])
+def test_the_impedance_is_made_of_two_powers_that_meet(power):
+    """x^p / mid^(p-1) up to mid, 1 - (1-x)^p / (1-mid)^(p-1) from there (MuJoCo's getimpedance)."""
+    d0, d1, width, mid = 0.3, 0.9, 0.01, 0.4
+    for x in (0.0, 0.1, 0.39, 0.41, 0.8, 0.999):
+        y = (
+            x**power / mid ** (power - 1)
+            if x <= mid
+            else 1 - (1 - x) ** power / (1 - mid) ** (power - 1)
+        )
+        got = contact.impedance(x * width, (d0, d1, width, mid, power))
+        assert got == pytest.approx(d0 + y * (d1 - d0), rel=1e-13)
+    assert contact.raised(3.0, 2.0) == 9.0 and contact.raised(9.0, 0.5) == 3.0
+
+
+def test_the_direct_form_of_solref_has_the_stiffness_that_it_says():
+    """At rest (1 - d) g = d^2 K depth with K = k / d1^2."""
+    scene = contact.build_scene("drop")._replace(q0=np.array([[0.0], [0.1]]))
+    run = contact.run_model("soft", scene, 0.002, 4000, solref=(-3000.0, -100.0))
+    depth = 0.1 - float(run.q[-1, 1, 0])
+    d = contact.impedance(depth, contact.SOLIMP)
+    spring = 3000.0 / contact.SOLIMP[1] ** 2
+    assert depth > 1e-5
+    assert d * d * spring * depth == pytest.approx((1 - d) * 9.81, rel=1e-9)
