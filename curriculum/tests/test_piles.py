@@ -188,9 +188,9 @@ def test_a_radius_that_is_no_number_hides_no_other_contact():
 
 def test_balls_exactly_in_touch_are_no_contact_of_penalty_yet():
     """A depth of exactly 0: a damper that closed would push, and the spring begins behind it."""
-    q0 = np.array(((0.0, 0.2, 0.2), (0.1, 0.1, 0.3)))
+    q0 = np.array(((0.0, 0.25, 0.25), (0.125, 0.125, 0.375)))
     v0 = np.array(((1.0, -1.0, 0.0), (-1.0, -1.0, -2.0)))
-    scene = contact.Scene("touch", q0, v0, np.ones(3), np.full(3, 0.1), 0.5, 80.0)
+    scene = contact.Scene("touch", q0, v0, np.ones(3), np.full(3, 0.125), 0.5, 80.0)
     for model in MODELS:
         check_same(model, scene, 0.002, 20)
     run = compiled("penalty", scene, 0.002, 1)
