@@ -305,7 +305,9 @@ def test_run_model_takes_the_twin_for_many_balls_only(monkeypatch):
     asked = []
     simulate = piles.simulate
     monkeypatch.setattr(
-        piles, "simulate", lambda model, *rest: asked.append(model) or simulate(model, *rest)
+        piles,
+        "simulate",
+        lambda model, *rest, **knobs: asked.append(model) or simulate(model, *rest, **knobs),
     )
     for model in MODELS:
         for bodies in (contact.FEW, contact.FEW + 1):
