@@ -47,8 +47,8 @@ WORK = ROOT / "outputs" / "mutate"
 WANTED = 0.95
 TESTS = {
     "contact.py": "lcp figures faults closed_form measures skips soft next_chapter stress "
-    "invariants command_line recording",
-    "curriculum/exact.py": "exact exact_sliding closed_form stress",
+    "invariants mutants command_line recording",
+    "curriculum/exact.py": "exact exact_sliding closed_form mutants stress",
     "curriculum/piles.py": "piles",
 }
 PRELOADED = ("numpy", "hypothesis", "pytest", "numba", "matplotlib")  # shared by all that is forked
@@ -434,10 +434,15 @@ def reasons():
 
 def section_of(rows_by_file, known, sizes):
     """The section "mutation" of results.json."""
+
+    def why(file, row):
+        """The reason of a survivor: its own, or that of every change to its function."""
+        return known.get(f"{file}: {row[0]}: {row[2]}") or known.get(f"{file}: {row[0]}: *")
+
     found = {}
     for file, rows in rows_by_file.items():
         alive = [row for row in rows if row[3] in ("survived", "untested")]
-        named = [row for row in alive if f"{file}: {row[0]}: {row[2]}" in known]
+        named = [row for row in alive if why(file, row)]
         killed = len(rows) - len(alive)
         found[file] = {
             "mutants": sizes[file],
@@ -446,7 +451,7 @@ def section_of(rows_by_file, known, sizes):
             "late": sum(row[3] == "late" for row in rows),
             "equivalent": len(named),
             "share": killed / max(1, len(rows) - len(named)),
-            "named": [[*row[:3], known[f"{file}: {row[0]}: {row[2]}"]] for row in named],
+            "named": [[*row[:3], why(file, row)] for row in named],
             "survivors": [row for row in alive if row not in named],
         }
     return {"files": found}
