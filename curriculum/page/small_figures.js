@@ -451,7 +451,7 @@ const SmallFigures = (() => {
         ...balls, ...marks,
       ].join(""),
       output: `t = ${time.toFixed(2)} s`,
-      words: `It should leave at ${number((release * 180) / Math.PI, 4)}°. ${runs.map(({ model, leaves }) => `${model}: ${number((leaves * 180) / Math.PI, 4)}°`).join("; ")}, at steps of ${SLIDE.dt} s.`,
+      words: `The last push should come at ${number((release * 180) / Math.PI, 4)}°. It comes, in steps of ${SLIDE.dt} s, ${runs.map(({ model, leaves }) => `${model}: ${number((leaves * 180) / Math.PI, 4)}°`).join("; ")}.`,
     };
   }
 
