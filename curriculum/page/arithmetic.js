@@ -12,7 +12,7 @@ const Arithmetic = (() => {
   function split(text) {
     const tokens = [];
     TOKEN.lastIndex = 0;
-    for (let match; TOKEN.lastIndex < text.trimEnd().length && (match = TOKEN.exec(text)); ) {
+    for (let match; TOKEN.lastIndex < text.trimEnd().length && (match = TOKEN.exec(text));) {
       const [whole, digits, name, sign] = match;
       tokens.push({ at: TOKEN.lastIndex - whole.trimStart().length + 1, digits, name, sign });
     }
@@ -54,10 +54,11 @@ const Arithmetic = (() => {
         need(")");
         return inner;
       }
-      if (digits !== undefined) return pass(), () => Number(digits);
+      if (digits !== undefined) return (pass(), () => Number(digits));
       if (name === undefined) fail("a number, a name or a bracket is missing.");
-      if (Object.hasOwn(CALLS, name)) return pass(), call(name);
-      if (!names.includes(name)) fail(`${name} is not known here; known: ${[...names, ...Object.keys(CALLS)].join(", ")}.`);
+      if (Object.hasOwn(CALLS, name)) return (pass(), call(name));
+      if (!names.includes(name))
+        fail(`${name} is not known here; known: ${[...names, ...Object.keys(CALLS)].join(", ")}.`);
       pass();
       return (inputs) => inputs[name];
     }
@@ -73,7 +74,7 @@ const Arithmetic = (() => {
     // A chain of one rank, from the left: product = signed (* or / signed)*, sum = product (+ or - product)*.
     const chain = (next, steps) => () => {
       let value = next();
-      for (let sign; (sign = peek().sign) && Object.hasOwn(steps, sign); ) {
+      for (let sign; (sign = peek().sign) && Object.hasOwn(steps, sign);) {
         pass();
         const [left, right, step] = [value, next(), steps[sign]];
         value = (inputs) => step(left(inputs), right(inputs));

@@ -46,7 +46,11 @@ const Bets = (() => {
     const state = { ...State.DEFAULTS, ...State.ownKnobs("drop"), dt };
     const measured = columns.map(([, model, mass]) => {
       const scene = { ...State.sceneOf(state), mass: [mass] };
-      return ContactEngine.quality(ContactEngine.runModel(model, scene, State.knobsOf(state), steps), scene, null);
+      return ContactEngine.quality(
+        ContactEngine.runModel(model, scene, State.knobsOf(state), steps),
+        scene,
+        null,
+      );
     });
     const told = (q, name) => (name === "blew_up" ? (q.blew_up ? "EXPLODED" : "ok") : number(q[name]));
     const rows = shows.map(([name, words]) => [words, ...measured.map((q) => told(q, name))]);

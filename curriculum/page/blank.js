@@ -38,7 +38,9 @@ const Blank = (() => {
     );
     const gap = (run) => Array.from(run.y, (y) => y / PAGE.radius - 1);
     const chart = plot({
-      id: "blank-spring", width, height: 190,
+      id: "blank-spring",
+      width,
+      height: 190,
       x: { domain: [0.4, 1.2], ticks: Plot.steps(0.4, 1.2, 4), label: "time (s)" },
       y: { domain: [-0.5, 1], ticks: Plot.steps(-0.5, 1, 3), label: "gap / r; dashed green: the right one" },
       rules: [{ y: 0 }],
@@ -47,11 +49,19 @@ const Blank = (() => {
         { model: "penalty", xs: runs[1].t, ys: gap(runs[1]) },
       ],
     });
-    return Plot.picture(width, 190, "The dropped ball by your spring, and by the right one (dashed)", chart.markup);
+    return Plot.picture(
+      width,
+      190,
+      "The dropped ball by your spring, and by the right one (dashed)",
+      chart.markup,
+    );
   }
 
   function groove(project) {
-    const [vx, vy] = [[0.5, 0, 0], [-1, 0, 0]];
+    const [vx, vy] = [
+      [0.5, 0, 0],
+      [-1, 0, 0],
+    ];
     const contacts = [1, 2].map((j) => ({ i: 0, j, nx: j === 1 ? 0.6 : -0.6, ny: 0.8, depth: 0 }));
     const rows = ContactEngine.makeRows(contacts, [1, Infinity, Infinity], [0, 0], [0, 0]);
     ContactEngine.solveContacts(rows, vx, vy, { iters: 50, project });

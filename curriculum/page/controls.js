@@ -71,7 +71,10 @@ const Inside = (() => {
   const opened = () => $("inside").open;
 
   const row = (cells, tag) =>
-    `<tr><th scope="row">${cells[0]}</th>${cells.slice(1).map((c) => `<${tag}>${c}</${tag}>`).join("")}</tr>`;
+    `<tr><th scope="row">${cells[0]}</th>${cells
+      .slice(1)
+      .map((c) => `<${tag}>${c}</${tag}>`)
+      .join("")}</tr>`;
 
   // A table as HTML text, in a box that scrolls by itself where it is narrow.
   function tableOf(head, rows) {
@@ -122,7 +125,10 @@ const Inside = (() => {
     ContactEngine.STEP[model](ContactEngine.stateAt(now.runs[model], at), now.scene, now.knobs, trace);
     if (!trace.contacts.length) return "<p>No contact: only gravity acts.</p>";
     const contacts = trace.contacts.map((c) => [
-      contactName(c), number(1000 * c.gap), number(c.speed), number(c.target),
+      contactName(c),
+      number(1000 * c.gap),
+      number(c.speed),
+      number(c.target),
     ]);
     const shown = trace.sweeps.length > 30 ? trace.sweeps.slice(0, 30) : trace.sweeps;
     const sweeps = shown.map((lam, s) => [String(s + 1), ...lam.map((v) => number(v, 6))]);

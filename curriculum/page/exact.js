@@ -328,7 +328,10 @@ const ContactExact = (() => {
     let span = horizon;
     const falls = [];
     if (slides) {
-      const held = slide(s, pairs.filter((_, p) => active[p]));
+      const held = slide(
+        s,
+        pairs.filter((_, p) => active[p]),
+      );
       ({ X, Y } = held);
       span = Math.min(horizon, held.span);
       held.contacts.forEach((c, k) => {
@@ -356,7 +359,10 @@ const ContactExact = (() => {
       y: floored(scene.y, 0),
       vx: floored(scene.vx, 0),
       vy: floored(scene.vy, 0),
-      w: floored(scene.mass.map((m) => 1 / m), 0),
+      w: floored(
+        scene.mass.map((m) => 1 / m),
+        0,
+      ),
       radius: floored(scene.radius, 0),
     };
     const pairs = listPairs(n);
@@ -371,7 +377,8 @@ const ContactExact = (() => {
       const cut = round >= MOST_EVENTS;
       if (cut) out.cut = t;
       const paths = pathsOf(X, Y, n);
-      for (; k < times.length && (cut || times[k] <= t + span); k++) sample(out, k, paths, cut ? 0 : times[k] - t);
+      for (; k < times.length && (cut || times[k] <= t + span); k++)
+        sample(out, k, paths, cut ? 0 : times[k] - t);
       move(s, paths, span);
       t += span;
     }

@@ -30,7 +30,8 @@ const Lane = (() => {
     const parts = [table(-WIDER, SIZE.floor, SIZE.width + 2 * WIDER, SIZE.height - SIZE.floor)];
     for (const height of trail) parts.push(ball(model, x, at(height), r, "strobe"));
     for (const height of seen) parts.push(ball(model, x, Math.min(at(height), 2000), r));
-    if (seen.length < y.length) parts.push(el("path", { d: `M${x} 6l14 22h-9v22h-10v-22h-9z`, class: `ball m-${model}` }));
+    if (seen.length < y.length)
+      parts.push(el("path", { d: `M${x} 6l14 22h-9v22h-10v-22h-9z`, class: `ball m-${model}` }));
     if (Number.isFinite(lowest) && push !== null) {
       parts.push(arrow("weight", x - 22, at(lowest), 0, length(1)));
       parts.push(arrow(`push m-${model}`, x + 22, SIZE.floor, 0, -length(push)));
@@ -48,7 +49,15 @@ const Lane = (() => {
     if (Number.isFinite(gap) && Math.abs(gap) < 40 * reach)
       parts.push(ball(model, LENS.width / 2, middle - gap * zoom - zoom, zoom, "ball plainly"));
     if (sink !== null && sink < reach)
-      parts.push(el("line", { x1: -WIDER, x2: LENS.width + WIDER, y1: middle + sink * zoom, y2: middle + sink * zoom, class: "sink-line" }));
+      parts.push(
+        el("line", {
+          x1: -WIDER,
+          x2: LENS.width + WIDER,
+          y1: middle + sink * zoom,
+          y2: middle + sink * zoom,
+          class: "sink-line",
+        }),
+      );
     const ticks = [-1, -0.5, 0, 0.5, 1].map((share) => {
       const at = Math.min(Math.max(middle + share * middle, 0.75), LENS.height - 0.75);
       return `M0 ${round(at)}h${share % 1 === 0 ? 10 : 6}`;

@@ -52,10 +52,13 @@ const Links = (() => {
       [startX, start] = [event.clientX, position(span)];
     });
     span.addEventListener("pointermove", (event) => {
-      if (span.hasPointerCapture(event.pointerId)) turn(span, start, Math.round((event.clientX - startX) / 2));
+      if (span.hasPointerCapture(event.pointerId))
+        turn(span, start, Math.round((event.clientX - startX) / 2));
     });
     span.addEventListener("keydown", (event) => {
-      const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 20, PageDown: -20 }[event.key];
+      const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 20, PageDown: -20 }[
+        event.key
+      ];
       if (!by) return;
       event.preventDefault();
       turn(span, position(span), by);
@@ -80,7 +83,8 @@ const Links = (() => {
         dock();
       });
     for (const span of document.querySelectorAll("span.drag")) startDrag(span);
-    for (const button of document.querySelectorAll("button[data-dock]")) button.addEventListener("click", dock);
+    for (const button of document.querySelectorAll("button[data-dock]"))
+      button.addEventListener("click", dock);
     document.getElementById("undock").addEventListener("click", undock);
     beside.addEventListener("change", undock);
     window.addEventListener("beforeprint", undock);

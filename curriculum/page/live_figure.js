@@ -150,7 +150,11 @@ const Figure = (() => {
       axis: ([, high]) => {
         const top = Math.max(2, Math.min(high, 1e9));
         const ticks = [0, 1, 10, 100, 1000, 1e4, 1e5, 1e6, 1e7].filter((v) => v <= top);
-        return { domain: [0, top], root: true, ticks: (ticks.length > 4 ? [0, 1, ...ticks.slice(-2)] : ticks).map((v) => [v, plain(v)]) };
+        return {
+          domain: [0, top],
+          root: true,
+          ticks: (ticks.length > 4 ? [0, 1, ...ticks.slice(-2)] : ticks).map((v) => [v, plain(v)]),
+        };
       },
     },
     energy: {
@@ -176,11 +180,17 @@ const Figure = (() => {
     const xs = now.runs.exact.t;
     const veiled = hiddenBy() !== null;
     const lines = MODELS.map((model, m) => {
-      const marks = [0.12, 0.37, 0.62, 0.87].map((share) => rowAt(view[0] + (share + 0.06 * m) * (view[1] - view[0])));
+      const marks = [0.12, 0.37, 0.62, 0.87].map((share) =>
+        rowAt(view[0] + (share + 0.06 * m) * (view[1] - view[0])),
+      );
       return { model, xs, ys: columns[m], from, to: to + 1, markers: marks };
     });
     const options = {
-      id: "chart", width, height, left: 52, y,
+      id: "chart",
+      width,
+      height,
+      left: 52,
+      y,
       x: { domain: view, ticks: steps(view[0], view[1], width < 420 ? 4 : 6), label: "time (s)" },
       lines: veiled ? [] : lines,
       rules: kind === "gap" ? [{ y: 0 }] : kind === "push" ? [{ y: 1, class: "dashed" }] : [],
@@ -190,7 +200,10 @@ const Figure = (() => {
     node.setAttribute("width", width);
     node.setAttribute("height", height);
     node.innerHTML = `${chart.markup}<line id="cursor" class="${veiled ? "none" : "cursor"}" y1="${chart.box.top}" y2="${chart.box.bottom}"/>`;
-    node.setAttribute("aria-label", `${CHARTS[kind].label} against time for each model; the values at the time shown stand below`);
+    node.setAttribute(
+      "aria-label",
+      `${CHARTS[kind].label} against time for each model; the values at the time shown stand below`,
+    );
   }
 
   // The values of all models at one time, in words below the chart.
@@ -241,7 +254,11 @@ const Figure = (() => {
     const share = (dt) => Math.log(dt / KNOBS.dt.low) / Math.log(KNOBS.dt.high / KNOBS.dt.low);
     const at = (dt) => pad + Math.min(1, Math.max(0, share(dt))) * (width - 2 * pad);
     const parts = [];
-    for (const dt of width > 300 ? [0.001, 0.002, 0.004, 0.008, 0.016, 0.032] : width > 180 ? [0.001, 0.004, 0.016] : [0.002, 0.016]) {
+    for (const dt of width > 300
+      ? [0.001, 0.002, 0.004, 0.008, 0.016, 0.032]
+      : width > 180
+        ? [0.001, 0.004, 0.016]
+        : [0.002, 0.016]) {
       parts.push(el("line", { x1: at(dt), x2: at(dt), y1: 0, y2: 5, class: "axis" }));
       parts.push(words(plain(dt), { x: at(dt), y: 19, class: "tick", "text-anchor": "middle" }));
     }
@@ -254,9 +271,7 @@ const Figure = (() => {
     node.setAttribute("width", width);
     node.innerHTML = parts.join("");
     $("dt-note").title = "The largest stable step of penalty, with its damper";
-    $("dt-note").textContent = open
-      ? `│ critical ${number(damped)} s`
-      : "";
+    $("dt-note").textContent = open ? `│ critical ${number(damped)} s` : "";
   }
 
   // ---- showing a time
@@ -272,7 +287,10 @@ const Figure = (() => {
     }
     readOut(row);
     $("scrub").value = String(row);
-    $("scrub").setAttribute("aria-valuetext", `${number(row * state.dt)} seconds, step ${row} of ${now.steps}`);
+    $("scrub").setAttribute(
+      "aria-valuetext",
+      `${number(row * state.dt)} seconds, step ${row} of ${now.steps}`,
+    );
     $("clock").textContent = `t = ${(row * state.dt).toFixed(3)} s, step ${row}`;
     if (fromPlay) return;
     Inside.write(state, now, row);
@@ -335,7 +353,8 @@ const Figure = (() => {
   function stepBy(by) {
     pause();
     const row = Math.min(now.steps, Math.max(0, rowAt(time) + by));
-    if (timeAt(row) > view[1] || timeAt(row) < view[0]) lookAt(timeAt(row) - 0.5 * (view[1] - view[0]), timeAt(row) + 0.5 * (view[1] - view[0]));
+    if (timeAt(row) > view[1] || timeAt(row) < view[0])
+      lookAt(timeAt(row) - 0.5 * (view[1] - view[0]), timeAt(row) + 0.5 * (view[1] - view[0]));
     seek(timeAt(row));
   }
 
@@ -429,7 +448,7 @@ const Figure = (() => {
       const sideways = event.shiftKey ? event.deltaY || event.deltaX : event.deltaX;
       if (Math.abs(sideways) < (event.shiftKey ? 1 : Math.abs(event.deltaY))) return;
       event.preventDefault();
-      const by = (0.1 * Math.sign(sideways)) * (view[1] - view[0]);
+      const by = 0.1 * Math.sign(sideways) * (view[1] - view[0]);
       lookAt(view[0] + by, view[1] + by);
     };
     node.addEventListener("wheel", turn, { passive: false });
@@ -488,11 +507,25 @@ const Figure = (() => {
   }
 
   return {
-    start, set, follow, take, address: () => location.origin + address(true),
-    get state() { return state; },
-    get now() { return now; },
-    get time() { return time; },
-    get view() { return view; },
-    get playing() { return playing; },
+    start,
+    set,
+    follow,
+    take,
+    address: () => location.origin + address(true),
+    get state() {
+      return state;
+    },
+    get now() {
+      return now;
+    },
+    get time() {
+      return time;
+    },
+    get view() {
+      return view;
+    },
+    get playing() {
+      return playing;
+    },
   };
 })();

@@ -75,7 +75,13 @@ const Plot = (() => {
 
   // The key of a model: a bit of its line with its marker on it.
   function key(model) {
-    const look = { class: `key m-${model}`, width: 34, height: 14, viewBox: "0 0 34 14", "aria-hidden": "true" };
+    const look = {
+      class: `key m-${model}`,
+      width: 34,
+      height: 14,
+      viewBox: "0 0 34 14",
+      "aria-hidden": "true",
+    };
     return el("svg", look, el("path", { d: "M0 7H34", class: `line m-${model}` }), mark(model, 17, 7, 5));
   }
 
@@ -177,7 +183,10 @@ const Plot = (() => {
     const place = upright
       ? { x: at + (left ? -5 : 5), y: box.top + 12 + (rule.row || 0) * 18 }
       : { x: box.right - 4, y: at - 5 };
-    return [drawn, words(rule.text, { ...place, class: "tick strong", "text-anchor": left ? "end" : "start" })];
+    return [
+      drawn,
+      words(rule.text, { ...place, class: "tick strong", "text-anchor": left ? "end" : "start" }),
+    ];
   }
 
   /* A plot. options: {width, height, x, y, lines, rules, points, left, top, id}.
@@ -196,7 +205,12 @@ const Plot = (() => {
     const sx = scaleOf(x, box.left, box.right);
     const sy = scaleOf(y, box.bottom, box.top);
     const clip = `clip-${options.id}`;
-    const area = { x: box.left, y: box.top - 3, width: box.right - box.left, height: box.bottom - box.top + 6 };
+    const area = {
+      x: box.left,
+      y: box.top - 3,
+      width: box.right - box.left,
+      height: box.bottom - box.top + 6,
+    };
     const rules = (options.rules || []).map((rule) => ruleOf(rule, box, sx, sy));
     const lines = options.lines || [];
     const inside = [
@@ -237,7 +251,9 @@ const Plot = (() => {
     for (let at = -height; at < width; at += 9) {
       const from = Math.max(0, -at);
       const to = Math.min(height, width - at);
-      strokes.push(`M${round(x + at + from)} ${round(y + height - from)}L${round(x + at + to)} ${round(y + height - to)}`);
+      strokes.push(
+        `M${round(x + at + from)} ${round(y + height - from)}L${round(x + at + to)} ${round(y + height - to)}`,
+      );
     }
     return (
       el("rect", { x, y, width, height, class: "ground" }) +
@@ -271,7 +287,23 @@ const Plot = (() => {
   }
 
   return {
-    el, words, picture, escape, round, number, plain, markerPath, mark, key, scaleOf, decades, steps,
-    linePath, plot, ball, table, arrow,
+    el,
+    words,
+    picture,
+    escape,
+    round,
+    number,
+    plain,
+    markerPath,
+    mark,
+    key,
+    scaleOf,
+    decades,
+    steps,
+    linePath,
+    plot,
+    ball,
+    table,
+    arrow,
   };
 })();

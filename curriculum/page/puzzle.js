@@ -63,7 +63,10 @@ const Puzzle = (() => {
       );
     // where the formula says stability ends: k dt^2 + 2 c dt = 4 m
     const path = SmallFigures.logGrid(K.low, 4 / GOAL.dt ** 2, 80)
-      .map((k, i) => `${i ? "L" : "M"}${round(chart.sx(k))} ${round(chart.sy((4 - k * GOAL.dt ** 2) / (2 * GOAL.dt)))}`)
+      .map(
+        (k, i) =>
+          `${i ? "L" : "M"}${round(chart.sx(k))} ${round(chart.sy((4 - k * GOAL.dt ** 2) / (2 * GOAL.dt)))}`,
+      )
       .join("");
     return cells.join("") + el("path", { d: path, class: "line m-penalty" });
   }
@@ -71,7 +74,9 @@ const Puzzle = (() => {
   function tryMarkup(a, chart) {
     const [x, y] = [round(chart.sx(a.k)), round(chart.sy(a.c))];
     const cross = a.outcome === "explodes";
-    const shape = cross ? `M${x - 5} ${y - 5}l10 10m0 -10l-10 10` : `M${x - 5} ${y}a5 5 0 1 0 10 0a5 5 0 1 0 -10 0Z`;
+    const shape = cross
+      ? `M${x - 5} ${y - 5}l10 10m0 -10l-10 10`
+      : `M${x - 5} ${y}a5 5 0 1 0 10 0a5 5 0 1 0 -10 0Z`;
     const ring = a === shown ? el("circle", { cx: x, cy: y, r: 12, class: "map-now" }) : "";
     return ring + el("path", { d: shape, class: a.outcome === "rests" ? "map-try" : "map-old" });
   }
@@ -80,14 +85,25 @@ const Puzzle = (() => {
     const width = Math.max(256, Math.min(560, Math.floor($("puzzle-map").clientWidth)));
     const needed = WEIGHT / (GOAL.depth * R);
     const chart = plot({
-      id: "puzzle", width, height: 300,
+      id: "puzzle",
+      width,
+      height: 300,
       x: { domain: [K.low, K.high], log: true, ticks: decades(K.low, K.high), label: "stiffness k (N/m)" },
-      y: { domain: [C.low, C.high], ticks: [0, 50, 100, 150, 200].map((v) => [v, String(v)]), label: "damping c (N s/m)" },
+      y: {
+        domain: [C.low, C.high],
+        ticks: [0, 50, 100, 150, 200].map((v) => [v, String(v)]),
+        label: "damping c (N s/m)",
+      },
       rules: map ? [{ x: needed, text: "sinks < 0.001 r →", class: "dashed" }] : [],
     });
     const marks = [...new Set([...tries, shown])].map((a) => tryMarkup(a, chart));
     $("puzzle-map").innerHTML = Plot.picture(
-      width, 300, "Map of your tries: stiffness against damping", mapMarkup(chart), chart.markup, ...marks,
+      width,
+      300,
+      "Map of your tries: stiffness against damping",
+      mapMarkup(chart),
+      chart.markup,
+      ...marks,
     );
     $("puzzle-key").textContent = map
       ? "Measured in your browser, a drop a cell. Dark: comes to rest. Pale: never rests. Empty: explodes. Coloured line: the formula k dt² + 2 c dt = 4 m."
@@ -98,7 +114,8 @@ const Puzzle = (() => {
 
   const outcomeWords = {
     rests: (a) => `Comes to rest at dt = 0.01 s, ${number(a.depth)} r deep.`,
-    explodes: (a) => `Explodes at dt = 0.01 s: more than ten times the energy gained after ${number(a.when)} s.`,
+    explodes: (a) =>
+      `Explodes at dt = 0.01 s: more than ten times the energy gained after ${number(a.when)} s.`,
     "never rests": (a) => `Never rests at dt = 0.01 s: it still moves ${number(a.moving)} r.`,
   };
 
@@ -108,12 +125,17 @@ const Puzzle = (() => {
     if (keep) tries.push(shown);
     const sinks = WEIGHT / k / R;
     $("goal-sink").toggleAttribute("data-met", sinks < GOAL.depth);
-    $("goal-sink").textContent = `Sinks m g / k = ${number(sinks)}\u00a0r; wanted: less than ${GOAL.depth}\u00a0r.`;
+    $("goal-sink").textContent =
+      `Sinks m g / k = ${number(sinks)}\u00a0r; wanted: less than ${GOAL.depth}\u00a0r.`;
     $("goal-rest").toggleAttribute("data-met", shown.outcome === "rests");
     $("goal-rest").textContent = outcomeWords[shown.outcome](shown);
     const resting = tries.filter((a) => a.outcome === "rests").map((a) => a.depth);
-    const best = resting.length ? `Your least depth at rest so far: ${number(Math.min(...resting))} r.` : "None has come to rest yet.";
-    $("puzzle-tries").textContent = tries.length ? `${tries.length} ${tries.length === 1 ? "try" : "tries"}. ${best}` : "";
+    const best = resting.length
+      ? `Your least depth at rest so far: ${number(Math.min(...resting))} r.`
+      : "None has come to rest yet.";
+    $("puzzle-tries").textContent = tries.length
+      ? `${tries.length} ${tries.length === 1 ? "try" : "tries"}. ${best}`
+      : "";
     $("puzzle-give").disabled = !tries.length || map !== null;
     draw();
   }

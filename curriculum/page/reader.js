@@ -60,8 +60,7 @@ const Reader = (() => {
       });
     };
     window.addEventListener("scroll", later, { passive: true });
-    for (const link of links.values())
-      link.addEventListener("click", () => ($("contents").open = false));
+    for (const link of links.values()) link.addEventListener("click", () => ($("contents").open = false));
     mark();
   }
 

@@ -135,5 +135,11 @@ const Sandbox = (() => {
     new ResizeObserver(measure).observe($("sandbox"));
   }
 
-  return { start, advance, get state() { return state; } };
+  return {
+    start,
+    advance,
+    get state() {
+      return state;
+    },
+  };
 })();

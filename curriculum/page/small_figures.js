@@ -13,12 +13,22 @@ const SmallFigures = (() => {
   const START = PAGE.scenes.drop.starts[0][0]; // m, of the ball that is dropped
 
   const oneBall = (height, more = {}) => ({
-    x: [0], y: [height], vx: [0], vy: [0], mass: [1], radius: [R], restitution: 0, ...more,
+    x: [0],
+    y: [height],
+    vx: [0],
+    vy: [0],
+    mass: [1],
+    radius: [R],
+    restitution: 0,
+    ...more,
   });
   const logGrid = (low, high, count) =>
     Array.from({ length: count }, (_, i) => low * (high / low) ** (i / (count - 1)));
-  const group = (x, y, ...children) => el("g", { transform: `translate(${Plot.round(x)} ${Plot.round(y)})` }, ...children);
+  const group = (x, y, ...children) =>
+    el("g", { transform: `translate(${Plot.round(x)} ${Plot.round(y)})` }, ...children);
   const plural = (count, word) => `${count} ${word}${count === 1 ? "" : "s"}`;
+
+  const marks = (...values) => values.map((v) => [v, plain(v).replace("-", "−")]);
 
   // Results that do not depend on the knob are computed once.
   const kept = new Map();
@@ -59,9 +69,19 @@ const SmallFigures = (() => {
     const r = Math.min(44, left * 0.36);
     const floor = 150;
     const chart = plot({
-      id: "balance", width: right, height: 200,
-      x: { domain: [0, 0.1], ticks: [[0, "0"], [0.05, "0.05"], [0.1, "0.1"]], label: "depth / r" },
-      y: { domain: [0, 2.4], ticks: [[0, "0"], [1, "1"], [2, "2"]], label: "force / m g" },
+      id: "balance",
+      width: right,
+      height: 200,
+      x: {
+        domain: [0, 0.1],
+        ticks: marks(0, 0.05, 0.1),
+        label: "depth / r",
+      },
+      y: {
+        domain: [0, 2.4],
+        ticks: marks(0, 1, 2),
+        label: "force / m g",
+      },
       lines: [{ model: "penalty", xs: [0, reach], ys: [0, (stiffness * reach * R) / G] }],
       rules: [{ y: 1, text: "weight", class: "dashed" }],
       points: [{ model: "penalty", x: depth, y: 1, size: 6 }],
@@ -69,7 +89,9 @@ const SmallFigures = (() => {
     const centre = floor - r + 10 * depth * r;
     return {
       height: 200,
-      markup: group(0, 0, pushed("penalty", left / 2, centre, r, G, floor, left)) + group(left + 8, 0, chart.markup),
+      markup:
+        group(0, 0, pushed("penalty", left / 2, centre, r, G, floor, left)) +
+        group(left + 8, 0, chart.markup),
       output: `k = ${number(stiffness)} N/m`,
       words: `Weight and push balance where the spring is pressed by m g / k = ${number(1000 * depth * R)} mm = ${number(depth)} r. In the picture it is ten times as deep.`,
     };
@@ -90,9 +112,19 @@ const SmallFigures = (() => {
     const r = Math.min(44, left * 0.36);
     const floor = 150;
     const chart = plot({
-      id: "dive", width: right, height: 200,
-      x: { domain: [0.4, 1], ticks: [[0.4, "0.4"], [0.6, "0.6"], [0.8, "0.8"], [1, "1"]], label: "time (s)" },
-      y: { domain: [-0.45, 0.3], ticks: [[-0.4, "−0.4"], [-0.2, "−0.2"], [0, "0"], [0.2, "0.2"]], label: "depth / r" },
+      id: "dive",
+      width: right,
+      height: 200,
+      x: {
+        domain: [0.4, 1],
+        ticks: marks(0.4, 0.6, 0.8, 1),
+        label: "time (s)",
+      },
+      y: {
+        domain: [-0.45, 0.3],
+        ticks: marks(-0.4, -0.2, 0, 0.2),
+        label: "depth / r",
+      },
       lines: [{ model: "penalty", xs: run.t, ys: depths, from: 800, to: 2001 }],
       rules: [{ y: 0 }, { x: time }],
       points: [{ model: "penalty", x: time, y: depths[row], size: 6 }],
@@ -120,9 +152,19 @@ const SmallFigures = (() => {
     const [floor, pixel] = [160, 1];
     const at = (y) => floor - r - height(y) * r * pixel;
     const chart = plot({
-      id: "long-step", width: right, height: 210,
-      x: { domain: [0, 30], ticks: [[0, "0"], [10, "10"], [20, "20"], [30, "30"]], label: "time (ms)" },
-      y: { domain: [-0.4, 1.8], ticks: [[0, "0"], [0.5, "0.5"], [1, "1"], [1.5, "1.5"]], label: "height / r" },
+      id: "long-step",
+      width: right,
+      height: 210,
+      x: {
+        domain: [0, 30],
+        ticks: marks(0, 10, 20, 30),
+        label: "time (ms)",
+      },
+      y: {
+        domain: [-0.4, 1.8],
+        ticks: marks(0, 0.5, 1, 1.5),
+        label: "height / r",
+      },
       lines: [
         { model: "exact", xs: fine.t.map((t) => 1000 * t), ys: Array.from(fine.y, height), class: "thin" },
         { model: "penalty", xs: [0, 1000 * dt], ys: [height(scene.y[0]), height(next.y[0])] },
@@ -134,9 +176,14 @@ const SmallFigures = (() => {
     return {
       height: 210,
       markup:
-        group(0, 0, table(0, floor, left, 34), ball("penalty", left / 2, at(scene.y[0]), r, "ghost"),
-          ball("penalty", left / 2, at(next.y[0]), r), arrow("push m-penalty", left / 2, at(next.y[0]), 0, -Math.min(60, 8 * next.vy[0]))) +
-        group(left + 8, 0, chart.markup),
+        group(
+          0,
+          0,
+          table(0, floor, left, 34),
+          ball("penalty", left / 2, at(scene.y[0]), r, "ghost"),
+          ball("penalty", left / 2, at(next.y[0]), r),
+          arrow("push m-penalty", left / 2, at(next.y[0]), 0, -Math.min(60, 8 * next.vy[0])),
+        ) + group(left + 8, 0, chart.markup),
       output: `dt = ${number(1000 * dt)} ms`,
       words: `The step keeps the push of 200 N for ${number(1000 * dt)} ms: the ball leaves with ${number(next.vy[0])} m/s. The spring itself (dashed) gives ${number(best)} m/s at the most.`,
     };
@@ -163,11 +210,36 @@ const SmallFigures = (() => {
     const runs = shown.map((model) => cornerRuns()[MODELS.indexOf(model)]);
     const most = 400;
     const chart = plot({
-      id: "corner", width: right, height: 230,
-      x: { domain: [-0.36, 0.45], ticks: [[-0.2, "−0.2"], [0, "0"], [0.2, "0.2"], [0.4, "0.4"]], label: "gap / r" },
-      y: { domain: [0, most], root: true, ticks: [[0, "0"], [1, "1"], [10, "10"], [100, "100"], [400, "400"]], label: "push / m g" },
-      lines: [{ model: shown[0], xs: runs[0].gap, ys: runs[0].force, from: Math.max(0, row - 30), to: row + 1, class: "thin" }],
-      points: shown.map((model, m) => ({ model, x: runs[m].gap[row], y: Math.min(most, runs[m].force[row]), size: 6 })),
+      id: "corner",
+      width: right,
+      height: 230,
+      x: {
+        domain: [-0.36, 0.45],
+        ticks: marks(-0.2, 0, 0.2, 0.4),
+        label: "gap / r",
+      },
+      y: {
+        domain: [0, most],
+        root: true,
+        ticks: marks(0, 1, 10, 100, 400),
+        label: "push / m g",
+      },
+      lines: [
+        {
+          model: shown[0],
+          xs: runs[0].gap,
+          ys: runs[0].force,
+          from: Math.max(0, row - 30),
+          to: row + 1,
+          class: "thin",
+        },
+      ],
+      points: shown.map((model, m) => ({
+        model,
+        x: runs[m].gap[row],
+        y: Math.min(most, runs[m].force[row]),
+        size: 6,
+      })),
     });
     const allowed = `M${chart.box.right} ${chart.box.bottom}H${Plot.round(chart.sx(0))}V${chart.box.top}`;
     const r = Math.min(15, left / 9.5);
@@ -188,8 +260,13 @@ const SmallFigures = (() => {
   // ---- sweeps: lam of the three contacts of a resting stack, after each sweep
 
   const restingStack = () => ({
-    x: [0, 0, 0], y: [R, 3 * R, 5 * R], vx: [0, 0, 0], vy: [0, 0, 0],
-    mass: [1, 1, 1], radius: [R, R, R], restitution: 0,
+    x: [0, 0, 0],
+    y: [R, 3 * R, 5 * R],
+    vx: [0, 0, 0],
+    vy: [0, 0, 0],
+    mass: [1, 1, 1],
+    radius: [R, R, R],
+    restitution: 0,
   });
 
   function sweeps(count, width) {
@@ -205,15 +282,29 @@ const SmallFigures = (() => {
     const r = Math.min(26, left / 4.2);
     const floor = 190;
     const x = left * 0.4;
-    const balls = [1, 3, 5].map((high, c) =>
-      ball("lcp", x, floor - high * r, r) +
-      arrow("push m-lcp", x + r + 8, floor - (high - 1) * r, 0, -carried[c] * r * 0.66, number(carried[c], 2)),
+    const balls = [1, 3, 5].map(
+      (high, c) =>
+        ball("lcp", x, floor - high * r, r) +
+        arrow(
+          "push m-lcp",
+          x + r + 8,
+          floor - (high - 1) * r,
+          0,
+          -carried[c] * r * 0.66,
+          number(carried[c], 2),
+        ),
     );
     const chart = plot({
-      id: "sweeps", width: right, height: 224,
-      x: { domain: [0, 20], ticks: [0, 5, 10, 15, 20].map((v) => [v, String(v)]), label: "sweep" },
-      y: { domain: [0, 3.3], ticks: [0, 1, 2, 3].map((v) => [v, String(v)]), label: "impulse / m g dt" },
-      lines: [0, 1, 2].map((c) => ({ model: "lcp", xs: traced.map((_, s) => s), ys: traced.map((lam) => lam[c] / unit) })),
+      id: "sweeps",
+      width: right,
+      height: 224,
+      x: { domain: [0, 20], ticks: marks(0, 5, 10, 15, 20), label: "sweep" },
+      y: { domain: [0, 3.3], ticks: marks(0, 1, 2, 3), label: "impulse / m g dt" },
+      lines: [0, 1, 2].map((c) => ({
+        model: "lcp",
+        xs: traced.map((_, s) => s),
+        ys: traced.map((lam) => lam[c] / unit),
+      })),
       rules: [...[1, 2, 3].map((y) => ({ y, class: "dashed" })), { x: count }],
       points: carried.map((y) => ({ model: "lcp", x: count, y, size: 5 })),
     });
@@ -246,7 +337,9 @@ const SmallFigures = (() => {
     });
     return [
       words(title, { x, y: 16, class: "axis-name", "text-anchor": "middle" }),
-      ...fixed, ball("lcp", x, y, r), ...arrows,
+      ...fixed,
+      ball("lcp", x, y, r),
+      ...arrows,
       arrow("weight", x, y, 130 * result.vx, -130 * result.vy, "v"),
     ].join("");
   }
@@ -287,15 +380,29 @@ const SmallFigures = (() => {
     };
     const tops = runs.map(apex);
     const chart = plot({
-      id: "larger", width, height: 220,
+      id: "larger",
+      width,
+      height: 220,
       x: { domain: [0.4, 1.2], ticks: steps(0.4, 1.2, 4), label: "time (s)" },
-      y: { domain: [0, 1], ticks: [[0, "0"], [0.49, "0.49"], [1, "1"]], label: "height / start" },
-      lines: runs.map((run, k) => ({ model: "lcp", xs: run.t, ys: Array.from(run.y, height), class: k ? "thin dotted" : "" })),
+      y: {
+        domain: [0, 1],
+        ticks: marks(0, 0.49, 1),
+        label: "height / start",
+      },
+      lines: runs.map((run, k) => ({
+        model: "lcp",
+        xs: run.t,
+        ys: Array.from(run.y, height),
+        class: k ? "thin dotted" : "",
+      })),
       rules: [{ y: 0.49, text: "e² = 0.49", class: "dashed" }],
     });
     const marks = runs.map((run, k) => {
       const [x, y] = [chart.sx(run.t[tops[k]]), chart.sy(height(run.y[tops[k]]))];
-      return ball("lcp", x, y, 9, k ? "ghost" : "ball") + words(k ? "sum" : "larger", { x: x + 13, y: y + (k ? -8 : 18), class: "tick strong" });
+      return (
+        ball("lcp", x, y, 9, k ? "ghost" : "ball") +
+        words(k ? "sum" : "larger", { x: x + 13, y: y + (k ? -8 : 18), class: "tick strong" })
+      );
     });
     const share = runs.map((run, k) => Math.sqrt(Math.max(0, height(run.y[tops[k]]))));
     return {
@@ -319,9 +426,19 @@ const SmallFigures = (() => {
     const r = Math.min(44, left * 0.36);
     const floor = 160;
     const chart = plot({
-      id: "hop", width: right, height: 200,
-      x: { domain: [0.4, 0.8], ticks: [[0.4, "0.4"], [0.6, "0.6"], [0.8, "0.8"]], label: "time (s)" },
-      y: { domain: [-0.1, 0.9], ticks: [[0, "0"], [0.4, "0.4"], [0.8, "0.8"]], label: "gap / r" },
+      id: "hop",
+      width: right,
+      height: 200,
+      x: {
+        domain: [0.4, 0.8],
+        ticks: marks(0.4, 0.6, 0.8),
+        label: "time (s)",
+      },
+      y: {
+        domain: [-0.1, 0.9],
+        ticks: marks(0, 0.4, 0.8),
+        label: "gap / r",
+      },
       lines: [{ model: "lcp", xs: run.t, ys: gap, from: 200, to: 401 }],
       rules: [{ y: 0 }],
       points: [{ model: "lcp", x: run.t[top], y: gap[top], size: 6 }],
@@ -329,12 +446,18 @@ const SmallFigures = (() => {
     return {
       height: 200,
       markup:
-        group(0, 0, table(0, floor, left, 34), ball("lcp", left / 2, floor - r, r, "ghost"), ball("lcp", left / 2, floor - r - gap[top] * r, r)) +
-        group(left + 8, 0, chart.markup),
+        group(
+          0,
+          0,
+          table(0, floor, left, 34),
+          ball("lcp", left / 2, floor - r, r, "ghost"),
+          ball("lcp", left / 2, floor - r - gap[top] * r, r),
+        ) + group(left + 8, 0, chart.markup),
       output: `β = ${baumgarte.toFixed(2)}`,
-      words: gap[top] > 1e-6
-        ? `It landed ${number(-Math.min(...gap))} r deep, with restitution 0, and hops ${number(gap[top])} r high.`
-        : `It landed ${number(-Math.min(...gap))} r deep and does not hop${gap[500] < -1e-6 ? `; ${number(-gap[500])} r of overlap stay` : ""}.`,
+      words:
+        gap[top] > 1e-6
+          ? `It landed ${number(-Math.min(...gap))} r deep, with restitution 0, and hops ${number(gap[top])} r high.`
+          : `It landed ${number(-Math.min(...gap))} r deep and does not hop${gap[500] < -1e-6 ? `; ${number(-gap[500])} r of overlap stay` : ""}.`,
     };
   }
 
@@ -347,14 +470,22 @@ const SmallFigures = (() => {
     const until = Math.max(1, 1.15 * end);
     const run = runModel("exact", scene, { dt: until / 600 }, 600);
     const chart = plot({
-      id: "bounces", width, height: 210,
+      id: "bounces",
+      width,
+      height: 210,
       x: { domain: [0, until], ticks: steps(0, until, 5), label: "time (s)" },
-      y: { domain: [0, 1.1], ticks: [[0, "0"], [0.5, "0.5"], [1, "1"]], label: "height (m)" },
+      y: {
+        domain: [0, 1.1],
+        ticks: marks(0, 0.5, 1),
+        label: "height (m)",
+      },
       lines: [{ model: "exact", xs: run.t, ys: Array.from(run.y) }],
       rules: [{ x: end, text: `over at ${number(end)} s`, class: "dashed" }],
     });
     const r = chart.sy(0) - chart.sy(R);
-    const tops = [0, 1, 2, 3, 4].map((k) => (k ? first * (1 + (2 * e * (1 - e ** (k - 1))) / (1 - e) + e ** k) : 0));
+    const tops = [0, 1, 2, 3, 4].map((k) =>
+      k ? first * (1 + (2 * e * (1 - e ** (k - 1))) / (1 - e) + e ** k) : 0,
+    );
     const balls = tops
       .filter((t) => t < until)
       .map((t) => ball("exact", chart.sx(t), chart.sy(run.y[Math.round((t / until) * 600)]), r, "ghost"));
@@ -372,7 +503,13 @@ const SmallFigures = (() => {
     const x = [-1, 0, 2 * R + gap * R, 4 * R + 2 * gap * R];
     const same = (value) => x.map(() => value);
     const scene = {
-      x, y: same(0.5), vx: [2, 0, 0, 0], vy: same(0), mass: same(1), radius: same(R), restitution: 1,
+      x,
+      y: same(0.5),
+      vx: [2, 0, 0, 0],
+      vy: same(0),
+      mass: same(1),
+      radius: same(R),
+      restitution: 1,
     };
     const steps = 80;
     const run = ContactEngine.runExact(scene, { dt: 0.01 }, steps, 1e-9); // no weight to speak of
@@ -383,7 +520,10 @@ const SmallFigures = (() => {
       [0, 1, 2, 3]
         .map((i) => {
           const cx = (run.x[at * 4 + i] + 1.25) * scale;
-          return ball("exact", cx, y, r) + arrow("push m-exact", cx, y - r - 6, 0.16 * scale * run.vx[at * 4 + i], 0);
+          return (
+            ball("exact", cx, y, r) +
+            arrow("push m-exact", cx, y - r - 6, 0.16 * scale * run.vx[at * 4 + i], 0)
+          );
         })
         .join("") + words(title, { x: 0, y: y - r - 22, class: "axis-name" });
     return {
@@ -405,8 +545,13 @@ const SmallFigures = (() => {
     return once("slide", () => {
       const { angle: from, dt } = SLIDE;
       const scene = {
-        x: [0, 2 * R * Math.sin(from)], y: [5, 5 + 2 * R * Math.cos(from)], vx: [0, 0], vy: [0, 0],
-        mass: [Infinity, 1], radius: [R, R], restitution: 0,
+        x: [0, 2 * R * Math.sin(from)],
+        y: [5, 5 + 2 * R * Math.cos(from)],
+        vx: [0, 0],
+        vy: [0, 0],
+        mass: [Infinity, 1],
+        radius: [R, R],
+        restitution: 0,
       };
       return MODELS.map((model) => {
         const run = runModel(model, scene, { ...DEFAULTS, dt, iters: 50 }, SLIDE.steps);
@@ -414,7 +559,9 @@ const SmallFigures = (() => {
         // the last step in which something else than gravity changed the velocity
         const pushed = (at) => {
           const [now, before] = [2 * at + 1, 2 * at - 1];
-          return Math.hypot(run.vx[now] - run.vx[before], run.vy[now] - run.vy[before] + G * dt) > 1e-6 * G * dt;
+          return (
+            Math.hypot(run.vx[now] - run.vx[before], run.vy[now] - run.vy[before] + G * dt) > 1e-6 * G * dt
+          );
         };
         let row = SLIDE.steps;
         while (row > 0 && !pushed(row)) row--;
@@ -447,8 +594,13 @@ const SmallFigures = (() => {
       markup: [
         ball("fixed", cx, cy, R * scale, "body"),
         el("path", { d: ray(release, 0, 0.32), class: "rule dashed" }),
-        words("cos θ = ⅔ cos θ₀", { x: Math.min(width - 108, cx + 0.33 * scale * Math.sin(release)), y: cy - 0.33 * scale * Math.cos(release), class: "tick strong" }),
-        ...balls, ...marks,
+        words("cos θ = ⅔ cos θ₀", {
+          x: Math.min(width - 108, cx + 0.33 * scale * Math.sin(release)),
+          y: cy - 0.33 * scale * Math.cos(release),
+          class: "tick strong",
+        }),
+        ...balls,
+        ...marks,
       ].join(""),
       output: `t = ${time.toFixed(2)} s`,
       words: `The last push should come at ${number((release * 180) / Math.PI, 4)}°. It comes, in steps of ${SLIDE.dt} s, ${runs.map(({ model, leaves }) => `${model}: ${number((leaves * 180) / Math.PI, 4)}°`).join("; ")}.`,
@@ -463,9 +615,23 @@ const SmallFigures = (() => {
     const d = ContactEngine.impedance(share * solimp[2], solimp);
     const xs = Array.from({ length: 61 }, (_, k) => k / 40);
     const chart = plot({
-      id: "impedance", width: right, height: 200,
-      x: { domain: [0, 1.5], ticks: [[0, "0"], [0.5, "0.5"], [1, "1"], [1.5, "1.5"]], label: "depth / width" },
-      y: { domain: [0.89, 0.96], ticks: [[0.9, "0.90"], [0.92, "0.92"], [0.95, "0.95"]], label: "impedance d" },
+      id: "impedance",
+      width: right,
+      height: 200,
+      x: {
+        domain: [0, 1.5],
+        ticks: marks(0, 0.5, 1, 1.5),
+        label: "depth / width",
+      },
+      y: {
+        domain: [0.89, 0.96],
+        ticks: [
+          [0.9, "0.90"],
+          [0.92, "0.92"],
+          [0.95, "0.95"],
+        ],
+        label: "impedance d",
+      },
       lines: [{ model: "soft", xs, ys: xs.map((x) => ContactEngine.impedance(x * solimp[2], solimp)) }],
       points: [{ model: "soft", x: share, y: d, size: 6 }],
     });
@@ -495,11 +661,31 @@ const SmallFigures = (() => {
     const points = once("one-line", () => logGrid(1e-4, 0.1, 13).map((s) => [s, softRest(1 - s)]));
     const { left, right } = split(width, 0.26);
     const chart = plot({
-      id: "one-line", width: right, height: 230,
-      x: { domain: [1e-4, 0.1], log: true, ticks: [[1e-4, "0.9999"], [1e-2, "0.99"], [0.1, "0.9"]], label: "impedance d" },
-      y: { domain: [1e-6, 0.1], log: true, zero: true, ticks: [[0, "0"], [1e-5, "1e−5"], [1e-3, "1e−3"], [0.1, "0.1"]], label: "rest depth / r" },
+      id: "one-line",
+      width: right,
+      height: 230,
+      x: {
+        domain: [1e-4, 0.1],
+        log: true,
+        ticks: [
+          [1e-4, "0.9999"],
+          [1e-2, "0.99"],
+          [0.1, "0.9"],
+        ],
+        label: "impedance d",
+      },
+      y: {
+        domain: [1e-6, 0.1],
+        log: true,
+        zero: true,
+        ticks: marks(0, 1e-5, 1e-3, 0.1),
+        label: "rest depth / r",
+      },
       lines: [{ model: "soft", xs: points.map((p) => p[0]), ys: points.map((p) => p[1]) }],
-      rules: [{ y: spring, text: `penalty ${number(spring)}`, class: "dashed" }, { y: 0, text: "lcp 0", class: "dashed", side: "end" }],
+      rules: [
+        { y: spring, text: `penalty ${number(spring)}`, class: "dashed" },
+        { y: 0, text: "lcp 0", class: "dashed", side: "end" },
+      ],
       points: [{ model: "soft", x: softness, y: rest, size: 6 }],
     });
     const r = Math.min(34, left * 0.34);
@@ -528,26 +714,50 @@ const SmallFigures = (() => {
 
   const cliffSteps = logGrid(0.004, 0.064, 49);
   const cliffLine = (model, damping) =>
-    cliffSteps.map((dt) => unrest(runModel(model, oneBall(START), { ...DEFAULTS, dt, damping }, Math.floor(8 / dt))));
+    cliffSteps.map((dt) =>
+      unrest(runModel(model, oneBall(START), { ...DEFAULTS, dt, damping }, Math.floor(8 / dt))),
+    );
 
   function cliff(damping, width) {
     const stiffness = DEFAULTS.stiffness;
     const critical = criticalDt(1, stiffness, damping);
     const solved = once("cliff", () => cliffLine("lcp", 0)); // lcp has no damper: computed once
     const chart = plot({
-      id: "cliff", width, height: 260, top: 64,
-      x: { domain: [0.004, 0.064], log: true, ticks: [0.004, 0.008, 0.016, 0.032].map((v) => [v, String(v)]), label: "time step dt (s)" },
+      id: "cliff",
+      width,
+      height: 260,
+      top: 64,
+      x: {
+        domain: [0.004, 0.064],
+        log: true,
+        ticks: marks(0.004, 0.008, 0.016, 0.032),
+        label: "time step dt (s)",
+      },
       y: {
-        domain: [1e-6, 1e9], log: true, zero: true, label: "still moving after 6 s (r)",
-        ticks: [[0, "0"], [1e-4, "1e−4"], [1, "1"], [1e4, "1e4"], [1e8, "1e8"]],
+        domain: [1e-6, 1e9],
+        log: true,
+        zero: true,
+        label: "still moving after 6 s (r)",
+        ticks: marks(0, 1e-4, 1, 1e4, 1e8),
       },
       lines: [
         { model: "penalty", xs: cliffSteps, ys: cliffLine("penalty", damping), markers: [5, 15, 25, 35, 45] },
         { model: "lcp", xs: cliffSteps, ys: solved, markers: [10, 20, 30, 40] },
       ],
       rules: [
-        { x: critical.undamped, text: `2√(m/k) ${number(critical.undamped)}`, class: "dashed", row: -2, side: "start" },
-        { x: critical.damped, text: `with damper ${number(critical.damped)}`, row: -1, side: critical.damped < 0.011 ? "start" : "end" },
+        {
+          x: critical.undamped,
+          text: `2√(m/k) ${number(critical.undamped)}`,
+          class: "dashed",
+          row: -2,
+          side: "start",
+        },
+        {
+          x: critical.damped,
+          text: `with damper ${number(critical.damped)}`,
+          row: -1,
+          side: critical.damped < 0.011 ? "start" : "end",
+        },
       ],
     });
     return {
@@ -564,20 +774,90 @@ const SmallFigures = (() => {
   const logKnob = (low, high, value) => ({ low, high, log: true, value });
 
   const FIGURES = {
-    balance: { knob: logKnob(1e3, 1e5, 1e4), label: "Stiffness k", draw: balance, title: "A ball at rest on a spring: its weight against the push" },
-    dive: { knob: plainKnob(0.42, 0.96, 0.002, 0.452), label: "Time", draw: dive, title: "The landing on a spring: deep, and thrown back" },
-    "long-step": { knob: plainKnob(0.001, 0.03, 0.0005, 0.02), label: "Length of the step dt", draw: longStep, title: "One long step of a spring that is 0.2 r pressed" },
-    corner: { knob: plainKnob(0.42, 0.9, 0.001, 0.452), label: "Time", draw: corner, title: "Gap and push of the dropped ball: the corner, and where each model is" },
-    sweeps: { knob: plainKnob(0, 20, 1, 4), label: "Sweeps", draw: sweeps, title: "A stack at rest: the impulse of each contact, sweep by sweep" },
-    clamp: { knob: plainKnob(0, 12, 1, 6), label: "Sweeps", draw: clamp, title: "A ball falls into a groove: the clamp on the sum against the clamp on each change" },
-    larger: { knob: plainKnob(0.0005, 0.016, 0.0005, 0.004), label: "Time step dt", draw: larger, title: "The first bounce, by the larger of bounce and bias and by their sum" },
-    hop: { knob: plainKnob(0, 1, 0.02, 0.2), label: "Baumgarte gain β", draw: hop, title: "After the landing: the bias velocity lifts the ball off the table" },
-    bounces: { knob: plainKnob(0, 0.95, 0.01, 0.7), label: "Restitution e", draw: bounces, title: "Infinitely many bounces, over at a finite time" },
-    cradle: { knob: plainKnob(0, 0.5, 0.01, 0), label: "Gaps between the balls", draw: cradle, title: "A ball strikes three: at one moment, or one after another" },
-    slide: { knob: plainKnob(0, 0.6, 0.01, 0.36), label: "Time", draw: slide, title: "A ball slides off a ball that is held; where does each model let it go?" },
-    impedance: { knob: plainKnob(0, 1.5, 0.05, 0.6), label: "Depth", draw: impedance, title: "MuJoCo’s impedance: the deeper, the harder" },
-    "one-line": { knob: logKnob(1e-4, 0.1, 0.05), label: "From lcp to MuJoCo and beyond: 1 − d", draw: oneLine, title: "One line: impedance d takes soft from a spring’s give to lcp" },
-    cliff: { knob: plainKnob(0, 200, 2, 80), label: "Damping c", draw: cliff, title: "The cliff: past the critical step the ball never rests" },
+    balance: {
+      knob: logKnob(1e3, 1e5, 1e4),
+      label: "Stiffness k",
+      draw: balance,
+      title: "A ball at rest on a spring: its weight against the push",
+    },
+    dive: {
+      knob: plainKnob(0.42, 0.96, 0.002, 0.452),
+      label: "Time",
+      draw: dive,
+      title: "The landing on a spring: deep, and thrown back",
+    },
+    "long-step": {
+      knob: plainKnob(0.001, 0.03, 0.0005, 0.02),
+      label: "Length of the step dt",
+      draw: longStep,
+      title: "One long step of a spring that is 0.2 r pressed",
+    },
+    corner: {
+      knob: plainKnob(0.42, 0.9, 0.001, 0.452),
+      label: "Time",
+      draw: corner,
+      title: "Gap and push of the dropped ball: the corner, and where each model is",
+    },
+    sweeps: {
+      knob: plainKnob(0, 20, 1, 4),
+      label: "Sweeps",
+      draw: sweeps,
+      title: "A stack at rest: the impulse of each contact, sweep by sweep",
+    },
+    clamp: {
+      knob: plainKnob(0, 12, 1, 6),
+      label: "Sweeps",
+      draw: clamp,
+      title: "A ball falls into a groove: the clamp on the sum against the clamp on each change",
+    },
+    larger: {
+      knob: plainKnob(0.0005, 0.016, 0.0005, 0.004),
+      label: "Time step dt",
+      draw: larger,
+      title: "The first bounce, by the larger of bounce and bias and by their sum",
+    },
+    hop: {
+      knob: plainKnob(0, 1, 0.02, 0.2),
+      label: "Baumgarte gain β",
+      draw: hop,
+      title: "After the landing: the bias velocity lifts the ball off the table",
+    },
+    bounces: {
+      knob: plainKnob(0, 0.95, 0.01, 0.7),
+      label: "Restitution e",
+      draw: bounces,
+      title: "Infinitely many bounces, over at a finite time",
+    },
+    cradle: {
+      knob: plainKnob(0, 0.5, 0.01, 0),
+      label: "Gaps between the balls",
+      draw: cradle,
+      title: "A ball strikes three: at one moment, or one after another",
+    },
+    slide: {
+      knob: plainKnob(0, 0.6, 0.01, 0.36),
+      label: "Time",
+      draw: slide,
+      title: "A ball slides off a ball that is held; where does each model let it go?",
+    },
+    impedance: {
+      knob: plainKnob(0, 1.5, 0.05, 0.6),
+      label: "Depth",
+      draw: impedance,
+      title: "MuJoCo’s impedance: the deeper, the harder",
+    },
+    "one-line": {
+      knob: logKnob(1e-4, 0.1, 0.05),
+      label: "From lcp to MuJoCo and beyond: 1 − d",
+      draw: oneLine,
+      title: "One line: impedance d takes soft from a spring’s give to lcp",
+    },
+    cliff: {
+      knob: plainKnob(0, 200, 2, 80),
+      label: "Damping c",
+      draw: cliff,
+      title: "The cliff: past the critical step the ball never rests",
+    },
   };
 
   // One figure at a value of its knob, as a whole svg element and its words.
@@ -585,7 +865,10 @@ const SmallFigures = (() => {
   function render(name, value, width, open = () => false) {
     const figure = FIGURES[name];
     const drawn = figure.draw(value, width, open);
-    return { ...drawn, svg: Plot.picture(width, drawn.height, `${figure.title}. ${drawn.words}`, drawn.markup) };
+    return {
+      ...drawn,
+      svg: Plot.picture(width, drawn.height, `${figure.title}. ${drawn.words}`, drawn.markup),
+    };
   }
 
   return { FIGURES, render, oneBall, logGrid, unrest, START };

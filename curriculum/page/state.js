@@ -18,7 +18,14 @@ const State = (() => {
   };
   const SLIDER = 400; // positions of a scaled slider
 
-  const DEFAULTS = { scene: "drop", seed: 0, contact: "penalty", ...PAGE.defaults, impedance: null, solref: null };
+  const DEFAULTS = {
+    scene: "drop",
+    seed: 0,
+    contact: "penalty",
+    ...PAGE.defaults,
+    impedance: null,
+    solref: null,
+  };
   const ownKnobs = (scene) => ({
     damping: PAGE.scenes[scene].damping,
     restitution: PAGE.scenes[scene].restitution,
@@ -40,8 +47,14 @@ const State = (() => {
     const y = PAGE.scenes[state.scene].starts[state.seed];
     const same = (value) => y.map(() => value);
     return {
-      x: same(0), y, vx: same(0), vy: same(0), mass: same(1), radius: same(PAGE.radius),
-      restitution: state.restitution, damping: state.damping,
+      x: same(0),
+      y,
+      vx: same(0),
+      vy: same(0),
+      mass: same(1),
+      radius: same(PAGE.radius),
+      restitution: state.restitution,
+      damping: state.damping,
     };
   }
 
@@ -51,7 +64,9 @@ const State = (() => {
     const knob = KNOBS[name];
     if (knob.log) return Math.round((SLIDER * Math.log(value / knob.low)) / Math.log(knob.high / knob.low));
     if (!knob.soft) return value;
-    return Math.round((SLIDER * Math.log((1 - knob.low) / (1 - value))) / Math.log((1 - knob.low) / (1 - knob.high)));
+    return Math.round(
+      (SLIDER * Math.log((1 - knob.low) / (1 - value))) / Math.log((1 - knob.low) / (1 - knob.high)),
+    );
   }
 
   function fromSlider(name, position) {
@@ -88,7 +103,10 @@ const State = (() => {
     const seed = given.get("seed");
     if (/^\d+$/.test(seed || "") && Number(seed) < PAGE.scenes.drop.starts.length) state.seed = Number(seed);
     const at = given.get("t");
-    return { state, time: at !== null && at.trim() !== "" && Number(at) >= 0 && Number(at) <= 4 ? Number(at) : null };
+    return {
+      state,
+      time: at !== null && at.trim() !== "" && Number(at) >= 0 && Number(at) <= 4 ? Number(at) : null,
+    };
   }
 
   function write(state, time) {
@@ -116,7 +134,18 @@ const State = (() => {
   }
 
   return {
-    KNOBS, DEFAULTS, ownKnobs, shownValue, knobsOf, sceneOf, toSlider, fromSlider, sliderRange, allowed, read,
-    write, command,
+    KNOBS,
+    DEFAULTS,
+    ownKnobs,
+    shownValue,
+    knobsOf,
+    sceneOf,
+    toSlider,
+    fromSlider,
+    sliderRange,
+    allowed,
+    read,
+    write,
+    command,
   };
 })();

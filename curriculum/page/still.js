@@ -21,11 +21,18 @@ const Stills = (() => {
       const run = runs[m];
       const trail = [];
       for (let k = 0; k < Math.min(row, series[m].landing); k += 25) trail.push(run.y[k]);
-      const sink = model === "penalty" && row === steps ? -ContactEngine.GRAVITY / state.stiffness / PAGE.radius : null;
+      const sink =
+        model === "penalty" && row === steps ? -ContactEngine.GRAVITY / state.stiffness / PAGE.radius : null;
       const shown = { model, y: [run.y[row]], radius: PAGE.radius, push: series[m].push[row], trail, sink };
       const size = Math.abs(gaps[m]);
       const words = size < 1e-9 ? "touching" : `${number(size, 2)} r ${gaps[m] < 0 ? "in" : "up"}`;
-      return { model, air: Lane.air(shown), lens: Lane.lens(shown, reach), words, push: `↑ ${number(series[m].push[row], 2)} m g` };
+      return {
+        model,
+        air: Lane.air(shown),
+        lens: Lane.lens(shown, reach),
+        words,
+        push: `↑ ${number(series[m].push[row], 2)} m g`,
+      };
     });
   }
 
@@ -47,7 +54,9 @@ const Stills = (() => {
       end: lanes(steps),
       small: small(),
       keys: keys(),
-      knobs: Object.fromEntries(Object.entries(State.KNOBS).map(([name, { low, high }]) => [name, [low, high]])),
+      knobs: Object.fromEntries(
+        Object.entries(State.KNOBS).map(([name, { low, high }]) => [name, [low, high]]),
+      ),
       size: { air: Lane.SIZE, lens: Lane.LENS },
     }),
   };
