@@ -28,7 +28,7 @@ const SmallFigures = (() => {
     el("g", { transform: `translate(${Plot.round(x)} ${Plot.round(y)})` }, ...children);
   const plural = (count, word) => `${count} ${word}${count === 1 ? "" : "s"}`;
 
-  const marks = (...values) => values.map((v) => [v, plain(v).replace("-", "−")]);
+  const ticksAt = (...values) => values.map((v) => [v, plain(v).replace("-", "−")]);
 
   // Results that do not depend on the knob are computed once.
   const kept = new Map();
@@ -74,12 +74,12 @@ const SmallFigures = (() => {
       height: 200,
       x: {
         domain: [0, 0.1],
-        ticks: marks(0, 0.05, 0.1),
+        ticks: ticksAt(0, 0.05, 0.1),
         label: "depth / r",
       },
       y: {
         domain: [0, 2.4],
-        ticks: marks(0, 1, 2),
+        ticks: ticksAt(0, 1, 2),
         label: "force / m g",
       },
       lines: [{ model: "penalty", xs: [0, reach], ys: [0, (stiffness * reach * R) / G] }],
@@ -117,12 +117,12 @@ const SmallFigures = (() => {
       height: 200,
       x: {
         domain: [0.4, 1],
-        ticks: marks(0.4, 0.6, 0.8, 1),
+        ticks: ticksAt(0.4, 0.6, 0.8, 1),
         label: "time (s)",
       },
       y: {
         domain: [-0.45, 0.3],
-        ticks: marks(-0.4, -0.2, 0, 0.2),
+        ticks: ticksAt(-0.4, -0.2, 0, 0.2),
         label: "depth / r",
       },
       lines: [{ model: "penalty", xs: run.t, ys: depths, from: 800, to: 2001 }],
@@ -157,12 +157,12 @@ const SmallFigures = (() => {
       height: 210,
       x: {
         domain: [0, 30],
-        ticks: marks(0, 10, 20, 30),
+        ticks: ticksAt(0, 10, 20, 30),
         label: "time (ms)",
       },
       y: {
         domain: [-0.4, 1.8],
-        ticks: marks(0, 0.5, 1, 1.5),
+        ticks: ticksAt(0, 0.5, 1, 1.5),
         label: "height / r",
       },
       lines: [
@@ -215,13 +215,13 @@ const SmallFigures = (() => {
       height: 230,
       x: {
         domain: [-0.36, 0.45],
-        ticks: marks(-0.2, 0, 0.2, 0.4),
+        ticks: ticksAt(-0.2, 0, 0.2, 0.4),
         label: "gap / r",
       },
       y: {
         domain: [0, most],
         root: true,
-        ticks: marks(0, 1, 10, 100, 400),
+        ticks: ticksAt(0, 1, 10, 100, 400),
         label: "push / m g",
       },
       lines: [
@@ -298,8 +298,8 @@ const SmallFigures = (() => {
       id: "sweeps",
       width: right,
       height: 224,
-      x: { domain: [0, 20], ticks: marks(0, 5, 10, 15, 20), label: "sweep" },
-      y: { domain: [0, 3.3], ticks: marks(0, 1, 2, 3), label: "impulse / m g dt" },
+      x: { domain: [0, 20], ticks: ticksAt(0, 5, 10, 15, 20), label: "sweep" },
+      y: { domain: [0, 3.3], ticks: ticksAt(0, 1, 2, 3), label: "impulse / m g dt" },
       lines: [0, 1, 2].map((c) => ({
         model: "lcp",
         xs: traced.map((_, s) => s),
@@ -386,7 +386,7 @@ const SmallFigures = (() => {
       x: { domain: [0.4, 1.2], ticks: steps(0.4, 1.2, 4), label: "time (s)" },
       y: {
         domain: [0, 1],
-        ticks: marks(0, 0.49, 1),
+        ticks: ticksAt(0, 0.49, 1),
         label: "height / start",
       },
       lines: runs.map((run, k) => ({
@@ -431,12 +431,12 @@ const SmallFigures = (() => {
       height: 200,
       x: {
         domain: [0.4, 0.8],
-        ticks: marks(0.4, 0.6, 0.8),
+        ticks: ticksAt(0.4, 0.6, 0.8),
         label: "time (s)",
       },
       y: {
         domain: [-0.1, 0.9],
-        ticks: marks(0, 0.4, 0.8),
+        ticks: ticksAt(0, 0.4, 0.8),
         label: "gap / r",
       },
       lines: [{ model: "lcp", xs: run.t, ys: gap, from: 200, to: 401 }],
@@ -476,7 +476,7 @@ const SmallFigures = (() => {
       x: { domain: [0, until], ticks: steps(0, until, 5), label: "time (s)" },
       y: {
         domain: [0, 1.1],
-        ticks: marks(0, 0.5, 1),
+        ticks: ticksAt(0, 0.5, 1),
         label: "height (m)",
       },
       lines: [{ model: "exact", xs: run.t, ys: Array.from(run.y) }],
@@ -620,7 +620,7 @@ const SmallFigures = (() => {
       height: 200,
       x: {
         domain: [0, 1.5],
-        ticks: marks(0, 0.5, 1, 1.5),
+        ticks: ticksAt(0, 0.5, 1, 1.5),
         label: "depth / width",
       },
       y: {
@@ -678,7 +678,7 @@ const SmallFigures = (() => {
         domain: [1e-6, 0.1],
         log: true,
         zero: true,
-        ticks: marks(0, 1e-5, 1e-3, 0.1),
+        ticks: ticksAt(0, 1e-5, 1e-3, 0.1),
         label: "rest depth / r",
       },
       lines: [{ model: "soft", xs: points.map((p) => p[0]), ys: points.map((p) => p[1]) }],
@@ -730,7 +730,7 @@ const SmallFigures = (() => {
       x: {
         domain: [0.004, 0.064],
         log: true,
-        ticks: marks(0.004, 0.008, 0.016, 0.032),
+        ticks: ticksAt(0.004, 0.008, 0.016, 0.032),
         label: "time step dt (s)",
       },
       y: {
@@ -738,7 +738,7 @@ const SmallFigures = (() => {
         log: true,
         zero: true,
         label: "still moving after 6 s (r)",
-        ticks: marks(0, 1e-4, 1, 1e4, 1e8),
+        ticks: ticksAt(0, 1e-4, 1, 1e4, 1e8),
       },
       lines: [
         { model: "penalty", xs: cliffSteps, ys: cliffLine("penalty", damping), markers: [5, 15, 25, 35, 45] },
