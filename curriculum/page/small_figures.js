@@ -750,7 +750,7 @@ const SmallFigures = (() => {
           text: `2√(m/k) ${number(critical.undamped)}`,
           class: "dashed",
           row: -2,
-          side: "start",
+          side: width < 380 ? "end" : "start",
         },
         {
           x: critical.damped,
