@@ -96,13 +96,15 @@ EDITS = (
         "",
     ),
     ("quality", ", reference: Run | None = None)", ")"),
+    ("quality", "deviation(", "np.std("),
     (
         "quality",
         "    check_shapes(scene, *[each for each in (run, reference) if each is not None])\n",
         "",
     ),
 )
-DROPPED = {"quality-parts": "height_errors"}  # functions that only exact, the reference, needs
+# Functions of a region that are left out: errors against exact, and a guard against overflow
+DROPPED = ("quality-parts", ("height_errors", "deviation"))
 NOTE = """> The script beside this text, `contact.py`, holds `penalty` and `lcp`: this course keeps a
 > chapter in one script of at most {cap} lines. What the text says of `soft`, of `exact` and of piles
 > of many balls runs in the chapter's own repository, as do commands that begin with `python -m curriculum`.
@@ -146,7 +148,8 @@ def region_texts(root):
                 "correct EDITS in curriculum/bundle.py"
             )
         made[name] = made[name].replace(here, there)
-    for name, function in DROPPED.items():
+    name, functions = DROPPED
+    for function in functions:
         made[name] = without(made[name], function)
     return {name: re.sub(r"\n{3,}", "\n\n", text).rstrip() + "\n" for name, text in made.items()}
 
