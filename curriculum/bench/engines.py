@@ -95,10 +95,11 @@ def standard(timeconst, ratio, d, scene, dt):
 
 
 def direct(beta, d, scene, dt):
-    """Stiffness beta / dt^2 and damping (1 + e) / dt, given directly, at impedance d."""
-    d = min(d, 0.9999)
-    stiffness = beta / dt**2 * d**2
-    return f"{-stiffness!r} {-(1.0 + scene.restitution) / dt * d!r}", f"{d!r} {d!r} 0.001"
+    """Stiffness beta / dt^2 and damping (1 + e) / dt, given directly, at impedance d.
+
+    MuJoCo divides them by d^2 and d, so that the speed turns into exactly -e times itself.
+    """
+    return f"{-beta / dt**2!r} {-(1.0 + scene.restitution) / dt!r}", f"{d!r} {d!r} 0.001"
 
 
 def first_edition(scene, dt):
