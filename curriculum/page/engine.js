@@ -286,21 +286,23 @@ const ContactEngine = (() => {
   }
 
   const same = (a, b) => ["x", "y", "vx", "vy"].every((key) => a[key].every((v, i) => v === b[key][i]));
+  const LONGEST = 4; // periods of rest that are noticed: penalty and lcp have 1 and 2, soft up to 4
 
   function runModel(model, scene, knobs, steps) {
     if (model === "exact") return runExact(scene, knobs, steps);
     const step = STEP[model];
     const run = blank(scene.y.length, knobs.dt, steps);
     let state = { x: scene.x, y: scene.y, vx: scene.vx, vy: scene.vy };
-    let before = state;
+    const before = []; // the last states, the newest first
     write(run, 0, state);
     for (let row = 1; row <= steps; row++) {
-      const next = step(state, scene, knobs);
-      write(run, row, next);
-      // a step depends on the state alone: where the one or the two before come back, all is known
-      if (row > 1 && same(next, state)) return repeat(run, row, 1);
-      if (row > 1 && same(next, before)) return repeat(run, row, 2);
-      [before, state] = [state, next];
+      before.unshift(state);
+      before.length = Math.min(before.length, LONGEST);
+      state = step(state, scene, knobs);
+      write(run, row, state);
+      // a step depends on the state alone: where one comes back, all that follows is known
+      const period = 1 + before.findIndex((old) => same(old, state));
+      if (period > 0) return repeat(run, row, period);
     }
     return run;
   }
