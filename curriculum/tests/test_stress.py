@@ -295,6 +295,13 @@ def test_a_twin_off_by_one_bit_is_caught_by_the_plain_steps(monkeypatch):
     assert isinstance(invariants.outcomes(PAIR, only=[name])[name], str)
 
 
+def test_a_rise_of_energy_that_no_number_of_sweeps_ends_is_a_violation(monkeypatch):
+    monkeypatch.setattr(invariants, "MOST", 1)
+    name = "energy_rises_by_unfinished_sweeps_alone"
+    found = invariants.outcomes(scenes.numbered_spec(651), only=[name])[name]
+    assert "still rises" in found
+
+
 def test_energy_of_unfinished_sweeps_is_counted_and_enough_sweeps_end_it():
     """Scene 651 with one sweep a step goes from 247.8 to 272.0 J."""
     spec = scenes.numbered_spec(651)
