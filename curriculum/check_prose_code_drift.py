@@ -29,7 +29,7 @@ names     code, flags, commands, files and images that chapter, README, exercise
 readme    the README's generated blocks are what their commands make now.
 measured  results of bench and stress, and every MEASURED row of wallclock.csv, are of the code as
           it is now, or `stale` of meta.yaml names them; the text then says "stale". A row is the
-          median of the times in wallclock_runs.json.
+          median of the times in curriculum/wallclock_runs.json.
 scope     what this chapter leaves to others is said in one place: the words of `scope.words` in
           meta.yaml occur in the section `scope.section` of the chapter and nowhere else.
 

@@ -9,7 +9,7 @@ status is MEASURED or PENDING; a PENDING row holds nothing else, and no time is 
 
 config_hash is over the flags of the default run (what contact.py prints) and over the code that
 was timed, so a row is stale as soon as either changes. The single times of each measured row are
-kept beside the ledger, in wallclock_runs.json, so that no row can be typed or edited alone.
+kept in curriculum/wallclock_runs.json, so that no row can be typed or edited alone.
 """
 
 import os
@@ -19,7 +19,7 @@ LEDGER = os.path.join(ROOT, "wallclock.csv")
 CHAPTER = "ch3.5-contact"
 COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", "status")
 COMMAND = "python -m curriculum.common.wallclock --measure"
-RUNS = "wallclock_runs.json"  # beside the ledger: the times behind each row
+RUNS = "curriculum/wallclock_runs.json"  # below the ledger's folder: the times behind each row
 SHOWN = ("cpu-laptop", "mps", "t4", "4090")  # tiers the course shows, measured or not
 
 

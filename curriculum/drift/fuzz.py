@@ -320,7 +320,7 @@ KINDS = (
     Kind("what is read", META, digit_of(r"^  (?:tag|commit): (\S+)", 1)),
     Kind("measured minutes", ("wallclock.csv",), digit_of(r",(\d[\d.e-]*),", 1)),
     Kind("an invented row", ("wallclock.csv",), measured_row),
-    Kind("a measured time", ("wallclock_runs.json",), digit_of(r"^ +(\d+\.\d{2})", 1)),
+    Kind("a measured time", ("curriculum/wallclock_runs.json",), digit_of(r"^ +(\d+\.\d{2})", 1)),
     Kind("a choice", ("exercises/ex*.py",), typo_in(r'^ +"[A-Z]": .*?\b([a-z]{4,})\b', 1)),
     Kind("an exercise's docstring", ("exercises/ex*.py",), docstring),
     Kind("code", regions.LITERATE, code),

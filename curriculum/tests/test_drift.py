@@ -491,11 +491,11 @@ DRIFT = {
     ),
     "minutes typed into the ledger": (
         ("wallclock.csv", "cpu-vm,0.004", "cpu-vm,0.001"),
-        r"wallclock.csv:6: cpu-vm: wallclock_min is 0.001, but wallclock_runs.json has 0.004",
+        r"wallclock.csv:6: cpu-vm: wallclock_min is 0.001, but curriculum/wallclock_runs.json has 0.004",
     ),
     "a row invented": (
         ("wallclock.csv", "mps,,,,,PENDING", "mps,0.01,c0ffee,1234567,2026-01-02,MEASURED"),
-        r"wallclock.csv:\d: mps: no times of mps in wallclock_runs.json",
+        r"wallclock.csv:\d: mps: no times of mps in curriculum/wallclock_runs.json",
     ),
     "a broken ledger": (
         ("wallclock.csv", "MEASURED", "GUESSED"),

@@ -84,9 +84,9 @@ def test_a_row_of_other_flags_or_of_other_code_is_stale(ledger, tmp_path):
 @pytest.mark.parametrize(
     "old, new, said",
     [
-        ("0.00417", "0.00317", "wallclock_min is 0.00317, but wallclock_runs.json has 0.00417"),
-        ("1234567", "7654321", "commit is 7654321, but wallclock_runs.json has 1234567"),
-        ("2026-01-02", "2026-01-03", "date is 2026-01-03, but wallclock_runs.json has 2026-01-02"),
+        ("0.00417", "0.00317", "wallclock_min is 0.00317, but curriculum/wallclock_runs.json has 0.00417"),
+        ("1234567", "7654321", "commit is 7654321, but curriculum/wallclock_runs.json has 1234567"),
+        ("2026-01-02", "2026-01-03", "date is 2026-01-03, but curriculum/wallclock_runs.json has 2026-01-02"),
         ("mps,,,,,PENDING", "mps,1,c0ffee,1234567,2026-01-02,MEASURED", "no times of mps"),
     ],
 )
@@ -101,7 +101,7 @@ def test_times_that_were_edited_are_refused_even_if_the_median_stays(ledger, tmp
     path = tmp_path / wallclock.RUNS
     path.write_text(path.read_text().replace("0.3,", "0.9,"))
     (problem,), _ = ledger()
-    assert "wallclock_runs.json was edited: its digest no longer fits" in problem
+    assert "curriculum/wallclock_runs.json was edited: its digest no longer fits" in problem
 
 
 def test_a_tier_that_the_course_does_not_show_is_refused(ledger, tmp_path):
