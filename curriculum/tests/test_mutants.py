@@ -158,3 +158,25 @@ def test_the_height_error_is_that_of_the_worst_ball():
 
 def test_a_deviation_of_large_values_does_not_overflow():
     assert contact.deviation(np.array([0.0, 1e200])) == pytest.approx(5e199)
+
+
+def test_a_held_ball_stays_while_others_fly():
+    scene = contact.build_scene("stack", bodies=2)._replace(
+        q0=np.array([[0.0, 1.0], [2.0, 1.5]]), mass=np.array([1.0, np.inf])
+    )
+    for model in ("penalty", "lcp", "soft"):
+        run = contact.run_model(model, scene, 0.002, 200)
+        assert (run.q[:, :, 1] == (1.0, 1.5)).all() and (run.v[:, :, 1] == 0.0).all()
+        assert run.q[-1, 1, 0] < 1.3
+
+
+def test_jitter_is_that_of_the_last_quarter():
+    """Twenty samples that lie still but for the fifteenth (index 14), just before the last five."""
+    heights = [0.09] * 20
+    heights[14] = 0.05
+    assert contact.contact_quality(*recording(heights), 0.1)["rest_jitter"] == 0.0
+    heights[15] = 0.05
+    expected = np.std([0.5, 0.1, 0.1, 0.1, 0.1])
+    assert contact.contact_quality(*recording(heights), 0.1)["rest_jitter"] == pytest.approx(
+        expected
+    )
