@@ -44,7 +44,7 @@ TOUCH = 1e-12   # of a radius: a smaller gap is none
 LAST = 1e-13    # of a radius: a bounce that rises less is the last of its series
 NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
 GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does not push
-EVENTS = 1000   # per ball and tick, before the clock waits
+EVENTS = 100    # per ball and tick, and of 20 balls at least, before the clock waits
 TICK = 0.1      # of sqrt(r / g), r the smallest radius
 BINOMIAL = np.array([[math.comb(m, k) for m in range(ORDER + 1)] for k in range(ORDER + 1)])
 
@@ -131,7 +131,7 @@ class Contacts(NamedTuple):
         """rows changed by the one set of pushes that takes `error` (K,) from n . rows."""
         if not error.any():
             return rows
-        return rows - self.spread(self.n * (inverted(self.delassus()) @ error))
+        return rows - self.spread(self.n * applied(inverted(self.delassus()), error))
 # --- endregion ---
 
 
@@ -205,7 +205,7 @@ def solve_lcp(W, b):
             if done:
                 break
         active = table.active
-        if exchanges == 0:
+        if exchanges == 0 or not done:
             break
     return np.maximum(lam, 0.0) * scale
 
@@ -224,6 +224,11 @@ def inverted(W):
         W += column[:, None] * row
         W[:, k], W[k], W[k, k] = column / pivot, row, 1.0 / pivot
     return W
+
+
+def applied(matrix, b):
+    """matrix b, summed by numpy itself: `@` adds up in another order on another machine."""
+    return (matrix * b).sum(1)
 # --- endregion ---
 
 
@@ -330,15 +335,15 @@ def slide(system, held, q, v):
     reach = system.radius[held.i] + system.radius[held.j]
     Q, lam = np.zeros((ORDER + 1, *q.shape)), np.zeros((ORDER - 1, len(pair)))
     n = np.zeros((ORDER + 1, *held.n.shape))
-    Q[0] = q + held.spread(held.n * (inverse @ held.depth))     # gap = 0 and, below, v_n = 0
+    Q[0] = q + held.spread(held.n * applied(inverse, held.depth))   # gap = 0; below, v_n = 0
     n[0] = np.where(pair, (Q[0][:, held.i] - Q[0][:, held.j]) / reach, held.n)
-    Q[1] = v - held.spread(n[0] * (inverse @ held.along(v, n[0])))
+    Q[1] = v - held.spread(n[0] * applied(inverse, held.along(v, n[0])))
     for k in range(ORDER - 1):
         n[k + 1] = (Q[k + 1][:, held.i] - Q[k + 1][:, held.j]) / reach * pair
         a = held.spread((lam[:k, None] * n[k:0:-1]).sum(0))     # of the orders that are known
         a[1] += system.gravity * (system.w > 0.0) * (k == 0)
         turn = 0.5 * reach * (n[1:k + 2] * n[k + 1:0:-1]).sum((0, 1))
-        lam[k] = -inverse @ (held.along(a, n[0]) + (k + 1) * (k + 2) * turn)
+        lam[k] = -applied(inverse, held.along(a, n[0]) + (k + 1) * (k + 2) * turn)
         Q[k + 2] = (a + held.spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
     return Q, lam
 
@@ -552,15 +557,20 @@ def event(motion, now):
 def predict(motion, now, balls):
     """Find when the contacts of the balls (a mask), which have new series, will close.
 
-    Those at rest count as 3 TOUCH radii open, so that round-off is no event.
+    Those at rest count as 3 TOUCH radii open, so that round-off is no event. Those too far apart
+    to meet before the series of the island ends are left out.
     """
-    system = motion.system
+    system, Q = motion.system, shifted(motion.rows(), now - motion.start)
     which = np.flatnonzero(motion.concerns(balls) & ~motion.pushes)
-    Q = shifted(motion.rows(), now - motion.start)
     contacts = system.contacts(Q[0], which)
     gap = np.maximum(-contacts.depth, 0.0)
     gap += 3.0 * TOUCH * system.radius[contacts.i] * motion.rests[which]
-    horizon = np.minimum(motion.until[contacts.i], motion.until[contacts.j]) - now
+    span = motion.until[balls].min(initial=np.inf) - now
+    if span < np.inf:
+        travel = span * evaluate(np.abs(Q[1:]), span).sum(0)
+        meets = gap <= travel[contacts.i] + travel[contacts.j]
+        which, gap = which[meets], gap[meets]
+    horizon = np.minimum(motion.until[system.i[which]], motion.until[system.j[which]]) - now
     motion.due[which] = now + first_fall(gap_series(system, Q, gap, which), horizon)
 # --- endregion ---
 
@@ -580,7 +590,7 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
     event(motion, now)
     while done < len(times):
         soon = max(now, motion.next())
-        if events > EVENTS * len(scene.mass):
+        if events > EVENTS * max(20, len(scene.mass)):
             soon = max(soon, now + 0.01 * tick)
         upto = int(np.searchsorted(times, soon, "right"))
         if upto > done:
