@@ -249,30 +249,20 @@ def test_a_contact_that_parts_gets_no_impulse():
     assert exact.solve_lcp(np.eye(3), np.array([1.0, -2.0, 0.0])).tolist() == [0.0, 2.0, 0.0]
 
 
-# Not exact
+# Sliding, in scenes of the chapter and of the stress report
 
 
-def test_overlap_of_a_sliding_pile_falls_with_the_square_of_dt():
-    """A pile of 12 lands and slides: a force is held for a sample while the normal turns."""
+def test_a_pile_of_twelve_neither_overlaps_nor_gains_energy():
+    """It lands and slides within 0.6 s; the first edition overlapped by 6e-4 r."""
     scene = contact.build_scene("pile", 0, 12)
-    deepest = []
-    for dt in (0.004, 0.002):
-        with seconds(30):
-            run = contact.run_model("exact", scene, dt, round(0.6 / dt))
-        deepest.append(contact.max_penetration(run.q, scene.radius).max() / R)
-    print(f"overlap {deepest} r, ratio {deepest[0] / deepest[1]:.2f}")
-    assert 3.0 < deepest[0] / deepest[1] < 5.0 and deepest[0] < 0.01
+    with seconds(30):
+        hold_physics(contact.run_model("exact", scene, 0.004, 150), scene)
 
 
 def test_a_ball_that_slides_off_another_is_seen_when_it_falls_back():
     """Its contact pushes no more, since the normal turns away faster than the bodies close; it has
-    to be watched again from the next sample on. It was not, and the ball fell through by 3 r."""
+    to be watched again at once. In an earlier version it was not, and the ball fell through."""
     spec = scenes.numbered_spec(2786)
-    deepest = []
-    for finer in (1, 8):
-        fine = {**spec, "dt": spec["dt"] / finer, "steps": spec["steps"] * finer}
-        run = scenes.run("exact", fine)
-        radius = np.array(spec["radius"])
-        deepest.append(contact.max_penetration(run.q, radius).max() / radius.min())
-    print(f"overlap {deepest} r, ratio {deepest[0] / deepest[1]:.0f}")
-    assert deepest[0] < 0.1 and deepest[1] < deepest[0] / 30
+    run = scenes.run("exact", spec)
+    radius = np.array(spec["radius"])
+    assert contact.max_penetration(run.q, radius).max() / radius.min() <= 1e-10
