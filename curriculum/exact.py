@@ -28,8 +28,8 @@ Why every loop ends. The pivot (solve_lcp), the separation of overlaps and the s
 follow one another ever faster. A bounce that rises less than LAST radii is the last of its series,
 and so is one of a contact that opened less than TOUCH radii since the bounce before: a light ball
 between a heavy one and the floor is struck infinitely often in finite time, and the limit is rest.
-The clock ends what is left: after EVENTS events per ball within a tick of motion, events come at
-most once in a hundredth of a tick. That is a limit of run time: what closes in the meantime
+The clock ends what is left: after EVENTS events per ball (and 20 times EVENTS at least) within a
+tick of motion, events come at most once in a hundredth of a tick. That is a limit of run time: what closes in the meantime
 overlaps, and is moved apart when its turn comes.
 """
 

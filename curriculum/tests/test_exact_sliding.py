@@ -74,8 +74,7 @@ def test_a_ball_slides_off_a_fixed_ball_as_the_pendulum_upside_down(theta0):
         angle, late = float(path(leaves / 2)[0]), float(leaves)
     times = np.array([0.0, late / 2, late * (1 - 1e-9), late + 0.01])
     q, v = exact.simulate_exact(scn, times, G)
-    assert q[1, :, 1] / R == pytest.approx(
-        [2 * np.sin(angle), 10.0 + 2 * np.cos(angle)], abs=1e-11)
+    assert q[1, :, 1] / R == pytest.approx([2 * np.sin(angle), 10.0 + 2 * np.cos(angle)], abs=1e-11)
     cosine = (q[2, 1, 1] - 1.0) / length
     assert cosine == pytest.approx(2 / 3 * np.cos(theta0), abs=1e-8)
     fall = v[3, 1, 1] - v[2, 1, 1]  # after that it flies: gravity alone changes its velocity
@@ -147,7 +146,11 @@ def on_a_movable_ball(mass, radius, angle=0.4):
 
 def pyramid_of_three():
     return scene([0.0, 2 * R, R], [R, R, R + np.sqrt(3) * R], [1.0] * 3), [
-        (0, -1), (1, -1), (2, 0), (2, 1)]
+        (0, -1),
+        (1, -1),
+        (2, 0),
+        (2, 1),
+    ]
 
 
 def heap_of_five():
@@ -159,7 +162,14 @@ def heap_of_five():
         cx, cy = on_top(x, y, r, i, j, size)
         x, y = [*x, cx], [*y, cy]
     return scene(x, y, [1.0, 0.7, 1.5, 0.8, 1.2], r), [
-        (0, -1), (1, -1), (2, -1), (3, 0), (3, 1), (4, 1), (4, 2)]
+        (0, -1),
+        (1, -1),
+        (2, -1),
+        (3, 0),
+        (3, 1),
+        (4, 1),
+        (4, 2),
+    ]
 
 
 def hexagonal():
@@ -167,7 +177,16 @@ def hexagonal():
     x = [0.0, 2 * R, 4 * R, R, 3 * R, 2 * R]
     y = [R + R * np.sqrt(3) * row for row in (0, 0, 0, 1, 1, 2)]
     return scene(x, y, [1.0] * 6), [
-        (0, -1), (1, -1), (2, -1), (3, 0), (3, 1), (4, 1), (4, 2), (5, 3), (5, 4)]
+        (0, -1),
+        (1, -1),
+        (2, -1),
+        (3, 0),
+        (3, 1),
+        (4, 1),
+        (4, 2),
+        (5, 3),
+        (5, 4),
+    ]
 
 
 CASES = {
@@ -242,8 +261,9 @@ def test_a_pile_of_eight_is_the_same_bits_from_any_sampling(seed, e):
 def tower_error(y, mass, e, time):
     """Worst height error in radii against the simulation in 80 digits."""
     count = len(y)
-    scn = Scene(np.array((np.zeros(count), y)), np.zeros((2, count)), np.array(mass),
-                np.full(count, R), e)
+    scn = Scene(
+        np.array((np.zeros(count), y)), np.zeros((2, count)), np.array(mass), np.full(count, R), e
+    )
     times = np.linspace(0.0, time, 21)
     q, _ = exact.simulate_exact(scn, times, G)
     right = precise_tower.heights(y, np.zeros(count), mass, scn.radius, e, G, times)
