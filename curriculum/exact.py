@@ -6,10 +6,11 @@ one does, the pushing contacts are equations, gap = 0, and the motion is a Taylo
 An event is a gap that closes, a force that falls to zero, or a series that comes to its end. It
 concerns the balls that touch one another there, an island; all other balls go on as they were.
 
+    gather     finds the island, and which of its contacts touch,
     separate   closes what rounding has left of overlaps,
     collide    gives impulses to the contacts that close: an LCP of velocities,
     support    gives forces to the contacts that rest: an LCP of accelerations,
-    slide      expands the motion under these forces in time,
+    expand     gives the motion under these forces: a parabola, or a series where balls slide,
     predict    finds the next event of every contact of the island.
 
 Samples are read from the series, so when they are taken does not enter the motion.
@@ -22,6 +23,8 @@ Samples are read from the series, so when they are taken does not enter the moti
     gap      distance of the surfaces; depth = -gap           m
     v_n      n . (v_i - v_j), > 0 separating                  m/s
     lam      impulse or force of a contact, >= 0              N s or N
+    J, M     J v is v_n of every contact, M the masses, so W = J M^-1 J' (Delassus)
+    s        in an LCP, s = W lam + b >= 0: the normal speed or acceleration that is left
 
 Why every loop ends. The pivot (solve_lcp), the separation of overlaps and the search for a root
 (first_fall) count their steps and stop. Events have no such bound of their own, since bounces can
@@ -29,8 +32,9 @@ follow one another ever faster. A bounce that rises less than LAST radii is the 
 and so is one of a contact that opened less than TOUCH radii since the bounce before: a light ball
 between a heavy one and the floor is struck infinitely often in finite time, and the limit is rest.
 The clock ends what is left: after EVENTS events per ball (and 20 times EVENTS at least) within a
-tick of motion, events come at most once in a hundredth of a tick. That is a limit of run time: what closes in the meantime
-overlaps, and is moved apart when its turn comes.
+tick of motion, events come at most once in a hundredth of a tick, so a hundred more take the clock
+to the next tick. That is a limit of run time: what closes in the meantime overlaps, and is moved
+apart when its turn comes.
 """
 
 # --- region: exact-setup ---
@@ -137,20 +141,20 @@ class Contacts(NamedTuple):
 
 # --- region: exact-pivot ---
 class Table:
-    """w = W lam + b, solved for lam of the active contacts and for w of the others.
+    """s = W lam + b, solved for lam of the active contacts and for s of the others.
 
     rows (K, K + 1): column K is what the left-hand sides are while the right-hand ones are 0.
     """
 
     def __init__(self, problem, wanted):
-        """The active ones of `wanted`, largest diagonal first; what hangs on the others is not."""
+        """Activate those of `wanted`, largest diagonal first, but none that depends on others."""
         self.rows, self.active, left = problem.copy(), np.zeros(len(problem), bool), wanted.copy()
         while (diagonal := self.rows[:, :-1].diagonal() * left).max() > 1e-12:
             left[k := diagonal.argmax()] = False
             self.exchange(k)
 
     def exchange(self, k):
-        """lam_k and w_k change sides."""
+        """Let lam_k and s_k change sides."""
         rows = self.rows
         row, column, pivot = rows[k] / -rows[k, k], rows[:, k].copy(), rows[k, k]
         rows += column[:, None] * row
@@ -166,15 +170,15 @@ class Table:
             lam = np.where(self.active, lam + share.min() * (trial - lam), 0.0)
             self.exchange(bad[share.argmin()])
             return lam, False
-        w = np.where(self.active, 0.0, self.rows[:, -1])
-        k = w.argmin()                          # closes fastest: it is to push
-        if w[k] >= least:
+        s = np.where(self.active, 0.0, self.rows[:, -1])
+        k = s.argmin()                          # closes fastest: it is to push
+        if s[k] >= least:
             return trial, True
-        if self.rows[k, k] < 1e-12:             # it hangs on the others: one of them stops
+        if self.rows[k, k] < 1e-12:             # it depends on others: one of those stops
             column = np.where(self.active, self.rows[:, k], 0.0)
             fall = np.flatnonzero(column < -1e-9)
             if not len(fall):
-                return trial, True              # w_k < 0 is round-off
+                return trial, True              # s_k < 0 is round-off
             share = trial[fall] / -column[fall]
             trial = trial + share.min() * column
             trial[k] = share.min()
@@ -186,7 +190,7 @@ class Table:
 
 # --- region: exact-lcp ---
 def solve_lcp(W, b):
-    """lam (K,) >= 0 with w = W lam + b >= 0 and lam w = 0; W (K, K) the Delassus matrix, b (K,).
+    """lam (K,) >= 0 with s = W lam + b >= 0 and lam s = 0; W (K, K) the Delassus matrix, b (K,).
 
     Pivoting after Lawson and Hanson (1974), from all contacts active, as at rest. With each
     exchange lam'W lam / 2 + b'lam falls, so no active set comes twice. Rounding can break that, so
@@ -358,9 +362,10 @@ def expand(system, held, q, v, a):
     if not (held.along(v, tangents).any() or held.along(a, tangents).any()):
         return np.array((q, v, 0.5 * a)), np.ones((5, len(held.i))), np.inf
     Q, lam = slide(system, held, q, v)
+    # first_fall needs a start above 0: a force that begins at 0 ends once it has fallen by a graze
     lam[0] = np.maximum(lam[0], 0.0) + grazing(system) / (system.w[held.i] + system.w[held.j])
     size = (np.abs(Q[-2:, :, :-1]) / system.radius[:-1]).max((1, 2))
-    power = ((-54 - np.frexp(size)[1]) // (ORDER - 1, ORDER)).min()
+    power = ((-54 - np.frexp(size)[1]) // (ORDER - 1, ORDER)).min()     # size t^order < 2^-54
     return Q, lam, math.ldexp(1.0, int(power))
 # --- endregion ---
 
@@ -446,15 +451,15 @@ class Motion:
     def __init__(self, system, scene):
         bodies, contacts = len(system.w), len(system.i)
         self.system = system
-        self.series = np.zeros((ORDER + 1, 2, bodies))          # of each body's position,
+        self.series = np.zeros((ORDER + 1, 2, bodies))          # of every body's position
         self.series[0, :, :-1], self.series[1, :, :-1] = scene.q0, scene.v0
-        self.start = np.zeros(bodies)                           # written about this time [s]
-        self.until = np.where(system.w > 0.0, 0.0, np.inf)      # and trusted up to this
+        self.start = np.zeros(bodies)                           # the time [s] it starts from
+        self.until = np.where(system.w > 0.0, 0.0, np.inf)      # the time [s] it holds until
         self.due = np.full(contacts, np.inf)                    # when it closes, or stops pushing
         self.pushes = np.zeros(contacts, bool)
         self.rests = np.ones(contacts, bool)                    # it did not part when it touched
-        self.left = np.full(contacts, -np.inf)                  # last, at this time,
-        self.parting = np.zeros(contacts)                       # or with this speed [m/s]
+        self.last_touch = np.full(contacts, -np.inf)            # when it touched last [s]
+        self.parting = np.zeros(contacts)                       # |v_n| it parted with then [m/s]
         self.thin = np.full(contacts, -np.inf)                  # when it closed, hardly opened
 
     def rows(self):
@@ -472,7 +477,7 @@ class Motion:
 
     def opened(self, now, which, v_n):
         """A bound [m] (K,) of how far the contacts were open since they touched last."""
-        return (self.parting[which] + np.abs(v_n)) * (now - self.left[which])
+        return (self.parting[which] + np.abs(v_n)) * (now - self.last_touch[which])
 
     def go_on(self, now, balls, Q, until):
         """From now on the balls (a mask) move by the series Q, trusted until that time."""
@@ -489,8 +494,8 @@ class Motion:
         mine = self.concerns(balls)
         self.rests[mine] = self.pushes[mine] = False
         self.due[mine] = np.inf
-        struck = v_n < -NOISE * contacts.speed      # while it parted: it closes at once, anew
-        self.left[touch], self.parting[touch] = now, np.where(struck, np.inf, np.abs(v_n))
+        struck = v_n < -NOISE * contacts.speed      # closing still: it is due again at once
+        self.last_touch[touch], self.parting[touch] = now, np.where(struck, np.inf, np.abs(v_n))
         self.rests[touch], self.pushes[touch] = rests, pushes
 # --- endregion ---
 
@@ -499,14 +504,14 @@ class Motion:
 def gather(motion, now, q, v):
     """q without overlaps, the mask of the island's balls, what touches in it: index and Contacts.
 
-    A gap of less than TOUCH radii touches if that is less than a ten thousandth of what it was
-    since the contact touched last: where a light ball rattles between two others, it need not be.
+    A gap below TOUCH radii touches. But where a contact has hardly been wider open since it
+    touched last, as under a light ball that rattles between two others, only a gap below a ten
+    thousandth of that does.
     """
     system = motion.system
     bits = 4.0 * np.spacing(np.abs(q).max(0))
     bits = np.maximum(bits[system.i], bits[system.j])
     small = bits + TOUCH * system.radius[system.i]
-    late = motion.due <= now
     contacts, late = system.contacts(q), motion.due <= now
     near = np.flatnonzero((contacts.depth >= -small) | late)
     woken = motion.until <= now
@@ -530,7 +535,7 @@ def hardly_opened(motion, now, touch, contacts, v):
     one contact, it stops at all that were open just then, if by less than 1000 TOUCH radii.
     """
     v_n = contacts.along(v)
-    cascade = motion.thin[touch].max(initial=-np.inf) > motion.left[touch]
+    cascade = motion.thin[touch].max(initial=-np.inf) > motion.last_touch[touch]
     widest = np.where(cascade, 1000.0 * TOUCH, TOUCH) * motion.system.radius[contacts.i]
     thin = (v_n < -NOISE * contacts.speed) & (motion.opened(now, touch, v_n) < widest)
     motion.thin[touch[thin]] = now

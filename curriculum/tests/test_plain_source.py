@@ -32,7 +32,7 @@ def names_of(function):
 
 
 @pytest.mark.parametrize("name", LITERATE)
-def test_functions_have_at_most_40_lines_and_regions_fit_a_screen(name):
+def test_functions_have_at_most_40_lines_and_regions_that_are_shown_fit_a_screen(name):
     long = {
         f.name: f.end_lineno - f.lineno + 1
         for f in functions(name)
