@@ -311,10 +311,12 @@ def first_picture(source):
 
     matplotlib.use("Agg")
     pyplot.close("all")
-    exec(compile(source, CELLS, "exec"), {})
     file = io.BytesIO()
-    pyplot.savefig(file, format="png", metadata={"Software": None})
-    pyplot.close("all")
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()  # whatever else this process has drawn
+        exec(compile(source, CELLS, "exec"), {})
+        pyplot.savefig(file, format="png", metadata={"Software": None})
+        pyplot.close("all")
     data = {
         "image/png": base64.b64encode(file.getvalue()).decode() + "\n",
         "text/plain": "<Figure: the drop, without a table>",

@@ -84,9 +84,17 @@ def test_a_row_of_other_flags_or_of_other_code_is_stale(ledger, tmp_path):
 @pytest.mark.parametrize(
     "old, new, said",
     [
-        ("0.00417", "0.00317", "wallclock_min is 0.00317, but curriculum/wallclock_runs.json has 0.00417"),
+        (
+            "0.00417",
+            "0.00317",
+            "wallclock_min is 0.00317, but curriculum/wallclock_runs.json has 0.00417",
+        ),
         ("1234567", "7654321", "commit is 7654321, but curriculum/wallclock_runs.json has 1234567"),
-        ("2026-01-02", "2026-01-03", "date is 2026-01-03, but curriculum/wallclock_runs.json has 2026-01-02"),
+        (
+            "2026-01-02",
+            "2026-01-03",
+            "date is 2026-01-03, but curriculum/wallclock_runs.json has 2026-01-02",
+        ),
         ("mps,,,,,PENDING", "mps,1,c0ffee,1234567,2026-01-02,MEASURED", "no times of mps"),
     ],
 )

@@ -56,9 +56,11 @@ def executed(text, tmp_path_factory):
     for question in (ASKED, GROOVE):
         book.cells.append(nbformat.v4.new_code_cell(question))
     folder = tmp_path_factory.mktemp("notebook")
-    nbclient.NotebookClient(
-        book, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
-    ).execute()
+    with pytest.MonkeyPatch.context() as shell:
+        shell.delenv("MPLBACKEND", raising=False)  # a kernel shows pictures unless told otherwise
+        nbclient.NotebookClient(
+            book, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
+        ).execute()
     return book
 
 
@@ -78,12 +80,14 @@ def pictures(cell):
 
 def test_two_builds_are_the_same_bytes_whatever_the_hash_seed(text, numbers, tmp_path):
     """The runs are handed over: that they repeat is tested with the script."""
-    (tmp_path / "runs.json").write_text(json.dumps(numbers.runs), encoding="utf-8")
+    made = json.dumps([numbers.runs, numbers.config_hash])
+    (tmp_path / "runs.json").write_text(made, encoding="utf-8")
     again = (
         "import json, sys; from curriculum import notebook; "
-        "runs = json.load(open(sys.argv[1], encoding='utf-8')); "
-        "sys.stdout.buffer.write(notebook.build("
-        "numbers=notebook.Numbers(notebook.regions.ROOT, runs)).encode())"
+        "runs, hashes = json.load(open(sys.argv[1], encoding='utf-8')); "
+        "numbers = notebook.Numbers(notebook.regions.ROOT, runs); "
+        "numbers.config_hash = hashes; "
+        "sys.stdout.buffer.write(notebook.build(numbers=numbers).encode())"
     )
     run = subprocess.run(
         [sys.executable, "-B", "-c", again, tmp_path / "runs.json"],

@@ -103,6 +103,16 @@ def state(page):
     )
 
 
+def eventually(page, question, seconds=5.0):
+    """What the page answers as soon as that is true; the page's policy forbids Playwright's own wait."""
+    for _ in range(int(seconds / 0.02)):
+        answer = page.evaluate(question)
+        if answer:
+            return answer
+        page.wait_for_timeout(20)
+    raise AssertionError(f"not within {seconds} s: {question}")
+
+
 def numbers_in(text):
     return [
         float(each.replace("−", "-").replace(",", ""))
@@ -222,7 +232,7 @@ def test_it_opens_on_the_contact_and_zooms(browser, url):
         page.keyboard.down("Shift")
         page.mouse.wheel(0, 100)
         page.keyboard.up("Shift")
-        page.wait_for_function(f"Figure.view[0] > {zoomed[0]}")
+        assert eventually(page, f"() => Figure.view[0] > {zoomed[0]}")
         assert np.ptp(state(page)["view"]) == pytest.approx(np.ptp(zoomed)), "moved, not stretched"
         page.click("#view-all")
         assert state(page)["view"] == [0, 4]
@@ -775,10 +785,12 @@ def test_the_first_paint_comes_within_half_a_second(browser, url):
     times = []
     for _ in range(3):
         with visiting(browser, url) as page:
-            painted = page.wait_for_function(
-                "performance.getEntriesByName('first-contentful-paint')[0]?.startTime"
+            times.append(
+                eventually(
+                    page,
+                    "() => performance.getEntriesByName('first-contentful-paint')[0]?.startTime",
+                )
             )
-            times.append(painted.json_value())
     assert min(times) < 500, times
 
 
