@@ -35,10 +35,13 @@ def headline(section):
 
     found = section["headline"]
     chosen = [problem for problem in ("drop", "bounce", "stack") if problem in found]
-    rows = []
+    rows, settings = [], []
     for family, label in LABELS.items():
         if any(family in found[problem] for problem in chosen):
             cells = []
+            words = [found[problem].get(family, {}).get("words") for problem in chosen]
+            named = " / ".join(dict.fromkeys(filter(None, words)))
+            settings.append(f"{label}: {named}")
             for problem in chosen:
                 best = found[problem].get(family) or {}
                 cells += [
@@ -47,7 +50,7 @@ def headline(section):
                 ]
             rows.append([label, *cells])
     head = [f"{problem}: {what}" for problem in chosen for what in ("error / r", "ms")]
-    return reporting.table(["", *head], rows)
+    return f"{reporting.table(['', *head], rows)}\nSettings. {'; '.join(settings)}.\n"
 
 
 def figure(name, report, *arguments):
