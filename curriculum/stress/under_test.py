@@ -3,6 +3,7 @@
 import hashlib
 import importlib
 import sys
+import threading
 from functools import cache
 from pathlib import Path
 
@@ -12,6 +13,9 @@ if str(ROOT) not in sys.path:
 contact = importlib.import_module("contact")
 
 MEASURING = ("under_test", "jobs", "scenes", "trial", "maps", "extremes", "invariants", "samebytes")
+
+
+ONE_AT_A_TIME = threading.Lock()  # threads of one process share contact.FEW
 
 
 class PileUp(Exception):
@@ -27,11 +31,12 @@ def run_model(model, scene, dt, steps, **knobs):
 
     The twin has the reference's bits; invariants.plain_steps_give_the_same_bits looks.
     """
-    few, contact.FEW = contact.FEW, 0
-    try:
-        return contact.run_model(model, scene, dt, steps, **knobs)
-    finally:
-        contact.FEW = few
+    with ONE_AT_A_TIME:
+        few, contact.FEW = contact.FEW, 0
+        try:
+            return contact.run_model(model, scene, dt, steps, **knobs)
+        finally:
+            contact.FEW = few
 
 
 def run_exact(scene, dt, steps, most):

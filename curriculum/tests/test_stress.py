@@ -529,3 +529,35 @@ def test_an_unknown_kind_of_job_is_refused():
     with pytest.raises(ValueError, match="nonsense.*allowed: .*penalty-map"):
         jobs.job("nonsense", "x")
     assert under_test.contact is contact
+
+
+def test_threads_that_run_models_at_once_leave_contact_py_as_it_was():
+    """Workers of a scheduler may be threads. Here the second begins before the first has ended."""
+    import threading
+    import time
+
+    few = under_test.contact.FEW
+    scene = under_test.contact.build_scene("drop")
+    begun = threading.Event()
+
+    def first(samples):
+        begun.set()
+        time.sleep(0.02)
+
+    def second(samples):
+        time.sleep(0.04)
+
+    threads = [
+        threading.Thread(
+            target=under_test.run_model,
+            args=("exact", scene, 0.01, 60),
+            kwargs={"report": report},
+        )
+        for report in (first, second)
+    ]
+    threads[0].start()
+    begun.wait(5.0)
+    threads[1].start()
+    for thread in threads:
+        thread.join()
+    assert under_test.contact.FEW == few
