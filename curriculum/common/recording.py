@@ -7,8 +7,10 @@ from curriculum.common.files import whole
 
 PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"
-WIDTHS = (5.0, 3.5, 2.2, 1.2)  # of curves, in points: lines that coincide are seen beneath
+WIDTHS = (6.0, 3.6, 2.2, 1.2)  # of curves, in points: lines that coincide are seen beneath
 FEW = 24  # balls: more have no arrows
+FARTHEST = 150  # radii: how far out of the middle a ball is still kept in view
+HIGH = 0.16  # radii: the height of the view that magnifies the table, where a rest sinks by 0.01
 
 
 def write(path, name, runs, radius, curves, colors, pushes=None, bursts=None):
@@ -72,7 +74,7 @@ def timelines(rr, t):
 
 def send_table(rr, recording, label):
     """The table: a grey body under the balls, and a thin line over them, so that a sink is seen."""
-    deep, wide = 50.0, 1e3  # m
+    deep, wide = 50.0, 50.0  # m; a longer line is drawn with gaps where it is magnified
     recording.log(
         f"world/{label}/ground",
         rr.LineStrips2D(
@@ -145,70 +147,86 @@ def send_pushes(rr, recording, label, run, radius, times, pushes):
 def layout(rrb, runs, radius, curves, bursts):
     """The blueprint that travels in the file: the balls, the table magnified, the plots, at t = 0.
 
-    Every run has views of its own, so balls that roll far never cross into another run's. The
-    table is magnified under balls that stand above one another, and not under those that roll.
+    Every run has views of its own, so balls that roll far never cross into another run's. Where
+    they roll, the views are as wide as the screen, one below the other; where they stand above one
+    another, the table is magnified under them.
     """
     first = next(iter(runs.values()))
     large = float(radius.max())
-    low, high = float(first.q[0, 0].min()), float(first.q[0, 0].max())
-    middle, half = 0.5 * (low + high), 0.5 * (high - low) + 2.5 * large
-    if len(radius) > 1:
-        half = min(
-            2.0 * half, max(half, *[roamed(run.q[:, 0], middle) + large for run in runs.values()])
-        )
-    top = float(first.q[0, 1].max()) + 2.0 * large
-    whole_view = rrb.VisualBounds2D(
-        x_range=[middle - half, middle + half], y_range=[-top, 0.12 * top]
-    )
-    near = float(first.q[0, 0, 0])
-    close_view = rrb.VisualBounds2D(
-        x_range=[near - 1.2 * large, near + 1.2 * large], y_range=[-0.3 * large, 0.5 * large]
-    )
+    sound = [run for label, run in runs.items() if bursts.get(label) is None]
+    x_range, y_range = frame(sound or [first], large)
     lanes = [
         rrb.Spatial2DView(
-            origin=f"world/{label}", name=told(label, bursts.get(label)), visual_bounds=whole_view
+            origin=f"world/{label}",
+            name=told(label, bursts.get(label)),
+            visual_bounds=rrb.VisualBounds2D(x_range=x_range, y_range=y_range),
         )
         for label in runs
     ]
-    wide = half > 0.6 * top and len(lanes) > 1
-    rows = [rrb.Grid(*lanes, grid_columns=1 + (len(lanes) > 2)) if wide else rrb.Horizontal(*lanes)]
-    if high - low < large:
-        rows.append(
-            rrb.Horizontal(
-                *[
-                    rrb.Spatial2DView(
-                        origin=f"world/{label}",
-                        name="the table, magnified",
-                        visual_bounds=close_view,
-                    )
-                    for label in runs
-                ]
-            )
-        )
-    rows.append(
-        rrb.Horizontal(
-            *[
-                rrb.TimeSeriesView(
-                    origin=title.split()[0],
-                    name=title,
-                    plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop),
-                )
-                for title in curves
-            ]
-        )
-    )
+    wide = x_range[1] - x_range[0] > 1.2 * (y_range[1] - y_range[0])
+    rows = [rrb.Vertical(*lanes) if wide else rrb.Horizontal(*lanes)]
+    start = first.q[0, 0]
+    if float(start.max() - start.min()) < large and not wide:
+        rows.append(rrb.Horizontal(*[magnified(rrb, label, start[0], large) for label in runs]))
+    rows.append(rrb.Horizontal(*plots(rrb, curves)))
     shares = [5, 2, 3] if len(rows) == 3 else [5, 3]
     return rrb.Blueprint(
         rrb.Vertical(*rows, row_shares=shares), time_panel(rrb), collapse_panels=True
     )
 
 
-def roamed(x, middle):
-    """How far from the middle the balls ever are [m]; 0 for a run that overflows."""
+def frame(runs, large):
+    """The ranges of x and of -y [m] that hold all balls of these runs, from first to last.
+
+    A ball that leaves by more than FARTHEST radii is let go, or the others would be dots.
+    """
+    x = runs[0].q[0, 0]
+    middle = 0.5 * (float(x.min()) + float(x.max()))
+    half = max(reach(run.q[:, 0] - middle, large) for run in runs) + 2.5 * large
+    top = max(reach(run.q[:, 1], large) for run in runs) + 2.0 * large
+    return [middle - half, middle + half], [-top, 0.12 * top]
+
+
+def reach(values, large):
+    """The largest of the values by size [m], at most FARTHEST radii."""
     import numpy as np
 
-    far = np.abs(x - middle).max()
-    return float(far) if np.isfinite(far) else 0.0
+    far = np.abs(values).max()
+    return float(min(far, FARTHEST * large)) if np.isfinite(far) else FARTHEST * large
+
+
+def magnified(rrb, label, x, large):
+    """A view of the place where the balls stand on the table, HIGH radii high."""
+    high = HIGH * large
+    bounds = rrb.VisualBounds2D(
+        x_range=[x - 1.2 * high, x + 1.2 * high], y_range=[-0.4 * high, 0.6 * high]
+    )
+    name = f"the table, magnified: {HIGH:g} r high"
+    return rrb.Spatial2DView(origin=f"world/{label}", name=name, visual_bounds=bounds)
+
+
+def plots(rrb, curves):
+    """A plot a title. One of them has the legend, since a legend hides the curves under it."""
+    emptiest = min(curves, key=lambda title: crowd(curves[title]))
+    return [
+        rrb.TimeSeriesView(
+            origin=title.split()[0],
+            name=title,
+            plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=title == emptiest),
+        )
+        for title in curves
+    ]
+
+
+def crowd(lines):
+    """How high the lines {label: values} come in their last half, as a share of their range."""
+    import numpy as np
+
+    values = np.array([np.where(np.isfinite(line), line, 0.0) for line in lines.values()])
+    with np.errstate(over="ignore"):
+        height = float(np.ptp(values))
+    late = float(values[:, values.shape[1] // 2 :].max() - values.min())
+    return late / height if 0.0 < height < np.inf else 1.0
 
 
 def told(label, burst):

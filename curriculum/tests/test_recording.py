@@ -173,17 +173,80 @@ def test_curves_are_drawn_with_their_peaks_and_wide_beneath_thin(stack):
         assert wide == sorted(wide, reverse=True) and len(set(wide)) == len(wide)
 
 
-def test_balls_that_roll_far_stay_in_view_up_to_twice_the_width(tmp_path, read_recording):
-    """In the first edition the two models' balls ran through each other's lanes."""
+def views(recording):
+    """The (x_range, y_range) of the views of balls, the widest first."""
+    seen = [view[0] for view in blueprint_facts(recording)["VisualBounds2D:range"]]
+    return sorted(
+        ((view["x_range"], view["y_range"]) for view in seen), key=lambda v: np.ptp(v[0])
+    )[::-1]
+
+
+def test_balls_that_roll_far_stay_in_view_to_the_end(tmp_path, read_recording):
+    """There is no friction: at the end of the pile of 12, eight balls had left their views."""
     scene = contact.build_scene("pile", bodies=12)
-    runs = {model: contact.run_model(model, scene, 0.002, 900) for model in ("penalty", "lcp")}
+    runs = {model: contact.run_model(model, scene, 0.002, 2000) for model in ("penalty", "lcp")}
     contact.log_rerun(tmp_path / "pile.rrd", runs, scene)
-    facts = blueprint_facts(read_recording(tmp_path / "pile.rrd"))
-    views = [seen[0] for seen in facts["VisualBounds2D:range"]]
-    left, right = max((view["x_range"] for view in views), key=lambda ends: ends[1] - ends[0])
-    start = np.ptp(scene.q0[0])
-    roamed = max(np.abs(run.q[:, 0]).max() for run in runs.values())
-    assert right - left >= min(2.0 * start, 2.0 * roamed) and roamed > 0.6 * start
+    (left, right), (top, bottom) = views(read_recording(tmp_path / "pile.rrd"))[0]
+    for run in runs.values():
+        assert run.q[:, 0].max() > 3.0 * scene.q0[0].max(), "they roll far"
+        assert left < run.q[:, 0].min() - 0.1 and run.q[:, 0].max() + 0.1 < right
+        assert top < -run.q[:, 1].max() - 0.1 and bottom > 0.0
+
+
+def test_a_run_that_explodes_or_a_ball_that_is_far_off_leaves_the_view_as_it_is(
+    tmp_path, read_recording
+):
+    """Or the balls of the other runs would be dots."""
+    scene = contact.build_scene("pile", bodies=4)
+    calm = contact.run_model("lcp", scene, 0.002, 400)
+    far = calm._replace(q=calm.q + 1e4 * (np.arange(401) > 300)[:, None, None])
+    made = []
+    for runs in (
+        {"lcp": calm},
+        {"lcp": calm, "penalty": contact.run_model("penalty", scene, 0.05, 400)},
+        {"lcp": far},
+    ):
+        contact.log_rerun(tmp_path / "a.rrd", runs, scene)
+        made.append(views(read_recording(tmp_path / "a.rrd"))[0])
+    alone, beside, off = made
+    assert alone == beside
+    assert np.ptp(off[0]) <= 2 * 155 * 0.1, "at most 150 radii to each side, and a margin"
+
+
+def test_a_rest_that_is_a_hundredth_of_a_radius_deep_is_several_points_of_the_magnified_view(
+    tmp_path, read_recording
+):
+    """The view is about 140 points high; the line of the table is 1.2 points thick."""
+    scene, runs = runs_of("drop")
+    contact.log_rerun(tmp_path / "drop.rrd", runs, scene)
+    recording = read_recording(tmp_path / "drop.rrd")
+    (left, right), (top, bottom) = views(recording)[-1]
+    assert left < 0.0 < right and top < 0.0 < bottom
+    sunk = 1.0 * 9.81 / 1e4  # m g / k
+    assert 140 * sunk / (bottom - top) > 5 * 1.2
+    assert bottom > 3 * sunk, "also below a stack of three"
+
+
+@pytest.mark.parametrize("name", ["drop", "bounce", "stack"])
+def test_one_plot_has_the_legend_and_it_hides_no_curve_there(name, tmp_path, read_recording):
+    """A legend in every plot hid a quarter of each."""
+    scene, runs = runs_of(name)
+    contact.log_rerun(tmp_path / "a.rrd", runs, scene)
+    recording = read_recording(tmp_path / "a.rrd")
+    shown, titles = {}, {}
+    for entity, row in recording.blueprint:
+        view = entity.split("/")[2] if entity.startswith("/view/") else None
+        for visible in row.get("PlotLegend:visible", []):
+            shown[view] = visible
+            assert row["PlotLegend:corner"] == [rr.blueprint.Corner2D.RightTop.value]
+        for title in row.get("ViewBlueprint:display_name", []):
+            titles[view] = title
+    (legend,) = [titles[view] for view in shown if shown[view]]
+    assert len(shown) == len(CURVES)
+    curves = contact.curves(runs, scene)
+    lines = np.array(list(curves[legend].values()))
+    late = lines[:, int(0.6 * STEPS) :]
+    assert late.max() <= lines.min() + 0.55 * np.ptp(lines), "the upper right is empty"
 
 
 def test_an_exploded_ball_is_said_so_in_the_name_of_its_view(tmp_path, read_recording):
