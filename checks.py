@@ -18,7 +18,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
 import predict  # noqa: E402
 import trials  # noqa: E402
-from predict import contact  # noqa: E402
+from predict import contact, stoppable  # noqa: E402
 
 FILES = {"ex1": "ex1_predict_contact", "ex2": "ex2_completion_contact", "ex3": "ex3_dt_stability",
          "ex4": "ex4_predict_soft"}
@@ -157,6 +157,8 @@ def run_once(selected, path):
     results = Results()
     words = ["-q", "-rs", *(["-k", selected] if selected else [])]
     status = pytest.main([str(ROOT / "checks.py"), *words], plugins=[results])
+    if status == pytest.ExitCode.INTERRUPTED:
+        raise KeyboardInterrupt
     try:
         write_json(path, results.as_dict())
     except OSError as error:
@@ -180,6 +182,7 @@ def watch(argv):
         time.sleep(0.2)
 
 
+@stoppable
 def main(argv=None):
     """Run the checks once, or again and again. Returns the exit status."""
     from curriculum.common.arguments import Parser

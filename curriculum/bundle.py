@@ -30,6 +30,7 @@ from pathlib import Path
 from curriculum import regions
 from curriculum.common import wallclock
 from curriculum.common.files import write_whole
+from curriculum.common.stoppable import stoppable
 from curriculum.drift import texts
 from curriculum.drift.passages import exercise_words
 from curriculum.quoted import Numbers, load_meta
@@ -395,6 +396,7 @@ def files(root, out, runs=None):
     }
 
 
+@stoppable
 def main(argv=None):
     """Write the bundle. Returns the exit status: 0 written, 1 it can't be made, 2 bad usage."""
     from curriculum.common.arguments import Parser, writable_folder

@@ -45,6 +45,7 @@ from pathlib import Path
 
 from curriculum import measured, regions
 from curriculum.common import wallclock
+from curriculum.common.stoppable import stoppable
 from curriculum.drift import names as naming
 from curriculum.drift import passages, texts
 from curriculum.drift.passages import GATE, accept
@@ -561,6 +562,7 @@ def check(root=ROOT, numbers=None, first=False):
     return problems
 
 
+@stoppable
 def main(argv=None):
     """Check, accept, or fuzz. Returns the exit status: 0 in order, 1 drift, 2 bad usage."""
     from curriculum.common.arguments import Parser, number

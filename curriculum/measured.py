@@ -33,6 +33,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from curriculum.common.files import write_whole
+from curriculum.common.stoppable import stoppable
 
 ROOT = Path(__file__).resolve().parents[1]
 LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
@@ -300,6 +301,7 @@ def all_sections(root: Path = ROOT):
             yield f"{folder}/{NAME}", name, section
 
 
+@stoppable
 def main(argv=None) -> int:
     """List the results and say what is stale. Returns the exit status."""
     parser = argparse.ArgumentParser(

@@ -38,6 +38,7 @@ from typing import NamedTuple
 
 from curriculum import measured, reporting
 from curriculum.common.files import write_whole
+from curriculum.common.stoppable import stoppable
 
 ROOT = Path(__file__).resolve().parents[1]
 TARGETS = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
@@ -524,6 +525,7 @@ def choose(file, args):
     return every, sorted(chosen, key=lambda m: (m.start, m.new))
 
 
+@stoppable
 def main(argv=None):
     """Returns the exit status."""
     args = parse(argv)

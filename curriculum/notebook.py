@@ -23,6 +23,7 @@ from typing import NamedTuple
 from curriculum import regions
 from curriculum.common.arguments import Parser
 from curriculum.common.files import write_whole
+from curriculum.common.stoppable import stoppable
 from curriculum.drift.texts import CHAPTER, FENCE, INCLUDE
 from curriculum.quoted import Numbers, load_meta
 
@@ -352,6 +353,7 @@ def build(root=regions.ROOT, numbers=None):
     return writes(notebook) + "\n"
 
 
+@stoppable
 def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 the notebook can't be built."""
     parser = Parser(prog="python -m curriculum.notebook", description="The chapter as a notebook.")

@@ -39,6 +39,7 @@ from pathlib import Path
 from curriculum import measured
 from curriculum.common import wallclock
 from curriculum.common.files import write_whole
+from curriculum.common.stoppable import stoppable
 
 ROOT = Path(__file__).resolve().parents[1]
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")
@@ -343,6 +344,7 @@ def record(root=ROOT):
     )
 
 
+@stoppable
 def main(argv=None):
     """List the numbers, show one, or record the reference run. Returns the exit status."""
     from curriculum.common.arguments import Parser

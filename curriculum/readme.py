@@ -17,6 +17,7 @@ from importlib import import_module
 
 from curriculum import measured, reporting
 from curriculum.common.files import write_whole
+from curriculum.common.stoppable import stoppable
 
 README = measured.ROOT / "README.md"
 COMMAND = "python -m curriculum.readme"
@@ -151,6 +152,7 @@ def fill(text):
     return BLOCK.sub(made, text)
 
 
+@stoppable
 def main(argv=None):
     """Write the README's blocks, or with --check only compare them. Returns the exit status."""
     parser = argparse.ArgumentParser(prog=COMMAND, description="The README's generated blocks.")

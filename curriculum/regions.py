@@ -24,6 +24,7 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
+from curriculum.common.stoppable import stoppable
 from curriculum.measured import LITERATE
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -207,6 +208,7 @@ def find_all(root=ROOT):
     return {name: region for name, region in found.items() if name != docstring_name(region.file)}
 
 
+@stoppable
 def main(argv=None):
     """List the regions, or print one. Returns the exit status: 1 malformed, 2 no such region."""
     from curriculum.common.arguments import Parser

@@ -9,6 +9,7 @@ import sys
 
 import contact
 from curriculum.common import arguments, device, memory, progress, results, shell
+from curriculum.common.stoppable import stoppable
 
 EXPLAINED = """\
 scenes:
@@ -293,6 +294,7 @@ def collect(args, scene, runs, run):
                         for model, found in runs.items()}}
 
 
+@stoppable
 def main(argv=None):
     """Run the command line: print the report, write its files. Returns the exit status."""
     args = parse_flags(argv)

@@ -11,6 +11,7 @@ sys.path.insert(0, str(ROOT))
 import contact  # noqa: E402
 from curriculum.common import shell  # noqa: E402
 from curriculum.common.arguments import Parser, number  # noqa: E402
+from curriculum.common.stoppable import stoppable  # noqa: E402
 
 
 def meta(name):
@@ -111,6 +112,7 @@ def parse(name, argv=None, **switches):
     return args
 
 
+@stoppable
 def play(name, exercise, argv=None):
     """Ask; refuse before a choice; then measure, show, explain. Returns the exit status."""
     if parse(name, argv).hint:

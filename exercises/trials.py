@@ -12,7 +12,7 @@ from unittest.mock import patch
 
 import numpy as np
 import predict
-from predict import contact
+from predict import contact, stoppable
 
 BLANKS = ("penalty_normal_force", "project_impulse")
 WITHIN = 1e-6       # m; trials that differ by less are the same
@@ -192,6 +192,7 @@ def yours(exercise):
         project_impulse=lambda *given: exercise.project_impulse(*given[:2]))
 
 
+@stoppable
 def play(exercise, argv=None):
     """The three trials with the two fills. Exit status: 0 right, 1 wrong, 2 not filled yet."""
     args = predict.parse("ex2", argv, record="write a recording of every trial, for rerun")

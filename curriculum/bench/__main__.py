@@ -28,6 +28,7 @@ from curriculum import measured
 from curriculum.bench import problems
 from curriculum.common.arguments import Parser, writable_folder
 from curriculum.common.files import write_whole
+from curriculum.common.stoppable import stoppable
 from curriculum.reporting import listed
 
 WHAT = ("accuracy", "solvers", "cradle", "soft", "pile", "skip")
@@ -132,6 +133,7 @@ def parse(argv):
     return args
 
 
+@stoppable(said="stopped; the same command goes on from here")
 def main(argv=None):
     """Returns the exit status: 1 when figures could not be drawn."""
     args, trouble = parse(argv), None

@@ -17,6 +17,7 @@ import numpy as np
 import contact
 from curriculum import measured
 from curriculum.bench import engines, timing
+from curriculum.common.stoppable import end_at_ctrl_c
 
 COMMAND = "python -m curriculum.bench pile"
 CODE = ("contact.py", "curriculum/piles.py")
@@ -92,7 +93,7 @@ def measure(quick=False, cells=None):
         for count, (steps, processes) in sizes.items():
             for number in range(processes):
                 if timing.place("time", number, count) not in cells:
-                    with spawn.Pool(1) as pool:
+                    with spawn.Pool(1, end_at_ctrl_c) as pool:
                         found = pool.apply(one_process, ((count, steps, number),))
                     cells[timing.place("time", number, count)] = found
                 tick(f"{count} balls")

@@ -19,6 +19,7 @@ import numpy as np
 import contact
 from curriculum import measured
 from curriculum.bench import engines, timing
+from curriculum.common.stoppable import end_at_ctrl_c
 
 COMMAND = "python -m curriculum.bench solvers"
 CODE = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
@@ -323,7 +324,7 @@ class Worker:
             self.pool.terminate()
 
     def __call__(self, work, key):
-        self.pool = self.pool or multiprocessing.get_context("spawn").Pool(1)
+        self.pool = self.pool or multiprocessing.get_context("spawn").Pool(1, end_at_ctrl_c)
         try:
             return self.pool.apply_async(work, (key,)).get(START_UP + LIMIT)
         except multiprocessing.TimeoutError:

@@ -16,9 +16,10 @@ import statistics
 import subprocess
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
 
 from curriculum import measured
+from curriculum.common.stoppable import end_at_ctrl_c
+from curriculum.common.workers import in_order
 
 SLOW = 2.0  # s: a cell that took longer in a process is not timed in more than TWO of them
 TWO = 2
@@ -60,7 +61,7 @@ def in_fresh_processes(work, keys, processes, cells, title):
             tick(done=len(keys) - len(todo))
             if not todo:
                 continue
-            with spawn.Pool(1) as pool:
+            with spawn.Pool(1, end_at_ctrl_c) as pool:
                 for key, value in zip(todo, pool.imap(work, todo)):
                     cells[place("time", number, key)] = value
                     tick(key[1])
@@ -94,10 +95,9 @@ def beside(work, keys, cells, kind, title, workers=2):
     spawn = multiprocessing.get_context("spawn")
     with measured.progress(len(keys), title) as tick:
         tick(done=len(keys) - len(todo))
-        with ProcessPoolExecutor(workers, mp_context=spawn) as pool:
-            for key, value in zip(todo, pool.map(work, todo)):
-                cells[place(kind, 0, key)] = value
-                tick(key[1])
+        for key, value in zip(todo, in_order(work, [(key,) for key in todo], workers, spawn)):
+            cells[place(kind, 0, key)] = value
+            tick(key[1])
     return {key: cells[place(kind, 0, key)] for key in keys}
 
 

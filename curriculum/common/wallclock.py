@@ -14,6 +14,8 @@ kept in curriculum/wallclock_runs.json, so that no row can be typed or edited al
 
 import os
 
+from curriculum.common.stoppable import stoppable
+
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 LEDGER = os.path.join(ROOT, "wallclock.csv")
 CHAPTER = "ch3.5-contact"
@@ -202,6 +204,7 @@ def write_row(tier, seconds, config_hash, commit, date, path=None):
     write_whole(path, "\n".join(lines) + "\n")
 
 
+@stoppable
 def main(argv=None):
     """Show the ledger, or measure this machine's row. Returns the exit status."""
     import datetime

@@ -3,6 +3,7 @@
 import os
 
 from curriculum.common import progress
+from curriculum.common.stoppable import end_at_ctrl_c
 
 
 def spread(function, inputs, label):
@@ -14,11 +15,24 @@ def spread(function, inputs, label):
     count = min(len(inputs), os.cpu_count() or 1)
     if count < 2:
         return [function(*each) for each, _ in zip(inputs, tick)]
+    found = []
+    for result in in_order(function, inputs, count):
+        found.append(result)
+        tick(len(found))
+    return found
+
+
+def in_order(function, inputs, count, context=None):
+    """Yield function(*each) for each in inputs, by `count` processes. Ctrl-C ends them too."""
+    import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    with ProcessPoolExecutor(count) as pool:
-        found = []
-        for result in pool.map(function, *zip(*inputs)):
-            found.append(result)
-            tick(len(found))
-    return found
+    with ProcessPoolExecutor(count, context, end_at_ctrl_c) as pool:
+        futures = [pool.submit(function, *each) for each in inputs]
+        try:
+            for future in futures:
+                yield future.result()
+        except (KeyboardInterrupt, GeneratorExit):
+            for process in multiprocessing.active_children():
+                process.terminate()  # or leaving the pool would wait for all that was asked for
+            raise

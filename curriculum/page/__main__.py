@@ -5,8 +5,10 @@ from pathlib import Path
 
 from curriculum.common.arguments import Parser
 from curriculum.common.files import write_whole
+from curriculum.common.stoppable import stoppable
 
 
+@stoppable
 def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 the chapter can't be built, 2 bad usage."""
     parser = Parser(

@@ -25,6 +25,7 @@ import json
 
 from curriculum import measured
 from curriculum.common.arguments import Parser, number, writable_folder
+from curriculum.common.stoppable import stoppable
 from curriculum.stress import extremes, jobs, maps, report, runner, samebytes, scenes, under_test
 
 RESULTS = under_test.ROOT / "curriculum" / "stress" / "results"
@@ -133,6 +134,7 @@ def chosen(parser, globs, todo):
     return found
 
 
+@stoppable(said="stopped; the same command goes on from here")
 def main(argv=None):
     """Returns the exit status."""
     args = parse(argv)
@@ -159,8 +161,4 @@ def main(argv=None):
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        print("stopped; the same command goes on from here", file=sys.stderr)
-        sys.exit(130)
+    sys.exit(main())

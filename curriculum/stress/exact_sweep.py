@@ -15,6 +15,7 @@ import numpy as np
 
 import contact
 from curriculum import exact
+from curriculum.common.stoppable import stoppable
 from curriculum.stress import precise_tower
 
 R, G = contact.RADIUS, contact.GRAVITY
@@ -69,6 +70,7 @@ def tower_error(scene):
     return np.abs(run(scene, times)[0][:, 1] - right).max() / R
 
 
+@stoppable
 def main(argv=None):
     """Print the lines. Returns 0."""
     parser = argparse.ArgumentParser(description="exact in many piles or towers.")

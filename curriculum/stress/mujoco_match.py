@@ -15,6 +15,7 @@ import numpy as np
 import contact
 from curriculum import measured, reporting
 from curriculum.common.files import write_whole
+from curriculum.common.stoppable import stoppable
 
 COMMAND = "python -m curriculum.stress.mujoco_match"
 FOLDER = measured.ROOT / "curriculum" / "stress" / "results"
@@ -207,6 +208,7 @@ def page(section):
     )
 
 
+@stoppable
 def main():
     """Measure, write the results section and its page. Returns the exit status."""
     try:

@@ -1,5 +1,6 @@
 """The command line: bad input, equal bytes, strict JSON, rerun wanted, unwanted and missing."""
 
+import ast
 import io
 import json
 import os
@@ -8,6 +9,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
@@ -384,9 +386,82 @@ def test_ctrl_c_in_a_long_run_leaves_no_file(tmp_path, monkeypatch, capsys):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(contact, "measure_stability", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        contact.main([*SHORT, "--out", str(tmp_path / "new")])
+    assert contact.main([*SHORT, "--out", str(tmp_path / "new")]) == 130
+    assert capsys.readouterr().err == "stopped\n"
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a terminal's Ctrl-C is tested where groups are")
+@pytest.mark.parametrize("flags", [
+    ["--scene", "pile", "--contact", "soft", "--no-skip", "--steps", "100000"],
+    ["--scene", "stack", "--seeds", "0:2000"],
+])  # fmt: skip
+def test_ctrl_c_ends_run_and_worker_processes_with_one_line_and_leaves_no_file(flags, tmp_path):
+    """Ctrl-C reaches every process of the group, each of which had a traceback of its own."""
+    process = subprocess.Popen(
+        [sys.executable, "-u", str(ROOT / "contact.py"), *flags, "--out", str(tmp_path / "new")],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+    )  # fmt: skip
+    assert b"device" in process.stdout.readline()
+    time.sleep(0.5)  # the runs have begun
+    os.killpg(process.pid, signal.SIGINT)
+    err = process.communicate(timeout=30)[1].decode()
+    lines = [line for line in err.splitlines() if "fast" not in line]
+    assert (process.returncode, lines) == (130, ["stopped"])
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a pipe that nobody reads is posix's")
+@pytest.mark.parametrize("command", [
+    ["contact.py", *SHORT], ["contact.py", "--help"], ["exercises/ex1_predict_contact.py"],
+    ["-m", "curriculum.measured"], ["-m", "curriculum.regions"],
+])  # fmt: skip
+@pytest.mark.parametrize("buffered", ["", "1"])
+def test_a_pipe_that_nobody_reads_any_more_ends_a_command_without_a_word(
+    command, buffered, tmp_path
+):
+    out = ["--out", str(tmp_path)] if SHORT[0] in command else []
+    reader, writer = os.pipe()
+    os.close(reader)
+    run = subprocess.run(
+        [sys.executable, *command, *out], cwd=ROOT, stdout=writer, stderr=subprocess.PIPE,
+        env=os.environ | {"PYTHONUNBUFFERED": buffered},
+    )  # fmt: skip
+    os.close(writer)
+    allowed = (0, 141) if "--help" in command else (141,)  # argparse keeps such an error to itself
+    assert run.returncode in allowed and run.stderr == b""
+    assert not [name for name in os.listdir(tmp_path) if name.endswith(".tmp")]
+
+
+def decorated(path):
+    """The functions of a file that are decorated with stoppable."""
+    body = ast.parse(path.read_text("utf-8")).body
+    functions = [node for node in body if isinstance(node, ast.FunctionDef)]
+    return {
+        function.name
+        for function in functions
+        if any("stoppable" in ast.unparse(made) for made in function.decorator_list)
+    }
+
+
+def test_every_command_of_the_project_can_be_stopped_without_a_traceback():
+    """One decorator for all. contact.py and the exercises call a main that has it."""
+    passed_on = {"contact.py": "terminal.main(argv)"}
+    for path in (ROOT / "exercises").glob("ex?_*.py"):
+        passed_on[f"exercises/{path.name}"] = ".play("
+    files = [ROOT / "contact.py", ROOT / "checks.py", *ROOT.glob("exercises/*.py")]
+    files += [path for path in ROOT.glob("curriculum/**/*.py") if "tests" not in path.parts]
+    commands = [
+        path for path in files if '\nif __name__ == "__main__":\n' in path.read_text("utf-8")
+    ]
+    assert len(commands) > 15
+    lacking = [path for path in commands if "main" not in decorated(path)]
+    assert {path.relative_to(ROOT).as_posix() for path in lacking} == set(passed_on)
+    assert "main" in decorated(ROOT / "curriculum" / "terminal.py")
+    for name in ("predict", "trials"):
+        assert "play" in decorated(ROOT / "exercises" / f"{name}.py")
+    for name, call in passed_on.items():
+        assert call in (ROOT / name).read_text("utf-8")
 
 
 # The first command

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from curriculum.common import arguments, device, files, progress, wallclock
+from curriculum.common import arguments, device, files, progress, stoppable, wallclock
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -266,3 +266,37 @@ def test_progress_wipes_itself_when_the_loop_is_interrupted(monkeypatch):
             if k == 5:
                 raise KeyboardInterrupt
     assert sys.stderr.getvalue().endswith("\r\x1b[K")
+
+
+# stoppable
+
+
+def test_a_stopped_command_says_so_in_one_line_and_returns_a_shells_status(capsys):
+    @stoppable.stoppable(said="stopped; go on later")
+    def main(argv=None):
+        """Its docstring."""
+        raise argv
+
+    assert main(KeyboardInterrupt()) == 130 == 128 + signal.SIGINT
+    assert capsys.readouterr().err == "stopped; go on later\n"
+    assert main.__doc__ == "Its docstring."
+    with pytest.raises(ValueError, match="a mistake of ours"):
+        main(ValueError("a mistake of ours"))
+    with pytest.raises(OSError, match="/full/a.txt"):
+        main(OSError(28, "No space left on device", "/full/a.txt"))
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no full disk to play")
+def test_output_to_a_full_disk_is_one_line():
+    code = (
+        "from curriculum.common.stoppable import stoppable\n"
+        "print('said')\n"
+        "raise SystemExit(stoppable(lambda: 0)())"
+    )
+    with open("/dev/full", "w") as full:
+        run = subprocess.run(
+            [sys.executable, "-c", code], cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True,
+            env=os.environ | {"PYTHONUNBUFFERED": ""},
+        )  # fmt: skip
+    assert run.returncode == 2
+    assert run.stderr == "error: cannot print the rest: No space left on device\n"

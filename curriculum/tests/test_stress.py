@@ -470,7 +470,7 @@ def test_a_job_that_raises_is_reported_with_the_place(command_with, tmp_path):
     assert "KeyError" in failure[3] and "scenes.py" in failure[3]
 
 
-def test_an_interrupted_run_goes_on_where_it_stopped(command_with, monkeypatch):
+def test_an_interrupted_run_goes_on_where_it_stopped(command_with, monkeypatch, capsys):
     ran, attempt, todo = [], runner.attempt, [*LITTLE[:2], LITTLE[-2]]
 
     def interrupted(job):
@@ -480,8 +480,8 @@ def test_an_interrupted_run_goes_on_where_it_stopped(command_with, monkeypatch):
         return attempt(job)
 
     monkeypatch.setattr(runner, "attempt", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        command_with(todo)
+    assert command_with(todo) == 130
+    assert capsys.readouterr().err.strip() == "stopped; the same command goes on from here"
     monkeypatch.setattr(runner, "attempt", lambda job: (ran.append(job["name"]), attempt(job))[1])
     assert command_with(todo) == 0
     assert ran == [job["name"] for job in todo]
