@@ -36,6 +36,7 @@ def write(path, name, runs, radius, curves, colors, pushes=None, bursts=None):
             send_balls(rr, recording, label, run, radius, times, colors[label])
             if pushes and len(radius) <= FEW:
                 send_pushes(rr, recording, label, run, radius, times, pushes[label])
+        widths = WIDTHS[-len(runs) :]
         for place, label in enumerate(sorted(runs)):
             times = timelines(rr, runs[label].t)
             for title, lines in curves.items():
@@ -45,7 +46,7 @@ def write(path, name, runs, radius, curves, colors, pushes=None, bursts=None):
                     rr.SeriesLines(
                         colors=rgba(colors[label]),
                         names=[label],
-                        widths=WIDTHS[place % len(WIDTHS)],
+                        widths=widths[place % len(widths)],
                         aggregation_policy="MinMax",
                     ),
                     static=True,

@@ -275,6 +275,8 @@ def test_one_model_alone_is_recorded_alone(tmp_path, read_recording):
     scene, runs = runs_of("drop")
     contact.log_rerun(tmp_path / "one.rrd", {"lcp": runs["lcp"]}, scene)
     recording = read_recording(tmp_path / "one.rrd")
+    (alone,) = recording.static["/height/lcp"]["SeriesLines:widths"]
+    assert alone < 2.0, "nothing lies beneath that must be seen"
     moving = {"/world/lcp/balls", "/world/lcp/pushes"}
     assert set(recording.series) == {*moving, *(f"/{curve}/lcp" for curve in CURVES)}
 
