@@ -74,12 +74,20 @@ def timelines(rr, t):
 
 
 def send_table(rr, recording, label):
-    """The table: a grey body under the balls, and a thin line over them, so that a sink is seen."""
-    deep, wide = 50.0, 50.0  # m; a longer line is drawn with gaps where it is magnified
+    """The table: a grey body under the balls, and a thin line over them, so that a sink is seen.
+
+    The body is made of lines of five radii, each with its upper edge at y = 0, since an old viewer
+    (0.26) draws a thick line thinner by a hundredth, which left a gap under the thin one.
+    """
+    wide = 50.0  # m; a longer line is drawn with gaps where it is magnified
+    depths = [0.005, 0.05, 0.5, 5.0, 50.0]
     recording.log(
         f"world/{label}/ground",
         rr.LineStrips2D(
-            [[[-wide, deep], [wide, deep]]], colors=rgba(GROUND), radii=[deep], draw_order=-10.0
+            [[[-wide, deep], [wide, deep]] for deep in depths],
+            colors=rgba(GROUND),
+            radii=depths,
+            draw_order=-10.0,
         ),
         static=True,
     )

@@ -81,9 +81,12 @@ def test_every_model_has_its_own_view_in_which_the_table_is_a_line_over_the_ball
         assert left[1] == right[1] == 0.0
         (thick,) = static[f"/world/{model}/table"]["LineStrips2D:radii"]
         assert -1.0 < thick < 0.0, "below 0 it is in points of the screen, not in metres"
-        (deep,) = static[f"/world/{model}/ground"]["LineStrips2D:radii"]
-        ((left, right),) = static[f"/world/{model}/ground"]["LineStrips2D:strips"]
-        assert left[1] - deep == 0.0, "the ground ends at the table"
+        ground = static[f"/world/{model}/ground"]
+        depths = ground["LineStrips2D:radii"]
+        for ((_, left), (_, right)), deep in zip(ground["LineStrips2D:strips"], depths):
+            assert left == right == deep, "the ground ends at the table"
+        for thin, thick in zip(depths, depths[1:]):
+            assert thick / 100 < 2 * thin, "no gap where a thick line is drawn a hundredth thinner"
         assert np.array_equal(positions(recording, model)[..., 0], run.q[:, 0].astype(np.float32))
         drawn = static[f"/world/{model}/balls"]["Points2D:radii"]
         assert np.allclose(drawn, scene.radius, rtol=1e-7)
