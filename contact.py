@@ -131,6 +131,8 @@ class Contact:
         self.a, self.b = a, b
         self.nx, self.ny = nx, ny
         self.depth = depth
+        self.ax, self.ay = a.inv_mass * nx, a.inv_mass * ny     # what 1 N s adds to a's velocity
+        self.bx, self.by = b.inv_mass * nx, b.inv_mass * ny     # and takes from b's
         inv_mass = a.inv_mass + b.inv_mass
         self.m_eff = 1.0 / inv_mass if inv_mass > 0.0 else 0.0      # effective mass [kg]
         self.target = 0.0       # the v_n [m/s] to leave with at least
@@ -144,11 +146,11 @@ class Contact:
     def push(self, impulse):
         """Give ball a this impulse [N s] along the normal, and ball b the opposite one."""
         a, b = self.a, self.b
-        a.vx += impulse * (a.inv_mass * self.nx)
-        a.vy += impulse * (a.inv_mass * self.ny)
+        a.vx += impulse * self.ax
+        a.vy += impulse * self.ay
         if b is not FLOOR:      # all contacts share the floor, and it never moves
-            b.vx -= impulse * (b.inv_mass * self.nx)
-            b.vy -= impulse * (b.inv_mass * self.ny)
+            b.vx -= impulse * self.bx
+            b.vy -= impulse * self.by
 # --- endregion ---
 
 
@@ -289,7 +291,8 @@ def contact_target(c, restitution, baumgarte, dt):
 # --- region: lcp-sweep ---
 def project_impulse(lam, dlam):
     """The impulse after a correction: the sum may not become negative, a correction may."""
-    return max(0.0, lam + dlam)
+    total = lam + dlam
+    return total if total > 0.0 else 0.0        # max(0, total), at half the time
 
 
 def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> None:
@@ -311,8 +314,7 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> None:
                 change = lam - c.lam
                 c.push(change)
                 c.lam = lam
-                if not abs(change) <= tolerance * c.m_eff:      # not-a-number never settles
-                    settled = False
+                settled = settled and abs(change) <= tolerance * c.m_eff    # NaN never settles
         if settled:
             break
 # --- endregion ---
@@ -436,13 +438,13 @@ def make_balls(scene):
 
 
 def state_of(balls):
-    """Four rows of N numbers: x, y, vx, vy."""
-    return list(zip(*[(ball.x, ball.y, ball.vx, ball.vy) for ball in balls]))
+    """A flat list: x, y, vx, vy of one ball after the other."""
+    return [value for ball in balls for value in (ball.x, ball.y, ball.vx, ball.vy)]
 
 
-def set_state(balls, rows):
-    """Put the balls where four rows of N numbers say."""
-    for ball, values in zip(balls, rows.T.tolist()):
+def set_state(balls, state):
+    """Put the balls where such a state, as an array, says."""
+    for ball, values in zip(balls, state.reshape(-1, 4).tolist()):
         ball.x, ball.y, ball.vx, ball.vy = values
 # --- endregion ---
 
@@ -458,7 +460,7 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True,
     a copy, since a step depends on the state alone. `report(k)` is called with the steps done.
     """
     balls = make_balls(scene)
-    rows = np.empty((steps + 1, 4, len(balls)))
+    rows = np.empty((steps + 1, 4 * len(balls)))
     rows[0] = state_of(balls)
     seen = {}                                           # hash of a state: the step it came at
     k = 0
@@ -466,7 +468,9 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True,
         if skip:
             first = seen.setdefault(hash(rows[k].tobytes()), k)
             if first < k and rows[first].tobytes() == rows[k].tobytes():
-                rows[k:] = rows[first + np.arange(steps + 1 - k) % (k - first)]
+                period = k - first
+                for past in range(first, k):            # these states come again and again
+                    rows[past + period::period] = rows[past]
                 break
             flight = fly(balls, dt, steps - k)
             if len(flight) > 0:
@@ -480,30 +484,37 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True,
         report(k)
     rows += 0.0                                         # turns -0.0 into 0.0
     rows[np.isnan(rows)] = math.nan                     # which has a sign too, left to chance
+    rows = rows.reshape(steps + 1, -1, 4).transpose(0, 2, 1).copy()     # (steps + 1, 4, N)
     return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
 # --- endregion ---
 
 
 # --- region: flight ---
 def fly(balls, dt, most):
-    """The next states (n, 4, N), n <= most, of balls that touch nothing.
+    """The next states (n, 4 N), n <= most, of balls that touch nothing.
 
     Short flights are left to the steps, and n is 0. np.add.accumulate adds in the same order as
     the steps do, so the bits agree.
     """
-    count = min(most, *[steps_to_floor(ball, dt) for ball in balls])
-    if count < 16 or detect_contacts(balls):
+    count = most
+    for ball in balls:
+        count = min(count, steps_to_floor(ball, dt))
+        if count < 16:
+            return ()
+    if detect_contacts(balls):
         return ()
-    rows = np.empty((int(count) + 1, 4, len(balls)))
-    rows[0] = state_of(balls)
-    rows[1:, 2] = 0.0
-    rows[1:, 3] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
-    np.add.accumulate(rows[:, 2:], out=rows[:, 2:])     # v, v + dt g, v + dt g + dt g, ...
-    rows[1:, :2] = dt * rows[1:, 2:]
-    np.add.accumulate(rows[:, :2], out=rows[:, :2])
-    gap = smallest_gap(rows[:, :2], np.array([ball.radius for ball in balls]))
+    rows = np.empty((int(count) + 1, len(balls), 4))
+    rows[0] = np.reshape(state_of(balls), (-1, 4))
+    rows[1:, :, 2] = 0.0
+    rows[1:, :, 3] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
+    q, v = rows[:, :, :2], rows[:, :, 2:]
+    np.add.accumulate(v, out=v)                         # v, v + dt g, v + dt g + dt g, ...
+    q[1:] = dt * v[1:]
+    np.add.accumulate(q, out=q)
+    gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
     contact = np.flatnonzero(gap < CONTACT_MARGIN)
-    return rows[1:contact[0] + 1] if len(contact) > 0 else rows[1:]
+    end = contact[0] if len(contact) > 0 else len(rows)
+    return rows[1:end + 1].reshape(-1, 4 * len(balls))
 
 
 def steps_to_floor(ball, dt):

@@ -57,7 +57,7 @@ class Case(NamedTuple):
 
     def scene(self):
         """The balls as an engine takes them, before gravity."""
-        q, v = np.reshape(contact.state_of(self.balls), (2, 2, -1))
+        q, v = np.reshape(contact.state_of(self.balls), (-1, 2, 2)).transpose(1, 2, 0)
         return contact.Scene(
             self.name,
             q,

@@ -11,6 +11,7 @@ processes are timed by the clock on the wall.
 
 import gc
 import multiprocessing
+import os
 import random
 import statistics
 import subprocess
@@ -126,15 +127,20 @@ print(time.perf_counter() - start, usage.ru_maxrss, os.waitstatus_to_exitcode(st
 """
 
 
-def whole_process(command, cwd):
+def whole_process(command, cwd, bytecode):
     """Run a command to its end: (seconds, peak memory in bytes). Raises RuntimeError when it fails.
 
     It is started from a bare interpreter, since a process is charged with the memory of the one that
-    forked it until it becomes its own program, and this one is large.
+    forked it until it becomes its own program, and this one is large. bytecode: the folder where
+    Python keeps its compiled modules. An environment that forbids it to keep any would have each
+    process compile the course's modules again, but not numpy's, which pip has compiled.
     """
+    environment = dict(os.environ, PYTHONPYCACHEPREFIX=str(bytecode))
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
     run = subprocess.run(
         [sys.executable, "-I", "-S", "-c", LAUNCH, *command],
         cwd=cwd,
+        env=environment,
         capture_output=True,
         text=True,
     )

@@ -14,11 +14,13 @@ class steps:
     def __init__(self, total, label, unit="steps"):
         self.total, self.label, self.unit = total, label, unit
         self.start = perf_counter()
-        shown = sys.stderr is not None and sys.stderr.isatty()
-        self.next = self.start + 1.0 if shown else float("inf")
+        self.shown = sys.stderr is not None and sys.stderr.isatty()
+        self.next = self.start + 1.0
         self.drawn = False
 
     def __call__(self, done):
+        if not self.shown:
+            return None
         if done >= self.total:
             return self.wipe()
         now = perf_counter()

@@ -84,10 +84,11 @@ def apart_in_a_step(case, q, v):
     starts = range(0, case.steps, STRIDE)
     ends = []
     for k in starts:
-        contact.set_state(balls, np.vstack((q[k], v[k])))
+        contact.set_state(balls, np.vstack((q[k], v[k])).T)
         contact.soft_step(balls, case.dt, *knobs)
         ends.append(contact.state_of(balls))
-    ends, after = np.array(ends), np.array(starts) + 1
+    ends = np.reshape(ends, (len(ends), -1, 4)).transpose(0, 2, 1)
+    after = np.array(starts) + 1
     return (
         float(np.abs(ends[:, :2] - q[after]).max()),
         float(np.abs(ends[:, 2:] - v[after]).max()),

@@ -186,4 +186,4 @@ class Step:
 
     def state(self):
         """Positions and velocities (4, N) after the step."""
-        return np.array(contact.state_of(self.balls))
+        return np.reshape(contact.state_of(self.balls), (-1, 4)).T

@@ -202,11 +202,22 @@ def test_rounds_are_shuffled_and_preparation_is_not_timed():
     assert [len(values) for values in seconds.values()] == [4, 4, 4]
 
 
-def test_whole_process_reports_time_and_memory_and_a_failure():
-    seconds, memory = timing.whole_process([sys.executable, "-c", "b = bytearray(50_000_000)"], ".")
+def test_whole_process_reports_time_and_memory_and_a_failure(tmp_path):
+    command = [sys.executable, "-c", "b = bytearray(50_000_000)"]
+    seconds, memory = timing.whole_process(command, ".", tmp_path)
     assert seconds > 0 and 50e6 < memory < 500e6
     with pytest.raises(RuntimeError, match="(?s)fails.*ValueError: so it goes"):
-        timing.whole_process([sys.executable, "-c", "raise ValueError('so it goes')"], ".")
+        timing.whole_process(
+            [sys.executable, "-c", "raise ValueError('so it goes')"], ".", tmp_path
+        )
+
+
+def test_whole_processes_keep_their_bytecode_whatever_the_environment_says(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    (tmp_path / "lesson.py").write_text("x = 1\n")
+    command = [sys.executable, "-c", "import lesson"]
+    timing.whole_process(command, tmp_path, tmp_path / "bytecode")
+    assert list((tmp_path / "bytecode").rglob("lesson.*.pyc"))
 
 
 # the engines

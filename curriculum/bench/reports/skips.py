@@ -133,6 +133,8 @@ def page(section):
         ),
         "Of a pile the run with skips is that of the compiled twin, where numba is installed.",
         "## Whole processes",
+        "Started after a first run, so Python has kept what it compiled of the imported modules, "
+        "numpy's as well as the course's. contact.py itself is compiled each time, as any script.",
         reporting.table(["process", *spread, "peak memory [MiB]"], processes),
         "## One step of a ball at rest",
         reporting.table(["", "median [us]", "least [us]", "greatest [us]"], resting),
