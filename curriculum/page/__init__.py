@@ -12,6 +12,10 @@ reader without scripts sees (still.py, still.js). No second drawing in Python ha
 
     build.py      collects all that and writes the file
     prose.py      chapter.md to HTML, with its slots, its links that set the figure, its numbers to drag
+    body.py       the chapter's segments in order, each behind the veils of the bets it would tell
+    exercises.py  bets and the blank, from exercises/ and meta.yaml
+    panels.py     code, highlighted: regions, and the whole of contact.py
+    maths_font.py the font of the formulas, and the command that cuts it
     browser.py    a real browser, for the pictures of the README
     engine.js, exact.js                     the models
     plot.js, lane.js, small_figures.js      numbers, plots, balls; the lanes; the small figures

@@ -1,28 +1,23 @@
 """Collect chapter, code, numbers, runs and figures, and write the page. Same inputs, same bytes."""
 
-import ast
 import base64
-import functools
 import hashlib
-import importlib
 import json
 import re
-import sys
 from html import escape
 from pathlib import Path
-from unittest.mock import patch
 
 import jinja2
 from markupsafe import Markup
-from pygments import highlight
-from pygments.formatters import HtmlFormatter
-from pygments.lexers import PythonLexer
 
 import contact
 from curriculum import regions, terminal
 from curriculum.check_prose_code_drift import CHAPTER
 from curriculum.common import wallclock
-from curriculum.page import prose
+from curriculum.page import maths_font, prose
+from curriculum.page.body import assemble
+from curriculum.page.exercises import EXERCISES, blank_cases, exercise_facts, inline
+from curriculum.page.panels import panels, whole_file
 from curriculum.page.still import DRAWING, stills
 from curriculum.quoted import Numbers, load_meta
 
@@ -42,97 +37,26 @@ SCRIPTS = (
 )
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
 SEEDS = 10  # start heights that it offers
-FOLDED = 45  # lines: a longer excerpt is folded
-MACHINERY = "the rest of the file"  # the section whose excerpts are all folded
-# what a bet measures on the page: its drop, the columns (title, model, mass) and the rows shown
-EXERCISES = {
-    "ex1": {
-        "dt": 0.002,
-        "steps": 800,
-        "columns": [["penalty", "penalty", 1], ["lcp", "lcp", 1]],
-        "shows": [
-            ["max_penetration_frac", "deepest / r"],
-            ["rest_penetration_frac", "at the end / r"],
-        ],
-    },
-    "ex3": {
-        "dt": 0.03,
-        "steps": 2000,
-        "columns": [["penalty", "penalty", 1], ["lcp", "lcp", 1]],
-        "shows": [
-            ["energy_excess", "energy gained / start"],
-            ["max_penetration_frac", "deepest / r"],
-            ["blew_up", "verdict"],
-        ],
-    },
-    "ex4": {
-        "dt": 0.002,
-        "steps": 2000,
-        "columns": [
-            ["soft, 1 kg", "soft", 1],
-            ["soft, 10 kg", "soft", 10],
-            ["penalty, 1 kg", "penalty", 1],
-            ["penalty, 10 kg", "penalty", 10],
-        ],
-        "shows": [["rest_penetration_frac", "at the end / r"]],
-    },
-}
 # what stands over the live figure while it would tell the answer of a bet
 VEILS = {
     "ex1": "The same ball, four ways for the table to push. How deep will each let it in, and where "
     "will it rest? Bet before you see it: exercise 1.",
-    "ex3": "A time step this long is what exercise 3 is about. Bet before you see it.",
+    "ex3": "What settings like these do is the question of exercise 3. Bet before you see it.",
 }
-BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2
-
-
-def markdown(text):
-    """A short text of ours (objective, reveal) as HTML."""
-    return Markup(prose.parser().render(text))
-
-
-def inline(text):
-    return Markup(prose.parser().renderInline(text))
-
-
-# ---- code
-
-
-# of Pygments' classes those that the style tells apart; the others would only make the page heavy
-STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
-
-
-@functools.cache
-def code_lines(text):
-    """Highlighted code, a block a line; a line too long for its column goes on further in."""
-    shown = highlight(text, PythonLexer(stripnl=False), HtmlFormatter(nowrap=True))
-    shown = re.sub(
-        r'<span class="(\w+)">([^<]*)</span>', lambda m: m[0] if m[1] in STYLED else m[2], shown
-    )
-    lines = shown.rstrip("\n").split("\n")
-    indents = [len(line) - len(line.lstrip(" ")) for line in text.rstrip("\n").split("\n")]
-    out = []
-    for line, indent in zip(lines, indents):
-        kind = "ln doc" if '<span class="sd">' in line else "ln"
-        out.append(f'<span class="{kind}" style="--i:{indent}">{line}\n</span>')
-    return Markup("".join(out))
-
-
-def panels(root):
-    """Every region of the literate files by (file, name), with its highlighted code."""
-    found = {}
-    for region in regions.find_all(root).values():
-        count = region.last - region.first + 1
-        found[region.file, region.name] = {
-            "name": region.name,
-            "file": region.file,
-            "first": region.first,
-            "last": region.last,
-            "sha256": region.sha256,
-            "folded": count > FOLDED,
-            "html": code_lines(region.text),
-        }
-    return found
+# the public course that this chapter belongs to, and what stands around it there
+COURSE = "https://zero2robot.com"
+SOURCE = "https://github.com/kaushikb11/zero2robot"
+NEIGHBOURS = (
+    ("3.3", "a physics engine", f"{COURSE}/ch3.3-engine/"),
+    ("3.4", "joints", f"{COURSE}/ch3.4-constraints/"),
+    ("3.6", "the engine put to use", f"{COURSE}/ch3.6-compare/"),
+)
+# files of this repository, as seen from outputs/, where the README's commands put page and notebook
+FILES = (
+    ("contact.py", "../contact.py"),
+    ("the whole folder", "../README.md"),
+    ("the same as a notebook", "contact.ipynb"),
+)
 
 
 # ---- data for the scripts
@@ -151,16 +75,6 @@ def scenes():
     return known
 
 
-def blank_cases(root):
-    """The inputs on which checks.py tries the blanks of exercise 2, from exercises/trials.py."""
-    with patch.object(sys, "path", [str(root / "exercises"), *sys.path]):
-        trials = importlib.import_module("trials")
-    return {
-        blank: [{key: float(value) for key, value in case.items()} for case in trials.inputs(blank)]
-        for blank in BLANKS
-    }
-
-
 def page_data(root):
     """Everything the scripts read: one object, PAGE."""
     flags = terminal.parse_flags([])
@@ -173,81 +87,6 @@ def page_data(root):
         "veils": VEILS,
         "blank": blank_cases(root),
     }
-
-
-# ---- exercises
-
-
-def exercise_words(path):
-    """(docstring, {QUESTION, CHOICES, WHY_PROMPT}) of an exercise's file."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    words = {
-        target.id: ast.literal_eval(node.value)
-        for node in tree.body
-        if isinstance(node, ast.Assign)
-        for target in node.targets
-        if isinstance(target, ast.Name) and target.id in ("QUESTION", "CHOICES", "WHY_PROMPT")
-    }
-    return ast.get_docstring(tree), words
-
-
-def reveals(name, facts, choices, numbers):
-    """The reasons by choice, as HTML. Raises ValueError where they are not for the choices."""
-    reveal = {
-        letter: markdown(numbers.render(reason))
-        for letter, reason in (facts.get("reveal") or {}).items()
-    }
-    if set(reveal) != set(choices):
-        raise ValueError(
-            f"meta.yaml:1: the reveals of {name} are for {sorted(reveal)}, "
-            f"its choices are {sorted(choices)}"
-        )
-    return reveal
-
-
-def exercise_facts(root, numbers):
-    """The exercises as the template wants them: words from exercises/, answers from meta.yaml."""
-    found = {}
-    for name, facts in (load_meta(root).get("exercises") or {}).items():
-        path = next((root / "exercises").glob(f"{name}_*.py"))
-        docstring, words = exercise_words(path)
-        title, _, text = docstring.partition("\n")
-        parts = re.fullmatch(r"Exercise \d+, (.+?) \((\d+) minutes\): (.+?)\.?", title.strip())
-        if not parts:
-            raise ValueError(
-                f"{path.name}:1: the docstring's first line must read "
-                "'Exercise N, KIND (M minutes): TITLE'"
-            )
-        # the docstring's prose, without how to run it in the terminal
-        paragraphs = [
-            each for each in re.split(r"\n\s*\n", text.strip()) if not each.startswith("    ")
-        ]
-        choices = words.get("CHOICES") or {}
-        if choices and name not in EXERCISES:
-            raise ValueError(
-                f"meta.yaml:1: the page cannot measure {name}; "
-                f"it knows the bets {', '.join(EXERCISES)}"
-            )
-        if choices:
-            paragraphs = [
-                re.sub(r"\s*Read CHOICES.*", "", each, flags=re.DOTALL) for each in paragraphs
-            ] + [words["QUESTION"]]
-        commands = re.findall(r"^    (\S.*?)(?:\s{2,}#.*)?$", text, re.MULTILINE)
-        found[name] = {
-            "id": name,
-            "title": f"Exercise {name[2:]}: {parts[3]}",
-            "kind": parts[1],
-            "minutes": parts[2],
-            "blank": not choices,
-            "task": Markup("").join(markdown(each) for each in paragraphs if each.strip()),
-            "choices": list(choices.items()),
-            "why_label": words.get("WHY_PROMPT", ""),
-            "answer": facts["answer"] if choices else None,
-            "reveal": reveals(name, facts, choices, numbers),
-            "hints": [inline(" ".join(hint.split())) for hint in facts.get("hints") or []],
-            "command": "\n".join(commands),
-        }
-    return found
 
 
 # ---- generated figures and tables
@@ -319,14 +158,24 @@ def ledger(root):
 # ---- the page
 
 
-def templates():
+def templates(data, drawn):
     """The templates' environment."""
-    return jinja2.Environment(
+    environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE / "templates"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
     )
+    environment.globals.update(
+        models=contact.MODELS,
+        radius=contact.RADIUS,
+        scenes=SCENES,
+        size=drawn["size"],
+        keys={model: Markup(key) for model, key in drawn["keys"].items()},
+        starts=[start[0] for start in data["scenes"]["drop"]["starts"]],
+        course={"site": COURSE, "source": SOURCE, "neighbours": NEIGHBOURS, "files": FILES},
+    )
+    return environment
 
 
 def fill_slots(root, macros, drawn, exercises):
@@ -344,74 +193,6 @@ def fill_slots(root, macros, drawn, exercises):
     for name, figure in generated_figures(root).items():
         slots[name] = macros.generated(figure)
     return {name: str(html) for name, html in slots.items()}
-
-
-class Body:
-    """The chapter's HTML as it grows, and (level, id, text) of its headings.
-
-    What follows a bet, up to the next heading, is its answer: it is put into a veil. What follows the
-    puzzle is veiled as well, up to the map that shows its answer.
-    """
-
-    def __init__(self, slots, code, macros, bets):
-        self.slots, self.code, self.macros, self.bets = slots, code, macros, bets
-        self.html, self.contents = [], []
-        self.veils, self.puzzle_depth, self.machinery = 0, 0, False
-
-    def lift(self, keep=0):
-        """Close the veils that are open, but for `keep` of them."""
-        self.html += ["</div></div>"] * (self.veils - keep)
-        self.veils = min(self.veils, keep)
-
-    def veil(self, name):
-        self.html.append(str(self.macros.veil(name)))
-        self.veils += 1
-
-    def heading(self, level, name, inner):
-        self.lift()
-        if level <= 2:
-            self.machinery = MACHINERY in inner.lower()
-        if level > 1:
-            self.html.append(str(self.macros.heading(level, name, Markup(inner))))
-            self.contents.append((level, name, Markup(re.sub(r"</?(code|a)[^>]*>", "", inner))))
-
-    def include(self, file, name):
-        if (file, name) not in self.code:
-            raise ValueError(f"{CHAPTER}: includes {file}#{name}, and there is no such region")
-        panel = self.code[file, name]
-        panel = panel | {"folded": self.machinery or panel["folded"]}
-        self.html.append(str(self.macros.panel(panel)))
-
-    def slot(self, name):
-        if name not in self.slots and not name.startswith(("bench:", "stress:")):
-            raise ValueError(
-                f"{CHAPTER}: a slot for {name!r}; allowed: {', '.join(sorted(self.slots))}"
-            )
-        self.html.append(self.slots.get(name, ""))
-        exercise = name.removeprefix("exercise:")
-        if exercise in self.bets and self.veils == 0:
-            self.veil(exercise)
-        elif name == "figure:puzzle":
-            self.veil("puzzle")
-            self.puzzle_depth = self.veils - 1
-        elif name.startswith("stress:") and self.veils > self.puzzle_depth:
-            self.lift(keep=self.puzzle_depth)
-
-
-def assemble(parts, slots, code, macros, bets):
-    """(body, contents): the chapter's HTML, and (level, id, text) of its headings."""
-    body = Body(slots, code, macros, bets)
-    for kind, value in parts:
-        if kind == "heading":
-            body.heading(*value)
-        elif kind == "include":
-            body.include(*value)
-        elif kind == "slot":
-            body.slot(value)
-        else:
-            body.html.append(value)
-    body.lift()
-    return "\n".join(body.html), body.contents
 
 
 def script_texts(data):
@@ -449,7 +230,7 @@ def policy(scripts):
         for text in scripts
     )
     return (
-        "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; "
+        "default-src 'none'; img-src data:; font-src data:; base-uri 'none'; form-action 'none'; "
         f"style-src 'unsafe-inline'; script-src {allowed}"
     )
 
@@ -457,6 +238,15 @@ def policy(scripts):
 def minified(css):
     """CSS without comments and indentation."""
     return re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL))
+
+
+def font_face():
+    """The font of the formulas, in the page itself."""
+    held = base64.b64encode(maths_font.FILE.read_bytes()).decode()
+    return (
+        f'@font-face {{ font-family: "{maths_font.NAME}"; '
+        f'src: url("data:font/woff;base64,{held}") format("woff"); }}\n'
+    )
 
 
 def stylesheet():
@@ -467,7 +257,8 @@ def stylesheet():
         f".veil-bar {{ display: none; }}\n"
         for name in (*EXERCISES, "puzzle")
     )
-    return f":root {{ {colors}}}\n" + minified((HERE / "style.css").read_text("utf-8")) + veils
+    style = minified((HERE / "style.css").read_text("utf-8"))
+    return f":root {{ {colors}}}\n{font_face()}{style}{veils}"
 
 
 def favicon():
@@ -480,6 +271,34 @@ def favicon():
     return data_address(svg)
 
 
+def head(data, bets):
+    """What stands in the page's head and at its foot: style, scripts, and what may run."""
+    scripts, early = script_texts(data), early_script(bets)
+    return {
+        "policy": policy([early, *(source for _, source in scripts)]),
+        "icon": favicon(),
+        "style": Markup(stylesheet()),
+        "early": Markup(early),
+        "scripts": [(name, Markup(source)) for name, source in scripts],
+    }
+
+
+def titles(parts, meta):
+    """The chapter's heading without its number, and the title of the page."""
+    title = next((value for kind, value in parts if kind == "heading" and value[0] == 1), None)
+    heading = re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title[2]) if title else escape(meta["title"])
+    return {
+        "heading": Markup(heading),
+        "title": f"{re.sub('<[^>]+>', '', heading)} (chapter 3.5)",
+    }
+
+
+def fingerprints(text):
+    """(name, sha256) of the files that the colophon names beside the regions."""
+    files = [(name, (HERE / name).read_text("utf-8")) for name in ("exact.js", "engine.js")]
+    return [(name, sha256(held)) for name, held in [("chapter.md", text), *files]]
+
+
 def build(root=regions.ROOT, chapter=None):
     """The page as text. Raises ValueError (file:line: what) where the chapter can't be shown as it is."""
     root = Path(root)
@@ -488,37 +307,21 @@ def build(root=regions.ROOT, chapter=None):
     numbers.run_all(text + json.dumps(meta.get("exercises") or {}))
     data = page_data(root)
     drawn = stills(data)
-    environment = templates()
-    environment.globals.update(
-        models=contact.MODELS,
-        radius=contact.RADIUS,
-        scenes=SCENES,
-        size=drawn["size"],
-        keys={model: Markup(key) for model, key in drawn["keys"].items()},
-        starts=[start[0] for start in data["scenes"]["drop"]["starts"]],
-    )
+    environment = templates(data, drawn)
     macros = environment.get_template("parts.html.j2").module
     exercises, code = exercise_facts(root, numbers), panels(root)
     bets = [name for name, each in exercises.items() if each["choices"]]
     parts = prose.blocks(numbers.render(text), drawn["knobs"])
-    body, contents = assemble(parts, fill_slots(root, macros, drawn, exercises), code, macros, bets)
-    title = next((value for kind, value in parts if kind == "heading" and value[0] == 1), None)
-    heading = re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title[2]) if title else escape(meta["title"])
-    scripts, early = script_texts(data), early_script(bets)
+    slots = fill_slots(root, macros, drawn, exercises)
+    body, contents = assemble(parts, slots, code, macros, bets, whole_file(root))
     return environment.get_template("page.html.j2").render(
-        title=f"{re.sub('<[^>]+>', '', heading)} (chapter 3.5)",
-        heading=Markup(heading),
-        policy=policy([early, *(source for _, source in scripts)]),
-        icon=favicon(),
-        style=Markup(stylesheet()),
-        early=Markup(early),
-        scripts=[(name, Markup(source)) for name, source in scripts],
+        **head(data, bets),
+        **titles(parts, meta),
         lanes=drawn,
         contents=contents,
         body=Markup(body),
         objectives=[inline(" ".join(item.split())) for item in meta["objectives"]],
         bets=[(name, exercises[name]["title"].partition(":")[0]) for name in bets],
         regions=list(code.values()),
-        hashes=[("chapter.md", sha256(text))]
-        + [(name, sha256((HERE / name).read_text("utf-8"))) for name in ("exact.js", "engine.js")],
+        hashes=fingerprints(text),
     )

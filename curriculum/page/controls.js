@@ -86,6 +86,10 @@ const Inside = (() => {
     );
   }
 
+  // What the figure still keeps to itself, these tables keep as well.
+  const told = (model) => !Figure.hiddenBy() && !(model === "soft" && !Bets.open("ex4"));
+  const LATER = "<p>After the bet.</p>";
+
   const MEASURES = [
     ["deepest / r", "max_penetration_frac"],
     ["rest gap / r", "rest_gap_frac"],
@@ -104,9 +108,10 @@ const Inside = (() => {
   function results(state, now) {
     $("command").textContent = State.command(state, now.steps);
     if (!opened()) return;
-    const rows = MEASURES.map(([words, key]) => [words, ...MODELS.map((m) => number(now.quality[m][key]))]);
-    rows.push(["verdict", ...MODELS.map((m) => verdict(now.quality[m], state.dt))]);
-    $("results").innerHTML = tableOf(["measured over 4 s", ...MODELS], rows);
+    const shown = MODELS.filter(told);
+    const rows = MEASURES.map(([words, key]) => [words, ...shown.map((m) => number(now.quality[m][key]))]);
+    rows.push(["verdict", ...shown.map((m) => verdict(now.quality[m], state.dt))]);
+    $("results").innerHTML = tableOf(["measured over 4 s", ...shown], rows);
   }
 
   const contactName = (c) => (c.j < 0 ? `${c.i + 1} on table` : `${c.j + 1} on ${c.i + 1}`);
@@ -161,9 +166,13 @@ const Inside = (() => {
     const from = Math.min(at, now.steps - 1);
     $("inside-when").textContent =
       `The step from t = ${plain(from * state.dt)} s to ${plain((from + 1) * state.dt)} s. Balls are numbered from the table up.`;
-    $("inside-penalty").innerHTML = penaltyInside(now, from);
-    for (const model of ["lcp", "soft"]) $(`inside-${model}`).innerHTML = sweepsInside(model, now, from);
-    $("inside-exact").innerHTML = exactInside(now, from, state.dt);
+    const inside = {
+      penalty: () => penaltyInside(now, from),
+      lcp: () => sweepsInside("lcp", now, from),
+      soft: () => sweepsInside("soft", now, from),
+      exact: () => exactInside(now, from, state.dt),
+    };
+    for (const model of MODELS) $(`inside-${model}`).innerHTML = told(model) ? inside[model]() : LATER;
   }
 
   return { write, results, tableOf, verdict };

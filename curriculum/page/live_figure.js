@@ -54,12 +54,23 @@ const Figure = (() => {
 
   // ---- what a bet still hides
 
+  // Whether the spring throws its ball, or would: what exercise 3 is about.
+  function throwsUp() {
+    const { energy_excess: gained, blew_up: burst } = now.quality.penalty;
+    return state.dt >= criticalDt().damped || burst || gained > 0.5;
+  }
+
   // The exercise whose answer the figure would show now, or null.
   function hiddenBy() {
     if (!Bets.open("ex1")) return "ex1";
-    if (state.scene === "drop" && state.dt >= criticalDt().damped && !Bets.open("ex3")) return "ex3";
-    return null;
+    return throwsUp() && !Bets.open("ex3") ? "ex3" : null;
   }
+
+  // Where soft rests is what exercise 4 asks: until then its ball falls and is shown no further.
+  const waits = (model) => model === "soft" && !Bets.open("ex4");
+  const shownRow = (model, row) =>
+    waits(model) ? Math.max(0, Math.min(row, now.series[model].landing - 1)) : row;
+  const held = (model, row) => shownRow(model, row) !== row;
 
   function showVeil() {
     const id = hiddenBy();
@@ -75,12 +86,14 @@ const Figure = (() => {
 
   function lensReach(row) {
     if (lens !== "auto") return Number(lens);
-    return Lane.fittingLens(MODELS.map((model) => now.series[model].gap[row]));
+    const shown = MODELS.filter((model) => !held(model, row));
+    return Lane.fittingLens(shown.map((model) => now.series[model].gap[row]));
   }
 
   function shownOf(model, row) {
     const { runs, scene, series } = now;
     const n = scene.y.length;
+    row = shownRow(model, row);
     const y = Array.from(runs[model].y.subarray(row * n, (row + 1) * n));
     const trail = [];
     const every = Math.max(1, Math.round(0.05 / state.dt));
@@ -95,6 +108,7 @@ const Figure = (() => {
 
   function laneWords(model, row) {
     const { gap, push } = now.series[model];
+    if (held(model, row)) return ["then?", "exercise 4"];
     const size = Math.abs(gap[row]);
     const place = !Number.isFinite(gap[row])
       ? "gone: not a number"
@@ -183,7 +197,8 @@ const Figure = (() => {
       const marks = [0.12, 0.37, 0.62, 0.87].map((share) =>
         rowAt(view[0] + (share + 0.06 * m) * (view[1] - view[0])),
       );
-      return { model, xs, ys: columns[m], from, to: to + 1, markers: marks };
+      const end = Math.min(to, shownRow(model, to)) + 1;
+      return { model, xs, ys: columns[m], from: Math.min(from, end), to: end, markers: marks };
     });
     const options = {
       id: "chart",
@@ -209,7 +224,8 @@ const Figure = (() => {
   // The values of all models at one time, in words below the chart.
   function readOut(row) {
     if (hiddenBy() !== null) return ($("readout").textContent = "");
-    const values = MODELS.map((model) => `${model} ${number(now.series[model][kind][row])}`);
+    const value = (model) => (held(model, row) ? "in exercise 4" : number(now.series[model][kind][row]));
+    const values = MODELS.map((model) => `${model} ${value(model)}`);
     $("readout").textContent = `${(row * state.dt).toFixed(4)} s: ${values.join(", ")}`;
   }
 
@@ -317,7 +333,8 @@ const Figure = (() => {
     clearTimeout(sayTimer);
     if (hiddenBy() !== null) return;
     const deepest = (model) => `${model} ${number(now.quality[model].max_penetration_frac)} r`;
-    const told = `Deepest: ${MODELS.map(deepest).join(", ")}.`;
+    const shown = MODELS.filter((model) => !waits(model));
+    const told = `Deepest: ${shown.map(deepest).join(", ")}.`;
     sayTimer = setTimeout(() => ($("figure-status").textContent = told), 500);
   }
 
@@ -511,6 +528,7 @@ const Figure = (() => {
     set,
     follow,
     take,
+    hiddenBy,
     address: () => location.origin + address(true),
     get state() {
       return state;

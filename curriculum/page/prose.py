@@ -11,7 +11,7 @@ Beside plain Markdown the chapter may hold
 """
 
 import re
-from html import escape
+from html import escape, unescape
 from pathlib import Path
 from urllib.parse import parse_qsl
 
@@ -21,6 +21,7 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 import contact
 from curriculum.check_prose_code_drift import CHAPTER, INCLUDE
+from curriculum.page import maths_font
 
 SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock)(?:\s*:\s*([\w-]+))?\s*-->\s*")
 SETTINGS = ("scene", "contact", "seed", "solref", "t")  # of a try link, beside the knobs
@@ -51,8 +52,15 @@ def parser():
 
 
 def formula(text, options):
-    """A formula as MathML."""
-    return convert(text, display="block" if options["display_mode"] else "inline")
+    """A formula as MathML. Raises ValueError where the page's font lacks one of its characters."""
+    shown = convert(text, display="block" if options["display_mode"] else "inline")
+    lacking = maths_font.missing(unescape(re.sub(r"<[^>]+>", "", shown)))
+    if lacking:
+        raise ValueError(
+            f"{CHAPTER}: the formula {text!r} has {' '.join(lacking)}, which the page's font lacks; "
+            "add it to CHARACTERS in curriculum/page/maths_font.py and run that file's command"
+        )
+    return shown
 
 
 def inline_code(self, tokens, index, options, env):
@@ -165,6 +173,28 @@ def end_of(tokens, index):
     return index
 
 
+def table(shown):
+    """A table in a box that scrolls by itself where it is narrow."""
+    held = shown.replace("<th></th>", "<td></td>")
+    return f'<div class="scroll" tabindex="0" role="group" aria-label="Table">{held}</div>'
+
+
+def part(token, render, used):
+    """What a block of the chapter becomes: a list of (kind, value). `render()` gives its HTML."""
+    if token.type == "fence":
+        include = INCLUDE.fullmatch(token.content.strip())
+        if include:
+            return [("include", (include["file"], include["name"]))]
+        code = escape(token.content)
+        return [("html", f'<pre class="shell" tabindex="0"><code>{code}</code></pre>')]
+    if token.type == "html_block":
+        return slots_of(token)
+    if token.type == "heading_open":
+        inner = render(inner=True)
+        return [("heading", (int(token.tag[1]), heading_name(inner, used), inner))]
+    return [("html", table(render()) if token.type == "table_open" else render())]
+
+
 def blocks(text, knobs=None):
     """The chapter as a list of (kind, value): kind html, heading (level, id, html), slot, or include
     (file, region). `knobs` are the ranges of what links may set, {name: (low, high)}."""
@@ -178,32 +208,11 @@ def blocks(text, knobs=None):
         return re.sub(r"<!--.*?-->", "", shown, flags=re.DOTALL)
 
     while index < len(tokens):
-        token, end = tokens[index], end_of(tokens, index)
-        include = INCLUDE.fullmatch(token.content.strip()) if token.type == "fence" else None
-        if token.type == "heading_open":
-            inner = html(index + 1, index + 1)
-            out.append(("heading", (int(token.tag[1]), heading_name(inner, used), inner)))
-        elif include:
-            out.append(("include", (include["file"], include["name"])))
-        elif token.type == "html_block":
-            out += slots_of(token)
-        elif token.type == "table_open":
-            table = html(index, end).replace("<th></th>", "<td></td>")
-            out.append(
-                (
-                    "html",
-                    '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
-                    f"{table}</div>",
-                )
-            )
-        elif token.type == "fence":
-            out.append(
-                (
-                    "html",
-                    f'<pre class="shell" tabindex="0"><code>{escape(token.content)}</code></pre>',
-                )
-            )
-        else:
-            out.append(("html", html(index, end)))
-        index = end + 1
+        first, last = index, end_of(tokens, index)
+
+        def render(inner=False, first=first, last=last):
+            return html(first + 1, first + 1) if inner else html(first, last)
+
+        out += part(tokens[first], render, used)
+        index = last + 1
     return out

@@ -202,11 +202,12 @@ const SmallFigures = (() => {
     });
   }
 
-  // Before the first bet only the ball that keeps to the corner is shown, since the others tell its answer.
+  // Before a bet the models that tell its answer are left out; exact tells none.
   function corner(time, width, open) {
     const { left, right } = split(width);
     const row = Math.round(time / 0.001);
-    const shown = open("ex1") ? MODELS : ["exact"];
+    const told = (model) => model === "exact" || (open("ex1") && (model !== "soft" || open("ex4")));
+    const shown = MODELS.filter(told);
     const runs = shown.map((model) => cornerRuns()[MODELS.indexOf(model)]);
     const most = 400;
     const chart = plot({

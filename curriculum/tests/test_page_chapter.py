@@ -1,0 +1,359 @@
+"""The chapter's own page: what it shows before a bet, its formulas, its way around, the whole file."""
+
+import ast
+import json
+import os
+import re
+from html import unescape
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip(
+    "markdown_it", reason="the page's libraries are missing: pip install -e '.[page]'"
+)
+pytest.importorskip(
+    "py_mini_racer", reason="the page's libraries are missing: pip install -e '.[page]'"
+)
+
+import contact  # noqa: E402
+from curriculum.page import body, build, maths_font, prose  # noqa: E402
+from curriculum.page.browser import FLAGS  # noqa: E402
+from curriculum.tests.page_browser import (  # noqa: E402
+    CHROMIUM,
+    needs_chromium,
+    running,
+    visiting,
+)  # noqa: E402
+from curriculum.tests.test_bets import ANSWERS, told  # noqa: E402
+
+ROOT = build.regions.ROOT
+ORDER = ("ex1", "ex4", "ex3")  # of the bets in the chapter
+# everything that a reader can see, unfold or have read out, but for choices, hints and reasons
+READ = """() => {
+  for (const d of document.querySelectorAll("details")) d.open = true;
+  const named = ["aria-label", "aria-valuetext", "alt", "title"];
+  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT | NodeFilter.SHOW_ELEMENT);
+  const out = [];
+  for (let node; (node = walk.nextNode());) {
+    const e = node.nodeType === 3 ? node.parentElement : node;
+    if (e.closest("script, style, template, form.bet, .hints, .terminal")) continue;
+    if (!e.checkVisibility({visibilityProperty: true})) continue;
+    if (node.nodeType === 3) out.push(node.textContent);
+    else for (const name of named) if (e.hasAttribute(name)) out.push(` ${e.getAttribute(name)}. `);
+    if (node.nodeType === 1 && getComputedStyle(e).display !== "inline") out.push("\\n");
+  }
+  return out.join("");
+}"""
+DRAW = """async () => {
+  for (const figure of document.querySelectorAll(".small")) {
+    figure.scrollIntoView();
+    await new Promise((done) => setTimeout(done, 30));
+  }
+}"""
+
+
+@pytest.fixture(scope="module")
+def html():
+    return build.build()
+
+
+@pytest.fixture(scope="module")
+def url(html, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "contact.html"
+    path.write_text(html, encoding="utf-8")
+    return path.as_uri()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    if CHROMIUM is None:
+        pytest.skip("no Chromium here: apt-get install chromium")
+    with running() as chromium:
+        yield chromium
+
+
+# ---- nothing tells before the bet
+
+
+@pytest.fixture(scope="module")
+def measured():
+    """The numbers that are the answer of each bet, from runs made here."""
+    scene = contact.build_scene("drop")
+
+    def quality(model, dt, steps):
+        return contact.contact_quality(contact.run_model(model, scene, dt, steps), scene, dt)
+
+    short = quality("penalty", 0.002, 800)
+    long = quality("penalty", 0.03, 2000)
+    soft = quality("soft", 0.002, 2000)
+    depths = [short["max_penetration_frac"], short["rest_penetration_frac"]]
+    limit = contact.critical_dt(1.0, 1e4, scene.damping)
+    return {
+        "ex1": depths,
+        "ex3": [long["energy_excess"], limit],
+        "ex4": [soft["rest_penetration_frac"]],
+    }
+
+
+def quoting(text, value, least=2):
+    """The numbers in a text that give a value, rounded, with at least so many of its digits."""
+    found = []
+    for number in re.findall(r"\d[\d,]*(?:\.\d+)?", text):
+        places = len(number.partition(".")[2])
+        digits = number.replace(",", "").replace(".", "").lstrip("0")
+        near = abs(float(number.replace(",", "")) - value) <= 0.5 * 10.0**-places
+        if len(digits) >= least and near:
+            found.append(number)
+    return found
+
+
+def test_a_quoted_answer_is_noticed():
+    assert quoting("it is 0.0098 r, and 9.81 m/s", 0.00981) == ["0.0098"]
+    assert quoting("1,409 times", 1409.1) == ["1,409"]
+    assert quoting("0.25 or 0.24 r", 0.2513) == ["0.25"]
+
+
+@needs_chromium
+@pytest.mark.parametrize("made", [0, 1, 2, 3])
+def test_no_answer_is_seen_anywhere_on_the_page_before_its_bet(browser, url, measured, made):
+    """All visible text, numbers and names, folded parts unfolded, at each stage of the reading."""
+    with visiting(browser, url, shown=False) as page:
+        for name in ORDER[:made]:
+            page.evaluate(f"Bets.show('{name}')")
+        page.evaluate(DRAW)
+        text = page.evaluate(READ)
+        for name in ORDER[made:]:
+            assert told(text, name) == []
+            for value in measured[name]:
+                assert quoting(text, value) == []
+                assert quoting(text, 1000 * contact.RADIUS * value, least=3) == [], "in mm"
+        for name in ORDER[:made]:
+            assert told(text, name), "and behind the bet it is told"
+            assert all(quoting(text, value) for value in measured[name][:1])
+        bars = page.locator(".veil-bar:visible").all_inner_texts()
+        assert made < 3 or ["exercise" in each for each in bars] == [False], "the puzzle's is left"
+
+
+@needs_chromium
+def test_figures_and_tables_keep_an_answer_however_they_are_set(browser, url, measured):
+    """A long step, a stiff spring, another scene, any time, the tables unfolded."""
+    thrown = (
+        "dt=0.03",
+        "scene=bounce&dt=0.03",
+        "scene=stack&dt=0.02",
+        "stiffness=1e6",
+        "damping=300&dt=0.0125",
+    )
+    for query in (*thrown, "t=3.9", "scene=stack&t=2"):
+        for made in ((), ("ex1",), ("ex1", "ex4")):
+            with visiting(browser, url, query=f"?{query}", shown=False) as page:
+                for name in made:
+                    page.evaluate(f"Bets.show('{name}')")
+                page.locator("#inside").evaluate("(e) => (e.open = true)")
+                page.wait_for_timeout(50)
+                figure = page.locator("#figure").inner_text()
+                assert page.locator("#veil").is_visible() == (not made or query in thrown), query
+                assert "EXPLODED" not in figure and "gone" not in figure
+                if "ex4" not in made:
+                    soft = page.evaluate(
+                        "[0.5, 1].map((s) => Figure.now.series.soft.gap.at(s * -1))"
+                    )
+                    assert not any(quoting(figure, abs(gap)) for gap in soft if abs(gap) > 1e-9), (
+                        query
+                    )
+
+
+@needs_chromium
+def test_a_link_to_a_veiled_section_leads_to_its_heading_and_to_the_bet(browser, url):
+    with visiting(browser, url, query="#way-one-penalty", shown=False) as page:
+        assert page.locator("#way-one-penalty").is_visible()
+        bar = page.locator(".veil-bar:visible").first
+        assert "exercise 1" in bar.inner_text()
+        bar.get_by_role("link").click()
+        assert page.locator("#ex1 form").is_visible() and page.url.endswith("#ex1")
+        for name in ORDER:
+            assert page.locator(f"#{name} form").is_visible(), "a bet can be made in any order"
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_words_that_tell_in_the_text_open_a_veil(name):
+    """What a person may not say before a bet (test_bets.py) is veiled after it as well."""
+    for sentence in (
+        "The ball rests inside the table.",
+        "It explodes.",
+        "Both lie equally deep, since no mass in it is left.",
+    ):
+        if told(sentence, name):
+            assert body.TELLS[name].search(sentence)
+
+
+# ---- formulas
+
+
+BARE = """<?xml version="1.0"?><!DOCTYPE fontconfig SYSTEM "fonts.dtd">
+<fontconfig>{dirs}<cachedir>{cache}</cachedir></fontconfig>"""
+# of every script in a visible formula: sizes, and how far its baseline is above that of what it belongs to
+PLACES = """(ascent) => {
+  const text = (e) => document.createTreeWalker(e, NodeFilter.SHOW_TEXT).nextNode();
+  const size = (e) => parseFloat(getComputedStyle(text(e).parentElement).fontSize);
+  const baseline = (e) => {
+    const range = document.createRange();
+    range.selectNodeContents(text(e));
+    return range.getBoundingClientRect().top + ascent * size(e);
+  };
+  return [...document.querySelectorAll("math :is(msub, msup, msubsup)")].filter(
+    (e) => e.checkVisibility() && e.firstElementChild.localName === "mi").map((e) => {
+      const [base, ...scripts] = e.children;
+      return {kind: e.localName, text: e.textContent, size: size(base), script: size(scripts[0]),
+              raised: scripts.map((script) => baseline(base) - baseline(script))};
+    });
+}"""
+
+
+@pytest.fixture(scope="module")
+def without_maths(browser, tmp_path_factory):
+    """A Chromium to which the machine has no font with a MATH table."""
+    folder = tmp_path_factory.mktemp("fonts")
+    plain = [each for each in ("/usr/share/fonts/truetype/liberation",) if Path(each).is_dir()]
+    config = folder / "fonts.conf"
+    dirs = "".join(f"<dir>{each}</dir>" for each in plain)
+    config.write_text(BARE.format(dirs=dirs, cache=folder / "cache"), encoding="utf-8")
+    surroundings = {**os.environ, "FONTCONFIG_FILE": str(config)}
+    chromium = browser.browser_type.launch(
+        executable_path=CHROMIUM, args=list(FLAGS), env=surroundings
+    )
+    yield chromium
+    chromium.close()
+
+
+@needs_chromium
+def test_scripts_of_formulas_sit_where_the_font_wants_them_without_any_maths_font(
+    without_maths, url
+):
+    """Sub- and superscripts are shifted and scaled as the MATH table of the embedded font says."""
+    pytest.importorskip("fontTools", reason="fonttools is missing: pip install -e '.[test]'")
+    from fontTools.ttLib import TTFont
+
+    font = TTFont(maths_font.FILE)
+    constants, em = font["MATH"].table.MathConstants, font["head"].unitsPerEm
+    with visiting(without_maths, url) as page:
+        assert page.evaluate(f"document.fonts.check('16px \"{maths_font.NAME}\"')")
+        found = page.evaluate(PLACES, maths_font.ASCENT / em)
+    assert len(found) > 20
+    down, up, gap = (
+        constants.SubscriptShiftDown.Value,
+        constants.SuperscriptShiftUp.Value,
+        constants.SubSuperscriptGapMin.Value,  # by which two scripts are moved apart at most
+    )
+    for each in found:
+        scale = each["size"] / em
+        assert each["script"] / each["size"] == pytest.approx(
+            constants.ScriptPercentScaleDown / 100, abs=0.01
+        ), each
+        if each["kind"] != "msup":
+            assert down * scale - 1 <= -each["raised"][0] <= (down + gap) * scale + 1, each
+        if each["kind"] != "msub":
+            assert up * scale - 1 <= each["raised"][-1] <= (up + gap) * scale + 1, each
+
+
+@pytest.mark.parametrize("face", ["with the font", "without"])
+def test_all_formulas_can_be_set(html, face):
+    """Every character of every formula, and the italic of every variable, is in the cut."""
+    pytest.importorskip("fontTools", reason="fonttools is missing: pip install -e '.[test]'")
+    from fontTools.ttLib import TTFont
+
+    has = set(TTFont(maths_font.FILE).getBestCmap())
+    assert {ord(each) for each in maths_font.CHARACTERS} <= has
+    if face == "without":
+        with pytest.raises(ValueError, match="ℵ, which the page's font lacks"):
+            prose.blocks(r"$\aleph$")
+        return
+    for formula in re.findall(r"<math.*?</math>", html, re.DOTALL):
+        for name in re.findall(r"<mi>([^<]+)</mi>", formula):
+            name = unescape(name)
+            assert len(name) > 1 or ord(maths_font.italic(name)) in has, name
+
+
+def test_the_font_is_the_cut_that_its_command_makes(tmp_path):
+    """Table by table, where the original is installed (Debian: fonts-stix)."""
+    pytest.importorskip("fontTools", reason="fonttools is missing: pip install -e '.[test]'")
+    original = Path("/usr/share/fonts/opentype/stix-word/STIXMath-Regular.otf")
+    if not original.exists():
+        pytest.skip("the original font is not installed: apt-get install fonts-stix")
+    from fontTools.ttLib import TTFont
+
+    made, held = maths_font.cut(original), TTFont(maths_font.FILE)
+    assert made.getGlyphOrder() == held.getGlyphOrder()
+    for table in ("MATH", "cmap", "hmtx", "name"):
+        assert made.getTableData(table) == held.getTableData(table), table
+
+
+def test_the_font_keeps_its_license_and_not_its_reserved_name():
+    pytest.importorskip("fontTools", reason="fonttools is missing: pip install -e '.[test]'")
+    from fontTools.ttLib import TTFont
+
+    names = {each.nameID: str(each) for each in TTFont(maths_font.FILE)["name"].names}
+    assert names[1] == maths_font.NAME and "STI Pub Companies" in names[0]
+    assert "STIX" not in names[1] + names[4] + names[6]
+    license = (ROOT / "curriculum/page/maths.license.txt").read_text("utf-8")
+    assert "SIL OPEN FONT LICENSE Version 1.1" in license and "STI Pub Companies" in license
+
+
+# ---- the way around
+
+
+def test_contents_name_every_section_and_every_heading_has_a_permalink(html):
+    text = html.split("<script>const PAGE")[0]
+    headings = re.findall(r"<h([23]) id=\"([\w-]+)\">", text)
+    contents = re.search(r'<nav aria-label="Contents">(.*?)</nav>', text, re.DOTALL)[1]
+    chapter = (ROOT / build.CHAPTER).read_text("utf-8")
+    wanted = re.findall(r"^#{2,3} (.+)$", re.sub(r"```.*?```", "", chapter, flags=re.DOTALL), re.M)
+    listed = [
+        unescape(re.sub("<[^>]+>", "", each)) for each in re.findall(r"<li.*?</li>", contents)
+    ]
+    assert [each.replace("’", "'") for each in listed[1:-2]] == [
+        each.replace("`", "") for each in wanted
+    ]
+    assert listed[-2:] == ["The whole file", "Colophon"]
+    for _, name in headings:
+        if f'href="#{name}"' in contents:
+            assert f'class="permalink" href="#{name}"' in text
+
+
+def test_the_page_leads_to_course_repository_notebook_and_neighbours(html):
+    links = dict(re.findall(r'<a href="(https?:[^"]+|[^"#?:]+)">(.*?)</a>', html))
+    for number in ("3.3", "3.4", "3.6"):
+        assert any(number in re.sub("<[^>]+>", "", text) for text in links.values())
+    assert "https://zero2robot.com" in links and "https://github.com/kaushikb11/zero2robot" in links
+    here = {each for each in links if not each.startswith("http")}
+    assert here == {"../contact.py", "../README.md", "contact.ipynb"}
+    for each in here - {"contact.ipynb"}:
+        assert (ROOT / "outputs" / each).resolve().is_file(), "as seen from the folder outputs"
+    readme = (ROOT / "README.md").read_text("utf-8")
+    assert "--out outputs/contact.html" in readme and "--out outputs/contact.ipynb" in readme
+
+
+def test_the_whole_file_stands_at_the_end_folded_and_line_by_line(html):
+    panel = re.search(
+        r'<figure class="code" id="code-contact-whole">.*?</figure>', html, re.DOTALL
+    )[0]
+    assert "<details><summary>" in panel
+    code = re.search(r'<code id="source-contact-whole">(.*)</code>', panel, re.DOTALL)[1]
+    assert unescape(re.sub(r"<[^>]+>", "", code)) == (ROOT / "contact.py").read_text("utf-8")
+    assert html.index('id="code-contact-whole"') > html.index('id="the-rest-of-the-file"')
+
+
+# ---- the code of the page
+
+
+def test_functions_of_the_page_have_at_most_forty_lines():
+    for path in sorted((ROOT / "curriculum/page").glob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.FunctionDef):
+                assert node.end_lineno - node.lineno < 40, f"{path.name}: {node.name}"
+
+
+def test_the_data_of_the_page_is_json(html):
+    data = re.search(r"const PAGE = (.*?);\n", html)[1]
+    assert set(json.loads(data)["exercises"]) == set(ORDER)
