@@ -433,6 +433,7 @@ class Run(NamedTuple):
 
 def make_balls(scene):
     """The scene's balls, as the steps move them."""
+    check_shapes(scene)
     columns = (*scene.q0, *scene.v0, scene.mass, scene.radius)
     return [Ball(*values) for values in np.transpose(columns).tolist()]
 

@@ -587,6 +587,8 @@ def main(argv=None):
         try:
             for name in args.accept:
                 accept(args.root, name)
+        except BrokenPipeError:
+            raise  # of the reader of what is shown, and nothing is accepted
         except (OSError, ValueError) as error:
             print(error, file=sys.stderr)
             return 2

@@ -128,7 +128,7 @@ def printed(flags):
     lines = [
         line
         for line in run.stdout.splitlines()
-        if not line.startswith(("[", "metrics:", "config_hash:", "next:"))
+        if not line.startswith(("[", "metrics:", "config_hash:", "next, "))
     ]
     return "```text\n" + "\n".join(lines) + "\n```\n"
 

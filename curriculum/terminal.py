@@ -92,11 +92,11 @@ def add_model_flags(group):
     flag("--iters", type=number(int, low=1), default=20, metavar="N",
          help="lcp: Gauss-Seidel sweeps a step (20)")
     flag("--solref", type=number(float), nargs=2, metavar=("T", "ZETA"),
-         help="soft: time constant [s] and damping ratio (0.02 1), or minus stiffness and minus "
-              "damping; with restitution 0 and -(1 + e) / dt")
+         help="soft: time constant [s] and damping ratio (0.02 1), or minus a stiffness and minus "
+              "a damping (where balls bounce: 0 and -(1 + e) / dt)")
     flag("--solimp", type=number(float, low=0), nargs=5,
          metavar=("D0", "D1", "WIDTH", "MID", "POWER"),
-         help="soft: the impedance (0.9 0.95 0.001 0.5 2; with restitution it is 0.9999)")
+         help="soft: the impedance (0.9 0.95 0.001 0.5 2; where balls bounce: 0.9999)")
 
 
 def add_output_flags(group):
@@ -213,16 +213,17 @@ def write_results(args, metrics, runs, scene):
     return status
 
 
-def print_next(args, argv):
-    """The last line of a run: what to do next, as commands that work as printed."""
+def print_next(args, argv, status):
+    """The last lines of a run: what to do next, as commands that work as printed."""
     here = os.path.dirname(os.path.abspath(contact.__file__))
     recording = os.path.join(args.out, "contact.rrd")
-    recorded = args.rerun and os.path.exists(recording)
-    same = [word for word in argv if word not in ("--skip", "--no-skip")]
-    again = shell.python(os.path.join(here, "contact.py"), *same, "--plot")
-    bet = shell.python(os.path.join(here, "exercises", "ex1_predict_contact.py"), extra="learn")
-    see = f"watch it: {shell.tool('rerun')} {recording}; " if recorded else f"see it: {again}; "
-    print(f"next: {see if recorded or not args.plot else ''}make a bet: {bet}")
+    if not status and args.rerun and os.path.exists(recording):
+        print("next, watch it:", shell.tool("rerun"), recording)
+    elif not status and not args.plot:
+        same = [word for word in argv if word not in ("--skip", "--no-skip")]
+        print("next, see it:", shell.python(os.path.join(here, "contact.py"), *same, "--plot"))
+    bet = os.path.join(here, "exercises", "ex1_predict_contact.py")
+    print("next, make a bet:", shell.python(bet, extra="learn"))
 
 
 def seed_quality(args, models, seed):
@@ -318,5 +319,5 @@ def main(argv=None):
     print_report(args, metrics["quality"], metrics["stability"], limit)
     status = write_results(args, metrics, runs, scene)
     print("config_hash:", config_hash)
-    print_next(args, sys.argv[1:] if argv is None else argv)
+    print_next(args, sys.argv[1:] if argv is None else argv, status)
     return status

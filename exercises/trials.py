@@ -106,6 +106,8 @@ SLIPS = {
          "a number stands where `stiffness` should: this one fits a single spring"),
         (lambda depth, v, k, c: max(0.0, k * depth - 80.0 * v),
          "a number stands where `damping` should: this one fits a single damper"),
+        (lambda depth, v, k, c: max(0.0, 1e4 * depth - 80.0 * v),
+         "numbers stand where `stiffness` and `damping` should: they fit a single contact"),
         (lambda depth, v, k, c: max(0.0, 0.5 * k * depth * depth - c * v),
          "that is the energy of the spring, not its force"),
     ),
@@ -198,7 +200,21 @@ def play(exercise, argv=None):
     args = predict.parse("ex2", argv, record="write a recording of every trial, for rerun")
     if args.hint:
         return 0
-    return max([tried(exercise, blank, args.record) for blank in BLANKS])
+    status = max([tried(exercise, blank, args.record) for blank in BLANKS])
+    if not status:
+        print(f"\nnext: {predict.follow_up('ex2')}")
+    return status
+
+
+def unfilled(exercise, blank):
+    """What a blank asks for, printed, and the line that says where it is."""
+    function, number = getattr(exercise, blank), 1 + BLANKS.index(blank)
+    file = predict.os.path.relpath(exercise.__file__)
+    asked = " ".join((function.__doc__ or "").split())
+    print(predict.textwrap.fill(f"{number}  {blank}: {asked}", 96, subsequent_indent="   "),
+          flush=True)
+    return (f"{blank} is still a blank: in {file} fill the line marked \"TODO: blank {number}\"; "
+            f"--hint {2 * number - 1} asks a question that helps")
 
 
 def record(name, runs, scene):
@@ -220,7 +236,7 @@ def tried(exercise, blank, recorded=False):
     function = getattr(exercise, blank)
     got, trouble = called(function, blank, inputs(blank)[2])
     if got is ... or trouble:
-        print(trouble or f"{blank} is still a blank", file=sys.stderr)
+        print(trouble or unfilled(exercise, blank), file=sys.stderr)
         return 2
     status = 0
     print(f"{'lengths in ball radii':<52}{'yours':>10}{'contact.py':>12}")
@@ -235,7 +251,7 @@ def tried(exercise, blank, recorded=False):
         same = np.allclose(mine.q, theirs.q, rtol=0.0, atol=WITHIN)
         print(trial.__doc__.partition(":")[0])
         for name, value in expected.items():
-            print(f"    {name:<48}{seen[name]:>10.3g}{value:>12.3g}")
+            print(f"    {name:<48}{round(seen[name], 6):>10.3g}{round(value, 6):>12.3g}")
         print("    " + ("the same run" if same else f"another run: look at {blank}"))
         status = max(status, 0 if same else 1)
         if recorded:

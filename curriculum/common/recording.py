@@ -115,10 +115,19 @@ def send_balls(rr, recording, label, run, radius, times, color):
         ),
         static=True,
     )
-    spots = np.stack((run.q[:, 0], -run.q[:, 1]), axis=-1).reshape(-1, 2)
     recording.send_columns(
-        balls, times, rr.Points2D.columns(positions=spots).partition([len(radius)] * len(run.t))
+        balls,
+        times,
+        rr.Points2D.columns(positions=flat(run.q)).partition([len(radius)] * len(run.t)),
     )
+
+
+def flat(rows):
+    """Vectors (S, 2, N) as a list (S N, 2) with y down, in 32 bits, which is what rerun keeps."""
+    import numpy as np
+
+    with np.errstate(over="ignore"):
+        return np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2).astype(np.float32)
 
 
 def send_pushes(rr, recording, label, run, radius, times, pushes):
@@ -143,13 +152,12 @@ def send_pushes(rr, recording, label, run, radius, times, pushes):
         ),
         static=True,
     )
-    starts, ends = (
-        np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2) for rows in (run.q, vectors)
-    )
     recording.send_columns(
         arrows,
         times,
-        rr.Arrows2D.columns(origins=starts, vectors=ends).partition([len(radius)] * len(run.t)),
+        rr.Arrows2D.columns(origins=flat(run.q), vectors=flat(vectors)).partition(
+            [len(radius)] * len(run.t)
+        ),
     )
 
 

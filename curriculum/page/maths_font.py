@@ -15,6 +15,8 @@ import functools
 import io
 from pathlib import Path
 
+from curriculum.common.stoppable import stoppable
+
 FILE = Path(__file__).with_name("maths.woff")
 NAME = "Chapter Maths"
 LATIN = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
@@ -93,6 +95,7 @@ def missing(text):
     return sorted(set(text) - CHARACTERS)
 
 
+@stoppable
 def main(argv=None):
     """Cut the font and write maths.woff."""
     parser = argparse.ArgumentParser(prog="python -m curriculum.page.maths_font")

@@ -415,6 +415,7 @@ def test_ctrl_c_ends_run_and_worker_processes_with_one_line_and_leaves_no_file(f
 @pytest.mark.parametrize("command", [
     ["contact.py", *SHORT], ["contact.py", "--help"], ["exercises/ex1_predict_contact.py"],
     ["-m", "curriculum.measured"], ["-m", "curriculum.regions"],
+    ["-m", "curriculum.check_prose_code_drift", "--accept", "lcp"],
 ])  # fmt: skip
 @pytest.mark.parametrize("buffered", ["", "1"])
 def test_a_pipe_that_nobody_reads_any_more_ends_a_command_without_a_word(
@@ -617,6 +618,21 @@ def test_absurd_steps_give_no_warning_and_no_false_claim(dt, tmp_path, capsys):
             ]
 
 
+def test_a_run_beyond_what_a_recording_can_hold_is_recorded_without_a_warning(run_script, tmp_path):
+    """rerun keeps positions in 32 bits."""
+    pytest.importorskip("rerun", reason="rerun is not installed")
+    run = run_script("--dt", "1e100", "--steps", "50", "--out", tmp_path)
+    assert (run.returncode, run.stderr) == (0, b"") and (tmp_path / "contact.rrd").exists()
+
+
+def test_what_to_do_next_stands_in_lines_that_hold_one_command_each(tmp_path, capsys):
+    assert contact.main([*SHORT, "--contact", "exact", "--out", str(tmp_path)]) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("next")]
+    see, bet = lines
+    assert see.startswith("next, see it: ") and see.endswith("--plot") and "contact.py" in see
+    assert bet.startswith("next, make a bet: ") and bet.endswith("ex1_predict_contact.py")
+
+
 def test_a_pile_runs_no_stability_grid(tmp_path, capsys):
     flags = ["--scene", "pile", "--bodies", "8", *SHORT, "--out", str(tmp_path)]
     assert contact.main(flags) == 0
@@ -634,6 +650,7 @@ def test_a_folder_that_turns_out_unwritable_costs_the_files_and_not_the_report(c
     assert contact.main([*SHORT, "--plot", "--out", "/tmp/full"]) == 2
     out, err = capsys.readouterr()
     assert "verdict:" in out and "metrics:" not in out and "picture" not in out
+    assert "watch it" not in out and "see it" not in out, "no advice that would fail again"
     assert err.count("\n") == 1 and "/tmp/full/metrics.json: No space left on device" in err
 
 
@@ -750,6 +767,7 @@ def test_a_scene_whose_arrays_do_not_fit_is_refused_in_one_line(name, array, sai
         lambda: contact.run_model("lcp", wrong, 0.002, 3),
         lambda: contact.run_model("exact", wrong, 0.002, 3),
         lambda: contact.contact_quality(run, wrong, 0.002),
+        lambda: contact.simulate(lambda balls: None, wrong, 0.002, 3),
     ):
         with pytest.raises(ValueError) as caught:
             call()

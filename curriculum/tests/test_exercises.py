@@ -322,12 +322,20 @@ def test_a_fill_that_raises_or_returns_no_number_gives_one_line(filled):
 def test_ex2_as_a_script_names_the_blanks_and_runs_its_trials_once_filled(copy):
     folder, edit = copy
     untouched = run(folder, f"exercises/{FILES['ex2']}")
-    assert untouched.returncode == 2 and untouched.stdout == ""
-    assert untouched.stderr.splitlines() == [f"{name} is still a blank" for name in trials.BLANKS]
+    assert untouched.returncode == 2
+    asked, waits = untouched.stdout, untouched.stderr.splitlines()
+    for number, name in enumerate(trials.BLANKS):
+        assert f"{number + 1}  {name}: The " in asked, "what the blank is to give"
+        assert waits[number].startswith(f"{name} is still a blank: in exercises/{FILES['ex2']} ")
+        assert f"TODO: blank {number + 1}" in waits[number]
+        assert f"TODO: blank {number + 1}" in (folder / "exercises" / FILES["ex2"]).read_text()
+        assert f"--hint {2 * number + 1} " in waits[number]
     for name, blank in BLANKS.items():
         edit(FILES["ex2"], blank, RIGHT[name])
     done = run(folder, f"exercises/{FILES['ex2']}")
     assert done.returncode == 0 and done.stdout.count("the same run") == 3, done.stderr
+    assert FILES["ex3"] in done.stdout.splitlines()[-1], "what comes next"
+    assert "e-0" not in done.stdout, "what is 0 but for rounding is printed as 0"
 
 
 def test_each_trial_can_be_recorded_yours_beside_the_reference(monkeypatch, tmp_path, capsys):
