@@ -26,6 +26,7 @@ import json
 import math
 import os
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -241,22 +242,20 @@ def names_of_module_line(text, line):
 
 
 class Watcher:
-    """A pytest plugin: for each test its seconds, its outcome, and the functions of `file` it ran."""
+    """A pytest plugin: for each test its seconds, its outcome, and the functions of `file` it ran.
+
+    A test that runs contact.py as a process of its own is taken to run main.
+    """
 
     def __init__(self, file):
         self.file, self.found = str(file), {}
 
     def pytest_collection_modifyitems(self, items):
-        kept = [item for item in items if not any(word in item.nodeid for word in LEFT_OUT)]
-        items[:] = kept
-
-    def pytest_runtest_logreport(self, report):
-        entry = self.found.setdefault(report.nodeid, {"seconds": 0.0, "ran": [], "passed": True})
-        entry["seconds"] += report.duration
-        entry["passed"] &= not report.failed
+        items[:] = [item for item in items if not any(word in item.nodeid for word in LEFT_OUT)]
 
     def pytest_runtest_setup(self, item):
-        self.ran = ran = set()
+        ran = {"main"} if "run_script" in item.fixturenames else set()
+        self.found[item.nodeid] = {"seconds": 0.0, "ran": ran, "passed": True}
 
         def watch(frame, event, argument):
             if frame.f_code.co_filename == self.file:
@@ -266,10 +265,33 @@ class Watcher:
 
     def pytest_runtest_teardown(self, item):
         sys.settrace(None)
-        self.found[item.nodeid]["ran"] = sorted(self.ran)  # an entry: its call was reported
+
+    def pytest_runtest_logreport(self, report):
+        entry = self.found[report.nodeid]
+        entry["seconds"] += report.duration
+        entry["passed"] &= not report.failed
+        entry["ran"] = sorted(entry["ran"])
 
 
-def run_tests(folder, arguments, plugins=()):
+class Limiter:
+    """A pytest plugin: ends the process when a test takes too long, and keeps the test that failed.
+
+    It is the processor's time that is limited, so a busy machine ends nothing.
+    """
+
+    def __init__(self, found, path):
+        self.found, self.path = found, path
+
+    def pytest_runtest_setup(self, item):
+        allowed = time.process_time() + 5 + 10 * self.found[item.nodeid]["seconds"]
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(allowed), resource.RLIM_INFINITY))
+
+    def pytest_runtest_logreport(self, report):
+        if report.failed:
+            self.path.write_text(report.nodeid)
+
+
+def run_tests(folder, arguments, plugin):
     """pytest's exit status in `folder`, in this process."""
     import pytest
 
@@ -279,39 +301,40 @@ def run_tests(folder, arguments, plugins=()):
     sys.dont_write_bytecode = True
     for name in [n for n in sys.modules if n.split(".")[0] in ("contact", "curriculum", "checks")]:
         del sys.modules[name]
-    return int(
-        pytest.main(
-            ["-q", "-p", "no:cacheprovider", "--assert=plain", *arguments], plugins=list(plugins)
-        )
-    )
+    options = ["-q", "-p", "no:cacheprovider", "--assert=plain"]
+    if os.environ.get("NUMBA_DISABLE_JIT") == "1":
+        import numba
+
+        numba.config.DISABLE_JIT = 1  # it may have been imported before
+        options += ["-W", "ignore::RuntimeWarning"]  # of numpy's scalars, which numba does not have
+    return int(pytest.main([*options, *arguments], plugins=[plugin]))
 
 
-def watch_tests(file, folder, kept):
+def watch_tests(file, folder):
     """{test: what Watcher found} of the tests of one file that pass before any change."""
 
     def watched():
-        watcher = Watcher(Path(folder) / file)
-        run_tests(folder, test_files(file, folder), [watcher])
+        watcher = Watcher(folder / file)
+        run_tests(folder, test_files(file, folder), watcher)
         write_whole(str(path), json.dumps(watcher.found))
         return 0
 
-    path = Path(folder) / "watched.json"
-    if "tests" not in kept:
-        finish(start(watched, Path(folder) / "log.txt"), 1800)
-        if not path.exists():
-            log = (Path(folder) / "log.txt").read_text()
-            raise SystemExit(f"the tests of {file} do not run: {log[-1500:]}")
-        kept["tests"] = json.loads(path.read_text("utf-8"))
-    failing = [test for test, entry in kept["tests"].items() if not entry["passed"]]
+    path = folder / "watched.json"
+    path.unlink(missing_ok=True)
+    finish(start(watched, folder / "log.txt"), 1800)
+    if not path.exists():
+        raise SystemExit(f"the tests of {file} do not run: {(folder / 'log.txt').read_text()}")
+    found = json.loads(path.read_text("utf-8"))
+    failing = [test for test, entry in found.items() if not entry["passed"]]
     if failing:
         print(f"left out, since they fail before any change: {', '.join(failing)}", file=sys.stderr)
-    return {test: entry for test, entry in kept["tests"].items() if entry["passed"]}
+    return {test: entry for test, entry in found.items() if entry["passed"]}
 
 
 def test_files(file, folder):
     """The test files of a target that are there."""
     names = [f"curriculum/tests/test_{name}.py" for name in TESTS[file].split()]
-    return [name for name in names if (Path(folder) / name).exists()]
+    return [name for name in names if (folder / name).exists()]
 
 
 def tests_for(mutant, text, found):
@@ -348,12 +371,13 @@ def start(work, log):
 
 
 def finish(child, seconds):
-    """The exit status of a child, None when it does not end in time and is ended."""
+    """The exit status of a child, None when it did not end in time and was ended."""
     deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
         done, status = os.waitpid(child, os.WNOHANG)
         if done:
-            return os.waitstatus_to_exitcode(status)
+            code = os.waitstatus_to_exitcode(status)
+            return None if code == -signal.SIGXCPU else code
         time.sleep(0.02)
     os.killpg(child, signal.SIGKILL)
     os.waitpid(child, 0)
@@ -375,50 +399,82 @@ def copy_of_the_repository(folder):
             shutil.copy(ROOT / name, folder / name)
 
 
-def try_mutant(mutant, data, tests, folder, seconds):
-    """ "killed", "survived", "late" (killed by not ending) or "untested"."""
+def try_mutant(mutant, data, tests, found, folder):
+    """(outcome, the test that failed or None); the outcome is "killed", "late" (it was killed by
+    not ending), "survived", or "untested" when no test runs its function.
+    """
     if not tests:
-        return "untested"
-    path = folder / mutant.file
+        return "untested", None
+    path, failed = folder / mutant.file, folder / "failed.txt"
+    failed.unlink(missing_ok=True)
     path.write_bytes(data[: mutant.start] + mutant.new.encode() + data[mutant.stop :])
+    seconds = 120 + 20 * sum(found[test]["seconds"] for test in tests)
     try:
-        status = finish(
-            start(lambda: run_tests(folder, ["-x", *tests]), folder / "log.txt"), seconds
-        )
+        limiter = Limiter(found, failed)
+        child = start(lambda: run_tests(folder, ["-x", *tests], limiter), folder / "log.txt")
+        status = finish(child, seconds)
     finally:
         path.write_bytes(data)
-    return "late" if status is None else "killed" if status else "survived"
+    outcome = "late" if status is None else "killed" if status else "survived"
+    return outcome, failed.read_text() if failed.exists() else None
 
 
 # --- a run ----------------------------------------------------------------------------------------
 
 
+class Trials:
+    """Tries the mutants of one file. What was found is kept in outputs.
+
+    What a mutant came to counts only for the same code and the same tests. The test that killed a
+    change of the same words is remembered beyond that, to be tried first.
+    """
+
+    def __init__(self, file, folder):
+        self.folder, self.data = folder, (folder / file).read_bytes()
+        name = WORK / file.replace("/", "-")
+        self.kept = measured.Cells(f"{name}.jsonl", code=(file,), about=tests_hash(file, folder))
+        self.killers = measured.Cells(f"{name}-killers.jsonl", code=())
+        if "tests" not in self.kept:
+            found = watch_tests(file, folder)
+            same = Mutant(file, "module", 1, 0, 0, "", "nothing changed")
+            outcome, failed = try_mutant(same, self.data, list(found), found, folder)
+            if outcome != "survived":
+                raise SystemExit(f"without any change {outcome}: {failed}")
+            self.kept["tests"] = found
+        self.found = self.kept["tests"]
+
+    def outcome(self, mutant):
+        """ "killed", "late", "survived" or "untested"."""
+        key, words = f"{mutant.start}-{mutant.stop} {mutant.new}", f"{mutant.where}: {mutant.said}"
+        if key not in self.kept:
+            tests = tests_for(mutant, self.data.decode(), self.found)
+            before = self.killers[words] if words in self.killers else None
+            outcome = "survived"
+            for some in ([before] if before in tests else [], tests):
+                if some and outcome == "survived":
+                    outcome, failed = try_mutant(mutant, self.data, some, self.found, self.folder)
+                    if failed and failed != before:
+                        self.killers[words] = failed
+            self.kept[key] = outcome if tests else "untested"
+        return self.kept[key]
+
+
 def run_file(file, chosen, folder):
-    """[[where, line, said, outcome]] of the chosen mutants of a file; kept as they come."""
-    data = (folder / file).read_bytes()
-    text = data.decode()
-    kept = measured.Cells(
-        WORK / f"{file.replace('/', '-')}.jsonl", code=(file,), about=tests_hash()
-    )
-    found = watch_tests(file, folder, kept)
+    """[[where, line, said, outcome]] of the chosen mutants of a file."""
+    trials = Trials(file, folder)
     rows = []
     with measured.progress(len(chosen), f"mutants of {file}") as tick:
         for mutant in chosen:
-            key = f"{mutant.start}-{mutant.stop} {mutant.new}"
-            if key not in kept:
-                tests = tests_for(mutant, text, found)
-                seconds = 60 + 10 * sum(found[test]["seconds"] for test in tests)
-                kept[key] = try_mutant(mutant, data, tests, folder, seconds)
-            rows.append([mutant.where, mutant.line, mutant.said, kept[key]])
+            rows.append([mutant.where, mutant.line, mutant.said, trials.outcome(mutant)])
             tick(mutant.where)
     return rows
 
 
-def tests_hash():
-    """Digits that change when a test does: what was killed may then not be."""
+def tests_hash(file, folder):
+    """Digits that change when a test of this file does: what was killed may then not be."""
     digest = hashlib.sha256()
-    for path in sorted((ROOT / "curriculum" / "tests").glob("*.py")):
-        digest.update(path.read_bytes())
+    for name in ("curriculum/tests/conftest.py", *test_files(file, folder)):
+        digest.update((folder / name).read_bytes())
     return digest.hexdigest()[:12]
 
 
@@ -545,8 +601,8 @@ def main(argv=None):
     with tempfile.TemporaryDirectory(prefix="mutate-") as folder:
         copy_of_the_repository(Path(folder))
         for file in args.files:
-            if file == "curriculum/piles.py":
-                os.environ["NUMBA_DISABLE_JIT"] = "1"  # a mutant need not be compiled to be wrong
+            # A mutant of the compiled loops need not be compiled to be wrong.
+            os.environ["NUMBA_DISABLE_JIT"] = str(int(file == "curriculum/piles.py"))
             rows[file] = run_file(file, chosen[file], Path(folder))
     section = section_of(rows, reasons(), sizes)
     before = measured.load(args.out).get("mutation", {}).get("files", {})

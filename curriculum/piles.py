@@ -16,12 +16,13 @@ import numpy as np
 MODELS = ("penalty", "lcp", "soft")
 PENALTY, LCP, SOFT = range(3)
 SKIN = 1.0      # of the largest radius: how much farther the list of pairs looks than it must
-BALL = np.dtype([(name, float) for name in (
+# np.record, so that the loops also run without being compiled (NUMBA_DISABLE_JIT=1)
+BALL = np.dtype((np.record, [(name, float) for name in (
     "vx", "vy", "inv_mass", "radius", "x", "y",
     "listed_x", "listed_y",                     # where it was when the pairs were listed
-    "fx", "fy", "mass")])
-CONTACT = np.dtype([("a", np.int64), ("b", np.int64), *[(name, float) for name in (
-    "nx", "ny", "depth", "m_eff", "target", "softness", "lam")]])
+    "fx", "fy", "mass")]))
+CONTACT = np.dtype((np.record, [("a", np.int64), ("b", np.int64), *[(name, float) for name in (
+    "nx", "ny", "depth", "m_eff", "target", "softness", "lam")]]))
 
 
 class Knobs(NamedTuple):

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 import contact
 
+numba = pytest.importorskip("numba", reason="numba is not installed: the extra `fast`")
 piles = pytest.importorskip(
     "curriculum.piles", reason="numba is not installed: the extra `fast`", exc_type=ImportError
 )
@@ -97,7 +98,10 @@ def scenes(draw):
 
 
 @settings(
-    max_examples=100, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+    max_examples=20 if numba.config.DISABLE_JIT else 100,  # 5 times as many where it is compiled
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow],
 )
 @given(
     scene=scenes(),
