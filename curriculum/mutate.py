@@ -7,13 +7,15 @@
     python -m curriculum.mutate contact.py --list           the mutants, without running any
 
 A mutant is the file with one operator, number, condition or call changed. It is killed when a test
-fails or does not end; the tests that run the changed function go first. Tests that compare hashes
-of the text, or look at pages, are left out, since they would notice any change. A survivor is
-either named in curriculum/equivalent_mutants.txt, with the reason why nothing can notice it, or it
-is a hole in the tests. The report is curriculum/stress/results/mutation.md, and the numbers are the
-section "mutation" of the results there; parts of a run are kept in outputs, to go on from.
+fails or does not end, of those that run the changed function. Tests that compare hashes of the
+text, or look at pages, are left out, since they would notice any change. A survivor is either named
+in curriculum/equivalent_mutants.txt, with the reason why nothing can notice it, or it is a hole in
+the tests. The report is curriculum/stress/results/mutation.md, and the numbers are the section
+"mutation" of the results there; --only writes none. What was found is kept in outputs, to go on from.
 
 Each mutant runs in a forked process in a copy of the repository. Forking needs Linux or macOS.
+mutmut 3 changes neither constants of a module nor decorated functions, and the twin is made of
+these; cosmic-ray starts Python and pytest anew for each mutant, which takes several times as long.
 Exit status 0: no survivor without a reason and at least 95 % of the others killed; else 1.
 """
 
@@ -22,6 +24,7 @@ import ast
 import contextlib
 import hashlib
 import importlib
+import itertools
 import json
 import math
 import os
@@ -47,6 +50,8 @@ EQUIVALENT = ROOT / "curriculum" / "equivalent_mutants.txt"
 RESULTS = ROOT / "curriculum" / "stress" / "results"
 WORK = ROOT / "outputs" / "mutate"
 WANTED = 0.95
+GRACE = 5.0  # processor's seconds that a test may take beyond ten times what it did before
+BUDGET = 15.0  # processor's seconds of tests that one mutant is worth
 TESTS = {
     "contact.py": "lcp figures faults closed_form measures skips soft next_chapter stress "
     "invariants mutants command_line recording",
@@ -241,36 +246,41 @@ def names_of_module_line(text, line):
 # --- which tests run what -------------------------------------------------------------------------
 
 
+NOTE = "getattr(__import__('sys'), 'noted', set()).add('{}')"
+
+
+def noting(text):
+    """The file with a first statement in each function that notes in sys.noted that it runs."""
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            at = 0 if ast.get_docstring(node) is None else 1
+            node.body[at:at] = ast.parse(NOTE.format(node.name)).body
+    return ast.unparse(tree)
+
+
 class Watcher:
-    """A pytest plugin: for each test its seconds, its outcome, and the functions of `file` it ran.
+    """A pytest plugin: for each test its seconds, its outcome, and the functions that it ran.
 
     A test that runs contact.py as a process of its own is taken to run main.
     """
 
-    def __init__(self, file):
-        self.file, self.found = str(file), {}
+    def __init__(self):
+        self.found = {}
 
     def pytest_collection_modifyitems(self, items):
         items[:] = [item for item in items if not any(word in item.nodeid for word in LEFT_OUT)]
 
     def pytest_runtest_setup(self, item):
-        ran = {"main"} if "run_script" in item.fixturenames else set()
-        self.found[item.nodeid] = {"seconds": 0.0, "ran": ran, "passed": True}
-
-        def watch(frame, event, argument):
-            if frame.f_code.co_filename == self.file:
-                ran.add(frame.f_code.co_name)
-
-        sys.settrace(watch)
-
-    def pytest_runtest_teardown(self, item):
-        sys.settrace(None)
+        sys.noted = {"main"} if "run_script" in item.fixturenames else set()
+        self.found[item.nodeid] = {"seconds": -time.process_time(), "passed": True}
 
     def pytest_runtest_logreport(self, report):
         entry = self.found[report.nodeid]
-        entry["seconds"] += report.duration
         entry["passed"] &= not report.failed
-        entry["ran"] = sorted(entry["ran"])
+        if report.when == "teardown":
+            entry["seconds"] += time.process_time()
+            entry["ran"] = sorted(sys.noted)
 
 
 class Limiter:
@@ -283,7 +293,7 @@ class Limiter:
         self.found, self.path = found, path
 
     def pytest_runtest_setup(self, item):
-        allowed = time.process_time() + 5 + 10 * self.found[item.nodeid]["seconds"]
+        allowed = time.process_time() + GRACE + 10 * self.found[item.nodeid]["seconds"]
         resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(allowed), resource.RLIM_INFINITY))
 
     def pytest_runtest_logreport(self, report):
@@ -314,14 +324,18 @@ def watch_tests(file, folder):
     """{test: what Watcher found} of the tests of one file that pass before any change."""
 
     def watched():
-        watcher = Watcher(folder / file)
+        sys.noted = set()
+        watcher = Watcher()
         run_tests(folder, test_files(file, folder), watcher)
         write_whole(str(path), json.dumps(watcher.found))
         return 0
 
     path = folder / "watched.json"
     path.unlink(missing_ok=True)
+    text = (folder / file).read_text("utf-8")
+    (folder / file).write_text(noting(text), "utf-8")
     finish(start(watched, folder / "log.txt"), 1800)
+    (folder / file).write_text(text, "utf-8")
     if not path.exists():
         raise SystemExit(f"the tests of {file} do not run: {(folder / 'log.txt').read_text()}")
     found = json.loads(path.read_text("utf-8"))
@@ -338,12 +352,16 @@ def test_files(file, folder):
 
 
 def tests_for(mutant, text, found):
-    """The tests to try on a mutant: those that run its function, quick ones first."""
+    """The tests to try on a mutant: those that run its function, the quickest first, until they
+    add up to BUDGET seconds.
+    """
     functions = set(mutant.where.split("."))
     if mutant.where == "module":
         functions = names_of_module_line(text, mutant.line)
     ran = [test for test, entry in found.items() if functions & set(entry["ran"])]
-    return sorted(ran, key=lambda test: found[test]["seconds"])
+    ran.sort(key=lambda test: found[test]["seconds"])
+    spent = itertools.accumulate(found[test]["seconds"] for test in ran)
+    return [test for test, seconds in zip(ran, spent) if seconds < BUDGET]
 
 
 # --- processes ------------------------------------------------------------------------------------
@@ -400,11 +418,7 @@ def copy_of_the_repository(folder):
 
 
 def try_mutant(mutant, data, tests, found, folder):
-    """(outcome, the test that failed or None); the outcome is "killed", "late" (it was killed by
-    not ending), "survived", or "untested" when no test runs its function.
-    """
-    if not tests:
-        return "untested", None
+    """("killed", "late" or "survived", the test that failed or None); late: it did not end."""
     path, failed = folder / mutant.file, folder / "failed.txt"
     failed.unlink(missing_ok=True)
     path.write_bytes(data[: mutant.start] + mutant.new.encode() + data[mutant.stop :])
@@ -425,8 +439,9 @@ def try_mutant(mutant, data, tests, found, folder):
 class Trials:
     """Tries the mutants of one file. What was found is kept in outputs.
 
-    What a mutant came to counts only for the same code and the same tests. The test that killed a
-    change of the same words is remembered beyond that, to be tried first.
+    What a mutant came to counts only for the same code and the same tests. Which test killed a
+    mutant is remembered beyond that: it is the first to be tried on that mutant again, and on the
+    next ones of the same function.
     """
 
     def __init__(self, file, folder):
@@ -435,28 +450,47 @@ class Trials:
         self.kept = measured.Cells(f"{name}.jsonl", code=(file,), about=tests_hash(file, folder))
         self.killers = measured.Cells(f"{name}-killers.jsonl", code=())
         if "tests" not in self.kept:
-            found = watch_tests(file, folder)
-            same = Mutant(file, "module", 1, 0, 0, "", "nothing changed")
-            outcome, failed = try_mutant(same, self.data, list(found), found, folder)
-            if outcome != "survived":
-                raise SystemExit(f"without any change {outcome}: {failed}")
-            self.kept["tests"] = found
+            self.kept["tests"] = watch_tests(file, folder)
         self.found = self.kept["tests"]
+        self.check_unchanged(Mutant(file, "module", 1, 0, 0, "", "nothing"))
+
+    def check_unchanged(self, nothing):
+        """Without any change every test passes, or nothing could be said of a mutant."""
+        no_hurry = {test: {"seconds": 60.0} for test in self.found}  # numba may have to compile
+        outcome, failed = try_mutant(nothing, self.data, list(no_hurry), no_hurry, self.folder)
+        if outcome != "survived":
+            log = (self.folder / "log.txt").read_text()[-3000:]
+            raise SystemExit(f"{nothing.file} without any change: {outcome} by {failed}\n{log}")
+
+    def likely(self, mutant, tests):
+        """The test that killed this mutant before, and the last ones that killed its neighbours."""
+        near = [
+            test
+            for words, test in self.killers.found.items()
+            if words.startswith(f"{mutant.where}: ")
+        ]
+        near.append(self.killers.found.get(words_of(mutant)))
+        last_first = dict.fromkeys(reversed(near))
+        return [test for test in last_first if test in tests][:4]
 
     def outcome(self, mutant):
         """ "killed", "late", "survived" or "untested"."""
-        key, words = f"{mutant.start}-{mutant.stop} {mutant.new}", f"{mutant.where}: {mutant.said}"
+        key = f"{mutant.start}-{mutant.stop} {mutant.new}"
         if key not in self.kept:
             tests = tests_for(mutant, self.data.decode(), self.found)
-            before = self.killers[words] if words in self.killers else None
-            outcome = "survived"
-            for some in ([before] if before in tests else [], tests):
+            outcome = "survived" if tests else "untested"
+            for some in (self.likely(mutant, tests), tests):
                 if some and outcome == "survived":
                     outcome, failed = try_mutant(mutant, self.data, some, self.found, self.folder)
-                    if failed and failed != before:
-                        self.killers[words] = failed
-            self.kept[key] = outcome if tests else "untested"
+                    if failed:
+                        self.killers[words_of(mutant)] = failed
+            self.kept[key] = outcome
         return self.kept[key]
+
+
+def words_of(mutant):
+    """What a mutant is called in the files."""
+    return f"{mutant.where}: {mutant.said}"
 
 
 def run_file(file, chosen, folder):
@@ -493,8 +527,7 @@ def section_of(rows_by_file, known, sizes):
     """The section "mutation" of results.json."""
 
     def why(file, row):
-        """The reason of a survivor: its own, or that of every change to its function."""
-        return known.get(f"{file}: {row[0]}: {row[2]}") or known.get(f"{file}: {row[0]}: *")
+        return known.get(f"{file}: {row[0]}: {row[2]}")
 
     found = {}
     for file, rows in rows_by_file.items():
@@ -508,10 +541,21 @@ def section_of(rows_by_file, known, sizes):
             "late": sum(row[3] == "late" for row in rows),
             "equivalent": len(named),
             "share": killed / max(1, len(rows) - len(named)),
+            "between": wilson(killed, len(rows) - len(named)),
+            "code": measured.code_hash(file),
             "named": [[*row[:3], why(file, row)] for row in named],
             "survivors": [row for row in alive if row not in named],
         }
     return {"files": found}
+
+
+def wilson(killed, tried):
+    """Where the share of all mutants lies, to 95 %, when so many of a sample are killed (Wilson)."""
+    tried, z2 = max(1, tried), 1.96**2
+    share = killed / tried
+    middle = (share + z2 / (2 * tried)) / (1 + z2 / tried)
+    half = math.sqrt(z2 * (share * (1 - share) + z2 / (4 * tried)) / tried) / (1 + z2 / tried)
+    return [middle - half, min(1.0, middle + half)]
 
 
 def page(section):
@@ -524,13 +568,15 @@ def page(section):
             f"{one['killed']:,}",
             one["equivalent"],
             len(one["survivors"]),
-            f"{100 * one['share']:.1f} %",
+            share_of(one),
         ]
         for file, one in files.items()
     ]
     parts = [
         "A mutant is the code with one operator, number, condition or call changed. Tests of hashes "
-        "and pages are left out. The share is of the mutants that are not equivalent.",
+        f"and pages are left out, and of a mutant's tests those beyond {BUDGET:g} s. The share is of "
+        "the mutants that are not equivalent; for a sample, in parentheses, where that of all lies "
+        "(95 %).",
         reporting.table(["file", "tried", "killed", "equivalent", "survivors", "share"], rows),
     ]
     for file, one in files.items():
@@ -551,6 +597,15 @@ def page(section):
                 )
             )
     return reporting.page("Mutants: how strong the tests are", section, *parts)
+
+
+def share_of(one):
+    """The share that was killed, with its interval when not all mutants were tried."""
+    said = f"{100 * one['share']:.1f} %"
+    if one["tried"] == one["mutants"]:
+        return said
+    low, high = (100 * end for end in one["between"])
+    return f"{said} ({low:.1f} to {high:.1f} %)"
 
 
 def parse(argv):
@@ -605,12 +660,19 @@ def main(argv=None):
             os.environ["NUMBA_DISABLE_JIT"] = str(int(file == "curriculum/piles.py"))
             rows[file] = run_file(file, chosen[file], Path(folder))
     section = section_of(rows, reasons(), sizes)
-    before = measured.load(args.out).get("mutation", {}).get("files", {})
-    section["files"] = {**before, **section["files"]}
-    command = " ".join(["python -m curriculum.mutate", *(sys.argv[1:] if argv is None else argv)])
-    saved = measured.save(args.out, "mutation", section, command)
-    write_whole(str(args.out / "mutation.md"), page(saved))
-    return show(saved["files"])
+    if args.only is None:
+        command = ["python -m curriculum.mutate", *(sys.argv[1:] if argv is None else argv)]
+        save(args.out, section, " ".join(command))
+    return show(section["files"])
+
+
+def save(out, section, command):
+    """Write the results and the report; other files' results stay while their code is the same."""
+    before = measured.load(out).get("mutation", {}).get("files", {})
+    kept = {f: one for f, one in before.items() if one["code"] == measured.code_hash(f)}
+    section["files"] = {**kept, **section["files"]}
+    saved = measured.save(out, "mutation", section, command, code=tuple(section["files"]))
+    write_whole(str(out / "mutation.md"), page(saved))
 
 
 def show(files):
@@ -621,7 +683,7 @@ def show(files):
             print(f"{file}:{line}: {where}: {outcome}: {said}")
         print(
             f"{file}: {one['killed']} of {one['tried']} killed, {one['equivalent']} equivalent, "
-            f"{len(one['survivors'])} survivors: {100 * one['share']:.1f} %"
+            f"{len(one['survivors'])} survivors: {share_of(one)}"
         )
         bad |= one["share"] < WANTED or bool(one["survivors"])
     return 1 if bad else 0

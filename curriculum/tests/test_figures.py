@@ -93,6 +93,21 @@ def test_critical_dt_of_the_default_spring_is_20_ms_and_13_54_with_its_damper():
     assert round(grid["dt_crit_damped"], 5) == 0.01354
 
 
+@pytest.mark.parametrize("gap, tried", [(0.001, False), (np.nextafter(0.001, 0.0), True)])
+def test_a_model_that_comes_no_nearer_than_the_margin_has_not_been_tried(gap, tried):
+    """The margin is where a contact is listed from, so a gap of exactly that is none yet."""
+    radius = 2.0**-11  # so that radius + margin, less the radius, is the margin to the last bit
+    scene = contact.build_scene("drop")._replace(radius=np.array([radius]))
+    q = np.array([[[0.0], [radius + gap]]] * 2)
+    assert contact.smallest_gap(q, scene.radius)[0] == gap
+    hangs = contact.Run(np.array([0.0, DT]), q, np.zeros_like(q))
+    grid = contact.measure_stability(
+        lambda model, dt: hangs, scene, DT, 1e4, dict.fromkeys(("penalty", "lcp"), hangs)
+    )
+    assert grid["penalty"] == grid["lcp"] == (32 * DT if tried else None)
+    assert grid["lcp_penetration_frac"] == (0.0 if tried else None)
+
+
 # Formulas
 
 

@@ -63,6 +63,27 @@ def test_solved_impulses_without_push_never_add_kinetic_energy(seed, e):
     assert all(c.lam >= 0.0 and c.v_n() >= c.target - 1e-9 for c in contacts)
 
 
+@pytest.mark.parametrize("sweeps", [1, 2, 3, 10])
+def test_corrections_of_exactly_the_tolerance_end_the_sweeps(sweeps):
+    """Two balls of 1 kg, one on the other, shall leave the floor at 1 m/s.
+
+    Sweep k corrects both normal velocities by 2^(1-k) m/s, exactly, and ends at 2 (1 - 2^-k) and
+    1 - 2^-k N s: at last two balls of 1 kg move at 1 m/s.
+    """
+
+    def solved(iters, tolerance):
+        low, high = (contact.Ball(0.0, y, 0.0, 0.0, 1.0, RADIUS) for y in (0.1, 0.3))
+        ground = contact.Contact(low, contact.FLOOR, 0.0, 1.0, 0.0)
+        pair = contact.Contact(high, low, 0.0, 1.0, 0.0)
+        ground.target = 1.0
+        contact.solve_contacts([ground, pair], iters, tolerance)
+        return ground.lam, pair.lam
+
+    share = 1.0 - 2.0**-sweeps
+    assert solved(1000, 2.0 ** (1 - sweeps)) == solved(sweeps, 0.0) == (2.0 * share, share)
+    assert solved(1000, 0.0) == (2.0, 1.0)
+
+
 def test_the_error_of_the_bounce_falls_with_the_step_down_to_a_sixteenth_of_a_millisecond():
     def error(dt):
         worst = []

@@ -1,5 +1,6 @@
 """The compiled twin of contact.py gives the bytes of the plain reference, and is really taken."""
 
+import itertools
 import json
 import math
 import os
@@ -147,6 +148,55 @@ def test_the_twin_has_the_bytes_of_the_reference_in_a_crowd(model):
     check_same(model, scene, 0.002, 4)
 
 
+# Function by function, at the edges that a run seldom meets
+
+
+def test_the_larger_of_two_is_pythons_max_to_the_sign_of_zero():
+    values = (0.0, -0.0, 1.0, -math.inf, math.nan)
+    for first, second in itertools.product(values, values):
+        assert repr(piles.larger(first, second)) == repr(max(first, second))
+
+
+def test_targets_have_the_bits_of_the_reference_on_every_edge():
+    """dt is 1/2 s: the ball just meets the floor in the step, or just not; the bias is just 0."""
+    dt = 0.5
+    near = [np.nextafter(-0.5, end) for end in (-1.0, 0.0)]
+    for depth, v_n, e, beta in itertools.product(
+        (-0.5, *near, -0.25, -0.0, 0.0, 0.25),
+        (-1.0, 0.0, 0.5, 1.0),
+        (0.0, 0.5, 1.0),
+        (0.0, 0.2, 1.0),
+    ):
+        ball = contact.Ball(0.0, 0.0, 0.0, v_n, 1.0, 0.1)
+        above = contact.Contact(ball, contact.FLOOR, 0.0, 1.0, depth)
+        expected = contact.contact_target(above, e, beta, dt)
+        assert repr(float(piles.contact_target(depth, v_n, e, beta, dt))) == repr(float(expected))
+
+
+@pytest.mark.parametrize("mid, power", [(0.45, 2.0), (0.65, 3.0), (0.79, 2.5)])
+def test_the_impedance_has_the_bits_of_the_reference_where_its_parts_meet(mid, power):
+    """At mid the two powers agree but for rounding, at the width the end is d1 itself."""
+    d0, d1 = 0.3, 0.9  # d0 + (d1 - d0) is not d1, to the last bit
+    for width in (0.125, 1e-15, 1.05e-15):
+        for depth in (0.0, 0.5 * width, mid * width, np.nextafter(width, 0.0), width):
+            solimp = (d0, d1, width, mid, power)
+            assert piles.impedance(depth, solimp) == contact.impedance(depth, solimp)
+    assert contact.impedance(0.125, (d0, d1, 0.125, mid, power)) == d1
+
+
+@pytest.mark.parametrize("sweeps", [1, 2, 3, 10])
+def test_corrections_of_exactly_the_tolerance_end_the_sweeps_of_the_twin(sweeps):
+    """Two balls of 1 kg, one on the other, shall leave the floor at 1 m/s, as in test_lcp."""
+    balls = piles.make_balls(np.zeros((4, 2)), np.ones(2), np.full(2, 0.1))
+    contacts = np.zeros(2, piles.CONTACT)
+    piles.set_contact(contacts[0], balls, 0, 2, 0.0, 1.0, 0.0)
+    piles.set_contact(contacts[1], balls, 1, 0, 0.0, 1.0, 0.0)
+    contacts["target"][0] = 1.0
+    piles.solve_contacts(balls, contacts, 1000, 2.0 ** (1 - sweeps))
+    share = 1.0 - 2.0**-sweeps
+    assert contacts["lam"].tolist() == [2.0 * share, share]
+
+
 @pytest.mark.parametrize("power", [1.0, 2.0, 2.5, 3.7, 6.0])
 def test_powers_of_the_impedance_have_the_bits_of_python(power):
     """numba and Python may take x**p from different places."""
@@ -264,6 +314,44 @@ def test_the_smallest_gap_has_the_bits_of_the_reference(scene, dt):
         q = scene.q0 + np.arange(12)[:, None, None] * dt * scene.v0
         plain = contact.smallest_gap(q, scene.radius)
     assert repr(piles.smallest_gap(q, scene.radius).tolist()) == repr(plain.tolist())
+
+
+def gaps_of(states, radius):
+    """The smallest gap [m] of each state by the twin and by the reference, which are the same."""
+    q, radius = np.array(states, float), np.array(radius, float)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(contact, "FEW", 10**9)
+        plain = contact.smallest_gap(q, radius)
+    assert repr(piles.smallest_gap(q, radius).tolist()) == repr(plain.tolist())
+    return plain
+
+
+def test_a_pair_just_out_of_reach_can_be_nearer_than_the_floor():
+    """Pairs are listed as far as a radius, 0.1 m: this one is 0.102 m apart, the floor 0.105 m."""
+    gap = gaps_of([[[0.0, 0.302], [0.205, 0.205]]], [0.1, 0.1])
+    assert gap == pytest.approx([0.102], rel=1e-12)
+
+
+def test_a_pair_that_was_out_of_reach_may_have_come_nearer_than_the_floor():
+    """0.101 m apart when the pairs are listed, then 0.061 m; the floor stays at 0.08 m."""
+    gap = gaps_of([[[0.0, 0.301], [0.18, 0.18]], [[0.02, 0.281], [0.18, 0.18]]], [0.1, 0.1])
+    assert gap == pytest.approx([0.08, 0.061], rel=1e-12)
+
+
+def test_points_have_gaps_too():
+    """Their radius is 0, so there is no length to begin the search with."""
+    gap = gaps_of(
+        [[[0.0, 3.0, 3.0], [7.0, 7.0, 9.0]], [[0.0, 3.0, 3.0], [0.5, 7.0, 9.0]]], [0.0] * 3
+    )
+    assert gap.tolist() == [2.0, 0.5]
+
+
+def test_a_run_reports_each_200_000_steps_of_a_ball(monkeypatch):
+    """So that a progress bar moves: 500 balls report after 401 steps. No step is taken here."""
+    monkeypatch.setattr(piles, "take_steps", lambda rows, first, last, *rest: last)
+    heard = []
+    compiled("lcp", crowd(500, 0), 0.002, 1000, report=heard.append)
+    assert heard == [401, 802, 1000]
 
 
 # Where it is installed, and where not

@@ -87,6 +87,36 @@ def test_the_order_of_the_sweep_does_not_matter_to_rounding():
     assert results[0] == pytest.approx(results[1], abs=1e-13)
 
 
+def sweeps_of_a_step(heavy, monkeypatch):
+    """How many sweeps soft takes on a ball of that mass [kg] that lands on one of 1 kg, at 1 m/s.
+
+    With the damper 1 / dt and no spring, each contact wants to stop what closes it in one step.
+    """
+    pushes = []
+    push = contact.Contact.push
+    monkeypatch.setattr(contact.Contact, "push", lambda c, dp: (pushes.append(c), push(c, dp)))
+    fall = -1.0 - DT * contact.GRAVITY  # 1 m/s after gravity has acted
+    balls = [contact.Ball(0.0, y, 0.0, fall, m, 0.1) for y, m in ((0.0999, 1.0), (0.2998, heavy))]
+    balls.append(contact.Ball(9.0, 9.0, 1.5, fall, 1.0, 0.1))  # the fastest: it touches nothing
+    contact.soft_step(balls, DT, (0.0, -0.9999 / DT), contact.HARD)
+    return pushes.count(pushes[0])
+
+
+def test_sweeps_of_soft_end_where_their_corrections_are_below_2_to_the_minus_48_of_the_speeds(
+    monkeypatch,
+):
+    """Between two equal balls each sweep halves the corrections, which begin at 1 m/s.
+
+    The fastest ball has 1.5 m/s: 2^(1-k) <= 1.5 2^-48 from k = 49 on.
+    """
+    assert sweeps_of_a_step(1.0, monkeypatch) == 49
+
+
+def test_soft_stops_after_ten_thousand_sweeps_that_have_not_settled(monkeypatch):
+    """A million kg on 1 kg: a sweep takes about 2e-4 of the error away, the softness's share."""
+    assert sweeps_of_a_step(1e6, monkeypatch) == 10_000
+
+
 def test_sweeps_of_soft_end_long_before_the_cap():
     calls = []
 
