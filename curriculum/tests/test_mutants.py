@@ -49,7 +49,7 @@ def test_every_mutant_of_the_code_is_python_and_another_program(file):
     data, before = text.encode(), ast.dump(ast.parse(text))
     made = mutate.mutants_of(file, text)
     assert len(made) > 300 and len(set(made)) == len(made)
-    for mutant in made[::7]:
+    for mutant in made[::21]:
         new = (data[: mutant.start] + mutant.new.encode() + data[mutant.stop :]).decode()
         assert ast.dump(ast.parse(new)) != before, mutant.said
 
