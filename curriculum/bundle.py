@@ -25,6 +25,7 @@ import re
 import shlex
 import symtable
 import sys
+import textwrap
 from pathlib import Path
 
 from curriculum import regions
@@ -57,8 +58,8 @@ KEPT = (
 )
 CONSTANTS = ("GRAVITY", "RADIUS", "CONTACT_MARGIN", "EXPLODED")
 LEFT_OUT = {
-    "soft-impedance": "MuJoCo's contact is 90 lines that the cap has no room for",
-    "soft": "MuJoCo's contact is 90 lines that the cap has no room for",
+    "soft-impedance": "MuJoCo's contact, for which the cap leaves no room",
+    "soft": "MuJoCo's contact, for which the cap leaves no room",
     "flight": "a speed-up that changes no bit",
     "pairs": "a speed-up for many balls that changes no bit",
     "lattice": "the scene pile belongs to many balls",
@@ -109,6 +110,7 @@ DROPPED = ("quality-parts", ("height_errors", "deviation"))
 NOTE = """> The script beside this text, `contact.py`, holds `penalty` and `lcp`: this course keeps a
 > chapter in one script of at most {cap} lines. What the text says of `soft`, of `exact` and of piles
 > of many balls runs in the chapter's own repository, as do commands that begin with `python -m curriculum`.
+> {left_out}
 """
 ELSEWHERE = "*In the chapter's own repository, {file}, region {name}: {why}.*"
 
@@ -236,7 +238,20 @@ def chapter(root, numbers):
     text = re.sub(r"(?<![\w/])exercises/(?=ex[123]_)", "exercises/suggested/", text)
     text = re.sub(r"(?<![\w/])checks\.py", "exercises/suggested/checks.py", text)
     title, _, rest = text.partition("\n")
-    return re.sub(r"\n{3,}", "\n\n", f"{title}\n\n{NOTE.format(cap=CAP)}\n{rest.lstrip()}")
+    return re.sub(
+        r"\n{3,}",
+        "\n\n",
+        f"{title}\n\n{NOTE.format(cap=CAP, left_out=left_out())}\n{rest.lstrip()}",
+    )
+
+
+def left_out():
+    """What the course's script and exercises do not hold, and why, as words of the text."""
+    reasons = {}
+    for name, why in LEFT_OUT.items():
+        reasons.setdefault(why, []).append(f"`{name}`")
+    said = "; ".join(f"{' and '.join(names)} ({why})" for why, names in reasons.items())
+    return textwrap.fill(f"Left out, with the reason: {said}.", 100).replace("\n", "\n> ")
 
 
 def mark_commands(text, made):

@@ -6,6 +6,7 @@ The page and the figures are made from the sections of results.json alone.
 
 import json
 import math
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -260,8 +261,12 @@ def write(results, folder, command, cases):
 
 
 def redraw(saved, folder):
-    """report.md and the figures, from the sections of results.json."""
-    pictures = figures.draw(saved["maps"]) if "maps" in saved else {}
+    """report.md and the figures, from the sections of results.json. Says so without matplotlib."""
+    pictures = {}
+    try:
+        pictures = figures.draw(saved["maps"]) if "maps" in saved else {}
+    except ImportError as error:
+        print(f"no figures: {error}", file=sys.stderr)
     for name, svg in pictures.items():
         write_whole(str(Path(folder) / name), svg)
     write_whole(str(Path(folder) / "report.md"), page(saved))

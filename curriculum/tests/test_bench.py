@@ -27,6 +27,7 @@ from curriculum.bench import (
     timing,
 )
 from curriculum.bench.reports import accuracy as accuracy_report
+from curriculum.bench.reports import piles as piles_report
 
 SETTINGS = [
     pytest.param(
@@ -408,6 +409,16 @@ def test_goals_without_an_engine_are_not_claimed(section):
     goals = {goal.wanted: goal for goal in accuracy_report.goals(section)}
     assert goals["exact, drop: its error at most 1e-10 r"].met is True
     assert next(g for w, g in goals.items() if "the peer reading nothing" in w).met is None
+
+
+def test_a_pile_that_nothing_here_could_step_is_a_page_that_says_so(tmp_path):
+    """Without numba and without an engine the page ended in an IndexError."""
+    section = {
+        "rows": [], "exponents": {}, "dt": 0.002, "sweeps": 10, "missing": {"pymunk": "no"},
+    }  # fmt: skip
+    assert list(piles_report.claims(section)) == list(piles_report.goals(section)) == []
+    saved = measured.save(tmp_path, "pile", section, piles.COMMAND, piles.CODE)
+    assert "Left out: pymunk: no." in piles_report.page(saved)
 
 
 def test_the_front_holds_what_nothing_beats_in_both():

@@ -103,8 +103,10 @@ def test_what_is_left_out_is_named_where_the_text_shows_it_and_is_not_in_the_scr
     found = read_regions(made[f"{bundle.CHAPTER}/contact.py"])
     shown = list(texts.find_includes((ROOT / texts.CHAPTER).read_text("utf-8")))
     assert any(include.file == "curriculum/exact.py" for include in shown)
+    note = " ".join(text[: text.index("\n## ")].replace("\n> ", " ").split())
     for name, why in bundle.LEFT_OUT.items():
         assert bundle.course_name(name) not in found
+        assert f"`{name}`" in note and f"({why})" in note, "said at the top of the text"
         assert name.endswith(".py") or name in regions.find_all()
         if any(name in (include.name, include.file) for include in shown):
             assert why in text, name

@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
@@ -104,6 +105,17 @@ def test_a_clean_run_exits_0_and_writes_report_results_and_figures(command_with,
         (tmp_path / "out" / name).unlink()
     assert command_with(LITTLE, "--draw") == 0, "the same again from the results alone"
     assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+
+
+def test_without_matplotlib_the_report_is_written_and_one_line_says_what_draws_the_figures(
+    command_with, tmp_path, monkeypatch, capsys
+):
+    """A run ended in a traceback after all its work."""
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert command_with(LITTLE) == 0
+    assert "No violation." in (tmp_path / "out" / "report.md").read_text()
+    said = [line for line in capsys.readouterr().err.splitlines() if "figures" in line]
+    assert len(said) == 1 and "pip install" in said[0]
 
 
 def test_a_pulling_contact_is_found_and_the_printed_case_reproduces_it(

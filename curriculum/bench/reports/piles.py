@@ -57,6 +57,8 @@ def goals(section):
 
 
 def claims(section):
+    if not section["rows"]:
+        return  # neither numba nor an engine is installed
     largest = sizes(section)[-1]
     sound = [
         r
