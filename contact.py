@@ -485,7 +485,7 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True,
         report(k)
     rows += 0.0                                         # turns -0.0 into 0.0
     rows[np.isnan(rows)] = math.nan                     # which has a sign too, left to chance
-    rows = rows.reshape(steps + 1, -1, 4).transpose(0, 2, 1).copy()     # (steps + 1, 4, N)
+    rows = rows.reshape(steps + 1, len(balls), 4).transpose(0, 2, 1).copy()
     return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
 # --- endregion ---
 
@@ -504,18 +504,18 @@ def fly(balls, dt, most):
             return ()
     if detect_contacts(balls):
         return ()
-    rows = np.empty((int(count) + 1, len(balls), 4))
-    rows[0] = np.reshape(state_of(balls), (-1, 4))
-    rows[1:, :, 2] = 0.0
-    rows[1:, :, 3] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
-    q, v = rows[:, :, :2], rows[:, :, 2:]
+    rows = np.empty((int(count) + 1, 4 * len(balls)))
+    rows[0] = state_of(balls)
+    states = rows.reshape(len(rows), len(balls), 4)     # a view: what it gets, rows has
+    q, v = states[:, :, :2], states[:, :, 2:]
+    v[1:, :, 0] = 0.0
+    v[1:, :, 1] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
     np.add.accumulate(v, out=v)                         # v, v + dt g, v + dt g + dt g, ...
     q[1:] = dt * v[1:]
     np.add.accumulate(q, out=q)
     gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
     contact = np.flatnonzero(gap < CONTACT_MARGIN)
-    end = contact[0] if len(contact) > 0 else len(rows)
-    return rows[1:end + 1].reshape(-1, 4 * len(balls))
+    return rows[1:contact[0] + 1] if len(contact) > 0 else rows[1:]
 
 
 def steps_to_floor(ball, dt):

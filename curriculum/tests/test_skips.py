@@ -71,6 +71,16 @@ def test_same_bytes_for_steps_that_are_tiny_or_overflow(model, dt):
 
 
 @pytest.mark.parametrize("model", MODELS)
+def test_a_flight_ends_at_a_contact_that_one_state_alone_shows(model):
+    """So fast that without the contact the balls would be past each other a step later."""
+    q0, v0 = np.array([[-2.0, 2.31], [50.0, 50.0]]), np.array([[150.0, -150.0], [0.0, 0.0]])
+    one = np.ones(2)
+    scene = contact.Scene("crossing", q0, v0, one, 0.1 * one, 0.5, 0.0)
+    run = both_ways(model, scene, DT, 40)
+    assert run.v[-1, 0, 0] != 150.0, "they met"
+
+
+@pytest.mark.parametrize("model", MODELS)
 def test_same_bytes_for_thrown_balls_of_mixed_size_and_mass(model):
     """Rising, falling, meeting in flight: a flight must stop for each."""
     rng = np.random.default_rng(11)
