@@ -37,10 +37,9 @@ def measure():
 
 def table(runs):
     """The measurement as text."""
-    rows = [f"{'':<10}{'deepest':>12}{'at rest':>12}"]
-    rows += [f"{model:<10}{q['max_penetration_frac']:>10.5f} r{q['rest_penetration_frac']:>10.5f} r"
-             for model, q in runs["smoke"]["quality"].items()]
-    return "\n".join(rows)
+    rows = {model: (q["max_penetration_frac"], q["rest_penetration_frac"])
+            for model, q in runs["smoke"]["quality"].items()}
+    return predict.columns("depth", ("deepest", "at rest"), rows, "{:.5f} r")
 
 
 if __name__ == "__main__":

@@ -40,11 +40,9 @@ def measure():
 
 def table(runs):
     """The measurement as text."""
-    rows = [f"{'energy gained':<16}{'dt = 0.002 s':>14}{'dt = 0.03 s':>14}"]
-    for model in ("penalty", "lcp"):
-        gained = [run["quality"][model]["energy_excess"] for run in runs.values()]
-        rows.append(f"{model:<16}" + "".join(f"{value:>14.4g}" for value in gained))
-    return "\n".join(rows)
+    rows = {model: [run["quality"][model]["energy_excess"] for run in runs.values()]
+            for model in ("penalty", "lcp")}
+    return predict.columns("energy gained", ("dt = 0.002 s", "dt = 0.03 s"), rows, "{:.4g}")
 
 
 if __name__ == "__main__":

@@ -39,11 +39,9 @@ def measure():
 
 def table(runs):
     """The measurement as text."""
-    rows = [f"{'depth at rest':<16}{'1 kg':>14}{'10 kg':>14}"]
-    for model in ("soft", "penalty"):
-        depths = [run["quality"][model]["rest_penetration_frac"] for run in runs.values()]
-        rows.append(f"{model:<16}" + "".join(f"{depth:>12.5f} r" for depth in depths))
-    return "\n".join(rows)
+    rows = {model: [run["quality"][model]["rest_penetration_frac"] for run in runs.values()]
+            for model in ("soft", "penalty")}
+    return predict.columns("depth at rest", ("1 kg", "10 kg"), rows, "{:.5f} r")
 
 
 if __name__ == "__main__":

@@ -55,6 +55,14 @@ def one_line(kind, error, trace):
 sys.excepthook = one_line
 
 
+def columns(corner, heads, rows, form):
+    """A small table as text. rows {name: values}; `form` writes a value, as "{:.3f} r" does."""
+    lines = [f"{corner:<16}" + "".join(f"{head:>14}" for head in heads)]
+    lines += [f"{name:<16}" + "".join(f"{form.format(value):>14}" for value in values)
+              for name, values in rows.items()]
+    return "\n".join(lines)
+
+
 def chosen(exercise):
     """The learner's letter, however it was typed; None before a choice."""
     given = exercise.PREDICTION

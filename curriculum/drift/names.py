@@ -37,6 +37,9 @@ GENERATED = re.compile(r"<!-- generated: [\w-]+ by ([^>]*?) -->")
 PLACEHOLDER = re.compile(r"[A-Z][A-Z_:]*|\.\.\.|\[.*\]|<.*>|'?[A-Z]+\|?[A-Z]*'?")
 HELP = {}  # (target, its text): what --help prints
 OTHERS = ("pytest", "pip", "uv", "rerun", "git", "venv", "http")  # commands with flags of their own
+# flags of programs that are not ours, as far as our texts use them: others are taken for slips
+OF_UV = ("--extra", "--with", "--python")
+OF_PYTEST = ("-k", "-m", "-n", "-q", "-r", "-rs", "-v", "-x", "--dist", "--durations")
 
 
 class Names:
@@ -161,7 +164,7 @@ def command_problem(root, line, facts=None):
     if re.fullmatch(r"python[\d.]*", program):
         return _python_problem(root, words[1:])
     if program == "pytest":
-        return _files_problem(root, words[1:])
+        return _pytest_problem(root, words[1:])
     if program == "pip":
         return _extras_problem(root, words)
     return None
@@ -169,11 +172,13 @@ def command_problem(root, line, facts=None):
 
 def _uv_problem(root, words):
     while words and words[0].startswith("-"):
+        if words[0].partition("=")[0] not in OF_UV:
+            return f"uv run: {words[0]} is none of the flags that are known here: {' '.join(OF_UV)}"
         if words[0] == "--extra":
             problem = _extras_problem(root, [f".[{words[1]}]"])
             if problem:
                 return problem
-        words = words[2:] if words[0] in ("--extra", "--with", "--python") else words[1:]
+        words = words[2:]
     script = words and words[0].endswith(".py")
     return command_problem(root, shlex.join((["python"] if script else []) + words))
 
@@ -185,7 +190,7 @@ def _python_problem(root, words):
         if words[1] == "pip":
             return _extras_problem(root, words)
         if words[1] == "pytest":
-            return _files_problem(root, words[2:])
+            return _pytest_problem(root, words[2:])
         if not words[1].startswith("curriculum"):
             return None
         words = words[1:]
@@ -225,8 +230,10 @@ def _flags_problem(target, words, text):
     return None
 
 
-def _files_problem(root, words):
+def _pytest_problem(root, words):
     for k, word in enumerate(words):
+        if word.startswith("-") and word.partition("=")[0] not in OF_PYTEST:
+            return f"pytest: {word} is none of the flags that are known here: {' '.join(OF_PYTEST)}"
         if word.endswith(".py") and not (Path(root) / word).exists():
             return f"there is no {word}"
         if word == "-k" and words[:k] and words[k - 1].endswith(".py"):

@@ -23,6 +23,20 @@ def real_numbers():
     return numbers
 
 
+@pytest.fixture(scope="session")
+def measured_row():
+    """A function that gives the ledger of a folder one measured row, of these seconds."""
+
+    def write(folder, seconds):
+        from curriculum.common import wallclock
+
+        printed = wallclock.run_hash("c0ffee", folder)
+        about = ("1234567", "2026-01-02", str(folder / "wallclock.csv"))
+        wallclock.write_row("cpu-vm", seconds, printed, *about)
+
+    return write
+
+
 @pytest.fixture
 def run_script():
     """A function that runs `python contact.py FLAGS` and returns the finished process, as bytes."""

@@ -149,7 +149,7 @@ GIT = ("-c", "user.name=a", "-c", "user.email=a@b")
 
 
 @pytest.fixture(scope="session")
-def whole_project(tmp_path_factory):
+def whole_project(tmp_path_factory, measured_row):
     """A project in order: two literate files, everything accepted; made once, and committed."""
     folder = tmp_path_factory.mktemp("project")
     for file, text in (
@@ -164,14 +164,7 @@ def whole_project(tmp_path_factory):
     ):
         (folder / file).parent.mkdir(parents=True, exist_ok=True)
         (folder / file).write_text(text)
-    wallclock.write_row(
-        "cpu-vm",
-        [0.24, 0.25, 0.23],
-        wallclock.run_hash("c0ffee", folder),
-        "1234567",
-        "2026-01-02",
-        str(folder / "wallclock.csv"),
-    )
+    measured_row(folder, [0.24, 0.25, 0.23])
     for name in NAMES:
         gate.accept(folder, name)
     quoted.record(folder)
@@ -489,14 +482,6 @@ DRIFT = {
         ("meta.yaml", "stale: []", "stale: [wallclock:cpu-vm]"),
         r"meta.yaml:\d+: stale names wallclock:cpu-vm, which is not",
     ),
-    "minutes typed into the ledger": (
-        ("wallclock.csv", "cpu-vm,0.004", "cpu-vm,0.001"),
-        r"wallclock.csv:6: cpu-vm: wallclock_min is 0.001, but curriculum/wallclock_runs.json has 0.004",
-    ),
-    "a row invented": (
-        ("wallclock.csv", "mps,,,,,PENDING", "mps,0.01,c0ffee,1234567,2026-01-02,MEASURED"),
-        r"wallclock.csv:\d: mps: no times of mps in curriculum/wallclock_runs.json",
-    ),
     "a broken ledger": (
         ("wallclock.csv", "MEASURED", "GUESSED"),
         r"wallclock.csv:6: status 'GUESSED'; allowed",
@@ -769,6 +754,11 @@ COMMANDS = {
     "python contact.py --scene SCENE": None,
     "pip install -e '.[tset]'": "no extra 'tset'",
     "pytest checks.py -k ex2": "there is no checks.py",
+    "python -m pytest -n 2 --dist loadfile": None,
+    "python -m pytest -n 2 --dit loadfile": "pytest: --dit is none of the flags",
+    "uv run --extra learn pytest": "no extra 'learn'",
+    "uv run --exrta learn pytest": "uv run: --exrta is none of the flags",
+    "uv run --with numpy contact.py --dt 1": None,
     "python contact.py 'unclosed": "cannot be read",
 }
 

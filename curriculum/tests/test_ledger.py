@@ -46,18 +46,11 @@ def test_every_measured_row_has_its_times_beside_it():
 
 
 @pytest.fixture
-def ledger(tmp_path):
+def ledger(tmp_path, measured_row):
     """A ledger with one row, the numbers of a run with that hash, and what the gate says."""
     shutil.copy(ROOT / "meta.yaml", tmp_path)
     (tmp_path / "contact.py").write_text("x = 1  # a comment\n")
-    wallclock.write_row(
-        "cpu-vm",
-        [0.3, 0.2, 0.25],
-        wallclock.run_hash("c0ffee", tmp_path),
-        "1234567",
-        "2026-01-02",
-        str(tmp_path / "wallclock.csv"),
-    )
+    measured_row(tmp_path, [0.3, 0.2, 0.25])
 
     def check(printed="c0ffee"):
         numbers = Numbers(tmp_path, runs={"drop": {}})
