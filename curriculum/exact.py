@@ -38,8 +38,10 @@ apart when its turn comes.
 """
 
 # --- region: exact-setup ---
+import heapq
 import math
-from typing import NamedTuple
+from bisect import bisect_right
+from itertools import zip_longest
 
 import numpy as np
 
@@ -50,92 +52,112 @@ NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
 GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does not push
 EVENTS = 100    # per ball and tick, and of 20 balls at least, before the clock waits
 TICK = 0.1      # of sqrt(r / g), r the smallest radius
-BINOMIAL = np.array([[math.comb(m, k) for m in range(ORDER + 1)] for k in range(ORDER + 1)])
+FEW = 12        # balls: among so few, each may meet all others at any time
 
 
-class System(NamedTuple):
-    """What stays the same during a run; the floor is the last of N + 1 bodies."""
+class Body:
+    """A ball, or the floor, and its motion until its next event.
 
-    w: np.ndarray       # (N + 1,) 1 / mass [1/kg]
-    radius: np.ndarray  # (N + 1,) [m]
-    restitution: float
-    gravity: float      # [m/s^2] along y, negative
-    i: np.ndarray       # (K,) of all contacts that can be: the floor's first, then pairs i < j
-    j: np.ndarray
+    x and y [m] are series in the time since start [s]: 3 numbers for a parabola, or ORDER + 1.
+    """
 
-    def contacts(self, q, which=slice(None)):
-        """The Contacts `which` (an index array or a mask) in the positions q (2, N + 1)."""
-        i, j = self.i[which], self.j[which]
-        d = q[:, i] - q[:, j]
-        distance = np.where(j < 0, d[1], np.sqrt(d[0] * d[0] + d[1] * d[1]))
-        up = (j < 0) | ~(distance > 0.0)        # two balls with one centre: some normal is needed
-        d /= np.where(up, 1.0, distance)
-        d[:, up] = [[0.0], [1.0]]
-        speed = np.sqrt(-self.gravity * self.radius[i])
-        return Contacts(self.w, i, j, d, self.radius[i] + self.radius[j] - distance, speed)
+    def __init__(self, w, radius, q, v):
+        self.w, self.radius = w, radius         # 1 / mass [1/kg] and [m]
+        self.x, self.y = [q[0], v[0], 0.0], [q[1], v[1], 0.0]
+        self.start, self.due = 0.0, math.inf    # the series holds between these times [s]
+        self.near = {}                          # body: Contact, of all it can meet until then
+        self.home, self.room = q, 0.0           # it stays within room [m] of home until then
+        self.path, self.done = [], 0            # (samples, start, x, y) of the past; their sum
+
+    def at(self, time):
+        """Position and velocity (x, y) at a time [s]."""
+        s = time - self.start
+        q = evaluate(self.x, s), evaluate(self.y, s)
+        return q, (evaluate(rate(self.x), s), evaluate(rate(self.y), s))
+
+    def remember(self, samples):
+        """Keep the series for those of the first `samples` samples that no earlier one gives."""
+        if samples > self.done:
+            self.path.append((samples - self.done, self.start, self.x, self.y))
+            self.done = samples
+
+    def read(self, times):
+        """x and y, and their rates (S,), at the times (S,) from the series that were kept."""
+        counts, starts, *series = zip(*self.path)
+        s = times - np.repeat(starts, counts)
+        out = []
+        for rows in series:
+            rows = np.array([*zip_longest(*rows, fillvalue=0.0)])       # (orders, series)
+            slopes = np.arange(1.0, len(rows))[:, None] * rows[1:]
+            out.append([evaluate(np.repeat(p, counts, 1), s) for p in (rows, slopes)])
+        return out
+
+    def bodies(self):
+        """Whom an event of this body concerns."""
+        return [self]
 
 
-def build_system(scene, gravity):
-    """The System of a scene. Two bodies that nothing moves have no contact."""
-    count = len(scene.mass)
-    w, radius = np.append(1.0 / scene.mass, 0.0), np.append(scene.radius, 0.0)
-    i, j = np.triu_indices(count, 1)
-    i, j = np.append(np.arange(count), i), np.append(np.full(count, -1), j)
-    moves = w[i] + w[j] > 0.0
-    return System(w, radius, scene.restitution, gravity, i[moves], j[moves])
-# --- endregion ---
+class Contact:
+    """Two bodies that can touch; the floor is always the second."""
 
+    def __init__(self, i, j, gravity):
+        self.i, self.j, self.wall = i, j, j.radius == 0.0       # the floor is flat
+        self.reach = i.radius + j.radius        # distance of the centres in touch [m]
+        self.speed = math.sqrt(-gravity * i.radius)     # a fall of half a radius gives it [m/s]
+        self.nx, self.ny, self.depth = 0.0, 1.0, 0.0    # n from j to i; depth = -gap [m]
+        self.bits = self.small = 0.0            # four last bits of the places; a gap that is none
+        self.due = math.inf                     # when it closes, or stops pushing [s]
+        self.rests = self.pushes = False        # it did not part when it touched; it pushes
+        self.last_touch = -math.inf             # when it touched last [s]
+        self.parting = 0.0                      # |v_n| it parted with then [m/s]
+        self.thin = -math.inf                   # when it closed, hardly opened [s]
 
-# --- region: exact-contacts ---
-class Contacts(NamedTuple):
-    """Some contacts in one set of positions: i, j, depth (K,), normals n (2, K)."""
+    def locate(self, q):
+        """Take normal and depth from the positions q {body: (x, y)}, and what counts as a gap."""
+        (xi, yi), (xj, yj) = q[self.i], q[self.j]
+        dx, dy = (0.0 if self.wall else xi - xj), yi - yj
+        distance = dy if self.wall else math.sqrt(dx * dx + dy * dy)
+        self.depth = self.reach - distance
+        self.nx, self.ny = 0.0, 1.0             # two balls with one centre: some normal is needed
+        if dx != 0.0 or dy < 0.0:
+            self.nx, self.ny = dx / distance, dy / distance
+        self.bits = 4.0 * math.ulp(max(abs(xi), abs(yi), abs(xj), abs(yj)))
+        self.small = self.bits + TOUCH * self.i.radius
 
-    w: np.ndarray
-    i: np.ndarray
-    j: np.ndarray
-    n: np.ndarray
-    depth: np.ndarray
-    speed: np.ndarray   # sqrt(g r) (K,) [m/s]: what a ball gains as it falls half a radius
+    def along(self, rows):
+        """n . (rows_i - rows_j): with v, the normal velocity v_n."""
+        (xi, yi), (xj, yj) = rows[self.i], rows[self.j]
+        return self.nx * (xi - xj) + self.ny * (yi - yj)
 
-    def only(self, which):
-        """These of the contacts."""
-        return Contacts(self.w, self.i[which], self.j[which], self.n[:, which], self.depth[which],
-                        self.speed[which])
+    def across(self, rows):
+        """The tangent's part of rows_i - rows_j; 0 at the floor, whose normal never turns."""
+        (xi, yi), (xj, yj) = rows[self.i], rows[self.j]
+        return 0.0 if self.wall else self.nx * (yi - yj) - self.ny * (xi - xj)
 
-    def along(self, rows, n=None):
-        """n . (rows_i - rows_j) (K,) of rows (2, N + 1): with v, the normal velocity v_n."""
-        return ((self.n if n is None else n) * (rows[:, self.i] - rows[:, self.j])).sum(0)
+    def turning(self, v):
+        """The normal acceleration [m/s^2] that sliding asks for, since the normal turns."""
+        slip = self.across(v)
+        return slip * slip / self.reach
 
-    def tangents(self):
-        """Unit tangents (2, K); 0 for the floor, whose normal never turns."""
-        return np.array((-self.n[1], self.n[0])) * (self.j >= 0)
+    def opened(self, now, v_n):
+        """A bound [m] of how far it was open since it touched last."""
+        return (self.parting + abs(v_n)) * (now - self.last_touch)
 
-    def delassus(self):
-        """J M^-1 J' (K, K): how far a unit impulse at one contact changes v_n at another."""
-        i, j, w = self.i, self.j, self.w
-        shared = [np.equal.outer(a, b) * w[a][:, None] for a, b in ((i, i), (j, j), (i, j), (j, i))]
-        normals = np.multiply.outer(self.n[0], self.n[0]) + np.multiply.outer(self.n[1], self.n[1])
-        return normals * (shared[0] + shared[1] - shared[2] - shared[3])
+    def closes(self, v_n):
+        """Whether the bodies approach, by more than round-off."""
+        return v_n < -NOISE * self.speed
 
-    def pushed(self, rows, lam):
-        """rows + M^-1 J' lam; round-off below 1e-13 of a body's share is set to zero."""
-        rows, size = rows.copy(), np.abs(rows).max(0)
-        for body, push in ((self.i, lam * self.w[self.i]), (self.j, -lam * self.w[self.j])):
-            np.add.at(size, body, np.abs(push))
-            for row, part in zip(rows, self.n):
-                np.add.at(row, body, push * part)
-        return np.where(np.abs(rows) > 1e-13 * size, rows, 0.0)
+    def is_slow(self, v_n):
+        """Whether a bounce with this speed rises less than LAST radii."""
+        return abs(v_n) < math.sqrt(2.0 * LAST) * self.speed
 
-    def spread(self, force):
-        """M^-1 (2, N + 1) of forces (2, K) on the bodies i, and their opposites on j."""
-        body, count = np.append(self.i, self.j % len(self.w)), len(self.w)
-        return np.array([np.bincount(body, np.append(f, -f), count) for f in force]) * self.w
+    def touched(self, now, v_n):
+        """Note how it is left after an event: a contact that still closes is due again at once."""
+        self.last_touch, self.parting = now, math.inf if self.closes(v_n) else abs(v_n)
 
-    def corrected(self, rows, error):
-        """rows changed by the one set of pushes that takes `error` (K,) from n . rows."""
-        if not error.any():
-            return rows
-        return rows - self.spread(self.n * applied(inverted(self.delassus()), error))
+    def bodies(self):
+        """Whom an event of this contact concerns."""
+        return [self.i, self.j]
 # --- endregion ---
 
 
@@ -214,12 +236,6 @@ def solve_lcp(W, b):
     return np.maximum(lam, 0.0) * scale
 
 
-def react(contacts, rows, b):
-    """rows + M^-1 J' lam and lam, for the least pushes after which n . rows + b >= 0."""
-    lam = solve_lcp(contacts.delassus(), b)
-    return contacts.pushed(rows, lam), lam
-
-
 def inverted(W):
     """The inverse of a positive definite W. Blocks that do not act on each other stay apart."""
     W = W.copy()
@@ -236,347 +252,470 @@ def applied(matrix, b):
 # --- endregion ---
 
 
+# --- region: exact-push ---
+def delassus(contacts):
+    """J M^-1 J' (K, K): how far a unit impulse at one contact changes v_n at another."""
+    W, of_body = np.zeros((len(contacts), len(contacts))), {}
+    for k, contact in enumerate(contacts):
+        of_body.setdefault(contact.i, []).append((k, 1.0, contact))
+        of_body.setdefault(contact.j, []).append((k, -1.0, contact))
+    for body, mine in of_body.items():
+        if body.w > 0.0:
+            for k, sign, a in mine:
+                for m, other, b in mine:
+                    W[k, m] += sign * other * body.w * (a.nx * b.nx + a.ny * b.ny)
+    return W
+
+
+def push(contacts, lam, rows):
+    """Add M^-1 J' lam to the rows, {body: (x, y)}. Returns how much was added up for each body."""
+    size = {}
+    for contact, impulse in zip(contacts, lam):
+        for body, share in ((contact.i, impulse), (contact.j, -impulse)):
+            share *= body.w
+            if share != 0.0:
+                x, y = rows[body]
+                size[body] = size.get(body, max(abs(x), abs(y))) + abs(share)
+                rows[body] = (x + share * contact.nx, y + share * contact.ny)
+    return size
+
+
+def react(contacts, rows, b):
+    """The least pushes lam, which are made, after which n . rows + b >= 0 (b counts rows before).
+
+    What is left of a row at round-off below 1e-13 of what was added up is set to zero.
+    """
+    lam = solve_lcp(delassus(contacts), np.array(b)).tolist()
+    for body, size in push(contacts, lam, rows).items():
+        rows[body] = tuple(part if abs(part) > 1e-13 * size else 0.0 for part in rows[body])
+    return lam
+
+
+def correct(contacts, rows, error):
+    """Make the one set of pushes that takes `error` from n . rows at every contact."""
+    if any(error):
+        push(contacts, applied(inverted(delassus(contacts)), -np.array(error)).tolist(), rows)
+# --- endregion ---
+
+
 # --- region: exact-island ---
-def island(system, i, j, woken):
-    """The balls that hang together with those `woken` through contacts i, j: masks (N + 1,).
+class Island:
+    """The balls that touch one another at the time `now`, one by one or through others.
 
     What nothing moves, as the floor, passes nothing on and belongs to no island.
     """
-    partners = [[] for _ in woken]
-    passes = (system.w[i] > 0.0) & (system.w[j] > 0.0)
-    for a, b in zip(i[passes].tolist(), j[passes].tolist()):
-        partners[a].append(b)
-        partners[b].append(a)
-    found, left = np.zeros(len(woken), bool), np.flatnonzero(woken & (system.w > 0.0)).tolist()
-    while left:
-        ball = left.pop()
-        if not found[ball]:
-            found[ball] = True
-            left += partners[ball]
-    return found
 
+    def __init__(self, now, woken):
+        self.now = now
+        self.q, self.v = {}, {}                 # {body: (x, y)}, of its neighbours too
+        self.balls = {}                         # in the order in which they were found
+        self.contacts = {}                      # all that its balls can make
+        left = [woken]
+        while left:
+            ball = left.pop()
+            if ball not in self.balls:
+                self.balls[ball] = True
+                left += self.neighbours(ball)
 
-def separate(system, q, which, small):
-    """q without overlaps of more than `small` (K,) [m] at the contacts `which`, a mask.
+    def neighbours(self, ball):
+        """The balls that touch this one, and its place and theirs into q and v."""
+        found = []
+        for other, contact in ball.near.items():
+            for body in (ball, other):
+                if body not in self.q:
+                    self.q[body], self.v[body] = body.at(self.now)
+            if contact not in self.contacts:
+                contact.locate(self.q)
+                self.contacts[contact] = True
+            if other.w > 0.0 and (contact.depth >= -contact.small or self.is_due(contact)):
+                found.append(other)
+        return found
 
-    Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less. A gap
-    twice as wide as the deepest overlap may close on the way, but not more.
-    """
-    for _ in range(50):
-        contacts = system.contacts(q, which)
-        if not (contacts.depth > small).any():
-            break
-        contacts = contacts.only(contacts.depth >= -2.0 * contacts.depth.max())
-        q, _ = react(contacts, q, -contacts.depth)
-    return q
+    def is_due(self, contact):
+        """Whether an event of this contact is to be settled now."""
+        return contact.due <= self.now
+
+    def separate(self):
+        """Move the balls until no overlap is left that is more than `small`.
+
+        Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less. A
+        gap twice as wide as the deepest overlap may close on the way, but not more.
+        """
+        for _ in range(50):
+            if not any(contact.depth > contact.small for contact in self.contacts):
+                break
+            least = -2.0 * max(contact.depth for contact in self.contacts)
+            closing = [contact for contact in self.contacts if contact.depth >= least]
+            react(closing, self.q, [-contact.depth for contact in closing])
+            for contact in self.contacts:
+                contact.locate(self.q)
+
+    def touching(self):
+        """The contacts that touch: at rest, due, or with a gap below TOUCH radii.
+
+        Where a contact has hardly been wider open since it touched last, as under a light ball that
+        rattles between two others, only a gap below a ten thousandth of that touches.
+        """
+        found = []
+        for contact in self.contacts:
+            if contact.depth >= -contact.small or self.is_due(contact):
+                opened = contact.opened(self.now, contact.along(self.v))
+                tie = contact.bits + min(TOUCH * contact.i.radius, 1e-4 * opened)
+                if contact.rests or self.is_due(contact) or -contact.depth <= tie:
+                    found.append(contact)
+        return found
 # --- endregion ---
 
 
 # --- region: exact-collide ---
-def collide(system, contacts, v, thin):
-    """v after the impulses of the contacts that close: v_n becomes -e v_n where they push.
+def collide(island, contacts, restitution):
+    """Give impulses to the contacts that close: v_n becomes -e v_n where they push.
 
-    The contacts touch. Those `thin` (K,), and those whose bounce is slow, end their series here.
+    Those that have hardly opened, and those whose bounce is slow, end their series here.
     """
-    v_n, noise = contacts.along(v), NOISE * contacts.speed
-    if not (v_n < -noise).any():
-        return v
-    bounce = -system.restitution * v_n
-    bounce = np.where((np.abs(bounce) < slow(contacts)) | thin, 0.0, bounce)
-    v, lam = react(contacts, v, v_n - bounce)
-    struck, bounce, noise = contacts.only(lam > 0.0), bounce[lam > 0.0], noise[lam > 0.0]
+    v_n = [contact.along(island.v) for contact in contacts]
+    if not any(contact.closes(speed) for contact, speed in zip(contacts, v_n)):
+        return
+    bounce = []
+    for contact, speed, thin in zip(contacts, v_n, hardly_opened(island, contacts, v_n)):
+        back = -restitution * speed
+        bounce.append(0.0 if thin or contact.is_slow(back) else back)
+    lam = react(contacts, island.v, [speed - back for speed, back in zip(v_n, bounce)])
+    struck = [(contact, back) for contact, back, push in zip(contacts, bounce, lam) if push > 0.0]
     for _ in range(3):                          # unequal masses: once more, for the last digits
-        error = struck.along(v) - bounce
-        if not (np.abs(error) > noise).any():
+        error = [contact.along(island.v) - back for contact, back in struck]
+        if not any(abs(e) > NOISE * contact.speed for e, (contact, _) in zip(error, struck)):
             break
-        v = struck.corrected(v, error)
-    return v
+        correct([contact for contact, _ in struck], island.v, error)
 
 
-def slow(contacts):
-    """The speed [m/s] (K,) of a bounce that rises LAST radii."""
-    return math.sqrt(2.0 * LAST) * contacts.speed
+def hardly_opened(island, contacts, v_n):
+    """For each of the contacts whether it closes although it has opened less than TOUCH radii.
+
+    Bounces so small come from a cascade that is infinite: the limit is rest. Once it has stopped at
+    one contact, it stops at all that were open just then, if by less than 1000 TOUCH radii.
+    """
+    last, found = max(contact.thin for contact in contacts), []
+    for contact, speed in zip(contacts, v_n):
+        widest = (1000.0 if last > contact.last_touch else 1.0) * TOUCH * contact.i.radius
+        thin = contact.closes(speed) and contact.opened(island.now, speed) < widest
+        found.append(thin)
+        if thin:
+            contact.thin = island.now
+    return found
 # --- endregion ---
 
 
 # --- region: exact-support ---
-def support(system, contacts, v):
-    """v and accelerations a (2, N + 1); which of the contacts rest, and which of those push (K,).
+def support(island, contacts, gravity):
+    """Give forces to the contacts that rest. Returns the accelerations, {body: (x, y)}.
 
     The bodies of a resting contact do not part: n . a plus what the turning normal asks, slip^2
-    over the distance of the centres, is at least 0.
+    over the distance of the centres, is at least 0. Of each contact is noted whether it `rests` and
+    whether it `pushes`.
     """
-    a = np.array([[0.0], [system.gravity]]) * (system.w > 0.0)
-    rests = np.abs(contacts.along(v)) < slow(contacts)
-    pushes = rests.copy()
-    if not rests.any():
-        return v, a, rests, pushes
-    contacts = contacts.only(rests)
-    slip = contacts.along(v, contacts.tangents())
-    turn = slip * slip / (system.radius[contacts.i] + system.radius[contacts.j])
-    a, lam = react(contacts, a, contacts.along(a) + turn)
-    loaded = lam * (system.w[contacts.i] + system.w[contacts.j]) > grazing(system)
-    pushes[rests] = loaded
-    held = contacts.only(loaded)
-    v = held.corrected(v, held.along(v))        # round-off, or the last of a series of bounces
-    return v, held.corrected(a, held.along(a) + turn[loaded]), rests, pushes
-
-
-def grazing(system):
-    """The acceleration [m/s^2] that a contact gives to its bodies at least if it pushes."""
-    return -GRAZE * system.gravity
+    a = {body: (0.0, gravity if body.w > 0.0 else 0.0) for body in island.q}
+    resting = []
+    for contact in contacts:
+        contact.rests = contact.is_slow(contact.along(island.v))
+        if contact.rests:
+            resting.append(contact)
+    if not resting:
+        return a
+    turn = [contact.turning(island.v) for contact in resting]
+    lam = react(resting, a, [c.along(a) + t for c, t in zip(resting, turn)])
+    for contact, force in zip(resting, lam):
+        contact.pushes = force * (contact.i.w + contact.j.w) > -GRAZE * gravity
+    held = [contact for contact in resting if contact.pushes]
+    turn = [t for contact, t in zip(resting, turn) if contact.pushes]
+    # round-off, or the last of a series of bounces
+    correct(held, island.v, [contact.along(island.v) for contact in held])
+    correct(held, a, [contact.along(a) + t for contact, t in zip(held, turn)])
+    return a
 # --- endregion ---
 
 
 # --- region: exact-slide ---
-def slide(system, held, q, v):
-    """While the K contacts push: the series Q (ORDER + 1, 2, N + 1) of q and lam (ORDER - 1, K).
+def slide(held, q, v, gravity):
+    """While the K contacts push: their N bodies, and the series Q (ORDER + 1, 2, N) of q and lam
+    (ORDER - 1, K) of the forces.
 
     q'' = g + M^-1 J' lam with n = (q_i - q_j) / (r_i + r_j), a series too. n . n = 1 gives for each
     order of lam a linear system, always with the Delassus matrix.
     """
-    inverse, pair = inverted(held.delassus()), held.j >= 0
-    reach = system.radius[held.i] + system.radius[held.j]
-    Q, lam = np.zeros((ORDER + 1, *q.shape)), np.zeros((ORDER - 1, len(pair)))
-    n = np.zeros((ORDER + 1, *held.n.shape))
-    Q[0] = q + held.spread(held.n * applied(inverse, held.depth))   # gap = 0; below, v_n = 0
-    n[0] = np.where(pair, (Q[0][:, held.i] - Q[0][:, held.j]) / reach, held.n)
-    Q[1] = v - held.spread(n[0] * applied(inverse, held.along(v, n[0])))
+    bodies = list(dict.fromkeys(body for contact in held for body in (contact.i, contact.j)))
+    i, j = ([bodies.index(body) for body in column] for column in zip(*((c.i, c.j) for c in held)))
+    w, pair = np.array([body.w for body in bodies]), np.array([not c.wall for c in held])
+    reach, inverse = np.array([c.reach for c in held]), inverted(delassus(held))
+
+    def along(n, rows):
+        return (n * (rows[:, i] - rows[:, j])).sum(0)
+
+    def spread(force):                          # M^-1 (2, N) of forces (2, K) on i, -force on j
+        return np.array([np.bincount(i + j, np.append(f, -f), len(w)) for f in force]) * w
+
+    Q, lam = np.zeros((ORDER + 1, 2, len(w))), np.zeros((ORDER - 1, len(held)))
+    n = np.zeros((ORDER + 1, 2, len(held)))
+    n[0] = np.transpose([(c.nx, c.ny) for c in held])
+    Q[0], Q[1] = (np.transpose([rows[body] for body in bodies]) for rows in (q, v))
+    Q[0] += spread(n[0] * applied(inverse, np.array([c.depth for c in held])))  # gap = 0
+    n[0] = np.where(pair, (Q[0][:, i] - Q[0][:, j]) / reach, n[0])
+    Q[1] -= spread(n[0] * applied(inverse, along(n[0], Q[1])))                  # v_n = 0
     for k in range(ORDER - 1):
-        n[k + 1] = (Q[k + 1][:, held.i] - Q[k + 1][:, held.j]) / reach * pair
-        a = held.spread((lam[:k, None] * n[k:0:-1]).sum(0))     # of the orders that are known
-        a[1] += system.gravity * (system.w > 0.0) * (k == 0)
+        n[k + 1] = (Q[k + 1][:, i] - Q[k + 1][:, j]) / reach * pair
+        a = spread((lam[:k, None] * n[k:0:-1]).sum(0))          # of the orders that are known
+        a[1] += gravity * (w > 0.0) * (k == 0)
         turn = 0.5 * reach * (n[1:k + 2] * n[k + 1:0:-1]).sum((0, 1))
-        lam[k] = -applied(inverse, held.along(a, n[0]) + (k + 1) * (k + 2) * turn)
-        Q[k + 2] = (a + held.spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
-    return Q, lam
+        lam[k] = -applied(inverse, along(n[0], a) + (k + 1) * (k + 2) * turn)
+        Q[k + 2] = (a + spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
+    return bodies, Q, lam
 
 
-def expand(system, held, q, v, a):
-    """The series Q (M, 2, N + 1) of q, those of the forces (5 or more, K), and how long they last.
+def expand(held, q, v, a, gravity):
+    """The motion of the bodies while these contacts push: {body: (x, y)} of series of the sliding
+    bodies, {contact: series of its force}, and how long they last [s].
 
-    A parabola, forces that do not change, and for ever, where no held contact slides. Elsewhere a
-    power of 2 [s], in which the last two terms of Q stay below 2^-54 r.
+    Where no held contact slides there is nothing to expand, for ever. Elsewhere a series lasts a
+    power of 2, in which its last two terms stay below 2^-54 r.
     """
-    tangents = held.tangents()
-    if not (held.along(v, tangents).any() or held.along(a, tangents).any()):
-        return np.array((q, v, 0.5 * a)), np.ones((5, len(held.i))), np.inf
-    Q, lam = slide(system, held, q, v)
-    # first_fall needs a start above 0: a force that begins at 0 ends once it has fallen by a graze
-    lam[0] = np.maximum(lam[0], 0.0) + grazing(system) / (system.w[held.i] + system.w[held.j])
-    size = (np.abs(Q[-2:, :, :-1]) / system.radius[:-1]).max((1, 2))
+    if not any(contact.across(v) or contact.across(a) for contact in held):
+        return {}, {}, math.inf
+    bodies, Q, lam = slide(held, q, v, gravity)
+    moving = [k for k, body in enumerate(bodies) if body.w > 0.0]
+    radius = np.array([bodies[k].radius for k in moving])
+    size = (np.abs(Q[-2:, :, moving]) / radius).max((1, 2))
     power = ((-54 - np.frexp(size)[1]) // (ORDER - 1, ORDER)).min()     # size t^order < 2^-54
-    return Q, lam, math.ldexp(1.0, int(power))
+    # first_fall needs a start above 0: a force that begins at 0 ends once it has fallen by a graze
+    share = np.array([contact.i.w + contact.j.w for contact in held])
+    lam[0] = np.maximum(lam[0], 0.0) - GRAZE * gravity / share
+    return ({bodies[k]: Q[:, :, k].T.tolist() for k in moving}, dict(zip(held, lam.T.tolist())),
+            math.ldexp(1.0, int(power)))
 # --- endregion ---
 
 
 # --- region: exact-series ---
 def evaluate(p, t):
-    """sum p[k] t^k by Horner's rule."""
+    """sum p[k] t^k by Horner's rule; t a number or an array."""
     total = p[-1]
-    for row in p[-2::-1]:
-        total = total * t + row
+    for coefficient in p[-2::-1]:
+        total = total * t + coefficient
     return total
 
 
 def rate(p):
     """The series of the derivative."""
-    return np.arange(1, len(p)).reshape(-1, *[1] * (p.ndim - 1)) * p[1:]
+    return [k * coefficient for k, coefficient in enumerate(p) if k]
 
 
-def shifted(Q, s):
-    """The series Q (M, 2, N + 1) written about a time s (N + 1,) later, by the binomial theorem."""
-    if len(Q) == 3:
-        return np.array((Q[0] + s * (Q[1] + s * Q[2]), Q[1] + 2.0 * s * Q[2], Q[2]))
-    k = np.arange(len(Q))
-    power = s ** np.maximum(k - k[:, None], 0)[..., None]       # s^(m - k)
-    return np.einsum("kmb,mcb->kcb", BINOMIAL[..., None] * power, Q)
-
-
-def gap_series(system, Q, gap, which):
-    """Series (5 or more, K) with the signs of the gaps `which`, which are gap (K,) at t = 0:
-    y_i - r_i for the floor's, and |q_i - q_j|^2 - (r_i + r_j)^2 for pairs."""
-    i, j = system.i[which], system.j[which]
-    d, pair = Q[:, :, i] - Q[:, :, j], j >= 0
-    p = np.concatenate((d[:, 1], np.zeros((max(0, 5 - len(Q)), len(i)))))
-    d = d[:, :, pair]
-    for k in range(1, len(p)):
-        low, half = max(0, k - len(d) + 1), (k + 1) // 2
-        square = 2.0 * (d[low:half] * d[k - half + 1:k - low + 1][::-1]).sum(0)
-        p[k, pair] = (square + d[half] * d[half] if k % 2 == 0 else square).sum(0)
-    p[0] = gap * np.where(pair, gap + 2.0 * (system.radius[i] + system.radius[j]), 1.0)
+def shifted(p, s):
+    """The series written about a time s later: Horner's rule again and again (Taylor shift)."""
+    p = list(p)
+    if s != 0.0:
+        for k in range(len(p) - 1):
+            for m in range(len(p) - 2, k - 1, -1):
+                p[m] += s * p[m + 1]
     return p
+
+
+def squared(p, count):
+    """The first `count` coefficients of the square of a series."""
+    last = len(p) - 1
+    return [sum(p[m] * p[k - m] for m in range(max(0, k - last), min(k, last) + 1))
+            for k in range(count)]
+
+
+def parabola(q, v, a):
+    """The series x and y of a motion with the acceleration a."""
+    return [q[0], v[0], 0.5 * a[0]], [q[1], v[1], 0.5 * a[1]]
+
+
+def reaches(x, y, span):
+    """speed and bend: by the series nothing goes further than speed t + bend t^2 up to `span`."""
+    path, power = [abs(a) + abs(b) for a, b in zip(x, y)], 1.0
+    bend = 0.0
+    for part in path[2:]:
+        bend += part * power
+        power *= span
+    return path[1], bend
+
+
+def gap_series(contact, gap, motions):
+    """A series with the sign of a gap, which is `gap` at t = 0: y - r at the floor, and
+    |q_i - q_j|^2 - (r_i + r_j)^2 of a pair. `motions` are the series {body: (x, y)}."""
+    (xi, yi), (xj, yj) = motions[contact.i], motions[contact.j]
+    if contact.wall:
+        return [gap, *yi[1:]]
+    dx, dy = ([a - b for a, b in zip_longest(*rows, fillvalue=0.0)] for rows in ((xi, xj), (yi, yj)))
+    count = max(len(dx), 5)
+    p = [a + b for a, b in zip(squared(dx, count), squared(dy, count))]
+    return [gap * (gap + 2.0 * contact.reach), *p[1:]]
 # --- endregion ---
 
 
 # --- region: exact-next ---
 def first_fall(p, horizon):
-    """First t in [0, horizon] at which each sum p[k] t^k falls through zero; inf if it does not.
+    """First t in [0, horizon] at which sum p[k] t^k falls through zero; inf if it does not.
 
-    p (5 or more, K) with p[0] >= 0, horizon (K,). Newton's method made safe: with the least
-    curvature up to the horizon no step passes a root, and a parabola takes one step. An answer is
-    good to 1e-15 of itself, or early where 200 steps of next to no curvature did not get there.
+    p[0] >= 0. Newton's method made safe: with the least curvature up to the horizon no step passes
+    a root, and a parabola takes one step. An answer is good to 1e-15 of itself, or early where 200
+    steps of next to no curvature did not get there.
     """
-    slopes, bends = rate(p), 0.5 * rate(rate(p))
-    t, curved, bend = np.zeros(p.shape[1]), (p[3:] != 0.0).any(0), p[2]
-    value, slope, left, moving = p[0], p[1], 200, np.ones(p.shape[1], bool)
-    while left:
-        if curved.any():
-            bend = lower_bound(bends, t, horizon)
-            value, slope = np.maximum(evaluate(p, t), 0.0), evaluate(slopes, t)
-        root = np.sqrt(slope * slope - 4.0 * value * bend)      # NaN: no root
-        step = np.where(slope < 0.0, 2.0 * value / (root - slope),
-                        np.where(bend < 0.0, (slope + root) / (-2.0 * bend), np.inf))
-        t = np.where(moving, np.where(t + step <= horizon, t + step, np.inf), t)
-        moving &= curved & (step > 1e-15 * t)                   # the others have arrived
-        left = left - 1 if moving.any() else 0
+    if not any(p[3:]):
+        t = fall(*p[:3])
+        return t if t <= horizon else math.inf
+    t, slopes = 0.0, rate(p)
+    bends = [0.5 * coefficient for coefficient in rate(slopes)]
+    for _ in range(200):
+        bend = lower_bound(bends, t, horizon)
+        step = fall(max(evaluate(p, t), 0.0), evaluate(slopes, t), bend)
+        t += step
+        if not t <= horizon:
+            return math.inf
+        if step <= 1e-15 * t:
+            break
     return t
 
 
+def fall(value, slope, bend):
+    """First t >= 0 at which value + slope t + bend t^2 falls through zero; inf or NaN if never."""
+    square = slope * slope - 4.0 * value * bend
+    if not square >= 0.0:
+        return math.inf
+    root = math.sqrt(square)
+    if slope < 0.0:
+        return 2.0 * value / (root - slope)
+    return (slope + root) / (-2.0 * bend) if bend < 0.0 else math.inf
+
+
 def lower_bound(p, t, horizon):
-    """No sum p[k] s^k is less while t <= s <= horizon; exact for parabolas, p (3 or more, K)."""
-    vertex = np.where(p[2] > 0.0, np.clip(-p[1] / (2.0 * p[2]), t, horizon), t)
-    least = np.fmin.reduce([evaluate(p[:3], s) for s in (t, vertex, horizon)])
-    curved = (p[3:] != 0.0).any(0)
-    if not curved.any():
-        return least
-    return np.where(curved, least - evaluate(np.abs(p[3:]), horizon) * horizon**3, least)
+    """No sum p[k] s^k is less while t <= s <= horizon; exact for parabolas."""
+    least = min(evaluate(p[:3], t), evaluate(p[:3], horizon))
+    if p[2] > 0.0:
+        vertex = min(max(-p[1] / (2.0 * p[2]), t), horizon)
+        least = min(least, evaluate(p[:3], vertex))
+    if any(p[3:]):
+        least -= evaluate([abs(coefficient) for coefficient in p[3:]], horizon) * horizon * horizon * horizon
+    return least
 # --- endregion ---
 
 
 # --- region: exact-motion ---
 class Motion:
-    """What the balls do until their next events: (N + 1,) of bodies and (K,) of contacts."""
+    """All bodies, and what happens next to which of them."""
 
-    def __init__(self, system, scene):
-        bodies, contacts = len(system.w), len(system.i)
-        self.system = system
-        self.series = np.zeros((ORDER + 1, 2, bodies))          # of every body's position
-        self.series[0, :, :-1], self.series[1, :, :-1] = scene.q0, scene.v0
-        self.start = np.zeros(bodies)                           # the time [s] it starts from
-        self.until = np.where(system.w > 0.0, 0.0, np.inf)      # the time [s] it holds until
-        self.due = np.full(contacts, np.inf)                    # when it closes, or stops pushing
-        self.pushes = np.zeros(contacts, bool)
-        self.rests = np.ones(contacts, bool)                    # it did not part when it touched
-        self.last_touch = np.full(contacts, -np.inf)            # when it touched last [s]
-        self.parting = np.zeros(contacts)                       # |v_n| it parted with then [m/s]
-        self.thin = np.full(contacts, -np.inf)                  # when it closed, hardly opened
+    def __init__(self, scene, gravity):
+        self.gravity, self.restitution = gravity, scene.restitution
+        rows = zip((1.0 / scene.mass).tolist(), scene.radius.tolist(), scene.q0.T.tolist(),
+                   scene.v0.T.tolist())
+        self.balls = [Body(*row) for row in rows]
+        self.floor = Body(0.0, 0.0, [0.0, 0.0], [0.0, 0.0])
+        self.number = {ball: k for k, ball in enumerate(self.balls)}
+        self.due, self.count = [], 0            # (time, count, Body or Contact), a heap
+        self.samples = 0                        # how many have been passed
+        self.homes, self.reach = scene.q0.copy(), scene.radius.copy()
+        for ball in self.balls:
+            ball.room = 0.0 if ball.w == 0.0 else math.inf if len(self.balls) <= FEW else ball.radius
+            self.reach[self.number[ball]] += ball.room
+        for ball in self.balls:
+            if ball.w > 0.0:
+                self.move_home(ball, ball.at(0.0)[0])
 
-    def rows(self):
-        """The series, without the orders that are 0 while no ball slides."""
-        return self.series if np.isfinite(self.until).any() else self.series[:3]
+    def move_home(self, ball, q):
+        """Make q the home of a ball, and find whom it can meet while they all stay near home."""
+        k = self.number[ball]
+        self.homes[:, k] = ball.home = q
+        away = self.homes - self.homes[:, k:k + 1]
+        meets = (away * away).sum(0) <= (self.reach + self.reach[k]) ** 2
+        others = [self.balls[m] for m in np.flatnonzero(meets).tolist() if m != k]
+        if q[1] <= self.reach[k]:
+            others.insert(0, self.floor)
+        for other in set(ball.near).difference(others):
+            ball.near.pop(other).due = math.inf
+            del other.near[ball]
+        for other in others:
+            if other not in ball.near:
+                pair = (other, ball) if other in self.balls[:k] else (ball, other)
+                ball.near[other] = other.near[ball] = Contact(*pair, self.gravity)
 
-    def at(self, time):
-        """q, v (..., 2, N + 1) at a time [s] or at times (S, 1, 1)."""
-        s, rows = time - self.start, self.rows()
-        return evaluate(rows, s), evaluate(rate(rows), s)
+    def go_on(self, ball, now, x, y, span):
+        """Let a ball move by these series for a time `span` [s], or until it may leave home."""
+        ball.remember(self.samples)
+        ball.x, ball.y, ball.start = x, y, now
+        left = ball.room - math.dist((x[0], y[0]), ball.home)
+        if left < 0.5 * ball.room:
+            self.move_home(ball, (x[0], y[0]))
+            left = ball.room
+        if left < math.inf:
+            speed, bend = reaches(x, y, span)
+            span = min(span, fall(left, -speed, -bend))
+        self.plan(now + span, ball)
+
+    def plan(self, time, what):
+        """Something happens to a Body or a Contact at a time, unless its `due` changes before."""
+        what.due = time
+        if time < math.inf:
+            self.count += 1
+            heapq.heappush(self.due, (time, self.count, what))
 
     def next(self):
         """The time [s] of the next event."""
-        return min(self.due.min(initial=np.inf), self.until.min())
+        while self.due and self.due[0][2].due != self.due[0][0]:
+            heapq.heappop(self.due)
+        return self.due[0][0] if self.due else math.inf
 
-    def opened(self, now, which, v_n):
-        """A bound [m] (K,) of how far the contacts were open since they touched last."""
-        return (self.parting[which] + np.abs(v_n)) * (now - self.last_touch[which])
-
-    def go_on(self, now, balls, Q, until):
-        """From now on the balls (a mask) move by the series Q, trusted until that time."""
-        self.series[:, :, balls] = 0.0
-        self.series[:len(Q), :, balls] = Q[:, :, balls]
-        self.start[balls], self.until[balls] = now, until
-
-    def concerns(self, balls):
-        """The contacts (K,) that have one of the balls: masks."""
-        return balls[self.system.i] | balls[self.system.j]
-
-    def remember(self, now, balls, touch, contacts, v_n, rests, pushes):
-        """How the contacts of the balls (a mask) are left; those of index `touch` touch."""
-        mine = self.concerns(balls)
-        self.rests[mine] = self.pushes[mine] = False
-        self.due[mine] = np.inf
-        struck = v_n < -NOISE * contacts.speed      # closing still: it is due again at once
-        self.last_touch[touch], self.parting[touch] = now, np.where(struck, np.inf, np.abs(v_n))
-        self.rests[touch], self.pushes[touch] = rests, pushes
-# --- endregion ---
-
-
-# --- region: exact-touch ---
-def gather(motion, now, q, v):
-    """q without overlaps, the mask of the island's balls, what touches in it: index and Contacts.
-
-    A gap below TOUCH radii touches. But where a contact has hardly been wider open since it
-    touched last, as under a light ball that rattles between two others, only a gap below a ten
-    thousandth of that does.
-    """
-    system = motion.system
-    bits = 4.0 * np.spacing(np.abs(q).max(0))
-    bits = np.maximum(bits[system.i], bits[system.j])
-    small = bits + TOUCH * system.radius[system.i]
-    contacts, late = system.contacts(q), motion.due <= now
-    near = np.flatnonzero((contacts.depth >= -small) | late)
-    woken = motion.until <= now
-    woken[system.i[late]] = woken[system.j[late]] = True
-    balls = island(system, system.i[near], system.j[near], woken)
-    mine = motion.concerns(balls)
-    if (contacts.depth[mine] > small[mine]).any():
-        q = separate(system, q, mine, small[mine])
-        contacts = system.contacts(q)
-    near = np.flatnonzero(mine & ((contacts.depth >= -small) | late))
-    opened = motion.opened(now, near, contacts.only(near).along(v))
-    tie = bits[near] + np.fmin(TOUCH * system.radius[system.i[near]], 1e-4 * opened)
-    touch = near[motion.rests[near] | late[near] | (-contacts.depth[near] <= tie)]
-    return q, balls, touch, contacts.only(touch)
-
-
-def hardly_opened(motion, now, touch, contacts, v):
-    """Which of the contacts `touch` close although they have opened less than TOUCH radii.
-
-    Bounces so small come from a cascade that is infinite: the limit is rest. Once it has stopped at
-    one contact, it stops at all that were open just then, if by less than 1000 TOUCH radii.
-    """
-    v_n = contacts.along(v)
-    cascade = motion.thin[touch].max(initial=-np.inf) > motion.last_touch[touch]
-    widest = np.where(cascade, 1000.0 * TOUCH, TOUCH) * motion.system.radius[contacts.i]
-    thin = (v_n < -NOISE * contacts.speed) & (motion.opened(now, touch, v_n) < widest)
-    motion.thin[touch[thin]] = now
-    return thin
+    def woken(self, now):
+        """The balls to which something happens by the time `now`, in that order."""
+        found = []
+        while self.next() <= now < math.inf:
+            found += [body for body in heapq.heappop(self.due)[2].bodies() if body.w > 0.0]
+        return found
 # --- endregion ---
 
 
 # --- region: exact-event ---
-def event(motion, now):
-    """Settle the island in which something falls due by the time `now`, and send it on its way."""
-    system, (q, v) = motion.system, motion.at(now)
-    q, balls, touch, contacts = gather(motion, now, q, v)
-    v = collide(system, contacts, v, hardly_opened(motion, now, touch, contacts, v))
-    v, a, rests, pushes = support(system, contacts, v)
-    motion.remember(now, balls, touch, contacts, contacts.along(v), rests, pushes)
-    held = contacts.only(pushes)
-    Q, force, span = expand(system, held, q, v, a)
-    motion.go_on(now, balls, Q, now + span)
-    if span < np.inf:
-        motion.due[touch[pushes]] = now + first_fall(force, np.full(len(held.i), span))
-    predict(motion, now, balls)
+def event(motion, now, ball):
+    """Settle the island of a ball to which something happens, and send it on its way: its balls."""
+    island, g = Island(now, ball), motion.gravity
+    island.separate()
+    contacts = island.touching()
+    collide(island, contacts, motion.restitution)
+    for contact in island.contacts:
+        contact.rests = contact.pushes = False
+        contact.due = math.inf
+    a = support(island, contacts, g)
+    for contact in contacts:
+        contact.touched(now, contact.along(island.v))
+    held = [contact for contact in contacts if contact.pushes]
+    slides, forces, span = expand(held, island.q, island.v, a, g)
+    for ball in island.balls:
+        x, y = slides.get(ball) or parabola(island.q[ball], island.v[ball], a[ball])
+        motion.go_on(ball, now, x, y, span if ball in slides else math.inf)
+    for contact, force in forces.items():
+        motion.plan(now + first_fall(force, span), contact)
+    predict(motion, now, island.balls)
+    return island.balls
 
 
 def predict(motion, now, balls):
-    """Find when the contacts of the balls (a mask), which have new series, will close.
+    """Find when the contacts of the balls, which have new series, will close.
 
-    Those at rest count as 3 TOUCH radii open, so that round-off is no event. Those too far apart
-    to meet before the series of the island ends are left out.
+    Those at rest count as 3 TOUCH radii open, so that round-off is no event.
     """
-    system, Q = motion.system, shifted(motion.rows(), now - motion.start)
-    which = np.flatnonzero(motion.concerns(balls) & ~motion.pushes)
-    contacts = system.contacts(Q[0], which)
-    gap = np.maximum(-contacts.depth, 0.0)
-    gap += 3.0 * TOUCH * system.radius[contacts.i] * motion.rests[which]
-    span = motion.until[balls].min(initial=np.inf) - now
-    if span < np.inf:
-        travel = span * evaluate(np.abs(Q[1:]), span).sum(0)
-        meets = gap <= travel[contacts.i] + travel[contacts.j]
-        which, gap = which[meets], gap[meets]
-    horizon = np.minimum(motion.until[system.i[which]], motion.until[system.j[which]]) - now
-    motion.due[which] = now + first_fall(gap_series(system, Q, gap, which), horizon)
+    contacts = dict.fromkeys(contact for ball in balls for contact in ball.near.values())
+    series, q = {}, {}
+    for contact in contacts:
+        if contact.pushes:
+            continue
+        for body in (contact.i, contact.j):
+            if body not in series:
+                series[body] = [shifted(row, now - body.start) for row in (body.x, body.y)]
+                q[body] = (series[body][0][0], series[body][1][0])
+        contact.locate(q)
+        gap = max(-contact.depth, 0.0) + 3.0 * TOUCH * contact.i.radius * contact.rests
+        span = min(contact.i.due, contact.j.due) - now
+        path = [reaches(*series[body], span) for body in (contact.i, contact.j)]
+        if not gap > sum(span * (speed + span * bend) for speed, bend in path):
+            motion.plan(now + first_fall(gap_series(contact, gap, series), span), contact)
 # --- endregion ---
 
 
@@ -588,23 +727,27 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
     The scene has q0, v0 (2, N), mass (inf: a fixed ball), radius (N,) and restitution; gravity
     [m/s^2] is along y, negative. report(k) is called after each event with the samples done.
     """
-    motion = Motion(build_system(scene, gravity), scene)
-    out = np.empty((2, len(times), 2, len(scene.mass) + 1))
-    tick = TICK * math.sqrt(scene.radius.min() / -gravity)
-    now, done, events, until = 0.0, 0, 0, tick
-    event(motion, now)
-    while done < len(times):
+    motion, clock = Motion(scene, gravity), times.tolist()
+    tick = TICK * math.sqrt(float(scene.radius.min()) / -gravity)
+    now, events, until = 0.0, 0, tick
+    woken = [ball for ball in motion.balls if ball.w > 0.0]
+    while motion.samples < len(clock):
+        settled = set()
+        for ball in woken:
+            if ball not in settled:
+                settled.update(event(motion, now, ball))
+                events += 1
+                report(motion.samples)
         soon = max(now, motion.next())
-        if events > EVENTS * max(20, len(scene.mass)):
+        if events > EVENTS * max(20, len(motion.balls)):
             soon = max(soon, now + 0.01 * tick)
-        upto = int(np.searchsorted(times, soon, "right"))
-        if upto > done:
-            out[:, done:upto] = motion.at(times[done:upto, None, None])
-        now, done, events = soon, upto, events + 1
-        if done < len(times):
-            event(motion, now)
-        if now >= until:
-            events, until = 0, now + tick
-        report(done)
-    return out[0, ..., :-1], out[1, ..., :-1]
+        if soon >= until:
+            events, until = 0, soon + tick
+        now, motion.samples = soon, bisect_right(clock, soon)
+        woken = motion.woken(now)
+    report(motion.samples)
+    for ball in motion.balls:
+        ball.remember(motion.samples)
+    x, y = zip(*(ball.read(times) for ball in motion.balls))
+    return tuple(np.moveaxis(np.array((x, y)), (0, 1, 2, 3), (2, 3, 0, 1)))
 # --- endregion ---
