@@ -41,6 +41,7 @@ apart when its turn comes.
 import heapq
 import math
 from bisect import bisect_right
+from functools import cached_property
 from itertools import zip_longest
 
 import numpy as np
@@ -252,49 +253,59 @@ def applied(matrix, b):
 # --- endregion ---
 
 
-# --- region: exact-push ---
-def delassus(contacts):
-    """J M^-1 J' (K, K): how far a unit impulse at one contact changes v_n at another."""
-    W, of_body = np.zeros((len(contacts), len(contacts))), {}
-    for k, contact in enumerate(contacts):
-        of_body.setdefault(contact.i, []).append((k, 1.0, contact))
-        of_body.setdefault(contact.j, []).append((k, -1.0, contact))
-    for body, mine in of_body.items():
-        if body.w > 0.0:
-            for k, sign, a in mine:
-                for m, other, b in mine:
-                    W[k, m] += sign * other * body.w * (a.nx * b.nx + a.ny * b.ny)
-    return W
+# --- region: exact-group ---
+class Group(list):
+    """Contacts that act together. `rows` are of the bodies: {body: (x, y)}."""
 
+    @cached_property
+    def delassus(self):
+        """J M^-1 J' (K, K): how far a unit impulse at one contact changes v_n at another."""
+        W, of_body = np.zeros((len(self), len(self))), {}
+        for k, contact in enumerate(self):
+            of_body.setdefault(contact.i, []).append((k, 1.0, contact))
+            of_body.setdefault(contact.j, []).append((k, -1.0, contact))
+        for body, mine in of_body.items():
+            if body.w > 0.0:
+                for k, sign, a in mine:
+                    for m, other, b in mine:
+                        W[k, m] += sign * other * body.w * (a.nx * b.nx + a.ny * b.ny)
+        return W
 
-def push(contacts, lam, rows):
-    """Add M^-1 J' lam to the rows, {body: (x, y)}. Returns how much was added up for each body."""
-    size = {}
-    for contact, impulse in zip(contacts, lam):
-        for body, share in ((contact.i, impulse), (contact.j, -impulse)):
-            share *= body.w
-            if share != 0.0:
-                x, y = rows[body]
-                size[body] = size.get(body, max(abs(x), abs(y))) + abs(share)
-                rows[body] = (x + share * contact.nx, y + share * contact.ny)
-    return size
+    @cached_property
+    def inverse(self):
+        """The inverse of J M^-1 J' (K, K), for contacts of which none depends on others."""
+        return inverted(self.delassus)
 
+    def along(self, rows):
+        """n . (rows_i - rows_j) [K]: with v, the normal velocities v_n."""
+        return [contact.along(rows) for contact in self]
 
-def react(contacts, rows, b):
-    """The least pushes lam, which are made, after which n . rows + b >= 0 (b counts rows before).
+    def push(self, lam, rows):
+        """Add M^-1 J' lam to the rows. Returns how much was added up for each body."""
+        size = {}
+        for contact, impulse in zip(self, lam):
+            for body, share in ((contact.i, impulse), (contact.j, -impulse)):
+                share *= body.w
+                if share != 0.0:
+                    x, y = rows[body]
+                    size[body] = size.get(body, max(abs(x), abs(y))) + abs(share)
+                    rows[body] = (x + share * contact.nx, y + share * contact.ny)
+        return size
 
-    What is left of a row at round-off below 1e-13 of what was added up is set to zero.
-    """
-    lam = solve_lcp(delassus(contacts), np.array(b)).tolist()
-    for body, size in push(contacts, lam, rows).items():
-        rows[body] = tuple(part if abs(part) > 1e-13 * size else 0.0 for part in rows[body])
-    return lam
+    def react(self, rows, b):
+        """Make the least pushes lam after which n . rows has changed so that b changes to >= 0.
 
+        What is left of a row at round-off, below 1e-13 of what was added up, is set to zero.
+        """
+        lam = solve_lcp(self.delassus, np.array(b)).tolist()
+        for body, size in self.push(lam, rows).items():
+            rows[body] = tuple(part if abs(part) > 1e-13 * size else 0.0 for part in rows[body])
+        return lam
 
-def correct(contacts, rows, error):
-    """Make the one set of pushes that takes `error` from n . rows at every contact."""
-    if any(error):
-        push(contacts, applied(inverted(delassus(contacts)), -np.array(error)).tolist(), rows)
+    def correct(self, rows, error):
+        """Make the one set of pushes that takes `error` [K] from n . rows."""
+        if any(error):
+            self.push(applied(self.inverse, -np.array(error)).tolist(), rows)
 # --- endregion ---
 
 
@@ -345,8 +356,8 @@ class Island:
             if not any(contact.depth > contact.small for contact in self.contacts):
                 break
             least = -2.0 * max(contact.depth for contact in self.contacts)
-            closing = [contact for contact in self.contacts if contact.depth >= least]
-            react(closing, self.q, [-contact.depth for contact in closing])
+            closing = Group(contact for contact in self.contacts if contact.depth >= least)
+            closing.react(self.q, [-contact.depth for contact in closing])
             for contact in self.contacts:
                 contact.locate(self.q)
 
@@ -356,7 +367,7 @@ class Island:
         Where a contact has hardly been wider open since it touched last, as under a light ball that
         rattles between two others, only a gap below a ten thousandth of that touches.
         """
-        found = []
+        found = Group()
         for contact in self.contacts:
             if contact.depth >= -contact.small or self.is_due(contact):
                 opened = contact.opened(self.now, contact.along(self.v))
@@ -373,20 +384,21 @@ def collide(island, contacts, restitution):
 
     Those that have hardly opened, and those whose bounce is slow, end their series here.
     """
-    v_n = [contact.along(island.v) for contact in contacts]
+    v_n = contacts.along(island.v)
     if not any(contact.closes(speed) for contact, speed in zip(contacts, v_n)):
         return
     bounce = []
     for contact, speed, thin in zip(contacts, v_n, hardly_opened(island, contacts, v_n)):
         back = -restitution * speed
         bounce.append(0.0 if thin or contact.is_slow(back) else back)
-    lam = react(contacts, island.v, [speed - back for speed, back in zip(v_n, bounce)])
-    struck = [(contact, back) for contact, back, push in zip(contacts, bounce, lam) if push > 0.0]
+    lam = contacts.react(island.v, [speed - back for speed, back in zip(v_n, bounce)])
+    struck = Group(contact for contact, push in zip(contacts, lam) if push > 0.0)
+    bounce = [back for back, push in zip(bounce, lam) if push > 0.0]
     for _ in range(3):                          # unequal masses: once more, for the last digits
-        error = [contact.along(island.v) - back for contact, back in struck]
-        if not any(abs(e) > NOISE * contact.speed for e, (contact, _) in zip(error, struck)):
+        error = [speed - back for speed, back in zip(struck.along(island.v), bounce)]
+        if not any(abs(e) > NOISE * contact.speed for e, contact in zip(error, struck)):
             break
-        correct([contact for contact, _ in struck], island.v, error)
+        struck.correct(island.v, error)
 
 
 def hardly_opened(island, contacts, v_n):
@@ -408,30 +420,29 @@ def hardly_opened(island, contacts, v_n):
 
 # --- region: exact-support ---
 def support(island, contacts, gravity):
-    """Give forces to the contacts that rest. Returns the accelerations, {body: (x, y)}.
+    """Give forces to the contacts that rest: the Group of those that push, and the accelerations.
 
     The bodies of a resting contact do not part: n . a plus what the turning normal asks, slip^2
-    over the distance of the centres, is at least 0. Of each contact is noted whether it `rests` and
-    whether it `pushes`.
+    over the distance of the centres, is at least 0. Each contact notes whether it rests and pushes.
     """
     a = {body: (0.0, gravity if body.w > 0.0 else 0.0) for body in island.q}
-    resting = []
     for contact in contacts:
         contact.rests = contact.is_slow(contact.along(island.v))
-        if contact.rests:
-            resting.append(contact)
+    resting = Group(contact for contact in contacts if contact.rests)
     if not resting:
-        return a
-    turn = [contact.turning(island.v) for contact in resting]
-    lam = react(resting, a, [c.along(a) + t for c, t in zip(resting, turn)])
+        return resting, a
+    lam = resting.react(a, normal_accelerations(resting, island.v, a))
     for contact, force in zip(resting, lam):
         contact.pushes = force * (contact.i.w + contact.j.w) > -GRAZE * gravity
-    held = [contact for contact in resting if contact.pushes]
-    turn = [t for contact, t in zip(resting, turn) if contact.pushes]
-    # round-off, or the last of a series of bounces
-    correct(held, island.v, [contact.along(island.v) for contact in held])
-    correct(held, a, [contact.along(a) + t for contact, t in zip(held, turn)])
-    return a
+    held = Group(contact for contact in resting if contact.pushes)
+    held.correct(island.v, held.along(island.v))    # round-off, or the last of a series of bounces
+    held.correct(a, normal_accelerations(held, island.v, a))
+    return held, a
+
+
+def normal_accelerations(contacts, v, a):
+    """How fast the bodies of each contact come to part [m/s^2]."""
+    return [contact.along(a) + contact.turning(v) for contact in contacts]
 # --- endregion ---
 
 
@@ -446,7 +457,7 @@ def slide(held, q, v, gravity):
     bodies = list(dict.fromkeys(body for contact in held for body in (contact.i, contact.j)))
     i, j = ([bodies.index(body) for body in column] for column in zip(*((c.i, c.j) for c in held)))
     w, pair = np.array([body.w for body in bodies]), np.array([not c.wall for c in held])
-    reach, inverse = np.array([c.reach for c in held]), inverted(delassus(held))
+    reach, inverse = np.array([c.reach for c in held]), held.inverse
 
     def along(n, rows):
         return (n * (rows[:, i] - rows[:, j])).sum(0)
@@ -517,11 +528,15 @@ def shifted(p, s):
     return p
 
 
-def squared(p, count):
-    """The first `count` coefficients of the square of a series."""
-    last = len(p) - 1
-    return [sum(p[m] * p[k - m] for m in range(max(0, k - last), min(k, last) + 1))
-            for k in range(count)]
+def squared(p):
+    """The series of the square, to the order that a series has at most; 3 numbers or more."""
+    while len(p) > 2 and p[-1] == 0.0:
+        p = p[:-1]
+    square = [0.0] * min(2 * len(p) - 1, ORDER + 1)
+    for k, a in enumerate(p):
+        for m, b in enumerate(p[:len(square) - k]):
+            square[k + m] += a * b
+    return square
 
 
 def parabola(q, v, a):
@@ -539,15 +554,14 @@ def reaches(x, y, span):
     return path[1], bend
 
 
-def gap_series(contact, gap, motions):
+def gap_series(contact, gap, series):
     """A series with the sign of a gap, which is `gap` at t = 0: y - r at the floor, and
-    |q_i - q_j|^2 - (r_i + r_j)^2 of a pair. `motions` are the series {body: (x, y)}."""
-    (xi, yi), (xj, yj) = motions[contact.i], motions[contact.j]
+    |q_i - q_j|^2 - (r_i + r_j)^2 of a pair. `series` are those of the bodies, {body: (x, y)}."""
     if contact.wall:
-        return [gap, *yi[1:]]
-    dx, dy = ([a - b for a, b in zip_longest(*rows, fillvalue=0.0)] for rows in ((xi, xj), (yi, yj)))
-    count = max(len(dx), 5)
-    p = [a + b for a, b in zip(squared(dx, count), squared(dy, count))]
+        return [gap, *series[contact.i][1][1:]]
+    squares = [squared([a - b for a, b in zip_longest(p, q, fillvalue=0.0)])
+               for p, q in zip(series[contact.i], series[contact.j])]
+    p = [a + b for a, b in zip_longest(*squares, fillvalue=0.0)]
     return [gap * (gap + 2.0 * contact.reach), *p[1:]]
 # --- endregion ---
 
@@ -682,10 +696,9 @@ def event(motion, now, ball):
     for contact in island.contacts:
         contact.rests = contact.pushes = False
         contact.due = math.inf
-    a = support(island, contacts, g)
+    held, a = support(island, contacts, g)
     for contact in contacts:
         contact.touched(now, contact.along(island.v))
-    held = [contact for contact in contacts if contact.pushes]
     slides, forces, span = expand(held, island.q, island.v, a, g)
     for ball in island.balls:
         x, y = slides.get(ball) or parabola(island.q[ball], island.v[ball], a[ball])
@@ -702,7 +715,7 @@ def predict(motion, now, balls):
     Those at rest count as 3 TOUCH radii open, so that round-off is no event.
     """
     contacts = dict.fromkeys(contact for ball in balls for contact in ball.near.values())
-    series, q = {}, {}
+    series, q, path = {}, {}, {}
     for contact in contacts:
         if contact.pushes:
             continue
@@ -710,11 +723,12 @@ def predict(motion, now, balls):
             if body not in series:
                 series[body] = [shifted(row, now - body.start) for row in (body.x, body.y)]
                 q[body] = (series[body][0][0], series[body][1][0])
+                path[body] = reaches(*series[body], body.due - now)
         contact.locate(q)
         gap = max(-contact.depth, 0.0) + 3.0 * TOUCH * contact.i.radius * contact.rests
         span = min(contact.i.due, contact.j.due) - now
-        path = [reaches(*series[body], span) for body in (contact.i, contact.j)]
-        if not gap > sum(span * (speed + span * bend) for speed, bend in path):
+        (speed, bend), (other, curve) = path[contact.i], path[contact.j]
+        if not gap > span * (speed + other + span * (bend + curve)):
             motion.plan(now + first_fall(gap_series(contact, gap, series), span), contact)
 # --- endregion ---
 
