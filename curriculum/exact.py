@@ -329,18 +329,22 @@ class Island:
                 left += self.neighbours(ball)
 
     def neighbours(self, ball):
-        """The balls that touch this one, and its place and theirs into q and v."""
+        """The balls that touch this one. Notes where it and its neighbours are."""
         found = []
+        self.place(ball)
         for other, contact in ball.near.items():
-            for body in (ball, other):
-                if body not in self.q:
-                    self.q[body], self.v[body] = body.at(self.now)
-            if contact not in self.contacts:
+            if contact not in self.contacts:    # else it was found from the other side
+                self.place(other)
                 contact.locate(self.q)
                 self.contacts[contact] = True
-            if other.w > 0.0 and (contact.depth >= -contact.small or self.is_due(contact)):
-                found.append(other)
+                if other.w > 0.0 and (contact.depth >= -contact.small or self.is_due(contact)):
+                    found.append(other)
         return found
+
+    def place(self, body):
+        """Note position and velocity of a body."""
+        if body not in self.q:
+            self.q[body], self.v[body] = body.at(self.now)
 
     def is_due(self, contact):
         """Whether an event of this contact is to be settled now."""
@@ -545,24 +549,23 @@ def parabola(q, v, a):
 
 
 def reaches(x, y, span):
-    """speed and bend: by the series nothing goes further than speed t + bend t^2 up to `span`."""
-    path, power = [abs(a) + abs(b) for a, b in zip(x, y)], 1.0
-    bend = 0.0
+    """speed and bend: what moves by x and y goes no further than speed t + bend t^2 up to span."""
+    path, bend, power = [abs(a) + abs(b) for a, b in zip(x, y)], 0.0, 1.0
     for part in path[2:]:
         bend += part * power
         power *= span
     return path[1], bend
 
 
-def gap_series(contact, gap, series):
-    """A series with the sign of a gap, which is `gap` at t = 0: y - r at the floor, and
-    |q_i - q_j|^2 - (r_i + r_j)^2 of a pair. `series` are those of the bodies, {body: (x, y)}."""
-    if contact.wall:
-        return [gap, *series[contact.i][1][1:]]
-    squares = [squared([a - b for a, b in zip_longest(p, q, fillvalue=0.0)])
-               for p, q in zip(series[contact.i], series[contact.j])]
-    p = [a + b for a, b in zip_longest(*squares, fillvalue=0.0)]
-    return [gap * (gap + 2.0 * contact.reach), *p[1:]]
+def difference(p, q):
+    """The series p - q."""
+    return [a - b for a, b in zip_longest(p, q, fillvalue=0.0)]
+
+
+def distance_series(dx, dy, gap, reach):
+    """dx^2 + dy^2 - reach^2, which has the sign of the gap of a pair; that is `gap` at t = 0."""
+    p = [a + b for a, b in zip_longest(squared(dx), squared(dy), fillvalue=0.0)]
+    return [gap * (gap + 2.0 * reach), *p[1:]]
 # --- endregion ---
 
 
@@ -628,7 +631,7 @@ class Motion:
         self.samples = 0                        # how many have been passed
         self.homes, self.reach = scene.q0.copy(), scene.radius.copy()
         for ball in self.balls:
-            ball.room = 0.0 if ball.w == 0.0 else math.inf if len(self.balls) <= FEW else ball.radius
+            ball.room = 0.0 if ball.w == 0.0 else math.inf if len(self.balls) <= FEW else 0.5 * ball.radius
             self.reach[self.number[ball]] += ball.room
         for ball in self.balls:
             if ball.w > 0.0:
@@ -712,24 +715,27 @@ def event(motion, now, ball):
 def predict(motion, now, balls):
     """Find when the contacts of the balls, which have new series, will close.
 
-    Those at rest count as 3 TOUCH radii open, so that round-off is no event.
+    Those at rest count as 3 TOUCH radii open, so that round-off is no event. Those too far apart to
+    meet while both series hold are left out.
     """
     contacts = dict.fromkeys(contact for ball in balls for contact in ball.near.values())
-    series, q, path = {}, {}, {}
+    series, q = {}, {}
     for contact in contacts:
         if contact.pushes:
             continue
-        for body in (contact.i, contact.j):
+        i, j = contact.i, contact.j
+        for body in (i, j):
             if body not in series:
                 series[body] = [shifted(row, now - body.start) for row in (body.x, body.y)]
                 q[body] = (series[body][0][0], series[body][1][0])
-                path[body] = reaches(*series[body], body.due - now)
         contact.locate(q)
-        gap = max(-contact.depth, 0.0) + 3.0 * TOUCH * contact.i.radius * contact.rests
-        span = min(contact.i.due, contact.j.due) - now
-        (speed, bend), (other, curve) = path[contact.i], path[contact.j]
-        if not gap > span * (speed + other + span * (bend + curve)):
-            motion.plan(now + first_fall(gap_series(contact, gap, series), span), contact)
+        gap = max(-contact.depth, 0.0) + 3.0 * TOUCH * i.radius * contact.rests
+        dx, dy = map(difference, series[i], series[j])
+        span = min(i.due, j.due) - now
+        speed, bend = reaches(dx, dy, span)
+        if not gap > span * (speed + span * bend):
+            p = [gap, *dy[1:]] if contact.wall else distance_series(dx, dy, gap, contact.reach)
+            motion.plan(now + first_fall(p, span), contact)
 # --- endregion ---
 
 
