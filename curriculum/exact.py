@@ -394,7 +394,8 @@ def collide(island, contacts, restitution):
     bounce = []
     for contact, speed, thin in zip(contacts, v_n, hardly_opened(island, contacts, v_n)):
         back = -restitution * speed
-        bounce.append(0.0 if thin or contact.is_slow(back) else back)
+        ends = thin or 0.0 < back and contact.is_slow(back)
+        bounce.append(0.0 if ends else back)    # never above -e v_n, so that no energy is gained
     lam = contacts.react(island.v, [speed - back for speed, back in zip(v_n, bounce)])
     struck = Group(contact for contact, push in zip(contacts, lam) if push > 0.0)
     bounce = [back for back, push in zip(bounce, lam) if push > 0.0]
