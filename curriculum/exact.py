@@ -6,19 +6,21 @@ one does, the pushing contacts are equations, gap = 0, and the motion is a Taylo
 An event is a gap that closes, a force that falls to zero, or a series that comes to its end. It
 concerns the balls that touch one another there, an island; all other balls go on as they were.
 
-    gather     finds the island, and which of its contacts touch,
+    Island     finds the balls, and which of their contacts touch,
     separate   closes what rounding has left of overlaps,
     collide    gives impulses to the contacts that close: an LCP of velocities,
     support    gives forces to the contacts that rest: an LCP of accelerations,
     expand     gives the motion under these forces: a parabola, or a series where balls slide,
     predict    finds the next event of every contact of the island.
 
+What comes first is at the top of a heap. Among many balls each looks only at those near its home,
+the place where it was when it last looked about; when it may have left, it looks about again.
 Samples are read from the series, so when they are taken does not enter the motion.
 
     symbol   meaning                                          unit
-    q, v, a  positions, velocities, accelerations             m, m/s, m/s^2; rows x, y: (2, N + 1)
+    q, v, a  positions, velocities, accelerations             m, m/s, m/s^2: {body: (x, y)}
     w        1 / mass; 0 for the floor and for a fixed ball   1/kg
-    i, j     the balls of a contact; the floor is ball -1, the last column
+    i, j     the bodies of a contact; the floor is always j
     n        unit normal of a contact, from j to i
     gap      distance of the surfaces; depth = -gap           m
     v_n      n . (v_i - v_j), > 0 separating                  m/s
@@ -53,9 +55,12 @@ NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
 GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does not push
 EVENTS = 100    # per ball and tick, and of 20 balls at least, before the clock waits
 TICK = 0.1      # of sqrt(r / g), r the smallest radius
-FEW = 12        # balls: among so few, each may meet all others at any time
+FEW = 12        # balls: among so few, each looks at all the others
+ROOM = 0.5      # of a radius: how far a ball of more goes from home before it looks again
+# --- endregion ---
 
 
+# --- region: exact-body ---
 class Body:
     """A ball, or the floor, and its motion until its next event.
 
@@ -63,11 +68,12 @@ class Body:
     """
 
     def __init__(self, w, radius, q, v):
+        self.bodies = (self,)                   # whom an event of it concerns
         self.w, self.radius = w, radius         # 1 / mass [1/kg] and [m]
         self.x, self.y = [q[0], v[0], 0.0], [q[1], v[1], 0.0]
         self.start, self.due = 0.0, math.inf    # the series holds between these times [s]
-        self.near = {}                          # body: Contact, of all it can meet until then
-        self.home, self.room = q, 0.0           # it stays within room [m] of home until then
+        self.near = {}                          # {body: Contact} of all it can meet until then
+        self.home, self.room = q, 0.0           # until then it stays within room [m] of home
         self.path, self.done = [], 0            # (samples, start, x, y) of the past; their sum
 
     def at(self, time):
@@ -92,17 +98,16 @@ class Body:
             slopes = np.arange(1.0, len(rows))[:, None] * rows[1:]
             out.append([evaluate(np.repeat(p, counts, 1), s) for p in (rows, slopes)])
         return out
-
-    def bodies(self):
-        """Whom an event of this body concerns."""
-        return [self]
+# --- endregion ---
 
 
+# --- region: exact-contact ---
 class Contact:
     """Two bodies that can touch; the floor is always the second."""
 
     def __init__(self, i, j, gravity):
         self.i, self.j, self.wall = i, j, j.radius == 0.0       # the floor is flat
+        self.bodies = (i, j)                    # whom an event of it concerns
         self.reach = i.radius + j.radius        # distance of the centres in touch [m]
         self.speed = math.sqrt(-gravity * i.radius)     # a fall of half a radius gives it [m/s]
         self.nx, self.ny, self.depth = 0.0, 1.0, 0.0    # n from j to i; depth = -gap [m]
@@ -155,10 +160,6 @@ class Contact:
     def touched(self, now, v_n):
         """Note how it is left after an event: a contact that still closes is due again at once."""
         self.last_touch, self.parting = now, math.inf if self.closes(v_n) else abs(v_n)
-
-    def bodies(self):
-        """Whom an event of this contact concerns."""
-        return [self.i, self.j]
 # --- endregion ---
 
 
@@ -349,36 +350,56 @@ class Island:
     def is_due(self, contact):
         """Whether an event of this contact is to be settled now."""
         return contact.due <= self.now
+# --- endregion ---
 
-    def separate(self):
-        """Move the balls until no overlap is left that is more than `small`.
 
-        Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less. A
-        gap twice as wide as the deepest overlap may close on the way, but not more.
-        """
-        for _ in range(50):
-            if not any(contact.depth > contact.small for contact in self.contacts):
-                break
-            least = -2.0 * max(contact.depth for contact in self.contacts)
-            closing = Group(contact for contact in self.contacts if contact.depth >= least)
-            closing.react(self.q, [-contact.depth for contact in closing])
-            for contact in self.contacts:
-                contact.locate(self.q)
+# --- region: exact-touch ---
+def separate(island):
+    """Move the balls until no overlap is left that is more than `small`.
 
-    def touching(self):
-        """The contacts that touch: at rest, due, or with a gap below TOUCH radii.
+    Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less. A gap
+    twice as wide as the deepest overlap may close on the way, but not more.
+    """
+    for _ in range(50):
+        if not any(contact.depth > contact.small for contact in island.contacts):
+            break
+        least = -2.0 * max(contact.depth for contact in island.contacts)
+        closing = Group(contact for contact in island.contacts if contact.depth >= least)
+        closing.react(island.q, [-contact.depth for contact in closing])
+        for contact in island.contacts:
+            contact.locate(island.q)
 
-        Where a contact has hardly been wider open since it touched last, as under a light ball that
-        rattles between two others, only a gap below a ten thousandth of that touches.
-        """
-        found = Group()
-        for contact in self.contacts:
-            if contact.depth >= -contact.small or self.is_due(contact):
-                opened = contact.opened(self.now, contact.along(self.v))
-                tie = contact.bits + min(TOUCH * contact.i.radius, 1e-4 * opened)
-                if contact.rests or self.is_due(contact) or -contact.depth <= tie:
-                    found.append(contact)
-        return found
+
+def touching(island):
+    """The Group of contacts that touch: at rest, due, or with a gap below TOUCH radii.
+
+    Where a contact has hardly been wider open since it touched last, as under a light ball that
+    rattles between two others, only a gap below a ten thousandth of that touches.
+    """
+    found = Group()
+    for contact in island.contacts:
+        if contact.depth >= -contact.small or island.is_due(contact):
+            opened = contact.opened(island.now, contact.along(island.v))
+            tie = contact.bits + min(TOUCH * contact.i.radius, 1e-4 * opened)
+            if contact.rests or island.is_due(contact) or -contact.depth <= tie:
+                found.append(contact)
+    return found
+
+
+def hardly_opened(island, contacts, v_n):
+    """For each of the contacts whether it closes although it has opened less than TOUCH radii.
+
+    Bounces so small come from a cascade that is infinite: the limit is rest. Once it has stopped at
+    one contact, it stops at all that were open just then, if by less than 1000 TOUCH radii.
+    """
+    last, found = max(contact.thin for contact in contacts), []
+    for contact, speed in zip(contacts, v_n):
+        widest = (1000.0 if last > contact.last_touch else 1.0) * TOUCH * contact.i.radius
+        thin = contact.closes(speed) and contact.opened(island.now, speed) < widest
+        found.append(thin)
+        if thin:
+            contact.thin = island.now
+    return found
 # --- endregion ---
 
 
@@ -404,22 +425,6 @@ def collide(island, contacts, restitution):
         if not any(abs(e) > NOISE * contact.speed for e, contact in zip(error, struck)):
             break
         struck.correct(island.v, error)
-
-
-def hardly_opened(island, contacts, v_n):
-    """For each of the contacts whether it closes although it has opened less than TOUCH radii.
-
-    Bounces so small come from a cascade that is infinite: the limit is rest. Once it has stopped at
-    one contact, it stops at all that were open just then, if by less than 1000 TOUCH radii.
-    """
-    last, found = max(contact.thin for contact in contacts), []
-    for contact, speed in zip(contacts, v_n):
-        widest = (1000.0 if last > contact.last_touch else 1.0) * TOUCH * contact.i.radius
-        thin = contact.closes(speed) and contact.opened(island.now, speed) < widest
-        found.append(thin)
-        if thin:
-            contact.thin = island.now
-    return found
 # --- endregion ---
 
 
@@ -485,8 +490,10 @@ def slide(held, q, v, gravity):
         lam[k] = -applied(inverse, along(n[0], a) + (k + 1) * (k + 2) * turn)
         Q[k + 2] = (a + spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
     return bodies, Q, lam
+# --- endregion ---
 
 
+# --- region: exact-expand ---
 def expand(held, q, v, a, gravity):
     """The motion of the bodies while these contacts push: {body: (x, y)} of series of the sliding
     bodies, {contact: series of its force}, and how long they last [s].
@@ -612,14 +619,43 @@ def lower_bound(p, t, horizon):
         vertex = min(max(-p[1] / (2.0 * p[2]), t), horizon)
         least = min(least, evaluate(p[:3], vertex))
     if any(p[3:]):
-        least -= evaluate([abs(coefficient) for coefficient in p[3:]], horizon) * horizon * horizon * horizon
+        least -= evaluate([0.0, 0.0, 0.0, *(abs(part) for part in p[3:])], horizon)
     return least
+# --- endregion ---
+
+
+# --- region: exact-calendar ---
+class Calendar:
+    """What happens next to which Body or Contact: a heap of what is due."""
+
+    def __init__(self):
+        self.heap, self.count = [], 0           # (time [s], count, what); the count breaks ties
+
+    def plan(self, time, what):
+        """Something happens to a Body or a Contact at a time, unless its `due` changes before."""
+        what.due = time
+        if time < math.inf:
+            self.count += 1
+            heapq.heappush(self.heap, (time, self.count, what))
+
+    def next(self):
+        """The time [s] of the next event."""
+        while self.heap and self.heap[0][2].due != self.heap[0][0]:
+            heapq.heappop(self.heap)
+        return self.heap[0][0] if self.heap else math.inf
+
+    def woken(self, now):
+        """The balls to which something happens by the time `now`, in that order."""
+        found = []
+        while self.next() <= now < math.inf:
+            found += [body for body in heapq.heappop(self.heap)[2].bodies if body.w > 0.0]
+        return found
 # --- endregion ---
 
 
 # --- region: exact-motion ---
 class Motion:
-    """All bodies, and what happens next to which of them."""
+    """All bodies, where their homes are, and the Calendar of what happens to them."""
 
     def __init__(self, scene, gravity):
         self.gravity, self.restitution = gravity, scene.restitution
@@ -628,11 +664,12 @@ class Motion:
         self.balls = [Body(*row) for row in rows]
         self.floor = Body(0.0, 0.0, [0.0, 0.0], [0.0, 0.0])
         self.number = {ball: k for k, ball in enumerate(self.balls)}
-        self.due, self.count = [], 0            # (time, count, Body or Contact), a heap
+        self.calendar = Calendar()
         self.samples = 0                        # how many have been passed
         self.homes, self.reach = scene.q0.copy(), scene.radius.copy()
         for ball in self.balls:
-            ball.room = 0.0 if ball.w == 0.0 else math.inf if len(self.balls) <= FEW else 0.5 * ball.radius
+            if ball.w > 0.0:
+                ball.room = ROOM * ball.radius if len(self.balls) > FEW else math.inf
             self.reach[self.number[ball]] += ball.room
         for ball in self.balls:
             if ball.w > 0.0:
@@ -666,27 +703,7 @@ class Motion:
         if left < math.inf:
             speed, bend = reaches(x, y, span)
             span = min(span, fall(left, -speed, -bend))
-        self.plan(now + span, ball)
-
-    def plan(self, time, what):
-        """Something happens to a Body or a Contact at a time, unless its `due` changes before."""
-        what.due = time
-        if time < math.inf:
-            self.count += 1
-            heapq.heappush(self.due, (time, self.count, what))
-
-    def next(self):
-        """The time [s] of the next event."""
-        while self.due and self.due[0][2].due != self.due[0][0]:
-            heapq.heappop(self.due)
-        return self.due[0][0] if self.due else math.inf
-
-    def woken(self, now):
-        """The balls to which something happens by the time `now`, in that order."""
-        found = []
-        while self.next() <= now < math.inf:
-            found += [body for body in heapq.heappop(self.due)[2].bodies() if body.w > 0.0]
-        return found
+        self.calendar.plan(now + span, ball)
 # --- endregion ---
 
 
@@ -694,8 +711,8 @@ class Motion:
 def event(motion, now, ball):
     """Settle the island of a ball to which something happens, and send it on its way: its balls."""
     island, g = Island(now, ball), motion.gravity
-    island.separate()
-    contacts = island.touching()
+    separate(island)
+    contacts = touching(island)
     collide(island, contacts, motion.restitution)
     for contact in island.contacts:
         contact.rests = contact.pushes = False
@@ -708,11 +725,13 @@ def event(motion, now, ball):
         x, y = slides.get(ball) or parabola(island.q[ball], island.v[ball], a[ball])
         motion.go_on(ball, now, x, y, span if ball in slides else math.inf)
     for contact, force in forces.items():
-        motion.plan(now + first_fall(force, span), contact)
+        motion.calendar.plan(now + first_fall(force, span), contact)
     predict(motion, now, island.balls)
     return island.balls
+# --- endregion ---
 
 
+# --- region: exact-predict ---
 def predict(motion, now, balls):
     """Find when the contacts of the balls, which have new series, will close.
 
@@ -736,7 +755,7 @@ def predict(motion, now, balls):
         speed, bend = reaches(dx, dy, span)
         if not gap > span * (speed + span * bend):
             p = [gap, *dy[1:]] if contact.wall else distance_series(dx, dy, gap, contact.reach)
-            motion.plan(now + first_fall(p, span), contact)
+            motion.calendar.plan(now + first_fall(p, span), contact)
 # --- endregion ---
 
 
@@ -759,13 +778,13 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
                 settled.update(event(motion, now, ball))
                 events += 1
                 report(motion.samples)
-        soon = max(now, motion.next())
+        soon = max(now, motion.calendar.next())
         if events > EVENTS * max(20, len(motion.balls)):
             soon = max(soon, now + 0.01 * tick)
         if soon >= until:
             events, until = 0, soon + tick
         now, motion.samples = soon, bisect_right(clock, soon)
-        woken = motion.woken(now)
+        woken = motion.calendar.woken(now)
     report(motion.samples)
     for ball in motion.balls:
         ball.remember(motion.samples)
