@@ -58,7 +58,14 @@ TESTS = {
     "curriculum/exact.py": "exact exact_sliding closed_form mutants stress",
     "curriculum/piles.py": "piles",
 }
-PRELOADED = ("numpy", "hypothesis", "pytest", "numba", "matplotlib")  # shared by all that is forked
+PRELOADED = (
+    "numpy",
+    "hypothesis",
+    "pytest",
+    "numba",
+    "matplotlib",
+    "rerun",
+)  # shared by all that is forked
 LEFT_OUT = (
     "test_11_every_region",
     "dask",
@@ -320,13 +327,13 @@ def run_tests(folder, arguments, plugin):
     return int(pytest.main([*options, *arguments], plugins=[plugin]))
 
 
-def watch_tests(file, folder):
-    """{test: what Watcher found} of the tests of one file that pass before any change."""
+def watch_tests(file, tests, folder):
+    """{test: what Watcher found} of the tests in one file of tests that pass before any change."""
 
     def watched():
         sys.noted = set()
         watcher = Watcher()
-        run_tests(folder, test_files(file, folder), watcher)
+        run_tests(folder, [tests], watcher)
         write_whole(str(path), json.dumps(watcher.found))
         return 0
 
@@ -337,7 +344,7 @@ def watch_tests(file, folder):
     finish(start(watched, folder / "log.txt"), 1800)
     (folder / file).write_text(text, "utf-8")
     if not path.exists():
-        raise SystemExit(f"the tests of {file} do not run: {(folder / 'log.txt').read_text()}")
+        raise SystemExit(f"{tests} does not run: {(folder / 'log.txt').read_text()}")
     found = json.loads(path.read_text("utf-8"))
     failing = [test for test, entry in found.items() if not entry["passed"]]
     if failing:
@@ -447,11 +454,15 @@ class Trials:
     def __init__(self, file, folder):
         self.folder, self.data = folder, (folder / file).read_bytes()
         name = WORK / file.replace("/", "-")
-        self.kept = measured.Cells(f"{name}.jsonl", code=(file,), about=tests_hash(file, folder))
+        self.kept = measured.Cells(f"{name}.jsonl", code=(file,))
         self.killers = measured.Cells(f"{name}-killers.jsonl", code=())
-        if "tests" not in self.kept:
-            self.kept["tests"] = watch_tests(file, folder)
-        self.found = self.kept["tests"]
+        self.found, digests = {}, []
+        for tests in test_files(file, folder):
+            digests.append(digest_of(folder, tests))
+            if f"{tests} {digests[-1]}" not in self.kept:
+                self.kept[f"{tests} {digests[-1]}"] = watch_tests(file, tests, folder)
+            self.found |= self.kept[f"{tests} {digests[-1]}"]
+        self.tests = " ".join(digests)
         self.check_unchanged(Mutant(file, "module", 1, 0, 0, "", "nothing"))
 
     def check_unchanged(self, nothing):
@@ -475,7 +486,7 @@ class Trials:
 
     def outcome(self, mutant):
         """ "killed", "late", "survived" or "untested"."""
-        key = f"{mutant.start}-{mutant.stop} {mutant.new}"
+        key = f"{self.tests} {mutant.start}-{mutant.stop} {mutant.new}"
         if key not in self.kept:
             tests = tests_for(mutant, self.data.decode(), self.found)
             outcome = "survived" if tests else "untested"
@@ -504,12 +515,10 @@ def run_file(file, chosen, folder):
     return rows
 
 
-def tests_hash(file, folder):
-    """Digits that change when a test of this file does: what was killed may then not be."""
-    digest = hashlib.sha256()
-    for name in ("curriculum/tests/conftest.py", *test_files(file, folder)):
-        digest.update((folder / name).read_bytes())
-    return digest.hexdigest()[:12]
+def digest_of(folder, tests):
+    """Digits that change when this file of tests does: what was killed may then not be."""
+    data = (folder / "curriculum/tests/conftest.py").read_bytes() + (folder / tests).read_bytes()
+    return hashlib.sha256(data).hexdigest()[:6]
 
 
 def reasons():

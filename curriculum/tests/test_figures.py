@@ -36,6 +36,29 @@ def test_seed_0_drops_from_1_0055_m():
     assert round(float(contact.build_scene("drop").q0[1, 0]), 4) == 1.0055
 
 
+def test_drop_bounce_and_stack_stand_over_the_origin_at_rest():
+    for name in ("drop", "bounce", "stack"):
+        scene = contact.build_scene(name, 5)
+        assert not scene.q0[0].any() and not scene.v0.any()
+    assert scene.q0.shape == (2, 3) and contact.build_scene("pile").q0.shape == (2, 200)
+
+
+@pytest.mark.parametrize("count, columns", [(50, 10), (30, 8), (1, 2)])
+def test_a_pile_fills_a_lattice_of_5_r_over_2_twice_as_wide_as_high(count, columns):
+    """Each ball has a place of its own, nudged by up to r / 10; the seed draws in this order."""
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        lift = abs(rng.uniform(-0.02, 0.02))
+        place = rng.permutation(count)
+        nudge = rng.uniform(-0.01, 0.01, (2, count))
+        x, y = contact.build_scene("pile", seed, count).q0
+        # columns about x = 0, the lowest row half a place over the floor, lifted
+        column, row = (x - nudge[0]) / 0.25 + (columns - 1) / 2, (y - lift - nudge[1]) / 0.25 - 0.5
+        assert np.abs(column - place % columns).max() < 1e-13
+        assert np.abs(row - place // columns).max() < 1e-13
+        assert lift == pytest.approx(abs(contact.build_scene("drop", seed).q0[1, 0] - 1.0))
+
+
 # Published values are shares of r; as many decimals are compared as were published.
 PUBLISHED = [
     ("drop", "penalty", 2000, "max_penetration_frac", "0.251329183485"),

@@ -124,6 +124,34 @@ def test_the_twin_has_the_bytes_of_the_reference_on_the_scenes_of_the_book(model
     check_same(model, contact.build_scene("pile", 1, 40, restitution=0.4), 0.004, 150)
 
 
+def handful(seed):
+    """Five balls of mixed size and mass near the floor, all touching something; the last is held."""
+    rng = np.random.default_rng(seed)
+    radius = np.array((0.1, 0.05, 0.1, 0.3, 0.1))
+    q0 = np.array(((0.0, 0.14, 0.2, 0.5, 0.05), (0.099, 0.05, 0.27, 0.31, 0.26)))
+    q0 += rng.uniform(-0.004, 0.004, q0.shape)
+    mass = np.array((1.0, 0.01, 30.0, 2.0, math.inf))
+    v0 = rng.normal(size=(2, 5))
+    return contact.Scene("handful", q0, v0, mass, radius, rng.choice((0.0, 0.5)), 80.0)
+
+
+@pytest.mark.parametrize(
+    "knobs",
+    [
+        {},
+        {"solref": (0.05, 0.3), "solimp": (0.2, 0.9, 0.03, 0.7, 1.5), "baumgarte": 1.0},
+        {"solref": (-3000.0, -100.0), "solimp": (0.5, 0.8, 0.0, 0.5, 2.0), "iters": 1},
+        {"solref": (0.0, -400.0), "solimp": (0.9, 0.3, 0.003, 0.2, 3.0), "stiffness": 70.0},
+    ],
+)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_handful_of_unequal_balls_has_the_bytes_of_the_reference(model, knobs):
+    for seed in range(3):
+        scene = handful(seed)
+        assert len(contact.detect_contacts(contact.make_balls(scene))) >= 5
+        check_same(model, scene, 0.002, 6, **knobs)
+
+
 def crowd(count, seed):
     """Balls packed closely in rows of 20 and numbered at random: nearly all neighbours overlap."""
     rng = np.random.default_rng(seed)
