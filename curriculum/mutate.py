@@ -1,6 +1,6 @@
 """How strong the tests are: small faults put into the code, one at a time, and what notices them.
 
-    python -m curriculum.mutate                             contact.py, curriculum/exact.py, piles.py
+    python -m curriculum.mutate                             contact.py and three of curriculum/
     python -m curriculum.mutate contact.py                  one file
     python -m curriculum.mutate contact.py --sample 200     so many of its mutants, drawn by --seed
     python -m curriculum.mutate contact.py --only lcp_step  those in functions of that name
@@ -45,7 +45,7 @@ from curriculum.common.files import write_whole
 from curriculum.common.stoppable import stoppable
 
 ROOT = Path(__file__).resolve().parents[1]
-TARGETS = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
+TARGETS = ("contact.py", "curriculum/terminal.py", "curriculum/piles.py", "curriculum/exact.py")
 EQUIVALENT = ROOT / "curriculum" / "equivalent_mutants.txt"
 RESULTS = ROOT / "curriculum" / "stress" / "results"
 WORK = ROOT / "outputs" / "mutate"
@@ -54,9 +54,10 @@ GRACE = 5.0  # processor's seconds that a test may take beyond ten times what it
 BUDGET = 15.0  # processor's seconds of tests that one mutant is worth
 TESTS = {
     "contact.py": "lcp figures faults closed_form measures skips soft next_chapter stress "
-    "invariants mutants command_line recording",
-    "curriculum/exact.py": "exact exact_sliding closed_form mutants stress",
+    "invariants mutants command_line recording piles soft_mujoco",
+    "curriculum/terminal.py": "command_line faults",
     "curriculum/piles.py": "piles",
+    "curriculum/exact.py": "exact exact_sliding closed_form mutants stress",
 }
 PRELOADED = (
     "numpy",
@@ -461,7 +462,8 @@ class Trials:
             digests.append(digest_of(folder, tests))
             if f"{tests} {digests[-1]}" not in self.kept:
                 self.kept[f"{tests} {digests[-1]}"] = watch_tests(file, tests, folder)
-            self.found |= self.kept[f"{tests} {digests[-1]}"]
+            watched = self.kept[f"{tests} {digests[-1]}"].items()
+            self.found |= {test: one for test, one in watched if one["seconds"] < BUDGET}
         self.tests = " ".join(digests)
         self.check_unchanged(Mutant(file, "module", 1, 0, 0, "", "nothing"))
 
@@ -505,14 +507,14 @@ def words_of(mutant):
 
 
 def run_file(file, chosen, folder):
-    """[[where, line, said, outcome]] of the chosen mutants of a file."""
-    trials = Trials(file, folder)
-    rows = []
+    """[[where, line, said, outcome]] of the chosen mutants of a file, in the order of its lines."""
+    trials, named, rows = Trials(file, folder), reasons(), []
+    chosen = sorted(chosen, key=lambda m: f"{file}: {words_of(m)}" in named)  # these take longest
     with measured.progress(len(chosen), f"mutants of {file}") as tick:
         for mutant in chosen:
             rows.append([mutant.where, mutant.line, mutant.said, trials.outcome(mutant)])
             tick(mutant.where)
-    return rows
+    return sorted(rows, key=lambda row: row[1])
 
 
 def digest_of(folder, tests):

@@ -188,6 +188,12 @@ def test_step_matrix_has_an_eigenvalue_minus_one_at_the_critical_dt(mass, stiffn
     assert radius(dt) == pytest.approx(1.0, abs=1e-9)
 
 
+def test_a_new_ball_feels_no_force_but_gravity():
+    ball = contact.Ball(0.0, 1.0, 0.5, 0.0, 2.0, 0.1)
+    contact.semi_implicit_step([ball], DT)
+    assert (ball.vx, ball.vy) == (0.5, -9.81 * DT)
+
+
 @pytest.mark.parametrize("model", ["penalty", "lcp"])
 def test_free_fall_lags_the_parabola_by_half_g_t_dt(model):
     scene = contact.build_scene("drop")

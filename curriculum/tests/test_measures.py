@@ -97,14 +97,14 @@ def test_near_pairs_of_many_balls_list_the_contacts_of_all_pairs(monkeypatch):
     for trial in range(60):
         q = rng.uniform(0.0, 1.5, (2, 40)) * 10.0 ** rng.integers(-1, 2)
         q[rng.random((2, 40)) < 0.05] = rng.choice([np.nan, np.inf, -np.inf, 1e300, 0.5])
+        radius = rng.uniform(0, 0.3, 40) * rng.choice([1.0, 10.0])
         balls = [
-            contact.Ball(*xy, 0.0, 0.0, 1.0, r)
-            for *xy, r in zip(*q.tolist(), rng.uniform(0, 0.3, 40))
+            contact.Ball(*xy, 0.0, 0.0, 1.0, r) for *xy, r in zip(*q.tolist(), radius.tolist())
         ]
-        found = []
+        margin, found = rng.choice([1e-3, 0.5]), []
         for few in (12, 100):
             monkeypatch.setattr(contact, "FEW", few)
-            listed = contact.detect_contacts(balls)
+            listed = contact.detect_contacts(balls, margin)
             found.append(
                 [
                     (

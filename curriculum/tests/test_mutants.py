@@ -48,7 +48,7 @@ def test_every_mutant_of_the_code_is_python_and_another_program(file):
     text = (mutate.ROOT / file).read_text()
     data, before = text.encode(), ast.dump(ast.parse(text))
     made = mutate.mutants_of(file, text)
-    assert len(made) > 300 and len(set(made)) == len(made)
+    assert len(made) > 150 and len(set(made)) == len(made)
     for mutant in made[::21]:
         new = (data[: mutant.start] + mutant.new.encode() + data[mutant.stop :]).decode()
         assert ast.dump(ast.parse(new)) != before, mutant.said

@@ -320,6 +320,22 @@ def test_cells_of_equal_balls_miss_no_pair_across_their_borders(seed):
         assert pairs == set(all_pairs(scene, reach)) and len(pairs) > 500
 
 
+def test_no_pair_is_missed_where_the_cells_end():
+    """From 2^44 cells of 1.02 (2 r + reach) on, all are one: floats are hardly finer there."""
+    beyond = (2.0**44, 2.0**44 + 9.0, 1e15, 1e300, math.inf, math.nan)
+    assert {piles.cell_at(place, 1.0) for place in beyond} == {2**44}
+    assert piles.cell_at(2.0**44 - 1.0, 1.0) == 2**44 - 1
+    rng = np.random.default_rng(3)
+    end = 2.0**44 * 1.02 * 0.25
+    for axis in (0, 1):
+        q0 = rng.uniform(0.0, 0.5, (2, 20))
+        q0[axis] = end + rng.uniform(-0.6, 0.6, 20)
+        q0[:, 0] = 0.0  # cells are counted from here
+        scene = crowd(20, 0)._replace(q0=q0)
+        found = set(zip(*piles.list_pairs(tabled(scene), 0.05).tolist()))
+        assert found == set(all_pairs(scene, 0.05)) and len(found) > 20
+
+
 def test_the_list_of_pairs_does_not_grow_with_the_square_of_the_balls():
     for count in (1000, 4000):
         pairs = piles.list_pairs(tabled(contact.build_scene("pile", bodies=count)), 0.1)
