@@ -51,7 +51,7 @@ RESULTS = ROOT / "curriculum" / "stress" / "results"
 WORK = ROOT / "outputs" / "mutate"
 WANTED = 0.95
 GRACE = 5.0  # processor's seconds that a test may take beyond ten times what it did before
-BUDGET = 15.0  # processor's seconds of tests that one mutant is worth
+BUDGET = 8.0  # processor's seconds of tests that one mutant is worth
 TESTS = {
     "contact.py": "lcp figures faults closed_form measures skips soft next_chapter stress "
     "invariants mutants command_line recording piles soft_mujoco",
@@ -292,7 +292,7 @@ class Watcher:
 
 
 class Limiter:
-    """A pytest plugin: ends the process when a test takes too long, and keeps the test that failed.
+    """A pytest plugin: ends the process when a test takes too long, and notes which test runs.
 
     It is the processor's time that is limited, so a busy machine ends nothing.
     """
@@ -303,10 +303,7 @@ class Limiter:
     def pytest_runtest_setup(self, item):
         allowed = time.process_time() + GRACE + 10 * self.found[item.nodeid]["seconds"]
         resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(allowed), resource.RLIM_INFINITY))
-
-    def pytest_runtest_logreport(self, report):
-        if report.failed:
-            self.path.write_text(report.nodeid)
+        self.path.write_text(item.nodeid)
 
 
 def run_tests(folder, arguments, plugin):
@@ -426,19 +423,19 @@ def copy_of_the_repository(folder):
 
 
 def try_mutant(mutant, data, tests, found, folder):
-    """("killed", "late" or "survived", the test that failed or None); late: it did not end."""
-    path, failed = folder / mutant.file, folder / "failed.txt"
-    failed.unlink(missing_ok=True)
+    """("killed", "late" or "survived", the last test that ran); late: it did not end."""
+    path, last = folder / mutant.file, folder / "last.txt"
+    last.unlink(missing_ok=True)
     path.write_bytes(data[: mutant.start] + mutant.new.encode() + data[mutant.stop :])
     seconds = 120 + 20 * sum(found[test]["seconds"] for test in tests)
     try:
-        limiter = Limiter(found, failed)
+        limiter = Limiter(found, last)
         child = start(lambda: run_tests(folder, ["-x", *tests], limiter), folder / "log.txt")
         status = finish(child, seconds)
     finally:
         path.write_bytes(data)
     outcome = "late" if status is None else "killed" if status else "survived"
-    return outcome, failed.read_text() if failed.exists() else None
+    return outcome, last.read_text() if last.exists() else None
 
 
 # --- a run ----------------------------------------------------------------------------------------
@@ -447,9 +444,9 @@ def try_mutant(mutant, data, tests, found, folder):
 class Trials:
     """Tries the mutants of one file. What was found is kept in outputs.
 
-    What a mutant came to counts only for the same code and the same tests. Which test killed a
-    mutant is remembered beyond that: it is the first to be tried on that mutant again, and on the
-    next ones of the same function.
+    A mutant stays killed while the code and the test that killed it are the same; of one that
+    survived only tests in files that have changed since are tried. Which test killed a mutant is
+    remembered beyond that: it is the first to be tried on it again, and on its neighbours.
     """
 
     def __init__(self, file, folder):
@@ -457,14 +454,14 @@ class Trials:
         name = WORK / file.replace("/", "-")
         self.kept = measured.Cells(f"{name}.jsonl", code=(file,))
         self.killers = measured.Cells(f"{name}-killers.jsonl", code=())
-        self.found, digests = {}, []
+        self.found, self.digests = {}, {}
         for tests in test_files(file, folder):
-            digests.append(digest_of(folder, tests))
-            if f"{tests} {digests[-1]}" not in self.kept:
-                self.kept[f"{tests} {digests[-1]}"] = watch_tests(file, tests, folder)
-            watched = self.kept[f"{tests} {digests[-1]}"].items()
+            self.digests[tests] = digest_of(folder, tests)
+            key = f"{tests} {self.digests[tests]}"
+            if key not in self.kept:
+                self.kept[key] = watch_tests(file, tests, folder)
+            watched = self.kept[key].items()
             self.found |= {test: one for test, one in watched if one["seconds"] < BUDGET}
-        self.tests = " ".join(digests)
         self.check_unchanged(Mutant(file, "module", 1, 0, 0, "", "nothing"))
 
     def check_unchanged(self, nothing):
@@ -488,17 +485,25 @@ class Trials:
 
     def outcome(self, mutant):
         """ "killed", "late", "survived" or "untested"."""
-        key = f"{self.tests} {mutant.start}-{mutant.stop} {mutant.new}"
-        if key not in self.kept:
-            tests = tests_for(mutant, self.data.decode(), self.found)
-            outcome = "survived" if tests else "untested"
-            for some in (self.likely(mutant, tests), tests):
-                if some and outcome == "survived":
-                    outcome, failed = try_mutant(mutant, self.data, some, self.found, self.folder)
-                    if failed:
-                        self.killers[words_of(mutant)] = failed
-            self.kept[key] = outcome
-        return self.kept[key]
+        key = f"{mutant.start}-{mutant.stop} {mutant.new}"
+        outcome, killer, seen = self.kept[key] if key in self.kept else ("untested", None, [])
+        if killer in self.digests.values():
+            return outcome
+        tests = tests_for(mutant, self.data.decode(), self.found)
+        new = [test for test in tests if self.digest_at(test) not in seen]
+        outcome, killer = "survived" if tests else "untested", None
+        for some in (self.likely(mutant, new), new):
+            if some and outcome == "survived":
+                outcome, last = try_mutant(mutant, self.data, some, self.found, self.folder)
+                if last and outcome != "survived":
+                    killer = self.digest_at(last)
+                    self.killers[words_of(mutant)] = last
+        self.kept[key] = [outcome, killer, list(self.digests.values())]
+        return outcome
+
+    def digest_at(self, test):
+        """The digest of the file that a test is in."""
+        return self.digests[test.split("::")[0]]
 
 
 def words_of(mutant):

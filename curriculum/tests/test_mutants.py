@@ -86,8 +86,8 @@ def test_a_fault_is_killed_by_a_test_that_fails_or_does_not_end(tmp_path, monkey
     made = {mutant.said: mutant for mutant in mutate.mutants_of("contact.py", text)}
     for said, outcome in {
         "while n < 3: -> while n <= 3:": ("killed", "test_up.py::test_up"),
-        "n += 1 -> n -= 1": ("late", None),
-        "return max(n, 3) -> return min(n, 3)": ("survived", None),
+        "n += 1 -> n -= 1": ("late", "test_up.py::test_up"),
+        "return max(n, 3) -> return min(n, 3)": ("survived", "test_up.py::test_up"),
     }.items():
         tried = mutate.try_mutant(made[said], text.encode(), list(found), found, tmp_path)
         assert tried == outcome, said

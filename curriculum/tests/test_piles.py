@@ -25,6 +25,11 @@ MODELS = ("penalty", "lcp", "soft")
 WILD = (math.nan, math.inf, -math.inf, 1e200, -1e308, 1e-200, -0.0)
 
 
+def examples(count):
+    """So many examples where the loops are compiled, a fifth of it where they are not."""
+    return count // 5 if numba.config.DISABLE_JIT else count
+
+
 def reference(*arguments, **knobs):
     """The run by contact.py's own steps, none left out, looking at every pair."""
     with pytest.MonkeyPatch.context() as patch:
@@ -99,7 +104,7 @@ def scenes(draw):
 
 
 @settings(
-    max_examples=20 if numba.config.DISABLE_JIT else 100,  # 5 times as many where it is compiled
+    max_examples=examples(100),
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.too_slow],
@@ -279,6 +284,28 @@ def test_balls_exactly_in_touch_are_no_contact_of_penalty_yet():
     assert run.v[1].tolist() == [v0[0].tolist(), (v0[1] - 0.002 * 9.81).tolist()]
 
 
+@pytest.mark.parametrize("model", MODELS)
+def test_two_balls_that_were_out_of_reach_meet_in_the_next_step(model):
+    """Pairs are listed as far as 0.101 m. Each ball moves 0.0545 m a step, and they overlap.
+
+    The balls before them rest on the floor, so that only the last one or two have moved.
+    """
+    for fast in ((27.25, -27.25), (0.0, -54.5)):
+        q0 = np.array(((-1.0, -2.0, 0.0, 0.3015), (0.1, 0.1, 1.0, 1.0)))
+        v0 = np.array(((0.0, 0.0, *fast), np.zeros(4)))
+        scene = contact.Scene("meet", q0, v0, np.ones(4), np.full(4, 0.1), 0.5, 80.0)
+        run = check_same(model, scene, 0.002, 4)
+        assert np.abs(run.v[4, 0, 2:] - fast).max() > 1.0  # they have pushed each other
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_points_have_the_bytes_of_the_reference(model):
+    """Their radius is 0: a list of pairs reaches no farther than it must."""
+    q0 = np.array(((0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0005, -0.001)))
+    scene = contact.Scene("points", q0, np.zeros((2, 4)), np.ones(4), np.zeros(4), 0.5, 80.0)
+    check_same(model, scene, 0.002, 10)
+
+
 # Near balls
 
 
@@ -299,7 +326,7 @@ def tabled(scene):
     return piles.make_balls(np.vstack((scene.q0, scene.v0)), scene.mass, scene.radius)
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=examples(150), deadline=None, derandomize=True)
 @given(scenes(), st.sampled_from((0.0, 1e-3, 0.5)))
 def test_cells_find_every_near_pair_once_and_in_order(scene, reach):
     q0 = np.where(np.abs(scene.q0) > 1e100, math.nan, scene.q0)  # whose squares overflow above
@@ -349,7 +376,7 @@ def test_many_balls_in_one_place_fit():
     check_same("lcp", scene, 0.002, 3, iters=3)
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=examples(150), deadline=None, derandomize=True)
 @given(scenes(), st.floats(1e-3, 0.5))
 def test_the_smallest_gap_has_the_bits_of_the_reference(scene, dt):
     """Of balls that fly apart, so that pairs are listed anew, or stay."""
