@@ -37,6 +37,7 @@ SCRIPTS = (
 )
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
 SEEDS = 10  # start heights that it offers
+SCALE = 1.6  # of the pictures of bench and stress: their text of 10 px shall be read beside ours
 # what stands over the live figure while it would tell the answer of a bet
 VEILS = {
     "ex1": "The same ball, four ways for the table to push. How deep will each let it in, and where "
@@ -100,38 +101,38 @@ def thinned(svg):
 
 def data_address(svg):
     """An SVG as an address that holds it, readable and a quarter shorter than base64."""
-    escaped = svg.replace("%", "%25").replace("#", "%23").replace("'", "%27").replace('"', "'")
+    named = svg.replace("'", "&apos;").replace('"', "'")
+    escaped = named.replace("%", "%25").replace("#", "%23")
     return Markup("data:image/svg+xml," + escaped.replace("&", "&amp;"))
+
+
+def generated_figure(kind, path):
+    """A picture that bench or stress has drawn, for the page: its name, and what the template wants."""
+    text = path.read_text(encoding="utf-8")
+    box = re.search(r'<svg\b[^>]*?\bviewBox="\S+ \S+ ([\d.]+) ([\d.]+)"', text, re.DOTALL)
+    title = re.search(r"<title[^>]*>(.*?)</title>", text, re.DOTALL)
+    name = re.sub("^(error|map)-", "", path.stem.replace("_", "-"))  # error-drop: bench:drop
+    what = title[1].strip() if title else name.replace("-", " ")
+    told = ("Run time against error" if kind == "bench" else "Stability") + f": {what}"
+    measured = f"Measured by <code>python -m curriculum.{kind}</code>."
+    width, height = (round(SCALE * float(side)) for side in box.groups()) if box else (None, None)
+    return f"{kind}:{name}", {
+        "id": f"{kind}-{name}",
+        "alt": told,
+        "caption": Markup(f"{escape(told)}. {measured}"),
+        "src": data_address(thinned(text)),
+        "width": width,
+        "height": height,
+    }
 
 
 def generated_figures(root):
     """SVGs that bench and stress keep in the repository, by slot name; none where they have not run."""
-    found = {}
-    for kind in ("bench", "stress"):
-        for path in sorted((root / "curriculum" / kind).rglob("*.svg")):
-            text = path.read_text(encoding="utf-8")
-            size = re.search(
-                r"<svg\b[^>]*?\bviewBox=\"[\d.eE+-]+ [\d.eE+-]+ ([\d.]+) ([\d.]+)\"",
-                text,
-                re.DOTALL,
-            )
-            title = re.search(r"<title[^>]*>(.*?)</title>", text, re.DOTALL)
-            name = re.sub(
-                "^(error|map)-", "", path.stem.replace("_", "-")
-            )  # error-drop: bench:drop
-            what = title[1].strip() if title else name.replace("-", " ")
-            told = ("Run time against error" if kind == "bench" else "Stability") + f": {what}"
-            found[f"{kind}:{name}"] = {
-                "id": f"{kind}-{name}",
-                "alt": told,
-                "caption": Markup(
-                    f"{escape(told)}. Measured by <code>python -m curriculum.{kind}</code>."
-                ),
-                "src": data_address(thinned(text)),
-                "width": round(float(size[1])) if size else None,
-                "height": round(float(size[2])) if size else None,
-            }
-    return found
+    return dict(
+        generated_figure(kind, path)
+        for kind in ("bench", "stress")
+        for path in sorted((root / "curriculum" / kind).rglob("*.svg"))
+    )
 
 
 def ledger(root):
@@ -263,12 +264,11 @@ def stylesheet():
 
 def favicon():
     """A ball on a table, as a data address."""
-    svg = (
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'>"
-        "<path d='M0 11h16v5H0z' fill='#888'/>"
-        f"<circle cx='8' cy='7.5' r='5' fill='{contact.COLORS['penalty']}'/></svg>"
+    return data_address(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 16 16">'
+        '<path d="M0 11h16v5H0z" fill="#888"/>'
+        f'<circle cx="8" cy="7.5" r="5" fill="{contact.COLORS["penalty"]}"/></svg>'
     )
-    return data_address(svg)
 
 
 def head(data, bets):

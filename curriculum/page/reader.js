@@ -64,9 +64,23 @@ const Reader = (() => {
     mark();
   }
 
+  // On paper nothing can be unfolded: the commands of the exercises are, before it is printed.
+  function startPrinting() {
+    const folded = () => [...document.querySelectorAll("details.terminal:not([open])")];
+    let opened = [];
+    window.addEventListener("beforeprint", () => {
+      opened = folded();
+      for (const each of opened) each.open = true;
+    });
+    window.addEventListener("afterprint", () => {
+      for (const each of opened) each.open = false;
+    });
+  }
+
   function start() {
     startCopying();
     startContents();
+    startPrinting();
   }
   return { start };
 })();

@@ -30,6 +30,8 @@ const SmallFigures = (() => {
 
   const ticksAt = (...values) => values.map((v) => [v, plain(v).replace("-", "−")]);
 
+  const axis = (domain, label, ...at) => ({ domain, label, ticks: ticksAt(...at) });
+
   // Results that do not depend on the knob are computed once.
   const kept = new Map();
   const once = (name, compute) => {
@@ -43,8 +45,11 @@ const SmallFigures = (() => {
     return { left, right: width - left - 8 };
   }
 
+  // The picture and the plot, beside one another.
+  const beside = (left, chart, ...picture) => group(0, 0, ...picture) + group(left + 8, 0, chart.markup);
+
   // How long an arrow for a force is; the scale is a square root, since impacts are hundreds of weights.
-  const forceLength = (force) => 15 * Math.sqrt(force / G);
+  const forceLength = (force) => 24 * Math.sqrt(force / G);
   const weights = (force) => `${number(force / G, 2)} m g`;
 
   // A ball on a table: its centre at (x, y), the table's top at `floor`, weight and push as arrows.
@@ -52,8 +57,8 @@ const SmallFigures = (() => {
     return [
       table(0, floor, width, 34),
       ball(model, x, y, r),
-      arrow("weight", x - 7, y, 0, forceLength(G)),
-      arrow(`push m-${model}`, x + 7, Math.max(y + r, floor), 0, -Math.min(forceLength(force), 150)),
+      arrow("weight", x - r - 10, y, 0, forceLength(G)),
+      arrow(`push m-${model}`, x + r + 10, Math.max(y + r, floor), 0, -Math.min(forceLength(force), 150)),
     ].join("");
   }
 
@@ -72,16 +77,8 @@ const SmallFigures = (() => {
       id: "balance",
       width: right,
       height: 200,
-      x: {
-        domain: [0, 0.1],
-        ticks: ticksAt(0, 0.05, 0.1),
-        label: "depth / r",
-      },
-      y: {
-        domain: [0, 2.4],
-        ticks: ticksAt(0, 1, 2),
-        label: "force / m g",
-      },
+      x: axis([0, 0.1], "depth / r", 0, 0.05, 0.1),
+      y: axis([0, 2.4], "force / m g", 0, 1, 2),
       lines: [{ model: "penalty", xs: [0, reach], ys: [0, (stiffness * reach * R) / G] }],
       rules: [{ y: 1, text: "weight", class: "dashed" }],
       points: [{ model: "penalty", x: depth, y: 1, size: 6 }],
@@ -89,9 +86,7 @@ const SmallFigures = (() => {
     const centre = floor - r + 10 * depth * r;
     return {
       height: 200,
-      markup:
-        group(0, 0, pushed("penalty", left / 2, centre, r, G, floor, left)) +
-        group(left + 8, 0, chart.markup),
+      markup: beside(left, chart, pushed("penalty", left / 2, centre, r, G, floor, left)),
       output: `k = ${number(stiffness)} N/m`,
       words: `Weight and push balance where the spring is pressed by m g / k = ${number(1000 * depth * R)} mm = ${number(depth)} r. In the picture it is ten times as deep.`,
     };
@@ -115,25 +110,19 @@ const SmallFigures = (() => {
       id: "dive",
       width: right,
       height: 200,
-      x: {
-        domain: [0.4, 1],
-        ticks: ticksAt(0.4, 0.6, 0.8, 1),
-        label: "time (s)",
-      },
-      y: {
-        domain: [-0.45, 0.3],
-        ticks: ticksAt(-0.4, -0.2, 0, 0.2),
-        label: "depth / r",
-      },
+      x: axis([0.4, 1], "time (s)", 0.4, 0.6, 0.8, 1),
+      y: axis([-0.45, 0.3], "depth / r", -0.4, -0.2, 0, 0.2),
       lines: [{ model: "penalty", xs: run.t, ys: depths, from: 800, to: 2001 }],
       rules: [{ y: 0 }, { x: time }],
       points: [{ model: "penalty", x: time, y: depths[row], size: 6 }],
     });
     return {
       height: 200,
-      markup:
-        group(0, 0, pushed("penalty", left / 2, floor - r + depths[row] * r, r, force, floor, left)) +
-        group(left + 8, 0, chart.markup),
+      markup: beside(
+        left,
+        chart,
+        pushed("penalty", left / 2, floor - r + depths[row] * r, r, force, floor, left),
+      ),
       output: `t = ${time.toFixed(3)} s`,
       words: `${depths[row] > 0 ? `${number(depths[row])} r deep` : `${number(-depths[row])} r above`}, moving at ${number(run.vy[row])} m/s; the push is ${weights(force)}.`,
     };
@@ -155,16 +144,8 @@ const SmallFigures = (() => {
       id: "long-step",
       width: right,
       height: 210,
-      x: {
-        domain: [0, 30],
-        ticks: ticksAt(0, 10, 20, 30),
-        label: "time (ms)",
-      },
-      y: {
-        domain: [-0.4, 1.8],
-        ticks: ticksAt(0, 0.5, 1, 1.5),
-        label: "height / r",
-      },
+      x: axis([0, 30], "time (ms)", 0, 10, 20, 30),
+      y: axis([-0.4, 1.8], "height / r", 0, 0.5, 1, 1.5),
       lines: [
         { model: "exact", xs: fine.t.map((t) => 1000 * t), ys: Array.from(fine.y, height), class: "thin" },
         { model: "penalty", xs: [0, 1000 * dt], ys: [height(scene.y[0]), height(next.y[0])] },
@@ -175,15 +156,14 @@ const SmallFigures = (() => {
     const best = Math.sqrt(1e4) * 0.2 * R;
     return {
       height: 210,
-      markup:
-        group(
-          0,
-          0,
-          table(0, floor, left, 34),
-          ball("penalty", left / 2, at(scene.y[0]), r, "ghost"),
-          ball("penalty", left / 2, at(next.y[0]), r),
-          arrow("push m-penalty", left / 2, at(next.y[0]), 0, -Math.min(60, 8 * next.vy[0])),
-        ) + group(left + 8, 0, chart.markup),
+      markup: beside(
+        left,
+        chart,
+        table(0, floor, left, 34),
+        ball("penalty", left / 2, at(scene.y[0]), r, "ghost"),
+        ball("penalty", left / 2, at(next.y[0]), r),
+        arrow("push m-penalty", left / 2, at(next.y[0]), 0, -Math.min(60, 8 * next.vy[0])),
+      ),
       output: `dt = ${number(1000 * dt)} ms`,
       words: `The step keeps the push of 200 N for ${number(1000 * dt)} ms: the ball leaves with ${number(next.vy[0])} m/s. The spring itself (dashed) gives ${number(best)} m/s at the most.`,
     };
@@ -214,11 +194,7 @@ const SmallFigures = (() => {
       id: "corner",
       width: right,
       height: 230,
-      x: {
-        domain: [-0.36, 0.45],
-        ticks: ticksAt(-0.2, 0, 0.2, 0.4),
-        label: "gap / r",
-      },
+      x: axis([-0.36, 0.45], "gap / r", -0.2, 0, 0.2, 0.4),
       y: {
         domain: [0, most],
         root: true,
@@ -250,9 +226,12 @@ const SmallFigures = (() => {
     );
     return {
       height: 230,
-      markup:
-        group(0, 0, table(0, floor, left, 34), ...balls) +
-        group(left + 8, 0, el("path", { d: allowed, class: "allowed" }), chart.markup),
+      markup: beside(
+        left,
+        { markup: el("path", { d: allowed, class: "allowed" }) + chart.markup },
+        table(0, floor, left, 34),
+        ...balls,
+      ),
       output: `t = ${time.toFixed(3)} s`,
       words: `Gap / r and push / m g: ${shown.map((model, m) => `${model} ${number(runs[m].gap[row], 2)} and ${number(runs[m].force[row], 2)}`).join("; ")}. The thick corner is all that the conditions allow.`,
     };
@@ -299,8 +278,8 @@ const SmallFigures = (() => {
       id: "sweeps",
       width: right,
       height: 224,
-      x: { domain: [0, 20], ticks: ticksAt(0, 5, 10, 15, 20), label: "sweep" },
-      y: { domain: [0, 3.3], ticks: ticksAt(0, 1, 2, 3), label: "impulse / m g dt" },
+      x: axis([0, 20], "sweep", 0, 5, 10, 15, 20),
+      y: axis([0, 3.3], "impulse / m g dt", 0, 1, 2, 3),
       lines: [0, 1, 2].map((c) => ({
         model: "lcp",
         xs: traced.map((_, s) => s),
@@ -311,7 +290,7 @@ const SmallFigures = (() => {
     });
     return {
       height: 224,
-      markup: group(0, 0, table(0, floor, left, 34), ...balls) + group(left + 8, 0, chart.markup),
+      markup: beside(left, chart, table(0, floor, left, 34), ...balls),
       output: plural(count, "sweep"),
       words: `The contacts should carry 3, 2 and 1 balls; after ${plural(count, "sweep")} they carry ${carried.map((v) => number(v)).join(", ")}.`,
     };
@@ -385,11 +364,7 @@ const SmallFigures = (() => {
       width,
       height: 220,
       x: { domain: [0.4, 1.2], ticks: steps(0.4, 1.2, 4), label: "time (s)" },
-      y: {
-        domain: [0, 1],
-        ticks: ticksAt(0, 0.49, 1),
-        label: "height / start",
-      },
+      y: axis([0, 1], "height / start", 0, 0.49, 1),
       lines: runs.map((run, k) => ({
         model: "lcp",
         xs: run.t,
@@ -430,30 +405,21 @@ const SmallFigures = (() => {
       id: "hop",
       width: right,
       height: 200,
-      x: {
-        domain: [0.4, 0.8],
-        ticks: ticksAt(0.4, 0.6, 0.8),
-        label: "time (s)",
-      },
-      y: {
-        domain: [-0.1, 0.9],
-        ticks: ticksAt(0, 0.4, 0.8),
-        label: "gap / r",
-      },
+      x: axis([0.4, 0.8], "time (s)", 0.4, 0.6, 0.8),
+      y: axis([-0.1, 0.9], "gap / r", 0, 0.4, 0.8),
       lines: [{ model: "lcp", xs: run.t, ys: gap, from: 200, to: 401 }],
       rules: [{ y: 0 }],
       points: [{ model: "lcp", x: run.t[top], y: gap[top], size: 6 }],
     });
     return {
       height: 200,
-      markup:
-        group(
-          0,
-          0,
-          table(0, floor, left, 34),
-          ball("lcp", left / 2, floor - r, r, "ghost"),
-          ball("lcp", left / 2, floor - r - gap[top] * r, r),
-        ) + group(left + 8, 0, chart.markup),
+      markup: beside(
+        left,
+        chart,
+        table(0, floor, left, 34),
+        ball("lcp", left / 2, floor - r, r, "ghost"),
+        ball("lcp", left / 2, floor - r - gap[top] * r, r),
+      ),
       output: `β = ${baumgarte.toFixed(2)}`,
       words:
         gap[top] > 1e-6
@@ -475,11 +441,7 @@ const SmallFigures = (() => {
       width,
       height: 210,
       x: { domain: [0, until], ticks: steps(0, until, 5), label: "time (s)" },
-      y: {
-        domain: [0, 1.1],
-        ticks: ticksAt(0, 0.5, 1),
-        label: "height (m)",
-      },
+      y: axis([0, 1.1], "height (m)", 0, 0.5, 1),
       lines: [{ model: "exact", xs: run.t, ys: Array.from(run.y) }],
       rules: [{ x: end, text: `over at ${number(end)} s`, class: "dashed" }],
     });
@@ -539,37 +501,54 @@ const SmallFigures = (() => {
 
   // ---- slide: a ball slides off a ball, and leaves it
 
-  const SLIDE = { angle: 0.35, dt: 0.002, steps: 500 };
+  const SLIDE = { angle: 0.35, dt: 0.002, steps: 500, fine: 2e-5, until: 0.45 };
 
-  // Runs of the four models, and the angle at which the ball leaves each time.
+  const slideScene = () => ({
+    x: [0, 2 * R * Math.sin(SLIDE.angle)],
+    y: [5, 5 + 2 * R * Math.cos(SLIDE.angle)],
+    vx: [0, 0],
+    vy: [0, 0],
+    mass: [Infinity, 1],
+    radius: [R, R],
+    restitution: 0,
+  });
+
+  // The angles at which the last step began and ended in which something else than gravity pushed.
+  function lastPush(run) {
+    const pushed = (row) => {
+      const [now, before] = [2 * row + 1, 2 * row - 1];
+      const [dvx, dvy] = [run.vx[now] - run.vx[before], run.vy[now] - run.vy[before]];
+      return Math.hypot(dvx, dvy + G * run.dt) > 1e-6 * G * run.dt;
+    };
+    let row = run.steps;
+    while (row > 1 && !pushed(row)) row--;
+    return [row - 1, row].map((at) => Math.atan2(run.x[2 * at + 1], run.y[2 * at + 1] - 5));
+  }
+
+  // Runs of the four models, and where each lets the ball go. exact has no step: it is looked at finely.
   function slideRuns() {
-    return once("slide", () => {
-      const { angle: from, dt } = SLIDE;
-      const scene = {
-        x: [0, 2 * R * Math.sin(from)],
-        y: [5, 5 + 2 * R * Math.cos(from)],
-        vx: [0, 0],
-        vy: [0, 0],
-        mass: [Infinity, 1],
-        radius: [R, R],
-        restitution: 0,
-      };
-      return MODELS.map((model) => {
-        const run = runModel(model, scene, { ...DEFAULTS, dt, iters: 50 }, SLIDE.steps);
+    return once("slide", () =>
+      MODELS.map((model) => {
+        const { dt, fine, until } = SLIDE;
+        const run = runModel(model, slideScene(), { ...DEFAULTS, dt, iters: 50 }, SLIDE.steps);
         const place = (row) => ({ x: run.x[2 * row + 1], y: run.y[2 * row + 1] - 5 });
-        // the last step in which something else than gravity changed the velocity
-        const pushed = (at) => {
-          const [now, before] = [2 * at + 1, 2 * at - 1];
-          return (
-            Math.hypot(run.vx[now] - run.vx[before], run.vy[now] - run.vy[before] + G * dt) > 1e-6 * G * dt
-          );
-        };
-        let row = SLIDE.steps;
-        while (row > 0 && !pushed(row)) row--;
-        const angle = (at) => Math.atan2(place(at).x, place(at).y);
-        return { model, place, leaves: 0.5 * (angle(row - 1) + angle(row)) };
-      });
-    });
+        const looked =
+          model === "exact" ? runModel(model, slideScene(), { ...DEFAULTS, dt: fine }, until / fine) : run;
+        return { model, place, leaves: lastPush(looked) };
+      }),
+    );
+  }
+
+  const degrees = (angle, places = 1) => `${((angle * 180) / Math.PI).toFixed(places)}°`;
+
+  function slideWords(runs, release) {
+    const steps = runs.filter(({ model }) => model !== "exact");
+    const told = steps.map(({ model, leaves: [from, to] }) => `${model} ${degrees(from)} to ${degrees(to)}`);
+    const { leaves } = runs.find(({ model }) => model === "exact");
+    return (
+      `The last push should come at ${degrees(release, 2)}; exact ${degrees(leaves[1], 2)}. ` +
+      `The steps of ${SLIDE.dt} s in which it comes: ${told.join("; ")}.`
+    );
   }
 
   function slide(time, width) {
@@ -588,7 +567,8 @@ const SmallFigures = (() => {
     });
     const marks = runs.map(({ model, leaves }, k) => {
       const far = (0.12 + 0.022 * k) * scale;
-      return mark(model, cx + far * Math.sin(leaves), cy - far * Math.cos(leaves), 5);
+      const middle = 0.5 * (leaves[0] + leaves[1]);
+      return mark(model, cx + far * Math.sin(middle), cy - far * Math.cos(middle), 5);
     });
     return {
       height,
@@ -604,7 +584,7 @@ const SmallFigures = (() => {
         ...marks,
       ].join(""),
       output: `t = ${time.toFixed(2)} s`,
-      words: `The last push should come at ${number((release * 180) / Math.PI, 4)}°. It comes, in steps of ${SLIDE.dt} s, ${runs.map(({ model, leaves }) => `${model}: ${number((leaves * 180) / Math.PI, 4)}°`).join("; ")}.`,
+      words: slideWords(runs, release),
     };
   }
 
@@ -619,11 +599,7 @@ const SmallFigures = (() => {
       id: "impedance",
       width: right,
       height: 200,
-      x: {
-        domain: [0, 1.5],
-        ticks: ticksAt(0, 0.5, 1, 1.5),
-        label: "depth / width",
-      },
+      x: axis([0, 1.5], "depth / width", 0, 0.5, 1, 1.5),
       y: {
         domain: [0.89, 0.96],
         ticks: [
@@ -640,9 +616,12 @@ const SmallFigures = (() => {
     const floor = 150;
     return {
       height: 200,
-      markup:
-        group(0, 0, table(0, floor, left, 34), ball("soft", left / 2, floor - r + 20 * share, r)) +
-        group(left + 8, 0, chart.markup),
+      markup: beside(
+        left,
+        chart,
+        table(0, floor, left, 34),
+        ball("soft", left / 2, floor - r + 20 * share, r),
+      ),
       output: `depth = ${number(share * solimp[2] * 1000, 2)} mm`,
       words: `d = ${number(d)}: the contact takes ${number(100 * d)} % of what a hard one would; R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass. In the picture it is 1,000 times as deep.`,
     };
@@ -693,9 +672,12 @@ const SmallFigures = (() => {
     const floor = 160;
     return {
       height: 230,
-      markup:
-        group(0, 0, table(0, floor, left, 34), ball("soft", left / 2, floor - r + 100 * rest * r, r)) +
-        group(left + 8, 0, chart.markup),
+      markup: beside(
+        left,
+        chart,
+        table(0, floor, left, 34),
+        ball("soft", left / 2, floor - r + 100 * rest * r, r),
+      ),
       output: `d = ${plain(Number(d.toFixed(5)))}`,
       words: `It rests ${number(rest)} r deep; (1 − d) g = d² K depth says so. In the picture it is a hundred times as deep.`,
     };
@@ -739,7 +721,13 @@ const SmallFigures = (() => {
         log: true,
         zero: true,
         label: "still moving after 6 s (r)",
-        ticks: ticksAt(0, 1e-4, 1, 1e4, 1e8),
+        ticks: [
+          [0, "0"],
+          [1e-4, "10⁻⁴"],
+          [1, "1"],
+          [1e4, "10⁴"],
+          [1e8, "10⁸"],
+        ],
       },
       lines: [
         { model: "penalty", xs: cliffSteps, ys: cliffLine("penalty", damping), markers: [5, 15, 25, 35, 45] },
@@ -836,7 +824,7 @@ const SmallFigures = (() => {
       title: "A ball strikes three: at one moment, or one after another",
     },
     slide: {
-      knob: plainKnob(0, 0.6, 0.01, 0.36),
+      knob: plainKnob(0, 0.6, 0.01, 0.26),
       label: "Time",
       draw: slide,
       title: "A ball slides off a ball that is held; where does each model let it go?",

@@ -455,6 +455,24 @@ def test_a_knob_of_the_live_figure_answers_within_fifty_milliseconds(browser, ur
             assert min(times) < 50, (scene, times)
 
 
+def last_push(model):
+    """The angles [deg] at which contact.py's last step with a push begins and ends, on the ball of slide.
+
+    And what the chapter says of the way there: lcp's ball is a hair apart after every step.
+    """
+    q0 = np.array([[0.0, 0.2 * math.sin(0.35)], [5.0, 5.0 + 0.2 * math.cos(0.35)]])
+    radius, mass = np.full(2, contact.RADIUS), np.array([math.inf, 1.0])
+    scene = contact.Scene("slide", q0, np.zeros((2, 2)), mass, radius, 0.0, 80.0)
+    run = contact.run_model(model, scene, 0.002, 500, iters=50)
+    x, y = run.q[:, 0, 1], run.q[:, 1, 1] - 5.0
+    kick = np.diff(run.v[:, :, 1], axis=0) - [0.0, 0.002 * contact.GRAVITY]
+    last = np.flatnonzero(np.hypot(*kick.T) > 1e-6)[-1]
+    if model == "lcp":
+        assert (np.hypot(x, y)[1 : last + 1] > 0.2).all()
+        assert (np.hypot(x, y)[1 : last + 1] < 0.2 + contact.CONTACT_MARGIN).all()
+    return tuple(np.degrees(np.arctan2(x, y))[[last, last + 1]])
+
+
 @needs_chromium
 def test_small_figures_say_what_is_true(browser, url):
     with visiting(browser, url) as page:
@@ -472,6 +490,13 @@ def test_small_figures_say_what_is_true(browser, url):
         assert abs(e[1] - 0.7) < 0.01 < abs(e[2] - 0.7)
         release = numbers_in(words("slide", 0.3))[0]
         assert release == pytest.approx(math.degrees(math.acos(2 / 3 * math.cos(0.35))), abs=0.01)
+        told = re.findall(r"(\w+):? ([\d.]+)°(?: to ([\d.]+)°)?", words("slide", 0.3))
+        leaves = {model: (float(low), float(high or low)) for model, low, high in told[1:]}
+        assert leaves["exact"][0] == pytest.approx(release, abs=0.011)
+        for model in ("penalty", "lcp", "soft"):
+            assert leaves[model] == pytest.approx(last_push(model), abs=0.051), model
+        assert leaves["soft"][1] < release < leaves["penalty"][0]
+        assert leaves["lcp"][0] - 0.051 < release < leaves["lcp"][1]
         soft = contact.run_model(
             "soft",
             contact.Scene(
@@ -804,6 +829,11 @@ def test_print_shows_stills_whole_code_and_no_controls(browser, url):
         cut = page.evaluate("""() => [...document.querySelectorAll('.ln, pre')].filter(
           (e) => e.checkVisibility() && e.scrollWidth > e.clientWidth + 1).length""")
         assert cut == 0
+        assert page.locator(".terminal code:visible").count() == 0
+        page.evaluate("dispatchEvent(new Event('beforeprint'))")
+        assert page.locator(".terminal code:visible").count() == 4, "on paper nothing unfolds"
+        page.evaluate("dispatchEvent(new Event('afterprint'))")
+        assert page.locator(".terminal code:visible").count() == 0
         assert page.pdf()[:5] == b"%PDF-"
 
 
@@ -906,4 +936,5 @@ def test_generated_figures_are_put_in_whole(tmp_path):
     figure = page_build.generated_figures(tmp_path)["bench:drop"]
     assert figure["src"].startswith("data:image/svg+xml,") and "M1.23 2.5" in figure["src"]
     assert '"' not in figure["src"] and "%25" in figure["src"]
-    assert (figure["width"], figure["height"]) == (720, 432)
+    scale = page_build.SCALE
+    assert (figure["width"], figure["height"]) == (720 * scale, round(432.5 * scale))

@@ -1,9 +1,11 @@
 """The chapter's own page: what it shows before a bet, its formulas, its way around, the whole file."""
 
 import ast
+import io
 import json
 import os
 import re
+import statistics
 from html import unescape
 from pathlib import Path
 
@@ -298,6 +300,48 @@ def test_the_font_keeps_its_license_and_not_its_reserved_name():
     assert "STIX" not in names[1] + names[4] + names[6]
     license = (ROOT / "curriculum/page/maths.license.txt").read_text("utf-8")
     assert "SIL OPEN FONT LICENSE Version 1.1" in license and "STI Pub Companies" in license
+
+
+# ---- pictures
+
+
+@needs_chromium
+def test_every_picture_can_be_decoded(browser, url):
+    """Also one whose text names a font in quotes, as matplotlib's do."""
+    with visiting(browser, url) as page:
+        widths = page.evaluate("""() => Promise.all([...document.images].map(
+          (image) => image.decode().then(() => image.naturalWidth, () => 0)))""")
+    assert len(widths) >= 2 and all(widths), widths
+
+
+@needs_chromium
+@pytest.mark.parametrize("width", [375, 1440])
+def test_text_in_pictures_is_as_large_as_the_least_of_the_page(browser, url, width):
+    """Their labels are of 10 px; on a phone a picture keeps its size and is moved sideways."""
+    with visiting(browser, url, width=width, height=800) as page:
+        shown = page.evaluate(
+            "[...document.images].filter((i) => i.checkVisibility()).map((i) => i.clientWidth / i.naturalWidth)"
+        )
+        drawn = page.evaluate("""[...document.images].map((i) => {
+          const text = decodeURIComponent(i.src.split(",", 2)[1]);
+          return i.naturalWidth / Number(text.match(/viewBox='\\S+ \\S+ ([\\d.]+)/)[1]);
+        })""")
+        assert all(10 * a * b >= 13.9 for a, b in zip(shown, drawn)), (shown, drawn)
+
+
+@needs_chromium
+def test_pictures_are_dark_where_the_page_is(browser, url):
+    """Each brings its dark colours itself, and nothing turns them over once more."""
+    with visiting(browser, url, color_scheme="dark") as page:
+        pixels = page.evaluate("""() => Promise.all([...document.images].map(async (image) => {
+          await image.decode();
+          return [getComputedStyle(image).filter, getComputedStyle(image).backgroundColor];
+        }))""")
+        assert pixels == [["none", "rgba(0, 0, 0, 0)"]] * len(pixels)
+        image = pytest.importorskip("PIL.Image", reason="pillow is missing: pip install matplotlib")
+        for each in page.locator(".generated img:visible").all():
+            shot = image.open(io.BytesIO(each.screenshot())).convert("L")
+            assert statistics.mean(shot.getdata()) < 110
 
 
 # ---- the way around
