@@ -112,10 +112,7 @@ def map_jobs(grids):
 def penalty_row(stiffness, damping, dt):
     """Outcome of the drop at each dt, and the boundary of a ball kept in contact against theory.
 
-    With b = c dt / m < 2, one eigenvalue of the step near the critical dt is -1 - s ln(dt / dt_crit),
-    s = 2 (4 - b) / b, and a start off the rest depth has the share (2 - b) / b in its mode (1 at
-    most). To be 20 times as far off after 2,000 steps, the search is late by
-    ln(20 / share) / 2000 / s. Without a damper x_n = x_0 cos((n - 1/2) w) / cos(w / 2), with
+    How late the search can be with a damper, `late` says. Without a damper x_n = x_0 cos((n - 1/2) w) / cos(w / 2), with
     cos(w) = 1 - k dt^2 / 2 m: it gets 20 times as far off already below the critical dt, by up to
     1 / (2 20^2) of it. And the search ends 0.1 % wide.
     """
@@ -124,11 +121,8 @@ def penalty_row(stiffness, damping, dt):
     outcomes = "".join(drop_outcome(scene, stiffness, step, seconds) for step in dts)
     theory = contact.critical_dt(1.0, stiffness, damping)
     measured = boundary(stiffness, damping, theory)
-    b = damping * theory
-    share = min(1.0, (2.0 - b) / b) if b > 0.0 else 1.0
-    late = math.log(AMPLIFIED / share) / WATCHED * b / (2.0 * (4.0 - b))
     early = 0.5 / AMPLIFIED**2
-    error, bound = measured / theory - 1.0, max(late, early) + BISECTED - 1.0
+    error, bound = measured / theory - 1.0, max(late(damping * theory), early) + BISECTED - 1.0
     rows = [
         jobs.row(
             "ball kept in contact",
@@ -144,6 +138,17 @@ def penalty_row(stiffness, damping, dt):
         "theory": theory,
         "measured": measured,
     }
+
+
+def late(b):
+    """By what share of the critical dt a step must be above it to be seen to leave; b = c dt / m < 2.
+
+    One eigenvalue of the step near the critical dt is -1 - s ln(dt / dt_crit), s = 2 (4 - b) / b,
+    and a start off the rest depth has the share (2 - b) / b in its mode (1 at most). To be
+    AMPLIFIED times as far off after WATCHED steps takes ln(AMPLIFIED / share) / WATCHED / s.
+    """
+    share = min(1.0, (2.0 - b) / b) if b > 0.0 else 1.0
+    return math.log(AMPLIFIED / share) / WATCHED * b / (2.0 * (4.0 - b))
 
 
 def settling_time(stiffness, damping):
