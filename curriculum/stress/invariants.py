@@ -9,8 +9,11 @@ U = 2^-53 is the largest relative rounding error of one operation. A bound "to r
 the number of operations times the size of what is added, never a number that was found to do.
 """
 
+import math
+
 import numpy as np
 
+from curriculum import exact
 from curriculum.stress import jobs, scenes
 from curriculum.stress.trial import STEPPED, Step, Trial, U
 from curriculum.stress.under_test import contact
@@ -50,21 +53,73 @@ def finite_unless_reported(trial):
 def momentum_along_x_is_kept(trial):
     """The floor pushes upwards only, so sum m v_x stays, in every model.
 
-    Bound: a push rounds the velocities of two balls by at most 4 U of them and of itself. So
-    8 U sum m |v| for every push there was: contacts x sweeps of lcp, contacts of penalty. soft
-    and exact do not say how many pushes they made; each of their steps counts as 1,000 per contact.
+    A push is given to one ball and taken from another, with three roundings each: 6 U of it. And
+    the new speed of each is rounded. Nothing else touches v_x, so a step without a pair keeps its
+    bits. Bound for the steps of lcp and soft that are taken again: these roundings, of the pushes
+    that were made, counted. For every step of every run: as many pushes as there can be (a pair
+    gets one in penalty, one a sweep in lcp and soft; in exact, for each of the run's events, its
+    impulse and the terms of its force). Each is at most the change between two momenta, so 16 U
+    of the largest.
     """
     for model in trial.models():
         if not trial.calm(model):
             continue
-        run = trial.run(model)
-        p = run.v[:, 0] * trial.mass
-        drift = float(np.abs(p.sum(axis=1) - p[0].sum()).max())
-        size = float((np.abs(run.v) * trial.mass).sum(axis=(1, 2)).max())
-        sweeps = {"penalty": 1, "lcp": trial.spec["iters"]}.get(model, 1000)
-        pushes = len(trial.mass) + sweeps * contact_count(trial, run).sum()
-        if drift > 8 * U * pushes * size:
-            return f"{model}: drifts by {drift:.3g} of {size:.3g} kg m/s"
+        drift = np.abs(np.diff((trial.run(model).v[:, 0] * trial.mass).sum(axis=1)))
+        momentum = largest_momentum(trial, model)
+        allowed = most_pushes(trial, model) * 16 * U * momentum
+        over = drift > allowed + 2 * len(trial.mass) * U * momentum  # that of the two sums
+        if over.any():
+            k = int(over.argmax())
+            return f"{model}, step {k}: drifts by {drift[k]:.3g}, allowed {allowed[k]:.3g} kg m/s"
+    return momentum_of_steps(trial)
+
+
+def most_pushes(trial, model):
+    """How many pushes along x there can be in each step (steps,).
+
+    One for every pair that is listed: of penalty; in each sweep of lcp, and in MOST_SWEEPS of soft.
+    exact: pairs that touch are edges of a planar graph, at most 3 N, and an event sets off an
+    impulse for each and the forces until the next, ORDER terms; any step may have all events.
+    """
+    run = trial.run(model)
+    steps = len(run.t) - 1
+    if model == "exact":
+        return np.full(steps, trial.exact[1] * 3 * len(trial.mass) * (1 + exact.ORDER))
+    sweeps = {"penalty": 1, "lcp": trial.spec["iters"], "soft": contact.MOST_SWEEPS}[model]
+    margin = contact.CONTACT_MARGIN if model == "lcp" else 0.0
+    margin += 8 * U * float(np.abs(run.q).max() + trial.scene.radius.max())
+    pairs = gaps(run.q[:-1], trial.scene.radius)[:, len(trial.mass) :] < margin
+    return sweeps * pairs.sum(axis=1)
+
+
+def largest_momentum(trial, model):
+    """Bound on sum m |v_x| in the course of each step [kg m/s], (steps,).
+
+    sum m |v_x| is at most sqrt(sum m) |v|, |v| in the norm of the masses: of two states, and of what
+    gravity makes of the first. Sweeps come nearer to their solution with every correction, so what
+    is between is at most that far beyond it. exact: all its energy in motion.
+    """
+    run, mass = trial.run(model), float(trial.mass.sum())
+    if model == "exact":
+        start = float(contact.energy(run.q[:1], run.v[:1], trial.mass)[0])
+        return np.full(len(run.t) - 1, np.sqrt(2 * mass * start))
+    speed = np.sqrt(2 * kinetic(run.v, trial.mass))
+    falling = speed[:-1] - trial.dt * contact.GRAVITY * np.sqrt(mass)
+    return np.sqrt(mass) * (falling + 2 * speed[1:])
+
+
+def momentum_of_steps(trial):
+    """Words when a step of lcp or soft, taken again, drifts by more than its own pushes round."""
+    for model in ("lcp", "soft"):
+        for k in trial.samples(model):
+            step = trial.step(model, k)
+            after = trial.mass * step.state()[2]
+            drift = abs(math.fsum(after) - math.fsum(trial.mass * trial.run(model).v[k, 0]))
+            if drift > step.push_rounding + 2 * U * step.peak * len(after):
+                return (
+                    f"{model}, step {k}: drifts by {drift:.3g} kg m/s, its pushes round by "
+                    f"{step.push_rounding:.3g}"
+                )
     return None
 
 
@@ -416,12 +471,17 @@ def scaled(step):
 
 @check
 def exact_never_penetrates(trial):
-    """exact: no overlap deeper than 1e-10 of the smallest radius at any sample."""
+    """exact: no overlap at any sample, but by what it takes for touching, TOUCH of a radius a ball.
+
+    Bound: a gap of under TOUCH counts as none. Setting one contact right moves its balls by no more
+    than that, so along a chain of N balls a gap is off by at most N of it.
+    """
     if trial.overlaps:
         return SKIPPED
-    run, r = trial.run("exact"), float(trial.scene.radius.min())
+    run, r = trial.run("exact"), float(trial.scene.radius.max())
     deepest = float(np.max(contact.max_penetration(run.q, trial.scene.radius)))
-    return None if deepest <= 1e-10 * r else f"{deepest / r:.3g} r deep"
+    allowed = len(trial.mass) * exact.TOUCH * r
+    return None if deepest <= allowed else f"{deepest:.3g} m deep, allowed {allowed:.3g} m"
 
 
 @check
