@@ -27,6 +27,7 @@ class Contestant(NamedTuple):
     refuses: Callable  # scene -> why it does not run it, or None
     adaptive: bool = False  # chooses its own steps: dt is only how often it is looked at
     only: tuple = ()  # the problems it is for; none means all
+    substeps: int = 1  # it takes for each step that is asked for
 
     @property
     def name(self):
@@ -75,6 +76,7 @@ def theirs(setting):
         record,
         lambda scene: missing or setting.refuses(scene),
         setting.adaptive,
+        substeps=setting.substeps,
     )
 
 

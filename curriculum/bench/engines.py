@@ -81,6 +81,14 @@ def balls_of(scene):
     return [(*row, math.isinf(row[4])) for row in zip(*rows)]
 
 
+def scaled_balls_of(scene):
+    """(place, velocity, radius, density, fixed) of every ball in the world that a Box2D sees."""
+    for x, y, vx, vy, mass, radius, fixed in balls_of(scene):
+        r = radius * SCALE
+        density = 1.0 if fixed else mass / (math.pi * r * r)
+        yield (x * SCALE, y * SCALE), (vx * SCALE, vy * SCALE), r, density, fixed
+
+
 # MuJoCo
 
 
@@ -298,19 +306,14 @@ class Box2d(Session):
             restitution=scene.restitution,
         )
         self.bodies = []
-        for x, y, vx, vy, mass, radius, fixed in balls_of(scene):
-            place, r = (x * SCALE, y * SCALE), radius * SCALE
+        for place, velocity, r, density, fixed in scaled_balls_of(scene):
             body = (
                 world.CreateStaticBody(position=place)
                 if fixed
                 else world.CreateDynamicBody(
-                    position=place,
-                    fixedRotation=True,
-                    allowSleep=False,
-                    linearVelocity=(vx * SCALE, vy * SCALE),
+                    position=place, fixedRotation=True, allowSleep=False, linearVelocity=velocity
                 )
             )
-            density = 1.0 if fixed else mass / (math.pi * r * r)
             body.CreateCircleFixture(
                 radius=r, density=density, friction=0.0, restitution=scene.restitution
             )
@@ -337,7 +340,7 @@ class Box2d(Session):
 class Box2d3(Session):
     """Box2D 3: soft contacts solved over small substeps, then relaxed."""
 
-    def __init__(self, scene, dt, substeps=4, hertz=None):
+    def __init__(self, scene, dt, substeps, hertz):
         import pyb2d3
 
         self.world = world = pyb2d3.World(
@@ -353,8 +356,7 @@ class Box2d3(Session):
             pyb2d3.segment((-FLOOR * SCALE, 0), (FLOOR * SCALE, 0)),
         )
         self.bodies = pyb2d3.Bodies()
-        for x, y, vx, vy, mass, radius, fixed in balls_of(scene):
-            place, r = (x * SCALE, y * SCALE), radius * SCALE
+        for place, velocity, r, density, fixed in scaled_balls_of(scene):
             body = (
                 world.create_static_body(position=place)
                 if fixed
@@ -362,10 +364,9 @@ class Box2d3(Session):
                     position=place,
                     fixed_rotation=True,
                     enable_sleep=False,
-                    linear_velocity=(vx * SCALE, vy * SCALE),
+                    linear_velocity=velocity,
                 )
             )
-            density = 1.0 if fixed else mass / (math.pi * r * r)
             body.create_shape(
                 pyb2d3.shape_def(density=density, material=material), pyb2d3.circle(radius=r)
             )
@@ -495,6 +496,7 @@ class Setting(NamedTuple):
     build: Callable
     adaptive: bool = False  # it chooses its own steps, so dt is only how often it is looked at
     refuses: Callable = lambda scene: None  # why it does not run a scene, or None
+    substeps: int = 1  # of each step that is asked for
 
 
 ENGINES = {  # label, package on PyPI, module
@@ -505,6 +507,13 @@ ENGINES = {  # label, package on PyPI, module
     "drake": ("Drake", "drake", "pydrake"),
 }
 SHIPPED_BIAS = 0.9**60  # pymunk's own
+
+
+def in_substeps(words, substeps, hertz=None):
+    """A setting of Box2D 3."""
+    build = partial(Box2d3, substeps=substeps, hertz=hertz)
+    return Setting("box2d3", words, build, substeps=substeps)
+
 
 SETTINGS = (
     Setting("mujoco", "as shipped", partial(Mujoco, contact=shipped)),
@@ -549,12 +558,12 @@ SETTINGS = (
     ),
     Setting("box2d", "8 and 3 iterations", Box2d),
     Setting("box2d", "30 and 10 iterations", partial(Box2d, iterations=(30, 10))),
-    Setting("box2d3", "1 substep", partial(Box2d3, substeps=1)),
-    Setting("box2d3", "4 substeps", Box2d3),
-    Setting("box2d3", "16 substeps", partial(Box2d3, substeps=16)),
-    Setting("box2d3", "4 substeps, hardest", partial(Box2d3, hertz=1e9)),
-    Setting("box2d3", "16 substeps, hardest", partial(Box2d3, substeps=16, hertz=1e9)),
-    Setting("box2d3", "16 substeps, 120 Hz", partial(Box2d3, substeps=16, hertz=120.0)),
+    in_substeps("1 substep", 1),
+    in_substeps("4 substeps", 4),
+    in_substeps("16 substeps", 16),
+    in_substeps("4 substeps, hardest", 4, hertz=1e9),
+    in_substeps("16 substeps, hardest", 16, hertz=1e9),
+    in_substeps("16 substeps, 120 Hz", 16, hertz=120.0),
     Setting("drake", "discrete, k 1e8", Drake, refuses=no_coefficient),
     Setting(
         "drake",

@@ -411,6 +411,18 @@ def test_goals_without_an_engine_are_not_claimed(section):
     assert next(g for w, g in goals.items() if "the peer reading nothing" in w).met is None
 
 
+def test_the_second_reading_holds_a_substep_against_a_step_of_its_length():
+    """4 substeps of 2 ms are better than a step of 2 ms, those of 8 ms worse."""
+    found = [("lcp", "20 sweeps", 0.002, 0.04), ("box2d3", "4 substeps", 0.002, 0.01),
+             ("box2d3", "4 substeps", 0.008, 0.05)]  # fmt: skip
+    keys = ("family", "words", "dt", "position_error")
+    points = [dict(zip(keys, row), problem="drop", diverged=None) for row in found]
+    data = accuracy_report.Points({"points": tables.pack(points)})
+    by_step, by_substep = (accuracy_report._small_goal(data, "drop", way) for way in (False, True))
+    assert not by_step.met and "4 substeps at 2 ms (0.01" in by_step.measured
+    assert by_substep.met
+
+
 def test_a_pile_that_nothing_here_could_step_is_a_page_that_says_so(tmp_path):
     """Without numba and without an engine the page ended in an IndexError."""
     section = {

@@ -12,8 +12,7 @@ from mpmath import mp
 
 import contact
 from curriculum import exact
-from curriculum.stress import scenes
-from curriculum.stress import precise_tower
+from curriculum.stress import precise_tower, scenes
 
 R, G = 0.1, -9.81
 
