@@ -190,7 +190,10 @@ def check_passages(project):
     hashes = project.facts.get("passage_hashes") or {}
     for name, passage in found.items():
         if passage.file is None and hashes.get(name) != passage.sha256:
-            file = CHAPTER if name in passages.CHAPTER_PASSAGES else "meta.yaml"
+            file = {
+                **dict.fromkeys(passages.CHAPTER_PASSAGES, CHAPTER),
+                **dict.fromkeys(passages.README_PASSAGES, passages.README),
+            }.get(name, "meta.yaml")
             what = "has changed since it was last read" if name in hashes else "was never accepted"
             project.say(
                 file,

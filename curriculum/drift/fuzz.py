@@ -182,6 +182,15 @@ def claim(rng, text):
     return put(text, found, rng.choice(["", put(found[0], sign, COMPARED[sign[1]], 1)]))
 
 
+def any_word(rng, text):
+    """A word in the place of another, as an author's wrong word would be."""
+    words = list(re.finditer(r"\b[a-z]{5,}\b", texts.plain_prose(text)))
+    if len(words) < 2:
+        return None
+    found, other = rng.sample(words, 2)
+    return put(text, found, other[0])
+
+
 def plain_word(rng, text):
     """A plain word turned round."""
     found = pick(rng, rf"\b({'|'.join(TURNED)})\b", texts.plain_prose(text))
@@ -325,8 +334,10 @@ KINDS = (
     Kind("an exercise's docstring", ("exercises/ex*.py",), docstring),
     Kind("code", regions.LITERATE, code),
     Kind("a docstring", regions.LITERATE, docstring),
-    Kind("a plain word of the text", PROSE, plain_word, open=True),
-    Kind("a plain word of the README", README, plain_word, open=True),
+    Kind("a word turned round", PROSE, plain_word),
+    Kind("a word of the README turned round", README, plain_word),
+    Kind("any word of the text", PROSE, any_word, open=True),
+    Kind("any word of the README", README, any_word, open=True),
 )
 
 

@@ -9,11 +9,13 @@ meta.yaml. A passage is one of
     claims          its references to numbers and its `holds:` comments, in order
     formulas        its formulas, in order
     number-words    its numbers in words, each with two words on both sides
+    turning-words   its words that say which way or whether ("deeper", "never"), with their neighbours
+    readme-words    the same of the README, but for its generated blocks
     typed-numbers   the typed numbers that a reason excuses
     ex1, ex2, ...   what an exercise tells, asks, offers, answers and allows
     promises        the rest of meta.yaml: objectives, reading, runs, scope
 
-The last seven are in passage_hashes. `accept` shows the change of one of them, where it is told,
+All but the regions are in passage_hashes. `accept` shows the change of one of them, where it is told,
 and records its hash; it works on names, since each means that somebody has read that passage.
 """
 
@@ -31,14 +33,16 @@ from curriculum.common.files import write_whole
 from curriculum.drift import texts
 from curriculum.drift.texts import CHAPTER
 
-META = "meta.yaml"
+META, README = "meta.yaml", "README.md"
 CHAPTER_PASSAGES = {
     "outline": texts.outline,
     "claims": texts.claims,
     "formulas": texts.formulas,
     "number-words": texts.number_words,
+    "turning-words": texts.turning_words,
     "typed-numbers": texts.typed_by_reason,
 }
+README_PASSAGES = {"readme-words": texts.turning_words}
 NOT_PROMISES = ("exercises", "reference_run", "region_hashes", "passage_hashes", "stale")
 GATE = "python -m curriculum.check_prose_code_drift"
 
@@ -69,8 +73,9 @@ def of(read, files):
     made = [Passage(name, region.file, region.text) for name, region in found.items()]
     chapter, meta = read(CHAPTER) or "", load(read(META))
     made += [
-        Passage(name, None, "".join(f"{line}\n" for line in make(chapter)))
-        for name, make in CHAPTER_PASSAGES.items()
+        Passage(name, None, "".join(f"{line}\n" for line in make(text)))
+        for makers, text in ((CHAPTER_PASSAGES, chapter), (README_PASSAGES, read(README) or ""))
+        for name, make in makers.items()
     ]
     for name, facts in (meta.get("exercises") or {}).items():
         script = next(
@@ -206,7 +211,7 @@ def naming(names):
 def passages_naming(root, names):
     """(file, line, text) of every paragraph of chapter, README and exercises that names any."""
     read, exercises = reader(root)
-    for file in [CHAPTER, "README.md", META, *exercises] if names else []:
+    for file in [CHAPTER, README, META, *exercises] if names else []:
         text = read(file) or ""
         for found in re.finditer(r"(?:^.*\S.*\n?)+", text, re.MULTILINE):
             if naming(names).search(found[0]):
@@ -230,7 +235,11 @@ def accept(root, name):
         return
     old, why = None, "there was no hash before"
     if name in hashes:
-        where = [new.file] if new and new.file else [*regions.LITERATE, CHAPTER, META, "exercises"]
+        where = (
+            [new.file]
+            if new and new.file
+            else [*regions.LITERATE, CHAPTER, README, META, "exercises"]
+        )
         old, why = accepted_text(root, name, hashes[name], where)
     if old is None:
         print(f"{name}: {why}, so the whole passage is shown instead of a change")

@@ -22,6 +22,16 @@ NUMERAL = (
     "once|twice|thrice|half|halves|thirds?|fourth|fifth|quarters?|double|triple|dozens?"
 )
 NUMBER_WORD = re.compile(rf"(?<![\w-])({NUMERAL})(?![\w-])", re.IGNORECASE)
+TURNING = (  # words that say which way, or whether at all
+    "not|no|none|never|always|cannot|nothing|nobody|neither|nor|without|only|more|most|less|least|"
+    "fewer|up|down|upwards?|downwards?|above|below|inside|outside|deeper|deepest|shallower|larger|"
+    "largest|smaller|smallest|greater|greatest|higher|highest|lower|lowest|longer|longest|shorter|"
+    "shortest|stiffer|softer|harder|faster|fastest|slower|slowest|cheaper|dearer|better|best|worse|"
+    "worst|nearer|nearest|farther|earlier|later|heavier|lighter|positive|negative|gains?|loses?|"
+    "rises?|falls?|grows?|shrinks?"
+)
+TURNING_WORD = re.compile(rf"(?<![\w-])({TURNING}|\w+n't)(?![\w-])", re.IGNORECASE)
+GENERATED = re.compile(r"<!-- generated: .*?<!-- end -->", re.DOTALL)
 
 
 class Include(NamedTuple):
@@ -108,14 +118,24 @@ def formulas(text):
     return [each for each in found if not re.fullmatch(r"\\?\w+(_\\?\w)?", each)]
 
 
+def words_around(text, pattern, beside):
+    """Every word of the prose that fits, with so many words on each side, one a line."""
+    words = re.findall(r"[\w'{}-]+", plain_prose(text))
+    return [
+        " ".join(words[max(k - beside, 0) : k + beside + 1])
+        for k, word in enumerate(words)
+        if pattern.fullmatch(word)
+    ]
+
+
 def number_words(text):
     """Every number in words, with two words on each side, one a line."""
-    words = [(match[0], match.start()) for match in re.finditer(r"[\w'{}-]+", plain_prose(text))]
-    return [
-        " ".join(word for word, _ in words[max(k - 2, 0) : k + 3])
-        for k, (word, _) in enumerate(words)
-        if NUMBER_WORD.fullmatch(word)
-    ]
+    return words_around(text, NUMBER_WORD, beside=2)
+
+
+def turning_words(text):
+    """Every word that says which way or whether, with its neighbours; no generated blocks."""
+    return words_around(blank(GENERATED.pattern, text, re.DOTALL), TURNING_WORD, beside=1)
 
 
 def typed_by_reason(text):

@@ -143,7 +143,7 @@ passage_hashes:
 LEDGER = f"{','.join(wallclock.COLUMNS)}\n{wallclock.CHAPTER},cpu-laptop,,,,,PENDING\n"
 NAMES = (
     "contact-docstring setup report-it exact-docstring events helpers outline claims formulas "
-    "number-words typed-numbers ex1 promises"
+    "number-words turning-words typed-numbers readme-words ex1 promises"
 ).split()
 GIT = ("-c", "user.name=a", "-c", "user.email=a@b")
 
@@ -361,6 +361,14 @@ DRIFT = {
     "a number in words changed": (
         (CHAPTER, "A stack of three", "A stack of four"),
         rf"{CHAPTER}:1: passage number-words has changed .*--accept number-words",
+    ),
+    "a word turned round": (
+        (CHAPTER, "and `main` comes last.", "and `main` never comes last."),
+        rf"{CHAPTER}:1: passage turning-words has changed .*--accept turning-words",
+    ),
+    "a word of the README turned round": (
+        ("README.md", "# A ball\n", "# A ball\n\nIt is not deep.\n"),
+        r"README.md:1: passage readme-words has changed .*--accept readme-words",
     ),
     "a formula changed": (
         (CHAPTER, "2 c dt", "4 c dt"),
@@ -800,13 +808,17 @@ def test_one_character_changed_in_any_region_of_the_real_scripts_changes_its_has
 
 
 def test_the_fuzzer_changes_what_it_says_catches_it_and_lists_what_passes(project, capsys):
-    edit(project, CHAPTER, "The script sets up", "It never sinks deeper. The script sets up")
-    assert gate.main(["--root", str(project), "--fuzz", "60"]) == 0
+    plain = "Whoever wonders about gravel, teapots, lanterns, violins, harbours and gardens reads on."
+    edit(project, CHAPTER, "The script sets up", f"It never sinks deeper. {plain} The script sets up")
+    gate.accept(project, "turning-words")
+    capsys.readouterr()
+    assert gate.main(["--root", str(project), "--fuzz", "70"]) == 0
     out = capsys.readouterr().out
     assert re.search(r"^an answer +[1-9]\d* +[1-9]", out, re.M)
     print(out)
-    assert re.search(rf"^passed \(open\): {CHAPTER}:\d+: a plain word of the text: ", out, re.M)
-    assert "60 changes, seed 0: " in out and out.endswith(
+    assert re.search(r"^a word turned round +[1-9]\d* +[1-9]", out, re.M)
+    assert re.search(rf"^passed \(open\): {CHAPTER}:\d+: any word of the text: ", out, re.M)
+    assert "70 changes, seed 0: " in out and out.endswith(
         "0 of them of a kind that the gate must catch\n"
     )
 
