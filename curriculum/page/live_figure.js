@@ -272,7 +272,7 @@ const Figure = (() => {
     const parts = [];
     for (const dt of width > 300
       ? [0.001, 0.002, 0.004, 0.008, 0.016, 0.032]
-      : width > 180
+      : width > 230
         ? [0.001, 0.004, 0.016]
         : [0.002, 0.016]) {
       parts.push(el("line", { x1: at(dt), x2: at(dt), y1: 0, y2: 5, class: "axis" }));

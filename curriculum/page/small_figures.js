@@ -824,7 +824,7 @@ const SmallFigures = (() => {
       title: "A ball strikes three: at one moment, or one after another",
     },
     slide: {
-      knob: plainKnob(0, 0.6, 0.01, 0.26),
+      knob: plainKnob(0, 0.6, 0.01, 0.36),
       label: "Time",
       draw: slide,
       title: "A ball slides off a ball that is held; where does each model let it go?",
