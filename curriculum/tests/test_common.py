@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from curriculum.common import arguments, device, files, progress, stoppable, wallclock
+from curriculum.common import arguments, device, files, progress, stoppable, wallclock, workers
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -284,6 +284,13 @@ def test_a_stopped_command_says_so_in_one_line_and_returns_a_shells_status(capsy
         main(ValueError("a mistake of ours"))
     with pytest.raises(OSError, match="/full/a.txt"):
         main(OSError(28, "No space left on device", "/full/a.txt"))
+
+
+def test_a_worker_process_is_ended_by_ctrl_c_without_a_traceback_of_its_own(monkeypatch):
+    """Python's own handler would print one in each of them; their parent says what is to be said."""
+    monkeypatch.setattr(workers.os, "cpu_count", lambda: 2)
+    found = workers.spread(signal.getsignal, [(signal.SIGINT,)] * 2, "handlers")
+    assert found == [signal.SIG_DFL] * 2 and signal.getsignal(signal.SIGINT) != signal.SIG_DFL
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no full disk to play")
