@@ -95,11 +95,14 @@ def pyplot():
     return plt
 
 
-def figure(rows=1, title="", explained="", height=3.4, columns=1, share=None, below=0.0):
+def figure(
+    rows=1, title="", explained="", height=3.4, columns=1, share=None, below=0.0, left=0.125
+):
     """A figure with its heading, and the list of its axes, row by row.
 
     height: inches of a row of panels. share: widths of the columns, as ratios. below: inches kept
-    free under the panels, for a legend. Heading and note wrap by themselves.
+    free under the panels, for a legend; left: the share of the width kept free for the labels
+    of the rows. Heading and note wrap by themselves.
     """
     plt = pyplot()
     said = textwrap.wrap(explained, 84)
@@ -112,7 +115,7 @@ def figure(rows=1, title="", explained="", height=3.4, columns=1, share=None, be
         squeeze=False,
         gridspec_kw=dict(
             width_ratios=share or [1] * columns,
-            left=0.125,
+            left=left,
             right=0.98,
             top=1 - top / tall,
             bottom=bottom / tall,

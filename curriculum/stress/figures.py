@@ -7,6 +7,7 @@ from curriculum.stress.under_test import contact
 ORDER = maps.SETTLES + maps.RESTLESS + maps.GAINS + maps.EXPLODES
 ERRORS = (0.03, 0.1, 0.3, 1.0, 3.0)  # r
 DEPTHS = (0.03, 0.1, 0.3, 1.0)  # r
+ON_COLORS = "#111111"  # of a line over coloured cells, which stay as they are in the dark
 
 
 def draw(section):
@@ -54,12 +55,12 @@ def penalty_map(section):
         )
         theory = [contact.critical_dt(1.0, k, c) for k in stiffness]
         axis.plot(theory, stiffness, color="white", lw=4)
-        axis.plot(theory, stiffness, color=plotting.INK, lw=1.8)
+        axis.plot(theory, stiffness, color=ON_COLORS, lw=1.8)
         axis.plot(
             found["measured"][f"{c:g}"][::5],
             stiffness[::5],
             "o",
-            color=plotting.INK,
+            color=ON_COLORS,
             mfc="white",
             markersize=5,
         )
@@ -144,12 +145,17 @@ def lcp_depth(section):
     for (name, label), marker in zip(shown.items(), ("o", "x")):
         if name in found["rows"]:
             plotting.line(axis, dt, found["rows"][name], "lcp", label, ls="", marker=marker)
-    axis.set(xscale="log", yscale="log", ylabel="deepest penetration [r]")
-    axis.set_yticks([0.01, 0.1, 1.0], ["0.01", "0.1", "1"])
+    finish_over_dt(axis, "deepest penetration [r]", [0.01, 0.1, 1.0])
+    return plotting.svg(figure, section)
+
+
+def finish_over_dt(axis, label, marks):
+    """Two logarithmic axes over dt, with plain numbers at the marks, and the legend below."""
+    axis.set(xscale="log", yscale="log", ylabel=label)
+    axis.set_yticks(marks, [f"{mark:g}" for mark in marks])
     axis.set_xlabel("time step dt [ms]", loc="right")
     plain_ticks(axis)
     plotting.legend_below(axis)
-    return plotting.svg(figure, section)
 
 
 def lcp_converges(section):
@@ -165,12 +171,8 @@ def lcp_converges(section):
         dt, [error[-1] * step / dt[-1] for step in dt], color=plotting.PALE, label="first order"
     )
     plotting.line(axis, dt, error, "lcp", "lcp, 20 sweeps")
-    axis.set(xscale="log", yscale="log", ylabel="height error [r]")
     marks = [mark for mark in (0.003, 0.01, 0.03, 0.1, 0.3) if error[-1] / 2 < mark]
-    axis.set_yticks(marks, [f"{mark:g}" for mark in marks])
-    axis.set_xlabel("time step dt [ms]", loc="right")
-    plain_ticks(axis)
-    plotting.legend_below(axis)
+    finish_over_dt(axis, "height error [r]", marks)
     return plotting.svg(figure, section)
 
 
@@ -187,7 +189,7 @@ def soft_map(section):
         axis, found["dt"], found["timeconst"], found["depth"], DEPTHS, "deepest penetration [r]"
     )
     axis.plot(found["dt"], [2 * step for step in found["dt"]], color="white", lw=4)
-    axis.plot(found["dt"], [2 * step for step in found["dt"]], color=plotting.INK, lw=1.8)
+    axis.plot(found["dt"], [2 * step for step in found["dt"]], color=ON_COLORS, lw=1.8)
     axis.set(
         ylabel="time constant T [s]",
         xlim=(found["dt"][0], found["dt"][-1]),

@@ -148,11 +148,12 @@ def figures(section):
     figure, (upper, lower) = plotting.figure(
         rows=2,
         height=2.5,
+        below=0.12,
+        left=0.22,
         title="Skipping: what a run costs, and what it saves",
         explained="Above: shorter is better, and a bar should end before its mark. Below: longer is "
         "better.",
     )
-    figure.subplots_adjust(left=0.22, hspace=0.5)
     _processes(upper, section["processes"]["ratios"])
     _savings(lower, section["speed_up"][::-1])
     for axis in (upper, lower):
@@ -180,10 +181,15 @@ def _savings(axis, rows):
             case["ratio"],
             height=0.6,
             color=color,
-            hatch="////" if case["model"] == "penalty" else None,
-            edgecolor=color,
         )
-        axis.text(case["ratio"], row, f"  {case['ratio']:.1f}", va="center", fontsize=9)
+        axis.annotate(
+            f"{case['ratio']:.1f}",
+            (case["ratio"], row),
+            (4, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=9,
+        )
     axis.set_yticks(range(len(rows)), [f"{case['scene']}, {case['model']}" for case in rows])
     axis.margins(x=0.12)
     axis.set(xlabel="time without skips / time with skips")

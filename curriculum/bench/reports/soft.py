@@ -116,12 +116,11 @@ def figures(section):
         rows=2,
         columns=2,
         height=2.3,
-        below=0.55,
+        below=0.75,
         title="One line: penalty, MuJoCo, lcp",
         explained="One ball dropped, soft with the spring of penalty or of lcp, and its impedance d moved. "
-        "Left end 0.0001, right end 0.9999. Marks: the models themselves.",
+        "Ends 0.0001 and 0.9999. Marks: the models themselves. A zero is drawn at 1e-9.",
     )
-    figure.subplots_adjust(wspace=0.42)
     for axis, (key, label, scale) in zip(axes, PANELS):
         for end, name in LOOKS.items():
             rows = line(section, end)
