@@ -578,6 +578,33 @@ def test_the_critical_step_stands_beside_an_explosion_also_when_penalty_runs_alo
     assert line.startswith("penalty") and f"critical dt of one ball: {limit:.4g} s" in line
 
 
+@pytest.mark.parametrize("count", [1, 2, 3, 5])
+def test_the_critical_step_of_a_stack_is_where_its_rest_begins_to_shake(count, tmp_path):
+    """A stack that exploded below the critical dt of one ball, 0.0135 s, left a learner puzzled."""
+    args = terminal.parse_flags(
+        ["--scene", "stack", "--bodies", str(count), "--out", str(tmp_path)]
+    )
+    scene = terminal.chosen_scene(args, 0)
+    limit, of = terminal.critical_step(args, scene)
+    assert of == ("one ball" if count == 1 else f"a stack of {count}")
+    below, above = (
+        contact.contact_quality(
+            contact.run_model("penalty", scene, share * limit, 6000), scene, share * limit
+        )["rest_jitter"]
+        for share in (0.998, 1.002)
+    )
+    assert below < 1e-9 < 1e-4 < above
+
+
+def test_a_stack_that_explodes_says_its_own_critical_step(tmp_path, capsys):
+    flags = ["--scene", "stack", "--dt", "0.01", "--no-rerun", "--out", str(tmp_path)]
+    assert contact.main(flags) == 0
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = [line for line in lines if "EXPLODED" in line]
+    assert line.endswith("critical dt of a stack of 3: 0.005682 s")
+    assert "critical dt of penalty, a stack of 3: 0.005682 s" in lines
+
+
 def test_a_time_is_expected_only_of_the_run_that_was_measured(tmp_path, capsys, monkeypatch):
     """A pile takes longer than the drop whose time the ledger knows."""
     monkeypatch.setattr(wallclock, "lookup", lambda *_: 0.0087)
