@@ -4,6 +4,7 @@
 
 Prose with its numbers; the regions of contact.py and curriculum/exact.py as code cells; pictures where
 the chapter has its figures (curriculum/notebook_cells.py); the bets with their answers folded away.
+The cells of exact.py begin with %%exact and run in a module of their own, as in the course's folder.
 It needs numpy and matplotlib, which its first code cell installs where they are missing. Regions
 that the chapter shows at its end or not at all come as folded cells before their first use; those of
 the command line are left out. The first picture is there before anything has run. Same inputs and
@@ -45,10 +46,20 @@ if missing:
     subprocess.check_call([sys.executable, "-m", "pip", "install", "--quiet", *missing])
 COLORS = {colors}"""
 
+# exact.py is a file of its own and may use contact.py's names for its own things, so its cells run there
+START = """\
+#@title exact.py is a file of its own: a cell that begins with %%exact is lines of it
+import sys, types
+from IPython.core.magic import register_cell_magic
+
+exact = sys.modules["exact"] = types.ModuleType("exact")
+
+@register_cell_magic("exact")
+def lines_of_exact(line, cell):
+    exec(compile(cell, "exact.py", "exec"), vars(exact))"""
+
 EXACT = """\
 #@title run_model looks for exact.py in the folder of the course; here it finds it in this notebook
-import sys, types
-exact = types.SimpleNamespace(simulate_exact=simulate_exact)
 sys.modules["curriculum"] = types.ModuleType("curriculum")
 sys.modules["curriculum"].exact = exact"""
 
@@ -79,12 +90,26 @@ class Cell(NamedTuple):
     uses: frozenset = frozenset()
 
 
-JOIN = Cell("code", EXACT, True, frozenset({"exact"}), frozenset({"simulate_exact"}))
+MAGIC = "%%exact"
+OPEN = Cell("code", START, True, frozenset({MAGIC}))
+JOIN = Cell("code", EXACT, True, frozenset({"exact"}), frozenset({f"{MAGIC} simulate_exact"}))
 
 
 def code_cell(source, folded=False):
     """A code Cell that knows its names."""
     return Cell("code", source, folded, *names_of(source))
+
+
+def region_cell(script, names, source, folded=False):
+    """The code Cell of regions of a script; those of exact.py are lines of that file."""
+    title = f"#@title {script}: {', '.join(names)}" if folded else f"# {script}, region {names[0]}"
+    cell = code_cell(f"{title}\n{source}", folded)
+    if script == SCRIPTS[0]:
+        return cell
+    defines, uses = (
+        frozenset(f"{MAGIC} {name}" for name in found) for found in (cell.defines, cell.uses)
+    )
+    return Cell("code", f"{MAGIC}\n{cell.source}", folded, defines, uses | {MAGIC})
 
 
 def names_of(source):
@@ -129,7 +154,7 @@ class Builder:
         self.root, self.out = root, []
         self.regions = {
             script: {
-                name: code_cell(f"# {script}, region {name}\n{region.text.strip()}")
+                name: region_cell(script, [name], region.text.strip())
                 for name, region in regions.find(root / script).items()
             }
             for script in SCRIPTS
@@ -145,6 +170,8 @@ class Builder:
 
     def add(self, cell):
         """Add a cell, and after it the pictures that waited for what it defines."""
+        if MAGIC in cell.uses - self.done:
+            self.add(OPEN)
         self.out.append(cell)
         self.done |= cell.defines
         for each in list(self.waiting):
@@ -180,8 +207,8 @@ class Builder:
             names = [name for name in found if name in self.late and found[name].defines & lacking]
             self.late -= set(names)
             if names:
-                source = "\n\n\n".join(found[name].source for name in names)
-                self.add(code_cell(f"#@title {script}: {', '.join(names)}\n{source}", folded=True))
+                sources = (found[name].source.removeprefix(f"{MAGIC}\n") for name in names)
+                self.add(region_cell(script, names, "\n\n\n".join(sources), folded=True))
         self.add(cell)
 
     def include(self, script, name):
