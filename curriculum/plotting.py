@@ -142,16 +142,19 @@ def line(axis, x, y, name, label=None, **changes):
     axis.plot(x, y, label=label or name, **{**look(name), **changes})
 
 
-def legend_below(axis, columns=2, **options):
-    """The legend under a panel, where it covers nothing."""
+def legend_below(axis, columns=2, of=None, down=0.2):
+    """The legend under a panel, where it covers nothing; `of`: the panel whose lines it names.
+
+    down: how far below the panel it begins, in heights of the panel.
+    """
     axis.legend(
+        *(of or axis).get_legend_handles_labels(),
         loc="upper left",
-        bbox_to_anchor=(-0.1, -0.16),
+        bbox_to_anchor=(-0.1, -down),
         ncols=columns,
-        handlelength=3.4,
         borderaxespad=0,
-        columnspacing=1.2,
-        **options,
+        columnspacing=1.0,
+        fontsize=8.5,
     )
 
 

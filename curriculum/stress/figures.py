@@ -155,7 +155,7 @@ def finish_over_dt(axis, label, marks):
     axis.set_yticks(marks, [f"{mark:g}" for mark in marks])
     axis.set_xlabel("time step dt [ms]", loc="right")
     plain_ticks(axis)
-    plotting.legend_below(axis)
+    plotting.legend_below(axis, down=0.16)
 
 
 def lcp_converges(section):

@@ -2,7 +2,8 @@
 
 A job whose process dies, or that raises, becomes a result with one row of status DIED, and the
 rest goes on. Finished jobs are kept as they come, so that an interrupted run takes up where it
-stopped; dead ones are tried again.
+stopped; dead ones are tried again. The processes are kept by hand: a pool of concurrent.futures
+breaks as a whole when one of its processes dies, and cannot end one that hangs.
 """
 
 import multiprocessing

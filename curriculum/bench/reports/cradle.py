@@ -111,7 +111,5 @@ def figures(section):
         )
     axis.axvline(1e3 * cradle.SPEED * cradle.DT, color=plotting.PALE, lw=0.9, ls=(0, (3, 2)))
     axis.set(xscale="log", yscale="log", xlabel="gap [mm]", ylabel="error of a speed")
-    axis.legend(
-        loc="upper left", ncols=4, bbox_to_anchor=(-0.1, -0.2), borderaxespad=0, fontsize=8.5
-    )
+    plotting.legend_below(axis, columns=4)
     return {"cradle.svg": plotting.svg(figure, section)}

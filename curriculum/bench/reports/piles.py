@@ -193,15 +193,7 @@ def figures(section):
         ylabel="time per step [ms]",
     )
     lower.margins(0.12)
-    lower.legend(
-        *upper.get_legend_handles_labels(),
-        loc="upper left",
-        ncols=2,
-        bbox_to_anchor=(-0.1, -0.2),
-        borderaxespad=0,
-        fontsize=8.5,
-        columnspacing=1.0,
-    )
+    plotting.legend_below(lower, of=upper)
     return {"pile.svg": plotting.svg(figure, section)}
 
 

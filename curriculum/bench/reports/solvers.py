@@ -136,15 +136,7 @@ def figures(section):
             xscale="log", yscale="log", title=case, xlabel="residual [m/s]", ylabel="time [ms]"
         )
     _profile(axes[2], section)
-    axes[2].legend(
-        *axes[0].get_legend_handles_labels(),
-        loc="upper left",
-        ncols=3,
-        bbox_to_anchor=(-0.1, -0.25),
-        borderaxespad=0,
-        fontsize=8.5,
-        columnspacing=1.0,
-    )
+    plotting.legend_below(axes[2], columns=3, of=axes[0], down=0.25)
     return {"solvers.svg": plotting.svg(figure, section)}
 
 
