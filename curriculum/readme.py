@@ -93,8 +93,8 @@ BLOCKS = {  # name: section of the benchmark's results, what makes the block fro
 
 def block(name):
     """The text of one block of ours, from the results that are there."""
-    if name == "stress":
-        return stress()
+    if name in OTHERS:
+        return OTHERS[name]()
     section_name, made = BLOCKS[name]
     section = measured.load(BENCH).get(section_name)
     if section is None or "measured" not in section:
@@ -110,6 +110,19 @@ def stress():
     if "counts" not in sections or not hasattr(report, "readme_block"):
         return "Not measured yet: `python -m curriculum.stress`.\n"
     return report.readme_block(sections)
+
+
+def exact():
+    """What the sweep of exact over piles and towers found, and where it stands."""
+    report = import_module("curriculum.stress.exact_report")
+    section = measured.load(STRESS).get("exact")
+    if section is None:
+        return "Not measured yet: `python -m curriculum.stress.exact_sweep`.\n"
+    note = measured.stale_note(section)
+    return (f"{note}\n\n" if note else "") + report.readme_block(section) + "\n"
+
+
+OTHERS = {"stress": stress, "exact": exact}
 
 
 # filling them in
@@ -141,11 +154,11 @@ def fill(text):
             return match[1] + printed(match["command"].split()[2:])
         if match["command"] != COMMAND:
             return match[0]
-        if match["name"] not in (*BLOCKS, "stress"):
+        if match["name"] not in (*BLOCKS, *OTHERS):
             line = text.count("\n", 0, match.start()) + 1
             raise ValueError(
                 f"README.md:{line}: no generated block {match['name']!r}; "
-                f"there are: {', '.join((*BLOCKS, 'stress'))}"
+                f"there are: {', '.join((*BLOCKS, *OTHERS))}"
             )
         return match[1] + block(match["name"])
 

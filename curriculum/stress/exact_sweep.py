@@ -1,51 +1,155 @@
-"""exact in many piles, and in towers of unequal masses beside 80 digits: a table on the screen.
+"""exact in piles and towers, beside 80 bits, 80 digits and the first edition: results/exact.md.
 
-    python -m curriculum.stress.exact_sweep piles --seeds 10      # 3 to 24 balls, minutes
-    python -m curriculum.stress.exact_sweep towers --seeds 60     # masses 10^+-1.5 and 10^+-3
+    python -m curriculum.stress.exact_sweep            minutes; writes curriculum/stress/results
+    python -m curriculum.stress.exact_sweep --quick    seconds, for CI; into outputs/exact-quick
 
-For a pile: the deepest overlap [r] and the largest rise of the energy [of the start's] over 4 s,
-whether sampling every 8 ms and every 1 ms gives the same bits, and the time [s] until a start moved
-by the last bit of one coordinate is 1e-8 r away. For a tower: the worst height error [r] over 1 s.
+A run that was interrupted goes on where it stopped (--fresh: from the beginning); what is finished
+is kept in outputs/stress-work for as long as the code stays the same.
 """
 
 import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
 import time
+from shutil import unpack_archive
 
 import numpy as np
 
-import contact
-from curriculum import exact
+from curriculum import exact, measured
+from curriculum.common.arguments import number, writable_folder
+from curriculum.common.files import write_whole
 from curriculum.common.stoppable import stoppable
-from curriculum.stress import precise_tower
+from curriculum.stress import exact_report, jobs, precise_exact, precise_tower, runner
+from curriculum.stress.under_test import contact
 
 R, G = contact.RADIUS, contact.GRAVITY
-COUNTS = (3, 6, 8, 12, 24)
+COMMAND = "python -m curriculum.stress.exact_sweep"
+RESULTS = measured.ROOT / "curriculum" / "stress" / "results"
+QUICK = measured.ROOT / "outputs" / "exact-quick"
+WORK = measured.ROOT / "outputs" / "stress-work" / "exact.jsonl"
+CODE = ("contact.py", "curriculum/exact.py", "curriculum/stress/precise_exact.py")
+TOOLS = ("curriculum/stress/exact_sweep.py", "curriculum/stress/precise_tower.py")
+FIRST_EDITION = "9713605"  # the commit
+TIME = 4.0  # s of a pile's motion
+AWAY = 1e-8  # of a radius: two runs that are farther apart have parted
+MOST = 40_000  # events of a run in 80 bits
+FULL = {"counts": (3, 6, 8, 12, 24), "seeds": 10, "towers": 60, "tall": 100, "wide": 60.0}
+SHORT = {"counts": (3, 8), "seeds": 2, "towers": 4, "tall": 10, "wide": 1.0}
 
 
-def run(scene, times):
-    """q, v, the number of events and the seconds of CPU time."""
+class Late(Exception):
+    """A run has had the CPU time, or the events, that it was given: (samples done, events)."""
+
+
+def all_jobs(settings):
+    """Every job, longest first: each gives plain numbers."""
+    piles = [
+        {"count": count, "restitution": e, "seed": seed}
+        for count in sorted(settings["counts"], reverse=True)
+        for e in (0.5, 0.0)
+        for seed in range(settings["seeds"])
+    ]
+    first = [each for each in piles if each["count"] >= 8 and each["seed"] < 3]
+    return [
+        jobs.job("exact-wide", "pile of 200", seconds=settings["wide"]),
+        *(jobs.job("exact-pile", f"pile {each}", **each) for each in piles),
+        *(jobs.job("exact-first", f"first edition {each}", **each) for each in first),
+        *(
+            jobs.job("exact-tall", f"tall tower e={e}", count=settings["tall"], restitution=e)
+            for e in (0.5, 0.9)
+        ),
+        *(
+            jobs.job("exact-towers", f"towers {spread} {seed}", spread=spread, seed=seed)
+            for spread in (1.5, 3.0)
+            for seed in range(settings["towers"])
+        ),
+    ]
+
+
+# piles
+
+
+def run(scene, times, simulate=exact.simulate_exact, seconds=np.inf, most=np.inf):
+    """q, v, the samples done at each event, and the seconds of CPU time. Raises Late."""
     events, start = [], time.process_time()
-    q, v = exact.simulate_exact(scene, times, G, events.append)
-    return q, v, len(events), time.process_time() - start
+
+    def report(done):
+        events.append(done)
+        if len(events) > most or time.process_time() - start > seconds:
+            raise Late(min(done, len(times)), len(events))
+
+    q, v = simulate(scene, times, G, report)
+    return q, v, events, time.process_time() - start
 
 
-def pile(count, seed, e):
-    """One line about a pile."""
-    scene = contact.build_scene("pile", seed, count, e)
-    q, v, events, seconds = run(scene, np.arange(4001) * 1e-3)
-    coarse = run(scene, np.arange(501) * 8e-3)[0]
-    moved = scene.q0.copy()
-    moved[0, 0] = np.nextafter(moved[0, 0], np.inf)
-    other = run(scene._replace(q0=moved), np.arange(501) * 8e-3)[0]
-    apart = np.abs(other - coarse).max((1, 2)) > 1e-8 * R
+def pile(count, restitution, seed):
+    """A pile in doubles, sampled every 1 ms and every 8 ms, and in 80 bits where there are any."""
+    scene = contact.build_scene("pile", seed, count, restitution)
+    times = np.linspace(0.0, TIME, 4001)
+    q, v, events, seconds = run(scene, times)
+    coarse = run(scene, times[::8])[0]
     total = contact.energy(q, v, scene.mass)
-    return (
-        f"pile of {count:>2}, seed {seed}, e {e:.1f}: {events:>6} events, {seconds:6.1f} s of CPU, "
-        f"overlap {contact.max_penetration(q, scene.radius).max() / R:.1e} r, "
-        f"rise {np.diff(total).max() / total[0]:.1e}, "
-        f"bits {'the same' if coarse.tobytes() == q[::8].tobytes() else 'DIFFER'}, "
-        + (f"parts at {apart.argmax() * 8e-3:.2f} s" if apart.any() else "does not part in 4 s")
-    )
+    return {
+        "cells": 3,
+        "rows": [],
+        "events": len(events),
+        "seconds": seconds,
+        "overlap": max(0.0, contact.max_penetration(q, scene.radius).max() / R),
+        "rise": max(0.0, np.diff(total).max() / total[0]),
+        "same_bits": coarse.tobytes() == q[::8].tobytes(),
+        "waits": first_wait(events, count, times),
+        **({} if precise_exact.lacking() else beside_80_bits(scene, times, q)),
+    }
+
+
+def beside_80_bits(scene, times, q):
+    """When the doubles q are AWAY from the run in 80 bits, and how far they are apart [r]."""
+    simulate, until = precise_exact.simulate_exact, len(times)
+    try:
+        precise, v, events, seconds = run(scene, times, simulate, most=MOST)
+    except Late as late:
+        until = late.args[0]
+        precise, v, events, seconds = run(scene, times[:until], simulate)
+    apart = np.abs(q[:until] - precise).max((1, 2)) / R
+    total = contact.energy(precise, v, scene.mass)
+    over = apart > AWAY
+    return {
+        "precise_until": times[until - 1],
+        "precise_events": len(events),
+        "precise_seconds": seconds,
+        "precise_rise": max(0.0, float(np.diff(total).max() / total[0])),
+        "parts": times[over.argmax()] if over.any() else None,
+        "apart": float(apart[-1]),
+    }
+
+
+def first_wait(events, count, times):
+    """When exact's clock may have made events wait first [s]; None where it surely did not.
+
+    It does after EVENTS per ball in a tick, and a tick is less than twelve samples of 1 ms.
+    """
+    tick = exact.TICK * np.sqrt(R / -G)
+    width = int(np.ceil(tick / (times[1] - times[0]))) + 1
+    in_a_tick = np.convolve(np.bincount(events), np.ones(width))
+    over = in_a_tick > exact.EVENTS * max(20, count)
+    return times[max(0, over.argmax() - width)] if over.any() else None
+
+
+def wide(seconds):
+    """How many of 300 steps of 2 ms a pile of 200 does in so many seconds of CPU time."""
+    try:
+        scene = contact.build_scene("pile", 0, 200)
+        events, spent = run(scene, np.arange(301) * 0.002, seconds=seconds)[2:]
+        done, count = 301, len(events)
+    except Late as late:
+        (done, count), spent = late.args, seconds
+    return {"cells": 1, "rows": [], "steps": done - 1, "events": count, "spent": spent}
+
+
+# towers
 
 
 def random_tower(seed, spread):
@@ -56,43 +160,118 @@ def random_tower(seed, spread):
     e = float(rng.choice([0.0, rng.uniform(0.0, 0.8), rng.uniform(0.0, 0.8)]))
     gaps = rng.uniform(0.0, 0.3, count) * (rng.random(count) < rng.choice([0.0, 0.5, 1.0]))
     gaps[0] += rng.uniform(0.0, 0.5)
-    y = R * (2 * np.arange(count) + 1) + np.cumsum(gaps)
-    q0 = np.array((np.zeros(count), y))
-    return contact.Scene("tower", q0, 0.0 * q0, mass, np.full(count, R), e, 0.0)
+    return tower(gaps, mass, e)
 
 
-def tower_error(scene):
-    """The worst height error [r] over a second."""
-    times = np.linspace(0.0, 1.0, 21)
+def tower(gaps, mass, e):
+    """The Scene of balls above one another, each at a gap from what is below it."""
+    y = R * (2 * np.arange(len(mass)) + 1) + np.cumsum(gaps)
+    q0 = np.array((np.zeros(len(mass)), y))
+    return contact.Scene("tower", q0, 0.0 * q0, mass, np.full(len(mass), R), e, 0.0)
+
+
+def towers(spread, seed):
+    """The worst height error [r] of a tower over a second, against 80 digits."""
+    scene, times = random_tower(seed, spread), np.linspace(0.0, 1.0, 21)
     right = precise_tower.heights(
         scene.q0[1], scene.v0[1], scene.mass, scene.radius, scene.restitution, G, times
     )
-    return np.abs(run(scene, times)[0][:, 1] - right).max() / R
+    error = np.abs(run(scene, times)[0][:, 1] - right).max() / R
+    found = {"cells": 1, "rows": [], "error": error}
+    if error > exact_report.TOWER and not precise_exact.lacking():
+        q = run(scene, times, precise_exact.simulate_exact)[0]
+        found["precise_error"] = float(np.abs(q[:, 1] - right).max() / R)
+    return found
 
 
-@stoppable
-def main(argv=None):
-    """Print the lines. Returns 0."""
-    parser = argparse.ArgumentParser(description="exact in many piles or towers.")
-    parser.add_argument("what", choices=("piles", "towers"))
-    parser.add_argument("--seeds", type=int, default=10)
+def tall(count, restitution):
+    """A second of a tower of equal balls with gaps of 0.1 r: events, and seconds of CPU time."""
+    scene = tower(np.full(count, 0.1 * R), np.ones(count), restitution)
+    events, seconds = run(scene, np.linspace(0.0, 1.0, 501))[2:]
+    return {"cells": 1, "rows": [], "events": len(events), "seconds": seconds}
+
+
+# the first edition
+
+PROGRAM = """
+import json, sys, time
+import contact
+count, restitution, seed, steps = json.loads(sys.argv[1])
+scene, events = contact.build_scene("pile", seed, count, restitution), []
+start = time.process_time()
+contact.run_model("exact", scene, 0.002, steps, report=events.append)
+print(json.dumps({"events": len(events), "seconds": time.process_time() - start}))
+"""
+
+
+def first(count, restitution, seed):
+    """The same pile by the first edition's code, from git: {} where its commit is not at hand."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "first.zip")
+        what = [FIRST_EDITION, "contact.py", "curriculum/common", "curriculum/__init__.py"]
+        words = ["git", "archive", "--format=zip", "-o", file, *what]
+        try:
+            subprocess.run(words, cwd=measured.ROOT, check=True, capture_output=True)
+        except (OSError, subprocess.CalledProcessError):
+            return {"cells": 0, "rows": []}
+        unpack_archive(file, folder)
+        given = json.dumps([count, restitution, seed, round(TIME / 0.002)])
+        words = [sys.executable, "-c", PROGRAM, given]
+        done = subprocess.run(words, cwd=folder, check=True, capture_output=True, text=True)
+    return {"cells": 1, "rows": [], **json.loads(done.stdout)}
+
+
+# the command
+
+
+def parse(argv):
+    """The checked command line."""
+    parser = argparse.ArgumentParser(prog=COMMAND, description="exact in many piles and towers.")
+    parser.add_argument("--quick", action="store_true", help="reduced settings, seconds, for CI")
+    parser.add_argument("--workers", type=number(int, low=0), default=2, help="processes (2)")
+    parser.add_argument("--fresh", action="store_true", help="forget what earlier runs finished")
+    parser.add_argument("--draw", action="store_true", help="only write the page again")
+    parser.add_argument("--out", type=writable_folder, help="folder of exact.md and results.json")
     args = parser.parse_args(argv)
-    if args.what == "piles":
-        for count in COUNTS:
-            for e in (0.0, 0.5):
-                for seed in range(args.seeds):
-                    print(pile(count, seed, e), flush=True)
-        return 0
-    for spread in (1.5, 3.0):
-        errors = [tower_error(random_tower(seed, spread)) for seed in range(args.seeds)]
-        good = [x for x in errors if x <= 1e-9]
-        print(
-            f"masses 10^+-{spread:g}: {len(good)} of {len(errors)} towers within 1e-9 r, "
-            f"these within {max(good):.1e} r; the others: "
-            + ", ".join(f"{k} ({x:.1e} r)" for k, x in enumerate(errors) if x > 1e-9)
-        )
-    return 0
+    args.out = args.out or str(QUICK if args.quick else RESULTS)
+    return args
+
+
+def section_of(results, settings, lacking):
+    """The section of results.json: the numbers of every job, by kind."""
+    kinds = dict.fromkeys(job["kind"] for job, _ in results)
+    return {
+        "quick": settings is SHORT,
+        "no_80_bits": lacking,
+        "first_edition": FIRST_EDITION,
+        "died": [job["name"] for job, found in results if found["rows"]],
+        **{kind: [row(*each) for each in results if each[0]["kind"] == kind] for kind in kinds},
+    }
+
+
+def row(job, found):
+    """What was asked for, and the numbers that came out."""
+    return job["params"] | {k: value for k, value in found.items() if k not in ("cells", "rows")}
+
+
+@stoppable(said="stopped; the same command goes on from here")
+def main(argv=None):
+    """Measure, write the section and its page. Returns the exit status."""
+    args = parse(argv)
+    if args.draw:
+        section = measured.load(args.out)["exact"]
+    else:
+        settings = SHORT if args.quick else FULL
+        if args.fresh:
+            WORK.unlink(missing_ok=True)
+        kept = measured.Cells(WORK, CODE + TOOLS, [sys.version, np.__version__])
+        results = runner.run_all(all_jobs(settings), args.workers, kept=kept)
+        section = section_of(results, settings, precise_exact.lacking())
+        section = measured.save(args.out, "exact", section, COMMAND, CODE, ("mpmath",))
+    write_whole(os.path.join(args.out, "exact.md"), exact_report.whole_page(section))
+    print(os.path.join(args.out, "exact.md"))
+    return 1 if section["died"] else 0
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    sys.exit(main())

@@ -21,6 +21,11 @@ KINDS = {
     "scene": "invariants:run_scene",
     "seeds": "maps:run_seeds",
     "bytes": "samebytes:run",
+    "exact-pile": "exact_sweep:pile",
+    "exact-wide": "exact_sweep:wide",
+    "exact-towers": "exact_sweep:towers",
+    "exact-tall": "exact_sweep:tall",
+    "exact-first": "exact_sweep:first",
 }
 HOLDS, LIMIT, VIOLATION, DIED = "holds", "limit", "VIOLATION", "DIED"
 
