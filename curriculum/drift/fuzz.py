@@ -335,7 +335,7 @@ KINDS = (
     Kind("code", regions.LITERATE, code),
     Kind("a docstring", regions.LITERATE, docstring),
     Kind("a word turned round", PROSE, plain_word),
-    Kind("a word of the README turned round", README, plain_word),
+    Kind("a README word turned round", README, plain_word),
     Kind("any word of the text", PROSE, any_word, open=True),
     Kind("any word of the README", README, any_word, open=True),
 )
