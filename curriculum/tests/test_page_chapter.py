@@ -401,3 +401,79 @@ def test_functions_of_the_page_have_at_most_forty_lines():
 def test_the_data_of_the_page_is_json(html):
     data = re.search(r"const PAGE = (.*?);\n", html)[1]
     assert set(json.loads(data)["exercises"]) == set(ORDER)
+
+
+# ---- the layout between a tablet and a desk, print, and colours
+
+
+@needs_chromium
+@pytest.mark.parametrize("width", [1024, 1150, 1311])
+def test_beside_the_figure_text_is_wide_enough_and_no_code_is_cut(browser, url, width):
+    with visiting(browser, url, width=width, height=800) as page:
+        column = page.locator("article").bounding_box()
+        figure = page.locator("#figure").bounding_box()
+        assert column["width"] >= 450 and figure["width"] >= 400
+        assert column["x"] + column["width"] <= figure["x"]
+        assert (column["width"] + figure["width"]) >= 0.9 * width, "no strip is left empty"
+        cut = """() => [...document.querySelectorAll(".ln, pre, .small, .exercise")].filter(
+          (e) => e.checkVisibility() && e.scrollWidth > e.clientWidth + 1).length"""
+        assert page.evaluate(cut) == 0
+
+
+@needs_chromium
+def test_what_is_printed_while_it_runs_is_the_end(browser, url):
+    with visiting(browser, url, motion="no-preference") as page:
+        page.click("#run")
+        page.wait_for_timeout(200)
+        assert page.evaluate("Figure.playing && Figure.time < Figure.view[1]")
+        page.evaluate("dispatchEvent(new Event('beforeprint'))")
+        assert page.evaluate("!Figure.playing && Figure.time === Figure.view[1]")
+
+
+def contrast(one, other):
+    """The contrast of two colours (r, g, b) by the rule of WCAG."""
+
+    def light(color):
+        parts = [each / 255 for each in color]
+        linear = [
+            each / 12.92 if each <= 0.04045 else ((each + 0.055) / 1.055) ** 2.4 for each in parts
+        ]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    high, low = sorted((light(one), light(other)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+@needs_chromium
+@pytest.mark.parametrize("scheme, least", [("light", 3.0), ("dark", 4.5)])
+def test_lines_of_every_model_stand_out_from_the_page(browser, url, scheme, least):
+    """3 : 1 is WCAG's least for what is drawn; in the dark thin lines need more."""
+    with visiting(browser, url, color_scheme=scheme) as page:
+        found = page.evaluate("""() => {
+          const rgb = (text) => text.match(/[\\d.]+/g).slice(0, 3).map(Number);
+          const paper = rgb(getComputedStyle(document.getElementById("figure")).backgroundColor);
+          return [...document.querySelectorAll("#chart path.line")].map(
+            (line) => [line.getAttribute("class"), rgb(getComputedStyle(line).stroke), paper]);
+        }""")
+    assert len(found) == len(contact.MODELS)
+    for name, stroke, paper in found:
+        assert contrast(stroke, paper) >= least, (name, stroke, paper)
+
+
+@needs_chromium
+def test_the_whole_page_paints_within_half_a_second_and_then_nothing_moves(browser, url):
+    """The least of three loads; layout shift while it is scrolled through, before any bet."""
+    times, shifts = [], []
+    for _ in range(3):
+        with visiting(browser, url, shown=False, motion="no-preference") as page:
+            page.evaluate("""() => { window.shift = 0;
+              new PerformanceObserver((list) => {
+                for (const e of list.getEntries()) if (!e.hadRecentInput) window.shift += e.value;
+              }).observe({type: "layout-shift", buffered: true}); }""")
+            for share in (0.1, 0.5, 0.9):
+                page.evaluate("(s) => scrollTo(0, s * document.body.scrollHeight)", share)
+                page.wait_for_timeout(100)
+            paint = "performance.getEntriesByName('first-contentful-paint')[0].startTime"
+            times.append(page.evaluate(paint))
+            shifts.append(page.evaluate("window.shift"))
+    assert min(times) < 500 and max(shifts) < 0.1, (times, shifts)
