@@ -347,6 +347,25 @@ def test_cells_of_equal_balls_miss_no_pair_across_their_borders(seed):
         assert pairs == set(all_pairs(scene, reach)) and len(pairs) > 500
 
 
+@pytest.mark.parametrize("large", [0, 19])
+def test_a_large_ball_among_small_ones_is_found_by_all_of_them(large):
+    rng = np.random.default_rng(5)
+    scene = crowd(20, 0)._replace(q0=rng.uniform(0.0, 5.0, (2, 20)))
+    scene.radius[large] = 2.0
+    pairs = set(zip(*piles.list_pairs(tabled(scene), 0.0).tolist()))
+    assert pairs == set(all_pairs(scene, 0.0)) and len(pairs) > 3
+
+
+@pytest.mark.parametrize("far", [-1e300, 1e300, -1e17, 1e17])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_ball_as_far_away_as_floats_go_hides_no_pair(axis, far):
+    scene = crowd(40, 1)
+    near = set(all_pairs(scene, 0.0))
+    scene.q0[axis, 7] = far
+    pairs = set(zip(*piles.list_pairs(tabled(scene), 0.0).tolist()))
+    assert pairs == {pair for pair in near if 7 not in pair} and len(pairs) > 30
+
+
 def test_no_pair_is_missed_where_the_cells_end():
     """From 2^44 cells of 1.02 (2 r + reach) on, all are one: floats are hardly finer there."""
     beyond = (2.0**44, 2.0**44 + 9.0, 1e15, 1e300, math.inf, math.nan)
