@@ -498,7 +498,8 @@ class Trials:
                 if last and outcome != "survived":
                     killer = self.digest_at(last)
                     self.killers[words_of(mutant)] = last
-        self.kept[key] = [outcome, killer, list(self.digests.values())]
+        alive = outcome in ("survived", "untested")
+        self.kept[key] = [outcome, killer, list(self.digests.values()) if alive else []]
         return outcome
 
     def digest_at(self, test):

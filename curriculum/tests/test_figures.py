@@ -175,6 +175,13 @@ def test_critical_dt_is_where_bisected_simulations_stop_settling(stiffness, damp
     assert contact.critical_dt(1.0, stiffness, damping) == pytest.approx(low, rel=3e-3)
 
 
+def test_without_a_spring_a_damper_alone_has_a_critical_dt_and_nothing_has_none():
+    """v+ = (1 - c dt / m) v grows from c dt = 2 m on."""
+    assert contact.critical_dt(3.0, 0.0, 80.0) == pytest.approx(2.0 * 3.0 / 80.0, rel=1e-15)
+    assert contact.critical_dt(3.0, 0.0, 0.0) == np.inf
+    assert contact.critical_dt(3.0, 0.1, 0.0) == pytest.approx(2.0 * np.sqrt(30.0), rel=1e-15)
+
+
 @pytest.mark.parametrize("mass, stiffness, damping", [(1.0, 1e4, 80.0), (2.0, 300.0, 7.0)])
 def test_step_matrix_has_an_eigenvalue_minus_one_at_the_critical_dt(mass, stiffness, damping):
     """v+ = v - dt (c v + k x) / m, x+ = x + dt v+: its spectral radius passes 1 there."""

@@ -94,7 +94,7 @@ def test_the_smallest_gap_is_that_of_the_closest_pair_or_the_floor():
 
 def test_near_pairs_of_many_balls_list_the_contacts_of_all_pairs(monkeypatch):
     rng = np.random.default_rng(2)
-    for trial in range(60):
+    for trial in range(24):
         q = rng.uniform(0.0, 1.5, (2, 40)) * 10.0 ** rng.integers(-1, 2)
         q[rng.random((2, 40)) < 0.05] = rng.choice([np.nan, np.inf, -np.inf, 1e300, 0.5])
         radius = rng.uniform(0, 0.3, 40) * rng.choice([1.0, 10.0])

@@ -217,6 +217,20 @@ def test_the_impedance_has_the_bits_of_the_reference_where_its_parts_meet(mid, p
     assert contact.impedance(0.125, (d0, d1, 0.125, mid, power)) == d1
 
 
+def test_a_contact_of_two_held_balls_moves_nothing():
+    """Its effective mass is 0, as in the reference, and so is its impulse, however they close."""
+    balls = piles.make_balls(np.zeros((4, 3)), np.array((math.inf, math.inf, 4.0)), np.ones(3))
+    contacts = np.zeros(2, piles.CONTACT)
+    piles.set_contact(contacts[0], balls, 0, 1, 0.0, 1.0, 0.5)
+    piles.set_contact(contacts[1], balls, 2, 0, 0.0, 1.0, 0.5)
+    held = contact.Ball(0.0, 0.0, 0.0, 0.0, math.inf, 1.0)
+    assert contact.Contact(held, contact.FLOOR, 0.0, 1.0, 0.5).m_eff == 0.0
+    assert contacts["m_eff"].tolist() == [0.0, 4.0]
+    contacts["target"] = 1.0
+    piles.solve_contacts(balls, contacts, 5, 0.0)
+    assert contacts["lam"].tolist() == [0.0, 4.0] and balls["vy"].tolist() == [0.0, 0.0, 1.0, 0.0]
+
+
 @pytest.mark.parametrize("sweeps", [1, 2, 3, 10])
 def test_corrections_of_exactly_the_tolerance_end_the_sweeps_of_the_twin(sweeps):
     """Two balls of 1 kg, one on the other, shall leave the floor at 1 m/s, as in test_lcp."""
@@ -345,6 +359,27 @@ def test_cells_of_equal_balls_miss_no_pair_across_their_borders(seed):
     for reach in (0.0, 0.07):
         pairs = set(zip(*piles.list_pairs(tabled(scene), reach).tolist()))
         assert pairs == set(all_pairs(scene, reach)) and len(pairs) > 500
+
+
+def test_balls_that_just_touch_are_near_to_the_last_bit():
+    """Twenty-five in a square, 1/4 m apart, of 1/8 m: all gaps are 0 exactly."""
+    places = np.arange(25)
+    scene = crowd(25, 0)._replace(q0=0.25 * np.array((places % 5, places // 5)))
+    scene.radius[:] = 0.125
+    pairs = list(zip(*piles.list_pairs(tabled(scene), 0.0).tolist()))
+    assert pairs == all_pairs(scene, 0.0) and len(pairs) == 2 * 4 * 5
+
+
+def test_the_farthest_move_is_counted_from_where_the_pairs_were_listed():
+    balls = tabled(crowd(3, 0))
+    piles.list_pairs(balls, 0.1)
+    assert piles.farthest_move(balls) == 0.0
+    for i in range(3):
+        balls["x"][i] += 0.3 * (i + 1)
+        balls["y"][i] -= 0.4 * (i + 1)
+        assert piles.farthest_move(balls) == pytest.approx(0.5 * (i + 1), rel=1e-12)
+    balls["x"][1] = math.nan
+    assert piles.farthest_move(balls) == pytest.approx(1.5, rel=1e-12)
 
 
 @pytest.mark.parametrize("large", [0, 19])

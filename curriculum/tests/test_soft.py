@@ -44,7 +44,19 @@ def test_a_width_of_zero_takes_the_mean_as_mujoco_does():
 def test_a_time_constant_below_two_steps_is_raised_to_them():
     assert contact.soft_defaults(0.0, 0.02)[0] == (0.04, 1.0)
     assert contact.soft_defaults(0.0, 0.002)[0] == (0.02, 1.0)
+    assert contact.soft_defaults(0.0, 0.02, solref=(0.03, 0.5))[0] == (0.04, 0.5)
     assert contact.soft_defaults(0.0, 0.02, solref=(-5e3, -100.0))[0] == (-5e3, -100.0)
+
+
+def test_restitution_takes_the_direct_form_and_a_hard_contact_unless_one_is_given():
+    """The damping (1 + e) / dt; a stiffness of 0 is direct too; shares stay in 0.0001 to 0.9999."""
+    assert contact.soft_defaults(0.7, 0.002) == ((0.0, -1.7 / 0.002), contact.HARD)
+    given = (0.5, 0.6, 0.01, 0.3, 1.0)
+    assert contact.soft_defaults(0.7, 0.002, solimp=given) == ((0.0, -1.7 / 0.002), given)
+    assert contact.soft_defaults(0.7, 0.002, (0.03, 0.5)) == ((0.03, 0.5), contact.SOLIMP)
+    assert contact.soft_defaults(0.0, 0.02, (0.0, -100.0))[0] == (0.0, -100.0)
+    clamped = contact.soft_defaults(0.0, 0.002, None, (0.0, 1.0, 0.01, 0.0, 2.0))[1]
+    assert clamped == (0.0001, 0.9999, 0.01, 0.0001, 2.0)
 
 
 def test_with_restitution_soft_bounces_by_the_direct_form():
