@@ -4,6 +4,7 @@
     python -m curriculum.mutate contact.py                  one file
     python -m curriculum.mutate contact.py --sample 200     so many of its mutants, drawn by --seed
     python -m curriculum.mutate contact.py --only lcp_step  those in functions of that name
+    python -m curriculum.mutate contact.py --trust          all but those that have a reason
     python -m curriculum.mutate contact.py --list           the mutants, without running any
 
 A mutant is the file with one operator, number, condition or call changed. It is killed when a test
@@ -512,13 +513,18 @@ def words_of(mutant):
     return f"{mutant.where}: {mutant.said}"
 
 
-def run_file(file, chosen, folder):
-    """[[where, line, said, outcome]] of the chosen mutants of a file, in the order of its lines."""
+def run_file(file, chosen, folder, trust):
+    """[[where, line, said, outcome]] of the chosen mutants of a file, in the order of its lines.
+
+    trust: those that have a reason are not tried, and taken to survive.
+    """
     trials, named, rows = Trials(file, folder), reasons(), []
     chosen = sorted(chosen, key=lambda m: f"{file}: {words_of(m)}" in named)  # these take longest
     with measured.progress(len(chosen), f"mutants of {file}") as tick:
         for mutant in chosen:
-            rows.append([mutant.where, mutant.line, mutant.said, trials.outcome(mutant)])
+            untried = trust and f"{file}: {words_of(mutant)}" in named
+            outcome = "survived" if untried else trials.outcome(mutant)
+            rows.append([mutant.where, mutant.line, mutant.said, outcome])
             tick(mutant.where)
     return sorted(rows, key=lambda row: row[1])
 
@@ -634,6 +640,7 @@ def parse(argv):
     parser.add_argument("--sample", type=number(int, low=1), help="try so many of each file")
     parser.add_argument("--seed", type=number(int, low=0), default=0, help="draws the sample (0)")
     parser.add_argument("--only", metavar="NAME", help="only mutants in functions of this name")
+    parser.add_argument("--trust", action="store_true", help="do not try those with a reason")
     parser.add_argument("--list", action="store_true", help="list the mutants, run none")
     parser.add_argument("--out", type=Path, default=RESULTS, help=argparse.SUPPRESS)
     args = parser.parse_args(argv)
@@ -675,7 +682,7 @@ def main(argv=None):
         for file in args.files:
             # A mutant of the compiled loops need not be compiled to be wrong.
             os.environ["NUMBA_DISABLE_JIT"] = str(int(file == "curriculum/piles.py"))
-            rows[file] = run_file(file, chosen[file], Path(folder))
+            rows[file] = run_file(file, chosen[file], Path(folder), args.trust)
     section = section_of(rows, reasons(), sizes)
     if args.only is None:
         command = ["python -m curriculum.mutate", *(sys.argv[1:] if argv is None else argv)]
