@@ -279,7 +279,7 @@ def test_each_clamp_is_seen_in_a_trial():
     assert right["groove"]["it ends off the groove by"] < 1e-3 and thrown_out > 1.0
 
 
-@pytest.mark.parametrize("stiffness", [10.0, 1e3, 1e4, 1e5])
+@pytest.mark.parametrize("stiffness", [10.0, 1e3, 5e3, 1e4, 1e5])
 def test_a_number_in_place_of_stiffness_passes_at_no_stiffness(filled, stiffness):
     def function(depth, v_n, stiffness_, damping):
         return max(0.0, stiffness * depth - damping * v_n)
