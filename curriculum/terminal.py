@@ -224,6 +224,8 @@ def write_results(args, metrics, runs, scene):
     if args.plot and not status:
         from curriculum.common import picture
         title = f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
+        for model, row in metrics["quality"].items():
+            title += f", {model} EXPLODED at step {row['blew_up_step']}" if row["blew_up"] else ""
         status = written("picture", drawing, picture.write, title, runs,
                          contact.curves(runs, scene), contact.COLORS, needs="matplotlib")
     return status

@@ -27,7 +27,8 @@ def write(path, title, runs, curves, colors):
         axes = figure.subplots(len(curves), sharex=True, squeeze=False)[:, 0]
         for axis, (name, lines) in zip(axes, curves.items()):
             axis.set_title(name, loc="left", fontsize=9)
-            axis.axhline(0.0, color="#999999", linewidth=0.6)
+            if from_zero(lines.values()):
+                axis.axhline(0.0, color="#999999", linewidth=0.6)
             for place, (label, values) in enumerate(lines.items()):
                 axis.plot(
                     runs[label].t,
@@ -37,11 +38,28 @@ def write(path, title, runs, curves, colors):
                     linestyle=DASHES[place % len(DASHES)],
                     linewidth=2.6 - 0.5 * place,
                 )
-        axes[0].legend(loc="upper right", ncols=len(runs), frameon=False)
+        figure.legend(
+            *axes[0].get_legend_handles_labels(),
+            loc="outside upper right",
+            ncols=len(runs),
+            frameon=False,
+        )  # above the panels: within one it would lie on the curves
         axes[-1].set_xlabel("time [s]")
         figure.suptitle(title, x=0.01, ha="left", fontsize=11)
         with whole(path) as temporary:
             figure.savefig(temporary, format="svg", metadata={"Date": None, "Creator": None})
+
+
+def from_zero(lines):
+    """Whether zero is so near to the values that the panel should show it."""
+    import numpy as np
+
+    values = np.concatenate([finite(line) for line in lines])
+    values = values[np.isfinite(values)]
+    if len(values) == 0:
+        return True
+    low, high = float(values.min()), float(values.max())
+    return max(low, -high) <= 0.3 * (high - low)
 
 
 def finite(values):

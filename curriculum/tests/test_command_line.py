@@ -17,7 +17,7 @@ import pytest
 
 import contact
 from curriculum import terminal
-from curriculum.common import results, shell, wallclock, workers
+from curriculum.common import picture, results, shell, wallclock, workers
 from curriculum.tests import test_bets
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -729,6 +729,44 @@ def test_a_picture_is_the_same_bytes_twice_and_shows_every_curve_and_model(tmp_p
         assert f">{word}</text>" in text, word
     for color in contact.COLORS.values():
         assert color in text
+
+
+def test_a_picture_says_what_exploded(tmp_path, capsys):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
+    flags = ["--dt", "0.03", "--steps", "200", "--no-rerun", "--plot", "--out", str(tmp_path)]
+    assert contact.main(flags) == 0
+    step = strict_json(tmp_path / "metrics.json")["quality"]["penalty"]["blew_up_step"]
+    text = (tmp_path / "contact.svg").read_text()
+    assert f"penalty EXPLODED at step {step}</text>" in text and text.count("EXPLODED") == 1
+
+
+@pytest.mark.parametrize("name", ["bounce", "stack"])
+def test_no_label_of_a_picture_lies_on_a_curve_and_no_panel_is_squashed_by_its_zero(
+    name, tmp_path, monkeypatch
+):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
+    from matplotlib import figure
+
+    drawn = []
+    monkeypatch.setattr(
+        figure.Figure,
+        "savefig",
+        lambda self, path, **_: (drawn.append(self), open(path, "w").close()),
+    )
+    scene = contact.build_scene(name)
+    runs = {model: contact.run_model(model, scene, 0.002, 600) for model in contact.MODELS}
+    picture.write(tmp_path / "a.svg", name, runs, contact.curves(runs, scene), contact.COLORS)
+    (made,) = drawn
+    made.draw_without_rendering()
+    (legend,) = made.legends
+    lowest = legend.get_window_extent().y0
+    for axis in made.axes:
+        assert axis.get_window_extent().y1 < lowest, "the legend stands above every panel"
+        values = np.concatenate(
+            [line.get_ydata() for line in axis.lines if len(line.get_ydata()) > 2]
+        )
+        low, high = axis.get_ylim()
+        assert high - low < 1.5 * np.ptp(values) + 1e-12 or np.ptp(values) == 0.0
 
 
 def test_without_matplotlib_one_line_says_how_to_install_it(tmp_path):
