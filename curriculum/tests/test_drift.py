@@ -808,8 +808,12 @@ def test_one_character_changed_in_any_region_of_the_real_scripts_changes_its_has
 
 
 def test_the_fuzzer_changes_what_it_says_catches_it_and_lists_what_passes(project, capsys):
-    plain = "Whoever wonders about gravel, teapots, lanterns, violins, harbours and gardens reads on."
-    edit(project, CHAPTER, "The script sets up", f"It never sinks deeper. {plain} The script sets up")
+    plain = (
+        "Whoever wonders about gravel, teapots, lanterns, violins, harbours and gardens reads on."
+    )
+    edit(
+        project, CHAPTER, "The script sets up", f"It never sinks deeper. {plain} The script sets up"
+    )
     gate.accept(project, "turning-words")
     capsys.readouterr()
     assert gate.main(["--root", str(project), "--fuzz", "70"]) == 0

@@ -23,7 +23,6 @@ import contact  # noqa: E402
 from curriculum import terminal  # noqa: E402
 from curriculum.page import build as page_build  # noqa: E402
 from curriculum.page import prose  # noqa: E402
-from curriculum.page.__main__ import main as build_main  # noqa: E402
 from curriculum.tests.page_browser import (  # noqa: E402
     CHROMIUM,
     needs_chromium,
@@ -875,15 +874,6 @@ def test_the_page_is_one_small_file_and_the_same_bytes_each_time(html, tmp_path)
     )
     assert not re.search(r"@import|url\((?!#|\"data:font)", html.split("</style>")[0])
     assert "default-src &#39;none&#39;" in html
-
-
-def test_the_chapters_page_is_written_and_no_larger_than_900_kb(tmp_path, capsys):
-    out = tmp_path / "new" / "page.html"
-    assert build_main(["--out", str(out)]) == 0, capsys.readouterr().err
-    assert "one file" in capsys.readouterr().out
-    assert 100_000 < out.stat().st_size <= 900_000
-    assert build_main(["--root", str(tmp_path), "--out", str(tmp_path / "x.html")]) == 1
-    assert "chapter.md" in capsys.readouterr().err and not (tmp_path / "x.html").exists()
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ pytest.importorskip(
 
 import contact  # noqa: E402
 from curriculum.page import body, build, maths_font, prose  # noqa: E402
+from curriculum.page.__main__ import main as build_main  # noqa: E402
 from curriculum.page.browser import FLAGS  # noqa: E402
 from curriculum.tests.page_browser import (  # noqa: E402
     CHROMIUM,
@@ -137,33 +138,50 @@ def test_no_answer_is_seen_anywhere_on_the_page_before_its_bet(browser, url, mea
         assert made < 3 or ["exercise" in each for each in bars] == [False], "the puzzle's is left"
 
 
+THROWN = (
+    "dt=0.03",
+    "scene=bounce&dt=0.03",
+    "scene=stack&dt=0.02",
+    "stiffness=1e6",
+    "damping=300&dt=0.0125",
+)
+CALM = ("", "t=3.9", "scene=stack&t=2", "scene=bounce&t=4")
+
+
 @needs_chromium
-def test_figures_and_tables_keep_an_answer_however_they_are_set(browser, url, measured):
+@pytest.mark.parametrize("made", [(), ("ex1",), ("ex1", "ex4")], ids=["none", "first", "two"])
+def test_figures_and_tables_keep_an_answer_however_they_are_set(browser, url, made):
     """A long step, a stiff spring, another scene, any time, the tables unfolded."""
-    thrown = (
-        "dt=0.03",
-        "scene=bounce&dt=0.03",
-        "scene=stack&dt=0.02",
-        "stiffness=1e6",
-        "damping=300&dt=0.0125",
-    )
-    for query in (*thrown, "t=3.9", "scene=stack&t=2"):
-        for made in ((), ("ex1",), ("ex1", "ex4")):
-            with visiting(browser, url, query=f"?{query}", shown=False) as page:
-                for name in made:
-                    page.evaluate(f"Bets.show('{name}')")
-                page.locator("#inside").evaluate("(e) => (e.open = true)")
-                page.wait_for_timeout(50)
-                figure = page.locator("#figure").inner_text()
-                assert page.locator("#veil").is_visible() == (not made or query in thrown), query
-                assert "EXPLODED" not in figure and "gone" not in figure
-                if "ex4" not in made:
-                    soft = page.evaluate(
-                        "[0.5, 1].map((s) => Figure.now.series.soft.gap.at(s * -1))"
-                    )
-                    assert not any(quoting(figure, abs(gap)) for gap in soft if abs(gap) > 1e-9), (
-                        query
-                    )
+    with visiting(browser, url, shown=False) as page:
+        for name in made:
+            page.evaluate(f"Bets.show('{name}')")
+        page.locator("#inside").evaluate("(e) => (e.open = true)")
+        for query in (*THROWN, *CALM):
+            page.evaluate("(query) => Figure.follow(`?${query}`)", query)
+            figure = page.locator("#figure").inner_text()
+            assert page.locator("#veil").is_visible() == (not made or query in THROWN), query
+            assert "EXPLODED" not in figure and "gone" not in figure
+            if "ex4" not in made:
+                assert page.evaluate("Figure.now.series.soft.gap.some((gap) => gap < -0.001)")
+                soft = page.locator("#now-soft").inner_text()
+                assert " in" not in soft and "soft" not in page.inner_text("#results"), query
+
+
+@needs_chromium
+def test_what_the_text_links_to_before_a_bet_is_not_kept_back(browser, url):
+    with visiting(browser, url, shown=False) as page:
+        for name in ORDER[:2]:
+            page.evaluate(f"Bets.show('{name}')")
+        kept = page.evaluate("""() => {
+          const bet = document.getElementById("ex3");
+          const links = [...document.querySelectorAll("a.try")].filter(
+            (link) => bet.compareDocumentPosition(link) & Node.DOCUMENT_POSITION_PRECEDING);
+          return links.map((link) => {
+            Figure.follow(new URL(link.href).search);
+            return Figure.hiddenBy();
+          });
+        }""")
+        assert len(kept) >= 8 and set(kept) == {None}
 
 
 @needs_chromium
@@ -388,7 +406,20 @@ def test_the_whole_file_stands_at_the_end_folded_and_line_by_line(html):
     assert html.index('id="code-contact-whole"') > html.index('id="the-rest-of-the-file"')
 
 
-# ---- the code of the page
+# ---- the file, and the code of the page
+
+
+def test_the_chapters_page_is_written_and_no_larger_than_900_kb(
+    html, tmp_path, capsys, monkeypatch
+):
+    real = build.build
+    monkeypatch.setattr(build, "build", lambda *root: real(*root) if root else html)
+    out = tmp_path / "new" / "page.html"
+    assert build_main(["--out", str(out)]) == 0, capsys.readouterr().err
+    assert "one file" in capsys.readouterr().out and out.read_text("utf-8") == html
+    assert 100_000 < out.stat().st_size <= 900_000
+    assert build_main(["--root", str(tmp_path), "--out", str(tmp_path / "x.html")]) == 1
+    assert "chapter.md" in capsys.readouterr().err and not (tmp_path / "x.html").exists()
 
 
 def test_functions_of_the_page_have_at_most_forty_lines():
