@@ -40,10 +40,10 @@ def write(path, title, runs, curves, colors):
                 )
         figure.legend(
             *axes[0].get_legend_handles_labels(),
-            loc="outside upper right",
+            loc="outside lower right",
             ncols=len(runs),
             frameon=False,
-        )  # above the panels: within one it would lie on the curves
+        )  # below the panels: within one it would lie on the curves
         axes[-1].set_xlabel("time [s]")
         figure.suptitle(title, x=0.01, ha="left", fontsize=11)
         with whole(path) as temporary:
