@@ -107,7 +107,7 @@ const Blank = (() => {
     const wrong = firstWrong(name, yours);
     field.setAttribute("aria-invalid", String(wrong !== null));
     said.textContent = wrong === null ? `Right in all ${PAGE.blank[name].length} cases.` : wrong;
-    drawing.innerHTML = SCENES[name](yours, Math.max(256, Math.min(400, drawing.clientWidth)));
+    drawing.innerHTML = SCENES[name](yours, Math.max(256, Math.min(480, drawing.parentElement.clientWidth)));
     return wrong === null;
   }
 

@@ -198,7 +198,8 @@ const Figure = (() => {
         rowAt(view[0] + (share + 0.06 * m) * (view[1] - view[0])),
       );
       const end = Math.min(to, shownRow(model, to)) + 1;
-      return { model, xs, ys: columns[m], from: Math.min(from, end), to: end, markers: marks };
+      const markers = marks.filter((row) => row < end);
+      return { model, xs, ys: columns[m], from: Math.min(from, end), to: end, markers };
     });
     const options = {
       id: "chart",

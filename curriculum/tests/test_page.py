@@ -680,6 +680,10 @@ def test_the_blank_is_filled_in_the_page_and_each_clamp_matters(browser, url):
             assert all(each and "Right" not in each for each in said), said
         unclamped = attempt("stiffness * depth - damping * v_n", "lam + max(0, dlam)")
         pictures = [page.inner_html(f"{name}-drawing") for name in (f_n, lam)]
+        widths = [
+            page.locator(f"{name}-drawing svg").bounding_box()["width"] for name in (f_n, lam)
+        ]
+        assert min(widths) >= 400, "as wide as the column, also the first time"
         said = attempt("max(0, stiffness * depth - damping * v_n)", "max(0.0, lam + dlam)")
         assert all("Right in all" in each for each in said) and unclamped != said
         assert "Both clamps hold" in page.inner_text("#blank-said")

@@ -165,6 +165,9 @@ def test_figures_and_tables_keep_an_answer_however_they_are_set(browser, url, ma
                 assert page.evaluate("Figure.now.series.soft.gap.some((gap) => gap < -0.001)")
                 soft = page.locator("#now-soft").inner_text()
                 assert " in" not in soft and "soft" not in page.inner_text("#results"), query
+                assert page.locator("#chart .mark.m-soft").count() == 0, (
+                    "no point on the line either"
+                )
 
 
 @needs_chromium
