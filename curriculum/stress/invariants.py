@@ -516,10 +516,10 @@ def exact_does_not_know_dt(trial):
 
 @check
 def exact_ends(trial):
-    """exact: how many runs are cut short, since they pass EVENTS events. A limit of time.
+    """exact: how many runs are cut short, since they take longer than SECONDS of CPU time.
 
-    Bounces of many balls that rattle against one another can follow one another ever faster. What
-    comes before is judged as any run is.
+    A limit of time: balls of a heap that rattle against one another have many events, and one event
+    of many balls takes long. What comes before is judged as any run is.
     """
     if trial.overlaps:
         return SKIPPED

@@ -1,7 +1,8 @@
 """Jobs: what can be computed on its own, anywhere, from a name and a few plain values.
 
 A job is a dict {"name": str, "kind": str, "params": {...}}; its result is plain JSON as well,
-the same on every worker, so reports from one process, many or a cluster are equal cell for cell.
+the same on every worker, so reports from one process, many or a cluster are equal cell for cell,
+but for how many runs of exact are cut by their limit of time (trial.SECONDS).
 Every result has "cells" (how many runs were judged) and "rows", a list of judgements (`row`).
 """
 

@@ -369,7 +369,7 @@ def readme_block(saved):
                 f"{unfinished['rises']:,} ({unfinished.get('above_start', 0):,})",
             ],
             [
-                "runs of exact that were cut short by their number of events",
+                "runs of exact that were cut short by their limit of time",
                 f"{scenes['exact_cut']:,} of {scenes['exact_run']:,}",
             ],
         ]
@@ -596,20 +596,20 @@ def unfinished_words(found):
 def cut_words(found):
     """How many runs of exact were cut short."""
     if not found["exact_cut"]:
-        return f"Every run of exact ended within {limit_events()} events."
+        return f"Every run of exact ended within {limit_seconds():g} s of CPU time."
     middle = found["exact_cut_to"][len(found["exact_cut_to"]) // 2]
     return (
-        f"{found['exact_cut']:,} of {found['exact_run']:,} runs of exact pass {limit_events()} "
-        "events and are judged up to there (the median of them for "
+        f"{found['exact_cut']:,} of {found['exact_run']:,} runs of exact take longer than "
+        f"{limit_seconds():g} s of CPU time and are judged up to there (the median of them for "
         f"{100 * middle:.0f} % of its steps). That is a limit of time, not of accuracy."
     )
 
 
-def limit_events():
-    """How many events a run of exact may have here."""
-    from curriculum.stress.trial import EVENTS
+def limit_seconds():
+    """How much CPU time a run of exact may take here [s]."""
+    from curriculum.stress.trial import SECONDS
 
-    return EVENTS
+    return SECONDS
 
 
 def extreme_part(found):

@@ -342,7 +342,9 @@ def test_energy_of_unfinished_sweeps_is_counted_and_enough_sweeps_end_it():
 
 def test_a_run_of_exact_that_piles_up_is_cut_counted_and_judged_up_to_there(monkeypatch):
     whole = trial.Trial(PAIR).run("exact")
-    monkeypatch.setattr(trial, "EVENTS", len(PAIR["x"]))  # the start is an event of each ball
+    calls = iter(range(1000))  # the clock of the first run: a second for every event
+    monkeypatch.setattr(under_test.time, "process_time", lambda: float(next(calls)))
+    monkeypatch.setattr(trial, "SECONDS", len(PAIR["x"]) + 0.5)  # each ball's start is an event
     cut = trial.Trial(PAIR)
     assert 0 < cut.judged < PAIR["steps"]
     assert np.array_equal(cut.run("exact").q, whole.q[: cut.judged + 1])
