@@ -35,13 +35,14 @@ TOOLS = ("curriculum/stress/exact_sweep.py", "curriculum/stress/precise_tower.py
 FIRST_EDITION = "9713605"  # the commit
 TIME = 4.0  # s of a pile's motion
 AWAY = 1e-8  # of a radius: two runs that are farther apart have parted
-MOST = 40_000  # events of a run in 80 bits
+MOST = 60_000  # events of a run in 80 bits
+LOOK = 50  # samples
 FULL = {"counts": (3, 6, 8, 12, 24), "seeds": 10, "towers": 60, "tall": 100, "wide": 60.0}
 SHORT = {"counts": (3, 8), "seeds": 2, "towers": 4, "tall": 10, "wide": 1.0}
 
 
-class Late(Exception):
-    """A run has had the CPU time, or the events, that it was given: (samples done, events)."""
+class Enough(Exception):
+    """A run was ended before its time: the samples done at its events, and seconds of CPU time."""
 
 
 def all_jobs(settings):
@@ -72,14 +73,14 @@ def all_jobs(settings):
 # piles
 
 
-def run(scene, times, simulate=exact.simulate_exact, seconds=np.inf, most=np.inf):
-    """q, v, the samples done at each event, and the seconds of CPU time. Raises Late."""
+def run(scene, times, simulate=exact.simulate_exact, enough=lambda events: False):
+    """q, v, the samples done at each event, and the seconds of CPU time. Raises Enough."""
     events, start = [], time.process_time()
 
     def report(done):
-        events.append(done)
-        if len(events) > most or time.process_time() - start > seconds:
-            raise Late(min(done, len(times)), len(events))
+        events.append(min(done, len(times)))
+        if enough(events):
+            raise Enough(events, time.process_time() - start)
 
     q, v = simulate(scene, times, G, report)
     return q, v, events, time.process_time() - start
@@ -106,18 +107,28 @@ def pile(count, restitution, seed):
 
 
 def beside_80_bits(scene, times, q):
-    """When the doubles q are AWAY from the run in 80 bits, and how far they are apart [r]."""
-    simulate, until = precise_exact.simulate_exact, len(times)
+    """When the doubles q are AWAY from the run in 80 bits, and how far they are apart [r].
+
+    The run ends when they are, or after MOST events; LOOK samples are compared at a time.
+    """
+    looked = 0
+
+    def enough(events):
+        nonlocal looked
+        if events[-1] < looked + LOOK:
+            return len(events) > MOST
+        looked = events[-1]
+        return np.abs(q[:looked] - precise_exact.so_far(times)[0]).max() > AWAY * R
+
     try:
-        precise, v, events, seconds = run(scene, times, simulate, most=MOST)
-    except Late as late:
-        until = late.args[0]
-        precise, v, events, seconds = run(scene, times[:until], simulate)
-    apart = np.abs(q[:until] - precise).max((1, 2)) / R
+        precise, v, events, seconds = run(scene, times, precise_exact.simulate_exact, enough)
+    except Enough as stopped:
+        (events, seconds), (precise, v) = stopped.args, precise_exact.so_far(times)
+    apart = np.abs(q[: len(precise)] - precise).max((1, 2)) / R
     total = contact.energy(precise, v, scene.mass)
     over = apart > AWAY
     return {
-        "precise_until": times[until - 1],
+        "precise_until": times[len(precise) - 1],
         "precise_events": len(events),
         "precise_seconds": seconds,
         "precise_rise": max(0.0, float(np.diff(total).max() / total[0])),
@@ -140,13 +151,19 @@ def first_wait(events, count, times):
 
 def wide(seconds):
     """How many of 300 steps of 2 ms a pile of 200 does in so many seconds of CPU time."""
+    end = time.process_time() + seconds
+    scene, times = contact.build_scene("pile", 0, 200), np.arange(301) * 0.002
     try:
-        scene = contact.build_scene("pile", 0, 200)
-        events, spent = run(scene, np.arange(301) * 0.002, seconds=seconds)[2:]
-        done, count = 301, len(events)
-    except Late as late:
-        (done, count), spent = late.args, seconds
-    return {"cells": 1, "rows": [], "steps": done - 1, "events": count, "spent": spent}
+        events, spent = run(scene, times, enough=lambda events: time.process_time() > end)[2:]
+    except Enough as stopped:
+        events, spent = stopped.args
+    return {
+        "cells": 1,
+        "rows": [],
+        "steps": events[-1] - 1,
+        "events": len(events),
+        "spent": spent,
+    }
 
 
 # towers

@@ -133,28 +133,41 @@ def test_a_machine_without_80_bits_says_so_in_one_line_and_skips_them(monkeypatc
 # the sweep
 
 
-def test_runs_part_where_one_is_1e_8_r_away(monkeypatch):
-    """Beside a run that is moved by 1.01e-8 r from 0.5 s on, and one that is by 0.99e-8 r."""
-    monkeypatch.setattr(precise_exact, "lacking", lambda: "")
+@needs_80_bits
+def test_a_run_parts_where_it_is_1e_8_r_away_and_is_not_followed_much_further():
+    """Doubles that are moved by 1.01e-8 r from 0.5 s on part there; by 0.99e-8 r they do not."""
+    scene, times = contact.build_scene("pile", 0, 3, 0.0), np.linspace(0.0, 1.0, 1001)
+    q, _ = exact.simulate_exact(scene, times, G)
     for share, parts in ((1.01, 0.5), (0.99, None)):
-
-        def moved(scene, times, gravity, report, share=share):
-            q, v = exact.simulate_exact(scene, times, gravity, report)
-            q[times >= 0.5] += share * 1e-8 * R
-            return q, v
-
-        monkeypatch.setattr(precise_exact, "simulate_exact", moved)
-        found = exact_sweep.pile(3, 0.0, 0)
-        assert found["parts"] == parts and found["apart"] == pytest.approx(share * 1e-8)
+        moved = q + share * 1e-8 * R * (times >= 0.5)[:, None, None]
+        found = exact_sweep.beside_80_bits(scene, times, moved)
+        assert found["parts"] == parts
+        assert found["apart"] == pytest.approx(share * 1e-8)
 
 
+@needs_80_bits
 def test_a_run_of_too_many_events_is_followed_as_far_as_they_last(monkeypatch):
-    monkeypatch.setattr(exact_sweep, "MOST", 60)
-    monkeypatch.setattr(precise_exact, "lacking", lambda: "")
-    monkeypatch.setattr(precise_exact, "simulate_exact", exact.simulate_exact)
-    found = exact_sweep.pile(3, 0.5, 0)
-    assert found["events"] > 60 >= found["precise_events"] > 50
-    assert 0.2 < found["precise_until"] < 1.0 and found["apart"] == 0.0
+    scene, times = contact.build_scene("pile", 0, 3, 0.5), np.linspace(0.0, 1.0, 1001)
+    q, _ = exact.simulate_exact(scene, times, G)
+    monkeypatch.setattr(exact_sweep, "MOST", 40)
+    found = exact_sweep.beside_80_bits(scene, times, q)
+    assert found["precise_events"] == 41 and found["parts"] is None
+    assert 0.2 < found["precise_until"] < 1.0 and found["apart"] < 1e-12
+
+
+@needs_80_bits
+def test_a_run_that_is_read_on_its_way_keeps_its_bits():
+    scene, times = contact.build_scene("pile", 1, 8, 0.5), np.linspace(0.0, 0.5, 51)
+    whole = precise_exact.simulate_exact(scene, times, G)
+    seen = []
+
+    def look(samples):
+        if samples > 10 * len(seen):
+            seen.append(precise_exact.so_far(times)[0].tolist())
+
+    read = precise_exact.simulate_exact(scene, times, G, look)
+    assert all((a == b).all() for a, b in zip(read, whole)) and len(seen) > 3
+    assert all(part == whole[0][: len(part)].tolist() for part in seen)
 
 
 def test_the_clock_waits_after_so_many_events_in_a_tick():
