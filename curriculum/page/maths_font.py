@@ -10,11 +10,13 @@ STIX Math is licensed under the SIL Open Font License 1.1 (maths.license.txt), a
 license reserves the original's name, so the cut has another one.
 """
 
-import argparse
 import functools
 import io
+import sys
 from pathlib import Path
 
+from curriculum.common.arguments import Parser
+from curriculum.common.files import write_whole
 from curriculum.common.stoppable import stoppable
 
 FILE = Path(__file__).with_name("maths.woff")
@@ -27,6 +29,7 @@ ITALIC = {"h": 0x210E, "ϵ": 0x1D716, "ϑ": 0x1D717, "ϕ": 0x1D719}
 # height and depth of a line, in thousandths of the font size; the original's are 2566 and 524, for
 # its tallest roots, and would tear the lines of a paragraph apart
 ASCENT, DESCENT = 900, 300
+NEEDED = "STIXMath-Regular.otf, of Debian's fonts-stix"
 KEPT_NAMES = (0, 13, 14)  # copyright, license, where the license is told
 
 
@@ -97,12 +100,24 @@ def missing(text):
 
 @stoppable
 def main(argv=None):
-    """Cut the font and write maths.woff."""
-    parser = argparse.ArgumentParser(prog="python -m curriculum.page.maths_font")
-    parser.add_argument("font", type=Path, help="STIXMath-Regular.otf")
-    made = woff(cut(parser.parse_args(argv).font))
-    FILE.write_bytes(made)
-    print(f"{FILE}: {len(made):,} bytes")
+    """Cut the font. Returns the exit status: 0 written, 1 fonttools is missing, 2 no such font."""
+    parser = Parser(
+        prog="python -m curriculum.page.maths_font", description="Cut the font of the formulas."
+    )
+    parser.add_argument("font", type=Path, help=NEEDED)
+    parser.add_argument("--out", type=Path, default=FILE, metavar="FILE", help="the file to write")
+    args = parser.parse_args(argv)
+    try:
+        from fontTools.ttLib import TTLibError
+    except ImportError:
+        print("fonttools is missing: pip install -e '.[test]'", file=sys.stderr)
+        return 1
+    try:
+        made = woff(cut(args.font))
+        write_whole(args.out, made)
+    except (OSError, TTLibError) as error:
+        parser.error(f"{args.font} is not to be cut: {error}; it must be {NEEDED}")
+    print(f"{args.out}: {len(made):,} bytes")
     return 0
 
 

@@ -306,10 +306,22 @@ def test_the_font_is_the_cut_that_its_command_makes(tmp_path):
         pytest.skip("the original font is not installed: apt-get install fonts-stix")
     from fontTools.ttLib import TTFont
 
-    made, held = maths_font.cut(original), TTFont(maths_font.FILE)
+    assert maths_font.main([str(original), "--out", str(tmp_path / "again.woff")]) == 0
+    made, held = TTFont(tmp_path / "again.woff"), TTFont(maths_font.FILE)
     assert made.getGlyphOrder() == held.getGlyphOrder()
     for table in ("MATH", "cmap", "hmtx", "name"):
-        assert made.getTableData(table) == held.getTableData(table), table
+        assert made.reader[table] == held.reader[table], table
+
+
+def test_a_font_that_cannot_be_cut_is_said_in_a_line_and_nothing_is_written(tmp_path, capsys):
+    pytest.importorskip("fontTools", reason="fonttools is missing: pip install -e '.[test]'")
+    (tmp_path / "text.otf").write_text("no font")
+    for name in ("none.otf", "text.otf"):
+        with pytest.raises(SystemExit) as left:
+            maths_font.main([str(tmp_path / name), "--out", str(tmp_path / "out.woff")])
+        said = capsys.readouterr().err
+        assert left.value.code == 2 and said.count("\n") == 1 and "fonts-stix" in said
+    assert not (tmp_path / "out.woff").exists()
 
 
 def test_the_font_keeps_its_license_and_not_its_reserved_name():
