@@ -17,6 +17,10 @@ What comes first is at the top of a heap. Among many balls each looks only at th
 the place where it was when it last looked about; when it may have left, it looks about again.
 Samples are read from the series, so when they are taken does not enter the motion.
 
+A light ball between two heavy ones may be struck a thousand times while gaps shrink to 1e-40 m and
+open again, and where it goes then hangs on all of them. So times are whole numbers of a tiny unit,
+which sums do not round, and a small gap is followed by a series of its own, with all its digits.
+
     symbol   meaning                                          unit
     q, v, a  positions, velocities, accelerations             m, m/s, m/s^2: {body: (x, y)}
     w        1 / mass; 0 for the floor and for a fixed ball   1/kg
@@ -31,8 +35,9 @@ Samples are read from the series, so when they are taken does not enter the moti
 Why every loop ends. The pivot (solve_lcp), the separation of overlaps and the search for a root
 (first_fall) count their steps and stop. Events have no such bound of their own, since bounces can
 follow one another ever faster. A bounce that rises less than LAST radii is the last of its series,
-and so is one of a contact that opened less than TOUCH radii since the bounce before: a light ball
+and so is one of a contact that opened less than THIN radii since the bounce before: a light ball
 between a heavy one and the floor is struck infinitely often in finite time, and the limit is rest.
+What parts more slowly than a double can tell beside its other speeds, 1e-16 of them, is not seen.
 The clock ends what is left: after EVENTS events per ball (and 20 times EVENTS at least) within a
 tick of motion, events come at most once in a hundredth of a tick, so a hundred more take the clock
 to the next tick. That is a limit of run time: what closes in the meantime overlaps, and is moved
@@ -53,10 +58,25 @@ TOUCH = 1e-12   # of a radius: a smaller gap is none
 LAST = 1e-13    # of a radius: a bounce that rises less is the last of its series
 NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
 GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does not push
+FOLLOWED = 1e-8 # of a radius: a smaller gap is followed by its own series
+THIN = 1e-40    # of a radius: a contact that opened less and closes does not bounce
+SECOND = 2**300 # of the unit of time
 EVENTS = 100    # per ball and tick, and of 20 balls at least, before the clock waits
 TICK = 0.1      # of sqrt(r / g), r the smallest radius
 FEW = 12        # balls: among so few, each looks at all the others
 ROOM = 0.5      # of a radius: how far a ball of more goes from home before it looks again
+# --- endregion ---
+
+
+# --- region: exact-time ---
+def later(time, span):
+    """The time `span` [s] after another, in units of 1 / SECOND, not rounded; inf is never."""
+    return time + int(span * SECOND) if span < math.inf else math.inf
+
+
+def seconds(start, time):
+    """How long [s] from one time to another, rounded once."""
+    return (time - start) / SECOND
 # --- endregion ---
 
 
@@ -71,14 +91,14 @@ class Body:
         self.bodies = (self,)                   # whom an event of it concerns
         self.w, self.radius = w, radius         # 1 / mass [1/kg] and [m]
         self.x, self.y = [q[0], v[0], 0.0], [q[1], v[1], 0.0]
-        self.start, self.due = 0.0, math.inf    # the series holds between these times [s]
+        self.start, self.due = 0, math.inf      # the series holds between these times
         self.near = {}                          # {body: Contact} of all it can meet until then
         self.home, self.room = q, 0.0           # until then it stays within room [m] of home
         self.path, self.done = [], 0            # (samples, start, x, y) of the past; their sum
 
     def at(self, time):
-        """Position and velocity (x, y) at a time [s]."""
-        s = time - self.start
+        """Position and velocity (x, y) at a time."""
+        s = seconds(self.start, time)
         q = evaluate(self.x, s), evaluate(self.y, s)
         return q, (evaluate(rate(self.x), s), evaluate(rate(self.y), s))
 
@@ -91,7 +111,7 @@ class Body:
     def read(self, times):
         """x and y, and their rates (S,), at the times (S,) from the series that were kept."""
         counts, starts, *series = zip(*self.path)
-        s = times - np.repeat(starts, counts)
+        s = times - np.repeat([seconds(0, start) for start in starts], counts)
         out = []
         for rows in series:
             rows = np.array([*zip_longest(*rows, fillvalue=0.0)])       # (orders, series)
@@ -101,22 +121,16 @@ class Body:
 # --- endregion ---
 
 
-# --- region: exact-contact ---
-class Contact:
-    """Two bodies that can touch; the floor is always the second."""
+# --- region: exact-pair ---
+class Pair:
+    """Two bodies that can touch, and how they lie; the floor is always the second."""
 
-    def __init__(self, i, j, gravity):
+    def __init__(self, i, j):
         self.i, self.j, self.wall = i, j, j.radius == 0.0       # the floor is flat
         self.bodies = (i, j)                    # whom an event of it concerns
         self.reach = i.radius + j.radius        # distance of the centres in touch [m]
-        self.speed = math.sqrt(-gravity * i.radius)     # a fall of half a radius gives it [m/s]
         self.nx, self.ny, self.depth = 0.0, 1.0, 0.0    # n from j to i; depth = -gap [m]
-        self.bits = self.small = 0.0            # four last bits of the places; a gap that is none
-        self.due = math.inf                     # when it closes, or stops pushing [s]
-        self.rests = self.pushes = False        # it did not part when it touched; it pushes
-        self.last_touch = -math.inf             # when it touched last [s]
-        self.parting = 0.0                      # |v_n| it parted with then [m/s]
-        self.thin = -math.inf                   # when it closed, hardly opened [s]
+        self.small = 0.0                        # a gap that is none [m]
 
     def locate(self, q):
         """Take normal and depth from the positions q {body: (x, y)}, and what counts as a gap."""
@@ -127,8 +141,8 @@ class Contact:
         self.nx, self.ny = 0.0, 1.0             # two balls with one centre: some normal is needed
         if dx != 0.0 or dy < 0.0:
             self.nx, self.ny = dx / distance, dy / distance
-        self.bits = 4.0 * math.ulp(max(abs(xi), abs(yi), abs(xj), abs(yj)))
-        self.small = self.bits + TOUCH * self.i.radius
+        bits = 4.0 * math.ulp(max(abs(xi), abs(yi), abs(xj), abs(yj)))
+        self.small = bits + TOUCH * self.i.radius
 
     def along(self, rows):
         """n . (rows_i - rows_j): with v, the normal velocity v_n."""
@@ -144,10 +158,39 @@ class Contact:
         """The normal acceleration [m/s^2] that sliding asks for, since the normal turns."""
         slip = self.across(v)
         return slip * slip / self.reach
+# --- endregion ---
+
+
+# --- region: exact-contact ---
+class Contact(Pair):
+    """A pair, what happened to it and what will."""
+
+    def __init__(self, i, j, gravity):
+        super().__init__(i, j)
+        self.speed = math.sqrt(-gravity * i.radius)     # a fall of half a radius gives it [m/s]
+        self.due = math.inf                     # when it closes, or stops pushing
+        self.rests = self.pushes = False        # it did not part when it touched; it pushes
+        self.last_touch = -math.inf             # when it touched last
+        self.parting = 0.0                      # |v_n| it parted with then [m/s]
+        self.thin = -math.inf                   # when it closed, hardly opened
+        self.series, self.since = None, 0       # of its gap, and the time it starts from
+
+    def look(self, q, now):
+        """Take what `locate` takes. A small gap is that of its own series, with all its digits."""
+        self.locate(q)
+        if self.series and abs(self.depth) < FOLLOWED * self.i.radius:
+            value = evaluate(self.series, seconds(self.since, now))
+            if not self.wall:
+                value /= self.reach + math.sqrt(self.reach * self.reach + value)
+            self.depth = -value
+
+    def follow(self, now, dx, dy):
+        """Follow the gap from now on, by the series of the positions' difference."""
+        self.series, self.since = gap_series(self, max(-self.depth, 0.0), dx, dy), now
 
     def opened(self, now, v_n):
         """A bound [m] of how far it was open since it touched last."""
-        return (self.parting + abs(v_n)) * (now - self.last_touch)
+        return (self.parting + abs(v_n)) * seconds(self.last_touch, now)
 
     def closes(self, v_n):
         """Whether the bodies approach, by more than round-off."""
@@ -160,6 +203,8 @@ class Contact:
     def touched(self, now, v_n):
         """Note how it is left after an event: a contact that still closes is due again at once."""
         self.last_touch, self.parting = now, math.inf if self.closes(v_n) else abs(v_n)
+        if self.rests:
+            self.series = [0.0]                 # no gap, whatever the last digits of q say
 # --- endregion ---
 
 
@@ -336,7 +381,7 @@ class Island:
         for other, contact in ball.near.items():
             if contact not in self.contacts:    # else it was found from the other side
                 self.place(other)
-                contact.locate(self.q)
+                contact.look(self.q, self.now)
                 self.contacts[contact] = True
                 if other.w > 0.0 and (contact.depth >= -contact.small or self.is_due(contact)):
                     found.append(other)
@@ -367,6 +412,7 @@ def separate(island):
         closing = Group(contact for contact in island.contacts if contact.depth >= least)
         closing.react(island.q, [-contact.depth for contact in closing])
         for contact in island.contacts:
+            contact.series = None
             contact.locate(island.q)
 
 
@@ -380,21 +426,21 @@ def touching(island):
     for contact in island.contacts:
         if contact.depth >= -contact.small or island.is_due(contact):
             opened = contact.opened(island.now, contact.along(island.v))
-            tie = contact.bits + min(TOUCH * contact.i.radius, 1e-4 * opened)
+            tie = min(contact.small, 1e-4 * opened)
             if contact.rests or island.is_due(contact) or -contact.depth <= tie:
                 found.append(contact)
     return found
 
 
 def hardly_opened(island, contacts, v_n):
-    """For each of the contacts whether it closes although it has opened less than TOUCH radii.
+    """For each of the contacts whether it closes although it has opened less than THIN radii.
 
     Bounces so small come from a cascade that is infinite: the limit is rest. Once it has stopped at
-    one contact, it stops at all that were open just then, if by less than 1000 TOUCH radii.
+    one contact, it stops at all that were open just then, if by less than ten thousand times that.
     """
     last, found = max(contact.thin for contact in contacts), []
     for contact, speed in zip(contacts, v_n):
-        widest = (1000.0 if last > contact.last_touch else 1.0) * TOUCH * contact.i.radius
+        widest = (1e4 if last > contact.last_touch else 1.0) * THIN * contact.i.radius
         thin = contact.closes(speed) and contact.opened(island.now, speed) < widest
         found.append(thin)
         if thin:
@@ -468,12 +514,14 @@ def slide(held, q, v, gravity):
     i, j = ([bodies.index(body) for body in column] for column in zip(*((c.i, c.j) for c in held)))
     w, pair = np.array([body.w for body in bodies]), np.array([not c.wall for c in held])
     reach, inverse = np.array([c.reach for c in held]), held.inverse
+    body = np.array([*i, *j, *(k + len(w) for k in (*i, *j))])
 
     def along(n, rows):
         return (n * (rows[:, i] - rows[:, j])).sum(0)
 
     def spread(force):                          # M^-1 (2, N) of forces (2, K) on i, -force on j
-        return np.array([np.bincount(i + j, np.append(f, -f), len(w)) for f in force]) * w
+        both = np.concatenate((force, -force), 1).ravel()
+        return np.bincount(body, both, 2 * len(w)).reshape(2, -1) * w
 
     Q, lam = np.zeros((ORDER + 1, 2, len(w))), np.zeros((ORDER - 1, len(held)))
     n = np.zeros((ORDER + 1, 2, len(held)))
@@ -570,10 +618,13 @@ def difference(p, q):
     return [a - b for a, b in zip_longest(p, q, fillvalue=0.0)]
 
 
-def distance_series(dx, dy, gap, reach):
-    """dx^2 + dy^2 - reach^2, which has the sign of the gap of a pair; that is `gap` at t = 0."""
+def gap_series(contact, gap, dx, dy):
+    """A series with the sign of a gap, which is `gap` at t = 0: y - r at the floor, and
+    |q_i - q_j|^2 - (r_i + r_j)^2 of a pair. dx and dy are the series of q_i - q_j."""
+    if contact.wall:
+        return [gap, *dy[1:]]
     p = [a + b for a, b in zip_longest(squared(dx), squared(dy), fillvalue=0.0)]
-    return [gap * (gap + 2.0 * reach), *p[1:]]
+    return [gap * (gap + 2.0 * contact.reach), *p[1:]]
 # --- endregion ---
 
 
@@ -639,7 +690,7 @@ class Calendar:
             heapq.heappush(self.heap, (time, self.count, what))
 
     def next(self):
-        """The time [s] of the next event."""
+        """The time of the next event."""
         while self.heap and self.heap[0][2].due != self.heap[0][0]:
             heapq.heappop(self.heap)
         return self.heap[0][0] if self.heap else math.inf
@@ -673,7 +724,7 @@ class Motion:
             self.reach[self.number[ball]] += ball.room
         for ball in self.balls:
             if ball.w > 0.0:
-                self.move_home(ball, ball.at(0.0)[0])
+                self.move_home(ball, ball.home)
 
     def move_home(self, ball, q):
         """Make q the home of a ball, and find whom it can meet while they all stay near home."""
@@ -703,7 +754,7 @@ class Motion:
         if left < math.inf:
             speed, bend = reaches(x, y, span)
             span = min(span, fall(left, -speed, -bend))
-        self.calendar.plan(now + span, ball)
+        self.calendar.plan(later(now, span), ball)
 # --- endregion ---
 
 
@@ -725,7 +776,7 @@ def event(motion, now, ball):
         x, y = slides.get(ball) or parabola(island.q[ball], island.v[ball], a[ball])
         motion.go_on(ball, now, x, y, span if ball in slides else math.inf)
     for contact, force in forces.items():
-        motion.calendar.plan(now + first_fall(force, span), contact)
+        motion.calendar.plan(later(now, first_fall(force, span)), contact)
     predict(motion, now, island.balls)
     return island.balls
 # --- endregion ---
@@ -735,8 +786,8 @@ def event(motion, now, ball):
 def predict(motion, now, balls):
     """Find when the contacts of the balls, which have new series, will close.
 
-    Those at rest count as 3 TOUCH radii open, so that round-off is no event. Those too far apart to
-    meet while both series hold are left out.
+    Those at rest count as 3 TOUCH radii open, so that round-off is no event. The distance of two
+    bodies is never less than along the normal of today: where that leaves a gap, none closes.
     """
     contacts = dict.fromkeys(contact for ball in balls for contact in ball.near.values())
     series, q = {}, {}
@@ -746,16 +797,17 @@ def predict(motion, now, balls):
         i, j = contact.i, contact.j
         for body in (i, j):
             if body not in series:
-                series[body] = [shifted(row, now - body.start) for row in (body.x, body.y)]
+                series[body] = [shifted(row, seconds(body.start, now)) for row in (body.x, body.y)]
                 q[body] = (series[body][0][0], series[body][1][0])
-        contact.locate(q)
-        gap = max(-contact.depth, 0.0) + 3.0 * TOUCH * i.radius * contact.rests
+        contact.look(q, now)
         dx, dy = map(difference, series[i], series[j])
-        span = min(i.due, j.due) - now
-        speed, bend = reaches(dx, dy, span)
-        if not gap > span * (speed + span * bend):
-            p = [gap, *dy[1:]] if contact.wall else distance_series(dx, dy, gap, contact.reach)
-            motion.calendar.plan(now + first_fall(p, span), contact)
+        contact.follow(now, dx, dy)
+        gap = max(-contact.depth, 0.0) + 3.0 * TOUCH * i.radius * contact.rests
+        v_n = contact.nx * dx[1] + contact.ny * dy[1]
+        span = seconds(now, min(i.due, j.due))
+        if fall(gap, v_n, -reaches(dx, dy, span)[1]) <= span:
+            span = first_fall(gap_series(contact, gap, dx, dy), span)
+            motion.calendar.plan(later(now, span), contact)
 # --- endregion ---
 
 
@@ -769,7 +821,7 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
     """
     motion, clock = Motion(scene, gravity), times.tolist()
     tick = TICK * math.sqrt(float(scene.radius.min()) / -gravity)
-    now, events, until = 0.0, 0, tick
+    now, events, until = 0, 0, later(0, tick)
     woken = [ball for ball in motion.balls if ball.w > 0.0]
     while motion.samples < len(clock):
         settled = set()
@@ -780,10 +832,10 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
                 report(motion.samples)
         soon = max(now, motion.calendar.next())
         if events > EVENTS * max(20, len(motion.balls)):
-            soon = max(soon, now + 0.01 * tick)
+            soon = max(soon, later(now, 0.01 * tick))
         if soon >= until:
-            events, until = 0, soon + tick
-        now, motion.samples = soon, bisect_right(clock, soon)
+            events, until = 0, later(soon, tick)
+        now, motion.samples = soon, bisect_right(clock, seconds(0, soon))
         woken = motion.calendar.woken(now)
     report(motion.samples)
     for ball in motion.balls:
