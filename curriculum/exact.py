@@ -514,7 +514,7 @@ def slide(held, q, v, gravity):
     i, j = ([bodies.index(body) for body in column] for column in zip(*((c.i, c.j) for c in held)))
     w, pair = np.array([body.w for body in bodies]), np.array([not c.wall for c in held])
     reach, inverse = np.array([c.reach for c in held]), held.inverse
-    body = np.array([*i, *j, *(k + len(w) for k in (*i, *j))])
+    body = [*i, *j, *(k + len(w) for k in (*i, *j))]
 
     def along(n, rows):
         return (n * (rows[:, i] - rows[:, j])).sum(0)

@@ -75,6 +75,19 @@ def summed(places, weights, count):
     return total
 
 
+def later(time, span):
+    """exact.later for an 80 bit span, which is the sum of two doubles."""
+    high = float(span)
+    return exact.later(exact.later(time, high), float(span - high) if high < math.inf else 0.0)
+
+
+def seconds(start, time):
+    """exact.seconds, as an 80 bit number."""
+    high = exact.seconds(start, time)
+    rest = 0.0 if math.isinf(high) else exact.seconds(exact.later(start, high), time)
+    return Number(high) + Number(rest)
+
+
 @lru_cache(maxsize=1)
 def module():
     """curriculum/exact.py with 80 bit numbers."""
@@ -83,6 +96,7 @@ def module():
     made = types.ModuleType("curriculum.exact in 80 bits")
     exec(compile(ast.fix_missing_locations(tree), str(path), "exec"), vars(made))
     made.math, made.np = precise_math(), precise_numpy()
+    made.later, made.seconds = later, seconds
     made.EVENTS *= LONGER
 
     class Motion(made.Motion):

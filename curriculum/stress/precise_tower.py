@@ -17,6 +17,7 @@ from mpmath import mp, mpf, sqrt
 
 DIGITS = 120
 SLOW = mpf(10) ** -40  # m/s
+OF_DOUBLES = mpf(10) ** -12  # m/s: slower than this is round-off to a double
 THIN = mpf(10) ** -80  # m
 WIDE = mpf(10) ** -76  # m: THIN for a contact that was open while another was found to be THIN
 SAME = mpf(10) ** -100  # m, m/s: round-off
