@@ -97,6 +97,19 @@ def test_nothing_is_wider_than_the_window(tab, url, width):
     assert tab.evaluate("document.documentElement.scrollWidth") <= width
 
 
+def test_formulas_are_set_in_the_font_that_the_page_brings(tab, url):
+    """Their width is another than in the browser's own serif."""
+    tab.visit(url)
+    loaded, widths = tab.evaluate("""document.fonts.ready.then(() => {
+      const formula = document.querySelector(".math.block math");
+      const width = () => formula.querySelector("mi").getBoundingClientRect().width;
+      const brought = width();
+      formula.style.fontFamily = "serif";
+      return [[...document.fonts].map((face) => face.status), [brought, width()]];
+    })""")
+    assert loaded == ["loaded"] and widths[0] != widths[1], (loaded, widths)
+
+
 def test_it_prints(tab, url):
     tab.visit(url)
     assert tab.printed()[:5] == b"%PDF-"
