@@ -7,7 +7,6 @@ A run that was interrupted goes on where it stopped (--fresh: from the beginning
 is kept in outputs/stress-work for as long as the code stays the same.
 """
 
-import argparse
 import json
 import os
 import subprocess
@@ -19,7 +18,7 @@ from shutil import unpack_archive
 import numpy as np
 
 from curriculum import exact, measured
-from curriculum.common.arguments import number, writable_folder
+from curriculum.common.arguments import Parser, number, writable_folder
 from curriculum.common.files import write_whole
 from curriculum.common.stoppable import stoppable
 from curriculum.stress import exact_report, jobs, precise_exact, precise_tower, runner
@@ -246,7 +245,7 @@ def first(count, restitution, seed):
 
 def parse(argv):
     """The checked command line."""
-    parser = argparse.ArgumentParser(prog=COMMAND, description="exact in many piles and towers.")
+    parser = Parser(prog=COMMAND, description="exact in many piles and towers.")
     parser.add_argument("--quick", action="store_true", help="reduced settings, seconds, for CI")
     parser.add_argument("--workers", type=number(int, low=0), default=2, help="processes (2)")
     parser.add_argument("--fresh", action="store_true", help="forget what earlier runs finished")
@@ -254,6 +253,8 @@ def parse(argv):
     parser.add_argument("--out", type=writable_folder, help="folder of exact.md and results.json")
     args = parser.parse_args(argv)
     args.out = args.out or str(QUICK if args.quick else RESULTS)
+    if args.draw and "exact" not in measured.load(args.out):
+        parser.error(f"argument --draw: {args.out} holds no results of exact; measure first")
     return args
 
 

@@ -213,6 +213,12 @@ def test_the_command_writes_a_page_and_goes_on_where_it_stopped(small, monkeypat
     assert small() == page and small("--draw") == page
 
 
+def test_the_page_is_not_drawn_before_anything_is_measured(small, capsys):
+    with pytest.raises(SystemExit) as ended:
+        small("--draw")
+    assert ended.value.code == 2 and "measure first" in capsys.readouterr().err
+
+
 def test_the_page_names_what_parts_what_waited_and_what_died(small, tmp_path):
     small()
     section = measured.load(tmp_path)["exact"]
