@@ -367,7 +367,10 @@ class Island:
         self.q, self.v = {}, {}                 # {body: (x, y)}, of its neighbours too
         self.balls = {}                         # in the order in which they were found
         self.contacts = {}                      # all that its balls can make
-        left = [woken]
+        self.add([woken])
+
+    def add(self, left):
+        """Take in these balls, and what hangs together with them."""
         while left:
             ball = left.pop()
             if ball not in self.balls:
@@ -410,6 +413,7 @@ def separate(island):
             break
         least = -2.0 * max(contact.depth for contact in island.contacts)
         closing = Group(contact for contact in island.contacts if contact.depth >= least)
+        island.add([body for contact in closing for body in contact.bodies if body.w > 0.0])
         closing.react(island.q, [-contact.depth for contact in closing])
         for contact in island.contacts:
             contact.series = None
@@ -805,7 +809,9 @@ def predict(motion, now, balls):
         gap = max(-contact.depth, 0.0) + 3.0 * TOUCH * i.radius * contact.rests
         v_n = contact.nx * dx[1] + contact.ny * dy[1]
         span = seconds(now, min(i.due, j.due))
-        if fall(gap, v_n, -reaches(dx, dy, span)[1]) <= span:
+        if contact.depth > contact.small:       # it overlaps: that is mended at once
+            motion.calendar.plan(now, contact)
+        elif fall(gap, v_n, -reaches(dx, dy, span)[1]) <= span:
             span = first_fall(gap_series(contact, gap, dx, dy), span)
             motion.calendar.plan(later(now, span), contact)
 # --- endregion ---

@@ -356,3 +356,15 @@ def test_looking_only_at_neighbours_finds_the_same_motion(monkeypatch):
     neighbours = exact.simulate_exact(scn, times, G)
     assert len(looked) > 50
     assert np.abs(neighbours[0] - everyone[0]).max() <= 1e-9 * R
+
+
+def test_a_ball_pushed_out_of_an_overlap_pushes_its_neighbour_on():
+    """Two balls overlap by 0.6 r beside a third that is 0.1 r away and a fourth behind that: moved
+    apart, the second closes the gap, and the third goes with it. All in the air, so that the
+    centre of mass stays where it was."""
+    x = np.array([0.0, 1.4, 3.5, 5.6]) * R
+    scn = Scene(np.array((x, np.full(4, 10 * R))), np.zeros((2, 4)), np.ones(4), np.full(4, R), 0.0)
+    q, _ = exact.simulate_exact(scn, np.array([0.0, 0.01]), G)
+    for sample in q:
+        assert np.diff(sample[0]).min() >= 2 * R - 1e-12 * R
+        assert sample[0].mean() == pytest.approx(x.mean(), abs=1e-14)
