@@ -276,6 +276,15 @@ def test_what_is_not_a_number_has_one_sign():
         assert len(bits) == 9 and (bits == np.array(math.nan).view(np.uint64)).all()
 
 
+@pytest.mark.parametrize("model", MODELS)
+def test_a_zero_has_one_sign(model):
+    """x and vx of a ball that is dropped stay -0.0 in the steps, and are recorded as 0.0."""
+    scene = contact.build_scene("drop")
+    scene.q0[0] = scene.v0[0] = -0.0
+    run = check_same(model, scene, 0.002, 20)
+    assert not np.signbit(run.q).any() and not np.signbit(run.v[:, 0]).any()
+
+
 def test_a_radius_that_is_no_number_hides_no_other_contact():
     """Neither from the cells nor from the sorted shadows of contact.py."""
     for place in (0, 7):
@@ -318,6 +327,22 @@ def test_points_have_the_bytes_of_the_reference(model):
     q0 = np.array(((0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0005, -0.001)))
     scene = contact.Scene("points", q0, np.zeros((2, 4)), np.ones(4), np.zeros(4), 0.5, 80.0)
     check_same(model, scene, 0.002, 10)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_balls_with_one_centre_part_upwards(model):
+    q0 = np.array(((0.3, 0.3, 0.3), (0.5, 0.5, 0.5)))
+    scene = contact.Scene("one", q0, np.zeros((2, 3)), np.ones(3), np.full(3, 0.1), 0.0, 80.0)
+    run = check_same(model, scene, 0.002, 5)
+    assert run.q[-1, 1, 0] > run.q[-1, 1, 2] and (run.q[:, 0] == 0.3).all()
+
+
+def test_an_impulse_that_overflows_does_not_move_the_floor():
+    """Half of infinity is infinity, and 0 times it is no number; the ball beside is at rest."""
+    q0, v0 = np.array(((0.0, 5.0), (0.1, 0.1))), np.array(((0.0, 0.0), (-1e300, 0.0)))
+    scene = contact.Scene("far", q0, v0, np.array((1e20, 1.0)), np.full(2, 0.1), 0.0, 80.0)
+    run = check_same("lcp", scene, 0.002, 3)
+    assert not np.isfinite(run.v[-1, 1, 0]) and run.v[-1, 1, 1] == 0.0
 
 
 # Near balls

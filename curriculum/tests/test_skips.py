@@ -191,3 +191,18 @@ def test_what_can_be_swept_further_is_swept_further():
     assert max(abs(ball.vy) for ball in rough) > 1e-3
     assert max(abs(ball.vy) for ball in stopped) < 1e-12
     assert [c.lam for c in contacts] == pytest.approx([8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0])
+
+
+@pytest.mark.parametrize("y, vy", [(1.0, 0.0), (0.4, 3.0), (2.0, -5.0), (0.1011, -0.1)])
+def test_the_steps_to_the_floor_are_those_of_the_parabola(y, vy):
+    """Until gap + vy t - g t^2 / 2 is the margin; a ball nearer than that has none left."""
+    for dt in (DT, 0.5):
+        t = dt * contact.steps_to_floor(contact.Ball(0.0, y, 0.0, vy, 1.0, 0.1), dt)
+        assert y - 0.1 + vy * t - 9.81 * t * t / 2.0 == pytest.approx(0.001, abs=1e-12)
+    assert contact.steps_to_floor(contact.Ball(0.0, 0.1, 0.0, vy, 1.0, 0.1), DT) == 0
+    assert contact.steps_to_floor(contact.Ball(0.0, y, 0.0, vy, np.inf, 0.1), DT) == np.inf
+
+
+def test_flights_of_sixteen_states_are_summed_up_and_shorter_ones_are_not():
+    ball = contact.Ball(0.0, 9.0, 1.0, 0.0, 1.0, 0.1)
+    assert [len(contact.fly([ball], DT, most)) for most in (15, 16, 17)] == [0, 16, 17]
