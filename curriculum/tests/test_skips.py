@@ -206,3 +206,9 @@ def test_the_steps_to_the_floor_are_those_of_the_parabola(y, vy):
 def test_flights_of_sixteen_states_are_summed_up_and_shorter_ones_are_not():
     ball = contact.Ball(0.0, 9.0, 1.0, 0.0, 1.0, 0.1)
     assert [len(contact.fly([ball], DT, most)) for most in (15, 16, 17)] == [0, 16, 17]
+
+
+def test_every_step_that_is_taken_is_reported():
+    heard = []
+    contact.run_model("lcp", contact.build_scene("stack"), DT, 5, skip=False, report=heard.append)
+    assert heard == [1, 2, 3, 4, 5]
