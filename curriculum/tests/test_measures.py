@@ -34,6 +34,12 @@ def test_the_rebound_is_the_highest_gap_after_the_first_contact():
     assert quality["rebound_frac"] == pytest.approx(0.5)
 
 
+def test_held_balls_have_no_energy():
+    q, v = np.array([[0.0, 9.0], [2.0, 3.0]]), np.array([[0.0, 1.0], [4.0, 1.0]])
+    held = contact.energy(q, v, np.array([0.5, np.inf]))
+    assert held == pytest.approx(0.5 * 0.5 * 16.0 + 0.5 * 9.81 * 2.0, rel=1e-15)
+
+
 def test_energy_in_is_the_sum_of_its_rises():
     heights = [1.0, 0.4, 0.5, 0.3, 0.35]  # rises of 0.1 and 0.05 m, start at 1 m
     quality = contact.contact_quality(recording(heights), SCENE, DT)

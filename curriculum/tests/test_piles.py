@@ -329,6 +329,14 @@ def test_points_have_the_bytes_of_the_reference(model):
     check_same(model, scene, 0.002, 10)
 
 
+def test_a_run_that_rests_from_its_first_step_keeps_its_start():
+    """The states from 1 on are one and the same; the one before them is another."""
+    scene = contact.build_scene("drop")._replace(q0=np.array([[0.0], [0.1]]))
+    scene.v0[1] = -1.0
+    run = check_same("lcp", scene, 0.002, 8, baumgarte=0.0)
+    assert run.v[0, 1, 0] == -1.0 and (run.q[1:] == run.q[1]).all()
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_balls_with_one_centre_part_upwards(model):
     q0 = np.array(((0.3, 0.3, 0.3), (0.5, 0.5, 0.5)))
@@ -486,6 +494,12 @@ def test_a_pair_that_was_out_of_reach_may_have_come_nearer_than_the_floor():
     """0.101 m apart when the pairs are listed, then 0.061 m; the floor stays at 0.08 m."""
     gap = gaps_of([[[0.0, 0.301], [0.18, 0.18]], [[0.02, 0.281], [0.18, 0.18]]], [0.1, 0.1])
     assert gap == pytest.approx([0.08, 0.061], rel=1e-12)
+
+
+def test_a_pair_that_was_just_out_of_reach_may_be_the_nearest_after_a_small_move():
+    """0.1005 m apart, then 0.0985 m, while the floor's gap grows from 0.0998 m to 0.1013 m."""
+    lists = [[[0.0, 0.3005], [0.1998, 0.1998]], [[0.001, 0.2995], [0.2013, 0.2013]]]
+    assert gaps_of(lists, [0.1, 0.1]) == pytest.approx([0.0998, 0.0985], rel=1e-12)
 
 
 def test_points_have_gaps_too():
