@@ -502,6 +502,12 @@ def test_a_pair_that_was_just_out_of_reach_may_be_the_nearest_after_a_small_move
     assert gaps_of(lists, [0.1, 0.1]) == pytest.approx([0.0998, 0.0985], rel=1e-12)
 
 
+def test_a_ball_that_is_infinitely_far_away_hides_no_gap_of_the_others():
+    for far in (0, 1, 2):
+        x = np.insert([0.0, 0.15], far, math.inf)
+        assert gaps_of([[x, [1.0, 1.0, 1.0]]], [0.1] * 3) == pytest.approx([-0.05], rel=1e-12)
+
+
 def test_points_have_gaps_too():
     """Their radius is 0, so there is no length to begin the search with."""
     gap = gaps_of(
