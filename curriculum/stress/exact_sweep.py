@@ -34,7 +34,7 @@ TOOLS = ("curriculum/stress/exact_sweep.py", "curriculum/stress/precise_tower.py
 FIRST_EDITION = "9713605"  # the commit
 TIME = 4.0  # s of a pile's motion
 AWAY = 1e-8  # of a radius: two runs that are farther apart have parted
-MOST = 60_000  # events of a run in 80 bits
+MOST = 40_000  # events of a run in 80 bits
 LOOK = 50  # samples
 FULL = {"counts": (3, 6, 8, 12, 24), "seeds": 10, "towers": 60, "tall": 100, "wide": 60.0}
 SHORT = {"counts": (3, 8), "seeds": 2, "towers": 4, "tall": 10, "wide": 1.0}
@@ -126,13 +126,15 @@ def beside_80_bits(scene, times, q):
     apart = np.abs(q[: len(precise)] - precise).max((1, 2)) / R
     total = contact.energy(precise, v, scene.mass)
     over = apart > AWAY
+    k = int(over.argmax())
     return {
         "precise_until": times[len(precise) - 1],
         "precise_events": len(events),
         "precise_seconds": seconds,
         "precise_rise": max(0.0, float(np.diff(total).max() / total[0])),
-        "parts": times[over.argmax()] if over.any() else None,
-        "apart": float(apart[-1]),
+        "parts": times[k] if over.any() else None,
+        "before": float(apart[max(0, k - 1)]) if over.any() else None,
+        "apart": float(apart[k] if over.any() else apart[-1]),
     }
 
 

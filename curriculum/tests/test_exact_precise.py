@@ -224,7 +224,7 @@ def test_the_page_names_what_parts_what_waited_and_what_died(small, tmp_path):
     section = measured.load(tmp_path)["exact"]
     calm = exact_report.whole_page(section)
     assert "2 of 2 stay" in calm and "(none parts)" in calm and "Did not end" not in calm
-    section["exact-pile"][1] |= {"parts": 1.25, "waits": 1.0}
+    section["exact-pile"][1] |= {"parts": 1.25, "before": 3e-9, "waits": 1.0}
     section["exact-pile"][0] |= {"overlap": 2e-10, "precise_until": 0.75}
     section["died"] = ["pile of 9"]
     page = exact_report.whole_page(section)
