@@ -185,10 +185,15 @@ def _parting(section):
                 _range([row["precise_seconds"] for row in found]),
             ]
         )
+    return f"{table(head, rows)}\n{_notes(judged)}{_parted_table(section)}"
+
+
+def _notes(judged):
+    """What the run in 80 bits is, how far it went, and whether the clock had a part in it."""
     short = [row for row in judged if row["parts"] is None and row["precise_until"] < 4.0]
     waits = [row for row in judged if row["parts"] is not None and row["waits"] is not None]
     early = [row for row in waits if row["waits"] <= row["parts"]]
-    said = sentences(
+    return sentences(
         [
             "The same source with 80 bit numbers (64 bits of mantissa) and tolerances 2^-11 times "
             "as large (`curriculum/stress/precise_exact.py`): what a run in doubles is off by from "
@@ -209,7 +214,6 @@ def _parting(section):
             f"{max(row['precise_rise'] for row in judged):.1e} of the start's at most.",
         ]
     )
-    return f"{table(head, rows)}\n{said}{_parted_table(section)}"
 
 
 def _parted_table(section):
@@ -221,10 +225,10 @@ def _parted_table(section):
     ]
     head = ["balls", "e", "seed", "parts at / s", "1 ms before: apart / r", "then / r"]
     note = (
-        "Where the distance grows step by step, it is chaos. Where it jumps within 1 ms, a tolerance "
-        "has decided: for instance a contact that let go just before an impact next to it, and is "
-        "open by less than TOUCH, takes part in that impact in doubles and is struck after it in 80 "
-        "bits."
+        "Where the distance grows from sample to sample, it is chaos. Where it jumps within 1 ms, an "
+        "order of impacts has changed, which a tolerance can decide: for instance a contact that "
+        "let go just before an impact next to it, and is open by less than TOUCH, takes part in "
+        "that impact in doubles and is struck after it in 80 bits."
     )
     return f"\n\n{table(head, parted)}\n{note}" if parted else ""
 
