@@ -508,6 +508,12 @@ def test_a_ball_that_is_infinitely_far_away_hides_no_gap_of_the_others():
         assert gaps_of([[x, [1.0, 1.0, 1.0]]], [0.1] * 3) == pytest.approx([-0.05], rel=1e-12)
 
 
+def test_a_radius_that_is_no_number_makes_the_gap_no_number():
+    for place in (0, 1, 2):
+        gap = gaps_of([[[0.0, 3.0, 6.0], [1.0, 1.0, 1.0]]], np.insert([0.1, 0.1], place, math.nan))
+        assert np.isnan(gap).all()
+
+
 def test_points_have_gaps_too():
     """Their radius is 0, so there is no length to begin the search with."""
     gap = gaps_of(
