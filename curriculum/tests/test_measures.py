@@ -34,6 +34,11 @@ def test_the_rebound_is_the_highest_gap_after_the_first_contact():
     assert quality["rebound_frac"] == pytest.approx(0.5)
 
 
+def test_a_run_has_exploded_when_it_has_gained_ten_times_its_start():
+    assert contact.blow_up_step(np.array([2.0, np.nextafter(22.0, 0.0), 22.0])) == 2
+    assert contact.blow_up_step(np.array([2.0, 21.9])) is None
+
+
 def test_held_balls_have_no_energy():
     q, v = np.array([[0.0, 9.0], [2.0, 3.0]]), np.array([[0.0, 1.0], [4.0, 1.0]])
     held = contact.energy(q, v, np.array([0.5, np.inf]))
