@@ -131,6 +131,22 @@ def test_a_model_that_comes_no_nearer_than_the_margin_has_not_been_tried(gap, tr
     assert grid["lcp_penetration_frac"] == (0.0 if tried else None)
 
 
+def test_the_grid_halves_the_step_from_32_times_down_to_the_runs_own():
+    """A model that explodes at every step is tried at every one, and 0 is reported."""
+    scene = contact.build_scene("drop")
+    q = np.array([[[0.0], [1.0]], [[0.0], [50.0]]])
+    burst = contact.Run(np.array([0.0, DT]), q, np.zeros_like(q))
+    tried = []
+
+    def run(model, dt):
+        tried.append(dt / DT)
+        return burst
+
+    grid = contact.measure_stability(run, scene, DT, 1e4, {"penalty": burst, "lcp": burst})
+    assert tried == [32.0, 16.0, 8.0, 4.0, 2.0] * 2
+    assert grid["penalty"] == grid["lcp"] == 0.0
+
+
 # Formulas
 
 
