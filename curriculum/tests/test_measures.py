@@ -45,6 +45,12 @@ def test_held_balls_have_no_energy():
     assert held == pytest.approx(0.5 * 0.5 * 16.0 + 0.5 * 9.81 * 2.0, rel=1e-15)
 
 
+def test_nothing_pushes_a_held_ball_in_the_recording():
+    scene = contact.build_scene("stack", bodies=2)._replace(mass=np.array([1.0, np.inf]))
+    pushes = contact.contact_impulses(contact.run_model("lcp", scene, DT, 5), scene)
+    assert not pushes[:, :, 1].any() and pushes[-1, 1, 0] == pytest.approx(9.81 * DT)
+
+
 def test_energy_in_is_the_sum_of_its_rises():
     heights = [1.0, 0.4, 0.5, 0.3, 0.35]  # rises of 0.1 and 0.05 m, start at 1 m
     quality = contact.contact_quality(recording(heights), SCENE, DT)
