@@ -364,7 +364,7 @@ def tests_for(mutant, text, found):
     """
     functions = set(mutant.where.split("."))
     if mutant.where == "module":
-        functions = names_of_module_line(text, mutant.line)
+        functions = names_of_module_line(text, mutant.line) or {"main"}
     ran = [test for test, entry in found.items() if functions & set(entry["ran"])]
     ran.sort(key=lambda test: found[test]["seconds"] * len(found[test]["ran"]))
     spent = itertools.accumulate(found[test]["seconds"] for test in ran)
