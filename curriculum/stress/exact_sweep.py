@@ -35,7 +35,7 @@ FIRST_EDITION = "9713605"  # the commit
 TIME = 4.0  # s of a pile's motion
 AWAY = 1e-8  # of a radius: two runs that are farther apart have parted
 MOST = 40_000  # events of a run in 80 bits
-LOOK = 50  # samples
+LOOK = 100  # samples
 FULL = {"counts": (3, 6, 8, 12, 24), "seeds": 10, "towers": 60, "tall": 100, "wide": 60.0}
 SHORT = {"counts": (3, 8), "seeds": 2, "towers": 4, "tall": 10, "wide": 1.0}
 
