@@ -94,6 +94,29 @@ def test_a_fault_is_killed_by_a_test_that_fails_or_does_not_end(tmp_path, monkey
         assert (tmp_path / "contact.py").read_text() == text
 
 
+def test_what_has_a_reason_is_not_tried_where_reasons_are_trusted(monkeypatch, tmp_path):
+    tried = []
+
+    class Noting:
+        def __init__(self, file, folder):
+            pass
+
+        def outcome(self, mutant):
+            tried.append(mutant.said)
+            return "killed"
+
+    monkeypatch.setattr(mutate, "Trials", Noting)
+    monkeypatch.setattr(mutate, "reasons", lambda: {"f.py: f: a -> b": "It makes no difference."})
+    both = [
+        mutate.Mutant("f.py", "f", line, 0, 1, "", said)
+        for line, said in ((1, "a -> b"), (2, "c -> d"))
+    ]
+    rows = mutate.run_file("f.py", both, tmp_path, trust=True)
+    assert tried == ["c -> d"] and [row[3] for row in rows] == ["survived", "killed"]
+    rows = mutate.run_file("f.py", both, tmp_path, trust=False)
+    assert tried == ["c -> d", "c -> d", "a -> b"] and [row[3] for row in rows] == ["killed"] * 2
+
+
 def test_the_interval_of_a_sample_has_the_ends_that_wilson_gives_it():
     """Where all n are killed it begins at n / (n + z^2), where none is it ends at z^2 / (n + z^2)."""
     n, z2 = 100, 1.96**2
