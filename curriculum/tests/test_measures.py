@@ -76,6 +76,20 @@ def test_the_height_error_is_split_where_the_run_first_touches():
     assert quality["contact_error_frac"] == pytest.approx(0.1)
 
 
+def test_flight_ends_with_the_first_of_both_contacts():
+    """The reference lands while the run still flies: what they differ by then is contact's."""
+    run = recording([1.0, 0.6, 0.5, R, R], landing=4)
+    truth = recording([1.0, 0.62, R, R, R], landing=2)
+    quality = contact.contact_quality(run, SCENE, DT, truth)
+    assert quality["flight_error_frac"] == pytest.approx(0.2)
+    assert quality["contact_error_frac"] == pytest.approx(4.0 - 0.2)
+
+
+def test_a_ball_that_just_touches_has_made_contact():
+    assert contact.first_contact(recording([1.0, 0.6, R], landing=3), SCENE, DT) == 2
+    assert contact.first_contact(recording([1.0, 0.6, 0.5], landing=3), SCENE, DT) == 3
+
+
 def test_a_bounce_between_two_samples_is_a_contact_too():
     """exact comes nowhere near the table at a sample, and yet it has bounced."""
     scene = contact.build_scene("bounce")
