@@ -95,7 +95,7 @@ def build_scene(name: str, seed: int = 0, bodies: int | None = None,
 
 # --- region: lattice ---
 def pile_lattice(count, lift, rng):
-    """x and y (count,) [m] on a lattice 2.5 r wide, each nudged by up to 0.1 r, all gaps open.
+    """x and y (count,) [m] on a lattice of pitch 2.5 r, each nudged by up to 0.1 r, all gaps open.
 
     The balls are numbered at random, so that the order of the contacts has no pattern.
     """
@@ -135,7 +135,7 @@ class Contact:
         self.bx, self.by = b.inv_mass * nx, b.inv_mass * ny     # and takes from b's
         inv_mass = a.inv_mass + b.inv_mass
         self.m_eff = 1.0 / inv_mass if inv_mass > 0.0 else 0.0      # effective mass [kg]
-        self.target = 0.0       # the v_n [m/s] to leave with at least
+        self.target = 0.0       # the v_n [m/s] to leave with at least; of soft, v_n + R lam
         self.softness = 0.0     # R [1/kg] of soft; 0 is hard
         self.lam = 0.0          # the impulse [N s] so far; a new step starts again from 0
 
@@ -273,8 +273,8 @@ def contact_target(c, restitution, baumgarte, dt):
     opens by the share beta in a step, and a gap may close by that share. With e > 0 bodies that
     touch, or would meet within this step, get the bounce -e v_n. Across a wider gap they may
     come as close as touching, so that nothing bounces on air. In an overlap the larger of bias
-    and bounce counts, since their sum would bounce too high. Where the bias does not, no target
-    is above -e v_n, also between bodies that part, so impulses add no energy (Moreau 1988).
+    and bounce counts, since their sum would bounce too high. Where the bias does not win, no
+    target is above -e v_n, also between bodies that part, so impulses add no energy (Moreau 1988).
     """
     bias = baumgarte / dt * c.depth     # < 0 across a gap
     if restitution == 0.0:

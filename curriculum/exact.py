@@ -6,15 +6,16 @@ one does, the pushing contacts are equations, gap = 0, and the motion is a Taylo
 An event is a gap that closes, a force that falls to zero, or a series that comes to its end. It
 concerns the balls that touch one another there, an island; all other balls go on as they were.
 
-    Island     finds the balls, and which of their contacts touch,
+    Island     finds the balls, and all contacts that they can make,
     separate   closes what rounding has left of overlaps,
+    touching   picks the contacts that touch,
     collide    gives impulses to the contacts that close: an LCP of velocities,
     support    gives forces to the contacts that rest: an LCP of accelerations,
     expand     gives the motion under these forces: a parabola, or a series where balls slide,
-    predict    finds the next event of every contact of the island.
+    predict    finds when each contact that does not push will close.
 
 What comes first is at the top of a heap. Among many balls each looks only at those near its home,
-the place where it was when it last looked about; when it may have left, it looks about again.
+the place where it was when it last looked about. When it may have left, that is an event, too.
 Samples are read from the series, so when they are taken does not enter the motion.
 
 A light ball between two heavy ones may be struck a thousand times while gaps shrink to 1e-40 m and
@@ -37,11 +38,11 @@ Why every loop ends. The pivot (solve_lcp), the separation of overlaps and the s
 follow one another ever faster. A bounce that rises less than LAST radii is the last of its series,
 and so is one of a contact that opened less than THIN radii since the bounce before: a light ball
 between a heavy one and the floor is struck infinitely often in finite time, and the limit is rest.
-What parts more slowly than a double can tell beside its other speeds, 1e-16 of them, is not seen.
+A velocity below 1e-13 of what was added up to it counts as round-off, and is set to 0 (react).
 The clock ends what is left: after EVENTS events per ball (and 20 times EVENTS at least) within a
-tick of motion, events come at most once in a hundredth of a tick, so a hundred more take the clock
-to the next tick. That is a limit of run time: what closes in the meantime overlaps, and is moved
-apart when its turn comes.
+tick of motion, it moves on by a hundredth of a tick at least, with at most one event per ball each
+time, until the tick is over. That is a limit of run time: what closes in the meantime overlaps, and
+is moved apart when its turn comes.
 """
 
 # --- region: exact-setup ---
@@ -61,10 +62,10 @@ GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does no
 FOLLOWED = 1e-8 # of a radius: a smaller gap is followed by its own series
 THIN = 1e-40    # of a radius: a contact that opened less and closes does not bounce
 SECOND = 2**300 # of the unit of time
-EVENTS = 100    # per ball and tick, and of 20 balls at least, before the clock waits
+EVENTS = 10000  # per ball and tick, and of 20 balls at least, before the clock waits
 TICK = 0.1      # of sqrt(r / g), r the smallest radius
 FEW = 12        # balls: among so few, each looks at all the others
-ROOM = 0.5      # of a radius: how far a ball of more goes from home before it looks again
+ROOM = 0.5      # of a radius: among more than FEW, a ball this far from home looks again
 # --- endregion ---
 
 
@@ -155,7 +156,7 @@ class Pair:
         return 0.0 if self.wall else self.nx * (yi - yj) - self.ny * (xi - xj)
 
     def turning(self, v):
-        """The normal acceleration [m/s^2] that sliding asks for, since the normal turns."""
+        """What the turning of the normal adds to the second derivative of the gap [m/s^2]."""
         slip = self.across(v)
         return slip * slip / self.reach
 # --- endregion ---
@@ -176,7 +177,10 @@ class Contact(Pair):
         self.series, self.since = None, 0       # of its gap, and the time it starts from
 
     def look(self, q, now):
-        """Take what `locate` takes. A small gap is that of its own series, with all its digits."""
+        """Locate it; a small gap is then read from its own series, with all its digits.
+
+        A pair's series is distance^2 - reach^2, so it is divided by distance + reach.
+        """
         self.locate(q)
         if self.series and abs(self.depth) < FOLLOWED * self.i.radius:
             value = evaluate(self.series, seconds(self.since, now))
@@ -201,7 +205,7 @@ class Contact(Pair):
         return abs(v_n) < math.sqrt(2.0 * LAST) * self.speed
 
     def touched(self, now, v_n):
-        """Note how it is left after an event: a contact that still closes is due again at once."""
+        """Note when it touched and how fast it parts; inf if it closes: never "hardly opened"."""
         self.last_touch, self.parting = now, math.inf if self.closes(v_n) else abs(v_n)
         if self.rests:
             self.series = [0.0]                 # no gap, whatever the last digits of q say
@@ -231,7 +235,7 @@ class Table:
         self.active[k] = ~self.active[k]
 
     def step(self, lam, least):
-        """Exchange one contact: the next lam, and whether it is the answer (nothing exchanged)."""
+        """Exchange one contact or two: the next lam, and whether it is the answer (no exchange)."""
         trial = np.where(self.active, self.rows[:, -1], 0.0)
         bad = np.flatnonzero(trial < least)
         if len(bad):                            # towards trial until the first would pull
@@ -261,9 +265,10 @@ class Table:
 def solve_lcp(W, b):
     """lam (K,) >= 0 with s = W lam + b >= 0 and lam s = 0; W (K, K) the Delassus matrix, b (K,).
 
-    Pivoting after Lawson and Hanson (1974), from all contacts active, as at rest. With each
-    exchange lam'W lam / 2 + b'lam falls, so no active set comes twice. Rounding can break that, so
-    exchanges are counted; and the table is made afresh until it needs no more, at most nine times.
+    Pivoting after Lawson and Hanson (1974), from all contacts active, as at rest. Contacts stop
+    until none would pull. Each time that is reached, lam'W lam / 2 + b'lam is lower than the last
+    time, so no such active set comes twice. Rounding can break that, so exchanges are counted; and
+    the table is made afresh until it needs no more, at most nine times.
     """
     if len(b) < 2:
         return np.maximum(-b / W.diagonal(), 0.0)
@@ -323,7 +328,7 @@ class Group(list):
         return inverted(self.delassus)
 
     def along(self, rows):
-        """n . (rows_i - rows_j) [K]: with v, the normal velocities v_n."""
+        """n . (rows_i - rows_j), a list of K: with v, the normal velocities v_n."""
         return [contact.along(rows) for contact in self]
 
     def push(self, lam, rows):
@@ -339,7 +344,7 @@ class Group(list):
         return size
 
     def react(self, rows, b):
-        """Make the least pushes lam after which n . rows has changed so that b changes to >= 0.
+        """Solve the LCP s = W lam + b and add its pushes to the rows: n . rows grows by W lam.
 
         What is left of a row at round-off, below 1e-13 of what was added up, is set to zero.
         """
@@ -405,8 +410,8 @@ class Island:
 def separate(island):
     """Move the balls until no overlap is left that is more than `small`.
 
-    Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less. A gap
-    twice as wide as the deepest overlap may close on the way, but not more.
+    Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less. The LCP
+    includes every gap up to twice the deepest overlap, so that no push makes it an overlap.
     """
     for _ in range(50):
         if not any(contact.depth > contact.small for contact in island.contacts):
@@ -457,7 +462,7 @@ def hardly_opened(island, contacts, v_n):
 def collide(island, contacts, restitution):
     """Give impulses to the contacts that close: v_n becomes -e v_n where they push.
 
-    Those that have hardly opened, and those whose bounce is slow, end their series here.
+    Those that have hardly opened, or would bounce slowly, get v_n = 0: their series ends.
     """
     v_n = contacts.along(island.v)
     if not any(contact.closes(speed) for contact, speed in zip(contacts, v_n)):
@@ -482,8 +487,8 @@ def collide(island, contacts, restitution):
 def support(island, contacts, gravity):
     """Give forces to the contacts that rest: the Group of those that push, and the accelerations.
 
-    The bodies of a resting contact do not part: n . a plus what the turning normal asks, slip^2
-    over the distance of the centres, is at least 0. Each contact notes whether it rests and pushes.
+    A resting contact may open but not close: the second derivative of its gap, n . a + slip^2 over
+    the distance of the centres, is at least 0. Each contact notes whether it rests and pushes.
     """
     a = {body: (0.0, gravity if body.w > 0.0 else 0.0) for body in island.q}
     for contact in contacts:
@@ -501,7 +506,7 @@ def support(island, contacts, gravity):
 
 
 def normal_accelerations(contacts, v, a):
-    """How fast the bodies of each contact come to part [m/s^2]."""
+    """The second derivative of each gap [m/s^2]: n . a, and what the turning normal adds."""
     return [contact.along(a) + contact.turning(v) for contact in contacts]
 # --- endregion ---
 
@@ -684,7 +689,7 @@ class Calendar:
     """What happens next to which Body or Contact: a heap of what is due."""
 
     def __init__(self):
-        self.heap, self.count = [], 0           # (time [s], count, what); the count breaks ties
+        self.heap, self.count = [], 0           # (time [s / SECOND], count for ties, what)
 
     def plan(self, time, what):
         """Something happens to a Body or a Contact at a time, unless its `due` changes before."""
