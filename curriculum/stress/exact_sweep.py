@@ -35,6 +35,7 @@ FIRST_EDITION = "9713605"  # the commit
 TIME = 4.0  # s of a pile's motion
 AWAY = 1e-8  # of a radius: two runs that are farther apart have parted
 MOST = 40_000  # events of a run in 80 bits
+DEAR = 3  # seeds
 LOOK = 100  # samples
 FULL = {"counts": (3, 6, 8, 12, 24), "seeds": 10, "towers": 60, "tall": 100, "wide": 60.0}
 SHORT = {"counts": (3, 8), "seeds": 2, "towers": 4, "tall": 10, "wide": 1.0}
@@ -86,12 +87,16 @@ def run(scene, times, simulate=exact.simulate_exact, enough=lambda events: False
 
 
 def pile(count, restitution, seed):
-    """A pile in doubles, sampled every 1 ms and every 8 ms, and in 80 bits where there are any."""
+    """A pile in doubles, sampled every 1 ms and every 8 ms, and in 80 bits where there are any.
+
+    Of the dearest, 24 balls that bounce, only the first DEAR seeds are run in 80 bits.
+    """
     scene = contact.build_scene("pile", seed, count, restitution)
     times = np.linspace(0.0, TIME, 4001)
     q, v, events, seconds = run(scene, times)
     coarse = run(scene, times[::8])[0]
     total = contact.energy(q, v, scene.mass)
+    beside = count < 24 or restitution == 0.0 or seed < DEAR
     return {
         "cells": 3,
         "rows": [],
@@ -101,7 +106,7 @@ def pile(count, restitution, seed):
         "rise": max(0.0, np.diff(total).max() / total[0]),
         "same_bits": coarse.tobytes() == q[::8].tobytes(),
         "waits": first_wait(events, count, times),
-        **({} if precise_exact.lacking() else beside_80_bits(scene, times, q)),
+        **(beside_80_bits(scene, times, q) if beside and not precise_exact.lacking() else {}),
     }
 
 
