@@ -37,10 +37,10 @@ FIRST_EDITION = {12: 92e-6, 100: 1450e-6, 1000: 5970e-6, 10000: 17300e-6}
 ENGINES = {  # label: engine, and how its world is built
     "pymunk, 10 iterations": ("pymunk", engines.Pymunk),
     "Box2D 2.3": ("box2d", engines.Box2d),
-    "Box2D 3, 4 substeps": ("box2d3", engines.Box2d3),
+    "Box2D 3, 4 substeps": ("box2d3", lambda scene, dt: engines.Box2d3(scene, dt, 4, None)),
     "Box2D 3, 4 substeps, hardest": (
         "box2d3",
-        lambda scene, dt: engines.Box2d3(scene, dt, hertz=1e9),
+        lambda scene, dt: engines.Box2d3(scene, dt, 4, 1e9),
     ),
     "MuJoCo as shipped": ("mujoco", lambda scene, dt: engines.Mujoco(scene, dt, engines.shipped)),
     "MuJoCo direct, push 0.2, 10 iterations": (
