@@ -7,7 +7,7 @@ samebytes      one run, the same bytes: hash seeds, threads, folders, Pythons, n
 runner         the jobs on processes or a Dask cluster; finished ones are kept, dead ones reported
 report         results.json and report.md; figures: its pictures
 exact_sweep    exact in piles and towers, a command of its own; exact_report: its page
-precise_exact  exact in 80 bits, from its own source; precise_tower: towers in 80 digits
+precise_exact  exact in 80 bits, from its own source; precise_tower: towers in 120 digits
 mujoco_match   how far soft is from the engine, a command of its own
 
 Everything runs the real contact.py (under_test.py finds it); nothing here copies its arithmetic.

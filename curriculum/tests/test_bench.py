@@ -386,6 +386,17 @@ def test_the_timed_pile_has_the_bits_of_a_recorded_run():
 # what is printed
 
 
+@pytest.mark.parametrize("label", piles.ENGINES)
+def test_an_engine_of_the_pile_lets_it_fall_freely_at_first(label):
+    """Each is built as the benchmark builds it; ten steps of 2 ms, before any ball touches."""
+    if label in piles.missing():
+        pytest.skip(piles.missing()[label])
+    scene = contact.build_scene("pile", 0, 12)
+    q, _ = piles.ENGINES[label][1](scene, piles.DT).states(10)
+    fallen = 0.5 * -contact.GRAVITY * (10 * piles.DT) ** 2
+    assert scene.q0[1] - q[-1, 1] == pytest.approx(fallen, rel=0.11)  # semi-implicit: a tenth more
+
+
 def test_page_shows_divergence_with_step_and_reason(section):
     page = accuracy_report.page(section)
     assert re.search(r"\| penalty: k 1e4 \|.*\| diverged \|", page)
