@@ -58,7 +58,7 @@ TESTS = {
     "invariants mutants command_line recording piles soft_mujoco",
     "curriculum/terminal.py": "command_line faults",
     "curriculum/piles.py": "piles",
-    "curriculum/exact.py": "exact exact_sliding closed_form mutants stress",
+    "curriculum/exact.py": "exact exact_parts exact_sliding closed_form mutants stress",
 }
 PRELOADED = (
     "numpy",

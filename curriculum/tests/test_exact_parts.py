@@ -1,0 +1,668 @@
+"""exact, function by function: each is held to arithmetic without rounding, to numpy or to a law.
+
+Coefficients of a series are small whole numbers where a test compares with ==, so that doubles do
+not round; where they are not, the answer is computed with fractions.
+"""
+
+import math
+from fractions import Fraction
+from itertools import combinations
+
+import numpy as np
+import pytest
+from numpy.polynomial import polynomial
+
+from curriculum import exact
+from curriculum.tests.test_exact_sliding import heap_of_five, hexagonal, on_a_movable_ball
+
+R, G = 0.1, -9.81
+
+
+def whole_numbers(rng, count):
+    """So many numbers from -9 to 9, as floats."""
+    return rng.integers(-9, 10, count).astype(float).tolist()
+
+
+def value(p, t):
+    """The sum of p[k] t^k as a fraction."""
+    return sum(Fraction(part) * Fraction(t) ** k for k, part in enumerate(p))
+
+
+# Time
+
+
+def test_times_are_added_without_rounding():
+    """A double of 1e-40 s beside one of 1e6 s: 2^300 units in a second hold both to the last bit."""
+    spans, now, total = [1e6, 0.1, 1 / 3, 1e-40, math.pi], 0, Fraction(0)
+    for span in spans:
+        before, now = now, exact.later(now, span)
+        total += Fraction(span)
+        assert Fraction(now, exact.SECOND) == total
+        assert exact.seconds(before, now) == span
+    assert exact.seconds(now, 0) == -float(total)
+
+
+def test_never_is_later_than_any_time():
+    assert exact.later(7, math.inf) == math.inf
+
+
+# Bodies
+
+
+def test_a_body_keeps_its_velocity_until_its_first_event():
+    body = exact.Body(1.0, R, [0.0, 2.0], [3.0, -4.0])
+    assert body.at(0) == ((0.0, 2.0), (3.0, -4.0))
+    assert body.at(exact.later(0, 0.5)) == ((1.5, 0.0), (3.0, -4.0))
+
+
+def a_path(pieces):
+    """A body that moved by these pieces (count, start, x, y), each for `count` samples."""
+    body, done = exact.Body(1.0, R, [0.0, 0.0], [0.0, 0.0]), 0
+    for count, start, x, y in pieces:
+        body.start, body.x, body.y = exact.later(0, start), x, y
+        done += count
+        body.remember(done)
+    return body
+
+
+def test_samples_are_those_of_the_series_that_held_then():
+    """Pieces of 3 and of ORDER + 1 numbers, and one that no sample falls into."""
+    rng = np.random.default_rng(0)
+    counts, starts = [1, 3, 0, 2], [0.0, 0.25, 1.0, 1.5]
+    orders = [3, exact.ORDER + 1, 3, 3]
+    series = [[whole_numbers(rng, n) for n in (order, order)] for order in orders]
+    series[0][0][0] = series[0][1][0] = 0.0
+    body = a_path((k, s, *rows) for k, s, rows in zip(counts, starts, series))
+    times = np.array([0.0, 0.25, 0.5, 0.75, 1.5, 2.0])
+    places, slopes = zip(*body.read(times))
+    piece = np.repeat(range(4), counts)
+    for row, (place, slope) in enumerate(zip(places, slopes)):
+        for k, time in zip(piece, times):
+            p = np.array(series[k][row])
+            now = time - starts[k]
+            at = int(np.flatnonzero(times == time)[0])
+            assert place[at] == pytest.approx(float(value(p, now)), rel=1e-15, abs=0.0)
+            rate = float(value(polynomial.polyder(p), now))
+            assert slope[at] == pytest.approx(rate, rel=1e-15, abs=0.0)
+
+
+def test_a_body_keeps_no_more_series_than_samples_need():
+    body = a_path([(2, 0.0, [1.0] * 3, [1.0] * 3), (0, 0.5, [2.0] * 3, [2.0] * 3)])
+    assert [count for count, *_ in body.path] == [2] and body.done == 2
+
+
+# Pairs
+
+
+def pair_at(place, other, radius=1.0, other_radius=2.0, w=1.0):
+    """A located Pair of two balls, and its bodies."""
+    i, j = (exact.Body(w, r, q, [0.0, 0.0]) for r, q in ((radius, place), (other_radius, other)))
+    pair = exact.Pair(i, j)
+    pair.locate({i: place, j: other})
+    return pair, i, j
+
+
+def over_the_floor(height, x=5.0, radius=1.0):
+    """A located Pair of a ball and the floor."""
+    return pair_at((x, height), (0.0, 0.0), radius, 0.0)
+
+
+def test_two_balls_have_the_normal_and_the_gap_of_a_3_4_5_triangle():
+    pair, *_ = pair_at((7.0, 5.0), (4.0, 1.0))
+    assert (pair.nx, pair.ny, pair.depth) == (0.6, 0.8, -2.0) and not pair.wall
+    pair, *_ = pair_at((4.0, 1.0), (7.0, 5.0))
+    assert (pair.nx, pair.ny, pair.depth) == (-0.6, -0.8, -2.0)
+
+
+def test_the_normal_between_balls_over_one_another_is_up_or_down_and_up_for_one_centre():
+    for height, ny, depth in ((1.5, 1.0, 1.5), (-0.5, -1.0, 2.5), (0.0, 1.0, 3.0)):
+        pair, *_ = pair_at((2.0, 3.0 + height), (2.0, 3.0))
+        assert (pair.nx, pair.ny, pair.depth) == (0.0, ny, depth)
+
+
+@pytest.mark.parametrize("height", [3.0, 1.0, 0.5, 0.0, -2.0])
+def test_the_floor_is_flat_and_pushes_up_wherever_a_ball_is(height):
+    pair, *_ = over_the_floor(height)
+    assert (pair.nx, pair.ny, pair.depth) == (0.0, 1.0, 1.0 - height) and pair.wall
+
+
+@pytest.mark.parametrize("where", [0.0, 1.0, 1e3, 1e9])
+def test_balls_placed_in_touch_have_a_gap_that_counts_as_none(where):
+    """Rounded coordinates are off by half a last bit; a gap that is none grows with these alone."""
+    for angle in np.linspace(0.1, 3.0, 40):
+        other = (where, 0.0)
+        place = (where + 3.0 * math.cos(angle), 3.0 * math.sin(angle))
+        pair, *_ = pair_at(place, other)
+        assert abs(pair.depth) <= pair.small
+        assert exact.TOUCH <= pair.small <= exact.TOUCH + 8.0 * math.ulp(where + 3.0)
+        pair, *_ = pair_at(place[::-1], other[::-1])
+        assert abs(pair.depth) <= pair.small
+
+
+def test_a_gap_below_TOUCH_radii_of_the_first_ball_is_none():
+    for radius in (2.0**-10, 2.0**10):
+        gap = exact.TOUCH * radius
+        small = over_the_floor(0.0, x=0.0, radius=radius)[0].small
+        assert gap <= small <= 1.01 * gap
+
+
+def test_normal_and_tangential_velocity_are_the_two_parts_of_the_difference():
+    rng = np.random.default_rng(1)
+    for _ in range(10):
+        pair, i, j = pair_at(tuple(whole_numbers(rng, 2)), (0.5, 0.5))
+        a, b = rng.normal(size=(2, 2))
+        rows, n = {i: tuple(a), j: tuple(b)}, np.array((pair.nx, pair.ny))
+        assert pair.along(rows) == pytest.approx(n @ (a - b), rel=1e-14)
+        assert pair.across(rows) == pytest.approx(n[0] * (a - b)[1] - n[1] * (a - b)[0], rel=1e-14)
+        assert pair.along(rows) ** 2 + pair.across(rows) ** 2 == pytest.approx(
+            (a - b) @ (a - b), rel=1e-13
+        )
+
+
+def test_the_gap_of_two_free_balls_in_touch_widens_by_what_the_normal_turns():
+    """The second derivative of |d + u t| at t = 0, by a difference of large numbers of digits."""
+    rng = np.random.default_rng(2)
+    for _ in range(10):
+        angle = rng.uniform(0.0, 6.0)
+        pair, i, j = pair_at((3.0 * math.cos(angle), 3.0 * math.sin(angle)), (0.0, 0.0))
+        u = rng.normal(size=2)
+        rows, h = {i: tuple(u), j: (0.0, 0.0)}, 1e-4
+        d = np.array((pair.nx, pair.ny)) * 3.0
+        apart = [math.hypot(*(d + t * u)) for t in (-h, 0.0, h)]
+        second = (apart[0] - 2.0 * apart[1] + apart[2]) / h**2
+        assert pair.turning(rows) == pytest.approx(second, abs=3e-6)
+
+
+def test_the_floors_normal_never_turns():
+    pair, i, j = over_the_floor(1.0)
+    rows = {i: (3.0, -4.0), j: (0.0, 0.0)}
+    assert pair.along(rows) == -4.0 and pair.across(rows) == 0.0 == pair.turning(rows)
+
+
+# Series in time
+
+
+def test_a_series_is_evaluated_as_its_sum():
+    rng = np.random.default_rng(3)
+    for order in (1, 2, 3, 6, exact.ORDER + 1):
+        p = whole_numbers(rng, order)
+        for t in (0.0, 0.5, -1.0, 2.0):
+            assert exact.evaluate(p, t) == value(p, t)
+    times = np.array([0.5, 2.0])
+    assert exact.evaluate([1.0, 2.0, 3.0], times).tolist() == [2.75, 17.0]
+
+
+def test_the_rate_is_the_derivative():
+    p = whole_numbers(np.random.default_rng(4), 9)
+    assert exact.rate(p) == polynomial.polyder(p).tolist()
+
+
+@pytest.mark.parametrize("order", [2, 3, 7])
+def test_a_shifted_series_has_the_same_values_a_time_later(order):
+    p = whole_numbers(np.random.default_rng(5), order)
+    for s in (0.0, 1.0, -0.5, 2.0):
+        moved = exact.shifted(p, s)
+        assert len(moved) == order
+        assert all(value(moved, t) == value(p, t + s) for t in range(order + 1))
+    assert p is not exact.shifted(p, 0.0)
+
+
+def test_the_difference_of_series_of_any_length():
+    assert exact.difference([5.0, 4.0, 3.0], [1.0, 2.0]) == [4.0, 2.0, 3.0]
+    assert exact.difference([5.0], [1.0, 2.0, 7.0]) == [4.0, -2.0, -7.0]
+
+
+def test_a_parabola_has_the_position_the_velocity_and_the_acceleration():
+    for row, series in enumerate(exact.parabola((1.0, 2.0), (3.0, 4.0), (5.0, 6.0))):
+        rate = exact.rate(series)
+        told = [exact.evaluate(p, 0.0) for p in (series, rate, exact.rate(rate))]
+        assert told == [1.0 + row, 3.0 + row, 5.0 + row]
+
+
+def test_nothing_goes_further_than_it_reaches():
+    """|x(t) - x(0)| + |y(t) - y(0)| <= speed t + bend t^2, with = at the end where all goes up."""
+    rng = np.random.default_rng(6)
+    for order, span in ((3, 2.0), (6, 0.5), (6, 2.0)):
+        x, y = rng.normal(size=(2, order))
+        speed, bend = exact.reaches(x.tolist(), y.tolist(), span)
+        for t in np.linspace(0.0, span, 50):
+            far = sum(abs(float(value(p, t) - Fraction(p[0]))) for p in (x, y))
+            assert far <= (speed * t + bend * t * t) * (1.0 + 1e-14)
+        up, down = np.abs(x).tolist(), (-np.abs(y)).tolist()
+        speed, bend = exact.reaches(up, down, span)
+        far = float(value(up, span) - Fraction(up[0]) - value(down, span) + Fraction(down[0]))
+        assert speed * span + bend * span * span == pytest.approx(far, rel=1e-14)
+
+
+# The first root
+
+
+def test_a_parabola_falls_through_zero_at_its_first_root():
+    for value_, slope, bend, expected in (
+        (0.0, 0.0, -1.0, 0.0),  # rests on zero and accelerates downwards
+        (0.0, -1.0, 0.0, 0.0),
+        (0.0, 2.0, -1.0, 2.0),  # leaves zero and comes back
+        (3.0, -4.0, 1.0, 1.0),
+        (3.0, 2.0, -1.0, 3.0),
+        (4.0, -4.0, 1.0, 2.0),  # touches zero
+        (0.01, -0.2, 0.75, 1.0 / 15.0),
+        (6.0, -2.0, 0.0, 3.0),
+        (1.0, 0.0, -0.25, 2.0),
+    ):
+        assert exact.fall(value_, slope, bend) == pytest.approx(expected, rel=1e-15, abs=0.0)
+
+
+def test_a_parabola_that_stays_above_zero_never_falls():
+    for value_, slope, bend in (
+        (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 1.0, 0.25), (0.0, 1.0, 0.5), (1.0, -1.0, 1.0),
+        (1.0, -0.5, 0.1), (0.0, 0.0, 0.0),
+    ):  # fmt: skip
+        assert exact.fall(value_, slope, bend) == math.inf
+
+
+def test_a_falling_root_keeps_its_digits_where_the_bend_is_small():
+    """2 value / (root - slope) for slope < 0: the other form would lose all digits here."""
+    assert exact.fall(1.0, -1.0, 1e-20) == 1.0
+    assert exact.fall(1e-20, -1.0, -1.0) == pytest.approx(1e-20, rel=1e-15)
+
+
+@pytest.mark.parametrize("order", [3, 5])
+def test_the_lower_bound_of_a_parabola_is_its_least_value(order):
+    """At an end or at the vertex; also where a series is longer and has zeros from there."""
+    rng = np.random.default_rng(7)
+    for _ in range(200):
+        p = [*(rng.normal(size=3) * [1.0, 1.0, 0.5]).tolist(), *[0.0] * (order - 3)]
+        t, horizon = np.sort(rng.uniform(-2.0, 3.0, 2)).tolist()
+        values = polynomial.polyval(np.linspace(t, horizon, 2001), p)
+        within = abs(p[2]) * ((horizon - t) / 2000.0) ** 2 + 1e-14
+        assert values.min() - within <= exact.lower_bound(p, t, horizon) <= values.min() + 1e-14
+    assert exact.lower_bound([1.0, -1.0, 0.0], 0.0, 2.0) == -1.0
+
+
+def test_the_lower_bound_of_a_longer_series_is_one():
+    rng = np.random.default_rng(8)
+    for _ in range(50):
+        p = rng.normal(size=6).tolist()
+        t, horizon = np.sort(rng.uniform(0.0, 2.0, 2)).tolist()
+        values = polynomial.polyval(np.linspace(t, horizon, 500), p)
+        assert exact.lower_bound(p, t, horizon) <= values.min() + 1e-12
+
+
+def test_the_lower_bound_is_reached_where_all_falls_to_the_end():
+    for p, least in (
+        ([0.0, 0.0, 0.0, -1.0], -8.0),
+        ([0.0, 0.0, 0.0, -1.0, 0.0], -8.0),
+        ([5.0, -1.0, -2.0, 0.0, -3.0], 5.0 - 2.0 - 8.0 - 48.0),
+        ([0.0, -4.0, 1.0, -1.0], -12.0),
+    ):
+        assert exact.lower_bound(p, 1.0, 2.0) == least == value(p, 2.0)
+
+
+def falling_through(roots, rise=1.0):
+    """A series above 0 at t = 0 with these roots: 3 numbers for a parabola, or 5 at least."""
+    p = polynomial.polyfromroots(roots) * rise
+    p = np.append(p, np.zeros(max(0, (3 if len(p) < 4 else 5) - len(p))))
+    return (p if p[0] > 0.0 else -p).tolist()
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-9, 1e6])
+@pytest.mark.parametrize(
+    "roots",
+    [[1.0], [1.0, 2.0], [1.0, 1.05], [1.0, 1.05, 40.0], [1.0, 1.3, 1.6], [1.0, 3.0, -2.0, -5.0]],
+)
+def test_the_first_root_is_found_at_any_scale(roots, scale):
+    """Pairs of roots close together lie where the curvature turns the series back: a step that is a
+    little too long would miss both."""
+    p = falling_through([scale * root for root in roots], scale ** -len(roots))
+    t = exact.first_fall(p, 1.5 * scale)
+    assert t == pytest.approx(scale, rel=1e-13 / min([1.0, *np.diff(sorted(map(abs, roots)))]))
+    assert exact.first_fall(p, 0.9 * scale) == math.inf
+
+
+def test_the_first_of_many_roots_of_random_series_is_found():
+    rng = np.random.default_rng(9)
+    found = 0
+    for _ in range(200):
+        p = rng.normal(size=int(rng.integers(5, 9)))
+        p[0] = abs(p[0])
+        every = polynomial.polyroots(p)
+        real = [z.real for z in every if abs(z.imag) < 1e-9 and 0.0 <= z.real <= 1.0]
+        close = [z for z in every if 0.0 < abs(z.imag) < 1e-3]
+        if close or np.min(np.diff(sorted(real)), initial=1.0) < 1e-3:
+            continue  # a double root: rounding decides
+        expected = min(real, default=math.inf)
+        found += bool(real)
+        assert exact.first_fall(p.tolist(), 1.0) == pytest.approx(expected, rel=1e-9)
+    assert found > 50
+
+
+def test_a_root_at_the_horizon_counts():
+    for p in ([1.0, -1.0, 0.0], [1.0, -1.0, 0.0, 0.0], [1.0, -1.0, 0.0, 1e-300, 0.0]):
+        assert exact.first_fall(p, 1.0) == 1.0
+        assert exact.first_fall(p, np.nextafter(1.0, 0.0)) == math.inf
+
+
+def test_only_one_of_the_higher_orders_is_enough_to_matter():
+    """1 - t^3 and 1 - t^4 fall at 1; without their last orders they never would."""
+    for p in ([1.0, 0.0, 0.0, -1.0, 0.0], [1.0, 0.0, 0.0, 0.0, -1.0]):
+        assert exact.first_fall(p, 2.0) == pytest.approx(1.0, rel=1e-14)
+
+
+def test_a_series_that_starts_at_zero_and_falls_has_its_root_there():
+    assert exact.first_fall([0.0, -1.0, 0.0, 2.0, 0.0], 1.0) == 0.0
+
+
+# The calendar
+
+
+class Due:
+    """Something that can be planned, and the bodies it concerns."""
+
+    def __init__(self, *bodies):
+        self.due, self.bodies = math.inf, bodies
+
+
+def body(w=1.0):
+    return exact.Body(w, R, [0.0, 1.0], [0.0, 0.0])
+
+
+def test_what_is_due_comes_in_the_order_of_time_and_ties_in_that_of_planning():
+    calendar, balls = exact.Calendar(), [body() for _ in range(6)]
+    for time, ball in zip((5, 3, 5, 9, 3, 5), balls):
+        calendar.plan(time, Due(ball))
+    assert calendar.next() == 3
+    assert calendar.woken(4) == [balls[1], balls[4]]
+    assert calendar.woken(5) == [balls[0], balls[2], balls[5]]
+    assert calendar.next() == 9 and calendar.woken(8) == []
+
+
+def test_a_change_of_plan_leaves_nothing_of_the_old_one():
+    calendar, ball, other = exact.Calendar(), body(), body()
+    first, second = Due(ball), Due(other)
+    calendar.plan(1, first)
+    calendar.plan(2, second)
+    calendar.plan(7, first)
+    assert calendar.next() == 2 and calendar.woken(2) == [other]
+    calendar.plan(math.inf, first)
+    assert calendar.next() == math.inf and calendar.woken(math.inf) == []
+    assert not calendar.heap
+
+
+def test_what_never_happens_takes_no_room():
+    calendar = exact.Calendar()
+    for _ in range(5):
+        calendar.plan(math.inf, Due(body()))
+    assert not calendar.heap
+
+
+def test_an_event_wakes_the_balls_it_concerns_that_can_move():
+    calendar, light, heavy, fixed = exact.Calendar(), body(2.0), body(1e-3), body(0.0)
+    calendar.plan(1, Due(light, fixed))
+    calendar.plan(2, Due(heavy, light))
+    assert calendar.woken(2) == [light, heavy, light]
+
+
+# Homes
+
+
+def random_motion(seed, count=40):
+    """A Motion of balls of different sizes, every fifth fixed, and its scene."""
+    rng = np.random.default_rng(seed)
+    radius = rng.uniform(0.02, 0.1, count)
+    mass = np.where(np.arange(count) % 5 == 4, np.inf, rng.uniform(0.1, 10.0, count))
+    q0 = rng.uniform(0.0, 1.5, (2, count))
+    scene = heap_of_five()[0]._replace(q0=q0, v0=np.zeros_like(q0), mass=mass, radius=radius)
+    return exact.Motion(scene, G), scene
+
+
+def hold_neighbours(motion):
+    """Two balls are neighbours if they can meet while both stay within their room, at least one of
+    which can move; and of the floor is neighbour who can reach it. The lower number is first."""
+    balls = motion.balls
+    room = [ball.radius + ball.room for ball in balls]
+    for (k, one), (m, other) in combinations(enumerate(balls), 2):
+        apart = math.dist(one.home, other.home)
+        meets = apart <= room[k] + room[m] and (one.w > 0.0 or other.w > 0.0)
+        assert (other in one.near) == meets == (one in other.near)
+        if meets:
+            pair = one.near[other]
+            assert pair is other.near[one] and (pair.i, pair.j) == (one, other)
+    for k, ball in enumerate(balls):
+        reaches = ball.w > 0.0 and ball.home[1] <= room[k]
+        assert (motion.floor in ball.near) == reaches == (ball in motion.floor.near)
+        if reaches:
+            assert (ball.near[motion.floor].i, ball.near[motion.floor].j) == (ball, motion.floor)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_neighbours_are_all_that_can_meet_and_no_others(seed):
+    motion, scene = random_motion(seed)
+    assert [ball.w for ball in motion.balls] == (1.0 / scene.mass).tolist()
+    assert all(ball.room == (exact.ROOM * ball.radius if ball.w else 0.0) for ball in motion.balls)
+    hold_neighbours(motion)
+    rng = np.random.default_rng(seed)
+    for k in rng.permutation(len(motion.balls)):
+        if motion.balls[k].w > 0.0:
+            motion.move_home(motion.balls[k], tuple(rng.uniform(0.0, 1.5, 2).tolist()))
+    hold_neighbours(motion)
+
+
+def test_a_contact_that_is_out_of_reach_is_due_no_more():
+    motion, _ = random_motion(0)
+    ball = next(ball for ball in motion.balls if ball.w > 0.0 and len(ball.near) > 1)
+    kept = list(ball.near.values())
+    for contact in kept:
+        motion.calendar.plan(1, contact)
+    motion.move_home(ball, (100.0, 100.0))
+    assert not ball.near and all(contact.due == math.inf for contact in kept)
+    assert motion.calendar.woken(2) == []
+
+
+def test_a_neighbour_that_stays_one_keeps_its_contact_and_what_happened_to_it():
+    motion, _ = random_motion(1)
+    ball = next(ball for ball in motion.balls if ball.w > 0.0 and len(ball.near) > 1)
+    before = dict(ball.near)
+    motion.move_home(ball, ball.home)
+    assert ball.near == before
+
+
+def test_few_balls_look_at_all_others_and_one_more_than_FEW_only_near_home():
+    for count, room in ((exact.FEW, math.inf), (exact.FEW + 1, 0.5 * R)):
+        q0 = np.array((np.arange(count) * 9.0, np.full(count, 50.0)))
+        scene = heap_of_five()[0]._replace(
+            q0=q0, v0=np.zeros_like(q0), mass=np.ones(count), radius=np.full(count, R)
+        )
+        motion = exact.Motion(scene, G)
+        assert {ball.room for ball in motion.balls} == {room}
+        assert {len(ball.near) for ball in motion.balls} == {count if room == math.inf else 0}
+
+
+def test_a_ball_is_due_before_it_leaves_home_and_not_much_before():
+    """Straight up at 3 m/s it is half a radius from home after 0.05 / 3 s, and with an acceleration
+    along its way after the root of 3 t + 5 t^2 = 0.05."""
+    for x, y, span in (
+        ([0.0, 0.0, 0.0], [5.0, 3.0, 0.0], 0.05 / 3.0),
+        ([0.0, -3.0, -5.0], [5.0, 0.0, 0.0], (math.sqrt(9.0 + 20.0 * 0.05) - 3.0) / 10.0),
+        ([0.02, 0.0, 0.0], [5.0, 3.0, 0.0], 0.03 / 3.0),  # 0.02 m of the 0.05 m are used up
+        ([0.03, 3.0, 0.0], [5.0, 0.0, 0.0], 0.05 / 3.0),  # over half of them: a new home
+    ):
+        ball, motion = one_of_many()
+        motion.go_on(ball, exact.later(0, 1.0), x, y, math.inf)
+        assert exact.seconds(exact.later(0, 1.0), ball.due) == pytest.approx(span, rel=1e-12)
+        assert motion.calendar.next() == ball.due and ball.start == exact.later(0, 1.0)
+        assert tuple(ball.home) == ((0.03, 5.0) if x[0] == 0.03 else (0.0, 5.0))
+        motion.go_on(ball, 0, x, y, 0.001)
+        assert ball.due == exact.later(0, 0.001)
+
+
+def one_of_many():
+    """A ball with its home at (0, 5), and the Motion of it and of others far away."""
+    count = exact.FEW + 1
+    q0 = np.array((np.arange(count) * 9.0, np.full(count, 5.0)))
+    scene = heap_of_five()[0]._replace(
+        q0=q0, v0=np.zeros_like(q0), mass=np.ones(count), radius=np.full(count, R)
+    )
+    motion = exact.Motion(scene, G)
+    return motion.balls[0], motion
+
+
+def test_a_ball_among_few_is_due_only_when_its_series_ends():
+    motion = exact.Motion(heap_of_five()[0], G)
+    ball = motion.balls[0]
+    motion.go_on(ball, 0, [0.0, 3.0, 0.0], [9.0, 0.0, 0.0], math.inf)
+    assert ball.due == math.inf and motion.calendar.next() == math.inf
+    motion.samples = 4
+    motion.go_on(ball, 5, [1.0, 3.0, 0.0], [9.0, 0.0, 0.0], 2.0)
+    assert ball.due == 5 + 2 * exact.SECOND
+    assert ball.path == [(4, 0, [0.0, 3.0, 0.0], [9.0, 0.0, 0.0])]
+
+
+# Sliding: what the series promise
+
+
+def held_group(scene, contacts):
+    """The Group of these contacts (i, j), j = -1 the floor, and q, v of all bodies."""
+    motion = exact.Motion(scene, G)
+    bodies = [*motion.balls, motion.floor]
+    q, v = ({body: body.at(0)[k] for body in bodies} for k in (0, 1))
+    group = exact.Group(bodies[i].near[bodies[j]] for i, j in contacts)
+    for contact in group:
+        contact.locate(q)
+    return motion, group, q, v
+
+
+def sliding_scenes():
+    rng = np.random.default_rng(10)
+    for scene, contacts in (on_a_movable_ball([1.0, 2.0], [0.1, 0.2]), heap_of_five()):
+        yield scene, contacts, rng
+    scene, contacts = heap_of_five()
+    mass = scene.mass.copy()
+    mass[1] = np.inf
+    yield scene._replace(mass=mass), [pair for pair in contacts if pair != (1, -1)], rng
+
+
+def feasible(scene, contacts, v):
+    """The velocities (2, N) nearest to v by kinetic energy at which no contact opens or closes."""
+    count = len(scene.mass)
+    J = np.zeros((len(contacts), 2, count + 1))
+    q = np.append(scene.q0, np.zeros((2, 1)), 1)
+    for row, (i, j) in zip(J, contacts):
+        d = q[:, i] - q[:, j]
+        n = np.array((0.0, 1.0)) if j < 0 else d / np.hypot(*d)
+        row[:, i], row[:, j] = n, -n
+    J = J[:, :, :count].reshape(len(contacts), -1)
+    w = np.tile(1.0 / scene.mass, 2)
+    return v - (w * (J.T @ np.linalg.solve(J * w @ J.T, J @ v.ravel()))).reshape(2, count)
+
+
+def in_its_own_time(Q, lam):
+    """The series in a unit of time [s] in which no coefficient is above 1, and that unit."""
+    orders = np.arange(1, len(Q))
+    unit = (np.abs(Q[1:]).max((1, 2)) ** (-1.0 / orders)).min()
+    powers = unit ** np.arange(len(Q))
+    return Q * powers[:, None, None], lam * powers[2:, None], unit
+
+
+@pytest.mark.parametrize("case", range(3))
+def test_the_series_of_sliding_balls_keep_every_gap_and_obey_newton(case):
+    """gap = 0 means |q_i - q_j|^2 = reach^2 order by order; and M (k + 1) (k + 2) Q[k + 2] is what
+    the forces' series, times the normals' series, add up to."""
+    scene, contacts, rng = list(sliding_scenes())[case]
+    moves, order = np.isfinite(scene.mass), exact.ORDER
+    scene = scene._replace(v0=feasible(scene, contacts, rng.normal(size=scene.q0.shape) * moves))
+    _, held, q, v = held_group(scene, contacts)
+    bodies, Q, lam = exact.slide(held, q, v, G)
+    for rows, given in ((Q[0], q), (Q[1], v)):
+        assert rows.T == pytest.approx(np.array([given[body] for body in bodies]), abs=1e-14)
+    assert Q.shape == (order + 1, 2, len(bodies)) and lam.shape == (order - 1, len(held))
+    Q, lam, unit = in_its_own_time(Q, lam)
+    one, force = np.eye(order + 1)[0], np.zeros((order - 1, 2, len(bodies)))
+    for contact, row in zip(held, lam.T):
+        i, j = bodies.index(contact.i), bodies.index(contact.j)
+        d = Q[:, :, i] - Q[:, :, j]
+        if contact.wall:
+            assert d[:, 1] == pytest.approx(one * contact.reach, abs=1e-15)
+            d = np.outer(one, (0.0, contact.reach))
+        square = sum(np.convolve(part, part)[: order + 1] for part in d.T)
+        assert square == pytest.approx(one * contact.reach**2, abs=1e-15)
+        for axis in (0, 1):
+            push = np.convolve(row, d[:, axis] / contact.reach)[: order - 1]
+            force[:, axis, i] += push
+            force[:, axis, j] -= push
+    w = np.array([body.w for body in bodies])
+    force *= w
+    force[0, 1, w > 0.0] += G * unit**2
+    k = np.arange(order - 1)[:, None, None]
+    assert Q[2:] == pytest.approx(force / ((k + 1) * (k + 2)), abs=1e-14)
+    assert (Q[2:, :, w == 0.0] == 0.0).all()
+
+
+def test_a_slide_starts_where_no_gap_is_left_and_nothing_opens_or_closes():
+    """From places that are off by 1e-6 r, and any velocities: what a least push, weighed by the
+    masses, makes of them. Its remainder is of second order in the gaps, 1e-12 r."""
+    scene, contacts, rng = list(sliding_scenes())[2]
+    moves = np.isfinite(scene.mass)
+    off = 1e-6 * R * rng.uniform(-1.0, 1.0, scene.q0.shape) * moves
+    scene = scene._replace(q0=scene.q0 + off, v0=rng.normal(size=scene.q0.shape) * moves)
+    _, held, q, v = held_group(scene, contacts)
+    bodies, Q, _ = exact.slide(held, q, v, G)
+    order = [bodies.index(body) for body in list(q)[:-1]]
+    gaps = []
+    for contact in held:
+        d = Q[0, :, bodies.index(contact.i)] - Q[0, :, bodies.index(contact.j)]
+        gaps.append((d[1] if contact.wall else np.hypot(*d)) - contact.reach)
+    assert np.abs(gaps).max() <= 1e-11 * R
+    moved = scene._replace(q0=Q[0][:, order])
+    assert Q[1][:, order] == pytest.approx(feasible(moved, contacts, scene.v0), abs=1e-5)
+    push = Q[0][:, order] - scene.q0  # in the span of M^-1 J': nothing of it is feasible
+    assert np.abs(feasible(scene, contacts, push)).max() <= 1e-11 * R
+    assert (Q[:2, :, [k for k, b in enumerate(bodies) if b.w == 0.0]][1] == 0.0).all()
+
+
+def expanded(scene, contacts, v=None):
+    """What expand says of these contacts, and slide's series of them."""
+    motion, held, q, still = held_group(scene, contacts)
+    v = still if v is None else {**still, **v(motion)}
+    a = {body: (0.0, G if body.w else 0.0) for body in q}
+    held.correct(a, exact.normal_accelerations(held, v, a))
+    return motion, held, exact.expand(held, q, v, a, G), exact.slide(held, q, v, G)
+
+
+@pytest.mark.parametrize("case", ["heap", "hexagonal", "on a ball"])
+def test_a_series_lasts_a_power_of_2_as_long_as_its_last_terms_are_below_2_to_the_minus_54(case):
+    """Twice as long one of its last two terms would be 2^-55 of a radius or more."""
+    scene, contacts = {
+        "heap": heap_of_five(), "hexagonal": hexagonal(),
+        "on a ball": (on_a_movable_ball([np.inf, 1.0], [0.02, 0.1])[0], [(1, 0)]),
+    }[case]  # fmt: skip
+    motion, held, (series, forces, span), (bodies, Q, lam) = expanded(scene, contacts)
+    assert math.frexp(span)[0] == 0.5 and list(forces) == list(held)
+    moving = [k for k, body in enumerate(bodies) if body.w > 0.0]
+    assert list(series) == [bodies[k] for k in moving]
+    for k in moving:
+        assert np.array(series[bodies[k]]).T.tolist() == Q[:, :, k].tolist()
+
+    def last_terms(time):
+        powers = np.array([time ** (exact.ORDER - 1), time**exact.ORDER])[:, None, None]
+        radius = np.array([bodies[k].radius for k in moving])
+        return np.abs(Q[-2:, :, moving] * powers / radius).max()
+
+    assert last_terms(span) < 2.0**-54 <= 2.0 * last_terms(2.0 * span)
+
+
+def test_a_force_ends_when_it_has_fallen_to_minus_a_graze_of_the_weight():
+    """GRAZE of g, in acceleration along the contact: force (w_i + w_j) = -1e-12 g."""
+    motion, held, (_, forces, _), (_, _, lam) = expanded(*heap_of_five())
+    for contact, row, series in zip(held, lam.T, forces.values()):
+        graze = -exact.GRAZE * G / (contact.i.w + contact.j.w)
+        assert series[0] == row[0] + graze > row[0] and series[1:] == row[1:].tolist()
+
+
+def test_where_nothing_slides_there_is_nothing_to_expand():
+    """A column at rest, and one that moves together along x."""
+    scene, contacts = on_a_movable_ball([1.0, 2.0], [0.1, 0.1], angle=0.0)
+    assert expanded(scene, contacts)[2] == ({}, {}, math.inf)
+    drift = lambda motion: {ball: (3.0, 0.0) for ball in motion.balls}  # noqa: E731
+    assert expanded(scene, contacts, drift)[2] == ({}, {}, math.inf)
+    top = lambda motion: {motion.balls[1]: (3.0, 0.0)}  # noqa: E731
+    assert len(expanded(scene, contacts, top)[2][0]) == 2
