@@ -7,6 +7,7 @@ not round; where they are not, the answer is computed with fractions.
 import math
 from fractions import Fraction
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -467,7 +468,7 @@ def test_a_neighbour_that_stays_one_keeps_its_contact_and_what_happened_to_it():
 
 
 def test_few_balls_look_at_all_others_and_one_more_than_FEW_only_near_home():
-    for count, room in ((exact.FEW, math.inf), (exact.FEW + 1, 0.5 * R)):
+    for count, room in ((exact.FEW, math.inf), (exact.FEW + 1, exact.ROOM * R)):
         q0 = np.array((np.arange(count) * 9.0, np.full(count, 50.0)))
         scene = heap_of_five()[0]._replace(
             q0=q0, v0=np.zeros_like(q0), mass=np.ones(count), radius=np.full(count, R)
@@ -477,20 +478,22 @@ def test_few_balls_look_at_all_others_and_one_more_than_FEW_only_near_home():
         assert {len(ball.near) for ball in motion.balls} == {count if room == math.inf else 0}
 
 
-def test_a_ball_is_due_before_it_leaves_home_and_not_much_before():
-    """Straight up at 3 m/s it is half a radius from home after 0.05 / 3 s, and with an acceleration
-    along its way after the root of 3 t + 5 t^2 = 0.05."""
+def test_a_ball_is_due_when_it_may_leave_home():
+    """Straight up at 3 m/s it is its room from home after room / 3 s, and with an acceleration
+    along its way after the root of 3 t + 5 t^2 = room."""
+    room = exact.ROOM * R
+    bent = (math.sqrt(9.0 + 20.0 * room) - 3.0) / 10.0
     for x, y, span in (
-        ([0.0, 0.0, 0.0], [5.0, 3.0, 0.0], 0.05 / 3.0),
-        ([0.0, -3.0, -5.0], [5.0, 0.0, 0.0], (math.sqrt(9.0 + 20.0 * 0.05) - 3.0) / 10.0),
-        ([0.02, 0.0, 0.0], [5.0, 3.0, 0.0], 0.03 / 3.0),  # 0.02 m of the 0.05 m are used up
-        ([0.03, 3.0, 0.0], [5.0, 0.0, 0.0], 0.05 / 3.0),  # over half of them: a new home
+        ([0.0, 0.0, 0.0], [5.0, 3.0, 0.0], room / 3.0),
+        ([0.0, -3.0, -5.0], [5.0, 0.0, 0.0], bent),
+        ([0.4 * room, 0.0, 0.0], [5.0, 3.0, 0.0], 0.6 * room / 3.0),  # 0.4 of it are used up
+        ([0.6 * room, 3.0, 0.0], [5.0, 0.0, 0.0], room / 3.0),  # over half of it: a new home
     ):
         ball, motion = one_of_many()
         motion.go_on(ball, exact.later(0, 1.0), x, y, math.inf)
         assert exact.seconds(exact.later(0, 1.0), ball.due) == pytest.approx(span, rel=1e-12)
         assert motion.calendar.next() == ball.due and ball.start == exact.later(0, 1.0)
-        assert tuple(ball.home) == ((0.03, 5.0) if x[0] == 0.03 else (0.0, 5.0))
+        assert tuple(ball.home) == ((x[0], 5.0) if x[0] > 0.5 * room else (0.0, 5.0))
         motion.go_on(ball, 0, x, y, 0.001)
         assert ball.due == exact.later(0, 0.001)
 
@@ -515,6 +518,232 @@ def test_a_ball_among_few_is_due_only_when_its_series_ends():
     motion.go_on(ball, 5, [1.0, 3.0, 0.0], [9.0, 0.0, 0.0], 2.0)
     assert ball.due == 5 + 2 * exact.SECOND
     assert ball.path == [(4, 0, [0.0, 3.0, 0.0], [9.0, 0.0, 0.0])]
+
+
+# Contacts: what happened to them
+
+
+def contact_over_the_floor(radius=R):
+    """A Contact of a ball that lies on the floor."""
+    ball = exact.Body(1.0, radius, [0.0, radius], [0.0, 0.0])
+    floor = exact.Body(0.0, 0.0, [0.0, 0.0], [0.0, 0.0])
+    contact = exact.Contact(ball, floor, G)
+    contact.locate({ball: (0.0, radius), floor: (0.0, 0.0)})
+    return contact
+
+
+@pytest.mark.parametrize("radius", [1e-3, 0.1, 20.0])
+def test_a_bounce_is_slow_when_it_rises_less_than_LAST_radii(radius):
+    """With v it rises v^2 / (2 g)."""
+    contact = contact_over_the_floor(radius)
+    for rise, slow in ((0.99 * exact.LAST, True), (1.01 * exact.LAST, False)):
+        v_n = math.sqrt(-2.0 * G * rise * radius)
+        assert contact.is_slow(v_n) == contact.is_slow(-v_n) == slow
+
+
+@pytest.mark.parametrize("radius", [1e-3, 0.1, 20.0])
+def test_bodies_approach_when_their_speed_is_above_round_off(radius):
+    """Round-off is measured by the speed after a fall of half a radius."""
+    contact, fallen = contact_over_the_floor(radius), math.sqrt(-2.0 * G * 0.5 * radius)
+    assert contact.closes(-1.01 * exact.NOISE * fallen) and contact.closes(-1.0)
+    assert not contact.closes(-0.99 * exact.NOISE * fallen) and not contact.closes(0.0)
+    assert not contact.closes(1.0)
+
+
+def test_a_bound_of_how_far_a_contact_was_open_is_one_and_no_more_than_8_times_too_much():
+    """Parting with v it is v^2 / (2 g) open at most, and closes with v after 2 v / g."""
+    for v in (1e-8, 0.3, 20.0):
+        contact = contact_over_the_floor()
+        contact.touched(5, v)
+        widest = contact.opened(exact.later(5, -2.0 * v / G), -v)
+        assert -0.5 * v * v / G <= widest <= -4.01 * v * v / G
+    assert contact_over_the_floor().opened(0, -1.0) == math.inf  # it has never touched
+
+
+def test_a_contact_that_still_closes_when_it_touched_has_not_hardly_opened():
+    contact = contact_over_the_floor()
+    contact.touched(5, -1.0)
+    assert contact.last_touch == 5 and contact.opened(6, -1.0) == math.inf
+
+
+def test_a_contact_at_rest_has_no_gap_whatever_its_place_says():
+    for rests, gap in ((True, 0.0), (False, 1e-12)):
+        contact = contact_over_the_floor()
+        contact.rests = rests
+        contact.touched(5, 0.0)
+        contact.look({contact.i: (0.0, R + 1e-12), contact.j: (0.0, 0.0)}, exact.later(5, 1.0))
+        assert -contact.depth == pytest.approx(gap, abs=1e-16)
+
+
+def opened(contact, share, now):
+    """Let it have parted so that, closing at `now`, it has opened this many THIN radii at most."""
+    span = share * exact.THIN * contact.i.radius / 2e-3
+    contact.touched(now - int(span * exact.SECOND), 1e-3)
+    return contact
+
+
+def thin(now, *contacts, v_n=-1e-3):
+    return exact.hardly_opened(SimpleNamespace(now=now), contacts, [v_n] * len(contacts))
+
+
+def test_a_contact_that_closes_and_has_opened_less_than_THIN_radii_has_hardly_opened():
+    now = exact.later(0, 1.0)
+    for radius in (0.01, 3.0):
+        little, more = (
+            opened(contact_over_the_floor(radius), share, now) for share in (0.99, 1.01)
+        )
+        assert thin(now, little, more) == [True, False]
+        assert (little.thin, more.thin) == (now, -math.inf)
+        assert thin(now, opened(contact_over_the_floor(), 0.5, now), v_n=1e-3) == [False]
+
+
+@pytest.mark.parametrize("share, stops", [(9.9e3, True), (10.1e3, False)])
+def test_once_one_has_hardly_opened_so_have_those_open_just_then_by_1e4_times_more(share, stops):
+    """The one that stopped touched at that time, so it was not open: for it THIN stays THIN."""
+    now = exact.later(0, 1.0)
+    other, stopped = opened(contact_over_the_floor(), share, now), contact_over_the_floor()
+    before = (other.last_touch + now) // 2
+    assert thin(before, opened(stopped, 0.5, before)) == [True] and stopped.thin == before
+    stopped.touched(before, 0.0)
+    assert thin(now, stopped, other) == [False, stops]
+
+
+# Islands
+
+
+def scattered_balls(seed):
+    """A Motion of balls on a lattice with a step of 2 r, some of which are fixed and some missing:
+    neighbours touch, or are 0.4 or 2.5 times TOUCH radii apart, as its row says."""
+    rng = np.random.default_rng(seed)
+    places = [(k, m) for k in range(6) for m in range(5) if rng.random() < 0.75]
+    x, y = np.transpose(places) * 2.0 * R
+    y += rng.choice([0.0, 0.4, 2.5], 5).cumsum()[np.array(places)[:, 1]] * exact.TOUCH * R
+    mass = np.where(rng.random(len(x)) < 0.15, np.inf, 10.0 ** rng.uniform(-2.0, 2.0, len(x)))
+    q0 = np.array((x, y + R + rng.choice([0.0, 1.0])))
+    scene = heap_of_five()[0]._replace(
+        q0=q0, v0=rng.normal(size=q0.shape), mass=mass, radius=np.full(len(x), R)
+    )
+    return exact.Motion(scene, G)
+
+
+def hangs_together(motion, ball, due):
+    """The balls that can be reached from one through balls that move, by touch or what is due."""
+    found, new = set(), {ball}
+    while new:
+        found |= new
+        new = {
+            other
+            for one in found
+            for other, contact in one.near.items()
+            if other.w > 0.0
+            and (contact in due or math.dist(one.home, other.home) < 2.0 * R * (1.0 + exact.TOUCH))
+        } - found
+    return found
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_an_island_is_what_hangs_together_by_touch_or_by_what_is_due(seed):
+    motion, rng = scattered_balls(seed), np.random.default_rng(seed)
+    now = exact.later(0, 1e-16)  # in which nothing moves that could be seen
+    every = list(dict.fromkeys(contact for b in motion.balls for contact in b.near.values()))
+    due = [every[k] for k in rng.integers(0, len(every), 3)]
+    for contact, time in zip(due, (now, now, now - 5)):
+        motion.calendar.plan(time, contact)
+    motion.calendar.plan(now + 1, next(contact for contact in every if contact not in due))
+    for ball in motion.balls:
+        if ball.w > 0.0:
+            island = exact.Island(now, ball)
+            assert set(island.balls) == hangs_together(motion, ball, due)
+            near = {contact for b in island.balls for contact in b.near.values()}
+            assert set(island.contacts) == near
+            bodies = {body for contact in near for body in contact.bodies} | {ball}
+            assert set(island.q) == set(island.v) == bodies
+            assert all((island.q[b], island.v[b]) == b.at(now) for b in bodies)
+
+
+def island_of(scene):
+    """The island of the first ball that moves, at the start, and its Motion."""
+    motion = exact.Motion(scene, G)
+    return exact.Island(0, next(ball for ball in motion.balls if ball.w > 0.0)), motion
+
+
+def row_of_balls(x, mass, height=10.0):
+    """Balls at rest beside one another, high above the floor; x in radii."""
+    q0 = np.array((np.array(x) * R, np.full(len(x), height)))
+    return heap_of_five()[0]._replace(
+        q0=q0, v0=np.zeros_like(q0), mass=np.array(mass, float), radius=np.full(len(x), R)
+    )
+
+
+def test_an_overlap_is_closed_by_moving_the_heavy_ball_less():
+    """0.6 r: 1 kg moves by three quarters of it and 3 kg by one, so that their centre stays."""
+    island, motion = island_of(row_of_balls([0.0, 1.4], [1.0, 3.0]))
+    exact.separate(island)
+    (contact,) = (c for c in island.contacts if not c.wall)
+    assert abs(contact.depth) <= contact.small
+    x = [island.q[ball][0] / R for ball in motion.balls]
+    assert x == pytest.approx([-0.45, 1.55], abs=1e-12)
+    assert all(island.q[ball][1] == 10.0 for ball in motion.balls)
+
+
+def test_an_overlap_with_what_is_fixed_is_closed_by_the_other_ball_alone():
+    island, motion = island_of(row_of_balls([0.0, 1.4], [np.inf, 3.0]))
+    exact.separate(island)
+    assert [island.q[ball][0] / R for ball in motion.balls] == pytest.approx([0.0, 2.0], abs=1e-12)
+    assert list(island.balls) == [motion.balls[1]]
+    island, motion = island_of(row_of_balls([0.0], [3.0], height=0.5 * R))
+    exact.separate(island)
+    assert island.q[motion.balls[0]] == pytest.approx((0.0, R), abs=1e-15)
+    assert list(island.balls) == motion.balls
+
+
+@pytest.mark.parametrize("gap, balls", [(0.5, 2), (0.45, 2), (0.35, 3), (0.1, 3)])
+def test_balls_are_moved_with_an_overlap_when_they_are_nearer_than_twice_its_depth(gap, balls):
+    """An overlap of 0.2 r, and a heavy ball behind a gap: each ball of the overlap moves by 0.1 r,
+    so that the third is pushed only when it is nearer than that."""
+    island, motion = island_of(row_of_balls([0.0, 1.8, 3.8 + gap], [2.0, 2.0, 50.0]))
+    exact.separate(island)
+    assert set(island.balls) == set(motion.balls[:balls])
+    assert motion.floor not in island.balls
+    third = island.q.get(motion.balls[2])
+    if gap > 0.1:
+        assert third is None or third[0] / R == pytest.approx(3.8 + gap, abs=1e-13)
+    x = [island.q[ball][0] / R for ball in motion.balls[:2]]
+    assert x == pytest.approx([-0.1, 1.9], abs=1e-12)
+
+
+def test_where_nothing_overlaps_nothing_is_moved_and_no_digit_of_a_gap_is_lost():
+    island, motion = island_of(row_of_balls([0.0, 2.0, 4.0], [1.0, 2.0, 3.0], height=R))
+    before, depths = dict(island.q), [contact.depth for contact in island.contacts]
+    for contact in island.contacts:
+        contact.series = [1e-20]
+    exact.separate(island)
+    assert island.q == before and [contact.depth for contact in island.contacts] == depths
+    assert all(contact.series == [1e-20] for contact in island.contacts)
+
+
+def test_of_small_gaps_only_those_touch_that_hardly_were_wider():
+    """A gap is none below TOUCH radii, and below a ten thousandth of what it was open before."""
+    for parting, gap, touches in (
+        (None, 0.5, True), (None, 2.5, False), (1e-9, 0.5, True), (1e-9, 2.5, False),
+        (0.9e-9, 0.5, True), (1e-10, 0.5, False), (1e-10, 0.04, True), (1e-10, -0.5, True),
+    ):  # fmt: skip
+        island, _ = island_of(row_of_balls([0.0], [1.0], height=R + gap * exact.TOUCH * R))
+        (contact,) = island.contacts
+        if parting is not None:  # one second ago, so open by as many metres at most
+            contact.last_touch, contact.parting = -exact.SECOND, parting
+        assert (contact in exact.touching(island)) == touches, (parting, gap)
+
+
+def test_a_contact_that_rests_or_is_due_touches_whatever_its_gap():
+    for gap in (0.9, 2.5):
+        for note, touches in (("rests", gap < 1.0), ("due", True), ("none", False)):
+            island, motion = island_of(row_of_balls([0.0], [1.0], height=R + gap * exact.TOUCH * R))
+            (contact,) = island.contacts
+            contact.last_touch = 0  # opened by nothing since
+            contact.rests = note == "rests"
+            motion.calendar.plan(0 if note == "due" else 1, contact)
+            assert (contact in exact.touching(island)) == touches, (gap, note)
 
 
 # Sliding: what the series promise
