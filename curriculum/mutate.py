@@ -5,19 +5,22 @@
     python -m curriculum.mutate contact.py --sample 200     so many of its mutants, drawn by --seed
     python -m curriculum.mutate contact.py --only lcp_step  those in functions of that name
     python -m curriculum.mutate contact.py --trust          all but those that have a reason
+    python -m curriculum.mutate contact.py --named          those that have a reason
     python -m curriculum.mutate contact.py --list           the mutants, without running any
 
 A mutant is the file with one operator, number, condition or call changed. It is killed when a test
 fails or does not end, of those that run the changed function. Tests that compare hashes of the
 text, or look at pages, are left out, since they would notice any change. A survivor is either named
 in curriculum/equivalent_mutants.txt, with the reason why nothing can notice it, or it is a hole in
-the tests. The report is curriculum/stress/results/mutation.md, and the numbers are the section
-"mutation" of the results there; --only writes none. What was found is kept in outputs, to go on from.
+the tests. A mutant that has a reason and is killed refutes it. The report is
+curriculum/stress/results/mutation.md, and the numbers are the section "mutation" of the results
+there; --only and --named write none. What was found is kept in outputs, to go on from.
 
 Each mutant runs in a forked process in a copy of the repository. Forking needs Linux or macOS.
 mutmut 3 changes neither constants of a module nor decorated functions, and the twin is made of
 these; cosmic-ray starts Python and pytest anew for each mutant, which takes several times as long.
-Exit status 0: no survivor without a reason and at least 95 % of the others killed; else 1.
+Exit status 0: every survivor has a reason, every reason is of a survivor, and at least 95 % of the
+others are killed; else 1.
 """
 
 import argparse
@@ -56,7 +59,7 @@ BUDGET = 8.0  # processor's seconds of tests that one mutant is worth
 TESTS = {
     "contact.py": "lcp figures faults closed_form measures skips soft next_chapter stress "
     "invariants mutants command_line recording piles soft_mujoco",
-    "curriculum/terminal.py": "command_line faults",
+    "curriculum/terminal.py": "terminal command_line faults",
     "curriculum/piles.py": "piles",
     "curriculum/exact.py": "exact exact_parts exact_sliding closed_form mutants stress",
 }
@@ -547,6 +550,16 @@ def reasons():
     return found
 
 
+def outdated(files):
+    """The changes that have a reason and are no mutants of these files any more."""
+    made = {
+        f"{file}: {words_of(mutant)}"
+        for file in files
+        for mutant in mutants_of(file, (ROOT / file).read_text("utf-8"))
+    }
+    return [change for change in reasons() if change.split(":")[0] in files and change not in made]
+
+
 def section_of(rows_by_file, known, sizes):
     """The section "mutation" of results.json."""
 
@@ -568,6 +581,7 @@ def section_of(rows_by_file, known, sizes):
             "between": wilson(killed, len(rows) - len(named)),
             "code": measured.code_hash(file),
             "named": [[*row[:3], why(file, row)] for row in named],
+            "refuted": [row for row in rows if why(file, row) and row not in named],
             "survivors": [row for row in alive if row not in named],
         }
     return {"files": found}
@@ -642,6 +656,7 @@ def parse(argv):
     parser.add_argument("--seed", type=number(int, low=0), default=0, help="draws the sample (0)")
     parser.add_argument("--only", metavar="NAME", help="only mutants in functions of this name")
     parser.add_argument("--trust", action="store_true", help="do not try those with a reason")
+    parser.add_argument("--named", action="store_true", help="only those with a reason")
     parser.add_argument("--list", action="store_true", help="list the mutants, run none")
     parser.add_argument("--out", type=Path, default=RESULTS, help=argparse.SUPPRESS)
     args = parser.parse_args(argv)
@@ -656,6 +671,9 @@ def choose(file, args):
     """(all mutants of a file, those to try)."""
     every = mutants_of(file, (ROOT / file).read_text("utf-8"))
     chosen = [m for m in every if args.only is None or args.only in m.where.split(".")]
+    if args.named:
+        named = reasons()
+        chosen = [m for m in chosen if f"{file}: {words_of(m)}" in named]
     if args.sample is not None and args.sample < len(chosen):
         chosen = random.Random(args.seed).sample(chosen, args.sample)
     return every, sorted(chosen, key=lambda m: (m.start, m.new))
@@ -685,10 +703,13 @@ def main(argv=None):
             os.environ["NUMBA_DISABLE_JIT"] = str(int(file == "curriculum/piles.py"))
             rows[file] = run_file(file, chosen[file], Path(folder), args.trust)
     section = section_of(rows, reasons(), sizes)
-    if args.only is None:
+    if args.only is None and not args.named:
         command = ["python -m curriculum.mutate", *(sys.argv[1:] if argv is None else argv)]
         save(args.out, section, " ".join(command))
-    return show(section["files"])
+    old = outdated(args.files)
+    for change in old:
+        print(f"equivalent_mutants.txt: the code has changed, there is no such mutant: {change}")
+    return 1 if old else show(section["files"])
 
 
 def save(out, section, command):
@@ -701,16 +722,19 @@ def save(out, section, command):
 
 
 def show(files):
-    """Print the survivors and the shares; 1 when there are survivors or too few are killed."""
+    """Print survivors, refuted reasons and shares; 1 when there are any or too few are killed."""
     bad = False
     for file, one in files.items():
+        for where, line, said, outcome in one["refuted"]:
+            print(f"{file}:{line}: {where}: {outcome}, though it has a reason: {said}")
         for where, line, said, outcome in one["survivors"]:
             print(f"{file}:{line}: {where}: {outcome}: {said}")
         print(
             f"{file}: {one['killed']} of {one['tried']} killed, {one['equivalent']} equivalent, "
             f"{len(one['survivors'])} survivors: {share_of(one)}"
         )
-        bad |= one["share"] < WANTED or bool(one["survivors"])
+        few = one["tried"] > one["equivalent"] and one["share"] < WANTED
+        bad |= few or bool(one["survivors"]) or bool(one["refuted"])
     return 1 if bad else 0
 
 

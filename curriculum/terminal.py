@@ -166,7 +166,6 @@ def print_report(args, quality, grid, critical=None):
 
 def print_verdict(spring, solve):
     """Compare the depths of penalty and lcp, if these rows can be compared."""
-    deeper = False
     said = "a run exploded"
     if not (spring["blew_up"] or solve["blew_up"]):
         deeper = all(spring[key] > solve[key]

@@ -11,11 +11,13 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import contact
+import curriculum
 from curriculum import terminal
 from curriculum.common import picture, results, shell, wallclock, workers
 from curriculum.tests import test_bets
@@ -337,6 +339,25 @@ def test_importing_contact_loads_neither_the_page_nor_the_benchmark():
     code = "import contact, sys; print(*[m for m in sys.modules if m.startswith('curriculum.')])"
     loaded = python(code).stdout.split()
     assert loaded == [], "contact.py alone needs numpy alone"
+
+
+def test_run_as_a_script_contact_is_the_module_that_the_command_line_works_with(monkeypatch):
+    """A second copy would be made of it, and what one of them is given the other would not have."""
+    seen = []
+    stand_in = SimpleNamespace(main=lambda argv: seen.append(sys.modules["contact"]) or 7)
+    monkeypatch.setattr(curriculum, "terminal", stand_in)
+    monkeypatch.delitem(sys.modules, "contact")
+    monkeypatch.setitem(sys.modules, "__main__", contact)
+    monkeypatch.setattr(contact, "__name__", "__main__")
+    assert contact.main([]) == 7 and seen == [contact]
+
+
+def test_alone_contact_says_in_one_line_what_its_command_line_needs(monkeypatch, capsys):
+    monkeypatch.delattr(curriculum, "terminal")
+    monkeypatch.setitem(sys.modules, "curriculum.terminal", None)  # as if it were not there
+    assert contact.main([]) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and err.count("\n") == 1 and "needs the course's folder beside it" in err
 
 
 def test_without_rerun_one_line_says_how_to_install_it_and_metrics_are_written(tmp_path):

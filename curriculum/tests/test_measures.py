@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import contact
+from curriculum.common import recording as recording_files
 
 R = contact.RADIUS
 SCENE = contact.build_scene("drop")
@@ -49,6 +50,17 @@ def test_nothing_pushes_a_held_ball_in_the_recording():
     scene = contact.build_scene("stack", bodies=2)._replace(mass=np.array([1.0, np.inf]))
     pushes = contact.contact_impulses(contact.run_model("lcp", scene, DT, 5), scene)
     assert not pushes[:, :, 1].any()
+
+
+def test_a_ball_at_rest_is_recorded_with_a_push_of_its_own_weight_whatever_its_mass(monkeypatch):
+    """An arrow's length is the push over the weight, so that heavy and light balls can be compared."""
+    written = []
+    monkeypatch.setattr(recording_files, "write", lambda *given: written.append(given))
+    for mass in (1.0, 4.0):
+        scene = SCENE._replace(q0=np.array([[0.0], [R]]), mass=np.array([mass]))
+        contact.log_rerun("a.rrd", {"exact": contact.run_model("exact", scene, DT, 5)}, scene)
+        pushes = written[-1][6]["exact"]
+        assert np.abs(pushes[1:, 1, 0] - 1.0).max() < 4 * 2.0**-53 and not pushes[:, 0].any()
 
 
 def test_energy_in_is_the_sum_of_its_rises():

@@ -135,6 +135,30 @@ def test_a_survivor_without_a_reason_fails_and_a_named_one_does_not(capsys):
     assert section["files"]["f.py"]["named"] == [["g", 2, "c -> d", "no difference"]]
 
 
+def test_a_reason_of_a_mutant_that_is_killed_is_refuted(capsys):
+    rows = {"f.py": [["f", 1, "a -> b", "killed"]] * 19 + [["g", 2, "c -> d", "late"]]}
+    section = mutate.section_of(rows, {"f.py: g: c -> d": "no difference"}, {"f.py": 20})
+    assert mutate.show(section["files"]) == 1
+    assert "f.py:2: g: late, though it has a reason: c -> d" in capsys.readouterr().out
+
+
+def test_only_those_that_have_a_reason_are_chosen_where_that_is_asked_for():
+    file = "curriculum/terminal.py"
+    every, chosen = mutate.choose(file, mutate.parse([file, "--named"]))
+    found = {f"{file}: {mutate.words_of(mutant)}" for mutant in chosen}
+    assert 0 < len(chosen) < len(every)
+    assert found == {change for change in mutate.reasons() if change.startswith(file)}
+
+
+def test_a_reason_for_a_line_that_has_changed_is_named(monkeypatch, tmp_path):
+    (tmp_path / "f.py").write_text("def f(a):\n    return a + 1\n")
+    monkeypatch.setattr(mutate, "ROOT", tmp_path)
+    kept = "f.py: f: return a + 1 -> return a - 1"
+    known = {kept: "Yes.", "f.py: f: return a + 2 -> return a - 2": "No.", "g.py: g: a -> b": "?"}
+    monkeypatch.setattr(mutate, "reasons", lambda: known)
+    assert mutate.outdated(["f.py"]) == ["f.py: f: return a + 2 -> return a - 2"]
+
+
 def test_every_reason_is_of_a_file_and_a_function_and_a_sentence():
     for change, why in mutate.reasons().items():
         file, where, what = change.split(": ", 2)

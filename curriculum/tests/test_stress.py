@@ -437,6 +437,35 @@ def test_a_run_that_overflows_is_no_extreme_case_met(monkeypatch):
         assert set(statuses(extremes.run(name, quick=True))) & {jobs.VIOLATION}
 
 
+@pytest.mark.parametrize(
+    "times, status", [(0.0, jobs.HOLDS), (0.5, jobs.HOLDS), (1.5, jobs.VIOLATION)]
+)
+def test_a_tower_that_is_deeper_than_its_bound_is_none_that_coinciding_balls_end_as(
+    times, status, monkeypatch
+):
+    """A run is replaced by the tower of the closed forms, with one depth off by so many bounds."""
+
+    def made(model, scene, dt, steps):
+        n = len(scene.mass)
+        depth, bound = extremes.resting_tower(model, n, np.arange(n), dt)
+        depth = depth + times * bound * extremes.R * (np.arange(n) == n - 1)
+        y = np.cumsum(2 * extremes.R - depth) - extremes.R
+        q = np.array([np.zeros(n), y])[None]
+        return contact.Run(np.zeros(1), q, 0 * q)
+
+    monkeypatch.setattr(extremes, "run_model", made)
+    assert set(statuses(extremes.run("coincident_centres", quick=True))) == {status}
+
+
+def test_balls_side_by_side_are_no_tower(monkeypatch):
+    def made(model, scene, dt, steps):
+        q = np.array([3.0 * extremes.R * np.arange(len(scene.mass)), scene.radius])[None]
+        return contact.Run(np.zeros(1), q, 0 * q)
+
+    monkeypatch.setattr(extremes, "run_model", made)
+    assert set(statuses(extremes.run("coincident_centres", quick=True))) == {jobs.VIOLATION}
+
+
 def test_landing_depth_closed_form_is_the_stepped_one():
     for dt in (0.0007, 0.002, 0.04, 0.3):
         y, v = maps.HEIGHT, 0.0
