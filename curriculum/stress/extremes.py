@@ -698,11 +698,9 @@ def tower_of(run_, scene_):
     """Depth [m] of each contact at the end, as listed, and which of a tower's it is: 0 the table's."""
     balls = contact.make_balls(scene_._replace(q0=run_.q[-1], v0=run_.v[-1]))
     contacts = contact.detect_contacts(balls)
+    upper = [c.a.y if c.b is contact.FLOOR else max(c.a.y, c.b.y) for c in contacts]
     heights = sorted(ball.y for ball in balls)
-    return (
-        np.array([c.depth for c in contacts]),
-        [heights.index(max(c.a.y, c.b.y)) for c in contacts],
-    )
+    return np.array([c.depth for c in contacts]), [heights.index(y) for y in upper]
 
 
 def resting_tower(model, n, order, dt):

@@ -17,6 +17,7 @@ from curriculum.stress import extremes, figures, invariants, jobs, maps
 
 BAD = (jobs.VIOLATION, jobs.DIED)
 UNFINISHED = "energy_rises_by_unfinished_sweeps_alone"
+RISES = "exact_never_gains_energy"
 
 
 # --- the sections of results.json ---------------------------------------------------------------
@@ -205,12 +206,14 @@ def scene_section(results):
         for name in invariants.CHECKS
     }
     cut = told["exact_ends"]
+    rises = [(what["rise"], number) for number, what in told[RISES]]
     return {
         "count": sum(params["stop"] - params["start"] for params, _ in batches),
         "checks": {
             name: {"scenes": applied[name], "violations": bad[name]} for name in invariants.CHECKS
         },
         "unfinished": unfinished_section(told[UNFINISHED], applied[UNFINISHED]),
+        "exact_rise": max(rises, default=None),  # and the scene's number
         "exact_cut": len(cut),
         "exact_run": applied["exact_ends"],
         "exact_cut_to": sorted(round(1.0 - what["cut"], 3) for _, what in cut),
@@ -555,6 +558,7 @@ def scene_part(found):
             "operation):",
             bounds,
             unfinished_words(found["unfinished"]),
+            rise_words(found),
             cut_words(found),
         ]
     )
@@ -590,6 +594,17 @@ def unfinished_words(found):
         f"{number(found['worst_above_start'])} (scene {found['worst_above_start_scene']}). The "
         f"median scene needs {found['sweeps_median']:,} sweeps to end it, the slowest "
         f"{found['sweeps_most']:,}:\n\n" + table(["sweeps a step", "rises that are over"], ended)
+    )
+
+
+def rise_words(found):
+    """By how much E rises in a run of exact, beside what is allowed."""
+    if not found.get("exact_rise"):
+        return ""
+    share, number = found["exact_rise"]
+    return (
+        f"In no run of exact E rises by more than {share:.1e} of the energies there are in a step "
+        f"(scene {number})."
     )
 
 

@@ -40,7 +40,7 @@ class Trial:
 
     @cached_property
     def exact(self):
-        """(run of exact, its events), up to the last sample that SECONDS of CPU time reach.
+        """(run of exact, its events in each step), up to the last sample that SECONDS of CPU time reach.
 
         Samples do not enter the motion, so the shorter run is the beginning of the longer one.
         """
@@ -74,7 +74,7 @@ class Trial:
 
     def again(self):
         """The models to run again in another form: exact only where that is quick."""
-        slow = self.overlaps or self.exact[1] > FEW_EVENTS
+        slow = self.overlaps or self.exact[1].sum() > FEW_EVENTS
         return STEPPED if slow else contact.MODELS
 
     def samples(self, model):

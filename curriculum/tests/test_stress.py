@@ -340,6 +340,35 @@ def test_energy_of_unfinished_sweeps_is_counted_and_enough_sweeps_end_it():
     assert total.max() - total[0] < 1e-9 * total[0]
 
 
+def test_a_bounce_of_exact_that_gives_back_a_ten_billionth_more_is_a_violation(monkeypatch):
+    """One ball bounces for ever at e = 1, and E rises by nothing but rounding."""
+    alone = {name: PAIR[name][:1] for name in scenes.BODY}
+    spec = {**PAIR, **alone, "y": [0.5], "restitution": 1.0, "steps": 300}
+    name = "exact_never_gains_energy"
+    assert invariants.outcomes(spec, only=[name])[name]["rise"] < 4 * trial.U
+    right = contact.run_model
+
+    def generous(model, scene, *rest, **options):
+        return right(model, scene._replace(restitution=1.0 + 1e-10), *rest, **options)
+
+    monkeypatch.setattr(contact, "run_model", generous)
+    assert "E rises by" in invariants.outcomes(spec, only=[name])[name]
+
+
+def test_to_blow_a_scene_up_opens_every_gap_by_as_much_as_its_bound_takes_for_granted():
+    """The move (q - o) / r changes each gap by 1 or more, and has the size `blown_up`."""
+    for number in range(20):
+        one = trial.Trial(scenes.numbered_spec(number))
+        q, r, m = one.scene.q0, one.scene.radius, one.mass
+        if one.overlaps:
+            continue
+        move = (q - [[np.average(q[0], weights=m)], [0.0]]) / r.min()
+        opened = invariants.gaps(q[None] + 1e-6 * move, r) - invariants.gaps(q[None], r)
+        assert opened.min() > 1e-6 * (1 - 1e-6)
+        size = math.sqrt(float((m * move**2).sum()))
+        assert invariants.blown_up(one, q[None])[0] == pytest.approx(size, rel=1e-12)
+
+
 def test_a_run_of_exact_that_piles_up_is_cut_counted_and_judged_up_to_there(monkeypatch):
     whole = trial.Trial(PAIR).run("exact")
     calls = iter(range(1000))  # the clock of the first run: a second for every event
