@@ -1032,6 +1032,229 @@ def test_a_reaction_solves_the_lcp_and_leaves_no_round_off():
         assert rows == {contact.i: (left, 0.0), contact.j: (0.0, 0.0)}
 
 
+# Small gaps, and their series
+
+
+@pytest.mark.parametrize("orders", [(3, 3), (3, 5), (exact.ORDER + 1, exact.ORDER + 1)])
+def test_the_series_of_a_gap_is_that_of_the_squared_distance_less_its_start(orders):
+    """Of two balls (reach + gap)^2 - reach^2, which has the sign of the gap; of the floor y - r."""
+    rng = np.random.default_rng(14)
+    dx, dy = (whole_numbers(rng, order) for order in orders)
+    pair, *_ = pair_at((3.0, 0.0), (0.0, 0.0))
+    square = np.zeros(2 * max(orders) - 1)
+    for row in (dx, dy):
+        square[: 2 * len(row) - 1] += np.convolve(row, row)
+    square[0] = (3.0 + 0.25) ** 2 - 3.0**2
+    series = exact.gap_series(pair, 0.25, dx, dy)
+    assert series == square[: exact.ORDER + 1].tolist()
+    wall, *_ = over_the_floor(1.0)
+    assert exact.gap_series(wall, 0.25, dx, dy) == [0.25, *dy[1:]]
+
+
+@pytest.mark.parametrize("p", [[2.0, 3.0, 0.0], [2.0, 0.0, 0.0], [0.0] * 3, [1.0, 0.0, 5.0, 0.0]])
+def test_a_square_has_no_zeros_beyond_its_order_and_3_numbers_at_least(p):
+    square, orders = np.convolve(p, p), max(1, int(np.flatnonzero([1.0, *p[1:]])[-1]))
+    assert exact.squared(p) == square[: 2 * orders + 1].tolist()
+
+
+def followed(wall, gap, speed, radius=0.25):
+    """A Contact with this gap, followed from now on while it opens at this speed; its bodies."""
+    ball = exact.Body(1.0, radius, [0.0, 0.0], [0.0, 0.0])
+    other = exact.Body(0.0, 0.0 if wall else radius, [0.0, 0.0], [0.0, 0.0])
+    contact = exact.Contact(ball, other, G)
+    q = {ball: (0.0, contact.reach), other: (0.0, 0.0)}
+    contact.look(q, 0)
+    contact.depth = -gap
+    contact.follow(0, [0.0, 0.0, 0.0], [contact.reach, speed, 0.0])
+    return contact, ball, other
+
+
+@pytest.mark.parametrize("wall", [True, False])
+@pytest.mark.parametrize("gap", [1e-30, 1e-12, 0.9e-8 * 0.25])
+def test_a_small_gap_keeps_all_its_digits_wherever_the_balls_are(gap, wall):
+    """Places have 16 digits and say nothing of a gap of 1e-30 m; its own series does."""
+    contact, ball, other = followed(wall, gap, 0.0)
+    for place in (contact.reach, contact.reach + 1e-17, contact.reach * (1.0 + 1e-12)):
+        contact.look({ball: (0.0, place), other: (0.0, 0.0)}, exact.later(0, 3.0))
+        assert -contact.depth == pytest.approx(gap, rel=1e-14, abs=0.0)
+
+
+@pytest.mark.parametrize("wall", [True, False])
+def test_a_followed_gap_opens_with_the_speed_of_its_bodies(wall):
+    contact, ball, other = followed(wall, 1e-30, 1e-10)
+    contact.look({ball: (0.0, contact.reach), other: (0.0, 0.0)}, exact.later(0, 2.0))
+    assert -contact.depth == pytest.approx(2e-10, rel=1e-9, abs=0.0)
+    contact, ball, other = followed(wall, -1e-17, 1e-25)  # an overlap of rounding is no gap
+    contact.look({ball: (0.0, contact.reach), other: (0.0, 0.0)}, exact.later(0, 2.0))
+    assert -contact.depth == pytest.approx(2e-25, rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("wall", [True, False])
+@pytest.mark.parametrize("share, gap", [(0.9, 1e-30), (1.1, None)])
+def test_a_gap_above_FOLLOWED_radii_is_read_from_the_places(share, gap, wall):
+    for radius in (2.0**-8, 2.0**8):
+        contact, ball, other = followed(wall, 1e-30, 0.0, radius)
+        place = contact.reach + share * exact.FOLLOWED * radius
+        contact.look({ball: (0.0, place), other: (0.0, 0.0)}, 0)
+        expected = place - contact.reach if gap is None else gap
+        assert -contact.depth == pytest.approx(expected, rel=1e-9, abs=0.0)
+
+
+# Impacts and rest
+
+
+def struck(seed, e, scene=None):
+    """An island of touching balls with random velocities, its contacts, J and the velocities."""
+    rng = np.random.default_rng(seed)
+    scene = heap_of_five()[0] if scene is None else scene
+    scene = scene._replace(v0=rng.normal(size=scene.q0.shape))
+    island, motion = island_of(scene)
+    contacts, bodies = exact.touching(island), [*motion.balls, motion.floor]
+    numbers = [(bodies.index(c.i), -1 if c.wall else bodies.index(c.j)) for c in contacts]
+    return island, motion, contacts, numbers, scene
+
+
+@pytest.mark.parametrize("e", [0.0, 0.6, 1.0])
+def test_touching_balls_part_as_newtons_law_for_all_of_them_at_once(e):
+    """lam >= 0, v_n+ + e v_n >= 0, and one of them 0 at each contact: by enumeration."""
+    for seed in range(12):
+        island, motion, contacts, numbers, scene = struck(seed, e)
+        J, w = jacobian(scene, numbers)
+        assert len(contacts) == 7
+        exact.collide(island, contacts, e)
+        lam = enumerated(J * w @ J.T, (1.0 + e) * (J @ scene.v0.ravel()))
+        if not (J @ scene.v0.ravel() < 0.0).any():
+            lam[:] = 0.0
+        after = columns(motion, island.v).ravel()
+        assert after == pytest.approx(scene.v0.ravel() + w * (lam @ J), abs=1e-12)
+
+
+def test_where_no_contact_closes_no_velocity_changes():
+    scene = on_a_movable_ball([1.0, 2.0], [0.1, 0.2])[0]
+    scene = scene._replace(v0=np.array([[0.0, 0.0], [1e-15, 0.7]]))
+    island, motion = island_of(scene)
+    exact.collide(island, exact.touching(island), 0.5)
+    assert (columns(motion, island.v) == scene.v0).all()
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5])
+@pytest.mark.parametrize("rise, ends", [(0.9, True), (1.1, False)])
+def test_a_bounce_that_would_rise_less_than_LAST_radii_ends_the_series(e, rise, ends):
+    """Back up with e v it would rise (e v)^2 / (2 g)."""
+    scene = row_of_balls([0.0], [3.0], height=R)
+    back = math.sqrt(-2.0 * G * rise * exact.LAST * R)
+    speed = back / e if e else 1.0
+    island, motion = island_of(scene._replace(v0=np.array([[0.0], [-speed]])))
+    exact.collide(island, exact.touching(island), e)
+    expected = 0.0 if ends else e * speed
+    assert island.v[motion.balls[0]][1] == pytest.approx(expected, rel=1e-12, abs=0.0)
+
+
+def test_a_contact_that_has_hardly_opened_does_not_bounce():
+    for share, e in ((0.5, 0.0), (2.0, 0.5)):
+        scene = row_of_balls([0.0], [3.0], height=R)._replace(v0=np.array([[0.0], [-1e-3]]))
+        island, motion = island_of(scene)
+        contacts = exact.touching(island)
+        opened(contacts[0], share, 0)
+        exact.collide(island, contacts, 0.5)
+        assert island.v[motion.balls[0]] == (0.0, e * 1e-3)
+
+
+def tower(mass, speeds):
+    """Balls over one another from the floor, with these speeds upwards."""
+    count = len(mass)
+    q0 = np.array((np.zeros(count), R * (2.0 * np.arange(count) + 1.0)))
+    return row_of_balls(np.zeros(count), mass)._replace(
+        q0=q0, v0=np.array((np.zeros(count), speeds))
+    )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_unequal_masses_part_with_e_times_their_closing_speed_to_the_last_digits(seed):
+    """Masses up to 1e8 apart, where one solution of the LCP leaves 1e-9 of the speeds."""
+    rng, e = np.random.default_rng(seed), 0.5
+    scene = tower(10.0 ** rng.uniform(-4.0, 4.0, 5), -1.0 - np.arange(5.0))  # all close
+    island, motion = island_of(scene)
+    contacts = exact.touching(island)
+    before = contacts.along(island.v)
+    exact.collide(island, contacts, e)
+    for contact, v_n, now in zip(contacts, before, contacts.along(island.v)):
+        size = max(abs(island.v[body][1]) for body in contact.bodies)
+        assert now >= -e * v_n - 4e-16 * (size + 1.0) - exact.NOISE * contact.speed
+
+
+def normal_parts(scene, numbers, v):
+    """(n . u)' less n . a of each contact: u^2 - (n . u)^2 over the distance, and 0 at the floor."""
+    turn = []
+    for i, j in numbers:
+        if j < 0:
+            turn.append(0.0)
+            continue
+        d, u = scene.q0[:, i] - scene.q0[:, j], v[:, i] - v[:, j]
+        turn.append((u @ u - (d @ u) ** 2 / (d @ d)) / np.hypot(*d))
+    return np.array(turn)
+
+
+def test_resting_contacts_get_the_forces_that_keep_all_of_them_from_closing():
+    """s = n . a + turn >= 0, force >= 0, one of them 0: by enumeration, for balls that slide along
+    one another with random velocities, so that some are lifted off."""
+    held_counts = set()
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        scene, numbers = heap_of_five()
+        scene = scene._replace(v0=feasible(scene, numbers, 0.7 * rng.normal(size=scene.q0.shape)))
+        island, motion = island_of(scene)
+        contacts = exact.touching(island)
+        held, a = exact.support(island, contacts, G)
+        bodies = [*motion.balls, motion.floor]
+        numbers = [(bodies.index(c.i), -1 if c.wall else bodies.index(c.j)) for c in contacts]
+        J, w = jacobian(scene, numbers)
+        fall = np.array((np.zeros(5), np.full(5, G))).ravel()
+        lam = enumerated(J * w @ J.T, J @ fall + normal_parts(scene, numbers, scene.v0))
+        assert columns(motion, a).ravel() == pytest.approx(fall + w * (lam @ J), abs=1e-11)
+        assert a[motion.floor] == (0.0, 0.0)
+        pushing = [contact for contact, force in zip(contacts, lam) if force > 0.0]
+        assert list(held) == pushing == [contact for contact in contacts if contact.pushes]
+        assert all(contact.rests for contact in contacts)
+        told = exact.normal_accelerations(contacts, island.v, a)
+        s = J @ (fall + w * (lam @ J)) + normal_parts(scene, numbers, scene.v0)
+        assert told == pytest.approx(s, abs=1e-10)
+        held_counts.add(len(held))
+    assert len(held_counts) > 1
+
+
+def test_a_contact_that_parts_bears_nothing_and_all_is_free_fall():
+    scene = row_of_balls([0.0, 9.0], [2.0, np.inf], height=R)._replace(
+        v0=np.array([[0.0, 0.0], [1.0, 0.0]])
+    )
+    island, motion = island_of(scene)
+    held, a = exact.support(island, exact.touching(island), G)
+    assert list(held) == [] and a[motion.balls[0]] == (0.0, G)
+    assert not any(contact.rests or contact.pushes for contact in island.contacts)
+    assert a.get(motion.balls[1], (0.0, 0.0)) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("left, holds", [(0.3e-12, False), (0.7e-12, True)])
+@pytest.mark.parametrize("mass", [0.01, 100.0])
+def test_a_contact_pushes_when_it_parts_its_bodies_by_more_than_a_graze_of_g(mass, left, holds):
+    """The upper of two equal balls slides over the lower one, which stands on the floor, with
+    v^2 / (2 r) = (1 - left) g: the push bears `left` of its weight, and would part the two, were
+    there no floor, with twice that."""
+    scene = tower([mass, mass], [0.0, 0.0])
+    v0 = np.array([[0.0, math.sqrt((1.0 - left) * -G * 2.0 * R)], [0.0, 0.0]])
+    island, motion = island_of(scene._replace(v0=v0))
+    held, _ = exact.support(island, exact.touching(island), G)
+    assert len(held) == 1 + holds
+
+
+def test_what_is_left_of_a_series_of_bounces_is_taken_from_contacts_that_push():
+    scene = tower([1.0, 1e5, 1e-5], [1e-9, -1e-9, 2e-9])
+    island, motion = island_of(scene)
+    held, a = exact.support(island, exact.touching(island), G)
+    assert len(held) == 3 and np.abs(held.along(island.v)).max() <= 1e-20
+    assert np.abs(exact.normal_accelerations(held, island.v, a)).max() <= 1e-14 * -G
+
+
 # Sliding: what the series promise
 
 
