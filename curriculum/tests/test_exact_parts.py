@@ -837,10 +837,31 @@ def test_the_sample_at_the_start_is_the_start_to_the_last_bit():
     assert (q[0] == scene.q0).all() and (v[0] == scene.v0).all()
 
 
-def test_balls_that_nothing_moves_stay():
-    scene = row_of_balls([0.0, 3.0], [np.inf, np.inf])
-    q, v = exact.simulate_exact(scene, np.array([0.0, 1.0]), G)
+def test_balls_that_nothing_moves_stay_and_make_no_event():
+    scene, reports = row_of_balls([0.0, 3.0], [np.inf, np.inf]), []
+    q, v = exact.simulate_exact(scene, np.array([0.0, 1.0]), G, reports.append)
     assert (q == scene.q0).all() and not v.any() and q.shape == (2, 2, 2)
+    assert reports == [2]
+
+
+def test_the_clock_waits_after_20_EVENTS_events_in_a_tick_of_the_smallest_ball(monkeypatch):
+    """Of fewer than 20 balls, one of them far away and large: 20 EVENTS at once, then at most one
+    per ball in each hundredth of a tick, until the tick is over. A sample is taken every 0.05."""
+    monkeypatch.setattr(exact, "EVENTS", 2)
+    tick, samples = exact.TICK * math.sqrt(R / -G), []
+    scene = light_below_heavy()._replace(
+        q0=np.array([[0.0, 0.0, 500.0], [0.2, 0.6, 80.0]]),
+        v0=np.zeros((2, 3)),
+        mass=np.array([1e-9, 1e9, np.inf]),
+        radius=np.array([R, R, 50.0]),
+        restitution=0.5,
+    )
+    exact.simulate_exact(scene, np.arange(0.0, 0.265, 0.05 * tick), G, samples.append)
+    events = np.bincount(samples[:-1])
+    bursts = np.flatnonzero(events > 40)
+    assert len(bursts) == 2 and events.max() <= 41 + 2 * 6
+    assert 0.95 <= 0.05 * np.diff(bursts)[0] <= 1.05
+    assert events[bursts[0] + 1 : bursts[1] - 1].max() <= 2 * 6
 
 
 # The pivot
