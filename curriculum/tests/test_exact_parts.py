@@ -575,6 +575,17 @@ def test_a_contact_at_rest_has_no_gap_whatever_its_place_says():
         assert -contact.depth == pytest.approx(gap, abs=1e-16)
 
 
+def test_a_contact_that_rests_and_does_not_push_is_followed_from_no_gap():
+    """Two balls stand beside one another, 0.4 TOUCH radii apart: after their event that is none."""
+    motion = exact.Motion(row_of_balls([0.0, 2.0 + 0.4 * exact.TOUCH], [1.0, 2.0], R), G)
+    first, second = motion.balls
+    contact = first.near[second]
+    exact.event(motion, 0, first)
+    assert contact.rests and not contact.pushes
+    contact.look({ball: ball.at(0)[0] for ball in motion.balls}, exact.later(0, 1.0))
+    assert contact.depth == 0.0
+
+
 def opened(contact, share, now):
     """Let it have parted so that, closing at `now`, it has opened this many THIN radii at most."""
     span = share * exact.THIN * contact.i.radius / 2e-3
@@ -798,7 +809,11 @@ def test_the_motion_does_not_hang_on_the_units_or_on_left_and_right(name):
     times = np.linspace(0.0, span, 9)
     q, v = exact.simulate_exact(scene, times, G)
     assert np.abs(np.diff(v[-3:], axis=0)).max() > 0.0 or name == "light below heavy"
-    for metre, kilogram, faster in ((4.0**-6, 1.0, 1.0), (4.0**5, 4.0**-9, 1.0), (1.0, 1.0, 2.0)):
+    for metre, kilogram, faster in (
+        (4.0**-6, 4.0**9, 1.0),
+        (4.0**5, 4.0**-70, 1.0),
+        (1.0, 1.0, 2.0),
+    ):
         unit = faster * math.sqrt(metre)  # of speed
         other = scene._replace(
             q0=scene.q0 * metre,
@@ -919,6 +934,55 @@ def test_the_pivot_exchanges_a_contact_that_depends_on_others_for_one_of_them(se
     lam = exact.solve_lcp(W, b)
     assert lam.min() >= 0.0
     assert np.abs(np.minimum(lam, W @ lam + b)).max() <= 1e-10 * np.abs(b).max()
+
+
+def test_where_all_push_one_table_and_no_exchange_is_needed(monkeypatch):
+    """And where some do not, one more table is made than exchanges end in another set."""
+    made, steps = [], []
+
+    class Noting(exact.Table):
+        def __init__(self, *given):
+            made.append(1)
+            super().__init__(*given)
+
+        def step(self, *given):
+            steps.append(1)
+            return super().step(*given)
+
+    monkeypatch.setattr(exact, "Table", Noting)
+    W, _ = unequal_tower(3)
+    exact.solve_lcp(W, -W.sum(1))  # lam = 1 everywhere
+    assert (len(made), len(steps)) == (1, 1)
+    exact.solve_lcp(np.eye(3), np.array([-1.0, 2.0, -1.0]))
+    assert (len(made), len(steps)) == (1 + 2, 1 + 3)
+
+
+def unequal_tower(seed):
+    """W and b of a tower of masses up to 1e8 apart that is struck somewhere."""
+    rng = np.random.default_rng(seed)
+    scene = tower(10.0 ** rng.uniform(-4.0, 4.0, int(rng.integers(3, 12))), 0.0)
+    count = len(scene.mass)
+    J, w = jacobian(scene, [(k, k - 1) for k in range(count)])
+    return J * w @ J.T, J[:, count:] @ rng.normal(size=count)
+
+
+@pytest.mark.parametrize("problem", [unequal_tower, dependent_contacts])
+def test_what_does_not_push_has_no_part_in_the_answer_not_even_in_its_last_bits(problem):
+    """The pivot leaves no trace: the answer is that of the contacts that push, solved alone."""
+    for seed in range(12):
+        W, b = problem(seed)
+        lam = exact.solve_lcp(W, b)
+        k = np.flatnonzero(lam)
+        assert len(k) < 2 or (exact.solve_lcp(W[np.ix_(k, k)], b[k]) == lam[k]).all()
+
+
+def test_the_pivot_does_not_hang_on_the_units():
+    """Neither on that of velocities or forces, nor on that of mass, to the last bit."""
+    for seed in range(10):
+        W, b = dependent_contacts(seed)
+        lam = exact.solve_lcp(W, b)
+        for mass, speed in ((1.0, 2.0**-80), (1.0, 2.0**80), (4.0**-70, 1.0), (4.0**70, 2.0**-9)):
+            assert (exact.solve_lcp(W / mass, b * speed) == lam * mass * speed).all()
 
 
 @pytest.mark.parametrize("seed", range(0, 40, 3))
@@ -1186,7 +1250,7 @@ def tower(mass, speeds):
     count = len(mass)
     q0 = np.array((np.zeros(count), R * (2.0 * np.arange(count) + 1.0)))
     return row_of_balls(np.zeros(count), mass)._replace(
-        q0=q0, v0=np.array((np.zeros(count), speeds))
+        q0=q0, v0=np.array((np.zeros(count), np.broadcast_to(speeds, count)))
     )
 
 
