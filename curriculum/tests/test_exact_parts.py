@@ -1333,11 +1333,12 @@ def test_a_contact_pushes_when_it_parts_its_bodies_by_more_than_a_graze_of_g(mas
 
 
 def test_what_is_left_of_a_series_of_bounces_is_taken_from_contacts_that_push():
+    """But for rounding, times the condition of masses that are 1e10 apart."""
     slow = 0.2 * math.sqrt(-2.0 * G * exact.LAST * R)  # a fifth of the fastest that rests
     scene = tower([1.0, 1e5, 1e-5], [slow, -slow, 2.0 * slow])
     island, motion = island_of(scene)
     held, a = exact.support(island, exact.touching(island), G)
-    assert len(held) == 3 and np.abs(held.along(island.v)).max() <= 1e-11 * slow
+    assert len(held) == 3 and np.abs(held.along(island.v)).max() <= 1e-6 * slow
     assert np.abs(exact.normal_accelerations(held, island.v, a)).max() <= 1e-14 * -G
 
 
