@@ -493,8 +493,8 @@ def exact_never_gains_energy(trial):
     So the smallest move that opens gaps by TOUCH radii is at most B times as large, and lifts by B g
     sqrt(sum m) times TOUCH radii. Impulses that change v by dv add up to at most B |dv|, where |dv| <=
     2 sqrt(2 E); an impact whose v_n is off by NOISE sqrt(g r) gives that times their sum. An event may
-    do both. Forces below GRAZE g m are dropped, at up to 3 N contacts; over a step they could have
-    taken 3 N GRAZE g sqrt(2 E sum m) dt. The others add up to at most B^2 g, since the acceleration
+    do both. A force below GRAZE g m counts as none, at up to 3 N contacts; over a step their work is
+    at most 3 N GRAZE g sqrt(2 E sum m) dt. The others add up to at most B^2 g, since the acceleration
     differs from gravity by the least that keeps gaps from closing (Gauss), which is at most B g.
     Rounding: N + 2 operations on each impulse and force of a ball, twice; two for each of a series'
     ORDER + 1 terms, which add up to at most 9 E in the height and 6 E in the speed of a flight. Not

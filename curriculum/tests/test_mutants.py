@@ -140,6 +140,8 @@ def test_a_reason_of_a_mutant_that_is_killed_is_refuted(capsys):
     section = mutate.section_of(rows, {"f.py: g: c -> d": "no difference"}, {"f.py": 20})
     assert mutate.show(section["files"]) == 1
     assert "f.py:2: g: late, though it has a reason: c -> d" in capsys.readouterr().out
+    del section["files"]["f.py"]["refuted"]
+    assert mutate.show(section["files"]) == 0, "results from before reasons were refuted"
 
 
 def test_only_those_that_have_a_reason_are_chosen_where_that_is_asked_for():
