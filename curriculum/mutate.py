@@ -725,9 +725,8 @@ def show(files):
     """Print survivors, refuted reasons and shares; 1 when there are any or too few are killed."""
     bad = False
     for file, one in files.items():
-        for where, line, said, outcome in one.get(
-            "refuted", []
-        ):  # results kept from before may lack it
+        refuted = one.get("refuted", [])  # results kept from before may lack it
+        for where, line, said, outcome in refuted:
             print(f"{file}:{line}: {where}: {outcome}, though it has a reason: {said}")
         for where, line, said, outcome in one["survivors"]:
             print(f"{file}:{line}: {where}: {outcome}: {said}")
@@ -736,7 +735,7 @@ def show(files):
             f"{len(one['survivors'])} survivors: {share_of(one)}"
         )
         few = one["tried"] > one["equivalent"] and one["share"] < WANTED
-        bad |= few or bool(one["survivors"]) or bool(one.get("refuted"))
+        bad |= few or bool(one["survivors"]) or bool(refuted)
     return 1 if bad else 0
 
 
