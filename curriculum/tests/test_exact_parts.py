@@ -686,6 +686,16 @@ def row_of_balls(x, mass, height=10.0):
     )
 
 
+def test_what_counts_as_a_gap_is_as_small_as_the_balls_are():
+    """Over the floor, too, which is no place with digits of its own."""
+    scene = row_of_balls([0.0, 2.0], [1.0, 2.0], height=R)
+    scene = scene._replace(q0=scene.q0 * 2.0**-30, radius=scene.radius * 2.0**-30)
+    island, _ = island_of(scene)
+    assert len(island.contacts) == 3
+    for contact in island.contacts:
+        assert contact.small <= 1.01 * exact.TOUCH * R * 2.0**-30
+
+
 def test_an_overlap_is_closed_by_moving_the_heavy_ball_less():
     """0.6 r: 1 kg moves by three quarters of it and 3 kg by one, so that their centre stays."""
     island, motion = island_of(row_of_balls([0.0, 1.4], [1.0, 3.0]))
