@@ -993,7 +993,16 @@ def unequal_tower(seed):
     return J * w @ J.T, J[:, count:] @ rng.normal(size=count)
 
 
-@pytest.mark.parametrize("problem", [unequal_tower, dependent_contacts])
+def dependent_but_for_rounding(seed):
+    """W and b = J u of more contacts than ways to move, less 1e-12: some close, and nothing that
+    the others give up could stop them."""
+    rng = np.random.default_rng(seed)
+    K = int(rng.integers(12, 36))
+    J = rng.normal(size=(K, int(rng.integers(2, K))))
+    return J @ J.T, J @ rng.normal(size=J.shape[1]) - 1e-12 * np.abs(rng.normal(size=K))
+
+
+@pytest.mark.parametrize("problem", [unequal_tower, dependent_contacts, dependent_but_for_rounding])
 def test_what_does_not_push_has_no_part_in_the_answer_not_even_in_its_last_bits(problem):
     """The pivot leaves no trace: the answer is that of the contacts that push, solved alone."""
     for seed in range(12):
