@@ -109,6 +109,10 @@ class Body:
             self.path.append((samples - self.done, self.start, self.x, self.y))
             self.done = samples
 
+    def rests(self, x, y):
+        """Whether these series are rest, where the ball rests already."""
+        return self.x == x and self.y == y and not any(x[1:] + y[1:])
+
     def read(self, times):
         """x and y, and their rates (S,), at the times (S,) from the series that were kept."""
         counts, starts, *series = zip(*self.path)
@@ -174,7 +178,7 @@ class Contact(Pair):
         self.last_touch = -math.inf             # when it touched last
         self.parting = 0.0                      # |v_n| it parted with then [m/s]
         self.thin = -math.inf                   # when it closed, hardly opened
-        self.series, self.since = None, 0       # of its gap, and the time it starts from
+        self.path, self.since = None, 0         # gap, dx, dy: as gap_series; when that was
 
     def look(self, q, now):
         """Locate it; a small gap is then read from its own series, with all its digits.
@@ -182,15 +186,15 @@ class Contact(Pair):
         A pair's series is distance^2 - reach^2, so it is divided by distance + reach.
         """
         self.locate(q)
-        if self.series and abs(self.depth) < FOLLOWED * self.i.radius:
-            value = evaluate(self.series, seconds(self.since, now))
+        if self.path and abs(self.depth) < FOLLOWED * self.i.radius:
+            value = evaluate(gap_series(self, *self.path), seconds(self.since, now))
             if not self.wall:
                 value /= self.reach + math.sqrt(self.reach * self.reach + value)
             self.depth = -value
 
     def follow(self, now, dx, dy):
         """Follow the gap from now on, by the series of the positions' difference."""
-        self.series, self.since = gap_series(self, max(-self.depth, 0.0), dx, dy), now
+        self.path, self.since = (max(-self.depth, 0.0), dx, dy), now
 
     def opened(self, now, v_n):
         """A bound [m] of how far it was open since it touched last."""
@@ -208,7 +212,7 @@ class Contact(Pair):
         """Note when it touched and how fast it parts; inf if it closes: never "hardly opened"."""
         self.last_touch, self.parting = now, math.inf if self.closes(v_n) else abs(v_n)
         if self.rests:
-            self.series = [0.0]                 # no gap, whatever the last digits of q say
+            self.path = 0.0, [0.0], [0.0]       # no gap, whatever the last digits of q say
 # --- endregion ---
 
 
@@ -288,6 +292,28 @@ def solve_lcp(W, b):
     return np.maximum(lam, 0.0) * scale
 
 
+def eliminated(rows, b):
+    """x (K,) of W x = b, W positive definite in rows {column: value}; None if it is singular."""
+    given, rows, b = rows, [dict(row) for row in rows], list(b)
+    for k, row in enumerate(rows):
+        pivot = row[k]
+        if not pivot > 1e-12 * given[k][k]:
+            return None
+        later = [m for m in row if m > k]
+        for m in later:
+            share, target = row[m] / pivot, rows[m]
+            b[m] -= share * b[k]
+            for n in later:
+                target[n] = target.get(n, 0.0) - share * row[n]
+    for k in reversed(range(len(b))):
+        row = rows[k]
+        for m in row:
+            if m > k:
+                b[k] -= row[m] * b[m]
+        b[k] /= row[k]
+    return b
+
+
 def inverted(W):
     """The inverse of a positive definite W. Blocks that do not act on each other stay apart."""
     W = W.copy()
@@ -309,17 +335,27 @@ class Group(list):
     """Contacts that act together. `rows` are of the bodies: {body: (x, y)}."""
 
     @cached_property
-    def delassus(self):
-        """J M^-1 J' (K, K): how far a unit impulse at one contact changes v_n at another."""
-        W, of_body = np.zeros((len(self), len(self))), {}
+    def couplings(self):
+        """J M^-1 J': how far a unit impulse at contact m changes v_n at k; K rows {m: change}."""
+        rows, of_body = [{} for _ in self], {}
         for k, contact in enumerate(self):
             of_body.setdefault(contact.i, []).append((k, 1.0, contact))
             of_body.setdefault(contact.j, []).append((k, -1.0, contact))
         for body, mine in of_body.items():
             if body.w > 0.0:
                 for k, sign, a in mine:
+                    row = rows[k]
                     for m, other, b in mine:
-                        W[k, m] += sign * other * body.w * (a.nx * b.nx + a.ny * b.ny)
+                        change = sign * other * body.w * (a.nx * b.nx + a.ny * b.ny)
+                        row[m] = row.get(m, 0.0) + change
+        return rows
+
+    @cached_property
+    def delassus(self):
+        """The couplings as a matrix (K, K)."""
+        W = np.zeros((len(self), len(self)))
+        for k, row in enumerate(self.couplings):
+            W[k, list(row)] = list(row.values())
         return W
 
     @cached_property
@@ -343,12 +379,20 @@ class Group(list):
                     rows[body] = (x + share * contact.nx, y + share * contact.ny)
         return size
 
+    def solve(self, b):
+        """lam of the LCP s = W lam + b.
+
+        If all contacts push, as in a tower, elimination finds lam at once.
+        """
+        lam = eliminated(self.couplings, [-part for part in b])
+        return lam if lam and min(lam) >= 0.0 else solve_lcp(self.delassus, np.array(b)).tolist()
+
     def react(self, rows, b):
         """Solve the LCP s = W lam + b and add its pushes to the rows: n . rows grows by W lam.
 
         What is left of a row at round-off, below 1e-13 of what was added up, is set to zero.
         """
-        lam = solve_lcp(self.delassus, np.array(b)).tolist()
+        lam = self.solve(b)
         for body, size in self.push(lam, rows).items():
             rows[body] = tuple(part if abs(part) > 1e-13 * size else 0.0 for part in rows[body])
         return lam
@@ -421,7 +465,7 @@ def separate(island):
         island.add([body for contact in closing for body in contact.bodies if body.w > 0.0])
         closing.react(island.q, [-contact.depth for contact in closing])
         for contact in island.contacts:
-            contact.series = None
+            contact.path = None
             contact.locate(island.q)
 
 
@@ -512,7 +556,7 @@ def normal_accelerations(contacts, v, a):
 
 
 # --- region: exact-slide ---
-def slide(held, q, v, gravity):
+def slide(held, q, v, gravity, least):
     """While the K contacts push: their N bodies, and the series Q (ORDER + 1, 2, N) of q and lam
     (ORDER - 1, K) of the forces.
 
@@ -532,6 +576,7 @@ def slide(held, q, v, gravity):
         both = np.concatenate((force, -force), 1).ravel()
         return np.bincount(body, both, 2 * len(w)).reshape(2, -1) * w
 
+    speed = np.array([math.sqrt(-gravity * body.radius) if body.w else math.inf for body in bodies])
     Q, lam = np.zeros((ORDER + 1, 2, len(w))), np.zeros((ORDER - 1, len(held)))
     n = np.zeros((ORDER + 1, 2, len(held)))
     n[0] = np.transpose([(c.nx, c.ny) for c in held])
@@ -546,12 +591,17 @@ def slide(held, q, v, gravity):
         turn = 0.5 * reach * (n[1:k + 2] * n[k + 1:0:-1]).sum((0, 1))
         lam[k] = -applied(inverse, along(n[0], a) + (k + 1) * (k + 2) * turn)
         Q[k + 2] = (a + spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
-    return bodies, Q, lam
+        if k > 3:
+            size = np.abs(Q[k + 1:k + 3] / speed).max((1, 2)) * (k + 1, k + 2)
+            span = math.ldexp(1.0, int(((-47 - np.frexp(size)[1]) // (k, k + 1)).min()))
+            if span > least:
+                break
+    return bodies, Q[:k + 3], lam[:k + 1], span
 # --- endregion ---
 
 
 # --- region: exact-expand ---
-def expand(held, q, v, a, gravity):
+def expand(held, q, v, a, gravity, least):
     """The motion of the bodies while these contacts push: {body: (x, y)} of series of the sliding
     bodies, {contact: series of its force}, and how long they last [s].
 
@@ -560,16 +610,13 @@ def expand(held, q, v, a, gravity):
     """
     if not any(contact.across(v) or contact.across(a) for contact in held):
         return {}, {}, math.inf
-    bodies, Q, lam = slide(held, q, v, gravity)
+    bodies, Q, lam, span = slide(held, q, v, gravity, least)
     moving = [k for k, body in enumerate(bodies) if body.w > 0.0]
-    radius = np.array([bodies[k].radius for k in moving])
-    size = (np.abs(Q[-2:, :, moving]) / radius).max((1, 2))
-    power = ((-54 - np.frexp(size)[1]) // (ORDER - 1, ORDER)).min()     # size t^order < 2^-54
     # first_fall needs a start above 0: a force that begins at 0 ends once it has fallen by a graze
     share = np.array([contact.i.w + contact.j.w for contact in held])
     lam[0] = np.maximum(lam[0], 0.0) - GRAZE * gravity / share
     return ({bodies[k]: Q[:, :, k].T.tolist() for k in moving}, dict(zip(held, lam.T.tolist())),
-            math.ldexp(1.0, int(power)))
+            span)
 # --- endregion ---
 
 
@@ -776,17 +823,20 @@ def event(motion, now, ball):
     collide(island, contacts, motion.restitution)
     for contact in island.contacts:
         contact.rests = contact.pushes = False
-        contact.due = math.inf
     held, a = support(island, contacts, g)
     for contact in contacts:
         contact.touched(now, contact.along(island.v))
-    slides, forces, span = expand(held, island.q, island.v, a, g)
+    least = 64.0 * min(seconds(ball.start, now) for ball in island.balls) or math.inf
+    slides, forces, span = expand(held, island.q, island.v, a, g, least)
+    moved = []
     for ball in island.balls:
         x, y = slides.get(ball) or parabola(island.q[ball], island.v[ball], a[ball])
-        motion.go_on(ball, now, x, y, span if ball in slides else math.inf)
+        if not ball.rests(x, y):
+            motion.go_on(ball, now, x, y, span if ball in slides else math.inf)
+            moved.append(ball)
+    predict(motion, now, moved)
     for contact, force in forces.items():
         motion.calendar.plan(later(now, first_fall(force, span)), contact)
-    predict(motion, now, island.balls)
     return island.balls
 # --- endregion ---
 
@@ -801,6 +851,7 @@ def predict(motion, now, balls):
     contacts = dict.fromkeys(contact for ball in balls for contact in ball.near.values())
     series, q = {}, {}
     for contact in contacts:
+        contact.due = math.inf
         if contact.pushes:
             continue
         i, j = contact.i, contact.j
