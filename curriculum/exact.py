@@ -58,6 +58,7 @@ ORDER = 14      # of the Taylor series in time
 TOUCH = 1e-12   # of a radius: a smaller gap is none
 LAST = 1e-13    # of a radius: a bounce that rises less is the last of its series
 NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
+LEFT_OUT = 7e-15 # of sqrt(g r): a series lasts while the rates of its last two terms stay below
 GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does not push
 FOLLOWED = 1e-8 # of a radius: a smaller gap is followed by its own series
 THIN = 1e-40    # of a radius: a contact that opened less and closes does not bounce
@@ -203,6 +204,10 @@ class Contact(Pair):
     def closes(self, v_n):
         """Whether the bodies approach, by more than round-off."""
         return v_n < -NOISE * self.speed
+
+    def parts(self, v_n):
+        """Whether the bodies part, by more than round-off."""
+        return v_n > NOISE * self.speed
 
     def is_slow(self, v_n):
         """Whether a bounce with this speed rises less than LAST radii."""
@@ -478,9 +483,10 @@ def touching(island):
     found = Group()
     for contact in island.contacts:
         if contact.depth >= -contact.small or island.is_due(contact):
-            opened = contact.opened(island.now, contact.along(island.v))
-            tie = min(contact.small, 1e-4 * opened)
-            if contact.rests or island.is_due(contact) or -contact.depth <= tie:
+            v_n = contact.along(island.v)
+            tie = min(contact.small, 1e-4 * contact.opened(island.now, v_n))
+            holds = contact.pushes or contact.rests and not contact.parts(v_n)
+            if holds or island.is_due(contact) or -contact.depth <= tie:
                 found.append(contact)
     return found
 
@@ -592,8 +598,8 @@ def slide(held, q, v, gravity, least):
         lam[k] = -applied(inverse, along(n[0], a) + (k + 1) * (k + 2) * turn)
         Q[k + 2] = (a + spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
         if k > 3:
-            size = np.abs(Q[k + 1:k + 3] / speed).max((1, 2)) * (k + 1, k + 2)
-            span = math.ldexp(1.0, int(((-47 - np.frexp(size)[1]) // (k, k + 1)).min()))
+            size = np.abs(Q[k + 1:k + 3] / speed).max((1, 2)) * (k + 1, k + 2) / LEFT_OUT
+            span = math.ldexp(1.0, int((-np.frexp(size)[1] // (k, k + 1)).min()))
             if span > least:
                 break
     return bodies, Q[:k + 3], lam[:k + 1], span

@@ -19,7 +19,6 @@ from curriculum import exact
 Number = np.longdouble
 MORE = 11  # bits of mantissa beyond a double's 53
 TOLERANCE = 1e-8  # a literal below this is a tolerance for rounding; the others are choices
-LAST_TERMS = 54  # the exponent that expand holds the last terms of a series to
 LONGER = 8  # times as many events before the clock waits: it is not to be what parts two runs
 
 
@@ -37,8 +36,6 @@ class Scaled(ast.NodeTransformer):
     def visit_Constant(self, node):
         if isinstance(node.value, float) and 0.0 < node.value < TOLERANCE:
             return ast.copy_location(ast.Constant(math.ldexp(node.value, -MORE)), node)
-        if type(node.value) is int and node.value == LAST_TERMS:
-            return ast.copy_location(ast.Constant(LAST_TERMS + MORE), node)
         return node
 
 
