@@ -4,7 +4,8 @@ Balls over the line y = 0, frictionless. Between two events the set of pushing c
 same, and the motion is smooth. Where no ball slides along another it is a parabola in time; where
 one does, the pushing contacts are equations, gap = 0, and the motion is a Taylor series in time.
 An event is a gap that closes, a force that falls to zero, or a series that comes to its end. It
-concerns the balls that touch one another there, an island; all other balls go on as they were.
+concerns the balls that touch one another there, an island; all other balls go on as they were, and
+so do those of the island that rest and stay at rest.
 
     Island     finds the balls, and all contacts that they can make,
     separate   closes what rounding has left of overlaps,
@@ -58,7 +59,7 @@ ORDER = 14      # of the Taylor series in time
 TOUCH = 1e-12   # of a radius: a smaller gap is none
 LAST = 1e-13    # of a radius: a bounce that rises less is the last of its series
 NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
-LEFT_OUT = 7e-15 # of sqrt(g r): a series lasts while the rates of its last two terms stay below
+ENDS = 7e-15    # of sqrt(g r): the rates of the last two terms of a series stay below
 GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does not push
 FOLLOWED = 1e-8 # of a radius: a smaller gap is followed by its own series
 THIN = 1e-40    # of a radius: a contact that opened less and closes does not bounce
@@ -179,7 +180,7 @@ class Contact(Pair):
         self.last_touch = -math.inf             # when it touched last
         self.parting = 0.0                      # |v_n| it parted with then [m/s]
         self.thin = -math.inf                   # when it closed, hardly opened
-        self.path, self.since = None, 0         # gap, dx, dy: as gap_series; when that was
+        self.followed, self.since = None, 0     # what gap_series takes: gap, dx, dy; and when
 
     def look(self, q, now):
         """Locate it; a small gap is then read from its own series, with all its digits.
@@ -187,15 +188,15 @@ class Contact(Pair):
         A pair's series is distance^2 - reach^2, so it is divided by distance + reach.
         """
         self.locate(q)
-        if self.path and abs(self.depth) < FOLLOWED * self.i.radius:
-            value = evaluate(gap_series(self, *self.path), seconds(self.since, now))
+        if self.followed and abs(self.depth) < FOLLOWED * self.i.radius:
+            value = evaluate(gap_series(self, *self.followed), seconds(self.since, now))
             if not self.wall:
                 value /= self.reach + math.sqrt(self.reach * self.reach + value)
             self.depth = -value
 
     def follow(self, now, dx, dy):
         """Follow the gap from now on, by the series of the positions' difference."""
-        self.path, self.since = (max(-self.depth, 0.0), dx, dy), now
+        self.followed, self.since = (max(-self.depth, 0.0), dx, dy), now
 
     def opened(self, now, v_n):
         """A bound [m] of how far it was open since it touched last."""
@@ -217,7 +218,7 @@ class Contact(Pair):
         """Note when it touched and how fast it parts; inf if it closes: never "hardly opened"."""
         self.last_touch, self.parting = now, math.inf if self.closes(v_n) else abs(v_n)
         if self.rests:
-            self.path = 0.0, [0.0], [0.0]       # no gap, whatever the last digits of q say
+            self.followed = 0.0, [0.0], [0.0]   # no gap, whatever the last digits of q say
 # --- endregion ---
 
 
@@ -298,25 +299,26 @@ def solve_lcp(W, b):
 
 
 def eliminated(rows, b):
-    """x (K,) of W x = b, W positive definite in rows {column: value}; None if it is singular."""
-    given, rows, b = rows, [dict(row) for row in rows], list(b)
-    for k, row in enumerate(rows):
-        pivot = row[k]
-        if not pivot > 1e-12 * given[k][k]:
+    """x [K] with W x = b, for a positive definite W of K rows {column: entry that is not 0}.
+
+    Gauss's elimination; it is short where few contacts share a body. None where W is singular.
+    """
+    left, x = [dict(row) for row in rows], list(b)
+    for k, row in enumerate(left):
+        if not row[k] > 1e-12 * rows[k][k]:
             return None
-        later = [m for m in row if m > k]
-        for m in later:
-            share, target = row[m] / pivot, rows[m]
-            b[m] -= share * b[k]
-            for n in later:
-                target[n] = target.get(n, 0.0) - share * row[n]
-    for k in reversed(range(len(b))):
-        row = rows[k]
-        for m in row:
+        below = [m for m in row if m > k]
+        for m in below:
+            share = row[m] / row[k]
+            x[m] -= share * x[k]
+            for n in below:
+                left[m][n] = left[m].get(n, 0.0) - share * row[n]
+    for k in reversed(range(len(x))):
+        for m, entry in left[k].items():
             if m > k:
-                b[k] -= row[m] * b[m]
-        b[k] /= row[k]
-    return b
+                x[k] -= entry * x[m]
+        x[k] /= left[k][k]
+    return x
 
 
 def inverted(W):
@@ -341,7 +343,7 @@ class Group(list):
 
     @cached_property
     def couplings(self):
-        """J M^-1 J': how far a unit impulse at contact m changes v_n at k; K rows {m: change}."""
+        """W = J M^-1 J' by K rows: {m: how far a unit impulse at contact m changes v_n here}."""
         rows, of_body = [{} for _ in self], {}
         for k, contact in enumerate(self):
             of_body.setdefault(contact.i, []).append((k, 1.0, contact))
@@ -349,15 +351,14 @@ class Group(list):
         for body, mine in of_body.items():
             if body.w > 0.0:
                 for k, sign, a in mine:
-                    row = rows[k]
                     for m, other, b in mine:
                         change = sign * other * body.w * (a.nx * b.nx + a.ny * b.ny)
-                        row[m] = row.get(m, 0.0) + change
+                        rows[k][m] = rows[k].get(m, 0.0) + change
         return rows
 
     @cached_property
     def delassus(self):
-        """The couplings as a matrix (K, K)."""
+        """The same as a matrix W (K, K)."""
         W = np.zeros((len(self), len(self)))
         for k, row in enumerate(self.couplings):
             W[k, list(row)] = list(row.values())
@@ -385,12 +386,14 @@ class Group(list):
         return size
 
     def solve(self, b):
-        """lam of the LCP s = W lam + b.
+        """lam [K] of the LCP s = W lam + b.
 
-        If all contacts push, as in a tower, elimination finds lam at once.
+        Often all contacts push, as in a tower: then W lam = -b, and there is nothing to pivot.
         """
         lam = eliminated(self.couplings, [-part for part in b])
-        return lam if lam and min(lam) >= 0.0 else solve_lcp(self.delassus, np.array(b)).tolist()
+        if lam is None or min(lam) < 0.0:
+            lam = solve_lcp(self.delassus, np.array(b)).tolist()
+        return lam
 
     def react(self, rows, b):
         """Solve the LCP s = W lam + b and add its pushes to the rows: n . rows grows by W lam.
@@ -470,23 +473,24 @@ def separate(island):
         island.add([body for contact in closing for body in contact.bodies if body.w > 0.0])
         closing.react(island.q, [-contact.depth for contact in closing])
         for contact in island.contacts:
-            contact.path = None
+            contact.followed = None
             contact.locate(island.q)
 
 
 def touching(island):
     """The Group of contacts that touch: at rest, due, or with a gap below TOUCH radii.
 
-    Where a contact has hardly been wider open since it touched last, as under a light ball that
-    rattles between two others, only a gap below a ten thousandth of that touches.
+    What rested and does not push may have let go: once it parts it is open, however little. Where a
+    contact has hardly been wider open since it touched last, as under a light ball that rattles
+    between two others, only a gap below a ten thousandth of that touches.
     """
     found = Group()
     for contact in island.contacts:
         if contact.depth >= -contact.small or island.is_due(contact):
             v_n = contact.along(island.v)
             tie = min(contact.small, 1e-4 * contact.opened(island.now, v_n))
-            holds = contact.pushes or contact.rests and not contact.parts(v_n)
-            if holds or island.is_due(contact) or -contact.depth <= tie:
+            at_rest = contact.pushes or contact.rests and not contact.parts(v_n)
+            if at_rest or island.is_due(contact) or -contact.depth <= tie:
                 found.append(contact)
     return found
 
@@ -562,12 +566,13 @@ def normal_accelerations(contacts, v, a):
 
 
 # --- region: exact-slide ---
-def slide(held, q, v, gravity, least):
-    """While the K contacts push: their N bodies, and the series Q (ORDER + 1, 2, N) of q and lam
-    (ORDER - 1, K) of the forces.
+def slide(held, q, v, gravity, enough):
+    """While the K contacts push: their N bodies, the series Q (terms, 2, N) of q and lam (two
+    terms less, K) of the forces, and how long they last [s].
 
     q'' = g + M^-1 J' lam with n = (q_i - q_j) / (r_i + r_j), a series too. n . n = 1 gives for each
-    order of lam a linear system, always with the Delassus matrix.
+    order of lam a linear system, always with the Delassus matrix. There are as many terms as make
+    the series last for more than `enough` [s], to ORDER at most, and 5 of lam for first_fall.
     """
     bodies = list(dict.fromkeys(body for contact in held for body in (contact.i, contact.j)))
     i, j = ([bodies.index(body) for body in column] for column in zip(*((c.i, c.j) for c in held)))
@@ -582,7 +587,6 @@ def slide(held, q, v, gravity, least):
         both = np.concatenate((force, -force), 1).ravel()
         return np.bincount(body, both, 2 * len(w)).reshape(2, -1) * w
 
-    speed = np.array([math.sqrt(-gravity * body.radius) if body.w else math.inf for body in bodies])
     Q, lam = np.zeros((ORDER + 1, 2, len(w))), np.zeros((ORDER - 1, len(held)))
     n = np.zeros((ORDER + 1, 2, len(held)))
     n[0] = np.transpose([(c.nx, c.ny) for c in held])
@@ -597,32 +601,39 @@ def slide(held, q, v, gravity, least):
         turn = 0.5 * reach * (n[1:k + 2] * n[k + 1:0:-1]).sum((0, 1))
         lam[k] = -applied(inverse, along(n[0], a) + (k + 1) * (k + 2) * turn)
         Q[k + 2] = (a + spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
-        if k > 3:
-            size = np.abs(Q[k + 1:k + 3] / speed).max((1, 2)) * (k + 1, k + 2) / LEFT_OUT
-            span = math.ldexp(1.0, int((-np.frexp(size)[1] // (k, k + 1)).min()))
-            if span > least:
-                break
+        if k > 3 and (span := lasting(bodies, Q[k + 1:k + 3], k + 1, gravity)) > enough:
+            break
     return bodies, Q[:k + 3], lam[:k + 1], span
 # --- endregion ---
 
 
 # --- region: exact-expand ---
-def expand(held, q, v, a, gravity, least):
+def lasting(bodies, last, k, gravity):
+    """How long [s] a series lasts whose `last` two terms (2, 2, N) are of t^k and t^(k + 1).
+
+    It is a power of 2, within which their rates stay below ENDS of a body's speed sqrt(g r).
+    """
+    speed = np.array([math.sqrt(-gravity * b.radius) if b.w > 0.0 else math.inf for b in bodies])
+    size = np.abs(last / (ENDS * speed)).max((1, 2)) * (k, k + 1)       # size t^(k - 1) < 1
+    return math.ldexp(1.0, int((-np.frexp(size)[1] // (k - 1, k)).min()))
+
+
+def expand(held, q, v, a, gravity, enough):
     """The motion of the bodies while these contacts push: {body: (x, y)} of series of the sliding
     bodies, {contact: series of its force}, and how long they last [s].
 
-    Where no held contact slides there is nothing to expand, for ever. Elsewhere a series lasts a
-    power of 2, in which its last two terms stay below 2^-54 r.
+    Where no held contact slides there is nothing to expand, for ever. Elsewhere a series need not
+    last longer than `enough` [s], and has few terms where that is short.
     """
     if not any(contact.across(v) or contact.across(a) for contact in held):
         return {}, {}, math.inf
-    bodies, Q, lam, span = slide(held, q, v, gravity, least)
+    bodies, Q, lam, span = slide(held, q, v, gravity, enough)
     moving = [k for k, body in enumerate(bodies) if body.w > 0.0]
     # first_fall needs a start above 0: a force that begins at 0 ends once it has fallen by a graze
     share = np.array([contact.i.w + contact.j.w for contact in held])
     lam[0] = np.maximum(lam[0], 0.0) - GRAZE * gravity / share
-    return ({bodies[k]: Q[:, :, k].T.tolist() for k in moving}, dict(zip(held, lam.T.tolist())),
-            span)
+    slides = {bodies[k]: Q[:, :, k].T.tolist() for k in moving}
+    return slides, dict(zip(held, lam.T.tolist())), span
 # --- endregion ---
 
 
@@ -832,8 +843,8 @@ def event(motion, now, ball):
     held, a = support(island, contacts, g)
     for contact in contacts:
         contact.touched(now, contact.along(island.v))
-    least = 64.0 * min(seconds(ball.start, now) for ball in island.balls) or math.inf
-    slides, forces, span = expand(held, island.q, island.v, a, g, least)
+    since = min(seconds(ball.start, now) for ball in island.balls)       # the last event here
+    slides, forces, span = expand(held, island.q, island.v, a, g, 64.0 * since or math.inf)
     moved = []
     for ball in island.balls:
         x, y = slides.get(ball) or parabola(island.q[ball], island.v[ball], a[ball])
