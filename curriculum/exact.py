@@ -59,7 +59,7 @@ ORDER = 14      # of the Taylor series in time
 TOUCH = 1e-12   # of a radius: a smaller gap is none
 LAST = 1e-13    # of a radius: a bounce that rises less is the last of its series
 NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
-ENDS = 7e-15    # of sqrt(g r): the rates of the last two terms of a series stay below
+CUT = 7e-15     # of sqrt(g r): the rates of the last two terms of a series stay below
 GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does not push
 FOLLOWED = 1e-8 # of a radius: a smaller gap is followed by its own series
 THIN = 1e-40    # of a radius: a contact that opened less and closes does not bounce
@@ -296,6 +296,23 @@ def solve_lcp(W, b):
         if exchanges == 0 or not done:
             break
     return np.maximum(lam, 0.0) * scale
+# --- endregion ---
+
+
+# --- region: exact-matrix ---
+def coupled(contacts):
+    """K rows {m: how far a unit impulse at contact m changes v_n at this one} of J M^-1 J'."""
+    rows, of_body = [{} for _ in contacts], {}
+    for k, contact in enumerate(contacts):
+        of_body.setdefault(contact.i, []).append((k, 1.0, contact))
+        of_body.setdefault(contact.j, []).append((k, -1.0, contact))
+    for body, mine in of_body.items():
+        if body.w > 0.0:
+            for k, sign, a in mine:
+                for m, other, b in mine:
+                    change = sign * other * body.w * (a.nx * b.nx + a.ny * b.ny)
+                    rows[k][m] = rows[k].get(m, 0.0) + change
+    return rows
 
 
 def eliminated(rows, b):
@@ -343,18 +360,8 @@ class Group(list):
 
     @cached_property
     def couplings(self):
-        """W = J M^-1 J' by K rows: {m: how far a unit impulse at contact m changes v_n here}."""
-        rows, of_body = [{} for _ in self], {}
-        for k, contact in enumerate(self):
-            of_body.setdefault(contact.i, []).append((k, 1.0, contact))
-            of_body.setdefault(contact.j, []).append((k, -1.0, contact))
-        for body, mine in of_body.items():
-            if body.w > 0.0:
-                for k, sign, a in mine:
-                    for m, other, b in mine:
-                        change = sign * other * body.w * (a.nx * b.nx + a.ny * b.ny)
-                        rows[k][m] = rows[k].get(m, 0.0) + change
-        return rows
+        """J M^-1 J' by its K rows, without the entries that are 0."""
+        return coupled(self)
 
     @cached_property
     def delassus(self):
@@ -391,9 +398,7 @@ class Group(list):
         Often all contacts push, as in a tower: then W lam = -b, and there is nothing to pivot.
         """
         lam = eliminated(self.couplings, [-part for part in b])
-        if lam is None or min(lam) < 0.0:
-            lam = solve_lcp(self.delassus, np.array(b)).tolist()
-        return lam
+        return lam if lam and min(lam) >= 0.0 else solve_lcp(self.delassus, np.array(b)).tolist()
 
     def react(self, rows, b):
         """Solve the LCP s = W lam + b and add its pushes to the rows: n . rows grows by W lam.
@@ -611,10 +616,10 @@ def slide(held, q, v, gravity, enough):
 def lasting(bodies, last, k, gravity):
     """How long [s] a series lasts whose `last` two terms (2, 2, N) are of t^k and t^(k + 1).
 
-    It is a power of 2, within which their rates stay below ENDS of a body's speed sqrt(g r).
+    It is a power of 2, within which their rates stay below CUT of a body's speed sqrt(g r).
     """
     speed = np.array([math.sqrt(-gravity * b.radius) if b.w > 0.0 else math.inf for b in bodies])
-    size = np.abs(last / (ENDS * speed)).max((1, 2)) * (k, k + 1)       # size t^(k - 1) < 1
+    size = np.abs(last / (CUT * speed)).max((1, 2)) * (k, k + 1)        # size t^(k - 1) < 1
     return math.ldexp(1.0, int((-np.frexp(size)[1] // (k - 1, k)).min()))
 
 

@@ -1392,12 +1392,9 @@ def held_group(scene, contacts):
     return motion, group, q, v
 
 
-FULL = [math.inf] * (exact.slide.__code__.co_argcount - 4)
-
-
 def slid(held, q, v):
     """The bodies of slide, and its series in full."""
-    return exact.slide(held, q, v, G, *FULL)[:3]
+    return exact.slide(held, q, v, G, math.inf)[:3]
 
 
 def sliding_scenes():
@@ -1485,16 +1482,14 @@ def expanded(scene, contacts):
     motion, held, q, v = held_group(scene, contacts)
     a = {body: (0.0, G if body.w else 0.0) for body in q}
     held.correct(a, exact.normal_accelerations(held, v, a))
-    return motion, held, exact.expand(held, q, v, a, G, *FULL), slid(held, q, v)
+    return motion, held, exact.expand(held, q, v, a, G, math.inf), slid(held, q, v)
 
 
 def last_terms(Q, radius, span):
     """The larger of a series' last two terms at its end, as a share of what they may be."""
     orders = np.array([exact.ORDER - 1.0, exact.ORDER])[:, None, None]
-    if not hasattr(exact, "LEFT_OUT"):
-        return (np.abs(Q[-2:]) * span**orders / radius).max() * 2.0**54
     rates = np.abs(Q[-2:]) * orders * span ** (orders - 1.0)
-    return (rates / np.sqrt(-G * radius)).max() / exact.LEFT_OUT
+    return (rates / np.sqrt(-G * radius)).max() / exact.CUT
 
 
 @pytest.mark.parametrize("case", range(3))
