@@ -56,6 +56,7 @@ from itertools import zip_longest
 import numpy as np
 
 ORDER = 14      # of the Taylor series in time
+LONGER = 64     # times as long as nothing has happened: longer no series need last
 TOUCH = 1e-12   # of a radius: a smaller gap is none
 LAST = 1e-13    # of a radius: a bounce that rises less is the last of its series
 NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
@@ -457,6 +458,10 @@ class Island:
         if body not in self.q:
             self.q[body], self.v[body] = body.at(self.now)
 
+    def quiet(self):
+        """How long [s] nothing has happened to its balls."""
+        return min(seconds(ball.start, self.now) for ball in self.balls)
+
     def is_due(self, contact):
         """Whether an event of this contact is to be settled now."""
         return contact.due <= self.now
@@ -848,8 +853,8 @@ def event(motion, now, ball):
     held, a = support(island, contacts, g)
     for contact in contacts:
         contact.touched(now, contact.along(island.v))
-    since = min(seconds(ball.start, now) for ball in island.balls)       # the last event here
-    slides, forces, span = expand(held, island.q, island.v, a, g, 64.0 * since or math.inf)
+    enough = LONGER * island.quiet() or math.inf
+    slides, forces, span = expand(held, island.q, island.v, a, g, enough)
     moved = []
     for ball in island.balls:
         x, y = slides.get(ball) or parabola(island.q[ball], island.v[ball], a[ball])

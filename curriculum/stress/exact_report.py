@@ -227,8 +227,8 @@ def _parted_table(section):
     note = (
         "Where the distance grows from sample to sample, it is chaos. Where it jumps within 1 ms, an "
         "order of impacts has changed, which a tolerance can decide: for instance a contact that "
-        "let go just before an impact next to it, and is open by less than TOUCH, takes part in "
-        "that impact in doubles and is struck after it in 80 bits."
+        "parts so slowly that its bounce would rise less than LAST stays closed in doubles, and "
+        "opens for some microseconds in 80 bits."
     )
     return f"\n\n{table(head, parted)}\n{note}" if parted else ""
 

@@ -497,9 +497,10 @@ def exact_never_gains_energy(trial):
     at most 3 N GRAZE g sqrt(2 E sum m) dt. The others add up to at most B^2 g, since the acceleration
     differs from gravity by the least that keeps gaps from closing (Gauss), which is at most B g.
     Rounding: N + 2 operations on each impulse and force of a ball, twice; two for each of a series'
-    ORDER + 1 terms, which add up to at most 9 E in the height and 6 E in the speed of a flight. Not
-    derived: where balls slide, gaps are made 0 instead of >= 0, and a series is cut; the same is
-    allowed for these, though contacts that almost depend on one another could need more.
+    ORDER + 1 terms, which add up to at most 9 E in the height and 6 E in the speed of a flight. A
+    series is cut where the rates of its last terms are CUT sqrt(g r): that times the momentum, as if
+    what follows were as large. Not derived: where balls slide, gaps are made 0 instead of >= 0; the
+    same is allowed, though contacts that almost depend on one another could need more.
     """
     if trial.overlaps:
         return SKIPPED
@@ -527,7 +528,8 @@ def energy_of_nothing(trial, run):
     dropped = 3 * n * exact.GRAZE * g * np.sqrt(total) * momentum * dt
     pressed = 4 * (n + 2) * U * g * blow**2 * fastest * dt
     read = (30 * (exact.ORDER + 1) + 4 * (n + 2)) * U * size
-    return trial.exact[1] * (lifted + struck + read) + dropped + pressed + 2 * read, size
+    cut = exact.CUT * np.sqrt(g * widest * total) * momentum
+    return trial.exact[1] * (lifted + struck + read + cut) + dropped + pressed + 2 * read, size
 
 
 def blown_up(trial, q):

@@ -772,6 +772,68 @@ def test_a_contact_that_rests_or_is_due_touches_whatever_its_gap():
             assert (contact in exact.touching(island)) == touches, (gap, note)
 
 
+@pytest.mark.parametrize("v_n, pushes, touches", [
+    (0.0, False, True), (0.5, False, True), (2.0, False, False), (2.0, True, True),
+])  # fmt: skip
+def test_a_contact_at_rest_that_does_not_push_has_let_go_once_it_parts(v_n, pushes, touches):
+    """v_n in units of round-off; it rested a second ago, and is open by less than TOUCH radii."""
+    scene = row_of_balls([0.0], [1.0], height=R + 0.5 * exact.TOUCH * R)
+    speed = v_n * exact.NOISE * math.sqrt(-G * R)
+    island, _ = island_of(scene._replace(v0=np.array([[0.0], [speed]])))
+    (contact,) = island.contacts
+    contact.last_touch, contact.rests, contact.pushes = -exact.SECOND, True, pushes
+    assert (contact in exact.touching(island)) == touches
+
+
+def test_a_ball_at_rest_that_stays_at_rest_keeps_its_series_and_what_is_due():
+    """A tower of three, of which the last is let fall: the impact lifts it, and moves no other."""
+    scene = row_of_balls([0.0, 0.0, 0.0], [1.0, 1.0, 1.0])
+    scene = scene._replace(
+        q0=np.array((np.zeros(3), R * np.array([1.0, 3.0, 5.2]))), restitution=0.5
+    )
+    motion = exact.Motion(scene, G)
+    for ball in motion.balls:
+        exact.event(motion, 0, ball)
+    now = motion.calendar.next()
+    exact.event(motion, now, motion.balls[2])
+    assert [ball.start for ball in motion.balls] == [0, 0, now]
+    assert motion.balls[2].y[1] > 0.0 and all(ball.y[1:] == [0.0, 0.0] for ball in motion.balls[:2])
+
+
+def test_series_that_are_needed_for_a_shorter_time_have_fewer_terms_and_lead_to_the_same_place():
+    scene, contacts, _ = next(sliding_scenes())
+    _, held, q, v = held_group(scene, contacts)
+    bodies, full, forces, span = exact.slide(held, q, v, G, math.inf)
+    assert len(full) == exact.ORDER + 1
+    for enough in 1e-6, 1e-5, 1e-4:
+        _, Q, lam, lasts = exact.slide(held, q, v, G, enough)
+        assert enough < lasts < span and len(lam) == len(Q) - 2 < len(forces)
+        assert np.array_equal(Q, full[: len(Q)]) and np.array_equal(lam, forces[: len(lam)])
+        for short, long in ((Q, full), (exact.rate(Q), exact.rate(full))):
+            error = np.abs(exact.evaluate(short, lasts) - exact.evaluate(long, lasts)).max()
+            assert error < exact.CUT * math.sqrt(-G * R)
+
+
+# Elimination
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_elimination_solves_a_system_of_few_entries(seed):
+    rng = np.random.default_rng(seed)
+    J = rng.normal(size=(8, 12)) * (rng.random((8, 12)) < 0.3) + np.eye(8, 12)
+    W, b = J @ J.T, rng.normal(size=8)
+    rows = [{m: entry for m, entry in enumerate(row) if entry} for row in W.tolist()]
+    x = exact.eliminated(rows, b.tolist())
+    assert x == pytest.approx(np.linalg.solve(W, b), rel=1e-9)
+    assert rows == [{m: entry for m, entry in enumerate(row) if entry} for row in W.tolist()]
+
+
+def test_elimination_finds_that_a_contact_depends_on_others():
+    J = np.array([[1.0, 0.0], [0.6, 0.8], [0.8, -0.6]])
+    rows = [dict(enumerate(row)) for row in (J @ J.T).tolist()]
+    assert exact.eliminated(rows, [1.0, 1.0, 1.0]) is None
+
+
 # Units, and left and right
 
 
