@@ -181,7 +181,8 @@ class Contact(Pair):
         self.last_touch = -math.inf             # when it touched last
         self.parting = 0.0                      # |v_n| it parted with then [m/s]
         self.thin = -math.inf                   # when it closed, hardly opened
-        self.followed, self.since = None, 0     # what gap_series takes: gap, dx, dy; and when
+        self.series, self.since = None, 0       # of its gap, and the time it starts from
+        self.path = None                        # what gap_series makes it from: gap, dx, dy
 
     def look(self, q, now):
         """Locate it; a small gap is then read from its own series, with all its digits.
@@ -189,15 +190,17 @@ class Contact(Pair):
         A pair's series is distance^2 - reach^2, so it is divided by distance + reach.
         """
         self.locate(q)
-        if self.followed and abs(self.depth) < FOLLOWED * self.i.radius:
-            value = evaluate(gap_series(self, *self.followed), seconds(self.since, now))
+        if (self.series or self.path) and abs(self.depth) < FOLLOWED * self.i.radius:
+            self.series = self.series or gap_series(self, *self.path)
+            value = evaluate(self.series, seconds(self.since, now))
             if not self.wall:
                 value /= self.reach + math.sqrt(self.reach * self.reach + value)
             self.depth = -value
 
     def follow(self, now, dx, dy):
         """Follow the gap from now on, by the series of the positions' difference."""
-        self.followed, self.since = (max(-self.depth, 0.0), dx, dy), now
+        self.series, self.since = None, now
+        self.path = max(-self.depth, 0.0), dx, dy
 
     def opened(self, now, v_n):
         """A bound [m] of how far it was open since it touched last."""
@@ -219,7 +222,7 @@ class Contact(Pair):
         """Note when it touched and how fast it parts; inf if it closes: never "hardly opened"."""
         self.last_touch, self.parting = now, math.inf if self.closes(v_n) else abs(v_n)
         if self.rests:
-            self.followed = 0.0, [0.0], [0.0]   # no gap, whatever the last digits of q say
+            self.series = [0.0]                 # no gap, whatever the last digits of q say
 # --- endregion ---
 
 
@@ -483,7 +486,7 @@ def separate(island):
         island.add([body for contact in closing for body in contact.bodies if body.w > 0.0])
         closing.react(island.q, [-contact.depth for contact in closing])
         for contact in island.contacts:
-            contact.followed = None
+            contact.series = contact.path = None
             contact.locate(island.q)
 
 
