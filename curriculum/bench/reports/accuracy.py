@@ -395,9 +395,10 @@ def _family(axis, data, problem, family, points):
         label=label,
     )
     if family == "lcp":
-        for p in line:
+        nearest = {p["dt"]: p for p in sorted(line, key=lambda p: -p["shown"])}
+        for dt, p in nearest.items():  # each step once, where its error is least
             axis.annotate(
-                f"{1e3 * p['dt']:g}",
+                f"{1e3 * dt:g}",
                 (p["shown"], p["read_median"] * 1e3),
                 (-3, -4),
                 textcoords="offset points",
