@@ -550,6 +550,13 @@ def test_bodies_approach_when_their_speed_is_above_round_off(radius):
     assert not contact.closes(1.0)
 
 
+@pytest.mark.parametrize("radius", [1e-3, 0.1, 20.0])
+def test_bodies_part_when_their_speed_is_above_round_off(radius):
+    contact, fallen = contact_over_the_floor(radius), math.sqrt(-2.0 * G * 0.5 * radius)
+    assert contact.parts(1.01 * exact.NOISE * fallen) and contact.parts(1.0)
+    assert not contact.parts(0.99 * exact.NOISE * fallen) and not contact.parts(-1.0)
+
+
 def test_a_bound_of_how_far_a_contact_was_open_is_one_and_no_more_than_8_times_too_much():
     """Parting with v it is v^2 / (2 g) open at most, and closes with v after 2 v / g."""
     for v in (1e-8, 0.3, 20.0):
@@ -696,6 +703,13 @@ def test_what_counts_as_a_gap_is_as_small_as_the_balls_are():
         assert contact.small <= 1.01 * exact.TOUCH * R * 2.0**-30
 
 
+def test_an_island_is_quiet_for_as_long_as_nothing_has_happened_to_any_of_its_balls():
+    motion = exact.Motion(row_of_balls([0.0, 2.0, 4.0], [1.0, 2.0, 3.0]), G)
+    for ball, start in zip(motion.balls, (0.25, 0.5, 0.0)):
+        ball.start = exact.later(0, start)
+    assert exact.Island(exact.later(0, 1.0), motion.balls[0]).quiet() == 0.5
+
+
 def test_an_overlap_is_closed_by_moving_the_heavy_ball_less():
     """0.6 r: 1 kg moves by three quarters of it and 3 kg by one, so that their centre stays."""
     island, motion = island_of(row_of_balls([0.0, 1.4], [1.0, 3.0]))
@@ -814,6 +828,17 @@ def test_series_that_are_needed_for_a_shorter_time_have_fewer_terms_and_lead_to_
             assert error < exact.CUT * math.sqrt(-G * R)
 
 
+def test_a_series_lasts_for_more_than_is_enough_and_has_5_terms_of_each_force_at_least():
+    scene, contacts, _ = next(sliding_scenes())
+    _, held, q, v = held_group(scene, contacts)
+    _, _, lam, lasts = exact.slide(held, q, v, G, 0.0)
+    assert len(lam) == 5
+    for _ in range(4):
+        *_, longer = exact.slide(held, q, v, G, lasts)
+        assert longer > lasts
+        lasts = longer
+
+
 # Elimination
 
 
@@ -828,10 +853,36 @@ def test_elimination_solves_a_system_of_few_entries(seed):
     assert rows == [{m: entry for m, entry in enumerate(row) if entry} for row in W.tolist()]
 
 
-def test_elimination_finds_that_a_contact_depends_on_others():
-    J = np.array([[1.0, 0.0], [0.6, 0.8], [0.8, -0.6]])
-    rows = [dict(enumerate(row)) for row in (J @ J.T).tolist()]
-    assert exact.eliminated(rows, [1.0, 1.0, 1.0]) is None
+def test_elimination_says_none_of_contacts_that_depend_on_one_another():
+    J = np.random.default_rng(16).normal(size=(5, 3))
+    for units in (1.0, 1e-20, 1e20):
+        W = units * (J @ J.T)
+        assert exact.eliminated([dict(enumerate(row)) for row in W.tolist()], [1.0] * 5) is None
+
+
+@pytest.mark.parametrize("case", range(3))
+def test_a_group_solves_its_lcp_whether_all_push_or_not(case, monkeypatch):
+    scene, contacts, rng = list(sliding_scenes())[case]
+    _, held, _, _ = held_group(scene, contacts)
+    for _ in range(8):
+        b = rng.normal(size=len(held))
+        assert held.solve(b.tolist()) == pytest.approx(enumerated(held.delassus, b), abs=1e-9)
+    monkeypatch.setattr(exact, "solve_lcp", None)  # where all push the pivot is not needed
+    push = rng.uniform(0.1, 1.0, len(held))
+    assert held.solve((-held.delassus @ push).tolist()) == pytest.approx(push, rel=1e-9)
+
+
+def test_a_ball_rests_where_it_was_and_has_no_rate():
+    ball = exact.Body(1.0, R, [1.0, 2.0], [0.0, 0.0])
+    assert ball.rests([1.0, 0.0, 0.0], [2.0, 0.0, 0.0])
+    for x, y in (
+        ([1.0, 0.0, 0.0], [2.5, 0.0, 0.0]), ([1.5, 0.0, 0.0], [2.0, 0.0, 0.0]),
+        ([1.0, 0.0, 0.0], [2.0, 0.0, -1.0]), ([1.0, 3.0, 0.0], [2.0, 0.0, 0.0]),
+    ):  # fmt: skip
+        assert not ball.rests(x, y)
+        ball.x, ball.y = x, y
+        assert ball.rests(x, y) == (not any(x[1:] + y[1:]))
+        ball.x, ball.y = [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]
 
 
 # Units, and left and right
