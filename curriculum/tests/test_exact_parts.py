@@ -828,6 +828,25 @@ def test_series_that_are_needed_for_a_shorter_time_have_fewer_terms_and_lead_to_
             assert error < exact.CUT * math.sqrt(-G * R)
 
 
+def test_the_rates_of_the_last_two_terms_stay_below_CUT_and_twice_as_long_one_would_not():
+    """Of bodies of different sizes, of which the fixed one does not count."""
+    bodies = [
+        exact.Body(w, r, [0.0, 0.0], [0.0, 0.0]) for w, r in ((0.5, 0.1), (9.0, 3.0), (0.0, R))
+    ]
+    limit = exact.CUT * np.sqrt(-G * np.array([0.1, 3.0, math.inf]))
+    rng = np.random.default_rng(17)
+    for k in rng.integers(5, 14, 300).tolist():
+        last = rng.normal(size=(2, 2, 3)) * 10.0 ** rng.uniform(-6.0, 6.0, (2, 1, 1))
+        lasts = exact.lasting(bodies, last, k, G)
+        shares = [
+            max(
+                (np.abs(term) * n * t ** (n - 1) / limit).max() for term, n in zip(last, (k, k + 1))
+            )
+            for t in (lasts, 2.0 * lasts)
+        ]
+        assert math.frexp(lasts)[0] == 0.5 and shares[0] < 1.0 <= shares[1]
+
+
 def test_a_series_lasts_for_more_than_is_enough_and_has_5_terms_of_each_force_at_least():
     scene, contacts, _ = next(sliding_scenes())
     _, held, q, v = held_group(scene, contacts)
