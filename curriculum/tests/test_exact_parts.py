@@ -847,6 +847,15 @@ def test_the_rates_of_the_last_two_terms_stay_below_CUT_and_twice_as_long_one_wo
         assert math.frexp(lasts)[0] == 0.5 and shares[0] < 1.0 <= shares[1]
 
 
+def test_a_series_is_full_at_the_start_and_short_where_something_has_just_happened():
+    motion = exact.Motion(heap_of_five()[0], G)
+    first = motion.balls[0]
+    exact.event(motion, 0, first)
+    assert len(first.x) == exact.ORDER + 1
+    exact.event(motion, exact.later(0, 1e-6), first)
+    assert len(first.x) < 10 and first.start == exact.later(0, 1e-6)
+
+
 def test_a_series_lasts_for_more_than_is_enough_and_has_5_terms_of_each_force_at_least():
     scene, contacts, _ = next(sliding_scenes())
     _, held, q, v = held_group(scene, contacts)
