@@ -582,14 +582,18 @@ def test_a_contact_at_rest_has_no_gap_whatever_its_place_says():
         assert -contact.depth == pytest.approx(gap, abs=1e-16)
 
 
-def test_a_contact_that_rests_and_does_not_push_is_followed_from_no_gap():
-    """Two balls stand beside one another, 0.4 TOUCH radii apart: after their event that is none."""
-    motion = exact.Motion(row_of_balls([0.0, 2.0 + 0.4 * exact.TOUCH], [1.0, 2.0], R), G)
+@pytest.mark.parametrize("height", [R, 100.0 * R])
+def test_a_contact_that_rests_and_does_not_push_is_followed_from_no_gap(height):
+    """Two balls stand, or fall, beside one another, 0.4 TOUCH radii apart: after their event that
+    is none."""
+    scene = row_of_balls([0.0, 2.0 + 0.4 * exact.TOUCH], [1.0, 2.0], height)
+    motion = exact.Motion(scene, G)
     first, second = motion.balls
     contact = first.near[second]
     exact.event(motion, 0, first)
     assert contact.rests and not contact.pushes
-    contact.look({ball: ball.at(0)[0] for ball in motion.balls}, exact.later(0, 1.0))
+    now = exact.later(0, 2.0**-6)
+    contact.look({ball: ball.at(now)[0] for ball in motion.balls}, now)
     assert contact.depth == 0.0
 
 
