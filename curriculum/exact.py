@@ -927,7 +927,9 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
             soon = max(soon, later(now, 0.01 * tick))
         if soon >= until:
             events, until = 0, later(soon, tick)
-        now, motion.samples = soon, bisect_right(clock, seconds(0, soon))
+        if soon > now:                          # a sample at the start is of its last event
+            motion.samples = bisect_right(clock, seconds(0, soon))
+        now = soon
         woken = motion.calendar.woken(now)
     report(motion.samples)
     for ball in motion.balls:

@@ -1025,6 +1025,16 @@ def test_the_sample_at_the_start_is_the_start_to_the_last_bit():
     assert (q[0] == scene.q0).all() and (v[0] == scene.v0).all()
 
 
+def test_the_sample_at_the_start_is_of_the_last_event_at_the_start(monkeypatch):
+    """A ball that lies in a fixed one is pushed out of it, into a third that was too far from its
+    home to be seen: that overlap is mended by one more event at the same time."""
+    monkeypatch.setattr(exact, "FEW", 0)
+    scene = row_of_balls([3.3, 0.0, 0.1], [2.0, np.inf, 1.0])
+    q, _ = exact.simulate_exact(scene, np.array([0.0, 1e-9]), G)
+    for sample in q:
+        assert np.diff(np.sort(sample[0])).min() >= 2.0 * R * (1.0 - exact.TOUCH)
+
+
 def test_balls_that_nothing_moves_stay_and_make_no_event():
     scene, reports = row_of_balls([0.0, 3.0], [np.inf, np.inf]), []
     q, v = exact.simulate_exact(scene, np.array([0.0, 1.0]), G, reports.append)
