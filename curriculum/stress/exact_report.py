@@ -225,10 +225,10 @@ def _parted_table(section):
     ]
     head = ["balls", "e", "seed", "parts at / s", "1 ms before: apart / r", "then / r"]
     note = (
-        "Where the distance grows from sample to sample, it is chaos. Where it jumps within 1 ms, an "
-        "order of impacts has changed, which a tolerance can decide: for instance a contact that "
-        "parts so slowly that its bounce would rise less than LAST stays closed in doubles, and "
-        "opens for some microseconds in 80 bits."
+        "Where the distance jumps within 1 ms, an order of impacts has changed. Where it grows from "
+        "sample to sample, it is chaos, or a small difference of speeds from before, which a "
+        "tolerance can decide: a contact that parts so slowly that its bounce would rise less than "
+        "LAST stays closed in doubles, and opens for some microseconds in 80 bits."
     )
     return f"\n\n{table(head, parted)}\n{note}" if parted else ""
 
