@@ -56,11 +56,11 @@ from itertools import zip_longest
 import numpy as np
 
 ORDER = 14      # of the Taylor series in time
-LONGER = 64     # times as long as nothing has happened: longer no series need last
+LONGER = 64     # a series need not last more than so many times as long as the quiet before it
 TOUCH = 1e-12   # of a radius: a smaller gap is none
 LAST = 1e-13    # of a radius: a bounce that rises less is the last of its series
 NOISE = 1e-13   # of sqrt(g r): a smaller speed is round-off
-CUT = 7e-15     # of sqrt(g r): the rates of the last two terms of a series stay below
+CUT = 7e-15     # of sqrt(g r): a series lasts while its last two terms move a ball more slowly
 GRAZE = 1e-12   # of g: a contact that pushes its bodies apart with less does not push
 FOLLOWED = 1e-8 # of a radius: a smaller gap is followed by its own series
 THIN = 1e-40    # of a radius: a contact that opened less and closes does not bounce
