@@ -88,7 +88,7 @@ def seconds(start, time):
 class Body:
     """A ball, or the floor, and its motion until its next event.
 
-    x and y [m] are series in the time since start [s]: 3 numbers for a parabola, or ORDER + 1.
+    x and y [m] are series in the time since start [s]: 3 numbers for a parabola, 7 or more else.
     """
 
     def __init__(self, w, radius, q, v):
@@ -203,7 +203,7 @@ class Contact(Pair):
         self.path = max(-self.depth, 0.0), dx, dy
 
     def opened(self, now, v_n):
-        """A bound [m] of how far it was open since it touched last."""
+        """An estimate [m] of how far it was open since it touched last."""
         return (self.parting + abs(v_n)) * seconds(self.last_touch, now)
 
     def closes(self, v_n):
@@ -364,7 +364,7 @@ class Group(list):
 
     @cached_property
     def couplings(self):
-        """J M^-1 J' by its K rows, without the entries that are 0."""
+        """J M^-1 J' by its K rows, without those of contacts that share no ball."""
         return coupled(self)
 
     @cached_property
@@ -585,7 +585,7 @@ def slide(held, q, v, gravity, enough):
 
     q'' = g + M^-1 J' lam with n = (q_i - q_j) / (r_i + r_j), a series too. n . n = 1 gives for each
     order of lam a linear system, always with the Delassus matrix. There are as many terms as make
-    the series last for more than `enough` [s], to ORDER at most, and 5 of lam for first_fall.
+    the series last for more than `enough` [s], to ORDER at most, but at least 5 of lam.
     """
     bodies = list(dict.fromkeys(body for contact in held for body in (contact.i, contact.j)))
     i, j = ([bodies.index(body) for body in column] for column in zip(*((c.i, c.j) for c in held)))
@@ -846,7 +846,7 @@ class Motion:
 
 # --- region: exact-event ---
 def event(motion, now, ball):
-    """Settle the island of a ball to which something happens, and send it on its way: its balls."""
+    """Settle the island of a ball to which something happens, and send it on its way. Its balls."""
     island, g = Island(now, ball), motion.gravity
     separate(island)
     contacts = touching(island)
@@ -861,7 +861,7 @@ def event(motion, now, ball):
     moved = []
     for ball in island.balls:
         x, y = slides.get(ball) or parabola(island.q[ball], island.v[ball], a[ball])
-        if not ball.rests(x, y):
+        if ball.due <= now or not ball.rests(x, y):
             motion.go_on(ball, now, x, y, span if ball in slides else math.inf)
             moved.append(ball)
     predict(motion, now, moved)
@@ -927,7 +927,7 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
             soon = max(soon, later(now, 0.01 * tick))
         if soon >= until:
             events, until = 0, later(soon, tick)
-        if soon > now:                          # a sample at the start is of its last event
+        if soon > now:                          # at the start: after all events there
             motion.samples = bisect_right(clock, seconds(0, soon))
         now = soon
         woken = motion.calendar.woken(now)

@@ -276,3 +276,14 @@ def test_a_pile_is_that_of_80_bits_where_a_contact_lets_go_just_before_an_impact
     doubles, more = (one(scene, times, contact.GRAVITY)[0]
                      for one in (exact.simulate_exact, precise_exact.simulate_exact))  # fmt: skip
     assert np.abs(doubles - more).max() < 1e-12 * contact.RADIUS
+
+
+def test_a_ball_that_rests_beside_balls_that_slide_is_struck_when_another_falls_on_it():
+    """Its series is that of rest, like the one before, but how long it holds is not."""
+    x = np.array([-2.0, 0.0, 2.0, 2.0 * np.sin(0.1), 2.0])
+    y = np.array([1.0, 1.0, 1.0, 1.0 + 2.0 * np.cos(0.1), 3.1])
+    mass = np.array([np.inf, 1.0, 1.0, 1.0, 1.0])
+    q0 = np.array((x, y))
+    scene = contact.Scene("heap", q0, 0.0 * q0, mass, np.ones(5), 0.5, 0.0)
+    q, _ = exact.simulate_exact(scene, np.linspace(0.0, 1.0, 501), contact.GRAVITY)
+    assert contact.max_penetration(q, scene.radius).max() < 1e-12
