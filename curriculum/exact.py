@@ -476,7 +476,8 @@ def separate(island):
     """Move the balls until no overlap is left that is more than `small`.
 
     Overlaps close as velocities do in an impact: by pushes, so that heavy balls move less. The LCP
-    includes every gap up to twice the deepest overlap, so that no push makes it an overlap.
+    includes every gap up to twice the deepest overlap, so that few pushes make an overlap of one;
+    what they do make is for the next round, of 50 at most.
     """
     for _ in range(50):
         if not any(contact.depth > contact.small for contact in island.contacts):
@@ -491,7 +492,7 @@ def separate(island):
 
 
 def touching(island):
-    """The Group of contacts that touch: at rest, due, or with a gap below TOUCH radii.
+    """The Group of contacts that touch: at rest, due, or with a gap that is none.
 
     What rested and does not push may have let go: once it parts it is open, however little. Where a
     contact has hardly been wider open since it touched last, as under a light ball that rattles
@@ -875,8 +876,8 @@ def event(motion, now, ball):
 def predict(motion, now, balls):
     """Find when the contacts of the balls, which have new series, will close.
 
-    Those at rest count as 3 TOUCH radii open, so that round-off is no event. The distance of two
-    bodies is never less than along the normal of today: where that leaves a gap, none closes.
+    Those that rest count as 3 TOUCH radii open, so that round-off is no event. The distance of two
+    bodies is never less than along the normal of now: where that leaves a gap, none closes.
     """
     contacts = dict.fromkeys(contact for ball in balls for contact in ball.near.values())
     series, q = {}, {}
