@@ -527,13 +527,18 @@ def hardly_opened(island, contacts, v_n):
 
 
 # --- region: exact-collide ---
+def closing(island, contact, v_n):
+    """Whether the bodies approach: by more than round-off, or so that they have crept together."""
+    return contact.closes(v_n) or v_n < 0.0 and island.is_due(contact) and not contact.pushes
+
+
 def collide(island, contacts, restitution):
     """Give impulses to the contacts that close: v_n becomes -e v_n where they push.
 
     Those that have hardly opened, or would bounce slowly, get v_n = 0: their series ends.
     """
     v_n = contacts.along(island.v)
-    if not any(contact.closes(speed) for contact, speed in zip(contacts, v_n)):
+    if not any(closing(island, contact, speed) for contact, speed in zip(contacts, v_n)):
         return
     bounce = []
     for contact, speed, thin in zip(contacts, v_n, hardly_opened(island, contacts, v_n)):
@@ -612,8 +617,10 @@ def slide(held, q, v, gravity, enough):
         n[k + 1] = (Q[k + 1][:, i] - Q[k + 1][:, j]) / reach * pair
         a = spread((lam[:k, None] * n[k:0:-1]).sum(0))          # of the orders that are known
         a[1] += gravity * (w > 0.0) * (k == 0)
-        turn = 0.5 * reach * (n[1:k + 2] * n[k + 1:0:-1]).sum((0, 1))
-        lam[k] = -applied(inverse, along(n[0], a) + (k + 1) * (k + 2) * turn)
+        turn = 0.5 * reach * (n[1:k + 2] * n[k + 1:0:-1]).sum((0, 1)) * (k + 1) * (k + 2)
+        lam[k] = -applied(inverse, along(n[0], a) + turn)
+        if k == 0:                              # to close the gaps has turned n a little
+            lam[k] -= applied(inverse, along(n[0], a + spread(lam[k] * n[0])) + turn)
         Q[k + 2] = (a + spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
         if k > 3 and (span := lasting(bodies, Q[k + 1:k + 3], k + 1, gravity)) > enough:
             break
@@ -632,22 +639,48 @@ def lasting(bodies, last, k, gravity):
     return math.ldexp(1.0, int((-np.frexp(size)[1] // (k - 1, k)).min()))
 
 
+def held_fast(held):
+    """The balls of those heaps that cannot move: they have as many contacts as coordinates."""
+    found, left = set(), set(range(len(held)))
+    while left:
+        heap = [left.pop()]                     # of contacts, that share balls
+        for k in heap:                          # and grows while there are more
+            more = left.intersection(held.couplings[k])
+            left -= more
+            heap += more
+        balls = {body for k in heap for body in held[k].bodies if body.w > 0.0}
+        if len(heap) == 2 * len(balls):
+            found |= balls
+    return found
+
+
+def slips(contacts, v, a):
+    """Whether bodies slide over one another, or begin to."""
+    return any(contact.across(v) or contact.across(a) for contact in contacts)
+
+
 def expand(held, q, v, a, gravity, enough):
-    """The motion of the bodies while these contacts push: {body: (x, y)} of series of the sliding
-    bodies, {contact: series of its force}, and how long they last [s].
+    """The motion of the bodies while these contacts push: {body: (x, y)} of series of those that
+    slide or are held fast, {contact: series of its force}, and how long they last [s].
 
     Where no held contact slides there is nothing to expand, for ever. Elsewhere a series need not
     last longer than `enough` [s], and has few terms where that is short.
     """
-    if not any(contact.across(v) or contact.across(a) for contact in held):
+    if not slips(held, v, a):
         return {}, {}, math.inf
-    bodies, Q, lam, span = slide(held, q, v, gravity, enough)
-    moving = [k for k, body in enumerate(bodies) if body.w > 0.0]
+    fast = held_fast(held)                      # what they still move by is round-off
+    series = {body: parabola(q[body], (0.0, 0.0), (0.0, 0.0)) for body in fast}
+    loose = Group(contact for contact in held if fast.isdisjoint(contact.bodies)) if fast else held
+    if not slips(loose, v, a):
+        return series, {}, math.inf
+    bodies, Q, lam, span = slide(loose, q, v, gravity, enough)
     # first_fall needs a start above 0: a force that begins at 0 ends once it has fallen by a graze
-    share = np.array([contact.i.w + contact.j.w for contact in held])
+    share = np.array([contact.i.w + contact.j.w for contact in loose])
     lam[0] = np.maximum(lam[0], 0.0) - GRAZE * gravity / share
-    slides = {bodies[k]: Q[:, :, k].T.tolist() for k in moving}
-    return slides, dict(zip(held, lam.T.tolist())), span
+    for k, body in enumerate(bodies):
+        if body.w > 0.0:
+            series[body] = Q[:, :, k].T.tolist()
+    return series, dict(zip(loose, lam.T.tolist())), span
 # --- endregion ---
 
 

@@ -6,7 +6,7 @@
     python -m curriculum.stress --dask HOST:PORT    on a running Dask scheduler and its workers
     python -m curriculum.stress --only 'tower*'     jobs whose names match; prints, writes nothing
     python -m curriculum.stress --case FILE         what a violation names: runs it again
-    python -m curriculum.stress --case scene:1234   one of the random scenes
+    python -m curriculum.stress --case scene:1234   one of the random scenes; board:12 of the boards
     python -m curriculum.stress --draw              report.md and figures again, from results.json
 
 Exit status 0: no violation; 1: violations, or a job died; 2: bad command line. A run that was
@@ -32,6 +32,7 @@ RESULTS = under_test.ROOT / "curriculum" / "stress" / "results"
 QUICK = under_test.ROOT / "outputs" / "stress-quick"
 WORK = under_test.ROOT / "outputs" / "stress-work"
 SCENES, QUICK_SCENES, BATCH = 10_000, 100, 20
+BOARDS = 0.1  # for every random scene
 SEEDS, QUICK_SEEDS, SEEDS_A_JOB = 1000, 50, 50
 
 
@@ -41,15 +42,8 @@ def all_jobs(quick, count):
     return [
         *samebytes.byte_jobs(quick, {} if quick else samebytes.pythons_at_hand()),
         *extremes.extreme_jobs(quick),
-        *(
-            jobs.job(
-                "scenes",
-                f"scenes {start} to {min(start + BATCH, count) - 1}",
-                start=start,
-                stop=min(start + BATCH, count),
-            )
-            for start in range(0, count, BATCH)
-        ),
+        *batches("boards", int(BOARDS * count)),
+        *batches("scenes", count),
         *maps.map_jobs(maps.QUICK if quick else maps.FULL),
         *(
             jobs.job(
@@ -65,10 +59,21 @@ def all_jobs(quick, count):
     ]
 
 
+def batches(kind, count):
+    """Jobs on the random scenes of a kind, numbered 0 to count - 1, BATCH to a job."""
+    spans = [(start, min(start + BATCH, count)) for start in range(0, count, BATCH)]
+    return [
+        jobs.job(kind, f"{kind} {start} to {stop - 1}", start=start, stop=stop)
+        for start, stop in spans
+    ]
+
+
 def read_case(text):
     """The job that --case names. Raises ValueError, OSError or KeyError with what is wrong."""
-    if text.startswith("scene:"):
-        return jobs.job("scene", text, spec=scenes.numbered_spec(int(text[6:])))
+    word, _, digits = text.partition(":")
+    numbered = {"scene": scenes.numbered_spec, "board": scenes.board_spec}.get(word)
+    if numbered:
+        return jobs.job("scene", text, spec=numbered(int(digits)))
     with open(text, encoding="utf-8") as file:
         case = json.load(file)
     if case["kind"] not in jobs.KINDS:
@@ -100,7 +105,7 @@ def parse(argv):
         help=f"random scenes ({SCENES}; with --quick {QUICK_SCENES})",
     )
     flag("--only", metavar="GLOB", action="append", help="run the jobs whose names match")
-    flag("--case", metavar="FILE", help="a case file, or scene:NUMBER")
+    flag("--case", metavar="FILE", help="a case file, scene:NUMBER or board:NUMBER")
     flag("--draw", action="store_true", help="only write report.md and figures again")
     flag("--fresh", action="store_true", help="forget what earlier runs finished")
     flag("--out", type=writable_folder, help="folder of report.md, results.json and the figures")
@@ -109,8 +114,8 @@ def parse(argv):
         args.jobs = [read_case(args.case)] if args.case else None
     except (OSError, ValueError, KeyError, TypeError) as error:
         parser.error(
-            f"argument --case: given {args.case!r}, but {error}; allowed: a case file or "
-            "scene:NUMBER"
+            f"argument --case: given {args.case!r}, but {error}; allowed: a case file, "
+            "scene:NUMBER or board:NUMBER"
         )
     args.out = args.out or (QUICK if args.quick else RESULTS)
     if args.jobs is None:

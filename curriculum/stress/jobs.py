@@ -19,6 +19,7 @@ KINDS = {
     "exact-map": "maps:exact_row",
     "extreme": "extremes:run",
     "scenes": "invariants:run_batch",
+    "boards": "invariants:run_boards",
     "scene": "invariants:run_scene",
     "seeds": "maps:run_seeds",
     "bytes": "samebytes:run",

@@ -50,7 +50,7 @@ def sections(results):
     """{name: section} of everything that was run."""
     made = {"counts": summary(results) | {"limits_by_kind": limits(results)}}
     made["maps"] = {name: section for name, section in map_sections(results).items() if section}
-    made["scenes"] = scene_section(results)
+    made["scenes"], made["boards"] = scene_section(results), checked(results, "boards")[0]
     made["extremes"] = {
         job["params"]["name"]: rows_of(result)
         for job, result in results
@@ -189,35 +189,45 @@ def most(rows, name):
 
 def scene_section(results):
     """What the checks said over the random scenes, and what they counted."""
-    batches = of_kind(results, "scenes")
-    if not batches:
+    made, told = checked(results, "scenes")
+    if not made:
         return {}
-    applied = Counter()
+    applied = made["checks"][UNFINISHED]["scenes"]
+    rises = [(what["rise"], number) for number, what in told.get(RISES, [])]
+    return made | {
+        "unfinished": unfinished_section(told.get(UNFINISHED, []), applied),
+        "exact_rise": max(rises, default=None),  # and the scene's number
+    }
+
+
+def checked(results, kind):
+    """(what the checks said over the scenes of a kind, {check: what it counted}); ({}, {}) of none."""
+    batches = of_kind(results, kind)
+    if not batches:
+        return {}, {}
+    applied, told = Counter(), {}
     for _, result in batches:
         applied.update(result["applied"])
+        for name, items in result["counted"].items():
+            told.setdefault(name, []).extend(items)
     bad = Counter(
         row["at"].split(",")[0]
         for _, result in batches
         for row in result["rows"]
         if row["status"] in BAD
     )
-    told = {
-        name: [item for _, result in batches for item in result["counted"].get(name, [])]
-        for name in invariants.CHECKS
-    }
-    cut = told["exact_ends"]
-    rises = [(what["rise"], number) for number, what in told[RISES]]
+    cut = told.get("exact_ends", [])
     return {
         "count": sum(params["stop"] - params["start"] for params, _ in batches),
         "checks": {
-            name: {"scenes": applied[name], "violations": bad[name]} for name in invariants.CHECKS
+            name: {"scenes": applied[name], "violations": bad[name]}
+            for name in invariants.CHECKS
+            if name in applied
         },
-        "unfinished": unfinished_section(told[UNFINISHED], applied[UNFINISHED]),
-        "exact_rise": max(rises, default=None),  # and the scene's number
         "exact_cut": len(cut),
         "exact_run": applied["exact_ends"],
         "exact_cut_to": sorted(round(1.0 - what["cut"], 3) for _, what in cut),
-    }
+    }, told
 
 
 def unfinished_section(told, applied):
@@ -310,6 +320,7 @@ def page(saved):
         violation_part(saved["counts"]),
         map_part(saved.get("maps")),
         scene_part(saved.get("scenes")),
+        board_part(saved.get("boards")),
         extreme_part(saved.get("extremes")),
         rows_part(
             saved.get("seeds"),
@@ -367,6 +378,10 @@ def readme_block(saved):
         unfinished = scenes["unfinished"]
         rows += [
             ["random scenes for each model", f"{scenes['count']:,}"],
+            [
+                "boards of fixed balls, on which exact is watched for three seconds",
+                f"{saved.get('boards', {}).get('count', 0):,}",
+            ],
             [
                 "of them with energy that unfinished sweeps of lcp add (above the start)",
                 f"{unfinished['rises']:,} ({unfinished.get('above_start', 0):,})",
@@ -538,10 +553,6 @@ def scene_part(found):
     """The invariants over random scenes, each with how its bound follows."""
     if not found:
         return ""
-    rows = [
-        [name.replace("_", " "), statement(name), f"{entry['scenes']:,}", entry["violations"]]
-        for name, entry in found["checks"].items()
-    ]
     bounds = "\n".join(
         f"- **{name.replace('_', ' ')}.** {reason(name)}"
         for name in invariants.CHECKS
@@ -551,9 +562,10 @@ def scene_part(found):
         [
             "## Invariants over random scenes",
             f"{found['count']:,} scenes of 1 to 30 balls for each model, numbered from 0: scattered, "
-            "touching, in towers, overlapping; equal and unequal masses and radii; all knobs. "
+            "scattered among pegs (fixed balls), touching, in towers, overlapping; equal and unequal "
+            "masses and radii; all knobs. "
             "`python -m curriculum.stress --case scene:NUMBER` runs one again.",
-            table(["invariant", "statement", "scenes", "violations"], rows),
+            check_table(found),
             "How each bound follows (U = 2⁻⁵³, the largest relative rounding error of one "
             "operation):",
             bounds,
@@ -562,6 +574,31 @@ def scene_part(found):
             cut_words(found),
         ]
     )
+
+
+def board_part(found):
+    """The invariants of exact on boards of pegs."""
+    if not found:
+        return ""
+    return "\n\n".join(
+        [
+            "### exact on boards of pegs",
+            f"{found['count']:,} boards: up to 30 balls, a tenth to a half of them fixed, for three "
+            "seconds, so that balls come to rest beside others that slide, and more fall on them. "
+            "`python -m curriculum.stress --case board:NUMBER` runs one again.",
+            check_table(found),
+            cut_words(found),
+        ]
+    )
+
+
+def check_table(found):
+    """The checks, what they state, in how many scenes, and how often it was not so."""
+    rows = [
+        [name.replace("_", " "), statement(name), f"{entry['scenes']:,}", entry["violations"]]
+        for name, entry in found["checks"].items()
+    ]
+    return table(["invariant", "statement", "scenes", "violations"], rows)
 
 
 def statement(name):

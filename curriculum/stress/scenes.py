@@ -2,8 +2,8 @@
 
 A spec is a dict of plain values: x, y [m], vx, vy [m/s], mass [kg], radius [m] (lists),
 restitution, damping [N s/m], dt [s], steps, stiffness [N/m], baumgarte, iters, and of soft solref
-(None, or a time constant [s] and a damping ratio). JSON keeps every bit of a double (Python writes
-the shortest text that reads back the same).
+(None, or a time constant [s] and a damping ratio). A mass of inf is a fixed ball. JSON keeps every
+bit of a double (Python writes the shortest text that reads back the same).
 """
 
 import numpy as np
@@ -46,6 +46,11 @@ def scattered(rng, n, radius):
     return 2.3 * r * (cells % side) + wobble[0], 1.2 * r + 2.3 * r * (cells // side) + wobble[1]
 
 
+def pegged(rng, n, radius):
+    """As scattered. A tenth to a half of them are pegs, on which others come to rest (random_spec)."""
+    return scattered(rng, n, radius)
+
+
 def touching(rng, n, radius):
     """A pyramid of equal balls that touch one another and the line (exactly, for dyadic radii)."""
     radius[:] = 2.0 ** rng.integers(-5, -1)
@@ -71,12 +76,12 @@ def overlapping(rng, n, radius):
     return rng.uniform(0, width, n), rng.uniform(0, width, n)
 
 
-LAYOUTS = (scattered, scattered, touching, tower, overlapping)
+LAYOUTS = (scattered, pegged, touching, tower, overlapping)
 
 
-def random_spec(rng, n=None, steps=None):
+def random_spec(rng, layout=None):
     """A spec drawn from `rng`: 1 to 30 balls, every layout, knobs at their ends and between."""
-    n = int(rng.integers(1, 31)) if n is None else n
+    n = int(rng.integers(1, 31))
 
     def pick(*values):
         value = values[rng.integers(len(values))]
@@ -84,16 +89,19 @@ def random_spec(rng, n=None, steps=None):
 
     radius = np.full(n, 0.1) if rng.random() < 0.5 else rng.uniform(0.03, 0.2, n)
     mass = np.ones(n) if rng.random() < 0.5 else 10.0 ** rng.uniform(-1, 1, n)
-    layout = LAYOUTS[rng.integers(len(LAYOUTS))]
+    layout = layout or LAYOUTS[rng.integers(len(LAYOUTS))]
     x, y = layout(rng, n, radius)
     speed = pick(0.0, (0.0, 3.0))
     vx, vy = speed * rng.standard_normal((2, n))
+    if layout is pegged:
+        fixed = rng.random(n) < rng.uniform(0.1, 0.5)
+        mass[fixed], vx[fixed], vy[fixed] = np.inf, 0.0, 0.0
     spec = {"layout": layout.__name__}
     spec |= zip(BODY, (row.tolist() for row in (x, y, vx, vy, mass, radius)))
     spec["restitution"] = pick(0.0, 0.0, 1.0, (0.0, 1.0))
     spec["damping"] = pick(0.0, 80.0, (0.0, 150.0))
     spec["dt"] = float(10.0 ** rng.uniform(-3.3, -1.7))
-    spec["steps"] = int(steps or rng.integers(20, 81))
+    spec["steps"] = int(rng.integers(20, 81))
     spec["stiffness"] = float(10.0 ** rng.uniform(2, 5))
     spec["baumgarte"] = pick(0.0, 0.2, 1.0, (0.0, 1.0))
     spec["iters"] = int(pick(1, 5, 20, 100))
@@ -105,3 +113,12 @@ def random_spec(rng, n=None, steps=None):
 def numbered_spec(number):
     """The random spec with this number: the same on every machine and numpy that keeps PCG64."""
     return random_spec(np.random.default_rng([20240501, number]))
+
+
+def board_spec(number):
+    """Balls that fall through pegs for three seconds (Galton's board), one with each number.
+
+    Long enough for some to lie at rest, beside others that still slide, when more fall on them.
+    """
+    spec = random_spec(np.random.default_rng([20261122, number]), pegged)
+    return spec | {"dt": 0.01, "steps": 300}

@@ -23,7 +23,9 @@ class Trial:
 
     def __init__(self, spec):
         self.spec, self.scene = spec, scenes.to_scene(spec)
-        self.mass, self.dt = self.scene.mass, spec["dt"]
+        self.fixed = ~np.isfinite(self.scene.mass)
+        self.mass = np.where(self.fixed, 0.0, self.scene.mass)  # what is fixed has no energy
+        self.dt = spec["dt"]
         self.runs, self.taken = {}, {}
 
     def run(self, model, **changes):
@@ -148,7 +150,7 @@ class Step:
 
     def largest_momentum(self):
         """The largest m |v_x| of a ball now."""
-        return max(ball.mass * abs(ball.vx) for ball in self.balls)
+        return max((ball.mass * abs(ball.vx) for ball in self.balls if ball.inv_mass), default=0.0)
 
     def count_pushes(self):
         """Add what the last sweep rounded: 6 U of each push along x, and U of two momenta each."""

@@ -37,6 +37,7 @@ LITTLE = [
         for name in ("tower_rest_exact", "lcp_bounces_on_the_table")
     ),
     jobs.job("scenes", "scenes 5 to 7", start=5, stop=8),
+    jobs.job("boards", "boards 0 to 1", start=0, stop=2),
     jobs.job(
         "penalty-map", "penalty k=1e+04 c=80", stiffness=1e4, damping=80.0, dt=[0.002, 0.03, 3]
     ),
@@ -91,6 +92,7 @@ def test_a_clean_run_exits_0_and_writes_report_results_and_figures(command_with,
     found = strict(tmp_path / "out" / "results.json")
     assert found["counts"]["violations"] == found["counts"]["died"] == 0
     assert found["counts"]["jobs"] == len(LITTLE) and found["scenes"]["count"] == 3
+    assert found["boards"]["count"] == 2 and set(found["boards"]["checks"]) < set(invariants.CHECKS)
     assert all(section["measured"]["code"]["contact.py"] for section in found.values())
     page = (tmp_path / "out" / "report.md").read_text()
     for name in ("penalty-map", "lcp-depth", "lcp-error", "lcp-converges", "soft-map"):
@@ -139,8 +141,9 @@ def test_a_pulling_contact_is_found_and_the_printed_case_reproduces_it(
 
 
 def test_a_numbered_scene_is_a_case_of_its_own(capsys):
-    assert command.main(["--case", "scene:1"]) == 0
-    assert "4 cells" in capsys.readouterr().out
+    for name in ("scene:1", "board:1"):
+        assert command.main(["--case", name]) == 0
+        assert "4 cells" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -165,8 +168,9 @@ def test_job_names_are_unique_and_the_full_run_has_what_the_report_promises(monk
         names = [job["name"] for job in command.all_jobs(quick, 100)]
         assert len(set(names)) == len(names)
     todo = command.all_jobs(False, command.SCENES)
-    spans = [job["params"] for job in todo if job["kind"] == "scenes"]
-    assert sum(params["stop"] - params["start"] for params in spans) == 10_000
+    for kind, count in (("scenes", 10_000), ("boards", 1000)):
+        spans = [job["params"] for job in todo if job["kind"] == kind]
+        assert sum(params["stop"] - params["start"] for params in spans) == count
     cells = [job["params"] for job in todo if job["kind"] == "bytes" and "python" in job["params"]]
     assert {(cell["which"], cell["numba"]) for cell in cells} == {
         (which, numba) for which in ("oldest", "newest") for numba in (False, True)
@@ -194,6 +198,13 @@ def shifted(model, dx=0.0, dy=0.0, vx=0.0, vy=0.0, when=lambda scene, dt: True):
         return run
 
     return change
+
+
+def cooling(run, args, options):
+    """A change of run_model: exact loses a billionth of its speed with every sample."""
+    if args[0] == "exact":
+        run.v[:] *= (1.0 - 1e-9) ** np.arange(len(run.t))[:, None, None]
+    return run
 
 
 def never_last(contacts, iters, tolerance=0.0):
@@ -277,6 +288,8 @@ BROKEN = {
     "soft_has_one_answer": lambda monkeypatch: monkeypatch.setattr(contact.Contact, "push", sidled),
     "exact_never_gains_energy": result_of("run_model", shifted("exact", dy=1e-9)),
     "exact_never_penetrates": result_of("run_model", shifted("exact", dy=-1e-9)),
+    "exact_keeps_its_energy_from_event_to_event": result_of("run_model", cooling),
+    "exact_flies_where_nothing_touches": result_of("run_model", shifted("exact", vx=1e-11)),
     "exact_does_not_know_dt": result_of(
         "run_model", shifted("exact", dy=1e-15, when=lambda scene, dt: dt > 0.005)
     ),
