@@ -527,18 +527,15 @@ def hardly_opened(island, contacts, v_n):
 
 
 # --- region: exact-collide ---
-def closing(island, contact, v_n):
-    """Whether the bodies approach: by more than round-off, or so that they have crept together."""
-    return contact.closes(v_n) or v_n < 0.0 and island.is_due(contact) and not contact.pushes
-
-
 def collide(island, contacts, restitution):
     """Give impulses to the contacts that close: v_n becomes -e v_n where they push.
 
-    Those that have hardly opened, or would bounce slowly, get v_n = 0: their series ends.
+    One that is due does close, though it may be as slowly as round-off. Those that have hardly
+    opened, or would bounce slowly, get v_n = 0: their series ends.
     """
     v_n = contacts.along(island.v)
-    if not any(closing(island, contact, speed) for contact, speed in zip(contacts, v_n)):
+    if not any(contact.closes(speed) or speed < 0.0 and island.is_due(contact)
+               for contact, speed in zip(contacts, v_n)):
         return
     bounce = []
     for contact, speed, thin in zip(contacts, v_n, hardly_opened(island, contacts, v_n)):

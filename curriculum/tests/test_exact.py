@@ -289,7 +289,7 @@ def test_a_ball_that_rests_beside_balls_that_slide_is_struck_when_another_falls_
     assert contact.max_penetration(q, scene.radius).max() < 1e-12
 
 
-@pytest.mark.parametrize("number", [76, 147])
+@pytest.mark.parametrize("number", [76, 147, 644])
 def test_balls_that_come_to_rest_among_pegs_do_not_drift_together(number):
     """Closing their gaps turns the normals by 1e-12. What forces made from the old normals leave of
     an acceleration is no more than that, and has the rest of three seconds: 5.6e-9 m of overlap."""
