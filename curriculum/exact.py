@@ -530,7 +530,7 @@ def hardly_opened(island, contacts, v_n):
 def collide(island, contacts, restitution):
     """Give impulses to the contacts that close: v_n becomes -e v_n where they push.
 
-    One that is due does close, though it may be as slowly as round-off. Those that have hardly
+    One that is due and approaches is struck, be it as slowly as round-off. Those that have hardly
     opened, or would bounce slowly, get v_n = 0: their series ends.
     """
     v_n = contacts.along(island.v)
@@ -615,9 +615,8 @@ def slide(held, q, v, gravity, enough):
         a = spread((lam[:k, None] * n[k:0:-1]).sum(0))          # of the orders that are known
         a[1] += gravity * (w > 0.0) * (k == 0)
         turn = 0.5 * reach * (n[1:k + 2] * n[k + 1:0:-1]).sum((0, 1)) * (k + 1) * (k + 2)
-        lam[k] = -applied(inverse, along(n[0], a) + turn)
-        if k == 0:                              # to close the gaps has turned n a little
-            lam[k] -= applied(inverse, along(n[0], a + spread(lam[k] * n[0])) + turn)
+        lam[k] = -applied(inverse, along(n[0], a) + turn)       # to close the gaps has turned n,
+        lam[k] -= applied(inverse, along(n[0], a + spread(lam[k] * n[0])) + turn)   # so once more
         Q[k + 2] = (a + spread(lam[k] * n[0])) / ((k + 1) * (k + 2))
         if k > 3 and (span := lasting(bodies, Q[k + 1:k + 3], k + 1, gravity)) > enough:
             break
@@ -637,7 +636,9 @@ def lasting(bodies, last, k, gravity):
 
 
 def held_fast(held):
-    """The balls of those heaps that cannot move: they have as many contacts as coordinates."""
+    """The balls of those heaps that cannot move: they have as many contacts as coordinates, of which
+    none depends on others. So forces stay as they are, too.
+    """
     found, left = set(), set(range(len(held)))
     while left:
         heap = [left.pop()]                     # of contacts, that share balls

@@ -47,7 +47,7 @@ def scattered(rng, n, radius):
 
 
 def pegged(rng, n, radius):
-    """As scattered. A tenth to a half of them are pegs, on which others come to rest (random_spec)."""
+    """As scattered. Some will be pegs, on which others come to rest (random_spec)."""
     return scattered(rng, n, radius)
 
 
