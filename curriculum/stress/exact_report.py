@@ -79,17 +79,25 @@ def _summary(section):
     piles, (parted, judged) = section["exact-pile"], _parted(section)
     overlap, rise = (max(row[name] for row in piles) for name in ("overlap", "rise"))
     most = max(row["count"] for row in piles)
+    short = len(_not_followed([row for row in piles if "parts" in row]))
+    whole = judged - len(parted) - short
     return sentences(
         [
             f"In {len(piles)} piles of 3 to {most} balls over 4 s exact overlaps by {overlap:.1e} r "
             f"and gains {rise:.1e} of the energy at most.",
             Claim(
                 judged > 0,
-                f"Of them {judged - len(parted)} of {judged} stay within 1e-8 r of the same run in "
-                f"80 bits ({_earliest(parted)}).",
+                f"{judged} of them were run in 80 bits as well: {whole} stay within 1e-8 r of that to "
+                f"the end, {short} as far as 80 bits were followed, and {len(parted)} part "
+                f"({_earliest(parted)}).",
             ),
         ]
     )
+
+
+def _not_followed(rows):
+    """The runs in 80 bits that had too many events, and had not parted until then."""
+    return [row for row in rows if row["parts"] is None and row["precise_until"] < 4.0]
 
 
 def _about(section):
@@ -190,7 +198,7 @@ def _parting(section):
 
 def _notes(judged):
     """What the run in 80 bits is, how far it went, and whether the clock had a part in it."""
-    short = [row for row in judged if row["parts"] is None and row["precise_until"] < 4.0]
+    short = _not_followed(judged)
     waits = [row for row in judged if row["parts"] is not None and row["waits"] is not None]
     early = [row for row in waits if row["waits"] <= row["parts"]]
     return sentences(
