@@ -636,9 +636,7 @@ def lasting(bodies, last, k, gravity):
 
 
 def held_fast(held):
-    """The balls of those heaps that cannot move: they have as many contacts as coordinates, of which
-    none depends on others. So forces stay as they are, too.
-    """
+    """The balls of heaps with as many contacts as coordinates, which cannot move."""
     found, left = set(), set(range(len(held)))
     while left:
         heap = [left.pop()]                     # of contacts, that share balls
