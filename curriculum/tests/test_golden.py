@@ -1,0 +1,103 @@
+"""What users see, pinned: the README's commands and the trajectories of four scenes.
+
+    python -m curriculum.tests.test_golden      # pin today's behaviour anew; say why in CHANGELOG.md
+"""
+
+import contextlib
+import hashlib
+import io
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import contact
+
+PINNED = Path(__file__).with_name("golden.json")
+COMMANDS = (
+    "--scene drop",
+    "--scene bounce",
+    "--scene stack",
+    "--scene pile --bodies 24 --steps 200",
+    "--contact exact",
+    "--contact penalty --dt 0.03",
+    "--smoke",
+    "--smoke --scene bounce",
+    "--smoke --scene stack",
+)
+SAMPLES = (0, 150, 300, 600)  # of the recorded states, the last one at 1.2 s
+
+
+def run_command(flags):
+    """The standard output and metrics.json of a command, without the lines that name files."""
+    printed = io.StringIO()
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(printed):
+        status = contact.main([*flags.split(), "--no-rerun", "--out", folder])
+        metrics = json.loads((Path(folder) / "metrics.json").read_text("utf-8"))
+    lines = [line for line in printed.getvalue().splitlines() if not line.startswith(PASSING)]
+    return {"status": status, "stdout": lines, "metrics": metrics}
+
+
+PASSING = ("metrics:", "next", "tier:", "config_hash:", "estimated")
+
+
+def run_trajectory(model, name, seed):
+    """A hash of all bits where the steps fix them; sampled heights of soft and exact."""
+    scene = contact.build_scene(name, seed, 24 if name == "pile" else None)
+    run = contact.run_model(model, scene, 0.002, SAMPLES[-1])
+    if model in ("penalty", "lcp"):
+        return hashlib.sha256(run.q.tobytes() + run.v.tobytes()).hexdigest()[:16]
+    return run.q[list(SAMPLES)].tolist()
+
+
+CASES = [
+    f"{model} {scene} {seed}"
+    for model in contact.MODELS
+    for scene in contact.SCENES
+    for seed in range(3)
+]
+
+
+def measure():
+    """All that is pinned."""
+    trajectories = {}
+    for case in CASES:
+        model, scene, seed = case.split()
+        trajectories[case] = run_trajectory(model, scene, int(seed))
+    return {
+        "commands": {flags: run_command(flags) for flags in COMMANDS},
+        "trajectories": trajectories,
+    }
+
+
+@pytest.fixture(scope="module")
+def pinned():
+    return json.loads(PINNED.read_text("utf-8"))
+
+
+@pytest.mark.parametrize("flags", COMMANDS)
+def test_command_prints_and_writes_what_is_pinned(pinned, flags):
+    assert run_command(flags) == pinned["commands"][flags]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_trajectory_is_the_pinned_one(pinned, case):
+    """Bits for penalty and lcp; 1e-9 m for soft and exact, whose sums may be ordered otherwise.
+
+    A pile is chaotic: what differs in the last bit grows there, by 1e-6 m within these 1.2 s.
+    """
+    model, scene, seed = case.split()
+    found, known = run_trajectory(model, scene, int(seed)), pinned["trajectories"][case]
+    if model in ("penalty", "lcp"):
+        assert found == known
+    else:
+        limit = 1e-6 if scene == "pile" else 1e-9
+        assert np.abs(np.array(found) - known).max() <= limit
+
+
+if __name__ == "__main__":
+    PINNED.write_text(json.dumps(measure(), indent=1) + "\n", "utf-8")
+    sys.exit(0)
