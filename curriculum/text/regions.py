@@ -1,0 +1,135 @@
+"""The named regions of the literate files: the pieces of code that the chapter shows.
+
+A region stands between `# --- region: NAME ---` and `# --- endregion ---`, both at the left
+margin. Regions are flat and closed, a name belongs to one region of all files, and in a literate
+file every line of code stands in a region. A file without a marker has no regions.
+
+Its hash is the sha256 of the text that a reader sees: the lines between the two markers, each
+ended by one "\\n", as UTF-8, nothing trimmed.
+"""
+
+import ast
+import hashlib
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[2]
+LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")
+NAME = r"[a-z][a-z0-9_-]*"
+BEGIN = re.compile(rf"# --- region: ({NAME}) ---")
+END = "# --- endregion ---"
+MARKER = re.compile(r"^\s*#\s*-+\s*(end)?\s*region\b.*$", re.MULTILINE | re.IGNORECASE)
+
+
+class Region(NamedTuple):
+    """One region; `line` is the number of its first line of code (the marker stands above it)."""
+
+    name: str
+    code: str
+    line: int
+    file: str = "contact.py"
+
+    @property
+    def sha(self) -> str:
+        """64 hexadecimal digits."""
+        return hashlib.sha256(self.code.encode("utf-8")).hexdigest()
+
+    @property
+    def defines(self) -> set:
+        """The functions, methods, classes and constants that the region defines."""
+        try:
+            nodes = list(ast.walk(ast.parse(self.code)))
+        except SyntaxError:
+            return set()
+        names = {node.name for node in nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+        names |= {
+            node.id
+            for node in nodes
+            if isinstance(node, ast.Name) and node.id.isupper() and isinstance(node.ctx, ast.Store)
+        }
+        return {name for name in names if not name.startswith("__")}
+
+
+def split(text: str, file: str) -> tuple:
+    """({name: Region} in reading order, problems) of one file's text; each problem is one line."""
+    found, problems, outside = {}, [], []
+    name, first = None, 0
+
+    def say(line, what):
+        problems.append(f"{file}:{line}: {what}; repair: edit the markers of the region")
+
+    lines = text.split("\n")
+    for number, line in enumerate(lines, 1):
+        begin = BEGIN.fullmatch(line)
+        if begin and name is None:
+            name, first = begin[1], number + 1
+        elif line == END and name is not None:
+            if name in found:
+                say(first - 1, f"a second region {name}")
+            found[name] = Region(name, "\n".join([*lines[first - 1 : number - 1], ""]), first, file)
+            name = None
+        elif MARKER.fullmatch(line):
+            where = f"inside region {name}" if name else "outside any region"
+            say(number, f"{line.strip()!r} {where}, where it does not belong")
+        elif name is None:
+            outside.append((number, line))
+    if name is not None:
+        say(first - 1, f"region {name} is never closed")
+    docstring = _docstring_lines(text) if MARKER.search(text) else range(len(lines) + 1)
+    for number, line in outside:
+        if line.strip() and not line.startswith("#") and number not in docstring:
+            say(number, f"code outside any region: {line.strip()[:60]!r}")
+    return found, problems
+
+
+def _docstring_lines(text):
+    """The numbers of the lines of the module's docstring."""
+    try:
+        first = next(iter(ast.parse(text).body), None)
+    except SyntaxError:
+        return range(0)
+    if isinstance(first, ast.Expr) and isinstance(getattr(first.value, "value", None), str):
+        return range(first.lineno, first.end_lineno + 1)
+    return range(0)
+
+
+def split_all(read=None) -> tuple:
+    """({name: Region}, problems) over all literate files; `read(file)` gives a text or None."""
+    found, problems = {}, []
+    for file in LITERATE:
+        text = (read or read_text)(file)
+        regions, wrong = split(text or "", file)
+        problems += wrong
+        for region in regions.values():
+            if region.name in found:
+                problems.append(
+                    f"{file}:{region.line - 1}: a second region {region.name}, the other"
+                    f" is in {found[region.name].file}; repair: rename one"
+                )
+            found.setdefault(region.name, region)
+    return found, problems
+
+
+def read_text(file, root=ROOT):
+    """A file's text with "\\n" at its line ends; None where there is no such file."""
+    path = Path(root) / file
+    return path.read_text("utf-8") if path.is_file() else None
+
+
+def read(path) -> dict:
+    """{name: Region} of one file, in reading order. Raises ValueError, one problem a line."""
+    path = Path(path).resolve()
+    file = path.relative_to(ROOT).as_posix() if path.is_relative_to(ROOT) else path.name
+    found, problems = split(path.read_text("utf-8"), file)
+    if problems:
+        raise ValueError("\n".join(problems))
+    return found
+
+
+def read_all() -> dict:
+    """{name: Region} of all literate files. Raises ValueError, one problem a line."""
+    found, problems = split_all()
+    if problems:
+        raise ValueError("\n".join(problems))
+    return found

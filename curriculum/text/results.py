@@ -1,0 +1,74 @@
+"""Measured results: kept with the machine and the code that they were measured on.
+
+The benchmark and the stress report each keep one file results.json, with a section per command. A
+section says under "measured" how it came to be: the command that measures it again, the machine
+(curriculum/machine.py) and the hash of every file whose behaviour was measured. It is stale when one
+of those files has changed since, comments and docstrings aside.
+"""
+
+import json
+import math
+
+from curriculum.machine import fingerprint, machine
+from curriculum.text.regions import LITERATE, ROOT
+
+FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
+NAME = "results.json"
+DIGITS = 6  # significant digits that a results file keeps
+
+
+def load(name: str) -> dict:
+    """{section: results} of "bench" or "stress"; {} where nothing has been measured yet."""
+    path = ROOT / FOLDERS[name] / NAME
+    return json.loads(path.read_text("utf-8")) if path.exists() else {}
+
+
+def save(name: str, section: str, values: dict, command: str, code=LITERATE, folder=None) -> dict:
+    """Put one section into the results file, whole or not at all; returns it as it reads back.
+
+    command: what measures it again, as one types it. code: the files that were measured. folder: of
+    another results file than the repository's, for quick runs.
+    """
+    from contact import write_json
+
+    path = (ROOT / FOLDERS[name] if folder is None else folder) / NAME
+    sections = json.loads(path.read_text("utf-8")) if path.exists() else {}
+    about = {"command": command, **machine(), "code": fingerprint(*code)}
+    sections[section] = rounded({"measured": about, **values})
+    write_json(path, sections)
+    return sections[section]
+
+
+def rounded(value):
+    """`value` as strict JSON: numpy unpacked, floats with six digits, what is not finite as None."""
+    if isinstance(value, dict):
+        return {str(key): rounded(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [rounded(each) for each in value]
+    if hasattr(value, "tolist"):
+        return rounded(value.tolist())
+    if isinstance(value, float):
+        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
+    return value
+
+
+def stale(section: dict) -> list:
+    """The files whose code is no longer what this section measured; ["unknown"] if it does not say."""
+    code = ((section or {}).get("measured") or {}).get("code")
+    if not code:
+        return ["unknown"]
+    now = fingerprint(*code)
+    return [file for file, digits in code.items() if now[file] != digits]
+
+
+def footer(section: dict) -> str:
+    """One paragraph for the end of a page: when, on what and on which code; and whether it is stale."""
+    about, changed = section["measured"], stale(section)
+    versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
+    line = (
+        f"Measured by `{about['command']}` on {about['date']} at commit {about['commit']}, on "
+        f"{about['cores']} cores of {about['cpu']} ({about['os']}), with Python {about['python']}, "
+        f"{versions}."
+    )
+    note = f" **Stale**: {', '.join(changed)} changed since; measure again." if changed else ""
+    return line + note
