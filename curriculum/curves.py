@@ -1,0 +1,64 @@
+"""What is drawn of a run: a colour a model, and the curves of recording, picture and notebook."""
+
+import numpy as np
+
+import contact
+
+COLORS = {
+    "penalty": "#d55e00",
+    "lcp": "#0072b2",
+    "soft": "#cc79a7",
+    "exact": "#009e73",
+}  # safe for colour-blind readers (Okabe and Ito)
+OTHERS = ("#e69f00", "#56b4e9", "#f0e442", "#999999")  # of runs with names of their own
+
+
+def colors(names):
+    """{name: "#rrggbb"}: each model's own colour, and for other names the next that is free."""
+    others = [name for name in names if name not in COLORS]
+    free = {name: OTHERS[place % len(OTHERS)] for place, name in enumerate(others)}
+    return {name: COLORS.get(name) or free[name] for name in names}
+
+
+@np.errstate(all="ignore")
+def contact_impulses(run, scene):
+    """The impulse [N s] that all contacts of a ball give it in each step, (S, 2, N).
+
+    It is the change of momentum that gravity does not explain, so it is there for every model.
+    """
+    gained = np.diff(run.t[:2]).sum() * np.array([[0.0], [contact.GRAVITY]])
+    mass = np.where(np.isfinite(scene.mass), scene.mass, 0.0)
+    return np.concatenate((np.zeros_like(run.v[:1]), mass * (np.diff(run.v, axis=0) - gained)))
+
+
+@np.errstate(all="ignore")
+def curves(runs, scene):
+    """What is plotted of runs {model: Run}, {title: {model: values (S,)}}."""
+    drawn = {
+        "height [m], mean": {},
+        "penetration [r]": {},
+        "impulse of floor [N s]": {},
+        "energy above start [J]": {},
+        "rises of energy [J]": {},
+    }
+    for model, run in runs.items():
+        total = contact.energy(run.q, run.v, scene.mass)
+        depth = np.maximum(-contact.smallest_gap(run.q, scene.radius), 0.0)
+        values = (
+            run.q[:, 1].mean(-1),
+            depth / scene.radius[0],
+            contact_impulses(run, scene)[:, 1].sum(-1),
+            total - total[0],
+            np.maximum(np.diff(total, prepend=total[0]), 0.0).cumsum(),
+        )
+        for lines, line in zip(drawn.values(), values):
+            lines[model] = line
+    return drawn
+
+
+def state(run, scene):
+    """How the run ends: "ok", "EXPLODED at step 12", "through the floor" or "through a ball"."""
+    quality = contact.contact_quality(run, scene, float(np.diff(run.t[:2]).sum()))
+    if quality["blew_up"]:
+        return f"EXPLODED at step {quality['blew_up_step']}"
+    return quality["through"] or "ok"

@@ -1,0 +1,233 @@
+"""Runs as a rerun recording: a view of balls for every model, curves below.
+
+rerun's 2-D views have y down and no option, so y is negated here and nowhere else.
+Raises ImportError on import where rerun is missing.
+"""
+
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+
+import contact
+from curriculum.curves import colors, contact_impulses, curves, state
+
+PUSH = "#f0e442"  # colour of the arrows
+GROUND, LINE = "#3a3f4a", "#ffffff"
+WIDTHS = (6.0, 3.6, 2.2, 1.2)  # of curves, in points: lines that coincide are seen beneath
+MOST_ARROWS = 24  # balls: more have no arrows
+FARTHEST = 150  # radii: how far out of the middle a ball is still kept in view
+MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sinks by 0.01
+
+
+def write(path, runs, scene):
+    """Write the runs {model: Run} of a scene as a recording, whole or not at all.
+
+    A run that is not a model's may have any name of [a-z0-9_.]. Whole columns are sent, in rerun's
+    strict mode. The timelines are step and sim_time (step alone
+    beyond 9e9 s). Entities: world/MODEL/{ground,table,balls,pushes}, CURVE/MODEL.
+    """
+    rr.set_strict_mode(True)  # a wrong call raises instead of warning
+    drawn = curves(runs, scene)
+    recording = rr.RecordingStream("contact")
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        temporary = Path(folder, os.path.basename(path))
+        recording.save(temporary, default_blueprint=layout(runs, scene, drawn))
+        for model, run in runs.items():
+            send_table(recording, model)
+            send_balls(recording, model, run, scene, colors(runs)[model])
+            if len(scene.radius) <= MOST_ARROWS:
+                send_pushes(recording, model, run, scene)
+        send_curves(recording, runs, drawn)
+        recording.disconnect()
+        contact.write_whole(path, temporary.read_bytes())
+
+
+def rgba(color):
+    """The colour "#rrggbb" as rerun stores it."""
+    return np.array([int(color[1:] + "ff", 16)], np.uint32)
+
+
+def timelines(t):
+    """The columns of time: step, and sim_time where 64 bits of nanoseconds can hold it."""
+    times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
+    if t[-1] < 9e9:
+        nanoseconds = np.round(t * 1e9).astype("timedelta64[ns]")  # whole: no stamp is off
+        times.append(rr.TimeColumn("sim_time", duration=nanoseconds))
+    return times
+
+
+def send_table(recording, model):
+    """The table: a grey body under the balls, and a thin line over them, so that a sink is seen.
+
+    The body is made of lines of five radii, each with its upper edge at y = 0, since an old viewer
+    (0.26) draws a thick line thinner by a hundredth, which left a gap under the thin one.
+    """
+    wide = 50.0  # m; a longer line is drawn with gaps where it is magnified
+    depths = [0.005, 0.05, 0.5, 5.0, 50.0]
+    ground = [[[-wide, deep], [wide, deep]] for deep in depths]
+    recording.log(
+        f"world/{model}/ground",
+        rr.LineStrips2D(ground, colors=rgba(GROUND), radii=depths, draw_order=-10.0),
+        static=True,
+    )
+    thin = rr.Radius.ui_points(0.6)
+    line = [[[-wide, 0.0], [wide, 0.0]]]
+    recording.log(
+        f"world/{model}/table",
+        rr.LineStrips2D(line, colors=rgba(LINE), radii=[thin], draw_order=40.0),
+        static=True,
+    )
+
+
+def send_balls(recording, model, run, scene, color):
+    """The balls, where the run had them."""
+    balls, count = f"world/{model}/balls", len(scene.radius)
+    look = rr.Points2D.from_fields(
+        radii=scene.radius, colors=np.repeat(rgba(color), count), draw_order=20.0
+    )
+    recording.log(balls, look, static=True)
+    columns = rr.Points2D.columns(positions=flat(run.q))
+    recording.send_columns(balls, timelines(run.t), columns.partition([count] * len(run.t)))
+
+
+def flat(rows):
+    """Vectors (S, 2, N) as a list (S N, 2) with y down, in 32 bits, which is what rerun keeps."""
+    with np.errstate(over="ignore"):
+        return np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2).astype(np.float32)
+
+
+def send_pushes(recording, model, run, scene):
+    """The push on each ball as an arrow from its centre."""
+    arrows, count = f"world/{model}/pushes", len(scene.radius)
+    look = rr.Arrows2D.from_fields(
+        radii=0.06 * scene.radius, colors=np.repeat(rgba(PUSH), count), draw_order=30.0
+    )
+    recording.log(arrows, look, static=True)
+    columns = rr.Arrows2D.columns(origins=flat(run.q), vectors=flat(arrow_vectors(run, scene)))
+    recording.send_columns(arrows, timelines(run.t), columns.partition([count] * len(run.t)))
+
+
+@np.errstate(all="ignore")
+def arrow_vectors(run, scene):
+    """Arrows (S, 2, N) along the pushes, r log2(1 + push / weight) long [m].
+
+    So a ball at rest has an arrow as long as its radius, and an impact still fits in the view.
+    """
+    weight = -contact.GRAVITY * scene.mass * np.diff(run.t[:2]).sum()
+    pushes = contact_impulses(run, scene) / weight
+    size = np.hypot(pushes[:, 0], pushes[:, 1])
+    drawn = (size > 1e-6) & np.isfinite(size)
+    length = scene.radius * np.log2(1.0 + size)
+    return np.where(drawn[:, None], pushes * (length / size)[:, None], 0.0)
+
+
+def send_curves(recording, runs, drawn):
+    """The curves {title: {model: values}}, each at the title's first word / MODEL."""
+    widths = WIDTHS[-len(runs) :]
+    for width, model in zip(widths, sorted(runs)):
+        times = timelines(runs[model].t)
+        look = rr.SeriesLines(
+            colors=rgba(colors(runs)[model]),
+            names=[model],
+            widths=width,
+            aggregation_policy="MinMax",  # an average hides the peaks
+        )
+        for title, lines in drawn.items():
+            curve = f"{title.split()[0]}/{model}"
+            recording.log(curve, look, static=True)
+            recording.send_columns(curve, times, rr.Scalars.columns(scalars=lines[model]))
+
+
+def layout(runs, scene, drawn):
+    """The blueprint that travels in the file: the balls, the table magnified, the plots, at t = 0.
+
+    Every run has views of its own, so balls that roll far never cross into another run's. Where
+    they roll, the views are as wide as the screen, one below the other; where they stand above one
+    another, the table is magnified under them.
+    """
+    large = float(scene.radius.max())
+    x_range, y_range = frame(runs, scene, large)
+    lanes = [lane(model, state(run, scene), x_range, y_range) for model, run in runs.items()]
+    wide = x_range[1] - x_range[0] > 1.2 * (y_range[1] - y_range[0])
+    rows = [rrb.Vertical(*lanes) if wide else rrb.Horizontal(*lanes)]
+    x = scene.q0[0]
+    if np.ptp(x) < large and not wide:
+        rows.append(rrb.Horizontal(*[magnified(model, float(x[0]), large) for model in runs]))
+    rows.append(rrb.Horizontal(*plots(drawn)))
+    shares = [5, 2, 3] if len(rows) == 3 else [5, 3]
+    views = rrb.Vertical(*rows, row_shares=shares)
+    return rrb.Blueprint(views, time_panel(), collapse_panels=True)
+
+
+def lane(model, ended, x_range, y_range):
+    """The view of a model's balls; its name says how the run ended, if not well."""
+    return rrb.Spatial2DView(
+        origin=f"world/{model}",
+        name=model if ended == "ok" else f"{model}: {ended}",
+        visual_bounds=rrb.VisualBounds2D(x_range=x_range, y_range=y_range),
+    )
+
+
+def frame(runs, scene, large):
+    """The ranges of x and of -y [m] that hold all balls of the runs, from first to last.
+
+    A run that explodes does not count, unless all do. A ball that leaves by more than FARTHEST
+    radii is let go, or the others would be dots.
+    """
+    calm = [run for run in runs.values() if "EXPLODED" not in state(run, scene)]
+    shown = calm or [next(iter(runs.values()))]
+    x = scene.q0[0]
+    middle = 0.5 * (float(x.min()) + float(x.max()))
+    half = max(reach(run.q[:, 0] - middle, large) for run in shown) + 2.5 * large
+    top = max(reach(run.q[:, 1], large) for run in shown) + 2.0 * large
+    return [middle - half, middle + half], [-top, 0.12 * top]
+
+
+def reach(values, large):
+    """The largest of the values by size [m], at most FARTHEST radii."""
+    far = np.abs(values).max()
+    return float(min(far, FARTHEST * large)) if np.isfinite(far) else FARTHEST * large
+
+
+def magnified(model, x, large):
+    """A view of the place where the balls stand on the table, MAGNIFIED radii high."""
+    high = MAGNIFIED * large
+    bounds = rrb.VisualBounds2D(
+        x_range=[x - 1.2 * high, x + 1.2 * high], y_range=[-0.4 * high, 0.6 * high]
+    )
+    name = f"the table, magnified: {MAGNIFIED:g} r high"
+    return rrb.Spatial2DView(origin=f"world/{model}", name=name, visual_bounds=bounds)
+
+
+def plots(drawn):
+    """A plot for every title. One of them has the legend, since a legend hides curves under it."""
+    emptiest = min(drawn, key=lambda title: late_height(drawn[title]))
+    return [
+        rrb.TimeSeriesView(
+            origin=title.split()[0],
+            name=title,
+            plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=title == emptiest),
+        )
+        for title in drawn
+    ]
+
+
+@np.errstate(over="ignore")
+def late_height(lines):
+    """How high the lines {model: values} come in their last half, as a share of their range."""
+    values = np.array([np.where(np.isfinite(line), line, 0.0) for line in lines.values()])
+    height = float(np.ptp(values))
+    late = float(values[:, values.shape[1] // 2 :].max() - values.min())
+    return late / height if 0.0 < height < np.inf else 1.0
+
+
+def time_panel():
+    """Opens at t = 0. rerun-sdk before 0.28 cannot be told to wait there; it starts at once."""
+    try:
+        return rrb.TimePanel(timeline="sim_time", play_state="paused", state="collapsed")
+    except TypeError:
+        return rrb.TimePanel(timeline="sim_time", state="collapsed", duration_cursor=0.0)
