@@ -9,6 +9,7 @@ import platform
 import subprocess
 import tokenize
 from datetime import date
+from functools import lru_cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -47,6 +48,7 @@ def fingerprint(*paths, root=ROOT) -> dict:
     return found
 
 
+@lru_cache
 def code_of(text: str) -> str:
     """Python source without comments, docstrings, blank lines and blanks at the ends of lines."""
     lines = text.splitlines()

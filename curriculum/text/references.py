@@ -76,15 +76,20 @@ def run_contact(flags) -> dict:
         return {"metrics": metrics, "stdout": run.stdout.replace(out, "OUT")}
 
 
-def measure(name) -> dict:
-    """One fact: what the function of this name in curriculum/text/facts.py returns."""
+def known_facts() -> dict:
+    """{name: function} of curriculum/text/facts.py."""
     from curriculum.text import facts
 
-    known = {
-        key: each
-        for key, each in vars(facts).items()
-        if inspect.isfunction(each) and each.__module__ == facts.__name__ and key[0] != "_"
+    return {
+        name: each
+        for name, each in vars(facts).items()
+        if inspect.isfunction(each) and each.__module__ == facts.__name__ and name[0] != "_"
     }
+
+
+def measure(name) -> dict:
+    """One fact: what the function of this name in curriculum/text/facts.py returns."""
+    known = known_facts()
     if name not in known:
         raise ValueError(f"no fact {name!r} in curriculum/text/facts.py; known: {', '.join(known)}")
     return cached(f"fact-{name}", None, known[name], (*LITERATE, "curriculum/text/facts.py"))

@@ -11,6 +11,7 @@ ended by one "\\n", as UTF-8, nothing trimmed.
 import ast
 import hashlib
 import re
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -36,19 +37,22 @@ class Region(NamedTuple):
         return hashlib.sha256(self.code.encode("utf-8")).hexdigest()
 
     @property
-    def defines(self) -> set:
+    def defines(self) -> frozenset:
         """The functions, methods, classes and constants that the region defines."""
-        try:
-            nodes = list(ast.walk(ast.parse(self.code)))
-        except SyntaxError:
-            return set()
-        names = {node.name for node in nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
-        names |= {
-            node.id
-            for node in nodes
-            if isinstance(node, ast.Name) and node.id.isupper() and isinstance(node.ctx, ast.Store)
-        }
-        return {name for name in names if not name.startswith("__")}
+        return defined(self.code)
+
+
+@lru_cache(maxsize=256)
+def defined(code: str) -> frozenset:
+    """The names of functions, methods, classes and constants that a piece of code defines."""
+    try:
+        nodes = list(ast.walk(ast.parse(code)))
+    except SyntaxError:
+        return frozenset()
+    names = {node.name for node in nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    stored = [n for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)]
+    names |= {node.id for node in stored if node.id.isupper()}
+    return frozenset(name for name in names if not name.startswith("__"))
 
 
 def split(text: str, file: str) -> tuple:

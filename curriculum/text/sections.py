@@ -1,0 +1,106 @@
+"""The sections of chapter and README, each bound to the regions of which it speaks.
+
+Whether a sentence is true of the code only a reader can say. So meta.yaml holds one hash for each
+section: of its text, and of the code of every region that the section includes or names (a name in
+`code span` that the region defines). When either side changes, somebody reads the section again.
+"""
+
+import difflib
+import hashlib
+import json
+import re
+import subprocess
+from typing import NamedTuple
+
+from curriculum.text.readme import BLOCK
+from curriculum.text.references import INCLUDE
+from curriculum.text.regions import LITERATE, ROOT, read_text, split_all
+
+TEXTS = {"chapter": "curriculum/prose/chapter.md", "README": "README.md"}
+FENCE = re.compile(r"^(```|~~~).*?^\1 *$", re.MULTILINE | re.DOTALL)
+HEADING = re.compile(r"^#{1,6} +(.*)$", re.MULTILINE)
+SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
+
+
+class Section(NamedTuple):
+    """A heading with what follows it, up to the next heading; `line` is the heading's."""
+
+    name: str
+    file: str
+    line: int
+    text: str
+    regions: tuple
+
+    @property
+    def sha(self) -> str:
+        """16 hexadecimal digits of the text and of the code that it speaks of."""
+        about = [self.text, [(region.name, region.sha) for region in self.regions]]
+        return hashlib.sha256(json.dumps(about).encode("utf-8")).hexdigest()[:16]
+
+    def parts(self) -> dict:
+        """{what: lines}: the text, and the code of each region, for a diff."""
+        code = {f"region {region.name}": region.code for region in self.regions}
+        return {name: text.splitlines() for name, text in {self.file: self.text, **code}.items()}
+
+
+def blank(pattern, text, flags=0):
+    """The text with every match replaced by blanks, so that lines and places stay."""
+    return re.sub(pattern, lambda match: re.sub(r"[^\n]", " ", match[0]), text, flags=flags)
+
+
+def line_at(text, index) -> int:
+    """The number of the line that holds text[index]."""
+    return text.count("\n", 0, index) + 1
+
+
+def bound(text, regions) -> tuple:
+    """The regions that a text includes, or of which it names what they define."""
+    included = {match["name"] for match in INCLUDE.finditer(text)}
+    words = {word for span in SPAN.findall(text) for word in re.findall(r"\w+", span)}
+    return tuple(
+        region for region in regions.values() if region.name in included or region.defines & words
+    )
+
+
+def sections(read=read_text) -> dict:
+    """{name: Section} of chapter and README; `read(file)` gives a file's text or None."""
+    regions, _ = split_all(read)
+    found = {}
+    for stem, file in TEXTS.items():
+        whole = read(file) or ""
+        text = BLOCK.sub(lambda match: match["head"], whole)
+        prose = blank(FENCE.pattern, text, FENCE.flags)
+        starts = [match.start() for match in HEADING.finditer(prose)]
+        for first, last in zip(starts, [*starts[1:], len(text)]):
+            heading = HEADING.match(text, first)
+            slug = "-".join(re.findall(r"[a-z0-9]+", heading[1].lower())) or "untitled"
+            name = f"{stem}/{slug}"
+            while name in found:
+                name += "-again"
+            part = text[first:last].rstrip() + "\n"
+            line = line_at(whole, whole.index(heading[0]))
+            found[name] = Section(name, file, line, part, bound(part, regions))
+    return found
+
+
+def changes(section: Section, accepted: str) -> list:
+    """The lines of a diff from the section as it was accepted (in git) to what it is now."""
+    commit = git("log", "-n1", "--format=%h", f"-S{accepted}", "--", "meta.yaml").strip() or "HEAD"
+    files = [section.file, *(file for file in LITERATE)]
+    texts = {file: git("show", f"{commit}:{file}") for file in files}
+    was = sections(texts.get).get(section.name)
+    old, new = was.parts() if was else {}, section.parts()
+    lines = []
+    for part in [*new, *(part for part in old if part not in new)]:
+        lines += difflib.unified_diff(
+            old.get(part, []), new.get(part, []), f"{part}, accepted", f"{part}, now", "", "", 1, ""
+        )
+    return lines or ["(what was accepted is not in git; read the whole section)"]
+
+
+def git(*words) -> str:
+    """What a git command prints; nothing where it fails or there is no git."""
+    try:
+        return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout
+    except OSError:
+        return ""
