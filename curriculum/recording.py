@@ -26,9 +26,9 @@ MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sin
 def write(path, runs, scene):
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
 
-    A run that is not a model's may have any name of [a-z0-9_.]. Whole columns are sent, in rerun's
-    strict mode. The timelines are step and sim_time (step alone
-    beyond 9e9 s). Entities: world/MODEL/{ground,table,balls,pushes}, CURVE/MODEL.
+    A run that is no model's may have any name of [a-z0-9_.]. Whole columns are sent, in rerun's
+    strict mode. The timelines are step and sim_time (step alone beyond 9e9 s). The entities are
+    world/MODEL/{ground,table,balls,pushes} and CURVE/MODEL.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
     drawn = curves(runs, scene)
