@@ -1,10 +1,14 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Contact between bodies, built four times and measured honestly (robotics course, chapter 3.5).
 
 A table pushes a ball up while they touch, and it never pulls it down. Four models of that push:
     penalty   a stiff spring and a damper: one more force under an unchanged integrator
     lcp       impulses that solve a complementarity problem, by projected Gauss-Seidel sweeps
+    exact     from one impact to the next, each at its own time: no time step
     soft      MuJoCo's contact: lcp's sweeps, but each contact aims like a spring and gives way
-    exact     event to event, every impact at its own time (curriculum/exact.py)
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
 
     symbol    meaning                              unit    sign
@@ -17,39 +21,52 @@ Left out: friction, rotation, and all shapes but balls over the line y = 0.
     f_n       contact force of penalty             N       >= 0: a contact only pushes
     lam       contact impulse over one step        N s     >= 0: a contact only pushes
     target    the least v_n to leave a step with   m/s     > 0 separating
-    m_eff     effective mass, what a push moves    kg      1 / (1 / m_a + 1 / m_b)
-    k, c      stiffness and damping of penalty     N/m, N s/m
+    softness  R: how far a push gives way; 0 hard  1/kg
+    m_eff     effective mass, what a push moves    kg      1 / (1 / m_a + 1 / m_b + R)
     e         restitution: share of the speed that a bounce gives back, 0 to 1
-    beta      Baumgarte gain: share of an overlap that a step of lcp removes, 0 to 1
-    d         impedance of soft: 0 gives way, 1 is hard
 
 Run it:
     python contact.py --contact exact               # what should happen; then make your bets
     python contact.py --scene drop                  # all models; then: bounce, stack, pile
     python contact.py --contact penalty --dt 0.03   # one model, a longer step
     python contact.py --smoke --no-rerun            # fixed length, the same bytes every time
+It needs numpy and nothing else. The course's folder beside it adds the recording, pictures, many
+seeds at once, compiled loops for many balls, and exact where balls slide over one another.
 """
 
 # --- region: setup ---
+import argparse
+import importlib
 import itertools
+import json
 import math
+import os
 import sys
 from typing import NamedTuple
 
-import numpy as np
+try:
+    import numpy as np
+except ModuleNotFoundError:
+    sys.exit(f'contact.py needs numpy; install it: "{sys.executable}" -m pip install numpy')
 
 GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
 CONTACT_MARGIN = 1e-3   # m: lcp treats a smaller gap as contact, so a resting ball stays listed
-FEW = 12                # balls: up to so many, looking at every pair is the fastest way
 EXPLODED = 10.0         # a run that gains more than this many times its start energy has exploded
-SOLREF = (0.02, 1.0)    # of soft, MuJoCo's default: time constant [s], damping ratio
-SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)   # of soft, MuJoCo's default: see impedance
-HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # of soft, the hardest contact that MuJoCo allows
-MOST_SWEEPS = 10_000    # soft stops here in one step, if its impulses have not settled
-LAST_BITS = 2.0**-48    # of soft: a correction below this share of the speeds is rounding
 SCENES = ("drop", "bounce", "stack", "pile")
 MODELS = ("penalty", "lcp", "soft", "exact")
+
+
+class Settings(NamedTuple):
+    """The knobs of the models. What belongs to a material, e and damping, is in the scene."""
+
+    stiffness: float = 1e4      # k of penalty [N/m]
+    baumgarte: float = 0.2      # beta of lcp: the share of an overlap that one step removes
+    iters: int = 20             # of lcp: Gauss-Seidel sweeps a step, at most
+    warm: bool = False          # lcp starts its sweeps from the impulses of the step before
+    solref: tuple | None = None     # of soft: time constant [s], damping ratio; see soft_defaults
+    solimp: tuple | None = None     # of soft: how hard, at which depth; see impedance
+    skip: bool = True           # leave out steps whose result is known; no bit changes
 # --- endregion ---
 
 
@@ -82,7 +99,7 @@ def build_scene(name: str, seed: int = 0, bodies: int | None = None,
         y = [(2 * i + 1) * RADIUS + abs(draw) for i in range(bodies or 3)]
         x = [0.0] * len(y)
     elif name == "pile":
-        x, y = pile_lattice(bodies or 200, abs(draw), rng)
+        x, y = pile_lattice(bodies or 24, abs(draw), rng)
     else:
         raise ValueError(f"scene {name!r}; allowed: {', '.join(SCENES)}")
     own_restitution, own_damping = (0.7, 0.0) if name == "bounce" else (0.0, 80.0)
@@ -90,15 +107,10 @@ def build_scene(name: str, seed: int = 0, bodies: int | None = None,
                  np.full(len(x), RADIUS),
                  own_restitution if restitution is None else restitution,
                  own_damping if damping is None else damping)
-# --- endregion ---
 
 
-# --- region: lattice ---
 def pile_lattice(count, lift, rng):
-    """x and y (count,) [m] on a lattice of pitch 2.5 r, each nudged by up to 0.1 r, all gaps open.
-
-    The balls are numbered at random, so that the order of the contacts has no pattern.
-    """
+    """x and y (count,) [m] on a lattice of pitch 2.5 r, numbered at random and nudged by 0.1 r."""
     place = rng.permutation(count)
     width = math.ceil(math.sqrt(2 * count))
     nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
@@ -119,6 +131,7 @@ class Ball:
         self.mass = mass
         self.inv_mass = 1.0 / mass      # 0 for infinite mass: nothing moves that ball
         self.radius = radius
+        self.pushed = {}                # lam of the step before, by the other ball
 
 
 FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)
@@ -133,8 +146,8 @@ class Contact:
         self.depth = depth
         self.ax, self.ay = a.inv_mass * nx, a.inv_mass * ny     # what 1 N s adds to a's velocity
         self.bx, self.by = b.inv_mass * nx, b.inv_mass * ny     # and takes from b's
-        inv_mass = a.inv_mass + b.inv_mass
-        self.m_eff = 1.0 / inv_mass if inv_mass > 0.0 else 0.0      # effective mass [kg]
+        self.inv_mass = a.inv_mass + b.inv_mass
+        self.m_eff = 1.0 / self.inv_mass if self.inv_mass > 0.0 else 0.0    # effective mass [kg]
         self.target = 0.0       # the v_n [m/s] to leave with at least; of soft, v_n + R lam
         self.softness = 0.0     # R [1/kg] of soft; 0 is hard
         self.lam = 0.0          # the impulse [N s] so far; a new step starts again from 0
@@ -148,7 +161,7 @@ class Contact:
         a, b = self.a, self.b
         a.vx += impulse * self.ax
         a.vy += impulse * self.ay
-        if b is not FLOOR:      # all contacts share the floor, and it never moves
+        if b is not FLOOR:      # the floor is shared by all runs: even NaN must not move it
             b.vx -= impulse * self.bx
             b.vy -= impulse * self.by
 # --- endregion ---
@@ -159,16 +172,16 @@ def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
     """The contacts of balls with the floor and with each other whose gap is below `margin` [m].
 
     The floor's contacts come first, by ball, then those of pairs, by the first ball and then the
-    second: a solver takes them in this order, so the order is part of the result. Two balls with
-    the same centre get the normal (0, 1), since some direction must be chosen. For another floor
-    or a wall, add its contacts here and its gap to smallest_gap, where a flight looks for it.
+    second: a solver takes them in this order, so the order is part of the result. Looks at every
+    pair, which is for few balls. Two balls with the same centre get the normal (0, 1), since some
+    direction must be chosen.
     """
     contacts = []
     for ball in balls:
         depth = ball.radius - ball.y
         if depth > -margin:
             contacts.append(Contact(ball, FLOOR, 0.0, 1.0, depth))
-    for a, b in possible_pairs(balls, margin):
+    for a, b in itertools.combinations(balls, 2):
         dx = a.x - b.x
         dy = a.y - b.y
         distance = math.sqrt(dx * dx + dy * dy)
@@ -177,29 +190,6 @@ def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
             nx, ny = (dx / distance, dy / distance) if distance > 0.0 else (0.0, 1.0)
             contacts.append(Contact(a, b, nx, ny, depth))
     return contacts
-# --- endregion ---
-
-
-# --- region: pairs ---
-def possible_pairs(balls, margin):
-    """The pairs of balls that are worth a look, in order: all of them while the balls are few.
-
-    Of many balls only those pairs are looked at whose shadows on the x axis come within `margin`
-    [m] of each other. The others cannot touch, so the list of contacts stays the same.
-    """
-    if len(balls) <= FEW:
-        return itertools.combinations(balls, 2)
-    known = [i for i, ball in enumerate(balls) if math.isfinite(ball.x)]
-    known.sort(key=lambda i: balls[i].x)
-    reach = 1.000001 * (2.0 * max(ball.radius for ball in balls) + margin)  # room for rounding
-    pairs = []
-    for place, i in enumerate(known):
-        for j in itertools.islice(known, place + 1, None):
-            if balls[j].x - balls[i].x > reach:
-                break
-            if not abs(balls[j].y - balls[i].y) > reach:
-                pairs.append((min(i, j), max(i, j)))
-    return [(balls[i], balls[j]) for i, j in sorted(pairs)]
 # --- endregion ---
 
 
@@ -224,29 +214,22 @@ def penalty_step(balls, dt, stiffness, damping):
     for ball in balls:
         ball.fx = ball.fy = 0.0     # not the floor's: nobody reads what it adds up
     penalty_force(detect_contacts(balls, margin=0.0), stiffness, damping)
-    semi_implicit_step(balls, dt)
+    accelerate(balls, dt)
+    move(balls, dt)
 # --- endregion ---
 
 
 # --- region: integrator ---
-def semi_implicit_step(balls, dt):
-    """Semi-implicit Euler under gravity and the forces: the new velocity first, then x and y."""
+def accelerate(balls, dt):
+    """The first half of semi-implicit Euler: gravity and forces change the velocities."""
     for ball in balls:
         if ball.inv_mass > 0.0:
             ball.vx += dt * (ball.fx / ball.mass)
             ball.vy += dt * (GRAVITY + ball.fy / ball.mass)
-    move(balls, dt)
-
-
-def fall(balls, dt):
-    """Give every ball that can move the velocity that gravity adds in one step."""
-    for ball in balls:
-        if ball.inv_mass > 0.0:
-            ball.vy += dt * GRAVITY
 
 
 def move(balls, dt):
-    """Move every ball with its velocity for one step."""
+    """The second half: the new velocities, not the old ones, move the balls."""
     for ball in balls:
         ball.x += dt * ball.vx
         ball.y += dt * ball.vy
@@ -254,12 +237,18 @@ def move(balls, dt):
 
 
 # --- region: critical-dt ---
-def critical_dt(mass: float, stiffness: float, damping: float) -> float:
+def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -> float:
     """The largest stable step [s] of penalty for a ball kept in contact; inf without a spring.
 
     In contact a step is a 2 x 2 matrix. Its eigenvalues stay within 1 (Jury's test) while
-    k dt^2 + 2 c dt < 4 m. Without a damper that is the textbook's dt < 2 sqrt(m / k).
+    k dt^2 + 2 c dt < 4 m. Without a damper that is the textbook's dt < 2 sqrt(m / k). A stack of
+    `count` balls has one swing that is stiffer than all others; it sees 4 cos^2(pi / (2 count + 1))
+    times the spring and the damper. The root is that of the quadratic, in the form that loses no
+    digits.
     """
+    if count > 1:
+        more = 4.0 * math.cos(math.pi / (2 * count + 1)) ** 2
+        stiffness, damping = more * stiffness, more * damping
     root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
     return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
 # --- endregion ---
@@ -269,12 +258,12 @@ def critical_dt(mass: float, stiffness: float, damping: float) -> float:
 def contact_target(c, restitution, baumgarte, dt):
     """The least normal velocity [m/s] with which contact c may leave the step.
 
-    Call it before gravity acts. With e = 0 it is the bias velocity (Baumgarte 1972): an overlap
-    opens by the share beta in a step, and a gap may close by that share. With e > 0 bodies that
-    touch, or would meet within this step, get the bounce -e v_n. Across a wider gap they may
-    come as close as touching, so that nothing bounces on air. In an overlap the larger of bias
-    and bounce counts, since their sum would bounce too high. Where the bias does not win, no
-    target is above -e v_n, also between bodies that part, so impulses add no energy (Moreau 1988).
+    With e = 0 it is the bias velocity (Baumgarte 1972): an overlap opens by the share beta in a
+    step, and a gap may close by that share. With e > 0 bodies that touch, or would meet within
+    this step, get the bounce -e v_n. Across a wider gap they may come as close as touching, so
+    that nothing bounces on air. In an overlap the larger of bias and bounce counts, since their
+    sum would bounce too high. Where the bias does not win, no target is above -e v_n, also
+    between bodies that part, so impulses add no energy (Moreau 1988).
     """
     bias = baumgarte / dt * c.depth     # < 0 across a gap
     if restitution == 0.0:
@@ -288,53 +277,143 @@ def contact_target(c, restitution, baumgarte, dt):
 # --- endregion ---
 
 
-# --- region: lcp-sweep ---
-def project_impulse(lam, dlam):
-    """The impulse after a correction: the sum may not become negative, a correction may."""
-    total = lam + dlam
-    return total if total > 0.0 else 0.0        # max(0, total), at half the time
-
-
-def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> None:
-    """Find impulses with lam >= 0, w >= 0 and lam w = 0, where w = v_n + softness lam - target.
+# --- region: sweep ---
+def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
+    """Find impulses with lam >= 0, w >= 0 and lam w = 0, where w = v_n + R lam - target.
 
     Projected Gauss-Seidel: each sweep mends one contact after the other, by the impulse that
     brings it to its target, and disturbs its neighbours; the next sweep mends those. Changes lam
-    of the contacts and the velocities of their balls. Stops after a sweep in which no correction
-    changed a velocity by more than `tolerance` [m/s]. After a sweep without any change, every
-    further sweep would repeat it. In velocities and impulses: Moreau (1988); Stewart and Trinkle
+    of the contacts and the velocities of their balls. Ends early, and returns True, after a sweep
+    in which no correction changed a velocity by more than `tolerance` [m/s]: with 0, every further
+    sweep would change nothing. In velocities and impulses: Moreau (1988); Stewart and Trinkle
     (1996); Anitescu and Potra (1997).
     """
     for _ in range(iters):
         settled = True
         for c in contacts:
-            missing = c.target - c.v_n() - c.softness * c.lam
-            lam = project_impulse(c.lam, missing * c.m_eff)
-            if lam != c.lam:
-                change = lam - c.lam
-                c.push(change)
-                c.lam = lam
-                settled = settled and abs(change) <= tolerance * c.m_eff    # NaN never settles
+            missing = c.target - c.v_n() - c.softness * c.lam   # -w, the velocity that is missing
+            lam = max(0.0, c.lam + missing * c.m_eff)           # the sum is clamped: only a push
+            change = lam - c.lam
+            c.push(change)
+            c.lam = lam
+            settled = settled and abs(change) <= tolerance * c.m_eff    # NaN never settles
         if settled:
-            break
+            return True
+    return False
 # --- endregion ---
 
 
 # --- region: lcp ---
 def lcp_step(balls, dt, restitution, baumgarte, iters):
-    """One step [s]: gravity predicts the velocities, impulses correct them, the balls move."""
+    """One step [s]: gravity predicts the velocities, impulses correct them, the balls move.
+
+    Targets come before gravity: a bounce gives back the speed of the approach. With the speed
+    that gravity adds in this step, a ball at rest would bounce for ever.
+    """
     contacts = detect_contacts(balls)
     for c in contacts:
         c.target = contact_target(c, restitution, baumgarte, dt)
-    fall(balls, dt)
+    accelerate(balls, dt)
     solve_contacts(contacts, iters)
     move(balls, dt)
 # --- endregion ---
 
 
+# --- region: exact ---
+TOUCH = 1e-13           # m: a smaller gap is none
+SLOW = 1e-7             # m/s: a slower bounce, 1e-15 m high, is the last of its series
+MOST_IMPACTS = 100_000  # a run with more is given up
+
+
+def exact_run(scene, times, report=None):
+    """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, of balls over one another.
+
+    Between two impacts every acceleration stays the same, so a gap is a parabola in time, and the
+    next impact is its root: no time step, and no error but rounding. Raises RuntimeError where
+    the impacts have no end in sight, or the masses are too unequal for the sweeps.
+    """
+    balls = make_balls(scene)
+    q, v = np.tile(scene.q0, (len(times), 1, 1)), np.tile(scene.v0, (len(times), 1, 1))
+    now, done = 0.0, 0
+    for _ in range(MOST_IMPACTS):
+        pairs = detect_contacts(balls, margin=math.inf)         # all, also those far apart
+        touching = [c for c in pairs if -c.depth <= TOUCH]
+        bounce(touching, scene.restitution)
+        a, approach = accelerations(balls, touching, pairs)
+        span = min(map(time_to_impact, pairs, approach), default=math.inf)
+        last = int(np.searchsorted(times, now + span, "right"))
+        t = times[done:last] - now
+        for k, ball in enumerate(balls):
+            q[done:last, 1, k] = ball.y + t * (ball.vy + 0.5 * t * a[k])
+            v[done:last, 1, k] = ball.vy + t * a[k]
+        if last == len(times):
+            return q, v
+        if report:
+            report(last)
+        for k, ball in enumerate(balls):
+            ball.y += span * (ball.vy + 0.5 * span * a[k])
+            ball.vy += span * a[k]
+        now, done = now + span, last
+    raise RuntimeError(f"more than {MOST_IMPACTS:,} impacts by {now:.6g} s: the balls rattle")
+
+
+def bounce(touching, restitution):
+    """All impacts of one moment: v_n becomes -e v_n where a contact pushes."""
+    for c in touching:
+        back = -restitution * c.v_n()
+        c.target = 0.0 if 0.0 <= back < SLOW else back
+    settle(touching)
+
+
+def accelerations(balls, touching, pairs):
+    """What the balls do next, and how fast every gap accelerates [m/s^2]; None if it stays closed.
+
+    The same sweep, one derivative higher: with accelerations in place of velocities, the impulses
+    are forces. A resting contact may open and may not close, so its gap has no acceleration < 0.
+    """
+    resting = [c for c in touching if abs(c.v_n()) < SLOW]
+    speeds = [ball.vy for ball in balls]
+    for ball in balls:
+        ball.vy = GRAVITY if ball.inv_mass > 0.0 else 0.0
+    for c in resting:
+        c.target = c.lam = 0.0
+    settle(resting)
+    a = [ball.vy for ball in balls]
+    approach = [None if c in resting and c.lam > 0.0 else c.v_n() for c in pairs]
+    for ball, speed in zip(balls, speeds):
+        ball.vy = speed
+    return a, approach
+
+
+def settle(contacts):
+    """Sweep until only rounding is left. Raises RuntimeError if the sweeps do not get there."""
+    fastest = max([abs(c.v_n()) for c in contacts], default=0.0)
+    if not solve_contacts(contacts, 100 * MOST_SWEEPS, 2.0**-52 * fastest):
+        raise RuntimeError("the masses are too unequal: the sweeps do not settle")
+
+
+def time_to_impact(c, a_n):
+    """When the gap closes [s]: the first root of gap + v_n t + a_n t^2 / 2; inf if it does not."""
+    gap, v_n = max(-c.depth, 0.0), c.v_n()
+    at_rest = gap <= TOUCH and abs(v_n) < SLOW
+    if a_n is None or (at_rest and a_n >= -1e-12) or (v_n >= 0.0 and a_n >= 0.0):
+        return math.inf
+    square = v_n * v_n - 2.0 * gap * a_n
+    if square < 0.0:
+        return math.inf
+    root = math.sqrt(square)
+    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n
+# --- endregion ---
+
+
 # --- region: soft-impedance ---
+SOLREF = (0.02, 1.0)    # MuJoCo's default: time constant [s], damping ratio
+SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)       # MuJoCo's default: d0, d1, width [m], mid, power
+HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # the hardest contact that MuJoCo allows
+
+
 def impedance(depth, solimp):
-    """How hard the contact is at that depth [m]: d between 0 and 1 (MuJoCo's getimpedance).
+    """How hard the contact is at that depth [m]: d, 0 gives way and 1 is hard (getimpedance).
 
     It grows from d0 at the surface to d1 at the depth `width` [m], along an S made of two powers
     that meet at the share `mid` of the width.
@@ -375,15 +454,19 @@ def soft_defaults(restitution, dt, solref=None, solimp=None):
         solref = max(timeconst, 2.0 * dt), dampratio    # MuJoCo's refsafe: no faster than two steps
     d0, d1, width, mid, power = solimp or SOLIMP
     d0, d1, mid = (min(max(share, 0.0001), 0.9999) for share in (d0, d1, mid))
-    return solref, (d0, d1, width, mid, power)
+    return solref, (d0, d1, width, mid, max(power, 1.0))
 # --- endregion ---
 
 
 # --- region: soft ---
+MOST_SWEEPS = 10_000    # a step ends here, if its impulses have not settled
+LAST_BITS = 2.0**-48    # a correction below this share of the speeds is rounding
+
+
 def soften(c, dt, solref, solimp):
     """Give contact c the target and the softness that MuJoCo's contact has.
 
-    A spring K [1/s^2] and a damper B [1/s] ask for the acceleration a_ref = K d depth - B v_n
+    A spring K [1/s^2] and a damper B [1/s] wish for the acceleration a_ref = K d depth - B v_n
     (mj_makeImpedance, mj_referenceConstraint). They act per unit of mass, so any ball follows
     them alike. The softness R [1/kg] lets the contact give way: the harder, the less.
     """
@@ -397,45 +480,62 @@ def soften(c, dt, solref, solimp):
         K = -solref[0] / (d1 * d1)
         B = -solref[1] / d1
     v_n = c.v_n()                                       # before gravity acts
-    inv_mass = c.a.inv_mass + c.b.inv_mass
     c.target = v_n + dt * (K * d * c.depth - B * v_n)
-    c.softness = max(1e-15, (1.0 - d) / d * inv_mass)
-    c.m_eff = 1.0 / (inv_mass + c.softness)
+    c.softness = max(1e-15, (1.0 - d) / d * c.inv_mass)
+    c.m_eff = 1.0 / (c.inv_mass + c.softness)
 
 
 def soft_step(balls, dt, solref, solimp):
     """One step [s] of MuJoCo's contact: lcp's step with another target, and softness.
 
-    The softness makes the problem strictly convex: it has one answer. So the sweeps go on until
-    their corrections drown in the rounding of the velocities, which takes the longer, the harder
-    the contacts are.
+    With R > 0 the problem has one answer, wherever the sweeps begin. So they begin at the
+    impulses of the step before, and go on until their corrections drown in the rounding of the
+    velocities. Returns False if MOST_SWEEPS were not enough for that.
     """
     contacts = detect_contacts(balls, margin=0.0)
     for c in contacts:
         soften(c, dt, solref, solimp)
-    fall(balls, dt)
+    accelerate(balls, dt)
     fastest = max([abs(c.target) for c in contacts], default=0.0)
     for ball in balls:
         fastest = max(fastest, abs(ball.vx), abs(ball.vy))
-    solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * fastest)
+    warm_start(contacts)
+    settled = solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * fastest)
+    remember(balls, contacts)
     move(balls, dt)
+    return settled
+
+
+def warm_start(contacts):
+    """Begin with the impulses that the same balls gave each other in the step before."""
+    for c in contacts:
+        c.lam = c.a.pushed.get(c.b, 0.0)
+        c.push(c.lam)
+
+
+def remember(balls, contacts):
+    """Keep the impulses for the warm start of the next step."""
+    for ball in balls:
+        ball.pushed = {}
+    for c in contacts:
+        c.a.pushed[c.b] = c.lam
 # --- endregion ---
 
 
-# --- region: state ---
+# --- region: simulate ---
 class Run(NamedTuple):
     """A recording: t (steps + 1,) [s]; q and v (steps + 1, 2, N) [m, m/s]."""
 
     t: np.ndarray
     q: np.ndarray
     v: np.ndarray
+    unsettled: int = 0      # steps whose sweeps did not settle
 
 
 def make_balls(scene):
-    """The scene's balls, as the steps move them."""
-    check_shapes(scene)
-    columns = (*scene.q0, *scene.v0, scene.mass, scene.radius)
-    return [Ball(*values) for values in np.transpose(columns).tolist()]
+    """The scene's balls, as the steps move them. Raises ValueError if its arrays do not fit."""
+    columns = np.stack((*scene.q0, *scene.v0, scene.mass, scene.radius), axis=1)
+    return [Ball(*values) for values in columns.tolist()]
 
 
 def state_of(balls):
@@ -443,147 +543,120 @@ def state_of(balls):
     return [value for ball in balls for value in (ball.x, ball.y, ball.vx, ball.vy)]
 
 
-def set_state(balls, state):
-    """Put the balls where such a state, as an array, says."""
-    for ball, values in zip(balls, state.reshape(-1, 4).tolist()):
-        ball.x, ball.y, ball.vx, ball.vy = values
-# --- endregion ---
-
-
-# --- region: simulate ---
 @np.errstate(all="ignore")
-def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True,
-             report=lambda k: None) -> Run:
+def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, report=None) -> Run:
     """Take that many steps, `step(balls)` each, and record every state.
 
     With `skip` two kinds of steps are not taken, and no bit changes. A flight without contact is
     summed up in one go. And when a state comes back (rest, or any cycle), the rest of the run is
-    a copy, since a step depends on the state alone. `report(k)` is called with the steps done.
+    a copy: a step depends on nothing but the state and the impulses that it starts from.
+    `report(k)` is called with the steps done; a step returns False if its sweeps did not settle.
     """
     balls = make_balls(scene)
     rows = np.empty((steps + 1, 4 * len(balls)))
     rows[0] = state_of(balls)
-    seen = {}                                           # hash of a state: the step it came at
+    unsettled = np.zeros(steps + 1, bool)
+    seen = {}                                           # a state: the step it came at
     k = 0
     while k < steps:
         if skip:
-            first = seen.setdefault(hash(rows[k].tobytes()), k)
-            if first < k and rows[first].tobytes() == rows[k].tobytes():
-                period = k - first
+            state = rows[k].tobytes(), tuple(tuple(ball.pushed.items()) for ball in balls)
+            first = seen.setdefault(state, k)
+            if first < k:
                 for past in range(first, k):            # these states come again and again
-                    rows[past + period::period] = rows[past]
+                    rows[past + k - first::k - first] = rows[past]
+                    unsettled[past + k - first + 1::k - first] = unsettled[past + 1]
                 break
             flight = fly(balls, dt, steps - k)
             if len(flight) > 0:
                 rows[k + 1:k + 1 + len(flight)] = flight
                 k += len(flight)
-                set_state(balls, rows[k])
                 continue
-        step(balls)
+        unsettled[k + 1] = step(balls) is False
         k += 1
         rows[k] = state_of(balls)
-        report(k)
+        if report:
+            report(k)
     rows += 0.0                                         # turns -0.0 into 0.0
     rows[np.isnan(rows)] = math.nan                     # which has a sign too, left to chance
     rows = rows.reshape(steps + 1, len(balls), 4).transpose(0, 2, 1).copy()
-    return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
+    return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:], int(unsettled.sum()))
 # --- endregion ---
 
 
 # --- region: flight ---
 def fly(balls, dt, most):
-    """The next states (n, 4 N), n <= most, of balls that touch nothing.
+    """The next states (n, 4 N), n <= most, of balls that touch nothing; the balls go there.
 
-    Short flights are left to the steps, and n is 0. np.add.accumulate adds in the same order as
-    the steps do, so the bits agree.
+    Without contact a step adds dt g to v and dt v to q. np.add.accumulate adds in the same order
+    as the steps do, so the bits agree. The flight ends before the first step that sees a contact.
     """
-    count = most
-    for ball in balls:
-        count = min(count, steps_to_floor(ball, dt))
-        if count < 16:
-            return ()
     if detect_contacts(balls):
         return ()
-    rows = np.empty((int(count) + 1, 4 * len(balls)))
-    rows[0] = state_of(balls)
-    states = rows.reshape(len(rows), len(balls), 4)     # a view: what it gets, rows has
-    q, v = states[:, :, :2], states[:, :, 2:]
+    states = np.empty((min(most, 250) + 1, len(balls), 4))
+    states[0] = np.reshape(state_of(balls), (-1, 4))
+    q, v = states[:, :, :2], states[:, :, 2:]           # views of the states
     v[1:, :, 0] = 0.0
     v[1:, :, 1] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
     np.add.accumulate(v, out=v)                         # v, v + dt g, v + dt g + dt g, ...
     q[1:] = dt * v[1:]
     np.add.accumulate(q, out=q)
     gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
-    contact = np.flatnonzero(gap < CONTACT_MARGIN)
-    return rows[1:contact[0] + 1] if len(contact) > 0 else rows[1:]
-
-
-def steps_to_floor(ball, dt):
-    """About how many steps the ball falls freely until it is within the margin of the floor."""
-    gap = ball.y - ball.radius - CONTACT_MARGIN
-    if not gap > 0.0:
-        return 0
-    if ball.inv_mass == 0.0:
-        return math.inf
-    return (ball.vy + math.sqrt(ball.vy * ball.vy - 2.0 * GRAVITY * gap)) / -GRAVITY / dt
-# --- endregion ---
-
-
-# --- region: shapes ---
-def check_shapes(scene, *runs):
-    """Raise ValueError, in one line, where the arrays of a scene and its runs do not fit."""
-    count = np.size(scene.mass)
-    if count == 0:
-        raise ValueError("the scene has no ball; allowed: one or more")
-    checked = [("q0", scene.q0, (2, count)), ("v0", scene.v0, (2, count)),
-               ("mass", scene.mass, (count,)), ("radius", scene.radius, (count,))]
-    for run in runs:
-        shape = (np.size(runs[0].t), 2, count)
-        checked += [("q of a run", run.q, shape), ("v of a run", run.v, shape)]
-    for name, array, allowed in checked:
-        if np.shape(array) != allowed:
-            raise ValueError(f"{name}: given an array of shape {np.shape(array)}; allowed for "
-                             f"{count} balls: {allowed}")
+    near = np.flatnonzero(gap < CONTACT_MARGIN)
+    states = states[:near[0] + 1] if len(near) > 0 else states
+    for ball, values in zip(balls, states[-1].tolist()):
+        ball.x, ball.y, ball.vx, ball.vy = values
+        ball.pushed = {}
+    return states[1:].reshape(len(states) - 1, -1)
 # --- endregion ---
 
 
 # --- region: run ---
-def compiled_piles():
-    """curriculum/piles.py, the compiled steps for many balls; None where it or numba is missing."""
+MANY = 5e6      # steps times pairs: from here on, loading the compiled loops pays
+
+
+def beside(name):
+    """A module of the folder curriculum beside this file; None where it or its packages lack."""
     try:
-        from curriculum import piles
+        return importlib.import_module(f"curriculum.{name}")
     except ImportError:
         return None
-    return piles
 
 
-def run_model(model: str, scene: Scene, dt: float, steps: int, stiffness: float = 1e4,
-              baumgarte: float = 0.2, iters: int = 20, skip: bool = True,
-              report=lambda k: None, solref=None, solimp=None) -> Run:
+def run_model(model: str, scene: Scene, dt: float, steps: int,
+              settings: Settings = Settings(), report=None) -> Run:
     """The run of a scene by one of MODELS. Raises ValueError for any other name.
 
-    Many balls are stepped by curriculum/piles.py where it can be had, to the same bits.
+    Raises RuntimeError where exact cannot keep its promise of accuracy, and says why. Many balls
+    are stepped by curriculum/fast.py, where it can be had, to the same bits.
     """
     if model not in MODELS:
         raise ValueError(f"model {model!r}; allowed: {', '.join(MODELS)}")
-    check_shapes(scene)
+    with np.errstate(over="ignore"):
+        times = np.arange(steps + 1) * dt
     if model == "exact":
-        from curriculum import exact
-        with np.errstate(over="ignore"):
-            times = np.arange(steps + 1) * dt
-        return Run(times, *exact.simulate_exact(scene, times, GRAVITY, report))
+        return Run(times, *run_exact(scene, times, report))
+    many = settings.skip and steps * len(scene.mass)**2 > MANY
+    if many and (fast := beside("fast")):
+        return Run(times, *fast.simulate(model, scene, dt, steps, settings, report))
     e = scene.restitution
-    solref, solimp = soft_defaults(e, dt, solref, solimp)
-    if skip and len(scene.mass) > FEW and (piles := compiled_piles()):
-        return Run(np.arange(steps + 1) * dt, *piles.simulate(
-            model, scene, dt, steps, report, gravity=GRAVITY, margin=CONTACT_MARGIN,
-            stiffness=stiffness, baumgarte=baumgarte, iters=iters, most_sweeps=MOST_SWEEPS,
-            last_bits=LAST_BITS, solref=solref, solimp=solimp))
-    steps_by = {
-        "penalty": lambda balls: penalty_step(balls, dt, stiffness, scene.damping),
-        "lcp": lambda balls: lcp_step(balls, dt, e, baumgarte, iters),
+    solref, solimp = soft_defaults(e, dt, settings.solref, settings.solimp)
+    step = {
+        "penalty": lambda balls: penalty_step(balls, dt, settings.stiffness, scene.damping),
+        "lcp": lambda balls: lcp_step(balls, dt, e, settings.baumgarte, settings.iters),
         "soft": lambda balls: soft_step(balls, dt, solref, solimp)}
-    return simulate(steps_by[model], scene, dt, steps, skip, report)
+    return simulate(step[model], scene, dt, steps, settings.skip, report)
+
+
+def run_exact(scene, times, report=None):
+    """q, v of balls over one another by exact_run, of others by curriculum/exact.py."""
+    apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
+    if apart and (scene.q0[0] == scene.q0[0, 0]).all() and not scene.v0[0].any():
+        return exact_run(scene, times, report)
+    exact = beside("exact")
+    if exact is None:
+        raise RuntimeError("balls that lie beside one another need curriculum/exact.py")
+    return exact.simulate_exact(scene, times, GRAVITY, report or (lambda k: None))
 # --- endregion ---
 
 
@@ -599,14 +672,12 @@ def energy(q, v, mass):
 
 
 @np.errstate(all="ignore")
-def smallest_gap(q, radius):
-    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N).
+def pair_gap(q, radius):
+    """The smallest gap [m] between two balls in each state (S, 2, N); inf for one ball.
 
     Ball i is compared with ball i + lag, for all i and all states at once, and for every lag.
     """
-    if len(radius) > FEW and (piles := compiled_piles()):
-        return piles.smallest_gap(q, radius)
-    gap = (q[:, 1] - radius).min(-1)
+    gap = np.full(len(q), math.inf)
     for lag in range(1, len(radius)):
         dx = q[:, 0, lag:] - q[:, 0, :-lag]
         dy = q[:, 1, lag:] - q[:, 1, :-lag]
@@ -615,10 +686,11 @@ def smallest_gap(q, radius):
     return gap
 
 
-def max_penetration(q, radius):
-    """The deepest overlap [m] with the floor or a ball, 0 without one, in states (..., 2, N)."""
-    states = q.reshape(-1, *q.shape[-2:])
-    return np.maximum(-smallest_gap(states, radius), 0.0).reshape(q.shape[:-2])
+def smallest_gap(q, radius):
+    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
+    if q.size * len(radius) > MANY and (fast := beside("fast")):
+        return fast.smallest_gap(q, radius)
+    return np.minimum((q[:, 1] - radius).min(-1), pair_gap(q, radius))
 
 
 def blow_up_step(total):
@@ -636,20 +708,14 @@ def blow_up_step(total):
 def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None) -> dict:
     """The error measures of a run: lengths in radii of the first ball, energies in start energies.
 
-    max_penetration_frac, rest_penetration_frac: the deepest overlap, and the one at the end
-    rest_gap_frac: the smallest gap at the end; below 0 sunk in, above 0 hanging in the air
-    rebound_frac: the largest value of the smallest gap after the first contact
-    rest_jitter: standard deviation of the overlap over the last quarter
-    energy_excess: the most energy above the start; blew_up, blew_up_step: whether, when it exploded
-    contact_energy: the energy that contacts put into the bodies: all its rises, step by step
-    height_error_frac: the worst height error against the run `reference`, which is the sum of
-    flight_error_frac, the worst before the first contact, and contact_error_frac, what is added
+    The table says what most mean (COLUMNS). rest_penetration_frac is the overlap at the end;
+    blew_up and blew_up_step whether and when the run exploded; through what a ball went through;
+    unsettled_steps in how many steps the sweeps of soft did not settle. height_error_frac, against
+    the run `reference`, is the sum of flight_error_frac and contact_error_frac.
     """
-    check_shapes(scene, *[each for each in (run, reference) if each is not None])
     total = energy(run.q, run.v, scene.mass)
     scale = abs(float(total[0])) or 1.0
-    radius = float(scene.radius[0])
-    gap = smallest_gap(run.q, scene.radius) / radius
+    gap = smallest_gap(run.q, scene.radius) / float(scene.radius[0])
     depth = np.maximum(-gap, 0.0)
     landing = first_contact(run, scene, dt)
     step = blow_up_step(total)
@@ -658,23 +724,22 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
         "rest_penetration_frac": float(depth[-1]),
         "rest_gap_frac": float(gap[-1]),
         "rebound_frac": float(gap[landing:].max(initial=0.0)),
-        "rest_jitter": deviation(depth[3 * len(depth) // 4:]),
+        "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])),
         "energy_excess": float((total - total[0]).max()) / scale,
         "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
         "blew_up": step is not None,
-        "blew_up_step": step}
+        "blew_up_step": step,
+        "through": went_through(run, scene),
+        "unsettled_steps": run.unsettled}
     return quality | height_errors(run, scene, dt, reference)
-# --- endregion ---
 
 
-# --- region: quality-parts ---
-def deviation(values):
-    """The standard deviation; a power of two is taken out, lest squares of large values overflow.
-
-    That changes no other bit.
-    """
-    power = math.frexp(float(values.max()))[1]
-    return float(np.ldexp(np.std(np.ldexp(values, -power)), power))
+def went_through(run, scene):
+    """"the floor" if a ball's centre was below it; "a ball" if two overlapped by a radius."""
+    moves = np.isfinite(scene.mass)
+    if (run.q[:, 1, moves] < 0.0).any():
+        return "the floor"
+    return "a ball" if pair_gap(run.q, scene.radius).min() < -scene.radius.min() else None
 
 
 def first_contact(run, scene, dt):
@@ -705,89 +770,338 @@ DT_GRID = (1, 2, 4, 8, 16, 32)      # multiples of --dt that the stability lines
 
 
 def measure_stability(run, scene, dt, stiffness, first):
-    """The largest step of the grid without an explosion, by model, and the depth reached there.
+    """The largest step of the grid without an explosion, by model, and what happens there.
 
     0.0 stands for a model that explodes at every step, None for one that never comes to a
-    contact, so that nothing was tried. `run(model, dt)` makes a run; `first` holds the runs at dt
-    itself, by model. The largest step comes first, and no run is made that cannot be the answer.
-    soft is left out: its time constant is never below two steps, so it stays bounded at any step.
+    contact. `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model. The
+    largest step comes first, and no run is made that cannot be the answer. soft is left out: its
+    time constant is never below two steps, so it stays bounded at any step.
     """
-    mass = float(scene.mass[0])
-    grid = {"dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
-            "dt_crit_damped": critical_dt(mass, stiffness, scene.damping)}
+    known = float(scene.mass[0]), stiffness
+    grid = {"dt_crit_penalty": critical_dt(*known, 0.0),
+            "dt_crit_damped": critical_dt(*known, scene.damping),
+            "dt_crit_stack": critical_dt(*known, scene.damping, len(scene.mass))}
     for model in ("penalty", "lcp"):
-        grid[model], grid[f"{model}_penetration_frac"] = None, None
+        depth, through = f"{model}_penetration_frac", f"{model}_through"
+        grid |= {model: None, depth: None, through: None}
         for step in sorted((dt * factor for factor in DT_GRID), reverse=True):
             found = first[model] if step == dt else run(model, step)
-            exploded = blow_up_step(energy(found.q, found.v, scene.mass)) is not None
             gap = smallest_gap(found.q, scene.radius)
-            if exploded:
+            if blow_up_step(energy(found.q, found.v, scene.mass)) is not None:
                 grid[model] = 0.0
             elif (gap < CONTACT_MARGIN).any():
-                depth = float(max(-gap.min(), 0.0) / scene.radius[0])
-                grid[model], grid[f"{model}_penetration_frac"] = step, depth
+                grid[model] = step
+                grid[depth] = float(max(-gap.min(), 0.0) / scene.radius[0])
+                grid[through] = went_through(found, scene)
                 break
     return grid
 # --- endregion ---
 
 
-# --- region: record ---
-COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "soft": "#cc79a7",
-          "exact": "#009e73"}       # safe for colour-blind readers (Okabe and Ito)
+# --- region: flags ---
+class Parser(argparse.ArgumentParser):
+    """Answers bad input with one line and exit status 2."""
+
+    def error(self, message):
+        sys.exit(fail(" ".join(message.split())))
 
 
-@np.errstate(all="ignore")
-def contact_impulses(run, scene):
-    """The impulse [N s] that all contacts of a ball give it in each step, (steps + 1, 2, N).
-
-    It is the change of momentum that gravity does not explain, so it is there for every model.
-    """
-    gained = np.diff(run.t[:2]).sum() * np.array([[0.0], [GRAVITY]])
-    mass = np.where(np.isfinite(scene.mass), scene.mass, 0.0)
-    return np.concatenate((np.zeros_like(run.v[:1]), mass * (np.diff(run.v, axis=0) - gained)))
-
-
-@np.errstate(all="ignore")
-def curves(runs, scene):
-    """What is plotted of the runs, {title: {model: values (steps + 1,)}}."""
-    titles = ("height [m], mean", "penetration [r]", "impulse of floor [N s]",
-              "energy above start [J]", "rises of energy [J]")
-    made = {title: {} for title in titles}
-    for model, run in runs.items():
-        total = energy(run.q, run.v, scene.mass)
-        values = (run.q[:, 1].mean(-1), max_penetration(run.q, scene.radius) / scene.radius[0],
-                  contact_impulses(run, scene)[:, 1].sum(-1), total - total[0],
-                  np.maximum(np.diff(total, prepend=total[0]), 0.0).cumsum())
-        for title, line in zip(titles, values):
-            made[title][model] = line
-    return made
+def number(kind, low, high):
+    """An argparse type: a number of that kind, from low to high."""
+    def read(text):
+        try:
+            value = kind(text)
+        except (ValueError, OverflowError):
+            value = math.nan
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {kind.__name__}, "
+                                             f"from {low:g} to {high:g}")
+        return value + 0                                # -0.0 becomes 0.0
+    return read
 
 
-def log_rerun(path, runs: dict[str, Run], scene: Scene) -> None:
-    """Write the runs {model: Run} to a recording, whole or not at all.
+NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, meaning
+    "--seed": (int, 0, 1e18, None, "draws the start height (0)"),
+    "--dt": (float, 1e-6, 1e3, 0.002, "time step [s] (0.002)"),
+    "--steps": (int, 0, 1e7, None, "how many (2000)"),
+    "--bodies": (int, 1, 1e5, None, "balls of stack (3) and pile (24)"),
+    "--mass": (float, 1e-9, 1e9, 1.0, "of every ball [kg] (1)"),
+    "--stiffness": (float, 0, 1e15, 1e4, "k of penalty [N/m] (1e4)"),
+    "--damping": (float, -1e9, 1e9, -1.0, "c of penalty [N s/m] (-1: the scene's, 80 or 0)"),
+    "--restitution": (float, -1, 1, -1.0, "e of the others (-1: the scene's, 0 or 0.7)"),
+    "--baumgarte": (float, 0, 1, 0.2, "beta of lcp: share of an overlap that a step removes (0.2)"),
+    "--iters": (int, 1, MOST_SWEEPS, 20, "sweeps a step of lcp, at most (20)")}
 
-    Raises ImportError where rerun is missing.
-    """
-    from curriculum.common import recording
-    weight = -GRAVITY * scene.mass * np.diff(next(iter(runs.values())).t[:2]).sum()
-    pushes = {model: contact_impulses(run, scene) / weight for model, run in runs.items()}
-    bursts = {model: blow_up_step(energy(run.q, run.v, scene.mass)) for model, run in runs.items()}
-    recording.write(path, "contact", runs, scene.radius, curves(runs, scene), COLORS,
-                    pushes, bursts)
+
+def add_flags(flag):
+    """All flags, by argparse's add_argument."""
+    switch = argparse.BooleanOptionalAction
+    flag("--scene", choices=SCENES, default="drop", help="one ball, or many (drop)")
+    flag("--contact", choices=("all", *MODELS), default="all", help="the model (all)")
+    for name, (kind, low, high, usual, text) in NUMBERS.items():
+        flag(name, type=number(kind, low, high), default=usual, metavar="N", help=text)
+    flag("--warm", action="store_true", help="lcp begins with the impulses of the step before")
+    flag("--solref", type=number(float, -1e12, 1e6), nargs=2, metavar=("T", "ZETA"),
+         help="soft: time constant [s] and damping ratio (0.02 1), or minus a stiffness and minus "
+              "a damping (with e > 0: 0 and -(1 + e) / dt)")
+    flag("--solimp", type=number(float, 0, 100), nargs=5,
+         metavar=("D0", "D1", "WIDTH", "MID", "POWER"),
+         help="soft: how hard at which depth (0.9 0.95 0.001 0.5 2; with e > 0: 0.9999)")
+    flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
+    flag("--seeds", metavar="A:B", help="all seeds from A to B - 1: median and range")
+    flag("--scheduler", metavar="HOST:PORT", help="with --seeds: run them on a dask cluster")
+    flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
+    flag("--skip", action=switch, default=True, help="leave out work that changes no bit (yes)")
+    flag("--rerun", action=switch, default=True, help="write the recording contact.rrd (yes)")
+    flag("--plot", action="store_true", help="draw contact.svg, by matplotlib")
+    flag("--out", default="outputs/ch3.5-contact", help="folder for what is written (%(default)s)")
+
+
+def parse_flags(argv):
+    """The checked command line. Bad input ends with one line on stderr and exit status 2."""
+    parser = Parser(prog="contact.py", description=__doc__, allow_abbrev=False,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    add_flags(parser.add_argument)
+    args = parser.parse_args(argv)
+    ref = args.solref
+    for wrong, message in (
+            (args.smoke and args.steps is not None, "--smoke has 800 steps: leave out --steps"),
+            (args.seeds and args.seed is not None, "--seeds or --seed: leave out one of them"),
+            (args.seeds and args.plot, "--plot draws one run: leave out --seeds"),
+            (args.scheduler and not args.seeds, "--scheduler is for many seeds: give --seeds"),
+            (args.bodies and args.scene in ("drop", "bounce"), "--bodies is for stack and pile"),
+            (ref and max(ref) > 0.0 and min(ref) < 1e-6,
+             "argument --solref: allowed: two numbers from 1e-06 up, or two that are 0 or less")):
+        if wrong:
+            parser.error(message)
+    args.seed = args.seed or 0
+    args.steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
+    return args
 # --- endregion ---
 
 
 # --- region: report ---
-def main(argv=None):
-    """Run the command line, which stands in curriculum/terminal.py. Returns the exit status."""
-    sys.modules.setdefault("contact", sys.modules[__name__])    # run as a script: no second copy
+COLUMNS = {     # title: key of contact_quality, meaning
+    "max pen/r": ("max_penetration_frac", "the deepest overlap; r is the radius of a ball"),
+    "rest gap/r": ("rest_gap_frac", "the smallest gap at the end: below 0 it is an overlap"),
+    "rebound/r": ("rebound_frac", "the largest gap under all balls after the first contact"),
+    "energy+": ("energy_excess", "the most energy above the start, as a share of the start's"),
+    "energy in": ("contact_energy", "all rises of the energy, step by step, added up"),
+    "flight err/r": ("flight_error_frac", "the worst height error before the first contact"),
+    "contact err/r": ("contact_error_frac", "what contact adds to it; both against exact"),
+    "jitter/r": ("rest_jitter", "standard deviation of the overlap in the last quarter")}
+
+
+def figure(value):
+    """A number as a person reads it, "-" for None: an exponent only where zeros would hide it."""
+    if value is None or value == 0.0:
+        return "-" if value is None else "0"
+    size = abs(value)
+    if size < 1e-4 or size >= 1e6:
+        return f"{value:.1e}"
+    return f"{value:,.0f}" if size >= 1000.0 else f"{value:.3g}"
+
+
+def ending(row):
+    """How a run ended, in words."""
+    if row["blew_up"]:
+        return f"EXPLODED at step {row['blew_up_step']}"
+    text = f"through {row['through']}" if row["through"] else "ok"
+    steps = row["unsettled_steps"]
+    return f"{text}, sweeps unsettled in {steps} steps" if steps else text
+
+
+def print_table(rows, ending):
+    """A line per row {name: {key: value}} with ending(row) behind it, then the columns' meaning."""
+    wide = max(map(len, ["contact", *rows]))
+    print(f"{'contact':<{wide}}  {'  '.join(COLUMNS)}  state")
+    for name, row in rows.items():
+        cells = (f"{figure(row[key]):>{len(title)}}" for title, (key, _) in COLUMNS.items())
+        print(f"{name:<{wide}}  {'  '.join(cells)}  {ending(row)}")
+    for title, (_, meaning) in COLUMNS.items():
+        print(f"  {title:<14}{meaning}")
+
+
+def print_verdict(quality):
+    """Which model overlaps most and which least, at worst and at rest."""
+    whole = [name for name in quality if not quality[name]["blew_up"]]
+    for when, key in (("at worst", "max_penetration_frac"), ("at rest", "rest_penetration_frac")):
+        names = sorted(whole, key=lambda name: -quality[name][key])
+        text = "".join(names[:1])
+        for before, name in zip(names, names[1:]):
+            text += (" = " if quality[before][key] == quality[name][key] else " > ") + name
+        print(f"verdict: depth {when}: {text}")
+
+
+def print_stability(grid, count):
+    """The largest step that each model stood, and the critical steps of penalty."""
+    print("stability: tried at", ", ".join(map(str, DT_GRID)), "times --dt")
+    for model in ("penalty", "lcp"):
+        depth, through = grid[f"{model}_penetration_frac"], grid[f"{model}_through"]
+        if grid[model] is None:
+            text = "comes to no contact within these steps"
+        elif grid[model] == 0.0:
+            text = "explodes at every dt tried"
+        else:
+            text = (f"does not explode up to dt = {grid[model]:g} s, where it goes "
+                    f"{figure(depth)} r deep" + (f", through {through}" if through else ""))
+        print(f"stability: {model} {text}")
+    stack = f"a stack of {count}: {grid['dt_crit_stack']:.4g} s; " if count > 1 else ""
+    print(f"critical dt of penalty, one ball: {grid['dt_crit_damped']:.4g} s; {stack}"
+          f"without the damper, 2 sqrt(m/k): {grid['dt_crit_penalty']:.4g} s")
+# --- endregion ---
+
+
+# --- region: files ---
+def rounded(value):
+    """`value` with every float rounded to 12 decimals; None where it is not finite."""
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    if isinstance(value, float):
+        return round(value, 12) + 0.0 if math.isfinite(value) else None
+    return value
+
+
+def write_whole(path, content):
+    """Replace the file at `path` by str or bytes, whole or not at all. Makes missing folders."""
+    path = os.path.realpath(path)
+    temporary = f"{path}.{os.getpid()}.tmp"
+    os.makedirs(os.path.dirname(path), exist_ok=True)
     try:
-        from curriculum import terminal
-    except ModuleNotFoundError as error:
-        print(f"contact.py: the command line needs the course's folder beside it ({error}); "
-              "as a module, import contact works without", file=sys.stderr)
-        return 2
-    return terminal.main(argv)
+        with open(temporary, "wb") as file:
+            file.write(content.encode() if isinstance(content, str) else content)
+        os.replace(temporary, path)
+    finally:
+        if os.path.lexists(temporary):
+            os.unlink(temporary)
+
+
+def write_json(path, data):
+    """Write strict JSON, whole or not at all. Raises ValueError on NaN and infinity."""
+    write_whole(path, json.dumps(data, indent=2, sort_keys=True, allow_nan=False) + "\n")
+
+
+def write_files(args, metrics, runs, scene):
+    """Write metrics.json, and recording and picture if asked. Raises OSError if it cannot."""
+    path = os.path.join(args.out, "metrics.json")
+    write_json(path, metrics)
+    print("metrics:", path)
+    title = f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
+    if args.rerun and runs:
+        write_extra("recording", os.path.join(args.out, "contact.rrd"), runs, scene)
+    if args.plot and runs:
+        write_extra("picture", os.path.join(args.out, "contact.svg"), runs, scene, title)
+
+
+def write_extra(name, path, *given):
+    """Have curriculum/NAME.py write a file, or say in one line what is missing."""
+    try:
+        importlib.import_module(f"curriculum.{name}").write(path, *given)
+        print(f"{name}: {path}")
+    except ImportError as error:
+        alone = error.name == "curriculum"
+        print(f"no {name}:", "the course's folder is not beside contact.py" if alone else error)
+# --- endregion ---
+
+
+# --- region: main ---
+def chosen_scene(args, seed):
+    """The scene that the flags ask for; a restitution or damping below 0 is the scene's own."""
+    e, c = (None if value < 0.0 else value for value in (args.restitution, args.damping))
+    scene = build_scene(args.scene, seed, args.bodies, e, c)
+    return scene._replace(mass=args.mass * scene.mass)
+
+
+def chosen_settings(args):
+    """The knobs that the flags ask for."""
+    return Settings(*(getattr(args, knob) for knob in Settings._fields))
+
+
+def run_all(args, scene):
+    """The runs {model: Run} that the flags ask for, {model: why it has none}, and how to run."""
+    settings = chosen_settings(args)
+    pool = beside("pool") if sys.stderr.isatty() else None
+
+    def run(model, dt):
+        bar = pool.bar(args.steps, f"{model}, dt = {dt:g} s") if pool else None
+        return run_model(model, scene, dt, args.steps, settings, bar)
+
+    runs, without = {}, {}
+    for model in MODELS if args.contact == "all" else [args.contact]:
+        try:
+            if model == "exact" != args.contact and args.scene == "pile" and len(scene.mass) > 24:
+                raise RuntimeError("more than 24 balls; ask for it by --contact exact")
+            runs[model] = run(model, args.dt)
+        except RuntimeError as error:
+            without[model] = str(error)
+    return runs, without, run
+
+
+def collect(args, scene, runs, without, run):
+    """What metrics.json holds: the flags that matter, the measures and the stability grid."""
+    grid = {}
+    if args.contact == "all" and args.scene != "pile":
+        grid = measure_stability(run, scene, args.dt, args.stiffness, runs)
+    return rounded({
+        "scene": args.scene, "contact": args.contact, "dt": args.dt, "steps": args.steps,
+        "seed": args.seed, "stiffness": args.stiffness, "restitution": scene.restitution,
+        "without": without, "stability": grid,
+        "quality": {model: contact_quality(found, scene, args.dt, runs.get("exact"))
+                    for model, found in runs.items()}})
+
+
+def print_report(args, scene, metrics):
+    """The table, the verdict and the stability lines."""
+    print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
+    print_table(metrics["quality"], ending)
+    for model, reason in metrics["without"].items():
+        print(f"no {model}: {reason}")
+    if len(metrics["quality"]) > 1:
+        print_verdict(metrics["quality"])
+    if metrics["stability"]:
+        print_stability(metrics["stability"], len(scene.mass))
+
+
+def report(args, argv):
+    """Run the models, print what was found, write the files. Returns the exit status."""
+    seeds, hints = (beside(name) for name in ("seeds", "hints"))
+    if args.seeds:
+        return seeds.report(args) if seeds else fail("--seeds needs the course's folder")
+    scene = chosen_scene(args, args.seed)
+    runs, without, run = run_all(args, scene)
+    metrics = collect(args, scene, runs, without, run)
+    print_report(args, scene, metrics)
+    try:
+        write_files(args, metrics, runs, scene)
+    except OSError as error:
+        return fail(f"cannot write to {args.out}: {error.strerror}; the report is whole, give "
+                    "another --out to keep its files")
+    if hints:
+        hints.print_next(args, argv)
+    return 0 if runs else 2
+
+
+def fail(message):
+    """One line on stderr. Returns the exit status."""
+    print(f"contact.py: error: {message}", file=sys.stderr)
+    return 2
+
+
+def main(argv=None):
+    """The command line. Returns the exit status: 2 for bad input, 130 after Ctrl-C."""
+    argv = sys.argv[1:] if argv is None else argv
+    try:
+        status = report(parse_flags(argv), argv)
+        sys.stdout.flush()
+        return status
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        return 130
+    except MemoryError:
+        return fail("not enough memory; allowed: fewer --steps or --bodies")
+    except OSError as error:                            # nobody reads on, or the disk is full
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141 if isinstance(error, BrokenPipeError) else 2
 
 
 if __name__ == "__main__":

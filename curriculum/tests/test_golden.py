@@ -21,7 +21,7 @@ COMMANDS = (
     "--scene drop",
     "--scene bounce",
     "--scene stack",
-    "--scene pile --bodies 24 --steps 200",
+    "--scene pile --steps 200",
     "--contact exact",
     "--contact penalty --dt 0.03",
     "--smoke",
@@ -41,7 +41,7 @@ def run_command(flags):
     return {"status": status, "stdout": lines, "metrics": metrics}
 
 
-PASSING = ("metrics:", "next", "tier:", "config_hash:", "estimated")
+PASSING = ("metrics:", "next")
 
 
 def run_trajectory(model, name, seed):
