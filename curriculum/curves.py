@@ -56,9 +56,7 @@ def curves(runs, scene):
     return drawn
 
 
-def state(run, scene):
-    """How the run ends: "ok", "EXPLODED at step 12", "through the floor" or "through a ball"."""
-    quality = contact.contact_quality(run, scene, float(np.diff(run.t[:2]).sum()))
-    if quality["blew_up"]:
-        return f"EXPLODED at step {quality['blew_up_step']}"
-    return quality["through"] or "ok"
+def ending(run, scene):
+    """How the run ended, in contact.py's words: "ok", "EXPLODED at step 12", "through the floor"."""
+    dt = float(np.diff(run.t[:2]).sum())
+    return contact.ending(contact.contact_quality(run, scene, dt))

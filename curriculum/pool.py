@@ -79,14 +79,18 @@ def machines(scheduler):
 def bar(total, label):
     """report(done), to be called with how many of `total` are done; it draws a bar with tqdm.
 
-    The bar comes after a second and is wiped at the end. Where stderr is no terminal, or tqdm is
-    not installed, report does nothing.
+    The bar comes after a second and is wiped at the end. report does nothing where stderr is no
+    terminal, where tqdm is not installed, and in a process of the pool, since bars would mix.
     """
     if sys.stderr is None or not sys.stderr.isatty():
         return nothing
     try:
+        from multiprocessing import parent_process
+
         from tqdm import tqdm
     except ImportError:
+        return nothing
+    if parent_process() is not None:
         return nothing
     shown = tqdm(total=total, desc=label, leave=False, delay=1.0)
 

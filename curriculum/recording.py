@@ -13,7 +13,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 import contact
-from curriculum.curves import colors, contact_impulses, curves, state
+from curriculum.curves import colors, contact_impulses, curves, ending
 
 PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"
@@ -151,7 +151,7 @@ def layout(runs, scene, drawn):
     """
     large = float(scene.radius.max())
     x_range, y_range = frame(runs, scene, large)
-    lanes = [lane(model, state(run, scene), x_range, y_range) for model, run in runs.items()]
+    lanes = [lane(model, ending(run, scene), x_range, y_range) for model, run in runs.items()]
     wide = x_range[1] - x_range[0] > 1.2 * (y_range[1] - y_range[0])
     rows = [rrb.Vertical(*lanes) if wide else rrb.Horizontal(*lanes)]
     x = scene.q0[0]
@@ -163,11 +163,11 @@ def layout(runs, scene, drawn):
     return rrb.Blueprint(views, time_panel(), collapse_panels=True)
 
 
-def lane(model, ended, x_range, y_range):
+def lane(model, end, x_range, y_range):
     """The view of a model's balls; its name says how the run ended, if not well."""
     return rrb.Spatial2DView(
         origin=f"world/{model}",
-        name=model if ended == "ok" else f"{model}: {ended}",
+        name=model if end == "ok" else f"{model}: {end}",
         visual_bounds=rrb.VisualBounds2D(x_range=x_range, y_range=y_range),
     )
 
@@ -178,7 +178,7 @@ def frame(runs, scene, large):
     A run that explodes does not count, unless all do. A ball that leaves by more than FARTHEST
     radii is let go, or the others would be dots.
     """
-    calm = [run for run in runs.values() if "EXPLODED" not in state(run, scene)]
+    calm = [run for run in runs.values() if "EXPLODED" not in ending(run, scene)]
     shown = calm or [next(iter(runs.values()))]
     x = scene.q0[0]
     middle = 0.5 * (float(x.min()) + float(x.max()))

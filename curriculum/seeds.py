@@ -1,43 +1,53 @@
 """Many seeds of a scene: the median and the range of every measure, on all cores or machines."""
 
+import math
 import os
 import statistics
-import sys
 
 import contact
 from curriculum import pool
 
 
-def report(args, models):
-    """Run every model from every seed of args.seeds, print the table and write seeds.json.
+def report(args):
+    """Run the models from every seed, print the table and write seeds.json.
 
-    args: the flags as contact.parse_flags gives them; with args.scheduler the machines of a dask
-    scheduler do the work. Returns the exit status.
+    args: the flags as contact.parse_flags gives them; args.seeds is "A:B". With args.scheduler the
+    machines of a dask scheduler do the work. Returns the exit status.
     """
-    seeds = range(*args.seeds)
-    jobs = [(args, models, seed) for seed in seeds]
     try:
+        seeds = read_range(args.seeds)
+        jobs = [(args, seed) for seed in seeds]
         found = pool.spread(qualities, jobs, "seeds", scheduler=args.scheduler)
+    except ValueError as error:
+        return contact.fail(f"argument --seeds: {error}")
     except (ImportError, OSError) as error:
-        print(f"contact.py: error: argument --scheduler: {error}", file=sys.stderr)
-        return 2
+        return contact.fail(f"argument --scheduler: {error}")
     rows = {}
-    for model in models:
-        rows |= summary(model, [each[model] for each in found])
+    for model in contact.MODELS:
+        rows |= summary(model, [each[model] for each in found if model in each])
     rows = contact.rounded(rows)
-    title = f"seeds {seeds[0]} to {seeds[-1]}: {args.steps} steps of {args.dt:g} s"
-    print(f"scene {args.scene}, {title}")
-    contact.print_table(rows, lambda row: state(row, len(seeds)))
-    return save(args, rows)
+    span = f"seeds {seeds[0]} to {seeds[-1]}"
+    print(f"scene {args.scene}, {span}: {args.steps} steps of {args.dt:g} s")
+    contact.print_table(rows, lambda row: ending(row, len(seeds)))
+    return save(args, seeds, rows)
+
+
+def read_range(text):
+    """The seeds of "A:B", from A to B - 1. Raises ValueError."""
+    first, _, last = text.partition(":")
+    if not (first.isdecimal() and last.isdecimal() and 0 < int(last) - int(first) <= 10_000):
+        raise ValueError(
+            f"given {text[:40]!r}; allowed: A:B, whole numbers with A < B and at most 10,000 seeds, "
+            "such as 0:20 for 0 to 19"
+        )
+    return range(int(first), int(last))
 
 
 def qualities(job):
     """{model: its contact_quality} from one seed; a process of its own may run it."""
-    args, models, seed = job
-    scene, settings = contact.chosen_scene(args, seed), contact.chosen_settings(args)
-    runs = {
-        model: contact.run_model(model, scene, args.dt, args.steps, settings) for model in models
-    }
+    args, seed = job
+    scene = contact.chosen_scene(args, seed)
+    runs = contact.run_all(args, scene)[0]
     return {
         model: contact.contact_quality(run, scene, args.dt, runs.get("exact"))
         for model, run in runs.items()
@@ -47,41 +57,46 @@ def qualities(job):
 def summary(model, found):
     """{"model median": row, "model lowest": row, "model highest": row} of many qualities, by key.
 
-    A row holds what is a number, and how many of the runs exploded or went through something. A
-    number that is not finite counts as larger than any other; None where a run has none.
+    A row also counts the runs, and those that exploded or went through something. A number that is
+    not finite counts as larger than any other; None where a run has none.
     """
     counts = {
+        "runs": len(found),
         "blew_up": sum(row["blew_up"] for row in found),
         "through": sum(row["through"] is not None for row in found),
     }
-    rows = {f"{model} {what}": dict(counts) for what in ("median", "lowest", "highest")}
-    for key in contact.COLUMNS.values():
-        values = [row[key] for row in found]
-        if None in values:
-            three = None, None, None
-        else:
-            values = [value if value < float("inf") else float("inf") for value in values]
-            three = statistics.median(values), min(values), max(values)
-        for row, value in zip(rows.values(), three):
+    rows = {f"{model} {name}": dict(counts) for name in ("median", "lowest", "highest") if found}
+    for key, _ in contact.COLUMNS.values():
+        for row, value in zip(rows.values(), median_and_range([row[key] for row in found])):
             row[key] = value
     return rows
 
 
-def state(row, count):
+def median_and_range(values):
+    """Median, lowest and highest."""
+    if None in values or not values:
+        return None, None, None
+    values = [value if math.isfinite(value) else math.inf for value in values]
+    return statistics.median(values), min(values), max(values)
+
+
+def ending(row, count):
     """How the runs of a row ended."""
-    ends = {"EXPLODED": row["blew_up"], "through": row["through"]}
-    said = [f"{number} of {count} {end}" for end, number in ends.items() if number]
-    return ", ".join(said) or "ok"
+    ends = {
+        "EXPLODED": row["blew_up"],
+        "went through": row["through"],
+        "could not be run": count - row["runs"],
+    }
+    return ", ".join(f"{n} of {count} {end}" for end, n in ends.items() if n) or "ok"
 
 
-def save(args, rows):
+def save(args, seeds, rows):
     """Write seeds.json and say so. Returns the exit status."""
     path = os.path.join(args.out, "seeds.json")
-    kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps, "seeds": list(args.seeds)}
+    kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps}
     try:
-        contact.write_json(path, kept | {"rows": rows})
+        contact.write_json(path, kept | {"seeds": [seeds[0], seeds[-1] + 1], "rows": rows})
     except OSError as error:
-        print(f"contact.py: error: cannot write {path}: {error.strerror}", file=sys.stderr)
-        return 2
+        return contact.fail(f"cannot write to {args.out}: {error.strerror}; the report is whole")
     print("seeds:", path)
     return 0
