@@ -34,13 +34,11 @@ def main(argv=None) -> int:
         if args.write:
             return write()
         return check() if args.accept is None else accept(args.accept)
-    except ImportError as error:
-        where = "python -m pip install -e '.[dev]'"
-        print(
-            f"the gate needs {error.name or error}, which is not installed: {where}",
-            file=sys.stderr,
-        )
-        return 2
+    except ModuleNotFoundError as error:
+        package = error.name.split(".")[0]
+        if package in ("contact", "curriculum"):
+            raise
+        return refuse(f"the gate needs {package}, which is missing: pip install -e '.[dev]'")
     except ValueError as error:
         return refuse(error)
 
@@ -71,7 +69,7 @@ def check() -> int:
 
 def accept(names) -> int:
     """Show what changed in these sections, and record that they were read as they are now."""
-    from curriculum.common.files import write_whole
+    from contact import write_whole
     from curriculum.text.gate import Gate, record
     from curriculum.text.regions import ROOT
     from curriculum.text.sections import changes, sections
@@ -92,7 +90,7 @@ def accept(names) -> int:
 
 def write() -> int:
     """Make the README's generated blocks anew."""
-    from curriculum.common.files import write_whole
+    from contact import write_whole
     from curriculum.text import readme
 
     text = readme.README.read_text("utf-8")

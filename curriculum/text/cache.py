@@ -6,7 +6,7 @@ import sys
 from importlib.metadata import version
 from pathlib import Path
 
-from curriculum.common.files import write_whole
+from contact import write_whole
 from curriculum.machine import fingerprint
 from curriculum.text.regions import LITERATE, ROOT
 

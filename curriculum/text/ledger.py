@@ -3,17 +3,15 @@
     python -m curriculum.text.ledger              # the rows, as the chapter shows them
     python -m curriculum.text.ledger --measure    # time `python contact.py`, write the row
 
-Seven columns, no quoting: chapter,tier,wallclock_min,config_hash,commit,date,status. wallclock_min is
-in minutes for a whole process, recording included, the median of several runs. status is MEASURED or
-PENDING; a PENDING row holds nothing else, and no time is ever guessed. config_hash is of the code that
-was timed, so a row is stale as soon as that changes.
+Seven columns, no quoting. wallclock_min is in minutes for a whole process, recording included, the
+median of several. A row is MEASURED with every column filled, or PENDING with none; no time is ever
+guessed. config_hash is of the code that was timed, so a row is stale as soon as that changes.
 """
 
 import argparse
-import csv
 import hashlib
 import json
-import os
+import re
 import statistics
 import subprocess
 import sys
@@ -21,44 +19,31 @@ import tempfile
 import time
 from pathlib import Path
 
-from curriculum.common.files import write_whole
+from contact import write_whole
 from curriculum.machine import fingerprint, machine
 from curriculum.text.regions import LITERATE, ROOT
 
 LEDGER = ROOT / "wallclock.csv"
 CHAPTER = "ch3.5-contact"
 COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", "status")
+FILLED = r"\d[\d.e-]*,[0-9a-f]{12},[0-9a-f]+\+?,\d{4}-\d\d-\d\d,MEASURED"
+ROW = re.compile(rf"[\w.-]+,[\w-]+,({FILLED}|,,,,PENDING)")
 COMMAND = "python -m curriculum.text.ledger --measure"
-CODE = (*LITERATE, "curriculum/recording.py")
+CODE = (*LITERATE, "curriculum/recording.py")  # what a default run runs
 
 
 def rows() -> list:
     """This chapter's rows, dicts of str. Raises ValueError `file:line: what`."""
-    with open(LEDGER, encoding="utf-8", newline="") as file:
-        reader = csv.DictReader(file)
-        if tuple(reader.fieldnames or ()) != COLUMNS:
-            raise ValueError(f"wallclock.csv:1: the header must be {','.join(COLUMNS)}")
-        found = [row for row in reader if row["chapter"] == CHAPTER]
-    for number, row in enumerate(found, 2):
-        what = _trouble(row)
-        if what:
-            raise ValueError(f"wallclock.csv:{number}: {row['tier']}: {what}")
-    return found
-
-
-def _trouble(row):
-    """What is wrong with a row, or None."""
-    facts = [row[name] for name in ("wallclock_min", "config_hash", "commit", "date")]
-    if None in row or None in row.values():
-        return "not seven columns"
-    if row["status"] == "PENDING":
-        return "a PENDING row claims a measurement" if any(facts) else None
-    if row["status"] != "MEASURED" or not all(facts):
-        return "status is MEASURED with all columns filled, or PENDING with none"
-    try:
-        return None if 0 < float(row["wallclock_min"]) < float("inf") else "no time above 0"
-    except ValueError:
-        return f"wallclock_min {row['wallclock_min']!r} is not a number"
+    header, *lines = LEDGER.read_text("utf-8").splitlines()
+    if header != ",".join(COLUMNS):
+        raise ValueError(f"wallclock.csv:1: the header must be {','.join(COLUMNS)}")
+    for number, line in enumerate(lines, 2):
+        if not ROW.fullmatch(line):
+            raise ValueError(
+                f"wallclock.csv:{number}: neither a whole MEASURED row nor a PENDING one"
+            )
+    found = [dict(zip(COLUMNS, line.split(","))) for line in lines]
+    return [row for row in found if row["chapter"] == CHAPTER]
 
 
 def lookup(tier: str):
@@ -87,18 +72,15 @@ def stale_tiers() -> list:
 
 
 def this_tier() -> str:
-    """What this machine's CPU is: "cpu-vm" under a hypervisor, "cpu-laptop" with a battery, or "cpu"."""
-    try:
-        virtual = " hypervisor" in Path("/proc/cpuinfo").read_text("utf-8")[:4096]
-        supplies = os.listdir("/sys/class/power_supply")
-    except OSError:
-        return "cpu"
-    laptop = any(name.startswith("BAT") for name in supplies)
-    return "cpu-vm" if virtual else "cpu-laptop" if laptop else "cpu-desktop"
+    """What this machine's CPU is: cpu-vm under a hypervisor, cpu-laptop with a battery, or cpu."""
+    info, supplies = Path("/proc/cpuinfo"), Path("/sys/class/power_supply")
+    if info.is_file() and " hypervisor" in info.read_text("utf-8"):
+        return "cpu-vm"
+    return "cpu-laptop" if supplies.is_dir() and list(supplies.glob("BAT*")) else "cpu"
 
 
-def measure(runs: int) -> list:
-    """Seconds of `python contact.py` as a whole process, so many times, after one that warms caches.
+def measure(runs: int) -> float:
+    """Minutes of `python contact.py` as a whole process, the median after one that warms caches.
 
     Raises RuntimeError when a run fails or makes no recording: without rerun it is not the default.
     """
@@ -111,12 +93,12 @@ def measure(runs: int) -> list:
             seconds.append(time.perf_counter() - start)
             if run.returncode or not list(Path(out).glob("*.rrd")):
                 raise RuntimeError(run.stderr.strip() or "no recording: pip install rerun-sdk")
-    return seconds[1:]
+    return statistics.median(seconds[1:]) / 60
 
 
 def measured_row(runs: int) -> dict:
     """This machine's row of the ledger, measured now."""
-    about, minutes = machine(), statistics.median(measure(runs)) / 60
+    about, minutes = machine(), measure(runs)
     facts = f"{minutes:.3g}", code_hash(), about["commit"], about["date"]
     return dict(zip(COLUMNS, (CHAPTER, this_tier(), *facts, "MEASURED")))
 
@@ -128,19 +110,18 @@ def main(argv=None) -> int:
     parser.add_argument("--measure", action="store_true", help="time contact.py, write the row")
     parser.add_argument("--runs", type=int, default=9, help="counted runs (9)")
     args = parser.parse_args(argv)
-    table = {row["tier"]: row for row in rows()}
-    if args.measure:
-        try:
+    try:
+        table = {row["tier"]: row for row in rows()}
+        if args.measure:
             table[this_tier()] = measured_row(args.runs)
-        except (RuntimeError, OSError) as error:
-            print(f"nothing written: {error}", file=sys.stderr)
-            return 1
-        lines = [COLUMNS, *(row.values() for row in table.values())]
-        write_whole(LEDGER, "".join(",".join(line) + "\n" for line in lines))
+            lines = [COLUMNS, *(row.values() for row in table.values())]
+            write_whole(LEDGER, "".join(",".join(line) + "\n" for line in lines))
+    except (OSError, RuntimeError, ValueError) as error:
+        print(f"nothing written: {error}", file=sys.stderr)
+        return 1
     for tier, row in table.items():
         minutes = float(row["wallclock_min"]) if row["wallclock_min"] else None
-        note = " (stale)" if tier in stale_tiers() else ""
-        print(f"{tier:<12}{show(minutes)}{note}")
+        print(f"{tier:<12}{show(minutes)}{' (stale)' * (tier in stale_tiers())}")
     return 0
 
 

@@ -77,13 +77,14 @@ def run_contact(flags) -> dict:
 
 
 def known_facts() -> dict:
-    """{name: function} of curriculum/text/facts.py."""
+    """{name: function} of curriculum/text/facts.py: all public ones that take nothing."""
     from curriculum.text import facts
 
     return {
         name: each
         for name, each in vars(facts).items()
-        if inspect.isfunction(each) and each.__module__ == facts.__name__ and name[0] != "_"
+        if inspect.isfunction(each) and each.__module__ == facts.__name__
+        if name[0] != "_" and not inspect.signature(each).parameters
     }
 
 
