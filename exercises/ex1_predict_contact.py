@@ -1,14 +1,14 @@
 """Exercise 1, predict then run (10 minutes): where does the ball end up?
 
-You will compare two contact models by what they do to the surface they are there to keep.
-
-A ball falls about a metre onto the table and is followed for 1.6 s, once with each model, from the
-same height. Measured is how deep it is in the table at the worst moment and at the end, in ball
-radii r.
+A ball falls about a metre onto a table and is followed for 1.6 s, twice, from the same height. The
+two runs differ in one thing only, the answer to: what force does the table apply?
+    penalty   the table is a very stiff spring with a damper beside it
+    lcp       the table gives the impulse after which ball and table no longer approach each other
+Measured is how deep the ball is in the table at the worst moment and at the end, in ball radii r.
 Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
 
     python exercises/ex1_predict_contact.py     # add --hint 1 (2, 3) for a question that helps
-    pytest checks.py -k ex1
+    python checks.py -k ex1
 """
 
 import sys
@@ -31,14 +31,19 @@ WHY = ""                # your sentence, see WHY_PROMPT
 
 
 def measure():
-    """The drop at the length of --smoke, both models."""
-    return {"smoke": {"quality": predict.quality(contact.build_scene("drop"), dt=0.002, steps=800)}}
+    """The drop at the length of --smoke, by both models: {name: a number}, lengths in r."""
+    found = predict.quality(contact.build_scene("drop"), dt=0.002, steps=800)
+    numbers = {}
+    for model, measured in found.items():
+        numbers[f"{model}_deepest"] = measured["max_penetration_frac"]
+        numbers[f"{model}_at_rest"] = measured["rest_penetration_frac"]
+    return numbers | {"factor": numbers["penalty_deepest"] / numbers["lcp_deepest"]}
 
 
-def table(runs):
+def table(numbers):
     """The measurement as text."""
-    rows = {model: (q["max_penetration_frac"], q["rest_penetration_frac"])
-            for model, q in runs["smoke"]["quality"].items()}
+    rows = {model: (numbers[f"{model}_deepest"], numbers[f"{model}_at_rest"])
+            for model in ("penalty", "lcp")}
     return predict.columns("depth", ("deepest", "at rest"), rows, "{:.5f} r")
 
 

@@ -1,13 +1,12 @@
-"""Exercise 2, fill in (25 minutes): the two lines that make a contact one-sided.
+"""Exercise 2, fill in (20 minutes): the two lines that make a contact one-sided.
 
 Each contact model has one line in which the table is told that it may push and never pull.
 Detection, normals, masses and time stepping are given, in contact.py; the two lines are yours. The
-signs are those of the table at the top of contact.py. Do not call its functions of these names.
+signs are those of the table at the top of contact.py.
 
     python exercises/ex2_completion_contact.py          # three trials, yours beside contact.py's
-    python exercises/ex2_completion_contact.py --record     # and recordings of them, for rerun
     python exercises/ex2_completion_contact.py --hint 1     # 1, 2: first blank; 3, 4: second
-    pytest checks.py -k ex2                             # many inputs; skips what is still a blank
+    python checks.py -k ex2                             # many inputs; skips what is still a blank
 
 Out of scope: friction, and several contacts at once (your second line is called for each in turn).
 """
@@ -20,8 +19,8 @@ import trials
 def penalty_normal_force(depth, v_n, stiffness, damping):
     """The push [N] of a spring with a damper beside it, between bodies that overlap by `depth` [m].
 
-    The spring has `stiffness` [N/m]; the damper has `damping` [N s/m] and works against the motion;
-    v_n [m/s] is positive when the bodies separate.
+    depth > 0. The spring has `stiffness` [N/m]; the damper has `damping` [N s/m] and works against
+    the motion; v_n [m/s] is positive when the bodies separate.
     """
     f_n = ...           # TODO: blank 1
     return f_n
@@ -38,4 +37,4 @@ def project_impulse(lam, dlam):
 
 
 if __name__ == "__main__":
-    sys.exit(trials.play(sys.modules[__name__]))
+    sys.exit(trials.play("ex2", sys.modules[__name__]))

@@ -1,14 +1,13 @@
 """Exercise 4, predict then run (10 minutes): where does a ball rest in MuJoCo's contact?
 
-You will predict a place of rest from one line of a model, before the model has run.
-
 Two balls of one size drop onto the table and come to rest, one of them ten times as heavy as the
-other. The contact is `soft`, MuJoCo's, as MuJoCo sets it when nobody says otherwise. Measured is
-how deep each lies in the table at the end, in ball radii r, and the same for `penalty`.
+other. The contact is soft, MuJoCo's, as MuJoCo sets it when nobody says otherwise: it asks for an
+acceleration, as a damped spring would, and it gets only a part of what it asks for. Measured is how
+deep each ball lies in the table at the end, in ball radii r, and the same for penalty.
 Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
 
     python exercises/ex4_predict_soft.py        # add --hint 1 (2, 3) for a question that helps
-    pytest checks.py -k ex4
+    python checks.py -k ex4
 """
 
 import sys
@@ -30,16 +29,19 @@ WHY = ""                # your sentence, see WHY_PROMPT
 
 
 def measure():
-    """The drop of both balls, in both models, at the default step and length."""
-    light = contact.build_scene("drop")
+    """The depth at rest of both balls, in both models: {name: a number}, in r."""
+    light, numbers = contact.build_scene("drop"), {}
     heavy = light._replace(mass=10.0 * light.mass)
-    return {name: {"quality": predict.quality(scene, 0.002, 2000, models=("penalty", "soft"))}
-            for name, scene in (("drop", light), ("heavy", heavy))}
+    for name, scene in (("light", light), ("heavy", heavy)):
+        found = predict.quality(scene, 0.002, 2000, models=("penalty", "soft"))
+        for model, measured in found.items():
+            numbers[f"{model}_{name}"] = measured["rest_penetration_frac"]
+    return numbers
 
 
-def table(runs):
+def table(numbers):
     """The measurement as text."""
-    rows = {model: [run["quality"][model]["rest_penetration_frac"] for run in runs.values()]
+    rows = {model: (numbers[f"{model}_light"], numbers[f"{model}_heavy"])
             for model in ("soft", "penalty")}
     return predict.columns("depth at rest", ("1 kg", "10 kg"), rows, "{:.5f} r")
 

@@ -1,6 +1,10 @@
-"""What the exercises share: ask, wait for a choice, measure, compare. Nothing to fill in here."""
+"""What the exercises share: the command line, bets, and what is done. Nothing to fill in here."""
 
+import argparse
+import json
 import os
+import shlex
+import subprocess
 import sys
 import textwrap
 from pathlib import Path
@@ -8,20 +12,81 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-import contact  # noqa: E402
-from curriculum.common import shell  # noqa: E402
-from curriculum.common.arguments import Parser, number  # noqa: E402
-from curriculum.common.stoppable import stoppable  # noqa: E402
+try:
+    import contact
+except ModuleNotFoundError as error:
+    sys.exit(f"{error}: {sys.executable} -m pip install numpy")
+
+FACTS = json.loads(Path(__file__).with_name("answers.json").read_text("utf-8"))
+HINTS = {name: facts["hints"] for name, facts in FACTS.items()}
+ANSWERS = {name: facts["answer"] for name, facts in FACTS.items() if "answer" in facts}
+REASONS = {name: FACTS[name]["reasons"] for name in ANSWERS}
+DONE = ROOT / "outputs" / "ch3.5-contact" / "exercises.json"    # {name: the bet, or "done"}
 
 
-def meta(name):
-    """The facts of an exercise from meta.yaml: answer, hints, reasons, bands."""
-    from curriculum.quoted import load_meta
+def command(*words):
+    """A command for the Python that is running, quoted for this system's shell."""
+    words = [sys.executable, *map(str, words)]
+    return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
+
+
+def file_of(exercise):
+    """The exercise's file, as one would type it here."""
+    return os.path.relpath(exercise.__file__)
+
+
+def run(name, main, exercise, argv=None):
+    """The command line of an exercise: a hint, or main(name, exercise). Returns the exit status."""
+    hints = HINTS[name]
+    parser = argparse.ArgumentParser(description=f"Exercise {name}.", allow_abbrev=False)
+    parser.add_argument("--hint", type=int, choices=range(1, len(hints) + 1), metavar="N",
+                        help=f"print hint N, 1 to {len(hints)}, and do nothing else")
+    hint = parser.parse_args(argv).hint
+    if hint:
+        print(f"hint {hint} of {len(hints)}: {hints[hint - 1]}")
+        return 0
     try:
-        return load_meta()["exercises"][name]
-    except ModuleNotFoundError as error:
-        print(f"{error.name} is missing: {shell.install('PyYAML pytest')}", file=sys.stderr)
-        raise SystemExit(2) from None
+        return main(name, exercise)
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        return 130
+
+
+# What is done
+
+
+def done():
+    """{exercise: its bet, or "done"}, as far as it was noted."""
+    try:
+        return json.loads(DONE.read_text("utf-8"))
+    except (OSError, ValueError):
+        return {}
+
+
+def note(name, value):
+    """Note an exercise as done, or as not done where value is None."""
+    noted = done()
+    if noted.get(name) == value:
+        return
+    noted = {key: found for key, found in (noted | {name: value}).items() if found}
+    try:
+        DONE.parent.mkdir(parents=True, exist_ok=True)
+        contact.write_json(DONE, noted)
+    except OSError as error:
+        print(f"cannot note that {name} is done: {error}", file=sys.stderr)
+
+
+def follow_up():
+    """The last line of an exercise: the next one that is not done, or that all are."""
+    from checks import next_exercise
+    file = next_exercise()
+    if file is not None:
+        return f"next: {command(os.path.relpath(ROOT / file))}"
+    return ("done: these were all eight. What next? The questions at the end of the chapter have no "
+            "answer key; after them comes chapter 3.6")
+
+
+# Bets
 
 
 def quality(scene, dt, steps, models=("penalty", "lcp")):
@@ -30,35 +95,10 @@ def quality(scene, dt, steps, models=("penalty", "lcp")):
             for model in models}
 
 
-def unreadable(file, error):
-    """One line on why an exercise's file cannot be read as Python."""
-    line, trace = getattr(error, "lineno", None), error.__traceback__
-    while line is None and trace is not None:
-        if trace.tb_frame.f_code.co_filename.endswith(os.path.basename(file)):
-            line = trace.tb_lineno
-        trace = trace.tb_next
-    name = getattr(error, "name", None)
-    if isinstance(error, NameError) and name is not None and len(name) == 1:
-        return f'{file}, line {line}: {name} needs quotes around it: "{name}"'
-    return f"{file}, line {line}: {type(error).__name__}: {getattr(error, 'msg', error)}"
-
-
-def one_line(kind, error, trace):
-    """In place of a traceback, for a name that Python does not know in an exercise's file."""
-    script = os.path.basename(sys.argv[0])
-    if issubclass(kind, NameError) and script.startswith("ex"):
-        print(unreadable(os.path.join("exercises", script), error), file=sys.stderr, flush=True)
-        os._exit(2)
-    sys.__excepthook__(kind, error, trace)
-
-
-sys.excepthook = one_line
-
-
 def columns(corner, heads, rows, form):
     """A small table as text. rows {name: values}; `form` writes a value, as "{:.3f} r" does."""
-    lines = [f"{corner:<16}" + "".join(f"{head:>14}" for head in heads)]
-    lines += [f"{name:<16}" + "".join(f"{form.format(value):>14}" for value in values)
+    lines = [f"{corner:<16}" + "".join(f"{head:>15}" for head in heads)]
+    lines += [f"{name:<16}" + "".join(f"{form.format(value):>15}" for value in values)
               for name, values in rows.items()]
     return "\n".join(lines)
 
@@ -71,13 +111,14 @@ def chosen(exercise):
 
 def missing(exercise):
     """What is still to be done before the run, or None."""
-    file, choices = os.path.relpath(exercise.__file__), ", ".join(map(repr, exercise.CHOICES))
+    file, choices = file_of(exercise), ", ".join(map(repr, exercise.CHOICES))
     if exercise.PREDICTION is None:
         return f"no prediction yet: in {file} set PREDICTION to one of {choices} and say WHY"
     if chosen(exercise) not in exercise.CHOICES:
         return f"PREDICTION in {file}: given {exercise.PREDICTION!r}, allowed: {choices}"
-    if not str(exercise.WHY).strip():
-        return f"no reason yet: set WHY in {file}. {exercise.WHY_PROMPT}"
+    if len(str(exercise.WHY).split()) < 4:
+        return (f"no reason yet: WHY in {file} is {exercise.WHY!r}; write a sentence of four words "
+                f"or more. {exercise.WHY_PROMPT}")
     return None
 
 
@@ -89,55 +130,35 @@ def asked(exercise):
     return "\n".join(lines)
 
 
-def verdict(name, exercise, runs):
-    """What the learner reads after the run: the prediction first, then every other choice."""
-    from curriculum.quoted import Numbers
-    facts, numbers, choices = meta(name), Numbers(runs=runs), exercise.CHOICES
-    answer, mine = facts["answer"], chosen(exercise)
+def verdict(name, exercise, numbers):
+    """What the learner reads after the run: the bet first, then a word on every choice."""
+    answer, mine, choices = ANSWERS[name], chosen(exercise), exercise.CHOICES
     right = "That is what happens."
     if mine != answer:
         right = textwrap.fill(f"What happens is {answer}: {choices[answer]}", 96)
     lines = [textwrap.fill(f"You predicted {mine}: {choices[mine]}", 96),
              textwrap.fill(f"Because: {str(exercise.WHY).strip()}", 96), "", right]
     for choice in [answer] + [each for each in choices if each != answer]:
-        reason = numbers.render(facts["reveal"][choice])
         word = "Why" if choice == answer else "Why not"
+        reason = REASONS[name][choice].format(**numbers)
         lines += ["", textwrap.fill(f"{word} {choice}: {reason}", 96)]
     return "\n".join(lines)
 
 
-def parse(name, argv=None, **switches):
-    """The command line of an exercise, with more switches {name: help}. A hint is printed here."""
-    hints = meta(name)["hints"]
-    parser = Parser(description=f"Exercise {name}.")
-    parser.add_argument("--hint", type=number(int, low=1, high=len(hints)), metavar="N",
-                        help=f"print hint N, 1 to {len(hints)}, and do nothing else")
-    for switch, said in switches.items():
-        parser.add_argument(f"--{switch}", action="store_true", help=said)
-    args = parser.parse_args(argv)
-    if args.hint:
-        print(f"hint {args.hint} of {len(hints)}: {hints[args.hint - 1]}")
-    return args
-
-
-@stoppable
-def play(name, exercise, argv=None):
+def bet(name, exercise):
     """Ask; refuse before a choice; then measure, show, explain. Returns the exit status."""
-    if parse(name, argv).hint:
-        return 0
     todo = missing(exercise)
     if todo:
         print(asked(exercise), flush=True)
         print(f"\n{todo}", file=sys.stderr)
         return 2
-    runs = exercise.measure()
-    print(exercise.table(runs), verdict(name, exercise, runs), sep="\n\n")
-    print(f"\nnext: {follow_up(name)}")
+    numbers = exercise.measure()
+    print(exercise.table(numbers), verdict(name, exercise, numbers), sep="\n\n")
+    note(name, chosen(exercise))
+    print(f"\n{follow_up()}")
     return 0
 
 
-def follow_up(name):
-    """The command of the exercise after this one."""
-    files = sorted(Path(__file__).parent.glob("ex[0-9]_*.py"))
-    later = [file for file in files if file.name[:3] > name]
-    return shell.python(str(later[0] if later else ROOT / "checks.py"), extra="learn")
+def play(name, exercise, argv=None):
+    """Run a bet as a script. Returns the exit status."""
+    return run(name, bet, exercise, argv)

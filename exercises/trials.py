@@ -1,155 +1,240 @@
-"""Exercise 2's three trials, and what can be wrong with a fill. Nothing to fill in here.
+"""What exercises 2, 5, 6, 7 and 8 try: inputs, the right values, and trials with balls.
 
-In each trial one border of a contact decides what is seen: whether the table pulls, and whether a
-push that was too large can be taken back.
+Nothing to fill in here, and much that gives an answer away.
 """
 
-import contextlib
+import itertools
 import math
 import random
-import sys
+import textwrap
+from collections.abc import Callable
+from typing import NamedTuple
 from unittest.mock import patch
 
 import numpy as np
 import predict
-from predict import contact, stoppable
-
-BLANKS = ("penalty_normal_force", "project_impulse")
-WITHIN = 1e-6       # m; trials that differ by less are the same
+from predict import contact
+from slips import SLIPS
 
 
-# What goes in
+class Blank(NamedTuple):
+    """A function that a learner writes, and how it is judged."""
+
+    exercise: str
+    cases: Callable         # () -> [{argument: value}]
+    run: Callable           # (function, case) -> what comes out
+    right: Callable         # (case) -> what should come out
+    within: float           # of the size of what should come out
+    hint: int               # the first hint that helps
 
 
-def inputs(blank):
-    """Inputs of a blank: its borders by hand, then any stiffness, damping, speed and sign."""
+def called(function, case):
+    """The function with these arguments, in their order."""
+    return function(*case.values())
+
+
+def force_cases():
+    """Exercise 2: any spring, damper, depth and speed; the borders first."""
     draw = random.Random(35)
-    if blank == "project_impulse":
-        edges = ((0.0, 0.0), (0.0, 0.3), (0.2, 0.3), (0.0, -0.3), (0.2, -0.5), (0.2, -0.2),
-                 (0.2, -0.1))
-        more = [(draw.uniform(0.0, 2.0), draw.uniform(-3.0, 3.0)) for _ in range(60)]
-        return [dict(zip(("lam", "dlam"), case)) for case in (*edges, *more)]
     edges = [(depth, v_n, 5e3, damping) for damping in (0.0, 80.0) for depth, v_n in (
-        (0.0, 0.0), (0.01, 0.0), (0.01, -0.5), (0.01, 0.5), (0.0, -1.0), (0.0, 1.0),
-        (0.001, 2.0), (0.01, 0.625))]
-    more = [(draw.uniform(0.0, 0.05), draw.uniform(-3.0, 3.0), 10.0**draw.uniform(2.0, 5.0),
+        (0.01, 0.0), (0.01, -0.5), (0.01, 0.5), (0.001, 2.0), (0.01, 0.625), (0.001, -1.0))]
+    more = [(draw.uniform(1e-4, 0.05), draw.uniform(-3.0, 3.0), 10.0**draw.uniform(2.0, 5.0),
              draw.uniform(0.0, 300.0)) for _ in range(60)]
-    return [dict(zip(("depth", "v_n", "stiffness", "damping"), case))
-            for case in (*edges, *more)]
+    return [dict(zip(("depth", "v_n", "stiffness", "damping"), case)) for case in edges + more]
 
 
-@contextlib.contextmanager
-def guarded():
-    """While it lasts, contact.py's own functions of these names refuse to be called, however."""
-    def refuse(*given, **named):
-        raise PermissionError
-
-    functions = [getattr(contact, blank) for blank in BLANKS]
-    codes = [function.__code__ for function in functions]
-    try:
-        for function in functions:
-            function.__code__ = refuse.__code__
-        yield
-    finally:
-        for function, code in zip(functions, codes):
-            function.__code__ = code
+def impulse_cases():
+    """Exercise 2: impulses so far and corrections of either sign; the borders first."""
+    draw = random.Random(35)
+    edges = [(0.0, 0.0), (0.0, 0.3), (0.2, 0.3), (0.0, -0.3), (0.2, -0.5), (0.2, -0.2), (0.2, -0.1)]
+    more = [(draw.uniform(0.0, 2.0), draw.uniform(-3.0, 3.0)) for _ in range(60)]
+    return [dict(zip(("lam", "dlam"), case)) for case in edges + more]
 
 
-def called(function, blank, case):
-    """(what the fill gives, None), or (None, why it gives nothing that can be used)."""
-    try:
-        with guarded():
-            got = function(*case.values())
-    except PermissionError:
-        return None, f"{blank} calls contact.{blank}: write the line yourself"
-    except NameError as error:
-        return None, (f"{blank} raised NameError: {error}. These are plain numbers: Python's own "
-                      "max, min and abs need no import")
-    except Exception as error:
-        return None, f"{blank} raised {type(error).__name__}: {error}"
-    if got is ... or (isinstance(got, (int, float)) and not isinstance(got, bool)):
-        return got, None
-    return None, f"{blank} returned {got!r}, and not a number"
+def stack_cases():
+    """Exercise 5: stacks of 1 to 5 balls, the lowest in a groove or on a floor.
+
+    Masses [kg], velocities (x, y) [m/s]; of each contact the upper ball, the lower one (-1: the
+    floor), the normal's angle from the vertical [rad] and the target [m/s].
+    """
+    draw, cases = random.Random(35), []
+    for count in (1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 5, 5):
+        pairs = [(k, k - 1, draw.uniform(-0.5, 0.5)) for k in range(count)]
+        pairs += [(0, -1, draw.uniform(0.6, 0.9))] if len(cases) % 3 else []
+        cases.append({"masses": [draw.uniform(0.6, 1.6) for _ in range(count)],
+                      "speeds": [(draw.uniform(-0.5, 0.5), draw.uniform(-1.0, 0.5))
+                                 for _ in range(count)],
+                      "contacts": [(*pair, draw.uniform(-0.3, 0.4)) for pair in pairs]})
+    return cases
 
 
-# What comes out: the slips that are seen most
+def run_stack(function, case):
+    """The impulses and the velocities that a solver leaves in a stack; ... where it is a blank."""
+    floor = contact.Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)     # one of its own
+    balls = [contact.Ball(0.0, 0.1, *speed, mass, 0.1)
+             for mass, speed in zip(case["masses"], case["speeds"])]
+    contacts = []
+    for a, b, angle, target in case["contacts"]:
+        c = contact.Contact(balls[a], ([*balls, floor])[b], math.sin(angle), math.cos(angle), 0.0)
+        c.target = target
+        contacts.append(c)
+    if function(contacts, 600) is ...:
+        return ...
+    return [c.lam for c in contacts] + [speed for ball in balls for speed in (ball.vx, ball.vy)]
 
-SLIPS = {
-    "penalty_normal_force": (
-        (lambda depth, v, k, c: k * depth - c * v,
-         "nothing keeps the table from pulling: on the way out the damper can outweigh the spring"),
-        (lambda depth, v, k, c: max(0.0, k * depth + c * v),
-         "the damper pushes along with the motion: look up the sign of v_n"),
-        (lambda depth, v, k, c: k * depth + c * v,
-         "the damper pushes along with the motion, and nothing keeps the table from pulling"),
-        (lambda depth, v, k, c: max(0.0, k * depth - c * abs(v)),
-         "the damper takes from the push on the way in too, where it should add to it"),
-        (lambda depth, v, k, c: max(0.0, k * depth + c * abs(v)),
-         "the damper adds to the push on the way out too, where it should take from it"),
-        (lambda depth, v, k, c: max(0.0, k * depth),
-         "the damper is missing"),
-        (lambda depth, v, k, c: max(0.0, -c * v),
-         "the spring is missing"),
-        (lambda depth, v, k, c: max(0.0, k * depth - c * min(0.0, v)),
-         "the damper works on the way in only"),
-        (lambda depth, v, k, c: max(0.0, k * depth - c * max(0.0, v)),
-         "the damper works on the way out only"),
-        (lambda depth, v, k, c: max(0.0, k * depth) - max(0.0, c * v),
-         "the damper works on the way out only, and there it can pull"),
-        (lambda depth, v, k, c: min(0.0, k * depth - c * v),
-         "this lets the table pull and never push"),
-        (lambda depth, v, k, c: abs(k * depth - c * v),
-         "a pull has been turned round into a push: what should be left of it?"),
-        (lambda depth, v, k, c: max(0.0, -k * depth - c * v),
-         "the spring pulls: depth is positive in an overlap"),
-        (lambda depth, v, k, c: max(0.0, 1e4 * depth - c * v),
-         "a number stands where `stiffness` should: this one fits a single spring"),
-        (lambda depth, v, k, c: max(0.0, k * depth - 80.0 * v),
-         "a number stands where `damping` should: this one fits a single damper"),
-        (lambda depth, v, k, c: max(0.0, 1e4 * depth - 80.0 * v),
-         "numbers stand where `stiffness` and `damping` should: they fit a single contact"),
-        (lambda depth, v, k, c: max(0.0, 0.5 * k * depth * depth - c * v),
-         "that is the energy of the spring, not its force"),
-    ),
-    "project_impulse": (
-        (lambda lam, dlam: lam + dlam,
-         "nothing keeps the sum from becoming negative: the table holds back what leaves it"),
-        (lambda lam, dlam: lam + max(0.0, dlam),
-         "no correction can be negative: a push that was too large stays for good"),
-        (lambda lam, dlam: max(0.0, dlam),
-         "only the last correction comes out: what was pushed before it is forgotten"),
-        (lambda lam, dlam: max(0.0, lam - dlam),
-         "the correction is taken off: dlam is to be added"),
-        (lambda lam, dlam: abs(lam + dlam),
-         "a negative sum has been turned round into a push: what should be left of it?"),
-        (lambda lam, dlam: max(lam, dlam),
-         "this is the larger of the two: an impulse so far and its correction make a sum"),
-        (lambda lam, dlam: min(0.0, lam + dlam),
-         "this lets the table pull and never push"),
-        (lambda lam, dlam: lam,
-         "the correction is not used"),
-        (lambda lam, dlam: dlam,
-         "only the last correction comes out, and it may be negative"),
-        (lambda lam, dlam: 0.0,
-         "the table never pushes"),
-    ),
+
+def enumerated(case):
+    """What run_stack should give, by trying all 2^n answers to: which contacts push?"""
+    masses, speeds = np.repeat(case["masses"], 2), np.ravel(case["speeds"])
+    targets = np.array([target for *_, target in case["contacts"]])
+    jacobian = np.zeros((len(targets), len(masses)))                # v_n = jacobian @ v
+    for row, (a, b, angle, _) in zip(jacobian, case["contacts"]):
+        row[2 * a:2 * a + 2] = math.sin(angle), math.cos(angle)
+        if b >= 0:
+            row[2 * b:2 * b + 2] = -math.sin(angle), -math.cos(angle)
+    delassus = jacobian / masses @ jacobian.T
+    for pushing in itertools.product((True, False), repeat=len(targets)):
+        rows, lam = np.flatnonzero(pushing), np.zeros(len(targets))
+        missing = (targets - jacobian @ speeds)[rows]
+        lam[rows] = np.linalg.solve(delassus[np.ix_(rows, rows)], missing)
+        after = speeds + jacobian.T @ lam / masses
+        if (lam >= 0.0).all() and (jacobian @ after >= targets - 1e-12).all():
+            return [*lam, *after]
+    raise ValueError(f"no answer for {case}")
+
+
+def spring_cases(*names):
+    """Exercise 6: springs, and steps that fit them."""
+    draw = random.Random(35)
+    cases = [{"mass": m, "stiffness": k, "damping": c, "dt": draw.uniform(0.1, 1.5) * (m / k)**0.5}
+             for m in (1.0, 0.2, 3.0) for k in (1e4, 700.0) for c in (80.0, 5.0)]
+    return [{name: case[name] for name in names or case} for case in cases]
+
+
+def measured_matrix(case):
+    """The matrix of contact.py's own penalty step, from two small pushes off the balance."""
+    mass, stiffness, damping, dt = case.values()
+    balance = -contact.GRAVITY * mass / stiffness
+
+    def after(depth, v_n):
+        ball = contact.Ball(0.0, 0.1 - balance - depth, 0.0, v_n, mass, 0.1)
+        contact.penalty_step([ball], dt, stiffness, damping)
+        return np.array([0.1 - balance - ball.y, ball.vy])
+
+    depth, speed = 0.1 * balance, 0.005 * balance * math.sqrt(stiffness / mass)
+    return np.column_stack([after(depth, 0.0) / depth, after(0.0, speed) / speed])
+
+
+def implicit_cases():
+    """Exercise 7: depths, springs, dampers and steps."""
+    draw = random.Random(35)
+    return [{"depth": draw.uniform(1e-4, 0.05), "stiffness": 10.0**draw.uniform(2.0, 6.0),
+             "damping": draw.uniform(1.0, 300.0), "dt": 10.0**draw.uniform(-3.5, -1.0)}
+            for _ in range(30)]
+
+
+def implicit_right(case):
+    """Softness and target, from lam = dt (k (depth - dt v_n) - c v_n), divided by what v_n has."""
+    depth, stiffness, damping, dt = case.values()
+    softness = 1.0 / (stiffness * dt * dt + damping * dt)
+    return softness, dt * stiffness * depth * softness
+
+
+BLANKS = {
+    "penalty_normal_force": Blank("ex2", force_cases, called, lambda case: max(
+        0.0, case["stiffness"] * case["depth"] - case["damping"] * case["v_n"]), 1e-9, 1),
+    "project_impulse": Blank("ex2", impulse_cases, called,
+                             lambda case: max(0.0, case["lam"] + case["dlam"]), 1e-9, 3),
+    "solve_contacts": Blank("ex5", stack_cases, run_stack, enumerated, 1e-5, 1),
+    "step_matrix": Blank("ex6", spring_cases, called, measured_matrix, 1e-6, 1),
+    "longest_step": Blank("ex6", lambda: spring_cases("mass", "stiffness", "damping"), called,
+                          lambda case: contact.critical_dt(**case), 2e-3, 3),
+    "implicit_spring": Blank("ex7", implicit_cases, called, implicit_right, 1e-9, 1),
 }
 
 
-def slip(blank, got):
-    """What probably went wrong, from the wrong values `got` at all inputs; None if it is new."""
+def inputs(blank):
+    """The inputs on which a blank is tried."""
+    return BLANKS[blank].cases()
+
+
+# Judging
+
+
+def flat(value):
+    """What came out, as one row of numbers. Raises TypeError or ValueError where it is none."""
+    if value is None or isinstance(value, str):
+        raise TypeError
+    return np.asarray(value, float).ravel()
+
+
+def outcome(function, blank, case):
+    """(what comes out, None), (..., None) of a blank, or (None, why it cannot be used)."""
+    try:
+        with np.errstate(all="ignore"):
+            got = BLANKS[blank].run(function, case)
+    except Exception as error:
+        return None, f"{blank} raised {type(error).__name__}: {error}"
+    if got is ... or (isinstance(got, tuple) and any(part is ... for part in got)):
+        return ..., None
+    try:
+        return flat(got), None
+    except (TypeError, ValueError):
+        return None, f"{blank} returned {got!r:.60}, and not numbers"
+
+
+def agree(got, right, within):
+    """Whether two rows of numbers agree within that share of their size."""
+    with np.errstate(all="ignore"):
+        allowed = within * np.abs(right).max() + 1e-14
+        return got.shape == right.shape and bool((np.abs(got - right) <= allowed).all())
+
+
+def slip(blank, found):
+    """What probably went wrong, from the wrong values at all inputs; None if it is new."""
     for function, meaning in SLIPS[blank]:
-        values = [function(*case.values()) for case in inputs(blank)]
-        if all(math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12) for a, b in zip(got, values)):
+        values = [outcome(function, blank, case)[0] for case in inputs(blank)]
+        if all(agree(np.nan_to_num(got), np.nan_to_num(value), 1e-3)
+               for got, value in zip(found, values)):
             return meaning
     return None
 
 
-# The trials
+def judge(exercise, blank):
+    """("blank" or "wrong", why in words) or ("right", None): the learner's function on all inputs."""
+    function, what, found = getattr(exercise, blank), BLANKS[blank], []
+    for case in what.cases():
+        got, trouble = outcome(function, blank, case)
+        if trouble:
+            return "wrong", trouble
+        if got is ...:
+            return "blank", (f"{blank} is still a blank: fill it in {predict.file_of(exercise)}; "
+                             f"--hint {what.hint} asks a question that helps")
+        found.append(got)
+    expected = [flat(what.right(case)) for case in what.cases()]
+    wrong = [k for k, pair in enumerate(zip(found, expected)) if not agree(*pair, what.within)]
+    return ("wrong", fault(exercise, blank, found, expected, wrong)) if wrong else ("right", None)
 
 
-def balls(name, *centres, held=0, speed=0.0):
-    """A scene of balls at these centres (x, y) [m]; the last `held` of them cannot be moved.
+def fault(exercise, blank, found, expected, wrong):
+    """What went in, what came out, what was expected, the likely slip, and where to look."""
+    what, first = BLANKS[blank], wrong[0]
+    given = ", ".join(f"{key}={np.round(value, 4 if blank == 'solve_contacts' else 6).tolist()}"
+                      for key, value in what.cases()[first].items())
+    got, right = (" ".join(f"{value:.6g}" for value in row[first]) for row in (found, expected))
+    script = predict.command(predict.file_of(exercise), "--hint", what.hint)
+    return "\n".join([
+        f"{blank}({given})", f"  got       {got}", f"  expected  {right}",
+        f"  wrong on {len(wrong)} of {len(found)} inputs, of which this is the first",
+        f"  likely: {slip(blank, found) or 'a slip that this list does not know'}",
+        f"  where to look: the signs at the top of contact.py, or {script}"])
+
+
+# Trials: what the fills do to balls
+
+
+def scene(*centres, held=0, speed=0.0):
+    """A scene of balls of 1 kg at these centres (x, y) [m]; the last `held` of them stay there.
 
     The first ball starts upwards with that speed [m/s].
     """
@@ -157,108 +242,184 @@ def balls(name, *centres, held=0, speed=0.0):
     mass = np.array([1.0] * (count - held) + [np.inf] * held)
     v0 = np.zeros((2, count))
     v0[1, 0] = speed
-    return contact.Scene(name, np.array(centres).T.copy(), v0, mass, np.full(count, 0.1), 0.0, 60.0)
+    return contact.Scene("trial", np.array(centres).T.copy(), v0, mass, np.full(count, 0.1), 0.0,
+                         60.0)
+
+
+def lcp_run(of, restitution=0.0):
+    """Where the balls are over 600 steps of lcp, in radii; contact.py's own loops."""
+    return contact.simulate(lambda balls: contact.lcp_step(balls, 0.002, restitution, 0.2, 40),
+                            of, 0.002, 600).q / 0.1
 
 
 def pressed():
-    """A ball is pressed into the table and let go: how high it jumps, how hard it is held back."""
-    scene = balls("pressed", (0.0, 0.07))
-    run = contact.run_model("penalty", scene, 0.001, 1000, stiffness=8e3)
-    pull = max(0.0, -float(contact.contact_impulses(run, scene)[:, 1].min()) / 0.001)
-    jump = float(run.q[:, 1, 0].max() - 0.1) / 0.1
-    return run, {"it jumps": jump, "the table pulls [N]": pull if pull > 1e-6 else 0.0}, scene
+    """A ball is pressed into the table and let go: how high it jumps."""
+    return contact.simulate(lambda balls: contact.penalty_step(balls, 0.001, 8e3, 60.0),
+                            scene((0.0, 0.07)), 0.001, 1000).q[:, 1].max() / 0.1 - 1.0
 
 
 def thrown():
     """A ball is thrown up from the table: how high it comes."""
-    scene = balls("thrown", (0.0, 0.1), speed=2.0)
-    run = contact.run_model("lcp", scene, 0.002, 500)
-    return run, {"it rises": float(run.q[:, 1, 0].max() - 0.1) / 0.1}, scene
+    return lcp_run(scene((0.0, 0.1), speed=2.0))[:, 1].max() - 1.0
 
 
 def groove():
-    """A ball drops into the groove of two balls that are held: where it ends."""
-    scene = balls("groove", (0.0, 0.6), (-0.07, 0.1), (0.07, 0.1), held=2)
-    run = contact.run_model("lcp", scene, 0.002, 600)
-    return run, {"it ends off the groove by": abs(float(run.q[-1, 0, 0])) / 0.1}, scene
+    """A ball drops into the groove of two balls that are held: how far off it ends."""
+    return abs(lcp_run(scene((0.0, 0.6), (-0.07, 0.1), (0.07, 0.1), held=2))[-1, 0, 0])
 
 
-TRIALS = {"penalty_normal_force": (pressed,), "project_impulse": (thrown, groove)}
+def struck():
+    """A ball drops onto two that lie upon one another, e = 1: how high it comes back."""
+    return lcp_run(scene((0.0, 0.9), (0.0, 0.3), (0.0, 0.1)), 1.0)[160:, 1, 0].max() - 1.0
 
 
-def yours(exercise):
-    """contact.py with the exercise's functions in place of its own, while the context lasts."""
-    return patch.multiple(
-        contact,
-        penalty_normal_force=lambda *given: exercise.penalty_normal_force(*given[:4]),
-        project_impulse=lambda *given: exercise.project_impulse(*given[:2]))
+TRIALS = {"penalty_normal_force": (pressed,), "project_impulse": (thrown, groove),
+          "solve_contacts": (groove, struck)}
 
 
-@stoppable
-def play(exercise, argv=None):
-    """The three trials with the two fills. Exit status: 0 right, 1 wrong, 2 not filled yet."""
-    args = predict.parse("ex2", argv, record="write a recording of every trial, for rerun")
-    if args.hint:
-        return 0
-    status = max([tried(exercise, blank, args.record) for blank in BLANKS])
-    if not status:
-        print(f"\nnext: {predict.follow_up('ex2')}")
-    return status
+def in_place(function, blank):
+    """contact.py with the learner's function in place of its own line, while the context lasts."""
+    def solve(contacts, iters, tolerance=0.0):
+        if blank == "solve_contacts":
+            return function(contacts, iters)
+        for c in contacts * iters:
+            lam = function(c.lam, (c.target - c.v_n()) * c.m_eff)
+            c.push(lam - c.lam)
+            c.lam = lam
+
+    if blank == "penalty_normal_force":
+        return patch.object(contact, blank, function)
+    return patch.object(contact, "solve_contacts", solve)
 
 
-def unfilled(exercise, blank):
-    """What a blank asks for, printed, and the line that says where it is."""
-    function, number = getattr(exercise, blank), 1 + BLANKS.index(blank)
-    file = predict.os.path.relpath(exercise.__file__)
-    asked = " ".join((function.__doc__ or "").split())
-    print(predict.textwrap.fill(f"{number}  {blank}: {asked}", 96, subsequent_indent="   "),
-          flush=True)
-    return (f"{blank} is still a blank: in {file} fill the line marked \"TODO: blank {number}\"; "
-            f"--hint {2 * number - 1} asks a question that helps")
-
-
-def record(name, runs, scene):
-    """Write outputs/ch3.5-contact/ex2-NAME.rrd: yours beside contact.py's, called reference."""
-    path = f"outputs/ch3.5-contact/ex2-{name}.rrd"
-    try:
-        with patch.dict(contact.COLORS, yours="#e69f00", reference="#56b4e9"):
-            contact.log_rerun(path, runs, scene)
-    except ImportError:
-        print(f"    no recording: {predict.shell.install('rerun-sdk')}")
-    except OSError as error:
-        print(f"    no recording: cannot write {error.filename}: {error.strerror}")
-    else:
-        print(f"    watch it: {predict.shell.tool('rerun')} {path}")
-
-
-def tried(exercise, blank, recorded=False):
-    """The trials of one blank, and a word on each. Returns the exit status."""
-    function = getattr(exercise, blank)
-    got, trouble = called(function, blank, inputs(blank)[2])
-    if got is ... or trouble:
-        print(trouble or unfilled(exercise, blank), file=sys.stderr)
-        return 2
-    status = 0
-    print(f"{'lengths in ball radii':<52}{'yours':>10}{'contact.py':>12}")
+def show_trials(function, blank):
+    """Print every trial of a blank, yours beside contact.py's."""
+    print(f"{'lengths in ball radii':<82}{'yours':>9}{'contact.py':>12}")
     for trial in TRIALS[blank]:
-        theirs, expected, scene = trial()
-        try:
-            with yours(exercise), np.errstate(all="ignore"):
-                mine, seen, _ = trial()
-        except Exception as error:
-            print(f"{blank} raised {type(error).__name__}: {error}", file=sys.stderr)
-            return 2
-        same = np.allclose(mine.q, theirs.q, rtol=0.0, atol=WITHIN)
-        print(trial.__doc__.partition(":")[0])
-        for name, value in expected.items():
-            print(f"    {name:<48}{round(seen[name], 6):>10.3g}{round(value, 6):>12.3g}")
-        print("    " + ("the same run" if same else f"another run: look at {blank}"))
-        status = max(status, 0 if same else 1)
-        if recorded:
-            record(trial.__name__, {"yours": mine, "reference": theirs}, scene)
-    if status:
-        values = [called(function, blank, case)[0] for case in inputs(blank)]
-        likely = None if None in values else slip(blank, values)
-        if likely:
-            print(f"{blank}: {likely}")
-    return status
+        expected = trial()
+        with in_place(function, blank), np.errstate(all="ignore"):
+            got = trial()
+        print(f"{trial.__doc__:<82}{abs(got):>9.3f}{abs(expected):>12.3f}")
+
+
+def show_cliff(longest_step):
+    """Print the longest steps that the learner found beside two formulas."""
+    rows = {f"k {k:g}, c {c:g}": (longest_step(1.0, k, c), contact.critical_dt(1.0, k, c),
+                                  2.0 / math.sqrt(k))
+            for k, c in ((1e4, 5.0), (1e4, 80.0), (1e6, 80.0), (1e3, 80.0))}
+    print(predict.columns("longest step", ("yours", "critical_dt", "2 sqrt(m / k)"), rows,
+                          "{:.5f} s"))
+    print("critical_dt solves k dt^2 + 2 c dt = 4 m: the damper brings the cliff nearer.")
+
+
+def show_spring(spring):
+    """Print what the drop does under the learner's spring and under penalty, at longer steps."""
+    from curriculum.text.facts import implicit_step
+    of, rows = contact.build_scene("drop"), {}
+    for dt in (0.002, 0.008, 0.016, 0.064):
+        def step(balls, dt=dt):
+            implicit_step(balls, dt, lambda depth: spring(depth, 1e4, 80.0, dt))
+
+        found = [contact.contact_quality(run, of, dt) for run in (
+            contact.simulate(step, of, dt, int(8.0 / dt)),
+            contact.run_model("penalty", of, dt, int(8.0 / dt)))]
+        rows[f"dt {dt:.3f} s"] = [quality[key] for key in ("energy_excess", "rest_penetration_frac")
+                                  for quality in found]
+    print(predict.columns("energy, depth", ("gain, yours", "gain, penalty", "rests, yours",
+                                            "rests, penalty"), rows, "{:.5g}"))
+
+
+# Exercise 8
+
+
+def fingers(exercise):
+    """What the choice of exercise 8 does to the cup: {name: number}, lengths in r."""
+    dt, radius = exercise.DT, np.full(3, 0.1)
+    of = contact.Scene("fingers", np.array([[-0.205, 0.0, 0.205], [0.1, 0.1, 0.1]]),
+                       np.zeros((2, 3)), np.array([0.2, 1.0, 0.2]), radius, 0.0, 0.0)
+    solref, solimp = contact.soft_defaults(0.0, dt, exercise.SOLREF, exercise.SOLIMP)
+
+    def step(balls):
+        for finger, force in ((balls[0], 20.0), (balls[2], -20.0)):     # the motors [N]
+            finger.vx += dt * force / finger.mass
+        if exercise.MODEL == "penalty":
+            contact.penalty_step(balls, dt, exercise.STIFFNESS, exercise.DAMPING)
+        else:
+            contact.soft_step(balls, dt, solref, solimp)
+
+    run = contact.simulate(step, of, dt, math.ceil(1.0 / dt - 1e-9), skip=False)
+    with np.errstate(all="ignore"):
+        depth = np.maximum(-contact.smallest_gap(run.q, radius) / 0.1, 0.0)[3 * len(run.q) // 4:]
+        return {"deepest": depth.max(), "trembling": np.ptp(depth), "steps": len(run.q) - 1,
+                "held": bool((np.abs(run.q[-1, 0]) < 0.3).all())}
+
+
+def judge_fingers(exercise):
+    """("blank" or "wrong", why in words) or ("right", None): the choice of exercise 8."""
+    model, k = exercise.MODEL, exercise.STIFFNESS
+    if model is None:
+        return "blank", (f"no choice yet: set MODEL in {predict.file_of(exercise)} to \"penalty\" "
+                         "or \"soft\", and then its numbers; --hint 1 asks a question that helps")
+    if model not in ("penalty", "soft") or not 1e-5 <= exercise.DT <= 0.1 or not k > 0.0:
+        return "wrong", (f"given MODEL {model!r}, DT {exercise.DT!r}, STIFFNESS {k!r}; allowed: "
+                         "'penalty' or 'soft', 0.00001 to 0.1 s, above 0 N/m")
+    seen = fingers(exercise)
+    print("overlap {deepest:.2g} r, trembling {trembling:.2g} r, {steps} steps".format(**seen))
+    faults = [words for words, ok in (
+        ("it takes more than 2,000 steps", seen["steps"] <= 2000),
+        ("the cup is gone: the fingers flew off or went through it", seen["held"]),
+        ("it trembles", seen["trembling"] < 1e-5 or not seen["held"]),
+        ("it overlaps too much", seen["deepest"] < 1e-3 or not seen["held"])) if not ok]
+    if not faults:
+        return "right", None
+    limit = contact.critical_dt(0.1, k, exercise.DAMPING)
+    return "wrong", f"{', and '.join(faults)}. " + (
+        f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and with a finger and a cup on "
+        f"it, it wants steps below about {limit:.1g} s." if model == "penalty" else
+        "A shorter time constant (at least two steps) stiffens soft, and a higher impedance lets "
+        "less of the squeeze through.")
+
+
+# The scripts
+
+
+def judged(name, exercise):
+    """[(what, state, words)] of everything that the exercise asks for."""
+    if name == "ex8":
+        return [("two_fingers", *judge_fingers(exercise))]
+    return [(blank, *judge(exercise, blank)) for blank in BLANKS if BLANKS[blank].exercise == name]
+
+
+def show(function, blank):
+    """Print the trials of what is filled, also of what is wrong: to see is to know why."""
+    try:
+        if blank in TRIALS:
+            show_trials(function, blank)
+        elif blank == "longest_step":
+            show_cliff(function)
+        elif blank == "implicit_spring":
+            show_spring(function)
+    except Exception as error:
+        print(f"the trial stopped: {type(error).__name__}: {error}")
+
+
+def fill(name, exercise):
+    """Judge what is filled and try it. Exit status: 0 right, 1 wrong, 2 not filled yet."""
+    found = judged(name, exercise)
+    for what, state, words in found:
+        function = getattr(exercise, what, None)
+        if state == "blank" and function:
+            print(textwrap.fill(f"{what}: {' '.join(function.__doc__.split())}", 96))
+        elif function:
+            show(function, what)
+        print(f"{what} is right" if state == "right" else words, flush=True)
+    states = {state for _, state, _ in found}
+    predict.note(name, "done" if states == {"right"} else None)
+    if states == {"right"}:
+        print(f"\n{predict.follow_up()}")
+    return 0 if states == {"right"} else 1 if "wrong" in states else 2
+
+
+def play(name, exercise, argv=None):
+    """Run an exercise with blanks as a script. Returns the exit status."""
+    return predict.run(name, fill, exercise, argv)

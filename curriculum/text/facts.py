@@ -1,0 +1,26 @@
+"""Facts that the chapter quotes and that no run of contact.py prints: each a function, no arguments.
+
+Each returns {name: number}; the text quotes one as {{fact:tower_sweeps.20}}.
+"""
+
+import contact
+
+
+# --- region: implicit-spring ---
+def implicit_step(balls, dt, spring):
+    """One step [s] of penalty's spring, taken at the end of the step and not at its beginning.
+
+    spring(depth) gives softness R and target; then it is lcp's step, and the sweep knows R already.
+    """
+    contacts = contact.detect_contacts(balls, margin=0.0)
+    for c in contacts:
+        c.softness, c.target = spring(c.depth)
+        c.m_eff = 1.0 / (c.a.inv_mass + c.b.inv_mass + c.softness)
+    for ball in balls:
+        ball.fx = ball.fy = 0.0
+    contact.accelerate(balls, dt)
+    contact.solve_contacts(contacts, 200)
+    contact.move(balls, dt)
+
+
+# --- endregion ---

@@ -1,0 +1,33 @@
+"""Exercise 5, write it (30 minutes): solve_contacts, from its docstring.
+
+The heart of lcp, of soft and of half the engines in the world is a loop of a few lines. You have
+read it; now write it without looking. A contact c gives you
+
+    c.target    the least normal velocity [m/s] to leave with
+    c.v_n()     the normal velocity [m/s] that it has right now, positive when the two bodies part
+    c.m_eff     the mass [kg] that a push has to move
+    c.lam       the impulse [N s] given so far, 0 at first; keep it up to date
+    c.push(p)   gives body a the impulse p [N s] along the normal, and body b the opposite one
+
+    python exercises/ex5_solve_contacts.py      # your solver under a stack and under a cradle
+    python exercises/ex5_solve_contacts.py --hint 1     # 1 to 3
+    python checks.py -k ex5                     # random stacks, against all 2^n answers
+"""
+
+import sys
+
+import trials
+
+
+def solve_contacts(contacts, iters):
+    """Find impulses so that every contact has lam >= 0, v_n >= target, and lam (v_n - target) = 0.
+
+    Sweeps over the list `iters` times. A visit to a contact brings that one to its target, by a
+    push that changes its lam, and so disturbs its neighbours; the next sweep mends those. Changes
+    lam of the contacts and the velocities of their bodies. Returns nothing.
+    """
+    return ...          # TODO: your loop, in place of this line
+
+
+if __name__ == "__main__":
+    sys.exit(trials.play("ex5", sys.modules[__name__]))

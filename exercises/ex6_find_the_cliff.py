@@ -1,0 +1,40 @@
+"""Exercise 6, find out (25 minutes): where is the cliff?
+
+A ball deep in the table of penalty, away from its balance by `depth` [m] and moving with `v_n`
+[m/s], has after one step another depth and another velocity. Both are sums of the old ones, so a
+step is a matrix. It can be taken again and again as long as no eigenvalue of it is larger than 1.
+Write the matrix, then find the longest step by any search you like. The script sets your answer
+beside a formula.
+
+    python exercises/ex6_find_the_cliff.py      # your longest step, for four springs
+    python exercises/ex6_find_the_cliff.py --hint 1     # 1, 2: the matrix; 3, 4: the search
+    python checks.py -k ex6
+
+Gravity only moves the place of balance, so leave it out. The step is semi-implicit Euler: the new
+velocity first, from force k depth - c v_n, and then the depth with the new velocity.
+"""
+
+import sys
+
+import numpy as np  # noqa: F401  np.linalg.eigvals(matrix) is what you need
+import trials
+
+
+def step_matrix(mass, stiffness, damping, dt):
+    """Two rows of two numbers that take (depth, v_n) to the (depth, v_n) one step `dt` [s] later.
+
+    v_n > 0 is upwards, out of the table, so it makes the depth smaller.
+    """
+    return ...          # TODO: blank 1
+
+
+def longest_step(mass, stiffness, damping):
+    """The longest step dt [s], to a thousandth of itself, whose matrix has no eigenvalue above 1.
+
+    Above 1 in size, that is: eigenvalues may be negative or complex. damping > 0.
+    """
+    return ...          # TODO: blank 2
+
+
+if __name__ == "__main__":
+    sys.exit(trials.play("ex6", sys.modules[__name__]))

@@ -1,0 +1,30 @@
+"""Exercise 7, find out (25 minutes): the spring that knows where it is going.
+
+penalty takes the force that belongs to the depth *before* the step. Take the one that belongs to
+the depth and the speed *after* it instead, with the same spring and the same damper:
+
+    lam = dt (stiffness depth_after - damping v_n),   depth_after = depth - dt v_n
+
+where v_n is the speed after the step. You do not know it yet, but you have a sweep that finds v_n
+and lam together: solve_contacts looks for lam >= 0 such that v_n + softness lam - target is zero
+where it pushes. Which softness and which target make that the equation above?
+
+    python exercises/ex7_implicit_spring.py     # your spring beside penalty, at longer and longer dt
+    python exercises/ex7_implicit_spring.py --hint 1    # 1 to 3
+    python checks.py -k ex7
+"""
+
+import sys
+
+import trials
+
+
+def implicit_spring(depth, stiffness, damping, dt):
+    """(softness [1/kg], target [m/s]) of a contact that overlaps by `depth` [m] before the step."""
+    softness = ...      # TODO: blank 1
+    target = ...        # TODO: blank 2
+    return softness, target
+
+
+if __name__ == "__main__":
+    sys.exit(trials.play("ex7", sys.modules[__name__]))

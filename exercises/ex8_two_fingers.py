@@ -1,0 +1,34 @@
+"""Exercise 8, choose (30 minutes): a gripper that holds still.
+
+A cup, here a ball of 1 kg, stands on a table. Two fingers of 0.2 kg close on it from left and right
+and squeeze it with 20 N each, for one second. This is the gripper from the first page of the
+chapter, the one that trembles. Make it hold still: choose a model, its numbers and the time step so
+that in the last quarter of the second
+
+    nothing overlaps by more than a thousandth of a radius, and
+    the deepest overlap trembles by less than a hundred-thousandth of a radius,
+
+with at most 2,000 steps for the second. There is more than one way. Before you try numbers,
+estimate: what do 20 N do to a spring, and how light is the lightest thing that hangs on it?
+
+    python exercises/ex8_two_fingers.py         # what your choice does, and what stops it
+    python exercises/ex8_two_fingers.py --hint 1    # 1 to 3
+    python checks.py -k ex8
+"""
+
+import sys
+
+import trials
+
+MODEL = None            # "penalty" or "soft"
+DT = 0.002              # s
+
+STIFFNESS = 1e4         # N/m, of penalty
+DAMPING = 80.0          # N s/m, of penalty
+
+SOLREF = (0.02, 1.0)    # of soft: time constant [s] and damping ratio
+SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)   # of soft: the impedance, see contact.impedance
+
+
+if __name__ == "__main__":
+    sys.exit(trials.play("ex8", sys.modules[__name__]))
