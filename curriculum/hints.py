@@ -45,6 +45,11 @@ def command(*words):
     return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
 
 
+def missing(package):
+    """One line that says how to install a package that is not there."""
+    return f"{package} is missing; install it: {command('-m', 'pip', 'install', package)}"
+
+
 def near(word):
     """A path as one would type it here: relative below this folder; other words as they are."""
     below = os.path.isabs(word) and Path(word).is_relative_to(Path.cwd())

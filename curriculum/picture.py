@@ -5,12 +5,17 @@ Raises ImportError on import where matplotlib is missing.
 
 import io
 
-import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
 
 import contact
+from curriculum import hints
 from curriculum.curves import colors, curves
+
+try:
+    import matplotlib
+    from matplotlib.figure import Figure
+except ImportError:
+    raise ImportError(hints.missing("matplotlib")) from None
 
 DASHES = ("-", (0, (6, 2)), (0, (2, 1)), (0, (1, 2)))  # lines that coincide are seen beneath
 STYLE = {

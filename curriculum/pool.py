@@ -4,6 +4,8 @@ import os
 import sys
 from contextlib import contextmanager
 
+from curriculum import hints
+
 
 def spread(function, jobs, label, workers=None, scheduler=None):
     """[function(job) for job in jobs], worked out in parallel, in the order of the jobs.
@@ -11,7 +13,7 @@ def spread(function, jobs, label, workers=None, scheduler=None):
     function: one that another process can import. workers: how many processes, all cores if None;
     one worker or one job needs no process. scheduler: "host:port" of a running dask scheduler, whose
     workers do the work instead; the code must be on their PYTHONPATH. The results are the same
-    wherever they come from. Raises what the function raises; ModuleNotFoundError where dask is
+    wherever they come from. Raises what the function raises; ImportError where dask is
     missing, and OSError, in one line, where the scheduler does not answer.
     """
     jobs = list(jobs)
@@ -59,8 +61,10 @@ def leave_ctrl_c_to_the_parent():
 @contextmanager
 def machines(scheduler):
     """The executor of a dask scheduler; see spread."""
-    from dask.distributed import Client
-
+    try:
+        from dask.distributed import Client
+    except ImportError:
+        raise ImportError(hints.missing("dask[distributed]")) from None
     try:
         client = Client(scheduler, timeout=10)
     except (OSError, ValueError) as error:

@@ -9,11 +9,16 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-import rerun as rr
-import rerun.blueprint as rrb
 
 import contact
+from curriculum import hints
 from curriculum.curves import colors, contact_impulses, curves, ending
+
+try:
+    import rerun as rr
+    import rerun.blueprint as rrb
+except ImportError:
+    raise ImportError(hints.missing("rerun-sdk")) from None
 
 PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"

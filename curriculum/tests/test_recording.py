@@ -1,371 +1,238 @@
-"""The recording, opened again: paths, rows, values, colours, layout, and which way is up."""
+"""What contact.py reaches for: the recording opened again, the picture, many seeds, what to do next."""
 
+import json
 import re
 import subprocess
 import sys
+from collections import namedtuple
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 import contact
+from curriculum import curves, hints, pool
 
-rr = pytest.importorskip("rerun", reason="rerun is not installed")
-
+ROOT = hints.ROOT
 DT, STEPS = 0.002, 600
 CURVES = ("height", "penetration", "impulse", "energy", "rises")
+Recording = namedtuple("Recording", "series static blueprint application")
 
 
-def runs_of(name, **made):
-    scene = contact.build_scene(name, **made)
-    return scene, {model: contact.run_model(model, scene, DT, STEPS) for model in contact.MODELS}
+def runs_of(name, steps=STEPS, dt=DT, models=contact.MODELS, **given):
+    scene = contact.build_scene(name, **given)
+    return scene, {model: contact.run_model(model, scene, dt, steps) for model in models}
 
 
-@pytest.fixture
-def stack(tmp_path, read_recording):
-    """A recording of the stack of three, opened again, with the scene and the runs it is of."""
+def rows_of(reader, store):
+    """(entity, {column: value}) of every row, without row ids and times of logging."""
+    dull = ("rerun.controls.RowId", "log_time", "log_tick", "blueprint")
+    for part in reader.stream(store=store):
+        batch = part.to_record_batch()
+        names = [name for name in batch.schema.names if name not in dull]
+        columns = [
+            batch.column(name).cast("int64") if name == "sim_time" else batch.column(name)
+            for name in names
+        ]
+        for row in zip(*(column.to_pylist() for column in columns)):
+            yield part.entity_path, dict(zip(names, row))
+
+
+def opened(path):
+    """series {entity: {column: [value, ...]}} by step; static the same, without steps; and the
+    blueprint {column: [value, ...]}."""
+    chunk = pytest.importorskip("rerun.chunk", reason="this rerun cannot read recordings")
+    reader = chunk.RrdReader(str(path))
+    (store,) = reader.recordings()
+    series, static, blueprint = {}, {}, {}
+    rows = [row for row in rows_of(reader, store) if not row[0].startswith("/__properties")]
+    for entity, row in sorted(rows, key=lambda each: each[1].get("step", -1)):
+        if "step" not in row:
+            static.setdefault(entity, {}).update(row)
+        for column, value in row.items() if "step" in row else ():
+            series.setdefault(entity, {}).setdefault(column, []).append(value)
+    for each in reader.blueprints():
+        for _, row in rows_of(reader, each):
+            for column, value in row.items():
+                blueprint.setdefault(column, []).append(value)
+    return Recording(series, static, blueprint, store.application_id)
+
+
+def recorded(folder, scene, runs):
+    recording = pytest.importorskip("curriculum.recording", reason="rerun is not installed")
+    recording.write(str(folder / "contact.rrd"), runs, scene)
+    assert [path.name for path in folder.iterdir()] == ["contact.rrd"], "nothing else is left"
+    return opened(folder / "contact.rrd")
+
+
+@pytest.fixture(scope="module")
+def stack(tmp_path_factory):
+    """The recording of a stack of three, with its scene and runs."""
     scene, runs = runs_of("stack")
-    path = tmp_path / "contact.rrd"
-    contact.log_rerun(path, runs, scene)
-    return read_recording(path), scene, runs
+    return recorded(tmp_path_factory.mktemp("stack"), scene, runs), scene, runs
 
 
 def positions(recording, model):
-    """Logged positions (steps + 1, N, 2) of a model's balls."""
+    """Logged positions (S, N, 2) of a model's balls."""
     return np.array(recording.series[f"/world/{model}/balls"]["Points2D:positions"])
 
 
-def test_it_holds_balls_pushes_table_and_curves_of_every_model_and_nothing_else(stack):
+def test_a_recording_has_every_models_balls_pushes_table_and_curves_one_row_a_step(stack):
     recording = stack[0]
     moving = {f"/world/{model}/{kind}" for model in contact.MODELS for kind in ("balls", "pushes")}
-    curves = {f"/{curve}/{model}" for curve in CURVES for model in contact.MODELS}
+    drawn = {f"/{curve}/{model}" for curve in CURVES for model in contact.MODELS}
     tables = {f"/world/{model}/{kind}" for model in contact.MODELS for kind in ("table", "ground")}
-    assert set(recording.series) == moving | curves
-    assert set(recording.static) == moving | curves | tables
+    assert set(recording.series) == moving | drawn
+    assert set(recording.static) == moving | drawn | tables
     assert re.fullmatch("[a-z0-9_]+", recording.application)  # others are renamed with a warning
+    for columns in recording.series.values():
+        assert columns["step"] == list(range(STEPS + 1))
+        assert columns["sim_time"] == [2_000_000 * k for k in range(STEPS + 1)]  # whole ns
 
 
-def test_every_moving_thing_has_one_row_a_step_on_both_timelines(stack):
-    recording = stack[0]
-    for entity, columns in recording.series.items():
-        assert columns["step"] == list(range(STEPS + 1)), entity
-        nanoseconds = [2_000_000 * k for k in range(STEPS + 1)]
-        assert columns["sim_time"] == nanoseconds, entity  # float seconds would be 1 ns off
-
-
-def test_the_balls_are_where_the_run_had_them_and_up_is_up(stack):
-    """Rerun's 2-D views have y down, so a height y above the table is logged as -y."""
+def test_balls_are_where_the_run_had_them_and_up_is_up(stack):
+    """rerun's 2-D views have y down, so a height y above the table is logged as -y."""
     recording, scene, runs = stack
     for model, run in runs.items():
         shown = positions(recording, model)
-        assert shown.shape == (STEPS + 1, 3, 2)
+        assert np.array_equal(shown[..., 0], run.q[:, 0].astype(np.float32))
         assert np.array_equal(shown[..., 1], (-run.q[:, 1]).astype(np.float32))
-        shift = shown[0, 0, 0] - run.q[0, 0, 0]
-        assert np.abs(shown[..., 0] - shift - run.q[:, 0]).max() < 1e-6
-        assert (shown[:, 0, 1] > shown[:, 2, 1]).all(), "the lowest ball is not drawn lowest"
+        assert np.allclose(recording.static[f"/world/{model}/balls"]["Points2D:radii"], 0.1)
 
 
-def test_every_model_has_its_own_view_in_which_the_table_is_a_line_over_the_balls(stack):
-    """The line is thin and above the balls, the ground below them: a sink of 1 mm is seen."""
-    recording, scene, runs = stack
-    for model, run in runs.items():
-        static = recording.static
-        order = [
-            static[f"/world/{model}/{kind}"][f"{shape}:draw_order"][0]
-            for kind, shape in (
-                ("ground", "LineStrips2D"), ("balls", "Points2D"),
-                ("pushes", "Arrows2D"), ("table", "LineStrips2D"),
-            )
-        ]  # fmt: skip
-        assert order == sorted(order)
-        ((left, right),) = static[f"/world/{model}/table"]["LineStrips2D:strips"]
-        assert left[1] == right[1] == 0.0
-        (thick,) = static[f"/world/{model}/table"]["LineStrips2D:radii"]
-        assert -1.0 < thick < 0.0, "below 0 it is in points of the screen, not in metres"
-        ground = static[f"/world/{model}/ground"]
-        depths = ground["LineStrips2D:radii"]
-        for ((_, left), (_, right)), deep in zip(ground["LineStrips2D:strips"], depths):
-            assert left == right == deep, "the ground ends at the table"
-        for thin, thick in zip(depths, depths[1:]):
-            assert thick / 100 < 2 * thin, "no gap where a thick line is drawn a hundredth thinner"
-        assert np.array_equal(positions(recording, model)[..., 0], run.q[:, 0].astype(np.float32))
-        drawn = static[f"/world/{model}/balls"]["Points2D:radii"]
-        assert np.allclose(drawn, scene.radius, rtol=1e-7)
-
-
-def test_an_arrow_starts_at_its_ball_points_along_the_push_and_has_the_stated_length(stack):
+def test_an_arrow_points_along_the_push_and_is_a_radius_long_at_rest(stack):
     recording, scene, runs = stack
     for model, run in runs.items():
         rows = recording.series[f"/world/{model}/pushes"]
         vectors = np.array(rows["Arrows2D:vectors"])
         assert np.array_equal(np.array(rows["Arrows2D:origins"]), positions(recording, model))
-        weight = 9.81 * scene.mass
-        force = np.diff(run.v[:, 1], axis=0) / DT * scene.mass + weight
-        length = 0.1 * np.log2(1.0 + np.abs(force) / weight) * np.sign(force)
+        force = np.diff(run.v[:, 1], axis=0) / DT + 9.81
+        length = 0.1 * np.log2(1.0 + np.abs(force) / 9.81) * np.sign(force)
         assert np.abs(-vectors[1:, :, 1] - length).max() < 1e-5
-        assert np.abs(-vectors[-1, :, 1] - 0.1).max() < 0.02, "a ball at rest: one radius"
+        assert np.abs(-vectors[-1, :, 1] - 0.1).max() < 0.02
 
 
-def test_curves_hold_the_runs_own_numbers_bit_for_bit(stack):
+def test_curves_are_the_runs_own_numbers_in_the_models_colour_with_their_peaks(stack):
     recording, scene, runs = stack
     for model, run in runs.items():
         total = contact.energy(run.q, run.v, scene.mass)
-        rises = [max(0.0, after - before) for before, after in zip(total, total[1:])]
         expected = {
             "height": run.q[:, 1].mean(-1),
-            "penetration": contact.max_penetration(run.q, scene.radius) / 0.1,
+            "penetration": np.maximum(-contact.smallest_gap(run.q, scene.radius), 0.0) / 0.1,
             "energy": total - total[0],
-            "rises": np.cumsum([0.0, *rises]),
+            "rises": np.cumsum([0.0, *np.maximum(0.0, np.diff(total))]),
         }
         for curve, values in expected.items():
             logged = recording.series[f"/{curve}/{model}"]["Scalars:scalars"]
-            assert logged == [[value] for value in values.tolist()], f"{curve} of {model}"
-
-
-def test_a_model_has_its_one_colour_everywhere(stack):
-    recording = stack[0]
-    for model, color in contact.COLORS.items():
-        rgba = int(color[1:] + "ff", 16)
-        for curve in CURVES:
-            series = recording.static[f"/{curve}/{model}"]
-            assert series["SeriesLines:colors"] == [rgba]
-            assert series["SeriesLines:names"] == [model]
+            assert np.array_equal(np.array(logged)[:, 0], values), f"{curve} of {model}"
+        rgba = int(curves.COLORS[model][1:] + "ff", 16)
         assert set(recording.static[f"/world/{model}/balls"]["Points2D:colors"]) == {rgba}
+        look = recording.static[f"/height/{model}"]
+        assert (look["SeriesLines:colors"], look["SeriesLines:names"]) == ([rgba], [model])
+        policy = pytest.importorskip("rerun").components.AggregationPolicy.MinMax.value
+        assert look["SeriesLines:aggregation_policy"] == [policy], "an average hides the peaks"
 
 
-def blueprint_facts(recording):
-    """{column: [value, ...]} of all rows of the blueprint."""
-    facts = {}
-    for _, row in recording.blueprint:
-        for column, value in row.items():
-            facts.setdefault(column, []).append(value)
-    return facts
-
-
-def test_a_blueprint_inside_shows_the_balls_the_table_magnified_and_five_plots_from_t_0(stack):
+def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots_from_t_0(stack):
     recording = stack[0]
-    facts = blueprint_facts(recording)
+    facts = recording.blueprint
     origins = [origin.strip("/") for origin in sum(facts["ViewBlueprint:space_origin"], [])]
     worlds = [f"world/{model}" for model in contact.MODELS] * 2
     assert sorted(origins) == sorted((*worlds, *CURVES))
-    names = sum(facts["ViewBlueprint:display_name"], [])
-    for unit in ("[m]", "[r]", "[N s]", "[J]"):
-        assert any(unit in name for name in names), unit
-    assert set(contact.MODELS) < set(names)
     assert facts["TimePanelBlueprint:timeline"] == [["sim_time"]]
-    assert "TimePanelBlueprint:play_state" in facts
-    bounds = [seen[0] for seen in facts["VisualBounds2D:range"]]
-    assert len(bounds) == 8
-    large = max(bounds, key=lambda view: view["y_range"][1] - view["y_range"][0])
-    (left, right), (top, bottom) = large["x_range"], large["y_range"]
+    assert sum(facts["PlotLegend:visible"], []).count(True) == 1
+    views = [view[0] for view in facts["VisualBounds2D:range"]]
+    large = max(views, key=lambda view: np.ptp(view["y_range"]))
+    small = min(views, key=lambda view: np.ptp(view["y_range"]))
     for model in contact.MODELS:
         x, y = np.moveaxis(positions(recording, model), -1, 0)
-        assert left < x.min() - 0.1 and x.max() + 0.1 < right, f"{model} not in view"
-        assert top < y.min() - 0.1 and y.max() < bottom, f"{model} not in view"
+        assert large["x_range"][0] < x.min() - 0.1 and x.max() + 0.1 < large["x_range"][1]
+        assert large["y_range"][0] < y.min() - 0.1 and y.max() < large["y_range"][1]
+    assert small["y_range"][0] < 0.0 < 3 * 0.000981 < small["y_range"][1] < 0.02
 
 
-def test_curves_are_drawn_with_their_peaks_and_wide_beneath_thin(stack):
-    """rerun averages many samples a pixel unless told otherwise, which hid half of a peak."""
-    recording = stack[0]
-    for curve in CURVES:
-        wide = []
-        for model in sorted(contact.MODELS):
-            series = recording.static[f"/{curve}/{model}"]
-            ((policy),) = series["SeriesLines:aggregation_policy"]
-            assert policy == rr.components.AggregationPolicy.MinMax.value
-            wide += series["SeriesLines:widths"]
-        assert wide == sorted(wide, reverse=True) and len(set(wide)) == len(wide)
+def test_a_view_says_how_its_run_ended_and_an_explosion_does_not_widen_it(tmp_path):
+    scene, runs = runs_of("drop", steps=200, dt=0.064, models=("penalty", "lcp", "exact"))
+    recording = recorded(tmp_path, scene, runs)
+    step = contact.contact_quality(runs["penalty"], scene, 0.064)["blew_up_step"]
+    names = sum(recording.blueprint["ViewBlueprint:display_name"], [])
+    assert {f"penalty: EXPLODED at step {step}", "lcp: through the floor", "exact"} < set(names)
+    views = [view[0]["y_range"] for view in recording.blueprint["VisualBounds2D:range"]]
+    assert max(map(np.ptp, views)) < 2.0
 
 
-def views(recording):
-    """The (x_range, y_range) of the views of balls, the widest first."""
-    seen = [view[0] for view in blueprint_facts(recording)["VisualBounds2D:range"]]
-    return sorted(
-        ((view["x_range"], view["y_range"]) for view in seen), key=lambda v: np.ptp(v[0])
-    )[::-1]
-
-
-def test_balls_that_roll_far_stay_in_view_to_the_end(tmp_path, read_recording):
-    """There is no friction: at the end of the pile of 12, eight balls had left their views."""
-    scene = contact.build_scene("pile", bodies=12)
-    runs = {model: contact.run_model(model, scene, 0.002, 2000) for model in ("penalty", "lcp")}
-    contact.log_rerun(tmp_path / "pile.rrd", runs, scene)
-    (left, right), (top, bottom) = views(read_recording(tmp_path / "pile.rrd"))[0]
-    for run in runs.values():
-        assert run.q[:, 0].max() > 3.0 * scene.q0[0].max(), "they roll far"
-        assert left < run.q[:, 0].min() - 0.1 and run.q[:, 0].max() + 0.1 < right
-        assert top < -run.q[:, 1].max() - 0.1 and bottom > 0.0
-
-
-def test_a_run_that_explodes_or_a_ball_that_is_far_off_leaves_the_view_as_it_is(
-    tmp_path, read_recording
+def test_other_runs_than_the_models_are_recorded_under_their_names_in_colours_of_their_own(
+    tmp_path,
 ):
-    """Or the balls of the other runs would be dots."""
-    scene = contact.build_scene("pile", bodies=4)
-    calm = contact.run_model("lcp", scene, 0.002, 400)
-    far = calm._replace(q=calm.q + 1e4 * (np.arange(401) > 300)[:, None, None])
-    made = []
-    for runs in (
-        {"lcp": calm},
-        {"lcp": calm, "penalty": contact.run_model("penalty", scene, 0.05, 400)},
-        {"lcp": far},
-    ):
-        contact.log_rerun(tmp_path / "a.rrd", runs, scene)
-        made.append(views(read_recording(tmp_path / "a.rrd"))[0])
-    alone, beside, off = made
-    assert alone == beside
-    assert np.ptp(off[0]) <= 2 * 155 * 0.1, "at most 150 radii to each side, and a margin"
+    scene, runs = runs_of("pile", steps=20, models=("lcp", "penalty"), bodies=40)
+    recording = recorded(tmp_path, scene, dict(zip(("yours", "contact.py"), runs.values())))
+    found = [
+        recording.static[f"/world/{name}/balls"]["Points2D:colors"][0]
+        for name in ("yours", "contact.py")
+    ]
+    assert len(set(found)) == 2
+    assert "/world/yours/pushes" not in recording.static, "of many balls the arrows are a thicket"
 
 
-def test_a_rest_that_is_a_hundredth_of_a_radius_deep_is_several_points_of_the_magnified_view(
-    tmp_path, read_recording
+@pytest.mark.parametrize("model, dt, stiffness", [("penalty", 1e5, 1e300), ("lcp", 1e200, 1e4)])
+def test_a_run_that_overflows_or_outlasts_64_bit_nanoseconds_is_recorded(
+    model, dt, stiffness, tmp_path
 ):
-    """The view is about 140 points high; the line of the table is 1.2 points thick."""
-    scene, runs = runs_of("drop")
-    contact.log_rerun(tmp_path / "drop.rrd", runs, scene)
-    recording = read_recording(tmp_path / "drop.rrd")
-    (left, right), (top, bottom) = views(recording)[-1]
-    assert left < 0.0 < right and top < 0.0 < bottom
-    sunk = 1.0 * 9.81 / 1e4  # m g / k
-    assert 140 * sunk / (bottom - top) > 5 * 1.2
-    assert bottom > 3 * sunk, "also below a stack of three"
-
-
-@pytest.mark.parametrize("name", ["drop", "bounce", "stack"])
-def test_one_plot_has_the_legend_and_it_hides_no_curve_there(name, tmp_path, read_recording):
-    """A legend in every plot hid a quarter of each."""
-    scene, runs = runs_of(name)
-    contact.log_rerun(tmp_path / "a.rrd", runs, scene)
-    recording = read_recording(tmp_path / "a.rrd")
-    shown, titles = {}, {}
-    for entity, row in recording.blueprint:
-        view = entity.split("/")[2] if entity.startswith("/view/") else None
-        for visible in row.get("PlotLegend:visible", []):
-            shown[view] = visible
-            assert row["PlotLegend:corner"] == [rr.blueprint.Corner2D.RightTop.value]
-        for title in row.get("ViewBlueprint:display_name", []):
-            titles[view] = title
-    (legend,) = [titles[view] for view in shown if shown[view]]
-    assert len(shown) == len(CURVES)
-    curves = contact.curves(runs, scene)
-    lines = np.array(list(curves[legend].values()))
-    late = lines[:, int(0.6 * STEPS) :]
-    assert late.max() <= lines.min() + 0.55 * np.ptp(lines), "the upper right is empty"
-
-
-def test_an_exploded_ball_is_said_so_in_the_name_of_its_view(tmp_path, read_recording):
     scene = contact.build_scene("drop")
-    runs = {model: contact.run_model(model, scene, 0.03, 200) for model in ("penalty", "lcp")}
-    contact.log_rerun(tmp_path / "burst.rrd", runs, scene)
-    names = sum(blueprint_facts(read_recording(tmp_path / "burst.rrd"))[
-        "ViewBlueprint:display_name"], [])  # fmt: skip
-    step = contact.contact_quality(runs["penalty"], scene, 0.03)["blew_up_step"]
-    assert f"penalty: EXPLODED at step {step}" in names and "lcp" in names
+    run = contact.run_model(model, scene, dt, 300, contact.Settings(stiffness=stiffness))
+    recording = recorded(tmp_path, scene, {model: run})
+    assert recording.series[f"/height/{model}"]["step"] == list(range(301))
 
 
-def test_two_recordings_of_a_run_hold_equal_content(tmp_path, read_recording):
-    content = []
-    for name in ("a.rrd", "b.rrd"):
-        scene, runs = runs_of("drop")
-        contact.log_rerun(tmp_path / name, runs, scene)
-        content.append(read_recording(tmp_path / name)[:2])
-    assert content[0] == content[1]
-    scene, runs = runs_of("drop", seed=1)
-    contact.log_rerun(tmp_path / "c.rrd", runs, scene)
-    assert read_recording(tmp_path / "c.rrd")[:2] != content[0], "the comparison sees nothing"
+def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(tmp_path):
+    picture = pytest.importorskip("curriculum.picture", reason="matplotlib is not installed")
+    scene, runs = runs_of("bounce")
+    for name in ("a.svg", "b.svg"):
+        picture.write(str(tmp_path / name), runs, scene, "a title")
+    content = (tmp_path / "a.svg").read_bytes()
+    assert content == (tmp_path / "b.svg").read_bytes()
+    texts = {each.text for each in ElementTree.fromstring(content).iter() if each.text}
+    assert {"a title", *contact.MODELS, *curves.curves(runs, scene)} <= texts
+    for color in curves.COLORS.values():
+        assert content.count(f"stroke: {color}".encode()) == len(CURVES) + 1  # and the legend
 
 
-def test_one_model_alone_is_recorded_alone(tmp_path, read_recording):
-    scene, runs = runs_of("drop")
-    contact.log_rerun(tmp_path / "one.rrd", {"lcp": runs["lcp"]}, scene)
-    recording = read_recording(tmp_path / "one.rrd")
-    (alone,) = recording.static["/height/lcp"]["SeriesLines:widths"]
-    assert alone < 2.0, "nothing lies beneath that must be seen"
-    moving = {"/world/lcp/balls", "/world/lcp/pushes"}
-    assert set(recording.series) == {*moving, *(f"/{curve}/lcp" for curve in CURVES)}
+def command(*flags):
+    """contact.py in a process of its own."""
+    words = [sys.executable, ROOT / "contact.py", *map(str, flags)]
+    return subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=120)
 
 
-def test_a_pile_is_recorded_with_all_its_balls(tmp_path, read_recording):
-    scene = contact.build_scene("pile", bodies=40)
-    run = contact.run_model("lcp", scene, DT, 20)
-    contact.log_rerun(tmp_path / "pile.rrd", {"lcp": run}, scene)
-    shown = positions(read_recording(tmp_path / "pile.rrd"), "lcp")
-    assert np.array_equal(shown[..., 1], (-run.q[:, 1]).astype(np.float32))
-
-
-def test_a_run_that_overflows_is_recorded_too(tmp_path, read_recording):
-    scene = contact.build_scene("drop")
-    run = contact.run_model("penalty", scene, 1e5, 300, stiffness=1e300)
-    assert not np.isfinite(run.q).all()
-    contact.log_rerun(tmp_path / "burst.rrd", {"penalty": run}, scene)
-    assert len(read_recording(tmp_path / "burst.rrd").series["/height/penalty"]["step"]) == 301
-
-
-def test_a_run_longer_than_64_bit_nanoseconds_is_recorded_by_step(tmp_path, read_recording):
-    scene = contact.build_scene("drop")
-    run = contact.run_model("exact", scene, 1e200, 20)
-    contact.log_rerun(tmp_path / "long.rrd", {"exact": run}, scene)
-    series = read_recording(tmp_path / "long.rrd").series
-    assert series["/height/exact"]["step"] == list(range(21))
-
-
-def test_a_wrong_call_raises_instead_of_warning(tmp_path):
-    """Strict mode is on: what lost the published recording its curves would now stop the run."""
-    code = (
-        "import sys, contact, rerun as rr\n"
-        "scene = contact.build_scene('drop')\n"
-        "runs = {'lcp': contact.run_model('lcp', scene, 0.002, 3)}\n"
-        "contact.log_rerun(sys.argv[1], runs, scene)\n"
-        "try: rr.log('x', rr.Points2D([[0, 0]]), colours=3)\n"
-        "except TypeError: print('raised')\n"
+def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path):
+    """A cluster of two workers, as it would be on two machines."""
+    distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
+    flags = ("--seeds", "0:5", "--contact", "lcp", "--steps", 300)
+    here = command(*flags, "--out", tmp_path / "here")
+    assert here.returncode == 0, here.stderr
+    cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.LocalCluster(**cluster) as two:
+        there = command(*flags, "--out", tmp_path / "there", "--scheduler", two.scheduler_address)
+    assert there.returncode == 0, there.stderr
+    found = (tmp_path / "here/seeds.json").read_text("utf-8")
+    assert found == (tmp_path / "there/seeds.json").read_text("utf-8")
+    runs = [runs_of("drop", steps=300, models=("lcp",), seed=seed) for seed in range(5)]
+    deepest = sorted(
+        contact.contact_quality(each["lcp"], scene, DT)["max_penetration_frac"]
+        for scene, each in runs
     )
-    run = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path / "a.rrd")],
-        text=True,
-        capture_output=True,
-        cwd=contact.__file__.rpartition("/")[0],
-    )
-    assert run.stdout == "raised\n", run.stderr
+    rows = json.loads(found)["rows"]
+    for name, depth in (("lowest", deepest[0]), ("median", deepest[2]), ("highest", deepest[-1])):
+        assert abs(rows[f"lcp {name}"]["max_penetration_frac"] - depth) < 1e-12
 
 
-def test_a_failure_while_recording_keeps_the_old_file(tmp_path):
-    scene, runs = runs_of("drop")
-    path = tmp_path / "contact.rrd"
-    path.write_bytes(b"old")
-    broken = runs["lcp"]._replace(q=runs["lcp"].q[:-1])
-    with pytest.raises(ValueError):
-        contact.log_rerun(path, {"lcp": broken}, scene)
-    assert path.read_bytes() == b"old" and [file.name for file in tmp_path.iterdir()] == [path.name]
+def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
+    assert pool.spread(abs, range(-50, 0), "jobs", workers=2) == list(range(50, 0, -1))
 
 
-PIN = "0.26.2"  # what the course pins
-
-
-@pytest.mark.skipif(rr.__version__ != PIN, reason=f"rerun-sdk {PIN}, the course's pin, is not here")
-def test_the_courses_pin_of_rerun_records_the_same_values(tmp_path):
-    """Its time panel has no play_state, on which the first edition ended in a TypeError."""
-    import rerun.dataframe
-
-    scene, runs = runs_of("stack")
-    contact.log_rerun(tmp_path / "pin.rrd", runs, scene)
-    recording = rerun.dataframe.load_recording(str(tmp_path / "pin.rrd"))
-    for model, run in runs.items():
-        view = recording.view(index="step", contents=f"/penetration/{model}")
-        rows = view.select("/penetration/" + model + ":Scalars:scalars").read_all().column(0)
-        depth = contact.max_penetration(run.q, scene.radius) / scene.radius[0]
-        assert [value[0] for value in rows.to_pylist()] == depth.tolist()
-
-
-@pytest.mark.parametrize("known", [True, False])
-def test_a_time_panel_without_play_state_is_no_error(known):
-    """What rerun-sdk 0.26.2 does, played here where it is not installed."""
-    from types import SimpleNamespace
-
-    from curriculum.common import recording
-
-    def panel(**given):
-        if "play_state" in given and not known:
-            raise TypeError("unexpected keyword argument 'play_state'")
-        return given
-
-    made = recording.time_panel(SimpleNamespace(TimePanel=panel))
-    assert made["timeline"] == "sim_time" and ("play_state" in made) == known
+def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):
+    folder = tmp_path / "a folder"
+    lines = command("--steps", 10, "--no-rerun", "--out", folder).stdout.splitlines()
+    (see,) = [line for line in lines if line.startswith("next, see it: ")]
+    subprocess.run(see.split(": ", 1)[1], shell=True, cwd=ROOT, check=True, capture_output=True)
+    assert (folder / "contact.svg").exists()
+    assert sum(str(sys.executable) in line or ".venv" in line for line in lines) == 2
