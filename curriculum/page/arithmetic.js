@@ -1,93 +1,65 @@
-/* Arithmetic as a reader types it: numbers, names, + - * / ( ), max and min. Read by descent into
- * functions; nothing a reader types is ever run as a program. */
-"use strict";
+/* Arithmetic as a reader writes it into a blank: numbers, names, + - * / ( ) , max min, read by descent. */
 
-const Arithmetic = (() => {
-  const TOKEN = /\s*(?:(\d+\.?\d*(?:e[+-]?\d+)?|\.\d+(?:e[+-]?\d+)?)|([A-Za-z_]\w*)|(.))/gy;
-  const CALLS = {
-    max: (values) => values.reduce((a, b) => (b > a ? b : a)), // as Python's: the first of equals
-    min: (values) => values.reduce((a, b) => (b < a ? b : a)),
+const TOKEN = /\s*(?:(\d+\.?\d*(?:e[-+]?\d+)?|\.\d+)|([A-Za-z_]\w*)|([-+*/(),]))/y;
+const CALLS = { max: Math.max, min: Math.min };
+
+function tokens(text) {
+  const found = [];
+  TOKEN.lastIndex = 0;
+  while (TOKEN.lastIndex < text.trimEnd().length) {
+    const at = TOKEN.lastIndex;
+    const match = TOKEN.exec(text);
+    if (!match) throw new Error(`“${text.slice(at).trim()[0]}” is not understood; allowed: + − * / ( ) max min`);
+    found.push(match[1] !== undefined ? Number(match[1]) : match[2] || match[3]);
+  }
+  return found;
+}
+
+/* The text as a function of an object of values. Raises Error, in one sentence, where it is none. */
+export function compile(text, names) {
+  const rest = tokens(text);
+  if (!rest.length) throw new Error("Nothing is written yet.");
+  const take = (wanted) => {
+    if (rest[0] !== wanted) throw new Error(`“${wanted}” is missing${rest.length ? ` before “${rest[0]}”` : " at the end"}.`);
+    rest.shift();
   };
-
-  function split(text) {
-    const tokens = [];
-    TOKEN.lastIndex = 0;
-    for (let match; TOKEN.lastIndex < text.trimEnd().length && (match = TOKEN.exec(text));) {
-      const [whole, digits, name, sign] = match;
-      tokens.push({ at: TOKEN.lastIndex - whole.trimStart().length + 1, digits, name, sign });
+  const both = (next, signs) => () => {
+    let left = next();
+    while (signs.includes(rest[0])) {
+      const [sign, a, b] = [rest.shift(), left, next()];
+      left = { "+": (v) => a(v) + b(v), "-": (v) => a(v) - b(v), "*": (v) => a(v) * b(v), "/": (v) => a(v) / b(v) }[sign];
     }
-    return tokens;
+    return left;
+  };
+  function call(name) {
+    take("(");
+    const given = [sum()];
+    while (rest[0] === ",") {
+      rest.shift();
+      given.push(sum());
+    }
+    take(")");
+    return (v) => CALLS[name](...given.map((each) => each(v)));
   }
-
-  // A place in the tokens that moves on, and complains where it stands.
-  function reader(tokens) {
-    let place = 0;
-    const peek = () => tokens[place] || {};
-    const take = (sign) => peek().sign === sign && ++place > 0;
-    const fail = (what) => {
-      throw new Error(tokens[place] ? `At character ${peek().at}: ${what}` : `At the end: ${what}`);
-    };
-    const need = (sign) => take(sign) || fail(`a ${sign} is missing.`);
-    return { peek, take, fail, need, pass: () => place++, done: () => place === tokens.length };
+  function atom() {
+    const token = rest.shift();
+    if (typeof token === "number") return () => token;
+    if (token === "-" || token === "+") {
+      const a = atom();
+      return token === "-" ? (v) => -a(v) : a;
+    }
+    if (token === "(") {
+      const inner = sum();
+      take(")");
+      return inner;
+    }
+    if (CALLS[token]) return call(token);
+    if (names.includes(token)) return (v) => v[token];
+    throw new Error(token === undefined ? "Something is missing at the end." : `“${token}” is not known here; known: ${names.join(", ")}.`);
   }
-
-  /* A function of {name: number} from a text. Throws an Error whose message is meant for the reader. */
-  function parse(text, names) {
-    if (text.length > 200) throw new Error("That is longer than 200 characters; both answers fit into 50.");
-    const tokens = split(text);
-    if (!tokens.length) throw new Error("The blank is empty.");
-    const { peek, take, fail, need, pass, done } = reader(tokens);
-
-    function call(name) {
-      need("(");
-      const values = [sum()];
-      while (take(",")) values.push(sum());
-      need(")");
-      if (values.length < 2) fail(`${name} compares two or more values, with a comma between them.`);
-      return (inputs) => CALLS[name](values.map((value) => value(inputs)));
-    }
-
-    function atom() {
-      const { digits, name } = peek();
-      if (take("(")) {
-        const inner = sum();
-        need(")");
-        return inner;
-      }
-      if (digits !== undefined) return (pass(), () => Number(digits));
-      if (name === undefined) fail("a number, a name or a bracket is missing.");
-      if (Object.hasOwn(CALLS, name)) return (pass(), call(name));
-      if (!names.includes(name))
-        fail(`${name} is not known here; known: ${[...names, ...Object.keys(CALLS)].join(", ")}.`);
-      pass();
-      return (inputs) => inputs[name];
-    }
-
-    function signed() {
-      if (take("-")) {
-        const value = signed();
-        return (inputs) => -value(inputs);
-      }
-      return take("+") ? signed() : atom();
-    }
-
-    // A chain of one rank, from the left: product = signed (* or / signed)*, sum = product (+ or - product)*.
-    const chain = (next, steps) => () => {
-      let value = next();
-      for (let sign; (sign = peek().sign) && Object.hasOwn(steps, sign);) {
-        pass();
-        const [left, right, step] = [value, next(), steps[sign]];
-        value = (inputs) => step(left(inputs), right(inputs));
-      }
-      return value;
-    };
-    const product = chain(signed, { "*": (a, b) => a * b, "/": (a, b) => a / b });
-    const sum = chain(product, { "+": (a, b) => a + b, "-": (a, b) => a - b });
-
-    const whole = sum();
-    if (!done()) fail(`${peek().sign || peek().name || peek().digits} does not belong here.`);
-    return whole;
-  }
-
-  return { parse };
-})();
+  const product = both(atom, ["*", "/"]);
+  const sum = both(product, ["+", "-"]);
+  const found = sum();
+  if (rest.length) throw new Error(`“${rest[0]}” is too much.`);
+  return found;
+}

@@ -1,163 +1,92 @@
-/* Bets: choose, say why, commit, then see the measurement. What tells a bet's answer (the live
- * figure's first sight, and the text that follows the bet) is veiled until the reader has bet or has
- * asked to be shown. Kept in the browser's own store, under the page's name. */
-"use strict";
+/* Bets: one click makes one, and lifts the veils over what would have told the answer. The reason may
+ * be written after. What was bet is kept in this browser. */
 
-const Bets = (() => {
-  const { number } = Plot;
-  const $ = (id) => document.getElementById(id);
-  const STORE = "contact-chapter:";
-  const shownNow = new Set(); // where the store is closed to us: until the page is closed
+const KEY = "contact-chapter:";
 
-  function remember(id, value) {
-    try {
-      if (value === null) localStorage.removeItem(STORE + id);
-      else localStorage.setItem(STORE + id, JSON.stringify(value));
-    } catch {
-      // a private window
+function kept(id) {
+  try {
+    return JSON.parse(localStorage.getItem(KEY + id));
+  } catch {
+    return null;
+  }
+}
+
+function keep(id, value) {
+  try {
+    localStorage.setItem(KEY + id, JSON.stringify(value));
+  } catch {
+    // without storage a bet lasts as long as the page is open
+  }
+}
+
+export class Bets {
+  #made = new Map(); // id: {choice, why} or {shown: true}
+  #hear = [];
+
+  constructor(ids) {
+    for (const id of ids) {
+      const box = document.getElementById(id);
+      const before = kept(id);
+      if (before) this.#made.set(id, before);
+      if (box) this.#listen(id, box);
+      if (before) this.#show(id);
     }
-  }
-
-  function recall(id) {
-    try {
-      return JSON.parse(localStorage.getItem(STORE + id));
-    } catch {
-      return null;
-    }
-  }
-
-  // Whether the answer of an exercise may be seen. An exercise that is not on the page veils nothing.
-  const open = (id) => shownNow.has(id) || !$(id) || recall(id) !== null;
-
-  function lift(id) {
-    shownNow.add(id);
-    document.documentElement.classList.add(`open-${id}`);
-    document.dispatchEvent(new Event("bet"));
-  }
-
-  function show(id) {
-    remember(id, { shown: true });
-    lift(id);
-  }
-
-  // The measurement an exercise is about, made now by the engine, as a table.
-  function measure(id) {
-    const { dt, steps, columns, shows } = PAGE.exercises[id];
-    const state = { ...State.DEFAULTS, ...State.ownKnobs("drop"), dt };
-    const measured = columns.map(([, model, mass]) => {
-      const scene = { ...State.sceneOf(state), mass: [mass] };
-      return ContactEngine.quality(
-        ContactEngine.runModel(model, scene, State.knobsOf(state), steps),
-        scene,
-        null,
-      );
+    document.addEventListener("click", (event) => {
+      const button = event.target.closest("button[data-show]");
+      if (button) this.#reveal(button);
     });
-    const told = (q, name) => (name === "blew_up" ? (q.blew_up ? "EXPLODED" : "ok") : number(q[name]));
-    const rows = shows.map(([name, words]) => [words, ...measured.map((q) => told(q, name))]);
-    return Inside.tableOf(["measured", ...columns.map(([title]) => title)], rows);
   }
 
-  // An element with a text of the reader's, which is never read as HTML.
-  function texted(tag, text, className) {
-    const node = document.createElement(tag);
-    node.textContent = text;
-    if (className) node.className = className;
-    return node;
-  }
+  open = (id) => this.#made.has(id);
+  onOpen = (hear) => this.#hear.push(hear);
 
-  function table(id) {
-    const node = document.createElement("div");
-    node.innerHTML = measure(id);
-    return node.firstChild;
-  }
-
-  function again(section, form, result) {
-    const id = section.dataset.exercise;
-    const button = texted("button", "Clear my answer");
-    button.type = "button";
-    button.addEventListener("click", () => {
-      remember(id, null);
-      delete form.dataset.done;
-      form.reset();
-      for (const input of form.elements) input.disabled = false;
-      result.hidden = true;
-      result.replaceChildren();
-      form.querySelector("input").focus();
-    });
-    return button;
-  }
-
-  function reveal(section, answer, focus) {
-    const id = section.dataset.exercise;
-    const form = section.querySelector("form");
-    const result = $(`${id}-result`);
-    const copies = $(`${id}-reveal`).content.querySelectorAll("[data-why]");
-    const reasons = [...copies].map((node) => Object.assign(node.cloneNode(true), { className: "why" }));
-    const mine = reasons.find((node) => node.dataset.why === answer.choice);
-    const right = reasons.find((node) => "right" in node.dataset);
-    const others = reasons.filter((node) => node !== mine && node !== right);
-    const told = mine === right ? "The measurement agrees." : `The measurement says ${right.dataset.why}.`;
-    form.dataset.done = "";
-    for (const input of form.elements) if (input.type !== "fieldset") input.disabled = true;
-    result.replaceChildren(
-      texted("h4", `You predicted ${answer.choice}. ${told}`),
-      texted("p", `Your reason: ${answer.why}`, "yours"),
-      table(id),
-      texted("h4", "Why"),
-      right,
-      ...(mine === right ? [] : [texted("h4", "Why not what you chose"), mine]),
-      ...(others.length ? [texted("h4", "Why not the others"), ...others] : []),
-      again(section, form, result),
-    );
-    result.hidden = false;
-    if (focus) result.focus();
-  }
-
-  function commit(section, form) {
-    const id = section.dataset.exercise;
-    const chosen = form.querySelector("input:checked");
-    const why = $(`${id}-why`).value.trim();
-    const error = $(`${id}-error`);
-    error.textContent = "";
-    if (!chosen) {
-      error.textContent = "Choose one first: predicting after the run teaches nothing.";
-      form.querySelector("input").focus();
-    } else if (why.length < 10) {
-      error.textContent = "Say in a sentence why you think so, then commit.";
-      $(`${id}-why`).focus();
-    } else {
-      const answer = { choice: chosen.value, why };
-      remember(id, answer);
-      lift(id);
-      reveal(section, answer, true);
-    }
-  }
-
-  // A bet of an earlier visit.
-  function restore(section, form) {
-    const id = section.dataset.exercise;
-    const kept = recall(id);
-    if (!kept || !kept.choice) return;
-    const radio = form.querySelector(`input[value="${CSS.escape(kept.choice)}"]`);
-    if (!radio) return;
-    radio.checked = true;
-    $(`${id}-why`).value = kept.why;
-    reveal(section, kept, false);
-  }
-
-  function start() {
-    for (const section of document.querySelectorAll("[data-exercise]")) {
-      const form = section.querySelector("form.bet");
-      if (!form) continue;
-      restore(section, form);
-      form.addEventListener("submit", (event) => {
-        event.preventDefault();
-        commit(section, form);
+  #listen(id, box) {
+    for (const button of box.querySelectorAll("button[data-choice]"))
+      button.addEventListener("click", () => {
+        this.make(id, { choice: button.dataset.choice });
+        document.getElementById(`${id}-result`).focus({ preventScroll: true });
       });
-    }
-    for (const button of document.querySelectorAll("button[data-show]"))
-      button.addEventListener("click", () => show(button.dataset.show));
+    const why = box.querySelector("textarea");
+    why.value = (this.#made.get(id) || {}).why || "";
+    why.addEventListener("change", () => this.make(id, { ...this.#made.get(id), why: why.value }));
+    box.querySelector("[data-again]").addEventListener("click", () => this.#again(id));
   }
 
-  return { start, open, show };
-})();
+  make(id, bet) {
+    this.#made.set(id, bet);
+    keep(id, bet);
+    this.#show(id);
+    for (const hear of this.#hear) hear(id);
+  }
+
+  // Open without a bet, and keep the focus at what came out from behind the veil.
+  #reveal(button) {
+    const veil = button.closest(".veiled");
+    this.make(button.dataset.show, { shown: true });
+    if (!veil) return;
+    const answer = veil.querySelector(".answer");
+    answer.tabIndex = -1;
+    answer.focus({ preventScroll: true });
+  }
+
+  #show(id) {
+    document.documentElement.classList.add(`open-${id}`);
+    const box = document.getElementById(id);
+    if (!box) return;
+    const { choice } = this.#made.get(id);
+    box.classList.add("decided");
+    for (const button of box.querySelectorAll("button[data-choice]"))
+      button.setAttribute("aria-pressed", String(button.dataset.choice === choice));
+    for (const reason of box.querySelectorAll("[data-reason]"))
+      reason.hidden = !(reason.dataset.reason === choice || "right" in reason.dataset);
+    const right = box.querySelector("[data-right]").dataset.reason;
+    const words = { [right]: "You bet on it, and it is so." };
+    box.querySelector(".verdict").textContent = choice ? words[choice] || "It comes out otherwise." : "This is how it comes out.";
+  }
+
+  // Make a bet anew: nothing is veiled again.
+  #again(id) {
+    document.getElementById(id).classList.remove("decided");
+    document.querySelector(`#${id} button[data-choice]`).focus();
+  }
+}

@@ -1,27 +1,18 @@
-/* The contact models of contact.py in plain JavaScript: penalty, lcp and soft; exact is in exact.js.
+/* The contact models of contact.py in plain JavaScript; exact is in exact.js.
  *
- * JavaScript numbers are the same 64-bit doubles that Python uses, and + - * / and sqrt are rounded
- * the same way in both. So the three, written here in the same order of operations, give the same
- * trajectories bit for bit; exact agrees with curriculum/exact.py to 1e-10 r. Tests hold both claims.
+ * JavaScript's numbers are the doubles that Python uses, and + - * / and sqrt are rounded the same way
+ * in both. Written in the same order of operations, penalty, lcp and soft give the same trajectories
+ * bit for bit; exact agrees to 1e-10 r. Tests hold both claims.
  *
- * Names and signs are those of contact.py: gap > 0 apart; depth = -gap; n is a unit vector pointing
- * from j to i (the floor is j = -1); v_n > 0 separating; lam >= 0. Units: m, kg, s, N*s.
- *
- * A scene is {x, y, vx, vy, mass, radius, restitution, damping}: arrays with one number a ball.
- * The knobs are {dt, stiffness, damping, restitution, iters, baumgarte, solref, solimp}.
- * A ball of infinite mass is held where it is.
+ * Names and signs are those of contact.py; the floor is j = -1. A scene is {x, y, vx, vy, mass, radius,
+ * restitution, damping}, arrays with one number a ball; a state is {x, y, vx, vy}, and of soft, pushed.
+ * The knobs are {dt, stiffness, damping, restitution, iters, baumgarte, warm, solref, solimp}.
  */
-
+import { data } from "./data.js";
 import { run as simulateExact } from "./exact.js";
 
-export const GRAVITY = -9.81;
-export const CONTACT_MARGIN = 1e-3;
+export const { GRAVITY, CONTACT_MARGIN, SOLREF, SOLIMP, HARD, MOST_SWEEPS, LAST_BITS, EXPLODED } = data.engine;
 export const MODELS = ["penalty", "lcp", "soft", "exact"];
-export const SOLREF = [0.02, 1]; // MuJoCo's defaults; HARD is the hardest contact it allows
-export const SOLIMP = [0.9, 0.95, 0.001, 0.5, 2];
-const HARD = [0.9999, 0.9999, 0.001, 0.5, 2];
-const MOST_SWEEPS = 10000; // of soft in one step
-const LAST_BITS = 2 ** -48; // of soft: a correction below this share of the speeds is rounding
 
 // max(0, a) as Python computes it: what is not greater than zero, NaN included, becomes +0.
 const positive = (a) => (a > 0 ? a : 0);
@@ -41,9 +32,7 @@ export function detectContacts(x, y, radius, margin) {
       const dist = Math.sqrt(dx * dx + dy * dy);
       const depth = radius[i] + radius[j] - dist;
       if (!(depth > -margin)) continue;
-      const nx = dist > 0 ? dx / dist : 0;
-      const ny = dist > 0 ? dy / dist : 1;
-      contacts.push({ i, j, nx, ny, depth });
+      contacts.push({ i, j, nx: dist > 0 ? dx / dist : 0, ny: dist > 0 ? dy / dist : 1, depth });
     }
   }
   return contacts;
@@ -55,8 +44,20 @@ export function normalSpeed(c, vx, vy) {
   return c.nx * (vx[c.i] - jx) + c.ny * (vy[c.i] - jy);
 }
 
-// One step of penalty: a clamped spring and damper a contact, under semi-implicit Euler.
-// `trace`, when given, receives what each contact did. knobs.clampForce stands in for the clamp.
+const accelerated = (vy, mass, dt, fy) =>
+  vy.map((v, i) => (mass[i] === Infinity ? v : v + dt * (GRAVITY + (fy ? fy[i] / mass[i] : 0))));
+
+function move({ x, y }, dt, vx, vy) {
+  return { x: x.map((a, i) => a + dt * vx[i]), y: y.map((a, i) => a + dt * vy[i]), vx, vy };
+}
+
+// ---- penalty
+
+export const penaltyNormalForce = (depth, speed, stiffness, damping) =>
+  positive(stiffness * depth - damping * speed);
+
+// One step of penalty. `trace`, when given, receives what each contact did. knobs.clampForce stands in
+// for the clamped force.
 export function penaltyStep(state, scene, knobs, trace) {
   const { x, y, vx, vy } = state;
   const { dt, stiffness, damping, clampForce = penaltyNormalForce } = knobs;
@@ -73,18 +74,9 @@ export function penaltyStep(state, scene, knobs, trace) {
     }
     if (trace) trace.push({ i: c.i, j: c.j, gap: -c.depth, speed, force: f });
   }
-  const held = scene.mass.map((m) => m === Infinity);
-  return move(state, dt, {
-    vx: vx.map((v, i) => (held[i] ? v : v + dt * (fx[i] / scene.mass[i]))),
-    vy: vy.map((v, i) => (held[i] ? v : v + dt * (GRAVITY + fy[i] / scene.mass[i]))),
-  });
-}
-
-export const penaltyNormalForce = (depth, speed, stiffness, damping) =>
-  positive(stiffness * depth - damping * speed);
-
-function move({ x, y }, dt, { vx, vy }) {
-  return { x: x.map((a, i) => a + dt * vx[i]), y: y.map((a, i) => a + dt * vy[i]), vx, vy };
+  const { mass } = scene;
+  const faster = vx.map((v, i) => (mass[i] === Infinity ? v : v + dt * (fx[i] / mass[i])));
+  return move(state, dt, faster, accelerated(vy, mass, dt, fy));
 }
 
 // ---- lcp and soft: one problem, one sweep
@@ -95,14 +87,9 @@ export function makeRows(contacts, mass, targets, softness) {
   return contacts.map((c, k) => {
     const wi = 1 / mass[c.i];
     const wj = c.j < 0 ? 0 : 1 / mass[c.j];
-    const mobility = wi + wj;
-    const whole = softness[k] > 0 ? mobility + softness[k] : mobility;
+    const whole = softness[k] > 0 ? wi + wj + softness[k] : wi + wj;
     return {
-      i: c.i,
-      j: c.j,
-      nx: c.nx,
-      ny: c.ny,
-      depth: c.depth,
+      ...c,
       target: targets[k],
       softness: softness[k],
       effectiveMass: whole > 0 ? 1 / whole : 0,
@@ -115,27 +102,27 @@ export function makeRows(contacts, mass, targets, softness) {
   });
 }
 
-// Projected Gauss-Seidel. Changes vx, vy and the lam of the rows; stops after a sweep in which no
-// correction changed a velocity by more than `tolerance`. `project` is the clamp, on the sum.
+// The impulse after a correction: the sum may not become negative, a correction may.
+export const projectImpulse = (lam, dlam) => positive(lam + dlam);
+
+// Projected Gauss-Seidel. Changes vx, vy and the lam of the rows; returns whether it settled. `project`
+// stands in for the clamp; `trace`, when given, receives the impulses after every sweep.
 export function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = projectImpulse }, trace) {
-  for (let sweep = 0; sweep < iters && rows.length; sweep++) {
+  for (let sweep = 0; sweep < iters; sweep++) {
     let settled = true;
     for (const c of rows) {
       const missing = c.target - normalSpeed(c, vx, vy) - c.softness * c.lam;
       const lam = project(c.lam, missing * c.effectiveMass);
-      if (lam === c.lam) continue;
       const change = lam - c.lam;
       push(c, change, vx, vy);
       c.lam = lam;
-      if (!(Math.abs(change) <= tolerance * c.effectiveMass)) settled = false;
+      settled = settled && Math.abs(change) <= tolerance * c.effectiveMass;
     }
-    if (trace) trace.push(rows.map((c) => c.lam));
-    if (settled) break;
+    if (trace && rows.length) trace.push(rows.map((c) => c.lam));
+    if (settled) return true;
   }
+  return false;
 }
-
-// The impulse after a correction: the sum may not become negative, a correction may.
-export const projectImpulse = (lam, dlam) => positive(lam + dlam);
 
 function push(c, impulse, vx, vy) {
   vx[c.i] += impulse * c.ix;
@@ -145,7 +132,33 @@ function push(c, impulse, vx, vy) {
   vy[c.j] -= impulse * c.jy;
 }
 
-// The largest speed in sight, as soft wants it: of the targets, and of the balls.
+// Begin with a share of the impulses that the same balls gave each other in the step before.
+function warmStart(rows, pushed, share, vx, vy) {
+  for (const c of rows) {
+    const last = pushed && pushed.find(({ i, j }) => i === c.i && j === c.j);
+    c.lam = share * (last ? last.lam : 0);
+    push(c, c.lam, vx, vy);
+  }
+}
+
+// Gravity predicts the velocities, impulses correct them, the balls move.
+function solveStep(state, scene, dt, rows, { warm, last, ...options }, trace) {
+  const vx = state.vx.slice();
+  const vy = accelerated(state.vy, scene.mass, dt);
+  if (trace) {
+    trace.contacts = rows.map((c) => ({ ...c, gap: -c.depth, speed: normalSpeed(c, vx, vy) }));
+    trace.sweeps = [];
+  }
+  const tolerance = last ? last * fastest(rows, vx, vy) : 0;
+  if (warm) warmStart(rows, state.pushed, warm, vx, vy);
+  const settled = solveContacts(rows, vx, vy, { ...options, tolerance }, trace && trace.sweeps);
+  const next = move(state, dt, vx, vy);
+  next.settled = settled;
+  if (warm && rows.length) next.pushed = rows.map(({ i, j, lam }) => ({ i, j, lam }));
+  return next;
+}
+
+// The largest speed in sight: of the targets, and of the balls.
 function fastest(rows, vx, vy) {
   let most = rows.length ? Math.abs(rows[0].target) : 0;
   const see = (v) => {
@@ -159,23 +172,8 @@ function fastest(rows, vx, vy) {
   return most;
 }
 
-// Gravity predicts the velocities, impulses correct them, the balls move.
-function solveStep(state, scene, dt, rows, options, trace) {
-  const vx = state.vx.slice();
-  const vy = state.vy.map((v, i) => (scene.mass[i] === Infinity ? v : v + dt * GRAVITY));
-  if (trace) {
-    const told = ({ i, j, depth, target }, speed) => ({ i, j, gap: -depth, speed, target });
-    trace.contacts = rows.map((c) => told(c, normalSpeed(c, vx, vy)));
-    trace.sweeps = [];
-  }
-  const { share, ...rest } = options;
-  const tolerance = share ? share * fastest(rows, vx, vy) : 0;
-  solveContacts(rows, vx, vy, { ...rest, tolerance }, trace && trace.sweeps);
-  return move(state, dt, { vx, vy });
-}
-
 // The normal velocity with which a contact of lcp must leave at least.
-function contactTarget(c, state, { dt, restitution, baumgarte }) {
+export function contactTarget(c, state, { dt, restitution, baumgarte }) {
   const bias = (baumgarte / dt) * c.depth;
   if (restitution === 0) return bias;
   const speed = normalSpeed(c, state.vx, state.vy);
@@ -188,12 +186,11 @@ function contactTarget(c, state, { dt, restitution, baumgarte }) {
 // One step of lcp. `trace`, when given, receives the contacts and the impulses after every sweep.
 // knobs.target and knobs.project stand in for the target and the clamp.
 export function lcpStep(state, scene, knobs, trace) {
-  const { dt, iters, project, target = contactTarget } = knobs;
+  const { dt, iters, warm, project, target = contactTarget } = knobs;
   const contacts = detectContacts(state.x, state.y, scene.radius, CONTACT_MARGIN);
   const targets = contacts.map((c) => target(c, state, knobs));
   const hard = contacts.map(() => 0);
-  const rows = makeRows(contacts, scene.mass, targets, hard);
-  return solveStep(state, scene, dt, rows, { iters, project }, trace);
+  return solveStep(state, scene, dt, makeRows(contacts, scene.mass, targets, hard), { iters, project, warm }, trace);
 }
 
 // ---- soft, MuJoCo's contact
@@ -211,14 +208,11 @@ export function impedance(depth, [d0, d1, width, mid, power]) {
   if (width <= 1e-15) return 0.5 * (d0 + d1);
   if (depth >= width) return d1;
   const x = depth / width;
-  const y =
-    x <= mid
-      ? raised(x, power) / raised(mid, power - 1)
-      : 1 - raised(1 - x, power) / raised(1 - mid, power - 1);
-  return d0 + y * (d1 - d0);
+  const rise = x <= mid ? raised(x, power) / raised(mid, power - 1) : 1 - raised(1 - x, power) / raised(1 - mid, power - 1);
+  return d0 + rise * (d1 - d0);
 }
 
-const between = (low, a, high) => Math.min(Math.max(a, low), high);
+const share = (a) => Math.min(Math.max(a, 0.0001), 0.9999);
 
 // The solref and solimp that a run uses, within MuJoCo's bounds.
 export function softDefaults({ restitution, dt, solref, solimp }) {
@@ -230,8 +224,7 @@ export function softDefaults({ restitution, dt, solref, solimp }) {
     solref = [Math.max(timeconst, 2 * dt), dampratio];
   }
   const [d0, d1, width, mid, power] = solimp || SOLIMP;
-  const share = (a) => between(0.0001, a, 0.9999);
-  return { solref, solimp: [share(d0), share(d1), width, share(mid), power] };
+  return { solref, solimp: [share(d0), share(d1), width, share(mid), Math.max(power, 1)] };
 }
 
 // K [1/s^2] and B [1/s] of the reference acceleration, from either form of solref.
@@ -240,67 +233,69 @@ function springOf([first, second], d1) {
   return [-first / (d1 * d1), -second / d1];
 }
 
-// One step of soft: lcp's step with another target, and softness.
-export function softStep(state, scene, knobs, trace) {
-  const { dt } = knobs;
+// The target and the softness of a contact of soft.
+export function soften(c, state, scene, knobs) {
   const { solref, solimp } = softDefaults(knobs);
   const [K, B] = springOf(solref, solimp[1]);
-  const contacts = detectContacts(state.x, state.y, scene.radius, 0);
-  const softness = [];
-  const targets = contacts.map((c) => {
-    const d = impedance(c.depth, solimp);
-    const speed = normalSpeed(c, state.vx, state.vy);
-    const mobility = 1 / scene.mass[c.i] + (c.j < 0 ? 0 : 1 / scene.mass[c.j]);
-    const soft = ((1 - d) / d) * mobility;
-    softness.push(soft > 1e-15 ? soft : 1e-15);
-    return speed + dt * (K * d * c.depth - B * speed);
-  });
-  const rows = makeRows(contacts, scene.mass, targets, softness);
-  return solveStep(state, scene, dt, rows, { iters: MOST_SWEEPS, share: LAST_BITS }, trace);
+  const d = impedance(c.depth, solimp);
+  const speed = normalSpeed(c, state.vx, state.vy);
+  const soft = ((1 - d) / d) * (1 / scene.mass[c.i] + (c.j < 0 ? 0 : 1 / scene.mass[c.j]));
+  return { target: speed + knobs.dt * (K * d * c.depth - B * speed), softness: soft > 1e-15 ? soft : 1e-15 };
 }
 
-export const STEP = { penalty: penaltyStep, lcp: lcpStep, soft: softStep };
+// One step of soft: lcp's step with another target, and softness. knobs.warm = 0 begins the sweeps cold.
+export function softStep(state, scene, knobs, trace) {
+  const contacts = detectContacts(state.x, state.y, scene.radius, 0);
+  const soft = contacts.map((c) => soften(c, state, scene, knobs));
+  const rows = makeRows(
+    contacts,
+    scene.mass,
+    soft.map((each) => each.target),
+    soft.map((each) => each.softness),
+  );
+  return solveStep(state, scene, knobs.dt, rows, { iters: MOST_SWEEPS, last: LAST_BITS, warm: 1 }, trace);
+}
+
+// ---- runs
+
+const STEP = { penalty: penaltyStep, lcp: lcpStep, soft: softStep };
+const PARTS = ["x", "y", "vx", "vy"];
 
 // A recording: n balls, steps + 1 rows; x, y, vx, vy are flat, row by row.
 function blank(n, dt, steps) {
-  const size = (steps + 1) * n;
-  const run = { n, dt, steps, t: new Float64Array(steps + 1) };
-  for (const key of ["x", "y", "vx", "vy"]) run[key] = new Float64Array(size);
+  const run = { n, dt, steps, unsettled: 0, t: new Float64Array(steps + 1) };
+  for (const key of PARTS) run[key] = new Float64Array((steps + 1) * n);
   for (let s = 0; s <= steps; s++) run.t[s] = dt * s;
   return run;
 }
 
 function write(run, row, state) {
-  for (let i = 0; i < run.n; i++) {
-    const at = row * run.n + i;
-    run.x[at] = state.x[i] + 0; // -0 becomes 0
-    run.y[at] = state.y[i] + 0;
-    run.vx[at] = state.vx[i] + 0;
-    run.vy[at] = state.vy[i] + 0;
-  }
+  for (const key of PARTS) for (let i = 0; i < run.n; i++) run[key][row * run.n + i] = state[key][i] + 0; // no -0
 }
 
 export function stateAt(run, row) {
-  const part = (a) => Array.from(a.subarray(row * run.n, (row + 1) * run.n));
-  return { x: part(run.x), y: part(run.y), vx: part(run.vx), vy: part(run.vy) };
+  const part = (key) => Array.from(run[key].subarray(row * run.n, (row + 1) * run.n));
+  return Object.fromEntries(PARTS.map((key) => [key, part(key)]));
 }
 
-const same = (a, b) => ["x", "y", "vx", "vy"].every((key) => a[key].every((v, i) => v === b[key][i]));
+const alike = ({ pushed: a = [] }, { pushed: b = [] }) =>
+  a.length === b.length && a.every((c, k) => c.i === b[k].i && c.j === b[k].j && c.lam === b[k].lam);
+const same = (a, b) => PARTS.every((key) => a[key].every((v, i) => v === b[key][i])) && alike(a, b);
 const LONGEST = 4; // periods of rest that are noticed: penalty and lcp have 1 and 2, soft up to 4
 
 export function runModel(model, scene, knobs, steps) {
   if (model === "exact") return runExact(scene, knobs, steps);
-  const step = STEP[model];
   const run = blank(scene.y.length, knobs.dt, steps);
-  let state = { x: scene.x, y: scene.y, vx: scene.vx, vy: scene.vy };
+  let state = scene;
   const before = []; // the last states, the newest first
   write(run, 0, state);
   for (let row = 1; row <= steps; row++) {
     before.unshift(state);
     before.length = Math.min(before.length, LONGEST);
-    state = step(state, scene, knobs);
+    state = STEP[model](state, scene, knobs);
+    if (state.settled === false) run.unsettled++;
     write(run, row, state);
-    // a step depends on the state alone: where one comes back, all that follows is known
+    // a step depends on the state and its impulses alone: where they come back, all else is known
     const period = 1 + before.findIndex((old) => same(old, state));
     if (period > 0) return repeat(run, row, period);
   }
@@ -309,16 +304,14 @@ export function runModel(model, scene, knobs, steps) {
 
 // Fills the rows after `row` with what comes back every `period` rows.
 function repeat(run, row, period) {
-  for (const key of ["x", "y", "vx", "vy"])
-    for (let at = (row + 1) * run.n; at < run[key].length; at++)
-      run[key][at] = run[key][at - period * run.n];
+  for (const key of PARTS)
+    for (let at = (row + 1) * run.n; at < run[key].length; at++) run[key][at] = run[key][at - period * run.n];
   return run;
 }
 
 export function runExact(scene, knobs, steps, gravity = -GRAVITY) {
   const run = blank(scene.y.length, knobs.dt, steps);
-  run.events = [];
-  run.cut = null;
+  Object.assign(run, { events: [], cut: null });
   simulateExact(scene, run.t, gravity, run);
   return run;
 }
@@ -337,20 +330,17 @@ function energyAt(run, scene, row) {
 }
 
 // The smallest gap [m] to the floor or between two balls; NaN once a ball is nowhere.
-function smallestGap(run, scene, row) {
-  const { n } = run;
+function smallestGap(run, { radius }, row) {
+  const { n, x, y } = run;
   let least = Infinity;
-  const add = (gap) => {
-    if (!(gap >= least)) least = gap;
-  };
   for (let i = 0; i < n; i++) {
     const at = row * n + i;
-    if (Number.isNaN(run.y[at])) return NaN;
-    add(run.y[at] - scene.radius[i]);
+    if (Number.isNaN(y[at])) return NaN;
+    least = Math.min(least, y[at] - radius[i]);
     for (let j = i + 1; j < n; j++) {
-      const dx = run.x[at] - run.x[row * n + j];
-      const dy = run.y[at] - run.y[row * n + j];
-      add(Math.sqrt(dx * dx + dy * dy) - (scene.radius[i] + scene.radius[j]));
+      const dx = x[at] - x[row * n + j];
+      const dy = y[at] - y[row * n + j];
+      least = Math.min(least, Math.sqrt(dx * dx + dy * dy) - (radius[i] + radius[j]));
     }
   }
   return least;
@@ -368,85 +358,38 @@ export function pushOfTable(run, scene, row) {
   return Math.abs(sum) < 1e-9 * Math.abs(GRAVITY) ? 0 : sum;
 }
 
-// The first row at which surfaces touch, or a velocity shows more than gravity's change.
-function firstContact(run, scene) {
-  const { n, dt } = run;
-  const shows = (v, at, fall) =>
-    Math.abs(v[at] - v[at - n] - fall) > 1e-9 * (Math.abs(v[at - n]) + Math.abs(fall));
-  for (let row = 0; row <= run.steps; row++) {
-    if (smallestGap(run, scene, row) <= 0) return row;
-    for (let at = row * n; row > 0 && at < (row + 1) * n; at++) {
-      const fall = scene.mass[at - row * n] === Infinity ? 0 : dt * GRAVITY;
-      if (shows(run.vx, at, 0) || shows(run.vy, at, fall)) return row;
-    }
-  }
-  return run.steps + 1;
-}
-
-// What the charts show, row by row: depth and gap [r], energy over its start, push in weights.
+// Row by row: gap [r], energy over its start, push in weights; and the row of the landing.
 export function series(run, scene) {
   const rows = run.steps + 1;
-  const column = () => new Float64Array(rows);
-  const found = { gap: column(), depth: column(), energy: column(), push: column() };
+  const found = { gap: new Float64Array(rows), energy: new Float64Array(rows), push: new Float64Array(rows) };
   const weight = scene.mass.reduce((sum, m) => sum - (m < Infinity ? m * GRAVITY : 0), 0);
   const start = energyAt(run, scene, 0);
+  let landing = rows;
   for (let row = 0; row < rows; row++) {
-    const gap = smallestGap(run, scene, row);
-    found.gap[row] = gap / scene.radius[0];
-    found.depth[row] = Math.max(-gap, 0) / scene.radius[0];
+    found.gap[row] = smallestGap(run, scene, row) / scene.radius[0];
     found.energy[row] = energyAt(run, scene, row) / start;
     if (row > 0) found.push[row] = pushOfTable(run, scene, row) / weight;
+    if (landing === rows && (found.gap[row] <= 0 || found.push[row] > 1e-9)) landing = row;
   }
-  return { ...found, landing: firstContact(run, scene) };
+  return { ...found, landing };
 }
 
-const EXPLODED = 10; // times the start energy: more than this gained is an explosion
-
-// The standard deviation of the last quarter.
-function jitter(depth) {
-  const late = depth.slice(Math.floor((3 * depth.length) / 4));
-  const mean = late.reduce((sum, d) => sum + d, 0) / late.length;
-  return Math.sqrt(late.reduce((sum, d) => sum + (d - mean) ** 2, 0) / late.length);
-}
-
-// The worst height error, in radii, and its parts: before the first contact, and what is added after.
-function heightErrors(run, scene, reference, landed) {
-  if (!reference) return { height_error_frac: null, flight_error_frac: null, contact_error_frac: null };
-  const landing = Math.min(landed, firstContact(reference, scene));
-  let [worst, flight] = [0, 0];
-  for (let at = 0; at < run.y.length; at++) {
-    const error = Math.abs(run.y[at] - reference.y[at]) / scene.radius[0];
-    if (error > worst) worst = error;
-    if (at < landing * run.n) flight = worst;
-  }
-  return { height_error_frac: worst, flight_error_frac: flight, contact_error_frac: worst - flight };
-}
-
-export function quality(run, scene, reference, known = series(run, scene)) {
-  const { gap, depth, energy, landing } = known;
-  const start = energyAt(run, scene, 0);
-  const sign = start < 0 ? -1 : 1;
-  let [deepest, excess, risen, rebound] = [0, 0, 0, 0];
-  let blewUpStep = null;
-  for (let row = 0; row < depth.length; row++) {
-    if (!(depth[row] <= deepest)) deepest = depth[row];
-    const above = sign * (energy[row] - 1);
+// The measures that the page shows.
+export function quality(run, scene, known = series(run, scene)) {
+  const { gap, energy } = known;
+  let [deepest, excess, blewUpStep] = [0, 0, null];
+  for (let row = 0; row < gap.length; row++) {
+    if (!(-gap[row] <= deepest)) deepest = -gap[row];
+    const above = energy[row] - 1;
     if (above > excess) excess = above;
     if (blewUpStep === null && !(above < EXPLODED)) blewUpStep = row;
-    if (row >= landing && gap[row] > rebound) rebound = gap[row];
-    if (row > 0) risen += Math.max(sign * (energy[row] - energy[row - 1]), 0);
   }
   return {
     max_penetration_frac: deepest,
-    rest_penetration_frac: depth[depth.length - 1],
-    rest_gap_frac: gap[gap.length - 1],
-    rebound_frac: rebound,
-    rest_jitter: jitter(depth),
+    rest_penetration_frac: Math.max(-gap[gap.length - 1], 0),
     energy_excess: excess,
-    contact_energy: risen,
     blew_up: blewUpStep !== null,
     blew_up_step: blewUpStep,
-    ...heightErrors(run, scene, reference, landing),
   };
 }
 

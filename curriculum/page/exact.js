@@ -8,10 +8,9 @@
  * Bodies are numbered 0 to n - 1; the floor is body n, with inverse mass 0.
  */
 
-const ORDER = 14; // of the Taylor series
-const TOUCH = 1e-12; // of r: a smaller gap is none
-const LAST = 1e-15; // of r: a bounce lower than this is the last of its series
-const GRAZE = 1e-12; // of g: a smaller force is none
+import { data } from "./data.js";
+
+const { TOUCH, SLOW, GRAZE, ORDER } = data.exact; // m, m/s, of g, terms: as in the Python files
 export const MOST_EVENTS = 20000; // a page must answer: past this many events the run is cut short
 
 // ---- linear complementarity
@@ -142,7 +141,7 @@ function measureGap(pair, s) {
 
 function smallGap(pair, s) {
   const last = (k) => 2.3e-16 * Math.max(Math.abs(s.x[k]), Math.abs(s.y[k]));
-  return TOUCH * s.radius[pair.i] + 4 * Math.max(last(pair.i), last(pair.j));
+  return TOUCH * (s.radius[pair.i] / data.radius) + 4 * Math.max(last(pair.i), last(pair.j));
 }
 
 function settle(s, pairs, restitution, log) {
@@ -151,19 +150,18 @@ function settle(s, pairs, restitution, log) {
   const gap = found.map((c) => Math.max(c.gap, 0));
   const active = pairs.map(() => false);
   let near = found.map((_, p) => p).filter((p) => found[p].gap <= small[p]);
-  const slow = near.map((p) => Math.sqrt(2 * s.gravity * LAST * s.radius[found[p].i]));
   let contacts = near.map((p) => found[p]);
   let speed = contacts.map((c) => along(c, s.vx, s.vy));
-  if (speed.some((v) => v < -0.1 * TOUCH)) {
-    const b = speed.map((v, k) => v + (restitution * Math.abs(v) < slow[k] ? 0 : restitution * v));
+  if (speed.some((v) => v < -1e-13)) {
+    const b = speed.map((v, k) => v + (restitution * Math.abs(v) < SLOW ? 0 : restitution * v));
     react(contacts, s.w, s.vx, s.vy, b);
     const after = contacts.map((c) => along(c, s.vx, s.vy));
     contacts.forEach((c, k) => {
-      if (speed[k] < -slow[k]) log(c, -speed[k], after[k]);
+      if (speed[k] < -SLOW) log(c, -speed[k], after[k]);
     });
     speed = after;
   }
-  const rests = speed.map((v, k) => Math.abs(v) < slow[k]);
+  const rests = speed.map((v, k) => Math.abs(v) < SLOW);
   near = near.filter((_, k) => rests[k]);
   contacts = contacts.filter((_, k) => rests[k]);
   const forces = hold(s, contacts);

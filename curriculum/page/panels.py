@@ -1,6 +1,10 @@
-"""The code that the page shows: regions of the literate files, and the whole of contact.py."""
+"""The code that the page shows: each region a panel, each definition in it a piece of a few lines.
 
-import functools
+A docstring shows its first line, the rest is folded behind it. A definition with more than LONG lines
+of code is folded behind its head, and so is all of a region that is no idea of the chapter.
+"""
+
+import ast
 import re
 
 from markupsafe import Markup
@@ -8,79 +12,81 @@ from pygments import highlight
 from pygments.formatters import HtmlFormatter
 from pygments.lexers import PythonLexer
 
-from curriculum import regions
+from curriculum.text import regions
 
-FOLDED = 45  # lines: a longer excerpt is folded
-WHOLE = "contact.py"
-WIDEST = 92  # characters of the docstrings' lines, which are broken by hand: about that
+LONG = 14  # lines of code
+BOOKKEEPING = {"setup", "scenes", "flight", "flags", "report", "files", "main", "quality", "stability"}
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
 
 
-@functools.cache
 def code_lines(text):
-    """Highlighted code, a block a line; a line too long for its column goes on further in.
-
-    Lines of a docstring that were broken for their length alone are one block, which the browser
-    breaks anew, and the blanks before a comment at a line's end shrink to one. What is copied are the
-    characters of the file.
-    """
+    """Highlighted code, (source, HTML) a line; a line too long for its column goes on further in."""
     shown = highlight(text, PythonLexer(stripnl=False), HtmlFormatter(nowrap=True))
     shown = re.sub(
         r'<span class="(\w+)">([^<]*)</span>', lambda m: m[0] if m[1] in STYLED else m[2], shown
     )
-    lines, sources = shown.rstrip("\n").split("\n"), text.rstrip("\n").split("\n")
-    out, before = [], None
-    for line, source in zip(lines, sources):
-        line = re.sub(r'(\S)( {2,})(<span class="c1">)', r'\1<span class="gap">\2</span>\3', line)
-        doc = '<span class="sd">' in line
-        if doc and before is not None and broken_for_length(before, source):
-            start = out[-1].replace('class="ln doc"', 'class="ln flow"', 1)
-            out[-1] = start.removesuffix("</span>") + f"{line}\n</span>"
-        else:
-            kind = "ln doc" if doc else "ln"
-            indent = len(source) - len(source.lstrip(" "))
-            out.append(f'<span class="{kind}" style="--i:{indent}">{line}\n</span>')
-        before = source if doc else None
-    return Markup("".join(out))
+    lines = []
+    for line, source in zip(shown.rstrip("\n").split("\n"), text.rstrip("\n").split("\n")):
+        indent = len(source) - len(source.lstrip(" "))
+        lines.append((source, f'<span class="ln" style="--i:{indent}">{line}\n</span>'))
+    return lines
 
 
-def broken_for_length(line, following):
-    """Whether a docstring's line goes on in the next only because that one's first word did not fit."""
-    words = following.split()
-    same = len(line) - len(line.lstrip(" ")) == len(following) - len(following.lstrip(" "))
-    flowing = words and same and "   " not in (line.strip() + following.strip())
-    starts = words and (words[0] == '"""' or re.match(r"\w*_\w*(, \w+)*:", following.strip()))
-    return bool(flowing and not starts and len(line) + 1 + len(words[0]) > WIDEST)
+def docstring_lines(node):
+    """(first, last) line of a definition's docstring, counted from 0; (0, -1) without one."""
+    first = node.body[0] if hasattr(node, "body") else None
+    if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
+        return first.lineno - 1, first.end_lineno - 1
+    return 0, -1
 
 
-def panels(root):
-    """Every region of the literate files by (file, name), with its highlighted code."""
-    found = {}
-    for region in regions.find_all(root).values():
-        count = region.last - region.first + 1
-        found[region.file, region.name] = {
-            "name": region.name,
-            "title": None,
-            "file": region.file,
-            "first": region.first,
-            "last": region.last,
-            "sha256": region.sha256,
-            "folded": count > FOLDED,
-            "html": code_lines(region.text),
-        }
+def pieces(text, bookkeeping):
+    """A region as pieces {head, lines, folded}, one for each definition and what stands between."""
+    lines, found, at = code_lines(text), [], 0
+    for node in ast.parse(text).body:
+        if not isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            continue
+        start = min([node.lineno, *(each.lineno for each in node.decorator_list)]) - 1
+        if any(source.strip() for source, _ in lines[at:start]):
+            found.append(piece(lines[at:start], bookkeeping))
+        found.append(piece(lines[start : node.end_lineno], bookkeeping, node, start))
+        at = node.end_lineno
+    if any(source.strip() for source, _ in lines[at:]):
+        found.append(piece(lines[at:], bookkeeping))
     return found
 
 
-def whole_file(root):
-    """A panel with the whole of contact.py, folded."""
-    text = (root / WHOLE).read_text(encoding="utf-8")
+def piece(lines, bookkeeping, node=None, start=0):
+    """One piece; its docstring, but for the first line, is folded."""
+    first, last = (line - start for line in docstring_lines(node)) if node else (0, -1)
+    html = [line for _, line in lines]
+    if last > first:
+        rest = "".join(html[first + 1 : last + 1])
+        html[first : last + 1] = [f"<details><summary>{html[first]}</summary>{rest}</details>"]
+    code = len(lines) - max(last - first + 1, 0)
+    head = next((source for source, _ in lines if source.strip()), "").strip()
     return {
-        "name": "contact-whole",
-        "title": WHOLE,
-        "file": WHOLE,
-        "first": 1,
-        "last": text.count("\n"),
-        "folded": True,
-        "html": code_lines(text),
+        "html": Markup("".join(html).strip("\n")),
+        "head": head if len(head) < 72 else head[:70] + "…",
+        "lines": len(lines),
+        "folded": bookkeeping or code > LONG,
     }
+
+
+def panel(file, region):
+    """A region as the template wants it."""
+    return {
+        "name": region.name,
+        "file": file,
+        "first": region.line,
+        "last": region.line + region.code.count("\n") - 1,
+        "sha256": region.sha,
+        "pieces": pieces(region.code, region.name in BOOKKEEPING),
+        "source": region.code,
+    }
+
+
+def panels():
+    """Every region of the literate files by (file, name)."""
+    return {(each.file, name): panel(each.file, each) for name, each in regions.read_all().items()}

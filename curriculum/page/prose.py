@@ -1,54 +1,41 @@
-"""chapter.md to HTML.
+"""chapter.md to parts of HTML.
 
 Beside plain Markdown the chapter may hold
 - an include, a fence with the one line [include-by-region: FILE#NAME]: becomes a code panel;
-- references to numbers in double braces (curriculum/quoted.py): become the numbers of fresh runs;
+- references to numbers in double braces, filled before (curriculum/text/references.py);
 - formulas between dollar signs: become MathML;
 - slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
   <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. Other comments vanish;
-- links that set the live figure, [words](try:scene=drop&dt=0.03), and numbers that can be dragged,
-  [0.002](drag:dt). Their names are those of contact.py's flags.
+- <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows from there
+  on, by the names of the store's quantities and `models`, `chart` (gap, push, energy), `from`, `to`;
+  <!-- show: none --> lets it step back;
+- links that set the same, [words](try:scene=drop&dt=0.03), and numbers to drag, [0.002](drag:dt).
 """
 
 import re
 from html import escape, unescape
-from pathlib import Path
 from urllib.parse import parse_qsl
 
 from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
+from markupsafe import Markup
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 import contact
-from curriculum.check_prose_code_drift import CHAPTER, INCLUDE
 from curriculum.page import maths_font
+from curriculum.text.references import INCLUDE
 
-SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock)(?:\s*:\s*([\w-]+))?\s*-->\s*")
-SETTINGS = ("scene", "contact", "seed", "solref", "t")  # of a try link, beside the knobs
-
-
-def slug(text):
-    """A heading's id."""
-    return re.sub(r"[^a-z0-9]+", "-", re.sub(r"<[^>]+>", "", text).lower()).strip("-") or "section"
-
-
-def reserved_ids():
-    """Ids that the templates use; a heading of the same name gets another."""
-    texts = (
-        path.read_text(encoding="utf-8")
-        for path in (Path(__file__).parent / "templates").glob("*.j2")
-    )
-    return {name for text in texts for name in re.findall(r'\bid="([\w-]+)"', text)}
-
-
-def parser():
-    """markdown-it with tables and formulas; raw HTML other than comments is refused by `blocks`."""
-    md = MarkdownIt("commonmark", {"html": True, "typographer": True}).enable(
-        ["table", "smartquotes", "replacements"]
-    )
-    md.use(dollarmath_plugin, renderer=formula)
-    md.add_render_rule("code_inline", inline_code)
-    return md
+CHAPTER = "curriculum/prose/chapter.md"
+SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock|show)(?:\s*:\s*(\S+))?\s*-->\s*")
+SETTINGS = {  # beside the knobs: what each may be
+    "scene": "drop|bounce|stack",
+    "contact": "|".join(contact.MODELS),
+    "seed": r"\d",
+    "models": "({0})(,({0}))*".format("|".join(contact.MODELS)),
+    "chart": "gap|push|energy",
+    "from": r"[\d.]+",
+    "to": r"[\d.]+",
+}
 
 
 def formula(text, options):
@@ -66,74 +53,74 @@ def formula(text, options):
 def inline_code(self, tokens, index, options, env):
     """Inline code; a model's name gets the model's look, and a short piece is kept on one line."""
     text = tokens[index].content
-    kind = ' class="short"' if len(text) <= 24 else ""
-    if text in contact.MODELS:
-        kind = f' class="model m-{text}"'
-    return f"<code{kind}>{escape(text)}</code>"
+    kind = f"model m-{text}" if text in contact.MODELS else "short" if len(text) <= 24 else ""
+    return f'<code class="{kind}">{escape(text)}</code>' if kind else f"<code>{escape(text)}</code>"
 
 
-# ---- links that steer the live figure
+def parser():
+    """markdown-it with tables and formulas."""
+    md = MarkdownIt("commonmark", {"html": True, "typographer": True})
+    md.enable(["table", "smartquotes", "replacements"])
+    md.use(dollarmath_plugin, renderer=formula)
+    md.add_render_rule("code_inline", inline_code)
+    return md
 
 
-def steer(tokens, knobs):
-    """Give try links and draggable numbers their markup. Raises ValueError at an unknown name."""
-    for token in tokens:
-        opened = []
-        line = token.map[0] + 1 if token.map else 1
-        for k, child in enumerate(token.children or []):
-            if child.type == "link_open":
-                opened.append(child)
-                scheme, _, rest = child.attrGet("href").partition(":")
-                if scheme == "try":
-                    follow(child, rest, knobs, line)
-                elif scheme == "drag":
-                    drag(child, token.children[k + 1].content, rest, knobs, line)
-            elif child.type == "link_close":
-                child.tag = opened.pop().tag
+def markdown(text):
+    """A short text of ours (objective, reason) as HTML."""
+    return Markup(parser().render(text))
 
 
-def follow(link, query, knobs, line):
-    """A try link: an address of the page itself."""
-    query = query.replace("&amp;", "&")
-    given = parse_qsl(query, keep_blank_values=True)
+def inline(text):
+    """The same without a paragraph around it."""
+    return Markup(parser().renderInline(" ".join(text.split())))
+
+
+# ---- what the text sets
+
+
+def checked(query, ranges, line):
+    """The query of a `try:` link or a `show:` comment. Raises ValueError where it sets what can't be."""
+    given = parse_qsl(query.replace("&amp;", "&"), keep_blank_values=True)
     for name, value in given:
-        if name in knobs:
-            in_range(name, value, knobs, line)
-        elif name not in SETTINGS:
-            raise ValueError(
-                f"{CHAPTER}:{line}: try:{query} sets {name!r}; allowed: "
-                f"{', '.join((*SETTINGS, *knobs))}"
-            )
+        if name in ranges:
+            in_range(name, value, ranges, line)
+        elif not re.fullmatch(SETTINGS.get(name, "nothing"), value):
+            allowed = SETTINGS.get(name, f"the names {', '.join((*SETTINGS, *ranges))}")
+            raise ValueError(f"{CHAPTER}:{line}: {name}={value} sets nothing; allowed: {allowed}")
     if not given:
-        raise ValueError(
-            f"{CHAPTER}:{line}: try:{query} sets nothing; write try:NAME=VALUE&NAME=VALUE"
-        )
-    link.attrs = {"class": "try", "href": f"?{query}"}
+        raise ValueError(f"{CHAPTER}:{line}: {query!r} sets nothing; write NAME=VALUE&NAME=VALUE")
+    return "&".join(f"{name}={value}" for name, value in given)
 
 
-def drag(link, text, name, knobs, line):
-    """A number that can be dragged."""
-    if name not in knobs:
-        raise ValueError(f"{CHAPTER}:{line}: drag:{name} is no knob; allowed: {', '.join(knobs)}")
-    value = in_range(name, text, knobs, line)
-    link.tag, link.attrs = (
-        "span",
-        {"class": "drag", "data-knob": name, "data-value": f"{value:.12g}"},
-    )
+def in_range(name, text, ranges, line):
+    """The number in `text`, which quantity `name` must be able to take."""
+    if name not in ranges:
+        raise ValueError(f"{CHAPTER}:{line}: {name} is no quantity; allowed: {', '.join(ranges)}")
+    low, high = ranges[name]
+    number = re.fullmatch(r"[\d.]+(e[+-]?\d+)?", text.replace(",", ""))
+    if not number or not low <= float(number[0]) <= high:
+        allowed = f"{low:g} to {high:g}"
+        raise ValueError(f"{CHAPTER}:{line}: {name} cannot be {text!r}; allowed: {allowed}")
+    return float(number[0])
 
 
-def in_range(name, text, knobs, line):
-    """The number in `text`, which knob `name` must be able to take."""
-    low, high = knobs[name]
-    try:
-        value = float(text.replace(",", ""))
-    except ValueError:
-        value = None
-    if value is None or not low <= value <= high:
-        raise ValueError(
-            f"{CHAPTER}:{line}: {name} cannot be {text!r}; allowed: {low:g} to {high:g}"
-        )
-    return value
+def steer(token, ranges):
+    """Give the try links and the numbers to drag in a block their markup."""
+    line, opened = token.map[0] + 1 if token.map else 1, []
+    for k, child in enumerate(token.children or []):
+        if child.type == "link_close":
+            child.tag = opened.pop().tag
+        if child.type != "link_open":
+            continue
+        opened.append(child)
+        scheme, _, rest = child.attrGet("href").partition(":")
+        if scheme == "try":
+            child.attrs = {"class": "try", "href": f"?{checked(rest, ranges, line)}"}
+        elif scheme == "drag":
+            value = in_range(rest, token.children[k + 1].content, ranges, line)
+            child.tag = "span"
+            child.attrs = {"class": "drag", "data-knob": rest, "data-value": f"{value:.12g}"}
 
 
 # ---- blocks
@@ -141,8 +128,8 @@ def in_range(name, text, knobs, line):
 
 def heading_name(inner, used):
     """An id for a heading that no other has."""
-    name = base = slug(inner)
-    count = 1
+    base = re.sub(r"[^a-z0-9]+", "-", re.sub(r"<[^>]+>", "", inner).lower()).strip("-") or "section"
+    name, count = base, 1
     while name in used:
         count += 1
         name = f"{base}-{count}"
@@ -150,16 +137,19 @@ def heading_name(inner, used):
     return name
 
 
-def slots_of(token):
+def slots_of(token, ranges):
     """The slots in a block of HTML, which may hold comments and nothing else."""
-    found, rest = [], token.content
+    found, rest, line = [], token.content, token.map[0] + 1
     while slot := SLOT.match(rest):
-        found.append(("slot", slot[1] + (f":{slot[2]}" if slot[2] else "")))
+        kind, name = slot.groups()
+        if kind == "show":
+            found.append(("show", name if name == "none" else checked(name or "", ranges, line)))
+        else:
+            found.append(("slot", f"{kind}:{name}" if name else kind))
         rest = rest[slot.end() :]
     if re.sub(r"<!--.*?-->", "", rest, flags=re.DOTALL).strip():
         raise ValueError(
-            f"{CHAPTER}:{token.map[0] + 1}: raw HTML, {rest.strip()[:50]!r}; "
-            "allowed: Markdown, and comments that are slots"
+            f"{CHAPTER}:{line}: raw HTML, {rest.strip()[:50]!r}; allowed: Markdown, and slots"
         )
     return found
 
@@ -173,46 +163,35 @@ def end_of(tokens, index):
     return index
 
 
-def table(shown):
-    """A table in a box that scrolls by itself where it is narrow."""
-    held = shown.replace("<th></th>", "<td></td>")
-    return f'<div class="scroll" tabindex="0" role="group" aria-label="Table">{held}</div>'
+def blocks(text, ranges):
+    """The chapter as a list of (kind, value): html, heading (level, id, html), slot, show, or include
+    (file, region). `ranges` are those of what the text may set, {name: (low, high)}."""
+    md = parser()
+    tokens, env = md.parse(text), {}
+    out, used, index = [], {"text", "figure", "contents", "colophon", "objectives"}, 0
+    while index < len(tokens):
+        first, last = tokens[index], end_of(tokens, index)
+        for token in tokens[index : last + 1]:
+            steer(token, ranges)
+        shown = md.renderer.render(tokens[index : last + 1], md.options, env)
+        out += part(first, re.sub(r"<!--.*?-->", "", shown, flags=re.DOTALL), used, ranges)
+        index = last + 1
+    return out
 
 
-def part(token, render, used):
-    """What a block of the chapter becomes: a list of (kind, value). `render()` gives its HTML."""
+def part(token, shown, used, ranges):
+    """What a block of the chapter becomes: a list of (kind, value)."""
     if token.type == "fence":
         include = INCLUDE.fullmatch(token.content.strip())
         if include:
             return [("include", (include["file"], include["name"]))]
-        code = escape(token.content)
-        return [("html", f'<pre class="shell" tabindex="0"><code>{code}</code></pre>')]
+        return [("html", f'<pre class="shell" tabindex="0"><code>{escape(token.content)}</code></pre>')]
     if token.type == "html_block":
-        return slots_of(token)
+        return slots_of(token, ranges)
     if token.type == "heading_open":
-        inner = render(inner=True)
+        inner = re.sub(r"^<h\d>|</h\d>\s*$", "", shown)
         return [("heading", (int(token.tag[1]), heading_name(inner, used), inner))]
-    return [("html", table(render()) if token.type == "table_open" else render())]
-
-
-def blocks(text, knobs=None):
-    """The chapter as a list of (kind, value): kind html, heading (level, id, html), slot, or include
-    (file, region). `knobs` are the ranges of what links may set, {name: (low, high)}."""
-    md = parser()
-    tokens, env = md.parse(text), {}
-    steer(tokens, knobs or {})
-    out, used, index = [], reserved_ids(), 0
-
-    def html(first, last):
-        shown = md.renderer.render(tokens[first : last + 1], md.options, env)
-        return re.sub(r"<!--.*?-->", "", shown, flags=re.DOTALL)
-
-    while index < len(tokens):
-        first, last = index, end_of(tokens, index)
-
-        def render(inner=False, first=first, last=last):
-            return html(first + 1, first + 1) if inner else html(first, last)
-
-        out += part(tokens[first], render, used)
-        index = last + 1
-    return out
+    if token.type == "table_open":
+        held = shown.replace("<th></th>", "<td></td>")
+        return [("html", f'<div class="scroll" tabindex="0" role="group" aria-label="Table">{held}</div>')]
+    return [("html", shown)]

@@ -1,94 +1,141 @@
-/* Copying, the contents, and the start of everything. */
-"use strict";
+/* Reading: numbers that can be dragged, links that set something, the live figure that follows the
+ * text, and on a small screen the dock in which it comes up. */
+import { plain } from "./draw.js";
+import { fromSlider, sliderRange, toSlider } from "./store.js";
 
-const Reader = (() => {
-  const $ = (id) => document.getElementById(id);
-  const say = (words) => ($("said").textContent = words);
+const KEYS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 20, PageDown: -20 };
+const VIEW = ["models", "chart", "from", "to"]; // of a show, what is no quantity
 
-  // Copying where the clipboard is closed to the page: through a text field.
-  function copyOldWay(text, button) {
-    const area = document.createElement("textarea");
-    area.className = "hidden";
-    area.value = text;
-    document.body.append(area);
-    area.select();
-    const done = document.execCommand("copy");
-    area.remove();
-    button.focus();
-    return done;
+export class Reader {
+  constructor(store, lanes) {
+    Object.assign(this, { store, lanes, shown: null });
+    this.marks = [...document.querySelectorAll(".show")];
+    this.live = document.getElementById("figure");
+    this.beside = window.matchMedia("(min-width: 64rem)");
   }
 
-  async function copy(text, button) {
-    let done = true;
-    try {
-      await navigator.clipboard.writeText(text);
-    } catch {
-      done = copyOldWay(text, button);
-    }
-    const label = button.firstChild;
-    if (!button.dataset.label) button.dataset.label = label.textContent;
-    label.textContent = done ? "Copied" : "Not allowed here";
-    say(done ? "Copied." : "The browser does not allow copying here.");
-    setTimeout(() => (label.textContent = button.dataset.label), 2000);
-  }
-
-  function startCopying() {
-    for (const button of document.querySelectorAll("button[data-copy]"))
-      button.addEventListener("click", () => copy($(button.dataset.copy).textContent, button));
-    $("copy-link").addEventListener("click", (event) => copy(Figure.address(), event.currentTarget));
-  }
-
-  // Mark the section being read in the contents.
-  function startContents() {
-    const links = new Map([...document.querySelectorAll(".contents a")].map((a) => [a.hash.slice(1), a]));
-    const heads = [...links.keys()].map($).filter(Boolean);
-    const mark = () => {
-      const above = heads.filter((head) => head.getBoundingClientRect().top < 0.3 * window.innerHeight);
-      const here = above.length ? above[above.length - 1].id : null;
-      for (const [id, link] of links) {
-        if (id === here) link.setAttribute("aria-current", "true");
-        else link.removeAttribute("aria-current");
-      }
-    };
-    let waiting = false;
-    const later = () => {
-      if (waiting) return;
-      waiting = true;
-      requestAnimationFrame(() => {
-        waiting = false;
-        mark();
+  start() {
+    for (const span of document.querySelectorAll(".drag")) this.#number(span);
+    for (const link of document.querySelectorAll("a.try"))
+      link.addEventListener("click", (event) => {
+        event.preventDefault();
+        this.#set(new URLSearchParams(new URL(link.href).search), "act");
+        this.dock();
       });
+    document.addEventListener("click", (event) => this.#copy(event.target.closest("button[data-copy]")));
+    for (const button of document.querySelectorAll("[data-dock]")) button.addEventListener("click", () => this.dock());
+    document.getElementById("undock").addEventListener("click", () => this.undock());
+    window.addEventListener("scroll", () => this.#scrolled(), { passive: true });
+    this.beside.addEventListener("change", () => this.undock());
+    this.follow(!location.search);
+  }
+
+  // ---- what the text sets
+
+  // Set the quantities of a query in the store, and the rest in the live figure.
+  #set(given, how) {
+    const changes = this.store.asked(given);
+    if (how === "act") this.store.set(changes);
+    else this.store.follow(changes);
+    const own = Object.fromEntries(VIEW.filter((name) => given.has(name)).map((name) => [name, given.get(name)]));
+    this.lanes.figure.look(this.lanes.view, own, how === "text");
+    this.#spoken([...given.keys()]);
+    this.lanes.redraw();
+  }
+
+  // The knobs that the text speaks of stand open, the others behind one word.
+  #spoken(names) {
+    for (const knob of this.live.querySelectorAll(".knob")) knob.classList.toggle("spoken", names.includes(knob.dataset.knob));
+  }
+
+  // The last mark above the middle of the window says what is shown.
+  follow(set = true) {
+    const above = this.marks.filter((mark) => mark.getBoundingClientRect().top < 0.55 * window.innerHeight);
+    const mark = above[above.length - 1] || this.marks[0];
+    if (!mark || mark === this.shown) return;
+    this.shown = mark;
+    this.live.classList.toggle("back", mark.dataset.show === "none");
+    if (set && mark.dataset.show !== "none") this.#set(new URLSearchParams(mark.dataset.show), "text");
+  }
+
+  #scrolled() {
+    this.pending ||= requestAnimationFrame(() => {
+      this.pending = 0;
+      this.follow();
+      if (this.docked !== undefined && Math.abs(window.scrollY - this.docked) > 0.4 * window.innerHeight) this.undock();
+    });
+  }
+
+  // ---- the dock: half the window, and it closes as one reads on
+
+  dock() {
+    if (this.beside.matches) return;
+    this.docked = window.scrollY;
+    this.live.classList.add("docked");
+  }
+
+  undock() {
+    this.docked = undefined;
+    this.live.classList.remove("docked");
+  }
+
+  // ---- numbers to drag
+
+  #number(span) {
+    const { store } = this;
+    const name = span.dataset.knob;
+    const each = store.quantities[name];
+    const unit = each.unit ? ` ${each.unit}` : "";
+    const about = { role: "slider", tabindex: "0", "aria-valuemin": each.low, "aria-valuemax": each.high };
+    for (const [key, value] of Object.entries(about)) span.setAttribute(key, value);
+    span.setAttribute("aria-label", each.label);
+    const show = () => {
+      span.textContent = plain(store.get(name));
+      span.setAttribute("aria-valuenow", plain(store.get(name)));
+      span.setAttribute("aria-valuetext", plain(store.get(name)) + unit);
     };
-    window.addEventListener("scroll", later, { passive: true });
-    for (const link of links.values()) link.addEventListener("click", () => ($("contents").open = false));
-    mark();
+    const range = sliderRange(each);
+    const turn = (from, by, how) => {
+      const position = Math.min(range.max, Math.max(range.min, from + by * range.step));
+      store.set({ [name]: fromSlider(each, position) }, how);
+    };
+    this.#grab(span, () => toSlider(each, store.get(name)), turn);
+    store.on([name], show);
+    if (Number(span.dataset.value) === store.get(name)) show();
+    else span.classList.add("elsewhere");
+    show();
   }
 
-  // On paper nothing can be unfolded: the commands of the exercises are, before it is printed.
-  function startPrinting() {
-    const folded = () => [...document.querySelectorAll("details.terminal:not([open])")];
-    let opened = [];
-    window.addEventListener("beforeprint", () => {
-      opened = folded();
-      for (const each of opened) each.open = true;
+  #grab(span, position, turn) {
+    let [startX, from] = [0, 0];
+    span.addEventListener("pointerdown", (event) => {
+      event.preventDefault();
+      span.focus({ preventScroll: true });
+      span.setPointerCapture(event.pointerId);
+      [startX, from] = [event.clientX, position()];
+      this.store.drag(true);
+      this.dock();
     });
-    window.addEventListener("afterprint", () => {
-      for (const each of opened) each.open = false;
+    span.addEventListener("pointermove", (event) => {
+      if (span.hasPointerCapture(event.pointerId)) turn(from, Math.round((event.clientX - startX) / 2), "drag");
+    });
+    for (const end of ["pointerup", "pointercancel"]) span.addEventListener(end, () => this.store.drag(false));
+    span.addEventListener("keydown", (event) => {
+      if (!KEYS[event.key]) return;
+      event.preventDefault();
+      turn(position(), KEYS[event.key], "act");
+      this.dock();
     });
   }
 
-  function start() {
-    startCopying();
-    startContents();
-    startPrinting();
+  #copy(button) {
+    if (!button) return;
+    const panel = button.closest(".code, .command");
+    const text = panel.querySelector("[data-source]").textContent;
+    const said = document.getElementById("said");
+    navigator.clipboard.writeText(text).then(
+      () => (said.textContent = "Copied."),
+      () => (said.textContent = "The browser does not let the page copy."),
+    );
   }
-  return { start };
-})();
-
-// What needs JavaScript is shown only where it runs to the end.
-try {
-  for (const part of [Figure, Bets, Links, LiveSmall, Puzzle, Blank, Sandbox, Reader]) part.start();
-} catch (error) {
-  document.documentElement.className = "no-js";
-  throw error;
 }
