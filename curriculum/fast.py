@@ -1,0 +1,500 @@
+"""The fast twin of contact.py: the same steps for many balls, as loops that numba compiles.
+
+A function here that is named as one of contact.py does the same operations in the same order, so
+a run has the same bits. What is new is how near balls are found: by their shadows on one axis, and
+from a list that is good until some ball has moved. Balls and contacts are rows of a table; the
+last ball is the floor. Nothing may be rounded differently: no fast-math, no fused multiply-add.
+
+Importing this raises ImportError where numba is missing or told not to compile: the plain loops of
+contact.py are then faster.
+"""
+
+import math
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+import contact
+
+if numba.config.DISABLE_JIT:
+    raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
+
+MODELS = ("penalty", "lcp", "soft")
+PENALTY, LCP, SOFT = range(3)
+STATES = 200_000    # positions of balls that are filled in one go, before report() hears of it
+# a ball was at listed_x, listed_y when the pairs were listed
+NAMES = "vx vy inv_mass radius x y listed_x listed_y fx fy mass".split()
+BALL = np.dtype([(name, float) for name in NAMES])
+NAMES = "nx ny depth m_eff target softness lam".split()
+CONTACT = np.dtype([("a", int), ("b", int), *[(name, float) for name in NAMES]])
+
+
+class Knobs(NamedTuple):
+    """What a step needs to know, in numbers: contact.Settings, and what contact.py fixes."""
+
+    model: int
+    dt: float
+    gravity: float
+    margin: float           # of lcp
+    skin: float             # m: how much farther the list of pairs looks than it must
+    stiffness: float
+    damping: float
+    restitution: float
+    baumgarte: float
+    iters: int
+    warm: float             # share of the last step's impulses that the sweeps start from
+    most_sweeps: int        # of soft
+    last_bits: float
+    solref: tuple
+    solimp: tuple
+
+
+def compiled(function):
+    """The function compiled, and kept on disk for the next process if there is a place for it."""
+    try:
+        return numba.njit(function, cache=True)
+    except RuntimeError:                        # none of the folders that numba tries is writable
+        return numba.njit(function)
+
+
+@compiled
+def larger(first, second):
+    """Python's max of two floats: the first unless the second is larger, so never NaN for 0."""
+    return second if second > first else first
+
+
+@compiled
+def cast_shadows(balls, reach):
+    """The balls by the lower end of their shadow: order, lower ends, upper ends, each (M,).
+
+    The shadow falls on the axis along which the balls are spread wider. It is as long as its own
+    ball is wide, so one large ball costs no more than itself; at the upper end is room for `reach`
+    [m] and for rounding. A ball that is nowhere has no shadow: it touches nothing for ever.
+    """
+    x, y = balls["x"][:-1], balls["y"][:-1]
+    known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    place, other, radius = x[known], y[known], balls["radius"][known]
+    if len(known) > 0 and np.ptp(other) > np.ptp(place):
+        place = other
+    low = place - radius
+    high = place + (1.0 + 1e-9) * (radius + reach) + 1e-15 * np.abs(place)
+    order = np.argsort(low)
+    return known[order], low[order], high[order]
+
+
+@compiled
+def list_pairs(balls, reach):
+    """The pairs (2, M) of balls whose gap is at most `reach` [m] now: first < second, in order."""
+    for ball in balls:
+        ball.listed_x = ball.x
+        ball.listed_y = ball.y
+    order, low, high = cast_shadows(balls, reach)
+    pairs = np.empty((2, 4 * len(balls)), np.int64)
+    size = 0
+    for k in range(len(order)):
+        for other in range(k + 1, len(order)):
+            if low[other] > high[k]:
+                break
+            i, j = order[k], order[other]
+            dx = balls[i].x - balls[j].x
+            dy = balls[i].y - balls[j].y
+            limit = (balls[i].radius + balls[j].radius + reach) * (1.0 + 1e-9)
+            if dx * dx + dy * dy <= limit * limit:
+                if size == pairs.shape[1]:
+                    pairs = np.concatenate((pairs, pairs), axis=1)
+                pairs[0, size], pairs[1, size] = min(i, j), max(i, j)
+                size += 1
+    return sort_pairs(sort_pairs(pairs[:, :size], 1, len(balls)), 0, len(balls))
+
+
+@compiled
+def sort_pairs(pairs, row, count):
+    """The pairs (2, M) in the order of that row, equal ones as they came: sorted by counting."""
+    place = np.zeros(count + 1, np.int64)
+    for number in pairs[row]:
+        place[number + 1] += 1
+    place = np.cumsum(place)
+    ordered = np.empty((2, pairs.shape[1]), np.int64)
+    for k in range(pairs.shape[1]):
+        number = pairs[row, k]
+        ordered[0, place[number]], ordered[1, place[number]] = pairs[0, k], pairs[1, k]
+        place[number] += 1
+    return ordered
+
+
+@compiled
+def farthest_move(balls):
+    """How far [m] the farthest ball has moved since the pairs were listed; 0 for one nowhere."""
+    farthest = 0.0
+    for ball in balls[:-1]:
+        dx = ball.x - ball.listed_x
+        dy = ball.y - ball.listed_y
+        farthest = larger(farthest, dx * dx + dy * dy)
+    return math.sqrt(farthest)
+
+
+@compiled
+def set_contact(c, balls, a, b, nx, ny, depth):
+    """Make row c the contact of balls a and b."""
+    c.a, c.b = a, b
+    c.nx, c.ny = nx, ny
+    c.depth = depth
+    inv_mass = balls[a].inv_mass + balls[b].inv_mass
+    c.m_eff = 1.0 / inv_mass if inv_mass > 0.0 else 0.0
+    c.target = c.softness = c.lam = 0.0
+
+
+@compiled
+def detect_contacts(balls, pairs, margin, contacts):
+    """The contacts as the first rows of `contacts`: the floor's by ball, then those of pairs."""
+    floor = len(balls) - 1
+    count = 0
+    for i in range(floor):
+        depth = balls[i].radius - balls[i].y
+        if depth > -margin:
+            set_contact(contacts[count], balls, i, floor, 0.0, 1.0, depth)
+            count += 1
+    for k in range(pairs.shape[1]):
+        i, j = pairs[0, k], pairs[1, k]
+        a, b = balls[i], balls[j]
+        dx = a.x - b.x
+        dy = a.y - b.y
+        distance = math.sqrt(dx * dx + dy * dy)
+        depth = a.radius + b.radius - distance
+        if depth > -margin:
+            nx, ny = (dx / distance, dy / distance) if distance > 0.0 else (0.0, 1.0)
+            set_contact(contacts[count], balls, i, j, nx, ny, depth)
+            count += 1
+    return contacts[:count]
+
+
+@compiled
+def normal_velocity(c, balls):
+    """v_n [m/s] of a contact."""
+    a, b = balls[c.a], balls[c.b]
+    return c.nx * (a.vx - b.vx) + c.ny * (a.vy - b.vy)
+
+
+@compiled
+def push(c, balls, impulse):
+    """Give the first ball this impulse [N s] along the normal, the second the opposite one."""
+    a, b = balls[c.a], balls[c.b]
+    a.vx += impulse * (a.inv_mass * c.nx)
+    a.vy += impulse * (a.inv_mass * c.ny)
+    if c.b < len(balls) - 1:
+        b.vx -= impulse * (b.inv_mass * c.nx)
+        b.vy -= impulse * (b.inv_mass * c.ny)
+
+
+@compiled
+def penalty_step(balls, contacts, knobs):
+    """One step with the force of a spring and a damper."""
+    for ball in balls:
+        ball.fx = ball.fy = 0.0
+    for c in contacts:
+        v_n = normal_velocity(c, balls)
+        f_n = larger(0.0, knobs.stiffness * c.depth - knobs.damping * v_n)
+        balls[c.a].fx += f_n * c.nx
+        balls[c.a].fy += f_n * c.ny
+        balls[c.b].fx -= f_n * c.nx
+        balls[c.b].fy -= f_n * c.ny
+    accelerate(balls, knobs)
+    move(balls, knobs.dt)
+
+
+@compiled
+def accelerate(balls, knobs):
+    """The velocity that gravity and the forces add to every ball that can move."""
+    for ball in balls[:-1]:
+        if ball.inv_mass > 0.0:
+            ball.vx += knobs.dt * (ball.fx / ball.mass)
+            ball.vy += knobs.dt * (knobs.gravity + ball.fy / ball.mass)
+
+
+@compiled
+def move(balls, dt):
+    """Move every ball with its velocity for one step."""
+    for ball in balls[:-1]:
+        ball.x += dt * ball.vx
+        ball.y += dt * ball.vy
+
+
+@compiled
+def contact_target(depth, v_n, restitution, baumgarte, dt):
+    """The normal velocity [m/s] with which a contact must leave at least."""
+    bias = baumgarte / dt * depth
+    if restitution == 0.0:
+        return bias
+    bounce = -restitution * v_n
+    if bias > 0.0:
+        return larger(bias, bounce)
+    if dt * v_n <= depth or not depth / dt < bounce:
+        return bounce
+    return depth / dt
+
+
+@compiled
+def warm_start(balls, contacts, last, share):
+    """Start from a share of the impulses that the same pairs had in the last step's contacts.
+
+    Both tables are in the same order, so that one walk along both finds them.
+    """
+    count, k = len(balls), 0
+    for c in contacts:
+        while k < len(last) and rank(last[k], count) < rank(c, count):
+            k += 1
+        if k < len(last) and rank(last[k], count) == rank(c, count):
+            c.lam = share * last[k].lam
+        push(c, balls, c.lam)
+
+
+@compiled
+def rank(c, count):
+    """A number that grows along a table of contacts: those with the floor come first."""
+    return c.a if c.b == count - 1 else (c.a + 1) * count + c.b
+
+
+@compiled
+def solve_contacts(balls, contacts, iters, tolerance):
+    """Projected Gauss-Seidel; whether a sweep came with no correction above `tolerance` [m/s]."""
+    for _ in range(iters):
+        settled = True
+        for c in contacts:
+            missing = c.target - normal_velocity(c, balls) - c.softness * c.lam
+            lam = larger(0.0, c.lam + missing * c.m_eff)
+            change = lam - c.lam
+            push(c, balls, change)
+            c.lam = lam
+            settled = settled and abs(change) <= tolerance * c.m_eff
+        if settled:
+            return True
+    return False
+
+
+@compiled
+def lcp_step(balls, contacts, last, knobs):
+    """One step: gravity predicts the velocities, impulses correct them, the balls move."""
+    for c in contacts:
+        v_n = normal_velocity(c, balls)
+        c.target = contact_target(c.depth, v_n, knobs.restitution, knobs.baumgarte, knobs.dt)
+    accelerate(balls, knobs)
+    if knobs.warm > 0.0:
+        warm_start(balls, contacts, last, knobs.warm)
+    solve_contacts(balls, contacts, knobs.iters, 0.0)
+    move(balls, knobs.dt)
+
+
+@compiled
+def impedance(depth, solimp):
+    """How hard a contact of MuJoCo is at that depth [m]."""
+    d0, d1, width, mid, power = solimp
+    if width <= 1e-15:
+        return 0.5 * (d0 + d1)
+    if depth >= width:
+        return d1
+    x = depth / width
+    if x <= mid:
+        y = raised(x, power) / raised(mid, power - 1.0)
+    else:
+        y = 1.0 - raised(1.0 - x, power) / raised(1.0 - mid, power - 1.0)
+    return d0 + y * (d1 - d0)
+
+
+@compiled
+def raised(x, power):
+    """x to that power; a whole power by products."""
+    if power != int(power):
+        return x**power
+    product = 1.0
+    for _ in range(int(power)):
+        product *= x
+    return product
+
+
+@compiled
+def soften(c, balls, dt, solref, solimp):
+    """Give contact c the target and the softness that MuJoCo's contact has."""
+    d = impedance(c.depth, solimp)
+    d1 = solimp[1]
+    if solref[0] > 0.0:
+        timeconst, dampratio = solref
+        K = 1.0 / (d1 * d1 * timeconst * timeconst * dampratio * dampratio)
+        B = 2.0 / (d1 * timeconst)
+    else:
+        K = -solref[0] / (d1 * d1)
+        B = -solref[1] / d1
+    v_n = normal_velocity(c, balls)
+    inv_mass = balls[c.a].inv_mass + balls[c.b].inv_mass
+    c.target = v_n + dt * (K * d * c.depth - B * v_n)
+    c.softness = larger(1e-15, (1.0 - d) / d * inv_mass)
+    c.m_eff = 1.0 / (inv_mass + c.softness)
+
+
+@compiled
+def soft_step(balls, contacts, last, knobs):
+    """One step of MuJoCo's contact: lcp's step with another target, and softness.
+
+    Returns whether its sweeps settled.
+    """
+    for c in contacts:
+        soften(c, balls, knobs.dt, knobs.solref, knobs.solimp)
+    accelerate(balls, knobs)
+    fastest = abs(contacts[0].target) if len(contacts) > 0 else 0.0
+    for c in contacts:
+        fastest = larger(fastest, abs(c.target))
+    for ball in balls[:-1]:
+        fastest = larger(larger(fastest, abs(ball.vx)), abs(ball.vy))
+    warm_start(balls, contacts, last, knobs.warm)
+    settled = solve_contacts(balls, contacts, knobs.most_sweeps, knobs.last_bits * fastest)
+    move(balls, knobs.dt)
+    return settled
+
+
+def make_balls(q, v, mass, radius):
+    """The balls of a state: q, v (2, N), mass, radius (N,). The floor comes last."""
+    balls = np.zeros(len(mass) + 1, BALL)
+    columns = {"x": q[0], "y": q[1], "vx": v[0], "vy": v[1], "mass": mass, "radius": radius}
+    for name, values in columns.items():
+        balls[name][:-1] = values
+    balls["inv_mass"][:-1] = 1.0 / balls["mass"][:-1]
+    return balls
+
+
+@compiled
+def same(state, other, contacts, others):
+    """Whether states and impulses are equal. Then their futures are, but for signs of zeros."""
+    return ((state == other).all() and len(contacts) == len(others)
+            and (contacts["lam"] == others["lam"]).all()
+            and (contacts["a"] == others["a"]).all() and (contacts["b"] == others["b"]).all())
+
+
+@compiled
+def take_steps(rows, settled, balls, pairs, last, cycles, knobs):
+    """Take len(rows) - 1 steps, and write the states to rows[1:] and what settled to settled[1:].
+
+    `last` are the contacts of the step before. Returns pairs and contacts as they are at the end,
+    the steps taken, and 0. With `cycles` a state that has come before ends the steps, since all
+    repeats from there, and in place of 0 stands how many steps ago it was. A state is compared
+    with one other, that of the largest power of two (Brent 1980).
+    """
+    contacts = spare = np.empty(0, CONTACT)
+    mark, marked = 1, last[:0]
+    for k in range(1, len(rows)):
+        if farthest_move(balls) > 0.499 * knobs.skin:
+            pairs = list_pairs(balls, knobs.margin + knobs.skin)
+        if len(contacts) < len(balls) + pairs.shape[1]:
+            contacts = np.empty(len(balls) + 2 * pairs.shape[1], CONTACT)
+        found = detect_contacts(balls, pairs, knobs.margin, contacts)
+        settled[k] = True
+        if knobs.model == PENALTY:
+            penalty_step(balls, found, knobs)
+        elif knobs.model == LCP:
+            lcp_step(balls, found, last, knobs)
+        else:
+            settled[k] = soft_step(balls, found, last, knobs)
+        rows[k, 0], rows[k, 1] = balls["x"][:-1], balls["y"][:-1]
+        rows[k, 2], rows[k, 3] = balls["vx"][:-1], balls["vy"][:-1]
+        if knobs.warm > 0.0:
+            last = found
+            contacts, spare = spare, contacts
+        if cycles and k > mark and same(rows[k], rows[mark], last, marked):
+            return pairs, last.copy(), k, k - mark
+        if k == 2 * mark or k == 1:
+            mark, marked = k, last.copy()
+    return pairs, last.copy(), len(rows) - 1, 0
+
+
+class Motion:
+    """A run by penalty, lcp or soft that can be taken on by some steps at a time."""
+
+    def __init__(self, model, scene, dt, settings):
+        solref, solimp = contact.soft_defaults(scene.restitution, dt, settings.solref,
+                                               settings.solimp)
+        warm = {"penalty": 0.0, "lcp": float(settings.warm), "soft": 1.0}[model]
+        self.knobs = Knobs(
+            MODELS.index(model), float(dt), contact.GRAVITY,
+            contact.CONTACT_MARGIN if model == "lcp" else 0.0, float(np.median(scene.radius)),
+            float(settings.stiffness), float(scene.damping), float(scene.restitution),
+            float(settings.baumgarte), int(settings.iters), warm, contact.MOST_SWEEPS,
+            contact.LAST_BITS, tuple(map(float, solref)), tuple(map(float, solimp)))
+        self.balls = make_balls(scene.q0, scene.v0, scene.mass, scene.radius)
+        self.pairs = list_pairs(self.balls, self.knobs.margin + self.knobs.skin)
+        self.last = np.empty(0, CONTACT)
+
+    def take(self, rows, settled, cycles):
+        """Take len(rows) - 1 steps at most, as take_steps does; returns steps and period."""
+        self.pairs, self.last, taken, period = take_steps(
+            rows, settled, self.balls, self.pairs, self.last, cycles, self.knobs)
+        return taken, period
+
+
+def simulate(model, scene, dt, steps, settings, report=None):
+    """q and v (steps + 1, 2, N) [m, m/s] of a run by penalty, lcp or soft, and unsettled steps.
+
+    `report(k)` is called with the steps done, now and then.
+    """
+    motion = Motion(model, scene, dt, settings)
+    rows = np.empty((steps + 1, 4, len(scene.mass)))
+    rows[0, :2], rows[0, 2:] = scene.q0, scene.v0
+    settled = np.ones(steps + 1, bool)
+    k, period = 0, 0
+    while k < steps and not period:
+        end = min(k + 1 + STATES // len(scene.mass), steps)
+        taken, period = motion.take(rows[k:end + 1], settled[k:end + 1], settings.skip)
+        k += taken
+        if report:
+            report(k)
+    for past in range(k - period + 1, k + 1):           # what comes again and again
+        rows[past + period::period] = rows[past]
+        settled[past + period::period] = settled[past]
+    rows += 0.0                                         # turns -0.0 into 0.0
+    rows[np.isnan(rows)] = math.nan                     # which has a sign too, left to chance
+    return rows[:, :2], rows[:, 2:], int((~settled).sum())
+
+
+def smallest_gap(q, radius):
+    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
+    nowhere = np.full((2, len(radius)), math.nan)
+    balls = make_balls(nowhere, nowhere, np.ones(len(radius)), radius)
+    gaps = (q[:, 1] - radius).min(-1)
+    finite = np.isfinite(q).all((1, 2))
+    gaps[~finite] = np.minimum(gaps[~finite], contact.pair_gap(q[~finite], radius))
+    gaps[finite] = find_gaps(q[finite].astype(float), balls, float(np.median(radius)))
+    return gaps
+
+
+@compiled
+def find_gaps(q, balls, skin):
+    """The smallest gap in each state; all positions are finite.
+
+    A pair that is not listed was farther apart than `reach`, and may have come nearer by what two
+    balls have moved. Where that does not decide, the pairs are listed anew, as far as it takes.
+    """
+    gaps = np.empty(len(q))
+    pairs = list_pairs(balls, 0.0)
+    reach = -math.inf
+    for k in range(len(q)):
+        balls["x"][:-1], balls["y"][:-1] = q[k, 0], q[k, 1]
+        gaps[k] = gap_of_listed(balls, pairs)
+        if not gaps[k] < 0.999 * reach - 2.0 * farthest_move(balls):
+            reach, gaps[k] = 0.5 * skin + 1e-150, math.inf
+            while not gaps[k] < 0.999 * reach:
+                reach *= 2.0
+                pairs = list_pairs(balls, reach)
+                gaps[k] = gap_of_listed(balls, pairs)
+    return gaps
+
+
+@compiled
+def gap_of_listed(balls, pairs):
+    """The smallest gap to the floor or between listed balls."""
+    gap = math.inf
+    for ball in balls[:-1]:
+        gap = min(gap, ball.y - ball.radius)
+    for k in range(pairs.shape[1]):
+        a, b = balls[pairs[0, k]], balls[pairs[1, k]]
+        dx = b.x - a.x
+        dy = b.y - a.y
+        gap = min(gap, math.sqrt(dx * dx + dy * dy) - (b.radius + a.radius))
+    return gap

@@ -1,0 +1,204 @@
+"""The compiled twin of contact.py gives the bytes of the plain loops, whatever it is given."""
+
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import contact
+
+fast = pytest.importorskip("curriculum.fast", reason="numba is missing", exc_type=ImportError)
+ROOT = Path(__file__).resolve().parents[2]
+MODELS = ("penalty", "lcp", "soft")
+WILD = (math.nan, math.inf, -math.inf, 1e200, -1e308, 1e-200, -0.0)
+
+
+def check_same(model, scene, dt, steps, **knobs):
+    """Both ways give the same bytes, or both stop at the same error. Returns what the twin gave."""
+    chosen, found = contact.Settings(**knobs), []
+    for way in (plainly, fast.simulate):
+        try:
+            found.append(way(model, scene, dt, steps, chosen))
+        except ArithmeticError as error:
+            found.append(type(error))
+    one, other = found
+    if isinstance(one, type) or isinstance(other, type):
+        assert one is other
+        return None
+    for name, left, right in zip("qv", one, other):
+        differ = (left.view(np.int64) != right.view(np.int64)).any((1, 2))
+        assert not differ.any(), f"{name} of {model} first differs at step {differ.argmax()}"
+    assert one[2] == other[2], "steps that did not settle"
+    gaps = [way(other[0], scene.radius) for way in (fast.smallest_gap, every_gap)]
+    np.testing.assert_array_equal(*gaps)
+    return other
+
+
+def plainly(model, scene, dt, steps, chosen):
+    """q, v and unsettled steps by contact.py's own loops, no step left out."""
+    return contact.run_model(model, scene, dt, steps, chosen._replace(skip=False))[1:]
+
+
+@np.errstate(all="ignore")
+def every_gap(q, radius):
+    """The smallest gap in each state, from all pairs."""
+    return np.minimum((q[:, 1] - radius).min(-1), contact.pair_gap(q, radius))
+
+
+# Scenes of every kind
+
+PLACE = st.one_of(st.integers(-6, 6).map(lambda k: 0.1 * k), st.floats(-0.7, 0.7))
+SPEED = st.one_of(st.just(0.0), st.floats(-5.0, 5.0))
+MASS = st.one_of(st.just(1.0), st.floats(-1.5, 1.5).map(lambda power: 10.0**power),
+                 st.just(math.inf))
+RADIUS = st.sampled_from((0.1, 0.1, 0.1, 0.05, 0.3, 0.0123, 2.0, 10.0))
+OFFSET = st.sampled_from((0.0, 0.0, 0.0, 1e5, -1e9, 1e15))
+
+
+@st.composite
+def scenes(draw):
+    """1 to 40 balls in a small box, so that many touch; some are placed or thrown anywhere."""
+    count = draw(st.one_of(st.integers(1, 6), st.integers(1, 40)))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    few = min(count, 8)
+    columns = [st.lists(kind, min_size=few, max_size=few)
+               for kind in (PLACE, PLACE, SPEED, SPEED, MASS, RADIUS)]
+    x, y, vx, vy, mass, radius = (np.resize(np.array(draw(column), float), count)
+                                  for column in columns)
+    side = 0.1 * math.sqrt(count) if count > few else 0.0
+    q0 = np.array((x, abs(y))) + rng.uniform(-side, side, (2, count))
+    v0 = np.array((vx, vy))
+    if draw(st.integers(0, 3)) == 0:
+        state = draw(st.sampled_from((q0, v0)))
+        state[draw(st.integers(0, 1)), draw(st.integers(0, count - 1))] = draw(
+            st.sampled_from(WILD))
+    q0[0] += draw(OFFSET)
+    e = draw(st.sampled_from((0.0, 0.0, 0.5, 1.0)))
+    return contact.Scene("drawn", q0, v0, mass, radius, e, draw(st.sampled_from((0.0, 80.0))))
+
+
+@settings(max_examples=200, deadline=None, derandomize=True,
+          suppress_health_check=[HealthCheck.too_slow])
+@given(scene=scenes(), model=st.sampled_from(MODELS),
+       dt=st.sampled_from((0.002, 0.002, 1e-4, 0.03, 1e154)),
+       stiffness=st.sampled_from((1e4, 0.0, 1e300)), baumgarte=st.floats(0.0, 1.0),
+       iters=st.integers(1, 20), warm=st.sampled_from((0.0,)),
+       solimp=st.sampled_from((None, None, (0.0, 0.99, 0.02, 0.4, 2.5), (0.5, 0.9, 0.0, 0.5, 1.0))))
+def test_the_twin_has_the_bytes_of_the_plain_loops(scene, model, dt, solimp, **knobs):
+    solref = (-1e3, -50.0) if model == "soft" and scene.restitution > 0.0 else None
+    check_same(model, scene, dt, 12, solimp=solimp, solref=solref, **knobs)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_balls_rest(model):
+    for name in ("drop", "bounce", "stack"):
+        check_same(model, contact.build_scene(name, 3), 0.002, 1200, warm=0.0)
+    check_same(model, contact.build_scene("pile", 1, 24, restitution=0.4), 0.004, 150)
+
+
+def test_the_twin_counts_the_steps_that_do_not_settle_as_the_plain_loops_do():
+    scene = contact.build_scene("stack", 0, 2, restitution=0.5)
+    scene.q0[1] -= scene.q0[1, 0] - contact.RADIUS
+    unsettled = check_same("soft", scene._replace(mass=np.array((1.0, 1e5))), 0.002, 6)[2]
+    assert 0 < unsettled <= 6
+
+
+def test_steps_that_a_cycle_copies_are_counted_as_taken():
+    scene = contact.build_scene("stack", 0, 2, restitution=0.5)
+    scene = scene._replace(mass=np.array((1.0, 1e3)))
+    taken, copied = (fast.simulate("soft", scene, 0.002, 600, contact.Settings(skip=skip))
+                     for skip in (False, True))
+    assert taken[2] == copied[2] > 0
+    assert np.array_equal(taken[:2], copied[:2])
+
+
+# Walls, and balls of unequal size
+
+def shaft(count, width, wall=0.1, seed=0):
+    """Balls over one another in a shaft, `width` of them wide, between walls of fixed balls."""
+    rng = np.random.default_rng(seed)
+    place = rng.permutation(count)
+    x = 0.25 * (place % width - 0.5 * (width - 1)) + rng.uniform(-0.01, 0.01, count)
+    y = 0.25 * (place // width + 0.5) + rng.uniform(0.0, 0.01, count)
+    heights = np.arange(wall, y.max(), 2.05 * wall)
+    side = 0.125 * width + wall
+    x = np.concatenate((x, np.repeat((-side, side), len(heights))))
+    q0 = np.array((x, np.concatenate((y, heights, heights))))
+    mass = np.repeat((1.0, math.inf), (count, 2 * len(heights)))
+    radius = np.repeat((0.1, wall), (count, 2 * len(heights)))
+    return contact.Scene("shaft", q0, np.zeros_like(q0), mass, radius, 0.0, 80.0)
+
+
+def add_ball(scene, x, y, radius, mass):
+    """The scene with one ball more."""
+    return scene._replace(
+        q0=np.append(scene.q0, [[x], [y]], axis=1), v0=np.append(scene.v0, [[0.0], [0.0]], axis=1),
+        mass=np.append(scene.mass, mass), radius=np.append(scene.radius, radius))
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls(model):
+    check_same(model, shaft(20, 4), 0.004, 120)
+    check_same(model, shaft(20, 4, wall=1.0), 0.004, 120)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_twin_has_the_bytes_of_the_plain_loops_under_a_large_ball(model):
+    crushed = add_ball(shaft(16, 4), 0.3, 12.0, 10.0, 1000.0)
+    crushed.v0[1, -1] = -5.0
+    check_same(model, crushed, 0.004, 120)
+
+
+def test_a_large_ball_adds_no_pairs_of_small_ones():
+    alone = contact.build_scene("pile", 0, 2000)
+    beside = add_ball(alone, 0.0, 30.0, 10.0, 1.0)
+    pairs = [fast.Motion("lcp", scene, 0.002, contact.Settings()).pairs
+             for scene in (alone, beside)]
+    assert np.array_equal(*pairs)
+
+
+def test_a_pile_comes_to_rest_from_a_warm_start_and_lies_less_deep():
+    speed, depth = {}, {}
+    scene = shaft(60, 8)
+    for warm in (0.0, 0.8):
+        q, v, _ = fast.simulate("lcp", scene, 0.002, 6000, contact.Settings(warm=warm))
+        speed[warm] = np.sqrt((v[-1]**2).sum(0)).max()
+        depth[warm] = -fast.smallest_gap(q[-1:], scene.radius)[0]
+    assert max(speed.values()) < 1e-3
+    assert 0.0 < depth[0.8] < 0.6 * depth[0.0]
+
+
+def test_a_run_taken_on_in_parts_has_the_bytes_of_the_whole():
+    scene, chosen = contact.build_scene("pile", 2, 30), contact.Settings(warm=0.8)
+    whole = fast.simulate("lcp", scene, 0.002, 300, chosen)
+    motion = fast.Motion("lcp", scene, 0.002, chosen)
+    rows = np.empty((301, 4, 30))
+    for first, last in ((0, 1), (1, 120), (120, 300)):
+        motion.take(rows[first:last + 1], np.ones(301, bool), False)
+    assert np.array_equal(rows[1:, :2], whole[0][1:])
+    assert np.array_equal(rows[1:, 2:], whole[1][1:])
+
+
+def test_run_model_gives_many_balls_to_the_twin_and_says_how_far_it_is():
+    scene, heard = contact.build_scene("pile", 0, 200), []
+    run = contact.run_model("lcp", scene, 0.002, 130, report=heard.append)
+    assert heard == [130], "the plain loops report every step"
+    assert run.q.tobytes() == plainly("lcp", scene, 0.002, 130, contact.Settings())[0].tobytes()
+
+
+@pytest.mark.parametrize("prepare", ["", "import sys; sys.modules['numba'] = None; "])
+def test_where_nothing_is_compiled_contact_takes_its_plain_loops(prepare):
+    code = (prepare + "import contact; assert contact.beside('fast') is None; "
+            "scene = contact.build_scene('pile', 0, 40); "
+            "print(contact.run_model('lcp', scene, 0.002, 20).q.sum())")
+    environment = dict(os.environ, NUMBA_DISABLE_JIT="0" if prepare else "1")
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment,
+                          capture_output=True, text=True, check=True)
+    whole = fast.simulate("lcp", contact.build_scene("pile", 0, 40), 0.002, 20, contact.Settings())
+    assert float(done.stdout) == whole[0].sum()
