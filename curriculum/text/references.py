@@ -216,11 +216,13 @@ def in_words(value, form: str) -> str:
 
 
 def constant(module: str, key: str):
-    """A constant of a module, the default of a function's argument or of a dataclass's field."""
+    """A constant of a module, the default of an argument or of a field of a named tuple."""
     value = importlib.import_module(module)
     for part in key.split("."):
         if inspect.isfunction(value) and part in inspect.signature(value).parameters:
             value = inspect.signature(value).parameters[part].default
+        elif part in getattr(value, "_field_defaults", ()):
+            value = value._field_defaults[part]
         elif part.isdigit() and isinstance(value, (tuple, list)) and int(part) < len(value):
             value = value[int(part)]
         elif hasattr(value, part):

@@ -1,0 +1,308 @@
+"""The gate on a small project of its own: the real contact.py and rooms, a short chapter and README."""
+
+import hashlib
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from curriculum.machine import fingerprint
+from curriculum.text import references, regions
+
+yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
+ROOT = Path(__file__).resolve().parents[2]
+CHAPTER = "curriculum/prose/chapter.md"
+OPENING = """# Chapter
+
+## A sponge
+
+The ball rests {{quality.penalty.rest_penetration_frac|.5f}} r deep, seen from a margin of
+{{contact.CONTACT_MARGIN * 1000|.0f}} mm.
+<!-- holds: quality.penalty.rest_penetration_frac > quality.lcp.rest_penetration_frac -->
+
+## A sweep
+
+One sweep of `solve_contacts` pushes. Python 3.10 and $k = 10$ are no typed numbers.
+
+## Code
+"""
+README = """# Project
+
+## Run
+
+<!-- generated: exact by python contact.py --contact exact -->
+<!-- end -->
+"""
+META = "runs:\n  drop: [--contact, all]\n\nregion_hashes:\n\nsection_hashes:\n"
+PENDING = (
+    "chapter,tier,wallclock_min,config_hash,commit,date,status\nch3.5-contact,t4,,,,,PENDING\n"
+)
+
+
+def run_gate(project, *flags):
+    """`python -m curriculum.text FLAGS` in a project: the finished process."""
+    command = [sys.executable, "-B", "-m", "curriculum.text", *flags]
+    return subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
+
+
+def edit(path, old, new):
+    """Replace a text that stands once in a file."""
+    text = path.read_text("utf-8")
+    assert text.count(old) == 1, (path, old, text.count(old))
+    path.write_text(text.replace(old, new), "utf-8")
+
+
+@pytest.fixture(scope="module")
+def accepted(tmp_path_factory):
+    """A project that is in order and in git; its runs are cached."""
+    project = tmp_path_factory.mktemp("project")
+    for file in ("contact.py", "curriculum/__init__.py", "curriculum/machine.py", ".gitignore"):
+        (project / file).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / file, project / file)
+    shutil.copytree(ROOT / "curriculum/text", project / "curriculum/text")
+    (project / "curriculum/prose").mkdir()
+    shown = "".join(
+        f"\n```\n[include-by-region: contact.py#{name}]\n```\n"
+        for name in regions.read(ROOT / "contact.py")
+    )
+    (project / CHAPTER).write_text(OPENING + shown, "utf-8")
+    (project / "README.md").write_text(README, "utf-8")
+    (project / "meta.yaml").write_text(META, "utf-8")
+    (project / "wallclock.csv").write_text(PENDING, "utf-8")
+    assert run_gate(project, "--write").returncode == 0
+    sections = (
+        "chapter/chapter chapter/a-sponge chapter/a-sweep chapter/code README/project README/run"
+    )
+    assert run_gate(project, "--accept", *sections.split()).returncode == 0
+    assert run_gate(project).returncode == 0
+    for words in ("init", "add .", "-c user.name=x -c user.email=x@x commit --message x"):
+        subprocess.run(["git", *words.split()], cwd=project, check=True, capture_output=True)
+    return project
+
+
+@pytest.fixture
+def project(accepted, tmp_path):
+    """A copy of it for one test."""
+    return shutil.copytree(accepted, tmp_path / "project")
+
+
+def test_project_that_was_read_passes_and_nothing_is_written(project):
+    before = {path: path.read_bytes() for path in project.rglob("*") if path.is_file()}
+    run = run_gate(project)
+    assert (run.returncode, run.stdout) == (0, "text, code, numbers and results agree\n"), (
+        run.stderr
+    )
+    assert before == {path: path.read_bytes() for path in project.rglob("*") if path.is_file()}
+
+
+def test_every_fault_of_the_chapter_is_named_with_its_line_and_repair(project):
+    chapter = project / CHAPTER
+    edit(chapter, "[include-by-region: contact.py#flight]", "[include-by-region: contact.py#fligt]")
+    edit(chapter, "contact.py#quality]", "contact.py#quality] and more")
+    edit(chapter, "contact.py#measure]", "contact.py#sweep]")
+    edit(chapter, "r deep,", "r deep, 0.25 r, {{= 3}} {{quality.penalty.depth|.1f}},")
+    edit(chapter, "frac > quality.lcp", "frac < quality.lcp")
+    printed = run_gate(project).stdout
+    false = "quality.penalty.rest_penetration_frac < quality.lcp.rest_penetration_frac"
+    for line, what in (
+        (5, "a typed number, 0.25; repair: write {{KEY|FORMAT}}"),
+        (5, "'= 3': a typed number needs a reason: {{= NUMBER | REASON}}"),
+        (5, "'quality.penalty.depth|.1f': 'quality.penalty.depth' is not among the generated"),
+        (7, f"'{false}' does not hold; repair: correct the text"),
+    ):
+        assert f"{CHAPTER}:{line}: {what}" in printed
+    assert "includes fligt, and contact.py has no such region; repair: name one of" in printed
+    assert "an include that is not alone in its fence, or not well formed" in printed
+    assert "includes sweep a second time; repair: delete one of the two" in printed
+    for name in ("flight", "quality", "measure"):
+        assert f"region {name} is never shown" in printed
+
+
+def test_markers_that_are_wrong_and_code_outside_of_regions_are_named(project):
+    script = project / "contact.py"
+    edit(script, "# --- region: flight ---", "# --- region flight ---\nlost = 1")
+    text = script.read_text("utf-8")
+    line = text[: text.index("# --- region flight ---")].count("\n") + 1
+    printed = run_gate(project).stdout
+    assert f"contact.py:{line}: '# --- region flight ---' outside any region" in printed
+    assert f"contact.py:{line + 1}: code outside any region: 'lost = 1'" in printed
+    assert "includes flight, and contact.py has no such region" in printed
+
+
+def test_changed_comment_costs_one_command_after_the_diff_was_read(project):
+    first = regions.read(project / "contact.py")["sweep"]
+    edit(project / "contact.py", first.code, first.code + "# a better word\n")
+    failed = run_gate(project)
+    assert failed.returncode == 1
+    assert "+# a better word" in failed.stdout
+    assert "section chapter/a-sweep speaks of sweep, which changed" in failed.stdout
+    command = failed.stdout.splitlines()[-1].split(": python -m curriculum.text ")[1].split()
+    assert command == ["--accept", "chapter/a-sweep", "chapter/code"]
+    took = run_gate(project, *command)
+    assert took.returncode == 0 and "+# a better word" in took.stdout
+    assert run_gate(project).returncode == 0
+    hashes = yaml.safe_load((project / "meta.yaml").read_text("utf-8"))["region_hashes"]
+    assert (
+        hashes["sweep"] == hashlib.sha256((first.code + "# a better word\n").encode()).hexdigest()
+    )
+
+
+def test_region_hash_moves_only_when_every_section_that_speaks_of_it_was_read(project):
+    before = yaml.safe_load((project / "meta.yaml").read_text("utf-8"))["region_hashes"]
+    edit(project / "contact.py", "# --- region: sweep ---\n", "# --- region: sweep ---\n# new\n")
+    run_gate(project, "--accept", "chapter/code")
+    assert yaml.safe_load((project / "meta.yaml").read_text("utf-8"))["region_hashes"] == before
+    run_gate(project, "--accept", "chapter/a-sweep")
+    after = yaml.safe_load((project / "meta.yaml").read_text("utf-8"))["region_hashes"]
+    assert {name for name in after if after[name] != before[name]} == {"sweep"}
+
+
+def test_edited_sentence_waits_for_a_reader_and_shows_what_changed(project):
+    edit(project / CHAPTER, "pushes. Python", "pulls. Python")
+    failed = run_gate(project)
+    assert f"{CHAPTER}:9: section chapter/a-sweep changed since it was last read" in failed.stdout
+    assert "-One sweep of `solve_contacts` pushes." in failed.stdout
+    assert "+One sweep of `solve_contacts` pulls." in failed.stdout
+    assert failed.stdout.endswith("python -m curriculum.text --accept chapter/a-sweep\n")
+
+
+def test_section_that_does_not_exist_cannot_be_accepted_and_gone_ones_are_taken_out(project):
+    refused = run_gate(project, "--accept", "chapter/nowhere")
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("given chapter/nowhere, allowed: chapter/chapter, chapter/a-")
+    edit(project / CHAPTER, "## A sponge", "### A sponge in water")
+    failed = run_gate(project)
+    assert "hashes of what is not there: chapter/a-sponge; repair: " in failed.stdout
+    assert run_gate(project, "--accept", "chapter/a-sponge-in-water").returncode == 0
+    assert run_gate(project).returncode == 0
+
+
+def test_results_and_ledger_of_other_code_are_stale_until_measured_again(project):
+    measured = {"command": "python -m curriculum.bench skip", "code": {"contact.py": "0" * 12}}
+    folder = project / "curriculum/bench/results"
+    folder.mkdir(parents=True)
+    (folder / "results.json").write_text(json.dumps({"skip": {"measured": measured, "n": 3}}))
+    row = "ch3.5-contact,cpu,0.01,0123456789ab,1234567,2026-01-02,MEASURED\n"
+    (project / "wallclock.csv").write_text(PENDING + row)
+    edit(project / CHAPTER, "pushes. Python", "pushes {{bench:skip.n}}. Python")
+    printed = run_gate(project).stdout
+    assert (
+        "curriculum/bench/results/results.json:1: section skip was measured on other code "
+        "(contact.py); repair: python -m curriculum.bench skip\n" in printed
+    )
+    assert "wallclock.csv:3: cpu was measured on other code; repair: python -m " in printed
+    measured["code"] = fingerprint("contact.py", root=project)
+    (folder / "results.json").write_text(json.dumps({"skip": {"measured": measured, "n": 3}}))
+    edit(project / "contact.py", "# --- region: sweep ---\n", "# --- region: sweep ---\n# a word\n")
+    assert "section skip was measured" not in run_gate(project).stdout
+
+
+def test_row_of_the_ledger_is_whole_or_pending(project):
+    (project / "wallclock.csv").write_text(PENDING + "ch3.5-contact,cpu,0.01,,,,PENDING\n")
+    assert (
+        "wallclock.csv:3: neither a whole MEASURED row nor a PENDING one"
+        in run_gate(project).stdout
+    )
+
+
+def test_generated_block_that_was_edited_fails_until_written_anew(project):
+    readme = project / "README.md"
+    whole = readme.read_text("utf-8")
+    edit(readme, "state", "statue")
+    failed = run_gate(project).stdout
+    assert (
+        "README.md:5: block exact is out of date; repair: python -m curriculum.text --write"
+        in failed
+    )
+    assert "section README/run" not in failed
+    assert run_gate(project, "--write").returncode == 0
+    assert readme.read_text("utf-8") == whole
+
+
+def test_runs_are_kept_until_the_code_changes(project):
+    (kept,) = (project / ".cache").glob("run-drop.*.json")
+    stamp = kept.stat().st_mtime_ns
+    run_gate(project)
+    assert kept.stat().st_mtime_ns == stamp
+    edit(project / "contact.py", "EXPLODED = 10.0", "EXPLODED = 11.0")
+    run_gate(project)
+    (again,) = (project / ".cache").glob("run-drop.*.json")
+    assert again != kept
+
+
+def test_missing_package_is_named_as_such(project):
+    (project / "yaml.py").write_text("raise ModuleNotFoundError('No yaml', name='yaml')\n")
+    run = run_gate(project)
+    assert run.returncode == 2
+    assert run.stderr == "the gate needs yaml, which is missing: pip install -e '.[dev]'\n"
+
+
+# numbers by reference, on runs given by hand
+
+
+@pytest.fixture
+def numbers():
+    drop = {
+        "steps": 2000,
+        "quality": {"lcp": {"depth": 0.0567, "state": "ok"}, "soft": {"depth": 0.17}},
+    }
+    return references.Numbers({"drop": drop, "drop-dt-0.03": {"quality": {"lcp": {"depth": 1.3}}}})
+
+
+@pytest.mark.parametrize(
+    "reference, text",
+    [
+        ("steps", "2000"),
+        ("quality.lcp.depth|.2f", "0.06"),
+        ("drop-dt-0.03:quality.lcp.depth|.1f", "1.3"),
+        ("quality.soft.depth / quality.lcp.depth|times", "three times"),
+        ("quality.lcp.depth * 2 + 1|.4f", "1.1134"),
+        ("quality.soft.depth * 100 - 16|words", "one"),
+        ("quality.lcp.state", "ok"),
+        ("= 1972 | year of the paper", "1972"),
+        ("contact.RADIUS|.1f", "0.1"),
+        ("contact.Settings.iters", "20"),
+        ("contact.SCENES.0", "drop"),
+    ],
+)
+def test_reference_becomes_a_number(numbers, reference, text):
+    assert numbers.fill(f"so {{{{{reference}}}}} it is") == f"so {text} it is"
+
+
+@pytest.mark.parametrize(
+    "reference, error",
+    [
+        ("quality.lcp.depth", "is a fraction and needs a format"),
+        ("quality.lcp.deep|.2f", "no 'deep'; known there: depth, state"),
+        ("nowhere:steps", "no run 'nowhere' in meta.yaml; known: drop"),
+        ("contact.NOTHING", "contact.NOTHING: there is no 'NOTHING'"),
+        ("quality.lcp|.2f", "no number"),
+        ("steps / 0|.1f", "divides by zero"),
+        ("steps + quality.lcp.state", "reckons with what is no number"),
+        ("quality.soft.depth * 20|words", "no whole number"),
+        ("fact:nothing.key", "no fact 'nothing'"),
+    ],
+)
+def test_reference_that_cannot_be_made_says_what_is_known(numbers, reference, error):
+    with pytest.raises(ValueError, match=error.replace("(", r"\(")):
+        numbers.fill(f"{{{{{reference}}}}}")
+
+
+def test_sentence_in_words_is_held_to_the_numbers(numbers):
+    assert numbers.holds("quality.soft.depth > 2 * quality.lcp.depth")
+    assert not numbers.holds("quality.soft.depth <= quality.lcp.depth")
+    with pytest.raises(ValueError, match="is not 'EXPRESSION < EXPRESSION'"):
+        numbers.holds("quality.soft.depth")
+
+
+def test_hash_of_a_region_is_that_of_the_text_between_its_markers():
+    lines = (ROOT / "contact.py").read_bytes().split(b"\n")
+    first = lines.index(b"# --- region: sweep ---")
+    last = lines.index(b"# --- endregion ---", first)
+    shown = b"".join(line + b"\n" for line in lines[first + 1 : last])
+    sweep = regions.read(ROOT / "contact.py")["sweep"]
+    assert sweep.sha == hashlib.sha256(shown).hexdigest() and sweep.line == first + 2
+    assert "solve_contacts" in sweep.defines
