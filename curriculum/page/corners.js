@@ -1,0 +1,170 @@
+/* The corner, five times: gap to the right, force upwards, what a model allows as a line, and the state
+ * that runs along it while the reader lifts the ball or presses it into the table. */
+import { arrow, ball, el, linePath, number, plot, table } from "./draw.js";
+import { knobsOf } from "./store.js";
+import { pushOfTable, runModel, soften } from "./engine.js";
+import { axis, clipped, forceLength, G, kept, label, line, R, scene, shift, split, within } from "./parts.js";
+
+const PULL = 64; // px below the ball at which the hand presses hardest
+// What a picture shows: gaps from low to high [r], a radius in px, the hardest press in weights, ticks.
+const WIDE = { low: -0.4, high: 1, r: 50, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
+const NEAR = { low: -0.03, high: 0.06, r: 1000, most: 12, xs: [-0.02, 0, 0.04], ys: [0, 4, 8, 12] };
+const floorOf = (view) => view.height - 74;
+
+// hand: above 0 the ball is held so high [r]; below 0 it is pressed, at -1 as hard as the picture shows.
+const loadOf = (law, view) => Math.max(0, -view.own.hand) * Math.min(law.near.most, law.most ? law.most(view) : Infinity);
+
+export function stateOf(law, view) {
+  const load = loadOf(law, view);
+  return { load, gap: load > 0 ? law.gap(load, view) : Math.max(0, view.own.hand), force: load };
+}
+
+const handY = (law, view) => floorOf(view) - 50 - view.own.hand * (view.own.hand > 0 ? law.near.r : PULL);
+
+function scenery(law, view, state, left) {
+  const [floor, x, r] = [floorOf(view), left / 2, law.near.r];
+  const y = floor - r - state.gap * r;
+  const hand = handY(law, view);
+  const pull = forceLength(state.load, 14);
+  return clipped(
+    `${law.name}-scene`, 0, 0, left, view.height,
+    table(0, floor, left, 74),
+    ball(law.model, x, y, r, r > 100 ? "ball plainly" : "ball"),
+    law.ghosts ? law.ghosts(view, state, x, floor, r) : "",
+    arrow(`push m-${law.model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -forceLength(state.force, 100 / Math.sqrt(law.near.most))),
+    view.own.hand > 0 ? line(x, hand, x, 0, "hand") : arrow("weight", x, Math.max(2, y - r - pull), 0, Math.min(pull, y - r - 2)),
+  );
+}
+
+function chartOf(law, view, state, width) {
+  const { low, high, most, xs, ys } = law.near;
+  const chart = plot({
+    id: law.name,
+    width,
+    height: view.height,
+    x: axis([low, high], "gap / r", ...xs),
+    y: axis([-0.035 * most, 1.07 * most], "force / m g", ...ys),
+    points: [{ model: law.model, x: state.gap, y: Math.min(1.05 * most, state.force), size: 7 }],
+  });
+  const { box, sx, sy } = chart;
+  const allowed = `M${box.right} ${sy(0)}H${sx(0)}V${box.top}`;
+  const drawn = law.curve(view);
+  const path = linePath(drawn.xs, drawn.ys, sx, sy, [box.top, box.bottom]);
+  const beneath = el("path", { d: allowed, class: "allowed" });
+  const above = clipped(
+    `${law.name}-law`, box.left, box.top - 4, box.right - box.left, box.bottom - box.top + 8,
+    el("path", { d: path, class: `law m-${law.model}` }),
+  );
+  return beneath + above + (law.more ? law.more(view, state, chart) : "") + chart.markup;
+}
+
+function draw(law, view) {
+  const state = stateOf(law, view);
+  const { left, right, at } = split(view.width);
+  const said = state.load > 0 ? `Pressed with ${number(state.load, 2)} m g` : "Held by the hand";
+  const text = `gap ${number(state.gap, 2)} r, force ${number(state.force, 2)} m g`;
+  return {
+    svg: scenery(law, view, state, left) + shift(at, 0, chartOf(law, view, state, right)),
+    words: `${said}: ${text}.${law.words ? ` ${law.words(view, state)}` : ""}`,
+    handles: [{ name: "ball", x: left / 2, y: handY(law, view), r: 20, label: "the ball: lift it or press it", value: view.own.hand, text }],
+  };
+}
+
+// A corner with one model's law: {name, model, near, gap(load, view), curve(view), ...}.
+export function corner(law, about) {
+  const set = (view, hand) => (view.own.hand = Number(within(-1, hand, law.near.high).toFixed(3)));
+  return {
+    height: 260,
+    start: () => ({ hand: 0.5 * law.near.high }),
+    draw: (view) => draw(law, view),
+    drag(view, name, x, y) {
+      const up = floorOf(view) - 50 - y;
+      set(view, up / (up > 0 ? law.near.r : PULL));
+    },
+    nudge: (view, name, dx, dy) => set(view, view.own.hand - 0.05 * dy * (view.own.hand - 1e-9 * dy > 0 ? law.near.high : 1)),
+    ...about,
+  };
+}
+
+const bare = { near: WIDE, model: "exact", gap: () => 0, curve: () => ({ xs: [WIDE.high, 0, 0], ys: [0, 0, 2 * WIDE.most] }) };
+export const LAWS = {
+  corner: { ...bare, name: "corner" },
+  exact: { ...bare, name: "corner-exact" },
+};
+
+// The two events at which exact changes from one side of the corner to the other.
+LAWS.exact.more = (view, state, { sx, sy, box }) =>
+  el("circle", { cx: sx(0), cy: sy(0), r: 12, class: "event" }) +
+  label("until the gap is 0", sx(0.96), sy(0) - 10, "end") +
+  label("until the force is 0", sx(0) + 10, box.top + 14);
+LAWS.exact.words = (view, state) =>
+  state.load > 0 ? "It rests until the force falls to 0: an event." : "It flies until the gap falls to 0: an event.";
+
+const stiffest = (view) => view.get("stiffness") * R / G; // weights a radius
+LAWS.penalty = {
+  name: "corner-penalty",
+  model: "penalty",
+  near: WIDE,
+  most: (view) => -WIDE.low * stiffest(view),
+  gap: (load, view) => -load / stiffest(view),
+  curve: (view) => ({ xs: [WIDE.high, 0, (-2 * WIDE.most) / stiffest(view)], ys: [0, 0, 2 * WIDE.most] }),
+};
+
+/* lcp: the ball comes from FROM radii above, drawn down by the load, and lcp looks once a step. A load of
+ * L weights is a gravity of L g, and that is our own gravity where the clock runs sqrt(L) as fast. */
+const FROM = 0.8;
+const arrival = kept((load, knobs) => {
+  const one = scene([(1 + FROM) * R]);
+  const run = runModel("lcp", one, { ...knobs, dt: knobs.dt * Math.sqrt(load) }, 400);
+  const gaps = Array.from(run.y, (y) => (y - R) / R);
+  const forces = gaps.map((_, row) => (row ? (load * pushOfTable(run, one, row)) / G : 0));
+  const still = gaps.findIndex((gap, row) => row > 1 && forces[row] > 0 && Math.abs(gap - gaps[row - 1]) < 1e-6);
+  const shown = still < 0 ? gaps.length : still + 1;
+  return { gaps: gaps.slice(0, shown), forces: forces.slice(0, shown) };
+});
+const looks = (view, { load }) => (load >= 1 ? arrival(load, { ...knobsOf(view.values), restitution: 0 }) : { gaps: [], forces: [] });
+const deepest = (view, state) => Math.min(0, ...looks(view, state).gaps);
+
+LAWS.lcp = {
+  ...bare,
+  name: "corner-lcp",
+  model: "lcp",
+  more(view, state, { sx, sy }) {
+    const { gaps, forces } = looks(view, state);
+    const rings = gaps.map((gap, row) => [sx(gap), sy(Math.min(1.05 * WIDE.most, forces[row]))]);
+    return rings.map(([cx, cy]) => el("circle", { cx, cy, r: 4, class: "look m-lcp" })).join("");
+  },
+  ghosts: (view, state, x, floor, r) => ball("lcp", x, floor - r - deepest(view, state) * r, r, "ghost"),
+  words: (view, state) =>
+    looks(view, state).gaps.length
+      ? `It came in ${looks(view, state).gaps.length} steps; the step before the first push ended ${number(-deepest(view, state), 2)} r deep.`
+      : "",
+};
+
+// soft: at rest the solver asks for no velocity where lam = target / R.
+const softLoad = (gap, view) => {
+  const knobs = { ...knobsOf(view.values), restitution: 0 };
+  const contact = { i: 0, j: -1, nx: 0, ny: 1, depth: -gap * R };
+  const { target, softness } = soften(contact, scene([R * (1 + gap)]), scene([R]), knobs);
+  return target / softness / (G * knobs.dt);
+};
+const softGap = (load, view) => {
+  let [low, high] = [-2, 0];
+  for (let k = 0; k < 50; k++) {
+    const middle = 0.5 * (low + high);
+    if (softLoad(middle, view) > load) low = middle;
+    else high = middle;
+  }
+  return low;
+};
+LAWS.soft = {
+  name: "corner-soft",
+  model: "soft",
+  near: NEAR,
+  most: (view) => softLoad(NEAR.low, view),
+  gap: softGap,
+  curve(view) {
+    const xs = [NEAR.high, ...Array.from({ length: 61 }, (_, k) => (1.2 * NEAR.low * k) / 60)];
+    return { xs, ys: xs.map((gap) => (gap < 0 ? softLoad(gap, view) : 0)) };
+  },
+};

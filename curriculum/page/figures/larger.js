@@ -1,0 +1,81 @@
+/* Bounce or bias: the target is the larger of the two, not their sum. */
+import { arrow, ball, number, plot, steps, table } from "../draw.js";
+import { normalSpeed, runModel } from "../engine.js";
+import { knobsOf } from "../store.js";
+import { clipped, G, kept, label, R, scene, shift, split, START, tidy, within } from "../parts.js";
+
+const [PX, SPEED, SECONDS] = [54, 20, 0.9]; // px a radius, px for 1 m/s, s
+const DEEPEST = 0.5; // r
+const ARRIVES = Math.sqrt(2 * G * (START - R)); // m/s
+const floorOf = (view) => view.height - 46;
+
+// The two wishes [m/s] for a ball that is found so deep [r].
+export function wishes(depth, { restitution, baumgarte, dt }) {
+  return { bounce: restitution * ARRIVES, bias: (baumgarte / dt) * depth * R };
+}
+
+const sum = (c, state, { restitution, baumgarte, dt }) =>
+  (baumgarte / dt) * Math.max(0, c.depth) + restitution * Math.max(0, -normalSpeed(c, state.vx, state.vy));
+
+// The flights [share of the drop's height] with the engine's target and with the sum.
+const flights = kept((depth, knobs) => {
+  const found = scene([(1 - depth) * R], { vy: [-ARRIVES], restitution: knobs.restitution });
+  return [undefined, sum].map((target) => {
+    const run = runModel("lcp", found, { ...knobs, target }, Math.ceil(SECONDS / knobs.dt));
+    return { t: run.t, ys: Array.from(run.y, (y) => (y - R) / (START - R)) };
+  });
+});
+
+function picture(view, left, { bounce, bias }) {
+  const [floor, x] = [floorOf(view), left / 2];
+  const y = floor - PX + view.own.depth * PX;
+  const speed = (v) => -Math.min(floor - 24, SPEED * v);
+  const wide = left > 150 ? PX + 14 : 0.36 * left;
+  const wanted = [["bounce", bounce, x - wide, -1], ["bias", bias, x + wide, 1]];
+  const arrows = wanted.map(
+    ([name, v, at]) =>
+      arrow(`push m-lcp${v < Math.max(bounce, bias) ? " weaker" : ""}`, at, floor, 0, speed(v)) + label(name, at, floor + 18, "middle"),
+  );
+  return clipped("larger-scene", 0, 0, left, view.height, table(0, floor, left, 46), ball("lcp", x, y, PX), ...arrows);
+}
+
+function draw(view) {
+  const { left, right, at } = split(view.width);
+  const knobs = knobsOf(view.values);
+  const { bounce, bias } = wishes(view.own.depth, knobs);
+  const [larger, both] = flights(view.own.depth, knobs);
+  const law = knobs.restitution ** 2;
+  const chart = plot({
+    id: "larger",
+    width: right,
+    height: view.height,
+    x: { domain: [0, SECONDS], ticks: steps(0, SECONDS, 4), label: "time (s)" },
+    y: { domain: [-0.06, 1.5], ticks: [[0, "0"], [0.5, "0.5"], [1, "1"]], label: "height / drop" },
+    lines: [
+      { model: "lcp", xs: larger.t, ys: larger.ys },
+      { model: "lcp", xs: both.t, ys: both.ys, class: "thin dotted" },
+    ],
+    rules: law > 0 ? [{ y: law, text: "e²", class: "dashed" }] : [],
+  });
+  const high = (flight) => number(Math.max(0, ...flight.ys), 2);
+  const text = `${number(view.own.depth, 2)} r deep: bounce ${number(bounce)} m/s, bias ${number(bias)} m/s`;
+  return {
+    svg: picture(view, left, { bounce, bias }) + shift(at, 0, chart.markup),
+    words: `${text}. The larger lifts the ball to ${high(larger)} of the drop, the sum (dotted) to ${high(both)}.`,
+    handles: [{ name: "ball", x: left / 2, y: floorOf(view) - PX + view.own.depth * PX, r: PX, label: "the ball: how deep lcp finds it", value: view.own.depth, text }],
+  };
+}
+
+const set = (view, depth) => (view.own.depth = tidy(within(0, depth, DEEPEST), 2));
+
+export const figure = {
+  title: "A landing: bounce and bias",
+  caption: "The target is the larger of bounce and bias: with their sum (dotted) a ball that is found deep bounces higher than its material allows.",
+  height: 280,
+  uses: ["dt", "restitution", "baumgarte", "iters"],
+  shows: { scene: "bounce", restitution: 0.7 },
+  start: () => ({ depth: 0.06 }),
+  draw,
+  drag: (view, name, x, y) => set(view, (y - floorOf(view)) / PX + 1),
+  nudge: (view, name, dx, dy) => set(view, view.own.depth + 0.02 * dy),
+};

@@ -1,0 +1,117 @@
+/* One line: every contact with a softness R lies where its target is R times what it must carry. The
+ * spring of penalty taken at the end of the step is one of them. */
+import { el, mark, number, plot } from "../draw.js";
+import { detectContacts, GRAVITY, makeRows, normalSpeed, soften, solveContacts } from "../engine.js";
+import { knobsOf } from "../store.js";
+import { G, kept, label, R, scene, tidy, within } from "../parts.js";
+
+const [LOW, HIGH] = [1e-6, 1];
+const WAYS = {
+  // {target, softness} of a contact of a ball of 1 kg, as each engine chooses them
+  "implicit spring": (c, speed, { stiffness, damping, dt }) => implicit(stiffness, damping, c.depth, dt),
+  "Box2D’s soft step": (c, speed, { dt }) => implicit((60 * Math.PI) ** 2, 2 * 10 * 60 * Math.PI, c.depth, dt), // 30 Hz, ratio 10
+  "CFM and ERP": (c, speed, { dt }) => ({ softness: 1e-5 / dt, target: (0.2 / dt) * c.depth }), // ODE's defaults
+};
+
+// Spring and damper taken at the end of the step: lam = dt (k (depth - dt v_n) - c v_n).
+export function implicit(k, c, depth, dt) {
+  const softness = 1 / (k * dt * dt + c * dt);
+  return { softness, target: dt * k * depth * softness };
+}
+
+// A ball of 1 kg comes to rest by lcp's sweep with this way's {target, softness}: {softness, target, depth}.
+function rests(way, knobs) {
+  const one = scene([R]);
+  const state = { x: [0], y: [R], vx: [0], vy: [0] };
+  let last = { softness: 0, target: 0 };
+  for (let step = 0; step < 4000; step++) {
+    const contacts = detectContacts(state.x, state.y, one.radius, 0);
+    const asked = contacts.map((c) => way(c, normalSpeed(c, state.vx, state.vy), knobs, state, one));
+    state.vy[0] += knobs.dt * GRAVITY;
+    const rows = makeRows(contacts, one.mass, asked.map((each) => each.target), asked.map((each) => each.softness));
+    solveContacts(rows, state.vx, state.vy, { iters: 1 });
+    state.y[0] += knobs.dt * state.vy[0];
+    if (asked.length) last = asked[0];
+  }
+  return { ...last, depth: 1 - state.y[0] / R };
+}
+
+const soft = (c, speed, knobs, state, one) => soften(c, state, one, knobs);
+export const atRest = kept((name, knobs) => rests(WAYS[name] || soft, knobs));
+
+// The points, the two that can be dragged first: [name, model, what it rests with].
+function points(view) {
+  const knobs = { ...knobsOf(view.values), restitution: 0 };
+  const { stiffness, damping, dt, solimp, solref } = knobs;
+  return [
+    ["implicit spring", "penalty", atRest("implicit spring", { stiffness, damping, dt })],
+    ["MuJoCo’s soft", "soft", atRest("soft", { dt, solimp, solref, restitution: 0 })],
+    ["Box2D’s soft step", "lcp", atRest("Box2D’s soft step", { dt })],
+    ["CFM and ERP", "lcp", atRest("CFM and ERP", { dt })],
+  ];
+}
+
+function chartOf(view) {
+  const tens = [1e-5, 1e-3, 0.1].map((v, k) => [v, ["10⁻⁵", "0.001", "0.1"][k]]);
+  return plot({
+    id: "one-line",
+    width: view.width,
+    height: view.height,
+    x: { domain: [LOW, HIGH], log: true, zero: true, ticks: [[0, "0"], ...tens], label: "R m g dt (m/s)" },
+    y: { domain: [LOW, HIGH], log: true, zero: true, ticks: [[0, "0"], ...tens], label: "target at rest (m/s)" },
+    lines: [{ model: "fixed", xs: [0, LOW, HIGH], ys: [0, LOW, HIGH], class: "plainly" }],
+  });
+}
+
+function draw(view) {
+  const chart = chartOf(view);
+  const all = points(view);
+  const at = ({ softness, target }) => [chart.sx(softness * G * view.get("dt")), chart.sy(target)];
+  const marks = all.map(([name, model, rest], k) => {
+    const [x, y] = at(rest);
+    return k < 2 ? mark(model, x, y, 8) : el("circle", { cx: x, cy: y, r: 6, class: "dot" });
+  });
+  const names = all.map(([name, , rest], k) => {
+    const [x, y] = at(rest);
+    return k < 2 && x > 150 ? label(name, x - 18, y - 6, "end") : label(name, x + 12, y + 18);
+  });
+  const [spring, mujoco] = all.map(([, , rest]) => rest);
+  const handle = (name, rest, title, value, text) => ({ name, x: at(rest)[0], y: at(rest)[1], r: 15, label: title, value, text });
+  const depths = all.map(([name, , rest]) => `${name} R = ${number(rest.softness)} /kg, ${number(rest.depth)} r deep`);
+  return {
+    svg: chart.markup + mark("lcp", chart.sx(0), chart.sy(0), 7) + label("lcp, R = 0", chart.sx(0) + 14, chart.sy(0) - 10) + names.join("") + marks.join(""),
+    words: `At rest on one line, target = R m g dt: lcp R = 0; ${depths.join("; ")}.`,
+    handles: [
+      handle("spring", spring, "the implicit spring: its stiffness", view.get("stiffness"), `k = ${number(view.get("stiffness"))} N/m`),
+      handle("soft", mujoco, "soft: its impedance", view.get("impedance"), `d = ${view.get("impedance")}`),
+    ],
+  };
+}
+
+// The knob that puts a point where R m g dt is `along` [m/s].
+function put(view, name, along) {
+  const softness = along / (G * view.get("dt"));
+  const dt = view.get("dt");
+  const k = (1 / softness - view.get("damping") * dt) / (dt * dt);
+  if (name === "spring") view.set({ stiffness: within(100, tidy(k), 1e6) });
+  else view.set({ impedance: within(0.5, Number((1 / (1 + softness)).toPrecision(4)), 0.9999) });
+}
+
+export const figure = {
+  title: "One line: target and softness R of a ball at rest",
+  caption: "A spring taken at the end of the step, MuJoCo’s contact and other engines’ are lcp’s sweep with a softness R, and at rest their targets lie on one line: drag the spring or soft along it.",
+  height: 330,
+  uses: ["stiffness", "damping", "dt", "impedance", "timeconst", "dampratio"],
+  draw,
+  drag(view, name, x) {
+    const { box } = chartOf(view);
+    const decades = Math.log10(HIGH / LOW) + 1; // the last of them leads to 0
+    put(view, name, HIGH * 10 ** (-(decades * (box.right - x)) / (box.right - box.left)));
+  },
+  nudge(view, name, dx, dy) {
+    const { stiffness, impedance } = { stiffness: view.get("stiffness"), impedance: view.get("impedance") };
+    const by = 1.1 ** (dx - dy);
+    if (name === "spring") view.set({ stiffness: within(100, tidy(stiffness / by), 1e6) });
+    else view.set({ impedance: within(0.5, Number((1 - (1 - impedance) * by).toPrecision(4)), 0.9999) });
+  },
+};

@@ -1,0 +1,85 @@
+/* A stack on springs: the lowest contact carries all. Lift a ball and those above it come along. */
+import { arrow, ball, number, table } from "../draw.js";
+import { runModel } from "../engine.js";
+import { clock, enlarged, forceLength, G, kept, label, lens, plural, R, scene, tidy, within } from "../parts.js";
+
+const [COUNT, PX, DT, SECONDS] = [3, 34, 0.0005, 1.2];
+const ABOVE = 1.6; // r: how high a ball can be lifted
+const floorOf = (view) => view.height - 40;
+
+// Heights [m] of balls at rest on springs of stiffness k, from `from` up lifted by `lift` [r].
+export function restingHeights(k, from, lift) {
+  const heights = [];
+  let surface = 0;
+  for (let i = 0; i < COUNT; i++) {
+    const carried = i < from ? from - i : COUNT - i;
+    const sunk = i === from && lift > 0 ? -lift * R : (carried * G) / k;
+    heights.push(surface + R - sunk);
+    surface = heights[i] + R;
+  }
+  return heights;
+}
+
+const fall = kept((stiffness, damping, from, lift) =>
+  runModel("penalty", scene(restingHeights(stiffness, from, lift)), { dt: DT, stiffness, damping }, SECONDS / DT),
+);
+
+function heightsOf(view) {
+  const { from, lift, time } = view.own;
+  const k = view.get("stiffness");
+  if (time === null) return restingHeights(k, from, lift);
+  const run = fall(k, view.get("damping"), from, lift);
+  const row = Math.round(time / DT);
+  return Array.from(run.y.subarray(row * COUNT, (row + 1) * COUNT));
+}
+
+function draw(view) {
+  const floor = floorOf(view);
+  const heights = heightsOf(view);
+  const k = view.get("stiffness");
+  const at = (height) => floor - (height / R) * PX;
+  const x = view.width * 0.36;
+  const depths = heights.map((height, i) => (i ? 2 - (height - heights[i - 1]) / R : 1 - height / R));
+  const forces = depths.map((depth) => Math.max(0, (k * depth * R) / G));
+  const contacts = depths.map((depth, i) => [at(i ? heights[i - 1] + R : 0), forces[i], i]);
+  const carries = contacts.map(
+    ([y, force]) =>
+      arrow("push m-penalty", x + PX + 14, y, 0, -Math.min(60, forceLength(force, 20))) +
+      (force > 0 ? label(`${number(force, 2)} m g`, x + PX + 24, y - 4) : ""),
+  );
+  const times = enlarged(depths[0], PX);
+  const near = lens("stack-lens", "penalty", Math.min(view.width - 50, x + 230), floor - 90, { depth: depths[0], r: PX, times, size: 44 });
+  const count = depths.findIndex((depth) => depth < 0);
+  const carried = count < 0 ? COUNT : count;
+  const bottom = `the lowest contact ${depths[0] < 0 ? "is open" : `is ${number(depths[0])} r deep`}`;
+  return {
+    svg: table(0, floor, view.width, 40) + heights.map((height) => ball("penalty", x, at(height), PX)).join("") + carries.join("") + near,
+    words: `It carries ${plural(carried, "ball")}: ${bottom}, m g / k is ${number(G / k / R)} r.`,
+    handles: heights.map((height, i) => ({ name: String(i), x, y: at(height), r: PX, label: `ball ${i + 1} from below: lift it`, value: i === view.own.from ? view.own.lift : 0, text: `${bottom}, ${number(forces[0], 2)} m g` })),
+  };
+}
+
+function lift(view, from, by) {
+  view.stop();
+  Object.assign(view.own, { from, lift: tidy(within(0, by, ABOVE)), time: null });
+}
+const time = clock(0.25, () => SECONDS, ["Let go", "Stop"]);
+
+export const figure = {
+  title: "A stack on springs",
+  caption: "The lowest contact carries every ball above it: lift one off, and the rest come up.",
+  height: 330,
+  knobs: ["stiffness"],
+  uses: ["damping"],
+  start: () => ({ from: COUNT - 1, lift: 0, time: null }),
+  draw,
+  drag(view, name, x, y) {
+    const from = Number(name);
+    const resting = restingHeights(view.get("stiffness"), COUNT, 0)[from];
+    lift(view, from, (floorOf(view) - y) / PX - resting / R);
+  },
+  nudge: (view, name, dx, dy) => lift(view, Number(name), (Number(name) === view.own.from ? view.own.lift : 0) - 0.1 * dy),
+  release: (view) => view.own.lift > 0 && time.start(view),
+  tick: time.tick,
+  buttons: [time.button],
+};

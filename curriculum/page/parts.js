@@ -1,0 +1,97 @@
+/* What the explaining figures share: one ball over a table, scenes, results that are kept, a lens. */
+import { ball, el, round, table, words } from "./draw.js";
+import { data } from "./data.js";
+import { GRAVITY } from "./engine.js";
+
+export const R = data.radius; // m
+export const G = -GRAVITY; // m/s^2, and the weight in N of a ball of 1 kg
+export const START = data.scenes.drop.starts[0][0]; // m, of the ball that is dropped
+
+// A scene of balls: `more` holds what differs from balls of 1 kg at rest over one another.
+export function scene(heights, more = {}) {
+  const same = (value) => heights.map(() => value);
+  const each = { x: same(0), vx: same(0), vy: same(0), mass: same(1), radius: same(R) };
+  return { ...each, y: heights, restitution: 0, damping: 0, ...more };
+}
+
+export const within = (low, value, high) => Math.min(high, Math.max(low, value));
+export const tidy = (value, digits = 3) => Number(value.toPrecision(digits));
+export const whole = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, ",");
+export const plural = (count, word) => `${whole(count)} ${word}${count === 1 ? "" : "s"}`;
+export const shift = (x, y, ...children) =>
+  el("g", { transform: `translate(${round(x)} ${round(y)})` }, ...children);
+export const label = (text, x, y, anchor = "start", kind = "tick strong") =>
+  words(text, { x, y, class: kind, "text-anchor": anchor });
+export const line = (x1, y1, x2, y2, kind = "rule dashed") => el("line", { x1, y1, x2, y2, class: kind });
+export const logGrid = (low, high, count) =>
+  Array.from({ length: count }, (_, k) => low * (high / low) ** (k / (count - 1)));
+
+// Ticks at these values; [value, text] stays as it is.
+export const ticks = (...values) =>
+  values.map((each) => (Array.isArray(each) ? each : [each, String(each).replace("-", "−")]));
+export const axis = (domain, name, ...at) => ({ domain, label: name, ticks: ticks(...at) });
+
+// A function that keeps its last results, by its arguments.
+export function kept(compute) {
+  const held = new Map();
+  return (...given) => {
+    const key = JSON.stringify(given);
+    if (!held.has(key)) {
+      if (held.size > 20) held.clear();
+      held.set(key, compute(...given));
+    }
+    return held.get(key);
+  };
+}
+
+// A picture at the left and a chart at the right: the widths of both.
+export function split(width, share = 0.4, most = 250) {
+  const left = Math.round(within(110, share * width, most));
+  return { left, right: width - left - 16, at: left + 16 };
+}
+
+// What lies within a rectangle.
+export function clipped(id, x, y, width, height, ...children) {
+  const shape = el("clipPath", { id }, el("rect", { x, y, width, height }));
+  return shape + el("g", { "clip-path": `url(#${id})` }, ...children);
+}
+
+/* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
+ * `depth` deep [r], `times` as large as in the picture, where a radius is `r` px. */
+export function lens(id, model, x, y, { depth, r, times, size = 38 }) {
+  const big = r * times;
+  const shape = el("clipPath", { id }, el("circle", { cx: x, cy: y, r: size }));
+  const inside =
+    el("circle", { cx: x, cy: y, r: size, class: "lens-ground" }) +
+    table(x - size, y, 2 * size, size) +
+    ball(model, x, y - big + depth * big, big, "ball plainly");
+  return (
+    shape +
+    el("g", { "clip-path": `url(#${id})` }, inside) +
+    el("circle", { cx: x, cy: y, r: size, class: "lens-rim" }) +
+    label(`× ${times}`, x, y + size + 16, "middle", "tick")
+  );
+}
+
+// How often a lens enlarges so that a depth [r] can be seen, as a round number.
+export function enlarged(depth, r) {
+  const wanted = 12 / Math.max(Math.abs(depth) * r, 1e-6);
+  return [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000].find((each) => each >= wanted) || 10000;
+}
+
+// How long an arrow for a force is, in weights: the root, since impacts are hundreds of weights.
+export const forceLength = (weights, unit = 26) => unit * Math.sqrt(Math.max(weights, 0));
+
+// The buttons of a figure whose own `time` runs from 0 to end(view) at `rate` s per second of the clock.
+export function clock(rate, end, names = ["Play", "Stop"]) {
+  const tick = (view, seconds) => {
+    view.own.time = Math.min(end(view), (view.own.time ?? 0) + rate * seconds);
+    return view.own.time < end(view);
+  };
+  const start = (view) => {
+    view.own.time = view.still ? end(view) : 0;
+    if (!view.still) view.run();
+  };
+  const press = (view) => (view.running() ? view.stop() : start(view));
+  return { tick, start, button: { label: (view) => names[view.running() ? 1 : 0], press } };
+}
