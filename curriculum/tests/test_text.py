@@ -64,9 +64,9 @@ def accepted(tmp_path_factory):
         shutil.copy(ROOT / file, project / file)
     shutil.copytree(ROOT / "curriculum/text", project / "curriculum/text")
     (project / "curriculum/prose").mkdir()
+    shown = [region for region in regions.read_all().values() if (project / region.file).exists()]
     shown = "".join(
-        f"\n```\n[include-by-region: contact.py#{name}]\n```\n"
-        for name in regions.read(ROOT / "contact.py")
+        f"\n```\n[include-by-region: {region.file}#{region.name}]\n```\n" for region in shown
     )
     (project / CHAPTER).write_text(OPENING + shown, "utf-8")
     (project / "README.md").write_text(README, "utf-8")

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from contact import write_whole
 from curriculum.machine import fingerprint
-from curriculum.text.regions import LITERATE, ROOT
+from curriculum.text.regions import CODE, ROOT
 
 FOLDER = ROOT / ".cache"  # git ignores it; it may be deleted at any time
 
 
-def cached(name: str, inputs, make, code=LITERATE):
+def cached(name: str, inputs, make, code=CODE):
     """make()'s result (JSON), made anew where `inputs` or the code changed since the last time.
 
     name: of the file in `.cache`. code: the files on which the result depends. A folder that

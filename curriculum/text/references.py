@@ -30,7 +30,7 @@ from pathlib import Path
 
 from curriculum.text import ledger, results
 from curriculum.text.cache import cached
-from curriculum.text.regions import LITERATE, NAME, ROOT
+from curriculum.text.regions import CODE, NAME, ROOT
 
 INCLUDE = re.compile(rf"\[include-by-region: (?P<file>[\w./-]+\.py)#(?P<name>{NAME})\]")
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")
@@ -45,7 +45,7 @@ COMPARE = {
     "==": operator.eq,
 }
 COMBINE = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
-MODULES = {Path(file).stem: file.removesuffix(".py").replace("/", ".") for file in LITERATE}
+MODULES = {Path(file).stem: file.removesuffix(".py").replace("/", ".") for file in CODE}
 WORDS = "zero one two three four five six seven eight nine ten eleven twelve".split()
 NEARLY = 0.05  # a number this close to a whole one, relatively, may be put into words
 
@@ -93,7 +93,7 @@ def measure(name) -> dict:
     known = known_facts()
     if name not in known:
         raise ValueError(f"no fact {name!r} in curriculum/text/facts.py; known: {', '.join(known)}")
-    return cached(f"fact-{name}", None, known[name], (*LITERATE, "curriculum/text/facts.py"))
+    return cached(f"fact-{name}", None, known[name], (*CODE, "curriculum/text/facts.py"))
 
 
 class Numbers:

@@ -1,8 +1,7 @@
 """The named regions of the literate files: the pieces of code that the chapter shows.
 
 A region stands between `# --- region: NAME ---` and `# --- endregion ---`, both at the left
-margin. Regions are flat and closed, a name belongs to one region of all files, and in a literate
-file every line of code stands in a region. A file without a marker has no regions.
+margin. Regions are flat and closed, and a name belongs to one region of all files.
 
 Its hash is the sha256 of the text that a reader sees: the lines between the two markers, each
 ended by one "\\n", as UTF-8, nothing trimmed.
@@ -16,7 +15,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
-LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")
+CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")  # what a run runs
+LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/text/facts.py")  # what has regions
+WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
 NAME = r"[a-z][a-z0-9_-]*"
 BEGIN = re.compile(rf"# --- region: ({NAME}) ---")
 END = "# --- endregion ---"
@@ -80,8 +81,8 @@ def split(text: str, file: str) -> tuple:
             outside.append((number, line))
     if name is not None:
         say(first - 1, f"region {name} is never closed")
-    docstring = _docstring_lines(text) if MARKER.search(text) else range(len(lines) + 1)
-    for number, line in outside:
+    docstring = _docstring_lines(text)
+    for number, line in outside if file in WHOLE else ():
         if line.strip() and not line.startswith("#") and number not in docstring:
             say(number, f"code outside any region: {line.strip()[:60]!r}")
     return found, problems

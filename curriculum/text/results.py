@@ -10,7 +10,7 @@ import json
 import math
 
 from curriculum.machine import fingerprint, machine
-from curriculum.text.regions import LITERATE, ROOT
+from curriculum.text.regions import CODE, ROOT
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 NAME = "results.json"
@@ -23,7 +23,7 @@ def load(name: str) -> dict:
     return json.loads(path.read_text("utf-8")) if path.exists() else {}
 
 
-def save(name: str, section: str, values: dict, command: str, code=LITERATE, folder=None) -> dict:
+def save(name: str, section: str, values: dict, command: str, code=CODE, folder=None) -> dict:
     """Put one section into the results file, whole or not at all; returns it as it reads back.
 
     command: what measures it again, as one types it. code: the files that were measured. folder: of
