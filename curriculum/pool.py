@@ -20,11 +20,17 @@ def spread(function, jobs, label, workers=None, scheduler=None):
     count = min(len(jobs), workers or os.cpu_count() or 1)
     if scheduler:
         with machines(scheduler) as pool:
-            return gathered(pool.map(function, jobs), len(jobs), label)
+            return gathered(submitted(pool, function, jobs), len(jobs), label)
     if count < 2:
         return gathered(map(function, jobs), len(jobs), label)
     with processes(count) as pool:
-        return gathered(pool.map(function, jobs), len(jobs), label)
+        return gathered(submitted(pool, function, jobs), len(jobs), label)
+
+
+def submitted(pool, function, jobs):
+    """An iterator over the results. pool.map would cancel at Ctrl-C what the pool then ends too."""
+    futures = [pool.submit(function, job) for job in jobs]
+    return (future.result() for future in futures)
 
 
 def gathered(results, total, label):
