@@ -12,31 +12,6 @@ ROOT = Path(__file__).resolve().parents[2]
 Recording = namedtuple("Recording", "series static blueprint application")
 
 
-@pytest.fixture(scope="session")
-def real_numbers():
-    """The runs that this repository's chapter quotes, made once for all tests that need them."""
-    from curriculum.check_prose_code_drift import CHAPTER
-    from curriculum.quoted import Numbers
-
-    numbers = Numbers(ROOT)
-    numbers.run_all((ROOT / CHAPTER).read_text("utf-8") + (ROOT / "meta.yaml").read_text("utf-8"))
-    return numbers
-
-
-@pytest.fixture(scope="session")
-def measured_row():
-    """A function that gives the ledger of a folder one measured row, of these seconds."""
-
-    def write(folder, seconds):
-        from curriculum.common import wallclock
-
-        printed = wallclock.run_hash("c0ffee", folder)
-        about = ("1234567", "2026-01-02", str(folder / "wallclock.csv"))
-        wallclock.write_row("cpu-vm", seconds, printed, *about)
-
-    return write
-
-
 @pytest.fixture
 def run_script():
     """A function that runs `python contact.py FLAGS` and returns the finished process, as bytes."""
