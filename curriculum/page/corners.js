@@ -1,9 +1,9 @@
 /* The corner, five times: gap to the right, force upwards, what a model allows as a line, and the state
  * that runs along it while the reader lifts the ball or presses it into the table. */
-import { arrow, ball, el, linePath, number, plot, table } from "./draw.js";
+import { arrow, ball, el, linePath, number, table } from "./draw.js";
 import { knobsOf } from "./store.js";
 import { pushOfTable, runModel, soften } from "./engine.js";
-import { axis, clipped, forceLength, G, kept, label, line, R, scene, shift, split, within } from "./parts.js";
+import { axis, beside, clipped, forceLength, G, handle, kept, label, line, R, scene, within } from "./parts.js";
 
 const PULL = 64; // px below the ball at which the hand presses hardest
 // What a picture shows: gaps from low to high [r], a radius in px, the hardest press in weights, ticks.
@@ -21,52 +21,47 @@ export function stateOf(law, view) {
 
 const handY = (law, view) => floorOf(view) - 50 - view.own.hand * (view.own.hand > 0 ? law.near.r : PULL);
 
-function scenery(law, view, state, left) {
+function picture(law, view, state, left) {
   const [floor, x, r] = [floorOf(view), left / 2, law.near.r];
   const y = floor - r - state.gap * r;
-  const hand = handY(law, view);
   const pull = forceLength(state.load, 14);
-  return clipped(
-    `${law.name}-scene`, 0, 0, left, view.height,
+  const held = view.own.hand > 0;
+  return [
     table(0, floor, left, 74),
     ball(law.model, x, y, r, r > 100 ? "ball plainly" : "ball"),
     law.ghosts ? law.ghosts(view, state, x, floor, r) : "",
     arrow(`push m-${law.model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -forceLength(state.force, 100 / Math.sqrt(law.near.most))),
-    view.own.hand > 0 ? line(x, hand, x, 0, "hand") : arrow("weight", x, Math.max(2, y - r - pull), 0, Math.min(pull, y - r - 2)),
-  );
+    held ? line(x, y, x, 0, "hand") : arrow("weight", x, Math.max(2, y - r - pull), 0, Math.min(pull, y - r - 2)),
+  ].join("");
 }
 
-function chartOf(law, view, state, width) {
-  const { low, high, most, xs, ys } = law.near;
-  const chart = plot({
-    id: law.name,
-    width,
-    height: view.height,
-    x: axis([low, high], "gap / r", ...xs),
-    y: axis([-0.035 * most, 1.07 * most], "force / m g", ...ys),
-    points: [{ model: law.model, x: state.gap, y: Math.min(1.05 * most, state.force), size: 7 }],
-  });
-  const { box, sx, sy } = chart;
-  const allowed = `M${box.right} ${sy(0)}H${sx(0)}V${box.top}`;
-  const drawn = law.curve(view);
-  const path = linePath(drawn.xs, drawn.ys, sx, sy, [box.top, box.bottom]);
-  const beneath = el("path", { d: allowed, class: "allowed" });
-  const above = clipped(
-    `${law.name}-law`, box.left, box.top - 4, box.right - box.left, box.bottom - box.top + 8,
-    el("path", { d: path, class: `law m-${law.model}` }),
+// The corner beneath, the model's law above it.
+function under(law, view, { box, sx, sy }) {
+  const { xs, ys } = law.curve(view);
+  const path = linePath(xs, ys, sx, sy, [box.top, box.bottom]);
+  const drawn = el("path", { d: path, class: `law m-${law.model}` });
+  return (
+    el("path", { d: `M${box.right} ${sy(0)}H${sx(0)}V${box.top}`, class: "allowed" }) +
+    clipped(`${law.name}-law`, box.left, box.top - 4, box.right - box.left, box.bottom - box.top + 8, drawn)
   );
-  return beneath + above + (law.more ? law.more(view, state, chart) : "") + chart.markup;
 }
 
 function draw(law, view) {
   const state = stateOf(law, view);
-  const { left, right, at } = split(view.width);
+  const { low, high, most, xs, ys } = law.near;
+  const chart = {
+    x: axis([low, high], "gap / r", ...xs),
+    y: axis([-0.035 * most, 1.07 * most], "force / m g", ...ys),
+    points: [{ model: law.model, x: state.gap, y: Math.min(1.05 * most, state.force), size: 7 }],
+    under: (each) => under(law, view, each) + (law.more ? law.more(view, state, each) : ""),
+  };
+  const { svg, middle } = beside(view, law.name, chart, (left) => picture(law, view, state, left));
   const said = state.load > 0 ? `Pressed with ${number(state.load, 2)} m g` : "Held by the hand";
   const text = `gap ${number(state.gap, 2)} r, force ${number(state.force, 2)} m g`;
   return {
-    svg: scenery(law, view, state, left) + shift(at, 0, chartOf(law, view, state, right)),
+    svg,
     words: `${said}: ${text}.${law.words ? ` ${law.words(view, state)}` : ""}`,
-    handles: [{ name: "ball", x: left / 2, y: handY(law, view), r: 20, label: "the ball: lift it or press it", value: view.own.hand, text }],
+    handles: [handle("ball", middle, handY(law, view), 20, "the ball: lift it or press it", view.own.hand, text)],
   };
 }
 
@@ -81,12 +76,16 @@ export function corner(law, about) {
       const up = floorOf(view) - 50 - y;
       set(view, up / (up > 0 ? law.near.r : PULL));
     },
-    nudge: (view, name, dx, dy) => set(view, view.own.hand - 0.05 * dy * (view.own.hand - 1e-9 * dy > 0 ? law.near.high : 1)),
+    nudge(view, name, dx, dy) {
+      const above = view.own.hand - 1e-9 * dy > 0;
+      set(view, view.own.hand - 0.05 * dy * (above ? law.near.high : 1));
+    },
     ...about,
   };
 }
 
-const bare = { near: WIDE, model: "exact", gap: () => 0, curve: () => ({ xs: [WIDE.high, 0, 0], ys: [0, 0, 2 * WIDE.most] }) };
+const wall = { xs: [WIDE.high, 0, 0], ys: [0, 0, 2 * WIDE.most] };
+const bare = { near: WIDE, model: "exact", gap: () => 0, curve: () => wall };
 export const LAWS = {
   corner: { ...bare, name: "corner" },
   exact: { ...bare, name: "corner-exact" },
@@ -95,8 +94,8 @@ export const LAWS = {
 // The two events at which exact changes from one side of the corner to the other.
 LAWS.exact.more = (view, state, { sx, sy, box }) =>
   el("circle", { cx: sx(0), cy: sy(0), r: 12, class: "event" }) +
-  label("until the gap is 0", sx(0.96), sy(0) - 10, "end") +
-  label("until the force is 0", sx(0) + 10, box.top + 14);
+  label("until gap = 0", sx(0.98), sy(0) - 12, "end") +
+  label("until force = 0", sx(0) + 10, box.top + 14);
 LAWS.exact.words = (view, state) =>
   state.load > 0 ? "It rests until the force falls to 0: an event." : "It flies until the gap falls to 0: an event.";
 
@@ -122,8 +121,11 @@ const arrival = kept((load, knobs) => {
   const shown = still < 0 ? gaps.length : still + 1;
   return { gaps: gaps.slice(0, shown), forces: forces.slice(0, shown) };
 });
-const looks = (view, { load }) => (load >= 1 ? arrival(load, { ...knobsOf(view.values), restitution: 0 }) : { gaps: [], forces: [] });
-const deepest = (view, state) => Math.min(0, ...looks(view, state).gaps);
+function looks(view, { load }) {
+  if (load < 1) return { gaps: [], forces: [], deepest: 0 };
+  const found = arrival(load, { ...knobsOf(view.values), restitution: 0 });
+  return { ...found, deepest: Math.min(0, ...found.gaps) };
+}
 
 LAWS.lcp = {
   ...bare,
@@ -134,11 +136,12 @@ LAWS.lcp = {
     const rings = gaps.map((gap, row) => [sx(gap), sy(Math.min(1.05 * WIDE.most, forces[row]))]);
     return rings.map(([cx, cy]) => el("circle", { cx, cy, r: 4, class: "look m-lcp" })).join("");
   },
-  ghosts: (view, state, x, floor, r) => ball("lcp", x, floor - r - deepest(view, state) * r, r, "ghost"),
-  words: (view, state) =>
-    looks(view, state).gaps.length
-      ? `It came in ${looks(view, state).gaps.length} steps; the step before the first push ended ${number(-deepest(view, state), 2)} r deep.`
-      : "",
+  ghosts: (view, state, x, floor, r) => ball("lcp", x, floor - r - looks(view, state).deepest * r, r, "ghost"),
+  words(view, state) {
+    const { gaps, deepest } = looks(view, state);
+    const deep = `the step before the first push ended ${number(-deepest, 2)} r deep`;
+    return gaps.length ? `It came in ${gaps.length} steps; ${deep}.` : "";
+  },
 };
 
 // soft: at rest the solver asks for no velocity where lam = target / R.

@@ -1,5 +1,5 @@
 /* What the explaining figures share: one ball over a table, scenes, results that are kept, a lens. */
-import { ball, el, round, table, words } from "./draw.js";
+import { ball, el, plot, round, table, words } from "./draw.js";
 import { data } from "./data.js";
 import { GRAVITY } from "./engine.js";
 
@@ -44,17 +44,43 @@ export function kept(compute) {
   };
 }
 
-// A picture at the left and a chart at the right: the widths of both.
-export function split(width, share = 0.4, most = 250) {
-  const left = Math.round(within(110, share * width, most));
-  return { left, right: width - left - 16, at: left + 16 };
-}
-
 // What lies within a rectangle.
 export function clipped(id, x, y, width, height, ...children) {
   const shape = el("clipPath", { id }, el("rect", { x, y, width, height }));
   return shape + el("g", { "clip-path": `url(#${id})` }, ...children);
 }
+
+/* A picture at the left and a chart at the right: {svg, x, y, middle}: x and y are the chart's
+ * scales in the drawing, middle is the picture's. picture(width, chart) is drawn within its part; `share` is its share of the width. */
+export function beside(view, id, options, picture, share = 0.4) {
+  const left = Math.round(within(110, share * view.width, 250));
+  const at = left + 16;
+  const chart = charted(view, at, { id, width: view.width - at, height: view.height, ...options });
+  const scene = clipped(`${id}-scene`, 0, 0, left, view.height, picture(left, chart));
+  const markup = el("g", { transform: `translate(${at} 0)` }, options.under ? options.under(chart) : "", chart.markup);
+  return { svg: scene + markup, x: (v) => at + chart.sx(v), y: chart.sy, middle: left / 2 };
+}
+
+// A chart that begins at `at`, and is kept for the drags.
+export function charted(view, at, options) {
+  const chart = plot(options);
+  const { left, right } = chart.box;
+  view.own.along = (x) => within(0, (x - at - left) / (right - left), 1);
+  return chart;
+}
+
+/* A number that is dragged along its chart's x axis, and that arrow keys change by steps:
+ * change(view, share of the axis) and step(view, by). */
+export const alongAxis = (change, step) => ({
+  drag(view, name, x) {
+    view.stop();
+    change(view, view.own.along(x), name);
+  },
+  nudge(view, name, dx, dy) {
+    view.stop();
+    step(view, dx - dy, name);
+  },
+});
 
 /* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
  * `depth` deep [r], `times` as large as in the picture, where a radius is `r` px. */
@@ -82,14 +108,16 @@ export function enlarged(depth, r) {
 // How long an arrow for a force is, in weights: the root, since impacts are hundreds of weights.
 export const forceLength = (weights, unit = 26) => unit * Math.sqrt(Math.max(weights, 0));
 
-// The buttons of a figure whose own `time` runs from 0 to end(view) at `rate` s per second of the clock.
-export function clock(rate, end, names = ["Play", "Stop"]) {
+export const handle = (name, x, y, r, label, value, text) => ({ name, x, y, r, label, value, text });
+
+// The clock of a figure whose own `time` runs from `from` to end(view), `rate` s in a second.
+export function clock(rate, end, names = ["Play", "Stop"], from = 0) {
   const tick = (view, seconds) => {
-    view.own.time = Math.min(end(view), (view.own.time ?? 0) + rate * seconds);
+    view.own.time = Math.min(end(view), (view.own.time ?? from) + rate * seconds);
     return view.own.time < end(view);
   };
   const start = (view) => {
-    view.own.time = view.still ? end(view) : 0;
+    view.own.time = view.still ? end(view) : from;
     if (!view.still) view.run();
   };
   const press = (view) => (view.running() ? view.stop() : start(view));

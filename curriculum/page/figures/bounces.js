@@ -1,7 +1,7 @@
 /* Infinitely many bounces, over at a finite time. */
-import { ball, number, plot, steps } from "../draw.js";
+import { ball, number, steps } from "../draw.js";
 import { runModel } from "../engine.js";
-import { G, kept, R, scene, START, within } from "../parts.js";
+import { axis, charted, G, handle, kept, R, scene, START, within } from "../parts.js";
 
 const ROWS = 600;
 const LAND = Math.sqrt((2 * (START - R)) / G); // s
@@ -12,32 +12,28 @@ const top = (e, k) => LAND * (1 + (2 * e * (1 - e ** (k - 1))) / (1 - e) + e ** 
 
 const run = kept((e, until) => runModel("exact", scene([START], { restitution: e }), { dt: until / ROWS }, ROWS));
 
-function chartOf(view) {
+function draw(view) {
   const e = view.get("restitution");
   const until = Math.max(1, 1.15 * over(e));
   const { t, y } = run(e, until);
-  const chart = plot({
+  const { markup, sx, sy, box } = charted(view, 0, {
     id: "bounces",
     width: view.width,
     height: view.height,
     x: { domain: [0, until], ticks: steps(0, until, 5), label: "time (s)" },
-    y: { domain: [0, 1.15], ticks: [[0, "0"], [0.5, "0.5"], [1, "1"]], label: "height (m)" },
+    y: axis([0, 1.15], "height (m)", 0, 0.5, 1),
     lines: [{ model: "exact", xs: t, ys: Array.from(y) }],
     rules: [{ x: over(e), text: `over at ${number(over(e))} s`, class: "dashed", row: 1 }],
   });
-  return { ...chart, e, until, heightAt: (time) => y[Math.round((time / until) * ROWS)] };
-}
-
-function draw(view) {
-  const { markup, sx, sy, e, until, heightAt } = chartOf(view);
+  view.own.heightAt = (at) => (1.15 * (box.bottom - at)) / (box.bottom - box.top);
   const r = sy(0) - sy(R);
-  const tops = [1, 2, 3, 4].map((k) => top(e, k)).filter((t) => t < until);
-  const balls = tops.map((t) => ball("exact", sx(t), sy(heightAt(t)), r, "ghost"));
+  const tops = [1, 2, 3, 4].map((k) => top(e, k)).filter((time) => time < until);
+  const balls = tops.map((time) => [sx(time), sy(y[Math.round((time / until) * ROWS)])]);
   const text = `e = ${e.toFixed(2)}`;
   return {
-    svg: balls.join("") + markup + ball("exact", sx(until), sy(R), r),
+    svg: balls.map((at) => ball("exact", ...at, r, "ghost")).join("") + markup + ball("exact", sx(until), sy(R), r),
     words: `${text}: every bounce is e² = ${number(e * e, 2)} times as high as the last, and all are over at ${number(over(e))} s.`,
-    handles: [{ name: "top", x: sx(top(e, 1)), y: sy(heightAt(top(e, 1))), r: 16, label: "the top of the first bounce", value: e, text }],
+    handles: [handle("top", ...balls[0], 16, "the top of the first bounce", e, text)],
   };
 }
 
@@ -49,11 +45,8 @@ export const figure = {
   height: 250,
   uses: ["restitution"],
   shows: { scene: "bounce", restitution: 0.7 },
+  start: () => ({}),
   draw,
-  drag(view, name, x, y) {
-    const { box } = chartOf(view);
-    const height = ((box.bottom - y) / (box.bottom - box.top)) * 1.15;
-    set(view, Math.sqrt(Math.max(0, height - R) / (START - R)));
-  },
+  drag: (view, name, x, y) => set(view, Math.sqrt(Math.max(0, view.own.heightAt(y) - R) / (START - R))),
   nudge: (view, name, dx, dy) => set(view, view.get("restitution") + 0.01 * (dx - dy)),
 };

@@ -1,8 +1,8 @@
 /* Bounce or bias: the target is the larger of the two, not their sum. */
-import { arrow, ball, number, plot, steps, table } from "../draw.js";
+import { arrow, ball, number, steps, table } from "../draw.js";
 import { normalSpeed, runModel } from "../engine.js";
 import { knobsOf } from "../store.js";
-import { clipped, G, kept, label, R, scene, shift, split, START, tidy, within } from "../parts.js";
+import { axis, beside, G, handle, kept, label, R, scene, START, tidy, within } from "../parts.js";
 
 const [PX, SPEED, SECONDS] = [54, 20, 0.9]; // px a radius, px for 1 m/s, s
 const DEEPEST = 0.5; // r
@@ -31,38 +31,35 @@ function picture(view, left, { bounce, bias }) {
   const y = floor - PX + view.own.depth * PX;
   const speed = (v) => -Math.min(floor - 24, SPEED * v);
   const wide = left > 150 ? PX + 14 : 0.36 * left;
-  const wanted = [["bounce", bounce, x - wide, -1], ["bias", bias, x + wide, 1]];
-  const arrows = wanted.map(
-    ([name, v, at]) =>
-      arrow(`push m-lcp${v < Math.max(bounce, bias) ? " weaker" : ""}`, at, floor, 0, speed(v)) + label(name, at, floor + 18, "middle"),
-  );
-  return clipped("larger-scene", 0, 0, left, view.height, table(0, floor, left, 46), ball("lcp", x, y, PX), ...arrows);
+  const arrows = [["bounce", bounce, x - wide], ["bias", bias, x + wide]].map(([name, v, at]) => {
+    const kind = v < Math.max(bounce, bias) ? "push m-lcp weaker" : "push m-lcp";
+    return arrow(kind, at, floor, 0, speed(v)) + label(name, at, floor + 18, "middle");
+  });
+  return table(0, floor, left, 46) + ball("lcp", x, y, PX) + arrows.join("");
 }
 
 function draw(view) {
-  const { left, right, at } = split(view.width);
   const knobs = knobsOf(view.values);
-  const { bounce, bias } = wishes(view.own.depth, knobs);
+  const wanted = wishes(view.own.depth, knobs);
   const [larger, both] = flights(view.own.depth, knobs);
   const law = knobs.restitution ** 2;
-  const chart = plot({
-    id: "larger",
-    width: right,
-    height: view.height,
+  const chart = {
     x: { domain: [0, SECONDS], ticks: steps(0, SECONDS, 4), label: "time (s)" },
-    y: { domain: [-0.06, 1.5], ticks: [[0, "0"], [0.5, "0.5"], [1, "1"]], label: "height / drop" },
+    y: axis([-0.06, 1.5], "height / drop", 0, 0.5, 1),
     lines: [
       { model: "lcp", xs: larger.t, ys: larger.ys },
       { model: "lcp", xs: both.t, ys: both.ys, class: "thin dotted" },
     ],
     rules: law > 0 ? [{ y: law, text: "e²", class: "dashed" }] : [],
-  });
+  };
+  const { svg, middle } = beside(view, "larger", chart, (left) => picture(view, left, wanted));
   const high = (flight) => number(Math.max(0, ...flight.ys), 2);
-  const text = `${number(view.own.depth, 2)} r deep: bounce ${number(bounce)} m/s, bias ${number(bias)} m/s`;
+  const text = `${number(view.own.depth, 2)} r deep: bounce ${number(wanted.bounce)} m/s, bias ${number(wanted.bias)} m/s`;
+  const y = floorOf(view) - PX + view.own.depth * PX;
   return {
-    svg: picture(view, left, { bounce, bias }) + shift(at, 0, chart.markup),
+    svg,
     words: `${text}. The larger lifts the ball to ${high(larger)} of the drop, the sum (dotted) to ${high(both)}.`,
-    handles: [{ name: "ball", x: left / 2, y: floorOf(view) - PX + view.own.depth * PX, r: PX, label: "the ball: how deep lcp finds it", value: view.own.depth, text }],
+    handles: [handle("ball", middle, y, PX, "the ball: how deep lcp finds it", view.own.depth, text)],
   };
 }
 
@@ -70,7 +67,8 @@ const set = (view, depth) => (view.own.depth = tidy(within(0, depth, DEEPEST), 2
 
 export const figure = {
   title: "A landing: bounce and bias",
-  caption: "The target is the larger of bounce and bias: with their sum (dotted) a ball that is found deep bounces higher than its material allows.",
+  caption:
+    "The target is the larger of bounce and bias: with their sum (dotted) a ball that is found deep bounces higher than its material allows.",
   height: 280,
   uses: ["dt", "restitution", "baumgarte", "iters"],
   shows: { scene: "bounce", restitution: 0.7 },

@@ -1,9 +1,9 @@
 /* One line: every contact with a softness R lies where its target is R times what it must carry. The
  * spring of penalty taken at the end of the step is one of them. */
-import { el, mark, number, plot } from "../draw.js";
+import { el, mark, number } from "../draw.js";
 import { detectContacts, GRAVITY, makeRows, normalSpeed, soften, solveContacts } from "../engine.js";
 import { knobsOf } from "../store.js";
-import { G, kept, label, R, scene, tidy, within } from "../parts.js";
+import { alongAxis, axis, charted, G, handle, kept, label, R, scene, tidy, within } from "../parts.js";
 
 const [LOW, HIGH] = [1e-6, 1];
 const WAYS = {
@@ -52,13 +52,13 @@ function points(view) {
 }
 
 function chartOf(view) {
-  const tens = [1e-5, 1e-3, 0.1].map((v, k) => [v, ["10⁻⁵", "0.001", "0.1"][k]]);
-  return plot({
+  const tens = [[0, "0"], [1e-5, "10⁻⁵"], [1e-3, "0.001"], [0.1, "0.1"]];
+  return charted(view, 0, {
     id: "one-line",
     width: view.width,
     height: view.height,
-    x: { domain: [LOW, HIGH], log: true, zero: true, ticks: [[0, "0"], ...tens], label: "R m g dt (m/s)" },
-    y: { domain: [LOW, HIGH], log: true, zero: true, ticks: [[0, "0"], ...tens], label: "target at rest (m/s)" },
+    x: { ...axis([LOW, HIGH], "R m g dt (m/s)", ...tens), log: true, zero: true },
+    y: { ...axis([LOW, HIGH], "target at rest (m/s)", ...tens), log: true, zero: true },
     lines: [{ model: "fixed", xs: [0, LOW, HIGH], ys: [0, LOW, HIGH], class: "plainly" }],
   });
 }
@@ -73,45 +73,46 @@ function draw(view) {
   });
   const names = all.map(([name, , rest], k) => {
     const [x, y] = at(rest);
-    return k < 2 && x > 150 ? label(name, x - 18, y - 6, "end") : label(name, x + 12, y + 18);
+    if (k < 2 && x > 150) return label(name, x - 18, y - 6, "end");
+    return label(name, Math.min(x + 12, view.width - 7.6 * name.length), y + 20);
   });
-  const [spring, mujoco] = all.map(([, , rest]) => rest);
-  const handle = (name, rest, title, value, text) => ({ name, x: at(rest)[0], y: at(rest)[1], r: 15, label: title, value, text });
+  const [spring, mujoco] = all.map(([, , rest]) => at(rest));
+  const [k, d] = [view.get("stiffness"), view.get("impedance")];
   const depths = all.map(([name, , rest]) => `${name} R = ${number(rest.softness)} /kg, ${number(rest.depth)} r deep`);
+  const hard = mark("lcp", chart.sx(0), chart.sy(0), 7) + label("lcp, R = 0", chart.sx(0) + 14, chart.sy(0) - 10);
   return {
-    svg: chart.markup + mark("lcp", chart.sx(0), chart.sy(0), 7) + label("lcp, R = 0", chart.sx(0) + 14, chart.sy(0) - 10) + names.join("") + marks.join(""),
+    svg: chart.markup + hard + names.join("") + marks.join(""),
     words: `At rest on one line, target = R m g dt: lcp R = 0; ${depths.join("; ")}.`,
     handles: [
-      handle("spring", spring, "the implicit spring: its stiffness", view.get("stiffness"), `k = ${number(view.get("stiffness"))} N/m`),
-      handle("soft", mujoco, "soft: its impedance", view.get("impedance"), `d = ${view.get("impedance")}`),
+      handle("spring", ...spring, 15, "the implicit spring: its stiffness", k, `k = ${number(k)} N/m`),
+      handle("soft", ...mujoco, 15, "soft: its impedance", d, `d = ${d}`),
     ],
   };
 }
 
-// The knob that puts a point where R m g dt is `along` [m/s].
-function put(view, name, along) {
-  const softness = along / (G * view.get("dt"));
+const stiffen = (view, k) => view.set({ stiffness: within(100, tidy(k), 1e6) });
+const harden = (view, d) => view.set({ impedance: within(0.5, Number(d.toPrecision(4)), 0.9999) });
+
+// Sets the knob that puts a point where it is dragged. The axis ends in a decade that leads to 0.
+function put(view, share, name) {
   const dt = view.get("dt");
-  const k = (1 / softness - view.get("damping") * dt) / (dt * dt);
-  if (name === "spring") view.set({ stiffness: within(100, tidy(k), 1e6) });
-  else view.set({ impedance: within(0.5, Number((1 / (1 + softness)).toPrecision(4)), 0.9999) });
+  const softness = (HIGH * (LOW / HIGH / 10) ** (1 - share)) / (G * dt);
+  if (name === "spring") stiffen(view, (1 / softness - view.get("damping") * dt) / (dt * dt));
+  else harden(view, 1 / (1 + softness));
+}
+
+function step(view, by, name) {
+  if (name === "spring") stiffen(view, view.get("stiffness") * 1.1 ** -by);
+  else harden(view, 1 - (1 - view.get("impedance")) * 1.1 ** by);
 }
 
 export const figure = {
   title: "One line: target and softness R of a ball at rest",
-  caption: "A spring taken at the end of the step, MuJoCo’s contact and other engines’ are lcp’s sweep with a softness R, and at rest their targets lie on one line: drag the spring or soft along it.",
+  caption:
+    "A spring taken at the end of the step, MuJoCo’s contact and other engines’ are lcp’s sweep with a softness R, and at rest their targets lie on one line: drag the spring or soft along it.",
   height: 330,
   uses: ["stiffness", "damping", "dt", "impedance", "timeconst", "dampratio"],
+  start: () => ({}),
   draw,
-  drag(view, name, x) {
-    const { box } = chartOf(view);
-    const decades = Math.log10(HIGH / LOW) + 1; // the last of them leads to 0
-    put(view, name, HIGH * 10 ** (-(decades * (box.right - x)) / (box.right - box.left)));
-  },
-  nudge(view, name, dx, dy) {
-    const { stiffness, impedance } = { stiffness: view.get("stiffness"), impedance: view.get("impedance") };
-    const by = 1.1 ** (dx - dy);
-    if (name === "spring") view.set({ stiffness: within(100, tidy(stiffness / by), 1e6) });
-    else view.set({ impedance: within(0.5, Number((1 - (1 - impedance) * by).toPrecision(4)), 0.9999) });
-  },
+  ...alongAxis(put, step),
 };

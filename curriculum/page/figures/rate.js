@@ -1,7 +1,7 @@
 /* How many sweeps a resting tower takes to a millionth: with its height, and with its uppermost ball's mass. */
-import { ball, number, plot, table } from "../draw.js";
+import { ball, number, table } from "../draw.js";
 import { makeRows, normalSpeed, solveContacts } from "../engine.js";
-import { kept, label, scene, shift, split, whole, within } from "../parts.js";
+import { axis, beside, handle, kept, label, scene, whole, within } from "../parts.js";
 
 const CLOSE = 1e-6; // of the speed that gravity gives in a step
 const HEIGHTS = [2, 5, 10, 20, 40];
@@ -26,44 +26,53 @@ const measured = kept(() => ({
   ratios: RATIOS.map((ratio) => sweepsOf(2, ratio)),
 }));
 
-function tower(view, left) {
-  const { count } = view.own;
-  const floor = view.height - 24;
-  const r = Math.min(18, (floor - 30) / (2 * count));
-  const x = Math.min(46, left / 3);
-  const balls = Array.from({ length: count }, (_, i) => ball("lcp", x, floor - (2 * i + 1) * r, r, r < 8 ? "ball plainly" : "ball"));
-  const big = 15 * (1 + 0.25 * Math.log10(view.own.ratio));
-  const second = left - 44;
-  const pair = [ball("lcp", second, floor - 15, 15), ball("lcp", second, floor - 30 - big, big)];
-  const names = [label(whole(count), x + r + 8, floor - 6), label(`1 : ${whole(view.own.ratio)}`, second, floor - 42 - 2 * big, "middle")];
-  return { svg: table(0, floor, left, 24) + balls.join("") + pair.join("") + names.join(""), top: [x, floor - (2 * count - 1) * r], heavy: [second, floor - 30 - big], big };
+// The tower's top, and the heavy ball on a light one: [x, y, radius].
+function places({ own, height }, left) {
+  const floor = height - 24;
+  const r = Math.min(18, (floor - 30) / (2 * own.count));
+  const big = 15 * (1 + 0.25 * Math.log10(own.ratio));
+  return { floor, top: [Math.min(46, left / 3), floor - (2 * own.count - 1) * r, r], heavy: [left - 40, floor - 30 - big, big] };
+}
+
+function picture(view, left) {
+  const { floor, top, heavy } = places(view, left);
+  const [x, y, r] = top;
+  const kind = r < 8 ? "ball plainly" : "ball";
+  const balls = Array.from({ length: view.own.count }, (_, i) => ball("lcp", x, floor - (2 * i + 1) * r, r, kind));
+  return [
+    table(0, floor, left, 24),
+    ...balls,
+    ball("lcp", heavy[0], floor - 15, 15),
+    ball("lcp", ...heavy),
+    label(whole(view.own.count), x, y - r - 6, "middle"),
+    label(`1 : ${whole(view.own.ratio)}`, heavy[0], heavy[1] - heavy[2] - 6, "middle"),
+  ].join("");
 }
 
 function draw(view) {
-  const { left, right, at } = split(view.width, 0.36);
   const { heights, ratios } = measured();
   const { count, ratio } = view.own;
   const [tall, heavy] = [sweepsOf(count, 1), sweepsOf(2, ratio)];
-  const chart = plot({
-    id: "rate",
-    width: right,
-    height: view.height,
-    x: { domain: [1, 1000], log: true, ticks: [[1, "1"], [10, "10"], [100, "100"], [1000, "1000"]], label: "balls, or mass ratio" },
-    y: { domain: [10, 20000], log: true, ticks: [[10, "10"], [100, "100"], [1000, "1000"], [10000, "10⁴"]], label: "sweeps to a millionth" },
+  const chart = {
+    x: { ...axis([1, 1000], "balls, or mass ratio", 1, 10, 100), log: true },
+    y: { ...axis([10, 20000], "sweeps to a millionth", 10, 100, 1000, [10000, "10⁴"]), log: true },
     lines: [
       { model: "lcp", xs: HEIGHTS, ys: heights, markers: [0, 1, 2, 3, 4] },
       { model: "lcp", xs: RATIOS, ys: ratios, class: "dotted", markers: [0, 1, 2, 3] },
     ],
-    points: [{ model: "lcp", x: count, y: tall, size: 8 }, { model: "lcp", x: ratio, y: heavy, size: 8 }],
-  });
-  const picture = tower(view, left);
-  const handle = (name, [x, y], r, title, value, text) => ({ name, x, y, r, label: title, value, text });
+    points: [[count, tall], [ratio, heavy]].map(([x, y]) => ({ model: "lcp", x, y, size: 8 })),
+    under: ({ sx, sy }) => label("height", sx(13), sy(1400), "end") + label("mass ratio", sx(900), sy(350), "end"),
+  };
+  const { svg, middle } = beside(view, "rate", chart, (left) => picture(view, left), 0.36);
+  const at = places(view, 2 * middle);
+  const list = (values) => values.map(whole).join(", ");
+  const [first, second] = [`${count} balls, ${whole(tall)} sweeps`, `1 to ${whole(ratio)}, ${whole(heavy)} sweeps`];
   return {
-    svg: picture.svg + shift(at, 0, chart.markup + label("height", chart.sx(13), chart.sy(1400), "end") + label("mass ratio", chart.sx(150), chart.sy(700))),
-    words: `A tower of ${count} equal balls takes ${whole(tall)} sweeps, two balls with the upper ${whole(ratio)} times as heavy ${whole(heavy)}; measured here: ${heights.map(whole).join(", ")} for ${HEIGHTS.join(", ")} balls and ${ratios.map(whole).join(", ")} for ratios of ${RATIOS.map(whole).join(", ")}.`,
+    svg,
+    words: `Tower of ${first}; two balls, ${second}. Measured here: ${list(heights)} for ${list(HEIGHTS)} balls and ${list(ratios)} for ratios of ${list(RATIOS)}.`,
     handles: [
-      handle("count", picture.top, 14, "the tower’s uppermost ball: make it higher", count, `${count} balls, ${whole(tall)} sweeps`),
-      handle("ratio", picture.heavy, picture.big, "the heavy ball: make it heavier", ratio, `1 to ${number(ratio)}, ${whole(heavy)} sweeps`),
+      handle("count", ...at.top.slice(0, 2), 14, "the tower’s uppermost ball: make it higher", count, first),
+      handle("ratio", ...at.heavy, "the heavy ball: make it heavier", ratio, second),
     ],
   };
 }
@@ -73,7 +82,8 @@ const setRatio = (view, ratio) => (view.own.ratio = Math.round(within(1, ratio, 
 
 export const figure = {
   title: "Sweeps to a millionth",
-  caption: "Four times the sweeps for twice the height, ten times the sweeps for ten times the mass on top: drag the tower’s top, or the heavy ball.",
+  caption:
+    "Four times the sweeps for twice the height, ten times the sweeps for ten times the mass on top: drag the tower’s top, or the heavy ball.",
   height: 300,
   start: () => ({ count: 5, ratio: 10 }),
   draw,
