@@ -39,6 +39,8 @@ def main(argv=None) -> int:
         if package in ("contact", "curriculum"):
             raise
         return refuse(f"the gate needs {package}, which is missing: pip install -e '.[dev]'")
+    except SyntaxError as error:
+        return refuse(f"{error.filename}:{error.lineno}: not Python: {error.msg}")
     except ValueError as error:
         return refuse(error)
 

@@ -38,6 +38,11 @@ class Region(NamedTuple):
         return hashlib.sha256(self.code.encode("utf-8")).hexdigest()
 
     @property
+    def lines(self) -> range:
+        """The numbers of its lines in the file."""
+        return range(self.line, self.line + self.code.count("\n"))
+
+    @property
     def defines(self) -> frozenset:
         """The functions, methods, classes and constants that the region defines."""
         return defined(self.code)
@@ -58,7 +63,7 @@ def defined(code: str) -> frozenset:
 
 def split(text: str, file: str) -> tuple:
     """({name: Region} in reading order, problems) of one file's text; each problem is one line."""
-    found, problems, outside = {}, [], []
+    found, problems = {}, []
     name, first = None, 0
 
     def say(line, what):
@@ -77,26 +82,13 @@ def split(text: str, file: str) -> tuple:
         elif MARKER.fullmatch(line):
             where = f"inside region {name}" if name else "outside any region"
             say(number, f"{line.strip()!r} {where}, where it does not belong")
-        elif name is None:
-            outside.append((number, line))
     if name is not None:
         say(first - 1, f"region {name} is never closed")
-    docstring = _docstring_lines(text)
-    for number, line in outside if file in WHOLE else ():
-        if line.strip() and not line.startswith("#") and number not in docstring:
-            say(number, f"code outside any region: {line.strip()[:60]!r}")
+    inside = {line for each in found.values() for line in each.lines}
+    for node in ast.parse(text).body[1:] if file in WHOLE else ():
+        if node.lineno not in inside:
+            say(node.lineno, f"code outside any region: {lines[node.lineno - 1][:60]!r}")
     return found, problems
-
-
-def _docstring_lines(text):
-    """The numbers of the lines of the module's docstring."""
-    try:
-        first = next(iter(ast.parse(text).body), None)
-    except SyntaxError:
-        return range(0)
-    if isinstance(first, ast.Expr) and isinstance(getattr(first.value, "value", None), str):
-        return range(first.lineno, first.end_lineno + 1)
-    return range(0)
 
 
 def split_all(read=None) -> tuple:
