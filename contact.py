@@ -41,13 +41,15 @@ import itertools
 import json
 import math
 import os
+import re
 import sys
 from typing import NamedTuple
 
 try:
     import numpy as np
 except ModuleNotFoundError:
-    sys.exit(f'contact.py needs numpy; install it: "{sys.executable}" -m pip install numpy')
+    print(f'contact.py needs numpy: "{sys.executable}" -m pip install numpy', file=sys.stderr)
+    sys.exit(2)
 
 GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
@@ -63,7 +65,7 @@ class Settings(NamedTuple):
     stiffness: float = 1e4      # k of penalty [N/m]
     baumgarte: float = 0.2      # beta of lcp: the share of an overlap that one step removes
     iters: int = 20             # of lcp: Gauss-Seidel sweeps a step, at most
-    warm: bool = False          # lcp starts its sweeps from the impulses of the step before
+    warm: float = 0.0           # of lcp: the share of a step's impulses that the next begins with
     solref: tuple | None = None     # of soft: time constant [s], damping ratio; see soft_defaults
     solimp: tuple | None = None     # of soft: how hard, at which depth; see impedance
     skip: bool = True           # leave out steps whose result is known; no bit changes
@@ -304,7 +306,7 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
 
 
 # --- region: lcp ---
-def lcp_step(balls, dt, restitution, baumgarte, iters):
+def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0):
     """One step [s]: gravity predicts the velocities, impulses correct them, the balls move.
 
     Targets come before gravity: a bounce gives back the speed of the approach. With the speed
@@ -314,14 +316,39 @@ def lcp_step(balls, dt, restitution, baumgarte, iters):
     for c in contacts:
         c.target = contact_target(c, restitution, baumgarte, dt)
     accelerate(balls, dt)
+    if warm > 0.0:
+        warm_start(contacts, warm)
     solve_contacts(contacts, iters)
+    if warm > 0.0:
+        remember(balls, contacts)
     move(balls, dt)
+
+
+def warm_start(contacts, share=1.0):
+    """Begin with a share of the impulses that the same balls gave each other in the last step.
+
+    With few sweeps take less than all: the error that they leave is handed on, and would swing
+    like a spring without a damper. A share lets it die out.
+    """
+    for c in contacts:
+        c.lam = share * c.a.pushed.get(c.b, 0.0)
+        c.push(c.lam)
+
+
+def remember(balls, contacts):
+    """Keep the impulses for the next step."""
+    for ball in balls:
+        ball.pushed = {}
+    for c in contacts:
+        c.a.pushed[c.b] = c.lam
 # --- endregion ---
 
 
 # --- region: exact ---
-TOUCH = 1e-13           # m: a smaller gap is none
+TOUCH = 1e-13           # m: balls that start with a smaller gap start in touch
 SLOW = 1e-7             # m/s: a slower bounce, 1e-15 m high, is the last of its series
+TOGETHER = 1.0 + 1e-12    # impacts within this factor of the shortest time come at one moment
+STILL = 1e-12           # m/s: a smaller v_n is rounding, so the contact rests
 MOST_IMPACTS = 100_000  # a run with more is given up
 
 
@@ -333,14 +360,17 @@ def exact_run(scene, times, report=None):
     the impacts have no end in sight, or the masses are too unequal for the sweeps.
     """
     balls = make_balls(scene)
+    pairs = detect_contacts(balls, margin=math.inf)     # all of them: who may touch, ever
+    gaps = [-c.depth if -c.depth > TOUCH else 0.0 for c in pairs]
     q, v = np.tile(scene.q0, (len(times), 1, 1)), np.tile(scene.v0, (len(times), 1, 1))
     now, done = 0.0, 0
     for _ in range(MOST_IMPACTS):
-        pairs = detect_contacts(balls, margin=math.inf)         # all, also those far apart
-        touching = [c for c in pairs if -c.depth <= TOUCH]
+        touching = [c for c, gap in zip(pairs, gaps) if gap == 0.0]
         bounce(touching, scene.restitution)
-        a, approach = accelerations(balls, touching, pairs)
-        span = min(map(time_to_impact, pairs, approach), default=math.inf)
+        a, closing = accelerations(balls, touching, pairs)
+        motion = [(gap, c.v_n(), a_n) for c, gap, a_n in zip(pairs, gaps, closing)]
+        roots = [time_to_impact(*each) for each in motion]
+        span = min(roots)
         last = int(np.searchsorted(times, now + span, "right"))
         t = times[done:last] - now
         for k, ball in enumerate(balls):
@@ -348,12 +378,15 @@ def exact_run(scene, times, report=None):
             v[done:last, 1, k] = ball.vy + t * a[k]
         if last == len(times):
             return q, v
-        if report:
-            report(last)
         for k, ball in enumerate(balls):
             ball.y += span * (ball.vy + 0.5 * span * a[k])
             ball.vy += span * a[k]
+        gaps = [0.0 if root <= span * TOGETHER or a_n is None else
+                max(0.0, gap + span * (v_n + 0.5 * span * a_n))
+                for root, (gap, v_n, a_n) in zip(roots, motion)]
         now, done = now + span, last
+        if report:
+            report(done)
     raise RuntimeError(f"more than {MOST_IMPACTS:,} impacts by {now:.6g} s: the balls rattle")
 
 
@@ -366,37 +399,38 @@ def bounce(touching, restitution):
 
 
 def accelerations(balls, touching, pairs):
-    """What the balls do next, and how fast every gap accelerates [m/s^2]; None if it stays closed.
+    """What the balls do next, and how every gap accelerates [m/s^2]; None if it stays closed.
 
     The same sweep, one derivative higher: with accelerations in place of velocities, the impulses
     are forces. A resting contact may open and may not close, so its gap has no acceleration < 0.
     """
-    resting = [c for c in touching if abs(c.v_n()) < SLOW]
+    resting = [c for c in touching if abs(c.v_n()) < STILL]
     speeds = [ball.vy for ball in balls]
     for ball in balls:
         ball.vy = GRAVITY if ball.inv_mass > 0.0 else 0.0
     for c in resting:
-        c.target = c.lam = 0.0
+        c.target = 0.0
     settle(resting)
     a = [ball.vy for ball in balls]
-    approach = [None if c in resting and c.lam > 0.0 else c.v_n() for c in pairs]
+    closing = [None if c in resting and c.v_n() < STILL else c.v_n() for c in pairs]
     for ball, speed in zip(balls, speeds):
         ball.vy = speed
-    return a, approach
+    return a, closing
 
 
 def settle(contacts):
     """Sweep until only rounding is left. Raises RuntimeError if the sweeps do not get there."""
-    fastest = max([abs(c.v_n()) for c in contacts], default=0.0)
-    if not solve_contacts(contacts, 100 * MOST_SWEEPS, 2.0**-52 * fastest):
+    speeds = [speed for c in contacts for speed in (c.a.vy, c.b.vy, c.target)]
+    rounding = 2.0**-50 * max(map(abs, speeds), default=0.0)
+    for c in contacts:
+        c.lam = 0.0
+    if not solve_contacts(contacts, MOST_SWEEPS, rounding):
         raise RuntimeError("the masses are too unequal: the sweeps do not settle")
 
 
-def time_to_impact(c, a_n):
+def time_to_impact(gap, v_n, a_n):
     """When the gap closes [s]: the first root of gap + v_n t + a_n t^2 / 2; inf if it does not."""
-    gap, v_n = max(-c.depth, 0.0), c.v_n()
-    at_rest = gap <= TOUCH and abs(v_n) < SLOW
-    if a_n is None or (at_rest and a_n >= -1e-12) or (v_n >= 0.0 and a_n >= 0.0):
+    if a_n is None or (v_n >= 0.0 and a_n >= 0.0):
         return math.inf
     square = v_n * v_n - 2.0 * gap * a_n
     if square < 0.0:
@@ -460,7 +494,7 @@ def soft_defaults(restitution, dt, solref=None, solimp=None):
 
 # --- region: soft ---
 MOST_SWEEPS = 10_000    # a step ends here, if its impulses have not settled
-LAST_BITS = 2.0**-48    # a correction below this share of the speeds is rounding
+LAST_BITS = 2.0**-45    # a correction below this share of the speeds is rounding
 
 
 def soften(c, dt, solref, solimp):
@@ -504,21 +538,6 @@ def soft_step(balls, dt, solref, solimp):
     remember(balls, contacts)
     move(balls, dt)
     return settled
-
-
-def warm_start(contacts):
-    """Begin with the impulses that the same balls gave each other in the step before."""
-    for c in contacts:
-        c.lam = c.a.pushed.get(c.b, 0.0)
-        c.push(c.lam)
-
-
-def remember(balls, contacts):
-    """Keep the impulses for the warm start of the next step."""
-    for ball in balls:
-        ball.pushed = {}
-    for c in contacts:
-        c.a.pushed[c.b] = c.lam
 # --- endregion ---
 
 
@@ -591,7 +610,8 @@ def fly(balls, dt, most):
     Without contact a step adds dt g to v and dt v to q. np.add.accumulate adds in the same order
     as the steps do, so the bits agree. The flight ends before the first step that sees a contact.
     """
-    if detect_contacts(balls):
+    on_floor = any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls)
+    if on_floor or detect_contacts(balls):              # the quick look first
         return ()
     states = np.empty((min(most, 250) + 1, len(balls), 4))
     states[0] = np.reshape(state_of(balls), (-1, 4))
@@ -643,17 +663,22 @@ def run_model(model: str, scene: Scene, dt: float, steps: int,
     solref, solimp = soft_defaults(e, dt, settings.solref, settings.solimp)
     step = {
         "penalty": lambda balls: penalty_step(balls, dt, settings.stiffness, scene.damping),
-        "lcp": lambda balls: lcp_step(balls, dt, e, settings.baumgarte, settings.iters),
+        "lcp": lambda balls: lcp_step(balls, dt, e, settings.baumgarte, settings.iters,
+                                      settings.warm),
         "soft": lambda balls: soft_step(balls, dt, solref, solimp)}
     return simulate(step[model], scene, dt, steps, settings.skip, report)
 
 
 def run_exact(scene, times, report=None):
     """q, v of balls over one another by exact_run, of others by curriculum/exact.py."""
+    exact = beside("exact")
     apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
     if apart and (scene.q0[0] == scene.q0[0, 0]).all() and not scene.v0[0].any():
-        return exact_run(scene, times, report)
-    exact = beside("exact")
+        try:
+            return exact_run(scene, times, report)
+        except RuntimeError:
+            if exact is None:
+                raise
     if exact is None:
         raise RuntimeError("balls that lie beside one another need curriculum/exact.py")
     return exact.simulate_exact(scene, times, GRAVITY, report or (lambda k: None))
@@ -800,7 +825,11 @@ def measure_stability(run, scene, dt, stiffness, first):
 
 # --- region: flags ---
 class Parser(argparse.ArgumentParser):
-    """Answers bad input with one line and exit status 2."""
+    """Answers bad input with one line and exit status 2. -1e4 is a value, and no flag."""
+
+    def __init__(self, **named):
+        super().__init__(**named)
+        self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)", re.IGNORECASE)
 
     def error(self, message):
         sys.exit(fail(" ".join(message.split())))
@@ -814,8 +843,9 @@ def number(kind, low, high):
         except (ValueError, OverflowError):
             value = math.nan
         if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {kind.__name__}, "
-                                             f"from {low:g} to {high:g}")
+            what = "a whole number" if kind is int else "a number"
+            raise argparse.ArgumentTypeError(
+                f"given {text[:40]!r}; allowed: {what} from {low:g} to {high:g}")
         return value + 0                                # -0.0 becomes 0.0
     return read
 
@@ -830,6 +860,7 @@ NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, 
     "--damping": (float, -1e9, 1e9, -1.0, "c of penalty [N s/m] (-1: the scene's, 80 or 0)"),
     "--restitution": (float, -1, 1, -1.0, "e of the others (-1: the scene's, 0 or 0.7)"),
     "--baumgarte": (float, 0, 1, 0.2, "beta of lcp: share of an overlap that a step removes (0.2)"),
+    "--warm": (float, 0, 1, 0.0, "lcp: share of the last impulses to begin with (0)"),
     "--iters": (int, 1, MOST_SWEEPS, 20, "sweeps a step of lcp, at most (20)")}
 
 
@@ -840,7 +871,6 @@ def add_flags(flag):
     flag("--contact", choices=("all", *MODELS), default="all", help="the model (all)")
     for name, (kind, low, high, usual, text) in NUMBERS.items():
         flag(name, type=number(kind, low, high), default=usual, metavar="N", help=text)
-    flag("--warm", action="store_true", help="lcp begins with the impulses of the step before")
     flag("--solref", type=number(float, -1e12, 1e6), nargs=2, metavar=("T", "ZETA"),
          help="soft: time constant [s] and damping ratio (0.02 1), or minus a stiffness and minus "
               "a damping (with e > 0: 0 and -(1 + e) / dt)")
@@ -914,12 +944,14 @@ def ending(row):
 def print_table(rows, ending):
     """A line per row {name: {key: value}} with ending(row) behind it, then the columns' meaning."""
     wide = max(map(len, ["contact", *rows]))
-    print(f"{'contact':<{wide}}  {'  '.join(COLUMNS)}  state")
+    above, _, below = zip(*(title.rpartition(" ") for title in COLUMNS))
+    print(" " * wide + "".join(f"{word:>10}" for word in above))
+    print(f"{'contact':<{wide}}" + "".join(f"{word:>10}" for word in below) + "  state")
     for name, row in rows.items():
-        cells = (f"{figure(row[key]):>{len(title)}}" for title, (key, _) in COLUMNS.items())
-        print(f"{name:<{wide}}  {'  '.join(cells)}  {ending(row)}")
+        cells = "".join(f"{figure(row[key]):>10}" for key, _ in COLUMNS.values())
+        print(f"{name:<{wide}}{cells}  {ending(row)}")
     for title, (_, meaning) in COLUMNS.items():
-        print(f"  {title:<14}{meaning}")
+        print(f"  {title:<15}{meaning}")
 
 
 def print_verdict(quality):
@@ -1037,46 +1069,37 @@ def run_all(args, scene):
     return runs, without, run
 
 
-def collect(args, scene, runs, without, run):
-    """What metrics.json holds: the flags that matter, the measures and the stability grid."""
-    grid = {}
+def collect(args, scene):
+    """The runs {model: Run}, and what metrics.json holds: knobs, measures, the stability grid."""
+    runs, without, run = run_all(args, scene)
+    metrics = {name: getattr(args, name)
+               for name in ("scene", "contact", "dt", "steps", "seed", "stiffness")}
+    metrics |= {"restitution": scene.restitution, "without": without, "stability": {}}
+    metrics["quality"] = {model: contact_quality(found, scene, args.dt, runs.get("exact"))
+                          for model, found in runs.items()}
     if args.contact == "all" and args.scene != "pile":
-        grid = measure_stability(run, scene, args.dt, args.stiffness, runs)
-    return rounded({
-        "scene": args.scene, "contact": args.contact, "dt": args.dt, "steps": args.steps,
-        "seed": args.seed, "stiffness": args.stiffness, "restitution": scene.restitution,
-        "without": without, "stability": grid,
-        "quality": {model: contact_quality(found, scene, args.dt, runs.get("exact"))
-                    for model, found in runs.items()}})
-
-
-def print_report(args, scene, metrics):
-    """The table, the verdict and the stability lines."""
-    print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
-    print_table(metrics["quality"], ending)
-    for model, reason in metrics["without"].items():
-        print(f"no {model}: {reason}")
-    if len(metrics["quality"]) > 1:
-        print_verdict(metrics["quality"])
-    if metrics["stability"]:
-        print_stability(metrics["stability"], len(scene.mass))
+        metrics["stability"] = measure_stability(run, scene, args.dt, args.stiffness, runs)
+    return runs, rounded(metrics)
 
 
 def report(args, argv):
     """Run the models, print what was found, write the files. Returns the exit status."""
-    seeds, hints = (beside(name) for name in ("seeds", "hints"))
-    if args.seeds:
-        return seeds.report(args) if seeds else fail("--seeds needs the course's folder")
     scene = chosen_scene(args, args.seed)
-    runs, without, run = run_all(args, scene)
-    metrics = collect(args, scene, runs, without, run)
-    print_report(args, scene, metrics)
+    runs, metrics = collect(args, scene)
+    print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
+    print_table(metrics["quality"], ending)
+    for model, reason in metrics["without"].items():
+        print(f"no {model}: {reason}")
+    if len(runs) > 1:
+        print_verdict(metrics["quality"])
+    if metrics["stability"]:
+        print_stability(metrics["stability"], len(scene.mass))
     try:
         write_files(args, metrics, runs, scene)
     except OSError as error:
         return fail(f"cannot write to {args.out}: {error.strerror}; the report is whole, give "
                     "another --out to keep its files")
-    if hints:
+    if hints := beside("hints"):
         hints.print_next(args, argv)
     return 0 if runs else 2
 
@@ -1091,8 +1114,12 @@ def main(argv=None):
     """The command line. Returns the exit status: 2 for bad input, 130 after Ctrl-C."""
     argv = sys.argv[1:] if argv is None else argv
     try:
-        status = report(parse_flags(argv), argv)
-        sys.stdout.flush()
+        args = parse_flags(argv)
+        many = beside("seeds") if args.seeds else None
+        if args.seeds and many is None:
+            return fail("--seeds needs the course's folder beside contact.py")
+        status = many.report(args) if many else report(args, argv)
+        sys.stdout.flush()                              # an error at Python's end has no handler
         return status
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
@@ -1105,5 +1132,6 @@ def main(argv=None):
 
 
 if __name__ == "__main__":
+    sys.modules["contact"] = sys.modules[__name__]      # the folder imports this, no second copy
     sys.exit(main())
 # --- endregion ---
