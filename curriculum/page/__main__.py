@@ -1,48 +1,49 @@
-"""python -m curriculum.page [--out FILE] [--pictures FOLDER]: write the chapter as one HTML file."""
+"""python -m curriculum.page [--out FILE] [--pictures FOLDER] [--measure] [--draft]: write the chapter."""
 
+import argparse
 import sys
 from pathlib import Path
 
-from curriculum.common.arguments import Parser
-from curriculum.common.files import write_whole
-from curriculum.common.stoppable import stoppable
 
-
-@stoppable
-def main(argv=None):
-    """Build and write. Returns the exit status: 0 written, 1 the chapter can't be built, 2 bad usage."""
-    parser = Parser(
+def parse(argv):
+    """The flags."""
+    parser = argparse.ArgumentParser(
         prog="python -m curriculum.page", description="Write the chapter as one web page."
     )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        default=Path("outputs/contact.html"),
-        metavar="FILE",
-        help="the file to write (outputs/contact.html)",
-    )
-    parser.add_argument("--root", type=Path, help="another copy of the project")
-    parser.add_argument(
-        "--pictures", type=Path, metavar="FOLDER", help="and the README's pictures of it"
-    )
-    args = parser.parse_args(argv)
+    add = parser.add_argument
+    default = Path("outputs/contact.html")
+    add("--out", type=Path, default=default, metavar="FILE", help=f"the file to write ({default})")
+    add("--pictures", type=Path, metavar="FOLDER", help="and the README's picture of it")
+    add("--measure", action="store_true", help="and how quickly it answers in Chromium")
+    add("--draft", action="store_true", help="build it even where slots or regions are missing")
+    return parser.parse_args(argv)
+
+
+def main(argv=None):
+    """Build and write. Returns the exit status: 0 written, 1 the chapter can't be built, 2 bad usage."""
+    args = parse(argv)
     try:
         from curriculum.page.build import build
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         print(f"the page needs {error.name}: pip install -e '.[page]'", file=sys.stderr)
         return 1
+    from contact import write_whole
+
     try:
-        page = build(args.root) if args.root else build()
+        page, missing = build(draft=args.draft)
         args.out.parent.mkdir(parents=True, exist_ok=True)
         write_whole(args.out, page)
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1
+    for what in missing:
+        print(f"draft: the chapter {what}", file=sys.stderr)
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
-    if args.pictures:
-        from curriculum.page.browser import photograph
+    if args.pictures or args.measure:
+        from curriculum.page import browser
 
-        print(*photograph(args.out, args.pictures), sep="\n")
+        lines = [browser.photograph(args.out, args.pictures)] if args.pictures else []
+        print(*lines, *(browser.measure(args.out) if args.measure else []), sep="\n")
     return 0
 
 

@@ -11,7 +11,8 @@
 import { data } from "./data.js";
 import { run as simulateExact } from "./exact.js";
 
-export const { GRAVITY, CONTACT_MARGIN, SOLREF, SOLIMP, HARD, MOST_SWEEPS, LAST_BITS, EXPLODED } = data.engine;
+const { CONTACT_MARGIN, SOLREF, SOLIMP, HARD, MOST_SWEEPS, LAST_BITS, EXPLODED } = data.engine;
+export const GRAVITY = data.engine.GRAVITY;
 export const MODELS = ["penalty", "lcp", "soft", "exact"];
 
 // max(0, a) as Python computes it: what is not greater than zero, NaN included, becomes +0.

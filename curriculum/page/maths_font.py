@@ -10,14 +10,9 @@ STIX Math is licensed under the SIL Open Font License 1.1 (maths.license.txt), a
 license reserves the original's name, so the cut has another one.
 """
 
-import functools
 import io
 import sys
 from pathlib import Path
-
-from curriculum.common.arguments import Parser
-from curriculum.common.files import write_whole
-from curriculum.common.stoppable import stoppable
 
 FILE = Path(__file__).with_name("maths.woff")
 NAME = "Chapter Maths"
@@ -84,40 +79,26 @@ def rename(font):
     top[0].FullName = top[0].FamilyName = NAME
 
 
-def woff(font):
-    """The font as a web font."""
-    font.flavor = "woff"
-    out = io.BytesIO()
-    font.save(out)
-    return out.getvalue()
-
-
-@functools.cache
 def missing(text):
     """The characters of a text that the font does not have."""
     return sorted(set(text) - CHARACTERS)
 
 
-@stoppable
 def main(argv=None):
-    """Cut the font. Returns the exit status: 0 written, 1 fonttools is missing, 2 no such font."""
-    parser = Parser(
-        prog="python -m curriculum.page.maths_font", description="Cut the font of the formulas."
-    )
-    parser.add_argument("font", type=Path, help=NEEDED)
-    parser.add_argument("--out", type=Path, default=FILE, metavar="FILE", help="the file to write")
-    args = parser.parse_args(argv)
+    """Cut the font given on the command line. Returns the exit status: 0 written, 2 no such font."""
+    from contact import write_whole
+
+    given = sys.argv[1:] if argv is None else argv
     try:
-        from fontTools.ttLib import TTLibError
-    except ImportError:
-        print("fonttools is missing: pip install -e '.[test]'", file=sys.stderr)
-        return 1
-    try:
-        made = woff(cut(args.font))
-        write_whole(args.out, made)
-    except (OSError, TTLibError) as error:
-        parser.error(f"{args.font} is not to be cut: {error}; it must be {NEEDED}")
-    print(f"{args.out}: {len(made):,} bytes")
+        font = cut(*given)
+    except (OSError, TypeError) as error:
+        print(f"{given} is not to be cut ({error}); give {NEEDED}", file=sys.stderr)
+        return 2
+    font.flavor = "woff"
+    out = io.BytesIO()
+    font.save(out)
+    write_whole(FILE, out.getvalue())
+    print(f"{FILE}: {len(out.getvalue()):,} bytes")
     return 0
 
 

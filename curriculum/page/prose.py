@@ -27,9 +27,9 @@ from curriculum.text.references import INCLUDE
 
 CHAPTER = "curriculum/prose/chapter.md"
 SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock|show)(?:\s*:\s*(\S+))?\s*-->\s*")
+EVERY = ",".join(contact.MODELS)
 SETTINGS = {  # beside the knobs: what each may be
     "scene": "drop|bounce|stack",
-    "contact": "|".join(contact.MODELS),
     "seed": r"\d",
     "models": "({0})(,({0}))*".format("|".join(contact.MODELS)),
     "chart": "gap|push|energy",
@@ -81,6 +81,8 @@ def inline(text):
 
 def checked(query, ranges, line):
     """The query of a `try:` link or a `show:` comment. Raises ValueError where it sets what can't be."""
+    query = re.sub(r"\bcontact=(\w+)", lambda m: f"models={EVERY if m[1] == 'all' else m[1]}", query)
+    query = re.sub(r"solref=([^,&]+),([^&]+)", r"timeconst=\1&dampratio=\2", query)
     given = parse_qsl(query.replace("&amp;", "&"), keep_blank_values=True)
     for name, value in given:
         if name in ranges:
@@ -98,6 +100,8 @@ def in_range(name, text, ranges, line):
     if name not in ranges:
         raise ValueError(f"{CHAPTER}:{line}: {name} is no quantity; allowed: {', '.join(ranges)}")
     low, high = ranges[name]
+    if text == "?":  # of a draft, whose number is not known
+        return low
     number = re.fullmatch(r"[\d.]+(e[+-]?\d+)?", text.replace(",", ""))
     if not number or not low <= float(number[0]) <= high:
         allowed = f"{low:g} to {high:g}"

@@ -14,7 +14,7 @@
  *                    lit: [[region, text of a line]], the lines of code that run now
  *   drag(view, name, x, y)      a handle is at (x, y) of the drawing; also the first time, on grabbing
  *   nudge(view, name, dx, dy)   an arrow key: dx, dy are -1, 0 or 1, ten times that with shift
- *   release(view, name)         it was let go
+ *   release(view, name)         it was let go; enter(view): Enter or space on the handle
  *   tick(view, seconds)         so many real seconds passed; false stops the clock
  *   buttons          [{label, press(view)}]; label may be a function of the view
  *   jobs             {name(args)}: what takes long, computed in a worker (view.result)
@@ -103,6 +103,10 @@ export function listenDrag(svg, sizeOf, on) {
   svg.addEventListener("keydown", (event) => {
     const handle = event.target.closest("[data-handle]");
     const arrow = ARROWS[event.key];
+    if (handle && (event.key === "Enter" || event.key === " ")) {
+      event.preventDefault();
+      on.enter(handle.dataset.handle);
+    }
     if (!handle || !arrow || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     const by = event.shiftKey ? 10 : 1;
@@ -152,7 +156,7 @@ export function mountKnob(box, name, store) {
 // ---- a figure in the page
 
 /* A live figure in `box`, which holds .drawing with an svg, .words, .knobs and .buttons, as the template
- * makes them. page: {store, still, worker(figure, job, args, done), open(bet), light(lines)}. */
+ * makes them. page: {store, still, worker(figure, job, args, done), open(bet), light(name, lines)}. */
 export class Stage {
   #results = new Map();
   #pending = 0;
@@ -178,6 +182,7 @@ export class Stage {
     const stage = this;
     return {
       own: figure.start ? figure.start(store.all()) : {},
+      box: this.box,
       grabbed: null,
       still: page.still,
       open: page.open,
@@ -218,6 +223,7 @@ export class Stage {
         store.drag(false);
       },
       nudge: (handle, dx, dy) => this.#act("nudge", handle, dx, dy),
+      enter: (handle) => this.#act("enter", handle),
     };
   }
 
@@ -253,7 +259,7 @@ export class Stage {
     layer.innerHTML = made.svg;
     showHandles(handles, made.handles || []);
     for (const show of this.buttons) show();
-    if (made.lit) this.page.light(made.lit);
+    if (made.lit) this.page.light(this.name, made.lit);
     if (this.#running) return;
     this.svg.setAttribute("aria-label", `${this.figure.title}. ${made.words || ""}`);
     if (this.words.textContent !== made.words) this.words.textContent = made.words || "";

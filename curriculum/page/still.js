@@ -10,16 +10,25 @@ const WIDTH = 640;
 function still(figure, more) {
   const values = { ...startOf("drop"), ...more, ...(figure.shows || {}) };
   const made = figure.draw(stillView(figure, values, WIDTH));
-  const { title, caption, knobs = [], buttons = [] } = figure;
+  const { title, caption = "", knobs = [], buttons = [] } = figure;
   const [height, narrow] = [heightOf(figure, WIDTH), heightOf(figure, 1)];
   return { svg: made.svg, words: made.words || "", title, caption, width: WIDTH, height, narrow, knobs: knobs.length, buttons: buttons.length };
+}
+
+// The same, and what is wrong where a figure cannot be drawn.
+function tried(name, figure, more) {
+  try {
+    return still(figure, more);
+  } catch (error) {
+    return { error: `curriculum/page/figures/${name}.js: ${error}` };
+  }
 }
 
 export function stills() {
   const quantities = Object.assign({}, QUANTITIES, ...Object.values(figures).map((each) => each.quantities || {}));
   const more = Object.fromEntries(Object.entries(quantities).filter(([, each]) => "start" in each).map(([name, each]) => [name, each.start]));
   return {
-    figures: Object.fromEntries(Object.entries(figures).map(([name, figure]) => [name, still(figure, more)])),
+    figures: Object.fromEntries(Object.entries(figures).map(([name, figure]) => [name, tried(name, figure, more)])),
     keys: Object.fromEntries(MODELS.map((model) => [model, key(model)])),
     ranges: Object.fromEntries(Object.entries(quantities).map(([name, { low, high }]) => [name, [low, high]])),
   };

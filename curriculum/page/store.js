@@ -20,12 +20,11 @@ export const QUANTITIES = {
 };
 export const MODELS = ["penalty", "lcp", "soft", "exact"];
 export const SCENES = Object.keys(data.scenes);
-const CHOICES = { scene: SCENES, contact: MODELS, seed: data.scenes.drop.starts.map((_, k) => String(k)) };
+const CHOICES = { scene: SCENES, seed: data.scenes.drop.starts.map((_, k) => String(k)) };
 const SLIDER = 400; // positions of a slider that is not plain
 
 const START = {
   scene: "drop",
-  contact: "penalty",
   seed: "0",
   ...data.defaults,
   impedance: null, // null: what the model takes by itself
