@@ -1,1 +1,0 @@
-"""What the gate reads in texts: numbers, formulas, names, commands, and passages it hashes."""
