@@ -61,6 +61,7 @@ BAD = {
     "--restitution": "1.01 nan",
     "--baumgarte": "-0.01 1.01 nan",
     "--iters": "0 -3 1.5 99999999999999999999",
+    "--warm": "-0.1 1.1 nan",
     "--dt": "0 -0.002 nan inf fast",
     "--steps": "-1 2.5 nan 1000000000000",
     "--bodies": "0 -2 many",
@@ -112,11 +113,11 @@ def test_the_scenes_own_restitution_and_damping_can_be_asked_for_as_published(tm
 
 
 ALONE = [
-    "--scene drop", "--scene bounce", "--scene stack --bodies 4", "--contact penalty --dt 0.03",
-    "--smoke --stiffness 5000 --damping 20 --mass 2 --restitution 0.5 --baumgarte 0.4 --iters 3",
-    "--contact soft --solref 0.01 1 --solimp 0.5 0.9 0.002 0.5 3 --steps 300",
-    "--contact exact --scene stack --restitution 0.8", "--contact lcp --warm --no-skip --steps 300",
-    "--help", "--scene pool", "--seeds 0:0",
+    "--scene drop", "--scene bounce --no-rerun", "--scene stack --bodies 4 --no-rerun",
+    "--smoke --stiffness 5000 --damping 20 --mass 2 --restitution 0.5 --baumgarte 0.4 --no-rerun",
+    "--contact soft --solref 0.01 1 --solimp 0.5 0.9 0.002 0.5 3 --steps 300 --no-rerun",
+    "--contact exact --scene stack --restitution 0.8 --no-rerun", "--help", "--scene pool",
+    "--contact lcp --warm 0.9 --iters 3 --no-skip --dt 0.03 --steps 300 --no-rerun",
 ]  # fmt: skip
 
 
@@ -135,8 +136,7 @@ def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(flags, tmp
         for run in runs
     ]
     assert outputs[0] == outputs[1] and runs[0].returncode == runs[1].returncode
-    if "--seeds" not in flags:
-        assert runs[0].stderr == runs[1].stderr
+    assert runs[0].stderr == runs[1].stderr
     written = [
         sorted(cwd.rglob("metrics.json")) for cwd in (tmp_path / "lone", tmp_path / "beside")
     ]
@@ -230,7 +230,7 @@ def test_where_nothing_can_be_written_the_report_is_whole(given, tmp_path):
     """A file stands where the folder should be: the one asked for, or the default one."""
     (tmp_path / "outputs").write_text("a file")
     flags = ("--out", tmp_path / "outputs" / "deeper") if given else ()
-    run = command("--no-rerun", *flags, cwd=tmp_path)
+    run = command("--smoke", "--no-rerun", *flags, cwd=tmp_path)
     assert run.returncode == 2 and run.stderr.count("\n") == 1
     assert "cannot write" in run.stderr and "the report is whole" in run.stderr
     assert "stability: penalty" in run.stdout
