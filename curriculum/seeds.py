@@ -57,13 +57,13 @@ def qualities(job):
 def summary(model, found):
     """{"model median": row, "model lowest": row, "model highest": row} of many qualities, by key.
 
-    A row also counts the runs, and those that exploded or went through something. A number that is
+    A row also counts the runs, those that exploded, and others that went through something. A number that is
     not finite counts as larger than any other; None where a run has none.
     """
     counts = {
         "runs": len(found),
         "blew_up": sum(row["blew_up"] for row in found),
-        "through": sum(row["through"] is not None for row in found),
+        "through": sum(row["through"] is not None and not row["blew_up"] for row in found),
     }
     rows = {f"{model} {name}": dict(counts) for name in ("median", "lowest", "highest") if found}
     for key, _ in contact.COLUMNS.values():
