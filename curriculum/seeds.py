@@ -57,8 +57,8 @@ def qualities(job):
 def summary(model, found):
     """{"model median": row, "model lowest": row, "model highest": row} of many qualities, by key.
 
-    A row also counts the runs, those that exploded, and others that went through something. A number that is
-    not finite counts as larger than any other; None where a run has none.
+    A row also counts the runs, those that exploded, and others that went through something. A
+    number that is not finite counts as larger than any other; None where a run has none.
     """
     counts = {
         "runs": len(found),
