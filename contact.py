@@ -368,23 +368,17 @@ def exact_run(scene, times, report=None):
         touching = [c for c, gap in zip(pairs, gaps) if gap == 0.0]
         bounce(touching, scene.restitution)
         a, closing = accelerations(balls, touching, pairs)
-        motion = [(gap, c.v_n(), a_n) for c, gap, a_n in zip(pairs, gaps, closing)]
-        roots = [time_to_impact(*each) for each in motion]
-        span = min(roots)
+        span, gaps = next_impact(pairs, gaps, closing)
         last = int(np.searchsorted(times, now + span, "right"))
         t = times[done:last] - now
         for k, ball in enumerate(balls):
             q[done:last, 1, k] = ball.y + t * (ball.vy + 0.5 * t * a[k])
             v[done:last, 1, k] = ball.vy + t * a[k]
-        if last == len(times):
-            return q, v
-        for k, ball in enumerate(balls):
             ball.y += span * (ball.vy + 0.5 * span * a[k])
             ball.vy += span * a[k]
-        gaps = [0.0 if root <= span * TOGETHER or a_n is None else
-                max(0.0, gap + span * (v_n + 0.5 * span * a_n))
-                for root, (gap, v_n, a_n) in zip(roots, motion)]
         now, done = now + span, last
+        if done == len(times):
+            return q, v
         if report:
             report(done)
     raise RuntimeError(f"more than {MOST_IMPACTS:,} impacts by {now:.6g} s: the balls rattle")
@@ -428,8 +422,20 @@ def settle(contacts):
         raise RuntimeError("the masses are too unequal: the sweeps do not settle")
 
 
+def next_impact(pairs, gaps, closing):
+    """How long until the next gap closes [s]; and all gaps [m] at that moment, 0 in touch."""
+    speeds = [c.v_n() for c in pairs]
+    roots = list(map(time_to_impact, gaps, speeds, closing))
+    span = min(roots)
+    after = []
+    for root, gap, v_n, a_n in zip(roots, gaps, speeds, closing):
+        closed = a_n is None or root <= span * TOGETHER
+        after.append(0.0 if closed else max(0.0, gap + span * (v_n + 0.5 * span * a_n)))
+    return span, after
+
+
 def time_to_impact(gap, v_n, a_n):
-    """When the gap closes [s]: the first root of gap + v_n t + a_n t^2 / 2; inf if it does not."""
+    """When a gap closes [s]: the first root of gap + v_n t + a_n t^2 / 2; inf if it does not."""
     if a_n is None or (v_n >= 0.0 and a_n >= 0.0):
         return math.inf
     square = v_n * v_n - 2.0 * gap * a_n
@@ -572,34 +578,37 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, repor
     `report(k)` is called with the steps done; a step returns False if its sweeps did not settle.
     """
     balls = make_balls(scene)
-    rows = np.empty((steps + 1, 4 * len(balls)))
-    rows[0] = state_of(balls)
-    unsettled = np.zeros(steps + 1, bool)
+    rows = np.zeros((steps + 1, 4 * len(balls) + 1))    # the last column: sweeps unsettled, 0 or 1
+    rows[0, :-1] = state_of(balls)
     seen = {}                                           # a state: the step it came at
     k = 0
     while k < steps:
         if skip:
-            state = rows[k].tobytes(), tuple(tuple(ball.pushed.items()) for ball in balls)
+            state = rows[k, :-1].tobytes(), *(tuple(ball.pushed.items()) for ball in balls)
             first = seen.setdefault(state, k)
             if first < k:
-                for past in range(first, k):            # these states come again and again
+                for past in range(first + 1, k + 1):    # what came then comes again and again
                     rows[past + k - first::k - first] = rows[past]
-                    unsettled[past + k - first + 1::k - first] = unsettled[past + 1]
                 break
             flight = fly(balls, dt, steps - k)
             if len(flight) > 0:
-                rows[k + 1:k + 1 + len(flight)] = flight
+                rows[k + 1:k + 1 + len(flight), :-1] = flight
                 k += len(flight)
                 continue
-        unsettled[k + 1] = step(balls) is False
+        settled = step(balls)
         k += 1
-        rows[k] = state_of(balls)
+        rows[k] = [*state_of(balls), settled is False]
         if report:
             report(k)
-    rows += 0.0                                         # turns -0.0 into 0.0
-    rows[np.isnan(rows)] = math.nan                     # which has a sign too, left to chance
-    rows = rows.reshape(steps + 1, len(balls), 4).transpose(0, 2, 1).copy()
-    return Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:], int(unsettled.sum()))
+    return recorded(rows, len(balls), dt)
+
+
+def recorded(rows, count, dt):
+    """The Run of such rows. Signs that chance decides go: -0.0 becomes 0.0, -nan becomes nan."""
+    rows += 0.0
+    rows[np.isnan(rows)] = math.nan
+    states = rows[:, :-1].reshape(len(rows), count, 4).transpose(0, 2, 1).copy()
+    return Run(np.arange(len(rows)) * dt, states[:, :2], states[:, 2:], int(rows[:, -1].sum()))
 # --- endregion ---
 
 
@@ -671,16 +680,16 @@ def run_model(model: str, scene: Scene, dt: float, steps: int,
 
 def run_exact(scene, times, report=None):
     """q, v of balls over one another by exact_run, of others by curriculum/exact.py."""
-    exact = beside("exact")
+    reason = "balls that lie beside one another need curriculum/exact.py"
     apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
     if apart and (scene.q0[0] == scene.q0[0, 0]).all() and not scene.v0[0].any():
         try:
             return exact_run(scene, times, report)
-        except RuntimeError:
-            if exact is None:
-                raise
+        except RuntimeError as error:
+            reason = str(error)
+    exact = beside("exact")
     if exact is None:
-        raise RuntimeError("balls that lie beside one another need curriculum/exact.py")
+        raise RuntimeError(reason)
     return exact.simulate_exact(scene, times, GRAVITY, report or (lambda k: None))
 # --- endregion ---
 
