@@ -28,15 +28,13 @@ WHY = ""                # your sentence, see WHY_PROMPT
 
 
 def measure():
-    """The drop at both steps, by both models, and the two critical steps: {name: a number}."""
+    """The drop at both steps, by both models, and the critical step: {name: a number}."""
     scene, numbers = contact.build_scene("drop"), {}
     for when, dt in (("usual", 0.002), ("long", 0.03)):
         for model, measured in predict.quality(scene, dt, steps=2000).items():
             numbers[f"{model}_{when}"] = measured["energy_excess"]
             numbers[f"{model}_{when}_depth"] = measured["max_penetration_frac"]
-    for name, damping in (("limit", scene.damping), ("undamped_limit", 0.0)):
-        numbers[name] = contact.critical_dt(float(scene.mass[0]), 1e4, damping)
-    return numbers
+    return numbers | {"limit": contact.critical_dt(float(scene.mass[0]), 1e4, scene.damping)}
 
 
 def table(numbers):

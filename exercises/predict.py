@@ -16,12 +16,12 @@ try:
     import contact
 except ModuleNotFoundError as error:
     sys.exit(f"{error}: {sys.executable} -m pip install numpy")
+from progress import DONE, done, next_exercise
 
 FACTS = json.loads(Path(__file__).with_name("answers.json").read_text("utf-8"))
 HINTS = {name: facts["hints"] for name, facts in FACTS.items()}
 ANSWERS = {name: facts["answer"] for name, facts in FACTS.items() if "answer" in facts}
 REASONS = {name: FACTS[name]["reasons"] for name in ANSWERS}
-DONE = ROOT / "outputs" / "ch3.5-contact" / "exercises.json"    # {name: the bet, or "done"}
 
 
 def command(*words):
@@ -55,14 +55,6 @@ def run(name, main, exercise, argv=None):
 # What is done
 
 
-def done():
-    """{exercise: its bet, or "done"}, as far as it was noted."""
-    try:
-        return json.loads(DONE.read_text("utf-8"))
-    except (OSError, ValueError):
-        return {}
-
-
 def note(name, value):
     """Note an exercise as done, or as not done where value is None."""
     noted = done()
@@ -70,7 +62,6 @@ def note(name, value):
         return
     noted = {key: found for key, found in (noted | {name: value}).items() if found}
     try:
-        DONE.parent.mkdir(parents=True, exist_ok=True)
         contact.write_json(DONE, noted)
     except OSError as error:
         print(f"cannot note that {name} is done: {error}", file=sys.stderr)
@@ -78,7 +69,6 @@ def note(name, value):
 
 def follow_up():
     """The last line of an exercise: the next one that is not done, or that all are."""
-    from checks import next_exercise
     file = next_exercise()
     if file is not None:
         return f"next: {command(os.path.relpath(ROOT / file))}"
