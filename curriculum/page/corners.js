@@ -3,7 +3,7 @@
 import { arrow, ball, el, linePath, number, table } from "./draw.js";
 import { knobsOf } from "./store.js";
 import { pushOfTable, runModel, soften } from "./engine.js";
-import { axis, beside, clipped, forceLength, G, handle, kept, label, line, R, scene, within } from "./parts.js";
+import { axis, beside, clipped, forceLength, G, handle, kept, label, line, R, scene, softKnobs, within } from "./parts.js";
 
 const PULL = 64; // px below the ball at which the hand presses hardest
 // What a picture shows: gaps from low to high [r], a radius in px, the hardest press in weights, ticks.
@@ -136,7 +136,8 @@ LAWS.lcp = {
     const rings = gaps.map((gap, row) => [sx(gap), sy(Math.min(1.05 * WIDE.most, forces[row]))]);
     return rings.map(([cx, cy]) => el("circle", { cx, cy, r: 4, class: "look m-lcp" })).join("");
   },
-  ghosts: (view, state, x, floor, r) => ball("lcp", x, floor - r - looks(view, state).deepest * r, r, "ghost"),
+  ghosts: (view, state, x, floor, r) =>
+    state.load < 1 ? "" : ball("lcp", x, floor - r - looks(view, state).deepest * r, r, "ghost"),
   words(view, state) {
     const { gaps, deepest } = looks(view, state);
     const deep = `the step before the first push ended ${number(-deepest, 2)} r deep`;
@@ -146,7 +147,7 @@ LAWS.lcp = {
 
 // soft: at rest the solver asks for no velocity where lam = target / R.
 const softLoad = (gap, view) => {
-  const knobs = { ...knobsOf(view.values), restitution: 0 };
+  const knobs = softKnobs(view);
   const contact = { i: 0, j: -1, nx: 0, ny: 1, depth: -gap * R };
   const { target, softness } = soften(contact, scene([R * (1 + gap)]), scene([R]), knobs);
   return target / softness / (G * knobs.dt);

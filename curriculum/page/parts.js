@@ -2,6 +2,7 @@
 import { ball, el, plot, round, table, words } from "./draw.js";
 import { data } from "./data.js";
 import { GRAVITY } from "./engine.js";
+import { knobsOf } from "./store.js";
 
 export const R = data.radius; // m
 export const G = -GRAVITY; // m/s^2, and the weight in N of a ball of 1 kg
@@ -107,6 +108,12 @@ export function enlarged(depth, r) {
 
 // How long an arrow for a force is, in weights: the root, since impacts are hundreds of weights.
 export const forceLength = (weights, unit = 26) => unit * Math.sqrt(Math.max(weights, 0));
+
+// What soft is told, for a ball that does not bounce.
+export const softKnobs = (view) => ({
+  ...knobsOf({ ...view.values, impedance: view.get("impedance") }),
+  restitution: 0,
+});
 
 export const handle = (name, x, y, r, label, value, text) => ({ name, x, y, r, label, value, text });
 

@@ -45,7 +45,7 @@ function lane(view, [model, { run, times }], k) {
   const [x, big] = [wall + first * unit, side(view.own.n)];
   const far = x + LIGHT + second * unit;
   const block = (at, size, mass) =>
-    el("rect", { x: at, y: floor - size, width: size, height: size, class: `ball m-${model}` }) + label(mass, at + size / 2, floor - size - 6, "middle", "tick");
+    el("rect", { x: at, y: floor - size, width: size, height: size, class: `ball m-${model}` }) + label(mass, at + size / 2, floor - size / 2 + 5, "middle", "on-ball");
   const seen = times.filter((each) => each <= time || time === SECONDS).length;
   const parts = [
     table(0, floor, view.width, 12),

@@ -31,7 +31,7 @@ function draw(view) {
   const balls = tops.map((time) => [sx(time), sy(y[Math.round((time / until) * ROWS)])]);
   const text = `e = ${e.toFixed(2)}`;
   return {
-    svg: balls.map((at) => ball("exact", ...at, r, "ghost")).join("") + markup + ball("exact", sx(until), sy(R), r),
+    svg: balls.map((at) => ball("exact", ...at, r, "ghost")).join("") + markup + ball("exact", sx(until) - r, sy(R), r),
     words: `${text}: every bounce is e² = ${number(e * e, 2)} times as high as the last, and all are over at ${number(over(e))} s.`,
     handles: [handle("top", ...balls[0], 16, "the top of the first bounce", e, text)],
   };

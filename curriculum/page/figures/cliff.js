@@ -60,7 +60,7 @@ function chartOf(view, dt, left) {
     lines: [{ model: "penalty", ...known, class: "plainly" }],
     rules: [
       { x: damped, text: `with its damper ${number(1000 * damped)}`, side: "end" },
-      { x: undamped, text: `2√(m/k) ${number(1000 * undamped)}`, class: "dashed", row: 1, side: "start" },
+      { x: undamped, text: `2√(m/k) ${number(1000 * undamped)}`, class: "dashed", row: 1, side: view.width < 480 ? "end" : "start" },
     ],
     points: [{ model: "penalty", x: within(low, dt, high), y: left, size: 8 }],
   });

@@ -1,8 +1,7 @@
 /* MuJoCo's impedance: how firmly a soft contact asks, by its depth. */
 import { arrow, ball, number, table } from "../draw.js";
 import { impedance, softDefaults } from "../engine.js";
-import { knobsOf } from "../store.js";
-import { alongAxis, axis, beside, handle, label, R, within } from "../parts.js";
+import { alongAxis, axis, beside, handle, label, R, softKnobs, within } from "../parts.js";
 
 const PX = 1000; // a radius: twenty times nearer than in the other pictures
 const MOST = 1.5; // widths
@@ -23,21 +22,22 @@ function chartOf(solimp, share) {
 
 function draw(view) {
   const share = view.own.depth; // of the width
-  const { solimp } = softDefaults({ ...knobsOf(view.values), restitution: 0 });
+  const { solimp } = softDefaults(softKnobs(view));
   const depth = share * solimp[2];
   const d = impedance(depth, solimp);
+  const digits = d > 0.99 ? 4 : 3;
   const floor = view.height - 70;
   const picture = (left) =>
     table(0, floor, left, 70) +
     ball("soft", left / 2, floor + (depth / R) * PX - PX, PX, "ball plainly") +
     arrow("push m-soft", left / 2, floor - 12, 0, -110 * d) +
-    label(`${number(100 * d)} %`, left / 2 + 12, floor - 90);
+    label(`${number(100 * d, digits)} %`, left / 2 + 12, floor - 90);
   const { svg, x, y } = beside(view, "impedance", chartOf(solimp, share), picture);
-  const text = `${number(1000 * depth, 2)} mm deep, d = ${number(d)}`;
+  const text = `${number(1000 * depth, 2)} mm deep, d = ${number(d, digits)}`;
   const all = "of the acceleration that a hard contact would give it gives";
   return {
     svg,
-    words: `${text}: ${all} ${number(100 * d)} %, and R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass.`,
+    words: `${text}: ${all} ${number(100 * d, digits)} %, and R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass.`,
     handles: [handle("depth", x(share), y(d), 14, "the depth", share, text)],
   };
 }

@@ -10,10 +10,10 @@ const TOP = 1.8; // r
 const FINE = 2e-5; // s
 const TEXT = 56; // px below the chart
 
-// (x, v) after one step from (x, v), x measured from the table up: mass 1, and the clamp not reached.
+// Depth x and upward speed v after one step from (x, v), x from the place of rest: mass 1, no clamp.
 export const stepMatrix = (dt, k, c) => [
-  [1 - k * dt * dt, dt - c * dt * dt],
-  [-k * dt, 1 - c * dt],
+  [1 - k * dt * dt, -dt * (1 - c * dt)],
+  [k * dt, 1 - c * dt],
 ];
 
 // The eigenvalues of a 2 x 2 matrix, as [real, imaginary] each.

@@ -2,8 +2,7 @@
  * spring of penalty taken at the end of the step is one of them. */
 import { el, mark, number } from "../draw.js";
 import { detectContacts, GRAVITY, makeRows, normalSpeed, soften, solveContacts } from "../engine.js";
-import { knobsOf } from "../store.js";
-import { alongAxis, axis, charted, G, handle, kept, label, R, scene, tidy, within } from "../parts.js";
+import { alongAxis, axis, charted, G, handle, kept, label, R, scene, softKnobs, tidy, within } from "../parts.js";
 
 const [LOW, HIGH] = [1e-6, 1];
 const WAYS = {
@@ -41,7 +40,7 @@ export const atRest = kept((name, knobs) => rests(WAYS[name] || soft, knobs));
 
 // The points, the two that can be dragged first: [name, model, what it rests with].
 function points(view) {
-  const knobs = { ...knobsOf(view.values), restitution: 0 };
+  const knobs = softKnobs(view);
   const { stiffness, damping, dt, solimp, solref } = knobs;
   return [
     ["implicit spring", "penalty", atRest("implicit spring", { stiffness, damping, dt })],
@@ -91,19 +90,19 @@ function draw(view) {
 }
 
 const stiffen = (view, k) => view.set({ stiffness: within(100, tidy(k), 1e6) });
-const harden = (view, d) => view.set({ impedance: within(0.5, Number(d.toPrecision(4)), 0.9999) });
+const give = (view, left) => view.set({ impedance: within(0.5, Number((1 - tidy(left)).toFixed(7)), 0.9999) }); // left: 1 - d
 
 // Sets the knob that puts a point where it is dragged. The axis ends in a decade that leads to 0.
 function put(view, share, name) {
   const dt = view.get("dt");
   const softness = (HIGH * (LOW / HIGH / 10) ** (1 - share)) / (G * dt);
   if (name === "spring") stiffen(view, (1 / softness - view.get("damping") * dt) / (dt * dt));
-  else harden(view, 1 / (1 + softness));
+  else give(view, softness / (1 + softness));
 }
 
 function step(view, by, name) {
   if (name === "spring") stiffen(view, view.get("stiffness") * 1.1 ** -by);
-  else harden(view, 1 - (1 - view.get("impedance")) * 1.1 ** by);
+  else give(view, (1 - view.get("impedance")) * 1.1 ** by);
 }
 
 export const figure = {

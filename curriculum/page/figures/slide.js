@@ -1,11 +1,11 @@
 /* A ball slides off a ball that is held, and leaves it at two thirds of the height it started from. */
-import { ball, el, number, round } from "../draw.js";
+import { ball, el, round } from "../draw.js";
 import { runExact } from "../engine.js";
 import { clock, G, kept, label, line, R, scene, within } from "../parts.js";
 
-const DT = 0.0001; // s: how finely exact is looked at
+const DT = 0.0002; // s: how finely exact is looked at
 const MIDDLE = 5; // m: the held ball is far above the floor
-const degrees = (angle) => `${number((angle * 180) / Math.PI)}°`;
+const degrees = (angle) => `${((angle * 180) / Math.PI).toFixed(1)}°`;
 
 /* The upper ball's path from this angle on, and where it leaves: in the middle of the last row in which
  * something else than gravity has changed its velocity. */
@@ -40,7 +40,7 @@ function draw(view) {
   const ray = (at, from, to) => [x + from * scale * Math.sin(at), y - from * scale * Math.cos(at), x + to * scale * Math.sin(at), y - to * scale * Math.cos(at)];
   const row = Math.round((time ?? 0) / DT);
   const at = ([px, py]) => [x + px * scale, y - py * scale];
-  const trail = path.slice(0, row + 1).filter((_, k) => k % 40 === 0).map((place, k) => `${k ? "L" : "M"}${at(place).map(round).join(" ")}`);
+  const trail = path.slice(0, row + 1).filter((_, k) => k % 20 === 0).map((place, k) => `${k ? "L" : "M"}${at(place).map(round).join(" ")}`);
   const [bx, by] = at(path[row]);
   const [lx, ly] = ray(release, 0, 0.35).slice(2);
   return {

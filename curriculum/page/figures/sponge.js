@@ -11,7 +11,7 @@ const restOf = (view) => G / view.get("stiffness") / R; // r
 
 // What the ball does from so deep [r], let go.
 const fall = kept((depth, stiffness, damping) =>
-  runModel("penalty", scene([(1 - depth) * R]), { dt: DT, stiffness, damping }, SECONDS / DT),
+  runModel("penalty", scene([(1 - depth) * R]), { dt: DT, stiffness, damping }, Math.round(SECONDS / DT)),
 );
 
 function depthOf(view) {

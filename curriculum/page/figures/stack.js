@@ -11,8 +11,9 @@ const floorOf = (view) => view.height - 40;
 export function restingHeights(k, from, lift) {
   const heights = [];
   let surface = 0;
+  const free = lift > 0 ? from : COUNT;
   for (let i = 0; i < COUNT; i++) {
-    const carried = i < from ? from - i : COUNT - i;
+    const carried = i < free ? free - i : COUNT - i;
     const sunk = i === from && lift > 0 ? -lift * R : (carried * G) / k;
     heights.push(surface + R - sunk);
     surface = heights[i] + R;
@@ -21,7 +22,7 @@ export function restingHeights(k, from, lift) {
 }
 
 const fall = kept((stiffness, damping, from, lift) =>
-  runModel("penalty", scene(restingHeights(stiffness, from, lift)), { dt: DT, stiffness, damping }, SECONDS / DT),
+  runModel("penalty", scene(restingHeights(stiffness, from, lift)), { dt: DT, stiffness, damping }, Math.round(SECONDS / DT)),
 );
 
 function heightsOf(view) {

@@ -76,7 +76,7 @@ export const figure = {
   title: "The sweeps, contact after contact",
   caption: "Each contact mends itself and disturbs its neighbours; drag the uppermost ball’s speed upwards, and the clamp stops its contact from pulling.",
   height: 260,
-  start: () => ({ time: 0, top: 0 }),
+  start: () => ({ time: COUNT, top: 0 }),
   draw,
   drag(view, name, x, y) {
     view.stop();

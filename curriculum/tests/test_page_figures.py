@@ -1,0 +1,225 @@
+"""The explaining figures: each answers to a drag and to arrow keys, and shows what contact.py finds."""
+
+import functools
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import contact
+from curriculum.page.bundle import figure_names
+from curriculum.page.prose import CHAPTER
+from curriculum.tests.page_browser import needs_chromium, running, visiting
+from curriculum.text import facts
+from curriculum.text.regions import ROOT
+
+SLOT = re.compile(r"<!-- figure: ([\w-]+) -->")
+# the other figures of the page are tested with the page itself
+EXPLAINING = sorted(set(figure_names()) - {"grab", "two", "lanes", "puzzle", "sandbox"})
+DT, RADIUS, WEIGHT = 0.002, contact.RADIUS, -contact.GRAVITY
+
+
+def test_every_figure_has_one_slot_in_the_chapter_and_every_slot_a_figure():
+    slots = SLOT.findall((ROOT / CHAPTER).read_text("utf-8"))
+    assert sorted(slots) == figure_names()
+
+
+@functools.cache
+def page_of_figures():
+    """A page that holds every explaining figure, and nothing else."""
+    from curriculum.page.build import build
+
+    sections = "\n\n".join(f"## {name}\n\n<!-- figure: {name} -->" for name in EXPLAINING)
+    return build(chapter=f"# Figures\n\n{sections}\n", draft=True)[0]
+
+
+@pytest.fixture(scope="module")
+def tab(tmp_path_factory):
+    """A browser tab on that page; what a test sets, it takes back by loading anew."""
+    file = tmp_path_factory.mktemp("figures") / "figures.html"
+    file.write_text(page_of_figures(), encoding="utf-8")
+    with running() as browser, visiting(browser, file.as_uri()) as page:
+        page.wait_for_selector("[data-ready]", state="attached")
+        yield page
+
+
+def figure(tab, name):
+    """A figure by its name, drawn and in sight."""
+    box = tab.locator(f"#fig-{name}")
+    box.scroll_into_view_if_needed()
+    box.locator(".handle").first.wait_for(state="attached")
+    return box
+
+
+def said(box):
+    """What the figure says in words, with a plain minus and no commas within numbers."""
+    text = box.locator(".words").inner_text().replace("−", "-")
+    return re.sub(r"(?<=\d),(?=\d{3}\b)", "", text)
+
+
+def numbers(box):
+    """The numbers in what the figure says."""
+    return [float(each) for each in re.findall(r"-?\d+(?:\.\d+)?(?:e-?\d+)?", said(box))]
+
+
+def handle(box, name):
+    """A handle of a figure, by its name."""
+    return box.locator(f'.handle[data-handle="{name}"]')
+
+
+def drag(tab, grip, by):
+    """Drag a handle by (x, y) px with the mouse."""
+    around = grip.bounding_box()
+    x, y = around["x"] + around["width"] / 2, around["y"] + around["height"] / 2
+    tab.mouse.move(x, y)
+    tab.mouse.down()
+    tab.mouse.move(x + by[0] / 2, y + by[1] / 2)
+    tab.mouse.move(x + by[0], y + by[1])
+    tab.mouse.up()
+    settle(tab)
+
+
+def settle(tab):
+    """Wait until what has changed is drawn."""
+    tab.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def press(tab, grip, key, times=1):
+    """Press an arrow key on a handle."""
+    grip.focus()
+    for _ in range(times):
+        tab.keyboard.press(key)
+    settle(tab)
+
+
+def set_knobs(tab, query):
+    """The page with these values in its address."""
+    tab.goto(tab.url.split("?")[0].split("#")[0] + query)
+    tab.wait_for_selector("[data-ready]", state="attached")
+
+
+@needs_chromium
+@pytest.mark.parametrize("name", EXPLAINING)
+def test_every_handle_answers_to_arrow_keys_and_to_a_drag(tab, name):
+    """Held where it is dragged: what a handle tells changes, and keyboard focus stays on it."""
+    box = figure(tab, name)
+    names = [grip.get_attribute("data-handle") for grip in box.locator(".handle").all()]
+    assert names
+    for label in names:
+        grip = handle(box, label)
+        assert grip.get_attribute("aria-label")
+        start = grip.get_attribute("aria-valuetext")
+        press(tab, grip, "ArrowUp", 3)
+        moved = grip.get_attribute("aria-valuetext")
+        assert moved != start, f"{label}: arrow up changes nothing"
+        press(tab, grip, "ArrowDown", 3)
+        assert grip.get_attribute("aria-valuetext") != moved, f"{label}: arrow down changes nothing"
+        assert tab.evaluate("() => document.activeElement.dataset.handle") == label
+        before = box.locator(".drawing").inner_html()
+        drag(tab, grip, (24, -24))
+        assert box.locator(".drawing").inner_html() != before, f"{label}: a drag changes nothing"
+
+
+@needs_chromium
+def test_every_figure_is_told_in_words_and_has_a_caption_of_one_sentence(tab):
+    for name in EXPLAINING:
+        box = figure(tab, name)
+        told = box.locator(".drawing svg").get_attribute("aria-label")
+        assert said(box) in re.sub(r"(?<=\d),(?=\d{3}\b)", "", told.replace("−", "-"))
+        caption = box.locator("figcaption").inner_text()
+        assert re.fullmatch(r"[^.]+\.", re.sub(r"\d\.\d", "", caption)), caption
+
+
+@needs_chromium
+def test_a_quantity_dragged_in_one_figure_is_the_same_in_all(tab):
+    set_knobs(tab, "")
+    drag(tab, handle(figure(tab, "sponge"), "ramp"), (60, 0))
+    shown = handle(figure(tab, "sponge"), "ramp").get_attribute("aria-valuenow")
+    assert float(shown) < 5000
+    for name in ("corner-penalty", "stack", "cliff"):
+        knob = figure(tab, name).locator('[data-knob="stiffness"] input[type="text"]')
+        assert knob.input_value() == shown
+    assert f"stiffness={shown}" in tab.url
+
+
+def rest(model, dt=DT, **knobs):
+    """How deep [r] contact.py's ball lies in the end, and how deep it was at most."""
+    scene = contact.build_scene("drop")
+    depth = 1 - contact.run_model(model, scene, dt, 4000, contact.Settings(**knobs)).q[:, 1, 0] / RADIUS
+    return SimpleNamespace(rest=depth[-1], most=depth.max())
+
+
+@needs_chromium
+def test_springs_show_the_depths_of_contact_py(tab):
+    set_knobs(tab, "?stiffness=5000")
+    assert numbers(figure(tab, "sponge"))[0] == pytest.approx(rest("penalty", stiffness=5e3).rest, rel=5e-3)
+    assert numbers(figure(tab, "dive"))[0] == pytest.approx(
+        rest("penalty", dt=0.0005, stiffness=5e3).most, rel=0.02
+    )
+    stack = figure(tab, "stack")
+    assert numbers(stack)[:2] == pytest.approx([3, 3 * WEIGHT / 5e3 / RADIUS], rel=5e-3)
+    press(tab, handle(stack, "1"), "ArrowUp", 3)
+    assert numbers(stack)[:2] == pytest.approx([1, WEIGHT / 5e3 / RADIUS], rel=5e-3)
+
+
+@needs_chromium
+def test_one_long_step_has_the_eigenvalues_of_its_matrix_and_the_cliff_is_where_one_leaves_the_circle(tab):
+    set_knobs(tab, "?dt=0.012")
+    k, c, dt = 1e4, 80.0, 0.012
+    step = np.array([[1 - k * dt * dt, -dt * (1 - c * dt)], [k * dt, 1 - c * dt]])
+    shown = numbers(figure(tab, "long-step"))
+    assert shown[1] == pytest.approx(np.abs(np.linalg.eigvals(step)).max(), rel=5e-3)
+    assert shown[2] == pytest.approx(1000 * contact.critical_dt(1.0, k, c), rel=5e-3)
+    assert "comes to rest" in said(figure(tab, "cliff"))
+    set_knobs(tab, "?dt=0.03")
+    assert "explodes" in said(figure(tab, "cliff"))
+
+
+@needs_chromium
+def test_sweeps_carry_what_contact_py_finds_contact_by_contact(tab):
+    set_knobs(tab, "")
+    balls = contact.make_balls(contact.build_scene("stack"))
+    for k, ball in enumerate(balls):
+        ball.y = (2 * k + 1) * RADIUS
+    contacts = contact.detect_contacts(balls, margin=1e-9)
+    contact.accelerate(balls, DT)
+    contact.solve_contacts(contacts, 3)
+    box = figure(tab, "sweeps")
+    press(tab, handle(box, "sweep"), "ArrowRight", 6)
+    assert numbers(box)[-3:] == pytest.approx([c.lam / (WEIGHT * DT) for c in contacts], rel=5e-3)
+    press(tab, handle(box, "top"), "ArrowUp", 15)
+    press(tab, handle(box, "sweep"), "ArrowRight", 6)
+    assert "clamped at 0" in said(box) and numbers(box)[-1] == 0
+
+
+@needs_chromium
+def test_crowd_rate_and_blocks_show_the_chapters_numbers(tab):
+    set_knobs(tab, "")
+    crowd, shown = facts.crowd(), numbers(figure(tab, "crowd"))
+    assert shown[3:6] == pytest.approx([crowd["moreau"][k] for k in ("0", "1", "2")], abs=0.05)
+    for count in (*facts.tower_sweeps().values(), *facts.ratio_sweeps().values()):
+        assert count in numbers(figure(tab, "rate"))
+    blocks = figure(tab, "blocks")
+    for n, impacts in enumerate((3, 31, 314, 3141)):
+        press(tab, handle(blocks, "size"), "ArrowDown", 4)
+        press(tab, handle(blocks, "size"), "ArrowUp", n)
+        assert f"exact counts {impacts} impacts" in said(blocks)
+
+
+@needs_chromium
+def test_slide_leaves_at_two_thirds_and_bounces_end_when_they_should(tab):
+    set_knobs(tab, "?restitution=0.7")
+    start, left, expected = numbers(figure(tab, "slide"))[:3]
+    assert left == pytest.approx(expected, abs=0.11)
+    assert expected == pytest.approx(np.degrees(np.arccos(2 / 3 * np.cos(np.radians(start)))), abs=0.1)
+    first = np.sqrt(2 * (contact.build_scene("drop").q0[1, 0] - RADIUS) / WEIGHT)
+    assert numbers(figure(tab, "bounces"))[-1] == pytest.approx(first * 1.7 / 0.3, rel=5e-3)
+
+
+@needs_chromium
+def test_on_one_line_lie_the_depths_of_spring_and_soft(tab):
+    set_knobs(tab, "")
+    text = said(figure(tab, "one-line"))
+    depths = [float(each) for each in re.findall(r"([\d.e-]+) r deep", text)]
+    assert depths[:2] == pytest.approx([WEIGHT / 1e4 / RADIUS, rest("soft").rest], rel=5e-3)
