@@ -34,6 +34,10 @@ COMMENT = re.compile(r"<!--.*?-->\n*", re.DOTALL)
 LIVE = re.compile(r"\[([^\]]*)\]\((?:try|drag):[^)]*\)")
 MAIN = re.compile(r'^if __name__ == "__main__":.*', re.DOTALL | re.MULTILINE)
 OPENING = "grab"  # the figure that the notebook opens on
+INTRODUCTION = """\
+*This is the chapter as a notebook. Its figures move, and some have knobs; on the page you can take
+hold of them. Run the cells from the top. The first one puts the whole of contact.py and the
+exercises into the folder `contact_chapter` beside this notebook.*"""
 REST = "## The rest of the file"  # of the chapter: the notebook's first cell has it
 
 
@@ -78,7 +82,12 @@ class Book:
 
     def include(self, file, name):
         """A region. Those of contact.py run; others are shown, since their names are their own."""
-        code = MAIN.sub("", read(ROOT / file)[name].code).strip()
+        regions = read(ROOT / file)
+        if name not in regions:
+            raise ValueError(
+                f"{CHAPTER.name}: there is no region {file}#{name}; known: {[*regions]}"
+            )
+        code = MAIN.sub("", regions[name].code).strip()
         if file == "contact.py":
             self.add("code", f"# contact.py, region {name}\n{code}")
         else:
@@ -108,7 +117,8 @@ class Book:
             self.add("code", f'course("{file}")')
 
     def start(self):
-        """The cells that carry the folder, and what the pictures share."""
+        """What the notebook is, the cell that carries the folder, and what the pictures share."""
+        self.prose(INTRODUCTION)
         self.add("code", f'FOLDER = """\n{folder()}"""\n{self.own["start"]}', folded=True)
         self.add("code", self.own["tools"], folded=True)
 

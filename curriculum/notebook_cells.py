@@ -107,8 +107,8 @@ moving = film({"exact": run_model("exact", scene, 0.002, 600)})
 moving
 
 # %% two
-scene = build_scene("drop")
-moving = film({model: run_model(model, scene, 0.002, 600) for model in ("penalty", "lcp")}, slow=2.0)
+scene = build_scene("drop")     # up to the landing: what happens then?
+moving = film({model: run_model(model, scene, 0.002, 212) for model in ("penalty", "lcp")}, slow=4.0)
 moving
 
 # %% lanes
