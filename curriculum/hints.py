@@ -2,7 +2,6 @@
 
 import os
 import shlex
-import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -42,7 +41,11 @@ def practise():
 def command(*words):
     """A command for the Python that is running, quoted for this system's shell."""
     words = [near(str(word)) for word in (sys.executable, *words)]
-    return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
+    if os.name != "nt":
+        return shlex.join(words)
+    import subprocess  # slow, so only where it is needed
+
+    return subprocess.list2cmdline(words)
 
 
 def missing(package):
