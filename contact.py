@@ -898,8 +898,8 @@ def add_flags(flag):
 
 def parse_flags(argv):
     """The checked command line. Bad input ends with one line on stderr and exit status 2."""
-    parser = Parser(prog="contact.py", description=__doc__, allow_abbrev=False,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(prog="contact.py", description=__doc__, allow_abbrev=False, formatter_class=(
+        lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=100)))
     add_flags(parser.add_argument)
     args = parser.parse_args(argv)
     ref = args.solref
