@@ -59,9 +59,8 @@ def check() -> int:
     gate = Gate()
     problems = gate.check()
     recorded = gate.meta.get("section_hashes") or {}
-    for section in gate.unread:
-        if section.name in recorded:
-            print(f"\n{section.name}", *changes(section, recorded[section.name]), sep="\n")
+    unread = [section for section in gate.unread if section.name in recorded]
+    print(changes(unread, recorded), end="")
     print(*problems or ["text, code, numbers and results agree"], sep="\n")
     if len(gate.unread) > 1:
         names = " ".join(section.name for section in gate.unread)
@@ -82,8 +81,7 @@ def accept(names) -> int:
         wrong = f"given {', '.join(unknown)}, allowed: {', '.join(found)}"
         raise ValueError("\n".join(gate.problems) or wrong)
     recorded = gate.meta.get("section_hashes") or {}
-    for name in names:
-        print(f"{name}", *changes(found[name], recorded.get(name, "never")), sep="\n")
+    print(changes([found[name] for name in names], recorded), end="")
     meta = ROOT / "meta.yaml"
     write_whole(meta, record(meta.read_text("utf-8"), names, found, gate.regions))
     print(f"recorded in meta.yaml: {', '.join(names) or 'what is no longer there is taken out'}")

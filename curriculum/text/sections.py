@@ -5,11 +5,11 @@ section: of its text, and of the code of every region that the section includes 
 `code span` that the region defines). When either side changes, somebody reads the section again.
 """
 
-import difflib
 import hashlib
 import json
 import re
 import subprocess
+from difflib import unified_diff
 from typing import NamedTuple
 
 from curriculum.text.readme import BLOCK
@@ -83,19 +83,29 @@ def sections(read=read_text) -> dict:
     return found
 
 
-def changes(section: Section, accepted: str) -> list:
-    """The lines of a diff from the section as it was accepted (in git) to what it is now."""
+def changes(unread, recorded) -> str:
+    """Diffs from the sections as they were accepted (in git) to what they are now, each part once."""
+    found = {}
+    for section in unread:
+        for diff in differences(section, recorded.get(section.name)):
+            found.setdefault(diff, []).append(section.name)
+    return "".join(f"{' '.join(names)}\n{diff}\n\n" for diff, names in found.items())
+
+
+def differences(section: Section, accepted) -> list:
+    """The diffs of a section's text, and of the regions of which it speaks, to the accepted ones."""
+    if accepted is None:
+        return ["(never read)"]
     commit = git("log", "-n1", "--format=%h", f"-S{accepted}", "--", "meta.yaml").strip() or "HEAD"
-    files = [section.file, *(file for file in LITERATE)]
-    texts = {file: git("show", f"{commit}:{file}") for file in files}
+    texts = {file: git("show", f"{commit}:{file}") for file in (section.file, *LITERATE)}
     was = sections(texts.get).get(section.name)
     old, new = was.parts() if was else {}, section.parts()
-    lines = []
+    found = []
     for part in [*new, *(part for part in old if part not in new)]:
-        lines += difflib.unified_diff(
-            old.get(part, []), new.get(part, []), f"{part}, accepted", f"{part}, now", "", "", 1, ""
-        )
-    return lines or ["(what was accepted is not in git; read the whole section)"]
+        names = f"{part}, accepted", f"{part}, now"
+        lines = unified_diff(old.get(part, []), new.get(part, []), *names, n=1, lineterm="")
+        found.append("\n".join(lines))
+    return [diff for diff in found if diff] or ["(what was accepted is not in git)"]
 
 
 def git(*words) -> str:
