@@ -382,8 +382,10 @@ def exact_run(scene, times, report=None):
         if report:
             report(done)
     raise RuntimeError(f"more than {MOST_IMPACTS:,} impacts by {now:.6g} s: the balls rattle")
+# --- endregion ---
 
 
+# --- region: exact-impact ---
 def bounce(touching, restitution):
     """All impacts of one moment: v_n becomes -e v_n where a contact pushes."""
     for c in touching:
@@ -420,8 +422,10 @@ def settle(contacts):
         c.lam = 0.0
     if not solve_contacts(contacts, MOST_SWEEPS, rounding):
         raise RuntimeError("the masses are too unequal: the sweeps do not settle")
+# --- endregion ---
 
 
+# --- region: exact-when ---
 def next_impact(pairs, gaps, closing):
     """How long until the next gap closes [s]; and all gaps [m] at that moment, 0 in touch."""
     speeds = [c.v_n() for c in pairs]
@@ -931,14 +935,14 @@ COLUMNS = {     # title: key of contact_quality, meaning
     "jitter/r": ("rest_jitter", "standard deviation of the overlap in the last quarter")}
 
 
-def figure(value):
+def figure(value, digits=3):
     """A number as a person reads it, "-" for None: an exponent only where zeros would hide it."""
     if value is None or value == 0.0:
         return "-" if value is None else "0"
     size = abs(value)
     if size < 1e-4 or size >= 1e6:
         return f"{value:.1e}"
-    return f"{value:,.0f}" if size >= 1000.0 else f"{value:.3g}"
+    return f"{value:,.0f}" if size >= 1000.0 else f"{value:.{digits}g}"
 
 
 def ending(row):
@@ -987,9 +991,9 @@ def print_stability(grid, count):
             text = (f"does not explode up to dt = {grid[model]:g} s, where it goes "
                     f"{figure(depth)} r deep" + (f", through {through}" if through else ""))
         print(f"stability: {model} {text}")
-    stack = f"a stack of {count}: {grid['dt_crit_stack']:.4g} s; " if count > 1 else ""
-    print(f"critical dt of penalty, one ball: {grid['dt_crit_damped']:.4g} s; {stack}"
-          f"without the damper, 2 sqrt(m/k): {grid['dt_crit_penalty']:.4g} s")
+    stack = f"a stack of {count}: {figure(grid['dt_crit_stack'], 4)} s; " if count > 1 else ""
+    print(f"critical dt of penalty, one ball: {figure(grid['dt_crit_damped'], 4)} s; {stack}"
+          f"without the damper, 2 sqrt(m/k): {figure(grid['dt_crit_penalty'], 4)} s")
 # --- endregion ---
 
 
@@ -1070,7 +1074,7 @@ def run_all(args, scene):
     runs, without = {}, {}
     for model in MODELS if args.contact == "all" else [args.contact]:
         try:
-            if model == "exact" != args.contact and args.scene == "pile" and len(scene.mass) > 24:
+            if model == "exact" != args.contact and len(scene.mass) > 24:
                 raise RuntimeError("more than 24 balls; ask for it by --contact exact")
             runs[model] = run(model, args.dt)
         except RuntimeError as error:
