@@ -73,14 +73,8 @@ export function charted(view, at, options) {
 /* A number that is dragged along its chart's x axis, and that arrow keys change by steps:
  * change(view, share of the axis) and step(view, by). */
 export const alongAxis = (change, step) => ({
-  drag(view, name, x) {
-    view.stop();
-    change(view, view.own.along(x), name);
-  },
-  nudge(view, name, dx, dy) {
-    view.stop();
-    step(view, dx - dy, name);
-  },
+  drag: (view, name, x) => change(view, view.own.along(x), name),
+  nudge: (view, name, dx, dy) => step(view, dx - dy, name),
 });
 
 /* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
@@ -117,10 +111,12 @@ export const softKnobs = (view) => ({
 
 export const handle = (name, x, y, r, label, value, text) => ({ name, x, y, r, label, value, text });
 
-// The clock of a figure whose own `time` runs from `from` to end(view), `rate` s in a second.
+// The clock of a figure whose own `time` runs from `from` to end(view), `rate` s in a second; it stops
+// where a handle is grabbed or the time becomes null.
 export function clock(rate, end, names = ["Play", "Stop"], from = 0) {
   const tick = (view, seconds) => {
-    view.own.time = Math.min(end(view), (view.own.time ?? from) + rate * seconds);
+    if (view.grabbed !== null || view.own.time === null) return false;
+    view.own.time = Math.min(end(view), view.own.time + rate * seconds);
     return view.own.time < end(view);
   };
   const start = (view) => {
@@ -128,5 +124,6 @@ export function clock(rate, end, names = ["Play", "Stop"], from = 0) {
     if (!view.still) view.run();
   };
   const press = (view) => (view.running() ? view.stop() : start(view));
-  return { tick, start, button: { label: (view) => names[view.running() ? 1 : 0], press } };
+  const buttons = [{ label: (view) => names[view.running() ? 1 : 0], press }];
+  return { start, parts: { tick, buttons } };
 }

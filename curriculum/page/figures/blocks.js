@@ -2,7 +2,7 @@
 import { el, number, table } from "../draw.js";
 import { runExact, runModel } from "../engine.js";
 import { knobsOf } from "../store.js";
-import { clipped, clock, kept, label, line, plural, R, scene, whole, within } from "../parts.js";
+import { clipped, clock, handle, kept, label, line, plural, R, scene, whole, within } from "../parts.js";
 
 const SECONDS = 4;
 const MOST = 3; // n: 100^3 and 3,141 impacts
@@ -45,7 +45,8 @@ function lane(view, [model, { run, times }], k) {
   const [x, big] = [wall + first * unit, side(view.own.n)];
   const far = x + LIGHT + second * unit;
   const block = (at, size, mass) =>
-    el("rect", { x: at, y: floor - size, width: size, height: size, class: `ball m-${model}` }) + label(mass, at + size / 2, floor - size / 2 + 5, "middle", "on-ball");
+    el("rect", { x: at, y: floor - size, width: size, height: size, class: `ball m-${model}` }) +
+    label(mass, at + size / 2, floor - size / 2 + 5, "middle", "on-ball");
   const seen = times.filter((each) => each <= time || time === SECONDS).length;
   const parts = [
     table(0, floor, view.width, 12),
@@ -61,13 +62,17 @@ function lane(view, [model, { run, times }], k) {
 function draw(view) {
   const [exact, lcp] = lanes(view);
   const { wall, unit, lane: high } = shape(view);
-  const [first, second] = gapsOf(exact[1].run, Math.min(ROWS, Math.round(((view.own.time ?? 0) / SECONDS) * ROWS)));
-  const x = wall + (first + second) * unit + LIGHT + side(view.own.n);
-  const text = `100 to the power of ${view.own.n}`;
+  const { n, time: now } = view.own;
+  const [, { run, times, last }] = exact;
+  const [first, second] = gapsOf(run, Math.min(ROWS, Math.round(((now ?? 0) / SECONDS) * ROWS)));
+  const corner = Math.min(wall + (first + second) * unit + LIGHT + side(n), view.width - 14);
+  const counted = `exact counts ${plural(times.length, "impact")}, the last at ${number(last)} s`;
+  const missed = `lcp at dt = ${number(1000 * view.get("dt"))} ms counts ${whole(lcp[1].times.length)} in ${SECONDS} s`;
+  const text = `100 to the power of ${n}`;
   return {
     svg: lane(view, exact, 0) + lane(view, lcp, 1),
-    words: `Mass 1 and ${whole(100 ** view.own.n)}: exact counts ${plural(exact[1].times.length, "impact")}, the last at ${number(exact[1].last)} s; lcp at dt = ${number(1000 * view.get("dt"))} ms counts ${whole(lcp[1].times.length)} in ${SECONDS} s.`,
-    handles: [{ name: "size", x: Math.min(x, view.width - 14), y: high - 14 - side(view.own.n), r: 12, label: "the heavy block’s mass", value: view.own.n, text }],
+    words: `Mass 1 and ${whole(100 ** n)}: ${counted}; ${missed}.`,
+    handles: [handle("size", corner, high - 14 - side(n), 12, "the heavy block’s mass", n, text)],
   };
 }
 
@@ -76,20 +81,14 @@ const set = (view, n) => Object.assign(view.own, { n: within(0, Math.round(n), M
 
 export const figure = {
   title: "Colliding blocks count the digits of π",
-  caption: "exact counts 3, 31, 314, 3,141 impacts, and lcp loses count where they come faster than its steps: drag the corner of the heavy block to make it heavier.",
+  caption:
+    "exact counts 3, 31, 314, 3,141 impacts, and lcp loses count where they come faster than its steps: drag the corner of the heavy block to make it heavier.",
   height: 260,
   knobs: ["dt"],
   uses: ["iters", "baumgarte"],
   start: () => ({ n: 2, time: null }),
   draw,
-  drag(view, name, x, y) {
-    view.stop();
-    set(view, (shape(view).lane - 14 - y - LIGHT) / 16);
-  },
-  nudge(view, name, dx, dy) {
-    view.stop();
-    set(view, view.own.n + Math.sign(dx - dy));
-  },
-  tick: time.tick,
-  buttons: [time.button],
+  drag: (view, name, x, y) => set(view, (shape(view).lane - 14 - y - LIGHT) / 16),
+  nudge: (view, name, dx, dy) => set(view, view.own.n + Math.sign(dx - dy)),
+  ...time.parts,
 };

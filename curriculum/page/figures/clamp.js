@@ -1,7 +1,7 @@
 /* The clamp is on the sum of the changes: a ball falls into a groove, and one contact must take back. */
 import { arrow, ball, number } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
-import { kept, label, shift, tidy, within } from "../parts.js";
+import { handle, kept, label, shift, tidy, within } from "../parts.js";
 
 const SIDES = [-1, 1];
 
@@ -48,19 +48,24 @@ function draw(view) {
   const { vx, vy } = view.own;
   const [right, wrong] = both(vx, vy);
   const [x, y] = centre(view);
+  const scale = speedOf(view);
   const speed = (v) => `${number(Math.hypot(v.vx, v.vy), 2)} m/s`;
+  const text = `comes with ${number(vx, 2)} m/s to the right and ${number(-vy, 2)} m/s down`;
   return {
     svg: groove(view, right, "sum ≥ 0") + shift(view.width / 2, 0, groove(view, wrong, "each change ≥ 0")),
     words: `After 20 sweeps the ball moves at ${speed(right)} where the sum is clamped and at ${speed(wrong)} where each change is.`,
-    handles: [{ name: "ball", x: x - speedOf(view) * vx, y: y + speedOf(view) * vy, r: 14, label: "where the ball comes from", value: vx, text: `comes with ${number(vx, 2)} m/s to the right and ${number(-vy, 2)} m/s down` }],
+    handles: [handle("ball", x - scale * vx, y + scale * vy, 14, "where the ball comes from", vx, text)],
   };
 }
 
-const set = (view, vx, vy) => Object.assign(view.own, { vx: tidy(within(-1.2, vx, 1.2), 2), vy: tidy(within(-1.6, vy, -0.1), 2) });
+function set(view, vx, vy) {
+  Object.assign(view.own, { vx: tidy(within(-1.2, vx, 1.2), 2), vy: tidy(within(-1.6, vy, -0.1), 2) });
+}
 
 export const figure = {
   title: "A ball falls into a groove, with two clamps",
-  caption: "With a clamp on each change nothing is ever taken back, and the ball is thrown out of the groove: drag where it comes from.",
+  caption:
+    "With a clamp on each change nothing is ever taken back, and the ball is thrown out of the groove: drag where it comes from.",
   height: 320,
   narrow: 230,
   start: () => ({ vx: 0.5, vy: -1 }),

@@ -1,7 +1,7 @@
 /* Newton's cradle: the same ball, all impacts at one moment or one shortly after another. */
 import { ball, number } from "../draw.js";
 import { runExact } from "../engine.js";
-import { clock, G, kept, label, line, R, scene, shift, tidy, within } from "../parts.js";
+import { clock, G, handle, kept, label, line, R, scene, shift, tidy, within } from "../parts.js";
 
 const [COUNT, LENGTH] = [4, 0.5]; // balls; m of a string
 const MOST = 0.9; // rad
@@ -41,20 +41,24 @@ function frame(view, after, title) {
     const [bx, by] = [x + LENGTH * scale * Math.sin(angle), top + LENGTH * scale * Math.cos(angle)];
     return line(x, top, bx, by, "axis") + ball("exact", bx, by, r);
   });
-  return label(title, wide / 2, 18, "middle", "axis-name") + line(first - r, top, first + 7 * r, top, "table-top") + swings.join("");
+  const beam = line(first - r, top, first + 7 * r, top, "table-top");
+  return label(title, wide / 2, 18, "middle", "axis-name") + beam + swings.join("");
 }
 
 function draw(view) {
-  const speed = speedOf(view.own.pulled);
-  const laws = [["at one moment", strike(speed, false)], ["one after another", strike(speed, true)]];
+  const { pulled } = view.own;
+  const speed = speedOf(pulled);
+  const [once, chain] = [strike(speed, false), strike(speed, true)];
   const { wide, rows, scale, r, top } = shape(view);
   const list = (after) => after.map((v) => number(v / speed, 2)).join(", ");
-  const angle = angles(view, laws[0][1])[0];
-  const first = wide / 2 - (COUNT - 1) * r;
+  const angle = angles(view, once)[0];
+  const [x, y] = [wide / 2 - (COUNT - 1) * r + LENGTH * scale * Math.sin(angle), top + LENGTH * scale * Math.cos(angle)];
+  const second = shift(rows ? 0 : wide, rows ? 200 : 0, frame(view, chain, "one after another"));
+  const text = `pulled back by ${number((pulled * 180) / Math.PI, 2)}°`;
   return {
-    svg: laws.map(([title, after], k) => shift(rows ? 0 : k * wide, rows ? k * 200 : 0, frame(view, after, title))).join(""),
-    words: `They leave with ${list(laws[0][1])} of its speed where all impacts happen at one moment, and with ${list(laws[1][1])} where one comes shortly after another.`,
-    handles: [{ name: "ball", x: first + LENGTH * scale * Math.sin(angle), y: top + LENGTH * scale * Math.cos(angle), r, label: "the first ball: pull it back", value: view.own.pulled, text: `pulled back by ${number((view.own.pulled * 180) / Math.PI, 2)}°` }],
+    svg: frame(view, once, "at one moment") + second,
+    words: `All impacts at one moment: they leave with ${list(once)} of its speed. One shortly after another: ${list(chain)}.`,
+    handles: [handle("ball", x, y, r, "the first ball: pull it back", pulled, text)],
   };
 }
 
@@ -63,21 +67,17 @@ const set = (view, pulled) => Object.assign(view.own, { time: null, pulled: tidy
 
 export const figure = {
   title: "Newton’s cradle, with two laws of impact",
-  caption: "Pull back the first ball and let go: how the others leave depends on whether all impacts happen at one moment or one shortly after another.",
+  caption:
+    "Pull back the first ball and let go: how the others leave depends on whether all impacts happen at one moment or one shortly after another.",
   height: 210,
   narrow: 400,
   start: () => ({ pulled: 0.6, time: null }),
   draw,
   drag(view, name, x, y) {
-    view.stop();
     const { wide, r, top } = shape(view);
     set(view, Math.atan2(wide / 2 - (COUNT - 1) * r - x, Math.max(10, y - top)));
   },
-  nudge(view, name, dx, dy) {
-    view.stop();
-    set(view, view.own.pulled - 0.05 * (dx - dy));
-  },
+  nudge: (view, name, dx, dy) => set(view, view.own.pulled - 0.05 * (dx - dy)),
   release: (view) => time.start(view),
-  tick: time.tick,
-  buttons: [time.button],
+  ...time.parts,
 };

@@ -1,7 +1,7 @@
 /* No target above -e v_n: two elastic balls are just parting when a third strikes one of them. */
 import { arrow, ball, el, number } from "../draw.js";
 import { makeRows, normalSpeed, solveContacts } from "../engine.js";
-import { kept, label, line, tidy, within } from "../parts.js";
+import { handle, kept, label, line, tidy, within } from "../parts.js";
 
 const ELASTIC = 1; // the restitution of all three
 const MOST = 3.5; // m/s
@@ -45,22 +45,26 @@ function row(view, speeds, k, title, most) {
 
 function draw(view) {
   const { speeds } = view.own;
-  const after = [struck(speeds, false), struck(speeds, true)];
-  const most = Math.max(...[speeds, ...after].map(energy), 0.1);
+  const [moreau, repaired] = [struck(speeds, false), struck(speeds, true)];
+  const most = Math.max(...[speeds, moreau, repaired].map(energy), 0.1);
   const each = layout(view);
-  const [start, end] = [each.rows[0] - each.r - 14, each.rows[2] + 14];
-  const mark = each.bars + (energy(speeds) * (view.width - each.bars - 8)) / most;
-  const all = (list) => list.map((v) => number(v, 2)).join(", ");
-  const gain = energy(after[1]) / energy(speeds) - 1;
+  const { r, rows, bars } = each;
+  const begun = bars + (energy(speeds) * (view.width - bars - 8)) / most;
+  const list = (values) => values.map((v) => number(v, 2)).join(", ");
+  const gain = energy(repaired) / energy(speeds) - 1;
+  const more = gain > 1e-9 ? `${number(100 * gain, 2)} % more energy` : "no more energy";
   return {
-    svg:
-      row(view, speeds, 0, "before", most) +
-      row(view, after[0], 1, "after, each target −e v_n", most) +
-      row(view, after[1], 2, "after, no target below 0", most) +
-      label("energy", each.bars, start - 8, "start", "axis-name") +
-      line(mark, start, mark, end),
-    words: `Before: ${all(speeds)} m/s. With −e v_n: ${all(after[0])} m/s and the same energy. With no target below 0: ${all(after[1])} m/s and ${gain > 1e-9 ? `${number(100 * gain, 2)} % more energy` : "no more energy"}.`,
-    handles: speeds.map((v, i) => ({ name: String(i), x: tip(each, i, v), y: each.rows[0] + bowY(each.r, i), r: 11, label: `the speed of ball ${i + 1}`, value: v, text: `${number(v, 2)} m/s` })),
+    svg: [
+      row(view, speeds, 0, "before", most),
+      row(view, moreau, 1, "after, each target −e v_n", most),
+      row(view, repaired, 2, "after, no target below 0", most),
+      label("energy", bars, rows[0] - r - 22, "start", "axis-name"),
+      line(begun, rows[0] - r - 14, begun, rows[2] + 14),
+    ].join(""),
+    words: `Before: ${list(speeds)} m/s. With −e v_n: ${list(moreau)} m/s and the same energy. With no target below 0: ${list(repaired)} m/s and ${more}.`,
+    handles: speeds.map((v, i) =>
+      handle(String(i), tip(each, i, v), rows[0] + bowY(r, i), 11, `the speed of ball ${i + 1}`, v, `${number(v, 2)} m/s`),
+    ),
   };
 }
 
@@ -70,7 +74,8 @@ function set(view, i, v) {
 
 export const figure = {
   title: "Three elastic balls, and the energy of the impact",
-  caption: "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair that allows no target below zero adds some; drag the speeds.",
+  caption:
+    "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair that allows no target below zero adds some; drag the speeds.",
   height: 384,
   start: () => ({ speeds: [-1, 0, -3] }),
   draw,

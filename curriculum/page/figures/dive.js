@@ -64,6 +64,5 @@ export const figure = {
   start: () => ({ time: null }),
   draw,
   ...alongAxis((view, share) => set(view, FROM + share * (TO - FROM)), (view, by) => set(view, timeOf(view) + 0.005 * by)),
-  tick: time.tick,
-  buttons: [time.button],
+  ...time.parts,
 };

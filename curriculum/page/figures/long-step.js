@@ -25,7 +25,7 @@ export function eigenvalues([[a, b], [c, d]]) {
 
 const pressed = scene([(1 - DEPTH) * R]);
 const spring = kept((stiffness, damping) =>
-  runModel("penalty", pressed, { dt: FINE, stiffness, damping }, LONGEST / FINE),
+  runModel("penalty", pressed, { dt: FINE, stiffness, damping }, Math.round(LONGEST / FINE)),
 );
 const height = (y) => y / R - 1;
 

@@ -1,7 +1,7 @@
 /* A ball slides off a ball that is held, and leaves it at two thirds of the height it started from. */
 import { ball, el, round } from "../draw.js";
 import { runExact } from "../engine.js";
-import { clock, G, kept, label, line, R, scene, within } from "../parts.js";
+import { clock, G, handle, kept, label, line, R, scene, within } from "../parts.js";
 
 const DT = 0.0002; // s: how finely exact is looked at
 const MIDDLE = 5; // m: the held ball is far above the floor
@@ -15,7 +15,7 @@ export const slides = kept((angle) => {
   const steps = Math.round(0.9 / DT);
   const run = runExact(balls, { dt: DT }, steps);
   const pushed = (row) => {
-    const [dvx, dvy] = [run.vx[2 * row + 1] - run.vx[2 * row - 1], run.vy[2 * row + 1] - run.vy[2 * row - 1]];
+    const [dvx, dvy] = [run.vx, run.vy].map((v) => v[2 * row + 1] - v[2 * row - 1]);
     return Math.hypot(dvx, dvy + G * DT) > 1e-6 * G * DT;
   };
   let last = steps;
@@ -33,28 +33,29 @@ const shape = (view) => {
 };
 
 function draw(view) {
-  const { angle, time } = view.own;
+  const { angle, time: now } = view.own;
   const { path, last, leaves } = slides(angle);
   const { scale, x, y } = shape(view);
   const release = Math.acos((2 / 3) * Math.cos(angle));
-  const ray = (at, from, to) => [x + from * scale * Math.sin(at), y - from * scale * Math.cos(at), x + to * scale * Math.sin(at), y - to * scale * Math.cos(at)];
-  const row = Math.round((time ?? 0) / DT);
   const at = ([px, py]) => [x + px * scale, y - py * scale];
-  const trail = path.slice(0, row + 1).filter((_, k) => k % 20 === 0).map((place, k) => `${k ? "L" : "M"}${at(place).map(round).join(" ")}`);
+  const ray = (theta, far) => [x, y, ...at([far * Math.sin(theta), far * Math.cos(theta)])];
+  const row = Math.round((now ?? 0) / DT);
+  const trail = path.slice(0, row + 1).filter((_, k) => k % 20 === 0);
+  const steps = trail.map((place, k) => `${k ? "L" : "M"}${at(place).map(round).join(" ")}`);
   const [bx, by] = at(path[row]);
-  const [lx, ly] = ray(release, 0, 0.35).slice(2);
+  const [, , lx, ly] = ray(release, 0.35);
   return {
     svg: [
       ball("fixed", x, y, R * scale, "body"),
-      line(...ray(0, 0, 0.3), "grid"),
-      line(...ray(release, 0, 0.33)),
+      line(...ray(0, 0.3), "grid"),
+      line(...ray(release, 0.33)),
       label("cos θ = ⅔ cos θ₀", Math.min(lx + 4, view.width - 124), ly),
-      el("path", { d: trail.join(""), class: "line m-exact" }),
+      el("path", { d: steps.join(""), class: "line m-exact" }),
       row > last ? ball("exact", ...at(path[last]), R * scale, "ghost") : "",
       ball("exact", bx, by, R * scale),
     ].join(""),
     words: `From ${degrees(angle)} it leaves at ${degrees(leaves)}; cos θ = ⅔ cos θ₀ says ${degrees(release)}.`,
-    handles: [{ name: "ball", x: bx, y: by, r: R * scale * 0.8, label: "the upper ball: drag where it starts", value: angle, text: `starts at ${degrees(angle)}` }],
+    handles: [handle("ball", bx, by, 0.8 * R * scale, "the upper ball: drag where it starts", angle, `starts at ${degrees(angle)}`)],
   };
 }
 
@@ -63,21 +64,17 @@ const set = (view, angle) => Object.assign(view.own, { time: null, angle: Number
 
 export const figure = {
   title: "A ball slides off a ball that is held",
-  caption: "The upper ball leaves the lower one where it has lost a third of its height over the lower one’s middle: drag where it starts, and let go.",
+  caption:
+    "The upper ball leaves the lower one where it has lost a third of its height over the lower one’s middle: drag where it starts, and let go.",
   height: 330,
   narrow: 300,
   start: () => ({ angle: 0.35, time: null }),
   draw,
   drag(view, name, x, y) {
-    view.stop();
     const { x: mx, y: my } = shape(view);
     set(view, Math.atan2(x - mx, Math.max(1, my - y)));
   },
-  nudge(view, name, dx, dy) {
-    view.stop();
-    set(view, view.own.angle + 0.03 * (dx + dy));
-  },
+  nudge: (view, name, dx, dy) => set(view, view.own.angle + 0.03 * (dx + dy)),
   release: (view) => time.start(view),
-  tick: time.tick,
-  buttons: [time.button],
+  ...time.parts,
 };

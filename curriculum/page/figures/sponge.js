@@ -82,16 +82,13 @@ export const figure = {
   start: () => ({ press: null, time: null }),
   draw,
   drag(view, name, x, y) {
-    view.stop();
     if (name === "ball") press(view, (y - floorOf(view)) / PX + 1);
     else stiffen(view, (2.7 * G) / (Math.max(0.001, view.own.along(x) * DEEPEST) * R));
   },
   nudge(view, name, dx, dy) {
-    view.stop();
     if (name === "ball") press(view, depthOf(view) + dy * Math.max(0.1 * restOf(view), 0.001));
     else stiffen(view, view.get("stiffness") * 1.1 ** (-dy - dx));
   },
   release: (view, name) => name === "ball" && time.start(view),
-  tick: time.tick,
-  buttons: [time.button],
+  ...time.parts,
 };

@@ -1,7 +1,7 @@
 /* A stack on springs: the lowest contact carries all. Lift a ball and those above it come along. */
 import { arrow, ball, number, table } from "../draw.js";
 import { runModel } from "../engine.js";
-import { clock, enlarged, forceLength, G, kept, label, lens, plural, R, scene, tidy, within } from "../parts.js";
+import { clock, enlarged, forceLength, G, handle, kept, label, lens, plural, R, scene, tidy, within } from "../parts.js";
 
 const [COUNT, PX, DT, SECONDS] = [3, 34, 0.0005, 1.2];
 const ABOVE = 1.6; // r: how high a ball can be lifted
@@ -21,9 +21,10 @@ export function restingHeights(k, from, lift) {
   return heights;
 }
 
-const fall = kept((stiffness, damping, from, lift) =>
-  runModel("penalty", scene(restingHeights(stiffness, from, lift)), { dt: DT, stiffness, damping }, Math.round(SECONDS / DT)),
-);
+const fall = kept((stiffness, damping, from, lift) => {
+  const balls = scene(restingHeights(stiffness, from, lift));
+  return runModel("penalty", balls, { dt: DT, stiffness, damping }, Math.round(SECONDS / DT));
+});
 
 function heightsOf(view) {
   const { from, lift, time } = view.own;
@@ -35,33 +36,33 @@ function heightsOf(view) {
 }
 
 function draw(view) {
-  const floor = floorOf(view);
+  const [floor, x, k] = [floorOf(view), 0.36 * view.width, view.get("stiffness")];
   const heights = heightsOf(view);
-  const k = view.get("stiffness");
   const at = (height) => floor - (height / R) * PX;
-  const x = view.width * 0.36;
   const depths = heights.map((height, i) => (i ? 2 - (height - heights[i - 1]) / R : 1 - height / R));
   const forces = depths.map((depth) => Math.max(0, (k * depth * R) / G));
-  const contacts = depths.map((depth, i) => [at(i ? heights[i - 1] + R : 0), forces[i], i]);
-  const carries = contacts.map(
-    ([y, force]) =>
-      arrow("push m-penalty", x + PX + 14, y, 0, -Math.min(60, forceLength(force, 20))) +
-      (force > 0 ? label(`${number(force, 2)} m g`, x + PX + 24, y - 4) : ""),
-  );
-  const times = enlarged(depths[0], PX);
-  const near = lens("stack-lens", "penalty", Math.min(view.width - 50, x + 230), floor - 90, { depth: depths[0], r: PX, times, size: 44 });
-  const count = depths.findIndex((depth) => depth < 0);
-  const carried = count < 0 ? COUNT : count;
+  const pushes = forces.map((force, i) => {
+    const y = at(i ? heights[i - 1] + R : 0);
+    const name = force > 0 ? label(`${number(force, 2)} m g`, x + PX + 24, y - 4) : "";
+    return arrow("push m-penalty", x + PX + 14, y, 0, -Math.min(60, forceLength(force, 20))) + name;
+  });
+  const balls = heights.map((height) => ball("penalty", x, at(height), PX));
+  const look = { depth: depths[0], r: PX, times: enlarged(depths[0], PX), size: 44 };
+  const near = lens("stack-lens", "penalty", Math.min(view.width - 50, x + 230), floor - 90, look);
+  const open = depths.findIndex((depth) => depth < 0);
+  const carried = plural(open < 0 ? COUNT : open, "ball");
   const bottom = `the lowest contact ${depths[0] < 0 ? "is open" : `is ${number(depths[0])} r deep`}`;
+  const { from, lift: lifted } = view.own;
   return {
-    svg: table(0, floor, view.width, 40) + heights.map((height) => ball("penalty", x, at(height), PX)).join("") + carries.join("") + near,
-    words: `It carries ${plural(carried, "ball")}: ${bottom}, m g / k is ${number(G / k / R)} r.`,
-    handles: heights.map((height, i) => ({ name: String(i), x, y: at(height), r: PX, label: `ball ${i + 1} from below: lift it`, value: i === view.own.from ? view.own.lift : 0, text: `${bottom}, ${number(forces[0], 2)} m g` })),
+    svg: table(0, floor, view.width, 40) + balls.join("") + pushes.join("") + near,
+    words: `It carries ${carried}: ${bottom}, m g / k is ${number(G / k / R)} r.`,
+    handles: heights.map((height, i) =>
+      handle(String(i), x, at(height), PX, `ball ${i + 1} from below: lift it`, i === from ? lifted : 0, `${bottom}, ${number(forces[0], 2)} m g`),
+    ),
   };
 }
 
 function lift(view, from, by) {
-  view.stop();
   Object.assign(view.own, { from, lift: tidy(within(0, by, ABOVE)), time: null });
 }
 const time = clock(0.25, () => SECONDS, ["Let go", "Stop"]);
@@ -79,8 +80,10 @@ export const figure = {
     const resting = restingHeights(view.get("stiffness"), COUNT, 0)[from];
     lift(view, from, (floorOf(view) - y) / PX - resting / R);
   },
-  nudge: (view, name, dx, dy) => lift(view, Number(name), (Number(name) === view.own.from ? view.own.lift : 0) - 0.1 * dy),
+  nudge(view, name, dx, dy) {
+    const held = Number(name) === view.own.from ? view.own.lift : 0;
+    lift(view, Number(name), held - 0.1 * dy);
+  },
   release: (view) => view.own.lift > 0 && time.start(view),
-  tick: time.tick,
-  buttons: [time.button],
+  ...time.parts,
 };
