@@ -208,6 +208,21 @@ def test_row_of_the_ledger_is_whole_or_pending(project):
     )
 
 
+def test_measuring_writes_a_whole_row_of_todays_code(project):
+    pytest.importorskip("rerun", reason="rerun is not installed, and the default run records")
+    for pattern in ("checks.py", "curriculum/*.py", "exercises/*"):
+        for path in filter(Path.is_file, ROOT.glob(pattern)):
+            copied = project / path.relative_to(ROOT)
+            copied.parent.mkdir(exist_ok=True)
+            shutil.copy(path, copied)
+    command = [sys.executable, "-B", "-m", "curriculum.text.ledger", "--measure", "--runs", "1"]
+    run = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
+    assert run.returncode == 0 and " min (" in run.stdout and "stale" not in run.stdout, run.stderr
+    header, pending, row = (project / "wallclock.csv").read_text("utf-8").splitlines()
+    assert f"{header}\n{pending}\n" == PENDING
+    assert row.startswith("ch3.5-contact,cpu") and row.endswith(",MEASURED")
+
+
 def test_generated_block_that_was_edited_fails_until_written_anew(project):
     readme = project / "README.md"
     whole = readme.read_text("utf-8")
