@@ -1,79 +1,83 @@
-"""Jobs: what can be computed on its own, anywhere, from a name and a few plain values.
+"""What can be worked out on its own, on any process or machine: jobs, and the counts they give."""
 
-A job is a dict {"name": str, "kind": str, "params": {...}}; its result is plain JSON as well,
-the same on every worker, so reports from one process, many or a cluster are equal cell for cell,
-but for how many runs of exact are cut by their limit of time (trial.SECONDS).
-Every result has "cells" (how many runs were judged) and "rows", a list of judgements (`row`).
-"""
-
-import json
-import math
 from importlib import import_module
 
-KINDS = {
-    "penalty-map": "maps:penalty_row",
-    "lcp-map": "maps:lcp_row",
-    "lcp-depth": "maps:depth_row",
-    "lcp-converges": "maps:converges_row",
-    "soft-map": "maps:soft_row",
-    "exact-map": "maps:exact_row",
-    "extreme": "extremes:run",
-    "scenes": "invariants:run_batch",
-    "boards": "invariants:run_boards",
-    "scene": "invariants:run_scene",
-    "seeds": "maps:run_seeds",
-    "bytes": "samebytes:run",
-    "exact-pile": "exact_sweep:pile",
-    "exact-wide": "exact_sweep:wide",
-    "exact-towers": "exact_sweep:towers",
-    "exact-tall": "exact_sweep:tall",
-    "exact-first": "exact_sweep:first",
-}
-HOLDS, LIMIT, VIOLATION, DIED = "holds", "limit", "VIOLATION", "DIED"
+import curriculum.stress.exact_properties
+import curriculum.stress.properties  # noqa: F401 (both register what they state)
+from curriculum.stress import scenes
+from curriculum.stress.claims import PROPERTIES, judge
+from curriculum.stress.trial import Trial
+
+BATCH = 25  # scenes to a job
 
 
-def job(kind, label, /, **params):
-    """A job of a kind in KINDS; `label` is unique within a report."""
-    if kind not in KINDS:
-        raise ValueError(f"kind {kind!r}; allowed: {', '.join(KINDS)}")
-    return {"kind": kind, "name": label, "params": params}
+def run(job):
+    """The result of a job: ("module of curriculum.stress:function", its argument)."""
+    module, name = job[0].split(":")
+    return getattr(import_module(f"curriculum.stress.{module}"), name)(job[1])
 
 
-def key(a_job):
-    """The text a finished job is remembered by."""
-    return json.dumps(a_job, sort_keys=True)
+def row(what, expected, got, ok):
+    """A judgement of a map or an extreme, as plain values."""
+    return {"what": what, "expected": expected, "got": got, "ok": bool(ok)}
 
 
-def run(a_job):
-    """The result of one job. Raises what the job raises; KeyError for an unknown kind."""
-    module, function = KINDS[a_job["kind"]].split(":")
-    result = getattr(import_module(f"curriculum.stress.{module}"), function)(**a_job["params"])
-    return plain(result)
+def scene_jobs(count, small=False):
+    """Jobs for the scenes numbered 0 to count - 1."""
+    spans = [(start, min(start + BATCH, count), small) for start in range(0, count, BATCH)]
+    return [("jobs:judge_span", span) for span in spans]
 
 
-def row(at, expected, got, ok, limit=None):
-    """One judgement: where, what was expected, what came out, and a status.
+def judge_span(span):
+    """What the properties say of the scenes numbered start to stop - 1, given (start, stop, small).
 
-    limit: words that name a limit of the model, given when the expectation is missed by no more
-    than that limit's derived bound. Such a row is listed as a limit, any other miss is a violation.
+    properties: {name: [scenes judged, comparisons, off as a share of what is allowed at worst]};
+    violations: [[scene, property, words]]; notes: {what was met: [[scene, its numbers]]}.
     """
-    found = {
-        "at": at,
-        "expected": expected,
-        "got": got,
-        "status": HOLDS if ok else LIMIT if limit else VIOLATION,
+    start, stop, small = span
+    found = {"scenes": stop - start, "violations": [], "notes": {}}
+    found["properties"] = {name: [0, 0, 0.0] for name in PROPERTIES}
+    for number in range(start, stop):
+        trial = Trial(scenes.numbered_spec(number, small))
+        for name, (count, share, words) in judge(trial).items():
+            total = found["properties"][name]
+            total[:] = total[0] + (count > 0), total[1] + count, max(total[2], share)
+            if words:
+                found["violations"].append([f"{'small ' * small}scene {number}", name, words])
+        for what, numbers in trial.noted.items():
+            found["notes"].setdefault(what, []).append([number, numbers])
+    return found
+
+
+def added_up(found):
+    """One result of several of judge_span."""
+    totals = {name: [0, 0, 0.0] for name in PROPERTIES}
+    for each in found:
+        for name, (judged, count, share) in each["properties"].items():
+            total = totals[name]
+            total[:] = total[0] + judged, total[1] + count, max(total[2], share)
+    notes = {}
+    for each in found:
+        for what, cases in each["notes"].items():
+            notes.setdefault(what, []).extend(cases)
+    return {
+        "scenes": sum(each["scenes"] for each in found),
+        "judgements": sum(judged for judged, _, _ in totals.values()),
+        "properties": totals,
+        "violations": [violation for each in found for violation in each["violations"]],
+        "notes": {what: len(cases) for what, cases in sorted(notes.items())},
+        "unfinished": unfinished(notes.get("unfinished", []), totals),
     }
-    return found | {"limit": limit} if found["status"] == LIMIT else found
 
 
-def plain(value):
-    """`value` as strict JSON has it: numpy numbers unpacked, what is not finite as a word."""
-    if isinstance(value, dict):
-        return {str(name): plain(item) for name, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
-    if hasattr(value, "tolist"):
-        return plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return repr(value)
-    return value
+def unfinished(cases, stated):
+    """Energy that unfinished sweeps of lcp add: in how many scenes, and the worst above its start."""
+    name = "lcp_gains_energy_by_unfinished_sweeps_alone"
+    counts = {"scenes": stated[name][0], "rises": len(cases)}
+    counts["above_start"] = sum(case["gained"] > 1e-9 * case["start"] for _, case in cases)
+    if cases:
+        number, worst = max(cases, key=lambda case: case[1]["gained"] / case[1]["start"])
+        most = worst["start"] + worst["gained"]
+        counts["worst"] = {"scene": number, "start": worst["start"], "most": most}
+        counts["sweeps_most"] = max(case["sweeps"] for _, case in cases)
+    return counts

@@ -1,205 +1,185 @@
-"""One random scene under test: its runs, each made once, and single steps taken again by hand.
+"""One random scene under test: its runs by each model, and what was done in their steps.
 
-`Step` takes one step of a recorded run again, contact by contact, by the plain functions of
-contact.py, and keeps what a recording does not hold: contacts, targets, impulses, residuals.
+What a step did is read from the states before and after it, never asked of the code: the impulse
+that contacts gave a ball is its change of momentum that gravity does not explain.
 """
 
-import math
+import time
 from functools import cached_property
 
 import numpy as np
 
-from curriculum.stress import scenes, under_test
-from curriculum.stress.under_test import contact
+import contact
+from curriculum.stress import scenes
 
+try:
+    from curriculum import fast  # the compiled twin: the same bits, as a property says
+except ImportError:
+    fast = None
+
+G = 9.81  # m/s^2, what every model must have, so it is not asked of contact.py
 U = 2.0**-53  # the largest relative rounding error of one operation
 STEPPED = ("penalty", "lcp", "soft")
-SECONDS = 1.0  # of CPU time for a run of exact, then the rest of it is not waited for
-FEW_EVENTS = 60  # of a run of exact that is made again, in a mirror or at another dt
+SECONDS = 0.3  # of CPU time for a run of exact; the rest is not waited for
+TOUCHING = 1e-12  # m: a deeper overlap at the start, and exact promises nothing
+ASTRAY = 1e6  # m, m/s: a run is judged until a ball is farther off, or faster
+
+
+class OutOfTime(Exception):
+    """A run of exact takes too long; `samples` of it were done."""
 
 
 class Trial:
-    """A spec and the runs of it that were asked for."""
+    """A spec, the runs of it that were asked for, and words for what cannot be judged."""
 
     def __init__(self, spec):
-        self.spec, self.scene = spec, scenes.to_scene(spec)
+        self.spec, self.scene, self.dt = spec, scenes.to_scene(spec), spec["dt"]
         self.fixed = ~np.isfinite(self.scene.mass)
-        self.mass = np.where(self.fixed, 0.0, self.scene.mass)  # what is fixed has no energy
-        self.dt = spec["dt"]
-        self.runs, self.taken = {}, {}
+        self.mass = np.where(self.fixed, 0.0, self.scene.mass)
+        self.made, self.noted = {}, {}
 
-    def run(self, model, **changes):
-        """The run of a model, with entries of the spec changed; of exact, as far as it is made."""
-        if model == "exact" and not changes:
-            return self.exact[0]
-        if model == "exact":
-            changes = {"steps": self.judged} | changes
-        made = model, repr(sorted(changes.items()))
-        if made not in self.runs:
-            with np.errstate(all="ignore"):
-                self.runs[made] = scenes.run(model, self.spec, **changes)
-        return self.runs[made]
+    def note(self, what, **numbers):
+        """Remember what cannot be judged, or a limit that was met."""
+        self.noted[what] = {name: float(value) for name, value in numbers.items()}
+
+    def run(self, model, plain=False, **changes):
+        """The run of a stepped model, with entries of the spec changed; plain: by every step."""
+        key = model, plain, repr(sorted(changes.items()))
+        if key not in self.made:
+            spec = self.spec | changes
+            given = model, scenes.to_scene(spec), spec["dt"], spec["steps"]
+            settings = scenes.to_settings(spec)._replace(skip=not plain)
+            if fast and not plain:
+                q, v, unsettled = fast.simulate(*given, settings, None)
+                times = np.arange(len(q)) * spec["dt"]
+                self.made[key] = contact.Run(times, q, v, unsettled)
+            else:
+                self.made[key] = contact.run_model(*given, settings)
+        return self.made[key]
+
+    @cached_property
+    def motions(self):
+        """{model: Motion} of the stepped models."""
+        return {model: Motion(self, model) for model in STEPPED}
 
     @cached_property
     def exact(self):
-        """(run of exact, its events in each step), up to the last sample that SECONDS of CPU time reach.
-
-        Samples do not enter the motion, so the shorter run is the beginning of the longer one.
-        """
-        steps = self.spec["steps"]
+        """The run of exact as far as SECONDS go; None, and a note, where it promises nothing."""
+        if contact.smallest_gap(self.scene.q0[None], self.scene.radius)[0] < -TOUCHING:
+            self.note("exact: starts in an overlap")
+            return None
         try:
-            return under_test.run_exact(self.scene, self.dt, steps, SECONDS)
-        except under_test.OutOfTime as stop:
-            return under_test.run_exact(self.scene, self.dt, max(0, stop.samples - 1), math.inf)
-
-    @property
-    def judged(self):
-        """How many steps of exact were made."""
-        return len(self.exact[0].t) - 1
-
-    def quality(self, model):
-        return contact.contact_quality(self.run(model), self.scene, self.dt)
-
-    def calm(self, model, **changes):
-        """Whether the run stays finite and does not explode."""
-        run = self.run(model, **changes)
-        return contact.blow_up_step(contact.energy(run.q, run.v, self.mass)) is None
-
-    @cached_property
-    def overlaps(self):
-        """Whether the scene starts in an overlap; exact promises nothing then."""
-        return contact.max_penetration(self.scene.q0, self.scene.radius) > 1e-12
-
-    def models(self):
-        """The models that promise something about this scene."""
-        return STEPPED if self.overlaps else contact.MODELS
-
-    def again(self):
-        """The models to run again in another form: exact only where that is quick."""
-        slow = self.overlaps or self.exact[1].sum() > FEW_EVENTS
-        return STEPPED if slow else contact.MODELS
-
-    def samples(self, model):
-        """Up to three steps that have contacts: the first, that of the deepest overlap, the last."""
-        run, margin = self.run(model), contact.CONTACT_MARGIN if model == "lcp" else 0.0
-        gap = contact.smallest_gap(run.q[:-1], self.scene.radius)
-        touching = np.flatnonzero(gap < margin)
-        if not len(touching) or not self.calm(model):
-            return []
-        return sorted({int(touching[0]), int(gap.argmin()), int(touching[-1])})
-
-    def step(self, model, k):
-        """Step k of a run, taken again."""
-        if (model, k) not in self.taken:
-            self.taken[model, k] = Step(self, model, k)
-        return self.taken[model, k]
+            return exact_run(self.scene, self.dt, self.spec["steps"])
+        except OutOfTime as stop:
+            self.note("exact: cut by time")
+            steps = stop.samples - 1  # what was done by then is made again, and judged
+            return exact_run(self.scene, self.dt, steps, np.inf) if steps > 0 else None
+        except RuntimeError as error:
+            self.note(f"exact: {kind_of(error)}")
+            return None
 
 
-class Step:
-    """Step k of a run of lcp or soft, sweep by sweep.
+def kind_of(error):
+    """The first words of an error, up to its numbers: one row of the report for each kind."""
+    words = str(error).split()
+    numbers = [k for k, word in enumerate(words) if any(c.isdigit() for c in word)]
+    return " ".join(words[: min([*numbers, 10])]).rstrip(",;:(")
 
-    contacts, solved; before, predicted, after: their v_n at the start, after gravity, at the end;
-    lam: their impulses; gap: their gaps at the start; moved: what the last sweep changed in each
-    impulse; fastest: the larger speeds, of before and after the sweeps, |vx|, |vy| of every ball;
-    objectives: 1/2 lam W lam + lam b after sweeps 0, 1, 2, 4, 8, ...; push_rounding: how far the
-    pushes that were made may have rounded sum m v_x; peak: the largest m |v_x| of a ball.
+
+def exact_run(scene, dt, steps, seconds=SECONDS):
+    """A run of exact. Raises OutOfTime where it takes longer, in seconds of CPU time."""
+    end = time.process_time() + seconds
+
+    def report(samples):
+        if time.process_time() > end:
+            stop = OutOfTime(samples)
+            stop.samples = samples
+            raise stop
+
+    return contact.run_model("exact", scene, dt, steps, contact.Settings(), report)
+
+
+class Motion:
+    """What a stepped run did: S steps, N balls, C possible contacts, the floor's first.
+
+    sides (C, N): 1 at the upper ball of a contact, -1 at the other. At the start of each step
+    depth (S, C) [m] and normal (S, 2, C); listed (S, C): whether the model looks at the contact.
+    before, after (S, C): v_n along that normal before and after the step [m/s]. push (S, 2, N):
+    what contacts added to the momentum of each ball [kg m/s]; top (S, N): a bound on its speed
+    in the course of the step, from the energies. Distances are taken in the operations that IEEE
+    arithmetic rounds correctly, so they have one answer.
     """
 
-    def __init__(self, trial, model, k, backwards=False):
-        run, spec = trial.run(model), trial.spec
-        self.k, self.dt, self.model = k, trial.dt, model
-        self.balls = contact.make_balls(trial.scene._replace(q0=run.q[k], v0=run.v[k]))
-        margin = contact.CONTACT_MARGIN if model == "lcp" else 0.0
-        self.contacts = contact.detect_contacts(self.balls, margin)
-        if backwards:
-            self.contacts.reverse()
-        self.before = self.speeds()
-        solref, solimp = contact.soft_defaults(spec["restitution"], self.dt, spec.get("solref"))
-        for c in self.contacts:
-            if model == "lcp":
-                c.target = contact.contact_target(
-                    c, spec["restitution"], spec["baumgarte"], self.dt
-                )
-            else:
-                contact.soften(c, self.dt, solref, solimp)
-        self.target = np.array([c.target for c in self.contacts])
-        self.softness = np.array([c.softness for c in self.contacts])
-        contact.fall(self.balls, self.dt)
-        self.predicted, falling = self.speeds(), self.state()[2:]
-        self.solve(spec["iters"] if model == "lcp" else contact.MOST_SWEEPS)
-        self.after = self.speeds()
-        self.lam = np.array([c.lam for c in self.contacts])
-        self.fastest = np.maximum(np.abs(falling), np.abs(self.state()[2:])).ravel()
-        contact.move(self.balls, self.dt)
+    def __init__(self, trial, model):
+        run, count = trial.run(model), len(trial.mass)
+        steps = self.calm(run)
+        self.dt, self.mass, self.unsettled = trial.dt, trial.mass, run.unsettled
+        self.q, self.v = run.q[: steps + 1], run.v[: steps + 1]
+        self.a, self.b = np.triu_indices(count, 1)
+        self.sides = np.zeros((count + len(self.a), count))
+        self.sides[:count] = np.eye(count)
+        pairs = np.arange(count, len(self.sides))
+        self.sides[pairs, self.a], self.sides[pairs, self.b] = 1.0, -1.0
+        self.measure(trial.scene.radius)
+        self.listed = self.depth > (-contact.CONTACT_MARGIN if model == "lcp" else 0.0)
+        self.inv_mass = np.abs(self.sides) @ inverse(self.mass)  # 1 / m_a + 1 / m_b of a contact
+        self.listed &= self.inv_mass > 0.0
+        self.before, self.after = (self.along(v) for v in (self.v[:-1], self.v[1:]))
+        self.falling = self.v[:-1] + trial.dt * np.outer((0.0, -G), ~trial.fixed)
+        self.push = self.mass * (self.v[1:] - self.falling)
+        self.top = self.fastest()
 
-    def solve(self, iters):
-        """The sweeps one at a time, as solve_contacts goes on from the impulses there are."""
-        self.objectives, tolerance = [0.0], self.tolerance()
-        self.push_rounding, self.peak = 0.0, self.largest_momentum()
-        for sweep in range(1, iters + 1):
-            was = np.array([c.lam for c in self.contacts])
-            contact.solve_contacts(self.contacts, 1)
-            lam = np.array([c.lam for c in self.contacts])
-            self.moved = np.abs(lam - was)
-            self.count_pushes()
-            if self.model == "lcp" and (sweep & (sweep - 1)) == 0:
-                free = self.predicted - self.target
-                self.objectives.append(float(0.5 * lam @ (self.speeds() - self.target + free)))
-            if (self.moved <= tolerance).all():
-                break
+    @staticmethod
+    def calm(run):
+        """How many steps stay near and slow enough to be judged."""
+        with np.errstate(invalid="ignore"):
+            near = (np.abs(run.q) < ASTRAY) & (np.abs(run.v) < ASTRAY)
+        near = near.all((1, 2))
+        return len(near) - 1 if near.all() else max(0, int(near.argmin()) - 1)
 
-    def largest_momentum(self):
-        """The largest m |v_x| of a ball now."""
-        return max((ball.mass * abs(ball.vx) for ball in self.balls if ball.inv_mass), default=0.0)
+    def measure(self, radius):
+        """Set depth, normal and reach: the distance of the centres at which two balls touch."""
+        q = self.q[:-1]
+        apart = q[:, :, self.a] - q[:, :, self.b]
+        distance = np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1])
+        self.reach = np.concatenate((radius, radius[self.a] + radius[self.b]))
+        self.depth = self.reach - np.concatenate((q[:, 1], distance), axis=1)
+        up = np.array([[0.0], [1.0]])
+        with np.errstate(invalid="ignore"):
+            normal = np.where(distance[:, None] > 0.0, apart / distance[:, None], up)
+        floor = np.broadcast_to(up, (*q.shape[:2], len(radius)))
+        self.normal = np.concatenate((floor, normal), axis=2)
 
-    def count_pushes(self):
-        """Add what the last sweep rounded: 6 U of each push along x, and U of two momenta each."""
-        pushes = self.moved * [abs(c.nx) for c in self.contacts]
-        self.peak = max(self.peak, self.largest_momentum() + pushes.sum())
-        self.push_rounding += U * (6 * pushes.sum() + 2 * np.count_nonzero(pushes) * self.peak)
+    def along(self, v):
+        """The normal velocity [m/s] of every contact (S, C)."""
+        return ((v @ self.sides.T) * self.normal).sum(1)
 
-    def tolerance(self):
-        """The change of each impulse below which soft has settled; lcp goes on to the last bit."""
-        if self.model == "lcp":
-            return 0.0
-        speeds = [abs(s) for ball in self.balls for s in (ball.vx, ball.vy)]
-        fastest = max([*speeds, *np.abs(self.target)])
-        return contact.LAST_BITS * fastest * np.array([c.m_eff for c in self.contacts])
+    def fastest(self):
+        """A solver comes nearer to its answer with every push, so energies bound the speeds."""
+        norms = np.sqrt((self.mass * self.v * self.v).sum((1, 2)))
+        norms = norms[:-1] + 2.0 * norms[1:] + self.dt * G * np.sqrt(self.mass.sum())
+        own = np.abs(self.v).max(1)
+        return np.maximum(norms[:, None] * np.sqrt(inverse(self.mass)), own[:-1] + own[1:])
 
-    def speeds(self):
-        """v_n of every contact now."""
-        return np.array([c.v_n() for c in self.contacts])
+    def total(self, impulses):
+        """What impulses (S, C) [N s] along the normals add to each momentum (S, 2, N)."""
+        return (impulses[:, None] * self.normal) @ self.sides
+
+    def on_balls(self, values):
+        """The sum of values (S, C) over the contacts of each ball (S, 1, N)."""
+        return (values @ np.abs(self.sides))[:, None]
+
+    def on_contacts(self, values):
+        """The sum of values (S, N) over the balls of each contact (S, C)."""
+        return values @ np.abs(self.sides).T
 
     @cached_property
-    def gap(self):
-        return np.array([-c.depth for c in self.contacts])
+    def alone(self):
+        """Listed contacts whose moving balls have no other listed contact (S, C)."""
+        count = self.on_balls(self.listed.astype(float))[:, 0] * (self.mass > 0.0)
+        return self.listed & (self.on_contacts(count) <= np.abs(self.sides) @ (self.mass > 0.0))
 
-    @cached_property
-    def residual(self):
-        """w = v_n + softness lam - target of every contact at the end of the sweeps."""
-        return self.after + self.softness * self.lam - self.target
 
-    @cached_property
-    def jacobian(self):
-        """J (contacts, 2 N), with v_n = J (vx, vy)."""
-        place = {id(ball): k for k, ball in enumerate(self.balls)}
-        rows = np.zeros((len(self.contacts), 2, len(self.balls)))
-        for row, c in zip(rows, self.contacts):
-            row[:, place[id(c.a)]] += c.nx, c.ny
-            if c.b is not contact.FLOOR:
-                row[:, place[id(c.b)]] -= c.nx, c.ny
-        return rows.reshape(len(rows), -1)
-
-    @cached_property
-    def delassus(self):
-        """W = J M^-1 J^T."""
-        inverse = np.tile([ball.inv_mass for ball in self.balls], 2)
-        return (self.jacobian * inverse) @ self.jacobian.T
-
-    def unsettled(self):
-        """How far v_n of each contact can be off after its turn: sum over others of |W| |dlam|."""
-        return np.abs(self.delassus) @ self.moved
-
-    def state(self):
-        """Positions and velocities (4, N) after the step."""
-        return np.reshape(contact.state_of(self.balls), (-1, 4)).T
+def inverse(mass):
+    """1 / mass, and 0 for the fixed ones, whose mass here is 0."""
+    return np.divide(1.0, mass, out=np.zeros_like(mass), where=mass > 0.0)

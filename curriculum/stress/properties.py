@@ -1,0 +1,382 @@
+"""What must hold on any scene: stated once, for the tests and for ten thousand numbered scenes.
+
+The laws stand here in the chapter's formulas, and are held against what the steps did (trial.py).
+Bounds are U times the number of operations times the size of what is added; where a bound is not
+derived so, it says so. What exact promises is in exact_properties.py.
+"""
+
+import numpy as np
+
+import contact
+from curriculum.stress import scenes
+from curriculum.stress.claims import chosen, stated, unlike
+from curriculum.stress.trial import STEPPED, G, U
+
+HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the impedance of soft where it bounces
+MUJOCO = (0.9, 0.95, 0.001, 0.5, 2.0), (0.02, 1.0)  # and where it does not, with its spring
+NOTABLE = 1e-9  # share of the energy; what unfinished sweeps add ends below it
+MOST = 2**17  # sweeps, by which it must have ended
+
+
+# --- all models ---------------------------------------------------------------------------------
+
+
+@stated
+def finite_or_said_to_have_exploded(trial):
+    """Every number of a run is finite, or contact_quality says that it blew up, and at which step."""
+    for model in STEPPED:
+        run = trial.run(model)
+        quality = contact.contact_quality(run, trial.scene, trial.dt)
+        finite = np.isfinite(run.q).all() and np.isfinite(run.v).all()
+        told = quality["blew_up"] and quality["blew_up_step"] is not None
+        yield f"{model} is not finite, and that is not said", not (finite or told), 0.0
+
+
+@stated
+def a_skip_changes_no_bit(trial):
+    """The compiled twin and the skips of contact.py give the bits of its plain steps."""
+    few = {"steps": min(trial.spec["steps"], 8)}
+    for model in STEPPED:
+        plain = trial.run(model, plain=True, **few)
+        yield f"{model}, first steps", *unlike(plain, trial.run(model, **few))
+        skipped = contact.run_model(
+            model, trial.scene, trial.dt, few["steps"], scenes.to_settings(trial.spec)
+        )
+        yield f"{model}, first steps with skips", *unlike(plain, skipped)
+
+
+@stated
+def a_mirrored_scene_runs_mirrored(trial):
+    """x -> -x gives the mirrored run, the same bits: no operation depends on the sign of x."""
+    flipped = {name: [-value for value in trial.spec[name]] for name in ("x", "vx")}
+    mirror = np.array([[-1.0], [1.0]])
+    for model in STEPPED:
+        run, other = trial.run(model), trial.run(model, **flipped)
+        if trial.motions[model].listed.any():
+            yield model, *unlike(run, other._replace(q=other.q * mirror, v=other.v * mirror))
+
+
+@stated
+def a_run_can_be_taken_up_anywhere(trial):
+    """A step of penalty and lcp depends on the state alone: the second half has the same bits."""
+    half = trial.spec["steps"] // 2
+    for model in ("penalty", "lcp"):
+        run, motion = trial.run(model), trial.motions[model]
+        if motion.listed[half:].any():
+            start = dict(
+                zip(("x", "y", "vx", "vy"), [*run.q[half].tolist(), *run.v[half].tolist()])
+            )
+            again = trial.run(model, **start, steps=trial.spec["steps"] - half)
+            yield model, *unlike(contact.Run(again.t, run.q[half:], run.v[half:]), again)
+
+
+@stated
+def a_far_ball_changes_nothing(trial):
+    """One more ball, at rest on the table a kilometre away, leaves the bits of the others alone.
+
+    For soft, whose sweeps stop on the scale of all speeds, that ball is a fixed one.
+    """
+    extra = {"x": max(trial.spec["x"]) + 1e3, "y": 0.1, "vx": 0.0, "vy": 0.0, "radius": 0.1}
+    for model in STEPPED:
+        motion = trial.motions[model]
+        if motion.listed.any() and len(motion.push) == trial.spec["steps"]:
+            one = extra | {"mass": np.inf if model == "soft" else 1.0}
+            more = {name: [*trial.spec[name], value] for name, value in one.items()}
+            other = trial.run(model, **more)
+            other = other._replace(q=other.q[..., :-1], v=other.v[..., :-1])
+            yield model, *unlike(trial.run(model), other)
+
+
+@stated
+def momentum_along_x_is_kept(trial):
+    """The floor pushes up only, so sum m v_x stays where nothing is fixed. Bound: 8 U a push.
+
+    A step of lcp or soft has a push for each pair in every sweep.
+    """
+    if trial.fixed.any() or len(trial.mass) == 1:
+        return
+    sweeps = {"penalty": 1, "lcp": trial.spec["iters"], "soft": contact.MOST_SWEEPS}
+    for model, motion in trial.motions.items():
+        pairs = motion.listed[:, len(trial.mass) :].sum(1)
+        size = 8 * U * (motion.mass * motion.top).sum(1)
+        off = np.abs((motion.mass * np.diff(motion.v[:, 0], axis=0)).sum(1))
+        yield model, off[pairs > 0], ((sweeps[model] * pairs + 2) * size)[pairs > 0]
+
+
+@stated
+def what_nothing_touches_falls(trial):
+    """Stepped models: v + dt g without a contact, and q + dt v always. Bound: 4 U of what is added."""
+    for model, motion in trial.motions.items():
+        free = ~motion.on_balls(motion.listed)[:, 0].astype(bool) & ~trial.fixed
+        free = np.broadcast_to(free[:, None], motion.push.shape)
+        speed = np.abs(motion.v[1:]) + np.abs(motion.v[:-1]) + trial.dt * G
+        off = np.abs(motion.v[1:] - motion.falling)
+        yield f"{model}, fall", off[free], 4 * U * speed[free]
+        moved = np.abs(motion.q[1:] - motion.q[:-1] - trial.dt * motion.v[1:])
+        yield f"{model}, move", moved, 4 * U * (np.abs(motion.q[1:]) + np.abs(motion.q[:-1]))
+
+
+# --- penalty ------------------------------------------------------------------------------------
+
+
+@stated
+def springs_push_as_hooke_and_the_damper_say(trial):
+    """Penalty: each contact gives max(0, k depth - c v_n) dt, at equal and opposite, and no more.
+
+    Bound: 8 U of the lengths that make a depth, of the speeds that make a v_n, and of the sums.
+    """
+    k, c, motion = trial.spec["stiffness"], trial.spec["damping"], trial.motions["penalty"]
+    force = np.where(motion.listed, np.maximum(0.0, k * motion.depth - c * motion.before), 0.0)
+    off = np.abs(motion.push - motion.total(motion.dt * force))
+    lengths, speeds = 2 * motion.reach + np.abs(motion.depth), motion.on_contacts(motion.top)
+    size = np.where(motion.listed, motion.dt * (k * lengths + c * speeds + 2 * force), 0.0)
+    count = motion.on_balls(motion.listed)
+    allowed = 8 * U * (motion.on_balls(size) + (count + 2) * (motion.mass * motion.top)[:, None])
+    yield "impulse [N s]", *chosen(count * motion.mass > 0, off, allowed)
+
+
+@stated
+def other_units_give_the_same_run(trial):
+    """Penalty: lengths x 4, times x 2, masses x 8 (gravity stays) scale the run, the same bits."""
+    factors = {"x": 4.0, "y": 4.0, "radius": 4.0, "vx": 2.0, "vy": 2.0, "mass": 8.0}
+    other = {name: [f * value for value in trial.spec[name]] for name, f in factors.items()}
+    other |= {"dt": 2.0 * trial.dt, "stiffness": 2.0 * trial.spec["stiffness"]}
+    other |= {"damping": 4.0 * trial.spec["damping"]}
+    run, motion = trial.run("penalty"), trial.motions["penalty"]
+    if motion.listed.any() and len(motion.push) == trial.spec["steps"]:
+        scaled = trial.run("penalty", **other)
+        yield "penalty", *unlike(run, contact.Run(run.t, scaled.q / 4.0, scaled.v / 2.0))
+
+
+# --- lcp ----------------------------------------------------------------------------------------
+
+
+def lcp_target(motion, e, beta):
+    """The v_n that each contact may leave with at least: the chapter's rule, in its own words."""
+    bias, bounce = beta / motion.dt * motion.depth, -e * motion.before
+    if e == 0.0:
+        return bias
+    arrives = motion.dt * motion.before <= motion.depth
+    across = np.where(arrives, bounce, np.minimum(bounce, motion.depth / motion.dt))
+    return np.where(bias > 0.0, np.maximum(bias, bounce), across)
+
+
+@stated
+def a_contact_alone_leaves_at_its_target(trial):
+    """lcp: a contact with no neighbour leaves at max(v_n after gravity, target); a push is n lam.
+
+    Bound: 8 U a sweep of the speeds, and of the lengths that make the target.
+    """
+    motion, beta = trial.motions["lcp"], trial.spec["baumgarte"]
+    target = lcp_target(motion, trial.spec["restitution"], beta)
+    predicted = motion.along(motion.falling)
+    off = np.abs(motion.after - np.maximum(predicted, target))
+    lengths = (2 * motion.reach + np.abs(motion.depth)) * max(beta, 1.0) / motion.dt
+    speeds = (trial.spec["iters"] + 4) * motion.on_contacts(motion.top) + np.abs(target)
+    clear = motion.alone & (np.abs(motion.depth) > 8 * U * motion.reach)
+    yield "v_n [m/s]", off[clear], (8 * U * (speeds + lengths))[clear]
+
+
+@stated
+def lcp_never_pulls(trial):
+    """lcp: the impulses that explain what was done are >= 0, where one set of them explains it.
+
+    Bound: 8 U a push of the momenta, over the least singular value of the contacts' directions.
+    """
+    motion = trial.motions["lcp"]
+    for k in sampled(motion):
+        n = directions(motion, k, motion.listed[k])
+        values = np.linalg.svd(n, compute_uv=False)
+        if len(n) < n.shape[1] or values[-1] < 1e-3:
+            continue
+        done = motion.push[k].ravel()
+        lam = np.linalg.lstsq(n, done, rcond=None)[0]
+        allowed = rounded_pushes(motion, k, trial.spec["iters"]) / values[-1]
+        yield f"step {k}, not explained [N s]", np.abs(n @ lam - done), allowed
+        yield f"step {k}, pulled [N s]", np.maximum(-lam, 0.0), allowed
+
+
+@stated
+def enough_sweeps_solve_the_step(trial):
+    """lcp, 2^14 sweeps: no v_n is below its target, and those above have no part in the push.
+
+    Judged where the latter half of these sweeps moves no speed by over 1e-9 of the largest; allowed
+    is a hundred times what it does move, which is not derived. Between fixed balls there may be no
+    velocity that reaches all targets, so of scenes with one nothing is said.
+    """
+    motion = trial.motions["lcp"]
+    for k in [] if trial.fixed.any() else sampled(motion)[-1:]:
+        start = dict(zip(("x", "y", "vx", "vy"), [*motion.q[k].tolist(), *motion.v[k].tolist()]))
+        less, more = (trial.run("lcp", **start, steps=1, iters=2**n).v[1] for n in (13, 14))
+        moved, top = np.abs(more - less).max(), motion.top[k].max()
+        if moved > NOTABLE * top:
+            trial.note("lcp: a step that 16,384 sweeps do not solve")
+            continue
+        rule = trial.spec["restitution"], trial.spec["baumgarte"]
+        above = ((motion.sides @ more.T).T * motion.normal[k]).sum(0) - lcp_target(motion, *rule)[k]
+        on, slack = motion.listed[k], 100 * moved + 1e-11 * top
+        yield f"step {k}, below target [m/s]", np.maximum(-above, 0.0)[on], slack
+        n = directions(motion, k, on & (above <= slack))
+        push = (motion.mass * (more - motion.falling[k])).ravel()
+        rest = push - n @ np.linalg.lstsq(n, push, rcond=None)[0] if n.size else push
+        allowed = rounded_pushes(motion, k, 2**14) + 100 * moved * motion.mass.sum()
+        yield f"step {k}, pushed above target [N s]", np.abs(rest), allowed
+
+
+def sampled(motion):
+    """Up to two steps with contacts: that of the deepest overlap, and the last."""
+    touching = np.flatnonzero(motion.listed.any(1))
+    if not len(touching):
+        return []
+    deepest = np.where(motion.listed, motion.depth, -np.inf).max(1).argmax()
+    return sorted({int(deepest), int(touching[-1])})
+
+
+def directions(motion, k, on):
+    """What a push of 1 N s at each contact `on` adds to the momenta in step k (2 N, contacts)."""
+    given = motion.sides[on] * (motion.mass > 0.0)
+    each = motion.normal[k][:, on, None] * given
+    return each.transpose(0, 2, 1).reshape(2 * len(motion.mass), on.sum())
+
+
+def rounded_pushes(motion, k, sweeps):
+    """What that many sweeps of step k may round in the momenta [N s]: 8 U a push."""
+    return 8 * U * (sweeps + 2) * motion.listed[k].sum() * (motion.mass * motion.top[k]).sum()
+
+
+@stated
+def a_correction_only_takes_energy(trial):
+    """lcp, e = 0 and no gain: after any number of sweeps |v'| <= |v + dt g| in the mass norm.
+
+    Each correction brings the velocity nearer to every one that the contacts allow, 0 among them.
+    """
+    still = type(trial)(trial.spec | {"restitution": 0.0, "baumgarte": 0.0})
+    motion = still.motions["lcp"]
+    after, falling = (kinetic(v, motion.mass) for v in (motion.v[1:], motion.falling))
+    pushes = motion.listed.sum(1) * (trial.spec["iters"] + 2)
+    allowed = 16 * U * (pushes + len(motion.mass)) * kinetic(motion.top[:, None], motion.mass)
+    yield "gain [J]", np.maximum(after - falling, 0.0)[pushes > 0], allowed[pushes > 0]
+
+
+@stated
+def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
+    """lcp without gain: F = E + e/(1+e) dt sum m g v_y rises by what the sweeps leave undone.
+
+    In the norm of the masses, with D = v' - v: E' - E = lam.J v' - |D|^2 / 2, and with targets of at
+    most -e J v it follows that F' - F <= lam.w / (1+e) - (1-e)/(1+e) |D|^2 / 2, where lam.w = 0 once
+    the sweeps are done. So the step with the largest rise is taken again with more sweeps, until the
+    rise is below NOTABLE: a limit of the model, noted with its size; an overdue end is a violation.
+    """
+    free = type(trial)(trial.spec | {"baumgarte": 0.0})
+    motion, e = free.motions["lcp"], trial.spec["restitution"]
+    rise, size = rises(motion, motion.v, e)
+    pushes = motion.listed.sum(1) * (trial.spec["iters"] + 2)
+    k = int((rise - 8 * U * pushes * size).argmax()) if len(rise) else 0
+    if not pushes.any():
+        return
+    if rise[k] <= NOTABLE * size[k]:
+        yield "rise [J]", rise[pushes > 0], NOTABLE * size[pushes > 0]
+        return
+    sweeps, left = trial.spec["iters"], rise[k]
+    start = dict(zip(("x", "y", "vx", "vy"), [*motion.q[k].tolist(), *motion.v[k].tolist()]))
+    while left > NOTABLE * size[k] and sweeps < MOST:
+        sweeps *= 2
+        v = free.run("lcp", **start, steps=1, iters=sweeps).v
+        left = rises(motion, v, e, k)[0][0]
+    total = contact.energy(motion.q, motion.v, motion.mass)
+    top = max(0.0, float((total - total[0]).max()))
+    trial.note("unfinished", share=rise[k] / size[k], sweeps=sweeps, start=total[0], gained=top)
+    yield f"rise [J] with {sweeps} sweeps", left, NOTABLE * size[k]
+
+
+def rises(motion, v, e, k=None):
+    """(how much more F rises than the law allows, the energies) of all steps, or of step k alone."""
+    part = slice(None) if k is None else slice(k, k + 1)
+    first, last, q = v[:-1], v[1:], motion.q[:-1][part]
+    lead = e / (1 + e) * motion.dt * -G * (motion.mass * (last - first)[:, 1]).sum(-1)
+    moved = motion.dt * G * (motion.mass * last[:, 1]).sum(-1)
+    loss = (1 - e) / (1 + e) * kinetic(last - first, motion.mass)
+    change = kinetic(last, motion.mass) - kinetic(first, motion.mass) + moved + lead + loss
+    size = kinetic(first, motion.mass) + (motion.mass * G * np.abs(q[:, 1])).sum(-1)
+    return change, np.maximum(size, kinetic(last, motion.mass))
+
+
+def kinetic(v, mass):
+    """Kinetic energy [J] of velocities (S, 2, N)."""
+    return 0.5 * (mass * v * v).sum((1, 2))
+
+
+# --- soft ---------------------------------------------------------------------------------------
+
+
+def soft_law(motion, e, solref):
+    """(target [m/s], softness R [1/kg]) of every contact, by MuJoCo's formulas."""
+    (d0, d1, width, mid, power), (T, damping) = MUJOCO[0], solref or MUJOCO[1]
+    bounces = e > 0.0 and solref is None
+    if bounces:
+        d0, d1, width, mid, power = HARD
+    x = np.clip(motion.depth / width, 0.0, 1.0)
+    y = np.where(
+        x <= mid, x**power / mid ** (power - 1), 1 - (1 - x) ** power / (1 - mid) ** (power - 1)
+    )
+    d = d0 + y * (d1 - d0)
+    T = max(T, 2 * motion.dt)
+    K, B = (0.0, (1 + e) / motion.dt / d1) if bounces else ((d1 * T * damping) ** -2, 2 / (d1 * T))
+    a_ref = K * d * motion.depth - B * motion.before
+    return motion.before + motion.dt * a_ref, (1 - d) / d * motion.inv_mass
+
+
+@stated
+def soft_pushes_as_mujoco_says(trial):
+    """soft: lam = max(0, (target - v_n') / R) at each contact, and these give the whole push.
+
+    v_n' + R lam = target where a contact pushes, so lam is read from what was done, and every step
+    is judged. Bound: what a settled sweep may leave (LAST_BITS of the speeds, from each neighbour),
+    over R; and 8 U a push. Steps said to be unsettled may be off, but not more of them than said.
+    """
+    motion = trial.motions["soft"]
+    if not motion.listed.any():
+        return
+    target, R = soft_law(motion, trial.spec["restitution"], trial.spec["solref"])
+    lam = np.where(motion.listed, np.maximum(0.0, (target - motion.after) / R), 0.0)
+    off = np.abs(motion.push - motion.total(lam)) * (motion.mass > 0.0)
+    allowed = soft_bound(motion, target, R)
+    if motion.unsettled:
+        trial.note("soft: steps whose sweeps did not settle", steps=motion.unsettled)
+        yield (
+            "steps off beyond those unsettled",
+            (~(off <= allowed)).any((1, 2)).sum(),
+            motion.unsettled,
+        )
+    else:
+        pushed = motion.on_balls(motion.listed) * motion.mass > 0.0
+        yield "impulse [N s]", *chosen(pushed, off, allowed)
+
+
+def soft_bound(motion, target, R):
+    """What settled sweeps and rounding may leave in the momenta (S, 2, N) [kg m/s]."""
+    listed, count = motion.listed, motion.listed.sum(1)[:, None]
+    size = np.where(listed, np.abs(target) + motion.on_contacts(motion.top), 0.0)
+    left = (contact.LAST_BITS + 16 * U) * (count + 1) * size.max(1, keepdims=True)
+    own = motion.on_balls(np.where(listed, left / R, 0.0))
+    pushes = motion.on_balls(listed) * contact.MOST_SWEEPS + 4
+    return own + 8 * U * pushes * (motion.mass * motion.top)[:, None]
+
+
+@stated
+def an_impact_alone_returns_e_of_the_speed(trial):
+    """lcp, and soft where it bounces: alone and closing, v_n' is -e v_n; gravity adds nothing to it.
+
+    Judged where the bounce is faster than gravity and Baumgarte's push. lcp: 8 U a sweep. soft: its
+    hardest contact gives way by R lam, at most 2e-4 of the speeds.
+    """
+    e, solref = trial.spec["restitution"], trial.spec["solref"]
+    for model, share in (("lcp", 8 * U * (trial.spec["iters"] + 4)), ("soft", 2.1e-4)):
+        motion = trial.motions[model]
+        back, bias = -e * motion.before, trial.spec["baumgarte"] / motion.dt * motion.depth
+        fair = motion.alone & (back > motion.along(motion.falling)) & (motion.before < 0.0)
+        if model == "lcp":
+            fair &= (back > bias) & (motion.dt * motion.before < motion.depth)
+        if e > 0.0 and (model == "lcp" or solref is None):
+            size = motion.on_contacts(motion.top) + motion.dt * G
+            yield f"{model}, v_n [m/s]", np.abs(motion.after - back)[fair], (share * size)[fair]
