@@ -30,7 +30,7 @@ def see(args, argv):
 
 def practise():
     """The line that names the next exercise that is not done, or what comes after them."""
-    from checks import next_exercise
+    from exercises.progress import next_exercise
 
     file = next_exercise()
     if file is None:
