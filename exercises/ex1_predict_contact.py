@@ -1,10 +1,10 @@
 """Exercise 1, predict then run (10 minutes): where does the ball end up?
 
 A ball falls about a metre onto a table and is followed for 1.6 s, twice, from the same height. The
-two runs differ in one thing only, the answer to: what force does the table apply?
-    penalty   the table is a very stiff spring with a damper beside it
-    lcp       the table gives the impulse after which ball and table no longer approach each other
-Measured is how deep the ball is in the table at the worst moment and at the end, in ball radii r.
+two runs differ in one thing, the answer to: what force does the table apply? In penalty the table
+is a very stiff spring with a damper beside it. In lcp it gives the impulse after which ball and
+table no longer approach each other. Measured is how deep the ball is in the table at the worst
+moment and at the end, in ball radii r.
 Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
 
     python exercises/ex1_predict_contact.py     # add --hint 1 (2, 3) for a question that helps

@@ -1,17 +1,18 @@
 """Which exercises are done. It needs nothing but Python, so that any command can ask."""
 
 import json
-from pathlib import Path
+import os
 
-ROOT = Path(__file__).resolve().parents[1]
-DONE = ROOT / "outputs" / "ch3.5-contact" / "exercises.json"    # {name: the bet, or "done"}
-FILES = sorted(path.stem for path in Path(__file__).parent.glob("ex[0-9]_*.py"))
+HERE = os.path.dirname(os.path.abspath(__file__))
+DONE = os.path.join(os.path.dirname(HERE), "outputs", "ch3.5-contact", "exercises.json")
+FILES = sorted(name[:-3] for name in os.listdir(HERE) if name[:2] == "ex" and name[2:3].isdigit())
 
 
 def done():
     """{exercise: its bet, or "done"}, as far as it was noted."""
     try:
-        return json.loads(DONE.read_text("utf-8"))
+        with open(DONE, encoding="utf-8") as file:
+            return json.load(file)
     except (OSError, ValueError):
         return {}
 

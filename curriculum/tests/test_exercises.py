@@ -188,17 +188,6 @@ def test_watch_checks_again_when_an_exercise_is_saved(copy):
 # Fills: ten right ones and every slip
 
 
-def by_hand(contacts, iters):
-    """A right solver that touches the balls itself, and does not stop early."""
-    for _ in range(iters):
-        for c in reversed(contacts):
-            v_n = (c.a.vx - c.b.vx) * c.nx + (c.a.vy - c.b.vy) * c.ny
-            old, c.lam = c.lam, max(c.lam + c.m_eff * (c.target - v_n), 0)
-            for ball, sign in ((c.a, 1), (c.b, -1)):
-                ball.vx += sign * (c.lam - old) * c.nx * ball.inv_mass
-                ball.vy += sign * (c.lam - old) * c.ny * ball.inv_mass
-
-
 def until_settled(contacts, iters):
     """A right solver that stops when nothing moves any more."""
     moved = 1.0
@@ -220,7 +209,6 @@ RIGHT = [
         0, np.array([stiffness * depth - damping * v_n]))),
     ("project_impulse", lambda lam, dlam: 0.5 * (lam + dlam + abs(lam + dlam))),
     ("project_impulse", lambda lam, dlam: np.float32(0) if lam < -dlam else lam + dlam),
-    ("solve_contacts", by_hand),
     ("solve_contacts", until_settled),
     ("step_matrix", lambda m, k, c, dt: (
         np.array([[1, -dt], [0, 1]]) @ np.array([[1, 0], [dt * k / m, 1 - dt * c / m]]))),
@@ -279,8 +267,6 @@ FINGERS = {"MODEL": "soft", "DT": 0.002, "STIFFNESS": 1e4, "DAMPING": 80.0, "SOL
     ({"SOLREF": (0.004, 1.0)}, "overlaps too much"),
     ({"DT": 0.001, "SOLREF": (0.001, 1.0), "SOLIMP": (0.9999, 0.9999, 0.001, 0.5, 2.0)}, None),
     ({"MODEL": "penalty", "DT": 0.001, "STIFFNESS": 3e5}, None),
-    ({"MODEL": "penalty", "DT": 0.0005, "STIFFNESS": 1e6, "DAMPING": 40.0}, None),
-    ({}, "overlaps too much"),
     ({"MODEL": "penalty"}, "overlaps too much"),
     ({"MODEL": "penalty", "DT": 0.001, "STIFFNESS": 3e5, "DAMPING": 0.0}, "trembles"),
     ({"MODEL": "penalty", "DT": 0.001, "STIFFNESS": 3e5, "DAMPING": 200.0}, "trembles"),
