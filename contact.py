@@ -710,25 +710,20 @@ def energy(q, v, mass):
 
 
 @np.errstate(all="ignore")
-def pair_gap(q, radius):
-    """The smallest gap [m] between two balls in each state (S, 2, N); inf for one ball.
+def smallest_gap(q, radius):
+    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N).
 
     Ball i is compared with ball i + lag, for all i and all states at once, and for every lag.
     """
-    gap = np.full(len(q), math.inf)
+    if q.size * len(radius) > MANY and (fast := beside("fast")):
+        return fast.smallest_gap(q, radius)
+    gap = (q[:, 1] - radius).min(-1)
     for lag in range(1, len(radius)):
         dx = q[:, 0, lag:] - q[:, 0, :-lag]
         dy = q[:, 1, lag:] - q[:, 1, :-lag]
         reach = radius[lag:] + radius[:-lag]
         gap = np.minimum(gap, (np.sqrt(dx * dx + dy * dy) - reach).min(-1))
     return gap
-
-
-def smallest_gap(q, radius):
-    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
-    if q.size * len(radius) > MANY and (fast := beside("fast")):
-        return fast.smallest_gap(q, radius)
-    return np.minimum((q[:, 1] - radius).min(-1), pair_gap(q, radius))
 
 
 def blow_up_step(total):
@@ -774,10 +769,10 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
 
 def went_through(run, scene):
     """"the floor" if a ball's centre was below it; "a ball" if two overlapped by a radius."""
-    moves = np.isfinite(scene.mass)
-    if (run.q[:, 1, moves] < 0.0).any():
+    if (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any():
         return "the floor"
-    return "a ball" if pair_gap(run.q, scene.radius).min() < -scene.radius.min() else None
+    deepest = -smallest_gap(run.q, scene.radius).min()
+    return "a ball" if deepest > scene.radius.max() else None
 
 
 def first_contact(run, scene, dt):
@@ -1057,14 +1052,9 @@ def chosen_scene(args, seed):
     return scene._replace(mass=args.mass * scene.mass)
 
 
-def chosen_settings(args):
-    """The knobs that the flags ask for."""
-    return Settings(*(getattr(args, knob) for knob in Settings._fields))
-
-
 def run_all(args, scene):
     """The runs {model: Run} that the flags ask for, {model: why it has none}, and how to run."""
-    settings = chosen_settings(args)
+    settings = Settings(*(getattr(args, knob) for knob in Settings._fields))
     pool = beside("pool") if sys.stderr.isatty() else None
 
     def run(model, dt):
