@@ -66,8 +66,7 @@ export const figure = {
   title: "A ball slides off a ball that is held",
   caption:
     "The upper ball leaves the lower one where it has lost a third of its height over the lower one’s middle: drag where it starts, and let go.",
-  height: 330,
-  narrow: 300,
+  height: 300,
   start: () => ({ angle: 0.35, time: null }),
   draw,
   drag(view, name, x, y) {
