@@ -875,7 +875,8 @@ NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, 
 def add_flags(flag):
     """All flags, by argparse's add_argument."""
     switch = argparse.BooleanOptionalAction
-    flag("--scene", choices=SCENES, default="drop", help="one ball, or many (drop)")
+    flag("--scene", choices=SCENES, default="drop", help="one ball, drop (e = 0) or bounce "
+         "(e = 0.7), or many, stack or pile (drop)")
     flag("--contact", choices=("all", *MODELS), default="all", help="the model (all)")
     for name, (kind, low, high, usual, text) in NUMBERS.items():
         flag(name, type=number(kind, low, high), default=usual, metavar="N", help=text)
@@ -914,7 +915,20 @@ def parse_flags(argv):
             parser.error(message)
     args.seed = args.seed or 0
     args.steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
+    check_memory(args, parser.error)
     return args
+
+
+def check_memory(args, error):
+    """End with one line where the runs need more memory than this machine has, if it says."""
+    count = args.bodies or {"stack": 3, "pile": 24}.get(args.scene, 1)
+    need = 320 * args.steps * count             # bytes, measured: four models, all their states
+    have = math.inf
+    if hasattr(os, "sysconf"):
+        have = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if need > have:
+        error(f"--steps {args.steps} of {count} balls need {need / 1e9:.0f} GB of memory; "
+              f"allowed: {have / 1e9:.0f} GB, what this machine has")
 # --- endregion ---
 
 
