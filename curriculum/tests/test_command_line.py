@@ -97,7 +97,7 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
 @pytest.mark.parametrize("flags", [
     "--smoke --steps 100", "--seeds 0:5 --seed 3", "--seeds 0:5 --plot", "--scheduler localhost:8786",
     "--scene drop --bodies 2", "--scene bounce --bodies 1", "--solref 0.02 0", "--solref -1 1",
-    "--solref 0.02 1e-162", "--stiff 3", "--no-such-flag", "--solimp 0.9 0.95 0.001 0.5 0",
+    "--solref 0.02 1e-162", "--stiff 3", "--no-such-flag",
 ])  # fmt: skip
 def test_flags_that_contradict_one_another_are_refused(flags, capsys):
     err = refused(main(capsys, *flags.split()))
@@ -262,6 +262,17 @@ def test_ctrl_c_ends_a_run_and_its_workers_with_one_word_and_leaves_no_file(flag
     assert not any(tmp_path.iterdir())
     with pytest.raises(ProcessLookupError):
         os.killpg(run.pid, 0)  # no worker is left
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
+def test_output_to_a_full_disk_is_one_line_and_no_output_at_all_is_no_error(tmp_path):
+    words = f"{sys.executable} {ROOT / 'contact.py'} --steps 5 --no-rerun --out {tmp_path}"
+    full, closed = (
+        subprocess.run(f"{words} {where}", shell=True, stderr=subprocess.PIPE, text=True)
+        for where in (">/dev/full", ">&-")
+    )
+    assert full.returncode == 2 and full.stderr.count("\n") == 1 and "No space" in full.stderr
+    assert (closed.returncode, closed.stderr) == (0, "")
 
 
 def test_a_pipe_that_nobody_reads_ends_it_without_a_word(tmp_path):
