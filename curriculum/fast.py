@@ -4,9 +4,6 @@ A function here that is named as one of contact.py does the same operations in t
 a run has the same bits. What is new is how near balls are found: by their shadows on one axis, and
 from a list that is good until some ball has moved. Balls and contacts are rows of a table; the
 last ball is the floor. Nothing may be rounded differently: no fast-math, no fused multiply-add.
-
-Importing this raises ImportError where numba is missing or told not to compile: the plain loops of
-contact.py are then faster.
 """
 
 import math
@@ -17,7 +14,7 @@ import numpy as np
 
 import contact
 
-if numba.config.DISABLE_JIT:
+if numba.config.DISABLE_JIT:    # then contact.py's own loops are faster
     raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
 
 MODELS = ("penalty", "lcp", "soft")
@@ -69,8 +66,8 @@ def cast_shadows(balls, reach):
     """The balls by the lower end of their shadow: order, lower ends, upper ends, each (M,).
 
     The shadow falls on the axis along which the balls are spread wider. It is as long as its own
-    ball is wide, so one large ball costs no more than itself; at the upper end is room for `reach`
-    [m] and for rounding. A ball that is nowhere has no shadow: it touches nothing for ever.
+    ball is wide, so one large ball costs no more than itself; above is room for `reach` [m] and
+    for rounding. A ball that is nowhere has no shadow: it touches nothing for ever.
     """
     x, y = balls["x"][:-1], balls["y"][:-1]
     known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
@@ -457,16 +454,12 @@ def smallest_gap(q, radius):
     """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
     nowhere = np.full((2, len(radius)), math.nan)
     balls = make_balls(nowhere, nowhere, np.ones(len(radius)), radius)
-    gaps = (q[:, 1] - radius).min(-1)
-    finite = np.isfinite(q).all((1, 2))
-    gaps[~finite] = np.minimum(gaps[~finite], contact.pair_gap(q[~finite], radius))
-    gaps[finite] = find_gaps(q[finite].astype(float), balls, float(np.median(radius)))
-    return gaps
+    return find_gaps(np.array(q, float), balls, float(np.median(radius)))
 
 
 @compiled
 def find_gaps(q, balls, skin):
-    """The smallest gap in each state; all positions are finite.
+    """The smallest gap in each state.
 
     A pair that is not listed was farther apart than `reach`, and may have come nearer by what two
     balls have moved. Where that does not decide, the pairs are listed anew, as far as it takes.
@@ -476,6 +469,9 @@ def find_gaps(q, balls, skin):
     reach = -math.inf
     for k in range(len(q)):
         balls["x"][:-1], balls["y"][:-1] = q[k, 0], q[k, 1]
+        if not np.isfinite(q[k]).all():
+            gaps[k] = gap_of_all(balls)
+            continue
         gaps[k] = gap_of_listed(balls, pairs)
         if not gaps[k] < 0.999 * reach - 2.0 * farthest_move(balls):
             reach, gaps[k] = 0.5 * skin + 1e-150, math.inf
@@ -487,14 +483,27 @@ def find_gaps(q, balls, skin):
 
 
 @compiled
+def gap_between(a, b):
+    """The gap [m] between two balls."""
+    dx = b.x - a.x
+    dy = b.y - a.y
+    return math.sqrt(dx * dx + dy * dy) - (b.radius + a.radius)
+
+
+@compiled
 def gap_of_listed(balls, pairs):
     """The smallest gap to the floor or between listed balls."""
-    gap = math.inf
-    for ball in balls[:-1]:
-        gap = min(gap, ball.y - ball.radius)
+    gap = (balls["y"][:-1] - balls["radius"][:-1]).min()
     for k in range(pairs.shape[1]):
-        a, b = balls[pairs[0, k]], balls[pairs[1, k]]
-        dx = b.x - a.x
-        dy = b.y - a.y
-        gap = min(gap, math.sqrt(dx * dx + dy * dy) - (b.radius + a.radius))
+        gap = min(gap, gap_between(balls[pairs[0, k]], balls[pairs[1, k]]))
+    return gap
+
+
+@compiled
+def gap_of_all(balls):
+    """The smallest gap of all; NaN if any gap is."""
+    gap = (balls["y"][:-1] - balls["radius"][:-1]).min()
+    for i in range(len(balls) - 1):
+        for j in range(i):
+            gap = np.minimum(gap, gap_between(balls[i], balls[j]))
     return gap

@@ -35,7 +35,7 @@ def check_same(model, scene, dt, steps, **knobs):
         differ = (left.view(np.int64) != right.view(np.int64)).any((1, 2))
         assert not differ.any(), f"{name} of {model} first differs at step {differ.argmax()}"
     assert one[2] == other[2], "steps that did not settle"
-    gaps = [way(other[0], scene.radius) for way in (fast.smallest_gap, every_gap)]
+    gaps = [way(other[0], scene.radius) for way in (fast.smallest_gap, contact.smallest_gap)]
     np.testing.assert_array_equal(*gaps)
     return other
 
@@ -43,12 +43,6 @@ def check_same(model, scene, dt, steps, **knobs):
 def plainly(model, scene, dt, steps, chosen):
     """q, v and unsettled steps by contact.py's own loops, no step left out."""
     return contact.run_model(model, scene, dt, steps, chosen._replace(skip=False))[1:]
-
-
-@np.errstate(all="ignore")
-def every_gap(q, radius):
-    """The smallest gap in each state, from all pairs."""
-    return np.minimum((q[:, 1] - radius).min(-1), contact.pair_gap(q, radius))
 
 
 # Scenes of every kind
@@ -88,17 +82,21 @@ def scenes(draw):
 @given(scene=scenes(), model=st.sampled_from(MODELS),
        dt=st.sampled_from((0.002, 0.002, 1e-4, 0.03, 1e154)),
        stiffness=st.sampled_from((1e4, 0.0, 1e300)), baumgarte=st.floats(0.0, 1.0),
-       iters=st.integers(1, 20), warm=st.sampled_from((0.0,)),
+       iters=st.integers(1, 20), warm=st.sampled_from((0.0, 0.8, 1.0)),
        solimp=st.sampled_from((None, None, (0.0, 0.99, 0.02, 0.4, 2.5), (0.5, 0.9, 0.0, 0.5, 1.0))))
 def test_the_twin_has_the_bytes_of_the_plain_loops(scene, model, dt, solimp, **knobs):
-    solref = (-1e3, -50.0) if model == "soft" and scene.restitution > 0.0 else None
+    solref = None
+    if model == "soft":     # whose sweeps take long where many hard contacts share balls
+        solref = (-1e3, -50.0) if scene.restitution > 0.0 else None
+        scene = scene._replace(q0=scene.q0[:, :8], v0=scene.v0[:, :8], mass=scene.mass[:8],
+                               radius=scene.radius[:8])
     check_same(model, scene, dt, 12, solimp=solimp, solref=solref, **knobs)
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_balls_rest(model):
     for name in ("drop", "bounce", "stack"):
-        check_same(model, contact.build_scene(name, 3), 0.002, 1200, warm=0.0)
+        check_same(model, contact.build_scene(name, 3), 0.002, 1200, warm=0.8)
     check_same(model, contact.build_scene("pile", 1, 24, restitution=0.4), 0.004, 150)
 
 
