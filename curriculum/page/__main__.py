@@ -42,8 +42,10 @@ def main(argv=None):
     if args.pictures or args.measure:
         from curriculum.page import browser
 
-        lines = [browser.photograph(args.out, args.pictures)] if args.pictures else []
-        print(*lines, *(browser.measure(args.out) if args.measure else []), sep="\n")
+        if args.pictures:
+            print(browser.photograph(args.out, args.pictures))
+        for line in browser.measure(args.out) if args.measure else []:
+            print(line, flush=True)
     return 0
 
 

@@ -1,5 +1,6 @@
-"""A real browser, for the page's picture and its tests: Debian's Chromium, driven by Playwright."""
+"""A real browser, for the page's picture, its measuring and its tests: Debian's Chromium by Playwright."""
 
+import contextlib
 import shutil
 
 CHROMIUM = next(
@@ -15,30 +16,77 @@ FLAGS = (
     "--disable-component-update",
     "--disable-sync",
 )
+PICTURE = "page-live.png"  # of the README; it tells no bet
+# what a knob costs: set a quantity by its slider, and wait until the next frame is painted
+KNOB = """([name, figure]) => new Promise((done) => {
+  const box = document.getElementById(`fig-${figure}`);
+  const range = box.querySelector(`[data-knob="${name}"] input[type=range]`);
+  const times = [];
+  range.dispatchEvent(new Event("pointerdown")); // a drag: figures may draw coarsely
+  const once = () => {
+    const start = performance.now();
+    range.value = Number(range.value) + (times.length % 2 ? -20 : 20);
+    range.dispatchEvent(new Event("input", { bubbles: true }));
+    requestAnimationFrame(() => setTimeout(() => {
+      times.push(performance.now() - start);
+      if (times.length < 9) setTimeout(once, 300);
+      else {
+        range.dispatchEvent(new Event("pointerup"));
+        done(times.sort((a, b) => a - b)[4]);
+      }
+    }));
+  };
+  once();
+})"""
+PAINT = """() => new Promise((done) => {
+  let shift = 0;
+  new PerformanceObserver((list) => {
+    for (const each of list.getEntries()) if (!each.hadRecentInput) shift += each.value;
+  }).observe({ type: "layout-shift", buffered: true });
+  const [first] = performance.getEntriesByName("first-contentful-paint");
+  setTimeout(() => done([first ? first.startTime : NaN, shift]), 500);
+})"""
 
 
-# the README's pictures: a bounce and its energy beside the text, and one small figure; no bet is told
-PICTURES = ("page-live.png", "page-small.png")
-SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
-  localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
+@contextlib.contextmanager
+def opened(page, **options):
+    """A tab with the HTML file `page`, 1280 x 800, as for a reader who has made the bets."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
+        tab = browser.new_page(viewport={"width": 1280, "height": 800}, **options)
+        tab.add_init_script(
+            """for (const id of ["ex1", "ex3", "ex4"])
+            localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
+        )
+        tab.goto(page.resolve().as_uri())
+        tab.wait_for_selector("[data-ready]", state="attached")
+        yield tab
+        browser.close()
 
 
 def photograph(page, folder):
-    """Save PICTURES of the HTML file `page` (1280 x 800, nothing moving) in a folder; their paths."""
-    from playwright.sync_api import sync_playwright
+    """Save PICTURE, the first screen, in a folder; its path."""
+    with opened(page, reduced_motion="reduce") as tab:
+        tab.wait_for_timeout(500)
+        tab.screenshot(path=folder / PICTURE)
+    return folder / PICTURE
 
-    live, small = (folder / name for name in PICTURES)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
-        tab = browser.new_page(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
-        tab.add_init_script(SHOWN)
-        tab.goto(page.resolve().as_uri() + "?scene=bounce&contact=lcp&t=0.84")
-        tab.check('input[name="chart"][value="energy"]', force=True)
-        tab.locator("#see-it-work").evaluate("(node) => node.scrollIntoView({block: 'center'})")
-        tab.wait_for_timeout(1000)  # ms: the figures draw themselves
-        tab.screenshot(path=live)
-        tab.locator("#fig-slide").scroll_into_view_if_needed()
-        tab.wait_for_timeout(1000)
-        tab.locator("#fig-slide").screenshot(path=small)
-        browser.close()
-    return [live, small]
+
+def measure(page):
+    """How quickly the page answers in Chromium: lines to print."""
+    with opened(page) as tab:
+        paint, shift = tab.evaluate(PAINT)
+        yield f"first paint {paint:.0f} ms (wanted: below 500), layout shift {shift:.3f} (below 0.1)"
+        for scene in ("drop", "bounce", "stack"):
+            tab.goto(f"{page.resolve().as_uri()}?scene={scene}")
+            tab.wait_for_selector("[data-ready]", state="attached")
+            tab.locator("a.try").first.scroll_into_view_if_needed()
+            for name in ("dt", "stiffness", "baumgarte", "restitution"):
+                wanted = 100 if scene == "stack" else 50
+                time = tab.evaluate(KNOB, [name, "lanes"])
+                yield f"lanes, {scene}: a knob {name:<11} answers in {time:4.0f} ms (below {wanted})"
+        tab.locator("#fig-cliff").scroll_into_view_if_needed()
+        tab.wait_for_timeout(500)
+        yield f"cliff: stiffness answers in {tab.evaluate(KNOB, ['stiffness', 'cliff']):.0f} ms (100)"

@@ -62,6 +62,7 @@ def page_data(bets):
             "stiffness": settings.stiffness,
             "iters": settings.iters,
             "baumgarte": settings.baumgarte,
+            "warm": settings.warm,
         },
         "engine": {name: getattr(contact, name) for name in ENGINE},
         "exact": {"TOUCH": contact.TOUCH, "SLOW": contact.SLOW}
@@ -76,7 +77,8 @@ def page_data(bets):
 
 def data_address(svg):
     """An SVG as an address that holds it, its paths rounded to a hundredth of a pixel."""
-    paths = re.sub(r'(?<= d=")[^"]+', lambda d: re.sub(r"(\.\d\d)\d+", r"\1", d[0]), svg)
+    drawn = re.sub(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<!--.*?-->|<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    paths = re.sub(r'(?<= d=")[^"]+', lambda d: re.sub(r"(\.\d)\d+", r"\1", d[0]), drawn)
     short = re.sub(r">\s+<", "><", re.sub(r"\s+", " ", paths))
     named = short.replace("'", "&apos;").replace('"', "'")
     escaped = named.replace("%", "%25").replace("#", "%23").replace("&", "&amp;")
@@ -110,8 +112,9 @@ def ledger_rows():
 def fill_slots(macros, drawn, exercises):
     """What stands in each slot that a chapter may hold, as HTML by name."""
     slots = {"wallclock": macros.wallclock(ledger_rows()), "figure:lanes": macros.recall()}
+    slots["figure:grab"] = ""  # it stands at the top of the page
     for name, figure in drawn["figures"].items():
-        if name != "lanes":
+        if name not in ("lanes", "grab"):
             slots[f"figure:{name}"] = macros.figure(name, figure)
     for name, exercise in exercises.items():
         slots[f"exercise:{name}"] = macros.exercise(exercise)
@@ -231,7 +234,7 @@ def build(chapter=None, draft=False):
         early=Markup(early),
         script=Markup(script),
         heading=Markup(re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title)),
-        lanes=drawn["figures"].get("lanes"),
+        figures=drawn["figures"],
         contents=body.contents,
         body=Markup("\n".join(body.html)),
         objectives=[prose.inline(item) for item in load_meta()["objectives"]],

@@ -11,6 +11,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
+# comments on lines of their own, and the blanks before a line of code
+PLAIN = re.compile(r"^[ ]*//[^\n]*\n|^/\*.*?\*/\n|^[ ]+(?=[^ ])", re.M | re.S)
 EXPORT = re.compile(r"^export (const|function|class) ([\w$]+)", re.MULTILINE)
 
 
@@ -51,7 +53,7 @@ def module(path, text):
         names = match[1].replace(" as ", ": ")
         return f'const {{ {names} }} = modules["{target(path, match[2])}"];'
 
-    body = EXPORT.sub(r"\1 \2", IMPORT.sub(imported, text))
+    body = EXPORT.sub(r"\1 \2", IMPORT.sub(imported, PLAIN.sub("", text)))
     names = ", ".join(name for _, name in EXPORT.findall(text))
     if re.search(r"^(import|export)\b", body, re.MULTILINE):
         raise ValueError(f"curriculum/page/{path}: an import or export that is not on one line")

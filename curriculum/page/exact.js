@@ -11,6 +11,7 @@
 import { data } from "./data.js";
 
 const { TOUCH, SLOW, GRAZE, ORDER } = data.exact; // m, m/s, of g, terms: as in the Python files
+const REST = 1e-12; // m/s: a smaller speed is rounding
 export const MOST_EVENTS = 20000; // a page must answer: past this many events the run is cut short
 
 // ---- linear complementarity
@@ -161,7 +162,7 @@ function settle(s, pairs, restitution, log) {
     });
     speed = after;
   }
-  const rests = speed.map((v, k) => Math.abs(v) < SLOW);
+  const rests = speed.map((v) => Math.abs(v) < REST);
   near = near.filter((_, k) => rests[k]);
   contacts = contacts.filter((_, k) => rests[k]);
   const forces = hold(s, contacts);
@@ -179,7 +180,7 @@ function hold(s, contacts) {
   const slip = contacts.map((c) => (c.j === s.n ? 0 : along({ ...c, nx: -c.ny, ny: c.nx }, s.vx, s.vy)));
   const b = contacts.map((c, k) => along(c, ax, ay) + slip[k] ** 2 / (s.radius[c.i] + s.radius[c.j]));
   const lam = react(contacts, s.w, ax, ay, b);
-  const pushes = contacts.map((c, k) => lam[k] * (s.w[c.i] + s.w[c.j]) > GRAZE * s.gravity);
+  const pushes = contacts.map((c, k) => lam[k] * (s.w[c.i] + s.w[c.j]) > 2 * GRAZE * s.gravity); // twice: what just let go does not push
   const turns = contacts.map(
     (c, k) => c.j !== s.n && (slip[k] !== 0 || along({ ...c, nx: -c.ny, ny: c.nx }, ax, ay) !== 0),
   );

@@ -14,7 +14,7 @@ from pygments.lexers import PythonLexer
 
 from curriculum.text import regions
 
-LONG = 14  # lines of code
+LONG = 18  # lines of code
 BOOKKEEPING = {"setup", "scenes", "flight", "flags", "report", "files", "main", "quality", "stability"}
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
@@ -83,7 +83,6 @@ def panel(file, region):
         "last": region.line + region.code.count("\n") - 1,
         "sha256": region.sha,
         "pieces": pieces(region.code, region.name in BOOKKEEPING),
-        "source": region.code,
     }
 
 

@@ -56,15 +56,15 @@ export function clipped(id, x, y, width, height, ...children) {
 export function beside(view, id, options, picture, share = 0.4) {
   const left = Math.round(within(110, share * view.width, 250));
   const at = left + 16;
-  const chart = charted(view, at, { id, width: view.width - at, height: view.height, ...options });
+  const chart = charted(view, at, { id, ...options });
   const scene = clipped(`${id}-scene`, 0, 0, left, view.height, picture(left, chart));
   const markup = el("g", { transform: `translate(${at} 0)` }, options.under ? options.under(chart) : "", chart.markup);
   return { svg: scene + markup, x: (v) => at + chart.sx(v), y: chart.sy, middle: left / 2 };
 }
 
-// A chart that begins at `at`, and is kept for the drags.
+// A chart from `at` on, as large as the drawing; its scale is kept for the drags.
 export function charted(view, at, options) {
-  const chart = plot(options);
+  const chart = plot({ width: view.width - at, height: view.height, ...options });
   const { left, right } = chart.box;
   view.own.along = (x) => within(0, (x - at - left) / (right - left), 1);
   return chart;

@@ -50,8 +50,8 @@ export class Reader {
 
   // The last mark above the middle of the window says what is shown.
   follow(set = true) {
-    const above = this.marks.filter((mark) => mark.getBoundingClientRect().top < 0.55 * window.innerHeight);
-    const mark = above[above.length - 1] || this.marks[0];
+    const seen = this.marks.filter((mark) => mark.offsetParent); // not behind a veil
+    const mark = seen.findLast((each) => each.getBoundingClientRect().top < 0.55 * window.innerHeight) || seen[0];
     if (!mark || mark === this.shown) return;
     this.shown = mark;
     this.live.classList.toggle("back", mark.dataset.show === "none");
@@ -130,8 +130,7 @@ export class Reader {
 
   #copy(button) {
     if (!button) return;
-    const panel = button.closest(".code, .command");
-    const text = panel.querySelector("[data-source]").textContent;
+    const text = [...button.closest(".code").querySelectorAll("pre")].map((pre) => pre.textContent).join("\n\n");
     const said = document.getElementById("said");
     navigator.clipboard.writeText(text).then(
       () => (said.textContent = "Copied."),

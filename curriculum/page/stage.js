@@ -24,7 +24,8 @@
 import { escape, plain } from "./draw.js";
 import { fitting, fromSlider, shown, sliderRange, toSlider } from "./store.js";
 
-const NARROW = 480; // px
+const NARROW = 480; // px: from this width on a drawing is wide
+const NEAR = 600; // px beyond the window in which figures are drawn
 
 export const heightOf = (figure, width) => (width < NARROW && figure.narrow) || figure.height;
 export const namesOf = (figure) => [
@@ -164,9 +165,8 @@ export class Stage {
   #last = 0;
 
   constructor(box, name, figure, page) {
-    Object.assign(this, { box, name, figure, page, width: 0 });
+    Object.assign(this, { box, name, figure, page, width: 0, height: 0 });
     this.svg = box.querySelector(".drawing svg");
-    this.svg.innerHTML = "<g></g><g></g>";
     this.words = box.querySelector(".words");
     this.view = this.#makeView();
     listenDrag(this.svg, () => this.view, this.#hands());
@@ -174,6 +174,15 @@ export class Stage {
     this.buttons = (figure.buttons || []).map((button) => this.#button(button));
     page.store.on(namesOf(figure), this.redraw);
     new ResizeObserver(() => this.resize()).observe(this.svg.parentElement);
+    const seen = ([{ isIntersecting }]) => this.#sight(isIntersecting);
+    new IntersectionObserver(seen, { rootMargin: `${NEAR}px` }).observe(box);
+  }
+
+  // A figure far from the window keeps its picture and does not run; near it, it is drawn.
+  #sight(near) {
+    this.near = near;
+    if (near) this.redraw();
+    else this.#running = false;
   }
 
   #makeView() {
@@ -202,7 +211,7 @@ export class Stage {
         return stage.width;
       },
       get height() {
-        return heightOf(figure, stage.width);
+        return stage.height;
       },
     };
   }
@@ -244,15 +253,17 @@ export class Stage {
   }
 
   resize() {
-    this.width = Math.round(this.svg.parentElement.clientWidth);
-    this.draw();
+    const { clientWidth, clientHeight } = this.svg.parentElement;
+    Object.assign(this, { width: clientWidth, height: clientHeight }); // the style says how high
+    this.draw(); // at once: the picture may not lag behind its frame
   }
 
   redraw = () => (this.#pending ||= requestAnimationFrame(() => this.draw()));
 
   draw() {
     this.#pending = 0;
-    if (!this.width) return;
+    if (!this.width || !this.near) return;
+    if (!this.svg.querySelector(":scope > .made")) this.svg.innerHTML = '<g class="made"></g><g></g>';
     const made = this.figure.draw(this.view);
     const [layer, handles] = this.svg.children;
     this.svg.setAttribute("viewBox", `0 0 ${this.width} ${this.view.height}`);
@@ -260,7 +271,6 @@ export class Stage {
     showHandles(handles, made.handles || []);
     for (const show of this.buttons) show();
     if (made.lit) this.page.light(this.name, made.lit);
-    if (this.#running) return;
     this.svg.setAttribute("aria-label", `${this.figure.title}. ${made.words || ""}`);
     if (this.words.textContent !== made.words) this.words.textContent = made.words || "";
   }

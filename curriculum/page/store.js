@@ -13,6 +13,7 @@ export const QUANTITIES = {
   damping: { low: 0, high: 300, step: 1, digits: 3, unit: "N s/m", label: "Damping c" },
   baumgarte: { low: 0, high: 1, step: 0.01, digits: 2, unit: "", label: "Baumgarte β" },
   iters: { low: 1, high: 100, step: 1, whole: true, digits: 3, unit: "", label: "Sweeps" },
+  warm: { low: 0, high: 1, step: 0.05, digits: 2, unit: "", label: "Warm start" },
   restitution: { low: 0, high: 1, step: 0.01, digits: 2, unit: "", label: "Restitution e" },
   impedance: { low: 0.5, high: 0.9999, near: 1, digits: 5, unit: "", label: "Impedance d" },
   timeconst: { low: 0.002, high: 0.5, log: true, digits: 3, unit: "s", label: "Time constant" },
@@ -167,11 +168,11 @@ export class Store {
 // ---- what the engine wants
 
 export function knobsOf(values) {
-  const { dt, stiffness, damping, restitution, iters, baumgarte, impedance: d, timeconst, dampratio } = values;
+  const { dt, stiffness, damping, restitution, iters, baumgarte, warm, impedance: d, timeconst, dampratio } = values;
   const solimp = d === null ? undefined : [Number((2 * d - 1).toFixed(12)), d, 0.001, 0.5, 2];
   const set = timeconst !== null || dampratio !== null;
   const solref = set ? [shown(values, "timeconst"), shown(values, "dampratio")] : undefined;
-  return { dt, stiffness, damping, restitution, iters, baumgarte, solref, solimp };
+  return { dt, stiffness, damping, restitution, iters, baumgarte, warm, solref, solimp };
 }
 
 export function sceneOf(values) {

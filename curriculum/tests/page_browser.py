@@ -1,33 +1,36 @@
-"""A real browser for the page's tests: Debian's Chromium, driven by Playwright, offline."""
+"""Real browsers for the page's tests, offline: Debian's Chromium and Firefox. Without them tests fail."""
 
 import contextlib
-import functools
+import json
+import re
+import shutil
+import subprocess
+import tempfile
 from pathlib import Path
-
-import pytest
 
 from curriculum.page.browser import CHROMIUM, FLAGS
 
-needs_chromium = pytest.mark.skipif(
-    CHROMIUM is None, reason="no Chromium here: apt-get install chromium"
-)
 SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
   localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
-
-
-@functools.cache
-def small_page():
-    """The page of a short chapter that holds every kind of slot, link and number; built once."""
-    from curriculum.page.build import build
-
-    return build(chapter=Path(__file__).with_name("page_chapter.md").read_text("utf-8"))
+QUIET = {  # of Firefox: no request of its own
+    "remote.active-protocols": 1,
+    "datareporting.policy.dataSubmissionEnabled": False,
+    "app.update.enabled": False,
+    "app.normandy.enabled": False,
+    "browser.aboutwelcome.enabled": False,
+    "network.captive-portal-service.enabled": False,
+    "network.connectivity-service.enabled": False,
+    "ui.prefersReducedMotion": 1,
+}
+WAIT = 60  # s: longer than a busy machine needs for any command
 
 
 @contextlib.contextmanager
 def running():
-    """A browser, closed at the end."""
+    """A Chromium, closed at the end."""
     from playwright.sync_api import sync_playwright
 
+    assert CHROMIUM, "no Chromium here: apt-get install chromium"
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
         yield browser
@@ -36,15 +39,7 @@ def running():
 
 @contextlib.contextmanager
 def visiting(
-    browser,
-    url,
-    width=1280,
-    height=900,
-    query="",
-    motion="reduce",
-    javascript=True,
-    shown=True,
-    **options,
+    browser, url, width=1280, height=900, motion="reduce", javascript=True, shown=True, **options
 ):
     """A fresh profile on the page. Fails if the page complains, throws, or asks for anything but itself.
 
@@ -59,26 +54,86 @@ def visiting(
     if shown:
         context.add_init_script(f"if (!sessionStorage.seen) {{ sessionStorage.seen = 1; {SHOWN} }}")
     page = context.new_page()
-    page.set_default_timeout(10_000)
-    trouble = []
-    page.on(
-        "console",
-        lambda message: (
+    page.set_default_timeout(20_000)
+    trouble, own = [], ("data:", "blob:", url)
+
+    def listen(message):
+        if message.type in ("error", "warning"):
             trouble.append(f"console: {message.text}")
-            if message.type in ("error", "warning")
-            else None
-        ),
-    )
+
+    page.on("console", listen)
     page.on("pageerror", lambda error: trouble.append(f"error: {error}"))
-    page.on(
-        "request",
-        lambda request: (
-            trouble.append(f"request: {request.url[:100]}")
-            if not request.url.startswith(("data:", url))
-            else None
-        ),
-    )
-    page.goto(url + query)
+    page.on("request", lambda asked: asked.url.startswith(own) or trouble.append(asked.url[:100]))
+    page.goto(url)
+    if javascript:
+        page.wait_for_selector("[data-ready]", state="attached")
     yield page
     context.close()
     assert not trouble, trouble
+
+
+class Tab:
+    """One tab of a running Firefox, over WebDriver BiDi: no driver program is needed."""
+
+    def __init__(self, socket):
+        self.socket, self.last, self.trouble = socket, 0, []
+        self.call("session.new", capabilities={})
+        self.call("session.subscribe", events=["log.entryAdded"])
+        self.context = self.call("browsingContext.create", type="tab")["context"]
+
+    def call(self, method, **params):
+        """A command's result; what the page logs meanwhile is kept."""
+        self.last += 1
+        self.socket.send(json.dumps({"id": self.last, "method": method, "params": params}))
+        while True:
+            answer = json.loads(self.socket.recv(timeout=WAIT))
+            if answer.get("method") == "log.entryAdded":
+                entry = answer["params"]
+                if entry["level"] in ("error", "warn"):
+                    self.trouble.append(entry["text"])
+            elif answer.get("id") == self.last:
+                assert answer["type"] != "error", f"{method}: {answer.get('message')}"
+                return answer["result"]
+
+    def visit(self, url, width=1280, height=800):
+        size = {"width": width, "height": height}
+        self.call("browsingContext.setViewport", context=self.context, viewport=size)
+        self.call("browsingContext.navigate", context=self.context, url=url, wait="complete")
+
+    def evaluate(self, script):
+        """The value of a JavaScript expression, as JSON carries it."""
+        told = f"Promise.resolve({script}).then((value) => JSON.stringify(value))"
+        target = {"context": self.context}
+        answer = self.call("script.evaluate", expression=told, target=target, awaitPromise=True)
+        assert answer["type"] != "exception", answer.get("exceptionDetails", {}).get("text")
+        return json.loads(answer["result"]["value"]) if "value" in answer["result"] else None
+
+    def press(self, *keys):
+        """Press and release keys, one after the other."""
+        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+        source = {"type": "key", "id": "keyboard", "actions": actions}
+        self.call("input.performActions", context=self.context, actions=[source])
+
+
+@contextlib.contextmanager
+def firefox():
+    """A tab of a Firefox with a fresh profile."""
+    from websockets.sync.client import connect
+
+    program = next((path for path in map(shutil.which, ("firefox-esr", "firefox")) if path), None)
+    assert program, "no Firefox here: apt-get install firefox-esr"
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        lines = [f"user_pref({json.dumps(k)}, {json.dumps(v)});" for k, v in QUIET.items()]
+        Path(profile, "user.js").write_text("\n".join(lines), encoding="utf-8")
+        command = [program, "--headless", "--no-remote", "--profile", profile]
+        command += ["--remote-debugging-port", "0"]
+        pipes = {"stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL, "text": True}
+        process = subprocess.Popen(command, **pipes)
+        try:
+            found = (re.search(r"ws://[\d.:]+", line) for line in process.stderr)
+            with connect(f"{next(filter(None, found))[0]}/session", max_size=None) as socket:
+                yield Tab(socket)
+        finally:
+            process.terminate()
+            process.wait(WAIT)
+            process.stderr.close()

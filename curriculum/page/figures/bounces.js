@@ -18,8 +18,6 @@ function draw(view) {
   const { t, y } = run(e, until);
   const { markup, sx, sy, box } = charted(view, 0, {
     id: "bounces",
-    width: view.width,
-    height: view.height,
     x: { domain: [0, until], ticks: steps(0, until, 5), label: "time (s)" },
     y: axis([0, 1.15], "height (m)", 0, 0.5, 1),
     lines: [{ model: "exact", xs: t, ys: Array.from(y) }],

@@ -47,7 +47,6 @@ function chartOf(view, dt, gained) {
   const tens = [[1e-3, "0.001"], [1, "1"], [1e3, "1000"], [1e6, "10⁶"]];
   return charted(view, 0, {
     id: "cliff",
-    width: view.width,
     height: view.height - COURSE,
     left: 64,
     x: { ...axis([low, high], "time step dt (ms)", ...[1, 2, 4, 8, 16].map((k) => [k * low, String(tidy(1000 * k * low))])), log: true },

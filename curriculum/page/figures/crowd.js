@@ -18,8 +18,8 @@ export const struck = kept((speeds, repair) => {
 export const energy = (speeds) => speeds.reduce((sum, v) => sum + 0.5 * v * v, 0);
 
 const layout = (view) => {
-  const r = Math.min(26, view.width / 17);
-  const bars = view.width - Math.min(150, view.width * 0.27);
+  const r = Math.min(26, view.width / 13);
+  const bars = view.width - Math.min(150, 0.25 * view.width);
   return { r, x: (bars - 16) / 2 - 2 * r, bars, speed: Math.min(30, view.width / 20), rows: [92, 216, 340] };
 };
 const tip = ({ r, x, speed }, i, v) => x + 2 * r * i + speed * v;

@@ -29,7 +29,7 @@ function draw(view) {
   const { t, gaps, push, domain } = of(view);
   const row = rowOf(timeOf(view));
   const chart = {
-    x: { domain: [FROM, TO], ticks: steps(FROM, TO, 4), label: "time (s)" },
+    x: { domain: [FROM, TO], ticks: steps(FROM, TO, view.width < 480 ? 2 : 4), label: "time (s)" },
     y: { domain, ticks: steps(...domain, 5), label: "gap / r" },
     lines: [{ model: "penalty", xs: t, ys: gaps, from: rowOf(FROM), to: rowOf(TO) + 1 }],
     rules: [{ y: 0 }],

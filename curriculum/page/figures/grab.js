@@ -11,7 +11,7 @@ const LONG = 12; // s that are computed at once
 const WALL = 1e4; // m: the radius of the two held balls that serve as walls
 const GROUND = 46; // px of table below its top
 
-const scaleOf = (view) => (view.height - GROUND) / 1.3; // px for a metre
+const scaleOf = (view) => (view.height - GROUND) / 0.8; // px for a metre
 const wide = (view) => view.width / scaleOf(view); // m
 const held = (view, [x, y]) => [
   Math.min(wide(view) - R, Math.max(R, x)),
@@ -52,14 +52,14 @@ function seek(view, time) {
 export const figure = {
   title: "A ball over a table",
   caption: "Grab the ball: lift it, drop it, throw it.",
-  height: 420,
+  height: 480,
   narrow: 340,
   start: () => ({ place: null, velocity: [0, 0], run: null, time: 0, trail: [] }),
   buttons: [
     {
-      label: "Drop it from a metre",
+      label: "Drop it",
       press(view) {
-        view.own.place = [0.5 * wide(view), 1];
+        view.own.place = [0.5 * wide(view), 0.68];
         release(view, [0, 0]);
       },
     },
@@ -67,13 +67,13 @@ export const figure = {
   draw(view) {
     const { own } = view;
     const scale = scaleOf(view);
-    own.place = held(view, own.place || [0.5 * wide(view), 0.72]);
+    own.place = held(view, own.place || [0.5 * wide(view), 0.5]);
     const [x, y] = [own.place[0] * scale, view.height - GROUND - own.place[1] * scale];
     const gap = own.place[1] - R;
     const rests = own.run && gap < 1e-9 && Math.abs(own.velocity[1]) < 1e-9;
-    const push = rests ? arrow("push m-exact", x, view.height - GROUND, 0, -46, "push") : "";
+    const push = rests ? arrow("push m-exact", x, view.height - GROUND, 0, -70, "push") : "";
     const shadow = el("ellipse", { cx: x, cy: view.height - GROUND + 6, rx: R * scale * (1 - 0.4 * Math.min(1, gap)), ry: 5, class: "shadow" });
-    const weight = arrow("weight", x, y, 0, 46, "weight");
+    const weight = arrow("weight", x, y, 0, 70, "weight");
     return {
       svg: table(0, view.height - GROUND, view.width, GROUND) + shadow + ball("exact", x, y, R * scale) + weight + push,
       words: rests

@@ -13,7 +13,7 @@ function chartOf(solimp, share) {
   const pad = 0.25 * (d1 - d0) + 1e-4;
   const shown = d1 - d0 > 1e-3 ? [d0, (d0 + d1) / 2, d1] : [d1];
   return {
-    x: axis([0, MOST], "depth / width", 0, 0.5, 1, 1.5),
+    x: axis([0, MOST], "depth / width", 0, 0.5, 1),
     y: axis([d0 - pad, d1 + pad], "impedance d", ...shown.map((d) => [d, d.toFixed(d1 > 0.99 ? 4 : 3)])),
     lines: [{ model: "soft", xs, ys: xs.map(at) }],
     points: [{ model: "soft", x: share, y: at(share), size: 8 }],
@@ -31,7 +31,7 @@ function draw(view) {
     table(0, floor, left, 70) +
     ball("soft", left / 2, floor + (depth / R) * PX - PX, PX, "ball plainly") +
     arrow("push m-soft", left / 2, floor - 12, 0, -110 * d) +
-    label(`${number(100 * d, digits)} %`, left / 2 + 12, floor - 90);
+    label(`${number(100 * d, digits)} %`, left / 2, floor - 20 - 110 * d, "middle");
   const { svg, x, y } = beside(view, "impedance", chartOf(solimp, share), picture);
   const text = `${number(1000 * depth, 2)} mm deep, d = ${number(d, digits)}`;
   const all = "of the acceleration that a hard contact would give it gives";

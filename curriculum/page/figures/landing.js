@@ -41,7 +41,7 @@ function draw(view) {
   const { t, gaps, deepest, hop } = of(view);
   const most = Math.max((view.get("baumgarte") * ARRIVES) ** 2 / (2 * G * R), 0.05);
   const chart = {
-    x: { domain: [0, SECONDS], ticks: steps(0, SECONDS, 3), label: "time (s)" },
+    x: { domain: [0, SECONDS], ticks: steps(0, SECONDS, view.width < 480 ? 2 : 3), label: "time (s)" },
     y: { domain: [-1.2 * ((ARRIVES * view.get("dt")) / R), 1.15 * most], ticks: steps(0, 1.15 * most, 3), label: "gap / r" },
     lines: [{ model: "lcp", xs: t, ys: gaps }],
     rules: [{ y: 0 }],

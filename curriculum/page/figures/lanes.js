@@ -9,11 +9,11 @@ const R = data.radius;
 const LONGEST = 4; // s
 const SECONDS = 5; // that a run through the window takes
 const GROUND = 26; // px
-const CHART = 170; // px
+const chartHeight = (view) => Math.min(180, Math.round(0.42 * view.height)); // px
 // which quantities change a model's run
 const USES = {
   penalty: ["dt", "stiffness", "damping"],
-  lcp: ["dt", "baumgarte", "iters", "restitution"],
+  lcp: ["dt", "baumgarte", "iters", "warm", "restitution"],
   soft: ["dt", "restitution", "impedance", "timeconst", "dampratio"],
   exact: ["dt", "restitution"],
 };
@@ -86,13 +86,14 @@ const placeWords = (gap) =>
 function lane(view, each, k, high) {
   const wide = view.width / view.own.models.length;
   const x = wide * (k + 0.5);
-  const floor = view.height - CHART - 66;
+  const floor = view.height - chartHeight(view) - 66;
   const scale = Math.min((floor - 8) / high, (0.4 * wide) / R);
   const { run, row, model } = each;
   const parts = [];
   for (let i = 0; i < run.n; i++) {
     const y = floor - run.y[row * run.n + i] * scale;
-    if (y > -R * scale && y < floor + 2 * R * scale) parts.push(ball(model, x, y, R * scale));
+    if (y < -R * scale) parts.push(words("↑", { x, y: 20, class: "tick strong", "text-anchor": "middle" }));
+    else if (y < floor + 2 * R * scale) parts.push(ball(model, x, y, R * scale));
   }
   const push = Math.min(40, 14 * Math.sqrt(Math.max(each.push[row], 0)));
   if (push > 1 && row > 0) parts.push(arrow(`push m-${model}`, x, floor + GROUND - 4, 0, -push));
@@ -164,7 +165,7 @@ function chart(view, shown) {
   return plot({
     id: "lanes-chart",
     width: view.width,
-    height: CHART,
+    height: chartHeight(view),
     left: 52,
     x: { domain: [from, to], ticks: steps(from, to, view.width < 420 ? 4 : 6), label: "time (s)" },
     y: { ...axis(range(view, shown)), label },
@@ -183,9 +184,8 @@ const timeAt = (view, x) => {
 export const figure = {
   title: "Four models, one table",
   height: 560,
-  narrow: 400,
-  knobs: ["dt", "stiffness", "damping", "baumgarte", "iters", "impedance", "restitution"],
-  uses: ["scene", "seed", "timeconst", "dampratio"],
+  knobs: ["dt", "stiffness", "damping", "baumgarte", "iters", "warm", "impedance", "timeconst", "restitution"],
+  uses: ["scene", "seed", "dampratio"],
   start: () => ({ models: MODELS, chart: "gap", from: 0.3, to: 1.2, time: 0.3 }),
   buttons: [
     {
@@ -197,6 +197,7 @@ export const figure = {
         else view.run();
       },
     },
+    { label: "More", press: (view) => view.box.classList.toggle("all") },
     {
       label: (view) => ({ drop: "A bounce instead", bounce: "A stack instead", stack: "A drop instead" })[view.values.scene],
       press: (view) => view.set({ scene: { drop: "bounce", bounce: "stack", stack: "drop" }[view.values.scene] }),
@@ -205,7 +206,6 @@ export const figure = {
       label: (view) => `Show ${{ gap: "push", push: "energy", energy: "gap" }[view.own.chart]}`,
       press: (view) => (view.own.chart = { gap: "push", push: "energy", energy: "gap" }[view.own.chart]),
     },
-    { label: "All knobs", press: (view) => view.box.classList.toggle("all") },
   ],
   // What the text asks to see: {models, chart, from, to} as an address has them.
   look(view, { models, chart: kind, from, to }, anew) {
@@ -223,7 +223,7 @@ export const figure = {
   draw(view) {
     const shown = shownOf(view);
     const high = reach(view, shown);
-    const floor = view.height - CHART - 66;
+    const floor = view.height - chartHeight(view) - 66;
     const drawn = chart(view, shown);
     const said = shown.map((each) => `${each.model} ${each.waits ? "waits for your bet" : placeWords(each.gap[each.row])}`);
     const x = drawn.sx(view.own.time);
@@ -231,9 +231,9 @@ export const figure = {
     return {
       svg:
         shown.map((each, k) => lane(view, each, k, high)).join("").replace(/^/, table(0, floor, view.width, GROUND)) +
-        `<g transform="translate(0 ${view.height - CHART})">${drawn.markup}</g>`,
+        `<g transform="translate(0 ${view.height - chartHeight(view)})">${drawn.markup}</g>`,
       words: `${time}: ${said.join(", ")}.`,
-      handles: [{ name: "time", x, y: view.height - CHART + drawn.box.top + 6, r: 14, label: "the time shown", value: view.own.time, text: time }],
+      handles: [{ name: "time", x, y: view.height - chartHeight(view) + drawn.box.bottom, r: 14, label: "the time shown", value: view.own.time, text: time }],
       lit: view.running() ? shown.filter((each) => each.push[each.row] > 0).map((each) => LINES[each.model]) : [],
     };
   },

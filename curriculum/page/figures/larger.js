@@ -33,7 +33,7 @@ function picture(view, left, { bounce, bias }) {
   const wide = left > 150 ? PX + 14 : 0.36 * left;
   const arrows = [["bounce", bounce, x - wide], ["bias", bias, x + wide]].map(([name, v, at]) => {
     const kind = v < Math.max(bounce, bias) ? "push m-lcp weaker" : "push m-lcp";
-    return arrow(kind, at, floor, 0, speed(v)) + label(name, at, floor + 18, "middle");
+    return arrow(kind, at, floor, 0, speed(v)) + label(name, within(26, at, left - 20), floor + 18, "middle");
   });
   return table(0, floor, left, 46) + ball("lcp", x, y, PX) + arrows.join("");
 }

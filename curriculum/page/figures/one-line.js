@@ -31,6 +31,7 @@ function rests(way, knobs) {
     solveContacts(rows, state.vx, state.vy, { iters: 1 });
     state.y[0] += knobs.dt * state.vy[0];
     if (asked.length) last = asked[0];
+    if (asked.length && Math.abs(state.vy[0]) < 1e-9) break; // m/s
   }
   return { ...last, depth: 1 - state.y[0] / R };
 }
@@ -54,8 +55,6 @@ function chartOf(view) {
   const tens = [[0, "0"], [1e-5, "10⁻⁵"], [1e-3, "0.001"], [0.1, "0.1"]];
   return charted(view, 0, {
     id: "one-line",
-    width: view.width,
-    height: view.height,
     x: { ...axis([LOW, HIGH], "R m g dt (m/s)", ...tens), log: true, zero: true },
     y: { ...axis([LOW, HIGH], "target at rest (m/s)", ...tens), log: true, zero: true },
     lines: [{ model: "fixed", xs: [0, LOW, HIGH], ys: [0, LOW, HIGH], class: "plainly" }],
@@ -73,7 +72,7 @@ function draw(view) {
   const names = all.map(([name, , rest], k) => {
     const [x, y] = at(rest);
     if (k < 2 && x > 150) return label(name, x - 18, y - 6, "end");
-    return label(name, Math.min(x + 12, view.width - 7.6 * name.length), y + 20);
+    return label(name, Math.min(x + 12, view.width - 8.2 * name.length), y + 20);
   });
   const [spring, mujoco] = all.map(([, , rest]) => at(rest));
   const [k, d] = [view.get("stiffness"), view.get("impedance")];

@@ -31,7 +31,7 @@ function places({ own, height }, left) {
   const floor = height - 24;
   const r = Math.min(18, (floor - 30) / (2 * own.count));
   const big = 15 * (1 + 0.25 * Math.log10(own.ratio));
-  return { floor, top: [Math.min(46, left / 3), floor - (2 * own.count - 1) * r, r], heavy: [left - 40, floor - 30 - big, big] };
+  return { floor, top: [Math.min(46, 0.21 * left), floor - (2 * own.count - 1) * r, r], heavy: [left - 40, floor - 30 - big, big] };
 }
 
 function picture(view, left) {
@@ -55,13 +55,13 @@ function draw(view) {
   const [tall, heavy] = [sweepsOf(count, 1), sweepsOf(2, ratio)];
   const chart = {
     x: { ...axis([1, 1000], "balls, or mass ratio", 1, 10, 100), log: true },
-    y: { ...axis([10, 20000], "sweeps to a millionth", 10, 100, 1000, [10000, "10⁴"]), log: true },
+    y: { ...axis([10, 20000], "sweeps", 10, 100, 1000, [10000, "10⁴"]), log: true },
     lines: [
       { model: "lcp", xs: HEIGHTS, ys: heights, markers: [0, 1, 2, 3, 4] },
       { model: "lcp", xs: RATIOS, ys: ratios, class: "dotted", markers: [0, 1, 2, 3] },
     ],
     points: [[count, tall], [ratio, heavy]].map(([x, y]) => ({ model: "lcp", x, y, size: 8 })),
-    under: ({ sx, sy }) => label("height", sx(13), sy(1400), "end") + label("mass ratio", sx(900), sy(350), "end"),
+    under: ({ sx, sy }) => label("height", sx(13), sy(1400), "end") + label("mass ratio", sx(950), sy(150), "end"),
   };
   const { svg, middle } = beside(view, "rate", chart, (left) => picture(view, left), 0.36);
   const at = places(view, 2 * middle);

@@ -1,7 +1,7 @@
 /* A stack on springs: the lowest contact carries all. Lift a ball and those above it come along. */
 import { arrow, ball, number, table } from "../draw.js";
 import { runModel } from "../engine.js";
-import { clock, enlarged, forceLength, G, handle, kept, label, lens, plural, R, scene, tidy, within } from "../parts.js";
+import { clipped, clock, enlarged, forceLength, G, handle, kept, label, lens, plural, R, scene, tidy, within } from "../parts.js";
 
 const [COUNT, PX, DT, SECONDS] = [3, 34, 0.0005, 1.2];
 const ABOVE = 1.6; // r: how high a ball can be lifted
@@ -48,16 +48,17 @@ function draw(view) {
   });
   const balls = heights.map((height) => ball("penalty", x, at(height), PX));
   const look = { depth: depths[0], r: PX, times: enlarged(depths[0], PX), size: 44 };
-  const near = lens("stack-lens", "penalty", Math.min(view.width - 50, x + 230), floor - 90, look);
+  const seen = look.times > 2 && look.depth > 0; // a deeper one is seen without a lens
+  const near = seen ? lens("stack-lens", "penalty", Math.min(view.width - 50, x + 230), floor - 90, look) : "";
   const open = depths.findIndex((depth) => depth < 0);
   const carried = plural(open < 0 ? COUNT : open, "ball");
   const bottom = `the lowest contact ${depths[0] < 0 ? "is open" : `is ${number(depths[0])} r deep`}`;
   const { from, lift: lifted } = view.own;
   return {
-    svg: table(0, floor, view.width, 40) + balls.join("") + pushes.join("") + near,
+    svg: clipped("stack-scene", 0, 0, view.width, view.height, table(0, floor, view.width, 40), ...balls, ...pushes, near),
     words: `It carries ${carried}: ${bottom}, m g / k is ${number(G / k / R)} r.`,
     handles: heights.map((height, i) =>
-      handle(String(i), x, at(height), PX, `ball ${i + 1} from below: lift it`, i === from ? lifted : 0, `${bottom}, ${number(forces[0], 2)} m g`),
+      handle(String(i), x, Math.min(at(height), view.height - 20), PX, `ball ${i + 1} from below: lift it`, i === from ? lifted : 0, `${bottom}, ${number(forces[0], 2)} m g`),
     ),
   };
 }

@@ -4,7 +4,7 @@ import { ball, number, round, table, words } from "../draw.js";
 import { pushOfTable, runModel, series } from "../engine.js";
 import { knobsOf, sceneOf, startOf } from "../store.js";
 
-const MODELS = ["lcp", "penalty"];
+const MODELS = ["penalty", "lcp"];
 const STEPS = 800; // 1.6 s, as in the exercise
 const SLOW = 6; // times slower than it happens
 const GROUND = 54;
