@@ -110,7 +110,7 @@ def main(argv=None):
     for (name, _), result in zip(todo, found):
         results[name].append(result)
     command = " ".join(["python -m curriculum.stress", *(sys.argv[1:] if argv is None else argv)])
-    return show(report.write(results, command, args.quick))
+    return show(report.write(results, command, report.QUICK if args.quick else report.RESULTS))
 
 
 if __name__ == "__main__":

@@ -16,9 +16,8 @@ OTHERS = {
 }
 
 
-def write(found, command, quick):
+def write(found, command, folder):
     """Write what the jobs of each section found. Returns the violations [place, name, words]."""
-    folder = QUICK if quick else RESULTS
     sections = {name: jobs.added_up(found[name]) for name in ("scenes", "small")}
     sections |= {name: judged(found[name]) for name in OTHERS}
     for row in found["maps"]:

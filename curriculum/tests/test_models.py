@@ -1,0 +1,516 @@
+"""What the four models promise: published figures, formulas, properties on any scene, the engine.
+
+The properties are those that the stress test judges on ten thousand scenes; here hypothesis draws
+the scenes, and shrinks one that fails to the simplest.
+"""
+
+import math
+from decimal import Decimal, getcontext
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import contact
+from contact import Ball, Contact, Settings, build_scene, contact_quality, run_model
+from curriculum.stress import exact_properties, mujoco_match, properties
+from curriculum.stress.claims import PROPERTIES, judge
+from curriculum.stress.trial import Trial
+
+assert properties and exact_properties  # they register what they state
+R, G, DT = contact.RADIUS, 9.81, 0.002
+STEPPED = ("penalty", "lcp", "soft")
+
+
+def quality(name, model, dt=DT, steps=2000, knobs=None, **scene):
+    """The measures of a run of a scene."""
+    made = build_scene(name, **scene)
+    return contact_quality(run_model(model, made, dt, steps, knobs or Settings()), made, dt)
+
+
+# --- the published figures -----------------------------------------------------------------------
+
+PUBLISHED = [  # scene, steps, dt, key, penalty, lcp: as they are printed
+    ("drop", 2000, DT, "max_penetration_frac", "0.251329183485", "0.056743325071"),
+    ("drop", 800, DT, "max_penetration_frac", "0.251329183485", "0.056743325071"),
+    ("drop", 2000, DT, "rest_penetration_frac", "0.00981", "0.0"),
+    ("drop", 2000, 0.03, "energy_excess", "1.409e+03", "0"),
+    ("bounce", 2000, DT, "energy_excess", "0.00576", "0"),
+    ("bounce", 2000, 0.005, "energy_excess", "0.148", "0"),
+    ("bounce", 2000, DT, "rest_jitter", "0.0557", None),
+    ("stack", 2000, DT, "max_penetration_frac", "0.059486", "5.0095e-06"),
+    ("stack", 2000, DT, "rest_penetration_frac", "0.02943", "4.1611e-06"),
+]
+
+
+@pytest.mark.parametrize("name, steps, dt, key, penalty, lcp", PUBLISHED)
+def test_published_figures_come_out_to_all_their_digits(name, steps, dt, key, penalty, lcp):
+    for model, printed in (("penalty", penalty), ("lcp", lcp)):
+        if printed is not None:
+            digits = len(printed.split("e")[0].replace("0.", "").lstrip("0").replace(".", ""))
+            got = quality(name, model, dt, steps)[key]
+            assert f"{got:.{max(digits, 1)}g}" == f"{float(printed):.{max(digits, 1)}g}", (
+                model,
+                got,
+            )
+
+
+@pytest.mark.parametrize("seed, depth", [(1, 0.022433), (2, 0.038544)])
+def test_published_depths_of_lcp_at_other_seeds(seed, depth):
+    assert round(quality("drop", "lcp", seed=seed)["max_penetration_frac"], 6) == depth
+
+
+@pytest.mark.parametrize("name, penalty", [("drop", 0.008), ("bounce", 0.016)])
+def test_largest_steps_without_an_explosion_are_the_published_ones(name, penalty):
+    scene = build_scene(name)
+
+    def run(model, dt):
+        return run_model(model, scene, dt, 2000)
+
+    first = {model: run(model, DT) for model in ("penalty", "lcp")}
+    grid = contact.measure_stability(run, scene, DT, 1e4, first)
+    assert (grid["penalty"], grid["lcp"]) == (penalty, 0.064)
+    assert round(grid["lcp_penetration_frac"], 1) == 2.2 or name == "bounce"
+    assert grid["lcp_through"] == "the floor", "deeper than its radius is not ok"
+
+
+# --- properties, on scenes that hypothesis draws -------------------------------------------------
+
+PLACES = st.integers(-16, 16).map(lambda k: k / 16)  # short numbers shrink well
+SPEEDS = st.one_of(st.just(0.0), st.integers(-8, 8).map(lambda k: k / 4), st.floats(-3.0, 3.0))
+
+
+@st.composite
+def specs(draw):
+    """A spec (see stress/scenes.py) of one to four balls, touching and overlapping included."""
+    count = draw(st.integers(1, 4))
+
+    def some(strategy):
+        return draw(st.lists(strategy, min_size=count, max_size=count))
+
+    radius = some(st.sampled_from([0.125, 0.1, 0.0625]))
+    lifts = some(st.one_of(st.just(0.0), st.integers(0, 16).map(lambda k: k / 16)))
+    knobs = {
+        "restitution": [0.0, 0.5, 1.0],
+        "damping": [0.0, 80.0],
+        "dt": [0.002, 0.001, 0.01, 1 / 64],
+        "steps": [5, 40],
+        "stiffness": [1e4, 100.0],
+        "baumgarte": [0.2, 0.0, 1.0],
+        "iters": [20, 1, 100],
+        "solref": [None, [0.02, 1.0]],
+    }
+    return {
+        "x": some(PLACES),
+        "y": [r + lift for r, lift in zip(radius, lifts)],
+        "vx": some(SPEEDS),
+        "vy": some(SPEEDS),
+        "mass": some(st.sampled_from([1.0, 0.25, 10.0, math.inf])),
+        "radius": radius,
+    } | {name: draw(st.sampled_from(values)) for name, values in knobs.items()}
+
+
+@settings(
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+@given(spec=specs())
+def test_every_property_holds_on_scenes_that_hypothesis_draws(spec):
+    still = [0.0 if math.isinf(mass) else 1.0 for mass in spec["mass"]]
+    spec |= {name: [v * s for v, s in zip(spec[name], still)] for name in ("vx", "vy")}
+    violations = {name: words for name, (_, _, words) in judge(Trial(spec)).items() if words}
+    assert not violations
+
+
+def test_a_property_that_is_not_met_is_a_violation_and_nothing_to_judge_is_not_counted():
+    spec = {"x": [0.0], "y": [9.0], "vx": [0.0], "vy": [0.0], "mass": [1.0], "radius": [R]}
+    spec |= {"restitution": 0.0, "damping": 0.0, "dt": DT, "steps": 5, "stiffness": 1e4}
+    flight = Trial(spec | {"baumgarte": 0.2, "iters": 20, "solref": None})
+    found = judge(flight)
+    assert found["springs_push_as_hooke_and_the_damper_say"] == [0, 0.0, None]
+    assert found["what_nothing_touches_falls"][0] > 0
+    flight.run("lcp").v[3, 1, 0] += 1e-9
+    flight.__dict__.pop("motions", None)
+    assert judge(flight, ["what_nothing_touches_falls"])["what_nothing_touches_falls"][2]
+
+
+# --- formulas ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mass, stiffness", [(1.0, 1e4), (0.1, 1e4), (10.0, 1e4), (1.0, 1e6)])
+def test_ball_at_rest_sinks_mg_over_k(mass, stiffness):
+    scene = build_scene("drop")._replace(
+        mass=np.array([mass]), damping=0.4 * (mass * stiffness) ** 0.5
+    )
+    run = run_model("penalty", scene, 0.0005, 8000, Settings(stiffness=stiffness))
+    assert R - run.q[-1, 1, 0] == pytest.approx(mass * G / stiffness, rel=1e-6)
+
+
+def depths_at_rest(model, mass, seconds=12.0):
+    """The depth [m] of each contact of a tower, from the table up, and the load [N] on it."""
+    scene = build_scene("stack", bodies=len(mass))._replace(mass=np.array(mass))
+    q = run_model(model, scene, DT, int(seconds / DT)).q[-1, 1]
+    load = G * np.cumsum(mass[::-1])[::-1]
+    return np.append(R - q[0], 2 * R - np.diff(q)), load
+
+
+def test_each_contact_of_a_resting_tower_sinks_by_the_weight_above_it_over_k():
+    depth, load = depths_at_rest("penalty", [1.0, 0.5, 2.0])
+    assert depth == pytest.approx(load / 1e4, rel=1e-6)
+
+
+def test_each_contact_of_a_resting_tower_of_soft_balances_spring_and_load():
+    """(1 - d) load (1/m_a + 1/m_b) = d^2 K depth: pairs and the table alike."""
+    mass = np.array([1.0, 0.5, 2.0])
+    depth, load = depths_at_rest("soft", mass.tolist())
+    inverse = 1.0 / mass + np.append(0.0, 1.0 / mass[:-1])
+    d = np.array([contact.impedance(float(each), contact.SOLIMP) for each in depth])
+    assert (1 - d) * load * inverse == pytest.approx(d * d * depth / (0.95 * 0.02) ** 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("mass", [0.1, 1.0, 10.0])
+def test_soft_rests_as_deep_whatever_the_mass(mass):
+    depth, _ = depths_at_rest("soft", [mass])
+    assert depth[0] / R == pytest.approx(3.6718184e-3, rel=1e-7)
+
+
+@pytest.mark.parametrize("stiffness", [1e2, 1e4, 1e6])
+@pytest.mark.parametrize("damping, count", [(0.0, 1), (80.0, 1), (0.0, 5), (80.0, 5)])
+def test_at_the_critical_dt_an_eigenvalue_of_the_step_leaves_the_unit_circle(
+    stiffness, damping, count
+):
+    """Of a stack kept in contact: v += dt (-k A x - c A v) / m, x += dt v, A its incidence matrix."""
+    A = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
+    A[-1, -1] = 1.0
+    critical = contact.critical_dt(1.0, stiffness, damping, count)
+    for dt, stable in ((0.999 * critical, True), (1.001 * critical, False)):
+        speed = np.hstack((-dt * stiffness * A, np.eye(count) - dt * damping * A))
+        step = np.vstack((np.hstack((np.eye(count), 0 * A)) + dt * speed, speed))
+        assert (np.abs(np.linalg.eigvals(step)).max() < 1.0 + 1e-9) == stable
+
+
+def test_the_damped_drop_settles_just_below_its_critical_dt_and_never_above():
+    assert contact.critical_dt(1.0, 1e4, 80.0) == pytest.approx(0.01354, abs=5e-6)
+    assert contact.critical_dt(1.0, 1e4, 0.0) == pytest.approx(0.02, rel=1e-14)
+    calm, restless = (quality("drop", "penalty", dt, 6000) for dt in (0.0135, 0.0140))
+    assert calm["rest_penetration_frac"] == pytest.approx(0.00981, rel=1e-6)
+    assert restless["rest_jitter"] > 1e-3
+
+
+def test_free_flight_lags_the_parabola_by_g_t_dt_over_2():
+    scene = build_scene("drop")
+    run = run_model("lcp", scene, DT, 200)
+    lag = scene.q0[1, 0] - 0.5 * G * run.t**2 - run.q[:, 1, 0]
+    assert lag == pytest.approx(0.5 * G * run.t * DT, abs=1e-12)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.3, 0.7, 0.9, 1.0])
+def test_exact_bounces_as_sixty_digits_say_flight_by_flight(e):
+    getcontext().prec = 60
+    scene = build_scene("bounce", restitution=e)
+    run = run_model("exact", scene, 0.0137, 290)
+    g, gap = Decimal(G), Decimal(float(scene.q0[1, 0])) - Decimal(R)
+    flights, start, speed = [], (2 * gap / g).sqrt(), (2 * gap * g).sqrt() * Decimal(e)
+    while speed > Decimal("1e-20") and start < 5:
+        flights.append((start, speed))
+        start, speed = start + 2 * speed / g, speed * Decimal(e)
+
+    def height(t):
+        if t < (2 * gap / g).sqrt():
+            return gap - g * t * t / 2
+        began, fast = max(((s, v) for s, v in flights if s <= t), default=(t, Decimal(0)))
+        return max(fast * (t - began) - g * (t - began) ** 2 / 2, Decimal(0))
+
+    want = [float(height(Decimal(float(t)))) for t in run.t]
+    assert np.abs(run.q[:, 1, 0] - R - want).max() < 2e-13
+
+
+def test_the_bounce_of_lcp_converges_at_first_order():
+    """Median over heights of the worst error in 4 s: half the step, about half the error."""
+    medians = []
+    for dt in (0.008, 0.004, 0.002, 0.001):
+        errors = []
+        for seed in range(9):
+            scene, steps = build_scene("bounce", seed), round(4 / dt)
+            truth = run_model("exact", scene, dt, steps)
+            errors.append(np.abs(run_model("lcp", scene, dt, steps).q - truth.q).max() / R)
+        medians.append(float(np.median(errors)))
+    assert medians == sorted(medians, reverse=True) and medians[2] < 0.08, "published: 2.71"
+    assert 0.8 < -np.polyfit([0, 1, 2, 3], np.log2(medians), 1)[0] < 1.3, medians
+
+
+@pytest.mark.parametrize("dt", [0.001, 0.002, 0.008])
+@pytest.mark.parametrize("baumgarte", [0.0, 0.2, 1.0])
+def test_a_bounce_of_lcp_ends_on_the_table_and_not_above_it(dt, baumgarte):
+    for seed in range(3):
+        row = quality("bounce", "lcp", dt, int(5 / dt), Settings(baumgarte=baumgarte), seed=seed)
+        assert abs(row["rest_gap_frac"]) < 1e-3 and row["energy_excess"] <= 0.0
+
+
+# --- the faults of the published script, gone ----------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "v_n, bias, target", [(-2.0, 1.0, 1.4), (-1.0, 1.0, 1.0), (-2.0, 0.0, 1.4), (2.0, 1.0, 1.0)]
+)
+def test_of_bounce_and_push_the_larger_counts_and_never_their_sum(v_n, bias, target):
+    c = Contact(Ball(0.0, 0.09, 0.0, v_n, 1.0, R), contact.FLOOR, 0.0, 1.0, 0.01)
+    assert contact.contact_target(c, 0.7, bias * DT / 0.01, DT) == pytest.approx(target)
+
+
+def test_across_a_gap_a_ball_may_come_as_close_as_touching_and_bounces_only_if_it_arrives():
+    ball = Ball(0.0, R + 5e-4, 0.0, -0.1, 1.0, R)
+    (c,) = contact.detect_contacts([ball])
+    assert contact.contact_target(c, 0.7, 0.2, DT) == pytest.approx(-5e-4 / DT)
+    ball.vy = -1.0
+    assert contact.contact_target(c, 0.7, 0.2, DT) == 0.7
+
+
+@given(gap=st.floats(-1e-2, 1e-3), v_n=st.floats(-10.0, 10.0), e=st.floats(0.01, 1.0))
+def test_without_a_gain_no_target_is_above_minus_e_v_n(gap, v_n, e):
+    c = Contact(Ball(0.0, R + gap, 0.0, v_n, 1.0, R), contact.FLOOR, 0.0, 1.0, -gap)
+    assert contact.contact_target(c, e, 0.0, DT) <= -e * v_n
+
+
+def test_the_hop_that_baumgartes_push_makes_is_reported():
+    """It leaves with L = beta depth / dt, which carries it L^2 / 2 g less the depth: 0.107 r."""
+    row = quality("drop", "lcp")
+    leaving = 0.2 * row["max_penetration_frac"] * R / DT
+    apex = leaving**2 / (2 * G) - row["max_penetration_frac"] * R
+    assert round(apex / R, 3) == 0.107 and row["energy_excess"] == 0.0
+    assert apex < row["rebound_frac"] * R < apex + leaving * DT / 2 + G * DT**2 / 8
+    assert quality("drop", "exact")["rebound_frac"] == 0.0
+
+
+def test_no_seed_starts_a_stack_or_pile_inside_the_floor():
+    for seed in range(50):
+        for scene in (build_scene("stack", seed), build_scene("pile", seed, 30)):
+            assert contact.smallest_gap(scene.q0[None], scene.radius)[0] > -1e-15
+
+
+def test_the_damper_resists_closing_and_never_pulls():
+    force = contact.penalty_normal_force
+    assert [force(0.01, v_n, 1e4, 80.0) for v_n in (-1.0, 0.0, 1.0, 2.0)] == [180, 100, 20, 0]
+
+
+@pytest.mark.parametrize("model", STEPPED)
+def test_balls_in_one_place_part(model):
+    one = np.ones(2)
+    scene = contact.Scene("one place", 0.3 * np.ones((2, 2)), np.zeros((2, 2)), one, R * one, 0, 80)
+    q = run_model(model, scene, DT, 2000).q[-1]
+    assert np.hypot(*(q[:, 0] - q[:, 1])) > 0.19
+
+
+@pytest.mark.parametrize("name", ["drop", "stack"])
+def test_penalty_goes_deeper_than_lcp_and_exact_never_overlaps_at_any_seed(name):
+    for seed in range(12):
+        rows = {m: quality(name, m, steps=800, seed=seed) for m in ("penalty", "lcp", "exact")}
+        for key in ("max_penetration_frac", "rest_penetration_frac"):
+            assert rows["penalty"][key] > rows["lcp"][key] >= rows["exact"][key] - 1e-12
+        assert rows["exact"]["contact_energy"] < 1e-12 and rows["exact"][key] < 1e-12
+
+
+# --- the sweep, and bodies that turn -------------------------------------------------------------
+
+
+def test_sweeps_end_where_corrections_are_below_the_tolerance():
+    """One ball on another shall leave the floor at 1 m/s: sweep k corrects by 2^(1-k) m/s."""
+
+    def solved(iters, tolerance):
+        low, high = (Ball(0.0, y, 0.0, 0.0, 1.0, R) for y in (0.1, 0.3))
+        ground, pair = Contact(low, contact.FLOOR, 0, 1, 0), Contact(high, low, 0, 1, 0)
+        ground.target = 1.0
+        return contact.solve_contacts([ground, pair], iters, tolerance), ground.lam, pair.lam
+
+    for sweeps in (1, 3, 10):
+        share = 1.0 - 2.0**-sweeps
+        assert solved(sweeps, 0.0) == (False, 2.0 * share, share)
+        assert solved(1000, 2.0 ** (1 - sweeps)) == (True, 2.0 * share, share)
+    assert solved(1000, 0.0) == (True, 2.0, 1.0)
+
+
+class Block(Ball):
+    """A body that turns, as the next chapters build it: `inertia` [kg m^2], `spin` [1/s]."""
+
+    def __init__(self, vx, vy, mass, inertia):
+        super().__init__(0.0, 0.1, vx, vy, mass, 0.0)
+        self.inertia, self.spin = inertia, 0.0
+
+
+class Corner(Contact):
+    """A block's corner on the floor, at (rx, ry) from the block's centre."""
+
+    def __init__(self, block, rx, ry):
+        super().__init__(block, contact.FLOOR, 0.0, 1.0, 0.0)
+        self.lever = rx * self.ny - ry * self.nx
+        self.m_eff = 1.0 / (block.inv_mass + self.lever * self.lever / block.inertia)
+
+    def v_n(self):
+        return super().v_n() + self.a.spin * self.lever
+
+    def push(self, impulse):
+        super().push(impulse)
+        self.a.spin += impulse * self.lever / self.a.inertia
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("rx", [-0.2, 0.0, 0.3])
+def test_a_corner_that_strikes_gets_the_impulse_of_the_closed_form(e, rx):
+    block = Block(0.4, -2.0, 1.5, 0.02)
+    corner = Corner(block, rx, -0.1)
+    corner.target = -e * corner.v_n()
+    contact.solve_contacts([corner], 5)
+    assert corner.lam == pytest.approx((1 + e) * 2.0 / (1 / 1.5 + rx * rx / 0.02), rel=1e-14)
+    assert (block.vx, block.spin) == (0.4, pytest.approx(rx * corner.lam / 0.02, rel=1e-14))
+
+
+def test_a_block_at_rest_shares_its_weight_between_its_corners_by_the_lever_rule():
+    block, a, b = Block(0.0, 0.0, 2.0, 0.03), 0.1, 0.3
+    corners = [Corner(block, -a, -0.1), Corner(block, b, -0.1)]
+    contact.accelerate([block], DT)
+    contact.solve_contacts(corners, 500)
+    shares = [2.0 * G * DT * arm / (a + b) for arm in (b, a)]
+    assert [c.lam for c in corners] == pytest.approx(shares, rel=1e-9)
+
+
+# --- soft ----------------------------------------------------------------------------------------
+
+
+def test_impedance_is_an_s_from_d0_to_d1():
+    solimp = (0.1, 0.9, 0.01, 0.3, 3.0)
+    values = [contact.impedance(depth, solimp) for depth in np.linspace(0.0, 0.01, 200)]
+    assert (values[0], values[-1]) == pytest.approx((0.1, 0.9)) and (np.diff(values) > 0).all()
+    assert np.diff(values).argmax() == pytest.approx(0.3 * 199, abs=2)
+    assert contact.impedance(0.001, (0.2, 0.8, 0.0, 0.5, 2.0)) == 0.5, "a width of 0 is the mean"
+
+
+def test_soft_takes_mujocos_bounds_and_the_direct_form_where_it_bounces():
+    assert contact.soft_defaults(0.0, 0.02)[0] == (0.04, 1.0), "no faster than two steps"
+    assert contact.soft_defaults(0.0, 0.02, (-5e3, -100.0))[0] == (-5e3, -100.0)
+    assert contact.soft_defaults(0.7, DT) == ((0.0, -1.7 / DT), contact.HARD)
+    clamped = contact.soft_defaults(0.0, DT, None, (0.0, 1.0, 0.01, 0.0, 2.0))[1]
+    assert clamped == (0.0001, 0.9999, 0.01, 0.0001, 2.0)
+
+
+def test_soft_becomes_lcp_as_d_goes_to_one():
+    scene = build_scene("drop")
+    hard = run_model("lcp", scene, DT, 400, Settings(baumgarte=0.0))
+    apart = []
+    for d in (0.9, 0.99, 0.999, 0.9999):
+        knobs = Settings(solref=(0.0, -d / DT), solimp=(d, d, 0.001, 0.5, 2.0))
+        apart.append(np.abs(run_model("soft", scene, DT, 400, knobs).q - hard.q).max() / R)
+    assert all(late < 0.15 * early for early, late in zip(apart, apart[1:])) and apart[-1] < 2e-4
+
+
+def test_sweeps_of_soft_that_do_not_settle_are_counted():
+    scene = build_scene("stack", bodies=2, restitution=0.5)._replace(mass=np.array([1.0, 1e6]))
+    scene.v0[1] = -1.0
+    run = run_model("soft", scene, DT, 20)
+    assert run.unsettled > 0
+    assert contact_quality(run, scene, DT)["unsettled_steps"] == run.unsettled
+    assert run_model("soft", build_scene("pile"), DT, 400).unsettled == 0
+
+
+@pytest.mark.parametrize("case", mujoco_match.cases(), ids=lambda c: f"{c.what} {c.dt:g}")
+def test_soft_is_mujoco_in_each_step_and_in_a_whole_run(case):
+    pytest.importorskip("mujoco", reason="mujoco is not installed: pip install mujoco")
+    off = mujoco_match.compare(case._replace(steps=min(case.steps, 300)))
+    assert off[0] <= mujoco_match.STEP_LIMIT[0] and off[1] <= mujoco_match.STEP_LIMIT[1]
+    assert off[2] <= mujoco_match.FREE_LIMIT
+
+
+# --- skips ---------------------------------------------------------------------------------------
+
+
+def same_bytes_both_ways(model, scene, dt, steps, **knobs):
+    """Whether the run with skips has the bytes of the run without."""
+    runs = [
+        run_model(model, scene, dt, steps, Settings(**knobs, skip=skip)) for skip in (True, False)
+    ]
+    return all(a.tobytes() == b.tobytes() for a, b in zip(runs[0][:3], runs[1][:3]))
+
+
+@pytest.mark.parametrize("name", ["drop", "bounce", "stack"])
+@pytest.mark.parametrize("model", STEPPED)
+def test_a_skip_never_changes_a_bit(name, model):
+    for dt in (1e-9, 1e-4, *(DT * factor for factor in contact.DT_GRID)):
+        assert same_bytes_both_ways(model, build_scene(name, 3), dt, 300), dt
+    for dt in (10.0, 1e154):
+        assert same_bytes_both_ways(model, build_scene(name, 3), dt, 9), dt
+    for knobs in ({"baumgarte": 1.0, "stiffness": 0.0, "iters": 1}, {"solref": (-1e4, -50.0)}):
+        assert same_bytes_both_ways(model, build_scene(name), DT, 400, **knobs), knobs
+    bouncing = build_scene("stack", 1, 4, restitution=0.3, damping=0.0)
+    assert same_bytes_both_ways(model, bouncing, DT, 300)
+
+
+@pytest.mark.parametrize("model", STEPPED)
+def test_a_flight_ends_at_a_contact_that_one_state_alone_shows(model):
+    """So fast that without the contact the balls would be past each other a step later."""
+    q0, v0 = np.array([[-2.0, 2.31], [50.0, 50.0]]), np.array([[150.0, -150.0], [0.0, 0.0]])
+    scene = contact.Scene("crossing", q0, v0, np.ones(2), R * np.ones(2), 0.5, 0.0)
+    assert same_bytes_both_ways(model, scene, DT, 40)
+    assert run_model(model, scene, DT, 40).v[-1, 0, 0] != 150.0, "they met"
+
+
+@pytest.mark.parametrize("period, start", [(1, 5), (2, 0), (3, 17), (30, 100)])
+def test_a_cycle_of_any_period_is_recognised_and_copied(period, start):
+    """A made-up step with a known answer: up by one until `start`, then round and round."""
+    calls = []
+
+    def step(balls):
+        k = int(balls[0].vx) + 1
+        balls[0].vx = float(k if k < start + period else start)
+        calls.append(k)
+
+    scene = build_scene("drop")._replace(q0=np.array([[0.0], [0.05]]))
+    run = contact.simulate(step, scene, DT, 500)
+    want = [k if k < start else start + (k - start) % period for k in range(501)]
+    assert run.v[:, 0, 0].tolist() == want and len(calls) <= start + period + 1
+
+
+# --- measures, on recordings made by hand --------------------------------------------------------
+
+
+def recording(heights, landing=1):
+    """A Run of one ball at these heights [m], in free fall to step `landing`, at rest from there."""
+    t = 0.01 * np.arange(len(heights))
+    q, v = np.zeros((2, len(heights), 2, 1))
+    q[:, 1, 0] = heights
+    v[:landing, 1, 0] = -G * t[:landing]
+    return contact.Run(t, q, v)
+
+
+def test_measures_of_recordings_made_by_hand():
+    scene = build_scene("drop")
+    row = contact_quality(recording([1.0, R, R + 0.05, R + 0.02, R - 0.03]), scene, 0.01)
+    assert row["rest_gap_frac"] == pytest.approx(-0.3) and row["rebound_frac"] == pytest.approx(0.5)
+    assert row["max_penetration_frac"] == row["rest_penetration_frac"] == pytest.approx(0.3)
+    rises = contact_quality(recording([1.0, 0.4, 0.5, 0.3, 0.35]), scene, 0.01)
+    assert rises["contact_energy"] == pytest.approx(0.15) and rises["energy_excess"] == 0.0
+    assert contact_quality(recording([1.0, -0.01]), scene, 0.01)["through"] == "the floor"
+
+
+def test_the_height_error_is_split_at_the_first_contact_of_either_run():
+    truth = recording([1.0, 0.62, R, R, R], landing=2)
+    row = contact_quality(recording([1.0, 0.6, 0.5, R, R], 4), build_scene("drop"), 0.01, truth)
+    assert row["flight_error_frac"] == pytest.approx(0.2)
+    assert row["contact_error_frac"] == pytest.approx(4.0 - 0.2)
+
+
+def test_a_run_explodes_when_it_gains_ten_times_its_start_also_from_below_zero():
+    assert contact.blow_up_step(np.array([2.0, np.nextafter(22.0, 0.0), 22.0])) == 2
+    assert contact.blow_up_step(np.array([-2.0, 17.9, 18.0])) == 2
+    assert contact.blow_up_step(np.array([2.0, 21.9])) is None
+    assert contact.blow_up_step(np.array([2.0, math.nan])) == 1
+
+
+def test_the_smallest_gap_is_that_of_the_closest_pair_or_of_the_floor():
+    q, radius = np.random.default_rng(1).uniform(0.0, 2.0, (20, 2, 7)), 0.1 * np.ones(7)
+    for state, gap in zip(q, contact.smallest_gap(q, radius)):
+        balls = [Ball(*xy, 0.0, 0.0, 1.0, 0.1) for xy in state.T.tolist()]
+        depths = [c.depth for c in contact.detect_contacts(balls, margin=9.0)]
+        assert gap == pytest.approx(-max(depths), abs=1e-15)

@@ -1,0 +1,189 @@
+"""The stress test sees every fault that is put in, sees none where there is none, and counts."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from curriculum.stress import __main__ as command
+from curriculum.stress import extremes, jobs, maps, scenes
+from curriculum.stress.claims import PROPERTIES
+
+ROOT = Path(__file__).resolve().parents[2]
+PAIRS = "(1.0 if c.b is FLOOR else {})"
+FORCE = "f_n = penalty_normal_force(c.depth, c.v_n(), stiffness, damping)"
+FAULTS = {  # what is wrong: (what stands in contact.py, what is put in its place)
+    "penalty pulls between balls": (
+        FORCE,
+        f"{FORCE} if c.b is FLOOR else stiffness * c.depth - damping * c.v_n()",
+    ),
+    "the stiffness of pairs is halved": (
+        FORCE,
+        FORCE.replace("stiffness", f"stiffness * {PAIRS.format(0.5)}"),
+    ),
+    "the damping of pairs is halved": (
+        FORCE,
+        FORCE.replace("damping", f"damping * {PAIRS.format(0.5)}"),
+    ),
+    "the Baumgarte gain of pairs is halved": (
+        "bias = baumgarte / dt * c.depth",
+        f"bias = {PAIRS.format(0.5)} * baumgarte / dt * c.depth",
+    ),
+    "pairs have no Baumgarte gain": (
+        "bias = baumgarte / dt * c.depth",
+        f"bias = {PAIRS.format(0.0)} * baumgarte / dt * c.depth",
+    ),
+    "the time constant of soft is 10 % longer for pairs": (
+        "        timeconst, dampratio = solref\n        K",
+        f"        timeconst, dampratio = {PAIRS.format(1.1)} * solref[0], solref[1]\n        K",
+    ),
+    "exact bounces with 0.9 e": (
+        "back = -restitution * c.v_n()",
+        "back = -0.9 * restitution * c.v_n()",
+    ),
+    "exact bounces pairs with half of e": (
+        "back = -restitution * c.v_n()",
+        f"back = -{PAIRS.format(0.5)} * restitution * c.v_n()",
+    ),
+    "exact loses a thousandth of v at an event": (
+        "ball.vy += span * a[k]",
+        "ball.vy = 0.999 * (ball.vy + span * a[k])",
+    ),
+    "the reaction is short by 1e-9": (
+        "b.vx -= impulse * self.bx",
+        "b.vx -= (1.0 - 1e-9) * impulse * self.bx",
+    ),
+    "gravity is short by a thousandth": ("GRAVITY = -9.81 ", "GRAVITY = -9.81 * 0.999 "),
+    "of three contacts the third is missed": (
+        "(a, b, nx, ny, depth))\n    return contacts",
+        "(a, b, nx, ny, depth))\n    return contacts[:2] + contacts[3:]",
+    ),
+}
+
+
+def judge_a_copy(folder, old="", new=""):
+    """The stress test of 300 small scenes on a copy of the code with one place of it replaced.
+
+    Without the compiled twin, which has the right lines still.
+    """
+    leave = shutil.ignore_patterns("results", "__pycache__")
+    shutil.copytree(ROOT / "curriculum/stress", folder / "curriculum/stress", ignore=leave)
+    for path in [ROOT / "contact.py", *(ROOT / "curriculum").glob("*.py")]:
+        if path.name != "fast.py":
+            shutil.copy(path, folder / path.relative_to(ROOT))
+    text = (folder / "contact.py").read_text("utf-8")
+    assert not old or text.count(old) == 1, f"the fault fits {text.count(old)} places: {old!r}"
+    (folder / "contact.py").write_text(text.replace(old, new) if old else text, "utf-8")
+    flags = ["--small", "--first", "--scenes", "300"]
+    return subprocess.run(
+        [sys.executable, "-m", "curriculum.stress", *flags],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_small_scenes_show_the_fault_that(fault, tmp_path):
+    done = judge_a_copy(tmp_path, *FAULTS[fault])
+    assert done.returncode == 1, done.stderr
+    assert re.match(r"VIOLATION: small scene \d+: \w+: ", done.stdout)
+
+
+def test_the_code_as_it_stands_has_no_violation_on_the_same_scenes(tmp_path):
+    done = judge_a_copy(tmp_path)
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
+def test_scenes_have_all_that_is_hard():
+    specs = [scenes.numbered_spec(number) for number in range(400)]
+    assert {spec["layout"] for spec in specs} == {layout.__name__ for layout in scenes.LAYOUTS}
+    finite = [[m for m in spec["mass"] if m < float("inf")] for spec in specs]
+    assert any(len(mass) < len(spec["mass"]) for mass, spec in zip(finite, specs)), "fixed balls"
+    assert max(max(mass) / min(mass) for mass in finite if mass) > 500
+    assert max(max(spec["radius"]) / min(spec["radius"]) for spec in specs) > 50
+    assert max(abs(v) for spec in specs for v in spec["vx"]) > 10, "thrown"
+    assert {1, 30} <= {len(spec["x"]) for spec in specs}
+    assert scenes.numbered_spec(17) == scenes.numbered_spec(17)
+    assert all(len(scenes.numbered_spec(k, small=True)["x"]) <= 4 for k in range(50))
+
+
+def test_counts_add_up_however_the_scenes_are_dealt_out():
+    whole = jobs.added_up([jobs.run(("jobs:judge_span", (0, 12, True)))])
+    parts = jobs.added_up([jobs.judge_span((0, 5, True)), jobs.judge_span((5, 12, True))])
+    assert whole == parts
+    assert whole["scenes"] == 12 and whole["violations"] == []
+    assert whole["judgements"] == sum(row[0] for row in whole["properties"].values())
+    assert set(whole["properties"]) == set(PROPERTIES)
+    assert whole["judgements"] < 12 * len(PROPERTIES), "what nothing touches is judged by few"
+
+
+def test_maps_meet_the_theory_on_a_coarse_grid():
+    for job in maps.map_jobs(quick=True)[::3]:
+        rows = jobs.run(job)["rows"]
+        assert all(row["ok"] for row in rows), rows
+
+
+def test_at_the_critical_dt_the_map_turns_from_settling_to_not():
+    dts = maps.grid(1e-3, 0.1, 20)
+    row = maps.penalty_row((80.0, 1e4, dts))
+    settles = [dt for dt, letter in zip(dts, row["outcomes"]) if letter == maps.SETTLES]
+    assert settles == [dt for dt in dts if dt < row["theory"]]
+
+
+@pytest.mark.parametrize("flag", extremes.FLAGS)
+def test_the_ends_of_every_flag_give_a_right_report_or_one_line(flag):
+    values = list(extremes.FLAGS[flag])[::4]
+    for row in extremes.run([f"--scene drop {flag} {value}" for value in values])["rows"]:
+        assert row["ok"], row
+
+
+def test_a_wrong_word_and_a_traceback_would_be_seen(tmp_path):
+    path = tmp_path / "metrics.json"
+    sunk = '{"quality": {"lcp": {"blew_up": false, "through": "the floor"}}}'
+    path.write_text(sunk, "utf-8")
+    assert "called ok" in extremes.complaint(0, "lcp  0.1 ok\n", "", path)
+    path.write_text('{"quality": {"lcp": {"depth": Infinity}}}', "utf-8")
+    assert "not JSON" in extremes.complaint(0, "lcp ok\n", "", path)
+    assert "refuses" in extremes.complaint(2, "", "Traceback\nValueError: dt\n", path)
+    assert extremes.complaint(2, "", "contact.py: error: given 0; allowed: more\n", path) is None
+
+
+@pytest.mark.parametrize(
+    "flags, words",
+    [(["--workers", "0"], "allowed"), (["--scene", "big:3"], "allowed"), (["--warp"], "--warp")],
+)
+def test_bad_flags_are_refused_in_one_line(flags, words, capsys):
+    with pytest.raises(SystemExit) as stop:
+        command.main(flags)
+    said = capsys.readouterr().err
+    assert stop.value.code == 2 and said.count("\n") == 1 and words in said
+
+
+def test_one_scene_is_judged_and_said_again(capsys):
+    assert command.main(["--scene", "small:3"]) == 0
+    said = capsys.readouterr().out
+    assert all(f"{name}: " in said for name in PROPERTIES) and "comparisons" in said
+
+
+def test_a_run_writes_its_report_and_says_what_was_judged(tmp_path):
+    from curriculum.stress import report
+
+    found = {
+        "scenes": [jobs.judge_span((0, 4, False))],
+        "small": [jobs.judge_span((0, 4, True))],
+        "maps": [jobs.run(job) for job in maps.map_jobs(quick=True)],
+        "extremes": [extremes.run(["--scene drop --dt 1"])],
+        "mujoco": [],
+    }
+    assert report.write(found, "python -m curriculum.stress --quick", tmp_path) == []
+    page = (tmp_path / "README.md").read_text("utf-8")
+    assert "no violation" in page and "Not run." in page
+    for function in PROPERTIES.values():
+        assert " ".join(function.__doc__.split("\n\n")[0].split()) in page
+    for name in ("penalty-map", "lcp-depth", "soft-map"):
+        assert f"]({name}.svg)" in page
