@@ -49,7 +49,7 @@ function draw(view) {
       ball("fixed", x, y, R * scale, "body"),
       line(...ray(0, 0.3), "grid"),
       line(...ray(release, 0.33)),
-      label("cos θ = ⅔ cos θ₀", Math.min(lx + 4, view.width - 124), ly),
+      label("cos θ = ⅔ cos θ₀", Math.min(lx + 4, view.width - 132), ly),
       el("path", { d: steps.join(""), class: "line m-exact" }),
       row > last ? ball("exact", ...at(path[last]), R * scale, "ghost") : "",
       ball("exact", bx, by, R * scale),
@@ -67,6 +67,7 @@ export const figure = {
   caption:
     "The upper ball leaves the lower one where it has lost a third of its height over the lower one’s middle: drag where it starts, and let go.",
   height: 300,
+  narrow: 250,
   start: () => ({ angle: 0.35, time: null }),
   draw,
   drag(view, name, x, y) {

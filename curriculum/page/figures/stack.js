@@ -49,7 +49,8 @@ function draw(view) {
   const balls = heights.map((height) => ball("penalty", x, at(height), PX));
   const look = { depth: depths[0], r: PX, times: enlarged(depths[0], PX), size: 44 };
   const seen = look.times > 2 && look.depth > 0; // a deeper one is seen without a lens
-  const near = seen ? lens("stack-lens", "penalty", Math.min(view.width - 50, x + 230), floor - 90, look) : "";
+  const beside = [Math.min(view.width - 50, x + 230), view.width < 480 ? 60 : floor - 90];
+  const near = seen ? lens("stack-lens", "penalty", ...beside, look) : "";
   const open = depths.findIndex((depth) => depth < 0);
   const carried = plural(open < 0 ? COUNT : open, "ball");
   const bottom = `the lowest contact ${depths[0] < 0 ? "is open" : `is ${number(depths[0])} r deep`}`;
