@@ -22,6 +22,8 @@ with open(os.path.join(COURSE, "contact.py"), encoding="utf-8") as file:
 
 # %% tools
 #@title And me second: what the pictures and the knobs below share
+import zlib
+
 import matplotlib.pyplot as plt
 from IPython.display import SVG, display
 
@@ -57,14 +59,15 @@ def film(runs, slow=1.0):
         path, color = np.clip(scale * run.q[::stride], -400.0, 400.0), COLORS[model]
         made.append(f'<g transform="translate({150 * lane + 75})">')
         for ball in range(path.shape[2]):
-            key, last = f"b{lane}{ball}{len(path)}", len(path) - 1
+            last = len(path) - 1
             frames = "".join(f"{100 * k / last:.3g}%{{transform:translate({x:.1f}px,{-y:.2f}px)}}"
                              for k, (x, y) in enumerate(path[:, :, ball]))
+            key = f"b{lane}-{ball}-{zlib.crc32(frames.encode())}"     # other films are on this page
             made.append(f"<style>@keyframes {key}{{{frames}}}"
                         f"#{key}{{animation:{key} {slow * run.t[-1]:g}s linear infinite}}"
                         f"svg:hover #{key}{{animation-play-state:paused}}</style>"
                         f'<circle id="{key}" r="{scale * RADIUS:.1f}" fill="{color}"/>')
-        made.append('<path d="M-75 0h150" stroke="currentColor" stroke-width="2"/>'
+        made.append('<path d="M-75 0h150" stroke="#888888" stroke-width="2"/>'
                     f'<text y="30" text-anchor="middle" fill="{color}">{model}</text></g>')
     return SVG("".join(made) + "</svg>")
 
