@@ -225,6 +225,9 @@ def fault(exercise, blank, found, expected, wrong):
     script = predict.command(predict.file_of(exercise), "--hint", what.hint)
     return "\n".join([
         f"{blank}({given})", f"  got       {got}", f"  expected  {right}",
+        *["  which is lam of every contact, then vx and vy of every ball; a contact is given as its "
+          "upper ball, its lower one (-1: the floor), the normal's angle, and its target"] * (
+              blank == "solve_contacts"),
         f"  wrong on {len(wrong)} of {len(found)} inputs, of which this is the first",
         f"  likely: {slip(blank, found) or 'a slip that this list does not know'}",
         f"  where to look: the signs at the top of contact.py, or {script}"])
@@ -335,12 +338,14 @@ def fingers(exercise):
     solref, solimp = contact.soft_defaults(0.0, dt, exercise.SOLREF, exercise.SOLIMP)
 
     def step(balls):
-        for finger, force in ((balls[0], 20.0), (balls[2], -20.0)):     # the motors [N]
-            finger.vx += dt * force / finger.mass
-        if exercise.MODEL == "penalty":
-            contact.penalty_step(balls, dt, exercise.STIFFNESS, exercise.DAMPING)
-        else:
-            contact.soft_step(balls, dt, solref, solimp)
+        for ball, force in zip(balls, (20.0, 0.0, -20.0)):      # the motors [N]
+            ball.fx, ball.fy = force, 0.0
+        if exercise.MODEL == "soft":
+            return contact.soft_step(balls, dt, solref, solimp)
+        contacts = contact.detect_contacts(balls, margin=0.0)
+        contact.penalty_force(contacts, exercise.STIFFNESS, exercise.DAMPING)
+        contact.accelerate(balls, dt)
+        contact.move(balls, dt)
 
     run = contact.simulate(step, of, dt, math.ceil(1.0 / dt - 1e-9), skip=False)
     with np.errstate(all="ignore"):
