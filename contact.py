@@ -1136,7 +1136,8 @@ def main(argv=None):
         if args.seeds and many is None:
             return fail("--seeds needs the course's folder beside contact.py")
         status = many.report(args) if many else report(args, argv)
-        sys.stdout.flush()                              # an error at Python's end has no handler
+        if sys.stdout:
+            sys.stdout.flush()                          # an error at Python's end has no handler
         return status
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
@@ -1145,7 +1146,8 @@ def main(argv=None):
         return fail("not enough memory; allowed: fewer --steps or --bodies")
     except OSError as error:                            # nobody reads on, or the disk is full
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 141 if isinstance(error, BrokenPipeError) else 2
+        unread = isinstance(error, BrokenPipeError)
+        return 141 if unread else fail(f"cannot print the rest: {error.strerror}")
 
 
 if __name__ == "__main__":
