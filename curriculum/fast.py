@@ -361,9 +361,14 @@ def make_balls(q, v, mass, radius):
 @compiled
 def same(state, other, contacts, others):
     """Whether states and impulses are equal. Then their futures are, but for signs of zeros."""
-    return ((state == other).all() and len(contacts) == len(others)
-            and (contacts["lam"] == others["lam"]).all()
-            and (contacts["a"] == others["a"]).all() and (contacts["b"] == others["b"]).all())
+    for i in range(state.shape[1]):
+        for row in range(4):
+            if state[row, i] != other[row, i]:
+                return False
+    for c, d in zip(contacts, others):
+        if c.a != d.a or c.b != d.b or c.lam != d.lam:
+            return False
+    return len(contacts) == len(others)
 
 
 @compiled
@@ -390,8 +395,9 @@ def take_steps(rows, settled, balls, pairs, last, cycles, knobs):
             lcp_step(balls, found, last, knobs)
         else:
             settled[k] = soft_step(balls, found, last, knobs)
-        rows[k, 0], rows[k, 1] = balls["x"][:-1], balls["y"][:-1]
-        rows[k, 2], rows[k, 3] = balls["vx"][:-1], balls["vy"][:-1]
+        for i in range(rows.shape[2]):
+            rows[k, 0, i], rows[k, 1, i] = balls[i].x, balls[i].y
+            rows[k, 2, i], rows[k, 3, i] = balls[i].vx, balls[i].vy
         if knobs.warm > 0.0:
             last = found
             contacts, spare = spare, contacts
