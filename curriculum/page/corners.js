@@ -1,9 +1,9 @@
 /* The corner, five times: gap to the right, force upwards, what a model allows as a line, and the state
  * that runs along it while the reader lifts the ball or presses it into the table. */
-import { arrow, ball, el, linePath, number, table } from "./draw.js";
+import { arrow, ball, el, number, table } from "./draw.js";
 import { knobsOf } from "./store.js";
 import { pushOfTable, runModel, soften } from "./engine.js";
-import { axis, beside, clipped, forceLength, G, handle, kept, label, line, R, scene, softKnobs, within } from "./parts.js";
+import { axis, beside, forceLength, G, handle, kept, label, line, R, scene, softKnobs, within } from "./parts.js";
 
 const PULL = 64; // px below the ball at which the hand presses hardest
 // What a picture shows: gaps from low to high [r], a radius in px, the hardest press in weights, ticks.
@@ -12,11 +12,10 @@ const NEAR = { low: -0.03, high: 0.06, r: 1000, most: 12, xs: [-0.02, 0, 0.04], 
 const floorOf = (view) => view.height - 74;
 
 // hand: above 0 the ball is held so high [r]; below 0 it is pressed, at -1 as hard as the picture shows.
-const loadOf = (law, view) => Math.max(0, -view.own.hand) * Math.min(law.near.most, law.most ? law.most(view) : Infinity);
-
-export function stateOf(law, view) {
-  const load = loadOf(law, view);
-  return { load, gap: load > 0 ? law.gap(load, view) : Math.max(0, view.own.hand), force: load };
+function stateOf(law, view) {
+  const { hand } = view.own;
+  const load = Math.max(0, -hand) * Math.min(law.near.most, law.most ? law.most(view) : Infinity);
+  return { load, gap: load > 0 ? law.gap(load, view) : Math.max(0, hand) };
 }
 
 const handY = (law, view) => floorOf(view) - 50 - view.own.hand * (view.own.hand > 0 ? law.near.r : PULL);
@@ -30,21 +29,12 @@ function picture(law, view, state, left) {
     table(0, floor, left, 74),
     ball(law.model, x, y, r, r > 100 ? "ball plainly" : "ball"),
     law.ghosts ? law.ghosts(view, state, x, floor, r) : "",
-    arrow(`push m-${law.model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -forceLength(state.force, 100 / Math.sqrt(law.near.most))),
+    arrow(`push m-${law.model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -forceLength(state.load, 100 / Math.sqrt(law.near.most))),
     held ? line(x, y, x, 0, "hand") : arrow("weight", x, Math.max(2, y - r - pull), 0, Math.min(pull, y - r - 2)),
   ].join("");
 }
 
-// The corner beneath, the model's law above it.
-function under(law, view, { box, sx, sy }) {
-  const { xs, ys } = law.curve(view);
-  const path = linePath(xs, ys, sx, sy, [box.top, box.bottom]);
-  const drawn = el("path", { d: path, class: `law m-${law.model}` });
-  return (
-    el("path", { d: `M${box.right} ${sy(0)}H${sx(0)}V${box.top}`, class: "allowed" }) +
-    clipped(`${law.name}-law`, box.left, box.top - 4, box.right - box.left, box.bottom - box.top + 8, drawn)
-  );
-}
+const allowed = ({ box, sx, sy }) => el("path", { d: `M${box.right} ${sy(0)}H${sx(0)}V${box.top}`, class: "allowed" });
 
 function draw(law, view) {
   const state = stateOf(law, view);
@@ -52,12 +42,13 @@ function draw(law, view) {
   const chart = {
     x: axis([low, high], "gap / r", ...xs),
     y: axis([-0.035 * most, 1.07 * most], "force / m g", ...ys),
-    points: [{ model: law.model, x: state.gap, y: Math.min(1.05 * most, state.force), size: 7 }],
-    under: (each) => under(law, view, each) + (law.more ? law.more(view, state, each) : ""),
+    points: [{ model: law.model, x: state.gap, y: Math.min(1.05 * most, state.load), size: 7 }],
+    lines: [{ model: law.model, ...law.curve(view), class: "law plainly" }],
+    under: (each) => allowed(each) + (law.more ? law.more(view, state, each) : ""),
   };
   const { svg, middle } = beside(view, law.name, chart, (left) => picture(law, view, state, left));
   const said = state.load > 0 ? `Pressed with ${number(state.load, 2)} m g` : "Held by the hand";
-  const text = `gap ${number(state.gap, 2)} r, force ${number(state.force, 2)} m g`;
+  const text = `gap ${number(state.gap, 2)} r, force ${number(state.load, 2)} m g`;
   return {
     svg,
     words: `${said}: ${text}.${law.words ? ` ${law.words(view, state)}` : ""}`,
@@ -70,7 +61,7 @@ export function corner(law, about) {
   const set = (view, hand) => (view.own.hand = Number(within(-1, hand, law.near.high).toFixed(3)));
   return {
     height: 260,
-    start: () => ({ hand: 0.5 * law.near.high }),
+    start: () => ({ hand: law.hand ?? 0.5 * law.near.high }),
     draw: (view) => draw(law, view),
     drag(view, name, x, y) {
       const up = floorOf(view) - 50 - y;
@@ -84,7 +75,8 @@ export function corner(law, about) {
   };
 }
 
-const wall = { xs: [WIDE.high, 0, 0], ys: [0, 0, 2 * WIDE.most] };
+const TOP = 1.07 * WIDE.most;
+const wall = { xs: [WIDE.high, 0, 0], ys: [0, 0, TOP] };
 const bare = { near: WIDE, model: "exact", gap: () => 0, curve: () => wall };
 export const LAWS = {
   corner: { ...bare, name: "corner" },
@@ -102,11 +94,12 @@ LAWS.exact.words = (view, state) =>
 const stiffest = (view) => view.get("stiffness") * R / G; // weights a radius
 LAWS.penalty = {
   name: "corner-penalty",
+  hand: -0.5,
   model: "penalty",
   near: WIDE,
   most: (view) => -WIDE.low * stiffest(view),
   gap: (load, view) => -load / stiffest(view),
-  curve: (view) => ({ xs: [WIDE.high, 0, (-2 * WIDE.most) / stiffest(view)], ys: [0, 0, 2 * WIDE.most] }),
+  curve: (view) => ({ xs: [WIDE.high, 0, -TOP / stiffest(view)], ys: [0, 0, TOP] }),
 };
 
 /* lcp: the ball comes from FROM radii above, drawn down by the load, and lcp looks once a step. A load of
@@ -130,6 +123,7 @@ function looks(view, { load }) {
 LAWS.lcp = {
   ...bare,
   name: "corner-lcp",
+  hand: -0.6,
   model: "lcp",
   more(view, state, { sx, sy }) {
     const { gaps, forces } = looks(view, state);
@@ -163,6 +157,7 @@ const softGap = (load, view) => {
 };
 LAWS.soft = {
   name: "corner-soft",
+  hand: -0.5,
   model: "soft",
   near: NEAR,
   most: (view) => softLoad(NEAR.low, view),

@@ -18,9 +18,9 @@ export const stepMatrix = (dt, k, c) => [
 
 // The eigenvalues of a 2 x 2 matrix, as [real, imaginary] each.
 export function eigenvalues([[a, b], [c, d]]) {
-  const [half, square] = [(a + d) / 2, ((a - d) / 2) ** 2 + b * c];
+  const square = ((a - d) / 2) ** 2 + b * c;
   const root = Math.sqrt(Math.abs(square));
-  return [1, -1].map((sign) => (square < 0 ? [half, sign * root] : [half + sign * root, 0]));
+  return [root, -root].map((part) => (square < 0 ? [(a + d) / 2, part] : [(a + d) / 2 + part, 0]));
 }
 
 const pressed = scene([(1 - DEPTH) * R]);

@@ -1,15 +1,17 @@
 /* One line: every contact with a softness R lies where its target is R times what it must carry. The
  * spring of penalty taken at the end of the step is one of them. */
 import { el, mark, number } from "../draw.js";
-import { detectContacts, GRAVITY, makeRows, normalSpeed, soften, solveContacts } from "../engine.js";
+import { detectContacts, GRAVITY, makeRows, soften, solveContacts } from "../engine.js";
 import { alongAxis, axis, charted, G, handle, kept, label, R, scene, softKnobs, tidy, within } from "../parts.js";
 
 const [LOW, HIGH] = [1e-6, 1];
+const OMEGA = 2 * Math.PI * 30; // 1/s, Box2D's 30 Hz
 const WAYS = {
   // {target, softness} of a contact of a ball of 1 kg, as each engine chooses them
-  "implicit spring": (c, speed, { stiffness, damping, dt }) => implicit(stiffness, damping, c.depth, dt),
-  "Box2D’s soft step": (c, speed, { dt }) => implicit((60 * Math.PI) ** 2, 2 * 10 * 60 * Math.PI, c.depth, dt), // 30 Hz, ratio 10
-  "CFM and ERP": (c, speed, { dt }) => ({ softness: 1e-5 / dt, target: (0.2 / dt) * c.depth }), // ODE's defaults
+  "implicit spring": (c, { stiffness, damping, dt }) => implicit(stiffness, damping, c.depth, dt),
+  "MuJoCo’s soft": (c, knobs, state, one) => soften(c, state, one, knobs),
+  "Box2D’s soft step": (c, { dt }) => implicit(OMEGA ** 2, 2 * 10 * OMEGA, c.depth, dt), // a damping ratio of 10
+  "CFM and ERP": (c, { dt }) => ({ softness: 1e-5 / dt, target: (0.2 / dt) * c.depth }), // ODE's defaults
 };
 
 // Spring and damper taken at the end of the step: lam = dt (k (depth - dt v_n) - c v_n).
@@ -25,7 +27,7 @@ function rests(way, knobs) {
   let last = { softness: 0, target: 0 };
   for (let step = 0; step < 4000; step++) {
     const contacts = detectContacts(state.x, state.y, one.radius, 0);
-    const asked = contacts.map((c) => way(c, normalSpeed(c, state.vx, state.vy), knobs, state, one));
+    const asked = contacts.map((c) => way(c, knobs, state, one));
     state.vy[0] += knobs.dt * GRAVITY;
     const rows = makeRows(contacts, one.mass, asked.map((each) => each.target), asked.map((each) => each.softness));
     solveContacts(rows, state.vx, state.vy, { iters: 1 });
@@ -36,19 +38,14 @@ function rests(way, knobs) {
   return { ...last, depth: 1 - state.y[0] / R };
 }
 
-const soft = (c, speed, knobs, state, one) => soften(c, state, one, knobs);
-export const atRest = kept((name, knobs) => rests(WAYS[name] || soft, knobs));
+const atRest = kept((name, knobs) => rests(WAYS[name], knobs));
 
-// The points, the two that can be dragged first: [name, model, what it rests with].
+// The points, the two that can be dragged first: [name, what it rests with].
 function points(view) {
   const knobs = softKnobs(view);
   const { stiffness, damping, dt, solimp, solref } = knobs;
-  return [
-    ["implicit spring", "penalty", atRest("implicit spring", { stiffness, damping, dt })],
-    ["MuJoCo’s soft", "soft", atRest("soft", { dt, solimp, solref, restitution: 0 })],
-    ["Box2D’s soft step", "lcp", atRest("Box2D’s soft step", { dt })],
-    ["CFM and ERP", "lcp", atRest("CFM and ERP", { dt })],
-  ];
+  const told = [{ stiffness, damping, dt }, { dt, solimp, solref, restitution: 0 }, { dt }, { dt }];
+  return Object.keys(WAYS).map((name, k) => [name, atRest(name, told[k])]);
 }
 
 function chartOf(view) {
@@ -65,21 +62,19 @@ function draw(view) {
   const chart = chartOf(view);
   const all = points(view);
   const at = ({ softness, target }) => [chart.sx(softness * G * view.get("dt")), chart.sy(target)];
-  const marks = all.map(([name, model, rest], k) => {
+  const marks = all.map(([name, rest], k) => {
     const [x, y] = at(rest);
-    return k < 2 ? mark(model, x, y, 8) : el("circle", { cx: x, cy: y, r: 6, class: "dot" });
+    const left = k < 2 && x > 150;
+    const place = left ? [x - 18, y - 6, "end"] : [Math.min(x + 12, view.width - 8.2 * name.length), y + 20];
+    const sign = k < 2 ? mark(["penalty", "soft"][k], x, y, 8) : el("circle", { cx: x, cy: y, r: 6, class: "dot" });
+    return sign + label(name, ...place);
   });
-  const names = all.map(([name, , rest], k) => {
-    const [x, y] = at(rest);
-    if (k < 2 && x > 150) return label(name, x - 18, y - 6, "end");
-    return label(name, Math.min(x + 12, view.width - 8.2 * name.length), y + 20);
-  });
-  const [spring, mujoco] = all.map(([, , rest]) => at(rest));
+  const [spring, mujoco] = all.map(([, rest]) => at(rest));
   const [k, d] = [view.get("stiffness"), view.get("impedance")];
-  const depths = all.map(([name, , rest]) => `${name} R = ${number(rest.softness)} /kg, ${number(rest.depth)} r deep`);
+  const depths = all.map(([name, rest]) => `${name} R = ${number(rest.softness)} /kg, ${number(rest.depth)} r deep`);
   const hard = mark("lcp", chart.sx(0), chart.sy(0), 7) + label("lcp, R = 0", chart.sx(0) + 14, chart.sy(0) - 10);
   return {
-    svg: chart.markup + hard + names.join("") + marks.join(""),
+    svg: chart.markup + hard + marks.join(""),
     words: `At rest on one line, target = R m g dt: lcp R = 0; ${depths.join("; ")}.`,
     handles: [
       handle("spring", ...spring, 15, "the implicit spring: its stiffness", k, `k = ${number(k)} N/m`),

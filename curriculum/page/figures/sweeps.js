@@ -1,7 +1,7 @@
 /* The sweeps, contact after contact: a stack of three, its impulses as bars, and the clamp at zero. */
 import { arrow, ball, el, number, table } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
-import { clock, handle, kept, label, line, plural, R, scene, tidy, within } from "../parts.js";
+import { axis, beside, clock, handle, kept, label, plural, R, scene, tidy, within } from "../parts.js";
 
 const [COUNT, PX, SWEEPS] = [3, 34, 20];
 const UNIT = 24; // px of an arrow for a speed of g dt
@@ -26,35 +26,26 @@ export const course = kept((top) => {
 
 const now = (view) => course(view.own.top)[Math.floor(view.own.time)];
 
-// Where things stand: the stack's middle, the table, the wall from which bars grow, px of m g dt.
-function shape({ width, height }) {
-  const wall = Math.max(150, 0.42 * width);
-  return { x: Math.max(56, 0.17 * width), floor: height - 34, wall, unit: (width - wall - 56) / 3.4 };
+// Where a contact is: between the balls of the picture.
+const heightOf = (view, c) => view.height - 42 - 2 * c * PX;
+
+// A contact's impulse as a bar, and what the last change asked for.
+function bar({ contact, wanted, lam }, c, y, sx) {
+  const bars = [el("rect", { x: sx(0), y: y - 9, width: sx(lam[c]) - sx(0), height: 18, class: "bar-fill m-lcp" })];
+  if (lam[c] > 0) bars.push(label(number(lam[c]), sx(lam[c]) + 6, y + 5));
+  if (c === contact) bars.push(arrow("weight", sx(lam[c] > 0 ? lam[c] - wanted : 0), y - 15, sx(wanted) - sx(0), 0));
+  if (c === contact && lam[c] === 0 && wanted < 0) bars.push(label("clamped at 0", sx(0) + 6, y + 5));
+  return bars.join("");
 }
 
-// A contact's impulse as a bar from the wall, and what the last change asked for.
-function bar({ contact, wanted, lam }, c, { x, floor, wall, unit }) {
-  const y = floor - 2 * c * PX - (c ? 0 : 10);
-  const length = lam[c] * unit;
-  const parts = [el("rect", { x: wall, y: y - 9, width: length, height: 18, class: "bar-fill m-lcp" })];
-  if (c === contact) {
-    const from = wall + length - (lam[c] > 0 ? wanted * unit : 0);
-    parts.push(el("circle", { cx: x, cy: floor - 2 * c * PX, r: 8, class: "event m-lcp" }));
-    parts.push(arrow("weight", from, y - 15, wanted * unit, 0));
-    if (lam[c] === 0 && wanted < 0) parts.push(label("clamped at 0", wall + 6, y + 5));
-  }
-  if (lam[c] > 0) parts.push(label(number(lam[c]), wall + length + 6, y + 5));
-  return parts.join("");
-}
-
-// The scale of the bars: m g dt, from the wall.
-function scale({ floor, wall, unit }) {
-  const lines = [1, 2, 3].map((k) => {
-    const x = wall + k * unit;
-    return line(x, 26, x, floor, "grid") + label(String(k), x, floor + 20, "middle", "tick");
+function picture(view, { contact, vy }, left) {
+  const x = 0.4 * left;
+  const parts = vy.map((v, i) => {
+    const y = heightOf(view, i) - PX;
+    return ball("lcp", x, y, PX) + arrow("weight", x + PX + 12, y, 0, -UNIT * v);
   });
-  const name = label("impulse / m g dt", wall, 16, "start", "axis-name");
-  return name + lines.join("") + line(wall, 26, wall, floor, "table-top");
+  if (contact !== null) parts.push(el("circle", { cx: x, cy: heightOf(view, contact), r: 8, class: "event m-lcp" }));
+  return table(0, heightOf(view, 0), left, 42) + parts.join("");
 }
 
 function saying({ contact, wanted, lam }, at) {
@@ -67,20 +58,20 @@ function saying({ contact, wanted, lam }, at) {
 function draw(view) {
   const shown = now(view);
   const at = Math.floor(view.own.time);
-  const place = shape(view);
-  const { x, floor, wall, unit } = place;
-  const balls = shown.vy.map((v, i) => {
-    const y = floor - (2 * i + 1) * PX;
-    return ball("lcp", x, y, PX) + arrow("weight", x + PX + 12, y, 0, -UNIT * v);
-  });
-  const bars = [0, 1, 2].map((c) => bar(shown, c, place));
-  const tip = [x + PX + 12, floor - 5 * PX - UNIT * shown.vy[2]];
+  const chart = {
+    x: axis([0, 3.4], "impulse / m g dt", 0, 1, 2, 3),
+    y: { domain: [0, 1], ticks: [] },
+    rules: [{ x: 0 }],
+    under: ({ sx }) => [0, 1, 2].map((c) => bar(shown, c, heightOf(view, c) - 12, sx)).join(""),
+  };
+  const { svg, x, middle } = beside(view, "sweeps", chart, (left) => picture(view, shown, left));
+  const tip = [0.8 * middle + PX + 12, heightOf(view, 2) - PX - UNIT * shown.vy[2]];
   const { top } = view.own;
   return {
-    svg: table(0, floor, view.width, 34) + scale(place) + balls.join("") + bars.join(""),
+    svg,
     words: `${saying(shown, at)}. The contacts carry ${shown.lam.map((lam) => number(lam)).join(", ")} m g dt.`,
     handles: [
-      handle("sweep", wall + shown.lam[0] * unit, floor - 10, 12, "the sweeps", at, `${plural(at, "contact")} mended`),
+      handle("sweep", x(shown.lam[0]), heightOf(view, 0) - 12, 12, "the sweeps", at, `${plural(at, "contact")} mended`),
       handle("top", ...tip, 12, "the uppermost ball’s speed before the sweeps", top, `${number(top - 1, 2)} g dt`),
     ],
     lit: at ? [["sweep", "lam = max"]] : [],
@@ -100,9 +91,8 @@ export const figure = {
   start: () => ({ time: COUNT, top: 0 }),
   draw,
   drag(view, name, x, y) {
-    const { floor, wall, unit } = shape(view);
-    if (name === "top") throwTop(view, 1 + (floor - 5 * PX - y) / UNIT);
-    else sweepTo(view, course(view.own.top).findIndex(({ lam }) => lam[0] >= (x - wall) / unit - 0.02));
+    if (name === "top") throwTop(view, 1 + (heightOf(view, 2) - PX - y) / UNIT);
+    else sweepTo(view, course(view.own.top).findIndex(({ lam }) => lam[0] >= 3.4 * view.own.along(x) - 0.02));
   },
   nudge(view, name, dx, dy) {
     if (name === "top") throwTop(view, view.own.top - 0.1 * dy);
