@@ -48,4 +48,4 @@ def table(numbers):
 
 
 if __name__ == "__main__":
-    sys.exit(predict.play("ex1", sys.modules[__name__]))
+    sys.exit(predict.run("ex1", predict.bet, sys.modules[__name__]))

@@ -13,6 +13,7 @@ Out of scope: friction, and several contacts at once (your second line is called
 
 import sys
 
+import predict
 import trials
 
 
@@ -37,4 +38,4 @@ def project_impulse(lam, dlam):
 
 
 if __name__ == "__main__":
-    sys.exit(trials.play("ex2", sys.modules[__name__]))
+    sys.exit(predict.run("ex2", trials.fill, sys.modules[__name__]))

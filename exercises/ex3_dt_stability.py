@@ -45,4 +45,4 @@ def table(numbers):
 
 
 if __name__ == "__main__":
-    sys.exit(predict.play("ex3", sys.modules[__name__]))
+    sys.exit(predict.run("ex3", predict.bet, sys.modules[__name__]))

@@ -47,4 +47,4 @@ def table(numbers):
 
 
 if __name__ == "__main__":
-    sys.exit(predict.play("ex4", sys.modules[__name__]))
+    sys.exit(predict.run("ex4", predict.bet, sys.modules[__name__]))

@@ -16,6 +16,7 @@ read it; now write it without looking. A contact c gives you
 
 import sys
 
+import predict
 import trials
 
 
@@ -30,4 +31,4 @@ def solve_contacts(contacts, iters):
 
 
 if __name__ == "__main__":
-    sys.exit(trials.play("ex5", sys.modules[__name__]))
+    sys.exit(predict.run("ex5", trials.fill, sys.modules[__name__]))

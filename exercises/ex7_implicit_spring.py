@@ -16,6 +16,7 @@ where it pushes. Which softness and which target make that the equation above?
 
 import sys
 
+import predict
 import trials
 
 
@@ -27,4 +28,4 @@ def implicit_spring(depth, stiffness, damping, dt):
 
 
 if __name__ == "__main__":
-    sys.exit(trials.play("ex7", sys.modules[__name__]))
+    sys.exit(predict.run("ex7", trials.fill, sys.modules[__name__]))

@@ -15,6 +15,7 @@ and how light is the lightest thing that hangs on it?
 
 import sys
 
+import predict
 import trials
 
 MODEL = None            # "penalty" or "soft"
@@ -28,4 +29,4 @@ SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)   # of soft: the impedance, see contact.im
 
 
 if __name__ == "__main__":
-    sys.exit(trials.play("ex8", sys.modules[__name__]))
+    sys.exit(predict.run("ex8", trials.fill, sys.modules[__name__]))

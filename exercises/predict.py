@@ -147,8 +147,3 @@ def bet(name, exercise):
     note(name, chosen(exercise))
     print(f"\n{follow_up()}")
     return 0
-
-
-def play(name, exercise, argv=None):
-    """Run a bet as a script. Returns the exit status."""
-    return run(name, bet, exercise, argv)

@@ -418,8 +418,3 @@ def fill(name, exercise):
     if states == {"right"}:
         print(f"\n{predict.follow_up()}")
     return 0 if states == {"right"} else 1 if "wrong" in states else 2
-
-
-def play(name, exercise, argv=None):
-    """Run an exercise with blanks as a script. Returns the exit status."""
-    return predict.run(name, fill, exercise, argv)
