@@ -35,7 +35,7 @@ def exact_keeps_its_energy(trial):
         return
     run, e = trial.exact, trial.spec["restitution"]
     total = contact.energy(run.q, run.v, trial.scene.mass)
-    size = PROMISE * kinetic_and_potential(trial, run)
+    size = PROMISE * start_energy(trial)
     on = struck(trial)
     yield "gained since the start [J]", np.maximum(total[1:] - total[0], 0.0)[on], size
     yield "gained in a step [J]", np.maximum(np.diff(total), 0.0)[on], size
@@ -49,7 +49,7 @@ def exact_keeps_momentum_along_x(trial):
     if trial.exact and not trial.fixed.any() and len(trial.mass) > 1:
         momentum = (trial.mass * trial.exact.v[:, 0]).sum(1)
         pushed = np.abs(np.diff(trial.exact.v[:, 0], axis=0)).max(1) > 0.0
-        size = np.sqrt(2.0 * trial.mass.sum() * kinetic_and_potential(trial, trial.exact))
+        size = np.sqrt(2.0 * trial.mass.sum() * start_energy(trial))
         yield "momentum [kg m/s]", np.abs(momentum[1:] - momentum[0])[pushed], PROMISE * size
 
 
@@ -85,34 +85,28 @@ def exact_flies_and_bounces_in_closed_form(trial):
 
 
 class Neighbours:
-    """Who can reach whom between two samples of exact, with all the energy there is.
+    """Who can reach whom between two samples of exact.
 
-    fast (S, N): the fastest a ball can be while nothing gives it speed; free: nothing reaches it.
-    floor (S, N): only the floor can; pair (S, P): of the pairs (a, b), only these two can meet.
+    fast (S, N): the fastest a ball can be while nothing strikes it; with all the energy there is it
+    has `most`. free: nothing reaches it. floor (S, N): only the floor can. pair (S, P): of the
+    pairs (a, b), those two that can meet each other and nothing else.
     """
 
     def __init__(self, trial):
-        run, r, dt = trial.exact, trial.scene.radius, trial.dt
+        run, r, dt, moves = trial.exact, trial.scene.radius, trial.dt, ~trial.fixed
         self.run, self.fall = run, gravity(trial)
-        self.a, self.b = np.triu_indices(len(r), 1)
-        self.fast = np.sqrt((run.v[:-1] ** 2).sum(1)) + G * dt * ~trial.fixed
-        energy = kinetic_and_potential(trial, run)
-        most = np.sqrt(2.0 * energy * inverse(trial.mass))  # of each ball
-        apart = run.q[:-1][:, :, self.a] - run.q[:-1][:, :, self.b]
-        gap = np.hypot(apart[:, 0], apart[:, 1]) - r[self.a] - r[self.b]
-        meets = gap <= dt * np.maximum(
-            self.fast[:, self.a] + most[self.b], most[self.a] + self.fast[:, self.b]
-        )
-        ends = np.zeros((len(self.a), len(r)))
-        ends[np.arange(len(self.a)), self.a] = ends[np.arange(len(self.a)), self.b] = 1.0
-        met = meets @ ends  # (S, N): how many balls may come to each
-        lands = run.q[:-1, 1] - r <= dt * most * ~trial.fixed
-        drops = run.q[:-1, 1] - r <= dt * self.fast
-        moves = ~trial.fixed
-        self.free = (met == 0) & ~drops & moves
-        self.floor = (met == 0) & drops & moves
-        self.pair = meets & (met @ ends.T == 2) & ~lands[:, self.a] & ~lands[:, self.b]
-        self.pair &= moves[self.a] & moves[self.b]
+        self.a, self.b = a, b = np.triu_indices(len(r), 1)
+        self.fast = fast = np.sqrt((run.v[:-1] ** 2).sum(1)) + G * dt * moves
+        most = np.sqrt(2.0 * start_energy(trial) * inverse(trial.mass))
+        apart = run.q[:-1][:, :, a] - run.q[:-1][:, :, b]
+        gap, height = np.hypot(apart[:, 0], apart[:, 1]) - r[a] - r[b], run.q[:-1, 1] - r
+        ends = np.eye(len(r))[a] + np.eye(len(r))[b]  # which balls make a pair (P, N)
+        meets = gap <= dt * np.maximum(fast[:, a] + most[b], most[a] + fast[:, b])
+        struck = gap <= dt * (most[a] + most[b])  # when both have been struck
+        self.free = (meets @ ends == 0) & (height > dt * fast) & moves
+        self.floor = (meets @ ends == 0) & (height <= dt * fast) & moves
+        airborne = (height > dt * most) & moves
+        self.pair = meets & airborne[:, a] & airborne[:, b] & (struck @ ends @ ends.T == 2)
 
     def flown(self, s):
         """q, v (S, 2, N) after `s` seconds of free flight from each sample."""
@@ -158,7 +152,7 @@ def gravity(trial):
     return np.outer((0.0, G), ~trial.fixed)
 
 
-def kinetic_and_potential(trial, run):
+def start_energy(trial):
     """The energy [J] of the start, and at least what lifts every ball by its radius."""
-    total = float(contact.energy(run.q[:1], run.v[:1], trial.scene.mass)[0])
+    total = float(contact.energy(trial.exact.q[0], trial.exact.v[0], trial.scene.mass))
     return max(total, float((trial.mass * G * trial.scene.radius).sum()))

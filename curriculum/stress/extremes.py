@@ -14,40 +14,15 @@ from pathlib import Path
 import contact
 from curriculum.stress.jobs import row
 
-REALS = (
-    "0",
-    "5e-324",
-    "1e-300",
-    "1e-100",
-    "1e-9",
-    "0.5",
-    "1",
-    "7.3",
-    "1e9",
-    "1e100",
-    "1e308",
-    "-1",
-    "nan",
-    "inf",
-)
-WHOLE = ("0", "1", "2", "17", "1000", "99999999999999999999", "-3", "2.5")
-PAIR = [
-    f"{a} {b}"
-    for a in ("0.02", "1e-300", "1e308", "-1e308", "0")
-    for b in ("1", "1e-162", "1e308", "0")
-]
+REALS = "0 5e-324 1e-300 1e-100 1e-9 0.5 1 7.3 1e9 1e100 1e308 -1 nan inf".split()
+WHOLE = "0 1 2 17 99999999999999999999 -3 2.5".split()
+ENDS = ("0.02", "1e-300", "1e308", "-1e308", "0"), ("1", "1e-162", "1e308", "0", "-50")
 FLAGS = {
-    **dict.fromkeys(
-        ("--dt", "--stiffness", "--damping", "--baumgarte", "--restitution", "--mass"), REALS
-    ),
-    **dict.fromkeys(("--iters", "--steps", "--bodies", "--seed"), WHOLE),
-    "--solref": [*PAIR, "-1e4 -50"],
-    "--solimp": [
-        "0 0 0 0 1",
-        "1 1 1e308 1 1e308",
-        "0.9 0.95 1e-320 0.5 2",
-        "0.1 0.9 0.01 1e-300 300",
-    ],
+    **dict.fromkeys(["--dt", "--stiffness", "--damping", "--mass"], REALS),
+    **dict.fromkeys(["--baumgarte", "--restitution", "--warm"], REALS),
+    **dict.fromkeys(["--iters", "--steps", "--bodies", "--seed"], WHOLE),
+    "--solref": [f"{first} {second}" for first in ENDS[0] for second in ENDS[1]],
+    "--solimp": ["0 0 0 0 1", "1 1 1e308 1 1e308", "0.9 0.95 1e-320 0.5 2", "0.1 0.9 0 1e-300 99"],
 }
 TOGETHER = (
     "--dt 1e200 --stiffness 1e300",

@@ -29,16 +29,13 @@ def grid(low, high, count):
 
 def map_jobs(quick):
     """The rows of all maps."""
-    fine, some = (10, 6) if quick else (40, 31)
-    rows = [
-        ("penalty", c, k, grid(3e-4, 0.3, fine)) for c in (0.0, 80.0) for k in grid(1e2, 1e7, some)
+    dts, stiff, times = (8, 6, 4) if quick else (40, 31, 26)
+    springs = [(c, k) for c in (0.0, 80.0) for k in grid(1e2, 1e7, stiff)]
+    return [
+        *(("maps:penalty_row", (*spring, grid(3e-4, 0.3, dts))) for spring in springs),
+        *(("maps:lcp_row", (e, grid(1e-3, 0.128, dts))) for e in (0.0, 0.7)),
+        *(("maps:soft_row", (T, grid(1e-3, 0.128, dts))) for T in grid(2e-3, 0.3, times)),
     ]
-    rows += [("lcp", e, grid(1e-3, 0.128, 8 if quick else 40)) for e in (0.0, 0.7)]
-    rows += [
-        ("soft", T, grid(1e-3, 0.128, 6 if quick else 30))
-        for T in grid(2e-3, 0.3, 4 if quick else 26)
-    ]
-    return [(f"maps:{model}_row", given) for model, *given in rows]
 
 
 def run(model, scene, dt, seconds, **knobs):
@@ -89,8 +86,9 @@ def late(b):
 
 def outcome(stiffness, damping, dt):
     """One letter of OUTCOMES for penalty on the drop, watched for eight times its slowest decay."""
-    scene, seconds = SCENE._replace(damping=damping), SECONDS + 8 * slowest(stiffness, damping)
-    found = run("penalty", scene, dt, seconds, stiffness=stiffness)
+    decay = max(2.0 / damping, damping / stiffness) if damping else 0.0  # the slower way
+    scene = SCENE._replace(damping=damping)
+    found = run("penalty", scene, dt, SECONDS + 8 * decay, stiffness=stiffness)
     if contact.blow_up_step(contact.energy(found.q, found.v, scene.mass)) is not None:
         return EXPLODES
     depth, tail = G / stiffness, slice(-max(10, len(found.t) // 10), None)
@@ -99,14 +97,6 @@ def outcome(stiffness, damping, dt):
         return SETTLES
     gained = found.v[:, 1, 0] ** 2 / 2 + G * found.q[:, 1, 0] > 1.01 * G * SCENE.q0[1, 0]
     return GAINS if gained.any() else RESTLESS
-
-
-def slowest(stiffness, damping):
-    """Slowest time constant [s] of the damped spring; 0 without a damper, where nothing decays."""
-    if damping == 0.0:
-        return 0.0
-    root = damping * damping - 4.0 * stiffness
-    return 2.0 / damping if root <= 0.0 else (damping + math.sqrt(root)) / (2.0 * stiffness)
 
 
 def boundary(stiffness, damping, guess):

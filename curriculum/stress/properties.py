@@ -245,20 +245,6 @@ def rounded_pushes(motion, k, sweeps):
 
 
 @stated
-def a_correction_only_takes_energy(trial):
-    """lcp, e = 0 and no gain: after any number of sweeps |v'| <= |v + dt g| in the mass norm.
-
-    Each correction brings the velocity nearer to every one that the contacts allow, 0 among them.
-    """
-    still = type(trial)(trial.spec | {"restitution": 0.0, "baumgarte": 0.0})
-    motion = still.motions["lcp"]
-    after, falling = (kinetic(v, motion.mass) for v in (motion.v[1:], motion.falling))
-    pushes = motion.listed.sum(1) * (trial.spec["iters"] + 2)
-    allowed = 16 * U * (pushes + len(motion.mass)) * kinetic(motion.top[:, None], motion.mass)
-    yield "gain [J]", np.maximum(after - falling, 0.0)[pushes > 0], allowed[pushes > 0]
-
-
-@stated
 def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
     """lcp without gain: F = E + e/(1+e) dt sum m g v_y rises by what the sweeps leave undone.
 

@@ -14,11 +14,10 @@ from hypothesis import strategies as st
 
 import contact
 from contact import Ball, Contact, Settings, build_scene, contact_quality, run_model
-from curriculum.stress import exact_properties, mujoco_match, properties
-from curriculum.stress.claims import PROPERTIES, judge
+from curriculum.stress import mujoco_match
+from curriculum.stress.jobs import judge
 from curriculum.stress.trial import Trial
 
-assert properties and exact_properties  # they register what they state
 R, G, DT = contact.RADIUS, 9.81, 0.002
 STEPPED = ("penalty", "lcp", "soft")
 
