@@ -1,10 +1,10 @@
 """The named regions of the literate files: the pieces of code that the chapter shows.
 
-A region stands between `# --- region: NAME ---` and `# --- endregion ---`, both at the left
-margin. Regions are flat and closed, and a name belongs to one region of all files.
+A region stands between `# --- region: NAME ---` and `# --- endregion ---`, at the left margin or,
+within a class, further in. Regions are flat and closed, and a name belongs to one region of all files.
 
-Its hash is the sha256 of the text that a reader sees: the lines between the two markers, each
-ended by one "\\n", as UTF-8, nothing trimmed.
+Its hash is the sha256 of the text that a reader sees: the lines between the two markers, less the
+indentation that all of them share, each ended by one "\\n", as UTF-8.
 """
 
 import ast
@@ -12,6 +12,7 @@ import hashlib
 import re
 from functools import lru_cache
 from pathlib import Path
+from textwrap import dedent
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -19,7 +20,7 @@ CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")  # what a run
 LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/text/facts.py")  # what has regions
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
 NAME = r"[a-z][a-z0-9_-]*"
-BEGIN = re.compile(rf"# --- region: ({NAME}) ---")
+BEGIN = re.compile(rf" *# --- region: ({NAME}) ---")
 END = "# --- endregion ---"
 MARKER = re.compile(r"^\s*#\s*-+\s*(end)?\s*region\b.*$", re.MULTILINE | re.IGNORECASE)
 
@@ -74,10 +75,11 @@ def split(text: str, file: str) -> tuple:
         begin = BEGIN.fullmatch(line)
         if begin and name is None:
             name, first = begin[1], number + 1
-        elif line == END and name is not None:
+        elif line.strip() == END and name is not None:
             if name in found:
                 say(first - 1, f"a second region {name}")
-            found[name] = Region(name, "\n".join([*lines[first - 1 : number - 1], ""]), first, file)
+            code = dedent("\n".join([*lines[first - 1 : number - 1], ""]))
+            found[name] = Region(name, code, first, file)
             name = None
         elif MARKER.fullmatch(line):
             where = f"inside region {name}" if name else "outside any region"
