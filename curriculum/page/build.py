@@ -65,8 +65,8 @@ def page_data(bets):
             "warm": settings.warm,
         },
         "engine": {name: getattr(contact, name) for name in ENGINE},
-        "exact": {"TOUCH": contact.TOUCH, "SLOW": contact.SLOW}
-        | {name: getattr(exact, name) for name in ("ORDER", "GRAZE")},
+        "exact": {name: getattr(contact, name) for name in ("TOUCH", "SLOW", "STILL")}
+        | {"ORDER": exact.ORDER},
         "blank": blank_cases(),
         "bets": bets,
     }
