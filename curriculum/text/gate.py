@@ -133,7 +133,7 @@ class Gate:
             try:
                 same = block["head"] + readme.make(name, block["command"]) == block[0]
             except ValueError as error:
-                self.say("README.md", line, str(error), "name one of them")
+                self.say("README.md", line, str(error), "correct its name, or measure again")
                 continue
             if not same:
                 self.say("README.md", line, f"block {name} is out of date", f"{GATE} --write")

@@ -22,7 +22,7 @@ PASSING = ("metrics:", "next", "estimated")  # lines that name files, or depend 
 
 
 def make(name: str, command: str) -> str:
-    """The text of one block, made now. Raises ValueError for a name that nobody makes."""
+    """The text of one block, made now. Raises ValueError where that cannot be."""
     if command.startswith("python contact.py"):
         flags = command.split()[2:]
         printed = cached(f"readme-{name}", flags, lambda: run_contact(flags))["stdout"]
@@ -30,7 +30,10 @@ def make(name: str, command: str) -> str:
         return "```text\n" + "\n".join(lines).strip("\n") + "\n```\n"
     if name not in MAKERS:
         raise ValueError(f"no generated block {name!r}; there are: {', '.join(MAKERS)}")
-    return import_module(MAKERS[name]).readme().strip("\n") + "\n"
+    try:
+        return import_module(MAKERS[name]).readme().strip("\n") + "\n"
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"{name}: results of another form ({error!r})") from None
 
 
 def fill(text: str) -> str:
