@@ -1,1 +1,0 @@
-"""What every chapter of the course shares. Standard library only, and cheap to import."""
