@@ -36,7 +36,6 @@ SLIPS = {
         "max(0, k * x + c * v)": "the damper pushes along with the motion: look up the sign of v_n",
         "max(0, k * x - c * abs(v))": "the damper takes from the push on the way in too",
         "max(0, k * x + c * abs(v))": "the damper adds to the push on the way out too",
-        "max(0, k * x - c * min(0, v))": "the damper works on the way in only",
         "max(0, k * x - c * max(0, v))": "the damper works on the way out only",
         "k * x": "the damper is missing",
         "max(0, -c * v)": "the spring is missing",
@@ -50,7 +49,6 @@ SLIPS = {
         "max(0, dlam)": "only the last correction comes out: what was pushed before is forgotten",
         "max(0, lam - dlam)": "the correction is taken off: dlam is to be added",
         "abs(lam + dlam)": "a negative sum has been turned round into a push",
-        "max(lam, dlam)": "this is the larger of the two, and not their sum",
         "lam": "the correction is not used",
     }),
     "solve_contacts": [
@@ -59,7 +57,6 @@ SLIPS = {
         (solver(total="c.lam + add"), "no clamp: lam may not become negative, a contact never pulls"),
         (solver("c.v_n() - c.target"), "the sign of what is missing: it is target - v_n"),
         (solver("-c.target - c.v_n()"), "the sign of the target"),
-        (solver("-c.v_n()"), "the target is not used"),
         (solver(push="c.a.vx += (lam - c.lam) * c.ax; c.a.vy += (lam - c.lam) * c.ay"),
          "the other body is forgotten: push moves both"),
         (solver(most=1), "one sweep: the neighbours that it disturbs are never mended"),
@@ -73,7 +70,6 @@ SLIPS = {
             "the depth moves with the old velocity: that is explicit Euler",
         "matrix(m, k, -c, dt)": "the sign of the damper",
         "matrix(m, -k, c, dt)": "the sign of the spring: a depth pushes up",
-        "matrix(1, k, c, dt)": "the mass is missing",
         "matrix(m, k, 0, dt)": "the damper is missing",
         "list(zip(*matrix(m, k, c, dt)))": "rows and columns are exchanged",
         "[row[::-1] for row in matrix(m, k, c, dt)[::-1]]":
@@ -84,7 +80,6 @@ SLIPS = {
     "longest_step": table("m, k, c", {
         "2 * sqrt(m / k)": "that is the limit without the damper",
         "(c + sqrt(c * c + 4 * k * m)) / k": "the damper's sign: it should bring the limit nearer",
-        "2 * m / c": "that is the limit without the spring",
         "sqrt(m / k)": "that is half the limit without the damper",
     }),
     "implicit_spring": table("x, k, c, dt", {
@@ -98,6 +93,5 @@ SLIPS = {
         f"({SPRING}, x / dt)": "the target asks for the whole depth, and the damper slows that",
         f"({SPRING}, -dt * k * x * {SPRING})": "the sign of the target: an overlap should open",
         f"(dt * k * x * {SPRING}, {SPRING})": "the order: softness first, then target",
-        "(0, x / dt)": "no softness: that is a hard contact",
     }),
 }

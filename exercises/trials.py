@@ -26,6 +26,7 @@ class Blank(NamedTuple):
     right: Callable         # (case) -> what should come out
     within: float           # of the size of what should come out
     hint: int               # the first hint that helps
+    legend: tuple = ()      # how to read what went in and came out
 
 
 def called(function, case):
@@ -34,21 +35,20 @@ def called(function, case):
 
 
 def force_cases():
-    """Exercise 2: any spring, damper, depth and speed; the borders first."""
+    """Exercise 2: any spring, damper, depth > 0 and speed; a slow and a fast way out first."""
     draw = random.Random(35)
-    edges = [(depth, v_n, 5e3, damping) for damping in (0.0, 80.0) for depth, v_n in (
-        (0.01, 0.0), (0.01, -0.5), (0.01, 0.5), (0.001, 2.0), (0.01, 0.625), (0.001, -1.0))]
+    first = [(0.01, 0.5, 5e3, 80.0), (0.001, 2.0, 5e3, 80.0), (0.01, 0.625, 5e3, 80.0)]
     more = [(draw.uniform(1e-4, 0.05), draw.uniform(-3.0, 3.0), 10.0**draw.uniform(2.0, 5.0),
              draw.uniform(0.0, 300.0)) for _ in range(60)]
-    return [dict(zip(("depth", "v_n", "stiffness", "damping"), case)) for case in edges + more]
+    return [dict(zip(("depth", "v_n", "stiffness", "damping"), case)) for case in first + more]
 
 
 def impulse_cases():
-    """Exercise 2: impulses so far and corrections of either sign; the borders first."""
+    """Exercise 2: impulses so far, and corrections of either sign; the borders first."""
     draw = random.Random(35)
-    edges = [(0.0, 0.0), (0.0, 0.3), (0.2, 0.3), (0.0, -0.3), (0.2, -0.5), (0.2, -0.2), (0.2, -0.1)]
+    first = [(0.0, 0.0), (0.0, 0.3), (0.2, 0.3), (0.0, -0.3), (0.2, -0.5), (0.2, -0.2)]
     more = [(draw.uniform(0.0, 2.0), draw.uniform(-3.0, 3.0)) for _ in range(60)]
-    return [dict(zip(("lam", "dlam"), case)) for case in edges + more]
+    return [dict(zip(("lam", "dlam"), case)) for case in first + more]
 
 
 def stack_cases():
@@ -145,7 +145,9 @@ BLANKS = {
         0.0, case["stiffness"] * case["depth"] - case["damping"] * case["v_n"]), 1e-9, 1),
     "project_impulse": Blank("ex2", impulse_cases, called,
                              lambda case: max(0.0, case["lam"] + case["dlam"]), 1e-9, 3),
-    "solve_contacts": Blank("ex5", stack_cases, run_stack, enumerated, 1e-5, 1),
+    "solve_contacts": Blank("ex5", stack_cases, run_stack, enumerated, 1e-5, 1, (
+        "  these are lam of every contact, then vx and vy of every ball; of a contact you see the",
+        "  upper ball, the lower one (-1: the floor), the angle of its normal, and its target")),
     "step_matrix": Blank("ex6", spring_cases, called, measured_matrix, 1e-6, 1),
     "longest_step": Blank("ex6", lambda: spring_cases("mass", "stiffness", "damping"), called,
                           lambda case: contact.critical_dt(**case), 2e-3, 3),
@@ -161,26 +163,21 @@ def inputs(blank):
 # Judging
 
 
-def flat(value):
-    """What came out, as one row of numbers. Raises TypeError or ValueError where it is none."""
-    if value is None or isinstance(value, str):
-        raise TypeError
-    return np.asarray(value, float).ravel()
-
-
 def outcome(function, blank, case):
-    """(what comes out, None), (..., None) of a blank, or (None, why it cannot be used)."""
+    """What comes out, as a row of numbers; None of a blank. Raises ValueError, in words."""
     try:
         with np.errstate(all="ignore"):
             got = BLANKS[blank].run(function, case)
     except Exception as error:
-        return None, f"{blank} raised {type(error).__name__}: {error}"
+        raise ValueError(f"{blank} raised {type(error).__name__}: {error}") from None
     if got is ... or (isinstance(got, tuple) and any(part is ... for part in got)):
-        return ..., None
+        return None
     try:
-        return flat(got), None
+        if got is None or isinstance(got, str):     # which numpy would take for a number
+            raise TypeError
+        return np.asarray(got, float).ravel()
     except (TypeError, ValueError):
-        return None, f"{blank} returned {got!r:.60}, and not numbers"
+        raise ValueError(f"{blank} returned {got!r:.60}, and not numbers") from None
 
 
 def agree(got, right, within):
@@ -191,84 +188,73 @@ def agree(got, right, within):
 
 
 def slip(blank, found):
-    """What probably went wrong, from the wrong values at all inputs; None if it is new."""
+    """What probably went wrong, from the wrong values at all inputs."""
     for function, meaning in SLIPS[blank]:
-        values = [outcome(function, blank, case)[0] for case in inputs(blank)]
+        values = [outcome(function, blank, case) for case in inputs(blank)]
         if all(agree(np.nan_to_num(got), np.nan_to_num(value), 1e-3)
                for got, value in zip(found, values)):
             return meaning
-    return None
+    return "a slip that this list does not know"
 
 
 def judge(exercise, blank):
     """("blank" or "wrong", why in words) or ("right", None): the learner's function on all inputs."""
-    function, what, found = getattr(exercise, blank), BLANKS[blank], []
-    for case in what.cases():
-        got, trouble = outcome(function, blank, case)
-        if trouble:
-            return "wrong", trouble
-        if got is ...:
-            return "blank", (f"{blank} is still a blank: fill it in {predict.file_of(exercise)}; "
-                             f"--hint {what.hint} asks a question that helps")
-        found.append(got)
-    expected = [flat(what.right(case)) for case in what.cases()]
+    what, cases = BLANKS[blank], inputs(blank)
+    try:
+        found = [outcome(getattr(exercise, blank), blank, case) for case in cases]
+    except ValueError as error:
+        return "wrong", str(error)
+    if any(got is None for got in found):
+        return "blank", (f"{blank} is still a blank: fill it in {predict.file_of(exercise)}; "
+                         f"--hint {what.hint} asks a question that helps")
+    expected = [np.asarray(what.right(case), float).ravel() for case in cases]
     wrong = [k for k, pair in enumerate(zip(found, expected)) if not agree(*pair, what.within)]
-    return ("wrong", fault(exercise, blank, found, expected, wrong)) if wrong else ("right", None)
-
-
-def fault(exercise, blank, found, expected, wrong):
-    """What went in, what came out, what was expected, the likely slip, and where to look."""
-    what, first = BLANKS[blank], wrong[0]
-    given = ", ".join(f"{key}={np.round(value, 4 if blank == 'solve_contacts' else 6).tolist()}"
-                      for key, value in what.cases()[first].items())
+    if not wrong:
+        return "right", None
+    first = wrong[0]
+    given = ", ".join(f"{key}={np.round(value, 6).tolist()}" for key, value in cases[first].items())
     got, right = (" ".join(f"{value:.6g}" for value in row[first]) for row in (found, expected))
     script = predict.command(predict.file_of(exercise), "--hint", what.hint)
-    return "\n".join([
-        f"{blank}({given})", f"  got       {got}", f"  expected  {right}",
-        *["  which is lam of every contact, then vx and vy of every ball; a contact is given as its "
-          "upper ball, its lower one (-1: the floor), the normal's angle, and its target"] * (
-              blank == "solve_contacts"),
+    return "wrong", "\n".join([
+        f"{blank}({given})", f"  got       {got}", f"  expected  {right}", *what.legend,
         f"  wrong on {len(wrong)} of {len(found)} inputs, of which this is the first",
-        f"  likely: {slip(blank, found) or 'a slip that this list does not know'}",
+        f"  likely: {slip(blank, found)}",
         f"  where to look: the signs at the top of contact.py, or {script}"])
 
 
 # Trials: what the fills do to balls
 
 
-def scene(*centres, held=0, speed=0.0):
-    """A scene of balls of 1 kg at these centres (x, y) [m]; the last `held` of them stay there.
+def lcp_heights(*centres, held=0, speed=0.0):
+    """x, y over 600 steps of lcp, in radii, of balls of 1 kg at these centres [m].
 
-    The first ball starts upwards with that speed [m/s].
+    The last `held` of them stay there; the first starts upwards with that speed [m/s].
     """
     count = len(centres)
     mass = np.array([1.0] * (count - held) + [np.inf] * held)
     v0 = np.zeros((2, count))
     v0[1, 0] = speed
-    return contact.Scene("trial", np.array(centres).T.copy(), v0, mass, np.full(count, 0.1), 0.0,
-                         60.0)
-
-
-def lcp_run(of):
-    """Where the balls are over 600 steps of lcp, in radii; contact.py's own loops."""
+    of = contact.Scene("trial", np.array(centres).T, v0, mass, np.full(count, 0.1), 0.0, 0.0)
     return contact.simulate(lambda balls: contact.lcp_step(balls, 0.002, 0.0, 0.2, 40),
                             of, 0.002, 600).q / 0.1
 
 
 def pressed():
     """A ball is pressed into the table and let go: how high it jumps."""
+    drop = contact.build_scene("drop")
     return contact.simulate(lambda balls: contact.penalty_step(balls, 0.001, 8e3, 60.0),
-                            scene((0.0, 0.07)), 0.001, 1000).q[:, 1].max() / 0.1 - 1.0
+                            drop._replace(q0=np.array([[0.0], [0.07]])), 0.001,
+                            1000).q[:, 1].max() / 0.1 - 1.0
 
 
 def thrown():
     """A ball is thrown up from the table: how high it comes."""
-    return lcp_run(scene((0.0, 0.1), speed=2.0))[:, 1].max() - 1.0
+    return lcp_heights((0.0, 0.1), speed=2.0)[:, 1].max() - 1.0
 
 
 def groove():
     """A ball drops into the groove of two balls that are held: how far off it ends."""
-    return abs(lcp_run(scene((0.0, 0.6), (-0.07, 0.1), (0.07, 0.1), held=2))[-1, 0, 0])
+    return abs(lcp_heights((0.0, 0.6), (-0.07, 0.1), (0.07, 0.1), held=2)[-1, 0, 0])
 
 
 TRIALS = {"penalty_normal_force": (pressed,), "project_impulse": (thrown, groove),
@@ -365,19 +351,19 @@ def judge_fingers(exercise):
                          "'penalty' or 'soft', 0.00001 to 0.1 s, above 0 N/m")
     seen = fingers(exercise)
     print("overlap {deepest:.2g} r, trembling {trembling:.2g} r, {steps} steps".format(**seen))
-    faults = [words for words, ok in (
-        ("it takes more than 2,000 steps", seen["steps"] <= 2000),
-        ("the cup is gone: the fingers flew off or went through it", seen["held"]),
-        ("it trembles", seen["trembling"] < 1e-5 or not seen["held"]),
-        ("it overlaps too much", seen["deepest"] < 1e-3 or not seen["held"])) if not ok]
+    faults = [words for words, wrong in (
+        ("it takes more than 2,000 steps", seen["steps"] > 2000),
+        ("the cup is gone: the fingers flew off or went through it", not seen["held"]),
+        ("it trembles", seen["held"] and not seen["trembling"] < 1e-5),
+        ("it overlaps too much", seen["held"] and not seen["deepest"] < 1e-3)) if wrong]
     if not faults:
         return "right", None
-    limit = contact.critical_dt(0.1, k, exercise.DAMPING)
-    return "wrong", f"{', and '.join(faults)}. " + (
-        f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and with a finger and a cup on "
-        f"it, it wants steps below about {limit:.1g} s." if model == "penalty" else
-        "A shorter time constant (at least two steps) stiffens soft, and a higher impedance lets "
-        "less of the squeeze through.")
+    advice = ("a shorter time constant (at least two steps) stiffens soft, and a higher impedance "
+              "lets less of the squeeze through")
+    if model == "penalty":
+        advice = (f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and a finger on a cup "
+                  f"wants steps below {contact.critical_dt(0.1, k, exercise.DAMPING):.1g} s")
+    return "wrong", f"{', and '.join(faults)}; {advice}"
 
 
 # The scripts
