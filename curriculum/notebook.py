@@ -14,6 +14,7 @@ import hashlib
 import io
 import re
 import sys
+import textwrap
 import zipfile
 
 import contact
@@ -87,7 +88,7 @@ class Book:
             raise ValueError(
                 f"{CHAPTER.name}: there is no region {file}#{name}; known: {[*regions]}"
             )
-        code = MAIN.sub("", regions[name].code).strip()
+        code = textwrap.dedent(MAIN.sub("", regions[name].code)).strip()
         if file == "contact.py":
             self.add("code", f"# contact.py, region {name}\n{code}")
         else:
