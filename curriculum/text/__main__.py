@@ -41,7 +41,7 @@ def main(argv=None) -> int:
         return refuse(f"the gate needs {package}, which is missing: pip install -e '.[dev]'")
     except SyntaxError as error:
         return refuse(f"{error.filename}:{error.lineno}: not Python: {error.msg}")
-    except ValueError as error:
+    except (OSError, ValueError) as error:
         return refuse(error)
 
 
