@@ -15,13 +15,13 @@ const lineUp = (n) => ({ x: [0, 0.6, 1.15], vx: [0, 0, -1], mass: [Infinity, 1, 
 const gapsOf = (run, row) => [1, 2].map((i) => run.x[3 * row + i] - run.x[3 * row + i - 1] - 2 * R);
 
 // Without a weight, so that all impacts lie in one line.
-export const byExact = kept((n) => {
+const byExact = kept((n) => {
   const run = runExact(scene([5, 5, 5], lineUp(n)), { dt: SECONDS / ROWS }, ROWS, 0);
   return { run, times: run.events.map((each) => each.t) };
 });
 
 // lcp has a floor and a weight; an impact is a step that changes the light block's speed along it.
-export const byLcp = kept((n, knobs) => {
+const byLcp = kept((n, knobs) => {
   const steps = Math.ceil(SECONDS / knobs.dt);
   const run = runModel("lcp", scene([R, R, R], lineUp(n)), { ...knobs, restitution: 1 }, steps);
   const times = [];

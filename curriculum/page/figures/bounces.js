@@ -7,7 +7,7 @@ const ROWS = 600;
 const LAND = Math.sqrt((2 * (START - R)) / G); // s
 
 // When all bounces are over [s], and when the k-th (from 1) is at its top.
-export const over = (e) => (LAND * (1 + e)) / (1 - e);
+const over = (e) => (LAND * (1 + e)) / (1 - e);
 const top = (e, k) => LAND * (1 + (2 * e * (1 - e ** (k - 1))) / (1 - e) + e ** k);
 
 const run = kept((e, until) => runModel("exact", scene([START], { restitution: e }), { dt: until / ROWS }, ROWS));
@@ -43,7 +43,6 @@ export const figure = {
   height: 250,
   uses: ["restitution"],
   shows: { scene: "bounce", restitution: 0.7 },
-  start: () => ({}),
   draw,
   drag: (view, name, x, y) => set(view, Math.sqrt(Math.max(0, view.own.heightAt(y) - R) / (START - R))),
   nudge: (view, name, dx, dy) => set(view, view.get("restitution") + 0.01 * (dx - dy)),

@@ -6,7 +6,7 @@ import { handle, kept, label, shift, tidy, within } from "../parts.js";
 const SIDES = [-1, 1];
 
 // The ball's velocity after 20 sweeps in a groove of two held balls, reached with (vx, vy).
-export function leaves(vx, vy, project) {
+function leaves(vx, vy, project) {
   const contacts = [1, 2].map((j) => ({ i: 0, j, nx: j === 1 ? 0.6 : -0.6, ny: 0.8, depth: 0 }));
   const rows = makeRows(contacts, [1, Infinity, Infinity], [0, 0], [0, 0]);
   const [x, y] = [[vx, 0, 0], [vy, 0, 0]];

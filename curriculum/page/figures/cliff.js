@@ -91,7 +91,6 @@ export const figure = {
   knobs: ["stiffness", "damping"],
   uses: ["dt"],
   shows: { dt: 0.03 },
-  start: () => ({}),
   jobs: {
     curve([stiffness, damping, low, high]) {
       const xs = logGrid(low, high, 49);

@@ -9,7 +9,7 @@ const APART = 1e-3; // r: the gap where the impacts come one after another
 const QUARTER = (Math.PI / 2) * Math.sqrt(LENGTH / G); // s of a small swing down
 
 // The speeds after the first ball has come in with `speed`; no weight to speak of while they strike.
-export const strike = kept((speed, apart) => {
+const strike = kept((speed, apart) => {
   const x = Array.from({ length: COUNT }, (_, i) => i * (2 + (apart ? APART : 0)) * R);
   x[0] -= 1e-3 * R;
   const balls = scene(x.map(() => 0.5), { x, vx: x.map((_, i) => (i ? 0 : speed)), restitution: 1 });

@@ -7,7 +7,7 @@ const ELASTIC = 1; // the restitution of all three
 const MOST = 3.5; // m/s
 
 // The speeds after the impact of three touching balls in a row; `repair`: no target below zero.
-export const struck = kept((speeds, repair) => {
+const struck = kept((speeds, repair) => {
   const [vx, vy] = [speeds.slice(), [0, 0, 0]];
   const contacts = [0, 1].map((i) => ({ i: i + 1, j: i, nx: 1, ny: 0, depth: 0 }));
   const wanted = contacts.map((c) => -ELASTIC * normalSpeed(c, vx, vy));
@@ -15,7 +15,7 @@ export const struck = kept((speeds, repair) => {
   solveContacts(makeRows(contacts, [1, 1, 1], targets, [0, 0]), vx, vy, { iters: 1000 });
   return vx;
 });
-export const energy = (speeds) => speeds.reduce((sum, v) => sum + 0.5 * v * v, 0);
+const energy = (speeds) => speeds.reduce((sum, v) => sum + 0.5 * v * v, 0);
 
 const layout = (view) => {
   const r = Math.min(26, view.width / 13);

@@ -10,7 +10,7 @@ const ARRIVES = Math.sqrt(2 * G * (START - R)); // m/s
 const floorOf = (view) => view.height - 46;
 
 // The two wishes [m/s] for a ball that is found so deep [r].
-export function wishes(depth, { restitution, baumgarte, dt }) {
+function wishes(depth, { restitution, baumgarte, dt }) {
   return { bounce: restitution * ARRIVES, bias: (baumgarte / dt) * depth * R };
 }
 

@@ -1,6 +1,6 @@
 /* One long step by hand: what it does to place and speed is a 2 x 2 matrix; its eigenvalues say whether
  * the next steps grow. */
-import { el, mark, number, plot } from "../draw.js";
+import { el, mark, number } from "../draw.js";
 import { criticalDt, runModel } from "../engine.js";
 import { alongAxis, axis, charted, handle, kept, label, line, R, scene, shift, tidy, within } from "../parts.js";
 
@@ -11,13 +11,13 @@ const FINE = 2e-5; // s
 const TEXT = 56; // px below the chart
 
 // Depth x and upward speed v after one step from (x, v), x from the place of rest: mass 1, no clamp.
-export const stepMatrix = (dt, k, c) => [
+const stepMatrix = (dt, k, c) => [
   [1 - k * dt * dt, -dt * (1 - c * dt)],
   [k * dt, 1 - c * dt],
 ];
 
 // The eigenvalues of a 2 x 2 matrix, as [real, imaginary] each.
-export function eigenvalues([[a, b], [c, d]]) {
+function eigenvalues([[a, b], [c, d]]) {
   const square = ((a - d) / 2) ** 2 + b * c;
   const root = Math.sqrt(Math.abs(square));
   return [root, -root].map((part) => (square < 0 ? [(a + d) / 2, part] : [(a + d) / 2 + part, 0]));
@@ -94,7 +94,6 @@ export const figure = {
   height: 310,
   uses: ["dt", "stiffness", "damping"],
   shows: { dt: 0.016 },
-  start: () => ({}),
   draw,
   ...alongAxis((view, share) => set(view, share * LONGEST), (view, by) => set(view, view.get("dt") + 0.0005 * by)),
 };

@@ -15,7 +15,7 @@ const WAYS = {
 };
 
 // Spring and damper taken at the end of the step: lam = dt (k (depth - dt v_n) - c v_n).
-export function implicit(k, c, depth, dt) {
+function implicit(k, c, depth, dt) {
   const softness = 1 / (k * dt * dt + c * dt);
   return { softness, target: dt * k * depth * softness };
 }
@@ -105,7 +105,6 @@ export const figure = {
     "A spring taken at the end of the step, MuJoCo’s contact and other engines’ are lcp’s sweep with a softness R, and at rest their targets lie on one line: drag the spring or soft along it.",
   height: 330,
   uses: ["stiffness", "damping", "dt", "impedance", "timeconst", "dampratio"],
-  start: () => ({}),
   draw,
   ...alongAxis(put, step),
 };

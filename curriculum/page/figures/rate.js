@@ -1,5 +1,5 @@
 /* How many sweeps a resting tower takes to a millionth: with its height, and with its uppermost ball's mass. */
-import { ball, number, table } from "../draw.js";
+import { ball, table } from "../draw.js";
 import { makeRows, normalSpeed, solveContacts } from "../engine.js";
 import { axis, beside, handle, kept, label, scene, whole, within } from "../parts.js";
 
@@ -9,7 +9,7 @@ const RATIOS = [1, 10, 100, 1000];
 const MOST = 50000;
 
 // Sweeps until no contact of a resting tower closes or opens faster than CLOSE; speeds in g dt.
-export const sweepsOf = kept((count, ratio) => {
+const sweepsOf = kept((count, ratio) => {
   const mass = Array.from({ length: count }, (_, i) => (i === count - 1 ? ratio : 1));
   const contacts = mass.map((_, i) => ({ i, j: i - 1, nx: 0, ny: 1, depth: 0 }));
   const none = mass.map(() => 0);

@@ -9,7 +9,7 @@ const degrees = (angle) => `${((angle * 180) / Math.PI).toFixed(1)}°`;
 
 /* The upper ball's path from this angle on, and where it leaves: in the middle of the last row in which
  * something else than gravity has changed its velocity. */
-export const slides = kept((angle) => {
+const slides = kept((angle) => {
   const x = [0, 2 * R * Math.sin(angle)];
   const balls = scene([MIDDLE, MIDDLE + 2 * R * Math.cos(angle)], { x, mass: [Infinity, 1] });
   const steps = Math.round(0.9 / DT);

@@ -8,7 +8,7 @@ const ABOVE = 1.6; // r: how high a ball can be lifted
 const floorOf = (view) => view.height - 40;
 
 // Heights [m] of balls at rest on springs of stiffness k, from `from` up lifted by `lift` [r].
-export function restingHeights(k, from, lift) {
+function restingHeights(k, from, lift) {
   const heights = [];
   let surface = 0;
   const free = lift > 0 ? from : COUNT;

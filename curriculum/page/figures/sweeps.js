@@ -9,7 +9,7 @@ const names = ["ball 1 on the table", "ball 2 on ball 1", "ball 3 on ball 2"];
 
 /* What the sweeps do, contact by contact: [{contact, wanted, lam, vy}], impulses in m g dt and speeds in
  * g dt. All balls have fallen for one step; the uppermost has the speed `top` besides. */
-export const course = kept((top) => {
+const course = kept((top) => {
   const balls = scene([R, 3 * R, 5 * R]);
   const contacts = [0, 1, 2].map((i) => ({ i, j: i - 1, nx: 0, ny: 1, depth: 0 }));
   const rows = makeRows(contacts, balls.mass, [0, 0, 0], [0, 0, 0]);
