@@ -4,6 +4,8 @@ Each returns {name: number}; the text quotes one as {{fact:tower_sweeps.20}}.
 """
 
 import math
+from functools import partial
+from unittest.mock import patch
 
 import numpy as np
 
@@ -53,17 +55,10 @@ def implicit_spring():
     return found
 
 
-def _column(masses, speed=0.0):
-    """(balls, contacts) of balls that lie upon one another, touching."""
-    balls = [
-        contact.Ball(0.0, 0.1 + 0.2 * k, 0.0, speed, mass, 0.1) for k, mass in enumerate(masses)
-    ]
-    return balls, contact.detect_contacts(balls, margin=1e-6)
-
-
 def _sweeps(masses):
     """How many sweeps bring a column at rest to a millionth of what gravity adds in a step."""
-    balls, contacts = _column(masses)
+    balls = [contact.Ball(0.0, 0.1 + 0.2 * k, 0.0, 0.0, m, 0.1) for k, m in enumerate(masses)]
+    contacts = contact.detect_contacts(balls, margin=1e-6)
     contact.accelerate(balls, DT)
     count, enough = 0, -1e-6 * contact.GRAVITY * DT
     while max(abs(c.v_n()) for c in contacts) > enough:
@@ -84,48 +79,35 @@ def ratio_sweeps():
 
 def soft_sweeps():
     """Sweeps a step until soft's stack of three settles, from nothing and from the step before."""
-    scene, found = contact.build_scene("stack"), {}
-    solref, solimp = contact.soft_defaults(0.0, DT)
-    for name in ("cold", "warm"):
-        balls, count = contact.make_balls(scene), 0
-        for _ in range(1000):
-            contacts = contact.detect_contacts(balls, margin=0.0)
-            for c in contacts:
-                contact.soften(c, DT, solref, solimp)
-            contact.accelerate(balls, DT)
-            speeds = [abs(ball.vy) for ball in balls] + [abs(c.target) for c in contacts]
-            if name == "warm":
-                contact.warm_start(contacts)
-            settled = not contacts
-            while not settled:
-                settled = contact.solve_contacts(contacts, 1, contact.LAST_BITS * max(speeds))
+    scene, solve, found = contact.build_scene("stack"), contact.solve_contacts, {}
+    for name, start in (("cold", lambda contacts: None), ("warm", contact.warm_start)):
+        sweeps = []
+
+        def counted(contacts, iters, tolerance, sweeps=sweeps):
+            count = 1
+            while not solve(contacts, 1, tolerance):
                 count += 1
-            contact.remember(balls, contacts)
-            contact.move(balls, DT)
-        found[name] = count / 1000
+            sweeps.append(count)
+
+        with patch.multiple(contact, warm_start=start, solve_contacts=counted):
+            contact.run_model("soft", scene, DT, 1000, contact.Settings(skip=False))
+        found[name] = sum(sweeps) / len(sweeps)
     return found
 
 
 def margin():
-    """lcp's worst height error [r] with its margin and without one, by scene."""
-    found = {}
+    """lcp's worst height error [r] with its margin and without one, and the jitter, by scene."""
+    detect, found = contact.detect_contacts, {}
     for name in ("stack", "bounce"):
         scene = contact.build_scene(name)
         exact = contact.run_model("exact", scene, DT, 2000)
-        for width in (contact.CONTACT_MARGIN, 0.0):
-
-            def step(balls, width=width, e=scene.restitution):
-                contacts = contact.detect_contacts(balls, width)
-                for c in contacts:
-                    c.target = contact.contact_target(c, e, 0.2, DT)
-                contact.accelerate(balls, DT)
-                contact.solve_contacts(contacts, 20)
-                contact.move(balls, DT)
-
-            run = contact.simulate(step, scene, DT, 2000, skip=False)
+        for way, width in (("with", contact.CONTACT_MARGIN), ("without", 0.0)):
+            seen = partial(detect, margin=width)
+            with patch.object(contact, "detect_contacts", seen):
+                run = contact.run_model("lcp", scene, DT, 2000, contact.Settings(skip=False))
             quality = contact.contact_quality(run, scene, DT, exact)
-            found[f"{name}_{'with' if width else 'without'}"] = quality["height_error_frac"]
-            found[f"{name}_jitter_{'with' if width else 'without'}"] = quality["rest_jitter"]
+            found[f"{name}_{way}"] = quality["height_error_frac"]
+            found[f"{name}_jitter_{way}"] = quality["rest_jitter"]
     return found
 
 
@@ -134,16 +116,16 @@ def order():
     scene, found = contact.build_scene("pile", bodies=8), {}
     start = contact.run_model("lcp", scene, DT, 400)
     scene = scene._replace(q0=start.q[-1], v0=start.v[-1])
+    detect = contact.detect_contacts
     for sweeps in (20, 20_000):
         ends = []
         for way in (1, -1):
             balls = contact.make_balls(scene)
-            contacts = contact.detect_contacts(balls)
-            for c in contacts:
-                c.target = contact.contact_target(c, 0.0, 0.2, DT)
-            contact.accelerate(balls, DT)
-            contact.solve_contacts(contacts[::way], sweeps)
-            ends.append(np.array(contact.state_of(balls)))
+            with patch.object(
+                contact, "detect_contacts", lambda balls, way=way: detect(balls)[::way]
+            ):
+                contact.lcp_step(balls, DT, 0.0, 0.2, sweeps)
+            ends.append(np.array(contact.state_of(balls)).reshape(-1, 4)[:, 2:])
         found[str(sweeps)] = float(np.abs(ends[0] - ends[1]).max())
     return found
 
@@ -206,16 +188,11 @@ def crowd():
 def slide():
     """cos of the angle at which a ball leaves a fixed one, over cos at the start, by model."""
     found, start, dt = {}, math.radians(20.0), 1e-4
-    scene = contact.Scene(
-        "slide",
-        np.array([[0.0, 0.2 * math.sin(start)], [1.0, 1.0 + 0.2 * math.cos(start)]]),
-        np.zeros((2, 2)),
-        np.array([math.inf, 1.0]),
-        np.full(2, 0.1),
-        0.0,
-        80.0,
+    x, y = 0.2 * math.sin(start), 0.2 * math.cos(start)
+    scene = contact.build_scene("stack", bodies=2)._replace(
+        q0=np.array([[0.0, x], [1.0, 1.0 + y]]), mass=np.array([math.inf, 1.0])
     )
-    for model in contact.MODELS:
+    for model in ("penalty", "exact"):
         run = contact.run_model(model, scene, dt, 7000)
         gained = np.diff(run.v[:, :, 1], axis=0) - [0.0, dt * contact.GRAVITY]
         last = np.flatnonzero((np.hypot(*gained.T) > 1e-9) & (run.q[:-1, 1, 1] > 0.5))[-1]
@@ -225,26 +202,15 @@ def slide():
 
 
 def blocks():
-    """How often the light block's speed changes between a wall and a block 100^n times as heavy.
+    """How often exact changes the light block's speed, between a wall and one 100^n times as heavy.
 
-    Samples are 0.02 ms apart, so that no two impacts fall between them; lcp takes steps of 2 ms.
+    Samples are 0.02 ms apart, so that no two impacts fall between them.
     """
     found = {}
-    for n, dt, model in (
-        (0, 2e-5, "exact"),
-        (1, 2e-5, "exact"),
-        (2, 2e-5, "exact"),
-        (2, 1e-4, "lcp"),
-    ):
-        scene = contact.Scene(
-            "blocks",
-            np.array([[0.0, 1.0, 2.0], [0.1, 0.1, 0.1]]),
-            np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 0.0]]),
-            np.array([math.inf, 1.0, 100.0**n]),
-            np.full(3, 0.1),
-            1.0,
-            0.0,
-        )
-        run = contact.run_model(model, scene, dt, round(7.0 / dt))
-        found[f"{model}_{100**n}"] = int((np.abs(np.diff(run.v[:, 0, 1])) > 1e-9).sum())
+    x, v = np.array([[0.0, 1.0, 2.0], [0.1, 0.1, 0.1]]), np.array([[0.0, 0.0, -1.0], [0.0] * 3])
+    for n in (0, 1, 2):
+        scene = contact.build_scene("stack", restitution=1.0)
+        scene = scene._replace(q0=x, v0=v, mass=np.array([math.inf, 1.0, 100.0**n]))
+        run = contact.run_model("exact", scene, 2e-5, 350_000)
+        found[f"exact_{100**n}"] = int((np.abs(np.diff(run.v[:, 0, 1])) > 1e-9).sum())
     return found
