@@ -2,7 +2,8 @@
 
     python -m curriculum.stress                         everything; writes curriculum/stress/results
     python -m curriculum.stress --quick                 under a minute, for CI; into outputs/stress-quick
-    python -m curriculum.stress --small --first         small scenes alone, up to the first violation
+    python -m curriculum.stress --scheduler HOST:PORT   on the workers of a dask scheduler
+    python -m curriculum.stress --small 300             small scenes alone, to the first violation
     python -m curriculum.stress --scene small:17        what every property says of one scene
 
 Exit status 0: no violation; 1: violations; 2: bad command line.
@@ -19,23 +20,18 @@ import contact
 from curriculum import pool
 from curriculum.stress import jobs
 
-SCENES, SMALL, QUICK, QUICK_SMALL = 10_000, 1_000, 60, 100
+FULL, QUICK = (10_000, 1_000), (60, 100)  # random scenes of up to 30 balls, and of up to four
 
 
 def parse(argv):
     """The checked command line."""
     parser = contact.Parser(prog="python -m curriculum.stress", description=__doc__)
     flag, number = parser.add_argument, contact.number(int, 1, 1e6)
-    flag(
-        "--quick", action="store_true", help="a hundredth of it, for CI; into outputs/stress-quick"
-    )
+    flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
     flag("--workers", type=number, metavar="N", help="processes (all cores)")
     flag("--scheduler", metavar="HOST:PORT", help="run on the workers of this dask scheduler")
-    flag("--scenes", type=number, metavar="N", help=f"how many random scenes ({SCENES})")
-    flag("--small", action="store_true", help="scenes of up to four balls alone; no report")
-    flag("--first", action="store_true", help="with --small: one process, to the first violation")
+    flag("--small", type=number, metavar="N", help="small scenes alone, to the first violation")
     flag("--scene", type=scene, metavar="[small:]NUMBER", help="what all properties say of it")
-    flag("--draw", action="store_true", help="README.md and figures again, from results.json")
     return parser.parse_args(argv)
 
 
@@ -65,31 +61,31 @@ def show(violations):
     return 1 if violations else 0
 
 
-def small_scenes(args):
-    """The properties on small scenes alone. Returns the exit status."""
-    todo = jobs.scene_jobs(args.scenes or SMALL, small=True)
-    if not args.first:
-        found = pool.spread(jobs.run, todo, "small scenes", args.workers, args.scheduler)
-        return show(jobs.added_up(found)["violations"])
-    for job in todo:
+def small_scenes(count):
+    """The properties on so many small scenes, to the first violation. Returns the exit status."""
+    for job in jobs.scene_jobs(count, small=True):
         violations = jobs.run(job)["violations"]
         if violations:
             return show(violations[:1])
     return 0
 
 
-def all_jobs(args):
-    """{section: its jobs} of a full or quick run."""
-    from curriculum.stress import extremes, maps, mujoco_match
+def everything(args):
+    """A full or quick run, and its report. Returns the exit status."""
+    from curriculum.stress import extremes, maps, mujoco_match, report
 
-    quick = args.quick
-    return {
-        "scenes": jobs.scene_jobs(args.scenes or (QUICK if quick else SCENES)),
-        "small": jobs.scene_jobs(QUICK_SMALL if quick else SMALL, small=True),
-        "maps": maps.map_jobs(quick),
-        "extremes": list(extremes.extreme_jobs(quick)),
-        "mujoco": mujoco_match.match_jobs(quick),
+    large, small = QUICK if args.quick else FULL
+    sections = {
+        "scenes": jobs.scene_jobs(large),
+        "small": jobs.scene_jobs(small, small=True),
+        "maps": maps.map_jobs(args.quick),
+        "extremes": list(extremes.extreme_jobs(args.quick)),
+        "mujoco": mujoco_match.match_jobs(args.quick),
     }
+    todo = [job for given in sections.values() for job in given]
+    found = iter(pool.spread(jobs.run, todo, "stress", args.workers, args.scheduler))
+    results = {name: [next(found) for _ in given] for name, given in sections.items()}
+    return show(report.write(results, report.QUICK if args.quick else report.RESULTS))
 
 
 def main(argv=None):
@@ -97,20 +93,7 @@ def main(argv=None):
     args = parse(argv)
     if args.scene:
         return show_scene(args.scene)
-    if args.small:
-        return small_scenes(args)
-    from curriculum.stress import report
-
-    if args.draw:
-        return report.draw()
-    sections = all_jobs(args)
-    todo = [(name, job) for name, given in sections.items() for job in given]
-    found = pool.spread(jobs.run, [job for _, job in todo], "stress", args.workers, args.scheduler)
-    results = {name: [] for name in sections}
-    for (name, _), result in zip(todo, found):
-        results[name].append(result)
-    command = " ".join(["python -m curriculum.stress", *(sys.argv[1:] if argv is None else argv)])
-    return show(report.write(results, command, report.QUICK if args.quick else report.RESULTS))
+    return small_scenes(args.small) if args.small else everything(args)
 
 
 if __name__ == "__main__":

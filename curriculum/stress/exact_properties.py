@@ -6,7 +6,7 @@ The bounds are its promises, not derived. Nothing is claimed where it promises n
 import numpy as np
 
 import contact
-from curriculum.stress.claims import chosen, stated, unlike
+from curriculum.stress.claims import chosen, stated
 from curriculum.stress.trial import G, inverse
 
 PROMISE = 1e-12  # of a radius, and of the energy at the start
@@ -51,17 +51,6 @@ def exact_keeps_momentum_along_x(trial):
         pushed = np.abs(np.diff(trial.exact.v[:, 0], axis=0)).max(1) > 0.0
         size = np.sqrt(2.0 * trial.mass.sum() * start_energy(trial))
         yield "momentum [kg m/s]", np.abs(momentum[1:] - momentum[0])[pushed], PROMISE * size
-
-
-@stated
-def exact_does_not_know_dt(trial):
-    """exact: half as many samples are the same bits. A sample is read out, it changes nothing."""
-    half = len(trial.exact.t) // 2 if trial.exact and len(trial.mass) <= 6 else 0
-    if half > 1:
-        twice = 2.0 * trial.dt
-        other = contact.run_model("exact", trial.scene, twice, half - 1, contact.Settings())
-        kept = contact.Run(*(row[: 2 * half - 1 : 2] for row in trial.exact[:3]))
-        yield "samples", *unlike(kept, other)
 
 
 @stated

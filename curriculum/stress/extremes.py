@@ -35,7 +35,7 @@ TOGETHER = (
 
 def extreme_jobs(quick):
     """A job for every flag and scene; quick: the drop alone, every third value."""
-    for scene in ("drop",) if quick else ("drop", "bounce", "stack", "pile"):
+    for scene in ("drop",) if quick else ("drop", "bounce", "stack", "pile --bodies 5"):
         for flag, values in FLAGS.items():
             tried = list(values)[:: 3 if quick else 1]
             yield "extremes:run", [f"--scene {scene} {flag} {value}" for value in tried]

@@ -12,8 +12,8 @@ DEPTHS = (0.03, 0.1, 0.3)  # r
 
 
 def draw(section):
-    """{file name: SVG text} of the three maps."""
-    makers = {"penalty-map": penalty_map, "lcp-depth": lcp_depth, "soft-map": soft_map}
+    """{file name: SVG text} of the maps."""
+    makers = {"penalty-map": penalty_map, "soft-map": soft_map}
     return {f"{name}.svg": plotting.svg(make(section), section) for name, make in makers.items()}
 
 
@@ -62,26 +62,6 @@ def penalty_map(section):
         axis.set(ylabel="stiffness k [N/m]", title=title)
     axes[0].get_legend().remove()
     axes[0].set_xlabel("")
-    return figure
-
-
-def lcp_depth(section):
-    """How deep lcp gets over dt, without and with bounces."""
-    figure, (axis,) = plotting.figure(
-        title="lcp: how deep the ball gets",
-        below=0.55,
-        explained="The landing step decides it: neither e nor the Baumgarte gain makes it deeper. "
-        f"Worst of {maps.SEEDS} start heights.",
-    )
-    dt = section["lcp"][0]["dt"]
-    speed = np.sqrt(2.0 * maps.G * (float(maps.SCENE.q0[1, 0]) - maps.R))
-    steps = [speed * step / maps.R for step in dt]
-    axis.plot(dt, steps, color=plotting.PALE, label="impact speed times dt")
-    for row, marker in zip(section["lcp"], "ox"):
-        plotting.line(axis, dt, row["depth"], "lcp", f"e = {row['at'][0]:g}", ls="", marker=marker)
-    over_dt(axis, dt)
-    axis.set_ylabel("deepest penetration [r]")
-    plotting.legend_below(axis, down=0.16)
     return figure
 
 

@@ -2,9 +2,8 @@
 
 from importlib import import_module
 
-import curriculum.stress.exact_properties
-import curriculum.stress.properties  # noqa: F401 (both register what they state)
-from curriculum.stress import scenes
+import curriculum.stress.exact_properties  # noqa: F401 (registers what it states)
+from curriculum.stress import properties, scenes
 from curriculum.stress.claims import PROPERTIES, judge
 from curriculum.stress.trial import Trial
 
@@ -66,7 +65,7 @@ def added_up(found):
         "properties": totals,
         "violations": [violation for each in found for violation in each["violations"]],
         "notes": {what: len(cases) for what, cases in sorted(notes.items())},
-        "unfinished": unfinished(notes.get("unfinished", []), totals),
+        "unfinished": unfinished(notes.get(properties.UNFINISHED, []), totals),
     }
 
 

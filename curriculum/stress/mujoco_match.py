@@ -14,13 +14,7 @@ from curriculum.stress.jobs import row
 OPTIONS = 'tolerance="0" iterations="1000" ls_iterations="200"'
 DTS = (0.0005, 0.002, 0.008, 0.016)
 GAP = 0.005  # m between the balls of a stack
-CURVES = (  # of solimp; MuJoCo raises a d0 of 0 to 0.0001
-    (0.0, 0.95, 0.001, 0.5, 2.0),
-    (0.5, 0.99, 0.01, 0.3, 3.0),
-    (0.9, 0.95, 0.0, 0.5, 2.0),
-    (0.2, 0.9, 0.005, 0.7, 1.0),
-    (0.2, 0.9, 0.005, 0.4, 2.5),
-)
+CURVES = (0.0, 0.95, 0.001, 0.5, 2.0), (0.9, 0.95, 0.0, 0.5, 2.0), (0.2, 0.9, 0.005, 0.4, 2.5)
 STEP_LIMIT, FREE_LIMIT = (1e-14, 1e-12), 1e-11  # m and m/s of one step; m of a run
 STRIDE = 20  # every so manieth state is stepped from
 
@@ -72,9 +66,8 @@ def apart_in_a_step(case, q, v):
         balls = contact.make_balls(case.scene._replace(q0=q[k], v0=v[k]))
         contact.soft_step(balls, case.dt, *case.knobs())
         ends = np.reshape(contact.state_of(balls), (-1, 4)).T
-        off = np.maximum(
-            off, (np.abs(ends[:2] - q[k + 1]).max(), np.abs(ends[2:] - v[k + 1]).max())
-        )
+        apart = np.abs(ends - np.concatenate((q[k + 1], v[k + 1])))
+        off = np.maximum(off, (apart[:2].max(), apart[2:].max()))
     return off.tolist()
 
 
@@ -123,8 +116,6 @@ def run(number):
     case = list(cases())[number]
     step_q, step_v, free_q = compare(case)
     ok = step_q <= STEP_LIMIT[0] and step_v <= STEP_LIMIT[1] and free_q <= FREE_LIMIT
-    expected = (
-        f"a step within {STEP_LIMIT[0]:g} m, {STEP_LIMIT[1]:g} m/s; a run within {FREE_LIMIT:g} m"
-    )
+    expected = f"a step within {STEP_LIMIT} m, m/s; a run within {FREE_LIMIT} m"
     got = f"{step_q:.1e} m, {step_v:.1e} m/s; {free_q:.1e} m"
     return {"rows": [row(f"{case.what}, dt {case.dt:g}, {case.steps} steps", expected, got, ok)]}

@@ -16,6 +16,7 @@ HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the impedance of soft where it bounc
 MUJOCO = (0.9, 0.95, 0.001, 0.5, 2.0), (0.02, 1.0)  # and where it does not, with its spring
 NOTABLE = 1e-9  # share of the energy; what unfinished sweeps add ends below it
 MOST = 2**17  # sweeps, by which it must have ended
+UNFINISHED = "lcp: unfinished sweeps add energy, without any push of Baumgarte's"
 
 
 # --- all models ---------------------------------------------------------------------------------
@@ -163,7 +164,7 @@ def lcp_target(motion, e, beta):
 
 @stated
 def a_contact_alone_leaves_at_its_target(trial):
-    """lcp: a contact with no neighbour leaves at max(v_n after gravity, target); a push is n lam.
+    """lcp: a contact with no neighbour leaves at max(v_n after gravity, target).
 
     Bound: 8 U a sweep of the speeds, and of the lengths that make the target.
     """
@@ -206,7 +207,7 @@ def enough_sweeps_solve_the_step(trial):
     """
     motion = trial.motions["lcp"]
     for k in [] if trial.fixed.any() else sampled(motion)[-1:]:
-        start = dict(zip(("x", "y", "vx", "vy"), [*motion.q[k].tolist(), *motion.v[k].tolist()]))
+        start = scenes.state(motion.q[k], motion.v[k])
         less, more = (trial.run("lcp", **start, steps=1, iters=2**n).v[1] for n in (13, 14))
         moved, top = np.abs(more - less).max(), motion.top[k].max()
         if moved > NOTABLE * top:
@@ -264,14 +265,14 @@ def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
         yield "rise [J]", rise[pushes > 0], NOTABLE * size[pushes > 0]
         return
     sweeps, left = trial.spec["iters"], rise[k]
-    start = dict(zip(("x", "y", "vx", "vy"), [*motion.q[k].tolist(), *motion.v[k].tolist()]))
+    start = scenes.state(motion.q[k], motion.v[k])
     while left > NOTABLE * size[k] and sweeps < MOST:
         sweeps *= 2
         v = free.run("lcp", **start, steps=1, iters=sweeps).v
         left = rises(motion, v, e, k)[0][0]
     total = contact.energy(motion.q, motion.v, motion.mass)
     top = max(0.0, float((total - total[0]).max()))
-    trial.note("unfinished", share=rise[k] / size[k], sweeps=sweeps, start=total[0], gained=top)
+    trial.note(UNFINISHED, share=rise[k] / size[k], sweeps=sweeps, start=total[0], gained=top)
     yield f"rise [J] with {sweeps} sweeps", left, NOTABLE * size[k]
 
 

@@ -1,7 +1,5 @@
 """results.json, README.md and the figures, from the results of the jobs."""
 
-import json
-
 from contact import write_whole
 from curriculum.stress import jobs
 from curriculum.stress.claims import PROPERTIES
@@ -16,7 +14,7 @@ OTHERS = {
 }
 
 
-def write(found, command, folder):
+def write(found, folder):
     """Write what the jobs of each section found. Returns the violations [place, name, words]."""
     sections = {name: jobs.added_up(found[name]) for name in ("scenes", "small")}
     sections |= {name: judged(found[name]) for name in OTHERS}
@@ -25,11 +23,26 @@ def write(found, command, folder):
     errors = [abs(row["measured"] / row["theory"] - 1) for row in sections["maps"]["penalty"]]
     sections["maps"]["boundary_worst_error"] = max(errors)
     (folder / results.NAME).unlink(missing_ok=True)  # no section of an older run may stay
-    for name, values in sections.items():
-        results.save("stress", name, values, command, folder=folder)
-    draw(folder)
+    command = "python -m curriculum.stress" + " --quick" * (folder == QUICK)
+    saved = {
+        name: results.save("stress", name, values, command, folder=folder)
+        for name, values in sections.items()
+    }
+    write_whole(folder / "README.md", page(saved))
+    draw(saved["maps"], folder)
     print(f"report: {folder / 'README.md'}")
-    return [violation for values in sections.values() for violation in values["violations"]]
+    return [violation for section in saved.values() for violation in section["violations"]]
+
+
+def draw(section, folder):
+    """The figures, where matplotlib is installed."""
+    try:
+        from curriculum.stress import figures
+    except ImportError as error:
+        print(f"no figures: {error}")
+        return
+    for name, svg in figures.draw(section).items():
+        write_whole(folder / name, svg)
 
 
 def judged(found):
@@ -38,20 +51,6 @@ def judged(found):
     wrong = [row for row in rows if not row["ok"]]
     listed = [[row["what"], f"expected {row['expected']}", f"got {row['got']}"] for row in wrong]
     return {"judgements": len(rows), "violations": listed}
-
-
-def draw(folder=RESULTS):
-    """README.md and the figures again, from results.json. Returns the exit status."""
-    saved = json.loads((folder / results.NAME).read_text("utf-8"))
-    write_whole(folder / "README.md", page(saved))
-    try:
-        from curriculum.stress import figures
-    except ImportError as error:  # matplotlib
-        print(f"no figures: {error}")
-        return 0
-    for name, svg in figures.draw(saved["maps"]).items():
-        write_whole(folder / name, svg)
-    return 0
 
 
 def summary(saved):
@@ -81,70 +80,41 @@ def readme():
 
 def page(saved):
     """README.md of the results."""
+    wrong = [": ".join(each) for section in saved.values() for each in section["violations"]]
     parts = [
         "# Stress: what must hold on any scene, and where each model breaks",
         summary(saved),
         "A judgement of the scenes is one property on one scene, counted only where it could have "
         "failed: without a contact nothing is said of contacts. What was done is read from the states "
         "before and after each step, and held against the chapter's formulas.",
-        "\n".join(
-            f"- **{': '.join(each)}**" for name in saved for each in saved[name]["violations"]
-        ),
+        "\n".join(f"- **{words}**" for words in wrong),
         "## Properties on random scenes",
-        table(
-            "property | scenes judged | comparisons | off, as a share of the bound", stated(saved)
-        ),
-        table("not judged, or a limit that was met | scenes", notes(saved).items()),
-        unfinished(saved["scenes"]["unfinished"]),
-        *(other(saved[name], title) for name, title in OTHERS.items()),
-        "![](penalty-map.svg)\n\n![](lcp-depth.svg)\n\n![](soft-map.svg)",
-        results.footer(saved["scenes"]),
+        *(scene_part(saved[name], title) for name, title in (("scenes", "30"), ("small", "four"))),
     ]
+    for name, title in OTHERS.items():
+        count, wrong = saved[name]["judgements"], len(saved[name]["violations"])
+        parts += [f"## {title}", f"{count:,} judgements, {wrong} violations."]
+    parts += ["![](penalty-map.svg)", "![](soft-map.svg)", results.footer(saved["scenes"])]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def table(head, rows):
-    """A Markdown table; numbers with separators."""
-    lines = [f"| {head} |", f"| --- {'| --: ' * head.count('|')}|"]
-    for row in rows:
-        cells = [f"{cell:,}" if isinstance(cell, int) else str(cell) for cell in row]
-        lines.append(f"| {' | '.join(cells)} |")
+def scene_part(section, most):
+    """A table of the properties on scenes of up to so many balls, and what was not judged or met."""
+    lines = [
+        f"{section['scenes']:,} scenes of up to {most} balls:\n",
+        "| property | scenes judged | comparisons | off, as a share of the bound |",
+        "| --- | --: | --: | --: |",
+    ]
+    for name, (judged, count, share) in section["properties"].items():
+        words = " ".join(PROPERTIES[name].__doc__.split("\n\n")[0].split())
+        lines.append(f"| {words} | {judged:,} | {count:,} | {share or 0:.1g} |")
+    lines += ["", "Not judged, or limits that were met, in scenes:\n"]
+    lines += [f"- {what}: {count:,}" for what, count in section["notes"].items()]
+    added = section["unfinished"]
+    if "worst" in added:
+        lines += [
+            f"  - above the energy of the start in {added['above_start']:,}; at worst in scene "
+            "{scene}, from {start:.4g} J to {most:.4g} J, ".format(**added["worst"])
+            + f"and ended by at most {added['sweeps_most']:,.0f} sweeps"
+        ]
     return "\n".join(lines)
-
-
-def stated(saved):
-    """A row for every property, over large and small scenes."""
-    for name, function in PROPERTIES.items():
-        large, small = (saved[section]["properties"][name] for section in ("scenes", "small"))
-        words = " ".join(function.__doc__.split("\n\n")[0].split())
-        share = max(large[2] or 0.0, small[2] or 0.0)
-        yield words, large[0] + small[0], large[1] + small[1], f"{share:.1g}"
-
-
-def notes(saved):
-    """{what was not judged, or met: in how many scenes}, over large and small scenes."""
-    met = dict(saved["scenes"]["notes"])
-    for what, count in saved["small"]["notes"].items():
-        met[what] = met.get(what, 0) + count
-    return {what: met[what] for what in sorted(met) if what != "unfinished"}
-
-
-def unfinished(counts):
-    """What unfinished sweeps of lcp add, in words."""
-    text = (
-        f"Unfinished sweeps of lcp, without any push of Baumgarte's, add energy in {counts['rises']:,} "
-        f"of {counts['scenes']:,} scenes, in {counts['above_start']:,} of them above the start."
-    )
-    if not counts["rises"]:
-        return text
-    worst = counts["worst"]
-    return (
-        f"{text} The worst is scene {worst['scene']}, from {worst['start']:.4g} J to "
-        f"{worst['most']:.4g} J. {counts['sweeps_most']:,.0f} sweeps ended every rise."
-    )
-
-
-def other(section, title):
-    """A section of maps, flags or runs beside the engine."""
-    counts = f"{section['judgements']:,} judgements, {len(section['violations'])} violations."
-    return f"## {title}\n\n{counts}" if section["judgements"] else f"## {title}\n\nNot run."

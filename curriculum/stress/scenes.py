@@ -22,6 +22,11 @@ def to_scene(spec):
     return contact.Scene("random", *body, spec["restitution"], spec["damping"])
 
 
+def state(q, v):
+    """The entries of a spec that begins in this state."""
+    return dict(zip(BODY, [*q.tolist(), *v.tolist()]))
+
+
 def to_settings(spec):
     """The contact.Settings of a spec."""
     return contact.Settings(**{name: spec[name] for name in KNOBS})

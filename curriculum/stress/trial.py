@@ -27,7 +27,7 @@ ASTRAY = 1e6  # m, m/s: a run is judged until a ball is farther off, or faster
 
 
 class OutOfTime(Exception):
-    """A run of exact takes too long; `samples` of it were done."""
+    """A run of exact takes too long; its argument: how many samples were done."""
 
 
 class Trial:
@@ -73,11 +73,11 @@ class Trial:
             return exact_run(self.scene, self.dt, self.spec["steps"])
         except OutOfTime as stop:
             self.note("exact: cut by time")
-            steps = stop.samples - 1  # what was done by then is made again, and judged
+            steps = stop.args[0] - 1  # what was done by then is made again, and judged
             return exact_run(self.scene, self.dt, steps, np.inf) if steps > 0 else None
         except RuntimeError as error:
-            words = re.split(r"[.;:,]? \(?\d", str(error).removeprefix("exact: "))[0]
-            self.note(f"exact refuses: {words}")
+            sentence = re.split("; |\\. ", str(error).removeprefix("exact: "))[0]
+            self.note("exact refuses: " + re.sub(r"\d[\d.,]*", "…", sentence))
             return None
 
 
@@ -87,9 +87,7 @@ def exact_run(scene, dt, steps, seconds=SECONDS):
 
     def report(samples):
         if time.process_time() > end:
-            stop = OutOfTime(samples)
-            stop.samples = samples
-            raise stop
+            raise OutOfTime(samples)
 
     return contact.run_model("exact", scene, dt, steps, contact.Settings(), report)
 
