@@ -346,10 +346,13 @@ def judge_fingers(exercise):
     if model is None:
         return "blank", (f"no choice yet: set MODEL in {predict.file_of(exercise)} to \"penalty\" "
                          "or \"soft\", and then its numbers; --hint 1 asks a question that helps")
-    if model not in ("penalty", "soft") or not 1e-5 <= exercise.DT <= 0.1 or not k > 0.0:
-        return "wrong", (f"given MODEL {model!r}, DT {exercise.DT!r}, STIFFNESS {k!r}; allowed: "
-                         "'penalty' or 'soft', 0.00001 to 0.1 s, above 0 N/m")
-    seen = fingers(exercise)
+    try:
+        if model not in ("penalty", "soft") or not 1e-5 <= exercise.DT <= 0.1 or not k > 0.0:
+            raise ValueError("allowed: MODEL 'penalty' or 'soft', DT from 0.00001 to 0.1 s, "
+                             "STIFFNESS above 0")
+        seen = fingers(exercise)
+    except Exception as error:
+        return "wrong", f"the fingers cannot be run with {model!r}, {exercise.DT!r} s: {error}"
     print("overlap {deepest:.2g} r, trembling {trembling:.2g} r, {steps} steps".format(**seen))
     faults = [words for words, wrong in (
         ("it takes more than 2,000 steps", seen["steps"] > 2000),

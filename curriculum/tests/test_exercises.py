@@ -274,8 +274,9 @@ FINGERS = {
     ({"MODEL": "penalty", "DT": 0.001, "STIFFNESS": 3e5, "DAMPING": 400.0}, "the cup is gone"),
     ({"MODEL": "penalty", "DT": 0.002, "STIFFNESS": 1e6}, "the cup is gone"),
     ({"MODEL": "penalty", "DT": 0.0001, "STIFFNESS": 1e6}, "more than 2,000 steps"),
-    ({"MODEL": "hard"}, "allowed: 'penalty' or 'soft'"),
-    ({"DT": 0.0}, "0.00001 to 0.1 s"),
+    ({"MODEL": "hard"}, "allowed: MODEL 'penalty' or 'soft'"),
+    ({"DT": 0.0}, "DT from 0.00001 to 0.1 s"),
+        ({"DT": "fast"}, "cannot be run with 'soft', 'fast' s"),
 ])  # fmt: skip
 def test_the_gripper_is_judged_by_what_it_does(choice, part):
     state, words = trials.judge_fingers(exercise(**FINGERS | choice))
