@@ -57,7 +57,7 @@ function draw(view) {
     points: [{ model: "penalty", x: Math.max(0, depth), y: Math.min(3, weights(depth)), size: 7 }],
   };
   const { svg, x, y, middle } = beside(view, "sponge", chart, (left) => picture(view, depth, left));
-  const text = `${number(depth)} r deep, push ${number(weights(depth))} m g`;
+  const text = `${number(Math.abs(depth))} r ${depth < 0 ? "above" : "deep"}, push ${number(weights(depth))} m g`;
   const settled = Math.abs(depth - rest) < 1e-3 * rest;
   return {
     svg,
