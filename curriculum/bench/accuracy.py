@@ -1,193 +1,217 @@
-"""Run time against error: every problem, contestant and time step, over nine starts.
+"""Run time against error: every problem, contestant and time step, over several starts.
 
-A point is one problem, contestant and dt. Its errors are medians over the starts. Its time in one
-process is the median over the starts too; the point has the median over the processes. Two times
-are kept:
+A point is one problem, contestant and dt. Its errors are medians over the starts; its times are
+medians over fresh processes, with least and greatest:
 
-    read    whole run with every height read after every step: the same sampling for all, plotted
+    read    the whole run with every height read after every step: the same for all, and plotted
     bare    the engines' stepping loop alone, nothing read. contact.py's models have no such form:
-            they always record, so where a bare time is compared with, theirs is still the read one
+            they always record
 """
+
+import statistics
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
-from curriculum import measured
-from curriculum.bench import contestants, problems, tables, timing
+import contact
+from curriculum import pool
+from curriculum.bench import engines, problems, timing
 
 COMMAND = "python -m curriculum.bench accuracy"
-CODE = ("contact.py", "curriculum/exact.py")
-ERRORS = (
-    "position_error",
-    "final_error",
-    "energy_error",
-    "final_energy_error",
-    "max_penetration",
-    "rest_gap",
-    "contact_energy",
-    "impact_time_error",
-    "restitution",
-    "phase_error",
-)
-BUDGET = 1.0  # s: once the runs of a cell have taken so long, no further start is timed
-TIMED_SEEDS = 3  # starts that are timed
-FIT_DTS = (0.0, 0.008)  # s, the steps whose errors the order of convergence is fitted to
-QUICK_PROBLEMS, QUICK_DTS = ("drop", "bounce", "pyramid"), (0.002, 0.008)
+CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")
+ERRORS = ("error", "final_error", "energy_error", "depth")
+PROCESSES = 3
+ENOUGH = 0.1        # s: once the runs of a cell have taken so long, it is not timed again
+QUICK = dict(names=("drop", "stack", "slide"), dts=(0.002, 0.008), starts=2, processes=1)
 
 
-def measure(quick=False, cells=None, only=None):
-    """The whole benchmark as one section.
+class Contestant(NamedTuple):
+    """One way of stepping a scene: a model of contact.py, or a setting of an engine."""
 
-    only: measure this problem alone; of the others the section has those that `cells` hold whole.
-    """
-    processes, seeds = (1, 2) if quick else (3, 9)
-    cells = {} if cells is None else cells
-    chosen = [p for p in problems.PROBLEMS if not quick or p.name in QUICK_PROBLEMS]
-    keys = {p.name: list(_keys(p, seeds, quick)) for p in chosen}
-    work = [key for name, some in keys.items() if only in (None, name) for key in some]
-    timing.beside(error_cell, work, cells, "error", "errors")
-    timing.in_fresh_processes(time_cell, work, processes, cells, "run times")
-    whole = [
-        p for p in chosen if all(timing.place("time", 0, key) in cells for key in keys[p.name])
-    ]
-    done = [key for p in whole for key in keys[p.name]]
-    times = timing.merged(cells, done, processes)
-    points = [point(key, cells[timing.place("error", 0, key)], times[key]) for key in done]
+    family: str             # gives colour and marker
+    words: str              # its setting, for a reader
+    prepare: Callable       # (scene, dt, steps) -> {"read": call, "bare": call}; they step, no more
+    record: Callable        # (scene, dt, steps) -> contact.Run, not timed
+    refuses: Callable       # scene -> why it does not run it, or None
+    adaptive: bool = False  # chooses its own steps: dt is only how often it is looked at
+    only: tuple = ()        # the problems it is for; none means all
+
+    @property
+    def name(self):
+        return f"{self.family}: {self.words}"
+
+    def dts(self, problem):
+        return (problems.REFERENCE_DT,) if self.adaptive else problem.dts
+
+
+def nothing(scene):
+    """What refuses a scene that anybody can run."""
+
+
+def ours(family, words, compiled=False, substeps=1, only=(), adaptive=False, **knobs):
+    """A model of contact.py: as run_model runs it, or by the compiled twin; steps cut in parts."""
+
+    def record(scene, dt, steps):
+        chosen, many = contact.Settings(**knobs), substeps * steps
+        if compiled:
+            from curriculum import fast
+            found = fast.simulate(family, scene, dt / substeps, many, chosen)[:2]
+        else:
+            found = contact.run_model(family, scene, dt / substeps, many, chosen)[1:3]
+        return contact.Run(np.arange(steps + 1) * dt, *(part[::substeps] for part in found))
+
+    def prepare(scene, dt, steps):
+        return {"read": partial(record, scene, dt, steps)}
+
+    return Contestant(family, words, prepare, record, nothing, adaptive, only)
+
+
+def theirs(setting):
+    """A setting of another engine."""
+
+    def prepare(scene, dt, steps):
+        read, bare = setting.build(scene, dt), setting.build(scene, dt)
+        return {"read": partial(read.trace, steps), "bare": partial(bare.advance, steps)}
+
+    def record(scene, dt, steps):
+        return contact.Run(np.arange(steps + 1) * dt, *setting.build(scene, dt).states(steps))
+
+    missing = engines.missing(setting.engine)
+    return Contestant(setting.engine, setting.words, prepare, record,
+                      lambda scene: missing or setting.refuses(scene), setting.adaptive)
+
+
+MANY = ("stack", "pile")        # where contacts share balls, and the number of sweeps matters
+STIFF = dict(solref=(1e-9, 5.0), solimp=contact.HARD)
+CONTESTANTS = (
+    ours("penalty", "k 1e4"),
+    ours("lcp", "20 sweeps"),
+    ours("lcp", "10 sweeps", only=MANY, iters=10),
+    ours("lcp", "100 sweeps", only=MANY, iters=100),
+    ours("lcp", "20 sweeps, warm", only=MANY, warm=0.8),
+    ours("lcp", "20 sweeps, 4 substeps", substeps=4),
+    ours("lcp", "compiled, 20 sweeps", True),
+    ours("lcp", "compiled, 20 sweeps, warm", True, only=MANY, warm=0.8),
+    ours("lcp", "compiled, 20 sweeps, 4 substeps", True, 4),
+    ours("lcp", "compiled, 20 sweeps, 16 substeps", True, 16),
+    ours("lcp", "compiled, 5 sweeps, 16 substeps, warm", True, 16, MANY, iters=5, warm=0.8),
+    ours("soft", "as MuJoCo ships it, or direct where e > 0"),
+    ours("soft", "time constant 2 dt, ratio 5, d 0.9999", only=("drop", "slide", *MANY), **STIFF),
+    ours("exact", "event to event", adaptive=True),
+    *map(theirs, engines.SETTINGS))
+BY_NAME = {contestant.name: contestant for contestant in CONTESTANTS}
+LABELS = {name: name for name in contact.MODELS} | {
+    name: about[0] for name, about in engines.ENGINES.items()}
+
+
+def measure(quick=False):
+    """The whole benchmark as one section: problems, points, headline, what is left out."""
+    chosen = [p for p in problems.PROBLEMS if not quick or p.name in QUICK["names"]]
+    jobs = list(cells(chosen, quick))
+    print(f"accuracy: {len(jobs)} points, their errors first, then their times", flush=True)
+    errors = pool.spread(errors_of, jobs, "errors")
+    times = timing.in_fresh_processes(times_of, jobs, QUICK["processes"] if quick else PROCESSES,
+                                      "run times")
+    points = [point(*each) for each in zip(jobs, errors, times)]
     return dict(
-        quick=quick,
-        processes=processes,
-        seeds=seeds,
-        problems={
-            p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration) for p in whole
-        },
-        left_out=left_out(whole),
-        points=tables.pack(points),
-        headline=headline(points),
-        orders=[order for order in fits(points) if order["order"] is not None],
-    )
+        problems={p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration)
+                  for p in chosen},
+        points=packed(points), headline=headline(points), left_out=left_out(chosen))
 
 
-def _keys(problem, seeds, quick):
-    """(problem, contestant, dt, starts) of every cell of one problem."""
-    scene = problem.build(0)
-    for c in contestants.CONTESTANTS:
-        if c.takes(problem) and not c.refuses(scene) and not (quick and c.family == "drake"):
+def cells(chosen, quick):
+    """(problem, contestant, dt, starts) of every point, by names."""
+    for problem in chosen:
+        scene = problem.build(0)
+        for c in CONTESTANTS:
+            if not runs(c, problem, scene) or (quick and c.family == "drake"):
+                continue
             for dt in c.dts(problem):
-                if not quick or dt in QUICK_DTS:
-                    yield problem.name, c.name, dt, min(seeds, len(problem.seeds))
+                if not quick or dt in QUICK["dts"]:
+                    yield (problem.name, c.name, dt, QUICK["starts"] if quick else problem.starts)
 
 
-def headline(points):
-    """{problem: {family: {words, error, ms}}}: the best setting of each at the reference step."""
-    result = {}
-    for p in sorted(points, key=lambda p: p["position_error"] or 0.0, reverse=True):
-        if (
-            p["dt"] == problems.REFERENCE_DT
-            and not p["diverged"]
-            and p["words"] != contestants.FLYING
-        ):
-            result.setdefault(p["problem"], {})[p["family"]] = dict(
-                words=p["words"], error=p["position_error"], ms=1e3 * p["read_median"]
-            )
-    return result
+def runs(contestant, problem, scene):
+    """Whether a contestant takes part in a problem."""
+    if contestant.family == "exact" and problem.exact_is_the_truth:
+        return False
+    for_it = not contestant.only or problem.name in contestant.only
+    return for_it and not contestant.refuses(scene)
 
 
-def error_cell(key):
+def errors_of(job):
     """The errors of a cell: a list of problems.quality's dicts, one a start."""
-    problem, contestant, dt, seeds = _parts(key)
-    found = []
-    for seed in problem.seeds[:seeds]:
-        scene = problem.build(seed)
-        run = contestant.record(scene, dt, problem.steps(dt))
-        found.append(measured.plain(problems.quality(problem, scene, dt, run)))
+    problem, contestant, dt, starts = job
+    problem, found = problems.BY_NAME[problem], []
+    for start in range(starts):
+        scene = problem.build(start)
+        run = BY_NAME[contestant].record(scene, dt, problem.steps(dt))
+        found.append(problems.quality(problem, scene, run))
     return found
 
 
-def time_cell(key):
-    """{way: seconds, median over the starts} of a cell, after a short run as a warm-up."""
-    problem, contestant, dt, seeds = _parts(key)
-    scene, seconds = problem.build(0), {}
-    for call in contestant.prepare(scene, dt, min(50, problem.steps(dt))).values():
+def times_of(job):
+    """{way: seconds} of a cell: the median of up to three runs, after a short one as a warm-up."""
+    problem, contestant, dt, _ = job
+    problem, contestant = problems.BY_NAME[problem], BY_NAME[contestant]
+    scene, steps, seconds = problem.build(0), problem.steps(dt), {}
+    for call in contestant.prepare(scene, dt, min(50, steps)).values():
         call()
-    for seed in problem.seeds[: min(seeds, TIMED_SEEDS)]:
-        for way, call in contestant.prepare(problem.build(seed), dt, problem.steps(dt)).items():
+    for _ in range(3):
+        for way, call in contestant.prepare(scene, dt, steps).items():
             seconds.setdefault(way, []).append(timing.timed(call))
-        if sum(map(sum, seconds.values())) > BUDGET:
+        if sum(map(sum, seconds.values())) > ENOUGH:
             break
-    return {way: float(np.median(values)) for way, values in seconds.items()}
+    return {way: statistics.median(values) for way, values in seconds.items()}
 
 
-def _parts(key):
-    problem, contestant, dt, seeds = key
-    return problems.BY_NAME[problem], contestants.BY_NAME[contestant], dt, seeds
-
-
-def point(key, errors, times):
-    """One point as a flat dict; an error that does not apply or is not finite is None.
-
-    diverged is None, or "step K: why (so many of so many starts)", of the first start that did.
-    """
-    problem, contestant, dt, _ = key
-    found = contestants.BY_NAME[contestant]
-    blown = [e for e in errors if e["blew_up_step"] is not None]
-    result = dict(
-        problem=problem,
-        family=found.family,
-        words=found.words,
-        dt=dt,
-        diverged=None
-        if not blown
-        else (
-            f"step {blown[0]['blew_up_step']}: {blown[0]['blew_up_reason']} "
-            f"({len(blown)} of {len(errors)} starts)"
-        ),
-    )
+def point(job, errors, times):
+    """One point as a flat dict. diverged: of how many starts. An error that is none is None."""
+    problem, contestant, dt, _ = job
+    c = BY_NAME[contestant]
+    found = dict(problem=problem, family=c.family, words=c.words, dt=dt,
+                 diverged=sum(e["diverged"] is not None for e in errors))
     for name in ERRORS:
-        values = [e.get(name) for e in errors]
-        values = [value for value in values if value is not None]
-        result[name] = float(np.median(values)) if len(values) == len(errors) else None
-    worst = [e["position_error"] for e in errors if e["position_error"] is not None]
-    result["least_error"], result["greatest_error"] = (
-        min(worst, default=None),
-        max(worst, default=None),
-    )
-    for way in (contestants.READ, contestants.BARE):
-        about = times.get(way) or {}
+        found[name] = statistics.median(e[name] for e in errors)
+    found["least"] = min(e["error"] for e in errors)
+    found["greatest"] = max(e["error"] for e in errors)
+    for way in ("read", "bare"):
+        values = [1e3 * each[way] for each in times if way in each]
+        about = timing.spread(values) if values else {}
         for which in ("median", "min", "max"):
-            result[f"{way}_{which}"] = about.get(which)
-    return result
+            found[f"{way}_{which}"] = about.get(which)
+    return found
+
+
+def headline(points):
+    """{problem: {family: {words, error, ms}}}: the setting with the least error at 2 ms."""
+    found = {}
+    for p in sorted(points, key=lambda p: p["error"], reverse=True):
+        if p["dt"] == problems.REFERENCE_DT and not p["diverged"]:
+            found.setdefault(p["problem"], {})[p["family"]] = dict(
+                words=p["words"], error=p["error"], ms=p["read_median"])
+    return found
 
 
 def left_out(chosen):
-    """[(problem, family, why)] of whoever does not run a problem."""
+    """{family: why} of whoever does not run some problem: the reason, and the problems."""
     found = {}
-    for p in chosen:
-        for c in contestants.CONTESTANTS:
-            why = c.takes(p) and c.refuses(p.build(0))
+    for problem in chosen:
+        for c in CONTESTANTS:
+            why = c.refuses(problem.build(0))
             if why:
-                found.setdefault((c.family, why), []).append(p.name)
-    return [
-        dict(family=family, why=why, problems=sorted(set(names), key=names.index))
-        for (family, why), names in found.items()
-    ]
+                names = found.setdefault(f"{LABELS[c.family]}: {why}", [])
+                names.extend([problem.name] if problem.name not in names else [])
+    return found
 
 
-def fits(points):
-    """Observed order of convergence of every contestant on every problem: {problem, ..., order}.
+def packed(rows):
+    """{"columns": [...], "rows": [[...]]} of dicts with the same keys."""
+    return {"columns": list(rows[0]), "rows": [list(row.values()) for row in rows]}
 
-    The slope of log(median worst error) over log(dt) by least squares, for steps in FIT_DTS that
-    did not diverge. None where fewer than three are left, or where all errors are rounding
-    (under 1e-9 r): then there is nothing left to converge.
-    """
-    names = dict.fromkeys((p["problem"], p["family"], p["words"]) for p in points)
-    for problem, family, words in names:
-        used = [
-            (p["dt"], p["position_error"])
-            for p in points
-            if (p["problem"], p["family"], p["words"]) == (problem, family, words)
-            and not p["diverged"]
-            and FIT_DTS[0] <= p["dt"] <= FIT_DTS[1]
-        ]
-        slope = None
-        if len(used) >= 3 and max(e for _, e in used) > 1e-9:
-            slope = float(np.polyfit(*np.log(np.array(used)).T, 1)[0])
-        yield dict(problem=problem, family=family, words=words, order=slope)
+
+def unpacked(table):
+    """The dicts again."""
+    return [dict(zip(table["columns"], row)) for row in table["rows"]]

@@ -1,217 +1,222 @@
-"""A pile of N balls: time per step early and settled, how it grows with N, and the depth it leaves.
+"""Piles between walls of fixed balls: time a step while they fall and when they rest, and how deep.
 
-All fall from the same lattice, in turns of a few steps in random order, so that a slow spell of
-the machine falls on all of them. Nothing is read while they are timed; contact.py's compiled twin
-records every state all the same. Early is the first tenth of the run, when most balls still fall;
-settled is the last quarter, which is the fair figure.
+The same walls in every engine. First each setting lets the pile fall from the same lattice and
+settle, untimed; it counts as settled only if no ball is faster than AT_REST while it is watched.
+Then it is timed in fresh processes: from the lattice, while the pile falls, and from its own
+settled state. Every step is taken: no state is copied and no ball sleeps, but where the words say
+so. Engines are compared at equal depth: of each the fastest setting at rest whose mean depth of
+the overlapping contacts is at most a limit. Of 10,000 balls only the settings run that won with
+1,000.
 """
 
-import importlib.util
-import multiprocessing
-import random
+import itertools
+import math
+import os
 import statistics
+import subprocess
+import sys
+import tempfile
 from functools import partial
 
 import numpy as np
 
 import contact
-from curriculum import measured
+from curriculum import pool
 from curriculum.bench import engines, timing
-from curriculum.common.stoppable import end_at_ctrl_c
+from curriculum.bench.engines import Session, Setting, box2d3, mujoco, pymunk
+from curriculum.machine import ROOT
 
 COMMAND = "python -m curriculum.bench pile"
-CODE = ("contact.py", "curriculum/piles.py")
-DT, SWEEPS, TURN = 0.002, 10, 50  # s; sweeps of lcp, iterations of the others; steps at a time
-SIZES = {
-    12: (1500, 5),
-    100: (1500, 5),
-    1000: (1500, 3),
-    10000: (1500, 1),
-}  # balls: steps, processes
-QUICK_SIZES = {12: (300, 1), 100: (200, 1)}
-FIT_FROM = 1000  # balls: the exponent is fitted from here on
-PLAIN_UP_TO = 1000  # balls that contact.py's plain loops are asked to step
-LCP, PLAIN = "lcp, compiled", "lcp, plain loops"
-# what the first edition of this benchmark measured for its lcp (numpy, groups of contacts), settled [s]
-FIRST_EDITION = {12: 92e-6, 100: 1450e-6, 1000: 5970e-6, 10000: 17300e-6}
-ENGINES = {  # label: engine, and how its world is built
-    "pymunk, 10 iterations": ("pymunk", engines.Pymunk),
-    "Box2D 2.3": ("box2d", engines.Box2d),
-    "Box2D 3, 4 substeps": ("box2d3", lambda scene, dt: engines.Box2d3(scene, dt, 4, None)),
-    "Box2D 3, 4 substeps, hardest": (
-        "box2d3",
-        lambda scene, dt: engines.Box2d3(scene, dt, 4, 1e9),
-    ),
-    "MuJoCo as shipped": ("mujoco", lambda scene, dt: engines.Mujoco(scene, dt, engines.shipped)),
-    "MuJoCo direct, push 0.2, 10 iterations": (
-        "mujoco",
-        lambda scene, dt: engines.Mujoco(
-            scene, dt, lambda scene, dt: engines.direct(0.2, 0.9999, scene, dt), iterations=SWEEPS
-        ),
-    ),
-}
-RIVALS = ("pymunk", "box2d3", "mujoco")  # the goal names these
+CODE = ("contact.py", "curriculum/fast.py")
+DT = 0.002                  # s
+WATCHED, TURN, TURNS = 250, 50, 5       # steps at the end; timed steps in one go; how many goes
+AT_REST = 1e-3              # m/s
+DEPTHS = (1e-3, 1e-4)       # r
+SIZES = {12: (4, 6000, 3), 100: (10, 6000, 3), 1000: (25, 6000, 3), 10_000: (250, 4500, 2)}
+# balls: how many side by side, steps to settle, processes that time them
+LARGE, QUICK_SIZES = 10_000, (12,)
+ASLEEP = "may sleep"        # in the words of a setting that is shown and not compared
 
 
-class Twin(engines.Session):
-    """The compiled twin as a session: whole turns, every state recorded."""
+def shaft(count):
+    """Balls on a lattice between two walls of fixed balls, and the floor. The seed is fixed."""
+    wide, r, rng = SIZES[count][0], contact.RADIUS, np.random.default_rng(0)
+    place = rng.permutation(count)
+    nudge = rng.uniform(-0.1 * r, 0.1 * r, (2, count))
+    x = 2.5 * r * (place % wide - 0.5 * (wide - 1)) + nudge[0]
+    y = 2.5 * r * (place // wide + 0.5) + nudge[1]
+    wall = np.arange(1.05 * r, y.max() + 2.0 * r, 2.05 * r)     # no wall ball touches another
+    side = 1.25 * r * wide + r
+    x = np.concatenate((x, np.full(len(wall), -side), np.full(len(wall), side)))
+    y = np.concatenate((y, wall, wall))
+    mass = np.repeat((1.0, math.inf), (count, 2 * len(wall)))
+    return contact.Scene("shaft", np.array((x, y)), np.zeros((2, len(x))), mass,
+                         np.full(len(x), r), 0.0, 80.0)
 
-    def __init__(self, scene, dt):
-        from curriculum import piles
 
-        self.simulate, self.scene, self.dt, self.repeated = piles.simulate, scene, dt, 0
+class Twin(Session):
+    """The compiled twin of lcp: `substeps` steps for each, `sweeps` in each of them."""
+
+    def __init__(self, scene, dt, sweeps, warm=0.0, substeps=1):
+        from curriculum import fast
+        chosen = contact.Settings(iters=sweeps, warm=warm)
+        self.motion, self.substeps = fast.Motion("lcp", scene, dt / substeps, chosen), substeps
+        self.rows = np.empty((TURN * substeps + 1, 4, len(scene.mass)))
+        self.settled = np.ones(len(self.rows), bool)
 
     def advance(self, n):
-        q, v = self.simulate(
-            "lcp",
-            self.scene,
-            self.dt,
-            n,
-            lambda k: None,
-            contact.GRAVITY,
-            contact.CONTACT_MARGIN,
-            0.0,
-            0.2,
-            SWEEPS,
-            contact.MOST_SWEEPS,
-            contact.LAST_BITS,
-            contact.SOLREF,
-            contact.SOLIMP,
-        )
-        self.repeated += bool((q[-1] == q[-2]).all() and (v[-1] == v[-2]).all())
-        self.scene = self.scene._replace(q0=q[-1], v0=v[-1])
+        for first in range(0, n, TURN):
+            rows = self.rows[:min(TURN, n - first) * self.substeps + 1]
+            self.motion.take(rows, self.settled, False)
 
     def state(self):
-        return self.scene.q0, self.scene.v0
+        balls = self.motion.balls[:-1]
+        return np.array((balls["x"], balls["y"])), np.array((balls["vx"], balls["vy"]))
 
 
-def measure(quick=False, cells=None):
-    """rows (one per method and N), exponents, what is missing."""
-    cells, sizes = {} if cells is None else cells, QUICK_SIZES if quick else SIZES
-    spawn = multiprocessing.get_context("spawn")
-    with measured.progress(sum(n for _, n in sizes.values()), "piles") as tick:
-        for count, (steps, processes) in sizes.items():
-            for number in range(processes):
-                if timing.place("time", number, count) not in cells:
-                    with spawn.Pool(1, end_at_ctrl_c) as pool:
-                        found = pool.apply(one_process, ((count, steps, number),))
-                    cells[timing.place("time", number, count)] = found
-                tick(f"{count} balls")
-    rows = [
-        row
-        for count, (_, processes) in sizes.items()
-        for row in together(
-            count, [cells[timing.place("time", number, count)] for number in range(processes)]
-        )
-    ]
-    return dict(
-        quick=quick,
-        dt=DT,
-        sweeps=SWEEPS,
-        rows=rows,
-        exponents=exponents(rows),
-        headline=headline(rows),
-        missing=missing(),
-        sizes={
-            str(count): dict(steps=steps, processes=processes)
-            for count, (steps, processes) in sizes.items()
-        },
-    )
+def twin(words, *knobs):
+    return Setting("lcp", words, lambda scene, dt: Twin(scene, dt, *knobs))
+
+
+def too_many(scene):
+    return "the sparse Newton of MuJoCo 4.0.0 fails on piles" if len(scene.mass) > 300 else None
+
+
+SPRING = partial(engines.standard, 2.0, 1.0, 0.99)
+SETTINGS = (
+    twin("10 sweeps", 10), twin("20 sweeps", 20), twin("40 sweeps", 40), twin("80 sweeps", 80),
+    twin("4 sweeps, warm", 4, 0.8), twin("8 sweeps, warm", 8, 0.8),
+    twin("15 sweeps, warm", 15, 0.8), twin("30 sweeps, warm", 30, 0.8),
+    twin("5 sweeps, 4 substeps", 5, 0.0, 4), twin("3 sweeps, warm, 4 substeps", 3, 0.8, 4),
+    twin("6 sweeps, warm, 4 substeps", 6, 0.8, 4),
+    twin("12 sweeps, warm, 4 substeps", 12, 0.8, 4),
+    box2d3("4 substeps, as shipped", 4), box2d3("4 substeps, hardest", 4, hertz=1e9),
+    box2d3("8 substeps, hardest", 8, hertz=1e9), box2d3("16 substeps, hardest", 16, hertz=1e9),
+    box2d3("64 substeps, hardest", 64, hertz=1e9), box2d3("32 substeps, 240 Hz", 32, hertz=240.0),
+    box2d3(f"4 substeps, hardest, {ASLEEP}", 4, hertz=1e9, sleep=True),
+    pymunk("10 iterations"), pymunk("30 iterations", iterations=30),
+    pymunk(f"10 iterations, {ASLEEP}", sleep=True),
+    mujoco("as shipped, CG", engines.shipped),
+    mujoco("2 dt, ratio 1, d 0.99, CG", SPRING),
+    mujoco("direct, push 0.2, d 0.999, CG", engines.PUSHED),
+    mujoco("direct, push 0.2, d 0.999, CG, 10 iterations", engines.PUSHED, iterations=10),
+    mujoco("2 dt, ratio 1, d 0.99, Newton", SPRING, solver="Newton")._replace(refuses=too_many),
+)
+LABELS = {"lcp": "lcp, compiled", "mujoco": "MuJoCo", "pymunk": "pymunk", "box2d3": "Box2D 3"}
+
+
+def measure(quick=False):
+    """rows, one per setting and size; the winners at each depth; what compiling takes."""
+    rows = []
+    for count in QUICK_SIZES if quick else SIZES:
+        chosen = winners(rows) if count == LARGE else range(len(SETTINGS))
+        rows += measured(count, chosen, quick)
+    return dict(dt=DT, rows=rows, best=best(rows), compile=compiling(), missing=missing(),
+                sizes={str(count): len(shaft(count).mass) - count for count in SIZES})
 
 
 def missing():
     """{label: why} of whoever is not there."""
-    found = {label: engines.missing(engine) for label, (engine, _) in ENGINES.items()}
-    if importlib.util.find_spec("numba") is None:
-        found[LCP] = "not installed: pip install numba"
+    found = {LABELS[name]: engines.missing(name) for name in LABELS if name != "lcp"}
     return {label: why for label, why in found.items() if why}
 
 
-def one_process(key):
-    """{method: {early, settled: seconds a step, repeated, depths}} of one size in this process."""
-    count, steps, number = key
-    scene = contact.build_scene("pile", 0, count)
-    absent, sessions = missing(), {}
-    if LCP not in absent:
-        Twin(scene, DT).advance(2)  # compiles, or loads what was compiled
-        sessions[LCP] = Twin(scene, DT)
-    for label, (_, build) in ENGINES.items():
-        if label not in absent:
-            sessions[label] = build(scene, DT)
-    turns, order = steps // TURN, random.Random(number)
-    seconds = {name: [] for name in sessions}
-    for _ in range(turns):
-        for name in order.sample(list(sessions), len(sessions)):
-            advance = sessions[name].advance
-            seconds[name].append(timing.timed(partial(advance, TURN)) / TURN)
-    early, settled = max(1, turns // 10), max(1, turns // 4)
-    found = {
-        name: dict(
-            early=statistics.median(seconds[name][:early]),
-            settled=statistics.median(seconds[name][-settled:]),
-            repeated=getattr(session, "repeated", 0),
-            **depths(session.state()[0], scene.radius),
-        )
-        for name, session in sessions.items()
-    }
-    if LCP in found and count <= PLAIN_UP_TO:
-        found[PLAIN] = dict(found[LCP], **plain(scene, sessions[LCP].state()))
+def measured(count, chosen, quick):
+    """The rows of one size: settle all settings, then time them."""
+    scene = shaft(count)
+    jobs = [(count, k) for k in chosen
+            if not (SETTINGS[k].engine != "lcp" and engines.missing(SETTINGS[k].engine))
+            and not SETTINGS[k].refuses(scene)]
+    print(f"pile of {count}: {len(jobs)} settings settle, then they are timed", flush=True)
+    settled = pool.spread(settle, jobs, f"{count} balls settle")
+    work = [(*job, *state[:2]) for job, state in zip(jobs, settled)]
+    times = timing.in_fresh_processes(time_of, work, 1 if quick else SIZES[count][2],
+                                      f"{count} balls")
+    return [dict(bodies=count, engine=SETTINGS[k].engine, words=SETTINGS[k].words,
+                 **state[2], **{phase: timing.spread([each[phase] for each in found])
+                                for phase in ("falling", "resting")})
+            for (_, k), state, found in zip(jobs, settled, times)]
+
+
+def settle(job):
+    """q, v of the settled pile, and the row's depths and speed; the speed is watched to the end."""
+    count, k = job
+    scene = shaft(count)
+    session = SETTINGS[k].build(scene, DT)
+    session.advance(SIZES[count][1] - WATCHED)
+    speeds = []
+    for _ in range(WATCHED // TURN):
+        session.advance(TURN)
+        q, v = session.state()
+        speeds.append(float(np.sqrt((v**2).sum(0)).max()))
+    speed = max(speeds) if np.isfinite(speeds).all() else math.inf
+    return q, v, dict(speed=speed, at_rest=speed < AT_REST, **depths(q, scene))
+
+
+def depths(q, scene):
+    """Overlaps in a state q (2, N): contacts counted, mean and worst depth [r]."""
+    from curriculum import fast
+    balls = fast.make_balls(q, 0.0 * q, scene.mass, scene.radius)
+    a, b = fast.list_pairs(balls, 0.0)
+    pairs = scene.radius[a] + scene.radius[b] - np.hypot(*(q[:, a] - q[:, b]))
+    found = np.concatenate((scene.radius - q[1], pairs)) / contact.RADIUS
+    found = found[found > 0.0]
+    return dict(contacts=len(found), mean_depth=float(found.mean()) if len(found) else 0.0,
+                worst_depth=float(found.max(initial=0.0)))
+
+
+def time_of(job):
+    """{falling, resting}: microseconds a step, from the lattice and from the settled state."""
+    count, k, q, v = job
+    scene, build, found = shaft(count), SETTINGS[k].build, {}
+    rest = scene._replace(q0=np.array(q, float), v0=np.array(v, float))
+    for phase, start, before in (("falling", scene, 150), ("resting", rest, 250)):
+        session = build(start, DT)
+        session.advance(before)
+        seconds = [timing.timed(partial(session.advance, TURN)) for _ in range(TURNS)]
+        found[phase] = 1e6 * statistics.median(seconds) / TURN
     return found
 
 
-def plain(scene, last):
-    """Time of contact.py's own steps [s], from the first state and from the twin's last one."""
-    times = {}
-    for phase, (q, v) in (("early", (scene.q0, scene.v0)), ("settled", last)):
-        balls = contact.make_balls(scene._replace(q0=q, v0=v))
-        times[phase] = statistics.median(
-            timing.timed(partial(contact.lcp_step, balls, DT, 0.0, 0.2, SWEEPS)) for _ in range(9)
-        )
-    return times
+def fastest(rows, engine, count, depth):
+    """The fastest row of an engine that rests within that depth, or None."""
+    found = [row for row in rows if (row["engine"], row["bodies"]) == (engine, count)
+             and row["at_rest"] and row["mean_depth"] <= depth and ASLEEP not in row["words"]]
+    return min(found, key=lambda row: row["resting"]["median"], default=None)
 
 
-def together(count, processes):
-    """One row per method: times as median and spread over the processes, depths of the first."""
-    for name in processes[0]:
-        found = [process[name] for process in processes]
-        times = {
-            phase: timing.spread([one[phase] for one in found]) for phase in ("early", "settled")
-        }
-        yield {"method": name, "bodies": count, **found[0], **times}
+def winners(rows):
+    """The numbers of the settings that are worth running with 10,000 balls."""
+    words = {(row["engine"], row["words"])
+             for engine, depth in itertools.product(LABELS, DEPTHS)
+             if (row := fastest(rows, engine, 1000, 0.8 * depth))}
+    return [k for k, s in enumerate(SETTINGS) if (s.engine, s.words) in words]
 
 
-def depths(q, radius):
-    """Overlaps in a state (2, N): contacts counted, mean and worst depth in radii; finite or not."""
-    if not np.isfinite(q).all():
-        return dict(contacts=None, mean_depth=None, worst_depth=None, finite=False)
-    scene = contact.Scene("", q, np.zeros_like(q), np.ones_like(radius), radius, 0.0, 0.0)
-    found = [
-        c.depth / radius[0] for c in contact.detect_contacts(contact.make_balls(scene), 0.0)
-    ] or [0.0]
-    return dict(
-        contacts=len(found), mean_depth=float(np.mean(found)), worst_depth=max(found), finite=True
-    )
+def best(rows):
+    """{balls: {depth: {engine: {words, us, depth}, ..., ratio}}}; ratio: lcp to the fastest peer."""
+    found = {}
+    for count, depth in itertools.product(dict.fromkeys(r["bodies"] for r in rows), DEPTHS):
+        table = {}
+        for engine in LABELS:
+            if row := fastest(rows, engine, count, depth):
+                table[engine] = dict(words=row["words"], us=row["resting"]["median"],
+                                     depth=row["mean_depth"])
+        peers = [about["us"] for engine, about in table.items() if engine != "lcp"]
+        ratio = table["lcp"]["us"] / min(peers) if "lcp" in table and peers else None
+        found.setdefault(str(count), {})[f"{depth:g}"] = dict(engines=table, ratio=ratio)
+    return found
 
 
-def headline(rows):
-    """{balls: {method: {settled_ms, mean_depth}}}, for texts that quote a number."""
-    result = {}
-    for row in rows:
-        result.setdefault(str(row["bodies"]), {})[row["method"]] = dict(
-            settled_ms=1e3 * row["settled"]["median"], mean_depth=row["mean_depth"]
-        )
-    return result
-
-
-def exponents(rows):
-    """{method: {early, settled}}: slope of log(time per step) over log(N), from FIT_FROM balls on."""
-    result = {}
-    for name in dict.fromkeys(row["method"] for row in rows):
-        mine = [row for row in rows if row["method"] == name and row["bodies"] >= FIT_FROM]
-        if len(mine) >= 2:
-            n = np.log([row["bodies"] for row in mine])
-            result[name] = {
-                phase: float(np.polyfit(n, np.log([r[phase]["median"] for r in mine]), 1)[0])
-                for phase in ("early", "settled")
-            }
-    return result
+def compiling():
+    """{fresh, again}: seconds until the twin has taken a first step, with and without compiling."""
+    code = ("import time; start = time.perf_counter(); import contact; "
+            "from curriculum import fast; fast.simulate('lcp', contact.build_scene('drop'), 0.002, "
+            "1, contact.Settings()); print(time.perf_counter() - start)")
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("fresh", "again"):
+            done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, text=True, check=True,
+                                  env=dict(os.environ, NUMBA_CACHE_DIR=folder), capture_output=True)
+            found[name] = float(done.stdout)
+    return found

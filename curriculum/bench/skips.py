@@ -1,8 +1,9 @@
-"""What skipping costs and saves: same bytes with and without, and the time of runs and processes."""
+"""What skipping costs and saves: same bits with and without, and the time of runs and processes."""
 
 import contextlib
 import importlib.util
 import io
+import itertools
 import random
 import statistics
 import sys
@@ -10,206 +11,129 @@ import tempfile
 from pathlib import Path
 
 import contact
-from curriculum import measured
-from curriculum.bench import contestants, timing
+from curriculum import pool
+from curriculum.bench import accuracy, timing
+from curriculum.machine import ROOT
 
-SCENES = ("drop", "bounce", "stack")
-STEPPED = ("penalty", "lcp", "soft")  # the models that step, and so can skip
-SMOKE, FULL, DT, STEPS_AT_REST = 800, 2000, 0.002, 1000
 COMMAND = "python -m curriculum.bench skip"
-CODE = ("contact.py", "curriculum/exact.py", "curriculum/piles.py")
-RECORDED, BARE_PEER = "drop, recorded", "pymunk, nothing read"
-# whole processes, as multiples of importing numpy (RECORDED: rerun): to reach, and the published script's
+CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")
+SCENES, STEPPED = ("drop", "bounce", "stack"), ("penalty", "lcp", "soft")
+DT, STEPS = 0.002, 2000
+RECORDED = "drop, recorded"
+# to reach: whole processes, in times of importing numpy (RECORDED: rerun); lcp, in times of pymunk
 LIMITS = {"drop": 1.5, "bounce": 1.6, "stack": 2.2, RECORDED: 1.5}
-PUBLISHED = {"drop": 20.0, "bounce": 12.0, "stack": 61.0, RECORDED: 11.0}
-MEMORY_LIMIT = 1.5
-REST_LIMIT = 2e-6  # s a step of one resting ball, every step taken
+LCP_LIMITS = {"drop": 1.0, "bounce": 1.0, "stack": 1.2}
 
 
-def measure(quick=False, cells=None):
-    """All parts; returns a JSON-ready dict: same_bytes, processes, in_process, resting, speed_up."""
-    cells = {} if cells is None else cells
-    parts = dict(
-        same_bytes=same_bytes,
-        processes=processes,
-        in_process=in_process,
-        resting=resting,
-        speed_up=speed_up,
-    )
-    for name, part in parts.items():
-        if name not in cells:
-            cells[name] = measured.plain(part(quick))
-    return dict(quick=quick, **{name: cells[name] for name in parts})
+def measure(quick=False):
+    """same_bits, processes, lcp against pymunk, and the speed-up of every scene and model."""
+    found = {}
+    for part in (same_bits, processes, against_pymunk, speed_up):
+        print(f"skip: {part.__name__}", flush=True)
+        found[part.__name__] = part(quick)
+    return found
 
 
-def bytes_cases(quick):
-    """(scene, seed, bodies, model, dt, steps) of every pair of runs to compare."""
-    seeds, grid = (2, (1, 8, 32)) if quick else (5, contact.DT_GRID)
-    for scene in SCENES:
-        for seed in range(seeds):
-            for model in STEPPED:
-                for factor in grid:
-                    yield scene, seed, None, model, factor * DT, SMOKE if quick else FULL
-    for seed, bodies in ((0, 50),) if quick else ((0, 50), (1, 50), (0, 300)):
-        for model in ("penalty", "lcp"):
-            for factor in (1, 8) if quick else contact.DT_GRID:
-                yield "pile", seed, bodies, model, factor * DT, 50 if quick else 300
+def cases(quick):
+    """(scene, seed, balls, model, dt, steps) of every pair of runs to compare."""
+    seeds, grid = (1, (1, 8)) if quick else (5, contact.DT_GRID)
+    steps = 800 if quick else STEPS
+    for scene, seed, model, factor in itertools.product(SCENES, range(seeds), STEPPED, grid):
+        yield scene, seed, None, model, factor * DT, steps
+    for balls, model in itertools.product((24,) if quick else (24, 60), STEPPED):
+        yield "pile", 0, balls, model, DT, 100 if quick else 1500
 
 
-def same_bytes(quick):
-    """Every run with and without skips: how many pairs, and which of them differ in any bit.
+def same_bits(quick):
+    """How many pairs of runs, with and without skips, and which of them differ in any bit.
 
-    Arrays first (every position and velocity of every step; of a pile, by the compiled twin and by
-    the plain loops), then whole runs of the command line: standard output and metrics.json.
+    Arrays first, every position and velocity of every step (of larger piles by the compiled twin
+    and by the plain loops); then whole command lines, what they print and their metrics.json.
     """
-    cases, differing = list(bytes_cases(quick)), []
-    lines = [
-        ["--scene", scene, "--seed", str(seed), *length]
-        for scene in SCENES
-        for seed in (range(1) if quick else range(3))
-        for length in ((["--smoke"],) if quick else (["--smoke"], []))
-    ]
-    with measured.progress(len(cases) + len(lines), "same bytes") as tick:
-        for scene, seed, bodies, model, dt, steps in cases:
-            built = contact.build_scene(scene, seed, bodies)
-            one, other = (
-                contact.run_model(model, built, dt, steps, skip=skip) for skip in (True, False)
-            )
-            if any(
-                getattr(one, part).tobytes() != getattr(other, part).tobytes() for part in "tqv"
-            ):
-                differing.append(
-                    f"{scene}{' ' + str(bodies) if bodies else ''} {model} dt {dt:g} "
-                    f"seed {seed} steps {steps}"
-                )
-            tick(scene)
-        for flags in lines:
-            if _command_line(flags) != _command_line([*flags, "--no-skip"]):
-                differing.append("contact.py " + " ".join(flags))
-            tick("contact.py")
-    return dict(runs=len(cases), command_lines=len(lines), differing=differing)
+    jobs = list(cases(quick))
+    same = pool.spread(is_same, jobs, "same bits")
+    lines = [["--scene", scene, "--seed", str(seed), *(["--smoke"] if quick else [])]
+             for scene in SCENES for seed in range(1 if quick else 3)]
+    printed = pool.spread(prints_the_same, lines, "same output")
+    differing = [" ".join(map(str, each)) for each, fine in zip(jobs + lines, same + printed)
+                 if not fine]
+    return dict(runs=len(jobs), command_lines=len(lines), differing=differing)
 
 
-def _command_line(flags):
-    """What contact.main prints, and its metrics.json; the output folder's name left out."""
-    with tempfile.TemporaryDirectory() as out:
-        printed = io.StringIO()
-        with contextlib.redirect_stdout(printed):
-            contact.main([*flags, "--no-rerun", "--out", out])
-        return printed.getvalue().replace(out, "OUT"), (Path(out) / "metrics.json").read_bytes()
+def is_same(case):
+    """Whether a run has the same bits with and without skips."""
+    scene, seed, balls, model, dt, steps = case
+    scene = contact.build_scene(scene, seed, balls)
+    one, other = (contact.run_model(model, scene, dt, steps, contact.Settings(skip=skip))
+                  for skip in (True, False))
+    same = all(a.tobytes() == b.tobytes() for a, b in zip(one[:3], other[:3]))
+    return same and one.unsettled == other.unsettled
+
+
+def prints_the_same(flags):
+    """Whether a command line prints and writes the same with and without skips."""
+    found = []
+    for more in ([], ["--no-skip"]):
+        with tempfile.TemporaryDirectory() as out:
+            printed = io.StringIO()
+            with contextlib.redirect_stdout(printed):
+                contact.main([*flags, *more, "--no-rerun", "--out", out])
+            metrics = (Path(out) / "metrics.json").read_bytes()
+            found.append((printed.getvalue().replace(out, "").replace(" --no-skip", ""), metrics))
+    return found[0] == found[1]
 
 
 def processes(quick):
-    """Whole processes, in rounds of random order: {name: {seconds: [...], memory: [...]}}, ratios."""
-    python = sys.executable
+    """{name: median, min, max [s], base, ratio, least: ratio of the least times} of processes."""
+    python, rounds = sys.executable, 3 if quick else 15
     with tempfile.TemporaryDirectory() as out:
         run = [python, "contact.py", "--out", out]
-        commands = {
-            "numpy": [python, "-c", "import numpy"],
-            **{scene: [*run, "--no-rerun", "--scene", scene] for scene in SCENES},
-        }
+        commands = {"numpy": [python, "-c", "import numpy"],
+                    **{scene: [*run, "--no-rerun", "--scene", scene] for scene in SCENES}}
         if importlib.util.find_spec("rerun") is not None:
-            commands["rerun"] = [python, "-c", "import rerun"]
-            commands[RECORDED] = [*run, "--rerun", "--scene", "drop"]
-        rounds = 3 if quick else 15
-        found = {name: dict(seconds=[], memory=[]) for name in commands}
-        with measured.progress((rounds + 1) * len(commands), "whole processes") as tick:
-            for number in range(rounds + 1):  # the first warms the disk cache and the bytecode
-                for name in random.Random(number).sample(list(commands), len(commands)):
-                    seconds, memory = timing.whole_process(
-                        commands[name], measured.ROOT, Path(out) / "bytecode"
-                    )
-                    if number:
-                        found[name]["seconds"].append(seconds)
-                        found[name]["memory"].append(memory)
-                    tick(name)
-    median = {
-        name: {part: statistics.median(values) for part, values in parts.items()}
-        for name, parts in found.items()
-    }
-    ratios = {
-        name: dict(
-            base=base,
-            time=median[name]["seconds"] / median[base]["seconds"],
-            memory=median[name]["memory"] / median[base]["memory"],
-        )
-        for name, base in [(s, "numpy") for s in SCENES] + [(RECORDED, "rerun")]
-        if name in median
-    }
-    return dict(measured=found, ratios=ratios)
+            commands |= {"rerun": [python, "-c", "import rerun"],
+                         RECORDED: [*run, "--rerun", "--scene", "drop"]}
+        seconds = {name: [] for name in commands}
+        for number in range(rounds + 1):    # the first warms the disk cache and the bytecode
+            for name in random.Random(number).sample(list(commands), len(commands)):
+                took = timing.whole_process(commands[name], ROOT, Path(out) / "bytecode")
+                seconds[name] += [took] if number else []
+    found = {name: timing.spread(values) for name, values in seconds.items()}
+    for name in LIMITS:
+        base = "rerun" if name == RECORDED else "numpy"
+        if name in found:
+            found[name] |= dict(base=base, ratio=found[name]["median"] / found[base]["median"],
+                                least=found[name]["min"] / found[base]["min"])
+    return found
 
 
-def in_process(quick):
-    """2000 steps of the drop in this process: lcp with skips, against pymunk stepping the same ball."""
-    scene = contact.build_scene("drop")
-    lcp = contestants.BY_NAME["lcp: 20 sweeps"]
-    pymunk = contestants.BY_NAME["pymunk: 10 iterations"]
-    tasks = {"lcp": lambda: lcp.prepare(scene, DT, FULL)[contestants.READ]}
-    missing = pymunk.refuses(scene)
-    if not missing:
-        for way, name in ((contestants.READ, "pymunk"), (contestants.BARE, BARE_PEER)):
-            tasks[name] = lambda way=way: pymunk.prepare(scene, DT, FULL)[way]
-    seconds = timing.interleave(tasks, 5 if quick else 31)
-    return dict(missing=missing, times={name: timing.spread(v) for name, v in seconds.items()})
-
-
-def resting(quick):
-    """Seconds a step of one ball that rests on the table, by model: every step taken, none recorded."""
-    rest = contact.build_scene("drop")
-    rest.q0[1] = contact.RADIUS
-    solref, solimp = contact.soft_defaults(0.0, DT)
-    steps = {
-        "penalty": lambda balls: contact.penalty_step(balls, DT, 1e4, rest.damping),
-        "lcp": lambda balls: contact.lcp_step(balls, DT, 0.0, 0.2, 20),
-        "soft": lambda balls: contact.soft_step(balls, DT, solref, solimp),
-    }
-
-    def task(step):
-        balls = contact.make_balls(rest)
-        for _ in range(500):
-            step(balls)
-
-        def call():
-            for _ in range(STEPS_AT_REST):
-                step(balls)
-
-        return call
-
-    seconds = timing.interleave(
-        {name: lambda step=step: task(step) for name, step in steps.items()}, 3 if quick else 15
-    )
-    return {
-        name: timing.spread([value / STEPS_AT_REST for value in values])
-        for name, values in seconds.items()
-    }
+def against_pymunk(quick):
+    """{scene: {lcp, pymunk: spread [ms], ratio}}: 2000 steps in this process, pymunk unread."""
+    lcp = accuracy.BY_NAME["lcp: 20 sweeps"]
+    peer = accuracy.BY_NAME["pymunk: 10 iterations"]
+    found = {}
+    for name in SCENES:
+        scene = contact.build_scene(name)
+        if peer.refuses(scene):
+            return found
+        tasks = {"lcp": lambda scene=scene: lcp.prepare(scene, DT, STEPS)["read"],
+                 "pymunk": lambda scene=scene: peer.prepare(scene, DT, STEPS)["bare"]}
+        times = {key: timing.spread([1e3 * value for value in values])
+                 for key, values in timing.interleave(tasks, 5 if quick else 31).items()}
+        found[name] = dict(times, ratio=times["lcp"]["median"] / times["pymunk"]["median"])
+    return found
 
 
 def speed_up(quick):
-    """Times of run_model with and without skips, per scene and model, and the ratio of the medians."""
-    cases = [(scene, None, FULL) for scene in SCENES] + [("pile", 50, 50 if quick else 300)]
-    rows, tasks = [], {}
-    for scene, bodies, steps in cases:
-        built = contact.build_scene(scene, 0, bodies)
-        for model in ("penalty", "lcp"):
-            for skip in (True, False):
-                tasks[scene, model, skip] = (
-                    lambda built=built, model=model, steps=steps, skip=skip: (
-                        lambda: contact.run_model(model, built, DT, steps, skip=skip)
-                    )
-                )
-    seconds = timing.interleave(tasks, 3 if quick else 11)
-    for scene, bodies, steps in cases:
-        for model in ("penalty", "lcp"):
-            skipped, taken = (timing.spread(seconds[scene, model, skip]) for skip in (True, False))
-            rows.append(
-                dict(
-                    scene=scene,
-                    bodies=bodies or len(contact.build_scene(scene).mass),
-                    model=model,
-                    steps=steps,
-                    skip=skipped,
-                    no_skip=taken,
-                    ratio=taken["median"] / skipped["median"],
-                )
-            )
+    """[{scene, model, skipped, taken [ms], ratio}]: medians of runs with and without skips."""
+    rows = []
+    for name, model in itertools.product(SCENES, STEPPED):
+        scene = contact.build_scene(name)
+        tasks = {skip: lambda skip=skip, scene=scene, model=model: (
+            lambda: contact.run_model(model, scene, DT, STEPS, contact.Settings(skip=skip)))
+            for skip in (True, False)}
+        times = timing.interleave(tasks, 2 if quick else 7)
+        skipped, taken = (1e3 * statistics.median(times[skip]) for skip in (True, False))
+        rows.append(dict(scene=name, model=model, skipped=skipped, taken=taken,
+                         ratio=taken / skipped))
     return rows
