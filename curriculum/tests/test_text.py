@@ -1,4 +1,4 @@
-"""The gate on a small project of its own: the real contact.py and rooms, a short chapter and README."""
+"""The gate on a small project of its own: the real contact.py, a short chapter and README."""
 
 import hashlib
 import json

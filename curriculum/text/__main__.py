@@ -1,9 +1,9 @@
 """The gate: what chapter and README say, against what the code is and does.
 
-    python -m curriculum.text                     # check; writes nothing; exit 1 and a line a problem
-    python -m curriculum.text --accept SECTION    # these sections have been read as they are now
-    python -m curriculum.text --write             # make the README's generated blocks anew
-    python -m curriculum.text --list              # every number that a text can quote, with its name
+    python -m curriculum.text                   # check, write nothing; exit 1 and a line a problem
+    python -m curriculum.text --accept SECTION  # these sections have been read as they are now
+    python -m curriculum.text --write           # make the README's generated blocks anew
+    python -m curriculum.text --list            # every number that a text can quote, by name
 
 It holds together: regions are well formed, and each is included once by the chapter; a section of
 chapter or README was read again after its text, or the code of a region that it includes or names,

@@ -170,7 +170,7 @@ def typed_numbers(text) -> list:
 
 
 def record(text, accepted, found, regions) -> str:
-    """meta.yaml's text with the hashes of the accepted sections, and of all regions that nobody waits for.
+    """meta.yaml's text with the hashes of accepted sections, and of regions that nobody waits for.
 
     Sections that are gone are taken out. A region's hash moves once every section that speaks of it
     has been read.

@@ -1,8 +1,9 @@
 """The README's generated blocks: what contact.py prints, and what was measured.
 
-A block stands between `<!-- generated: NAME by COMMAND -->` and `<!-- end -->`. COMMAND is a call of
-contact.py, whose output is shown, or `python -m curriculum.text --write`, which asks the room that
-measured for its Markdown (MAKERS). `python -m curriculum.text` fails where a block is out of date.
+A block stands between `<!-- generated: NAME by COMMAND -->` and `<!-- end -->`. COMMAND is a call
+of contact.py, whose output is shown, or `python -m curriculum.text --write`, which asks the room
+that measured for its Markdown (MAKERS). The gate fails where a block is
+out of date.
 """
 
 import re

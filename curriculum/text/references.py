@@ -9,10 +9,10 @@
     {{a.b / c.d|.1f}}                               + - * / with blanks around, left to right
     {{= 1972 | year of the paper}}                  a typed number, with the reason why
 
-FORMAT is Python's; a fraction needs one. |words says "three", |times "three times", of a number that
-is whole or nearly. Results that were measured on other code are followed by "(stale)". A sentence is
-held to the numbers by a comment: <!-- holds: quality.lcp.energy_excess < 1e-9 -->. What cannot be
-made raises ValueError, which says in one line what is known instead.
+FORMAT is Python's; a fraction needs one. |words says "three", |times "three times", of a number
+that is whole or nearly. Results that were measured on other code are followed by "(stale)". A
+sentence is held to the numbers by a comment: <!-- holds: quality.lcp.energy_excess < 1e-9 -->.
+What cannot be made raises ValueError, which says in one line what is known instead.
 """
 
 import importlib
@@ -65,7 +65,7 @@ def load_meta(path=ROOT / "meta.yaml") -> dict:
 
 
 def run_contact(flags) -> dict:
-    """{"metrics": metrics.json, "stdout": text} of `python contact.py FLAGS`, in a folder of its own."""
+    """{"metrics": metrics.json, "stdout": text} of `python contact.py FLAGS`, in its own folder."""
     with tempfile.TemporaryDirectory() as out:
         command = [sys.executable, "-B", "contact.py", "--no-rerun", "--out", out, *map(str, flags)]
         run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)

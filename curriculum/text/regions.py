@@ -1,7 +1,8 @@
 """The named regions of the literate files: the pieces of code that the chapter shows.
 
 A region stands between `# --- region: NAME ---` and `# --- endregion ---`, at the left margin or,
-within a class, further in. Regions are flat and closed, and a name belongs to one region of all files.
+within a class, further in. Regions are flat and closed, and a name belongs to one region of all
+files.
 
 Its hash is the sha256 of the text that a reader sees: the lines between the two markers, less the
 indentation that all of them share, each ended by one "\\n", as UTF-8.

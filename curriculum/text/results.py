@@ -2,8 +2,8 @@
 
 The benchmark and the stress report each keep one file results.json, with a section per command. A
 section says under "measured" how it came to be: the command that measures it again, the machine
-(curriculum/machine.py) and the hash of every file whose behaviour was measured. It is stale when one
-of those files has changed since, comments and docstrings aside.
+(curriculum/machine.py) and the hash of every file whose behaviour was measured. It is stale when
+one of those files has changed since, comments and docstrings aside.
 """
 
 import json
@@ -40,7 +40,7 @@ def save(name: str, section: str, values: dict, command: str, code=CODE, folder=
 
 
 def rounded(value):
-    """`value` as strict JSON: numpy unpacked, floats with six digits, what is not finite as None."""
+    """`value` as strict JSON: numpy unpacked, floats with six digits, None for not finite."""
     if isinstance(value, dict):
         return {str(key): rounded(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
@@ -53,7 +53,7 @@ def rounded(value):
 
 
 def stale(section: dict) -> list:
-    """The files whose code is no longer what this section measured; ["unknown"] if it does not say."""
+    """The files whose code is no longer what a section measured; ["unknown"] if none is named."""
     code = ((section or {}).get("measured") or {}).get("code")
     if not code:
         return ["unknown"]
@@ -62,7 +62,7 @@ def stale(section: dict) -> list:
 
 
 def footer(section: dict) -> str:
-    """One paragraph for the end of a page: when, on what and on which code; and whether it is stale."""
+    """One paragraph for the end of a page: when and on what it was measured, and if it is stale."""
     about, changed = section["measured"], stale(section)
     versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
     line = (

@@ -84,7 +84,7 @@ def sections(read=read_text) -> dict:
 
 
 def changes(unread, recorded) -> str:
-    """Diffs from the sections as they were accepted (in git) to what they are now, each part once."""
+    """Diffs of the sections, from what was accepted (in git) to what is now, each part once."""
     found = {}
     for section in unread:
         for diff in differences(section, recorded.get(section.name)):
@@ -93,7 +93,7 @@ def changes(unread, recorded) -> str:
 
 
 def differences(section: Section, accepted) -> list:
-    """The diffs of a section's text, and of the regions of which it speaks, to the accepted ones."""
+    """The diffs of a section's text, and of the regions of which it speaks, since it was read."""
     if accepted is None:
         return ["(never read)"]
     commit = git("log", "-n1", "--format=%h", f"-S{accepted}", "--", "meta.yaml").strip() or "HEAD"
