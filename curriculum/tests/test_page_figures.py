@@ -1,4 +1,4 @@
-"""The explaining figures: each answers to a drag and to arrow keys, and shows what contact.py finds."""
+"""The explaining figures answer to a drag and to arrow keys, and show what contact.py finds."""
 
 import functools
 import re
