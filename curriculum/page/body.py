@@ -46,9 +46,9 @@ class Body:
         rest = [self.shown(*part) for part in parts]
         said = plain(" ".join(rest))
         last = opening[1].removeprefix("exercise:") if opening[0] == "slot" else None
-        veils = [name for name in self.met if name == last or TELLS[name].search(said)] if said else []
         if last in self.bets:
             self.met.append(last)
+        veils = [name for name in self.met if name == last or TELLS[name].search(said)] if said else []
         self.html += [str(self.macros.veil(name)) for name in veils]
         self.html += [*rest, *["</div></div>"] * len(veils)]
 

@@ -49,7 +49,7 @@ PAINT = """() => new Promise((done) => {
 
 
 @contextlib.contextmanager
-def opened(page, **options):
+def opened(page, query="", **options):
     """A tab with the HTML file `page`, 1280 x 800, as for a reader who has made the bets."""
     from playwright.sync_api import sync_playwright
 
@@ -60,17 +60,25 @@ def opened(page, **options):
             """for (const id of ["ex1", "ex3", "ex4"])
             localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
         )
-        tab.goto(page.resolve().as_uri())
+        tab.goto(page.resolve().as_uri() + query)
         tab.wait_for_selector("[data-ready]", state="attached")
         yield tab
         browser.close()
 
 
 def photograph(page, folder):
-    """Save PICTURE, the first screen, in a folder; its path."""
-    with opened(page, reduced_motion="reduce") as tab:
-        tab.wait_for_timeout(500)
-        tab.screenshot(path=folder / PICTURE)
+    """Save PICTURE in a folder, the four models just after the landing; its path."""
+    with opened(page, query="?scene=drop", reduced_motion="reduce", device_scale_factor=2) as tab:
+        tab.evaluate("document.getElementById('figure').classList.remove('back')")
+        tab.locator("#figure").scroll_into_view_if_needed()
+        tab.locator("#fig-lanes .handle").focus()
+        for _ in range(8):  # from 0.3 s on, ten steps each
+            tab.keyboard.press("Shift+ArrowRight")
+        tab.wait_for_timeout(300)
+        box = tab.locator("#fig-lanes .drawing").bounding_box()
+        empty = 0.36 * box["height"]  # air above the balls
+        box |= {"y": box["y"] + empty, "height": box["height"] - empty}
+        tab.screenshot(path=folder / PICTURE, clip=box)
     return folder / PICTURE
 
 

@@ -24,7 +24,6 @@ from curriculum.text.regions import ROOT
 
 HERE = Path(__file__).resolve().parent
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
-SEEDS = 10  # start heights that it offers
 ENGINE = (
     "GRAVITY CONTACT_MARGIN SOLREF SOLIMP HARD MOST_SWEEPS LAST_BITS EXPLODED".split()
 )  # constants of contact.py that engine.js takes
@@ -43,11 +42,10 @@ COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb
 
 
 def scene_facts(name):
-    """What the page must know of a scene: start heights by seed, and its own knobs."""
-    starts = [contact.build_scene(name, seed) for seed in range(SEEDS)]
-    heights = [scene.q0[1].tolist() for scene in starts]
-    first = starts[0]
-    return {"starts": heights, "damping": first.damping, "restitution": first.restitution}
+    """What the page must know of a scene: its start heights, and its own knobs."""
+    scene = contact.build_scene(name)
+    start = scene.q0[1].tolist()
+    return {"start": start, "damping": scene.damping, "restitution": scene.restitution}
 
 
 def page_data(bets):

@@ -20,14 +20,6 @@ export function el(tag, attributes, ...children) {
 
 export const words = (content, attributes) => el("text", attributes, escape(content));
 
-export function picture(width, height, label, ...children) {
-  return el(
-    "svg",
-    { class: "plot", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label },
-    ...children,
-  );
-}
-
 // ---- numbers
 
 const grouped = (whole) => String(whole).replace(/\B(?=(\d{3})+$)/g, ",");

@@ -54,12 +54,11 @@ function move({ x, y }, dt, vx, vy) {
 
 // ---- penalty
 
-export const penaltyNormalForce = (depth, speed, stiffness, damping) =>
+const penaltyNormalForce = (depth, speed, stiffness, damping) =>
   positive(stiffness * depth - damping * speed);
 
-// One step of penalty. `trace`, when given, receives what each contact did. knobs.clampForce stands in
-// for the clamped force.
-export function penaltyStep(state, scene, knobs, trace) {
+// One step of penalty. knobs.clampForce stands in for the clamped force.
+export function penaltyStep(state, scene, knobs) {
   const { x, y, vx, vy } = state;
   const { dt, stiffness, damping, clampForce = penaltyNormalForce } = knobs;
   const fx = y.map(() => 0);
@@ -73,7 +72,6 @@ export function penaltyStep(state, scene, knobs, trace) {
       fx[c.j] -= f * c.nx;
       fy[c.j] -= f * c.ny;
     }
-    if (trace) trace.push({ i: c.i, j: c.j, gap: -c.depth, speed, force: f });
   }
   const { mass } = scene;
   const faster = vx.map((v, i) => (mass[i] === Infinity ? v : v + dt * (fx[i] / mass[i])));
@@ -107,8 +105,8 @@ export function makeRows(contacts, mass, targets, softness) {
 export const projectImpulse = (lam, dlam) => positive(lam + dlam);
 
 // Projected Gauss-Seidel. Changes vx, vy and the lam of the rows; returns whether it settled. `project`
-// stands in for the clamp; `trace`, when given, receives the impulses after every sweep.
-export function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = projectImpulse }, trace) {
+// stands in for the clamp.
+export function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = projectImpulse }) {
   for (let sweep = 0; sweep < iters; sweep++) {
     let settled = true;
     for (const c of rows) {
@@ -119,7 +117,6 @@ export function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = pr
       c.lam = lam;
       settled = settled && Math.abs(change) <= tolerance * c.effectiveMass;
     }
-    if (trace && rows.length) trace.push(rows.map((c) => c.lam));
     if (settled) return true;
   }
   return false;
@@ -143,16 +140,12 @@ function warmStart(rows, pushed, share, vx, vy) {
 }
 
 // Gravity predicts the velocities, impulses correct them, the balls move.
-function solveStep(state, scene, dt, rows, { warm, last, ...options }, trace) {
+function solveStep(state, scene, dt, rows, { warm, last, ...options }) {
   const vx = state.vx.slice();
   const vy = accelerated(state.vy, scene.mass, dt);
-  if (trace) {
-    trace.contacts = rows.map((c) => ({ ...c, gap: -c.depth, speed: normalSpeed(c, vx, vy) }));
-    trace.sweeps = [];
-  }
   const tolerance = last ? last * fastest(rows, vx, vy) : 0;
   if (warm) warmStart(rows, state.pushed, warm, vx, vy);
-  const settled = solveContacts(rows, vx, vy, { ...options, tolerance }, trace && trace.sweeps);
+  const settled = solveContacts(rows, vx, vy, { ...options, tolerance });
   const next = move(state, dt, vx, vy);
   next.settled = settled;
   if (warm && rows.length) next.pushed = rows.map(({ i, j, lam }) => ({ i, j, lam }));
@@ -174,7 +167,7 @@ function fastest(rows, vx, vy) {
 }
 
 // The normal velocity with which a contact of lcp must leave at least.
-export function contactTarget(c, state, { dt, restitution, baumgarte }) {
+function contactTarget(c, state, { dt, restitution, baumgarte }) {
   const bias = (baumgarte / dt) * c.depth;
   if (restitution === 0) return bias;
   const speed = normalSpeed(c, state.vx, state.vy);
@@ -184,14 +177,13 @@ export function contactTarget(c, state, { dt, restitution, baumgarte }) {
   return meets || !(c.depth / dt < bounce) ? bounce : c.depth / dt;
 }
 
-// One step of lcp. `trace`, when given, receives the contacts and the impulses after every sweep.
-// knobs.target and knobs.project stand in for the target and the clamp.
-export function lcpStep(state, scene, knobs, trace) {
-  const { dt, iters, warm, project, target = contactTarget } = knobs;
+// One step of lcp. knobs.project stands in for the clamp.
+export function lcpStep(state, scene, knobs) {
+  const { dt, iters, warm, project } = knobs;
   const contacts = detectContacts(state.x, state.y, scene.radius, CONTACT_MARGIN);
-  const targets = contacts.map((c) => target(c, state, knobs));
+  const targets = contacts.map((c) => contactTarget(c, state, knobs));
   const hard = contacts.map(() => 0);
-  return solveStep(state, scene, dt, makeRows(contacts, scene.mass, targets, hard), { iters, project, warm }, trace);
+  return solveStep(state, scene, dt, makeRows(contacts, scene.mass, targets, hard), { iters, project, warm });
 }
 
 // ---- soft, MuJoCo's contact
@@ -244,8 +236,8 @@ export function soften(c, state, scene, knobs) {
   return { target: speed + knobs.dt * (K * d * c.depth - B * speed), softness: soft > 1e-15 ? soft : 1e-15 };
 }
 
-// One step of soft: lcp's step with another target, and softness. knobs.warm = 0 begins the sweeps cold.
-export function softStep(state, scene, knobs, trace) {
+// One step of soft: lcp's step with another target, and softness.
+export function softStep(state, scene, knobs) {
   const contacts = detectContacts(state.x, state.y, scene.radius, 0);
   const soft = contacts.map((c) => soften(c, state, scene, knobs));
   const rows = makeRows(
@@ -254,7 +246,7 @@ export function softStep(state, scene, knobs, trace) {
     soft.map((each) => each.target),
     soft.map((each) => each.softness),
   );
-  return solveStep(state, scene, knobs.dt, rows, { iters: MOST_SWEEPS, last: LAST_BITS, warm: 1 }, trace);
+  return solveStep(state, scene, knobs.dt, rows, { iters: MOST_SWEEPS, last: LAST_BITS, warm: 1 });
 }
 
 // ---- runs

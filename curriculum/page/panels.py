@@ -64,13 +64,14 @@ def piece(lines, bookkeeping, node=None, start=0):
     if last > first:
         rest = "".join(html[first + 1 : last + 1])
         html[first : last + 1] = [f"<details><summary>{html[first]}</summary>{rest}</details>"]
-    code = len(lines) - max(last - first + 1, 0)
-    head = next((source for source, _ in lines if source.strip()), "").strip()
+    while not lines[-1][0].strip():
+        lines, html = lines[:-1], html[:-1]
+    head = next(source for source, _ in lines if source.strip() and source[0] != "@")
     return {
-        "html": Markup("".join(html).strip("\n")),
-        "head": head if len(head) < 72 else head[:70] + "…",
+        "html": Markup("".join(html)),
+        "head": head,
         "lines": len(lines),
-        "folded": bookkeeping or code > LONG,
+        "folded": bookkeeping or len(lines) - max(last - first + 1, 0) > LONG,
     }
 
 

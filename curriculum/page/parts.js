@@ -6,7 +6,7 @@ import { knobsOf } from "./store.js";
 
 export const R = data.radius; // m
 export const G = -GRAVITY; // m/s^2, and the weight in N of a ball of 1 kg
-export const START = data.scenes.drop.starts[0][0]; // m, of the ball that is dropped
+export const START = data.scenes.drop.start[0]; // m, of the ball that is dropped
 
 // A scene of balls: `more` holds what differs from balls of 1 kg at rest over one another.
 export function scene(heights, more = {}) {
@@ -51,8 +51,9 @@ export function clipped(id, x, y, width, height, ...children) {
   return shape + el("g", { "clip-path": `url(#${id})` }, ...children);
 }
 
-/* A picture at the left and a chart at the right: {svg, x, y, middle}: x and y are the chart's
- * scales in the drawing, middle is the picture's. picture(width, chart) is drawn within its part; `share` is its share of the width. */
+/* A picture at the left and a chart at the right: {svg, x, y, middle}. x and y are the chart's scales
+ * in the drawing, middle is the picture's. picture(width, chart) is drawn within its part, a `share` of
+ * the width; options.under(chart) is drawn beneath the chart. */
 export function beside(view, id, options, picture, share = 0.4) {
   const left = Math.round(within(110, share * view.width, 250));
   const at = left + 16;

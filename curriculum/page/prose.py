@@ -30,7 +30,6 @@ SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock|show)(?:\s*:\
 EVERY = ",".join(contact.MODELS)
 SETTINGS = {  # beside the knobs: what each may be
     "scene": "drop|bounce|stack",
-    "seed": r"\d",
     "models": "({0})(,({0}))*".format("|".join(contact.MODELS)),
     "chart": "gap|push|energy",
     "from": r"[\d.]+",

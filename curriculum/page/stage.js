@@ -20,7 +20,7 @@
  *   jobs             {name(args)}: what takes long, computed in a worker (view.result)
  *
  * The view: {own, values, get(name), set(changes), width, height, run(), stop(), running(), still, coarse,
- * grabbed, result(job, args), open(bet)}. `still`: nothing may move by itself. `coarse`: a drag is under way. */
+ * grabbed, flick(), result(job, args), open(bet)}. `still`: nothing may move by itself. `coarse`: a drag is under way. */
 import { escape, plain } from "./draw.js";
 import { fitting, fromSlider, shown, sliderRange, toSlider } from "./store.js";
 
@@ -163,6 +163,7 @@ export class Stage {
   #pending = 0;
   #running = false;
   #last = 0;
+  #trail = []; // of the pointer: [ms, x, y]
 
   constructor(box, name, figure, page) {
     Object.assign(this, { box, name, figure, page, width: 0, height: 0 });
@@ -200,6 +201,7 @@ export class Stage {
       run: () => this.run(),
       stop: () => (this.#running = false),
       running: () => this.#running,
+      flick: () => this.#flick(),
       result: (job, args) => this.result(job, args),
       get values() {
         return store.all();
@@ -222,10 +224,14 @@ export class Stage {
     return {
       grab: (handle, x, y) => {
         this.view.grabbed = handle;
+        this.#trail = [];
         store.drag(true);
         this.#act("drag", handle, x, y);
       },
-      drag: (handle, x, y) => this.#act("drag", handle, x, y),
+      drag: (handle, x, y) => {
+        this.#trail = [...this.#trail.slice(-4), [performance.now(), x, y]];
+        this.#act("drag", handle, x, y);
+      },
       release: (handle) => {
         this.view.grabbed = null;
         this.#act("release", handle);
@@ -234,6 +240,14 @@ export class Stage {
       nudge: (handle, dx, dy) => this.#act("nudge", handle, dx, dy),
       enter: (handle) => this.#act("enter", handle),
     };
+  }
+
+  // How fast a handle was let go, in px a second: 0 if it was held still.
+  #flick() {
+    const [first, last] = [this.#trail[0], this.#trail[this.#trail.length - 1]];
+    const span = first ? last[0] - first[0] : 0;
+    if (span < 15 || performance.now() - last[0] > 100) return [0, 0];
+    return [1, 2].map((k) => (1000 * (last[k] - first[k])) / span);
   }
 
   #act(call, ...given) {
@@ -249,7 +263,9 @@ export class Stage {
       this.redraw();
     });
     this.box.querySelector(".buttons").append(node);
-    return () => (node.textContent = typeof label === "function" ? label(this.view) : label);
+    const show = () => (node.textContent = typeof label === "function" ? label(this.view) : label);
+    show();
+    return show;
   }
 
   resize() {

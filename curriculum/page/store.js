@@ -20,13 +20,11 @@ export const QUANTITIES = {
   dampratio: { low: 0.1, high: 5, log: true, digits: 2, unit: "", label: "Damping ratio" },
 };
 export const MODELS = ["penalty", "lcp", "soft", "exact"];
-export const SCENES = Object.keys(data.scenes);
-const CHOICES = { scene: SCENES, seed: data.scenes.drop.starts.map((_, k) => String(k)) };
+const SCENES = Object.keys(data.scenes);
 const SLIDER = 400; // positions of a slider that is not plain
 
 const START = {
   scene: "drop",
-  seed: "0",
   ...data.defaults,
   impedance: null, // null: what the model takes by itself
   timeconst: null,
@@ -89,7 +87,7 @@ export class Store {
   dragging = () => this.#dragging;
 
   allowed(name, value) {
-    if (name in CHOICES) return CHOICES[name].includes(String(value));
+    if (name === "scene") return SCENES.includes(value);
     const each = this.quantities[name];
     if (!each) return false;
     if (value === null) return START[name] === null;
@@ -114,7 +112,7 @@ export class Store {
     if (SCENES.includes(changes.scene) && changes.scene !== next.scene)
       Object.assign(next, own(data.scenes[changes.scene]));
     for (const [name, value] of Object.entries(changes))
-      if (this.allowed(name, value)) next[name] = name in CHOICES ? String(value) : value;
+      if (this.allowed(name, value)) next[name] = value;
     const changed = new Set(Object.keys(next).filter((name) => next[name] !== this.#values[name]));
     if (!changed.size) return;
     this.#values = next;
@@ -143,7 +141,7 @@ export class Store {
   asked(query) {
     const found = {};
     for (const [name, text] of new URLSearchParams(query)) {
-      const value = name in CHOICES ? text : Number(text);
+      const value = name === "scene" ? text : Number(text);
       if (text.trim() !== "" && this.allowed(name, value)) found[name] = value;
     }
     return found;
@@ -176,7 +174,7 @@ export function knobsOf(values) {
 }
 
 export function sceneOf(values) {
-  const y = data.scenes[values.scene].starts[Number(values.seed)];
+  const y = data.scenes[values.scene].start;
   const same = (value) => y.map(() => value);
   return {
     x: same(0),

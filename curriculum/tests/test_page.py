@@ -13,6 +13,7 @@ from curriculum import exact
 from curriculum.page.build import build, page_data
 from curriculum.page.bundle import bundle
 from curriculum.page.exercises import all_exercises, measured
+from curriculum.page.prose import blocks
 from curriculum.tests.page_browser import firefox, running, visiting
 
 BETS = ("ex1", "ex3", "ex4")
@@ -170,18 +171,24 @@ def test_page_is_below_900_kb_and_the_same_bytes_twice(url):
     assert text == build(draft=DRAFT)[0]
 
 
-def test_a_chapter_with_an_unknown_figure_region_or_setting_is_refused():
-    for text, named in (
-        ("<!-- figure: nowhere -->", "nowhere"),
-        ("```\n[include-by-region: contact.py#nowhere]\n```", "nowhere"),
+@pytest.mark.parametrize(
+    "text, named",
+    [
         ("[words](try:scene=moon)", "moon"),
-        ("[3](drag:dt)", "dt"),
-        ("<b>bold</b>\n", "raw HTML"),
+        ("[3](drag:dt)", "0.0005 to 0.064"),
+        ("<div>bold</div>", "raw HTML"),
         ("<!-- show: models=penalty,magic -->", "magic"),
         ("$\\clubsuit$", "font lacks"),
-    ):
-        with pytest.raises(ValueError, match=named):
-            build(chapter=f"# Title\n\n{text}\n")
+    ],
+)
+def test_what_the_page_cannot_show_is_refused_in_one_line(text, named):
+    with pytest.raises(ValueError, match=named):
+        blocks(text, {"dt": (0.0005, 0.064)})
+
+
+def test_a_chapter_with_a_figure_that_does_not_exist_is_refused():
+    with pytest.raises(ValueError, match="nowhere"):
+        build(chapter="# Title\n\n<!-- figure: nowhere -->\n")
 
 
 # every place that shows a quantity, as a number: sentences, sliders, fields, the address
@@ -283,6 +290,9 @@ def test_no_answer_of_a_bet_is_seen_before_one_click_and_then_it_stays_open(visi
     with visit(shown=False) as page:
         for name in BETS:
             assert answers(name) not in page.locator("article").inner_text(), name
+            after = page.locator(f"#{name} + .veiled")  # what follows the bet
+            assert after.locator(".veil-bar").first.is_visible()
+            assert not after.locator(".answer").first.is_visible()
         page.locator("#fig-two button").click()
         assert "inside" not in page.locator("#fig-two .words").inner_text()
         for name in BETS:
@@ -357,12 +367,15 @@ def test_keys_lift_and_drop_the_ball_and_move_the_time_of_the_live_figure(visit)
 def test_axe_finds_no_violation(visit):
     from axe_playwright_python.base import AXE_SCRIPT
 
-    run = "axe.run(document, {resultTypes: ['violations']}).then((found) => found.violations.map("
-    run += "(each) => each.id + ': ' + each.nodes.slice(0, 3).map((node) => node.target)))"
-    for scheme in ("light", "dark"):
+    run = """([parts, rules]) => axe.run(parts, {resultTypes: ["violations"], ...rules}).then((found) =>
+      found.violations.map((each) => each.id + ": " + each.nodes.slice(0, 3).map((node) => node.target)))"""
+    contrast = [["header", "#fig-grab", "#ex1", "#ex2", "#code-sweep"], {"runOnly": ["color-contrast"]}]
+    others = [["body"], {"rules": {"color-contrast": {"enabled": False}}}]
+    for scheme, parts in (("light", [contrast, others]), ("dark", [contrast])):
         with visit(color_scheme=scheme) as page:
             page.evaluate(AXE_SCRIPT)
-            assert page.evaluate(run) == []
+            for part in parts:
+                assert page.evaluate(run, part) == []
 
 
 @pytest.mark.parametrize("width", (320, 390, 1024))

@@ -54,7 +54,7 @@ export const figure = {
   caption: "Grab the ball: lift it, drop it, throw it.",
   height: 480,
   narrow: 340,
-  start: () => ({ place: null, velocity: [0, 0], run: null, time: 0, trail: [] }),
+  start: () => ({ place: null, velocity: [0, 0], run: null, time: 0 }),
   buttons: [
     {
       label: "Drop it",
@@ -88,8 +88,6 @@ export const figure = {
     own.run = null;
     own.velocity = [0, 0];
     own.place = held(view, [x / scaleOf(view), (view.height - GROUND - y) / scaleOf(view)]);
-    const now = performance.now();
-    own.trail = [...own.trail.filter(([t]) => now - t < 120), [now, ...own.place]];
   },
   nudge(view, name, dx, dy) {
     const { own } = view;
@@ -98,13 +96,8 @@ export const figure = {
     own.place = held(view, [own.place[0] + 0.02 * dx, own.place[1] - 0.02 * dy]);
   },
   release(view) {
-    const { own } = view;
-    const [first, last] = [own.trail[0], own.trail[own.trail.length - 1]];
-    const span = first ? (last[0] - first[0]) / 1000 : 0;
-    const speed = (k) => (span > 0.02 ? Math.max(-6, Math.min(6, (last[k] - first[k]) / span)) : 0);
-    const quick = first && performance.now() - last[0] < 100;
-    own.trail = [];
-    release(view, quick ? [speed(1), speed(2)] : [0, 0]);
+    const [x, y] = view.flick().map((v) => Math.max(-6, Math.min(6, v / scaleOf(view))));
+    release(view, [x, -y]);
   },
   enter: (view) => release(view, [0, 0]),
   tick(view, seconds) {

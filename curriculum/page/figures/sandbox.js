@@ -50,7 +50,7 @@ export const figure = {
   narrow: 320,
   knobs: ["restitution", "dt"],
   uses: ["stiffness", "damping", "baumgarte", "iters", "impedance", "timeconst", "dampratio"],
-  start: () => ({ model: "soft", balls: stack(0.5).concat(fresh(1.1, R)), late: 0, trail: [] }),
+  start: () => ({ model: "soft", balls: stack(0.5).concat(fresh(1.1, R)), late: 0 }),
   buttons: [
     {
       label: (view) => (view.running() ? "Stop" : "Run"),
@@ -83,8 +83,6 @@ export const figure = {
   drag(view, name, x, y) {
     const each = view.own.balls[Number(name.slice(5))];
     const [toX, toY] = [x / scaleOf(view), Math.max(R, (view.height - GROUND - y) / scaleOf(view))];
-    const now = performance.now();
-    view.own.trail = [...view.own.trail.filter(([t]) => now - t < 100), [now, toX, toY]];
     Object.assign(each, { x: toX, y: toY, vx: 0, vy: 0 });
     if (!view.still) view.run();
   },
@@ -93,12 +91,8 @@ export const figure = {
     Object.assign(each, { x: each.x + 0.02 * dx, y: Math.max(R, each.y - 0.02 * dy), vx: 0, vy: 0 });
   },
   release(view, name) {
-    const { trail, balls } = view.own;
-    const [first, last] = [trail[0], trail[trail.length - 1]];
-    const span = first ? (last[0] - first[0]) / 1000 : 0;
-    const speed = (k) => (span > 0.02 ? Math.max(-5, Math.min(5, (last[k] - first[k]) / span)) : 0);
-    Object.assign(balls[Number(name.slice(5))], { vx: speed(1), vy: speed(2) });
-    view.own.trail = [];
+    const [vx, vy] = view.flick().map((v) => Math.max(-5, Math.min(5, v / scaleOf(view))));
+    Object.assign(view.own.balls[Number(name.slice(5))], { vx, vy: -vy });
   },
   tick(view, seconds) {
     const { own } = view;
