@@ -81,6 +81,11 @@ function draw(view) {
 const last = COUNT * SWEEPS;
 const time = clock(2, () => last);
 const sweepTo = (view, at) => (view.own.time = within(0, Math.round(at), last));
+// To the first moment at which the lowest contact carries so much [m g dt].
+function dragBar(view, carried) {
+  const at = course(view.own.top).findIndex(({ lam }) => lam[0] >= carried - 0.02);
+  sweepTo(view, at < 0 ? last : at);
+}
 const throwTop = (view, top) => Object.assign(view.own, { time: 0, top: tidy(within(-1, top, 3), 2) });
 
 export const figure = {
@@ -92,7 +97,7 @@ export const figure = {
   draw,
   drag(view, name, x, y) {
     if (name === "top") throwTop(view, 1 + (heightOf(view, 2) - PX - y) / UNIT);
-    else sweepTo(view, course(view.own.top).findIndex(({ lam }) => lam[0] >= 3.4 * view.own.along(x) - 0.02));
+    else dragBar(view, 3.4 * view.own.along(x));
   },
   nudge(view, name, dx, dy) {
     if (name === "top") throwTop(view, view.own.top - 0.1 * dy);
