@@ -7,9 +7,9 @@ browser bit for bit as contact.py does, and exact.js the exact model.
 
     build.py      collects all that; prose.py, body.py, panels.py, exercises.py make the parts
     bundle.py     joins the modules into one script without globals
-    still.py      draws the first picture of every figure in an embedded V8, for readers without scripts
-    maths_font.py the font of the formulas; browser.py a real browser, for pictures and measuring
-    main.js       the start; store.js the one state; stage.js figures that can be grabbed; draw.js SVG
+    still.py      draws every figure's first picture, in an embedded V8, for readers without scripts
+    maths_font.py the formulas' characters; browser.py a real browser, for pictures and measuring
+    main.js       the start; store.js the one state; stage.js what can be grabbed; draw.js SVG
     engine.js exact.js    the models
     figures/NAME.js       a figure each, for the slot <!-- figure: NAME -->; parts.js, corners.js
     bets.js blank.js arithmetic.js reader.js    exercises, and what the text sets

@@ -1,4 +1,4 @@
-"""python -m curriculum.page [--out FILE] [--pictures FOLDER] [--measure] [--draft]: write the chapter."""
+"""python -m curriculum.page [--out FILE] [--pictures FOLDER] [--measure] [--draft]"""
 
 import argparse
 import sys
@@ -20,7 +20,7 @@ def parse(argv):
 
 
 def main(argv=None):
-    """Build and write. Returns the exit status: 0 written, 1 the chapter can't be built, 2 bad usage."""
+    """Build and write. Returns the exit status: 0 written, 1 it can't be built, 2 bad usage."""
     args = parse(argv)
     try:
         from curriculum.page.build import build

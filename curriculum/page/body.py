@@ -20,13 +20,14 @@ TELLS = {
         re.IGNORECASE,
     ),
     "ex3": re.compile(
-        r"\bexplodes?\b|explosion|blows? up|critical|\b(un)?stable\b|stability|stays? bounded|\bcliff"
-        r"|\bgains? .{0,60}energy|energy from nowhere|energy above the start|the largest step|bursts",
+        r"\bexplodes?\b|explosion|blows? up|critical|\b(un)?stable\b|stability|stays? bounded"
+        r"|\bcliff|\bgains? .{0,60}energy|energy from nowhere|energy above the start|bursts"
+        r"|the largest step",
         re.IGNORECASE,
     ),
     "ex4": re.compile(
-        r"mass cancels|no mass in|\(1 . d\) \\?,? ?g\b|equally deep|whatever the mass|per unit of mass"
-        r"|gap at rest|rests? (a little )?inside|rest depth|soft.{0,60}\bdeep\b",
+        r"mass cancels|no mass in|\(1 . d\) \\?,? ?g\b|equally deep|whatever the mass"
+        r"|per unit of mass|gap at rest|rests? (a little )?inside|rest depth|soft.{0,60}\bdeep\b",
         re.IGNORECASE,
     ),
 }
@@ -48,7 +49,9 @@ class Body:
         last = opening[1].removeprefix("exercise:") if opening[0] == "slot" else None
         if last in self.bets:
             self.met.append(last)
-        veils = [name for name in self.met if name == last or TELLS[name].search(said)] if said else []
+        veils = (
+            [name for name in self.met if name == last or TELLS[name].search(said)] if said else []
+        )
         self.html += [str(self.macros.veil(name)) for name in veils]
         self.html += [*rest, *["</div></div>"] * len(veils)]
 

@@ -75,7 +75,9 @@ def page_data(bets):
 
 def data_address(svg):
     """An SVG as an address that holds it, its paths rounded to a hundredth of a pixel."""
-    drawn = re.sub(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<!--.*?-->|<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    drawn = re.sub(
+        r"<\?xml.*?\?>|<!DOCTYPE.*?>|<!--.*?-->|<metadata>.*?</metadata>", "", svg, flags=re.DOTALL
+    )
     paths = re.sub(r'(?<= d=")[^"]+', lambda d: re.sub(r"(\.\d)\d+", r"\1", d[0]), drawn)
     short = re.sub(r">\s+<", "><", re.sub(r"\s+", " ", paths))
     named = short.replace("'", "&apos;").replace('"', "'")
@@ -147,12 +149,14 @@ def policy(*scripts):
 
 
 def stylesheet(bets):
-    """The page's style, with the models' colours, the font of the formulas, and what veils each bet."""
+    """The page's style, with the models' colours, the formulas' font, and what veils each bet."""
     css = (HERE / "style.css").read_text("utf-8")
     css = re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL))
     colors = "".join(f"--{model}: {color}; " for model, color in curves.COLORS.items())
     font = base64.b64encode(maths_font.FILE.read_bytes()).decode()
-    face = f'font-family: "{maths_font.NAME}"; src: url("data:font/woff;base64,{font}") format("woff")'
+    face = (
+        f'font-family: "{maths_font.NAME}"; src: url("data:font/woff;base64,{font}") format("woff")'
+    )
     veils = "".join(
         f".js:not(.open-{name}) .veiled-{name} > .answer, .open-{name} .veiled-{name} > .veil-bar "
         "{ display: none; }\n"
@@ -223,7 +227,9 @@ def build(chapter=None, draft=False):
     filled, unknown = fill_numbers(text, draft)
     parts = prose.blocks(filled, drawn["ranges"])
     body = assemble(parts, fill_slots(macros, drawn, exercises), code, macros, bets, draft)
-    title = next((value[2] for kind, value in parts if kind == "heading" and value[0] == 1), "Contact")
+    title = next(
+        (value[2] for kind, value in parts if kind == "heading" and value[0] == 1), "Contact"
+    )
     script, early = bundle("main.js", data), early_script(bets)
     page = templates.get_template("page.html.j2").render(
         policy=policy(early, script),

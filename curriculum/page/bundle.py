@@ -1,8 +1,8 @@
-"""The page's JavaScript: modules joined into one script without globals, in the order of their imports.
+"""The page's JavaScript: modules joined into one script without globals, by their imports.
 
-A module says `import { a, b } from "./file.js";` on one line, and `export` before a const, a function
-or a class. Two modules are made here: data.js, what the scripts know from the Python files, and
-figures.js, {name: figure} of every file in figures/.
+A module says `import { a, b } from "./file.js";` on one line, and `export` before a const, a
+function or a class. Two modules are made here: data.js, what the scripts know from the Python
+files, and figures.js, {name: figure} of every file in figures/.
 """
 
 import json
@@ -79,4 +79,5 @@ def bundle(start, data):
     joined = "".join(module(path, texts[path]) for path in order)
     if "</script" in joined.lower():
         raise ValueError("curriculum/page: the text '</script' in a module would end the script")
-    return f'(() => {{\n"use strict";\nconst modules = {{}};\n{joined}return modules["{start}"];\n}})()'
+    head = '"use strict";\nconst modules = {};\n'
+    return f'(() => {{\n{head}{joined}return modules["{start}"];\n}})()'

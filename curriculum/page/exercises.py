@@ -1,4 +1,4 @@
-"""The exercises as the page shows them: words from exercises/*.py, facts from exercises/answers.json."""
+"""The exercises as the page shows them: words of exercises/*.py, facts of answers.json."""
 
 import functools
 import importlib

@@ -1,7 +1,7 @@
 """The code that the page shows: each region a panel, each definition in it a piece of a few lines.
 
-A docstring shows its first line, the rest is folded behind it. A definition with more than LONG lines
-of code is folded behind its head, and so is all of a region that is no idea of the chapter.
+A docstring shows its first line, the rest is folded behind it. A definition with more than LONG
+lines of code is folded behind its head, and so is all of a region that is no idea of the chapter.
 """
 
 import ast
@@ -15,13 +15,23 @@ from pygments.lexers import PythonLexer
 from curriculum.text import regions
 
 LONG = 18  # lines of code
-BOOKKEEPING = {"setup", "scenes", "flight", "flags", "report", "files", "main", "quality", "stability"}
+BOOKKEEPING = {
+    "setup",
+    "scenes",
+    "flight",
+    "flags",
+    "report",
+    "files",
+    "main",
+    "quality",
+    "stability",
+}
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
 
 
 def code_lines(text):
-    """Highlighted code, (source, HTML) a line; a line too long for its column goes on further in."""
+    """Highlighted code, (source, HTML) a line; a line too long for its column goes on below."""
     shown = highlight(text, PythonLexer(stripnl=False), HtmlFormatter(nowrap=True))
     shown = re.sub(
         r'<span class="(\w+)">([^<]*)</span>', lambda m: m[0] if m[1] in STYLED else m[2], shown

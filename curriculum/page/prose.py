@@ -6,8 +6,8 @@ Beside plain Markdown the chapter may hold
 - formulas between dollar signs: become MathML;
 - slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
   <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. Other comments vanish;
-- <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows from there
-  on, by the names of the store's quantities and `models`, `chart` (gap, push, energy), `from`, `to`;
+- <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
+  from there on, by the store's quantities and `models`, `chart` (gap, push, energy), `from`, `to`;
   <!-- show: none --> lets it step back;
 - links that set the same, [words](try:scene=drop&dt=0.03), and numbers to drag, [0.002](drag:dt).
 """
@@ -43,8 +43,8 @@ def formula(text, options):
     lacking = maths_font.missing(unescape(re.sub(r"<[^>]+>", "", shown)))
     if lacking:
         raise ValueError(
-            f"{CHAPTER}: the formula {text!r} has {' '.join(lacking)}, which the page's font lacks; "
-            "add it to CHARACTERS in curriculum/page/maths_font.py and run that file's command"
+            f"{CHAPTER}: the formula {text!r} has {' '.join(lacking)}, which the page's font "
+            "lacks; see curriculum/page/maths_font.py"
         )
     return shown
 
@@ -79,8 +79,10 @@ def inline(text):
 
 
 def checked(query, ranges, line):
-    """The query of a `try:` link or a `show:` comment. Raises ValueError where it sets what can't be."""
-    query = re.sub(r"\bcontact=(\w+)", lambda m: f"models={EVERY if m[1] == 'all' else m[1]}", query)
+    """The query of a `try:` link or a `show:` comment. Raises ValueError at what can't be set."""
+    query = re.sub(
+        r"\bcontact=(\w+)", lambda m: f"models={EVERY if m[1] == 'all' else m[1]}", query
+    )
     query = re.sub(r"solref=([^,&]+),([^&]+)", r"timeconst=\1&dampratio=\2", query)
     given = parse_qsl(query.replace("&amp;", "&"), keep_blank_values=True)
     for name, value in given:
@@ -167,8 +169,8 @@ def end_of(tokens, index):
 
 
 def blocks(text, ranges):
-    """The chapter as a list of (kind, value): html, heading (level, id, html), slot, show, or include
-    (file, region). `ranges` are those of what the text may set, {name: (low, high)}."""
+    """The chapter as a list of (kind, value): html, heading (level, id, html), slot, show, or
+    include (file, region). `ranges` are those of what the text may set, {name: (low, high)}."""
     md = parser()
     tokens, env = md.parse(text), {}
     out, used, index = [], {"text", "figure", "contents", "colophon", "objectives"}, 0
@@ -188,7 +190,9 @@ def part(token, shown, used, ranges):
         include = INCLUDE.fullmatch(token.content.strip())
         if include:
             return [("include", (include["file"], include["name"]))]
-        return [("html", f'<pre class="shell" tabindex="0"><code>{escape(token.content)}</code></pre>')]
+        return [
+            ("html", f'<pre class="shell" tabindex="0"><code>{escape(token.content)}</code></pre>')
+        ]
     if token.type == "html_block":
         return slots_of(token, ranges)
     if token.type == "heading_open":
@@ -196,5 +200,10 @@ def part(token, shown, used, ranges):
         return [("heading", (int(token.tag[1]), heading_name(inner, used), inner))]
     if token.type == "table_open":
         held = shown.replace("<th></th>", "<td></td>")
-        return [("html", f'<div class="scroll" tabindex="0" role="group" aria-label="Table">{held}</div>')]
+        return [
+            (
+                "html",
+                f'<div class="scroll" tabindex="0" role="group" aria-label="Table">{held}</div>',
+            )
+        ]
     return [("html", shown)]

@@ -1,4 +1,4 @@
-"""Real browsers for the page's tests, offline: Debian's Chromium and Firefox. Without them tests fail."""
+"""Real browsers for the page's tests: Debian's Chromium and Firefox, which must be there."""
 
 import contextlib
 import json
@@ -41,7 +41,7 @@ def running():
 def visiting(
     browser, url, width=1280, height=900, motion="reduce", javascript=True, shown=True, **options
 ):
-    """A fresh profile on the page. Fails if the page complains, throws, or asks for anything but itself.
+    """A fresh profile on the page. Fails if it complains, throws, or asks for anything but itself.
 
     `shown`: as for a reader who has asked to see the answers of the bets.
     """

@@ -32,7 +32,12 @@ def random_case(pick):
     scene = contact.build_scene(name, int(pick.integers(100)), 6 if name == "pile" else None, e, c)
     v0 = pick.uniform(-1, 1, scene.v0.shape) if name == "pile" else scene.v0
     solref = (float(pick.uniform(0.002, 0.1)), float(pick.uniform(0.2, 2)))
-    solimp = (*pick.random(2), 10 ** pick.uniform(-4, -1), pick.random(), float(pick.integers(1, 6)))
+    solimp = (
+        *pick.random(2),
+        10 ** pick.uniform(-4, -1),
+        pick.random(),
+        float(pick.integers(1, 6)),
+    )
     settings = contact.Settings(
         stiffness=float(10 ** pick.uniform(2, 6)),
         baumgarte=float(pick.choice([0.0, 1.0, pick.random()])),
@@ -79,7 +84,8 @@ def runs_in(evaluate):
     """What engine.js gives for all cases, where `evaluate` gives the value of an expression."""
     script = f"""(() => {{
       const engine = {bundle("engine.js", page_data([]))};
-      const coded = (a) => btoa(Array.from(new Uint8Array(a.buffer), (b) => String.fromCharCode(b)).join(""));
+      const letters = (a) => Array.from(new Uint8Array(a.buffer), (b) => String.fromCharCode(b));
+      const coded = (a) => btoa(letters(a).join(""));
       return {json.dumps([told for told, _ in cases()])}.map(([model, scene, knobs, steps]) => {{
         const run = engine.runModel(model, scene, knobs, steps);
         return [run.x, run.y, run.vx, run.vy].map(coded);
@@ -96,7 +102,9 @@ def judge(found):
             if model == "exact":
                 assert np.abs(a - b.ravel()).max() <= 1e-10 * contact.RADIUS, told
             else:
-                same = (a.view(np.uint64) == b.ravel().view(np.uint64)) | (np.isnan(a) & np.isnan(b.ravel()))
+                same = (a.view(np.uint64) == b.ravel().view(np.uint64)) | (
+                    np.isnan(a) & np.isnan(b.ravel())
+                )
                 assert same.all(), (model, told)
 
 
@@ -124,7 +132,7 @@ def test_firefox_computes_penalty_lcp_and_soft_to_the_last_bit_and_exact_to_1e_1
 
 
 def test_a_ball_that_slides_off_another_agrees_with_exact_py(browser):
-    """Two balls, the lower one held: the upper rolls down and leaves at two thirds of the height."""
+    """The lower ball is held: the upper slides down and leaves at two thirds of the height."""
     r = contact.RADIUS
     q0 = np.array([[0.0, 2 * r * 0.05], [3 * r, 3 * r + 2 * r * np.sqrt(1 - 0.05**2)]])
     mass = np.array([np.inf, 1.0])
@@ -193,7 +201,8 @@ def test_a_chapter_with_a_figure_that_does_not_exist_is_refused():
 
 # every place that shows a quantity, as a number: sentences, sliders, fields, the address
 PLACES = """(name) => {
-  const found = [...document.querySelectorAll(`.drag[data-knob=${name}]`)].map((each) => each.textContent);
+  const numbers = [...document.querySelectorAll(`.drag[data-knob=${name}]`)];
+  const found = numbers.map((each) => each.textContent);
   for (const knob of document.querySelectorAll(`.knob[data-knob=${name}]`)) {
     found.push(knob.querySelector("[inputmode]").value);
     found.push(knob.querySelector("[type=range]").getAttribute("aria-valuetext").split(" ")[0]);
@@ -222,10 +231,10 @@ def test_every_quantity_has_one_value_wherever_it_is_set(visit):
     """Set by a number in a sentence, a slider, a field, the address: all places then agree."""
     with visit() as page:
         names = page.evaluate(
-            "[...new Set([...document.querySelectorAll('.knob, .drag')].map((each) => each.dataset.knob))]"
+            "[...document.querySelectorAll('.knob, .drag')].map((each) => each.dataset.knob)"
         )
         assert {"dt", "stiffness", "damping", "baumgarte", "iters", "restitution"} <= set(names)
-        for name in names:
+        for name in sorted(set(names)):
             before = page.evaluate(PLACES, name)["found"]
             ways = [(SLIDE, f".knob[data-knob={name}] [type=range]", 0.3)]
             ways += [(SLIDE, f".live .knob[data-knob={name}] [type=range]", 0.7)]
@@ -261,13 +270,17 @@ def test_a_link_of_the_text_sets_the_store_and_the_live_figure_follows_the_text(
         link.click()
         assert page.evaluate(PLACES, "stiffness")["found"] == [wanted]
         for mark in page.locator(".show[data-show*=models]").all()[:4]:
-            mark.evaluate("(node) => window.scrollTo(0, node.getBoundingClientRect().top + scrollY - 300)")
+            mark.evaluate(
+                "(node) => window.scrollTo(0, node.getBoundingClientRect().top + scrollY - 300)"
+            )
             asked = mark.get_attribute("data-show")
             models = re.search(r"models=([\w,]+)", asked)[1].split(",")
             shown = "".join(f":has(.line.m-{model})" for model in models)
             page.wait_for_selector(f"#fig-lanes svg{shown}")
             assert page.locator("#fig-lanes .line").count() == len(models)
-        page.locator("[data-show=none]").last.evaluate("(node) => node.scrollIntoView({ block: 'center' })")
+        page.locator("[data-show=none]").last.evaluate(
+            "(node) => node.scrollIntoView({ block: 'center' })"
+        )
         page.wait_for_selector("#figure.back", state="attached")
 
 
@@ -319,7 +332,10 @@ def test_show_me_lifts_a_veil_without_a_bet_and_focus_stays_there(visit):
 
 def test_the_blank_names_a_slip_and_takes_the_right_lines(visit):
     with visit() as page:
-        force, impulse = page.locator("#blank-penalty_normal_force"), page.locator("#blank-project_impulse")
+        force, impulse = (
+            page.locator("#blank-penalty_normal_force"),
+            page.locator("#blank-project_impulse"),
+        )
         force.fill("stiffness * depth - damping * v_n")
         impulse.fill("lam + max(0, dlam)")
         page.locator("#blank button").click()
@@ -367,9 +383,12 @@ def test_keys_lift_and_drop_the_ball_and_move_the_time_of_the_live_figure(visit)
 def test_axe_finds_no_violation(visit):
     from axe_playwright_python.base import AXE_SCRIPT
 
-    run = """([parts, rules]) => axe.run(parts, {resultTypes: ["violations"], ...rules}).then((found) =>
-      found.violations.map((each) => each.id + ": " + each.nodes.slice(0, 3).map((node) => node.target)))"""
-    contrast = [["header", "#fig-grab", "#ex1", "#ex2", "#code-sweep"], {"runOnly": ["color-contrast"]}]
+    run = """([parts, rules]) => axe.run(parts, {resultTypes: ["violations"], ...rules}).then(
+      ({ violations }) => violations.map(({ id, nodes }) => `${id}: ${nodes[0].target}`))"""
+    contrast = [
+        ["header", "#fig-grab", "#ex1", "#ex2", "#code-sweep"],
+        {"runOnly": ["color-contrast"]},
+    ]
     others = [["body"], {"rules": {"color-contrast": {"enabled": False}}}]
     for scheme, parts in (("light", [contrast, others]), ("dark", [contrast])):
         with visit(color_scheme=scheme) as page:
@@ -384,7 +403,7 @@ def test_nothing_is_wider_than_the_screen(visit, width):
         wide = page.evaluate("document.documentElement.scrollWidth")
         assert wide <= width, page.evaluate(
             """(width) => [...document.querySelectorAll("article *")].filter((each) =>
-            each.getBoundingClientRect().right > width && !each.closest(".scroll, .math, svg")).slice(0, 5)
+            each.getBoundingClientRect().right > width && !each.closest(".scroll, .math, svg"))
             .map((each) => each.outerHTML.slice(0, 120))""",
             width,
         )
@@ -417,6 +436,7 @@ def test_firefox_runs_the_page_without_complaint_and_its_ball_falls(gecko, url):
     assert gecko.evaluate(ready) == "yes"
     gecko.evaluate("document.querySelector('#fig-grab .handle').focus()")
     gecko.press("\ue013", "\ue007")  # arrow up, Enter
-    rests = "new Promise((done) => setTimeout(() => done(document.querySelector('#fig-grab .words').textContent), 400))"
+    words = "document.querySelector('#fig-grab .words').textContent"
+    rests = f"new Promise((done) => setTimeout(() => done({words}), 400))"
     assert "rests" in gecko.evaluate(rests)
     assert gecko.trouble == []
