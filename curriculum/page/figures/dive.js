@@ -50,6 +50,7 @@ function draw(view) {
     svg,
     words: `${text}; the push is ${number(push(row), 2)} m g.`,
     handles: [handle("time", x(t[row]), y(gaps[row]), 14, "the moment", t[row], text)],
+    lit: gaps[row] < 0 ? [["penalty", "return max(0.0"]] : [],
   };
 }
 

@@ -39,6 +39,7 @@ function draw(view) {
     svg,
     words: `${text}: ${all} ${number(100 * d, digits)} %, and R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass.`,
     handles: [handle("depth", x(share), y(d), 14, "the depth", share, text)],
+    lit: [["soft-impedance", share >= 1 ? "return d1" : share <= solimp[3] ? "rise = raised" : "rise = 1.0"]],
   };
 }
 

@@ -60,6 +60,7 @@ function draw(view) {
     svg,
     words: `${text}. The larger lifts the ball to ${high(larger)} of the drop, the sum (dotted) to ${high(both)}.`,
     handles: [handle("ball", middle, y, PX, "the ball: how deep lcp finds it", view.own.depth, text)],
+    lit: [["lcp-target", law === 0 ? "return bias" : wanted.bias > 0 ? "return max(bias" : "return bounce if"]],
   };
 }
 

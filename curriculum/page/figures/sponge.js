@@ -66,6 +66,7 @@ function draw(view) {
       handle("ball", middle, floorOf(view) - PX + depth * PX, PX, "the ball: press it in or lift it", depth, text),
       handle("ramp", x(end), y(weights(end)), 12, "the stiffness k", k, `${number(k)} N/m`),
     ],
+    lit: depth > 0 ? [["penalty", "return max(0.0"]] : [],
   };
 }
 
