@@ -1,7 +1,7 @@
 """The stress test's command line.
 
     python -m curriculum.stress                         everything; writes curriculum/stress/results
-    python -m curriculum.stress --quick                 under a minute, for CI; into outputs/stress-quick
+    python -m curriculum.stress --quick                 under a minute, into outputs/stress-quick
     python -m curriculum.stress --scheduler HOST:PORT   on the workers of a dask scheduler
     python -m curriculum.stress --small 300             small scenes alone, to the first violation
     python -m curriculum.stress --scene small:17        what every property says of one scene

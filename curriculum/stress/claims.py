@@ -54,6 +54,6 @@ def chosen(where, off, allowed):
 
 
 def unlike(run, other):
-    """(0 or 1 for each number of two runs that differs, 0): as a claim that they have the same bits."""
+    """The claim that two runs have the same bits: (1 for each number that differs, 0)."""
     a, b = (np.concatenate((each.q, each.v), axis=1) for each in (run, other))
     return ~((a == b) | (a != a) & (b != b)), 0.0

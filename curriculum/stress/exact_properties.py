@@ -1,6 +1,6 @@
 """What exact promises: no overlap, no energy gained, every impact at its own time.
 
-The bounds are its promises, not derived. Nothing is claimed where it promises nothing (trial.exact).
+The bounds are its promises, not derived. Nothing is claimed where it promises nothing.
 """
 
 import numpy as np
@@ -30,7 +30,7 @@ def struck(trial):
 
 @stated
 def exact_keeps_its_energy(trial):
-    """exact: no energy above 1e-12 of the start's is ever gained; with e = 1 none is lost either."""
+    """exact: no energy above 1e-12 of the start's is ever gained, and with e = 1 none is lost."""
     if not trial.exact or trial.fixed.all():
         return
     run, e = trial.exact, trial.spec["restitution"]
@@ -45,7 +45,7 @@ def exact_keeps_its_energy(trial):
 
 @stated
 def exact_keeps_momentum_along_x(trial):
-    """exact: sum m v_x stays where nothing is fixed, to 1e-12 of the largest that the energy allows."""
+    """exact: sum m v_x stays where nothing is fixed, to 1e-12 of what the energy allows."""
     if trial.exact and not trial.fixed.any() and len(trial.mass) > 1:
         momentum = (trial.mass * trial.exact.v[:, 0]).sum(1)
         pushed = np.abs(np.diff(trial.exact.v[:, 0], axis=0)).max(1) > 0.0
@@ -118,7 +118,7 @@ def floor_bounces(trial, near):
 
 
 def pair_bounces(trial, near):
-    """(words, step, balls, v (2, 2) after it) where two balls strike each other and nothing else."""
+    """(words, step, balls, v (2, 2) after it) where two balls strike each other alone."""
     e, dt, r = trial.spec["restitution"], trial.dt, trial.scene.radius
     weight = inverse(trial.mass)
     for k, pair in np.argwhere(near.pair):

@@ -48,7 +48,7 @@ def run(lines):
 
 
 def judged(line):
-    """One command line, for 100 steps unless it says otherwise, and what is wrong with what it said."""
+    """One command line, for 100 steps unless it says otherwise, and what is wrong with it."""
     argv = [*line.split(), "--no-rerun", *([] if "--steps" in line else ["--steps", "100"])]
     out, err = io.StringIO(), io.StringIO()
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
@@ -85,7 +85,7 @@ def complaint(status, said, refused, path):
 
 
 def sound(quality):
-    """Whether a run may be called ok: every number is one, and no ball is half way through another."""
+    """Whether a run may be called ok: every number is one, and no ball went through anything."""
     numbers = [value for value in quality.values() if isinstance(value, float)]
     return all(map(math.isfinite, numbers)) and not quality["blew_up"] and not quality["through"]
 

@@ -70,7 +70,7 @@ def added_up(found):
 
 
 def unfinished(cases, stated):
-    """Energy that unfinished sweeps of lcp add: in how many scenes, and the worst above its start."""
+    """Energy that unfinished sweeps of lcp add: in how many scenes, and the worst of them."""
     name = "lcp_gains_energy_by_unfinished_sweeps_alone"
     counts = {"scenes": stated[name][0], "rises": len(cases)}
     counts["above_start"] = sum(case["gained"] > 1e-9 * case["start"] for _, case in cases)

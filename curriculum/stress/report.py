@@ -59,9 +59,9 @@ def summary(saved):
     wrong = sum(len(section["violations"]) for section in saved.values())
     scenes = saved["scenes"]["scenes"] + saved["small"]["scenes"]
     return (
-        f"On {scenes:,} random scenes for each of the four models, over the maps and at the ends of "
-        f"every flag, {total:,} judgements found {wrong or 'no'} violation{'s' * (wrong > 1)}; the "
-        "critical step of `penalty` is measured within "
+        f"On {scenes:,} random scenes for each of the four models, over the maps and at the ends "
+        f"of every flag, {total:,} judgements found {wrong or 'no'} violation{'s' * (wrong > 1)}; "
+        "the critical step of `penalty` is measured within "
         f"{saved['maps']['boundary_worst_error']:.2%} of theory."
     )
 
@@ -85,8 +85,8 @@ def page(saved):
         "# Stress: what must hold on any scene, and where each model breaks",
         summary(saved),
         "A judgement of the scenes is one property on one scene, counted only where it could have "
-        "failed: without a contact nothing is said of contacts. What was done is read from the states "
-        "before and after each step, and held against the chapter's formulas.",
+        "failed: without a contact nothing is said of contacts. What was done is read from the "
+        "states before and after each step, and held against the chapter's formulas.",
         "\n".join(f"- **{words}**" for words in wrong),
         "## Properties on random scenes",
         *(scene_part(saved[name], title) for name, title in (("scenes", "30"), ("small", "four"))),
@@ -99,7 +99,7 @@ def page(saved):
 
 
 def scene_part(section, most):
-    """A table of the properties on scenes of up to so many balls, and what was not judged or met."""
+    """The properties on scenes of up to so many balls, and what was not judged, or met."""
     lines = [
         f"{section['scenes']:,} scenes of up to {most} balls:\n",
         "| property | scenes judged | comparisons | off, as a share of the bound |",

@@ -86,7 +86,7 @@ def bodies(rng, count):
 
 
 def numbered_spec(number, small=False):
-    """The spec with this number, the same on every machine: one to thirty balls; small: one to four.
+    """The spec with this number, the same on every machine: up to thirty balls; small: up to four.
 
     Balls at rest and thrown, fixed ones among them, apart, in touch and overlapping.
     """

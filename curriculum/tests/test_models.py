@@ -182,7 +182,7 @@ def test_soft_rests_as_deep_whatever_the_mass(mass):
 def test_at_the_critical_dt_an_eigenvalue_of_the_step_leaves_the_unit_circle(
     stiffness, damping, count
 ):
-    """Of a stack kept in contact: v += dt (-k A x - c A v) / m, x += dt v, A its incidence matrix."""
+    """Of a stack kept in contact: v += dt (-k A x - c A v) / m, x += dt v."""
     A = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
     A[-1, -1] = 1.0
     critical = contact.critical_dt(1.0, stiffness, damping, count)
@@ -475,7 +475,7 @@ def test_a_cycle_of_any_period_is_recognised_and_copied(period, start):
 
 
 def recording(heights, landing=1):
-    """A Run of one ball at these heights [m], in free fall to step `landing`, at rest from there."""
+    """A Run of one ball at these heights [m], falling to step `landing`, at rest from there."""
     t = 0.01 * np.arange(len(heights))
     q, v = np.zeros((2, len(heights), 2, 1))
     q[:, 1, 0] = heights
