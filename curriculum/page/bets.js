@@ -49,7 +49,6 @@ export class Bets {
     const why = box.querySelector("textarea");
     why.value = (this.#made.get(id) || {}).why || "";
     why.addEventListener("change", () => this.make(id, { ...this.#made.get(id), why: why.value }));
-    box.querySelector("[data-again]").addEventListener("click", () => this.#again(id));
   }
 
   make(id, bet) {
@@ -82,11 +81,5 @@ export class Bets {
     const right = box.querySelector("[data-right]").dataset.reason;
     const words = { [right]: "You bet on it, and it is so." };
     box.querySelector(".verdict").textContent = choice ? words[choice] || "It comes out otherwise." : "This is how it comes out.";
-  }
-
-  // Make a bet anew: nothing is veiled again.
-  #again(id) {
-    document.getElementById(id).classList.remove("decided");
-    document.querySelector(`#${id} button[data-choice]`).focus();
   }
 }
