@@ -7,9 +7,11 @@ import { axis, beside, forceLength, G, handle, kept, label, line, R, scene, soft
 
 const PULL = 64; // px below the ball at which the hand presses hardest
 // What a picture shows: gaps from low to high [r], a radius in px, the hardest press in weights, ticks.
-const WIDE = { low: -0.4, high: 1, r: 50, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
-const NEAR = { low: -0.03, high: 0.06, r: 1000, most: 12, xs: [-0.02, 0, 0.04], ys: [0, 4, 8, 12] };
+const WIDE = { low: -0.4, high: 1, r: 60, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
+const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.02, 0, 0.04], ys: [0, 4, 8, 12] };
 const floorOf = (view) => view.height - 74;
+const radius = (law, view) => law.near.r * Math.min(1, view.width / 430); // px
+const gripOf = (view) => floorOf(view) - 60 * Math.min(1, view.width / 430); // where a ball at rest is held
 
 // hand: above 0 the ball is held so high [r]; below 0 it is pressed, at -1 as hard as the picture shows.
 function stateOf(law, view) {
@@ -18,10 +20,10 @@ function stateOf(law, view) {
   return { load, gap: load > 0 ? law.gap(load, view) : Math.max(0, hand) };
 }
 
-const handY = (law, view) => floorOf(view) - 50 - view.own.hand * (view.own.hand > 0 ? law.near.r : PULL);
+const handY = (law, view) => gripOf(view) - view.own.hand * (view.own.hand > 0 ? radius(law, view) : PULL);
 
 function picture(law, view, state, left) {
-  const [floor, x, r] = [floorOf(view), left / 2, law.near.r];
+  const [floor, x, r] = [floorOf(view), left / 2, radius(law, view)];
   const y = floor - r - state.gap * r;
   const pull = forceLength(state.load, 14);
   const held = view.own.hand > 0;
@@ -64,8 +66,8 @@ export function corner(law, about) {
     start: () => ({ hand: law.hand ?? 0.5 * law.near.high }),
     draw: (view) => draw(law, view),
     drag(view, name, x, y) {
-      const up = floorOf(view) - 50 - y;
-      set(view, up / (up > 0 ? law.near.r : PULL));
+      const up = gripOf(view) - y;
+      set(view, up / (up > 0 ? radius(law, view) : PULL));
     },
     nudge(view, name, dx, dy) {
       const above = view.own.hand - 1e-9 * dy > 0;

@@ -3,7 +3,7 @@ import { arrow, ball, number, table } from "../draw.js";
 import { impedance, softDefaults } from "../engine.js";
 import { alongAxis, axis, beside, handle, label, R, softKnobs, within } from "../parts.js";
 
-const PX = 1000; // a radius: twenty times nearer than in the other pictures
+const PX = 1200; // a radius: twenty times nearer than in the other pictures
 const MOST = 1.5; // widths
 
 function chartOf(solimp, share) {
