@@ -137,7 +137,7 @@ def test_balls_that_cycle_together_are_copied_to_the_flight():
 
 
 def test_a_ball_that_slides_off_another_leaves_it_at_two_thirds():
-    """Energy gives the angle's rate; the force ends at cos theta = 2/3 cos theta0; then it flies."""
+    """Energy gives the angle's rate; the force ends at cos theta = 2/3 cos theta0; it flies."""
     start, reach, floor = 0.3, 2.0 * R, 2.0
     end = np.arccos(2.0 / 3.0 * np.cos(start))
 
