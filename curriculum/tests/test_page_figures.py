@@ -47,6 +47,7 @@ def figure(tab, name):
     box = tab.locator(f"#fig-{name}")
     box.scroll_into_view_if_needed()
     box.locator(".handle").first.wait_for(state="attached")
+    settle(tab)  # it is drawn anew when it comes near
     return box
 
 
