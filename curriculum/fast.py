@@ -20,17 +20,16 @@ if numba.config.DISABLE_JIT:    # then contact.py's own loops are faster
 MODELS = ("penalty", "lcp", "soft")
 PENALTY, LCP, SOFT = range(3)
 STATES = 200_000    # positions of balls that are filled in one go, before report() hears of it
-# a ball was at listed_x, listed_y when the pairs were listed
-NAMES = "vx vy inv_mass radius x y listed_x listed_y fx fy mass".split()
-BALL = np.dtype([(name, float) for name in NAMES])
-NAMES = "nx ny depth m_eff target softness lam".split()
-CONTACT = np.dtype([("a", int), ("b", int), *[(name, float) for name in NAMES]])
+BALL = np.dtype([(name, float) for name in (    # listed: where it was when pairs were listed
+    "vx vy inv_mass radius x y listed_x listed_y fx fy mass").split()])
+CONTACT = np.dtype([("a", int), ("b", int), *[(name, float) for name in (
+    "nx ny depth m_eff target softness lam").split()]])
 
 
 class Knobs(NamedTuple):
     """What a step needs to know, in numbers: contact.Settings, and what contact.py fixes."""
 
-    model: int
+    model: int              # of MODELS
     dt: float
     gravity: float
     margin: float           # of lcp
@@ -65,9 +64,9 @@ def larger(first, second):
 def cast_shadows(balls, reach):
     """The balls by the lower end of their shadow: order, lower ends, upper ends, each (M,).
 
-    The shadow falls on the axis along which the balls are spread wider. It is as long as its own
-    ball is wide, so one large ball costs no more than itself; above is room for `reach` [m] and
-    for rounding. A ball that is nowhere has no shadow: it touches nothing for ever.
+    The shadow falls on the axis of the wider spread. It is as long as its own ball is wide, so one
+    large ball costs no more than itself; above is room for `reach` [m] and for rounding. A ball
+    that is nowhere has no shadow: it touches nothing for ever.
     """
     x, y = balls["x"][:-1], balls["y"][:-1]
     known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
@@ -84,8 +83,7 @@ def cast_shadows(balls, reach):
 def list_pairs(balls, reach):
     """The pairs (2, M) of balls whose gap is at most `reach` [m] now: first < second, in order."""
     for ball in balls:
-        ball.listed_x = ball.x
-        ball.listed_y = ball.y
+        ball.listed_x, ball.listed_y = ball.x, ball.y
     order, low, high = cast_shadows(balls, reach)
     pairs = np.empty((2, 4 * len(balls)), np.int64)
     size = 0
@@ -124,9 +122,8 @@ def sort_pairs(pairs, row, count):
 def farthest_move(balls):
     """How far [m] the farthest ball has moved since the pairs were listed; 0 for one nowhere."""
     farthest = 0.0
-    for ball in balls[:-1]:
-        dx = ball.x - ball.listed_x
-        dy = ball.y - ball.listed_y
+    for ball in balls:
+        dx, dy = ball.x - ball.listed_x, ball.y - ball.listed_y
         farthest = larger(farthest, dx * dx + dy * dy)
     return math.sqrt(farthest)
 
@@ -190,12 +187,12 @@ def penalty_step(balls, contacts, knobs):
     for ball in balls:
         ball.fx = ball.fy = 0.0
     for c in contacts:
-        v_n = normal_velocity(c, balls)
-        f_n = larger(0.0, knobs.stiffness * c.depth - knobs.damping * v_n)
-        balls[c.a].fx += f_n * c.nx
-        balls[c.a].fy += f_n * c.ny
-        balls[c.b].fx -= f_n * c.nx
-        balls[c.b].fy -= f_n * c.ny
+        a, b = balls[c.a], balls[c.b]
+        f_n = larger(0.0, knobs.stiffness * c.depth - knobs.damping * normal_velocity(c, balls))
+        a.fx += f_n * c.nx
+        a.fy += f_n * c.ny
+        b.fx -= f_n * c.nx
+        b.fy -= f_n * c.ny
     accelerate(balls, knobs)
     move(balls, knobs.dt)
 
@@ -212,31 +209,27 @@ def accelerate(balls, knobs):
 @compiled
 def move(balls, dt):
     """Move every ball with its velocity for one step."""
-    for ball in balls[:-1]:
+    for ball in balls:
         ball.x += dt * ball.vx
         ball.y += dt * ball.vy
 
 
 @compiled
-def contact_target(depth, v_n, restitution, baumgarte, dt):
-    """The normal velocity [m/s] with which a contact must leave at least."""
-    bias = baumgarte / dt * depth
+def contact_target(c, balls, restitution, baumgarte, dt):
+    """The normal velocity [m/s] with which contact c must leave at least."""
+    bias = baumgarte / dt * c.depth
     if restitution == 0.0:
         return bias
+    v_n = normal_velocity(c, balls)
     bounce = -restitution * v_n
     if bias > 0.0:
         return larger(bias, bounce)
-    if dt * v_n <= depth or not depth / dt < bounce:
-        return bounce
-    return depth / dt
+    return bounce if dt * v_n <= c.depth or not c.depth / dt < bounce else c.depth / dt
 
 
 @compiled
 def warm_start(balls, contacts, last, share):
-    """Start from a share of the impulses that the same pairs had in the last step's contacts.
-
-    Both tables are in the same order, so that one walk along both finds them.
-    """
+    """Start from a share of the last step's impulses: both tables are in the same order."""
     count, k = len(balls), 0
     for c in contacts:
         while k < len(last) and rank(last[k], count) < rank(c, count):
@@ -273,8 +266,7 @@ def solve_contacts(balls, contacts, iters, tolerance):
 def lcp_step(balls, contacts, last, knobs):
     """One step: gravity predicts the velocities, impulses correct them, the balls move."""
     for c in contacts:
-        v_n = normal_velocity(c, balls)
-        c.target = contact_target(c.depth, v_n, knobs.restitution, knobs.baumgarte, knobs.dt)
+        c.target = contact_target(c, balls, knobs.restitution, knobs.baumgarte, knobs.dt)
     accelerate(balls, knobs)
     if knobs.warm > 0.0:
         warm_start(balls, contacts, last, knobs.warm)
@@ -337,7 +329,7 @@ def soft_step(balls, contacts, last, knobs):
     for c in contacts:
         soften(c, balls, knobs.dt, knobs.solref, knobs.solimp)
     accelerate(balls, knobs)
-    fastest = abs(contacts[0].target) if len(contacts) > 0 else 0.0
+    fastest = abs(contacts[0].target) if len(contacts) > 0 else 0.0     # NaN if that is NaN
     for c in contacts:
         fastest = larger(fastest, abs(c.target))
     for ball in balls[:-1]:
@@ -351,8 +343,7 @@ def soft_step(balls, contacts, last, knobs):
 def make_balls(q, v, mass, radius):
     """The balls of a state: q, v (2, N), mass, radius (N,). The floor comes last."""
     balls = np.zeros(len(mass) + 1, BALL)
-    columns = {"x": q[0], "y": q[1], "vx": v[0], "vy": v[1], "mass": mass, "radius": radius}
-    for name, values in columns.items():
+    for name, values in zip(("x", "y", "vx", "vy", "mass", "radius"), (*q, *v, mass, radius)):
         balls[name][:-1] = values
     balls["inv_mass"][:-1] = 1.0 / balls["mass"][:-1]
     return balls
@@ -361,10 +352,9 @@ def make_balls(q, v, mass, radius):
 @compiled
 def same(state, other, contacts, others):
     """Whether states and impulses are equal. Then their futures are, but for signs of zeros."""
-    for i in range(state.shape[1]):
-        for row in range(4):
-            if state[row, i] != other[row, i]:
-                return False
+    for one, two in zip(state.flat, other.flat):
+        if one != two:
+            return False
     for c, d in zip(contacts, others):
         if c.a != d.a or c.b != d.b or c.lam != d.lam:
             return False
@@ -375,10 +365,10 @@ def same(state, other, contacts, others):
 def take_steps(rows, settled, balls, pairs, last, cycles, knobs):
     """Take len(rows) - 1 steps, and write the states to rows[1:] and what settled to settled[1:].
 
-    `last` are the contacts of the step before. Returns pairs and contacts as they are at the end,
-    the steps taken, and 0. With `cycles` a state that has come before ends the steps, since all
-    repeats from there, and in place of 0 stands how many steps ago it was. A state is compared
-    with one other, that of the largest power of two (Brent 1980).
+    `last` are the contacts of the step before. Returns pairs and contacts at the end, the steps
+    taken, and 0. With `cycles` a state that has come before ends the steps, and in place of 0
+    stands how many steps ago: all repeats from there. A state is compared with one other, that of
+    the largest power of two (Brent 1980).
     """
     contacts = spare = np.empty(0, CONTACT)
     mark, marked = 1, last[:0]
@@ -427,9 +417,9 @@ class Motion:
 
     def take(self, rows, settled, cycles):
         """Take len(rows) - 1 steps at most, as take_steps does; returns steps and period."""
-        self.pairs, self.last, taken, period = take_steps(
+        self.pairs, self.last, *taken = take_steps(
             rows, settled, self.balls, self.pairs, self.last, cycles, self.knobs)
-        return taken, period
+        return taken
 
 
 def simulate(model, scene, dt, steps, settings, report=None):
@@ -458,8 +448,7 @@ def simulate(model, scene, dt, steps, settings, report=None):
 
 def smallest_gap(q, radius):
     """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
-    nowhere = np.full((2, len(radius)), math.nan)
-    balls = make_balls(nowhere, nowhere, np.ones(len(radius)), radius)
+    balls = make_balls(q[0], np.zeros_like(q[0]), np.ones(len(radius)), radius)
     return find_gaps(np.array(q, float), balls, float(np.median(radius)))
 
 
