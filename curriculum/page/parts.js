@@ -55,7 +55,7 @@ export function clipped(id, x, y, width, height, ...children) {
  * in the drawing, middle is the picture's. picture(width, chart) is drawn within its part, a `share` of
  * the width; options.under(chart) is drawn beneath the chart. */
 export function beside(view, id, options, picture, share = 0.4) {
-  const left = Math.round(within(110, share * view.width, 250));
+  const left = Math.round(within(110, share * view.width, 300));
   const at = left + 16;
   const chart = charted(view, at, { id, ...options });
   const scene = clipped(`${id}-scene`, 0, 0, left, view.height, picture(left, chart));
