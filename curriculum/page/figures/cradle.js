@@ -77,7 +77,7 @@ export const figure = {
     const { wide, r, top } = shape(view);
     set(view, Math.atan2(wide / 2 - (COUNT - 1) * r - x, Math.max(10, y - top)));
   },
-  nudge: (view, name, dx, dy) => set(view, view.own.pulled - 0.05 * (dx - dy)),
+  nudge: (view, name, dx, dy) => set(view, view.own.pulled - 0.05 * (dx + dy)),
   release: (view) => time.start(view),
   ...time.parts,
 };
