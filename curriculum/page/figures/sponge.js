@@ -35,12 +35,13 @@ function picture(view, depth, left) {
   const y = floor - PX + depth * PX;
   const push = Math.max(0, (view.get("stiffness") * depth * R) / G);
   const times = enlarged(depth, PX);
+  const aside = Math.min(PX + 12, left / 2 - 10);
   return [
     table(0, floor, left, view.height - floor),
     coil(x, Math.max(y + PX, floor), view.height - 4, view.get("stiffness")),
     ball("penalty", x, y, PX),
-    arrow("weight", x - PX - 12, y, 0, forceLength(1)),
-    arrow("push m-penalty", x + PX + 12, Math.max(y + PX, floor), 0, -Math.min(150, forceLength(push))),
+    arrow("weight", x - aside, y, 0, forceLength(1)),
+    arrow("push m-penalty", x + aside, Math.max(y + PX, floor), 0, -Math.min(150, forceLength(push))),
     times > 2 && depth > 0 ? lens("sponge-lens", "penalty", left - 34, 36, { depth, r: PX, times, size: 30 }) : "",
   ].join("");
 }
