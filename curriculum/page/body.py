@@ -45,6 +45,10 @@ class Body:
         """A segment: its heading or exercise, and the rest behind the veils that it needs."""
         self.html.append(self.shown(*opening))
         rest = [self.shown(*part) for part in parts]
+        puzzle = ("slot", "figure:puzzle")
+        if puzzle in parts:  # what follows it is its answer
+            rest.insert(parts.index(puzzle) + 1, str(self.macros.veil("puzzle")))
+            rest.append("</div></div>")
         said = plain(" ".join(rest))
         last = opening[1].removeprefix("exercise:") if opening[0] == "slot" else None
         if last in self.bets:

@@ -216,7 +216,8 @@ def build(chapter=None, draft=False):
     text = (ROOT / prose.CHAPTER).read_text("utf-8") if chapter is None else chapter
     exercises, code = all_exercises(), panels()
     bets = [name for name, each in exercises.items() if each["choices"]]
-    data = page_data(bets)
+    veils = [*bets, "puzzle"]
+    data = page_data(veils)
     drawn = stills(data)
     faults = [each["error"] for each in drawn["figures"].values() if "error" in each]
     if faults and not draft:
@@ -230,11 +231,11 @@ def build(chapter=None, draft=False):
     title = next(
         (value[2] for kind, value in parts if kind == "heading" and value[0] == 1), "Contact"
     )
-    script, early = bundle("main.js", data), early_script(bets)
+    script, early = bundle("main.js", data), early_script(veils)
     page = templates.get_template("page.html.j2").render(
         policy=policy(early, script),
         icon=favicon(),
-        style=Markup(stylesheet(bets)),
+        style=Markup(stylesheet(veils)),
         early=Markup(early),
         script=Markup(script),
         heading=Markup(re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title)),

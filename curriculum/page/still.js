@@ -12,7 +12,8 @@ function still(figure, more) {
   const made = figure.draw(stillView(figure, values, WIDTH));
   const { title, caption = "", knobs = [], buttons = [] } = figure;
   const [height, narrow] = [heightOf(figure, WIDTH), heightOf(figure, 1)];
-  return { svg: made.svg, words: made.words || "", title, caption, width: WIDTH, height, narrow, knobs: knobs.length, buttons: buttons.length };
+  const counts = { knobs: knobs.length, buttons: buttons.length };
+  return { svg: made.svg, words: made.words || "", title, caption, width: WIDTH, height, narrow, ...counts };
 }
 
 // The same, and what is wrong where a figure cannot be drawn.
@@ -25,8 +26,9 @@ function tried(name, figure, more) {
 }
 
 export function stills() {
-  const quantities = Object.assign({}, QUANTITIES, ...Object.values(figures).map((each) => each.quantities || {}));
-  const more = Object.fromEntries(Object.entries(quantities).filter(([, each]) => "start" in each).map(([name, each]) => [name, each.start]));
+  const brought = Object.assign({}, ...Object.values(figures).map((each) => each.quantities || {}));
+  const quantities = { ...QUANTITIES, ...brought };
+  const more = Object.fromEntries(Object.entries(brought).map(([name, { start }]) => [name, start]));
   return {
     figures: Object.fromEntries(Object.entries(figures).map(([name, figure]) => [name, tried(name, figure, more)])),
     keys: Object.fromEntries(MODELS.map((model) => [model, key(model)])),

@@ -314,6 +314,7 @@ def test_no_answer_of_a_bet_is_seen_before_one_click_and_then_it_stays_open(visi
             page.locator(f"#{name} [data-choice={other}]").click()
             result = page.locator(f"#{name}-result")
             assert "otherwise" in result.inner_text() and answers(name)[:5] in result.inner_text()
+        page.locator("[data-show=puzzle]").click()
         assert not page.locator(".veil-bar").filter(visible=True).count()
         page.locator("#ex1-why").fill("the spring must be pressed")
         page.locator("#ex3-why").focus()

@@ -72,14 +72,25 @@ export const figure = {
     const gap = own.place[1] - R;
     const rests = own.run && gap < 1e-9 && Math.abs(own.velocity[1]) < 1e-9;
     const push = rests ? arrow("push m-exact", x, view.height - GROUND, 0, -70, "push") : "";
-    const shadow = el("ellipse", { cx: x, cy: view.height - GROUND + 6, rx: R * scale * (1 - 0.4 * Math.min(1, gap)), ry: 5, class: "shadow" });
+    const rx = R * scale * (1 - 0.4 * Math.min(1, gap));
+    const shadow = el("ellipse", { cx: x, cy: view.height - GROUND + 6, rx, ry: 5, class: "shadow" });
     const weight = arrow("weight", x, y, 0, 70, "weight");
     return {
       svg: table(0, view.height - GROUND, view.width, GROUND) + shadow + ball("exact", x, y, R * scale) + weight + push,
       words: rests
         ? "It rests: the table pushes with exactly the ball’s weight."
         : `${number(gap, 2)} m above the table. Let go.`,
-      handles: [{ name: "ball", x, y, r: R * scale, label: "the ball; arrow keys move it, Enter lets it go", value: gap, text: `${number(gap, 2)} m above the table` }],
+      handles: [
+        {
+          name: "ball",
+          x,
+          y,
+          r: R * scale,
+          label: "the ball; arrow keys move it, Enter lets it go",
+          value: gap,
+          text: `${number(gap, 2)} m above the table`,
+        },
+      ],
     };
   },
   drag(view, name, x, y) {

@@ -156,8 +156,10 @@ function chart(view, shown) {
   const lines = shown.map((each, k) => {
     const first = Math.floor(from / each.run.dt);
     const end = Math.min(each.last, Math.ceil(to / each.run.dt)) + 1;
-    const at = [0.12, 0.37, 0.62, 0.87].map((share) => Math.round(first + (share + 0.05 * k) * ((to - from) / each.run.dt)));
-    return { model: each.model, xs: each.run.t, ys: each[kind], from: Math.min(first, end), to: end, markers: at.filter((row) => row < end) };
+    const rows = (to - from) / each.run.dt;
+    const at = [0.12, 0.37, 0.62, 0.87].map((share) => Math.round(first + (share + 0.05 * k) * rows));
+    const markers = at.filter((row) => row < end);
+    return { model: each.model, xs: each.run.t, ys: each[kind], from: Math.min(first, end), to: end, markers };
   });
   const rules = [{ x: view.own.time, class: "cursor" }];
   if (kind === "gap") rules.push({ y: 0 });
@@ -228,12 +230,13 @@ export const figure = {
     const said = shown.map((each) => `${each.model} ${each.waits ? "waits for your bet" : placeWords(each.gap[each.row])}`);
     const x = drawn.sx(view.own.time);
     const time = `${view.own.time.toFixed(3)} s`;
+    const y = view.height - chartHeight(view) + drawn.box.bottom;
     return {
       svg:
         shown.map((each, k) => lane(view, each, k, high)).join("").replace(/^/, table(0, floor, view.width, GROUND)) +
         `<g transform="translate(0 ${view.height - chartHeight(view)})">${drawn.markup}</g>`,
       words: `${time}: ${said.join(", ")}.`,
-      handles: [{ name: "time", x, y: view.height - chartHeight(view) + drawn.box.bottom, r: 14, label: "the time shown", value: view.own.time, text: time }],
+      handles: [{ name: "time", x, y, r: 14, label: "the time shown", value: view.own.time, text: time }],
       lit: view.running() ? shown.filter((each) => each.push[each.row] > 0).map((each) => LINES[each.model]) : [],
     };
   },

@@ -11,14 +11,14 @@ const LONG = 40; // s
 const K = QUANTITIES.stiffness;
 const C = QUANTITIES.damping;
 
-// Whether a ball dropped on this spring is at rest after LONG, and how deep [r].
+// Whether a ball dropped on this spring is at rest after LONG.
 function drop({ stiffness, damping }) {
   const scene = sceneOf({ ...startOf("drop"), damping });
   const run = runModel("penalty", scene, { dt: DT, stiffness, damping }, Math.round(LONG / DT));
   const { gap, energy } = series(run, scene);
   const late = gap.subarray(gap.length - 200);
   const spread = Math.max(...late) - Math.min(...late);
-  return { rests: Number.isFinite(spread) && spread < 1e-3 && energy[energy.length - 1] < 1, sink: -GRAVITY / stiffness / data.radius };
+  return { rests: Number.isFinite(spread) && spread < 1e-3 && energy[energy.length - 1] < 1 };
 }
 
 const keyOf = (view) => ({ stiffness: view.get("stiffness"), damping: view.get("damping") });
@@ -76,18 +76,22 @@ export const figure = {
     const now = keyOf(view);
     const chart = chartOf(view);
     const found = view.coarse ? null : view.result("drop", now);
-    if (found && !own.tries.some((each) => each.stiffness === now.stiffness && each.damping === now.damping)) own.tries.push(now);
-    const { damped } = criticalDt(1, now.stiffness, now.damping);
+    const same = (each) => each.stiffness === now.stiffness && each.damping === now.damping;
+    if (found && !own.tries.some(same)) own.tries.push(now);
     const sink = `It sinks ${number(-GRAVITY / now.stiffness / data.radius, 2)} r; less than ${SINK} is wanted.`;
     const rest = found ? `${found.rests ? "It comes to rest." : "It never comes to rest."}` : "";
     const why = own.gaveUp
-      ? ` To sink so little k must be above 98,100 N/m, and there the longest step is below ${number(criticalDt(1, 98100, 0).undamped, 2)} s, with any damper. The two regions do not meet.`
+      ? " To sink so little k must be above 98,100 N/m, and there the longest step is below " +
+        `${number(criticalDt(1, 98100, 0).undamped, 2)} s, with any damper. The two regions do not meet.`
       : "";
+    const tried = own.tries.map((each) => dot(chart, each, "look m-penalty")).join("");
+    const text = `k ${number(now.stiffness)} N/m, c ${number(now.damping)} N s/m`;
+    const [x, y] = [chart.sx(now.stiffness), chart.sy(now.damping)];
     return {
-      svg: (own.gaveUp ? map(chart) : "") + chart.markup + own.tries.map((each) => dot(chart, each, "look m-penalty")).join("") + dot(chart, now, "dot"),
-      words: `${sink} ${rest}${own.gaveUp ? ` Its longest step is ${number(damped)} s.` : ""}${why}`,
+      svg: (own.gaveUp ? map(chart) : "") + chart.markup + tried + dot(chart, now, "dot"),
+      words: `${sink} ${rest}${why}`,
       handles: [
-        { name: "spring", x: chart.sx(now.stiffness), y: chart.sy(now.damping), r: 16, label: "the spring: stiffness and damping", value: now.stiffness, text: `k ${number(now.stiffness)} N/m, c ${number(now.damping)} N s/m` },
+        { name: "spring", x, y, r: 16, label: "the spring: stiffness and damping", value: now.stiffness, text },
       ],
     };
   },

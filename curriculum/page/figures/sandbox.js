@@ -71,12 +71,14 @@ export const figure = {
     const { own } = view;
     const scale = scaleOf(view);
     const place = (each) => [each.x * scale, view.height - GROUND - each.y * scale];
+    const drawn = own.balls.map((each) => ball(own.model, ...place(each), R * scale));
     return {
-      svg: table(0, view.height - GROUND, view.width, GROUND) + own.balls.map((each) => ball(own.model, ...place(each), R * scale)).join(""),
+      svg: table(0, view.height - GROUND, view.width, GROUND) + drawn.join(""),
       words: `${own.balls.length} balls by ${own.model}, at steps of ${round(1000 * view.get("dt"))} ms.`,
       handles: own.balls.map((each, k) => {
         const [x, y] = place(each);
-        return { name: `ball-${k}`, x, y, r: R * scale, label: `ball ${k + 1}`, value: each.y, text: `${number(each.y - R, 2)} m above the table` };
+        const text = `${number(each.y - R, 2)} m above the table`;
+        return { name: `ball-${k}`, x, y, r: R * scale, label: `ball ${k + 1}`, value: each.y, text };
       }),
     };
   },
