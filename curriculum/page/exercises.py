@@ -55,7 +55,7 @@ def text_of(name, exercise):
 
 def laid_out(block):
     """A block of a docstring as Markdown: indented lines stay as they are."""
-    return re.sub(r"(?m)^(?=    )(?<!\n\n)", "", re.sub(r"(?m)(^[^ ].*\n)(?=    )", r"\1\n", block))
+    return re.sub(r"(?m)(^[^ ].*\n)(?=    )", r"\1\n", block)
 
 
 @functools.cache

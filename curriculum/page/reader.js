@@ -92,7 +92,7 @@ export class Reader {
     for (const [key, value] of Object.entries(about)) span.setAttribute(key, value);
     span.setAttribute("aria-label", each.label);
     const show = () => {
-      span.textContent = plain(store.get(name));
+      span.textContent = store.get(name) < 1e4 ? plain(store.get(name)) : store.get(name).toLocaleString("en");
       span.setAttribute("aria-valuenow", plain(store.get(name)));
       span.setAttribute("aria-valuetext", plain(store.get(name)) + unit);
     };
@@ -103,8 +103,6 @@ export class Reader {
     };
     this.#grab(span, () => toSlider(each, store.get(name)), turn);
     store.on([name], show);
-    if (Number(span.dataset.value) === store.get(name)) show();
-    else span.classList.add("elsewhere");
     show();
   }
 

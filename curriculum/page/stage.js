@@ -196,6 +196,7 @@ export class Stage {
       grabbed: null,
       still: page.still,
       open: page.open,
+      reset: () => store.reset(),
       get: store.get,
       set: (changes) => store.set(changes, store.dragging() ? "drag" : "act"),
       run: () => this.run(),

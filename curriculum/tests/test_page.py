@@ -202,7 +202,7 @@ def test_a_chapter_with_a_figure_that_does_not_exist_is_refused():
 # every place that shows a quantity, as a number: sentences, sliders, fields, the address
 PLACES = """(name) => {
   const numbers = [...document.querySelectorAll(`.drag[data-knob=${name}]`)];
-  const found = numbers.map((each) => each.textContent);
+  const found = numbers.map((each) => each.textContent.replace(/,/g, ""));
   for (const knob of document.querySelectorAll(`.knob[data-knob=${name}]`)) {
     found.push(knob.querySelector("[inputmode]").value);
     found.push(knob.querySelector("[type=range]").getAttribute("aria-valuetext").split(" ")[0]);

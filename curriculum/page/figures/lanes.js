@@ -208,6 +208,7 @@ export const figure = {
       label: (view) => `Show ${{ gap: "push", push: "energy", energy: "gap" }[view.own.chart]}`,
       press: (view) => (view.own.chart = { gap: "push", push: "energy", energy: "gap" }[view.own.chart]),
     },
+    { label: "The chapter’s values", press: (view) => view.reset() },
   ],
   // What the text asks to see: {models, chart, from, to} as an address has them.
   look(view, { models, chart: kind, from, to }, anew) {
