@@ -140,6 +140,6 @@ def smaller(text):
     text = re.sub(r"<[^>]*>", lambda tag: re.sub(r"-?\d+\.\d{3,}", shorter, tag[0]), text)
     rules = "".join(f'[style*="{part}: {day}"]{{{part}:{night}!important}}'
                     for day, night in IN_THE_DARK.items() for part in ("fill", "stroke"))
-    style = f"<style>@media (prefers-color-scheme: dark) {{svg{{background:#14161b}}{rules}}}</style>"
-    text = re.sub(r"(<svg\b[^>]*>)", lambda match: match[1] + "\n" + style, text, count=1)
+    dark = f"@media (prefers-color-scheme: dark) {{svg{{background:#14161b}}{rules}}}"
+    text = re.sub(r"(<svg\b[^>]*>)", rf"\1\n<style>{dark}</style>", text, count=1)
     return "\n".join(words.rstrip() for words in text.splitlines()) + "\n"

@@ -1,1 +1,1 @@
-"""Run time against error: contact.py's models and other engines, on problems with a known answer."""
+"""Run time against error: contact.py's models and other engines, where the answer is known."""

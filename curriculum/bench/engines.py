@@ -20,9 +20,8 @@ nothing moves. No ball may sleep, but in the settings that say so. What had to b
               stiffer than a quarter of the substep rate). The world is 10 times as large, so that
               its slop of 5 mm shrinks against r. float32. Its forerunner 2.3 is left out.
     drake     point contact. "discrete": its convex solver at a fixed step; "CENIC": the same under
-              error control; "RK3": an explicit integrator under error control on a stiff spring.
-              It has no coefficient of restitution, so it runs where e is 0 (strong dissipation)
-              or 1 (none), and says so elsewhere.
+              error control. It has no coefficient of restitution, so it runs where e is 0 (strong
+              dissipation) or 1 (none), and says so elsewhere.
 """
 
 import importlib.util
@@ -243,7 +242,7 @@ class Box2d3(Session):
 
 
 class Drake(Session):
-    """Compliant points. scheme None: its discrete solver; else an integrator and its accuracy."""
+    """Compliant points: its discrete solver, or with `scheme` an integrator of that accuracy."""
 
     def __init__(self, scene, dt, scheme=None, accuracy=1e-5, stiffness=1e8):
         import logging
@@ -259,7 +258,7 @@ class Drake(Session):
         builder = DiagramBuilder()
         plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=0.0 if scheme else dt)
         plant.mutable_gravity_field().set_gravity_vector([0.0, -GRAVITY, 0.0])
-        skin = self.skin(scene, stiffness, scheme, dt)
+        skin = self.skin(scene, stiffness, dt)
         up = RigidTransform(HalfSpace.MakePose([0.0, 1.0, 0.0], [0.0, 0.0, 0.0]))
         plant.RegisterCollisionGeometry(plant.world_body(), up, HalfSpace(), "floor", skin)
         self.scene, self.dt, self.joints, self.time = scene, dt, [], 0
@@ -283,7 +282,7 @@ class Drake(Session):
         self.simulator.Initialize()
 
     @staticmethod
-    def skin(scene, stiffness, scheme, dt):
+    def skin(scene, stiffness, dt):
         """Stiffness and dissipation of every surface: none for e = 1, strong for e = 0."""
         from pydrake.geometry import AddContactMaterial, ProximityProperties
         from pydrake.multibody.plant import CoulombFriction
@@ -293,8 +292,7 @@ class Drake(Session):
             dissipation=0.0 if elastic else 1e3,
             point_stiffness=2.0 * stiffness,    # two surfaces in series: half of it
             friction=CoulombFriction(0.0, 0.0), properties=skin)
-        if scheme is None or scheme == "cenic":
-            skin.AddProperty("material", "relaxation_time", 0.0 if elastic else dt)
+        skin.AddProperty("material", "relaxation_time", 0.0 if elastic else dt)
         return skin
 
     def advance(self, n):
@@ -319,13 +317,6 @@ def no_coefficient(scene):
     """Why Drake does not run a scene, or None."""
     if 0.0 < scene.restitution < 1.0:
         return "has no coefficient of restitution, only a dissipation"
-    return None
-
-
-def too_slow(scene):
-    """Why Drake's explicit integrator does not run a scene, or None."""
-    if len(scene.mass) > 1 or scene.restitution > 0.0:
-        return "an explicit integrator on stiff springs takes seconds to minutes a run"
     return None
 
 
@@ -363,8 +354,8 @@ def box2d3(words, substeps, **options):
     return Setting("box2d3", words, partial(Box2d3, substeps=substeps, **options))
 
 
-def drake(words, refuses=no_coefficient, **options):
-    return Setting("drake", words, partial(Drake, **options), "scheme" in options, refuses)
+def drake(words, **options):
+    return Setting("drake", words, partial(Drake, **options), "scheme" in options, no_coefficient)
 
 
 SETTINGS = (
@@ -392,7 +383,6 @@ SETTINGS = (
     drake("CENIC, accuracy 1e-3", scheme="cenic", accuracy=1e-3),
     drake("CENIC, accuracy 1e-5", scheme="cenic", accuracy=1e-5),
     drake("CENIC, accuracy 1e-7", scheme="cenic", accuracy=1e-7),
-    drake("RK3, k 1e8, accuracy 1e-6", too_slow, scheme="runge_kutta3", accuracy=1e-6),
 )
 
 

@@ -5,8 +5,8 @@ settle, untimed; it counts as settled only if no ball is faster than AT_REST whi
 Then it is timed in fresh processes: from the lattice, while the pile falls, and from its own
 settled state. Every step is taken: no state is copied and no ball sleeps, but where the words say
 so. Engines are compared at equal depth: of each the fastest setting at rest whose mean depth of
-the overlapping contacts is at most a limit. Of 10,000 balls only the settings run that won with
-1,000.
+the overlapping contacts is at most a limit. 10,000 balls are ten shafts of 1,000 side by side, and
+each of them begins as the one had settled; only the settings run that won with 1,000.
 """
 
 import itertools
@@ -29,17 +29,19 @@ from curriculum.machine import ROOT
 COMMAND = "python -m curriculum.bench pile"
 CODE = ("contact.py", "curriculum/fast.py")
 DT = 0.002                  # s
-WATCHED, TURN, TURNS = 250, 50, 5       # steps at the end; timed steps in one go; how many goes
+WATCHED, TURN, TURNS = 250, 50, 3       # steps at the end; timed steps in one go; how many goes
 AT_REST = 1e-3              # m/s
 DEPTHS = (1e-3, 1e-4)       # r
-SIZES = {12: (4, 6000, 3), 100: (10, 6000, 3), 1000: (25, 6000, 3), 10_000: (250, 4500, 2)}
-# balls: how many side by side, steps to settle, processes that time them
-LARGE, QUICK_SIZES = 10_000, (12,)
+SIZES = {12: (4, 6000), 100: (10, 6000), 1000: (25, 6000)}  # balls: side by side, steps to settle
+MANY, COPIES, SETTLED = 10_000, 10, 750     # made of copies that have settled; steps all the same
+PROCESSES, QUICK_SIZES = 3, (12,)
 ASLEEP = "may sleep"        # in the words of a setting that is shown and not compared
 
 
 def shaft(count):
     """Balls on a lattice between two walls of fixed balls, and the floor. The seed is fixed."""
+    if count == MANY:
+        return side_by_side(shaft(MANY // COPIES))
     wide, r, rng = SIZES[count][0], contact.RADIUS, np.random.default_rng(0)
     place = rng.permutation(count)
     nudge = rng.uniform(-0.1 * r, 0.1 * r, (2, count))
@@ -52,6 +54,14 @@ def shaft(count):
     mass = np.repeat((1.0, math.inf), (count, 2 * len(wall)))
     return contact.Scene("shaft", np.array((x, y)), np.zeros((2, len(x))), mass,
                          np.full(len(x), r), 0.0, 80.0)
+
+
+def side_by_side(scene):
+    """So many copies of a shaft, each with its own walls."""
+    apart = np.ptp(scene.q0[0]) + 3.0 * contact.RADIUS
+    q0 = np.concatenate([scene.q0 + [[k * apart], [0.0]] for k in range(COPIES)], axis=1)
+    return scene._replace(q0=q0, v0=np.tile(scene.v0, COPIES), mass=np.tile(scene.mass, COPIES),
+                          radius=np.tile(scene.radius, COPIES))
 
 
 class Twin(Session):
@@ -107,12 +117,12 @@ LABELS = {"lcp": "lcp, compiled", "mujoco": "MuJoCo", "pymunk": "pymunk", "box2d
 
 def measure(quick=False):
     """rows, one per setting and size; the winners at each depth; what compiling takes."""
-    rows = []
-    for count in QUICK_SIZES if quick else SIZES:
-        chosen = winners(rows) if count == LARGE else range(len(SETTINGS))
-        rows += measured(count, chosen, quick)
+    rows, states = [], {}
+    for count in QUICK_SIZES if quick else (*SIZES, MANY):
+        chosen = winners(rows) if count == MANY else range(len(SETTINGS))
+        rows += measured(count, chosen, states, quick)
     return dict(dt=DT, rows=rows, best=best(rows), compile=compiling(), missing=missing(),
-                sizes={str(count): len(shaft(count).mass) - count for count in SIZES})
+                fixed={str(count): len(shaft(count).mass) - count for count in (*SIZES, MANY)})
 
 
 def missing():
@@ -121,29 +131,35 @@ def missing():
     return {label: why for label, why in found.items() if why}
 
 
-def measured(count, chosen, quick):
-    """The rows of one size: settle all settings, then time them."""
+def measured(count, chosen, states, quick):
+    """The rows of one size: settle all settings, then time them. states[k]: the last settled."""
     scene = shaft(count)
-    jobs = [(count, k) for k in chosen
+    jobs = [(count, k, states.get(k)) for k in chosen
             if not (SETTINGS[k].engine != "lcp" and engines.missing(SETTINGS[k].engine))
             and not SETTINGS[k].refuses(scene)]
     print(f"pile of {count}: {len(jobs)} settings settle, then they are timed", flush=True)
     settled = pool.spread(settle, jobs, f"{count} balls settle")
-    work = [(*job, *state[:2]) for job, state in zip(jobs, settled)]
-    times = timing.in_fresh_processes(time_of, work, 1 if quick else SIZES[count][2],
-                                      f"{count} balls")
+    states.update((k, found[:2]) for (_, k, _), found in zip(jobs, settled))
+    work = [(count, k, states[k]) for _, k, _ in jobs]
+    processes = 1 if quick else PROCESSES - (count == MANY)
+    times = timing.in_fresh_processes(time_of, work, processes, f"{count} balls")
     return [dict(bodies=count, engine=SETTINGS[k].engine, words=SETTINGS[k].words,
                  **state[2], **{phase: timing.spread([each[phase] for each in found])
                                 for phase in ("falling", "resting")})
-            for (_, k), state, found in zip(jobs, settled, times)]
+            for (_, k, _), state, found in zip(jobs, settled, times)]
 
 
 def settle(job):
     """q, v of the settled pile, and the row's depths and speed; the speed is watched to the end."""
-    count, k = job
-    scene = shaft(count)
+    count, k, start = job
+    scene, steps = shaft(count), SETTLED
+    if count == MANY:
+        one = shaft(MANY // COPIES)
+        scene = side_by_side(one._replace(q0=np.array(start[0]), v0=np.array(start[1])))
+    else:
+        steps = SIZES[count][1]
     session = SETTINGS[k].build(scene, DT)
-    session.advance(SIZES[count][1] - WATCHED)
+    session.advance(steps - WATCHED)
     speeds = []
     for _ in range(WATCHED // TURN):
         session.advance(TURN)
@@ -167,12 +183,12 @@ def depths(q, scene):
 
 def time_of(job):
     """{falling, resting}: microseconds a step, from the lattice and from the settled state."""
-    count, k, q, v = job
-    scene, build, found = shaft(count), SETTINGS[k].build, {}
+    count, k, (q, v) = job
+    scene, found = shaft(count), {}
     rest = scene._replace(q0=np.array(q, float), v0=np.array(v, float))
-    for phase, start, before in (("falling", scene, 150), ("resting", rest, 250)):
-        session = build(start, DT)
-        session.advance(before)
+    for phase, start in (("falling", scene), ("resting", rest)):
+        session = SETTINGS[k].build(start, DT)
+        session.advance(100)
         seconds = [timing.timed(partial(session.advance, TURN)) for _ in range(TURNS)]
         found[phase] = 1e6 * statistics.median(seconds) / TURN
     return found
@@ -194,7 +210,7 @@ def winners(rows):
 
 
 def best(rows):
-    """{balls: {depth: {engine: {words, us, depth}, ..., ratio}}}; ratio: lcp to the fastest peer."""
+    """{balls: {depth: {engines: {engine: {words, us, depth}}, ratio: lcp to fastest peer}}}."""
     found = {}
     for count, depth in itertools.product(dict.fromkeys(r["bodies"] for r in rows), DEPTHS):
         table = {}

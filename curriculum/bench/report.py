@@ -31,6 +31,11 @@ def table(head, rows):
     return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in lines)
 
 
+def ranged(about):
+    """A median with its spread: of a dict with median, min, max."""
+    return f"{number(about['median'])} ({number(about['min'])} to {number(about['max'])})"
+
+
 def called(row):
     """Family and setting of a point, for a reader."""
     return f"{accuracy.LABELS[row['family']]}: {row['words']}"
@@ -189,8 +194,8 @@ def rows_at(points, dt):
     """One row a contestant, at one step."""
     for p in points:
         if p["dt"] == dt:
-            error = f"{number(p['error'])} ({number(p['least'])} to {number(p['greatest'])})"
-            time = f"{number(p['read_median'])} ({number(p['read_min'])} to {number(p['read_max'])})"
+            error = ranged(dict(median=p["error"], min=p["least"], max=p["greatest"]))
+            time = ranged({which: p[f"read_{which}"] for which in ("median", "min", "max")})
             yield [called(p), f"diverged in {p['diverged']} starts" if p["diverged"] else error,
                    *(number(p[key]) for key in ("final_error", "energy_error", "depth")), time,
                    number(p["bare_median"])]
@@ -205,21 +210,20 @@ def rows_by_dt(points, dts):
 
 
 def pile_part(section):
-    yield ("## Piles between walls of fixed balls\n\nThe same walls in every engine, steps of 2 ms. "
-           "A pile counts as settled only where no ball was faster than "
-           f"{piles.AT_REST:g} m/s over the last {piles.WATCHED} steps; depth is the mean of the "
-           "overlapping contacts. Times are CPU time, median over fresh processes (least to "
-           "greatest). Compiling takes the twin "
-           f"{number(section['compile']['fresh'])} s the first time, then its first step comes "
-           f"after {number(section['compile']['again'])} s; neither is in the table.")
+    yield "## Piles between walls of fixed balls"
+    yield ("The same walls in every engine, steps of 2 ms. A pile counts as settled only where no "
+           f"ball was faster than {piles.AT_REST:g} m/s over the last {piles.WATCHED} steps; depth "
+           "is the mean of the overlapping contacts. Times are CPU time, median over fresh "
+           "processes (least to greatest). The twin's first step comes after "
+           f"{number(section['compile']['fresh'])} s where it must be compiled, and after "
+           f"{number(section['compile']['again'])} s later on; neither is in the table.")
     yield from (f"Left out: {label}, {why}." for label, why in section["missing"].items())
     yield "![Time a step against depth](pile.svg)"
     for count in dict.fromkeys(row["bodies"] for row in section["rows"]):
         rows = [[f"{piles.LABELS[row['engine']]}: {row['words']}",
                  "yes" if row["at_rest"] else "**no**", number(row["speed"]),
                  number(row["mean_depth"]), number(row["worst_depth"]),
-                 *(f"{number(row[phase]['median'])} ({number(row[phase]['min'])} to "
-                   f"{number(row[phase]['max'])})" for phase in ("resting", "falling"))]
+                 ranged(row["resting"]), ranged(row["falling"])]
                 for row in section["rows"] if row["bodies"] == count]
         yield table([f"{count:,} balls", "at rest", "fastest ball [m/s]", "mean depth / r",
                      "worst", "settled [µs a step]", "falling [µs a step]"], rows)
@@ -227,10 +231,8 @@ def pile_part(section):
 
 def skip_part(section):
     yield "## What skipping saves"
-    yield table(["whole process", "median [s]", "least to greatest", "times its import",
-                 "by the least times"],
-                [[name, number(about["median"]), f"{number(about['min'])} to {number(about['max'])}",
-                  number(about.get("ratio")), number(about.get("least"))]
+    yield table(["whole process", "seconds", "times its import", "by the least times"],
+                [[name, ranged(about), number(about.get("ratio")), number(about.get("least"))]
                  for name, about in section["processes"].items()])
     yield table(["2,000 steps", "all taken [ms]", "with skips [ms]", "ratio"],
                 [[f"{row['scene']}, {row['model']}", number(row["taken"]), number(row["skipped"]),
