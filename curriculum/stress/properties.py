@@ -59,14 +59,12 @@ def a_mirrored_scene_runs_mirrored(trial):
 
 @stated
 def a_run_can_be_taken_up_anywhere(trial):
-    """A step of penalty and lcp depends on the state alone: the second half has the same bits."""
+    """A step of penalty, and of lcp cold, depends on the state alone: again the same bits."""
     half = trial.spec["steps"] // 2
-    for model in ("penalty", "lcp"):
+    for model in ("penalty", "lcp") if trial.spec["warm"] == 0.0 else ("penalty",):
         run, motion = trial.run(model), trial.motions[model]
         if motion.listed[half:].any():
-            start = dict(
-                zip(("x", "y", "vx", "vy"), [*run.q[half].tolist(), *run.v[half].tolist()])
-            )
+            start = scenes.state(run.q[half], run.v[half])
             again = trial.run(model, **start, steps=trial.spec["steps"] - half)
             yield model, *unlike(contact.Run(again.t, run.q[half:], run.v[half:]), again)
 
@@ -239,14 +237,14 @@ def directions(motion, k, on):
 
 @stated
 def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
-    """lcp without gain: F = E + e/(1+e) dt sum m g v_y rises by what the sweeps leave undone.
+    """lcp without gain, cold: F = E + e/(1+e) dt sum m g v_y rises by what the sweeps leave undone.
 
     In the norm of the masses, with D = v' - v: E' - E = lam.J v' - |D|^2 / 2. With targets of at
     most -e J v this gives F' - F <= lam.w / (1+e) - (1-e)/(1+e) |D|^2 / 2, and lam.w = 0 once the
     sweeps are done. So the step with the largest rise is taken again with more sweeps, until it is
     below NOTABLE: a limit of the model, noted with its size; an overdue end is a violation.
     """
-    free = type(trial)(trial.spec | {"baumgarte": 0.0})
+    free = type(trial)(trial.spec | {"baumgarte": 0.0, "warm": 0.0})
     motion, e = free.motions["lcp"], trial.spec["restitution"]
     rise, size = rises(motion, motion.v, e)
     pushes = motion.listed.sum(1) * (trial.spec["iters"] + 2)

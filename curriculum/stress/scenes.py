@@ -2,7 +2,7 @@
 
 A spec is a dict: x, y [m], vx, vy [m/s], mass [kg], radius [m] (lists, one value a ball),
 restitution, damping [N s/m], dt [s], steps, stiffness [N/m], baumgarte, iters, and of soft solref
-(None, or a time constant [s] and a damping ratio). A mass of inf is a fixed ball.
+(None, or a time constant [s] and a damping ratio), warm. A mass of inf is a fixed ball.
 """
 
 import math
@@ -12,7 +12,7 @@ import numpy as np
 import contact
 
 BODY = ("x", "y", "vx", "vy", "mass", "radius")
-KNOBS = ("stiffness", "baumgarte", "iters", "solref")
+KNOBS = ("stiffness", "baumgarte", "iters", "solref", "warm")
 
 
 def to_scene(spec):
@@ -111,4 +111,5 @@ def numbered_spec(number, small=False):
         "baumgarte": pick(rng, 0.0, 0.2, 1.0, (0.0, 1.0)),
         "iters": int(pick(rng, 1, 5, 20, 100)),
         "solref": pick(rng, None, spring),
+        "warm": pick(rng, 0.0, 0.0, 0.8, 1.0),
     }
