@@ -25,7 +25,6 @@ are within a ratio of 100 where 0 < e < 1. Beyond that it stops with one clear e
     lam          impulse or force of a contact, >= 0                               N s or N
 """
 
-# --- region: setup ---
 import itertools
 import math
 from functools import cached_property
@@ -38,10 +37,9 @@ LAST = 1e-13        # of a radius: a bounce that would rise less is the last of 
 NOISE = 1e-12       # of g, of sqrt(g r): a smaller push or speed is rounding, which leaves 1e-15
 RATIO = 100.0       # of masses: above it, where 0 < e < 1, light balls rattle under heavy ones
 EVENTS = 3000       # a ball: a run with more stops; a pile of 24 has 600 in 4 s at e = 0.3
-# --- endregion ---
 
 
-# --- region: lcp ---
+# --- region: slide-lcp ---
 def inverse(W):
     """W^-1 of a Delassus matrix (K, K). Of many that fit, as under a slab, the least."""
     unit = 1.0 / np.sqrt(W.diagonal())
@@ -60,6 +58,8 @@ def solve_lcp(W, b):
     some s_k < 0, its gap still closes: the fastest one joins A. Each time that no contact pulls,
     lam'W lam / 2 + b'lam is lower than before, so no A comes twice (Lawson and Hanson 1974).
     """
+    if len(b) < 2:
+        return np.maximum(-b / W.diagonal(), 0.0)
     unit = np.sqrt(W.diagonal())
     least = -1e-13 * np.abs(b / unit).max(initial=0.0)
     lam, active = np.zeros(len(b)), np.ones(len(b), bool)
@@ -81,7 +81,6 @@ def solve_lcp(W, b):
 # --- endregion ---
 
 
-# --- region: contacts ---
 class Contacts:
     """K contacts as columns: sign (N, K) is 1 in the row of ball a and -1 in that of ball b."""
 
@@ -140,10 +139,8 @@ class Contacts:
         for _ in range(2):
             rows = rows + self.push(self.inverse @ (target - self.along(rows)))
         return rows
-# --- endregion ---
 
 
-# --- region: touch ---
 class Motion:
     """Where all balls are at an event, and what each of the K contacts they can make did so far."""
 
@@ -182,9 +179,7 @@ class Motion:
             part = self.all.pick(near)
             self.q = self.q + part.push(solve_lcp(part.delassus(), self.found[near]))
             self.found = self.gap = self.all.locate(self.q)
-    # --- endregion ---
 
-    # --- region: bounce ---
     def bounce(self, touching):
         """Impulses: where a contact pushes, v_n becomes -e v_n, at all contacts at once.
 
@@ -227,9 +222,8 @@ class Motion:
             slow = NOISE * np.sqrt(self.g * self.radius[beside])
             self.v[:, beside] *= np.abs(self.v[:, beside]) > slow
         return touching[pushes], held, a
-    # --- endregion ---
 
-    # --- region: slide ---
+    # --- region: slide-series ---
     def slide(self, held):
         """While the held contacts push: q as a series Q (ORDER + 1, 2, N) in time, their forces
         lam (ORDER - 1, K), and how long [s] both last.
@@ -265,7 +259,6 @@ class Motion:
         return Q, lam, min((1e-16 / size) ** (1.0 / np.array((ORDER - 1, ORDER))))
     # --- endregion ---
 
-    # --- region: next-event ---
     def next_event(self, Q, which, lam, horizon):
         """How long [s] the series Q holds: until a gap closes, a force lam ends, or the horizon.
 
@@ -281,7 +274,8 @@ class Motion:
         part, gap, rests = self.all.pick(near), np.maximum(self.gap[near], 0.0), self.rests[near]
         P = gap_series(part, gap, Q)
         wider = np.where(rests, 0.5 * self.small[near], np.minimum(4.0 * self.bits, 1e-9 * gap))
-        falls = np.pad(P, ((0, 0), (0, lam.shape[1])))
+        falls = np.zeros((len(P), len(near) + lam.shape[1]))
+        falls[:, :len(near)] = P
         falls[0, :len(near)] += np.where(part.floor, wider, wider * (wider + 2.0 * part.reach))
         falls[:len(lam), len(near):] = lam
         span, first = first_fall(falls, horizon)
@@ -291,10 +285,8 @@ class Motion:
         self.gap[near[first:first + 1]] = 0.0
         self.since += span
         return span
-    # --- endregion ---
 
 
-# --- region: series ---
 def evaluate(P, t):
     """sum P[k] t^k by Horner's rule."""
     total = P[-1]
@@ -314,13 +306,13 @@ def gap_series(contacts, gap, Q):
     P = np.zeros((max(len(d), 5), d.shape[2]))      # 5: a parabola's square is whole
     for k, row in enumerate(d):
         P[k:k + len(d)] += (row * d[:len(P) - k]).sum(1)
-    P = np.where(contacts.floor, np.pad(d[:, 1], ((0, len(P) - len(d)), (0, 0))), P)
+    flat = np.zeros_like(P)
+    flat[:len(d)] = d[:, 1]
+    P = np.where(contacts.floor, flat, P)
     P[0] = np.where(contacts.floor, gap, gap * (gap + 2.0 * contacts.reach))
     return P
-# --- endregion ---
 
 
-# --- region: first-fall ---
 def first_fall(P, horizon):
     """The first t <= horizon at which a column of P (terms, K), all >= 0 at 0, falls through 0,
     and which column; horizon and K if none does.
@@ -358,10 +350,8 @@ def least(P, t, end):
     values = [c + s * (b + s * a) for s in (t, vertex, end)]
     rest = [np.abs(row) * end ** k for k, row in enumerate(P[3:], 3)]
     return np.fmin(np.fmin(*values[:2]), values[2]) - sum(rest)
-# --- endregion ---
 
 
-# --- region: cycle ---
 class Cycle:
     """What happened since a saved state: once that comes again, to the last bit, all of it does.
 
@@ -390,10 +380,8 @@ class Cycle:
             here = number == k
             out[:, here] = sample(self.flights[k][1], times[here] - starts[k])
         return out
-# --- endregion ---
 
 
-# --- region: run ---
 def sample(Q, times):
     """q, v (2, S, 2, N) at times (S,) of the series Q."""
     times = times[:, None, None]
@@ -442,4 +430,3 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
         motion.q, motion.v, now = evaluate(Q, span), evaluate(rate(Q), span), now + span
     raise RuntimeError(f"exact: more than {most} events by {now:.6g} s, balls rattle without end."
                        " Take a shorter run, another restitution, or closer masses")
-# --- endregion ---
