@@ -88,8 +88,8 @@ export const LAWS = {
 // The two events at which exact changes from one side of the corner to the other.
 LAWS.exact.more = (view, state, { sx, sy, box }) =>
   el("circle", { cx: sx(0), cy: sy(0), r: 12, class: "event" }) +
-  label("until gap = 0", sx(0.98), sy(0) - 12, "end") +
-  label("until force = 0", sx(0) + 10, box.top + 14);
+  label("gap → 0", sx(0.98), sy(0) - 12, "end") +
+  label("force → 0", sx(0) + 10, box.top + 14);
 LAWS.exact.words = (view, state) =>
   state.load > 0 ? "It rests until the force falls to 0: an event." : "It flies until the gap falls to 0: an event.";
 

@@ -50,6 +50,8 @@ function course(view, run) {
 function chartOf(view, dt, far) {
   const { damped, undamped, low, high } = range(view);
   const known = view.result("curve", [...knobsIn(view), low, high]) || { xs: [], ys: [] };
+  const critical = { x: damped, text: `with its damper ${number(1000 * damped)}`, side: "end" };
+  const free = { x: undamped, text: `2√(m/k) ${number(1000 * undamped)}`, class: "dashed", row: 1, side: "start" };
   const tens = [[1e-3, "0.001"], [1, "1"], [1e3, "1000"], [1e6, "10⁶"]];
   return charted(view, 0, {
     id: "cliff",
@@ -58,10 +60,7 @@ function chartOf(view, dt, far) {
     x: { ...axis([low, high], "time step dt (ms)", ...[1, 2, 4, 8, 16].map((k) => [k * low, String(tidy(1000 * k * low))])), log: true },
     y: { ...axis([1e-5, MOST], "still moving at the end / r", [0, "0"], ...tens), log: true, zero: true },
     lines: [{ model: "penalty", ...known, class: "plainly" }],
-    rules: [
-      { x: damped, text: `with its damper ${number(1000 * damped)}`, side: "end" },
-      { x: undamped, text: `2√(m/k) ${number(1000 * undamped)}`, class: "dashed", row: 1, side: view.width < 480 ? "end" : "start" },
-    ],
+    rules: view.width < 480 ? [critical] : [critical, free],
     points: [{ model: "penalty", x: within(low, dt, high), y: far, size: 8 }],
   });
 }

@@ -61,7 +61,7 @@ function draw(view) {
       { model: "lcp", xs: RATIOS, ys: ratios, class: "dotted", markers: [0, 1, 2, 3] },
     ],
     points: [[count, tall], [ratio, heavy]].map(([x, y]) => ({ model: "lcp", x, y, size: 8 })),
-    under: ({ sx, sy }) => label("height", sx(13), sy(1400), "end") + label("mass ratio", sx(950), sy(150), "end"),
+    under: ({ sx, sy }) => label("height", sx(13), sy(1400), "end") + label("mass ratio", sx(950), sy(14), "end"),
   };
   const { svg, middle } = beside(view, "rate", chart, (left) => picture(view, left), 0.36);
   const at = places(view, 2 * middle);

@@ -44,12 +44,13 @@ function draw(view) {
   const steps = trail.map((place, k) => `${k ? "L" : "M"}${at(place).map(round).join(" ")}`);
   const [bx, by] = at(path[row]);
   const [, , lx, ly] = ray(release, 0.35);
+  const narrow = view.width < 480;
   return {
     svg: [
       ball("fixed", x, y, R * scale, "body"),
       line(...ray(0, 0.3), "grid"),
       line(...ray(release, 0.33)),
-      label("cos θ = ⅔ cos θ₀", Math.min(lx + 4, view.width - 132), ly),
+      narrow ? label("dashed: cos θ = ⅔ cos θ₀", 4, view.height - 8) : label("cos θ = ⅔ cos θ₀", lx + 4, ly),
       el("path", { d: steps.join(""), class: "line m-exact" }),
       row > last ? ball("exact", ...at(path[last]), R * scale, "ghost") : "",
       ball("exact", bx, by, R * scale),
