@@ -14,18 +14,11 @@ from pygments.lexers import PythonLexer
 
 from curriculum.text import regions
 
-LONG = 18  # lines of code
-BOOKKEEPING = {
-    "setup",
-    "scenes",
-    "flight",
-    "flags",
-    "report",
-    "files",
-    "main",
-    "quality",
-    "stability",
-}
+LONG = 15  # lines of code
+BOOKKEEPING = set(  # regions, and definitions of others, that are no idea of the chapter
+    "setup scenes ball flight flags report files main quality stability "
+    "warm_start remember raised make_balls state_of recorded".split()
+)
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
 
@@ -74,6 +67,7 @@ def piece(lines, bookkeeping, node=None, start=0):
     if last > first:
         rest = "".join(html[first + 1 : last + 1])
         html[first : last + 1] = [f"<details><summary>{html[first]}</summary>{rest}</details>"]
+    name = node.name if node else None
     while not lines[-1][0].strip():
         lines, html = lines[:-1], html[:-1]
     head = next(source for source, _ in lines if source.strip() and source[0] != "@")
@@ -81,7 +75,9 @@ def piece(lines, bookkeeping, node=None, start=0):
         "html": Markup("".join(html)),
         "head": head,
         "lines": len(lines),
-        "folded": bookkeeping or len(lines) - max(last - first + 1, 0) > LONG,
+        "folded": bookkeeping
+        or name in BOOKKEEPING
+        or len(lines) - max(last - first + 1, 0) > LONG,
     }
 
 

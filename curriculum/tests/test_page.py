@@ -160,11 +160,8 @@ def test_a_ball_that_slides_off_another_agrees_with_exact_py(browser):
 def url(tmp_path_factory):
     """The address of the chapter's page, built once."""
     file = tmp_path_factory.mktemp("page") / "contact.html"
-    file.write_text(build(draft=DRAFT)[0], encoding="utf-8")
+    file.write_text(build()[0], encoding="utf-8")
     return file.as_uri()
-
-
-DRAFT = True
 
 
 @pytest.fixture
@@ -174,9 +171,9 @@ def visit(browser, url):
 
 
 def test_page_is_below_900_kb_and_the_same_bytes_twice(url):
-    text = build(draft=DRAFT)[0]
+    text = build()[0]
     assert len(text.encode()) < MOST
-    assert text == build(draft=DRAFT)[0]
+    assert text == build()[0]
 
 
 @pytest.mark.parametrize(
