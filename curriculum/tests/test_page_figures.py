@@ -217,6 +217,14 @@ def test_slide_leaves_at_two_thirds_and_bounces_end_when_they_should(tab):
     assert numbers(figure(tab, "bounces"))[-1] == pytest.approx(first * 1.7 / 0.3, rel=5e-3)
 
 
+def test_the_sum_of_bounce_and_bias_throws_the_ball_higher_than_the_larger_of_them(tab):
+    set_knobs(tab, "?restitution=0.7&dt=0.0005")
+    _, bounce, bias, larger, both = numbers(figure(tab, "larger"))
+    drop = contact.build_scene("drop").q0[1, 0] - RADIUS
+    heights = [v * v / (2 * WEIGHT * drop) for v in (max(bounce, bias), bounce + bias)]
+    assert [larger, both] == pytest.approx(heights, abs=0.02) and both > larger + 0.1
+
+
 def test_on_one_line_lie_the_depths_of_spring_and_soft(tab):
     set_knobs(tab, "")
     text = said(figure(tab, "one-line"))

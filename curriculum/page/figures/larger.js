@@ -1,6 +1,6 @@
 /* Bounce or bias: the target is the larger of the two, not their sum. */
 import { arrow, ball, number, steps, table } from "../draw.js";
-import { normalSpeed, runModel } from "../engine.js";
+import { runModel } from "../engine.js";
 import { knobsOf } from "../store.js";
 import { axis, beside, G, handle, kept, label, R, scene, START, tidy, within } from "../parts.js";
 
@@ -14,14 +14,13 @@ function wishes(depth, { restitution, baumgarte, dt }) {
   return { bounce: restitution * ARRIVES, bias: (baumgarte / dt) * depth * R };
 }
 
-const sum = (c, state, { restitution, baumgarte, dt }) =>
-  (baumgarte / dt) * Math.max(0, c.depth) + restitution * Math.max(0, -normalSpeed(c, state.vx, state.vy));
-
-// The flights [share of the drop's height] with the engine's target and with the sum.
+// The flights [share of the drop's height] of the ball that lcp meets as it arrives, and of one that
+// leaves with the sum of its wishes.
 const flights = kept((depth, knobs) => {
-  const found = scene([(1 - depth) * R], { vy: [-ARRIVES], restitution: knobs.restitution });
-  return [undefined, sum].map((target) => {
-    const run = runModel("lcp", found, { ...knobs, target }, Math.ceil(SECONDS / knobs.dt));
+  const { bounce, bias } = wishes(depth, knobs);
+  return [-ARRIVES, bounce + bias].map((v) => {
+    const found = scene([(1 - depth) * R], { vy: [v], restitution: knobs.restitution });
+    const run = runModel("lcp", found, knobs, Math.ceil(SECONDS / knobs.dt));
     return { t: run.t, ys: Array.from(run.y, (y) => (y - R) / (START - R)) };
   });
 });
