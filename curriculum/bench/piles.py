@@ -33,7 +33,7 @@ WATCHED, TURN, TURNS = 250, 50, 3       # steps at the end; timed steps in one g
 AT_REST = 1e-3              # m/s
 DEPTHS = (1e-3, 1e-4)       # r
 SIZES = {12: (4, 6000), 100: (10, 6000), 1000: (25, 6000)}  # balls: side by side, steps to settle
-MANY, COPIES, SETTLED = 10_000, 10, 750     # made of copies that have settled; steps all the same
+MANY, COPIES, AGAIN = 10_000, 10, 1500      # made of settled copies; steps to settle again
 PROCESSES, QUICK_SIZES = 3, (12,)
 ASLEEP = "may sleep"        # in the words of a setting that is shown and not compared
 
@@ -152,7 +152,7 @@ def measured(count, chosen, states, quick):
 def settle(job):
     """q, v of the settled pile, and the row's depths and speed; the speed is watched to the end."""
     count, k, start = job
-    scene, steps = shaft(count), SETTLED
+    scene, steps = shaft(count), AGAIN
     if count == MANY:
         one = shaft(MANY // COPIES)
         scene = side_by_side(one._replace(q0=np.array(start[0]), v0=np.array(start[1])))
