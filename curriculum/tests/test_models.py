@@ -415,7 +415,7 @@ def test_sweeps_of_soft_that_do_not_settle_are_counted():
     assert run_model("soft", build_scene("pile"), DT, 400).unsettled == 0
 
 
-@pytest.mark.parametrize("case", mujoco_match.cases(), ids=lambda c: f"{c.what} {c.dt:g}")
+@pytest.mark.parametrize("case", list(mujoco_match.cases()), ids=lambda c: f"{c.what} {c.dt:g}")
 def test_soft_is_mujoco_in_each_step_and_in_a_whole_run(case):
     pytest.importorskip("mujoco", reason="mujoco is not installed: pip install mujoco")
     off = mujoco_match.compare(case._replace(steps=min(case.steps, 300)))
