@@ -262,20 +262,6 @@ def test_of_bounce_and_push_the_larger_counts_and_never_their_sum(v_n, bias, tar
     assert contact.contact_target(c, 0.7, bias * DT / 0.01, DT) == pytest.approx(target)
 
 
-def test_across_a_gap_a_ball_may_come_as_close_as_touching_and_bounces_only_if_it_arrives():
-    ball = Ball(0.0, R + 5e-4, 0.0, -0.1, 1.0, R)
-    (c,) = contact.detect_contacts([ball])
-    assert contact.contact_target(c, 0.7, 0.2, DT) == pytest.approx(-5e-4 / DT)
-    ball.vy = -1.0
-    assert contact.contact_target(c, 0.7, 0.2, DT) == 0.7
-
-
-@given(gap=st.floats(-1e-2, 1e-3), v_n=st.floats(-10.0, 10.0), e=st.floats(0.01, 1.0))
-def test_without_a_gain_no_target_is_above_minus_e_v_n(gap, v_n, e):
-    c = Contact(Ball(0.0, R + gap, 0.0, v_n, 1.0, R), contact.FLOOR, 0.0, 1.0, -gap)
-    assert contact.contact_target(c, e, 0.0, DT) <= -e * v_n
-
-
 def test_the_hop_that_baumgartes_push_makes_is_reported():
     """It leaves with L = beta depth / dt, which carries it L^2 / 2 g less the depth: 0.107 r."""
     row = quality("drop", "lcp")
