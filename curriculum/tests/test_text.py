@@ -165,7 +165,7 @@ def test_region_hash_moves_only_when_every_section_that_speaks_of_it_was_read(pr
 def test_edited_sentence_waits_for_a_reader_and_shows_what_changed(project):
     edit(project / CHAPTER, "pushes. Python", "pulls. Python")
     failed = run_gate(project)
-    assert f"{CHAPTER}:9: section chapter/a-sweep changed since it was last read" in failed.stdout
+    assert f"{CHAPTER}:9: section chapter/a-sweep changed since it was read" in failed.stdout
     assert "-One sweep of `solve_contacts` pushes." in failed.stdout
     assert "+One sweep of `solve_contacts` pulls." in failed.stdout
     assert failed.stdout.endswith("python -m curriculum.text --accept chapter/a-sweep\n")

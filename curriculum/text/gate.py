@@ -68,15 +68,7 @@ class Gate:
         for section in found.values():
             if recorded.get(section.name) != section.sha:
                 self.unread.append(section)
-                known = section.name in recorded
-                changed = changed_regions(section, self.meta)
-                what = (
-                    f"section {section.name} was never read"
-                    if not known
-                    else f"section {section.name} speaks of {', '.join(changed)}, which changed"
-                    if changed
-                    else f"section {section.name} changed since it was last read"
-                )
+                what = f"section {section.name} {why_unread(section, self.meta)}"
                 repair = f"read it, then {GATE} --accept {section.name}"
                 self.say(section.file, section.line, what, repair)
         stray = recorded.keys() - found.keys()
@@ -139,10 +131,13 @@ class Gate:
                 self.say("README.md", line, f"block {name} is out of date", f"{GATE} --write")
 
 
-def changed_regions(section, meta) -> list:
-    """The names of those regions of a section whose code is not what meta.yaml has recorded."""
-    recorded = meta.get("region_hashes") or {}
-    return [region.name for region in section.regions if recorded.get(region.name) != region.sha]
+def why_unread(section, meta) -> str:
+    """Why a section waits for a reader."""
+    if section.name not in (meta.get("section_hashes") or {}):
+        return "was never read"
+    was = meta.get("region_hashes") or {}
+    changed = [region.name for region in section.regions if was.get(region.name) != region.sha]
+    return f"speaks of {', '.join(changed)}, which changed" if changed else "changed since it was read"
 
 
 def typed_numbers(text) -> list:
@@ -156,10 +151,8 @@ def typed_numbers(text) -> list:
         (r"<!--.*?-->", re.DOTALL),
         (r"\$\$.+?\$\$|\$[^$\n]+\$", re.DOTALL),
         (REFERENCE.pattern, 0),
-        (
-            r"\[[^\]]*\]\((try|drag):[^)]*\)|\]\([^)]*\)|^\[[^]]*\]:.*|https?://\S+|</?[a-z][^>]*>",
-            8,
-        ),
+        (r"\[[^\]]*\]\((try|drag):[^)]*\)|\]\([^)]*\)|https?://\S+|</?[a-z][^>]*>", 0),
+        (r"^\[[^]]*\]:.*", re.MULTILINE),
         (r"(`+)[^`]+\1", 0),
         (rf"\b({VERSIONED}) \d+(\.\d+)*((, | and |, and | to )\d+\.\d+)*", re.IGNORECASE),
         (r"(?<![\w.])\d+(\.\d+){2,}|^#+ +\d[\d.]*|^[ >]*\d+[.)] ", re.MULTILINE),
