@@ -137,7 +137,9 @@ def why_unread(section, meta) -> str:
         return "was never read"
     was = meta.get("region_hashes") or {}
     changed = [region.name for region in section.regions if was.get(region.name) != region.sha]
-    return f"speaks of {', '.join(changed)}, which changed" if changed else "changed since it was read"
+    if changed:
+        return f"speaks of {', '.join(changed)}, which changed"
+    return "changed since it was read"
 
 
 def typed_numbers(text) -> list:
