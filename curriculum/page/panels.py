@@ -1,7 +1,7 @@
 """The code that the page shows: each region a panel, each definition in it a piece of a few lines.
 
 A docstring shows its first line, the rest is folded behind it. A definition with more than LONG
-lines of code is folded behind its head, and so is all of a region that is no idea of the chapter.
+lines of code is folded behind its head, and so are constants and what is no idea of the chapter.
 """
 
 import ast
@@ -19,6 +19,7 @@ BOOKKEEPING = set(  # regions, and definitions of others, that are no idea of th
     "setup scenes ball flight flags report files main quality stability "
     "warm_start remember raised make_balls state_of recorded".split()
 )
+OPEN = {"exact_run", "slide"}  # long, and the heart of their sections
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
 
@@ -70,14 +71,13 @@ def piece(lines, bookkeeping, node=None, start=0):
     name = node.name if node else None
     while not lines[-1][0].strip():
         lines, html = lines[:-1], html[:-1]
+    long = len(lines) - max(last - first + 1, 0) > LONG and name not in OPEN
     head = next(source for source, _ in lines if source.strip() and source[0] != "@")
     return {
         "html": Markup("".join(html)),
         "head": head,
         "lines": len(lines),
-        "folded": bookkeeping
-        or name in BOOKKEEPING
-        or len(lines) - max(last - first + 1, 0) > LONG,
+        "folded": bookkeeping or long or name is None or name in BOOKKEEPING,
     }
 
 

@@ -55,9 +55,7 @@ export class Reader {
     if (!mark || mark === this.shown) return;
     this.shown = mark;
     this.live.classList.toggle("back", mark.dataset.show === "none");
-    if (!set) return;
-    if (mark.dataset.show === "none") this.store.follow({});
-    else this.#set(new URLSearchParams(mark.dataset.show), "text");
+    if (set && mark.dataset.show !== "none") this.#set(new URLSearchParams(mark.dataset.show), "text");
   }
 
   #scrolled() {
