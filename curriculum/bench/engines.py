@@ -379,6 +379,7 @@ SETTINGS = (
     box2d3("64 substeps, hardest", 64, hertz=1e9),
     box2d3("32 substeps, 240 Hz", 32, hertz=240.0),
     box2d3("4 substeps, hardest, may sleep", 4, hertz=1e9, sleep=True),
+    box2d3("32 substeps, 240 Hz, may sleep", 32, hertz=240.0, sleep=True),
     drake("discrete, k 1e8"),
     drake("CENIC, accuracy 1e-3", scheme="cenic", accuracy=1e-3),
     drake("CENIC, accuracy 1e-5", scheme="cenic", accuracy=1e-5),
