@@ -121,7 +121,8 @@ def measure(quick=False):
     for count in QUICK_SIZES if quick else (*SIZES, MANY):
         chosen = winners(rows) if count == MANY else range(len(SETTINGS))
         rows += measured(count, chosen, states, quick)
-    return dict(dt=DT, rows=rows, best=best(rows), compile={} if quick else compiling(), missing=missing(),
+    return dict(dt=DT, rows=rows, best=best(rows), missing=missing(),
+                compile={} if quick else compiling(),
                 fixed={str(count): len(shaft(count).mass) - count for count in (*SIZES, MANY)})
 
 

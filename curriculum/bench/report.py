@@ -175,9 +175,10 @@ def accuracy_part(section):
     yield ("An error is the median over several starts, a time the median over fresh processes "
            "(CPU time, one thread; least to greatest). In all alike every height is read after "
            "every step; bare is an engine's stepping alone. contact.py copies a state of rest, as "
-           "engines do in the rows that may sleep; compiling is not counted. Engines in float32 are "
-           "right to about 1e-6 r, the closed forms to 1e-12 r; of the pile `exact` is the "
-           "reference. A better setting? Add a line to SETTINGS in [engines.py](../engines.py) and send it.")
+           "engines do in the rows that may sleep; compiling is not counted. Engines in float32 "
+           "are right to about 1e-6 r, the closed forms to 1e-12 r; of the pile `exact` is the "
+           "reference. A better setting? Add a line to SETTINGS in [engines.py](../engines.py) and "
+           "send it.")
     for reason, names in section["left_out"].items():
         yield f"Left out of {', '.join(names)}: {reason}."
     for name, about in section["problems"].items():
