@@ -9,7 +9,7 @@ where v_n is the speed after the step. You do not know it yet, but you have a sw
 and lam together: solve_contacts looks for lam >= 0 such that v_n + softness lam - target is zero
 where it pushes. Which softness and which target make that the equation above?
 
-    python exercises/ex7_implicit_spring.py     # your spring beside penalty, at longer and longer dt
+    python exercises/ex7_implicit_spring.py     # your spring beside penalty, at longer dt
     python exercises/ex7_implicit_spring.py --hint 1    # 1 to 3
     python checks.py -k ex7
 """

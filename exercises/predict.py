@@ -72,8 +72,8 @@ def follow_up():
     file = next_exercise()
     if file is not None:
         return f"next: {command(os.path.relpath(ROOT / file))}"
-    return ("done: these were all eight. What next? The questions at the end of the chapter have no "
-            "answer key; after them comes chapter 3.6")
+    return ("done: these were all eight. What next? The questions at the end of the chapter have "
+            "no answer key; after them comes chapter 3.6")
 
 
 # Bets

@@ -54,14 +54,14 @@ SLIPS = {
     "solve_contacts": [
         (solver(total="c.lam + max(0.0, add)"), "the clamp is on the change, and it belongs on the "
          "sum: what was pushed too much must be taken back"),
-        (solver(total="c.lam + add"), "no clamp: lam may not become negative, a contact never pulls"),
+        (solver(total="c.lam + add"), "no clamp: a contact never pulls, so lam is never negative"),
         (solver("c.v_n() - c.target"), "the sign of what is missing: it is target - v_n"),
         (solver("-c.target - c.v_n()"), "the sign of the target"),
         (solver(push="c.a.vx += (lam - c.lam) * c.ax; c.a.vy += (lam - c.lam) * c.ay"),
          "the other body is forgotten: push moves both"),
         (solver(most=1), "one sweep: the neighbours that it disturbs are never mended"),
-        (solver(push="c.push(lam)"), "the whole lam is pushed at each visit; push what it changed by"),
-        (solver(total="max(0.0, add)", kept="0.0"), "c.lam does not hold the sum of all corrections"),
+        (solver(push="c.push(lam)"), "the whole lam is pushed at each visit, and not its change"),
+        (solver(total="max(0.0, add)", kept="0.0"), "c.lam does not hold the sum of corrections"),
         (solver(push=""), "lam is worked out and never pushed"),
         (solver(mass="1.0"), "m_eff is missing: an impulse is a mass times a velocity"),
     ],

@@ -198,7 +198,7 @@ def slip(blank, found):
 
 
 def judge(exercise, blank):
-    """("blank" or "wrong", why in words) or ("right", None): the learner's function on all inputs."""
+    """("blank" or "wrong", why in words) or ("right", None): a learner's function on all inputs."""
     what, cases = BLANKS[blank], inputs(blank)
     try:
         found = [outcome(getattr(exercise, blank), blank, case) for case in cases]
@@ -364,7 +364,7 @@ def judge_fingers(exercise):
     advice = ("a shorter time constant (at least two steps) stiffens soft, and a higher impedance "
               "lets less of the squeeze through")
     if model == "penalty":
-        advice = (f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and a finger on a cup "
+        advice = (f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and a finger on it "
                   f"wants steps below {contact.critical_dt(0.1, k, exercise.DAMPING):.1g} s")
     return "wrong", f"{', and '.join(faults)}; {advice}"
 

@@ -1,4 +1,4 @@
-"""The exercises: untouched they wait, right fills pass in every form, wrong ones fail and are named.
+"""The exercises: untouched they wait, right fills pass in every form, wrong ones are named.
 
 Needs numpy and pytest and nothing else, as a learner has them.
 """
@@ -28,10 +28,10 @@ import trials  # noqa: E402
 BETS = {"ex1": ex1, "ex3": ex3, "ex4": ex4}
 FILES = {path.name[:3]: path.name for path in sorted((ROOT / "exercises").glob("ex[0-9]_*.py"))}
 FILLED = {      # name: [(a line of the file, what a learner writes there)]
-    "ex1": [("PREDICTION = None ", "PREDICTION = ' c) ' "), ('WHY = ""', 'WHY = "so it has to be"')],
+    "ex1": [("PREDICTION = None ", "PREDICTION = ' c) ' "), ('WHY = ""', 'WHY = "so it must be"')],
     "ex2": [("f_n = ...", "f_n = max(0, stiffness * depth - damping * v_n)"),
             ("new_lam = ...", "new_lam = lam + max(-lam, dlam)")],
-    "ex3": [("PREDICTION = None ", "PREDICTION = 'A' "), ('WHY = ""', 'WHY = "a wrong bet counts too"')],
+    "ex3": [("PREDICTION = None ", "PREDICTION = 'A' "), ('WHY = ""', 'WHY = "a bet is a bet"')],
     "ex4": [("PREDICTION = None ", "PREDICTION = 'A' "), ('WHY = ""', 'WHY = "so it has to be"')],
     "ex5": [("return ...", """for _ in range(iters):
         for c in contacts:
@@ -109,7 +109,7 @@ def test_untouched_every_exercise_is_skipped_and_says_what_to_do(copy):
 
 
 def test_a_learners_way_through_all_eight(copy):
-    """Each script says what is next, also in an odd folder; a bet counts once its script was read."""
+    """Each script says what is next, in an odd folder too; a bet counts once its script was read."""
     folder, fill = copy
     for name, file in FILES.items():
         fill(name)

@@ -1,4 +1,4 @@
-"""Facts that the chapter quotes and that no run of contact.py prints: each a function, no arguments.
+"""Facts that the chapter quotes and no run of contact.py prints: each a function, no arguments.
 
 Each returns {name: number}; the text quotes one as {{fact:tower_sweeps.20}}.
 """
