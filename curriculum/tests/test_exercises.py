@@ -109,7 +109,7 @@ def test_untouched_every_exercise_is_skipped_and_says_what_to_do(copy):
 
 
 def test_a_learners_way_through_all_eight(copy):
-    """Each script says what is next, in an odd folder too; a bet counts once its script was read."""
+    """Each script says what is next, in an odd folder too; a bet counts once it was read."""
     folder, fill = copy
     for name, file in FILES.items():
         fill(name)
