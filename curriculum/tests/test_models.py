@@ -16,10 +16,9 @@ import contact
 from contact import Ball, Contact, Settings, build_scene, contact_quality, run_model
 from curriculum.stress import mujoco_match
 from curriculum.stress.jobs import judge
-from curriculum.stress.trial import Trial
+from curriculum.stress.trial import STEPPED, Trial
 
 R, G, DT = contact.RADIUS, 9.81, 0.002
-STEPPED = ("penalty", "lcp", "soft")
 
 
 def quality(name, model, dt=DT, steps=2000, knobs=None, **scene):
