@@ -57,6 +57,6 @@ def curves(runs, scene):
 
 
 def ending(run, scene):
-    """How the run ended, in contact.py's words: "ok", "EXPLODED at step 12", "through the floor"."""
+    """How the run ended, in contact.py's words, such as "ok" and "through the floor"."""
     dt = float(np.diff(run.t[:2]).sum())
     return contact.ending(contact.contact_quality(run, scene, dt))

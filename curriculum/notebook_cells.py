@@ -1,7 +1,8 @@
 """The cells that only the notebook has: its set-up, its knobs and its pictures.
 
 Each cell begins with a line `# %% NAME`. curriculum/notebook.py puts it where the chapter has the
-figure of that name; `start` and `tools` come first. The names that are not defined here are contact.py's.
+figure of that name; `start` and `tools` come first. Names that are not defined here are
+contact.py's.
 """
 # ruff: noqa: B007, B008, B018, E401, E402, F811, F821, I001
 # fmt: off
@@ -84,7 +85,8 @@ def knobs(draw, **ranges):
     sliders = {}
     for name, (low, value, high) in ranges.items():
         if low > 0.0:
-            sliders[name] = FloatLogSlider(value, min=math.log10(low), max=math.log10(high), **quiet)
+            ends = {"min": math.log10(low), "max": math.log10(high)}
+            sliders[name] = FloatLogSlider(value, **ends, **quiet)
         else:
             sliders[name] = FloatSlider(value, min=low, max=high, step=high / 50.0, **quiet)
     interact(draw, **sliders)
@@ -99,8 +101,9 @@ def watch(model, scene, dt, settings=Settings()):
         gap = smallest_gap(run.q, scene.radius) / scene.radius[0]
         axes.plot(run.t, gap, label=name, linewidth=width, color=COLORS[name])
     depth = np.maximum(-gap, 0.0)
-    axes.set(xlabel="time [s]", ylabel="gap [r]", ylim=(-1.2 * min(max(depth.max(), 0.1), 2.5), 1.2),
-             title=f"{model}: {plain(depth.max())} r at the deepest, {plain(depth[-1])} r at the end")
+    below = -1.2 * min(max(depth.max(), 0.1), 2.5)
+    title = f"{model}: {plain(depth.max())} r at the deepest, {plain(depth[-1])} r at the end"
+    axes.set(xlabel="time [s]", ylabel="gap [r]", ylim=(below, 1.2), title=title)
     legend_beside(axes)
     plt.show()
 
@@ -111,13 +114,15 @@ moving
 
 # %% two
 scene = build_scene("drop")     # up to the landing: what happens then?
-moving = film({model: run_model(model, scene, 0.002, 212) for model in ("penalty", "lcp")}, slow=4.0)
+two = {model: run_model(model, scene, 0.002, 212) for model in ("penalty", "lcp")}
+moving = film(two, slow=4.0)
 moving
 
 # %% lanes
 scene = build_scene("drop")
 runs = {model: run_model(model, scene, 0.002, 2000) for model in MODELS}
-qualities = {model: contact_quality(run, scene, 0.002, runs["exact"]) for model, run in runs.items()}
+qualities = {model: contact_quality(run, scene, 0.002, runs["exact"])
+             for model, run in runs.items()}
 display(film({model: run._replace(t=run.t[:750], q=run.q[:750]) for model, run in runs.items()}))
 drawing, axes = plt.subplots(figsize=(7, 3))
 axes.axhline(0.0, color="0.3", linewidth=1)
@@ -283,7 +288,7 @@ def try_soft(timeconst, impedance_at_surface, dt):
     deep = np.linspace(0.0, 0.0015, 200)
     plt.figure(figsize=(5, 1.8))
     plt.plot(1000.0 * deep, [impedance(x, solimp) for x in deep], color=COLORS["soft"])
-    plt.gca().set(xlabel="depth [mm]", ylabel="d", ylim=(0.0, 1.05), title="soft: how firmly it asks")
+    plt.gca().set(xlabel="depth [mm]", ylabel="d", ylim=(0.0, 1.05), title="soft: how firm it is")
     watch("soft", build_scene("drop"), dt, Settings(solref=(timeconst, 1.0), solimp=solimp))
 
 

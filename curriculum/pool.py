@@ -11,7 +11,7 @@ def spread(function, jobs, label, workers=None, scheduler=None):
     """[function(job) for job in jobs], worked out in parallel, in the order of the jobs.
 
     function: one that another process can import. workers: how many processes, all cores if None;
-    one worker or one job needs no process. scheduler: "host:port" of a running dask scheduler, whose
+    one worker or one job needs no process. scheduler: "host:port" of a running dask scheduler; its
     workers do the work instead; the code must be on their PYTHONPATH. The results are the same
     wherever they come from. Raises what the function raises; ImportError where dask is
     missing, and OSError, in one line, where the scheduler does not answer.

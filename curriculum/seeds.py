@@ -37,7 +37,7 @@ def read_range(text):
     first, _, last = text.partition(":")
     if not (first.isdecimal() and last.isdecimal() and 0 < int(last) - int(first) <= 10_000):
         raise ValueError(
-            f"given {text[:40]!r}; allowed: A:B, whole numbers with A < B and at most 10,000 seeds, "
+            f"given {text[:40]!r}; allowed: A:B, whole numbers, A < B, at most 10,000 seeds, "
             "such as 0:20 for 0 to 19"
         )
     return range(int(first), int(last))

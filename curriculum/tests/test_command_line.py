@@ -95,7 +95,8 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
 
 
 @pytest.mark.parametrize("flags", [
-    "--smoke --steps 100", "--seeds 0:5 --seed 3", "--seeds 0:5 --plot", "--scheduler localhost:8786",
+    "--smoke --steps 100", "--seeds 0:5 --seed 3", "--seeds 0:5 --plot",
+    "--scheduler localhost:8786",
     "--scene drop --bodies 2", "--scene bounce --bodies 1", "--solref 0.02 0", "--solref -1 1",
     "--solref 0.02 1e-162", "--stiff 3", "--no-such-flag",
 ])  # fmt: skip

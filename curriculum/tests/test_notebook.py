@@ -1,4 +1,4 @@
-"""The notebook runs in full beside no project, finds what contact.py finds, and feels every change."""
+"""The notebook runs in full beside no project, finds what contact.py finds, feels every change."""
 
 import ast
 import json
@@ -40,7 +40,7 @@ def text():
 
 @pytest.fixture(scope="module")
 def executed(text, tmp_path_factory):
-    """The notebook with its outputs, run in an empty folder, with a bet that was made in its cell."""
+    """The notebook with its outputs, run in an empty folder, with a bet made in its cell."""
     book = nbformat.reads(text, as_version=4)
     book.cells.append(nbformat.v4.new_code_cell(ASKED))
     for cell in book.cells:

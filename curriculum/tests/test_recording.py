@@ -1,4 +1,4 @@
-"""What contact.py reaches for: the recording opened again, the picture, many seeds, what to do next."""
+"""What contact.py reaches for: the recording, the picture, many seeds, what to do next."""
 
 import json
 import re
