@@ -196,15 +196,9 @@ def headline(points):
 
 
 def left_out(chosen):
-    """{family: why} of whoever does not run some problem: the reason, and the problems."""
-    found = {}
-    for problem in chosen:
-        for c in CONTESTANTS:
-            why = c.refuses(problem.build(0))
-            if why:
-                names = found.setdefault(f"{LABELS[c.family]}: {why}", [])
-                names.extend([problem.name] if problem.name not in names else [])
-    return found
+    """{label: why} of whoever does not run every problem."""
+    return {LABELS[c.family]: why for problem in chosen for c in CONTESTANTS
+            if (why := c.refuses(problem.build(0)))}
 
 
 def packed(rows):

@@ -101,8 +101,7 @@ def direct(beta, d, scene, dt):
 class Mujoco(Session):
     """Spring and damper made implicit and convex. `contact(scene, dt)` gives solref and solimp."""
 
-    def __init__(self, scene, dt, contact, solver=None, integrator="Euler", iterations=100,
-                 flags=""):
+    def __init__(self, scene, dt, contact, solver=None, iterations=100, flags=""):
         import mujoco
         from mujoco import rollout
 
@@ -113,7 +112,7 @@ class Mujoco(Session):
         self.moving = [k for k, ball in enumerate(balls) if not ball[-1]]
         self.model = mujoco.MjModel.from_xml_string(
             f'<mujoco><size memory="{"4G" if many else "-1"}"/>'
-            f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" integrator="{integrator}" '
+            f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" '
             f'solver="{solver or ("CG" if many else "Newton")}" iterations="{iterations}" '
             f'jacobian="{"sparse" if many else "auto"}"><flag autoreset="disable"{flags}/></option>'
             f'<default><geom condim="1" solref="{solref}" solimp="{solimp}"/></default>'
@@ -366,7 +365,6 @@ SETTINGS = (
     mujoco("direct, push 0.2, d 0.999", PUSHED),
     mujoco("direct, push 0.2, d 0.9999", partial(direct, 0.2, 0.9999)),
     mujoco("direct, no push, speculative", RIGID, flags=' speculative="enable"'),
-    mujoco("direct, no push, discrete", RIGID, integrator="discrete"),
     pymunk("10 iterations"),
     pymunk("30 iterations", iterations=30),
     pymunk("100 iterations", iterations=100),

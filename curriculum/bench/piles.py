@@ -121,15 +121,9 @@ def measure(quick=False):
     for count in QUICK_SIZES if quick else (*SIZES, MANY):
         chosen = winners(rows) if count == MANY else range(len(SETTINGS))
         rows += measured(count, chosen, states, quick)
-    return dict(dt=DT, rows=rows, best=best(rows), missing=missing(),
+    return dict(dt=DT, rows=rows, best=best(rows),
                 compile={} if quick else compiling(),
                 fixed={str(count): len(shaft(count).mass) - count for count in (*SIZES, MANY)})
-
-
-def missing():
-    """{label: why} of whoever is not there."""
-    found = {LABELS[name]: engines.missing(name) for name in LABELS if name != "lcp"}
-    return {label: why for label, why in found.items() if why}
 
 
 def measured(count, chosen, states, quick):

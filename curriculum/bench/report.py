@@ -104,8 +104,8 @@ def pile_goals(section):
 
 def skip_goals(section):
     bits = section["same_bits"]
-    yield ("the same bits with and without skips", f"{len(bits['differing'])} of {bits['runs']} "
-           f"runs and {bits['command_lines']} command lines differ", not bits["differing"])
+    yield ("the same bits with and without skips",
+           f"{len(bits['differing'])} of {bits['runs']} runs differ", not bits["differing"])
     for name, limit in skips.LIMITS.items():
         if found := section["processes"].get(name):
             yield (f"whole process, {name}: at most {limit} times `import {found['base']}`",
@@ -179,8 +179,7 @@ def accuracy_part(section):
            "are right to about 1e-6 r, the closed forms to 1e-12 r; of the pile `exact` is the "
            "reference. A better setting? Add a line to SETTINGS in [engines.py](../engines.py) and "
            "send it.")
-    for reason, names in section["left_out"].items():
-        yield f"Left out of {', '.join(names)}: {reason}."
+    yield from (f"Not everywhere: {label}, {why}." for label, why in section["left_out"].items())
     for name, about in section["problems"].items():
         yield f"## {about['title']}\n\nHard on: {about['stresses']}."
         yield f"![Run time against error: {name}](error-{name}.svg)"
@@ -219,7 +218,6 @@ def pile_part(section):
            "processes (least to greatest). The twin's first step comes after "
            f"{number(section['compile'].get('fresh'))} s where it must be compiled, and after "
            f"{number(section['compile'].get('again'))} s later on; neither is in the table.")
-    yield from (f"Left out: {label}, {why}." for label, why in section["missing"].items())
     yield "![Time a step against depth](pile.svg)"
     for count in dict.fromkeys(row["bodies"] for row in section["rows"]):
         rows = [[f"{piles.LABELS[row['engine']]}: {row['words']}",

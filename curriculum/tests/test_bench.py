@@ -169,7 +169,6 @@ def test_only_what_rests_awake_within_the_depth_is_compared():
 
 def test_skips_change_no_bit_of_the_cases_that_are_compared():
     assert all(map(skips.is_same, list(skips.cases(True))[::5]))
-    assert skips.prints_the_same(["--scene", "drop", "--smoke"])
 
 
 def test_the_page_shows_every_point_and_marks_what_is_missed(tmp_path):
