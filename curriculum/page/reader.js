@@ -20,10 +20,10 @@ export class Reader {
       link.addEventListener("click", (event) => {
         event.preventDefault();
         this.#set(new URLSearchParams(new URL(link.href).search), "act");
-        this.dock();
+        this.dock(link);
       });
     document.addEventListener("click", (event) => this.#copy(event.target.closest("button[data-copy]")));
-    for (const button of document.querySelectorAll("[data-dock]")) button.addEventListener("click", () => this.dock());
+    for (const button of document.querySelectorAll("[data-dock]")) button.addEventListener("click", () => this.dock(button));
     document.getElementById("undock").addEventListener("click", () => this.undock());
     window.addEventListener("scroll", () => this.#scrolled(), { passive: true });
     this.beside.addEventListener("change", () => this.undock());
@@ -39,6 +39,7 @@ export class Reader {
     else this.store.follow(changes);
     const own = Object.fromEntries(VIEW.filter((name) => given.has(name)).map((name) => [name, given.get(name)]));
     this.lanes.figure.look(this.lanes.view, own, how === "text");
+    this.lanes.figure.replay(this.lanes.view);
     this.#spoken([...given.keys()]);
     this.lanes.redraw();
   }
@@ -68,10 +69,13 @@ export class Reader {
 
   // ---- the dock: half the window, and it closes as one reads on
 
-  dock() {
+  // Open it, and keep in sight what was touched.
+  dock(touched) {
     if (this.beside.matches) return;
-    this.docked = window.scrollY;
     this.live.classList.add("docked");
+    const hidden = touched.getBoundingClientRect().bottom - 0.45 * window.innerHeight;
+    if (hidden > 0) window.scrollBy(0, hidden);
+    this.docked = window.scrollY;
   }
 
   undock() {
@@ -112,7 +116,7 @@ export class Reader {
       span.setPointerCapture(event.pointerId);
       [startX, from] = [event.clientX, position()];
       this.store.drag(true);
-      this.dock();
+      this.dock(span);
     });
     span.addEventListener("pointermove", (event) => {
       if (span.hasPointerCapture(event.pointerId)) turn(from, Math.round((event.clientX - startX) / 2), "drag");
@@ -122,7 +126,7 @@ export class Reader {
       if (!KEYS[event.key]) return;
       event.preventDefault();
       turn(position(), KEYS[event.key], "act");
-      this.dock();
+      this.dock(span);
     });
   }
 

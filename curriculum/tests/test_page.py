@@ -397,8 +397,7 @@ def test_nothing_is_wider_than_the_screen(visit, width):
 def test_on_a_phone_a_link_opens_half_a_screen_that_closes_as_one_reads_on(visit):
     with visit(width=390, height=800, has_touch=True) as page:
         link = page.locator("a.try").first
-        link.scroll_into_view_if_needed()
-        page.evaluate("window.scrollBy(0, 300)")
+        link.evaluate("(node) => node.scrollIntoView({ block: 'end' })")
         link.tap()
         dock = page.locator("#figure.docked").bounding_box()
         assert dock["height"] <= 401 and dock["y"] >= 399

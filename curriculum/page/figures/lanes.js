@@ -218,10 +218,12 @@ export const figure = {
     if (from || to || anew) {
       own.from = Math.min(Number(from || 0.3), LONGEST - 0.1);
       own.to = Math.min(LONGEST, Math.max(own.from + 8 * view.get("dt"), Number(to || own.from + 0.9)));
-      own.time = own.from;
-      if (view.still) own.time = own.to;
-      else view.run();
     }
+  },
+  // Once through the window, from its start.
+  replay(view) {
+    view.own.time = view.still ? view.own.to : view.own.from;
+    if (!view.still) view.run();
   },
   draw(view) {
     const shown = shownOf(view);
