@@ -167,8 +167,9 @@ class Motion:
         self.separate()
         v_n = self.all.along(self.v)
         opened = (self.parting + np.abs(v_n)) * self.since      # about how wide it has been
-        closed = self.gap <= np.minimum(self.small, 1e-4 * opened)
-        return np.flatnonzero(closed | self.rests & (v_n <= NOISE * self.speed))
+        still = self.rests & (v_n <= NOISE * self.speed)
+        least = np.where(still, self.small, np.minimum(self.small, 1e-4 * opened))
+        return np.flatnonzero(self.gap <= least)
 
     def separate(self):
         """Move apart what overlaps, as at a start, by pushes that heavy balls feel less."""
@@ -198,21 +199,30 @@ class Motion:
         """Forces for what rests: which contacts push, these Contacts, and all accelerations.
 
         A resting gap may open and may not close: its second derivative n . a + slip^2 / reach is
-        >= 0, with 0 where it pushes. The second term is there because the normal turns.
+        >= 0, with 0 where it pushes. The second term is there because the normal turns. A contact
+        that parts rests all the same if its force brings it back before it rises LAST radii.
         """
         contacts = self.all.pick(touching)
         v_n = contacts.along(self.v)
         self.gap[touching], self.since[touching], self.parting[touching] = 0.0, 0.0, np.abs(v_n)
-        still = np.abs(v_n) <= NOISE * self.speed[touching]
-        self.rests[:] = False
-        self.rests[touching[still]] = True
-        touching, contacts = touching[still], contacts.pick(still)
-        if (np.abs(self.found[touching]) > self.bits).any():        # close what counts as closed
-            self.q = contacts.match(self.q, contacts.along(self.q) - self.found[touching])
         a = np.zeros_like(self.q)
         a[1] = np.where(self.w > 0.0, -self.g, 0.0)
-        turn = contacts.across(self.v) ** 2 / contacts.reach
-        lam = solve_lcp(contacts.delassus(), contacts.along(a) + turn)
+        needs = np.where(np.abs(v_n) > NOISE * self.speed[touching],
+                         v_n ** 2 / (2.0 * LAST * contacts.radius), 0.0)
+        still = needs <= self.g
+        while True:
+            resting = contacts.pick(still)
+            turn = resting.across(self.v) ** 2 / resting.reach
+            lam = solve_lcp(resting.delassus(), resting.along(a) + turn)
+            stays = needs[still] <= lam * resting.share
+            if stays.all():
+                break
+            still[still] = stays
+        touching, contacts = touching[still], resting
+        self.rests[:] = False
+        self.rests[touching] = True
+        if (np.abs(self.found[touching]) > self.bits).any():        # close what counts as closed
+            self.q = contacts.match(self.q, contacts.along(self.q) - self.found[touching])
         pushes = lam * contacts.share > NOISE * self.g
         held = contacts.pick(pushes)
         if pushes.any():
