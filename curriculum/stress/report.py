@@ -113,8 +113,9 @@ def scene_part(section, most):
     added = section["unfinished"]
     if "worst" in added:
         lines += [
-            f"  - above the energy of the start in {added['above_start']:,}; at worst in scene "
-            "{scene}, from {start:.4g} J to {most:.4g} J, ".format(**added["worst"])
-            + f"and ended by at most {added['sweeps_most']:,.0f} sweeps"
+            "",
+            f"Unfinished sweeps took {added['above_start']:,} scenes above their start's energy, "
+            "at worst scene {scene}, from {start:.4g} J to {most:.4g} J; ".format(**added["worst"])
+            + f"{added['sweeps_most']:,.0f} sweeps a step ended every rise.",
         ]
     return "\n".join(lines)
