@@ -92,8 +92,7 @@ def list_pairs(balls, reach):
             if low[other] > high[k]:
                 break
             i, j = order[k], order[other]
-            dx = balls[i].x - balls[j].x
-            dy = balls[i].y - balls[j].y
+            dx, dy = balls[i].x - balls[j].x, balls[i].y - balls[j].y
             limit = (balls[i].radius + balls[j].radius + reach) * (1.0 + 1e-9)
             if dx * dx + dy * dy <= limit * limit:
                 if size == pairs.shape[1]:
@@ -152,8 +151,7 @@ def detect_contacts(balls, pairs, margin, contacts):
     for k in range(pairs.shape[1]):
         i, j = pairs[0, k], pairs[1, k]
         a, b = balls[i], balls[j]
-        dx = a.x - b.x
-        dy = a.y - b.y
+        dx, dy = a.x - b.x, a.y - b.y
         distance = math.sqrt(dx * dx + dy * dy)
         depth = a.radius + b.radius - distance
         if depth > -margin:
@@ -363,12 +361,12 @@ def same(state, other, contacts, others):
 
 @compiled
 def take_steps(rows, settled, balls, pairs, last, cycles, knobs):
-    """Take len(rows) - 1 steps, and write the states to rows[1:] and what settled to settled[1:].
+    """Take len(rows) - 1 steps, and write the states to rows[1:].
 
-    `last` are the contacts of the step before. Returns pairs and contacts at the end, the steps
-    taken, and 0. With `cycles` a state that has come before ends the steps, and in place of 0
-    stands how many steps ago: all repeats from there. A state is compared with one other, that of
-    the largest power of two (Brent 1980).
+    settled[k] becomes False where the sweeps of step k did not settle. `last` are the contacts of
+    the step before. Returns pairs and contacts at the end, the steps taken, and 0. With `cycles` a
+    state that has come before ends the steps, and in place of 0 stands how many steps ago it was.
+    A state is compared with one other, that of the largest power of two (Brent 1980).
     """
     contacts = spare = np.empty(0, CONTACT)
     mark, marked = 1, last[:0]
@@ -378,7 +376,6 @@ def take_steps(rows, settled, balls, pairs, last, cycles, knobs):
         if len(contacts) < len(balls) + pairs.shape[1]:
             contacts = np.empty(len(balls) + 2 * pairs.shape[1], CONTACT)
         found = detect_contacts(balls, pairs, knobs.margin, contacts)
-        settled[k] = True
         if knobs.model == PENALTY:
             penalty_step(balls, found, knobs)
         elif knobs.model == LCP:
@@ -480,8 +477,7 @@ def find_gaps(q, balls, skin):
 @compiled
 def gap_between(a, b):
     """The gap [m] between two balls."""
-    dx = b.x - a.x
-    dy = b.y - a.y
+    dx, dy = b.x - a.x, b.y - a.y
     return math.sqrt(dx * dx + dy * dy) - (b.radius + a.radius)
 
 
