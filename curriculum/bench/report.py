@@ -218,7 +218,7 @@ def pile_part(section):
            "processes (least to greatest). The twin's first step comes after "
            f"{number(section['compile'].get('fresh'))} s where it must be compiled, and after "
            f"{number(section['compile'].get('again'))} s later on; neither is in the table.")
-    yield "![Time a step against depth](pile.svg)"
+    yield "![Time a step against depth](settled.svg)"
     for count in dict.fromkeys(row["bodies"] for row in section["rows"]):
         rows = [[f"{piles.LABELS[row['engine']]}: {row['words']}",
                  "yes" if row["at_rest"] else "**no**", number(row["speed"]),
@@ -249,7 +249,7 @@ def figures(sections):
         made |= {f"error-{name}.svg": error_figure(sections["accuracy"], name)
                  for name in sections["accuracy"]["problems"]}
     if "pile" in sections:
-        made["pile.svg"] = pile_figure(sections["pile"])
+        made["settled.svg"] = pile_figure(sections["pile"])
     return made
 
 
