@@ -16,7 +16,7 @@ FLAGS = (
     "--disable-component-update",
     "--disable-sync",
 )
-PICTURE = "page-live.png"  # of the README; it tells no bet
+PICTURE = "page-live.png"  # of the README
 # what a knob costs: set a quantity by its slider, and wait until the next frame is painted
 KNOB = """([name, figure]) => new Promise((done) => {
   const box = document.getElementById(`fig-${figure}`);
@@ -55,7 +55,7 @@ def opened(page, query="", **options):
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
-        tab = browser.new_page(viewport={"width": 1280, "height": 800}, **options)
+        tab = browser.new_page(viewport={"width": 1280, "height": 900}, **options)
         tab.add_init_script(
             """for (const id of ["ex1", "ex3", "ex4"])
             localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
@@ -67,7 +67,7 @@ def opened(page, query="", **options):
 
 
 def photograph(page, folder):
-    """Save PICTURE in a folder, the four models just after the landing; its path."""
+    """Save PICTURE in a folder, the four balls just after the landing; its path."""
     with opened(page, query="?scene=drop", reduced_motion="reduce", device_scale_factor=2) as tab:
         tab.evaluate("document.getElementById('figure').classList.remove('back')")
         tab.locator("#figure").scroll_into_view_if_needed()
@@ -76,8 +76,8 @@ def photograph(page, folder):
             tab.keyboard.press("Shift+ArrowRight")
         tab.wait_for_timeout(300)
         box = tab.locator("#fig-lanes .drawing").bounding_box()
-        empty = 0.36 * box["height"]  # air above the balls
-        box |= {"y": box["y"] + empty, "height": box["height"] - empty}
+        # without the air above the balls, and the chart, which tells the answer of a bet
+        box |= {"y": box["y"] + 0.35 * box["height"], "height": 0.33 * box["height"]}
         tab.screenshot(path=folder / PICTURE, clip=box)
     return folder / PICTURE
 
