@@ -6,7 +6,8 @@
 
 A table pushes a ball up while they touch, and it never pulls it down. Four models of that push:
     penalty   a stiff spring and a damper: one more force under an unchanged integrator
-    lcp       impulses that solve a complementarity problem, by projected Gauss-Seidel sweeps
+    lcp       impulses, found by sweeps: each contact pushes, or its bodies part (a linear
+              complementarity problem, solved by projected Gauss-Seidel)
     exact     from one impact to the next, each at its own time: no time step
     soft      MuJoCo's contact: lcp's sweeps, but each contact aims like a spring and gives way
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
@@ -54,6 +55,7 @@ except ModuleNotFoundError:
 GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
 CONTACT_MARGIN = 1e-3   # m: lcp treats a smaller gap as contact, so a resting ball stays listed
+MOST_SWEEPS = 10_000    # exact and soft give up here, if their impulses have not settled
 EXPLODED = 10.0         # a run that gains more than this many times its start energy has exploded
 SCENES = ("drop", "bounce", "stack", "pile")
 MODELS = ("penalty", "lcp", "soft", "exact")
@@ -139,6 +141,12 @@ class Ball:
 FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)
 
 
+def make_balls(scene):
+    """The scene's balls, as the steps move them. Raises ValueError if its arrays do not fit."""
+    columns = np.stack((*scene.q0, *scene.v0, scene.mass, scene.radius), axis=1)
+    return [Ball(*values) for values in columns.tolist()]
+
+
 class Contact:
     """Balls a and b, how deep they overlap [m], and the unit normal (nx, ny) from b to a."""
 
@@ -150,7 +158,7 @@ class Contact:
         self.bx, self.by = b.inv_mass * nx, b.inv_mass * ny     # and takes from b's
         self.inv_mass = a.inv_mass + b.inv_mass
         self.m_eff = 1.0 / self.inv_mass if self.inv_mass > 0.0 else 0.0    # effective mass [kg]
-        self.target = 0.0       # the v_n [m/s] to leave with at least; of soft, v_n + R lam
+        self.target = 0.0       # the v_n [m/s] to leave with at least
         self.softness = 0.0     # R [1/kg] of soft; 0 is hard
         self.lam = 0.0          # the impulse [N s] so far; a new step starts again from 0
 
@@ -243,10 +251,9 @@ def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -
     """The largest stable step [s] of penalty for a ball kept in contact; inf without a spring.
 
     In contact a step is a 2 x 2 matrix. Its eigenvalues stay within 1 (Jury's test) while
-    k dt^2 + 2 c dt < 4 m. Without a damper that is the textbook's dt < 2 sqrt(m / k). A stack of
-    `count` balls has one swing that is stiffer than all others; it sees 4 cos^2(pi / (2 count + 1))
-    times the spring and the damper. The root is that of the quadratic, in the form that loses no
-    digits.
+    k dt^2 + 2 c dt < 4 m; solved for dt. Without a damper that is the textbook's 2 sqrt(m / k). A
+    stack of `count` balls has one swing that is stiffer than all others; it sees
+    4 cos^2(pi / (2 count + 1)) times the spring and the damper.
     """
     if count > 1:
         more = 4.0 * math.cos(math.pi / (2 * count + 1)) ** 2
@@ -264,8 +271,8 @@ def contact_target(c, restitution, baumgarte, dt):
     step, and a gap may close by that share. With e > 0 bodies that touch, or would meet within
     this step, get the bounce -e v_n. Across a wider gap they may come as close as touching, so
     that nothing bounces on air. In an overlap the larger of bias and bounce counts, since their
-    sum would bounce too high. Where the bias does not win, no target is above -e v_n, also
-    between bodies that part, so impulses add no energy (Moreau 1988).
+    sum would bounce too high. Otherwise no target is above -e v_n, also between bodies that part:
+    then impulses add no energy (Moreau 1988).
     """
     bias = baumgarte / dt * c.depth     # < 0 across a gap
     if restitution == 0.0:
@@ -274,7 +281,7 @@ def contact_target(c, restitution, baumgarte, dt):
     bounce = -restitution * v_n
     if bias > 0.0:
         return max(bias, bounce)
-    meets = dt * v_n <= c.depth         # what the step closes, -dt v_n, is at least the gap
+    meets = dt * v_n <= c.depth         # what the step closes, -dt v_n, is at least the gap, -depth
     return bounce if meets else min(bounce, c.depth / dt)
 # --- endregion ---
 
@@ -365,10 +372,10 @@ def exact_run(scene, times, report=None):
     q, v = np.tile(scene.q0, (len(times), 1, 1)), np.tile(scene.v0, (len(times), 1, 1))
     now, done = 0.0, 0
     for _ in range(MOST_IMPACTS):
-        touching = [c for c, gap in zip(pairs, gaps) if gap == 0.0]
+        touching = [c for c, gap in zip(pairs, gaps) if gap == 0.0]     # as next_impact sets it
         bounce(touching, scene.restitution)
-        a, closing = accelerations(balls, touching, pairs)
-        span, gaps = next_impact(pairs, gaps, closing)
+        a, gap_a = accelerations(balls, touching, pairs)
+        span, gaps = next_impact(pairs, gaps, gap_a)
         last = int(np.searchsorted(times, now + span, "right"))
         t = times[done:last] - now
         for k, ball in enumerate(balls):
@@ -390,7 +397,7 @@ def bounce(touching, restitution):
     """All impacts of one moment: v_n becomes -e v_n where a contact pushes."""
     for c in touching:
         back = -restitution * c.v_n()
-        c.target = 0.0 if 0.0 <= back < SLOW else back
+        c.target = 0.0 if 0.0 <= back < SLOW else back      # back < 0: it parts already
     settle(touching)
 
 
@@ -408,10 +415,10 @@ def accelerations(balls, touching, pairs):
         c.target = 0.0
     settle(resting)
     a = [ball.vy for ball in balls]
-    closing = [None if c in resting and c.v_n() < STILL else c.v_n() for c in pairs]
+    gap_a = [None if c in resting and c.v_n() < STILL else c.v_n() for c in pairs]
     for ball, speed in zip(balls, speeds):
         ball.vy = speed
-    return a, closing
+    return a, gap_a
 
 
 def settle(contacts):
@@ -426,13 +433,13 @@ def settle(contacts):
 
 
 # --- region: exact-when ---
-def next_impact(pairs, gaps, closing):
+def next_impact(pairs, gaps, gap_a):
     """How long until the next gap closes [s]; and all gaps [m] at that moment, 0 in touch."""
     speeds = [c.v_n() for c in pairs]
-    roots = list(map(time_to_impact, gaps, speeds, closing))
+    roots = list(map(time_to_impact, gaps, speeds, gap_a))
     span = min(roots)
     after = []
-    for root, gap, v_n, a_n in zip(roots, gaps, speeds, closing):
+    for root, gap, v_n, a_n in zip(roots, gaps, speeds, gap_a):
         closed = a_n is None or root <= span * TOGETHER
         after.append(0.0 if closed else max(0.0, gap + span * (v_n + 0.5 * span * a_n)))
     return span, after
@@ -489,7 +496,8 @@ def soft_defaults(restitution, dt, solref=None, solimp=None):
     """The solref and solimp that a run uses, within MuJoCo's bounds. None stands for the default.
 
     Restitution needs the direct form of solref, minus stiffness and minus damping, and a hard
-    contact: the damping (1 + e) / dt turns v_n into -e v_n within one step.
+    contact: the damping (1 + e) / dt turns v_n into -e v_n within one step. There is no spring
+    then, so a ball at rest sinks on, slowly.
     """
     if solref is None and restitution > 0.0:
         solref, solimp = (0.0, -(1.0 + restitution) / dt), solimp or HARD
@@ -503,7 +511,6 @@ def soft_defaults(restitution, dt, solref=None, solimp=None):
 
 
 # --- region: soft ---
-MOST_SWEEPS = 10_000    # a step ends here, if its impulses have not settled
 LAST_BITS = 2.0**-45    # a correction below this share of the speeds is rounding
 
 
@@ -561,12 +568,6 @@ class Run(NamedTuple):
     unsettled: int = 0      # steps whose sweeps did not settle
 
 
-def make_balls(scene):
-    """The scene's balls, as the steps move them. Raises ValueError if its arrays do not fit."""
-    columns = np.stack((*scene.q0, *scene.v0, scene.mass, scene.radius), axis=1)
-    return [Ball(*values) for values in columns.tolist()]
-
-
 def state_of(balls):
     """A flat list: x, y, vx, vy of one ball after the other."""
     return [value for ball in balls for value in (ball.x, ball.y, ball.vx, ball.vy)]
@@ -590,9 +591,10 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, repor
         if skip:
             state = rows[k, :-1].tobytes(), *(tuple(ball.pushed.items()) for ball in balls)
             first = seen.setdefault(state, k)
-            if first < k:
+            period = k - first
+            if period > 0:
                 for past in range(first + 1, k + 1):    # what came then comes again and again
-                    rows[past + k - first::k - first] = rows[past]
+                    rows[past + period::period] = rows[past]
                 break
             flight = fly(balls, dt, steps - k)
             if len(flight) > 0:
@@ -808,7 +810,7 @@ def measure_stability(run, scene, dt, stiffness, first):
     0.0 stands for a model that explodes at every step, None for one that never comes to a
     contact. `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model. The
     largest step comes first, and no run is made that cannot be the answer. soft is left out: its
-    time constant is never below two steps, so it stays bounded at any step.
+    default time constant is never below two steps, so it stays bounded at any step.
     """
     known = float(scene.mass[0]), stiffness
     grid = {"dt_crit_penalty": critical_dt(*known, 0.0),
@@ -865,8 +867,8 @@ NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, 
     "--bodies": (int, 1, 1e5, None, "balls of stack (3) and pile (24)"),
     "--mass": (float, 1e-9, 1e9, 1.0, "of every ball [kg] (1)"),
     "--stiffness": (float, 0, 1e15, 1e4, "k of penalty [N/m] (1e4)"),
-    "--damping": (float, -1e9, 1e9, -1.0, "c of penalty [N s/m] (-1: the scene's, 80 or 0)"),
-    "--restitution": (float, -1, 1, -1.0, "e of the others (-1: the scene's, 0 or 0.7)"),
+    "--damping": (float, -1e9, 1e9, -1.0, "c of penalty [N s/m] (below 0: the scene's, 80 or 0)"),
+    "--restitution": (float, -1, 1, -1.0, "e of the others (below 0: the scene's, 0 or 0.7)"),
     "--baumgarte": (float, 0, 1, 0.2, "beta of lcp: share of an overlap that a step removes (0.2)"),
     "--warm": (float, 0, 1, 0.0, "lcp: share of the last impulses to begin with (0)"),
     "--iters": (int, 1, MOST_SWEEPS, 20, "sweeps a step of lcp, at most (20)")}
@@ -936,9 +938,9 @@ def check_memory(args, error):
 COLUMNS = {     # title: key of contact_quality, meaning
     "max pen/r": ("max_penetration_frac", "the deepest overlap; r is the radius of a ball"),
     "rest gap/r": ("rest_gap_frac", "the smallest gap at the end: below 0 it is an overlap"),
-    "rebound/r": ("rebound_frac", "the largest gap under all balls after the first contact"),
+    "rebound/r": ("rebound_frac", "the most that all surfaces are apart after the first contact"),
     "energy+": ("energy_excess", "the most energy above the start, as a share of the start's"),
-    "energy in": ("contact_energy", "all rises of the energy, step by step, added up"),
+    "energy in": ("contact_energy", "all rises of it, added up; what a spring gives back counts"),
     "flight err/r": ("flight_error_frac", "the worst height error before the first contact"),
     "contact err/r": ("contact_error_frac", "what contact adds to it; both against exact"),
     "jitter/r": ("rest_jitter", "standard deviation of the overlap in the last quarter")}
@@ -966,9 +968,9 @@ def ending(row):
 def print_table(rows, ending):
     """A line per row {name: {key: value}} with ending(row) behind it, then the columns' meaning."""
     wide = max(map(len, ["contact", *rows]))
-    above, _, below = zip(*(title.rpartition(" ") for title in COLUMNS))
-    print(" " * wide + "".join(f"{word:>10}" for word in above))
-    print(f"{'contact':<{wide}}" + "".join(f"{word:>10}" for word in below) + "  state")
+    titles = [title.rpartition(" ") for title in COLUMNS]   # in two lines: "max" over "pen/r"
+    print(" " * wide + "".join(f"{above:>10}" for above, _, _ in titles))
+    print(f"{'contact':<{wide}}" + "".join(f"{below:>10}" for _, _, below in titles) + "  state")
     for name, row in rows.items():
         cells = "".join(f"{figure(row[key]):>10}" for key, _ in COLUMNS.values())
         print(f"{name:<{wide}}{cells}  {ending(row)}")
@@ -995,7 +997,7 @@ def print_stability(grid, count):
         if grid[model] is None:
             text = "comes to no contact within these steps"
         elif grid[model] == 0.0:
-            text = "explodes at every dt tried"
+            text = "explodes at every dt tried that comes to a contact"
         else:
             text = (f"does not explode up to dt = {grid[model]:g} s, where it goes "
                     f"{figure(depth)} r deep" + (f", through {through}" if through else ""))
@@ -1054,7 +1056,7 @@ def write_extra(name, path, *given):
         print(f"{name}: {path}")
     except ImportError as error:
         alone = error.name == "curriculum"
-        print(f"no {name}:", "the course's folder is not beside contact.py" if alone else error)
+        print(f"no {name}:", "it needs the folder curriculum beside contact.py" if alone else error)
 # --- endregion ---
 
 
@@ -1078,7 +1080,7 @@ def run_all(args, scene):
     runs, without = {}, {}
     for model in MODELS if args.contact == "all" else [args.contact]:
         try:
-            if model == "exact" != args.contact and len(scene.mass) > 24:
+            if model == "exact" and args.contact == "all" and len(scene.mass) > 24:
                 raise RuntimeError("more than 24 balls; ask for it by --contact exact")
             runs[model] = run(model, args.dt)
         except RuntimeError as error:
@@ -1134,7 +1136,7 @@ def main(argv=None):
         args = parse_flags(argv)
         many = beside("seeds") if args.seeds else None
         if args.seeds and many is None:
-            return fail("--seeds needs the course's folder beside contact.py")
+            return fail("--seeds needs the folder curriculum beside contact.py")
         status = many.report(args) if many else report(args, argv)
         if sys.stdout:
             sys.stdout.flush()                          # an error at Python's end has no handler
