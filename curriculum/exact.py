@@ -36,7 +36,7 @@ TOUCH = 1e-12       # of a radius: a smaller gap is none. Rounding is 1e-15, the
 LAST = 1e-13        # of a radius: a bounce that would rise less is the last of its series
 NOISE = 1e-12       # of g, of sqrt(g r): a smaller push or speed is rounding, which leaves 1e-15
 RATIO = 100.0       # of masses: above it, where 0 < e < 1, light balls rattle under heavy ones
-EVENTS = 3000       # a ball: a run with more stops; a pile of 24 has 600 in 4 s at e = 0.3
+EVENTS = 3000       # a ball: a run with more stops; a pile of 24 has some hundreds in 4 s
 
 
 # --- region: slide-lcp ---
