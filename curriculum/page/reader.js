@@ -35,7 +35,10 @@ export class Reader {
   // Set the quantities of a query in the store, and the rest in the live figure.
   #set(given, how) {
     const changes = this.store.asked(given);
-    if (how === "act") this.store.set(changes);
+    if (how === "act") {        // a link shows what its sentence says: all else stands as in the chapter
+      this.store.set(this.store.chapter(changes.scene || this.store.get("scene")), "text");
+      this.store.set(changes);
+    }
     else this.store.follow(changes);
     const own = Object.fromEntries(VIEW.filter((name) => given.has(name)).map((name) => [name, given.get(name)]));
     this.lanes.figure.look(this.lanes.view, own, how === "text");
@@ -71,6 +74,7 @@ export class Reader {
 
   // Open it, and keep in sight what was touched.
   dock(touched) {
+    this.live.classList.remove("back");
     if (this.beside.matches) return;
     this.live.classList.add("docked");
     const hidden = touched.getBoundingClientRect().bottom - 0.45 * window.innerHeight;

@@ -55,7 +55,7 @@ function draw(view) {
     y: axis([0, 3], "force / m g", 0, 1, 2, 3),
     lines: [{ model: "penalty", xs: [0, end], ys: [0, weights(end)] }],
     rules: [{ y: 1, text: "weight", class: "dashed" }],
-    points: [{ model: "penalty", x: Math.max(0, depth), y: Math.min(3, weights(depth)), size: 7 }],
+    points: [{ model: "penalty", x: within(0, depth, end), y: Math.min(weights(end), weights(depth)), size: 7 }],
   };
   const { svg, x, y, middle } = beside(view, "sponge", chart, (left) => picture(view, depth, left));
   const text = `${number(Math.abs(depth))} r ${depth < 0 ? "above" : "deep"}, push ${number(weights(depth))} m g`;

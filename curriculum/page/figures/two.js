@@ -52,7 +52,7 @@ export const figure = {
   caption: `The same ball, the same gravity, the same drop, ${SLOW} times slower than it happens. They differ in one thing: the force that the table applies.`,
   height: 330,
   narrow: 280,
-  start: () => ({ time: 0.36 }),
+  start: () => ({ time: 0.39 }),
   buttons: [
     {
       label: (view) => (view.running() ? "Stop" : "Drop both"),
