@@ -251,7 +251,10 @@ def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
 
 @pytest.mark.parametrize("flags", ["--no-skip --steps 3000000", "--no-skip --seeds 0:2000"])
 def test_ctrl_c_ends_a_run_and_its_workers_with_one_word_and_leaves_no_file(flags, tmp_path):
-    code = "import sys, contact; print('ready', flush=True); sys.exit(contact.main(sys.argv[1:]))"
+    code = (        # a shell in the background has its children ignore Ctrl-C
+        "import signal, sys, contact; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "print('ready', flush=True); sys.exit(contact.main(sys.argv[1:]))"
+    )
     words = [sys.executable, "-c", code, *flags.split(), "--out", tmp_path / "out"]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as run:

@@ -8,7 +8,6 @@ Its hash is the sha256 of the text that a reader sees: the lines between the two
 indentation that all of them share, each ended by one "\\n", as UTF-8.
 """
 
-import ast
 import hashlib
 import re
 from functools import lru_cache
@@ -50,16 +49,15 @@ class Region(NamedTuple):
         return defined(self.code)
 
 
+# What a piece of code defines: functions, classes, and constants by their capitals.
+DEFINITION = re.compile(r"^\s*(?:(?:def|class)\s+(\w+)|([A-Z][A-Z0-9_]*)\s*=(?!=))", re.MULTILINE)
+DOCSTRING = re.compile(r'(?:#[^\n]*\n|\s)*(?:""".*?""")?', re.DOTALL)
+
+
 @lru_cache(maxsize=256)
 def defined(code: str) -> frozenset:
     """The names of functions, methods, classes and constants that a piece of code defines."""
-    try:
-        nodes = list(ast.walk(ast.parse(code)))
-    except SyntaxError:
-        return frozenset()
-    names = {node.name for node in nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
-    stored = [n for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)]
-    names |= {node.id for node in stored if node.id.isupper()}
+    names = {name or constant for name, constant in DEFINITION.findall(code)}
     return frozenset(name for name in names if not name.startswith("__"))
 
 
@@ -88,9 +86,11 @@ def split(text: str, file: str) -> tuple:
     if name is not None:
         say(first - 1, f"region {name} is never closed")
     inside = {line for each in found.values() for line in each.lines}
-    for node in ast.parse(text).body[1:] if file in WHOLE else ():
-        if node.lineno not in inside:
-            say(node.lineno, f"code outside any region: {lines[node.lineno - 1][:60]!r}")
+    start = DOCSTRING.match(text).end() if file in WHOLE else len(text)
+    for number in range(text.count("\n", 0, start) + 2, len(lines) + 1):
+        line = lines[number - 1]
+        if number not in inside and line[:1].strip("# "):       # a statement begins at column 0
+            say(number, f"code outside any region: {line[:60]!r}")
     return found, problems
 
 
