@@ -218,6 +218,9 @@ def pile_part(section):
            "processes (least to greatest). The twin's first step comes after "
            f"{number(section['compile'].get('fresh'))} s where it must be compiled, and after "
            f"{number(section['compile'].get('again'))} s later on; neither is in the table.")
+    yield ("Ten thousand balls begin as ten settled copies of each engine's own thousand, since a "
+           "lattice of so many does not come to rest in reach; only the winners at a thousand run "
+           "there. An engine that does not come to rest there has a row, and counts in no goal.")
     yield "![Time a step against depth](settled.svg)"
     for count in dict.fromkeys(row["bodies"] for row in section["rows"]):
         rows = [[f"{piles.LABELS[row['engine']]}: {row['words']}",
