@@ -25,7 +25,7 @@ CHAPTER = ROOT / "curriculum/prose/chapter.md"
 CELLS = ROOT / "curriculum/notebook_cells.py"
 CARRIED = ("contact.py", "checks.py", "curriculum/__init__.py", "curriculum/exact.py",
            "curriculum/text/__init__.py", "curriculum/text/facts.py",
-           "curriculum/curves.py", "exercises/*.py", "exercises/*.json")  # fmt: skip
+           "curriculum/curves.py", "curriculum/hints.py", "exercises/*.py", "exercises/*.json")  # fmt: skip
 MARK = re.compile(
     rf"^```\w*\n{INCLUDE.pattern}\n```$|^<!-- (?P<kind>figure|exercise): (?P<slot>[\w-]+) -->$"
     r"|^(?=#{1,3} )",

@@ -11,8 +11,6 @@ Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
     python checks.py -k ex1
 """
 
-import sys
-
 import predict
 from predict import contact
 
@@ -32,20 +30,13 @@ WHY = ""                # your sentence, see WHY_PROMPT
 
 def measure():
     """The drop at the length of --smoke, by both models: {name: a number}, lengths in r."""
-    found = predict.quality(contact.build_scene("drop"), dt=0.002, steps=800)
-    numbers = {}
-    for model, measured in found.items():
-        numbers[f"{model}_deepest"] = measured["max_penetration_frac"]
-        numbers[f"{model}_at_rest"] = measured["rest_penetration_frac"]
+    numbers = predict.measured(contact.build_scene("drop"), dt=0.002, steps=800,
+                               deepest="max_penetration_frac", at_rest="rest_penetration_frac")
     return numbers | {"factor": numbers["penalty_deepest"] / numbers["lcp_deepest"]}
 
 
-def table(numbers):
-    """The measurement as text."""
-    rows = {model: (numbers[f"{model}_deepest"], numbers[f"{model}_at_rest"])
-            for model in ("penalty", "lcp")}
-    return predict.columns("depth", ("deepest", "at rest"), rows, "{:.5f} r")
+TABLE = ("depth", ("penalty", "lcp"), {"deepest": "deepest", "at_rest": "at rest"}, "{:.5f} r")
 
 
 if __name__ == "__main__":
-    sys.exit(predict.run("ex1", predict.bet, sys.modules[__name__]))
+    predict.main()

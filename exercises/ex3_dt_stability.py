@@ -10,8 +10,6 @@ Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
     python checks.py -k ex3
 """
 
-import sys
-
 import predict
 from predict import contact
 
@@ -29,20 +27,16 @@ WHY = ""                # your sentence, see WHY_PROMPT
 
 def measure():
     """The drop at both steps, by both models, and the critical step: {name: a number}."""
-    scene, numbers = contact.build_scene("drop"), {}
-    for when, dt in (("usual", 0.002), ("long", 0.03)):
-        for model, measured in predict.quality(scene, dt, steps=2000).items():
-            numbers[f"{model}_{when}"] = measured["energy_excess"]
-            numbers[f"{model}_{when}_depth"] = measured["max_penetration_frac"]
-    return numbers | {"limit": contact.critical_dt(float(scene.mass[0]), 1e4, scene.damping)}
+    scene = contact.build_scene("drop")
+    usual = predict.measured(scene, dt=0.002, steps=2000, usual="energy_excess")
+    longer = predict.measured(scene, dt=0.03, steps=2000, long="energy_excess",
+                              long_depth="max_penetration_frac")
+    return usual | longer | {"limit": contact.critical_dt(1.0, 1e4, scene.damping)}
 
 
-def table(numbers):
-    """The measurement as text."""
-    rows = {model: (numbers[f"{model}_usual"], numbers[f"{model}_long"])
-            for model in ("penalty", "lcp")}
-    return predict.columns("energy gained", ("dt = 0.002 s", "dt = 0.03 s"), rows, "{:.4g}")
+TABLE = ("energy gained", ("penalty", "lcp"), {"usual": "dt = 0.002 s", "long": "dt = 0.03 s"},
+         "{:.4g}")
 
 
 if __name__ == "__main__":
-    sys.exit(predict.run("ex3", predict.bet, sys.modules[__name__]))
+    predict.main()

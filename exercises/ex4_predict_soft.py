@@ -10,8 +10,6 @@ Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
     python checks.py -k ex4
 """
 
-import sys
-
 import predict
 from predict import contact
 
@@ -30,21 +28,14 @@ WHY = ""                # your sentence, see WHY_PROMPT
 
 def measure():
     """The depth at rest of both balls, in both models: {name: a number}, in r."""
-    light, numbers = contact.build_scene("drop"), {}
+    light, models, depth = contact.build_scene("drop"), ("soft", "penalty"), "rest_penetration_frac"
     heavy = light._replace(mass=10.0 * light.mass)
-    for name, scene in (("light", light), ("heavy", heavy)):
-        found = predict.quality(scene, 0.002, 2000, models=("penalty", "soft"))
-        for model, measured in found.items():
-            numbers[f"{model}_{name}"] = measured["rest_penetration_frac"]
-    return numbers
+    return (predict.measured(light, 0.002, 2000, models, light=depth)
+            | predict.measured(heavy, 0.002, 2000, models, heavy=depth))
 
 
-def table(numbers):
-    """The measurement as text."""
-    rows = {model: (numbers[f"{model}_light"], numbers[f"{model}_heavy"])
-            for model in ("soft", "penalty")}
-    return predict.columns("depth at rest", ("1 kg", "10 kg"), rows, "{:.5f} r")
+TABLE = ("depth at rest", ("soft", "penalty"), {"light": "1 kg", "heavy": "10 kg"}, "{:.5f} r")
 
 
 if __name__ == "__main__":
-    sys.exit(predict.run("ex4", predict.bet, sys.modules[__name__]))
+    predict.main()

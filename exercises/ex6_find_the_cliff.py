@@ -14,11 +14,8 @@ Gravity only moves the place of balance, so leave it out. The step is semi-impli
 velocity first, from force k depth - c v_n, and then the depth with the new velocity.
 """
 
-import sys
-
 import numpy as np  # noqa: F401  np.linalg.eigvals(matrix) is what you need
 import predict
-import trials
 
 
 def step_matrix(mass, stiffness, damping, dt):
@@ -38,4 +35,4 @@ def longest_step(mass, stiffness, damping):
 
 
 if __name__ == "__main__":
-    sys.exit(predict.run("ex6", trials.fill, sys.modules[__name__]))
+    predict.main()

@@ -14,10 +14,7 @@ where it pushes. Which softness and which target make that the equation above?
     python checks.py -k ex7
 """
 
-import sys
-
 import predict
-import trials
 
 
 def implicit_spring(depth, stiffness, damping, dt):
@@ -28,4 +25,4 @@ def implicit_spring(depth, stiffness, damping, dt):
 
 
 if __name__ == "__main__":
-    sys.exit(predict.run("ex7", trials.fill, sys.modules[__name__]))
+    predict.main()

@@ -13,10 +13,7 @@ and how light is the lightest thing that hangs on it?
     python checks.py -k ex8
 """
 
-import sys
-
 import predict
-import trials
 
 MODEL = None            # "penalty" or "soft"
 DT = 0.002              # s
@@ -29,4 +26,4 @@ SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)   # of soft: the impedance, see contact.im
 
 
 if __name__ == "__main__":
-    sys.exit(predict.run("ex8", trials.fill, sys.modules[__name__]))
+    predict.main()

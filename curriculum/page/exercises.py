@@ -23,11 +23,8 @@ def module(name):
 
 def blank_cases():
     """The inputs on which checks.py tries the blanks of exercise 2."""
-    trials = module("trials")
-    return {
-        blank: [{key: float(value) for key, value in case.items()} for case in trials.inputs(blank)]
-        for blank in BLANKS
-    }
+    blanks = module("blanks").BLANKS
+    return {blank: blanks[blank].inputs for blank in BLANKS}
 
 
 def text_of(name, exercise):
@@ -77,7 +74,7 @@ def facts_of(name, path, facts):
             "why": exercise.WHY_PROMPT,
             "answer": facts["answer"],
             "reasons": {k: inline(text.format(**numbers)) for k, text in facts["reasons"].items()},
-            "table": exercise.table(numbers),
+            "table": module("predict").table(exercise, numbers),
         }
     return shown
 
