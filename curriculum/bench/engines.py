@@ -101,20 +101,21 @@ def direct(beta, d, scene, dt):
 class Mujoco(Session):
     """Spring and damper made implicit and convex. `contact(scene, dt)` gives solref and solimp."""
 
-    def __init__(self, scene, dt, contact, solver=None, iterations=100, flags=""):
+    def __init__(self, scene, dt, contact, flags="", **options):
         import mujoco
         from mujoco import rollout
 
         self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
         mujoco.set_mju_user_warning(lambda text: None)      # its default writes a log file
         solref, solimp = contact(scene, dt)
-        balls, many = balls_of(scene), len(scene.mass) >= MANY and solver != "Newton"
+        balls, many = balls_of(scene), len(scene.mass) >= MANY and "solver" not in options
+        options = {"solver": "CG", "jacobian": "sparse"} | options if many else options
+        chosen = " ".join(f'{name}="{value}"' for name, value in options.items())
         self.moving = [k for k, ball in enumerate(balls) if not ball[-1]]
         self.model = mujoco.MjModel.from_xml_string(
             f'<mujoco><size memory="{"4G" if many else "-1"}"/>'
-            f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" '
-            f'solver="{solver or ("CG" if many else "Newton")}" iterations="{iterations}" '
-            f'jacobian="{"sparse" if many else "auto"}"><flag autoreset="disable"{flags}/></option>'
+            f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" {chosen}>'
+            f'<flag autoreset="disable"{flags}/></option>'
             f'<default><geom condim="1" solref="{solref}" solimp="{solimp}"/></default>'
             f'<worldbody><geom type="plane" size="0 0 1"/>{"".join(map(self.body, balls))}'
             "</worldbody></mujoco>")

@@ -36,64 +36,56 @@ def parse(argv):
 
 
 def scene(text):
-    """(number, small) of a scene."""
+    """The job of one scene."""
     kind, _, digits = text.rpartition(":")
     if kind not in ("", "small") or not digits.isdigit():
         raise argparse.ArgumentTypeError(f"given {text!r}; allowed: a number, or small:NUMBER")
-    return int(digits), kind == "small"
+    return jobs.scene_jobs([int(digits)], kind == "small")
 
 
-def show_scene(chosen):
-    """Print what every property says of one scene. Returns the exit status."""
-    start, small = chosen
-    found = jobs.judge_span((start, start + 1, small))
-    for name, (judged, count, share) in found["properties"].items():
-        print(f"{name}: {f'{count} comparisons, at {share:.1g} of the bound' if judged else '-'}")
-    for what in found["notes"]:
+def some_scenes(todo):
+    """Print what every property says of some scenes, to the first violation. Returns violations."""
+    found = []
+    for job in todo:
+        found.append(jobs.run(job))
+        if any(words for _, _, words in found[-1][1].values()):
+            break
+    added = jobs.added_up(found)
+    for name, (_, count, share) in added["properties"].items():
+        print(f"{name}: {f'{count} comparisons, at {share:.1g} of the bound' if count else '-'}")
+    for what in added["notes"]:
         print(f"met: {what}")
-    return show(found["violations"])
-
-
-def show(violations):
-    """Print the violations. Returns the exit status."""
-    for place, name, words in violations:
-        print(f"VIOLATION: {place}: {name}: {words}")
-    return 1 if violations else 0
-
-
-def small_scenes(count):
-    """The properties on so many small scenes, to the first violation. Returns the exit status."""
-    for job in jobs.scene_jobs(count, small=True):
-        violations = jobs.run(job)["violations"]
-        if violations:
-            return show(violations[:1])
-    return 0
+    return added["violations"]
 
 
 def everything(args):
-    """A full or quick run, and its report. Returns the exit status."""
+    """A full or quick run, and its report. Returns the violations."""
     from curriculum.stress import extremes, maps, mujoco_match, report
 
     large, small = QUICK if args.quick else FULL
     sections = {
-        "scenes": jobs.scene_jobs(large),
-        "small": jobs.scene_jobs(small, small=True),
-        "maps": maps.map_jobs(args.quick),
+        "scenes": jobs.scene_jobs(range(large)),
+        "small": jobs.scene_jobs(range(small), small=True),
+        "maps": list(maps.map_jobs(args.quick)),
         "extremes": list(extremes.extreme_jobs(args.quick)),
         "mujoco": mujoco_match.match_jobs(args.quick),
     }
     todo = [job for given in sections.values() for job in given]
     found = iter(pool.spread(jobs.run, todo, "stress", args.workers, args.scheduler))
     results = {name: [next(found) for _ in given] for name, given in sections.items()}
-    return show(report.write(results, report.QUICK if args.quick else report.RESULTS))
+    return report.write(results, report.QUICK if args.quick else report.RESULTS)
 
 
 def main(argv=None):
-    """Returns the exit status."""
+    """Print the violations. Returns the exit status."""
     args = parse(argv)
-    if args.scene:
-        return show_scene(args.scene)
-    return small_scenes(args.small) if args.small else everything(args)
+    if args.scene or args.small:
+        violations = some_scenes(args.scene or jobs.scene_jobs(range(args.small), small=True))
+    else:
+        violations = everything(args)
+    for violation in violations:
+        print("VIOLATION:", ": ".join(violation))
+    return 1 if violations else 0
 
 
 if __name__ == "__main__":

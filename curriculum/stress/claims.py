@@ -2,55 +2,49 @@
 
 import numpy as np
 
-PROPERTIES = {}
+PROPERTIES = {}  # of random scenes
 
 
 def stated(function):
-    """Register a property under its name: a generator of claims (words, off, allowed).
+    """Register a property of random scenes under its name.
 
-    off, allowed: arrays of what was found to be off, and of what rounding explains. A property
-    claims nothing where nothing could fail.
+    A property is a generator of claims (words, off, allowed, where). off, allowed: arrays of what
+    was found to be off, and of what rounding explains; where: which of them are judged, all if it
+    is left out. It claims nothing where nothing could fail.
     """
     PROPERTIES[function.__name__] = function
     return function
 
 
-def judge(trial, names=None):
+def judge(subject, *properties):
     """{property: [comparisons, off as a share of what is allowed at worst, words or None]}.
 
-    comparisons: how many numbers could have failed; 0 where the property says nothing of the scene.
-    words: the first claim that does not hold. An error of the code under test is a violation too.
+    subject: a Trial, or what the properties named are stated of. comparisons: how many numbers
+    could have failed; 0 where the property says nothing of the subject. words: the first claim that
+    does not hold. An error of the code under test is a violation too.
     """
     found = {}
-    for name in names or PROPERTIES:
-        found[name] = row = [0, 0.0, None]
+    for function in properties or PROPERTIES.values():
+        found[function.__name__] = row = [0, 0.0, None]
         try:
             with np.errstate(all="ignore"):
-                for words, off, allowed in PROPERTIES[name](trial):
-                    compare(row, words, np.asarray(off, float), np.asarray(allowed, float))
+                for claim in function(subject):
+                    compare(row, *claim)
         except Exception as error:
             row[0], row[2] = row[0] + 1, f"{type(error).__name__}: {error}"
     return found
 
 
-def compare(row, words, off, allowed):
+def compare(row, words, off, allowed, where=True):
     """Add a claim to the row of its property. What is not a number does not hold."""
-    off, allowed = np.broadcast_arrays(off, allowed)
-    if not off.size:
-        return
-    row[0] += off.size
-    share = np.where(off == 0.0, 0.0, off / allowed)
-    row[1] = max(row[1], float(np.nan_to_num(share, nan=np.inf).max()))
-    wrong = ~(off <= allowed)
+    off, allowed, where = np.broadcast_arrays(np.asarray(off, float), allowed, where)
+    row[0] += int(where.sum())
+    share = np.where(off == 0.0, 0.0, off / allowed)[where]
+    row[1] = float(np.nan_to_num(share, nan=np.inf).max(initial=row[1]))
+    wrong = where & ~(off <= allowed)
     if wrong.any() and row[2] is None:
-        place = tuple(int(k[0]) for k in np.nonzero(wrong))
+        place = tuple(np.argwhere(wrong)[0].tolist())
         row[2] = f"{words}: off by {off[place]:.3g}, allowed {allowed[place]:.3g} at {place}"
-
-
-def chosen(where, off, allowed):
-    """Both where `where` says so; the three are stretched to one shape."""
-    where, off, allowed = np.broadcast_arrays(where, off, allowed)
-    return off[where], allowed[where]
 
 
 def unlike(run, other):

@@ -1,82 +1,55 @@
-"""What can be worked out on its own, on any process or machine: jobs, and the counts they give."""
+"""What can be worked out on its own, on any process or machine: jobs, and the counts they give.
 
-from importlib import import_module
+A job: (place, subject, properties). A place is how its violations are said, such as "scene 17".
+"""
 
 import curriculum.stress.exact_properties  # noqa: F401 (registers what it states)
 from curriculum.stress import properties, scenes
-from curriculum.stress.claims import PROPERTIES, judge
+from curriculum.stress.claims import judge
 from curriculum.stress.trial import Trial
 
-BATCH = 25  # scenes to a job
+
+def scene_jobs(numbers, small=False):
+    """Jobs for the random scenes with these numbers."""
+    return [(f"{'small ' * small}scene {number}", (number, small), ()) for number in numbers]
 
 
 def run(job):
-    """The result of a job: ("module of curriculum.stress:function", its argument)."""
-    module, name = job[0].split(":")
-    return getattr(import_module(f"curriculum.stress.{module}"), name)(job[1])
-
-
-def row(what, expected, got, ok):
-    """A judgement of a map or an extreme, as plain values."""
-    return {"what": what, "expected": expected, "got": got, "ok": bool(ok)}
-
-
-def scene_jobs(count, small=False):
-    """Jobs for the scenes numbered 0 to count - 1."""
-    spans = [(start, min(start + BATCH, count), small) for start in range(0, count, BATCH)]
-    return [("jobs:judge_span", span) for span in spans]
-
-
-def judge_span(span):
-    """What the properties say of the scenes numbered start to stop - 1, given (start, stop, small).
-
-    properties: {name: [scenes judged, comparisons, off as a share of what is allowed at worst]};
-    violations: [[scene, property, words]]; notes: {what was met: [[scene, its numbers]]}.
-    """
-    start, stop, small = span
-    found = {"scenes": stop - start, "violations": [], "notes": {}}
-    found["properties"] = {name: [0, 0, 0.0] for name in PROPERTIES}
-    for number in range(start, stop):
-        trial = Trial(scenes.numbered_spec(number, small))
-        for name, (count, share, words) in judge(trial).items():
-            total = found["properties"][name]
-            total[:] = total[0] + (count > 0), total[1] + count, max(total[2], share)
-            if words:
-                found["violations"].append([f"{'small ' * small}scene {number}", name, words])
-        for what, numbers in trial.noted.items():
-            found["notes"].setdefault(what, []).append([number, numbers])
-    return found
+    """(place, what judge says, what was noted) of a job."""
+    place, subject, stated = job
+    if not stated:
+        subject = Trial(scenes.numbered_spec(*subject))
+    return place, judge(subject, *stated), getattr(subject, "noted", {})
 
 
 def added_up(found):
-    """One result of several of judge_span."""
-    totals = {name: [0, 0, 0.0] for name in PROPERTIES}
-    for each in found:
-        for name, (judged, count, share) in each["properties"].items():
-            total = totals[name]
-            total[:] = total[0] + judged, total[1] + count, max(total[2], share)
-    notes = {}
-    for each in found:
-        for what, cases in each["notes"].items():
-            notes.setdefault(what, []).extend(cases)
-    return {
-        "scenes": sum(each["scenes"] for each in found),
-        "judgements": sum(judged for judged, _, _ in totals.values()),
-        "properties": totals,
-        "violations": [violation for each in found for violation in each["violations"]],
-        "notes": {what: len(cases) for what, cases in sorted(notes.items())},
-        "unfinished": unfinished(notes.get(properties.UNFINISHED, []), totals),
-    }
+    """What the results of several jobs come to.
+
+    properties: {name: [jobs judged, comparisons, off as a share of what is allowed at worst]};
+    violations: [[place, property, words]]; notes: {what was noted: {place: its numbers}}.
+    """
+    totals, violations, notes = {}, [], {}
+    for place, judged, noted in found:
+        for name, (count, share, words) in judged.items():
+            total = totals.setdefault(name, [0, 0, 0.0])
+            total[:] = total[0] + (count > 0), total[1] + count, max(total[2], share)
+            if words:
+                violations.append([place, name, words])
+        for what, numbers in noted.items():
+            notes.setdefault(what, {})[place] = numbers
+    found = {"properties": totals, "violations": violations, "notes": notes}
+    return found | {"judgements": sum(judged for judged, _, _ in totals.values())}
 
 
-def unfinished(cases, stated):
+def unfinished(section):
     """Energy that unfinished sweeps of lcp add: in how many scenes, and the worst of them."""
-    name = "lcp_gains_energy_by_unfinished_sweeps_alone"
-    counts = {"scenes": stated[name][0], "rises": len(cases)}
-    counts["above_start"] = sum(case["gained"] > 1e-9 * case["start"] for _, case in cases)
+    cases = section["notes"].get(properties.UNFINISHED, {})
+    judged = section["properties"]["lcp_gains_energy_by_unfinished_sweeps_alone"][0]
+    counts = {"scenes": judged, "rises": len(cases)}
+    counts["above_start"] = sum(case["gained"] > 1e-9 * case["start"] for case in cases.values())
     if cases:
-        number, worst = max(cases, key=lambda case: case[1]["gained"] / case[1]["start"])
+        place, worst = max(cases.items(), key=lambda case: case[1]["gained"] / case[1]["start"])
         most = worst["start"] + worst["gained"]
-        counts["worst"] = {"scene": number, "start": worst["start"], "most": most}
-        counts["sweeps_most"] = max(case["sweeps"] for _, case in cases)
+        counts["worst"] = {"place": place, "start": worst["start"], "most": most}
+        counts["sweeps_most"] = max(case["sweeps"] for case in cases.values())
     return counts

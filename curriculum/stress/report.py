@@ -1,121 +1,111 @@
-"""results.json, README.md and the figures, from the results of the jobs."""
+"""results.json, README.md and the figure, from the results of the jobs."""
 
 from contact import write_whole
-from curriculum.stress import jobs
+from curriculum.stress import extremes, figures, jobs, maps, mujoco_match
 from curriculum.stress.claims import PROPERTIES
 from curriculum.text import results
 
-RESULTS = results.ROOT / "curriculum" / "stress" / "results"
-QUICK = results.ROOT / "outputs" / "stress-quick"
-OTHERS = {
+FOLDER = results.FOLDERS["stress"]
+RESULTS, QUICK = results.ROOT / FOLDER, results.ROOT / "outputs" / "stress-quick"
+TITLES = {
+    "scenes": "Random scenes of up to 30 balls",
+    "small": "Random scenes of up to four balls",
     "maps": "Maps: one ball dropped a metre",
     "extremes": "Every flag of contact.py at its ends",
     "mujoco": "soft against MuJoCo: single steps and whole runs",
 }
+OTHERS = (
+    maps.penalty_leaves_above_its_critical_dt,
+    maps.lcp_sinks_as_deep_as_its_landing_step,
+    maps.soft_rests_where_its_spring_bears_the_ball,
+    extremes.a_right_report_or_one_line_that_refuses,
+    mujoco_match.soft_is_mujoco,
+)
+STATED = PROPERTIES | {function.__name__: function for function in OTHERS}
+HEAD = """# Stress: what must hold on any scene, and where each model breaks
+
+{}
+
+A judgement is one property on one scene, row of a map, command line or match, counted only where \
+it could have failed: without a contact nothing is said of contacts. What was done is read from \
+the states before and after each step, and held against the chapter's formulas."""
 
 
 def write(found, folder):
     """Write what the jobs of each section found. Returns the violations [place, name, words]."""
-    sections = {name: jobs.added_up(found[name]) for name in ("scenes", "small")}
-    sections |= {name: judged(found[name]) for name in OTHERS}
-    for row in found["maps"]:
-        sections["maps"].setdefault(row["map"], []).append(row)
-    errors = [abs(row["measured"] / row["theory"] - 1) for row in sections["maps"]["penalty"]]
-    sections["maps"]["boundary_worst_error"] = max(errors)
-    (folder / results.NAME).unlink(missing_ok=True)  # no section of an older run may stay
+    sections = {name: jobs.added_up(each) for name, each in found.items()}
+    for section, each in ((sections[name], found[name]) for name in ("scenes", "small")):
+        section |= {"scenes": len(each), "unfinished": jobs.unfinished(section)}
+    rows = list(sections["maps"]["notes"].pop("penalty").values())
+    error = max(abs(row["measured"] / row["theory"] - 1) for row in rows)
+    sections["maps"] |= {"penalty": rows, "boundary_worst_error": error}
     command = "python -m curriculum.stress" + " --quick" * (folder == QUICK)
-    saved = {
-        name: results.save("stress", name, values, command, folder=folder)
-        for name, values in sections.items()
-    }
-    write_whole(folder / "README.md", page(saved))
-    draw(saved["maps"], folder)
-    print(f"report: {folder / 'README.md'}")
-    return [violation for section in saved.values() for violation in section["violations"]]
-
-
-def draw(section, folder):
-    """The figures, where matplotlib is installed."""
+    for name, section in sections.items():
+        section["notes"] = {what: len(places) for what, places in sorted(section["notes"].items())}
+        sections[name] = results.save("stress", name, section, command, folder=folder)
+    write_whole(folder / "README.md", page(sections))
     try:
-        from curriculum.stress import figures
+        write_whole(folder / "penalty-map.svg", figures.penalty_map(sections["maps"]))
     except ImportError as error:
-        print(f"no figures: {error}")
-        return
-    for name, svg in figures.draw(section).items():
-        write_whole(folder / name, svg)
+        print(f"no figure: {error}")
+    print(f"report: {folder / 'README.md'}")
+    return [violation for section in sections.values() for violation in section["violations"]]
 
 
-def judged(found):
-    """The count of the judgements of a section, and its violations."""
-    rows = [row for each in found for row in each.pop("rows")]
-    wrong = [row for row in rows if not row["ok"]]
-    listed = [[row["what"], f"expected {row['expected']}", f"got {row['got']}"] for row in wrong]
-    return {"judgements": len(rows), "violations": listed}
-
-
-def summary(saved):
+def summary(sections):
     """How much was judged, and how many violations there are, in one sentence."""
-    total = sum(section["judgements"] for section in saved.values())
-    wrong = sum(len(section["violations"]) for section in saved.values())
-    scenes = saved["scenes"]["scenes"] + saved["small"]["scenes"]
+    total = sum(section["judgements"] for section in sections.values())
+    wrong = sum(len(section["violations"]) for section in sections.values())
+    scenes = sections["scenes"]["scenes"] + sections["small"]["scenes"]
     return (
         f"On {scenes:,} random scenes for each of the four models, over the maps and at the ends "
         f"of every flag, {total:,} judgements found {wrong or 'no'} violation{'s' * (wrong > 1)}; "
         "the critical step of `penalty` is measured within "
-        f"{saved['maps']['boundary_worst_error']:.2%} of theory."
+        f"{sections['maps']['boundary_worst_error']:.2%} of theory."
     )
 
 
 def readme():
     """The stress block of the project's README: one figure and one sentence."""
-    saved = results.load("stress")
-    if not saved:
+    sections = results.load("stress")
+    if not sections:
         return "Not measured yet: `python -m curriculum.stress`."
-    figure = (
-        "![What penalty does over step and stiffness](curriculum/stress/results/penalty-map.svg)"
-    )
-    link = "[Every property, map and limit](curriculum/stress/results/README.md)."
-    return f"{figure}\n\n{summary(saved)} {link}"
+    figure = f"![What penalty does over step and stiffness]({FOLDER}/penalty-map.svg)"
+    link = f"[Every property, map and limit]({FOLDER}/README.md)."
+    return f"{figure}\n\n{summary(sections)} {link}"
 
 
-def page(saved):
+def page(sections):
     """README.md of the results."""
-    wrong = [": ".join(each) for section in saved.values() for each in section["violations"]]
-    parts = [
-        "# Stress: what must hold on any scene, and where each model breaks",
-        summary(saved),
-        "A judgement of the scenes is one property on one scene, counted only where it could have "
-        "failed: without a contact nothing is said of contacts. What was done is read from the "
-        "states before and after each step, and held against the chapter's formulas.",
-        "\n".join(f"- **{words}**" for words in wrong),
-        "## Properties on random scenes",
-        *(scene_part(saved[name], title) for name, title in (("scenes", "30"), ("small", "four"))),
-    ]
-    for name, title in OTHERS.items():
-        count, wrong = saved[name]["judgements"], len(saved[name]["violations"])
-        parts += [f"## {title}", f"{count:,} judgements, {wrong} violations."]
-    parts += ["![](penalty-map.svg)", "![](soft-map.svg)", results.footer(saved["scenes"])]
-    return "\n\n".join(part for part in parts if part) + "\n"
+    parts = [HEAD.format(summary(sections))]
+    for name, section in sections.items():
+        parts += [f"## {TITLES[name]}", table(section["properties"])]
+        parts += [f"- **{': '.join(words)}**" for words in section["violations"]]
+        notes = [f"- {what}: {count:,}" for what, count in section["notes"].items()]
+        if notes:
+            parts += ["Not judged, or limits that were met, in scenes:", "\n".join(notes)]
+        if "worst" in section.get("unfinished", {}):
+            parts.append(worst_of(section["unfinished"]))
+    parts += ["![](penalty-map.svg)", results.footer(sections["scenes"])]
+    return "\n\n".join(parts) + "\n"
 
 
-def scene_part(section, most):
-    """The properties on scenes of up to so many balls, and what was not judged, or met."""
+def table(properties):
+    """What was judged, a row for each property."""
     lines = [
-        f"{section['scenes']:,} scenes of up to {most} balls:\n",
-        "| property | scenes judged | comparisons | off, as a share of the bound |",
+        "| property | judged | comparisons | off, as a share of the bound |",
         "| --- | --: | --: | --: |",
     ]
-    for name, (judged, count, share) in section["properties"].items():
-        words = " ".join(PROPERTIES[name].__doc__.split("\n\n")[0].split())
+    for name, (judged, count, share) in properties.items():
+        words = " ".join(STATED[name].__doc__.split("\n\n")[0].split())
         lines.append(f"| {words} | {judged:,} | {count:,} | {share or 0:.1g} |")
-    lines += ["", "Not judged, or limits that were met, in scenes:\n"]
-    lines += [f"- {what}: {count:,}" for what, count in section["notes"].items()]
-    added = section["unfinished"]
-    if "worst" in added:
-        lines += [
-            "",
-            f"Unfinished sweeps took {added['above_start']:,} scenes above their start's energy, "
-            "at worst scene {scene}, from {start:.4g} J to {most:.4g} J; ".format(**added["worst"])
-            + f"{added['sweeps_most']:,.0f} sweeps a step ended every rise.",
-        ]
     return "\n".join(lines)
+
+
+def worst_of(unfinished):
+    """What unfinished sweeps of lcp did at worst."""
+    place = "at worst {place}, from {start:.4g} J to {most:.4g} J".format(**unfinished["worst"])
+    return (
+        f"Unfinished sweeps took {unfinished['above_start']:,} scenes above their start's energy, "
+        f"{place}; {unfinished['sweeps_most']:,.0f} sweeps a step ended every rise."
+    )

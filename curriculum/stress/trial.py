@@ -26,10 +26,6 @@ TOUCHING = 1e-12  # m: a deeper overlap at the start, and exact promises nothing
 ASTRAY = 1e6  # m, m/s: a run is judged until a ball is farther off, or faster
 
 
-class OutOfTime(Exception):
-    """A run of exact takes too long; its argument: how many samples were done."""
-
-
 class Trial:
     """A spec, the runs of it that were asked for, and words for what cannot be judged."""
 
@@ -43,57 +39,62 @@ class Trial:
         """Remember what cannot be judged, or a limit that was met."""
         self.noted[what] = {name: float(value) for name, value in numbers.items()}
 
-    def run(self, model, plain=False, **changes):
-        """The run of a stepped model, with entries of the spec changed; plain: by every step."""
-        key = model, plain, repr(sorted(changes.items()))
+    def run(self, model, way="twin", **changes):
+        """The run of a stepped model, with entries of the spec changed.
+
+        way: by the compiled "twin", by contact.py with "skips", or by its "plain" steps.
+        """
+        key = model, way, repr(changes)
         if key not in self.made:
-            spec = self.spec | changes
-            given = model, scenes.to_scene(spec), spec["dt"], spec["steps"]
-            settings = scenes.to_settings(spec)._replace(skip=not plain)
-            if fast and not plain:
-                q, v, unsettled = fast.simulate(*given, settings, None)
-                times = np.arange(len(q)) * spec["dt"]
-                self.made[key] = contact.Run(times, q, v, unsettled)
-            else:
-                self.made[key] = contact.run_model(*given, settings)
+            spec, take = self.spec | changes, simulate if way == "twin" else contact.run_model
+            settings = scenes.to_settings(spec)._replace(skip=way != "plain")
+            self.made[key] = take(model, scenes.to_scene(spec), spec["dt"], spec["steps"], settings)
         return self.made[key]
 
     @cached_property
     def motions(self):
         """{model: Motion} of the stepped models."""
-        return {model: Motion(self, model) for model in STEPPED}
+        margins = {"penalty": 0.0, "lcp": contact.CONTACT_MARGIN, "soft": 0.0}
+        return {model: Motion(self, self.run(model), margins[model]) for model in STEPPED}
 
     @cached_property
     def exact(self):
-        """The run of exact as far as SECONDS go; None, and a note, where it promises nothing."""
+        """The Motion of exact as far as SECONDS go; None, and a note, where it promises nothing."""
         if contact.smallest_gap(self.scene.q0[None], self.scene.radius)[0] < -TOUCHING:
             self.note("exact: starts in an overlap")
             return None
+        end, done = time.process_time() + SECONDS, 0
+
+        def report(samples):
+            nonlocal done
+            done = samples
+            if time.process_time() > end:
+                raise TimeoutError
+
         try:
-            return exact_run(self.scene, self.dt, self.spec["steps"])
-        except OutOfTime as stop:
-            self.note("exact: cut by time")
-            steps = stop.args[0] - 1  # what was done by then is made again, and judged
-            return exact_run(self.scene, self.dt, steps, np.inf) if steps > 0 else None
+            return self.take_exact(self.spec["steps"], report)
+        except TimeoutError:
+            self.note("exact: cut by time")  # what was done by then is made again, and judged
+            return self.take_exact(done - 1) if done > 1 else None
         except RuntimeError as error:
             sentence = re.split("; |\\. ", str(error).removeprefix("exact: "))[0]
             self.note("exact refuses: " + re.sub(r"\d[\d.,]*", "…", sentence))
             return None
 
+    def take_exact(self, steps, report=None):
+        return Motion(self, contact.run_model("exact", self.scene, self.dt, steps, report=report))
 
-def exact_run(scene, dt, steps, seconds=SECONDS):
-    """A run of exact. Raises OutOfTime where it takes longer, in seconds of CPU time."""
-    end = time.process_time() + seconds
 
-    def report(samples):
-        if time.process_time() > end:
-            raise OutOfTime(samples)
-
-    return contact.run_model("exact", scene, dt, steps, contact.Settings(), report)
+def simulate(model, scene, dt, steps, settings):
+    """A run by the compiled twin, where there is one: the same bits, as a property says."""
+    if fast:
+        made = fast.simulate(model, scene, dt, steps, settings)
+        return contact.Run(np.arange(steps + 1) * dt, *made)
+    return contact.run_model(model, scene, dt, steps, settings)
 
 
 class Motion:
-    """What a stepped run did: S steps, N balls, C possible contacts, the floor's first.
+    """What a run did: S steps, N balls, C possible contacts, the floor's first.
 
     sides (C, N): 1 at the upper ball of a contact, -1 at the other. At the start of each step
     depth (S, C) [m] and normal (S, 2, C); listed (S, C): whether the model looks at the contact.
@@ -103,32 +104,22 @@ class Motion:
     arithmetic rounds correctly, so they have one answer.
     """
 
-    def __init__(self, trial, model):
-        run, count = trial.run(model), len(trial.mass)
-        steps = self.calm(run)
+    def __init__(self, trial, run, margin=0.0):
+        near = (np.abs(np.concatenate((run.q, run.v), axis=1)) < ASTRAY).all((1, 2))
+        states = max(1, int(np.append(near, False).argmin()))  # those before it goes astray
         self.dt, self.mass, self.unsettled = trial.dt, trial.mass, run.unsettled
-        self.q, self.v = run.q[: steps + 1], run.v[: steps + 1]
-        self.a, self.b = np.triu_indices(count, 1)
-        self.sides = np.zeros((count + len(self.a), count))
-        self.sides[:count] = np.eye(count)
-        pairs = np.arange(count, len(self.sides))
-        self.sides[pairs, self.a], self.sides[pairs, self.b] = 1.0, -1.0
+        self.q, self.v = run.q[:states], run.v[:states]
+        self.a, self.b = np.triu_indices(len(trial.mass), 1)
+        eye = np.eye(len(trial.mass))
+        self.sides = np.concatenate((eye, eye[self.a] - eye[self.b]))
         self.measure(trial.scene.radius)
-        self.listed = self.depth > (-contact.CONTACT_MARGIN if model == "lcp" else 0.0)
+        self.listed = self.depth > -margin
         self.inv_mass = np.abs(self.sides) @ inverse(self.mass)  # 1 / m_a + 1 / m_b of a contact
         self.listed &= self.inv_mass > 0.0
         self.before, self.after = (self.along(v) for v in (self.v[:-1], self.v[1:]))
         self.falling = self.v[:-1] + trial.dt * np.outer((0.0, -G), ~trial.fixed)
         self.push = self.mass * (self.v[1:] - self.falling)
         self.top = self.fastest()
-
-    @staticmethod
-    def calm(run):
-        """How many steps stay near and slow enough to be judged."""
-        with np.errstate(invalid="ignore"):
-            near = (np.abs(run.q) < ASTRAY) & (np.abs(run.v) < ASTRAY)
-        near = near.all((1, 2))
-        return len(near) - 1 if near.all() else max(0, int(near.argmin()) - 1)
 
     def measure(self, radius):
         """Set depth, normal and reach: the distance of the centres at which two balls touch."""

@@ -134,7 +134,7 @@ def test_a_property_that_is_not_met_is_a_violation_and_nothing_to_judge_is_not_c
     assert found["what_nothing_touches_falls"][0] > 0
     flight.run("lcp").v[3, 1, 0] += 1e-9
     flight.__dict__.pop("motions", None)
-    assert judge(flight, ["what_nothing_touches_falls"])["what_nothing_touches_falls"][2]
+    assert judge(flight)["what_nothing_touches_falls"][2]
 
 
 # --- formulas ------------------------------------------------------------------------------------
@@ -403,9 +403,8 @@ def test_sweeps_of_soft_that_do_not_settle_are_counted():
 @pytest.mark.parametrize("case", list(mujoco_match.cases()), ids=lambda c: f"{c.what} {c.dt:g}")
 def test_soft_is_mujoco_in_each_step_and_in_a_whole_run(case):
     pytest.importorskip("mujoco", reason="mujoco is not installed: pip install mujoco")
-    off = mujoco_match.compare(case._replace(steps=min(case.steps, 300)))
-    assert off[0] <= mujoco_match.STEP_LIMIT[0] and off[1] <= mujoco_match.STEP_LIMIT[1]
-    assert off[2] <= mujoco_match.FREE_LIMIT
+    short = case._replace(steps=min(case.steps, 300))
+    assert judge(short, mujoco_match.soft_is_mujoco)["soft_is_mujoco"][2] is None
 
 
 # --- skips ---------------------------------------------------------------------------------------
