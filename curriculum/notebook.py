@@ -23,9 +23,9 @@ from curriculum.text.regions import ROOT, read
 
 CHAPTER = ROOT / "curriculum/prose/chapter.md"
 CELLS = ROOT / "curriculum/notebook_cells.py"
-CARRIED = ("contact.py", "checks.py", "curriculum/__init__.py", "curriculum/exact.py",
-           "curriculum/text/__init__.py", "curriculum/text/facts.py",
-           "curriculum/curves.py", "curriculum/hints.py", "exercises/*.py", "exercises/*.json")  # fmt: skip
+CARRIED = ("contact.py", "checks.py", "exercises/*.py", "exercises/*.json",
+           "curriculum/__init__.py", "curriculum/curves.py", "curriculum/exact.py",
+           "curriculum/hints.py", "curriculum/text/__init__.py", "curriculum/text/facts.py")
 MARK = re.compile(
     rf"^```\w*\n{INCLUDE.pattern}\n```$|^<!-- (?P<kind>figure|exercise): (?P<slot>[\w-]+) -->$"
     r"|^(?=#{1,3} )",
@@ -85,9 +85,7 @@ class Book:
         """A region. Those of contact.py run; others are shown, since their names are their own."""
         regions = read(ROOT / file)
         if name not in regions:
-            raise ValueError(
-                f"{CHAPTER.name}: there is no region {file}#{name}; known: {[*regions]}"
-            )
+            raise ValueError(f"{CHAPTER.name}: no region {file}#{name}; known: {[*regions]}")
         code = textwrap.dedent(MAIN.sub("", regions[name].code)).strip()
         if file == "contact.py":
             self.add("code", f"# contact.py, region {name}\n{code}")
@@ -138,15 +136,11 @@ class Book:
         self.prose(text[done:])
 
 
-def build(numbers=None):
-    """The notebook as text. numbers: what the prose quotes; without them they are made.
-
-    Raises ValueError where the chapter cannot be shown as it is.
-    """
+def build():
+    """The notebook as text. Raises ValueError where the chapter cannot be shown as it is."""
     import nbformat
 
-    text = CHAPTER.read_text("utf-8")
-    numbers = numbers or Numbers()
+    text, numbers = CHAPTER.read_text("utf-8"), Numbers()
     numbers.run_all(text)
     book = Book()
     book.chapter(numbers.fill(text))
@@ -157,20 +151,17 @@ def build(numbers=None):
     return nbformat.writes(made) + "\n"
 
 
-def main(argv=None):
+def main():
     """Build and write. Returns the exit status: 0 written, 1 the notebook can't be built."""
     parser = argparse.ArgumentParser(description="The chapter as a notebook.", allow_abbrev=False)
     parser.add_argument("--out", default="outputs/contact.ipynb", metavar="FILE")
-    args = parser.parse_args(argv)
+    args = parser.parse_args()
     try:
         text = build()
         contact.write_whole(args.out, text)
-    except ImportError as error:
-        print(f"{error.name} is missing: {sys.executable} -m pip install -e '.[notebook]'",
-              file=sys.stderr)  # fmt: skip
-        return 1
-    except (OSError, ValueError) as error:
-        print(error, file=sys.stderr)
+    except (ImportError, OSError, ValueError) as error:
+        hint = f" ({sys.executable} -m pip install -e '.[notebook]')"
+        print(f"{error}{hint if isinstance(error, ImportError) else ''}", file=sys.stderr)
         return 1
     print(f"{args.out}: {len(text.encode()) / 1000:.0f} kB")
     return 0

@@ -85,27 +85,31 @@ def knobs(draw, **ranges):
     sliders = {}
     for name, (low, value, high) in ranges.items():
         if low > 0.0:
-            ends = {"min": math.log10(low), "max": math.log10(high)}
-            sliders[name] = FloatLogSlider(value, **ends, **quiet)
+            low, high = math.log10(low), math.log10(high)
+            sliders[name] = FloatLogSlider(value, min=low, max=high, **quiet)
         else:
             sliders[name] = FloatSlider(value, min=low, max=high, step=high / 50.0, **quiet)
     interact(draw, **sliders)
 
 
-def watch(model, scene, dt, settings=Settings()):
-    """The gap over time of a model's run beside the exact one, and its depths."""
-    drawing, axes = plt.subplots(figsize=(7, 2.6))
+def draw_gaps(runs, scene, **look):
+    """The gaps over time of runs {model: Run}, exact below the others."""
+    drawing, axes = plt.subplots(figsize=(7, 3))
     axes.axhline(0.0, color="0.3", linewidth=1)
-    for name, width in (("exact", 3), (model, 1.5)):
-        run = run_model(name, scene, dt, int(2.0 / dt), settings)
-        gap = smallest_gap(run.q, scene.radius) / scene.radius[0]
-        axes.plot(run.t, gap, label=name, linewidth=width, color=COLORS[name])
-    depth = np.maximum(-gap, 0.0)
-    below = -1.2 * min(max(depth.max(), 0.1), 2.5)
-    title = f"{model}: {plain(depth.max())} r at the deepest, {plain(depth[-1])} r at the end"
-    axes.set(xlabel="time [s]", ylabel="gap [r]", ylim=(below, 1.2), title=title)
+    for model in sorted(runs):
+        axes.plot(runs[model].t, smallest_gap(runs[model].q, scene.radius) / RADIUS, label=model,
+                  color=COLORS[model], linewidth=3 if model == "exact" else 1.5)
+    axes.set(xlabel="time [s]", ylabel="gap [r]", **look)
     legend_beside(axes)
     plt.show()
+
+
+def watch(model, scene, dt, settings=Settings()):
+    """The gap over time of a model's run beside the exact one, and its depths."""
+    runs = {name: run_model(name, scene, dt, int(2.0 / dt), settings) for name in ("exact", model)}
+    depth = np.maximum(-smallest_gap(runs[model].q, scene.radius) / RADIUS, 0.0)
+    title = f"{model}: {plain(depth.max())} r at the deepest, {plain(depth[-1])} r at the end"
+    draw_gaps(runs, scene, ylim=(-1.2 * min(max(depth.max(), 0.1), 2.5), 1.2), title=title)
 
 # %% grab
 scene = build_scene("drop")
@@ -114,9 +118,7 @@ moving
 
 # %% two
 scene = build_scene("drop")     # up to the landing: what happens then?
-two = {model: run_model(model, scene, 0.002, 212) for model in ("penalty", "lcp")}
-moving = film(two, slow=4.0)
-moving
+film({model: run_model(model, scene, 0.002, 212) for model in ("penalty", "lcp")}, slow=4.0)
 
 # %% lanes
 scene = build_scene("drop")
@@ -124,13 +126,7 @@ runs = {model: run_model(model, scene, 0.002, 2000) for model in MODELS}
 qualities = {model: contact_quality(run, scene, 0.002, runs["exact"])
              for model, run in runs.items()}
 display(film({model: run._replace(t=run.t[:750], q=run.q[:750]) for model, run in runs.items()}))
-drawing, axes = plt.subplots(figsize=(7, 3))
-axes.axhline(0.0, color="0.3", linewidth=1)
-for model in ("exact", "penalty", "lcp", "soft"):
-    gap = smallest_gap(runs[model].q, scene.radius) / RADIUS
-    axes.plot(runs[model].t, gap, color=COLORS[model], label=model)
-axes.set(xlim=(0.4, 1.0), ylim=(-0.4, 1.1), xlabel="time [s]", ylabel="gap [r]", title="drop")
-legend_beside(axes)
+draw_gaps(runs, scene, xlim=(0.4, 1.0), ylim=(-0.4, 1.1), title="drop")
 for model, quality in qualities.items():
     print(f"{model:<8} deepest {plain(quality['max_penetration_frac'])} r,",
           f"gap at rest {plain(quality['rest_gap_frac'])} r,",
@@ -138,17 +134,12 @@ for model, quality in qualities.items():
 
 # %% sponge
 #@title penalty: turn the stiffness, the damping and the step
-stiffness = 10000.0     #@param {type: "number"}
-damping = 80.0          #@param {type: "number"}
-dt = 0.002              #@param {type: "number"}
-
-
 def try_penalty(stiffness, damping, dt):
     watch("penalty", build_scene("drop", damping=damping), dt, Settings(stiffness=stiffness))
 
 
-knobs(try_penalty, stiffness=(100.0, stiffness, 1e6), damping=(0.0, damping, 300.0),
-      dt=(0.0005, dt, 0.064))
+knobs(try_penalty, stiffness=(100.0, 1e4, 1e6), damping=(0.0, 80.0, 300.0),
+      dt=(0.0005, 0.002, 0.064))
 
 # %% cliff
 grid = np.geomspace(0.004, 0.05, 40)
@@ -158,8 +149,7 @@ for model in ("penalty", "lcp", "soft"):
     gained = []
     for step in grid:
         run = run_model(model, scene, float(step), int(8.0 / step))
-        total = energy(run.q, run.v, scene.mass)
-        gained.append(max((total - total[0]).max() / total[0], 1e-6))
+        gained.append(max(contact_quality(run, scene, float(step))["energy_excess"], 1e-6))
     axes.loglog(grid, gained, ".-", color=COLORS[model], label=model)
 axes.axvline(critical_dt(1.0, 1e4, 80.0), color="0.6", label="critical dt")
 axes.axvline(critical_dt(1.0, 1e4, 0.0), color="0.6", linestyle=":", label="without the damper")
@@ -168,15 +158,11 @@ legend_beside(axes)
 
 # %% corner-lcp
 #@title lcp: turn the gain and the step
-baumgarte = 0.2         #@param {type: "number"}
-dt = 0.002              #@param {type: "number"}
-
-
 def try_lcp(baumgarte, dt):
     watch("lcp", build_scene("drop"), dt, Settings(baumgarte=baumgarte))
 
 
-knobs(try_lcp, baumgarte=(0.0, baumgarte, 1.0), dt=(0.0005, dt, 0.064))
+knobs(try_lcp, baumgarte=(0.0, 0.2, 1.0), dt=(0.0005, 0.002, 0.064))
 
 # %% sweeps
 drawing, axes = plt.subplots(figsize=(7, 3))
@@ -229,23 +215,13 @@ legend_beside(axes)
 
 # %% bounces
 #@title exact: turn the restitution; all four models
-restitution = 0.7       #@param {type: "number"}
-dt = 0.002              #@param {type: "number"}
-
-
 def try_bounce(restitution, dt):
     scene = build_scene("bounce", restitution=restitution)
-    drawing, axes = plt.subplots(figsize=(7, 3))
-    for model in ("exact", "penalty", "lcp", "soft"):
-        run = run_model(model, scene, dt, int(4.0 / dt))
-        axes.plot(run.t, (run.q[:, 1, 0] - RADIUS) / RADIUS, color=COLORS[model], label=model,
-                  linewidth=3 if model == "exact" else 1)
-    axes.set(xlabel="time [s]", ylabel="gap [r]", ylim=(-2.0, 12.0), title="bounce")
-    legend_beside(axes)
-    plt.show()
+    runs = {model: run_model(model, scene, dt, int(4.0 / dt)) for model in MODELS}
+    draw_gaps(runs, scene, ylim=(-2.0, 12.0), title="bounce")
 
 
-knobs(try_bounce, restitution=(0.0, restitution, 1.0), dt=(0.0005, dt, 0.064))
+knobs(try_bounce, restitution=(0.0, 0.7, 1.0), dt=(0.0005, 0.002, 0.064))
 
 # %% cradle
 drawing, pictures = plt.subplots(1, 2, sharey=True, figsize=(8, 3))
@@ -278,11 +254,6 @@ legend_beside(axes)
 
 # %% impedance
 #@title soft: turn the time constant and the impedance
-timeconst = 0.02        #@param {type: "number"}
-impedance_at_surface = 0.9      #@param {type: "number"}
-dt = 0.002              #@param {type: "number"}
-
-
 def try_soft(timeconst, impedance_at_surface, dt):
     solimp = (impedance_at_surface, max(impedance_at_surface, 0.95), 0.001, 0.5, 2.0)
     deep = np.linspace(0.0, 0.0015, 200)
@@ -292,6 +263,6 @@ def try_soft(timeconst, impedance_at_surface, dt):
     watch("soft", build_scene("drop"), dt, Settings(solref=(timeconst, 1.0), solimp=solimp))
 
 
-knobs(try_soft, timeconst=(0.002, timeconst, 0.2), dt=(0.0005, dt, 0.064),
-      impedance_at_surface=(0.0, impedance_at_surface, 0.9999))
+knobs(try_soft, timeconst=(0.002, 0.02, 0.2), dt=(0.0005, 0.002, 0.064),
+      impedance_at_surface=(0.0, 0.9, 0.9999))
 
