@@ -5,7 +5,6 @@ the scenes, and shrinks one that fails to the simplest.
 """
 
 import math
-from decimal import Decimal, getcontext
 
 import numpy as np
 import pytest
@@ -48,10 +47,7 @@ def test_published_figures_come_out_to_all_their_digits(name, steps, dt, key, pe
         if printed is not None:
             digits = len(printed.split("e")[0].replace("0.", "").lstrip("0").replace(".", ""))
             got = quality(name, model, dt, steps)[key]
-            assert f"{got:.{max(digits, 1)}g}" == f"{float(printed):.{max(digits, 1)}g}", (
-                model,
-                got,
-            )
+            assert f"{got:.{digits or 1}g}" == f"{float(printed):.{digits or 1}g}", (model, got)
 
 
 @pytest.mark.parametrize("seed, depth", [(1, 0.022433), (2, 0.038544)])
@@ -110,13 +106,8 @@ def specs(draw):
     } | {name: draw(st.sampled_from(values)) for name, values in knobs.items()}
 
 
-@settings(
-    max_examples=150,
-    deadline=None,
-    derandomize=True,
-    database=None,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+@settings(max_examples=150, deadline=None, derandomize=True, database=None,
+          suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(spec=specs())
 def test_every_property_holds_on_scenes_that_hypothesis_draws(spec):
     still = [0.0 if math.isinf(mass) else 1.0 for mass in spec["mass"]]
@@ -125,56 +116,35 @@ def test_every_property_holds_on_scenes_that_hypothesis_draws(spec):
     assert not violations
 
 
-def test_a_property_that_is_not_met_is_a_violation_and_nothing_to_judge_is_not_counted():
-    spec = {"x": [0.0], "y": [9.0], "vx": [0.0], "vy": [0.0], "mass": [1.0], "radius": [R]}
-    spec |= {"restitution": 0.0, "damping": 0.0, "dt": DT, "steps": 5, "stiffness": 1e4}
-    flight = Trial(spec | {"baumgarte": 0.2, "iters": 20, "solref": None, "warm": 0.0})
-    found = judge(flight)
-    assert found["springs_push_as_hooke_and_the_damper_say"] == [0, 0.0, None]
-    assert found["what_nothing_touches_falls"][0] > 0
-    flight.run("lcp").v[3, 1, 0] += 1e-9
-    flight.__dict__.pop("motions", None)
-    assert judge(flight)["what_nothing_touches_falls"][2]
-
-
 # --- formulas ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("mass, stiffness", [(1.0, 1e4), (0.1, 1e4), (10.0, 1e4), (1.0, 1e6)])
-def test_ball_at_rest_sinks_mg_over_k(mass, stiffness):
-    scene = build_scene("drop")._replace(
-        mass=np.array([mass]), damping=0.4 * (mass * stiffness) ** 0.5
-    )
-    run = run_model("penalty", scene, 0.0005, 8000, Settings(stiffness=stiffness))
-    assert R - run.q[-1, 1, 0] == pytest.approx(mass * G / stiffness, rel=1e-6)
-
-
-def depths_at_rest(model, mass, seconds=12.0):
+def depths_at_rest(model, mass, stiffness=1e4):
     """The depth [m] of each contact of a tower, from the table up, and the load [N] on it."""
-    scene = build_scene("stack", bodies=len(mass))._replace(mass=np.array(mass))
-    q = run_model(model, scene, DT, int(seconds / DT)).q[-1, 1]
+    scene = build_scene("stack", bodies=len(mass), damping=0.4 * (mass[0] * stiffness) ** 0.5)
+    scene = scene._replace(mass=np.array(mass))
+    q = run_model(model, scene, 0.0005, 16000, Settings(stiffness=stiffness)).q[-1, 1]
     load = G * np.cumsum(mass[::-1])[::-1]
     return np.append(R - q[0], 2 * R - np.diff(q)), load
 
 
-def test_each_contact_of_a_resting_tower_sinks_by_the_weight_above_it_over_k():
-    depth, load = depths_at_rest("penalty", [1.0, 0.5, 2.0])
-    assert depth == pytest.approx(load / 1e4, rel=1e-6)
+TOWERS = [[1.0], [0.1], [10.0], [1.0, 0.5, 2.0]]
 
 
-def test_each_contact_of_a_resting_tower_of_soft_balances_spring_and_load():
-    """(1 - d) load (1/m_a + 1/m_b) = d^2 K depth: pairs and the table alike."""
-    mass = np.array([1.0, 0.5, 2.0])
-    depth, load = depths_at_rest("soft", mass.tolist())
-    inverse = 1.0 / mass + np.append(0.0, 1.0 / mass[:-1])
+@pytest.mark.parametrize("mass", TOWERS)
+@pytest.mark.parametrize("stiffness", [1e4, 1e5])
+def test_ball_at_rest_sinks_by_the_weight_that_its_contact_carries_over_k(mass, stiffness):
+    depth, load = depths_at_rest("penalty", mass, stiffness)
+    assert depth == pytest.approx(load / stiffness, rel=1e-6)
+
+
+@pytest.mark.parametrize("mass", TOWERS)
+def test_soft_at_rest_balances_spring_and_load(mass):
+    """(1 - d) load (1/m_a + 1/m_b) = d^2 K depth, of pairs and the table; of one ball any mass."""
+    depth, load = depths_at_rest("soft", mass)
+    inverse = 1.0 / np.array(mass) + np.append(0.0, 1.0 / np.array(mass[:-1]))
     d = np.array([contact.impedance(float(each), contact.SOLIMP) for each in depth])
     assert (1 - d) * load * inverse == pytest.approx(d * d * depth / (0.95 * 0.02) ** 2, rel=1e-9)
-
-
-@pytest.mark.parametrize("mass", [0.1, 1.0, 10.0])
-def test_soft_rests_as_deep_whatever_the_mass(mass):
-    depth, _ = depths_at_rest("soft", [mass])
-    assert depth[0] / R == pytest.approx(3.6718184e-3, rel=1e-7)
 
 
 @pytest.mark.parametrize("stiffness", [1e2, 1e4, 1e6])
@@ -205,27 +175,6 @@ def test_free_flight_lags_the_parabola_by_g_t_dt_over_2():
     run = run_model("lcp", scene, DT, 200)
     lag = scene.q0[1, 0] - 0.5 * G * run.t**2 - run.q[:, 1, 0]
     assert lag == pytest.approx(0.5 * G * run.t * DT, abs=1e-12)
-
-
-@pytest.mark.parametrize("e", [0.0, 0.3, 0.7, 0.9, 1.0])
-def test_exact_bounces_as_sixty_digits_say_flight_by_flight(e):
-    getcontext().prec = 60
-    scene = build_scene("bounce", restitution=e)
-    run = run_model("exact", scene, 0.0137, 290)
-    g, gap = Decimal(G), Decimal(float(scene.q0[1, 0])) - Decimal(R)
-    flights, start, speed = [], (2 * gap / g).sqrt(), (2 * gap * g).sqrt() * Decimal(e)
-    while speed > Decimal("1e-20") and start < 5:
-        flights.append((start, speed))
-        start, speed = start + 2 * speed / g, speed * Decimal(e)
-
-    def height(t):
-        if t < (2 * gap / g).sqrt():
-            return gap - g * t * t / 2
-        began, fast = max(((s, v) for s, v in flights if s <= t), default=(t, Decimal(0)))
-        return max(fast * (t - began) - g * (t - began) ** 2 / 2, Decimal(0))
-
-    want = [float(height(Decimal(float(t)))) for t in run.t]
-    assert np.abs(run.q[:, 1, 0] - R - want).max() < 2e-13
 
 
 def test_the_bounce_of_lcp_converges_at_first_order():
@@ -275,11 +224,6 @@ def test_no_seed_starts_a_stack_or_pile_inside_the_floor():
     for seed in range(50):
         for scene in (build_scene("stack", seed), build_scene("pile", seed, 30)):
             assert contact.smallest_gap(scene.q0[None], scene.radius)[0] > -1e-15
-
-
-def test_the_damper_resists_closing_and_never_pulls():
-    force = contact.penalty_normal_force
-    assert [force(0.01, v_n, 1e4, 80.0) for v_n in (-1.0, 0.0, 1.0, 2.0)] == [180, 100, 20, 0]
 
 
 @pytest.mark.parametrize("model", STEPPED)
@@ -412,9 +356,8 @@ def test_soft_is_mujoco_in_each_step_and_in_a_whole_run(case):
 
 def same_bytes_both_ways(model, scene, dt, steps, **knobs):
     """Whether the run with skips has the bytes of the run without."""
-    runs = [
-        run_model(model, scene, dt, steps, Settings(**knobs, skip=skip)) for skip in (True, False)
-    ]
+    runs = [run_model(model, scene, dt, steps, Settings(**knobs, skip=skip))
+            for skip in (True, False)]
     return all(a.tobytes() == b.tobytes() for a, b in zip(runs[0][:3], runs[1][:3]))
 
 
