@@ -56,21 +56,8 @@ GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
 CONTACT_MARGIN = 1e-3   # m: lcp treats a smaller gap as contact, so a resting ball stays listed
 MOST_SWEEPS = 10_000    # exact and soft give up here, if their impulses have not settled
-EXPLODED = 10.0         # a run that gains more than this many times its start energy has exploded
 SCENES = ("drop", "bounce", "stack", "pile")
 MODELS = ("penalty", "lcp", "soft", "exact")
-
-
-class Settings(NamedTuple):
-    """The knobs of the models. What belongs to a material, e and damping, is in the scene."""
-
-    stiffness: float = 1e4      # k of penalty [N/m]
-    baumgarte: float = 0.2      # beta of lcp: the share of an overlap that one step removes
-    iters: int = 20             # of lcp: Gauss-Seidel sweeps a step, at most
-    warm: float = 0.0           # of lcp: the share of a step's impulses that the next begins with
-    solref: tuple | None = None     # of soft: time constant [s], damping ratio; see soft_defaults
-    solimp: tuple | None = None     # of soft: how hard, at which depth; see impedance
-    skip: bool = True           # leave out steps whose result is known; no bit changes
 # --- endregion ---
 
 
@@ -269,10 +256,9 @@ def contact_target(c, restitution, baumgarte, dt):
 
     With e = 0 it is the bias velocity (Baumgarte 1972): an overlap opens by the share beta in a
     step, and a gap may close by that share. With e > 0 bodies that touch, or would meet within
-    this step, get the bounce -e v_n. Across a wider gap they may come as close as touching, so
-    that nothing bounces on air. In an overlap the larger of bias and bounce counts, since their
-    sum would bounce too high. Otherwise no target is above -e v_n, also between bodies that part:
-    then impulses add no energy (Moreau 1988).
+    this step, get the bounce -e v_n, in an overlap the larger of bias and bounce. Across a wider
+    gap they may come as close as touching. Only a bias is above -e v_n: then impulses add no
+    energy (Moreau 1988).
     """
     bias = baumgarte / dt * c.depth     # < 0 across a gap
     if restitution == 0.0:
@@ -356,10 +342,10 @@ TOUCH = 1e-13           # m: balls that start with a smaller gap start in touch
 SLOW = 1e-7             # m/s: a slower bounce, 1e-15 m high, is the last of its series
 TOGETHER = 1.0 + 1e-12    # impacts within this factor of the shortest time come at one moment
 STILL = 1e-12           # m/s: a smaller v_n is rounding, so the contact rests
-MOST_IMPACTS = 100_000  # a run with more is given up
+MOST_IMPACTS = 20_000   # a run with more is given up
 
 
-def exact_run(scene, times, report=None):
+def exact_run(scene, times):
     """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, of balls over one another.
 
     Between two impacts every acceleration stays the same, so a gap is a parabola in time, and the
@@ -386,8 +372,6 @@ def exact_run(scene, times, report=None):
         now, done = now + span, last
         if done == len(times):
             return q, v
-        if report:
-            report(done)
     raise RuntimeError(f"more than {MOST_IMPACTS:,} impacts by {now:.6g} s: the balls rattle")
 # --- endregion ---
 
@@ -458,11 +442,6 @@ def time_to_impact(gap, v_n, a_n):
 
 
 # --- region: soft-impedance ---
-SOLREF = (0.02, 1.0)    # MuJoCo's default: time constant [s], damping ratio
-SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)       # MuJoCo's default: d0, d1, width [m], mid, power
-HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # the hardest contact that MuJoCo allows
-
-
 def impedance(depth, solimp):
     """How hard the contact is at that depth [m]: d, 0 gives way and 1 is hard (getimpedance).
 
@@ -490,23 +469,6 @@ def raised(x, power):
     for _ in range(int(power)):
         product *= x
     return product
-
-
-def soft_defaults(restitution, dt, solref=None, solimp=None):
-    """The solref and solimp that a run uses, within MuJoCo's bounds. None stands for the default.
-
-    Restitution needs the direct form of solref, minus stiffness and minus damping, and a hard
-    contact: the damping (1 + e) / dt turns v_n into -e v_n within one step. There is no spring
-    then, so a ball at rest sinks on, slowly.
-    """
-    if solref is None and restitution > 0.0:
-        solref, solimp = (0.0, -(1.0 + restitution) / dt), solimp or HARD
-    elif solref is None or solref[0] > 0.0:
-        timeconst, dampratio = solref or SOLREF
-        solref = max(timeconst, 2.0 * dt), dampratio    # MuJoCo's refsafe: no faster than two steps
-    d0, d1, width, mid, power = solimp or SOLIMP
-    d0, d1, mid = (min(max(share, 0.0001), 0.9999) for share in (d0, d1, mid))
-    return solref, (d0, d1, width, mid, max(power, 1.0))
 # --- endregion ---
 
 
@@ -547,11 +509,10 @@ def soft_step(balls, dt, solref, solimp):
     for c in contacts:
         soften(c, dt, solref, solimp)
     accelerate(balls, dt)
-    fastest = max([abs(c.target) for c in contacts], default=0.0)
-    for ball in balls:
-        fastest = max(fastest, abs(ball.vx), abs(ball.vy))
+    speeds = [c.target for c in contacts]
+    speeds += [speed for ball in balls for speed in (ball.vx, ball.vy)]
     warm_start(contacts)
-    settled = solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * fastest)
+    settled = solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * max(map(abs, speeds)))
     remember(balls, contacts)
     move(balls, dt)
     return settled
@@ -647,7 +608,22 @@ def fly(balls, dt, most):
 
 
 # --- region: run ---
-MANY = 5e6      # steps times pairs: from here on, loading the compiled loops pays
+MANY = 5e6              # steps times pairs: from here on, loading the compiled loops pays
+SOLREF = (0.02, 1.0)    # MuJoCo's default: time constant [s], damping ratio
+SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)       # MuJoCo's default: d0, d1, width [m], mid, power
+HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # the hardest contact that MuJoCo allows
+
+
+class Settings(NamedTuple):
+    """The knobs of the models. What belongs to a material, e and damping, is in the scene."""
+
+    stiffness: float = 1e4      # k of penalty [N/m]
+    baumgarte: float = 0.2      # beta of lcp: the share of an overlap that one step removes
+    iters: int = 20             # of lcp: Gauss-Seidel sweeps a step, at most
+    warm: float = 0.0           # of lcp: the share of a step's impulses that the next begins with
+    solref: tuple | None = None     # of soft: time constant [s], damping ratio; see soft_defaults
+    solimp: tuple | None = None     # of soft: how hard, at which depth; see impedance
+    skip: bool = True           # leave out steps whose result is known; no bit changes
 
 
 def beside(name):
@@ -684,13 +660,30 @@ def run_model(model: str, scene: Scene, dt: float, steps: int,
     return simulate(step[model], scene, dt, steps, settings.skip, report)
 
 
-def run_exact(scene, times, report=None):
+def soft_defaults(restitution, dt, solref=None, solimp=None):
+    """The solref and solimp that a run uses, within MuJoCo's bounds. None stands for the default.
+
+    Restitution needs the direct form of solref, minus stiffness and minus damping, and a hard
+    contact: the damping (1 + e) / dt turns v_n into -e v_n within one step. There is no spring
+    then, so a ball at rest sinks on, slowly.
+    """
+    if solref is None and restitution > 0.0:
+        solref, solimp = (0.0, -(1.0 + restitution) / dt), solimp or HARD
+    elif solref is None or solref[0] > 0.0:
+        timeconst, dampratio = solref or SOLREF
+        solref = max(timeconst, 2.0 * dt), dampratio    # MuJoCo's refsafe: no faster than two steps
+    d0, d1, width, mid, power = solimp or SOLIMP
+    d0, d1, mid = (min(max(share, 0.0001), 0.9999) for share in (d0, d1, mid))
+    return solref, (d0, d1, width, mid, max(power, 1.0))
+
+
+def run_exact(scene, times, report):
     """q, v of balls over one another by exact_run, of others by curriculum/exact.py."""
     reason = "balls that lie beside one another need curriculum/exact.py"
     apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
     if apart and (scene.q0[0] == scene.q0[0, 0]).all() and not scene.v0[0].any():
         try:
-            return exact_run(scene, times, report)
+            return exact_run(scene, times)
         except RuntimeError as error:
             reason = str(error)
     exact = beside("exact")
@@ -701,6 +694,9 @@ def run_exact(scene, times, report=None):
 
 
 # --- region: measure ---
+EXPLODED = 10.0     # a run that gains more than this many times its start energy has exploded
+
+
 @np.errstate(all="ignore")
 def energy(q, v, mass):
     """Kinetic plus potential energy [J] of states (..., 2, N), zero at the floor.
@@ -744,15 +740,18 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     """The error measures of a run: lengths in radii of the first ball, energies in start energies.
 
     The table says what most mean (COLUMNS). rest_penetration_frac is the overlap at the end;
-    blew_up and blew_up_step whether and when the run exploded; through what a ball went through;
-    unsettled_steps in how many steps the sweeps of soft did not settle. height_error_frac, against
-    the run `reference`, is the sum of flight_error_frac and contact_error_frac.
+    blew_up and blew_up_step whether and when the run exploded. through is "the floor" if a ball's
+    centre was below it, "a ball" if two overlapped by a radius. unsettled_steps counts the steps
+    in which the sweeps of soft did not settle. height_error_frac, against the run `reference`, is
+    the sum of flight_error_frac and contact_error_frac.
     """
     total = energy(run.q, run.v, scene.mass)
     scale = abs(float(total[0])) or 1.0
     gap = smallest_gap(run.q, scene.radius) / float(scene.radius[0])
     depth = np.maximum(-gap, 0.0)
     landing = first_contact(run, scene, dt)
+    below = (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any()
+    inside = depth.max() * scene.radius[0] > scene.radius.max()
     step = blow_up_step(total)
     quality = {
         "max_penetration_frac": float(depth.max()),
@@ -764,17 +763,9 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
         "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
         "blew_up": step is not None,
         "blew_up_step": step,
-        "through": went_through(run, scene),
+        "through": "the floor" if below else "a ball" if inside else None,
         "unsettled_steps": run.unsettled}
     return quality | height_errors(run, scene, dt, reference)
-
-
-def went_through(run, scene):
-    """"the floor" if a ball's centre was below it; "a ball" if two overlapped by a radius."""
-    if (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any():
-        return "the floor"
-    deepest = -smallest_gap(run.q, scene.radius).min()
-    return "a ball" if deepest > scene.radius.max() else None
 
 
 def first_contact(run, scene, dt):
@@ -817,18 +808,17 @@ def measure_stability(run, scene, dt, stiffness, first):
             "dt_crit_damped": critical_dt(*known, scene.damping),
             "dt_crit_stack": critical_dt(*known, scene.damping, len(scene.mass))}
     for model in ("penalty", "lcp"):
-        depth, through = f"{model}_penetration_frac", f"{model}_through"
-        grid |= {model: None, depth: None, through: None}
+        largest = depth = through = None
         for step in sorted((dt * factor for factor in DT_GRID), reverse=True):
             found = first[model] if step == dt else run(model, step)
-            gap = smallest_gap(found.q, scene.radius)
-            if blow_up_step(energy(found.q, found.v, scene.mass)) is not None:
-                grid[model] = 0.0
-            elif (gap < CONTACT_MARGIN).any():
-                grid[model] = step
-                grid[depth] = float(max(-gap.min(), 0.0) / scene.radius[0])
-                grid[through] = went_through(found, scene)
+            quality = contact_quality(found, scene, step)
+            if quality["blew_up"]:
+                largest = 0.0
+            elif first_contact(found, scene, step) < len(found.t):
+                largest = step
+                depth, through = quality["max_penetration_frac"], quality["through"]
                 break
+        grid |= {model: largest, f"{model}_penetration_frac": depth, f"{model}_through": through}
     return grid
 # --- endregion ---
 
@@ -863,8 +853,8 @@ def number(kind, low, high):
 NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, meaning
     "--seed": (int, 0, 1e18, None, "draws the start height (0)"),
     "--dt": (float, 1e-6, 1e3, 0.002, "time step [s] (0.002)"),
-    "--steps": (int, 0, 1e7, None, "how many (2000)"),
-    "--bodies": (int, 1, 1e5, None, "balls of stack (3) and pile (24)"),
+    "--steps": (int, 0, 1e6, None, "how many (2000)"),
+    "--bodies": (int, 1, 1e4, None, "balls of stack (3) and pile (24)"),
     "--mass": (float, 1e-9, 1e9, 1.0, "of every ball [kg] (1)"),
     "--stiffness": (float, 0, 1e15, 1e4, "k of penalty [N/m] (1e4)"),
     "--damping": (float, -1e9, 1e9, -1.0, "c of penalty [N s/m] (below 0: the scene's, 80 or 0)"),
@@ -911,26 +901,15 @@ def parse_flags(argv):
             (args.seeds and args.plot, "--plot draws one run: leave out --seeds"),
             (args.scheduler and not args.seeds, "--scheduler is for many seeds: give --seeds"),
             (args.bodies and args.scene in ("drop", "bounce"), "--bodies is for stack and pile"),
+            ((args.steps or 0) * (args.bodies or 24) > 2.5e7,
+             "--steps times --bodies: allowed: up to 2.5e7, which needs 8 GB of memory"),
             (ref and max(ref) > 0.0 and min(ref) < 1e-6,
              "argument --solref: allowed: two numbers from 1e-06 up, or two that are 0 or less")):
         if wrong:
             parser.error(message)
     args.seed = args.seed or 0
     args.steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
-    check_memory(args, parser.error)
     return args
-
-
-def check_memory(args, error):
-    """End with one line where the runs need more memory than this machine has, if it says."""
-    count = args.bodies or {"stack": 3, "pile": 24}.get(args.scene, 1)
-    need = 320 * args.steps * count             # bytes, measured: four models, all their states
-    have = math.inf
-    if hasattr(os, "sysconf"):
-        have = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    if need > have:
-        error(f"--steps {args.steps} of {count} balls need {need / 1e9:.0f} GB of memory; "
-              f"allowed: {have / 1e9:.0f} GB, what this machine has")
 # --- endregion ---
 
 
@@ -982,11 +961,10 @@ def print_verdict(quality):
     """Which model overlaps most and which least, at worst and at rest."""
     whole = [name for name in quality if not quality[name]["blew_up"]]
     for when, key in (("at worst", "max_penetration_frac"), ("at rest", "rest_penetration_frac")):
-        names = sorted(whole, key=lambda name: -quality[name][key])
-        text = "".join(names[:1])
-        for before, name in zip(names, names[1:]):
-            text += (" = " if quality[before][key] == quality[name][key] else " > ") + name
-        print(f"verdict: depth {when}: {text}")
+        groups = {}
+        for name in sorted(whole, key=lambda name: -quality[name][key]):
+            groups.setdefault(quality[name][key], []).append(name)
+        print(f"verdict: depth {when}:", " > ".join(map(" = ".join, groups.values())))
 
 
 def print_stability(grid, count):
@@ -1068,36 +1046,39 @@ def chosen_scene(args, seed):
     return scene._replace(mass=args.mass * scene.mass)
 
 
-def run_all(args, scene):
-    """The runs {model: Run} that the flags ask for, {model: why it has none}, and how to run."""
+def run_flags(args, scene, model, dt):
+    """The run that the flags ask for, at that dt; a terminal shows how far it is."""
     settings = Settings(*(getattr(args, knob) for knob in Settings._fields))
     pool = beside("pool") if sys.stderr.isatty() else None
+    bar = pool.bar(args.steps, f"{model}, dt = {dt:g} s") if pool else None
+    return run_model(model, scene, dt, args.steps, settings, bar)
 
-    def run(model, dt):
-        bar = pool.bar(args.steps, f"{model}, dt = {dt:g} s") if pool else None
-        return run_model(model, scene, dt, args.steps, settings, bar)
 
+def run_all(args, scene):
+    """The runs {model: Run} that the flags ask for, and {model: why it has none}."""
     runs, without = {}, {}
     for model in MODELS if args.contact == "all" else [args.contact]:
         try:
             if model == "exact" and args.contact == "all" and len(scene.mass) > 24:
                 raise RuntimeError("more than 24 balls; ask for it by --contact exact")
-            runs[model] = run(model, args.dt)
+            runs[model] = run_flags(args, scene, model, args.dt)
         except RuntimeError as error:
             without[model] = str(error)
-    return runs, without, run
+    return runs, without
 
 
 def collect(args, scene):
     """The runs {model: Run}, and what metrics.json holds: knobs, measures, the stability grid."""
-    runs, without, run = run_all(args, scene)
+    runs, without = run_all(args, scene)
     metrics = {name: getattr(args, name)
                for name in ("scene", "contact", "dt", "steps", "seed", "stiffness")}
     metrics |= {"restitution": scene.restitution, "without": without, "stability": {}}
     metrics["quality"] = {model: contact_quality(found, scene, args.dt, runs.get("exact"))
                           for model, found in runs.items()}
     if args.contact == "all" and args.scene != "pile":
-        metrics["stability"] = measure_stability(run, scene, args.dt, args.stiffness, runs)
+        metrics["stability"] = measure_stability(
+            lambda model, dt: run_flags(args, scene, model, dt), scene, args.dt, args.stiffness,
+            runs)
     return runs, rounded(metrics)
 
 
@@ -1144,8 +1125,6 @@ def main(argv=None):
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
         return 130
-    except MemoryError:
-        return fail("not enough memory; allowed: fewer --steps or --bodies")
     except OSError as error:                            # nobody reads on, or the disk is full
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         unread = isinstance(error, BrokenPipeError)
