@@ -23,7 +23,7 @@ for _library in ("OMP", "OPENBLAS", "MKL"):     # one thread each; said before n
 from curriculum.bench import accuracy, piles, report, skips
 from curriculum.text import results
 
-PARTS = {"accuracy": accuracy, "pile": piles, "skip": skips}
+PARTS = {"accuracy": accuracy.measure, "pile": piles.measure, "skip": skips.measure}
 FULL = results.ROOT / results.FOLDERS["bench"]
 QUICK = results.ROOT / "outputs" / "bench-quick"
 
@@ -38,13 +38,15 @@ def main(argv=None):
     folder = QUICK if args.quick else FULL
     try:
         for name in PARTS if args.part == "all" else {args.part} & set(PARTS):
-            part, start = PARTS[name], time.monotonic()
-            results.save("bench", name, part.measure(args.quick), part.COMMAND, part.CODE, folder)
+            start, command = time.monotonic(), f"python -m curriculum.bench {name}"
+            results.save("bench", name, PARTS[name](args.quick), command, folder=folder)
             print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
         sections = json.loads((folder / results.NAME).read_text("utf-8"))
         for wanted, found, met in report.goals(sections):
             print(f"{'met   ' if met else 'MISSED'} {wanted}: {found}")
         report.write(folder, sections)
+        if not args.quick:
+            results.write_block("bench", report.readme(sections))
     except KeyboardInterrupt:
         print("stopped; what was finished is kept", file=sys.stderr)
         return 130

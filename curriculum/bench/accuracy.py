@@ -9,80 +9,51 @@ medians over fresh processes, with least and greatest:
 """
 
 import statistics
-from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
 import contact
 from curriculum import pool
 from curriculum.bench import engines, problems, timing
+from curriculum.bench.engines import Setting
 
-COMMAND = "python -m curriculum.bench accuracy"
-CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")
 ERRORS = ("error", "final_error", "energy_error", "depth")
 PROCESSES = 3
 ENOUGH = 0.1        # s: once the runs of a cell have taken so long, it is not timed again
 QUICK = dict(names=("drop", "stack", "slide"), dts=(0.002, 0.008), starts=2, processes=1)
 
 
-class Contestant(NamedTuple):
-    """One way of stepping a scene: a model of contact.py, or a setting of an engine."""
+class Model(engines.Session):
+    """A model of contact.py: as run_model runs it, or by the compiled twin; steps cut in parts.
 
-    family: str             # gives colour and marker
-    words: str              # its setting, for a reader
-    prepare: Callable       # (scene, dt, steps) -> {"read": call, "bare": call}; they step, no more
-    record: Callable        # (scene, dt, steps) -> contact.Run, not timed
-    refuses: Callable       # scene -> why it does not run it, or None
-    adaptive: bool = False  # chooses its own steps: dt is only how often it is looked at
-    only: tuple = ()        # the problems it is for; none means all
+    It always records, so it has no bare form.
+    """
 
-    @property
-    def name(self):
-        return f"{self.family}: {self.words}"
+    def __init__(self, scene, dt, model, compiled=False, substeps=1, **knobs):
+        self.given, self.substeps = (model, scene, dt / substeps), substeps
+        self.compiled, self.settings = compiled, contact.Settings(**knobs)
 
-    def dts(self, problem):
-        return (problems.REFERENCE_DT,) if self.adaptive else problem.dts
-
-
-def nothing(scene):
-    """What refuses a scene that anybody can run."""
-
-
-def ours(family, words, compiled=False, substeps=1, only=(), adaptive=False, **knobs):
-    """A model of contact.py: as run_model runs it, or by the compiled twin; steps cut in parts."""
-
-    def record(scene, dt, steps):
-        chosen, many = contact.Settings(**knobs), substeps * steps
-        if compiled:
+    def states(self, n):
+        if self.compiled:
             from curriculum import fast
-            found = fast.simulate(family, scene, dt / substeps, many, chosen)[:2]
+            q, v, _ = fast.simulate(*self.given, n * self.substeps, self.settings)
         else:
-            found = contact.run_model(family, scene, dt / substeps, many, chosen)[1:3]
-        return contact.Run(np.arange(steps + 1) * dt, *(part[::substeps] for part in found))
+            _, q, v, _ = contact.run_model(*self.given, n * self.substeps, self.settings)
+        return q[::self.substeps], v[::self.substeps]
 
-    def prepare(scene, dt, steps):
-        return {"read": partial(record, scene, dt, steps)}
-
-    return Contestant(family, words, prepare, record, nothing, adaptive, only)
+    trace = states
 
 
-def theirs(setting):
-    """A setting of another engine."""
+def ours(model, words, *cut, only=(), adaptive=False, **knobs):
+    """A setting of a model of contact.py."""
+    def build(scene, dt):
+        return Model(scene, dt, model, *cut, **knobs)
 
-    def prepare(scene, dt, steps):
-        read, bare = setting.build(scene, dt), setting.build(scene, dt)
-        return {"read": partial(read.trace, steps), "bare": partial(bare.advance, steps)}
-
-    def record(scene, dt, steps):
-        return contact.Run(np.arange(steps + 1) * dt, *setting.build(scene, dt).states(steps))
-
-    missing = engines.missing(setting.engine)
-    return Contestant(setting.engine, setting.words, prepare, record,
-                      lambda scene: missing or setting.refuses(scene), setting.adaptive)
+    return Setting(model, words, build, adaptive, only=only)
 
 
+ANSWERED = ("drop", "bounce", "stack", "slide", "elastic")      # not by exact itself
 MANY = ("stack", "pile")        # where contacts share balls, and the number of sweeps matters
 STIFF = dict(solref=(1e-9, 5.0), solimp=contact.HARD)
 CONTESTANTS = (
@@ -96,11 +67,12 @@ CONTESTANTS = (
     ours("lcp", "compiled, 20 sweeps, warm", True, only=MANY, warm=0.8),
     ours("lcp", "compiled, 20 sweeps, 4 substeps", True, 4),
     ours("lcp", "compiled, 20 sweeps, 16 substeps", True, 16),
-    ours("lcp", "compiled, 5 sweeps, 16 substeps, warm", True, 16, MANY, iters=5, warm=0.8),
+    ours("lcp", "compiled, 5 sweeps, 16 substeps, warm", True, 16, only=MANY, iters=5,
+         warm=0.8),
     ours("soft", "as MuJoCo ships it, or direct where e > 0"),
     ours("soft", "time constant 2 dt, ratio 5, d 0.9999", only=("drop", "slide", *MANY), **STIFF),
-    ours("exact", "event to event", adaptive=True),
-    *map(theirs, engines.SETTINGS))
+    ours("exact", "event to event", only=ANSWERED, adaptive=True),
+    *engines.SETTINGS)
 BY_NAME = {contestant.name: contestant for contestant in CONTESTANTS}
 LABELS = {name: name for name in contact.MODELS} | {
     name: about[0] for name, about in engines.ENGINES.items()}
@@ -124,21 +96,13 @@ def measure(quick=False):
 def cells(chosen, quick):
     """(problem, contestant, dt, starts) of every point, by names."""
     for problem in chosen:
-        scene = problem.build(0)
         for c in CONTESTANTS:
-            if not runs(c, problem, scene) or (quick and c.family == "drake"):
+            kept_out = c.only and problem.name not in c.only or quick and c.engine == "drake"
+            if kept_out or c.refuses(problem.build(0)):
                 continue
-            for dt in c.dts(problem):
+            for dt in (problems.REFERENCE_DT,) if c.adaptive else problem.dts:
                 if not quick or dt in QUICK["dts"]:
                     yield (problem.name, c.name, dt, QUICK["starts"] if quick else problem.starts)
-
-
-def runs(contestant, problem, scene):
-    """Whether a contestant takes part in a problem."""
-    if contestant.family == "exact" and problem.exact_is_the_truth:
-        return False
-    for_it = not contestant.only or problem.name in contestant.only
-    return for_it and not contestant.refuses(scene)
 
 
 def errors_of(job):
@@ -147,21 +111,29 @@ def errors_of(job):
     problem, found = problems.BY_NAME[problem], []
     for start in range(starts):
         scene = problem.build(start)
-        run = BY_NAME[contestant].record(scene, dt, problem.steps(dt))
+        states = BY_NAME[contestant].build(scene, dt).states(problem.steps(dt))
+        run = contact.Run(np.arange(len(states[0])) * dt, *states)
         found.append(problems.quality(problem, scene, run))
     return found
 
 
+def prepare(name, way, scene, dt, steps):
+    """The call of a contestant that takes these steps, and no more."""
+    session = BY_NAME[name].build(scene, dt)
+    return partial(session.trace if way == "read" else session.advance, steps)
+
+
 def times_of(job):
     """{way: seconds} of a cell: the median of up to three runs, after a short one as a warm-up."""
-    problem, contestant, dt, _ = job
-    problem, contestant = problems.BY_NAME[problem], BY_NAME[contestant]
-    scene, steps, seconds = problem.build(0), problem.steps(dt), {}
-    for call in contestant.prepare(scene, dt, min(50, steps)).values():
-        call()
+    problem, name, dt, _ = job
+    scene, steps = problems.BY_NAME[problem].build(0), problems.BY_NAME[problem].steps(dt)
+    ways = ("read", "bare") if BY_NAME[name].engine in engines.ENGINES else ("read",)
+    seconds = {way: [] for way in ways}
+    for way in ways:
+        prepare(name, way, scene, dt, min(50, steps))()
     for _ in range(3):
-        for way, call in contestant.prepare(scene, dt, steps).items():
-            seconds.setdefault(way, []).append(timing.timed(call))
+        for way in ways:
+            seconds[way].append(timing.timed(prepare(name, way, scene, dt, steps)))
         if sum(map(sum, seconds.values())) > ENOUGH:
             break
     return {way: statistics.median(values) for way, values in seconds.items()}
@@ -169,17 +141,16 @@ def times_of(job):
 
 def point(job, errors, times):
     """One point as a flat dict. diverged: of how many starts. An error that is none is None."""
-    problem, contestant, dt, _ = job
-    c = BY_NAME[contestant]
-    found = dict(problem=problem, family=c.family, words=c.words, dt=dt,
+    problem, name, dt, _ = job
+    c = BY_NAME[name]
+    found = dict(problem=problem, family=c.engine, words=c.words, dt=dt,
                  diverged=sum(e["diverged"] is not None for e in errors))
-    for name in ERRORS:
-        found[name] = statistics.median(e[name] for e in errors)
+    for key in ERRORS:
+        found[key] = statistics.median(e[key] for e in errors)
     found["least"] = min(e["error"] for e in errors)
     found["greatest"] = max(e["error"] for e in errors)
     for way in ("read", "bare"):
-        values = [1e3 * each[way] for each in times if way in each]
-        about = timing.spread(values) if values else {}
+        about = timing.spread([1e3 * each[way] for each in times]) if way in times[0] else {}
         for which in ("median", "min", "max"):
             found[f"{way}_{which}"] = about.get(which)
     return found
@@ -197,7 +168,7 @@ def headline(points):
 
 def left_out(chosen):
     """{label: why} of whoever does not run every problem."""
-    return {LABELS[c.family]: why for problem in chosen for c in CONTESTANTS
+    return {LABELS[c.engine]: why for problem in chosen for c in CONTESTANTS
             if (why := c.refuses(problem.build(0)))}
 
 

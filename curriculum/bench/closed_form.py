@@ -19,6 +19,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 g = 9.81    # m/s^2, the magnitude of gravity
+FLIGHTS = 10_000    # after so many a bounce is over in the last bit, or the run
 
 
 def first_impact_time(gap):
@@ -41,10 +42,7 @@ def rest_time(gap, restitution):
 
 
 def bounce_motion(gap, restitution, t):
-    """Gap [m] and vertical speed [m/s], like t [s], of a ball released `gap` [m] over the floor.
-
-    The number of the flight under way comes from the series solved for k, not from a loop.
-    """
+    """Gap [m] and vertical speed [m/s], like t [s], of a ball released `gap` [m] over the floor."""
     t, e = np.asarray(t, dtype=float), restitution
     t1 = first_impact_time(gap)
     falling = t < t1
@@ -52,24 +50,14 @@ def bounce_motion(gap, restitution, t):
     if e > 0.0:
         flying = (t >= t1) & (t < rest_time(gap, e))
         after = np.where(flying, t, t1)     # any harmless time where the answer is not a flight
-        k = flight_number(after, gap, e)
+        impacts = impact_time(gap, e, np.arange(FLIGHTS))
+        k = np.searchsorted(impacts, after, side="right") - 1
         leaving = g * t1 * e ** (k + 1)
-        s = after - impact_time(gap, e, k)
+        s = after - impacts[k]
         flight = np.maximum(leaving * s - 0.5 * g * s * s, 0.0)     # s may round to just outside
         still = np.where(flying, flight, 0.0)
         speed = np.where(flying, leaving - g * s, 0.0)
     return np.where(falling, gap - 0.5 * g * t * t, still), np.where(falling, -g * t, speed)
-
-
-def flight_number(t, gap, e):
-    """Largest k with impact_time(k) <= t, for t1 <= t: a logarithm, mended where it rounded."""
-    t1 = first_impact_time(gap)
-    if e == 1.0:
-        return np.floor((t / t1 - 1.0) / 2.0)
-    left = 1.0 - (t / t1 - 1.0) * (1.0 - e) / (2.0 * e)     # e^k at an impact, less in flight
-    k = np.floor(np.log(np.maximum(left, np.finfo(float).tiny)) / np.log(e))
-    start, end = impact_time(gap, e, k), impact_time(gap, e, k + 1)
-    return np.maximum(np.where(t < start, k - 1, np.where(t >= end, k + 1, k)), 0.0)
 
 
 def slide_motion(theta0, length, radius, height, t):

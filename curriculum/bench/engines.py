@@ -320,44 +320,51 @@ def no_coefficient(scene):
     return None
 
 
+def anything(scene):
+    """Of an engine that runs every scene."""
+
+
 # what is measured
 
 
 class Setting(NamedTuple):
-    """One engine with one set of choices; build(scene, dt) -> a session."""
+    """One engine, or one of our models, with one set of choices; build(scene, dt) -> a session."""
 
-    engine: str             # a key of ENGINES
+    engine: str             # a key of ENGINES, or a model
     words: str              # the setting, for a reader
     build: Callable
     adaptive: bool = False  # it chooses its own steps: dt is only how often it is looked at
-    refuses: Callable = lambda scene: None      # why it does not run a scene, or None
+    cannot: Callable = anything     # scene -> why it does not run it, or None
+    only: tuple = ()        # the problems it is for; none means all
+
+    @property
+    def name(self):
+        return f"{self.engine}: {self.words}"
+
+    def refuses(self, scene):
+        """Why it does not run a scene, or does not run here, or None."""
+        return missing(self.engine) or self.cannot(scene)
 
 
-ENGINES = {     # label, package, module
-    "mujoco": ("MuJoCo", "mujoco", "mujoco"),
-    "pymunk": ("pymunk", "pymunk", "pymunk"),
-    "box2d3": ("Box2D 3", "pyb2d3", "pyb2d3"),
-    "drake": ("Drake", "drake", "pydrake"),
+ENGINES = {     # label, package, module, session
+    "mujoco": ("MuJoCo", "mujoco", "mujoco", Mujoco),
+    "pymunk": ("pymunk", "pymunk", "pymunk", Pymunk),
+    "box2d3": ("Box2D 3", "pyb2d3", "pyb2d3", Box2d3),
+    "drake": ("Drake", "drake", "pydrake", Drake),
 }
 RIGID, PUSHED = partial(direct, 0.0, 0.9999), partial(direct, 0.2, 0.999)
 
 
-def mujoco(words, contact, **options):
-    return Setting("mujoco", words, partial(Mujoco, contact=contact, **options))
+def setting(engine, words, *given, **options):
+    """The setting of an engine with these options of its session."""
+    def build(scene, dt):
+        return ENGINES[engine][-1](scene, dt, *given, **options)
+
+    cannot = no_coefficient if engine == "drake" else anything
+    return Setting(engine, words, build, "scheme" in options, cannot)
 
 
-def pymunk(words, **options):
-    return Setting("pymunk", words, partial(Pymunk, **options))
-
-
-def box2d3(words, substeps, **options):
-    return Setting("box2d3", words, partial(Box2d3, substeps=substeps, **options))
-
-
-def drake(words, **options):
-    return Setting("drake", words, partial(Drake, **options), "scheme" in options, no_coefficient)
-
-
+mujoco, pymunk, box2d3, drake = (partial(setting, engine) for engine in ENGINES)
 SETTINGS = (
     mujoco("as shipped", shipped),
     mujoco("time constant 2 dt, ratio 5, d 0.9999", partial(standard, 2.0, 5.0, 0.9999)),
@@ -388,7 +395,6 @@ SETTINGS = (
 
 def missing(engine) -> str | None:
     """What to install for an engine that is not there, or None."""
-    _, package, module = ENGINES[engine]
-    if importlib.util.find_spec(module) is None:
-        return f"not installed: pip install {package}"
+    if engine in ENGINES and importlib.util.find_spec(ENGINES[engine][2]) is None:
+        return f"not installed: pip install {ENGINES[engine][1]}"
     return None

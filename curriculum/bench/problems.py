@@ -25,7 +25,6 @@ class Problem(NamedTuple):
     build: Callable         # start -> contact.Scene
     truth: Callable         # (scene, t) -> q, v, (len(t), 2, N)
     starts: int = 5         # the error of one is a lottery of where a step falls
-    exact_is_the_truth: bool = False
     dts: tuple = DTS
 
     def steps(self, dt):
@@ -89,10 +88,10 @@ PROBLEMS = (
             0.7, slide_scene, slide),
     Problem("pile", "Pile: eight balls fall beside and over one another, 1 s",
             "impacts that decide where everything goes next: small errors grow",
-            1.0, scene_of("pile", 8), pile, 3, True),
+            1.0, scene_of("pile", 8), pile, 3),
     Problem("elastic", "Elastic bounce: one ball, restitution 1, 20 s",
             "two dozen impacts that may neither take nor give energy, and whose times add up",
-            20.0, scene_of("bounce", restitution=1.0), column, 3, False, DTS[1:]),
+            20.0, scene_of("bounce", restitution=1.0), column, 3, DTS[1:]),
 )
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
 

@@ -9,6 +9,7 @@ from contact import write_whole
 from curriculum import plotting
 from curriculum.bench import accuracy, piles, problems, skips
 from curriculum.text import results
+from curriculum.text.results import table
 
 TINY = 1e-10        # r, what exact has to stay within
 PILE_LIMIT = 0.6    # of the fastest peer's time
@@ -23,12 +24,6 @@ def number(value):
     if value == 0.0 or 1e-3 <= abs(value) < 1e5:
         return f"{float(f'{value:.3g}'):,.10g}"
     return f"{value:.1e}"
-
-
-def table(head, rows):
-    """A Markdown table."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in lines)
 
 
 def ranged(about):
@@ -119,11 +114,8 @@ def skip_goals(section):
 # pages
 
 
-def readme():
+def readme(sections):
     """The block of the project's README: a figure, a table, and what is missed."""
-    sections = results.load("bench")
-    if not sections:
-        return "Not measured yet: `python -m curriculum.bench`."
     missed = [f"{wanted} ({found})" for wanted, found, met in goals(sections) if not met]
     parts = ["![Run time against error: bounce](curriculum/bench/results/error-bounce.svg)",
              table(["", "exact", "lcp, best at 2 ms", "best other engine at 2 ms"],
@@ -215,8 +207,8 @@ def pile_part(section):
     yield ("The same walls in every engine, steps of 2 ms. A pile counts as settled only where no "
            f"ball was faster than {piles.AT_REST:g} m/s over the last {piles.WATCHED} steps; depth "
            "is the mean of the overlapping contacts. Times are CPU time, median over fresh "
-           "processes (least to greatest). The twin's first step comes after "
-           f"{number(section['compile'].get('fresh'))} s where it must be compiled, and after "
+           "processes (least to greatest). A process that takes one step by the twin needs "
+           f"{number(section['compile'].get('fresh'))} s where it must be compiled, and "
            f"{number(section['compile'].get('again'))} s later on; neither is in the table.")
     yield ("Ten thousand balls begin as ten settled copies of each engine's own thousand, since a "
            "lattice of so many does not come to rest in reach; only the winners at a thousand run "
@@ -256,13 +248,14 @@ def figures(sections):
     return made
 
 
-def front(points, across, up):
-    """The points that no other beats in both at once, from the left to the right."""
+def draw_front(axis, points, across, up, name, label):
+    """A line through the points that no other beats in both at once; these points."""
     best, found = math.inf, []
     for point in sorted(points, key=lambda p: (p[across], p[up])):
         if point[up] < best:
             best = point[up]
             found.append(point)
+    plotting.line(axis, [p[across] for p in found], [p[up] for p in found], name, label)
     return found
 
 
@@ -298,10 +291,9 @@ def draw_family(axis, section, family, points):
     color = plotting.look(family)["color"]
     axis.scatter([p["error"] for p in points], [p["read_median"] for p in points], s=7,
                  color=color, alpha=0.35, linewidths=0)
-    line = front(points, "error", "read_median")
     best = section["headline"].get(points[0]["problem"], {}).get(family)
     label = called(dict(best, family=family)) if best else accuracy.LABELS[family]
-    plotting.line(axis, [p["error"] for p in line], [p["read_median"] for p in line], family, label)
+    line = draw_front(axis, points, "error", "read_median", family, label)
     for p in line if family == "lcp" else ():
         axis.annotate(f"{1e3 * p['dt']:g}", (p["error"], p["read_median"]), (-3, -4), ha="right",
                       va="top", textcoords="offset points", fontsize=7.5, color=color)
@@ -323,8 +315,7 @@ def pile_figure(section):
                 look = dict(plotting.look(engine), ls="", alpha=0.6)
                 face = {} if row["at_rest"] else {"mfc": "none"}
                 axis.plot(row["x"], row["y"], **look, **face)
-            line = front([row for row in rows if row["at_rest"]], "x", "y")
-            plotting.line(axis, [r["x"] for r in line], [r["y"] for r in line], engine, label)
+            draw_front(axis, [row for row in rows if row["at_rest"]], "x", "y", engine, label)
         axis.set(xscale="log", yscale="log", title=f"{count:,} balls", ylabel="time a step [µs]")
     axes[-1].set_xlabel("mean depth of the overlapping contacts [r]")
     plotting.legend_below(axes[-1], columns=3, down=0.24)

@@ -6,15 +6,12 @@ import random
 import statistics
 import sys
 import tempfile
-from pathlib import Path
+from functools import partial
 
 import contact
 from curriculum import pool
-from curriculum.bench import accuracy, timing
-from curriculum.machine import ROOT
+from curriculum.bench import accuracy, engines, timing
 
-COMMAND = "python -m curriculum.bench skip"
-CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")
 SCENES, STEPPED = ("drop", "bounce", "stack"), ("penalty", "lcp", "soft")
 DT, STEPS = 0.002, 2000
 RECORDED = "drop, recorded"
@@ -77,7 +74,7 @@ def processes(quick):
         seconds = {name: [] for name in commands}
         for number in range(rounds + 1):    # the first warms the disk cache and the bytecode
             for name in random.Random(number).sample(list(commands), len(commands)):
-                took = timing.whole_process(commands[name], ROOT, Path(out) / "bytecode")
+                took = timing.whole_process(commands[name], out)
                 seconds[name] += [took] if number else []
     found = {name: timing.spread(values) for name, values in seconds.items()}
     for name in LIMITS:
@@ -90,15 +87,11 @@ def processes(quick):
 
 def against_pymunk(quick):
     """{scene: {lcp, pymunk: spread [ms], ratio}}: 2000 steps in this process, pymunk unread."""
-    lcp = accuracy.BY_NAME["lcp: 20 sweeps"]
-    peer = accuracy.BY_NAME["pymunk: 10 iterations"]
-    found = {}
-    for name in SCENES:
-        scene = contact.build_scene(name)
-        if peer.refuses(scene):
-            return found
-        tasks = {"lcp": lambda scene=scene: lcp.prepare(scene, DT, STEPS)["read"],
-                 "pymunk": lambda scene=scene: peer.prepare(scene, DT, STEPS)["bare"]}
+    found, ways = {}, {"lcp: 20 sweeps": "read", "pymunk: 10 iterations": "bare"}
+    for name in SCENES if not engines.missing("pymunk") else ():
+        given = contact.build_scene(name), DT, STEPS
+        tasks = {setting.split(":")[0]: partial(accuracy.prepare, setting, way, *given)
+                 for setting, way in ways.items()}
         times = {key: timing.spread([1e3 * value for value in values])
                  for key, values in timing.interleave(tasks, 5 if quick else 31).items()}
         found[name] = dict(times, ratio=times["lcp"]["median"] / times["pymunk"]["median"])
@@ -109,10 +102,9 @@ def speed_up(quick):
     """[{scene, model, skipped, taken [ms], ratio}]: medians of runs with and without skips."""
     rows = []
     for name, model in itertools.product(SCENES, STEPPED):
-        scene = contact.build_scene(name)
-        tasks = {skip: lambda skip=skip, scene=scene, model=model: (
-            lambda: contact.run_model(model, scene, DT, STEPS, contact.Settings(skip=skip)))
-            for skip in (True, False)}
+        given = model, contact.build_scene(name), DT, STEPS
+        tasks = {skip: partial(partial, contact.run_model, *given, contact.Settings(skip=skip))
+                 for skip in (True, False)}
         times = timing.interleave(tasks, 2 if quick else 7)
         skipped, taken = (1e3 * statistics.median(times[skip]) for skip in (True, False))
         rows.append(dict(scene=name, model=model, skipped=skipped, taken=taken,

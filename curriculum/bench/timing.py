@@ -17,6 +17,7 @@ import subprocess
 import time
 from concurrent.futures import ProcessPoolExecutor
 
+from curriculum.machine import ROOT
 from curriculum.pool import bar
 
 
@@ -64,16 +65,16 @@ def interleave(tasks, rounds) -> dict:
     return seconds
 
 
-def whole_process(command, cwd, bytecode) -> float:
+def whole_process(command, folder) -> float:
     """Seconds on the wall until a command has come to its end. Raises RuntimeError if it fails.
 
-    bytecode: the folder where Python keeps its compiled modules. An environment that forbids it
-    to keep any would have each process compile the course's modules again, but not numpy's.
+    folder: where Python and numba keep what they compile. An environment that forbids to keep any
+    would have each process compile the course's modules again, but not numpy's.
     """
-    environment = dict(os.environ, PYTHONPYCACHEPREFIX=str(bytecode))
+    environment = dict(os.environ, PYTHONPYCACHEPREFIX=folder, NUMBA_CACHE_DIR=folder)
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     start = time.perf_counter()
-    run = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True)
+    run = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
     if run.returncode:
         raise RuntimeError(f"{' '.join(command)} fails: {run.stderr.strip()[-300:]}")
     return time.perf_counter() - start

@@ -9,7 +9,6 @@
 Exit status 0: no violation; 1: violations; 2: bad command line.
 """
 
-import argparse
 import os
 import sys
 
@@ -37,10 +36,8 @@ def parse(argv):
 
 def scene(text):
     """The job of one scene."""
-    kind, _, digits = text.rpartition(":")
-    if kind not in ("", "small") or not digits.isdigit():
-        raise argparse.ArgumentTypeError(f"given {text!r}; allowed: a number, or small:NUMBER")
-    return jobs.scene_jobs([int(digits)], kind == "small")
+    number = contact.number(int, 0, 1e9)(text.removeprefix("small:"))
+    return jobs.scene_jobs([number], small=text.startswith("small:"))
 
 
 def some_scenes(todo):
@@ -64,8 +61,7 @@ def everything(args):
 
     large, small = QUICK if args.quick else FULL
     sections = {
-        "scenes": jobs.scene_jobs(range(large)),
-        "small": jobs.scene_jobs(range(small), small=True),
+        "scenes": jobs.scene_jobs(range(large)) + jobs.scene_jobs(range(small), small=True),
         "maps": list(maps.map_jobs(args.quick)),
         "extremes": list(extremes.extreme_jobs(args.quick)),
         "mujoco": mujoco_match.match_jobs(args.quick),

@@ -29,18 +29,6 @@ class Case(NamedTuple):
     steps: int = 2000
     settings: contact.Settings = contact.Settings()
 
-    def knobs(self):
-        """solref and solimp as both get them."""
-        given = self.settings.solref, self.settings.solimp
-        return contact.soft_defaults(self.scene.restitution, self.dt, *given)
-
-
-def engine_run(case):
-    """q and v (steps + 1, 2, N) of MuJoCo."""
-    knobs = [" ".join(map(repr, values)) for values in case.knobs()]
-    session = engines.Mujoco(case.scene, case.dt, lambda scene, dt: knobs, **OPTIONS)
-    return session.states(case.steps)
-
 
 def cases():
     """What has to match: every kind of scene, step, mass and setting.
@@ -79,12 +67,15 @@ def soft_is_mujoco(case):
     """soft: a step from MuJoCo's state ends where its own does, within 1e-14 m and 1e-12 m/s; a
     whole run stays within 1e-11 m.
     """
-    q, v = engine_run(case)
-    for k in range(0, case.steps, STRIDE):
-        balls = contact.make_balls(case.scene._replace(q0=q[k], v0=v[k]))
-        contact.soft_step(balls, case.dt, *case.knobs())
+    scene, dt, steps, settings = case[1:]
+    knobs = contact.soft_defaults(scene.restitution, dt, settings.solref, settings.solimp)
+    texts = [" ".join(map(repr, values)) for values in knobs]
+    q, v = engines.Mujoco(scene, dt, lambda *_: texts, **OPTIONS).states(steps)
+    for k in range(0, steps, STRIDE):
+        balls = contact.make_balls(scene._replace(q0=q[k], v0=v[k]))
+        contact.soft_step(balls, dt, *knobs)
         ends = np.reshape(contact.state_of(balls), (-1, 4)).T
         yield f"step {k} [m]", np.abs(ends[:2] - q[k + 1]), 1e-14
         yield f"step {k} [m/s]", np.abs(ends[2:] - v[k + 1]), 1e-12
-    run = contact.run_model("soft", case.scene, case.dt, case.steps, case.settings)
+    run = contact.run_model("soft", scene, dt, steps, settings)
     yield "run [m]", np.abs(run.q - q), 1e-11

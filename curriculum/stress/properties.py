@@ -19,9 +19,6 @@ MOST = 2**17  # sweeps, by which it must have ended
 UNFINISHED = "lcp: unfinished sweeps add energy, without any push of Baumgarte's"
 
 
-# --- all models ---------------------------------------------------------------------------------
-
-
 @stated
 def finite_or_said_to_have_exploded(trial):
     """Every number of a run is finite, or contact_quality says that it blew up, and when."""
@@ -58,8 +55,8 @@ def a_run_can_be_taken_up_anywhere(trial):
     """A step of penalty, and of lcp cold, depends on the state alone: again the same bits."""
     half = trial.spec["steps"] // 2
     for model in ("penalty", "lcp") if trial.spec["warm"] == 0.0 else ("penalty",):
-        run, motion = trial.run(model), trial.motions[model]
-        if motion.listed[half:].any():
+        run = trial.run(model)
+        if trial.motions[model].listed[half:].any():
             start = scenes.state(run.q[half], run.v[half])
             again = trial.run(model, **start, steps=trial.spec["steps"] - half)
             yield model, *unlike(contact.Run(again.t, run.q[half:], run.v[half:]), again)
@@ -93,23 +90,20 @@ def momentum_along_x_is_kept(trial):
     sweeps = {"penalty": 1, "lcp": trial.spec["iters"], "soft": contact.MOST_SWEEPS}
     for model, motion in trial.motions.items():
         pairs = motion.listed[:, len(trial.mass) :].sum(1)
-        size = 8 * U * (motion.mass * motion.top).sum(1)
         off = np.abs((motion.mass * np.diff(motion.v[:, 0], axis=0)).sum(1))
-        yield model, off, (sweeps[model] * pairs + 2) * size, pairs > 0
+        allowed = 8 * U * (sweeps[model] * pairs + 2) * motion.size[:, 0].sum(1)
+        yield model, off, allowed, pairs > 0
 
 
 @stated
 def what_nothing_touches_falls(trial):
     """Stepped models: v + dt g without a contact, q + dt v always. Bound: 4 U of what is added."""
     for model, motion in trial.motions.items():
-        free = ~motion.on_balls(motion.listed)[:, 0].astype(bool) & ~trial.fixed
+        free = (motion.count == 0) & ~trial.fixed
         speed = np.abs(motion.v[1:]) + np.abs(motion.v[:-1]) + trial.dt * G
-        yield f"{model}, fall", np.abs(motion.v[1:] - motion.falling), 4 * U * speed, free[:, None]
+        yield f"{model}, fall", np.abs(motion.v[1:] - motion.falling), 4 * U * speed, free
         moved = np.abs(motion.q[1:] - motion.q[:-1] - trial.dt * motion.v[1:])
         yield f"{model}, move", moved, 4 * U * (np.abs(motion.q[1:]) + np.abs(motion.q[:-1]))
-
-
-# --- penalty ------------------------------------------------------------------------------------
 
 
 @stated
@@ -121,11 +115,9 @@ def springs_push_as_hooke_and_the_damper_say(trial):
     k, c, motion = trial.spec["stiffness"], trial.spec["damping"], trial.motions["penalty"]
     force = np.where(motion.listed, np.maximum(0.0, k * motion.depth - c * motion.before), 0.0)
     off = np.abs(motion.push - motion.total(motion.dt * force))
-    lengths, speeds = 2 * motion.reach + np.abs(motion.depth), motion.on_contacts(motion.top)
-    size = np.where(motion.listed, motion.dt * (k * lengths + c * speeds + 2 * force), 0.0)
-    count = motion.on_balls(motion.listed)
-    allowed = 8 * U * (motion.on_balls(size) + (count + 2) * (motion.mass * motion.top)[:, None])
-    yield "impulse [N s]", off, allowed, count * motion.mass > 0
+    size = motion.listed * motion.dt * (k * motion.lengths + c * motion.speeds + 2 * force)
+    allowed = 8 * U * (motion.on_balls(size) + (motion.count + 2) * motion.size)
+    yield "impulse [N s]", off, allowed, motion.pushed
 
 
 @stated
@@ -139,9 +131,6 @@ def other_units_give_the_same_run(trial):
     if motion.listed.any() and len(motion.push) == trial.spec["steps"]:
         scaled = trial.run("penalty", **other)
         yield "penalty", *unlike(run, contact.Run(run.t, scaled.q / 4.0, scaled.v / 2.0))
-
-
-# --- lcp ----------------------------------------------------------------------------------------
 
 
 def lcp_target(motion, e, beta):
@@ -164,8 +153,8 @@ def a_contact_alone_leaves_at_its_target(trial):
     target = lcp_target(motion, trial.spec["restitution"], beta)
     predicted = motion.along(motion.falling)
     off = np.abs(motion.after - np.maximum(predicted, target))
-    lengths = (2 * motion.reach + np.abs(motion.depth)) * max(beta, 1.0) / motion.dt
-    speeds = (trial.spec["iters"] + 4) * motion.on_contacts(motion.top) + np.abs(target)
+    lengths = motion.lengths * max(beta, 1.0) / motion.dt
+    speeds = (trial.spec["iters"] + 4) * motion.speeds + np.abs(target)
     clear = motion.alone & (np.abs(motion.depth) > 8 * U * motion.reach)
     yield "v_n [m/s]", off, 8 * U * (speeds + lengths), clear
 
@@ -187,7 +176,7 @@ def lcp_never_pulls_and_enough_sweeps_solve_it(trial):
         if not far_from_singular(n, motion.mass):
             continue
         lam, rest = np.linalg.lstsq(n, motion.push[k].ravel(), rcond=None)[:2]
-        rounded = 8 * U * on.sum() * (motion.mass * motion.top[k]).sum() / np.linalg.svd(n)[1][-1]
+        rounded = 8 * U * on.sum() * motion.size[k].sum() / np.linalg.svd(n)[1][-1]
         yield f"step {k}, pulled [N s]", np.maximum(-lam, 0.0), (sweeps + 2) * rounded
         yield f"step {k}, not explained [N s]", np.sqrt(rest), (sweeps + 2) * rounded
         start = scenes.state(motion.q[k], motion.v[k])
@@ -240,11 +229,11 @@ def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
     """
     free = Trial(trial.spec | {"baumgarte": 0.0, "warm": 0.0})
     motion, e = free.motions["lcp"], trial.spec["restitution"]
-    rise, size = rises(motion, motion.v, e)
+    rise, size = rises(motion, motion, e)
     pushes = motion.listed.sum(1) * (trial.spec["iters"] + 2)
-    k = int((rise - 8 * U * pushes * size).argmax()) if len(rise) else 0
     if not pushes.any():
         return
+    k = int((rise - 8 * U * pushes * size).argmax())
     if rise[k] <= NOTABLE * size[k]:
         yield "rise [J]", rise, NOTABLE * size, pushes > 0
         return
@@ -252,32 +241,22 @@ def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
     start = scenes.state(motion.q[k], motion.v[k])
     while left > NOTABLE * size[k] and sweeps < MOST:
         sweeps *= 2
-        v = free.run("lcp", **start, steps=1, iters=sweeps).v
-        left = rises(motion, v, e, k)[0][0]
+        left = rises(free.run("lcp", **start, steps=1, iters=sweeps), motion, e)[0][0]
     total = contact.energy(motion.q, motion.v, motion.mass)
     top = max(0.0, float((total - total[0]).max()))
     trial.note(UNFINISHED, share=rise[k] / size[k], sweeps=sweeps, start=total[0], gained=top)
     yield f"rise [J] with {sweeps} sweeps", left, NOTABLE * size[k]
 
 
-def rises(motion, v, e, k=None):
-    """(rise of F beyond the law, the energies) of all steps, or of step k alone."""
-    part = slice(None) if k is None else slice(k, k + 1)
-    first, last, q = v[:-1], v[1:], motion.q[:-1][part]
-    lead = e / (1 + e) * motion.dt * -G * (motion.mass * (last - first)[:, 1]).sum(-1)
-    moved = motion.dt * G * (motion.mass * last[:, 1]).sum(-1)
-    loss = (1 - e) / (1 + e) * kinetic(last - first, motion.mass)
-    change = kinetic(last, motion.mass) - kinetic(first, motion.mass) + moved + lead + loss
-    size = kinetic(first, motion.mass) + (motion.mass * G * np.abs(q[:, 1])).sum(-1)
-    return change, np.maximum(size, kinetic(last, motion.mass))
-
-
-def kinetic(v, mass):
-    """Kinetic energy [J] of velocities (S, 2, N)."""
-    return 0.5 * (mass * v * v).sum((1, 2))
-
-
-# --- soft ---------------------------------------------------------------------------------------
+def rises(run, motion, e):
+    """(rise of F beyond the law, the energies) of every step of a run, by the motion's masses."""
+    first, last, D = run.v[:-1], run.v[1:], np.diff(run.v, axis=0)
+    before, after, D2 = (0.5 * (motion.mass * v * v).sum((1, 2)) for v in (first, last, D))
+    lead = e / (1 + e) * motion.dt * -G * (motion.mass * D[:, 1]).sum(1)
+    moved = motion.dt * G * (motion.mass * last[:, 1]).sum(1)
+    rise = after - before + moved + lead + (1 - e) / (1 + e) * D2
+    size = before + (motion.mass * G * np.abs(run.q[:-1, 1])).sum(1)
+    return rise, np.maximum(size, after)
 
 
 def soft_law(motion, e, solref):
@@ -287,9 +266,8 @@ def soft_law(motion, e, solref):
     if bounces:
         d0, d1, width, mid, power = HARD
     x = np.clip(motion.depth / width, 0.0, 1.0)
-    y = np.where(
-        x <= mid, x**power / mid ** (power - 1), 1 - (1 - x) ** power / (1 - mid) ** (power - 1)
-    )
+    low, high = x**power / mid ** (power - 1), 1 - (1 - x) ** power / (1 - mid) ** (power - 1)
+    y = np.where(x <= mid, low, high)
     d = d0 + y * (d1 - d0)
     T = max(T, 2 * motion.dt)
     K, B = (0.0, (1 + e) / motion.dt / d1) if bounces else ((d1 * T * damping) ** -2, 2 / (d1 * T))
@@ -317,18 +295,15 @@ def soft_pushes_as_mujoco_says(trial):
         beyond = (~(off <= allowed)).any((1, 2)).sum()
         yield "steps off beyond those unsettled", beyond, motion.unsettled
     else:
-        pushed = motion.on_balls(motion.listed) * motion.mass > 0.0
-        yield "impulse [N s]", off, allowed, pushed
+        yield "impulse [N s]", off, allowed, motion.pushed
 
 
 def soft_bound(motion, target, R):
     """What settled sweeps and rounding may leave in the momenta (S, 2, N) [kg m/s]."""
-    listed, count = motion.listed, motion.listed.sum(1)[:, None]
-    size = np.where(listed, np.abs(target) + motion.on_contacts(motion.top), 0.0)
-    left = (contact.LAST_BITS + 16 * U) * (count + 1) * size.max(1, keepdims=True)
-    own = motion.on_balls(np.where(listed, left / R, 0.0))
-    pushes = motion.on_balls(listed) * contact.MOST_SWEEPS + 4
-    return own + 8 * U * pushes * (motion.mass * motion.top)[:, None]
+    size = np.where(motion.listed, np.abs(target) + motion.speeds, 0.0).max(1, keepdims=True)
+    left = (contact.LAST_BITS + 16 * U) * (motion.listed.sum(1, keepdims=True) + 1) * size
+    own = motion.on_balls(np.where(motion.listed, left / R, 0.0))
+    return own + 8 * U * (motion.count * contact.MOST_SWEEPS + 4) * motion.size
 
 
 @stated
@@ -346,5 +321,5 @@ def an_impact_alone_returns_e_of_the_speed(trial):
         if model == "lcp":
             fair &= (back > bias) & (motion.dt * motion.before < motion.depth)
         if e > 0.0 and (model == "lcp" or solref is None):
-            size = motion.on_contacts(motion.top) + motion.dt * G
+            size = motion.speeds + motion.dt * G
             yield f"{model}, v_n [m/s]", np.abs(motion.after - back), share * size, fair

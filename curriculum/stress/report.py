@@ -8,8 +8,7 @@ from curriculum.text import results
 FOLDER = results.FOLDERS["stress"]
 RESULTS, QUICK = results.ROOT / FOLDER, results.ROOT / "outputs" / "stress-quick"
 TITLES = {
-    "scenes": "Random scenes of up to 30 balls",
-    "small": "Random scenes of up to four balls",
+    "scenes": "Random scenes of up to 30 balls, and small ones of up to four",
     "maps": "Maps: one ball dropped a metre",
     "extremes": "Every flag of contact.py at its ends",
     "mujoco": "soft against MuJoCo: single steps and whole runs",
@@ -34,8 +33,8 @@ the states before and after each step, and held against the chapter's formulas."
 def write(found, folder):
     """Write what the jobs of each section found. Returns the violations [place, name, words]."""
     sections = {name: jobs.added_up(each) for name, each in found.items()}
-    for section, each in ((sections[name], found[name]) for name in ("scenes", "small")):
-        section |= {"scenes": len(each), "unfinished": jobs.unfinished(section)}
+    unfinished = jobs.unfinished(sections["scenes"])
+    sections["scenes"] |= {"scenes": len(found["scenes"]), "unfinished": unfinished}
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     error = max(abs(row["measured"] / row["theory"] - 1) for row in rows)
     sections["maps"] |= {"penalty": rows, "boundary_worst_error": error}
@@ -48,6 +47,8 @@ def write(found, folder):
         write_whole(folder / "penalty-map.svg", figures.penalty_map(sections["maps"]))
     except ImportError as error:
         print(f"no figure: {error}")
+    if folder == RESULTS:
+        results.write_block("stress", readme(sections))
     print(f"report: {folder / 'README.md'}")
     return [violation for section in sections.values() for violation in section["violations"]]
 
@@ -56,20 +57,16 @@ def summary(sections):
     """How much was judged, and how many violations there are, in one sentence."""
     total = sum(section["judgements"] for section in sections.values())
     wrong = sum(len(section["violations"]) for section in sections.values())
-    scenes = sections["scenes"]["scenes"] + sections["small"]["scenes"]
+    scenes, error = sections["scenes"]["scenes"], sections["maps"]["boundary_worst_error"]
     return (
         f"On {scenes:,} random scenes for each of the four models, over the maps and at the ends "
         f"of every flag, {total:,} judgements found {wrong or 'no'} violation{'s' * (wrong > 1)}; "
-        "the critical step of `penalty` is measured within "
-        f"{sections['maps']['boundary_worst_error']:.2%} of theory."
+        f"the critical step of `penalty` is measured within {error:.2%} of theory."
     )
 
 
-def readme():
+def readme(sections):
     """The stress block of the project's README: one figure and one sentence."""
-    sections = results.load("stress")
-    if not sections:
-        return "Not measured yet: `python -m curriculum.stress`."
     figure = f"![What penalty does over step and stiffness]({FOLDER}/penalty-map.svg)"
     link = f"[Every property, map and limit]({FOLDER}/README.md)."
     return f"{figure}\n\n{summary(sections)} {link}"
@@ -79,7 +76,8 @@ def page(sections):
     """README.md of the results."""
     parts = [HEAD.format(summary(sections))]
     for name, section in sections.items():
-        parts += [f"## {TITLES[name]}", table(section["properties"])]
+        head = ["property", "judged", "comparisons", "off, as a share of the bound"]
+        parts += [f"## {TITLES[name]}", results.table(head, rows_of(section["properties"]))]
         parts += [f"- **{': '.join(words)}**" for words in section["violations"]]
         notes = [f"- {what}: {count:,}" for what, count in section["notes"].items()]
         if notes:
@@ -90,16 +88,11 @@ def page(sections):
     return "\n\n".join(parts) + "\n"
 
 
-def table(properties):
-    """What was judged, a row for each property."""
-    lines = [
-        "| property | judged | comparisons | off, as a share of the bound |",
-        "| --- | --: | --: | --: |",
-    ]
+def rows_of(properties):
+    """What each property says, and how much of it was judged."""
     for name, (judged, count, share) in properties.items():
         words = " ".join(STATED[name].__doc__.split("\n\n")[0].split())
-        lines.append(f"| {words} | {judged:,} | {count:,} | {share or 0:.1g} |")
-    return "\n".join(lines)
+        yield [words, f"{judged:,}", f"{count:,}", f"{share or 0:.1g}"]
 
 
 def worst_of(unfinished):

@@ -120,6 +120,11 @@ class Motion:
         self.falling = self.v[:-1] + trial.dt * np.outer((0.0, -G), ~trial.fixed)
         self.push = self.mass * (self.v[1:] - self.falling)
         self.top = self.fastest()
+        self.count = self.on_balls(self.listed)  # of contacts of a ball (S, 1, N)
+        self.pushed = self.count * self.mass > 0.0  # what contacts may move
+        self.lengths = 2 * self.reach + np.abs(self.depth)  # that make a depth (S, C)
+        self.speeds = self.on_contacts(self.top)  # that make a v_n (S, C)
+        self.size = (self.mass * self.top)[:, None]  # of each momentum (S, 1, N)
 
     def measure(self, radius):
         """Set depth, normal and reach: the distance of the centres at which two balls touch."""
@@ -160,8 +165,8 @@ class Motion:
     @cached_property
     def alone(self):
         """Listed contacts whose moving balls have no other listed contact (S, C)."""
-        count = self.on_balls(self.listed.astype(float))[:, 0] * (self.mass > 0.0)
-        return self.listed & (self.on_contacts(count) <= np.abs(self.sides) @ (self.mass > 0.0))
+        moves = self.mass > 0.0
+        return self.listed & (self.on_contacts(self.count[:, 0] * moves) <= self.on_contacts(moves))
 
 
 def inverse(mass):

@@ -193,8 +193,7 @@ def test_a_run_writes_its_report_and_says_what_was_judged(tmp_path):
     from curriculum.stress import report
 
     sections = {
-        "scenes": jobs.scene_jobs(range(4)),
-        "small": jobs.scene_jobs(range(4), small=True),
+        "scenes": jobs.scene_jobs(range(4)) + jobs.scene_jobs(range(4), small=True),
         "maps": maps.map_jobs(quick=True),
         "extremes": list(extremes.extreme_jobs(quick=True))[:1],
         "mujoco": [],
