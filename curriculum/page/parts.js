@@ -1,12 +1,14 @@
-/* What the explaining figures share: one ball over a table, scenes, results that are kept, a lens. */
-import { ball, el, plot, round, table, words } from "./draw.js";
+/* What the explaining figures share: scenes of balls, results that are kept, a chart beside a picture, a
+ * lens, and handles that set a number. */
+import { ball, circle, clipped, el, label, plot, table, within } from "./draw.js";
 import { data } from "./data.js";
 import { GRAVITY } from "./engine.js";
-import { knobsOf } from "./store.js";
+import { knobsOf, QUANTITIES } from "./store.js";
 
 export const R = data.radius; // m
 export const G = -GRAVITY; // m/s^2, and the weight in N of a ball of 1 kg
 export const START = data.scenes.drop.start[0]; // m, of the ball that is dropped
+export const ARRIVES = Math.sqrt(2 * G * (START - R)); // m/s, and it reaches the table so fast
 
 // A scene of balls: `more` holds what differs from balls of 1 kg at rest over one another.
 export function scene(heights, more = {}) {
@@ -14,23 +16,6 @@ export function scene(heights, more = {}) {
   const each = { x: same(0), vx: same(0), vy: same(0), mass: same(1), radius: same(R) };
   return { ...each, y: heights, restitution: 0, damping: 0, ...more };
 }
-
-export const within = (low, value, high) => Math.min(high, Math.max(low, value));
-export const tidy = (value, digits = 3) => Number(value.toPrecision(digits));
-export const whole = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, ",");
-export const plural = (count, word) => `${whole(count)} ${word}${count === 1 ? "" : "s"}`;
-export const shift = (x, y, ...children) =>
-  el("g", { transform: `translate(${round(x)} ${round(y)})` }, ...children);
-export const label = (text, x, y, anchor = "start", kind = "tick strong") =>
-  words(text, { x, y, class: kind, "text-anchor": anchor });
-export const line = (x1, y1, x2, y2, kind = "rule dashed") => el("line", { x1, y1, x2, y2, class: kind });
-export const logGrid = (low, high, count) =>
-  Array.from({ length: count }, (_, k) => low * (high / low) ** (k / (count - 1)));
-
-// Ticks at these values; [value, text] stays as it is.
-export const ticks = (...values) =>
-  values.map((each) => (Array.isArray(each) ? each : [each, String(each).replace("-", "−")]));
-export const axis = (domain, name, ...at) => ({ domain, label: name, ticks: ticks(...at) });
 
 // A function that keeps its last results, by its arguments.
 export function kept(compute) {
@@ -45,64 +30,7 @@ export function kept(compute) {
   };
 }
 
-// What lies within a rectangle.
-export function clipped(id, x, y, width, height, ...children) {
-  const shape = el("clipPath", { id }, el("rect", { x, y, width, height }));
-  return shape + el("g", { "clip-path": `url(#${id})` }, ...children);
-}
-
-/* A picture at the left and a chart at the right: {svg, x, y, middle}. x and y are the chart's scales
- * in the drawing, middle is the picture's. picture(width, chart) is drawn within its part, a `share` of
- * the width; options.under(chart) is drawn beneath the chart. */
-export function beside(view, id, options, picture, share = 0.4) {
-  const left = Math.round(within(110, share * view.width, 300));
-  const at = left + 16;
-  const chart = charted(view, at, { id, ...options });
-  const scene = clipped(`${id}-scene`, 0, 0, left, view.height, picture(left, chart));
-  const markup = el("g", { transform: `translate(${at} 0)` }, options.under ? options.under(chart) : "", chart.markup);
-  return { svg: scene + markup, x: (v) => at + chart.sx(v), y: chart.sy, middle: left / 2 };
-}
-
-// A chart from `at` on, as large as the drawing; its scale is kept for the drags.
-export function charted(view, at, options) {
-  const chart = plot({ width: view.width - at, height: view.height, ...options });
-  const { left, right } = chart.box;
-  view.own.along = (x) => within(0, (x - at - left) / (right - left), 1);
-  return chart;
-}
-
-/* A number that is dragged along its chart's x axis, and that arrow keys change by steps:
- * change(view, share of the axis) and step(view, by). */
-export const alongAxis = (change, step) => ({
-  drag: (view, name, x) => change(view, view.own.along(x), name),
-  nudge: (view, name, dx, dy) => step(view, dx - dy, name),
-});
-
-/* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
- * `depth` deep [r], `times` as large as in the picture, where a radius is `r` px. */
-export function lens(id, model, x, y, { depth, r, times, size = 38 }) {
-  const big = r * times;
-  const shape = el("clipPath", { id }, el("circle", { cx: x, cy: y, r: size }));
-  const inside =
-    el("circle", { cx: x, cy: y, r: size, class: "lens-ground" }) +
-    table(x - size, y, 2 * size, size) +
-    ball(model, x, y - big + depth * big, big, "ball plainly");
-  return (
-    shape +
-    el("g", { "clip-path": `url(#${id})` }, inside) +
-    el("circle", { cx: x, cy: y, r: size, class: "lens-rim" }) +
-    label(`× ${times}`, x, y + size + 16, "middle", "tick")
-  );
-}
-
-// How often a lens enlarges so that a depth [r] can be seen, as a round number.
-export function enlarged(depth, r) {
-  const wanted = 12 / Math.max(Math.abs(depth) * r, 1e-6);
-  return [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000].find((each) => each >= wanted) || 10000;
-}
-
-// How long an arrow for a force is, in weights: the root, since impacts are hundreds of weights.
-export const forceLength = (weights, unit = 26) => unit * Math.sqrt(Math.max(weights, 0));
+export const knobs = (view) => knobsOf(view.values);
 
 // What soft is told, for a ball that does not bounce.
 export const softKnobs = (view) => ({
@@ -110,21 +38,65 @@ export const softKnobs = (view) => ({
   restitution: 0,
 });
 
-export const handle = (name, x, y, r, label, value, text) => ({ name, x, y, r, label, value, text });
+// ---- pictures
 
-// The clock of a figure whose own `time` runs from `from` to end(view), `rate` s in a second; it stops
-// where a handle is grabbed or the time becomes null.
-export function clock(rate, end, names = ["Play", "Stop"], from = 0) {
-  const tick = (view, seconds) => {
-    if (view.grabbed !== null || view.own.time === null) return false;
-    view.own.time = Math.min(end(view), view.own.time + rate * seconds);
-    return view.own.time < end(view);
-  };
-  const start = (view) => {
-    view.own.time = view.still ? end(view) : from;
-    if (!view.still) view.run();
-  };
-  const press = (view) => (view.running() ? view.stop() : start(view));
-  const buttons = [{ label: (view) => names[view.running() ? 1 : 0], press }];
-  return { start, parts: { tick, buttons } };
+// A chart as large as the drawing, or from `left` on.
+export const charted = (view, options, left = 0) =>
+  plot([left, 0, view.width - left, view.height], options);
+
+/* A picture at the left and a chart at the right: the chart, with the svg of both and the picture's
+ * `middle`. picture(width, chart) is drawn within its part, a `share` of the width. */
+export function beside(view, options, picture, share = 0.4) {
+  const left = Math.round(within(110, share * view.width, 300));
+  const chart = charted(view, options, left + 16);
+  const drawn = clipped(0, 0, left, view.height, picture(left, chart));
+  return { ...chart, svg: drawn + chart.svg, middle: left / 2 };
 }
+
+/* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
+ * `depth` deep [r], enlarged so that it can be seen; a radius is `r` px. Nothing where that is seen
+ * without a lens. */
+export function lens(id, model, x, y, r, depth, size) {
+  const steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
+  const times = steps.find((each) => each * depth * r >= 12) || 10000;
+  if (times <= 2 || depth <= 0) return "";
+  const inside = [
+    circle(x, y, size, "lens-ground"),
+    table(x - size, y, 2 * size, size),
+    ball(model, x, y + (depth - 1) * r * times, r * times, "ball plainly"),
+  ];
+  return [
+    el("clipPath", { id }, circle(x, y, size, "")),
+    el("g", { "clip-path": `url(#${id})` }, ...inside),
+    circle(x, y, size, "lens-rim"),
+    label(`× ${times}`, x, y + size + 16, "middle", "tick"),
+  ].join("");
+}
+
+// How long an arrow for a force is, in weights: the root, since impacts are hundreds of weights.
+export const forceLength = (weights, unit = 26) => unit * Math.sqrt(Math.max(weights, 0));
+
+// ---- handles
+
+/* A handle at (x, y) for one number: `name` in the figure's own state, or a quantity of the page.
+ *   label, text   what it is, and its value in words
+ *   at(x, y)      the number where the handle is dragged to; kept from `low` to `high`
+ *   step, times   what an arrow key to the right or up adds, or multiplies by
+ *   get(), set(v) in place of the state; r: px; release()
+ * A number of its own that is set takes the figure's clock back to before its start. */
+export function grip(view, name, x, y, options) {
+  const quantity = QUANTITIES[name];
+  const { low, high, r = 14, at, step, times, get, set, ...rest } = { ...quantity, ...options };
+  const value = get || (() => (quantity ? view.get(name) : view.own[name]));
+  const put = (wanted) => {
+    const held = within(low, wanted, high);
+    if (set) set(held);
+    else if (quantity) view.set({ [name]: Number(held.toPrecision(quantity.digits)) });
+    else Object.assign(view.own, "time" in view.own && { time: null }, { [name]: tidy(held) });
+  };
+  const drag = (toX, toY) => put(at(toX, toY));
+  const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
+  return { name, x, y, r, value: value(), ...rest, drag, nudge };
+}
+
+const tidy = (value) => Number(value.toFixed(4));

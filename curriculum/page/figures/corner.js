@@ -1,7 +1,163 @@
-/* The corner: of gap and force one is always zero. */
-import { corner, LAWS } from "../corners.js";
+/* The corner, five times: gap to the right, force upwards, what a model allows as a line, and the state
+ * that runs along it while the reader lifts the ball or presses it into the table. */
+import { arrow, axis, ball, circle, label, line, number, path, table } from "../draw.js";
+import { pushOfTable, runModel, soften } from "../engine.js";
+import { beside, forceLength, G, grip, kept, knobs, R, scene, softKnobs } from "../parts.js";
 
-export const figure = corner(LAWS.corner, {
+const PULL = 64; // px below the ball at which the hand presses hardest
+// What a picture shows: gaps from low to high [r], a radius in px, the hardest press in weights, ticks.
+const WIDE = { low: -0.4, high: 1, r: 60, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
+const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.02, 0, 0.04], ys: [0, 4, 8, 12] };
+
+/* A figure of the corner with a model's law(view): {gap(load), curve, most}, the gap [r] under a load
+ * [weights], the line that it allows as points, and the hardest press that fits into the picture.
+ * extra(view, load): what else is seen, {under(chart), deepest [r], words}. */
+function corner(about, model, law, { extra = () => ({}), hand = 0.5, shown = WIDE } = {}) {
+  const draw = (view) => drawn(view, { model, shown, ...law(view) }, extra);
+  return { height: 260, start: () => ({ hand }), draw, ...about };
+}
+
+function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, extra) {
+  const { hand } = view.own; // 1: lifted as high as the picture shows; -1: pressed as hard
+  const load = Math.max(0, -hand) * Math.min(shown.most, most);
+  const gap = load > 0 ? gapOf(load) : hand * shown.high;
+  const { under = () => "", deepest = null, words = "" } = extra(view, load);
+  const axes = ({ box, sx, sy }) => [[box.right, sy(0)], [sx(0), sy(0)], [sx(0), box.top]];
+  const chart = {
+    x: axis([shown.low, shown.high], "gap / r", ...shown.xs),
+    y: axis([-0.035 * shown.most, 1.07 * shown.most], "force / m g", ...shown.ys),
+    points: [{ model, x: gap, y: Math.min(1.05 * shown.most, load), size: 7 }],
+    lines: [{ model, xs: curve.map(([x]) => x), ys: curve.map(([, y]) => y), kind: "law plainly" }],
+    under: (each) => path(axes(each), "allowed") + under(each),
+  };
+  const small = Math.min(1, view.width / 430);
+  const [floor, r] = [view.height - 74, shown.r * small]; // px
+  const picture = (left) => {
+    const [x, y] = [left / 2, floor - r - gap * r];
+    const pull = Math.min(forceLength(load, 14), y - r - 2);
+    const push = forceLength(load, 100 / Math.sqrt(shown.most));
+    return [
+      table(0, floor, left, 74),
+      ball(model, x, y, r, r > 100 ? "ball plainly" : "ball"),
+      deepest === null ? "" : ball(model, x, floor - r - deepest * r, r, "ghost"),
+      arrow(`push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
+      hand > 0 ? line(x, y, x, 0, "hand") : arrow("weight", x, y - r - pull, 0, pull),
+    ].join("");
+  };
+  const { svg, middle } = beside(view, chart, picture);
+  const held = floor - 60 * small; // where the hand is at rest
+  const px = (up) => (up ? r * shown.high : PULL); // from there to where it is at 1, or at -1
+  const told = load > 0 ? `Pressed with ${number(load, 2)} m g` : "Held by the hand";
+  const text = `gap ${number(gap, 2)} r, force ${number(load, 2)} m g`;
+  const about = { label: "the ball: lift it or press it", text, r: 20 };
+  const range = { low: -1, high: 1, step: 0.05, at: (x, y) => (held - y) / px(y < held) };
+  return {
+    svg,
+    words: `${told}: ${text}.${words}`,
+    handles: [grip(view, "hand", middle, held - hand * px(hand > 0), { ...about, ...range })],
+  };
+}
+
+const wall = { gap: () => 0, curve: [[WIDE.high, 0], [0, 0], [0, 1.07 * WIDE.most]] };
+
+// The two events at which exact changes from one side of the corner to the other.
+const events = (view, load) => ({
+  under: ({ sx, sy, box }) =>
+    circle(sx(0), sy(0), 12, "event") +
+    label("gap → 0", sx(0.98), sy(0) - 12, "end") +
+    label("force → 0", sx(0) + 10, box.top + 14),
+  words: load > 0 ? " It rests until the force falls to 0." : " It flies until the gap falls to 0.",
+});
+
+function ramp(view) {
+  const steep = (view.get("stiffness") * R) / G; // weights a radius
+  const top = 1.07 * WIDE.most;
+  const curve = [[WIDE.high, 0], [0, 0], [-top / steep, top]];
+  return { gap: (load) => -load / steep, curve, most: -WIDE.low * steep };
+}
+
+/* lcp: the ball comes from FROM radii above, drawn down by the load, and lcp looks once a step. A load of
+ * L weights is a gravity of L g, and that is our own gravity where the clock runs sqrt(L) as fast. */
+const FROM = 0.8;
+const arrival = kept((load, told) => {
+  const one = scene([(1 + FROM) * R]);
+  const run = runModel("lcp", one, { ...told, dt: told.dt * Math.sqrt(load), restitution: 0 }, 400);
+  const looks = Array.from(run.y, (y, row) => {
+    const force = row ? (load * pushOfTable(run, one, row)) / G : 0;
+    return { gap: y / R - 1, force };
+  });
+  const stays = ({ gap }, row) => row > 1 && Math.abs(gap - looks[row - 1].gap) < 1e-6;
+  const still = looks.findIndex((look, row) => look.force > 0 && stays(look, row));
+  return still < 0 ? looks : looks.slice(0, still + 1);
+});
+
+function looksOf(view, load) {
+  if (load < 1) return {};
+  const looks = arrival(load, knobs(view));
+  const deepest = Math.min(0, ...looks.map(({ gap }) => gap));
+  const ring = ({ sx, sy }, { gap, force }) =>
+    circle(sx(gap), sy(Math.min(1.05 * WIDE.most, force)), 4, "look m-lcp");
+  const deep = `the step before the first push ended ${number(-deepest, 2)} r deep`;
+  return {
+    deepest,
+    under: (chart) => looks.map((look) => ring(chart, look)).join(""),
+    words: ` It came in ${looks.length} steps; ${deep}.`,
+  };
+}
+
+// soft: at rest the solver asks for no velocity where lam = target / R.
+function rounded(view) {
+  const told = softKnobs(view);
+  const load = (gap) => {
+    const contact = { i: 0, j: -1, nx: 0, ny: 1, depth: -gap * R };
+    const { target, softness } = soften(contact, scene([R * (1 + gap)]), scene([R]), told);
+    return target / softness / (G * told.dt);
+  };
+  const gap = (wanted) => {
+    let [low, high] = [-2, 0];
+    for (let k = 0; k < 50; k++) {
+      const middle = 0.5 * (low + high);
+      if (load(middle) > wanted) low = middle;
+      else high = middle;
+    }
+    return low;
+  };
+  const gaps = Array.from({ length: 61 }, (_, k) => (1.2 * NEAR.low * k) / 60);
+  const curve = [[NEAR.high, 0], ...gaps.map((each) => [each, each < 0 ? load(each) : 0])];
+  return { gap, curve, most: load(NEAR.low) };
+}
+
+const plain = {
   title: "The corner: gap to the right, force upwards",
   caption: "Lift the ball and the gap grows with no force; press it and the force grows with no gap.",
-});
+};
+const exact = {
+  title: "exact on the corner",
+  caption: "exact keeps to the corner and asks only when the ball turns from one side into the other.",
+};
+const penalty = {
+  title: "penalty’s ramp beside the corner",
+  caption: "penalty has a ramp beside the wall: the ball must get in before the table pushes.",
+  knobs: ["stiffness"],
+};
+const lcp = {
+  title: "lcp meets the corner once a step",
+  caption:
+    "Press, and the ball comes down step by step: each ring is one look, the last of the fall is past " +
+    "the wall, and the next looks bring it back.",
+  knobs: ["dt"],
+};
+const soft = {
+  title: "soft rounds the corner off",
+  caption:
+    "soft rounds the corner: the ball gives way at first and the slope grows steeper, seen here twenty " +
+    "times nearer.",
+  knobs: ["impedance"],
+};
+export const figures = {
+  corner: corner(plain, "exact", () => wall),
+  "corner-exact": corner(exact, "exact", () => wall, { extra: events }),
+  "corner-penalty": corner(penalty, "penalty", ramp, { hand: -0.5 }),
+  "corner-lcp": corner(lcp, "lcp", () => wall, { extra: looksOf, hand: -0.6 }),
+  "corner-soft": corner(soft, "soft", rounded, { hand: -0.5, shown: NEAR }),
+};

@@ -1,52 +1,90 @@
 /* The first screen: a ball that can be lifted, dropped and thrown. It moves by the exact model, in real
  * time, and gives back a fixed share of its speed. */
-import { arrow, ball, el, number, table } from "../draw.js";
+import { arrow, ball, el, label, number, table, within } from "../draw.js";
 import { runExact, stateAt } from "../engine.js";
-import { data } from "../data.js";
+import { R, scene } from "../parts.js";
 
-const R = data.radius;
 const BOUNCE = 0.6;
 const DT = 1 / 240; // s between two rows of a throw
 const LONG = 12; // s that are computed at once
-const WALL = 1e4; // m: the radius of the two held balls that serve as walls
 const GROUND = 46; // px of table below its top
+const FASTEST = 6; // m/s
 
 const scaleOf = (view) => (view.height - GROUND) / 0.8; // px for a metre
 const wide = (view) => view.width / scaleOf(view); // m
-const held = (view, [x, y]) => [
-  Math.min(wide(view) - R, Math.max(R, x)),
-  Math.min((view.height - GROUND) / scaleOf(view) - 0.2 * R, Math.max(R, y)),
-];
+const held = (view, x, y) => [within(R, x, wide(view) - R), within(R, y, 0.8 - 0.2 * R)];
 
-// What the ball does from here on, with a velocity: two walls and a table, event to event.
-function thrown(view, [x, y], [vx, vy]) {
-  const scene = {
-    x: [x, -WALL, wide(view) + WALL],
-    y: [y, WALL, WALL],
-    vx: [vx, 0, 0],
-    vy: [vy, 0, 0],
-    mass: [1, Infinity, Infinity],
-    radius: [R, WALL, WALL],
-    restitution: BOUNCE,
-  };
-  return runExact(scene, { dt: DT }, Math.round(LONG / DT));
+// What the ball does from here on, upwards: it bounces on the table, event to event.
+function thrown([, y], [, vy]) {
+  const up = scene([y], { vy: [vy], restitution: BOUNCE });
+  return runExact(up, { dt: DT }, Math.round(LONG / DT));
 }
 
-function release(view, velocity) {
+// And sideways, between two walls: place and speed after a time.
+function across(view, x, vx, time) {
+  const wall = vx > 0 ? wide(view) - R : R;
+  const hit = vx === 0 ? Infinity : (wall - x) / vx;
+  if (hit >= time) return [x + time * vx, vx];
+  return across(view, wall, -BOUNCE * vx, time - hit);
+}
+
+// Hold the ball at a place, in metres.
+function hold(view, x, y) {
+  view.stop();
+  Object.assign(view.own, { run: null, velocity: [0, 0], place: held(view, x, y) });
+}
+
+function letGo(view, velocity) {
   const { own } = view;
-  own.run = thrown(view, own.place, velocity);
-  own.time = 0;
+  Object.assign(own, { from: own.place, thrown: velocity, run: thrown(own.place, velocity), time: 0 });
   if (view.still) seek(view, LONG);
   else view.run();
 }
 
-// Show the throw at a time.
+// Show the throw at a time. Does the ball still move?
 function seek(view, time) {
   const { own } = view;
   own.time = Math.min(time, LONG);
-  const now = stateAt(own.run, Math.min(own.run.steps, Math.floor(own.time / DT)));
-  own.velocity = [now.vx[0], now.vy[0]];
-  own.place = [now.x[0], now.y[0]];
+  const { y, vy } = stateAt(own.run, Math.floor(own.time / DT + 1e-9));
+  const [x, vx] = across(view, own.from[0], own.thrown[0], own.time);
+  Object.assign(own, { place: [x, y[0]], velocity: [vx, vy[0]] });
+  const rests = Math.abs(vx) < 1e-3 && Math.abs(vy[0]) < 1e-6 && y[0] - R < 1e-9;
+  return own.time < LONG && !rests;
+}
+
+function draw(view) {
+  const { own } = view;
+  const [scale, floor] = [scaleOf(view), view.height - GROUND];
+  own.place = held(view, ...(own.place || [0.5 * wide(view), 0.5]));
+  const [x, y] = [own.place[0] * scale, floor - own.place[1] * scale];
+  const gap = own.place[1] - R;
+  const rests = own.run && gap < 1e-9 && Math.abs(own.velocity[1]) < 1e-9;
+  const rx = R * scale * (1 - 0.4 * Math.min(1, gap));
+  const text = `${number(gap, 2)} m above the table`;
+  return {
+    svg: [
+      table(0, floor, view.width, GROUND),
+      el("ellipse", { cx: x, cy: floor + 6, rx, ry: 5, class: "shadow" }),
+      ball("exact", x, y, R * scale),
+      arrow("weight", x, y, 0, 70) + label("weight", x + 7, y + 70),
+      rests ? arrow("push m-exact", x, floor, 0, -70) + label("push", x + 7, floor - 60) : "",
+    ].join(""),
+    words: rests
+      ? "It rests: the table pushes with exactly the ball’s weight."
+      : `${text}. Let go.`,
+    handles: [
+      {
+        ...{ name: "ball", x, y, r: R * scale, value: gap, text },
+        label: "the ball; arrow keys move it, Enter lets it go",
+        drag: (toX, toY) => hold(view, toX / scale, (floor - toY) / scale),
+        nudge: (dx, dy) => hold(view, own.place[0] + 0.02 * dx, own.place[1] - 0.02 * dy),
+        release() {
+          const [vx, vy] = view.flick().map((v) => within(-FASTEST, v / scale, FASTEST));
+          letGo(view, [vx, -vy]);
+        },
+      },
+    ],
+  };
 }
 
 export const figure = {
@@ -60,61 +98,10 @@ export const figure = {
       label: "Drop it",
       press(view) {
         view.own.place = [0.5 * wide(view), 0.68];
-        release(view, [0, 0]);
+        letGo(view, [0, 0]);
       },
     },
   ],
-  draw(view) {
-    const { own } = view;
-    const scale = scaleOf(view);
-    own.place = held(view, own.place || [0.5 * wide(view), 0.5]);
-    const [x, y] = [own.place[0] * scale, view.height - GROUND - own.place[1] * scale];
-    const gap = own.place[1] - R;
-    const rests = own.run && gap < 1e-9 && Math.abs(own.velocity[1]) < 1e-9;
-    const push = rests ? arrow("push m-exact", x, view.height - GROUND, 0, -70, "push") : "";
-    const rx = R * scale * (1 - 0.4 * Math.min(1, gap));
-    const shadow = el("ellipse", { cx: x, cy: view.height - GROUND + 6, rx, ry: 5, class: "shadow" });
-    const weight = arrow("weight", x, y, 0, 70, "weight");
-    return {
-      svg: table(0, view.height - GROUND, view.width, GROUND) + shadow + ball("exact", x, y, R * scale) + weight + push,
-      words: rests
-        ? "It rests: the table pushes with exactly the ball’s weight."
-        : `${number(gap, 2)} m above the table. Let go.`,
-      handles: [
-        {
-          name: "ball",
-          x,
-          y,
-          r: R * scale,
-          label: "the ball; arrow keys move it, Enter lets it go",
-          value: gap,
-          text: `${number(gap, 2)} m above the table`,
-        },
-      ],
-    };
-  },
-  drag(view, name, x, y) {
-    const { own } = view;
-    view.stop();
-    own.run = null;
-    own.velocity = [0, 0];
-    own.place = held(view, [x / scaleOf(view), (view.height - GROUND - y) / scaleOf(view)]);
-  },
-  nudge(view, name, dx, dy) {
-    const { own } = view;
-    view.stop();
-    own.run = null;
-    own.place = held(view, [own.place[0] + 0.02 * dx, own.place[1] - 0.02 * dy]);
-  },
-  release(view) {
-    const [x, y] = view.flick().map((v) => Math.max(-6, Math.min(6, v / scaleOf(view))));
-    release(view, [x, -y]);
-  },
-  enter: (view) => release(view, [0, 0]),
-  tick(view, seconds) {
-    const { own } = view;
-    seek(view, own.time + seconds);
-    const still = Math.abs(own.velocity[0]) < 1e-3 && Math.abs(own.velocity[1]) < 1e-6 && own.place[1] - R < 1e-9;
-    return own.time < LONG && !still;
-  },
+  draw,
+  tick: (view, seconds) => seek(view, view.own.time + seconds),
 };

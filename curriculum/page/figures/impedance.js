@@ -1,56 +1,56 @@
 /* MuJoCo's impedance: how firmly a soft contact asks, by its depth. */
-import { arrow, ball, number, table } from "../draw.js";
+import { arrow, axis, ball, label, number, table } from "../draw.js";
 import { impedance, softDefaults } from "../engine.js";
-import { alongAxis, axis, beside, handle, label, R, softKnobs, within } from "../parts.js";
+import { beside, grip, R, softKnobs } from "../parts.js";
 
 const PX = 1200; // a radius: twenty times nearer than in the other pictures
 const MOST = 1.5; // widths
 
-function chartOf(solimp, share) {
-  const [d0, d1, deep] = solimp;
-  const at = (x) => impedance(x * deep, solimp);
+function draw(view) {
+  const { depth } = view.own; // in widths
+  const { solimp } = softDefaults(softKnobs(view));
+  const [d0, d1, width, middle] = solimp;
+  const at = (x) => impedance(x * width, solimp);
+  const d = at(depth);
+  const digits = d > 0.99 ? 4 : 3;
   const xs = Array.from({ length: 61 }, (_, k) => (k / 60) * MOST);
   const pad = 0.25 * (d1 - d0) + 1e-4;
-  const shown = d1 - d0 > 1e-3 ? [d0, (d0 + d1) / 2, d1] : [d1];
-  return {
+  const ticks = d1 - d0 > 1e-3 ? [d0, (d0 + d1) / 2, d1] : [d1];
+  const named = ticks.map((each) => [each, each.toFixed(d1 > 0.99 ? 4 : 3)]);
+  const chart = {
     x: axis([0, MOST], "depth / width", 0, 0.5, 1),
-    y: axis([d0 - pad, d1 + pad], "impedance d", ...shown.map((d) => [d, d.toFixed(d1 > 0.99 ? 4 : 3)])),
+    y: axis([d0 - pad, d1 + pad], "impedance d", ...named),
     lines: [{ model: "soft", xs, ys: xs.map(at) }],
-    points: [{ model: "soft", x: share, y: at(share), size: 8 }],
+    points: [{ model: "soft", x: depth, y: d, size: 8 }],
   };
-}
-
-function draw(view) {
-  const share = view.own.depth; // of the width
-  const { solimp } = softDefaults(softKnobs(view));
-  const depth = share * solimp[2];
-  const d = impedance(depth, solimp);
-  const digits = d > 0.99 ? 4 : 3;
   const floor = view.height - 70;
+  const share = `${number(100 * d, digits)} %`;
   const picture = (left) =>
     table(0, floor, left, 70) +
-    ball("soft", left / 2, floor + (depth / R) * PX - PX, PX, "ball plainly") +
+    ball("soft", left / 2, floor + ((depth * width) / R - 1) * PX, PX, "ball plainly") +
     arrow("push m-soft", left / 2, floor - 12, 0, -110 * d) +
-    label(`${number(100 * d, digits)} %`, left / 2, floor - 20 - 110 * d, "middle");
-  const { svg, x, y } = beside(view, "impedance", chartOf(solimp, share), picture);
-  const text = `${number(1000 * depth, 2)} mm deep, d = ${number(d, digits)}`;
-  const all = "of the acceleration that a hard contact would give it gives";
+    label(share, left / 2, floor - 20 - 110 * d, "middle");
+  const { svg, sx, sy } = beside(view, chart, picture);
+  const text = `${number(1000 * depth * width, 2)} mm deep, d = ${number(d, digits)}`;
+  const about = { label: "the depth", text, low: 0, high: MOST, step: 0.05, at: sx.back };
+  const rise = depth <= middle ? "rise = raised" : "rise = 1.0";
   return {
     svg,
-    words: `${text}: ${all} ${number(100 * d, digits)} %, and R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass.`,
-    handles: [handle("depth", x(share), y(d), 14, "the depth", share, text)],
-    lit: [["soft-impedance", share >= 1 ? "return d1" : share <= solimp[3] ? "rise = raised" : "rise = 1.0"]],
+    words:
+      `${text}: of the acceleration that a hard contact would give it gives ${share}, and ` +
+      `R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass.`,
+    handles: [grip(view, "depth", sx(depth), sy(d), about)],
+    lit: [["soft-impedance", depth >= 1 ? "return d1" : rise]],
   };
 }
-
-const set = (view, share) => (view.own.depth = Number(within(0, share, MOST).toFixed(2)));
 
 export const figure = {
   title: "MuJoCo’s impedance",
-  caption: "The deeper the ball, the larger its share of a hard contact’s answer: drag the point, and see the ball twenty times nearer.",
+  caption:
+    "The deeper the ball, the larger its share of a hard contact’s answer: drag the point, and see the " +
+    "ball twenty times nearer.",
   height: 250,
   knobs: ["impedance"],
   start: () => ({ depth: 0.5 }),
   draw,
-  ...alongAxis((view, share) => set(view, share * MOST), (view, by) => set(view, view.own.depth + 0.05 * by)),
 };

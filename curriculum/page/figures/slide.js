@@ -1,81 +1,58 @@
 /* A ball slides off a ball that is held, and leaves it at two thirds of the height it started from. */
-import { ball, el, round } from "../draw.js";
-import { runExact } from "../engine.js";
-import { clock, G, handle, kept, label, line, R, scene, within } from "../parts.js";
+import { ball, label, line, path } from "../draw.js";
+import { G, grip, kept, R } from "../parts.js";
+import { slideOff } from "../sliding.js";
 
-const DT = 0.0002; // s: how finely exact is looked at
-const MIDDLE = 5; // m: the held ball is far above the floor
+const DT = 0.0002; // s: how finely it is looked at
+const SECONDS = 0.9;
 const degrees = (angle) => `${((angle * 180) / Math.PI).toFixed(1)}°`;
 
-/* The upper ball's path from this angle on, and where it leaves: in the middle of the last row in which
- * something else than gravity has changed its velocity. */
+// The upper ball's path from this angle on, the last row of contact, and where it leaves.
 const slides = kept((angle) => {
-  const x = [0, 2 * R * Math.sin(angle)];
-  const balls = scene([MIDDLE, MIDDLE + 2 * R * Math.cos(angle)], { x, mass: [Infinity, 1] });
-  const steps = Math.round(0.9 / DT);
-  const run = runExact(balls, { dt: DT }, steps);
-  const pushed = (row) => {
-    const [dvx, dvy] = [run.vx, run.vy].map((v) => v[2 * row + 1] - v[2 * row - 1]);
-    return Math.hypot(dvx, dvy + G * DT) > 1e-6 * G * DT;
-  };
-  let last = steps;
-  while (last > 1 && !pushed(last)) last--;
-  const path = Array.from({ length: steps + 1 }, (_, row) => [run.x[2 * row + 1], run.y[2 * row + 1] - MIDDLE]);
-  const leaves = 0.5 * (Math.atan2(...path[last - 1]) + Math.atan2(...path[last]));
-  return { path, last, leaves };
+  const found = slideOff(angle, 2 * R, G, DT, Math.round(SECONDS / DT));
+  const end = found.path.findIndex(([, y]) => y < -1.2 * R); // it has fallen past the held one
+  return { ...found, end: end < 0 ? found.path.length - 1 : end };
 });
 
-// Until the ball has fallen below the held one's middle.
-const endOf = (view) => DT * Math.max(1, slides(view.own.angle).path.findIndex(([, y]) => y < -1.2 * R) - 1);
-const shape = (view) => {
-  const scale = Math.min(620, view.width / 0.72, (view.height - 30) / 0.48);
-  return { scale, x: view.width / 2 - 0.12 * scale, y: 0.31 * scale + 14 };
-};
-
 function draw(view) {
-  const { angle, time: now } = view.own;
-  const { path, last, leaves } = slides(angle);
-  const { scale, x, y } = shape(view);
-  const release = Math.acos((2 / 3) * Math.cos(angle));
+  const { angle, time } = view.own;
+  const { path: places, last, leaves } = slides(angle);
+  const scale = Math.min(620, view.width / 0.72, (view.height - 30) / 0.48);
+  const [x, y] = [view.width / 2 - 0.12 * scale, 0.31 * scale + 14];
   const at = ([px, py]) => [x + px * scale, y - py * scale];
-  const ray = (theta, far) => [x, y, ...at([far * Math.sin(theta), far * Math.cos(theta)])];
-  const row = Math.round((now ?? 0) / DT);
-  const trail = path.slice(0, row + 1).filter((_, k) => k % 20 === 0);
-  const steps = trail.map((place, k) => `${k ? "L" : "M"}${at(place).map(round).join(" ")}`);
-  const [bx, by] = at(path[row]);
-  const [, , lx, ly] = ray(release, 0.35);
-  const narrow = view.width < 480;
+  const along = (theta, far) => at([far * Math.sin(theta), far * Math.cos(theta)]);
+  const release = Math.acos((2 / 3) * Math.cos(angle));
+  const row = Math.round((time ?? 0) / DT);
+  const trail = places.slice(0, row + 1).filter((_, k) => k % 20 === 0);
+  const [bx, by] = at(places[row]);
+  const [lx, ly] = along(release, 0.35);
+  const law = "cos θ = ⅔ cos θ₀";
+  const drag = (toX, toY) => Math.atan2(toX - x, Math.max(1, y - toY));
+  const about = { label: "the upper ball: drag where it starts", text: `starts at ${degrees(angle)}` };
+  const range = { r: 0.8 * R * scale, low: 0.05, high: 1.2, step: 0.03, at: drag };
   return {
     svg: [
       ball("fixed", x, y, R * scale, "body"),
-      line(...ray(0, 0.3), "grid"),
-      line(...ray(release, 0.33)),
-      narrow ? label("dashed: cos θ = ⅔ cos θ₀", 4, view.height - 8) : label("cos θ = ⅔ cos θ₀", lx + 4, ly),
-      el("path", { d: steps.join(""), class: "line m-exact" }),
-      row > last ? ball("exact", ...at(path[last]), R * scale, "ghost") : "",
+      line(x, y, ...along(0, 0.3), "grid"),
+      line(x, y, ...along(release, 0.33)),
+      view.width < 480 ? label(`dashed: ${law}`, 4, view.height - 8) : label(law, lx + 4, ly),
+      path(trail.map(at), "line m-exact"),
+      row > last ? ball("exact", ...at(places[last]), R * scale, "ghost") : "",
       ball("exact", bx, by, R * scale),
     ].join(""),
-    words: `From ${degrees(angle)} it leaves at ${degrees(leaves)}; cos θ = ⅔ cos θ₀ says ${degrees(release)}.`,
-    handles: [handle("ball", bx, by, 0.8 * R * scale, "the upper ball: drag where it starts", angle, `starts at ${degrees(angle)}`)],
+    words: `From ${degrees(angle)} it leaves at ${degrees(leaves)}; ${law} says ${degrees(release)}.`,
+    handles: [grip(view, "angle", bx, by, { ...about, ...range, release: () => view.play() })],
   };
 }
-
-const time = clock(0.25, endOf, ["Let go", "Stop"]);
-const set = (view, angle) => Object.assign(view.own, { time: null, angle: Number(within(0.05, angle, 1.2).toFixed(3)) });
 
 export const figure = {
   title: "A ball slides off a ball that is held",
   caption:
-    "The upper ball leaves the lower one where it has lost a third of its height over the lower one’s middle: drag where it starts, and let go.",
+    "The upper ball leaves the lower one where it has lost a third of its height over the lower one’s " +
+    "middle: drag where it starts, and let go.",
   height: 300,
   narrow: 250,
   start: () => ({ angle: 0.35, time: null }),
+  clock: (view) => ({ end: DT * slides(view.own.angle).end, rate: 0.25, names: ["Let go", "Stop"] }),
   draw,
-  drag(view, name, x, y) {
-    const { x: mx, y: my } = shape(view);
-    set(view, Math.atan2(x - mx, Math.max(1, my - y)));
-  },
-  nudge: (view, name, dx, dy) => set(view, view.own.angle + 0.03 * (dx + dy)),
-  release: (view) => time.start(view),
-  ...time.parts,
 };

@@ -1,91 +1,91 @@
-/* A stack on springs: the lowest contact carries all. Lift a ball and those above it come along. */
-import { arrow, ball, number, table } from "../draw.js";
+/* A stack on springs: the lowest contact carries all. Lift a ball and those above it come along; press
+ * the stack from above and it carries that as well. */
+import { arrow, ball, clipped, label, number, plural, table } from "../draw.js";
 import { runModel } from "../engine.js";
-import { clipped, clock, enlarged, forceLength, G, handle, kept, label, lens, plural, R, scene, tidy, within } from "../parts.js";
+import { forceLength, G, grip, kept, lens, R, scene } from "../parts.js";
 
 const [COUNT, PX, DT, SECONDS] = [3, 34, 0.0005, 1.2];
 const ABOVE = 1.6; // r: how high a ball can be lifted
-const floorOf = (view) => view.height - 40;
+const HARDEST = 9; // weights
 
-// Heights [m] of balls at rest on springs of stiffness k, from `from` up lifted by `lift` [r].
-function restingHeights(k, from, lift) {
+/* Heights [m] of balls at rest on springs of stiffness k. The hand holds ball `from`: it lifts it by so
+ * many radii, and those above come along, or it presses it down with so many weights. */
+function heightsAtRest(k, from, hand) {
   const heights = [];
   let surface = 0;
-  const free = lift > 0 ? from : COUNT;
   for (let i = 0; i < COUNT; i++) {
-    const carried = i < free ? free - i : COUNT - i;
-    const sunk = i === from && lift > 0 ? -lift * R : (carried * G) / k;
-    heights.push(surface + R - sunk);
+    const lifted = hand > 0 && i === from;
+    const above = hand > 0 && i < from ? from - i : COUNT - i;
+    const pressed = hand < 0 && i <= from ? -hand : 0;
+    heights.push(surface + R + (lifted ? hand * R : (-(above + pressed) * G) / k));
     surface = heights[i] + R;
   }
   return heights;
 }
 
-const fall = kept((stiffness, damping, from, lift) => {
-  const balls = scene(restingHeights(stiffness, from, lift));
-  return runModel("penalty", balls, { dt: DT, stiffness, damping }, Math.round(SECONDS / DT));
+const fall = kept((stiffness, damping, ...hold) => {
+  const balls = scene(heightsAtRest(stiffness, ...hold));
+  return runModel("penalty", balls, { dt: DT, stiffness, damping }, Math.round(SECONDS / DT)).y;
 });
 
-function heightsOf(view) {
-  const { from, lift, time } = view.own;
-  const k = view.get("stiffness");
-  if (time === null) return restingHeights(k, from, lift);
-  const run = fall(k, view.get("damping"), from, lift);
+function heightsOf({ own: { from, hand, time }, get }) {
+  const k = get("stiffness");
+  if (time === null) return heightsAtRest(k, from, hand);
   const row = Math.round(time / DT);
-  return Array.from(run.y.subarray(row * COUNT, (row + 1) * COUNT));
+  return Array.from(fall(k, get("damping"), from, hand).subarray(row * COUNT, (row + 1) * COUNT));
 }
 
 function draw(view) {
-  const [floor, x, k] = [floorOf(view), 0.36 * view.width, view.get("stiffness")];
+  const k = view.get("stiffness");
+  const [floor, x] = [view.height - 40, 0.36 * view.width];
   const heights = heightsOf(view);
   const at = (height) => floor - (height / R) * PX;
-  const depths = heights.map((height, i) => (i ? 2 - (height - heights[i - 1]) / R : 1 - height / R));
+  const depths = heights.map((y, i) => (i ? 2 - (y - heights[i - 1]) / R : 1 - y / R));
   const forces = depths.map((depth) => Math.max(0, (k * depth * R) / G));
   const pushes = forces.map((force, i) => {
     const y = at(i ? heights[i - 1] + R : 0);
     const name = force > 0 ? label(`${number(force, 2)} m g`, x + PX + 24, y - 4) : "";
     return arrow("push m-penalty", x + PX + 14, y, 0, -Math.min(60, forceLength(force, 20))) + name;
   });
-  const balls = heights.map((height) => ball("penalty", x, at(height), PX));
-  const look = { depth: depths[0], r: PX, times: enlarged(depths[0], PX), size: 44 };
-  const seen = look.times > 2 && look.depth > 0; // a deeper one is seen without a lens
-  const beside = [Math.min(view.width - 50, x + 230), view.width < 480 ? 60 : floor - 90];
-  const near = seen ? lens("stack-lens", "penalty", ...beside, look) : "";
+  const { from, hand, time } = view.own;
+  const pressed = time === null ? forceLength(-hand, 20) : 0;
+  const aside = [Math.min(view.width - 50, x + 230), view.width < 480 ? 60 : floor - 90];
+  const svg = clipped(0, 0, view.width, view.height,
+    table(0, floor, view.width, 40),
+    ...heights.map((height) => ball("penalty", x, at(height), PX)),
+    ...pushes,
+    arrow("weight", x, at(heights[from] + R) - pressed, 0, pressed),
+    lens("stack-lens", "penalty", ...aside, PX, depths[0], 44),
+  );
   const open = depths.findIndex((depth) => depth < 0);
   const carried = plural(open < 0 ? COUNT : open, "ball");
-  const bottom = `the lowest contact ${depths[0] < 0 ? "is open" : `is ${number(depths[0])} r deep`}`;
-  const { from, lift: lifted } = view.own;
+  const bottom = depths[0] < 0 ? "is open" : `is ${number(depths[0])} r deep`;
+  const more = pressed ? `, and a hand that presses with ${number(-hand, 2)} m g` : "";
+  const text = `the lowest contact ${bottom}, ${number(forces[0], 2)} m g`;
+  const resting = heightsAtRest(k, COUNT, 0);
+  const hold = (height, i) =>
+    grip(view, `ball-${i}`, x, Math.min(at(height), view.height - 20), {
+      ...{ r: PX, label: `ball ${i + 1} from below: lift it or press it`, text },
+      ...{ low: -HARDEST, high: ABOVE, step: 0.1, release: () => view.own.hand && view.play() },
+      at: (toX, y) => ((at(resting[i]) - y) / PX) * (y > at(resting[i]) ? 6 : 1),
+      get: () => (i === view.own.from ? view.own.hand : 0),
+      set: (to) => Object.assign(view.own, { from: i, hand: Number(to.toFixed(3)), time: null }),
+    });
   return {
-    svg: clipped("stack-scene", 0, 0, view.width, view.height, table(0, floor, view.width, 40), ...balls, ...pushes, near),
-    words: `It carries ${carried}: ${bottom}, m g / k is ${number(G / k / R)} r.`,
-    handles: heights.map((height, i) =>
-      handle(String(i), x, Math.min(at(height), view.height - 20), PX, `ball ${i + 1} from below: lift it`, i === from ? lifted : 0, `${bottom}, ${number(forces[0], 2)} m g`),
-    ),
+    svg,
+    words: `It carries ${carried}${more}: the lowest contact ${bottom}, m g / k is ${number(G / k / R)} r.`,
+    handles: heights.map(hold),
   };
 }
 
-function lift(view, from, by) {
-  Object.assign(view.own, { from, lift: tidy(within(0, by, ABOVE)), time: null });
-}
-const time = clock(0.25, () => SECONDS, ["Let go", "Stop"]);
-
 export const figure = {
   title: "A stack on springs",
-  caption: "The lowest contact carries every ball above it: lift one off, and the rest come up.",
+  caption:
+    "The lowest contact carries every ball above it: lift one off, and the rest come up; press one down, " +
+    "and all below it feel it.",
   height: 330,
   knobs: ["stiffness"],
-  uses: ["damping"],
-  start: () => ({ from: COUNT - 1, lift: 0, time: null }),
+  start: () => ({ from: COUNT - 1, hand: 0, time: null }),
+  clock: () => ({ end: SECONDS, rate: 0.25, names: ["Let go", "Stop"] }),
   draw,
-  drag(view, name, x, y) {
-    const from = Number(name);
-    const resting = restingHeights(view.get("stiffness"), COUNT, 0)[from];
-    lift(view, from, (floorOf(view) - y) / PX - resting / R);
-  },
-  nudge(view, name, dx, dy) {
-    const held = Number(name) === view.own.from ? view.own.lift : 0;
-    lift(view, Number(name), held - 0.1 * dy);
-  },
-  release: (view) => view.own.lift > 0 && time.start(view),
-  ...time.parts,
 };
