@@ -19,7 +19,7 @@ import zipfile
 
 import contact
 from curriculum.text.references import INCLUDE, Numbers
-from curriculum.text.regions import ROOT, read
+from curriculum.text.regions import ROOT, read_all
 
 CHAPTER = ROOT / "curriculum/prose/chapter.md"
 CELLS = ROOT / "curriculum/notebook_cells.py"
@@ -83,7 +83,7 @@ class Book:
 
     def include(self, file, name):
         """A region. Those of contact.py run; others are shown, since their names are their own."""
-        regions = read(ROOT / file)
+        regions = read_all()
         if name not in regions:
             raise ValueError(f"{CHAPTER.name}: no region {file}#{name}; known: {[*regions]}")
         code = textwrap.dedent(MAIN.sub("", regions[name].code)).strip()
@@ -141,7 +141,6 @@ def build():
     import nbformat
 
     text, numbers = CHAPTER.read_text("utf-8"), Numbers()
-    numbers.run_all(text)
     book = Book()
     book.chapter(numbers.fill(text))
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}

@@ -79,7 +79,7 @@ def test_it_opens_on_a_ball_that_falls_before_anything_has_run(text):
 
 def test_what_the_chapter_shows_of_contact_is_a_cell_and_no_mark_of_the_page_is_left(text):
     book = nbformat.reads(text, as_version=4)
-    code, known = code_of(book), regions.read(regions.ROOT / "contact.py")
+    code, known = code_of(book), regions.read_all()
     chapter = notebook.CHAPTER.read_text("utf-8").partition(notebook.REST)[0]
     for name in re.findall(r"include-by-region: contact\.py#([\w-]+)", chapter):
         assert known[name].code.split("\n\n\n")[0].strip() in code, name

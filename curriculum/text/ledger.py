@@ -1,7 +1,6 @@
-"""The ledger of measured wall-clock, wallclock.csv: show it, or measure this machine's row.
+"""The ledger of measured wall-clock, wallclock.csv, and the command that measures a row of it.
 
-    python -m curriculum.text.ledger              # the rows, as the chapter shows them
-    python -m curriculum.text.ledger --measure    # time `python contact.py`, write the row
+    python -m curriculum.text.ledger    # time `python contact.py` here, write this machine's row
 
 Seven columns, no quoting. wallclock_min is in minutes for a whole process, recording included, the
 median of several. A row is MEASURED with every column filled, or PENDING with none; no time is ever
@@ -28,35 +27,29 @@ CHAPTER = "ch3.5-contact"
 COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", "status")
 FILLED = r"\d[\d.e-]*,[0-9a-f]{12},[0-9a-f]+\+?,\d{4}-\d\d-\d\d,MEASURED"
 ROW = re.compile(rf"[\w.-]+,[\w-]+,({FILLED}|,,,,PENDING)")
-COMMAND = "python -m curriculum.text.ledger --measure"
+COMMAND = "python -m curriculum.text.ledger"
 TIMED = (*CODE, "curriculum/recording.py")  # what a default run runs
 
 
 def rows() -> list:
-    """This chapter's rows, dicts of str. Raises ValueError `file:line: what`."""
+    """The rows, dicts of str. Raises ValueError `file:line: what`."""
     header, *lines = LEDGER.read_text("utf-8").splitlines()
     if header != ",".join(COLUMNS):
         raise ValueError(f"wallclock.csv:1: the header must be {','.join(COLUMNS)}")
     for number, line in enumerate(lines, 2):
         if not ROW.fullmatch(line):
-            raise ValueError(
-                f"wallclock.csv:{number}: neither a whole MEASURED row nor a PENDING one"
-            )
-    found = [dict(zip(COLUMNS, line.split(","))) for line in lines]
-    return [row for row in found if row["chapter"] == CHAPTER]
+            what = "neither a whole MEASURED row nor a PENDING one"
+            raise ValueError(f"wallclock.csv:{number}: {what}")
+    return [dict(zip(COLUMNS, line.split(","))) for line in lines]
 
 
-def lookup(tier: str):
-    """Measured minutes of a whole default run on a tier, or None where nobody has measured."""
-    times = [row["wallclock_min"] for row in rows() if row["tier"] == tier]
-    return float(times[0]) if times and times[0] else None
-
-
-def show(minutes) -> str:
-    """Minutes as text: two digits, and seconds beside them where one feels those."""
-    if minutes is None:
+def show(row) -> str:
+    """A row's minutes as text: two digits, and seconds beside them where one feels those."""
+    if row["status"] == "PENDING":
         return "not yet measured"
-    return f"{minutes:.2g} min" + (f" ({60 * minutes:.2g} s)" if minutes < 1 else "")
+    minutes = float(row["wallclock_min"])
+    seconds = f" ({60 * minutes:.2g} s)" if minutes < 1 else ""
+    return f"{minutes:.2g} min{seconds}" + " (stale)" * stale(row)
 
 
 def code_hash() -> str:
@@ -65,10 +58,9 @@ def code_hash() -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
-def stale_tiers() -> list:
-    """The tiers whose row was measured on other code than today's."""
-    now = code_hash()
-    return [row["tier"] for row in rows() if row["config_hash"] not in ("", now)]
+def stale(row) -> bool:
+    """Whether a row was measured on other code than today's."""
+    return row["config_hash"] not in ("", code_hash())
 
 
 def this_tier() -> str:
@@ -96,32 +88,22 @@ def measure(runs: int) -> float:
     return statistics.median(seconds[1:]) / 60
 
 
-def measured_row(runs: int) -> dict:
-    """This machine's row of the ledger, measured now."""
-    about, minutes = machine(), measure(runs)
-    facts = f"{minutes:.3g}", code_hash(), about["commit"], about["date"]
-    return dict(zip(COLUMNS, (CHAPTER, this_tier(), *facts, "MEASURED")))
-
-
 def main(argv=None) -> int:
-    """Show the ledger, or measure this machine's row. Returns the exit status."""
-    prog = "python -m curriculum.text.ledger"
-    parser = argparse.ArgumentParser(prog=prog, description=__doc__.split("\n")[0])
-    parser.add_argument("--measure", action="store_true", help="time contact.py, write the row")
+    """Measure this machine's row, write and show it. Returns the exit status."""
+    parser = argparse.ArgumentParser(prog=COMMAND, description=__doc__.split("\n")[0])
     parser.add_argument("--runs", type=int, default=9, help="counted runs (9)")
     args = parser.parse_args(argv)
     try:
         table = {row["tier"]: row for row in rows()}
-        if args.measure:
-            table[this_tier()] = measured_row(args.runs)
-            lines = [COLUMNS, *(row.values() for row in table.values())]
-            write_whole(LEDGER, "".join(",".join(line) + "\n" for line in lines))
+        about, tier, minutes = machine(), this_tier(), measure(args.runs)
+        facts = f"{minutes:.3g}", code_hash(), about["commit"], about["date"], "MEASURED"
+        table[tier] = dict(zip(COLUMNS, (CHAPTER, tier, *facts)))
+        lines = [COLUMNS, *(row.values() for row in table.values())]
+        write_whole(LEDGER, "".join(",".join(line) + "\n" for line in lines))
     except (OSError, RuntimeError, ValueError) as error:
         print(f"nothing written: {error}", file=sys.stderr)
         return 1
-    for tier, row in table.items():
-        minutes = float(row["wallclock_min"]) if row["wallclock_min"] else None
-        print(f"{tier:<12}{show(minutes)}{' (stale)' * (tier in stale_tiers())}")
+    print(f"{tier}: {show(table[tier])}")
     return 0
 
 

@@ -10,10 +10,10 @@ indentation that all of them share, each ended by one "\\n", as UTF-8.
 
 import hashlib
 import re
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from textwrap import dedent
-from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
 CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")  # what a run runs
@@ -22,109 +22,79 @@ WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its 
 NAME = r"[a-z][a-z0-9_-]*"
 BEGIN = re.compile(rf" *# --- region: ({NAME}) ---")
 END = "# --- endregion ---"
-MARKER = re.compile(r"^\s*#\s*-+\s*(end)?\s*region\b.*$", re.MULTILINE | re.IGNORECASE)
+MARKER = re.compile(r"^\s*#\s*-+\s*(end)?\s*region\b.*$", re.IGNORECASE)
+# What a piece of code defines: functions, classes, and constants by their capitals.
+DEFINITION = re.compile(r"^\s*(?:(?:def|class)\s+(\w+)|([A-Z][A-Z0-9_]*)\s*=(?!=))", re.MULTILINE)
+DOCSTRING = re.compile(r'(?:#[^\n]*\n|\s)*(?:""".*?""")?', re.DOTALL)
 
 
-class Region(NamedTuple):
+@dataclass(frozen=True)
+class Region:
     """One region; `line` is the number of its first line of code (the marker stands above it)."""
 
     name: str
     code: str
     line: int
-    file: str = "contact.py"
+    file: str
 
     @property
     def sha(self) -> str:
         """64 hexadecimal digits."""
         return hashlib.sha256(self.code.encode("utf-8")).hexdigest()
 
-    @property
-    def lines(self) -> range:
-        """The numbers of its lines in the file."""
-        return range(self.line, self.line + self.code.count("\n"))
-
-    @property
+    @cached_property
     def defines(self) -> frozenset:
         """The functions, methods, classes and constants that the region defines."""
-        return defined(self.code)
-
-
-# What a piece of code defines: functions, classes, and constants by their capitals.
-DEFINITION = re.compile(r"^\s*(?:(?:def|class)\s+(\w+)|([A-Z][A-Z0-9_]*)\s*=(?!=))", re.MULTILINE)
-DOCSTRING = re.compile(r'(?:#[^\n]*\n|\s)*(?:""".*?""")?', re.DOTALL)
-
-
-@lru_cache(maxsize=256)
-def defined(code: str) -> frozenset:
-    """The names of functions, methods, classes and constants that a piece of code defines."""
-    names = {name or constant for name, constant in DEFINITION.findall(code)}
-    return frozenset(name for name in names if not name.startswith("__"))
+        names = {name or constant for name, constant in DEFINITION.findall(self.code)}
+        return frozenset(name for name in names if not name.startswith("__"))
 
 
 def split(text: str, file: str) -> tuple:
-    """({name: Region} in reading order, problems) of one file's text; each problem is one line."""
-    found, problems = {}, []
+    """([Region] in reading order, problems) of one file's text; each problem is one line."""
+    found, problems = [], []
     name, first = None, 0
 
     def say(line, what):
         problems.append(f"{file}:{line}: {what}; repair: edit the markers of the region")
 
     lines = text.split("\n")
+    head = text.count("\n", 0, DOCSTRING.match(text).end()) + 1 if file in WHOLE else len(lines)
     for number, line in enumerate(lines, 1):
         begin = BEGIN.fullmatch(line)
         if begin and name is None:
             name, first = begin[1], number + 1
         elif line.strip() == END and name is not None:
-            if name in found:
-                say(first - 1, f"a second region {name}")
             code = dedent("\n".join([*lines[first - 1 : number - 1], ""]))
-            found[name] = Region(name, code, first, file)
+            found.append(Region(name, code, first, file))
             name = None
         elif MARKER.fullmatch(line):
             where = f"inside region {name}" if name else "outside any region"
             say(number, f"{line.strip()!r} {where}, where it does not belong")
+        elif name is None and number > head and line[:1].strip("# "):
+            say(number, f"code outside any region: {line[:60]!r}")
     if name is not None:
         say(first - 1, f"region {name} is never closed")
-    inside = {line for each in found.values() for line in each.lines}
-    start = DOCSTRING.match(text).end() if file in WHOLE else len(text)
-    for number in range(text.count("\n", 0, start) + 2, len(lines) + 1):
-        line = lines[number - 1]
-        if number not in inside and line[:1].strip("# "):       # a statement begins at column 0
-            say(number, f"code outside any region: {line[:60]!r}")
     return found, problems
 
 
-def split_all(read=None) -> tuple:
-    """({name: Region}, problems) over all literate files; `read(file)` gives a text or None."""
+def read_text(file):
+    """The text of one of the project's files; empty where there is no such file."""
+    path = ROOT / file
+    return path.read_text("utf-8") if path.is_file() else ""
+
+
+def split_all(read=read_text) -> tuple:
+    """({name: Region}, problems) over all literate files; `read(file)` gives a file's text."""
     found, problems = {}, []
     for file in LITERATE:
-        text = (read or read_text)(file)
-        regions, wrong = split(text or "", file)
+        regions, wrong = split(read(file), file)
         problems += wrong
-        for region in regions.values():
-            if region.name in found:
-                problems.append(
-                    f"{file}:{region.line - 1}: a second region {region.name}, the other"
-                    f" is in {found[region.name].file}; repair: rename one"
-                )
-            found.setdefault(region.name, region)
+        for region in regions:
+            other = found.setdefault(region.name, region)
+            if other is not region:
+                what = f"a second region {region.name}, the other is in {other.file}"
+                problems.append(f"{file}:{region.line - 1}: {what}; repair: rename one")
     return found, problems
-
-
-def read_text(file, root=ROOT):
-    """A file's text with "\\n" at its line ends; None where there is no such file."""
-    path = Path(root) / file
-    return path.read_text("utf-8") if path.is_file() else None
-
-
-def read(path) -> dict:
-    """{name: Region} of one file, in reading order. Raises ValueError, one problem a line."""
-    path = Path(path).resolve()
-    file = path.relative_to(ROOT).as_posix() if path.is_relative_to(ROOT) else path.name
-    found, problems = split(path.read_text("utf-8"), file)
-    if problems:
-        raise ValueError("\n".join(problems))
-    return found
 
 
 def read_all() -> dict:

@@ -8,7 +8,9 @@ one of those files has changed since, comments and docstrings aside.
 
 import json
 import math
+import re
 
+from contact import write_json, write_whole
 from curriculum.machine import fingerprint, machine
 from curriculum.text.regions import CODE, ROOT
 
@@ -29,8 +31,6 @@ def save(name: str, section: str, values: dict, command: str, code=CODE, folder=
     command: what measures it again, as one types it. code: the files that were measured. folder: of
     another results file than the repository's, for quick runs.
     """
-    from contact import write_json
-
     path = (ROOT / FOLDERS[name] if folder is None else folder) / NAME
     sections = json.loads(path.read_text("utf-8")) if path.exists() else {}
     about = {"command": command, **machine(), "code": fingerprint(*code)}
@@ -53,12 +53,16 @@ def rounded(value):
 
 
 def stale(section: dict) -> list:
-    """The files whose code is no longer what a section measured; ["unknown"] if none is named."""
-    code = ((section or {}).get("measured") or {}).get("code")
-    if not code:
-        return ["unknown"]
+    """The files whose code is no longer what a section measured."""
+    code = section["measured"]["code"]
     now = fingerprint(*code)
     return [file for file, digits in code.items() if now[file] != digits]
+
+
+def table(head, rows) -> str:
+    """A Markdown table."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in lines)
 
 
 def footer(section: dict) -> str:
@@ -72,3 +76,11 @@ def footer(section: dict) -> str:
     )
     note = f" **Stale**: {', '.join(changed)} changed since; measure again." if changed else ""
     return line + note
+
+
+def write_block(name: str, markdown: str):
+    """Put the Markdown of "bench" or "stress" into the project's README, between its markers."""
+    readme = ROOT / "README.md"
+    block = re.compile(rf"(<!-- generated: {name} by .*? -->\n).*?(?=<!-- end -->)", re.DOTALL)
+    text = block.sub(lambda match: f"{match[1]}{markdown.strip()}\n", readme.read_text("utf-8"))
+    write_whole(readme, text)

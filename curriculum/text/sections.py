@@ -10,14 +10,14 @@ import json
 import re
 import subprocess
 from difflib import unified_diff
+from functools import cache
 from typing import NamedTuple
 
-from curriculum.text.readme import BLOCK
 from curriculum.text.references import INCLUDE
-from curriculum.text.regions import LITERATE, ROOT, read_text, split_all
+from curriculum.text.regions import ROOT, read_text, split_all
 
 TEXTS = {"chapter": "curriculum/prose/chapter.md", "README": "README.md"}
-FENCE = re.compile(r"^(```|~~~).*?^\1 *$", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)
 HEADING = re.compile(r"^#{1,6} +(.*)$", re.MULTILINE)
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 
@@ -43,9 +43,9 @@ class Section(NamedTuple):
         return {name: text.splitlines() for name, text in {self.file: self.text, **code}.items()}
 
 
-def blank(pattern, text, flags=0):
+def blank(pattern, text):
     """The text with every match replaced by blanks, so that lines and places stay."""
-    return re.sub(pattern, lambda match: re.sub(r"[^\n]", " ", match[0]), text, flags=flags)
+    return pattern.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
 
 
 def line_at(text, index) -> int:
@@ -63,13 +63,12 @@ def bound(text, regions) -> tuple:
 
 
 def sections(read=read_text) -> dict:
-    """{name: Section} of chapter and README; `read(file)` gives a file's text or None."""
+    """{name: Section} of chapter and README; `read(file)` gives a file's text."""
     regions, _ = split_all(read)
     found = {}
     for stem, file in TEXTS.items():
-        whole = read(file) or ""
-        text = BLOCK.sub(lambda match: match["head"], whole)
-        prose = blank(FENCE.pattern, text, FENCE.flags)
+        text = read(file)
+        prose = blank(FENCE, text)
         starts = [match.start() for match in HEADING.finditer(prose)]
         for first, last in zip(starts, [*starts[1:], len(text)]):
             heading = HEADING.match(text, first)
@@ -78,8 +77,7 @@ def sections(read=read_text) -> dict:
             while name in found:
                 name += "-again"
             part = text[first:last].rstrip() + "\n"
-            line = line_at(whole, whole.index(heading[0]))
-            found[name] = Section(name, file, line, part, bound(part, regions))
+            found[name] = Section(name, file, line_at(text, first), part, bound(part, regions))
     return found
 
 
@@ -97,8 +95,7 @@ def differences(section: Section, accepted) -> list:
     if accepted is None:
         return ["(never read)"]
     commit = git("log", "-n1", "--format=%h", f"-S{accepted}", "--", "meta.yaml").strip() or "HEAD"
-    texts = {file: git("show", f"{commit}:{file}") for file in (section.file, *LITERATE)}
-    was = sections(texts.get).get(section.name)
+    was = sections(lambda file: git("show", f"{commit}:{file}")).get(section.name)
     old, new = was.parts() if was else {}, section.parts()
     found = []
     for part in [*new, *(part for part in old if part not in new)]:
@@ -108,6 +105,7 @@ def differences(section: Section, accepted) -> list:
     return [diff for diff in found if diff] or ["(what was accepted is not in git)"]
 
 
+@cache
 def git(*words) -> str:
     """What a git command prints; nothing where it fails or there is no git."""
     try:
