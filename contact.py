@@ -115,6 +115,8 @@ def pile_lattice(count, lift, rng):
 class Ball:
     """A ball: position [m], velocity [m/s], mass [kg], radius [m], and the force on it [N]."""
 
+    __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()   # quicker; no misspelt one
+
     def __init__(self, x, y, vx, vy, mass, radius):
         self.x, self.y = x, y
         self.vx, self.vy = vx, vy
@@ -137,6 +139,8 @@ def make_balls(scene):
 class Contact:
     """Balls a and b, how deep they overlap [m], and the unit normal (nx, ny) from b to a."""
 
+    __slots__ = "a b nx ny depth ax ay bx by inv_mass m_eff target softness lam".split()
+
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
         self.nx, self.ny = nx, ny
@@ -151,7 +155,8 @@ class Contact:
 
     def v_n(self):
         """Normal velocity [m/s], positive when the balls separate."""
-        return self.nx * (self.a.vx - self.b.vx) + self.ny * (self.a.vy - self.b.vy)
+        a, b = self.a, self.b
+        return self.nx * (a.vx - b.vx) + self.ny * (a.vy - b.vy)
 
     def push(self, impulse):
         """Give ball a this impulse [N s] along the normal, and ball b the opposite one."""
@@ -550,7 +555,8 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, repor
     k = 0
     while k < steps:
         if skip:
-            state = rows[k, :-1].tobytes(), *(tuple(ball.pushed.items()) for ball in balls)
+            pushed = [each for ball in balls for each in ball.pushed.items()]
+            state = rows[k].tobytes(), *pushed
             first = seen.setdefault(state, k)
             period = k - first
             if period > 0:
@@ -586,8 +592,10 @@ def fly(balls, dt, most):
     Without contact a step adds dt g to v and dt v to q. np.add.accumulate adds in the same order
     as the steps do, so the bits agree. The flight ends before the first step that sees a contact.
     """
-    on_floor = any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls)
-    if on_floor or detect_contacts(balls):              # the quick look first
+    for ball in balls:                                  # the quick look first
+        if ball.y - ball.radius < CONTACT_MARGIN:
+            return ()
+    if detect_contacts(balls):
         return ()
     states = np.empty((min(most, 250) + 1, len(balls), 4))
     states[0] = np.reshape(state_of(balls), (-1, 4))
