@@ -2,15 +2,15 @@
 
 The page is a single HTML file that asks the network for nothing. Its text is prose/chapter.md, its
 code comes from the literate files by region, its numbers from fresh runs, its exercises from
-exercises/. Its figures can be grabbed: engine.js computes penalty, lcp and soft in the reader's
-browser bit for bit as contact.py does, and exact.js the exact model.
+exercises/. Its figures can be grabbed: engine.js computes the four models in the reader's browser,
+penalty, lcp and soft bit for bit as contact.py does.
 
-    build.py      collects all that; prose.py, body.py, panels.py, exercises.py make the parts
-    bundle.py     joins the modules into one script without globals
-    still.py      draws every figure's first picture, in an embedded V8, for readers without scripts
+    build.py      collects all that; chapter.py, panels.py, exercises.py make the parts
+    bundle.py     joins the modules into one script without globals, and runs some while building:
+                  still.js draws every figure's first picture, for readers without scripts
     maths_font.py the formulas' characters; browser.py a real browser, for pictures and measuring
     main.js       the start; store.js the one state; stage.js what can be grabbed; draw.js SVG
-    engine.js exact.js    the models
-    figures/NAME.js       a figure each, for the slot <!-- figure: NAME -->; parts.js, corners.js
+    engine.js sliding.js    the models
+    figures/NAME.js         a figure each, for the slot <!-- figure: NAME -->; parts.js
     bets.js blank.js arithmetic.js reader.js    exercises, and what the text sets
 """

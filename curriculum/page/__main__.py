@@ -1,4 +1,4 @@
-"""python -m curriculum.page [--out FILE] [--pictures FOLDER] [--measure] [--draft]"""
+"""python -m curriculum.page [--out FILE] [--pictures FOLDER] [--measure]"""
 
 import argparse
 import sys
@@ -15,7 +15,6 @@ def parse(argv):
     add("--out", type=Path, default=default, metavar="FILE", help=f"the file to write ({default})")
     add("--pictures", type=Path, metavar="FOLDER", help="and the README's picture of it")
     add("--measure", action="store_true", help="and how quickly it answers in Chromium")
-    add("--draft", action="store_true", help="build it even where slots or regions are missing")
     return parser.parse_args(argv)
 
 
@@ -23,21 +22,17 @@ def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 it can't be built, 2 bad usage."""
     args = parse(argv)
     try:
+        from contact import write_whole
         from curriculum.page.build import build
+
+        page = build()
+        write_whole(args.out, page)
     except ModuleNotFoundError as error:
         print(f"the page needs {error.name}: pip install -e '.[page]'", file=sys.stderr)
         return 1
-    from contact import write_whole
-
-    try:
-        page, missing = build(draft=args.draft)
-        args.out.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(args.out, page)
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1
-    for what in missing:
-        print(f"draft: the chapter {what}", file=sys.stderr)
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
     if args.pictures or args.measure:
         from curriculum.page import browser

@@ -1,41 +1,42 @@
-/* Arithmetic as a reader writes it into a blank: numbers, names, + - * / ( ) , max min, read by descent. */
+/* Arithmetic as a reader writes it into a blank: numbers, names, + - * / ( ) , max min, read by
+ * descent. A name may be short, as in the formulas of the text. */
 
-const TOKEN = /\s*(?:(\d+\.?\d*(?:e[-+]?\d+)?|\.\d+)|([A-Za-z_]\w*)|([-+*/(),]))/y;
+const TOKEN = /\s*(?:(\d+\.?\d*(?:e[-+]?\d+)?|\.\d+)|([A-Za-z_]\w*)|(.))/giy;
 const CALLS = { max: Math.max, min: Math.min };
-
-function tokens(text) {
-  const found = [];
-  TOKEN.lastIndex = 0;
-  while (TOKEN.lastIndex < text.trimEnd().length) {
-    const at = TOKEN.lastIndex;
-    const match = TOKEN.exec(text);
-    if (!match) throw new Error(`“${text.slice(at).trim()[0]}” is not understood; allowed: + − * / ( ) max min`);
-    found.push(match[1] !== undefined ? Number(match[1]) : match[2] || match[3]);
-  }
-  return found;
-}
+const SHORT = { k: "stiffness", c: "damping" };
+const SIGNS = {
+  "+": (a, b) => a + b,
+  "-": (a, b) => a - b,
+  "*": (a, b) => a * b,
+  "/": (a, b) => a / b,
+};
 
 /* The text as a function of an object of values. Raises Error, in one sentence, where it is none. */
 export function compile(text, names) {
-  const rest = tokens(text);
+  const rest = [...text.trim().matchAll(TOKEN)].map(([, number, name, sign]) =>
+    number === undefined ? name || sign : Number(number),
+  );
   if (!rest.length) throw new Error("Nothing is written yet.");
   const take = (wanted) => {
-    if (rest[0] !== wanted) throw new Error(`“${wanted}” is missing${rest.length ? ` before “${rest[0]}”` : " at the end"}.`);
+    const where = rest.length ? ` before “${rest[0]}”` : " at the end";
+    if (rest[0] !== wanted) throw new Error(`“${wanted}” is missing${where}.`);
     rest.shift();
   };
-  const both = (next, signs) => () => {
+  const chain = (next, signs) => () => {
     let left = next();
     while (signs.includes(rest[0])) {
-      const [sign, a, b] = [rest.shift(), left, next()];
-      left = { "+": (v) => a(v) + b(v), "-": (v) => a(v) - b(v), "*": (v) => a(v) * b(v), "/": (v) => a(v) / b(v) }[sign];
+      const [sign, a, b] = [SIGNS[rest.shift()], left, next()];
+      left = (v) => sign(a(v), b(v));
     }
     return left;
   };
+  const product = chain(atom, ["*", "/"]);
+  const sum = chain(product, ["+", "-"]);
   function call(name) {
     take("(");
     const given = [sum()];
     while (rest[0] === ",") {
-      rest.shift();
+      take(",");
       given.push(sum());
     }
     take(")");
@@ -43,10 +44,12 @@ export function compile(text, names) {
   }
   function atom() {
     const token = rest.shift();
+    const name = names.includes(token) ? token : SHORT[token];
     if (typeof token === "number") return () => token;
-    if (token === "-" || token === "+") {
-      const a = atom();
-      return token === "-" ? (v) => -a(v) : a;
+    if (token === "+") return atom();
+    if (token === "-") {
+      const opposite = atom();
+      return (v) => -opposite(v);
     }
     if (token === "(") {
       const inner = sum();
@@ -54,11 +57,10 @@ export function compile(text, names) {
       return inner;
     }
     if (CALLS[token]) return call(token);
-    if (names.includes(token)) return (v) => v[token];
-    throw new Error(token === undefined ? "Something is missing at the end." : `“${token}” is not known here; known: ${names.join(", ")}.`);
+    if (names.includes(name)) return (v) => v[name];
+    if (token === undefined) throw new Error("Something is missing at the end.");
+    throw new Error(`“${token}” is not known here; known: ${names.join(", ")} + − * / ( ) max min.`);
   }
-  const product = both(atom, ["*", "/"]);
-  const sum = both(product, ["+", "-"]);
   const found = sum();
   if (rest.length) throw new Error(`“${rest[0]}” is too much.`);
   return found;

@@ -1,5 +1,5 @@
-/* Bets: one click makes one, and lifts the veils over what would have told the answer. The reason may
- * be written after. What was bet is kept in this browser. */
+/* Bets: one click makes one, and lifts the veils over what would have told the answer. The reason
+ * may be written after. What was bet is kept in this browser. */
 
 const KEY = "contact-chapter:";
 
@@ -21,14 +21,13 @@ function keep(id, value) {
 
 export class Bets {
   #made = new Map(); // id: {choice, why} or {shown: true}
-  #hear = [];
+  #hear = () => {};
 
   constructor(ids) {
     for (const id of ids) {
-      const box = document.getElementById(id);
       const before = kept(id);
       if (before) this.#made.set(id, before);
-      if (box) this.#listen(id, box);
+      if (document.getElementById(id)) this.#listen(id, document.getElementById(id));
       if (before) this.#show(id);
     }
     document.addEventListener("click", (event) => {
@@ -38,7 +37,7 @@ export class Bets {
   }
 
   open = (id) => this.#made.has(id);
-  onOpen = (hear) => this.#hear.push(hear);
+  onOpen = (hear) => (this.#hear = hear);
 
   #listen(id, box) {
     for (const button of box.querySelectorAll("button[data-choice]"))
@@ -55,7 +54,7 @@ export class Bets {
     this.#made.set(id, bet);
     keep(id, bet);
     this.#show(id);
-    for (const hear of this.#hear) hear(id);
+    this.#hear();
   }
 
   // Open without a bet, and keep the focus at what came out from behind the veil.
@@ -79,7 +78,7 @@ export class Bets {
     for (const reason of box.querySelectorAll("[data-reason]"))
       reason.hidden = !(reason.dataset.reason === choice || "right" in reason.dataset);
     const right = box.querySelector("[data-right]").dataset.reason;
-    const words = { [right]: "You bet on it, and it is so." };
-    box.querySelector(".verdict").textContent = choice ? words[choice] || "It comes out otherwise." : "This is how it comes out.";
+    const words = choice === right ? "You bet on it, and it is so." : "It comes out otherwise.";
+    box.querySelector(".verdict").textContent = choice ? words : "This is how it comes out.";
   }
 }

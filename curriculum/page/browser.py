@@ -3,19 +3,14 @@
 import contextlib
 import shutil
 
-CHROMIUM = next(
-    (path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path),
-    None,
-)
-FLAGS = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-)
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+CHROMIUM = next(filter(None, map(shutil.which, NAMES)), None)
+FLAGS = (  # no request of its own
+    "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
+    "--disable-component-update --disable-sync"
+).split()
+SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
+  localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
 PICTURE = "page-live.png"  # of the README
 # what a knob costs: set a quantity by its slider, and wait until the next frame is painted
 KNOB = """([name, figure]) => new Promise((done) => {
@@ -29,11 +24,9 @@ KNOB = """([name, figure]) => new Promise((done) => {
     range.dispatchEvent(new Event("input", { bubbles: true }));
     requestAnimationFrame(() => setTimeout(() => {
       times.push(performance.now() - start);
-      if (times.length < 9) setTimeout(once, 300);
-      else {
-        range.dispatchEvent(new Event("pointerup"));
-        done(times.sort((a, b) => a - b)[4]);
-      }
+      if (times.length < 9) return setTimeout(once, 300);
+      range.dispatchEvent(new Event("pointerup"));
+      done(times.sort((a, b) => a - b)[4]);
     }));
   };
   once();
@@ -49,21 +42,30 @@ PAINT = """() => new Promise((done) => {
 
 
 @contextlib.contextmanager
-def opened(page, query="", **options):
-    """A tab with the HTML file `page`, 1280 x 800, as for a reader who has made the bets."""
+def running():
+    """A Chromium, closed at the end."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
-        tab = browser.new_page(viewport={"width": 1280, "height": 900}, **options)
-        tab.add_init_script(
-            """for (const id of ["ex1", "ex3", "ex4"])
-            localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
-        )
-        tab.goto(page.resolve().as_uri() + query)
-        tab.wait_for_selector("[data-ready]", state="attached")
-        yield tab
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
         browser.close()
+
+
+@contextlib.contextmanager
+def opened(page, query="", **options):
+    """A tab with the HTML file `page`, 1280 x 900, as for a reader who has made the bets."""
+    with running() as browser:
+        tab = browser.new_page(viewport={"width": 1280, "height": 900}, **options)
+        tab.add_init_script(SHOWN)
+        show(tab, page, query)
+        yield tab
+
+
+def show(tab, page, query=""):
+    """Go to the page and wait until it is ready."""
+    tab.goto(page.resolve().as_uri() + query)
+    tab.wait_for_selector("[data-ready]", state="attached")
 
 
 def photograph(page, folder):
@@ -87,12 +89,10 @@ def measure(page):
     with opened(page) as tab:
         paint, shift = tab.evaluate(PAINT)
         yield f"first paint {paint:.0f} ms (below 500), layout shift {shift:.3f} (below 0.1)"
-        for scene in ("drop", "bounce", "stack"):
-            tab.goto(f"{page.resolve().as_uri()}?scene={scene}")
-            tab.wait_for_selector("[data-ready]", state="attached")
+        for scene, wanted in {"drop": 50, "bounce": 50, "stack": 100}.items():
+            show(tab, page, f"?scene={scene}")
             tab.locator("a.try").first.scroll_into_view_if_needed()
             for name in ("dt", "stiffness", "baumgarte", "restitution"):
-                wanted = 100 if scene == "stack" else 50
                 time = tab.evaluate(KNOB, [name, "lanes"])
                 yield f"lanes, {scene}: {name:<11} answers in {time:4.0f} ms (below {wanted})"
         tab.locator("#fig-cliff").scroll_into_view_if_needed()

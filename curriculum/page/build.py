@@ -4,29 +4,27 @@ import base64
 import hashlib
 import os
 import re
-from html import escape
 from pathlib import Path
 
 import jinja2
 from markupsafe import Markup
 
 import contact
-from curriculum import curves, exact
-from curriculum.page import maths_font, prose
-from curriculum.page.body import assemble
-from curriculum.page.bundle import bundle
+from curriculum import curves
+from curriculum.page import chapter, maths_font
+from curriculum.page.bundle import bundle, evaluate
 from curriculum.page.exercises import all_exercises, blank_cases
-from curriculum.page.panels import panels
-from curriculum.page.still import stills
+from curriculum.page.panels import pieces
 from curriculum.text import ledger
-from curriculum.text.references import REFERENCE, Numbers, load_meta
-from curriculum.text.regions import ROOT
+from curriculum.text.references import Numbers, load_meta
+from curriculum.text.regions import ROOT, read_all
 
 HERE = Path(__file__).resolve().parent
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
-ENGINE = (
-    "GRAVITY CONTACT_MARGIN SOLREF SOLIMP HARD MOST_SWEEPS LAST_BITS EXPLODED".split()
-)  # constants of contact.py that engine.js takes
+ENGINE = (  # constants of contact.py that engine.js takes
+    "GRAVITY CONTACT_MARGIN SOLREF SOLIMP HARD MOST_SWEEPS LAST_BITS EXPLODED "
+    "TOUCH SLOW TOGETHER STILL MOST_IMPACTS"
+).split()
 SCALE = 1.6  # of the pictures of bench and stress: their text of 10 px shall be read beside ours
 # the public course that this chapter belongs to, and what stands around it there
 COURSE = {
@@ -41,32 +39,25 @@ COURSE = {
 COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb"
 
 
-def scene_facts(name):
-    """What the page must know of a scene: its start heights, and its own knobs."""
-    scene = contact.build_scene(name)
-    start = scene.q0[1].tolist()
-    return {"start": start, "damping": scene.damping, "restitution": scene.restitution}
-
-
-def page_data(bets):
+def page_data(veils):
     """What the scripts know from the Python files, the module data.js."""
-    settings = contact.Settings()
-    dt = contact.parse_flags([]).dt
+    settings, scenes = contact.Settings(), {name: contact.build_scene(name) for name in SCENES}
+    knobs = {name: getattr(settings, name) for name in "stiffness iters baumgarte warm".split()}
     return {
-        "scenes": {name: scene_facts(name) for name in SCENES},
-        "radius": contact.RADIUS,
-        "defaults": {
-            "dt": dt,
-            "stiffness": settings.stiffness,
-            "iters": settings.iters,
-            "baumgarte": settings.baumgarte,
-            "warm": settings.warm,
+        "models": contact.MODELS,
+        "scenes": {
+            name: {
+                "start": scene.q0[1].tolist(),
+                "damping": scene.damping,
+                "restitution": scene.restitution,
+            }
+            for name, scene in scenes.items()
         },
+        "radius": contact.RADIUS,
+        "defaults": knobs | {"dt": contact.parse_flags([]).dt},
         "engine": {name: getattr(contact, name) for name in ENGINE},
-        "exact": {name: getattr(contact, name) for name in ("TOUCH", "SLOW", "STILL")}
-        | {"ORDER": exact.ORDER},
         "blank": blank_cases(),
-        "bets": bets,
+        "bets": veils,
     }
 
 
@@ -74,7 +65,7 @@ def page_data(bets):
 
 
 def data_address(svg):
-    """An SVG as an address that holds it, its paths rounded to a hundredth of a pixel."""
+    """An SVG as an address that holds it, its paths rounded to a tenth of a pixel."""
     drawn = re.sub(
         r"<\?xml.*?\?>|<!DOCTYPE.*?>|<!--.*?-->|<metadata>.*?</metadata>", "", svg, flags=re.DOTALL
     )
@@ -85,54 +76,74 @@ def data_address(svg):
     return Markup("data:image/svg+xml," + escaped)
 
 
-def generated_figure(kind, path):
-    """A picture that bench or stress has drawn: its slot, and what the template wants."""
-    text = path.read_text(encoding="utf-8")
+def drawn_by(kind, name):
+    """The picture NAME that bench or stress has drawn, as the template wants it."""
+    path = next((ROOT / "curriculum" / kind / "results").glob(f"*{name}.svg"), None)
+    if path is None:
+        raise ValueError(f"{chapter.CHAPTER}: {kind} has drawn no picture {name}")
+    text = path.read_text("utf-8")
     box = re.search(r'<svg\b[^>]*?\bviewBox="\S+ \S+ ([\d.]+) ([\d.]+)"', text, re.DOTALL)
     title = re.search(r"<title[^>]*>(.*?)</title>", text, re.DOTALL)
-    name = re.sub("^(error|map)-", "", path.stem.replace("_", "-"))  # error-drop: bench:drop
     what = title[1].strip() if title else name.replace("-", " ")
-    told = ("Run time against error" if kind == "bench" else "Stability") + f": {what}"
     width, height = (round(SCALE * float(side)) for side in box.groups())
-    caption = Markup(f"{escape(told)}. Measured by <code>python -m curriculum.{kind}</code>.")
-    return f"{kind}:{name}", {
-        "alt": told,
-        "caption": caption,
-        "src": data_address(text),
-        "width": width,
-        "height": height,
-    }
+    told = ("Run time against error" if kind == "bench" else "Stability") + f": {what}"
+    return {"kind": kind, "alt": told, "src": data_address(text), "width": width, "height": height}
 
 
-def ledger_rows():
-    """The wall-clock table, measured or not."""
-    return [row | {"time": ledger.show(ledger.lookup(row["tier"]))} for row in ledger.rows()]
+class Filler:
+    """Gives the HTML of each part of the chapter, in its order."""
 
+    def __init__(self, macros, figures, exercises):
+        self.macros, self.figures, self.exercises = macros, figures, exercises
+        self.regions = read_all()
+        self.alone = False  # whether the live figure has stepped back here
 
-def fill_slots(macros, drawn, exercises):
-    """What stands in each slot that a chapter may hold, as HTML by name."""
-    slots = {"wallclock": macros.wallclock(ledger_rows()), "figure:lanes": macros.recall()}
-    slots["figure:grab"] = ""  # it stands at the top of the page
-    for name, figure in drawn["figures"].items():
-        if name not in ("lanes", "grab"):
-            slots[f"figure:{name}"] = macros.figure(name, figure)
-    for name, exercise in exercises.items():
-        slots[f"exercise:{name}"] = macros.exercise(exercise)
-    for kind in ("bench", "stress"):
-        for path in sorted((ROOT / "curriculum" / kind).rglob("*.svg")):
-            name, figure = generated_figure(kind, path)
-            slots[name] = macros.generated(figure)
-    return {name: str(html) for name, html in slots.items()}
+    def __call__(self, kind, value):
+        if kind == "heading":
+            level, name, inner = value
+            return self.macros.heading(level, name, Markup(inner)) if level > 1 else ""
+        if kind == "show":
+            self.alone = value == "none"
+            return Markup(f'<i class="show" data-show="{value.replace("&", "&amp;")}"></i>')
+        if kind == "include":
+            return self.panel(value)
+        return self.slot(*value.partition(":")[::2]) if kind == "slot" else Markup(value)
+
+    def panel(self, name):
+        """A region of the code."""
+        if name not in self.regions:
+            raise ValueError(f"{chapter.CHAPTER}: there is no region {name}")
+        region = self.regions[name]
+        return self.macros.panel(region, pieces(region))
+
+    def slot(self, kind, name):
+        """A figure, an exercise, a picture or the table of wall-clock times."""
+        if kind == "wallclock":
+            rows = [row for row in ledger.rows() if row["status"] == "MEASURED"]
+            times = {row["tier"]: ledger.show(row) for row in rows}
+            return self.macros.wallclock(rows, times)
+        if kind in ("bench", "stress"):
+            return self.macros.generated(drawn_by(kind, name))
+        if name == "lanes":
+            return self.macros.recall()
+        if name == "grab":
+            return ""  # it stands at the top of the page
+        known = self.figures if kind == "figure" else self.exercises
+        if name not in known:
+            raise ValueError(f"{chapter.CHAPTER}: there is no {kind} {name}; known: {[*known]}")
+        if kind == "exercise":
+            return self.macros.exercise(known[name])
+        return self.macros.figure(name, known[name], self.alone)
 
 
 # ---- the head
 
 
-def early_script(bets):
+def early_script(veils):
     """What must run before the first paint, so that nothing moves after it."""
     return (
         'document.documentElement.className = "js";\n'
-        f"for (const id of {bets})\n"
+        f"for (const id of {veils})\n"
         '  try { if (localStorage.getItem("contact-chapter:" + id)) '
         'document.documentElement.classList.add("open-" + id); } catch {}\n'
     )
@@ -148,21 +159,19 @@ def policy(*scripts):
     )
 
 
-def stylesheet(bets):
+def stylesheet(veils):
     """The page's style, with the models' colours, the formulas' font, and what veils each bet."""
     css = (HERE / "style.css").read_text("utf-8")
     css = re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL))
     colors = "".join(f"--{model}: {color}; " for model, color in curves.COLORS.items())
     font = base64.b64encode(maths_font.FILE.read_bytes()).decode()
-    face = (
-        f'font-family: "{maths_font.NAME}"; src: url("data:font/woff;base64,{font}") format("woff")'
-    )
-    veils = "".join(
+    face = f'"{maths_font.NAME}"; src: url("data:font/woff;base64,{font}") format("woff")'
+    hidden = "".join(
         f".js:not(.open-{name}) .veiled-{name} > .answer, .open-{name} .veiled-{name} > .veil-bar "
         "{ display: none; }\n"
-        for name in bets
+        for name in veils
     )
-    return f":root {{ {colors}}}\n@font-face {{ {face}; }}\n{css}{veils}"
+    return f":root {{ {colors}}}\n@font-face {{ font-family: {face}; }}\n{css}{hidden}"
 
 
 def favicon():
@@ -187,52 +196,27 @@ def environment(keys):
     )
     repository = os.environ.get("GITHUB_REPOSITORY")
     colab = COLAB.format(repository) if repository else None
-    made.globals.update(course=COURSE, colab=colab, scenes=SCENES, models=contact.MODELS)
-    made.globals["keys"] = {model: Markup(key) for model, key in keys.items()}
+    keys = {model: Markup(key) for model, key in keys.items()}
+    made.globals.update(course=COURSE, colab=colab, keys=keys)
     return made
 
 
-def fill_numbers(text, draft):
-    """The chapter with its numbers, and what a draft lacks of them."""
-    numbers, unknown = Numbers(), []
-
-    def number(reference):
-        try:
-            return numbers.text(reference[1])
-        except ValueError as error:
-            if not draft:
-                raise
-            unknown.append(f"lacks {reference[0]}: {error}")
-            return "?"
-
-    return REFERENCE.sub(number, text), unknown
-
-
-def build(chapter=None, draft=False):
-    """(page, missing): the page as text, and what a draft lacks, a line each.
-
-    Raises ValueError (file:line: what) where the chapter can't be shown as it is.
-    """
-    text = (ROOT / prose.CHAPTER).read_text("utf-8") if chapter is None else chapter
-    exercises, code = all_exercises(), panels()
+def build(text=None):
+    """The page of the chapter, or of `text` in its place. Raises ValueError (file:line: what)
+    where it can't be shown as it is."""
+    text = (ROOT / chapter.CHAPTER).read_text("utf-8") if text is None else text
+    exercises = all_exercises()
     bets = [name for name, each in exercises.items() if each["choices"]]
     veils = [*bets, "puzzle"]
     data = page_data(veils)
-    drawn = stills(data)
-    faults = [each["error"] for each in drawn["figures"].values() if "error" in each]
-    if faults and not draft:
-        raise ValueError(faults[0])
-    drawn["figures"] = {k: each for k, each in drawn["figures"].items() if "error" not in each}
+    drawn = evaluate("still.js", data, "stills()")
     templates = environment(drawn["keys"])
     macros = templates.get_template("parts.html.j2").module
-    filled, unknown = fill_numbers(text, draft)
-    parts = prose.blocks(filled, drawn["ranges"])
-    body = assemble(parts, fill_slots(macros, drawn, exercises), code, macros, bets, draft)
-    title = next(
-        (value[2] for kind, value in parts if kind == "heading" and value[0] == 1), "Contact"
-    )
+    fill = Filler(macros, drawn["figures"], exercises)
+    parts = chapter.blocks(Numbers().fill(text), drawn["ranges"])
+    body, ((_, _, title), *contents) = chapter.assemble(parts, fill, macros, bets)
     script, early = bundle("main.js", data), early_script(veils)
-    page = templates.get_template("page.html.j2").render(
+    return templates.get_template("page.html.j2").render(
         policy=policy(early, script),
         icon=favicon(),
         style=Markup(stylesheet(veils)),
@@ -240,9 +224,8 @@ def build(chapter=None, draft=False):
         script=Markup(script),
         heading=Markup(re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title)),
         figures=drawn["figures"],
-        contents=body.contents,
-        body=Markup("\n".join(body.html)),
-        objectives=[prose.inline(item) for item in load_meta()["objectives"]],
-        regions=list(code.values()),
+        contents=contents,
+        body=body,
+        objectives=[chapter.inline(item) for item in load_meta()["objectives"]],
+        regions=list(fill.regions.values()),
     )
-    return page, faults + unknown + body.missing

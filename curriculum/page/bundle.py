@@ -6,8 +6,12 @@ files, and figures.js, {name: figure} of every file in figures/.
 """
 
 import json
+import posixpath
 import re
+from graphlib import TopologicalSorter
 from pathlib import Path
+
+from py_mini_racer import MiniRacer
 
 HERE = Path(__file__).resolve().parent
 IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
@@ -16,34 +20,24 @@ PLAIN = re.compile(r"^[ ]*//[^\n]*\n|^/\*.*?\*/\n|^[ ]+(?=[^ ])", re.M | re.S)
 EXPORT = re.compile(r"^export (const|function|class) ([\w$]+)", re.MULTILINE)
 
 
-def figure_names():
-    """The names of the figures, sorted."""
-    return sorted(path.stem for path in (HERE / "figures").glob("*.js"))
-
-
-def sources(data):
-    """{path: text} of all modules, by their path from this folder."""
-    names = figure_names()
-    imports = [f'import {{ figure as f{k} }} from "./figures/{n}.js";' for k, n in enumerate(names)]
-    held = ", ".join(f"{json.dumps(name)}: f{k}" for k, name in enumerate(names))
-    made = {
-        "data.js": f"export const data = {json.dumps(data, sort_keys=True)};\n",
-        "figures.js": "\n".join([*imports, f"export const figures = {{ {held} }};\n"]),
-    }
-    files = [*HERE.glob("*.js"), *(HERE / "figures").glob("*.js")]
-    return made | {str(path.relative_to(HERE)): path.read_text("utf-8") for path in files}
+def source(path, data):
+    """The text of the module at `path`, seen from this folder. A file exports figure or figures."""
+    if path == "data.js":
+        return f"export const data = {json.dumps(data, sort_keys=True)};\n"
+    if path != "figures.js":
+        return (HERE / path).read_text("utf-8")
+    names = sorted(file.stem for file in (HERE / "figures").glob("*.js"))
+    imports = [
+        f'import {{ figure as one{k}, figures as all{k} }} from "./figures/{name}.js";\n'
+        for k, name in enumerate(names)
+    ]
+    held = ", ".join(f'...(all{k} ?? {{ "{name}": one{k} }})' for k, name in enumerate(names))
+    return "".join(imports) + f"export const figures = {{ {held} }};\n"
 
 
 def target(path, address):
     """The module that `address` means in the module `path`."""
-    folder = "" if "/" not in path else path.rsplit("/", 1)[0]
-    parts = folder.split("/") if folder else []
-    for part in address.split("/"):
-        if part == "..":
-            parts.pop()
-        elif part != ".":
-            parts.append(part)
-    return "/".join(parts)
+    return posixpath.normpath(posixpath.join(posixpath.dirname(path), address))
 
 
 def module(path, text):
@@ -62,22 +56,25 @@ def module(path, text):
 
 def bundle(start, data):
     """One script: `start` and all that it imports, each module before those that need it."""
-    texts, order = sources(data), []
-
-    def add(path, by):
-        if path in by:
-            raise ValueError(f"curriculum/page/{path}: imports itself, by {' and '.join(by)}")
-        if path in order:
-            return
+    texts, needs, found = {}, {}, [start]
+    for path in found:
         if path not in texts:
-            raise ValueError(f"curriculum/page/{by[-1]}: imports {path}, and there is no such file")
-        for _, address in IMPORT.findall(texts[path]):
-            add(target(path, address), (*by, path))
-        order.append(path)
-
-    add(start, ())
+            texts[path] = source(path, data)
+            needs[path] = [target(path, address) for _, address in IMPORT.findall(texts[path])]
+            found += needs[path]
+    order = TopologicalSorter(needs).static_order()
     joined = "".join(module(path, texts[path]) for path in order)
     if "</script" in joined.lower():
         raise ValueError("curriculum/page: the text '</script' in a module would end the script")
     head = '"use strict";\nconst modules = {};\n'
     return f'(() => {{\n{head}{joined}return modules["{start}"];\n}})()'
+
+
+def evaluate(start, data, call):
+    """What `call` of a module gives in an embedded V8: of the page's own code, without a page."""
+    engine = MiniRacer()
+    try:
+        engine.eval(f"const made = {bundle(start, data)};")
+        return json.loads(engine.eval(f"JSON.stringify(made.{call})"))
+    finally:
+        engine.close()  # its thread would keep Python from ending

@@ -1,21 +1,22 @@
-/* The contact models of contact.py in plain JavaScript; exact is in exact.js.
+/* The contact models of contact.py in plain JavaScript.
  *
- * JavaScript's numbers are the doubles that Python uses, and + - * / and sqrt are rounded the same way
- * in both. Written in the same order of operations, penalty, lcp and soft give the same trajectories
- * bit for bit; exact agrees to 1e-10 r. Tests hold both claims.
+ * JavaScript's numbers are the doubles that Python uses, and + - * / and sqrt are rounded the same
+ * way in both. Written in the same order of operations, penalty, lcp and soft give the same
+ * trajectories bit for bit; exact agrees to 1e-10 r. Tests hold both claims.
  *
- * Names and signs are those of contact.py; the floor is j = -1. A scene is {x, y, vx, vy, mass, radius,
- * restitution, damping}, arrays with one number a ball; a state is {x, y, vx, vy}, and of soft, pushed.
- * The knobs are {dt, stiffness, damping, restitution, iters, baumgarte, warm, solref, solimp}.
- */
+ * Names and signs are those of contact.py; the floor is j = -1. A scene is {x, y, vx, vy, mass,
+ * radius, restitution, damping}, arrays with one number a ball; a state is {x, y, vx, vy}, and of
+ * soft, pushed. The knobs are {dt, stiffness, damping, restitution, iters, baumgarte, warm, solref,
+ * solimp}. */
 import { data } from "./data.js";
-import { run as simulateExact } from "./exact.js";
 
 const { CONTACT_MARGIN, SOLREF, SOLIMP, HARD, MOST_SWEEPS, LAST_BITS, EXPLODED } = data.engine;
+const { TOUCH, SLOW, TOGETHER, STILL, MOST_IMPACTS } = data.engine; // of exact
 export const GRAVITY = data.engine.GRAVITY;
-export const MODELS = ["penalty", "lcp", "soft", "exact"];
+export const MODELS = data.models;
 
-// max(0, a) as Python computes it: what is not greater than zero, NaN included, becomes +0.
+// max as Python computes it: what is not greater, NaN included, does not count.
+const greatest = (numbers) => numbers.reduce((most, v) => (v > most ? v : most));
 const positive = (a) => (a > 0 ? a : 0);
 
 // Floor contacts by body, then pairs i < j: the order is part of the result.
@@ -32,8 +33,8 @@ export function detectContacts(x, y, radius, margin) {
       const dy = y[i] - y[j];
       const dist = Math.sqrt(dx * dx + dy * dy);
       const depth = radius[i] + radius[j] - dist;
-      if (!(depth > -margin)) continue;
-      contacts.push({ i, j, nx: dist > 0 ? dx / dist : 0, ny: dist > 0 ? dy / dist : 1, depth });
+      const [nx, ny] = dist > 0 ? [dx / dist, dy / dist] : [0, 1];
+      if (depth > -margin) contacts.push({ i, j, nx, ny, depth });
     }
   }
   return contacts;
@@ -45,8 +46,7 @@ export function normalSpeed(c, vx, vy) {
   return c.nx * (vx[c.i] - jx) + c.ny * (vy[c.i] - jy);
 }
 
-const accelerated = (vy, mass, dt, fy) =>
-  vy.map((v, i) => (mass[i] === Infinity ? v : v + dt * (GRAVITY + (fy ? fy[i] / mass[i] : 0))));
+const fall = (vy, mass, dt) => vy.map((v, i) => (mass[i] < Infinity ? v + dt * GRAVITY : v));
 
 function move({ x, y }, dt, vx, vy) {
   return { x: x.map((a, i) => a + dt * vx[i]), y: y.map((a, i) => a + dt * vy[i]), vx, vy };
@@ -58,39 +58,38 @@ const penaltyNormalForce = (depth, speed, stiffness, damping) =>
   positive(stiffness * depth - damping * speed);
 
 // One step of penalty. knobs.clampForce stands in for the clamped force.
-export function penaltyStep(state, scene, knobs) {
+export function penaltyStep(state, { mass, radius }, knobs) {
   const { x, y, vx, vy } = state;
   const { dt, stiffness, damping, clampForce = penaltyNormalForce } = knobs;
   const fx = y.map(() => 0);
   const fy = y.map(() => 0);
-  for (const c of detectContacts(x, y, scene.radius, 0)) {
-    const speed = normalSpeed(c, vx, vy);
-    const f = clampForce(c.depth, speed, stiffness, damping);
+  for (const c of detectContacts(x, y, radius, 0)) {
+    const f = clampForce(c.depth, normalSpeed(c, vx, vy), stiffness, damping);
     fx[c.i] += f * c.nx;
     fy[c.i] += f * c.ny;
-    if (c.j >= 0) {
-      fx[c.j] -= f * c.nx;
-      fy[c.j] -= f * c.ny;
-    }
+    if (c.j < 0) continue;
+    fx[c.j] -= f * c.nx;
+    fy[c.j] -= f * c.ny;
   }
-  const { mass } = scene;
-  const faster = vx.map((v, i) => (mass[i] === Infinity ? v : v + dt * (fx[i] / mass[i])));
-  return move(state, dt, faster, accelerated(vy, mass, dt, fy));
+  const faster = (v, i, a) => (mass[i] < Infinity ? v + dt * a : v);
+  const nextX = vx.map((v, i) => faster(v, i, fx[i] / mass[i]));
+  const nextY = vy.map((v, i) => faster(v, i, GRAVITY + fy[i] / mass[i]));
+  return move(state, dt, nextX, nextY);
 }
 
 // ---- lcp and soft: one problem, one sweep
 
 // A contact with its target velocity and its softness (0 for lcp), ready for the sweeps: what an
 // impulse of 1 does to its two balls, and the effective mass.
-export function makeRows(contacts, mass, targets, softness) {
+export function makeRows(contacts, mass, targets = [], softness = []) {
   return contacts.map((c, k) => {
     const wi = 1 / mass[c.i];
     const wj = c.j < 0 ? 0 : 1 / mass[c.j];
-    const whole = softness[k] > 0 ? wi + wj + softness[k] : wi + wj;
+    const whole = wi + wj + (softness[k] ?? 0);
     return {
       ...c,
-      target: targets[k],
-      softness: softness[k],
+      target: targets[k] ?? 0,
+      softness: softness[k] ?? 0,
       effectiveMass: whole > 0 ? 1 / whole : 0,
       ix: wi * c.nx,
       iy: wi * c.ny,
@@ -104,8 +103,8 @@ export function makeRows(contacts, mass, targets, softness) {
 // The impulse after a correction: the sum may not become negative, a correction may.
 export const projectImpulse = (lam, dlam) => positive(lam + dlam);
 
-// Projected Gauss-Seidel. Changes vx, vy and the lam of the rows; returns whether it settled. `project`
-// stands in for the clamp.
+// Projected Gauss-Seidel. Changes vx, vy and the lam of the rows; returns whether it settled.
+// `project` stands in for the clamp.
 export function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = projectImpulse }) {
   for (let sweep = 0; sweep < iters; sweep++) {
     let settled = true;
@@ -131,39 +130,24 @@ function push(c, impulse, vx, vy) {
 }
 
 // Begin with a share of the impulses that the same balls gave each other in the step before.
-function warmStart(rows, pushed, share, vx, vy) {
+function warmStart(rows, pushed = [], share, vx, vy) {
   for (const c of rows) {
-    const last = pushed && pushed.find(({ i, j }) => i === c.i && j === c.j);
+    const last = pushed.find(({ i, j }) => i === c.i && j === c.j);
     c.lam = share * (last ? last.lam : 0);
     push(c, c.lam, vx, vy);
   }
 }
 
 // Gravity predicts the velocities, impulses correct them, the balls move.
-function solveStep(state, scene, dt, rows, { warm, last, ...options }) {
+function solveStep(state, { mass }, dt, rows, { warm, last = 0, ...options }) {
   const vx = state.vx.slice();
-  const vy = accelerated(state.vy, scene.mass, dt);
-  const tolerance = last ? last * fastest(rows, vx, vy) : 0;
+  const vy = fall(state.vy, mass, dt);
+  const targets = rows.length ? rows.map((c) => c.target) : [0];
+  const fastest = last && greatest([...targets, ...vx, ...vy].map(Math.abs));
   if (warm) warmStart(rows, state.pushed, warm, vx, vy);
-  const settled = solveContacts(rows, vx, vy, { ...options, tolerance });
-  const next = move(state, dt, vx, vy);
-  next.settled = settled;
-  if (warm && rows.length) next.pushed = rows.map(({ i, j, lam }) => ({ i, j, lam }));
-  return next;
-}
-
-// The largest speed in sight: of the targets, and of the balls.
-function fastest(rows, vx, vy) {
-  let most = rows.length ? Math.abs(rows[0].target) : 0;
-  const see = (v) => {
-    if (Math.abs(v) > most) most = Math.abs(v);
-  };
-  for (const c of rows) see(c.target);
-  vx.forEach((v, i) => {
-    see(v);
-    see(vy[i]);
-  });
-  return most;
+  const settled = solveContacts(rows, vx, vy, { ...options, tolerance: last && last * fastest });
+  const pushed = warm ? rows.map(({ i, j, lam }) => ({ i, j, lam })) : [];
+  return { ...move(state, dt, vx, vy), settled, pushed };
 }
 
 // The normal velocity with which a contact of lcp must leave at least.
@@ -172,18 +156,18 @@ function contactTarget(c, state, { dt, restitution, baumgarte }) {
   if (restitution === 0) return bias;
   const speed = normalSpeed(c, state.vx, state.vy);
   const bounce = -restitution * speed;
-  if (bias > 0) return bounce > bias ? bounce : bias;
+  if (bias > 0) return greatest([bias, bounce]);
   const meets = dt * speed <= c.depth;
   return meets || !(c.depth / dt < bounce) ? bounce : c.depth / dt;
 }
 
 // One step of lcp. knobs.project stands in for the clamp.
-export function lcpStep(state, scene, knobs) {
+export function lcpStep(state, { mass, radius }, knobs) {
   const { dt, iters, warm, project } = knobs;
-  const contacts = detectContacts(state.x, state.y, scene.radius, CONTACT_MARGIN);
+  const contacts = detectContacts(state.x, state.y, radius, CONTACT_MARGIN);
   const targets = contacts.map((c) => contactTarget(c, state, knobs));
-  const hard = contacts.map(() => 0);
-  return solveStep(state, scene, dt, makeRows(contacts, scene.mass, targets, hard), { iters, project, warm });
+  const rows = makeRows(contacts, mass, targets);
+  return solveStep(state, { mass }, dt, rows, { iters, project, warm });
 }
 
 // ---- soft, MuJoCo's contact
@@ -201,8 +185,8 @@ export function impedance(depth, [d0, d1, width, mid, power]) {
   if (width <= 1e-15) return 0.5 * (d0 + d1);
   if (depth >= width) return d1;
   const x = depth / width;
-  const rise = x <= mid ? raised(x, power) / raised(mid, power - 1) : 1 - raised(1 - x, power) / raised(1 - mid, power - 1);
-  return d0 + rise * (d1 - d0);
+  const half = (share, middle) => raised(share, power) / raised(middle, power - 1);
+  return d0 + (x <= mid ? half(x, mid) : 1 - half(1 - x, 1 - mid)) * (d1 - d0);
 }
 
 const share = (a) => Math.min(Math.max(a, 0.0001), 0.9999);
@@ -227,26 +211,23 @@ function springOf([first, second], d1) {
 }
 
 // The target and the softness of a contact of soft.
-export function soften(c, state, scene, knobs) {
+export function soften(c, state, { mass }, knobs) {
   const { solref, solimp } = softDefaults(knobs);
   const [K, B] = springOf(solref, solimp[1]);
   const d = impedance(c.depth, solimp);
   const speed = normalSpeed(c, state.vx, state.vy);
-  const soft = ((1 - d) / d) * (1 / scene.mass[c.i] + (c.j < 0 ? 0 : 1 / scene.mass[c.j]));
-  return { target: speed + knobs.dt * (K * d * c.depth - B * speed), softness: soft > 1e-15 ? soft : 1e-15 };
+  const softness = ((1 - d) / d) * (1 / mass[c.i] + (c.j < 0 ? 0 : 1 / mass[c.j]));
+  const target = speed + knobs.dt * (K * d * c.depth - B * speed);
+  return { target, softness: greatest([1e-15, softness]) };
 }
 
 // One step of soft: lcp's step with another target, and softness.
-export function softStep(state, scene, knobs) {
-  const contacts = detectContacts(state.x, state.y, scene.radius, 0);
-  const soft = contacts.map((c) => soften(c, state, scene, knobs));
-  const rows = makeRows(
-    contacts,
-    scene.mass,
-    soft.map((each) => each.target),
-    soft.map((each) => each.softness),
-  );
-  return solveStep(state, scene, knobs.dt, rows, { iters: MOST_SWEEPS, last: LAST_BITS, warm: 1 });
+export function softStep(state, { mass, radius }, knobs) {
+  const contacts = detectContacts(state.x, state.y, radius, 0);
+  const soft = contacts.map((c) => soften(c, state, { mass }, knobs));
+  const [targets, softness] = ["target", "softness"].map((key) => soft.map((each) => each[key]));
+  const options = { iters: MOST_SWEEPS, last: LAST_BITS, warm: 1 };
+  return solveStep(state, { mass }, knobs.dt, makeRows(contacts, mass, targets, softness), options);
 }
 
 // ---- runs
@@ -256,14 +237,15 @@ const PARTS = ["x", "y", "vx", "vy"];
 
 // A recording: n balls, steps + 1 rows; x, y, vx, vy are flat, row by row.
 function blank(n, dt, steps) {
-  const run = { n, dt, steps, unsettled: 0, t: new Float64Array(steps + 1) };
-  for (const key of PARTS) run[key] = new Float64Array((steps + 1) * n);
-  for (let s = 0; s <= steps; s++) run.t[s] = dt * s;
+  const t = Float64Array.from({ length: steps + 1 }, (_, k) => dt * k);
+  const run = { n, dt, steps, unsettled: 0, t };
+  for (const key of PARTS) run[key] = new Float64Array((steps + 1) * n).fill(NaN);
   return run;
 }
 
 function write(run, row, state) {
-  for (const key of PARTS) for (let i = 0; i < run.n; i++) run[key][row * run.n + i] = state[key][i] + 0; // no -0
+  for (const key of PARTS)
+    for (let i = 0; i < run.n; i++) run[key][row * run.n + i] = state[key][i] + 0; // no -0
 }
 
 export function stateAt(run, row) {
@@ -272,8 +254,10 @@ export function stateAt(run, row) {
 }
 
 const alike = ({ pushed: a = [] }, { pushed: b = [] }) =>
-  a.length === b.length && a.every((c, k) => c.i === b[k].i && c.j === b[k].j && c.lam === b[k].lam);
-const same = (a, b) => PARTS.every((key) => a[key].every((v, i) => v === b[key][i])) && alike(a, b);
+  a.length === b.length &&
+  a.every((c, k) => c.i === b[k].i && c.j === b[k].j && c.lam === b[k].lam);
+const same = (a, b) =>
+  PARTS.every((key) => a[key].every((v, i) => v === b[key][i])) && alike(a, b);
 const LONGEST = 4; // periods of rest that are noticed: penalty and lcp have 1 and 2, soft up to 4
 
 export function runModel(model, scene, knobs, steps) {
@@ -288,7 +272,7 @@ export function runModel(model, scene, knobs, steps) {
     state = STEP[model](state, scene, knobs);
     if (state.settled === false) run.unsettled++;
     write(run, row, state);
-    // a step depends on the state and its impulses alone: where they come back, all else is known
+    // a step depends on the state and its impulses alone: where they come back, all is known
     const period = 1 + before.findIndex((old) => same(old, state));
     if (period > 0) return repeat(run, row, period);
   }
@@ -298,52 +282,113 @@ export function runModel(model, scene, knobs, steps) {
 // Fills the rows after `row` with what comes back every `period` rows.
 function repeat(run, row, period) {
   for (const key of PARTS)
-    for (let at = (row + 1) * run.n; at < run[key].length; at++) run[key][at] = run[key][at - period * run.n];
+    for (let at = (row + 1) * run.n; at < run[key].length; at++)
+      run[key][at] = run[key][at - period * run.n];
   return run;
 }
 
-export function runExact(scene, knobs, steps, gravity = -GRAVITY) {
-  const run = blank(scene.y.length, knobs.dt, steps);
-  Object.assign(run, { events: [], cut: null });
-  simulateExact(scene, run.t, gravity, run, react);
+// ---- exact: from one impact to the next, while no normal turns
+
+// Balls in one line, over or beside one another. run.events are the impacts.
+export function runExact(scene, { dt }, steps, gravity = -GRAVITY) {
+  const { x, y, mass, radius, restitution } = scene;
+  const run = Object.assign(blank(y.length, dt, steps), { events: [] });
+  let state = { x, y, vx: scene.vx.slice(), vy: scene.vy.slice() };
+  const pairs = makeRows(detectContacts(x, y, radius, Infinity), mass);
+  let gaps = pairs.map((c) => (-c.depth > TOUCH ? -c.depth : 0));
+  let [now, row] = [0, 0];
+  for (let impact = 0; impact < MOST_IMPACTS && row <= steps; impact++) {
+    const touching = pairs.filter((_, k) => gaps[k] === 0);
+    const struck = bounce(touching, state, restitution);
+    run.events.push(...struck.map(({ i, j }) => ({ t: now, i, j })));
+    const a = accelerations(touching, state, mass, gravity);
+    const { span, after } = nextImpact(pairs, gaps, state, a);
+    for (; row <= steps && run.t[row] <= now + span; row++)
+      write(run, row, fly(state, a, run.t[row] - now));
+    state = fly(state, a, span);
+    gaps = after;
+    now += span;
+  }
   return run;
 }
 
-// Brings contacts to their targets by impulses, swept until only rounding is left; changes vx, vy. With
-// accelerations in place of velocities the impulses are forces. `both`: a contact may pull as well.
-function react(mass, contacts, targets, vx, vy, both) {
-  const rows = makeRows(contacts, mass, targets, targets.map(() => 0));
-  let most = 0;
-  for (const c of rows) most = Math.max(most, Math.abs(c.target), Math.abs(normalSpeed(c, vx, vy)));
-  const project = both ? (lam, dlam) => lam + dlam : undefined;
-  solveContacts(rows, vx, vy, { iters: 1e5, tolerance: 2 ** -52 * most, project });
-  return rows.map((c) => c.lam);
+function fly({ x, y, vx, vy }, { ax, ay }, t) {
+  const place = (q, v, a) => q.map((each, i) => each + t * (v[i] + 0.5 * t * a[i]));
+  const speed = (v, a) => v.map((each, i) => each + t * a[i]);
+  return { x: place(x, vx, ax), y: place(y, vy, ay), vx: speed(vx, ax), vy: speed(vy, ay) };
+}
+
+// All impacts of one moment: v_n becomes -e v_n where a contact pushes. Returns who struck.
+function bounce(touching, { vx, vy }, restitution) {
+  const before = touching.map((c) => normalSpeed(c, vx, vy));
+  touching.forEach((c, k) => {
+    const back = -restitution * before[k];
+    c.target = back >= 0 && back < SLOW ? 0 : back;
+  });
+  settle(touching, vx, vy);
+  return touching.filter((c, k) => before[k] < -SLOW);
+}
+
+// The same sweep, one derivative higher: the accelerations of balls and contacts; and who rests.
+function accelerations(touching, { vx, vy }, mass, gravity) {
+  const resting = touching.filter((c) => Math.abs(normalSpeed(c, vx, vy)) < STILL);
+  const [ax, ay] = [mass.map(() => 0), mass.map((m) => (m < Infinity ? -gravity : 0))];
+  for (const c of resting) c.target = 0;
+  settle(resting, ax, ay);
+  const rests = (c) => resting.includes(c) && normalSpeed(c, ax, ay) < STILL;
+  return { ax, ay, rests };
+}
+
+// Sweep until only rounding is left.
+function settle(rows, vx, vy) {
+  const speeds = rows.flatMap((c) => [vx[c.i], vy[c.i], vx[c.j] || 0, vy[c.j] || 0, c.target]);
+  for (const c of rows) c.lam = 0;
+  const tolerance = 2 ** -50 * Math.max(0, ...speeds.map(Math.abs));
+  solveContacts(rows, vx, vy, { iters: MOST_SWEEPS, tolerance });
+}
+
+// How long until the next gap closes; and all gaps at that moment, 0 in touch.
+function nextImpact(pairs, gaps, { vx, vy }, { ax, ay, rests }) {
+  const courses = pairs.map((c, k) => {
+    const [gap, v, a] = [gaps[k], normalSpeed(c, vx, vy), normalSpeed(c, ax, ay)];
+    return { gap, v, a, root: rests(c) ? Infinity : timeToImpact(gap, v, a), rests: rests(c) };
+  });
+  const span = Math.min(...courses.map(({ root }) => root));
+  const after = courses.map(({ gap, v, a, root, rests }) =>
+    rests || root <= span * TOGETHER ? 0 : Math.max(0, gap + span * (v + 0.5 * span * a)),
+  );
+  return { span, after };
+}
+
+// The first root of gap + v t + a t^2 / 2; Infinity if the gap does not close.
+function timeToImpact(gap, v, a) {
+  if (v >= 0 && a >= 0) return Infinity;
+  const square = v * v - 2 * gap * a;
+  if (square < 0) return Infinity;
+  return v < 0 ? (2 * gap) / (Math.sqrt(square) - v) : -(v + Math.sqrt(square)) / a;
 }
 
 // ---- measuring, as contact_quality and its neighbours do it
 
-function energyAt(run, scene, row) {
+function energyAt(run, { mass }, row) {
   let sum = 0;
   for (let i = 0; i < run.n; i++) {
-    if (scene.mass[i] === Infinity) continue;
+    if (mass[i] === Infinity) continue;
     const at = row * run.n + i;
     const speed2 = run.vx[at] * run.vx[at] + run.vy[at] * run.vy[at];
-    sum += 0.5 * scene.mass[i] * speed2 - scene.mass[i] * GRAVITY * run.y[at];
+    sum += 0.5 * mass[i] * speed2 - mass[i] * GRAVITY * run.y[at];
   }
   return sum;
 }
 
 // The smallest gap [m] to the floor or between two balls; NaN once a ball is nowhere.
-function smallestGap(run, { radius }, row) {
-  const { n, x, y } = run;
+function smallestGap({ n, x, y }, { radius }, row) {
   let least = Infinity;
   for (let i = 0; i < n; i++) {
     const at = row * n + i;
-    if (Number.isNaN(y[at])) return NaN;
     least = Math.min(least, y[at] - radius[i]);
     for (let j = i + 1; j < n; j++) {
-      const dx = x[at] - x[row * n + j];
-      const dy = y[at] - y[row * n + j];
+      const [dx, dy] = [x[at] - x[row * n + j], y[at] - y[row * n + j]];
       least = Math.min(least, Math.sqrt(dx * dx + dy * dy) - (radius[i] + radius[j]));
     }
   }
@@ -352,12 +397,12 @@ function smallestGap(run, { radius }, row) {
 
 // The push of the table [N] on all that stands on it, averaged over the step that ends in `row`:
 // what changed the momentum and was not gravity.
-export function pushOfTable(run, scene, row) {
+export function pushOfTable(run, { mass }, row) {
   let sum = 0;
   for (let i = 0; i < run.n; i++) {
-    if (scene.mass[i] === Infinity) continue;
+    if (mass[i] === Infinity) continue;
     const change = run.vy[row * run.n + i] - run.vy[(row - 1) * run.n + i];
-    sum += scene.mass[i] * (change / run.dt - GRAVITY);
+    sum += mass[i] * (change / run.dt - GRAVITY);
   }
   return Math.abs(sum) < 1e-9 * Math.abs(GRAVITY) ? 0 : sum;
 }
@@ -365,17 +410,17 @@ export function pushOfTable(run, scene, row) {
 // Row by row: gap [r], energy over its start, push in weights; and the row of the landing.
 export function series(run, scene) {
   const rows = run.steps + 1;
-  const found = { gap: new Float64Array(rows), energy: new Float64Array(rows), push: new Float64Array(rows) };
+  const [gap, energy, push] = [0, 1, 2].map(() => new Float64Array(rows));
   const weight = scene.mass.reduce((sum, m) => sum - (m < Infinity ? m * GRAVITY : 0), 0);
   const start = energyAt(run, scene, 0);
   let landing = rows;
   for (let row = 0; row < rows; row++) {
-    found.gap[row] = smallestGap(run, scene, row) / scene.radius[0];
-    found.energy[row] = energyAt(run, scene, row) / start;
-    if (row > 0) found.push[row] = pushOfTable(run, scene, row) / weight;
-    if (landing === rows && (found.gap[row] <= 0 || found.push[row] > 1e-9)) landing = row;
+    gap[row] = smallestGap(run, scene, row) / scene.radius[0];
+    energy[row] = energyAt(run, scene, row) / start;
+    if (row > 0) push[row] = pushOfTable(run, scene, row) / weight;
+    if (landing === rows && (gap[row] <= 0 || push[row] > 1e-9)) landing = row;
   }
-  return { ...found, landing };
+  return { gap, energy, push, landing };
 }
 
 // The most energy above the start, in starts; whether the run exploded.

@@ -6,11 +6,12 @@ import json
 import re
 import sys
 
-from curriculum.page.prose import inline, markdown
+from curriculum.page.chapter import inline, markdown
 from curriculum.text.regions import ROOT
 
 FOLDER = ROOT / "exercises"
-TITLE = re.compile(r"Exercise (\d+), (.+?) \((\d+) minutes\): (.+?)\.?")
+TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")
+COMMAND = re.compile(r"^    ((?:python|pytest)\b.*?)(?:\s{2,}#.*)?$", re.MULTILINE)
 BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2, filled in the page
 
 
@@ -23,36 +24,7 @@ def module(name):
 
 def blank_cases():
     """The inputs on which checks.py tries the blanks of exercise 2."""
-    blanks = module("blanks").BLANKS
-    return {blank: blanks[blank].inputs for blank in BLANKS}
-
-
-def text_of(name, exercise):
-    """The parts of an exercise's docstring: title, minutes, task (HTML) and commands."""
-    title, _, text = exercise.__doc__.partition("\n")
-    parts = TITLE.fullmatch(title.strip())
-    if not parts:
-        raise ValueError(
-            f"exercises/{name}: the docstring must begin 'Exercise N, KIND (M minutes): TITLE'"
-        )
-    number, _, minutes, told = parts.groups()
-    blocks = [each for each in re.split(r"\n\s*\n", text.strip())]
-    commands = re.findall(r"^    ((?:python|pytest)\b.*?)(?:\s{2,}#.*)?$", text, re.MULTILINE)
-    prose = [each for each in blocks if not re.match(r" *(python|pytest)\b", each)]
-    if hasattr(exercise, "CHOICES"):  # without how to bet in a file
-        prose = [re.sub(r"\s*Read CHOICES.*", "", each, flags=re.DOTALL) for each in prose]
-    return {
-        "id": name,
-        "title": f"Exercise {number}: {told}",
-        "minutes": minutes,
-        "task": markdown("\n\n".join(map(laid_out, prose))),
-        "command": "\n".join(commands),
-    }
-
-
-def laid_out(block):
-    """A block of a docstring as Markdown: indented lines stay as they are."""
-    return re.sub(r"(?m)(^[^ ].*\n)(?=    )", r"\1\n", block)
+    return {name: module("blanks").BLANKS[name].inputs for name in BLANKS}
 
 
 @functools.cache
@@ -61,30 +33,44 @@ def measured(name):
     return module(name).measure()
 
 
-def facts_of(name, path, facts):
-    """An exercise as the template wants it."""
-    exercise = module(path.stem)
-    shown = text_of(path.name, exercise) | {"id": name, "choices": []}
-    shown["hints"] = [inline(hint) for hint in facts.get("hints", [])]
-    if hasattr(exercise, "CHOICES"):
+def task_of(text):
+    """A docstring without its commands, as HTML: indented lines stay as they are."""
+    prose = [block for block in re.split(r"\n\s*\n", text.strip()) if not COMMAND.match(block)]
+    return markdown("\n\n".join(re.sub(r"(?m)(^[^ ].*\n)(?=    )", r"\1\n", b) for b in prose))
+
+
+def exercise(path, facts):
+    """An exercise as the template wants it. Raises ValueError where its docstring has no title."""
+    source = module(path.stem)
+    title, _, text = source.__doc__.partition("\n")
+    parts = TITLE.fullmatch(title.strip())
+    if not parts:
+        raise ValueError(f"{path.name}: it must begin 'Exercise N, KIND (M minutes): TITLE'")
+    number, minutes, told = parts.groups()
+    shown = {
+        "id": f"ex{number}",
+        "title": f"Exercise {number}: {told}",
+        "minutes": minutes,
+        "command": "\n".join(COMMAND.findall(text)),
+        "hints": [inline(hint) for hint in facts.get("hints", [])],
+        "choices": [],
+    }
+    if hasattr(source, "CHOICES"):
+        text = re.sub(r"\s*Read CHOICES.*?(?=\n\s*\n|$)", "", text, flags=re.DOTALL)
         numbers = measured(path.stem)
         shown |= {
-            "choices": list(exercise.CHOICES.items()),
-            "question": exercise.QUESTION,
-            "why": exercise.WHY_PROMPT,
+            "choices": list(source.CHOICES.items()),
+            "question": source.QUESTION,
+            "why": source.WHY_PROMPT,
             "answer": facts["answer"],
-            "reasons": {k: inline(text.format(**numbers)) for k, text in facts["reasons"].items()},
-            "table": module("predict").table(exercise, numbers),
+            "reasons": {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()},
+            "table": module("predict").table(source, numbers),
         }
-    return shown
+    return shown | {"task": task_of(text)}
 
 
 def all_exercises():
     """{name: exercise} in order."""
     facts = json.loads((FOLDER / "answers.json").read_text("utf-8"))
-    paths = sorted(FOLDER.glob("ex*_*.py"))
-    return {
-        name: facts_of(name, path, facts.get(name, {}))
-        for path in paths
-        for name in [path.stem.split("_")[0]]
-    }
+    paths = {path.stem.split("_")[0]: path for path in sorted(FOLDER.glob("ex*_*.py"))}
+    return {name: exercise(path, facts.get(name, {})) for name, path in paths.items()}

@@ -1,4 +1,5 @@
-/* The start: in the page, everything is bound together; in a worker, figures compute what takes long. */
+/* The start: in the page, everything is bound together; in a worker, figures compute what takes
+ * long. */
 import { Bets } from "./bets.js";
 import { startBlank } from "./blank.js";
 import { data } from "./data.js";
@@ -13,25 +14,21 @@ function work({ data: { figure, job, args, ticket } }) {
   self.postMessage({ ticket, value: figures[figure].jobs[job](args) });
 }
 
-// Computes a figure's job beside the page; where no worker can be had, in the page.
-class Helper {
-  #waiting = new Map();
-  #ticket = 0;
-
-  constructor(source) {
-    try {
-      this.worker = new Worker(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
-      this.worker.onmessage = ({ data: { ticket, value } }) => this.#waiting.get(ticket)(value);
-      this.worker.onerror = () => (this.worker = null);
-    } catch {
-      this.worker = null;
-    }
+// compute(figure, job, args, done) beside the page; where no worker can be had, in the page.
+function helper(source) {
+  const waiting = new Map();
+  let [worker, ticket] = [null, 0];
+  try {
+    worker = new Worker(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
+    worker.onmessage = ({ data: { ticket, value } }) => waiting.get(ticket)(value);
+    worker.onerror = () => (worker = null);
+  } catch {
+    // it is done in the page, once what is going on there has ended
   }
-
-  compute = (figure, job, args, done) => {
-    if (!this.worker) return void setTimeout(() => done(figures[figure].jobs[job](args)));
-    this.#waiting.set(++this.#ticket, done);
-    this.worker.postMessage({ figure, job, args, ticket: this.#ticket });
+  return (figure, job, args, done) => {
+    if (!worker) return void setTimeout(() => done(figures[figure].jobs[job](args)));
+    waiting.set(++ticket, done);
+    worker.postMessage({ figure, job, args, ticket });
   };
 }
 
@@ -63,32 +60,33 @@ const lit = new Map();
 // Light some lines, [[region, text]]: those of the last call from `by` go out.
 function light(by, lines) {
   for (const line of lit.get(by) || []) line.classList.remove("lit");
-  const found = lines.flatMap(([region, text]) =>
-    [...document.querySelectorAll(`#code-${region} .ln`)].filter((line) => line.textContent.includes(text)),
-  );
+  const found = lines.flatMap(([region, text]) => {
+    const all = [...document.querySelectorAll(`#code-${region} .ln`)];
+    return all.filter((line) => line.textContent.includes(text));
+  });
   for (const line of found) line.classList.add("lit");
   lit.set(by, found);
 }
 
 function start() {
-  const store = new Store(Object.assign({}, ...Object.values(figures).map((each) => each.quantities || {})));
+  const store = new Store();
   const bets = new Bets(data.bets);
-  const helper = new Helper(document.getElementById("script").textContent);
   const page = {
     store,
     open: bets.open,
     still: window.matchMedia("(prefers-reduced-motion: reduce)").matches,
-    worker: helper.compute,
+    worker: helper(document.getElementById("script").textContent),
     light,
   };
   bindAddress(store);
-  const stages = new Map();
-  for (const box of document.querySelectorAll("[data-figure]"))
-    stages.set(box.dataset.figure, new Stage(box, box.dataset.figure, figures[box.dataset.figure], page));
-  bets.onOpen(() => stages.forEach((stage) => stage.redraw()));
+  const stages = {};
+  for (const box of document.querySelectorAll("[data-figure]")) {
+    const name = box.dataset.figure;
+    stages[name] = new Stage(box, name, figures[name], page);
+  }
+  bets.onOpen(() => Object.values(stages).forEach((stage) => stage.redraw()));
   if (document.getElementById("blank")) startBlank(document.getElementById("blank"), data.blank);
-  const reader = new Reader(store, stages.get("lanes"));
-  reader.start();
+  new Reader(store, stages.lanes);
   document.documentElement.dataset.ready = "yes";
 }
 

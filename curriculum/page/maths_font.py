@@ -5,7 +5,7 @@ misplaces them where no font with such a table is installed. So the page holds o
 Math 1.1.1 (Debian's package fonts-stix). It was made with fontTools: pyftsubset with the characters
 below, without layout features and hinting, as woff; the line's height set to 900 and its depth to
 300 thousandths in hhea and OS/2; and another name, Chapter Maths, in the tables name and CFF, since
-the license (SIL Open Font License 1.1, maths.license.txt) reserves the original's.
+the license (SIL Open Font License 1.1, maths.LICENSE) reserves the original's.
 """
 
 from pathlib import Path

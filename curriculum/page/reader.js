@@ -1,89 +1,99 @@
 /* Reading: numbers that can be dragged, links that set something, the live figure that follows the
  * text, and on a small screen the dock in which it comes up. */
 import { plain } from "./draw.js";
-import { fromSlider, sliderRange, toSlider } from "./store.js";
+import { fromSlider, sliderRange, startOf, toSlider } from "./store.js";
 
 const KEYS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 20, PageDown: -20 };
-const VIEW = ["models", "chart", "from", "to"]; // of a show, what is no quantity
+const VIEW = ["models", "chart", "from", "to"]; // of what the text shows, what is no quantity
 
 export class Reader {
   constructor(store, lanes) {
-    Object.assign(this, { store, lanes, shown: null });
+    Object.assign(this, { store, lanes, shown: null, called: null });
     this.marks = [...document.querySelectorAll(".show")];
+    this.wide = [...document.querySelectorAll(".fig.alone")];
     this.live = document.getElementById("figure");
     this.beside = window.matchMedia("(min-width: 64rem)");
-  }
-
-  start() {
     for (const span of document.querySelectorAll(".drag")) this.#number(span);
-    for (const link of document.querySelectorAll("a.try"))
-      link.addEventListener("click", (event) => {
-        event.preventDefault();
-        this.#set(new URLSearchParams(new URL(link.href).search), "act");
-        this.dock(link);
-      });
-    document.addEventListener("click", (event) => this.#copy(event.target.closest("button[data-copy]")));
-    for (const button of document.querySelectorAll("[data-dock]")) button.addEventListener("click", () => this.dock(button));
-    document.getElementById("undock").addEventListener("click", () => this.undock());
+    document.addEventListener("click", (event) => this.#clicked(event));
     window.addEventListener("scroll", () => this.#scrolled(), { passive: true });
     this.beside.addEventListener("change", () => this.undock());
     this.follow(!location.search);
+  }
+
+  #clicked(event) {
+    const touched = event.target.closest("a.try, [data-dock], #undock, [data-copy]");
+    if (!touched) return;
+    if (touched.matches("a.try")) {
+      event.preventDefault();
+      this.#set(new URLSearchParams(new URL(touched.href).search), "act");
+    }
+    if (touched.matches("[data-copy]")) this.#copy(touched.closest(".code"));
+    else if (touched.id === "undock") this.undock();
+    else this.dock(touched);
   }
 
   // ---- what the text sets
 
   // Set the quantities of a query in the store, and the rest in the live figure.
   #set(given, how) {
-    const changes = this.store.asked(given);
-    if (how === "act") {        // a link shows what its sentence says: all else stands as in the chapter
-      this.store.set(this.store.chapter(changes.scene || this.store.get("scene")), "text");
-      this.store.set(changes);
-    }
-    else this.store.follow(changes);
-    const own = Object.fromEntries(VIEW.filter((name) => given.has(name)).map((name) => [name, given.get(name)]));
-    this.lanes.figure.look(this.lanes.view, own, how === "text");
-    this.lanes.figure.replay(this.lanes.view);
-    this.#spoken([...given.keys()]);
-    this.lanes.redraw();
+    const { store, lanes } = this;
+    const changes = store.asked(given);
+    if (how === "act") {
+      // a link shows what its sentence says: all else stands as in the chapter
+      store.set(startOf(changes.scene || store.get("scene")), "text");
+      store.set(changes);
+    } else store.follow(changes);
+    const own = VIEW.filter((name) => given.has(name)).map((name) => [name, given.get(name)]);
+    lanes.figure.look(lanes, Object.fromEntries(own), how === "text");
+    lanes.figure.replay(lanes);
+    // the knobs that the text speaks of stand open, the others behind one word
+    for (const knob of this.live.querySelectorAll(".knob"))
+      knob.classList.toggle("spoken", given.has(knob.dataset.knob));
+    lanes.redraw();
   }
 
-  // The knobs that the text speaks of stand open, the others behind one word.
-  #spoken(names) {
-    for (const knob of this.live.querySelectorAll(".knob")) knob.classList.toggle("spoken", names.includes(knob.dataset.knob));
-  }
-
-  // The last mark above the middle of the window says what is shown.
+  // The last mark above the middle of the window says what is shown; and nothing is, while a figure
+  // that takes the whole width is in sight.
   follow(set = true) {
+    const { innerHeight } = window;
+    const place = (each) => each.getBoundingClientRect();
     const seen = this.marks.filter((mark) => mark.offsetParent); // not behind a veil
-    const mark = seen.findLast((each) => each.getBoundingClientRect().top < 0.55 * window.innerHeight) || seen[0];
-    if (!mark || mark === this.shown) return;
+    const mark = seen.findLast((each) => place(each).top < 0.55 * innerHeight) || seen[0];
+    if (!mark) return;
+    const over = (box) => box.height > 0 && box.top < innerHeight && box.bottom > 0;
+    const back = mark.dataset.show === "none" || this.wide.some((each) => over(place(each)));
+    this.live.classList.toggle("back", back);
+    if (mark === this.shown) return;
     this.shown = mark;
-    this.live.classList.toggle("back", mark.dataset.show === "none");
-    if (set && mark.dataset.show !== "none") this.#set(new URLSearchParams(mark.dataset.show), "text");
+    if (set && mark.dataset.show !== "none")
+      this.#set(new URLSearchParams(mark.dataset.show), "text");
   }
 
   #scrolled() {
     this.pending ||= requestAnimationFrame(() => {
       this.pending = 0;
+      const far = Math.abs(window.scrollY - this.called) > 0.4 * window.innerHeight;
+      if (this.called !== null && !far) return;
+      this.undock();
       this.follow();
-      if (this.docked !== undefined && Math.abs(window.scrollY - this.docked) > 0.4 * window.innerHeight) this.undock();
     });
   }
 
-  // ---- the dock: half the window, and it closes as one reads on
+  // ---- what was called up stays until one has read on; on a small screen it comes up in a dock
 
-  // Open it, and keep in sight what was touched.
+  // Show the live figure, and keep in sight what was touched.
   dock(touched) {
     this.live.classList.remove("back");
-    if (this.beside.matches) return;
-    this.live.classList.add("docked");
-    const hidden = touched.getBoundingClientRect().bottom - 0.45 * window.innerHeight;
-    if (hidden > 0) window.scrollBy(0, hidden);
-    this.docked = window.scrollY;
+    if (!this.beside.matches) {
+      this.live.classList.add("docked");
+      const hidden = touched.getBoundingClientRect().bottom - 0.45 * window.innerHeight;
+      if (hidden > 0) window.scrollBy(0, hidden);
+    }
+    this.called = window.scrollY;
   }
 
   undock() {
-    this.docked = undefined;
+    this.called = null;
     this.live.classList.remove("docked");
   }
 
@@ -93,16 +103,16 @@ export class Reader {
     const { store } = this;
     const name = span.dataset.knob;
     const each = store.quantities[name];
-    const unit = each.unit ? ` ${each.unit}` : "";
-    const about = { role: "slider", tabindex: "0", "aria-valuemin": each.low, "aria-valuemax": each.high };
-    for (const [key, value] of Object.entries(about)) span.setAttribute(key, value);
-    span.setAttribute("aria-label", each.label);
-    const show = () => {
-      span.textContent = store.get(name) < 1e4 ? plain(store.get(name)) : store.get(name).toLocaleString("en");
-      span.setAttribute("aria-valuenow", plain(store.get(name)));
-      span.setAttribute("aria-valuetext", plain(store.get(name)) + unit);
-    };
     const range = sliderRange(each);
+    const about = { role: "slider", tabindex: 0, "aria-label": each.label };
+    Object.assign(about, { "aria-valuemin": each.low, "aria-valuemax": each.high });
+    for (const [key, value] of Object.entries(about)) span.setAttribute(key, value);
+    const show = () => {
+      const value = store.get(name);
+      span.textContent = value < 1e4 ? plain(value) : value.toLocaleString("en");
+      span.setAttribute("aria-valuenow", plain(value));
+      span.setAttribute("aria-valuetext", `${plain(value)} ${each.unit}`.trim());
+    };
     const turn = (from, by, how) => {
       const position = Math.min(range.max, Math.max(range.min, from + by * range.step));
       store.set({ [name]: fromSlider(each, position) }, how);
@@ -123,9 +133,11 @@ export class Reader {
       this.dock(span);
     });
     span.addEventListener("pointermove", (event) => {
-      if (span.hasPointerCapture(event.pointerId)) turn(from, Math.round((event.clientX - startX) / 2), "drag");
+      if (!span.hasPointerCapture(event.pointerId)) return;
+      turn(from, Math.round((event.clientX - startX) / 2), "drag");
     });
-    for (const end of ["pointerup", "pointercancel"]) span.addEventListener(end, () => this.store.drag(false));
+    for (const end of ["pointerup", "pointercancel"])
+      span.addEventListener(end, () => this.store.drag(false));
     span.addEventListener("keydown", (event) => {
       if (!KEYS[event.key]) return;
       event.preventDefault();
@@ -134,9 +146,9 @@ export class Reader {
     });
   }
 
-  #copy(button) {
-    if (!button) return;
-    const text = [...button.closest(".code").querySelectorAll("pre")].map((pre) => pre.textContent).join("\n\n");
+  // The code as it stands in the file.
+  #copy(code) {
+    const text = [...code.querySelectorAll("pre")].map((pre) => pre.textContent).join("\n\n");
     const said = document.getElementById("said");
     navigator.clipboard.writeText(text).then(
       () => (said.textContent = "Copied."),

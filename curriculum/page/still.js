@@ -1,37 +1,28 @@
-/* The still pictures that a reader without scripts sees, drawn when the page is built (still.py). */
+/* The still pictures that a reader without scripts sees, drawn when the page is built. */
+import { data } from "./data.js";
 import { key } from "./draw.js";
 import { figures } from "./figures.js";
-import { stillView, heightOf } from "./stage.js";
-import { MODELS, QUANTITIES, startOf } from "./store.js";
+import { buttonsOf, heightOf, stillView } from "./stage.js";
+import { QUANTITIES, startOf } from "./store.js";
 
 const WIDTH = 640;
 
-// What a figure shows first: {svg, words, height, narrow, ...}. `more` are all figures' quantities.
-function still(figure, more) {
-  const values = { ...startOf("drop"), ...more, ...(figure.shows || {}) };
-  const made = figure.draw(stillView(figure, values, WIDTH));
-  const { title, caption = "", knobs = [], buttons = [] } = figure;
-  const [height, narrow] = [heightOf(figure, WIDTH), heightOf(figure, 1)];
-  const counts = { knobs: knobs.length, buttons: buttons.length };
-  return { svg: made.svg, words: made.words || "", title, caption, width: WIDTH, height, narrow, ...counts };
-}
-
-// The same, and what is wrong where a figure cannot be drawn.
-function tried(name, figure, more) {
+// What a figure shows first: {svg, words, height, narrow, ...}.
+function still([name, figure]) {
+  const { title, caption = "", knobs = [], shows = {} } = figure;
   try {
-    return still(figure, more);
+    const made = figure.draw(stillView(figure, { ...startOf("drop"), ...shows }, WIDTH));
+    const [height, narrow] = [heightOf(figure, WIDTH), heightOf(figure, 1)];
+    const counts = { knobs: knobs.length, buttons: buttonsOf(figure).length };
+    const { svg, words = "" } = made;
+    return [name, { svg, words, title, caption, width: WIDTH, height, narrow, ...counts }];
   } catch (error) {
-    return { error: `curriculum/page/figures/${name}.js: ${error}` };
+    throw new Error(`curriculum/page/figures, ${name}: ${error}`);
   }
 }
 
-export function stills() {
-  const brought = Object.assign({}, ...Object.values(figures).map((each) => each.quantities || {}));
-  const quantities = { ...QUANTITIES, ...brought };
-  const more = Object.fromEntries(Object.entries(brought).map(([name, { start }]) => [name, start]));
-  return {
-    figures: Object.fromEntries(Object.entries(figures).map(([name, figure]) => [name, tried(name, figure, more)])),
-    keys: Object.fromEntries(MODELS.map((model) => [model, key(model)])),
-    ranges: Object.fromEntries(Object.entries(quantities).map(([name, { low, high }]) => [name, [low, high]])),
-  };
-}
+export const stills = () => ({
+  figures: Object.fromEntries(Object.entries(figures).map(still)),
+  keys: Object.fromEntries(data.models.map((model) => [model, key(model)])),
+  ranges: Object.fromEntries(Object.entries(QUANTITIES).map(([k, { low, high }]) => [k, [low, high]])),
+});

@@ -1,9 +1,8 @@
-/* One state for the whole page. Every number in a sentence, every knob, every figure and the address
- * read it and write it, so they agree at every moment.
+/* One state for the whole page. Every number in a sentence, every knob, every figure and the
+ * address read it and write it, so they agree at every moment.
  *
- * A quantity is {low, high, log, step, whole, digits, unit, label, start}, by the name of contact.py's
- * flag where it has one. Figures may bring quantities of their own (`quantities` of a figure).
- * Nothing here touches the document; main.js binds the store to the address. */
+ * A quantity is {low, high, log, step, whole, digits, unit, label}, by the name of contact.py's
+ * flag where it has one. Nothing here touches the document; main.js binds the store to the address. */
 import { data } from "./data.js";
 import { plain } from "./draw.js";
 
@@ -19,23 +18,20 @@ export const QUANTITIES = {
   timeconst: { low: 0.002, high: 0.5, log: true, digits: 3, unit: "s", label: "Time constant" },
   dampratio: { low: 0.1, high: 5, log: true, digits: 2, unit: "", label: "Damping ratio" },
 };
-export const MODELS = ["penalty", "lcp", "soft", "exact"];
 const SCENES = Object.keys(data.scenes);
 const SLIDER = 400; // positions of a slider that is not plain
 
-const START = {
-  scene: "drop",
-  ...data.defaults,
-  impedance: null, // null: what the model takes by itself
-  timeconst: null,
-  dampratio: null,
-};
+// The chapter's values; null stands for what the model takes by itself.
+const START = { ...data.defaults, impedance: null, timeconst: null, dampratio: null };
 
 // What a scene brings along.
-const own = ({ damping, restitution }) => ({ damping, restitution });
-export const startOf = (scene) => ({ ...START, scene, ...own(data.scenes[scene]) });
+function own(scene) {
+  const { damping, restitution } = data.scenes[scene];
+  return { scene, damping, restitution };
+}
+export const startOf = (scene) => ({ ...START, ...own(scene) });
 
-// The value of a quantity that is shown where nobody has set one: what the models take by themselves.
+// The value of a quantity, where nobody has set one: what the models take by themselves.
 export function shown(values, name) {
   if (values[name] !== null) return values[name];
   return { impedance: values.restitution > 0 ? 0.9999 : 0.95, timeconst: 0.02, dampratio: 1 }[name];
@@ -49,7 +45,8 @@ export const sliderRange = ({ low, high, step, log, near }) =>
 export function toSlider({ low, high, log, near }, value) {
   if (log) return Math.round((SLIDER * Math.log(value / low)) / Math.log(high / low));
   if (!near) return value;
-  return Math.round((SLIDER * Math.log((near - low) / (near - value))) / Math.log((near - low) / (near - high)));
+  const whole = Math.log((near - low) / (near - high));
+  return Math.round((SLIDER * Math.log((near - low) / (near - value))) / whole);
 }
 
 export function fromSlider({ low, high, log, near, digits }, position) {
@@ -69,40 +66,30 @@ export function fitting({ low, high, whole }, value) {
 // ---- the store
 
 export class Store {
-  #values;
-  #listeners = new Set();
+  quantities = QUANTITIES;
+  #values = startOf("drop");
+  #listeners = [];
   #touched = new Set(); // what the reader has set by hand since the text last named it
   #dragging = false;
 
-  constructor(more = {}) {
-    this.quantities = { ...QUANTITIES, ...more };
-    this.extra = Object.fromEntries(Object.entries(more).map(([name, { start }]) => [name, start]));
-    this.#values = this.chapter("drop");
-  }
-
-  // The chapter's values, with a scene.
-  chapter = (scene) => ({ ...startOf(scene), ...this.extra });
   all = () => this.#values;
   get = (name) => shown(this.#values, name);
   dragging = () => this.#dragging;
 
   allowed(name, value) {
     if (name === "scene") return SCENES.includes(value);
-    const each = this.quantities[name];
-    if (!each) return false;
-    if (value === null) return START[name] === null;
-    return value >= each.low && value <= each.high && (!each.whole || Number.isInteger(value));
+    const each = QUANTITIES[name];
+    if (!each || value === null) return START[name] === null;
+    return value === fitting(each, value);
   }
 
-  // Call `hear(values, changed, how)` whenever one of `names` (null: any) changes. Returns how to stop.
+  // Call `hear(values, changed, how)` whenever one of `names` (null: any) changes.
   on(names, hear) {
-    const listener = { names, hear };
-    this.#listeners.add(listener);
-    return () => this.#listeners.delete(listener);
+    this.#listeners.push({ names, hear });
   }
 
   #tell(changed, how) {
-    for (const { names, hear } of [...this.#listeners])
+    for (const { names, hear } of this.#listeners)
       if (!names || names.some((name) => changed.has(name))) hear(this.#values, changed, how);
   }
 
@@ -110,7 +97,7 @@ export class Store {
   set(changes, how = "act") {
     const next = { ...this.#values };
     if (SCENES.includes(changes.scene) && changes.scene !== next.scene)
-      Object.assign(next, own(data.scenes[changes.scene]));
+      Object.assign(next, own(changes.scene));
     for (const [name, value] of Object.entries(changes))
       if (this.allowed(name, value)) next[name] = value;
     const changed = new Set(Object.keys(next).filter((name) => next[name] !== this.#values[name]));
@@ -128,14 +115,14 @@ export class Store {
     this.#tell(new Set(Object.keys(this.#values)), underWay ? "begin" : "end");
   }
 
-  // What the text sets; what it does not name and the reader has not touched returns to the chapter's.
+  // What the text sets; what it does not name and nobody has touched returns to the chapter's.
   follow(changes) {
     for (const name of Object.keys(changes)) this.#touched.delete(name);
     const kept = Object.fromEntries([...this.#touched].map((name) => [name, this.#values[name]]));
-    this.set({ ...this.chapter(changes.scene || kept.scene || "drop"), ...kept, ...changes }, "text");
+    this.set({ ...startOf(changes.scene || kept.scene || "drop"), ...kept, ...changes }, "text");
   }
 
-  reset = () => this.set(this.chapter("drop"));
+  reset = () => this.set(startOf("drop"));
 
   // What a query asks for; what is not allowed is left out.
   asked(query) {
@@ -149,16 +136,15 @@ export class Store {
 
   read(query, how = "address") {
     const found = this.asked(query);
-    this.set({ ...this.chapter(found.scene || "drop"), ...found }, how);
+    this.set({ ...startOf(found.scene || "drop"), ...found }, how);
   }
 
   // The values that differ from the chapter's, as an address has them.
   write() {
-    const chapter = this.chapter(this.#values.scene);
-    const differs = (name, value) => (name === "scene" ? value !== "drop" : value !== chapter[name]);
+    const chapter = { ...startOf(this.#values.scene), scene: "drop" };
     const parts = Object.entries(this.#values)
-      .filter(([name, value]) => differs(name, value))
-      .map(([name, value]) => `${name}=${typeof value === "number" ? plain(value) : value}`);
+      .filter(([name, value]) => value !== chapter[name])
+      .map(([name, value]) => `${name}=${name === "scene" ? value : plain(value)}`);
     return parts.length ? `?${parts.join("&")}` : "";
   }
 }
@@ -166,24 +152,15 @@ export class Store {
 // ---- what the engine wants
 
 export function knobsOf(values) {
-  const { dt, stiffness, damping, restitution, iters, baumgarte, warm, impedance: d, timeconst, dampratio } = values;
-  const solimp = d === null ? undefined : [Number((2 * d - 1).toFixed(12)), d, 0.001, 0.5, 2];
+  const { scene, impedance: d, timeconst, dampratio, ...knobs } = values;
   const set = timeconst !== null || dampratio !== null;
   const solref = set ? [shown(values, "timeconst"), shown(values, "dampratio")] : undefined;
-  return { dt, stiffness, damping, restitution, iters, baumgarte, warm, solref, solimp };
+  const solimp = d === null ? undefined : [Number((2 * d - 1).toFixed(12)), d, 0.001, 0.5, 2];
+  return { ...knobs, solref, solimp };
 }
 
-export function sceneOf(values) {
-  const y = data.scenes[values.scene].start;
-  const same = (value) => y.map(() => value);
-  return {
-    x: same(0),
-    y,
-    vx: same(0),
-    vy: same(0),
-    mass: same(1),
-    radius: same(data.radius),
-    restitution: values.restitution,
-    damping: values.damping,
-  };
+export function sceneOf({ scene, restitution, damping }) {
+  const y = data.scenes[scene].start;
+  const [none, one, radius] = [0, 1, data.radius].map((value) => y.map(() => value));
+  return { x: none, y, vx: none, vy: none, mass: one, radius, restitution, damping };
 }

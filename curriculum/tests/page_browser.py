@@ -11,10 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from curriculum.page.browser import CHROMIUM, FLAGS
+from curriculum.page import browser as real
 
-SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
-  localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
 QUIET = {  # of Firefox: no request of its own
     "remote.active-protocols": 1,
     "datareporting.policy.dataSubmissionEnabled": False,
@@ -38,14 +36,10 @@ def lack(what, package):
 @contextlib.contextmanager
 def running():
     """A Chromium, closed at the end."""
-    from playwright.sync_api import sync_playwright
-
-    if not CHROMIUM:
+    if not real.CHROMIUM:
         lack("Chromium", "chromium")
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
+    with real.running() as browser:
         yield browser
-        browser.close()
 
 
 @contextlib.contextmanager
@@ -63,7 +57,8 @@ def visiting(
         **options,
     )
     if shown:
-        context.add_init_script(f"if (!sessionStorage.seen) {{ sessionStorage.seen = 1; {SHOWN} }}")
+        once = f"if (!sessionStorage.seen) {{ sessionStorage.seen = 1; {real.SHOWN} }}"
+        context.add_init_script(once)
     page = context.new_page()
     page.set_default_timeout(20_000)
     trouble, own = [], ("data:", "blob:", url)

@@ -1,0 +1,213 @@
+"""chapter.md as HTML: its slots filled, and its answers veiled.
+
+Beside plain Markdown the chapter may hold
+- an include, a fence with the one line [include-by-region: FILE#NAME]: becomes a code panel;
+- references to numbers in double braces, filled before (curriculum/text/references.py);
+- formulas between dollar signs: become MathML;
+- slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
+  <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. Other comments vanish;
+- <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
+  from there on, by the store's quantities and `models`, `chart` (gap, push, energy), `from`, `to`;
+  <!-- show: none --> lets it step back;
+- links that set the same, [words](try:scene=drop&dt=0.03), and numbers to drag, [0.002](drag:dt).
+
+Nothing on the page tells the answer of a bet before the reader has bet or has asked to be shown. A
+segment, from a heading or an exercise to the next, that tells the answer of a bet above is put into
+a veil, but not its heading. What tells an answer is found by its words, in text, code and figures.
+"""
+
+import re
+from html import escape, unescape
+from urllib.parse import parse_qsl
+
+from latex2mathml.converter import convert
+from markdown_it import MarkdownIt
+from markdown_it.tree import SyntaxTreeNode
+from markupsafe import Markup
+from mdit_py_plugins.anchors import anchors_plugin
+from mdit_py_plugins.dollarmath import dollarmath_plugin
+
+import contact
+from curriculum.page import maths_font
+from curriculum.text.references import INCLUDE
+
+CHAPTER = "curriculum/prose/chapter.md"
+SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock|show)(?:\s*:\s*(\S+))?\s*-->")
+COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+SETTINGS = {  # beside the quantities: what each may be
+    "scene": "drop|bounce|stack",
+    "models": "({0})(,({0}))*".format("|".join(contact.MODELS)),
+    "chart": "gap|push|energy",
+    "from": r"[\d.]+",
+    "to": r"[\d.]+",
+}
+# what would tell the answer of a bet, in the words of the text, the code and the figures
+TELLS = {
+    "ex1": re.compile(
+        r"\bsinks?\b|\bsank\b|\bdives?\b|\brings?\b|\bringing\b|\bhops?\b|pops? up|m g ?/ ?k|\bsag"
+        r"|inside the table|rests? (a little )?inside|deeper|gap at rest|at rest / r|rest depth",
+        re.IGNORECASE,
+    ),
+    "ex3": re.compile(
+        r"\bexplodes?\b|explosion|blows? up|critical|\b(un)?stable\b|stability|stays? bounded"
+        r"|\bcliff|\bgains? .{0,60}energy|energy from nowhere|energy above the start|bursts"
+        r"|the largest step",
+        re.IGNORECASE,
+    ),
+    "ex4": re.compile(
+        r"mass cancels|no mass in|\(1 . d\) \\?,? ?g\b|equally deep|whatever the mass"
+        r"|per unit of mass|gap at rest|rests? (a little )?inside|rest depth|soft.{0,60}\bdeep\b",
+        re.IGNORECASE,
+    ),
+}
+END = "what-you-built-and-what-comes-next"  # from here on answers are named, and none is told
+
+
+# ---- Markdown
+
+
+def formula(text, options):
+    """A formula as MathML. Raises ValueError where the page's font lacks one of its characters."""
+    shown = convert(text, display="block" if options["display_mode"] else "inline")
+    lacking = maths_font.missing(unescape(re.sub(r"<[^>]+>", "", shown)))
+    if lacking:
+        raise ValueError(
+            f"{CHAPTER}: the formula {text!r} has {' '.join(lacking)}, which the page's font "
+            "lacks; see curriculum/page/maths_font.py"
+        )
+    return shown
+
+
+def code_inline(self, tokens, index, options, env):
+    """Inline code; a model's name gets the model's look, and a short piece is kept on one line."""
+    text = tokens[index].content
+    kind = f"model m-{text}" if text in contact.MODELS else "short" if len(text) <= 24 else ""
+    return f'<code class="{kind}">{escape(text)}</code>'
+
+
+def link_open(self, tokens, index, options, env):
+    """A link; one that sets something in the page says what."""
+    token = tokens[index]
+    scheme, _, rest = token.attrGet("href").partition(":")
+    if scheme == "try":
+        check(parse_qsl(rest) or [(rest, "")], **env)
+        token.attrs = {"class": "try", "href": f"?{rest}"}
+    elif scheme == "drag":
+        check([(rest, tokens[index + 1].content)], **env)
+        token.attrs = {"class": "drag", "data-knob": rest}
+    return self.renderToken(tokens, index, options, env)
+
+
+def check(pairs, line, ranges):
+    """Raise ValueError at the first (name, value) that cannot be set."""
+    for name, value in pairs:
+        low, high = ranges.get(name, (1.0, 0.0))
+        number = re.fullmatch(r"[\d.]+(e[+-]?\d+)?", value.replace(",", ""))
+        fits = number and low <= float(number[0]) <= high
+        if not fits and not re.fullmatch(SETTINGS.get(name, r"\b\B"), value):
+            known = SETTINGS.get(name, f"the names {', '.join((*SETTINGS, *ranges))}")
+            allowed = f"{low:g} to {high:g}" if name in ranges else known
+            raise ValueError(f"{CHAPTER}:{line}: {name}={value} sets nothing; allowed: {allowed}")
+
+
+def slug(title):
+    """The id of a heading."""
+    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
+
+
+def parser():
+    """markdown-it with tables and formulas."""
+    md = MarkdownIt("commonmark", {"html": True, "typographer": True})
+    md.enable(["table", "smartquotes", "replacements"])
+    md.use(dollarmath_plugin, renderer=formula).use(anchors_plugin, max_level=4, slug_func=slug)
+    for rule in (code_inline, link_open):
+        md.add_render_rule(rule.__name__, rule)
+    return md
+
+
+def markdown(text):
+    """A short text of ours (objective, reason) as HTML."""
+    return Markup(parser().render(text))
+
+
+def inline(text):
+    """The same without a paragraph around it."""
+    return Markup(parser().renderInline(" ".join(text.split())))
+
+
+# ---- the parts of the chapter
+
+
+def blocks(text, ranges):
+    """The chapter as a list of (kind, value): html, heading (level, id, html), show, slot, or
+    include (region). `ranges` are those of what the text may set, {name: (low, high)}."""
+    md, out = parser(), []
+    for node in SyntaxTreeNode(md.parse(text)).children:
+        env = {"line": node.map[0] + 1, "ranges": ranges}
+        shown = COMMENT.sub("", md.renderer.render(node.to_tokens(), md.options, env))
+        include = node.type == "fence" and INCLUDE.fullmatch(node.content.strip())
+        if include:
+            out.append(("include", include["name"]))
+        elif node.type == "fence":
+            code = escape(node.content)
+            out.append(("html", f'<pre class="shell" tabindex="0"><code>{code}</code></pre>'))
+        elif node.type == "heading":
+            inner = re.sub(r"^<h\d[^>]*>|</h\d>\s*$", "", shown)
+            out.append(("heading", (int(node.tag[1]), node.attrs["id"], inner)))
+        elif node.type == "table":
+            held = shown.replace("<th></th>", "<td></td>")
+            around = '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
+            out.append(("html", f"{around}{held}</div>"))
+        elif node.type == "html_block":
+            out += slots(node.content, **env)
+        else:
+            out.append(("html", shown))
+    return out
+
+
+def slots(text, line, ranges):
+    """The slots in a block of comments, as parts. Raises ValueError at other HTML."""
+    if COMMENT.sub("", text).strip():
+        raise ValueError(
+            f"{CHAPTER}:{line}: raw HTML, {text.strip()[:50]!r}; allowed: Markdown, and slots"
+        )
+    for kind, name in SLOT.findall(text):
+        if kind == "show":
+            check(parse_qsl(name) if name != "none" else [], line, ranges)
+            yield "show", name
+        else:
+            yield "slot", f"{kind}:{name}" if name else kind
+
+
+# ---- the whole
+
+
+def assemble(parts, fill, macros, bets):
+    """(HTML, [(level, id, text)] of its headings). fill(kind, value) gives the HTML of a part;
+    `bets` are the exercises whose answers are veiled."""
+    segments, html, contents, met = [[]], [], [], []
+    for kind, value in parts:
+        if kind == "heading":
+            contents.append((*value[:2], Markup(re.sub(r"</?(code|a|math)[^>]*>", "", value[2]))))
+        if kind == "heading" or value.startswith("exercise:"):
+            segments.append([])
+        segments[-1].append((kind, value))
+    for (kind, value), *rest in filter(None, segments):
+        inner = [fill(*part) for part in rest]
+        html.append(fill(kind, value))
+        if ("slot", "figure:puzzle") in rest:  # what follows it is its answer
+            at = rest.index(("slot", "figure:puzzle")) + 1
+            inner[at:] = [macros.veil("puzzle"), *inner[at:], "</div></div>"]
+        last = value.removeprefix("exercise:") if kind == "slot" else None
+        met += [last] if last in bets else []
+        met = [] if kind == "heading" and value[1] == END else met
+        said = words(" ".join(inner))
+        veils = [name for name in met if said and (name == last or TELLS[name].search(said))]
+        html += [*map(macros.veil, veils), *inner, *["</div></div>"] * len(veils)]
+    return Markup("\n".join(html)), contents
+
+
+def words(html):
+    """What HTML says, in words: text, and the names of pictures."""
+    named = re.sub(r'<[^>]*\b(?:alt|aria-label)="([^"]*)"[^>]*>', r" \1 ", html)
+    return " ".join(re.sub(r"<[^>]+>", "", named).split())
