@@ -1,8 +1,11 @@
 """The same work on many inputs: on all cores, or on the machines of a dask scheduler; and a bar."""
 
 import os
+import signal
 import sys
 from contextlib import contextmanager
+from importlib.util import find_spec
+from multiprocessing import active_children, parent_process
 
 from curriculum import hints
 
@@ -18,25 +21,17 @@ def spread(function, jobs, label, workers=None, scheduler=None):
     """
     jobs = list(jobs)
     count = min(len(jobs), workers or os.cpu_count() or 1)
-    if scheduler:
-        with machines(scheduler) as pool:
-            return gathered(submitted(pool, function, jobs), len(jobs), label)
-    if count < 2:
+    if count < 2 and not scheduler:
         return gathered(map(function, jobs), len(jobs), label)
-    with processes(count) as pool:
-        return gathered(submitted(pool, function, jobs), len(jobs), label)
-
-
-def submitted(pool, function, jobs):
-    """An iterator over the results. pool.map would cancel at Ctrl-C what the pool then ends too."""
-    futures = [pool.submit(function, job) for job in jobs]
-    return (future.result() for future in futures)
+    with machines(scheduler) if scheduler else processes(count) as pool:
+        # pool.map would cancel at Ctrl-C what the pool then ends too
+        futures = [pool.submit(function, job) for job in jobs]
+        return gathered((future.result() for future in futures), len(jobs), label)
 
 
 def gathered(results, total, label):
     """The list of the results, as they come, with a bar."""
-    report = bar(total, label)
-    found = []
+    found, report = [], bar(total, label)
     for result in results:
         found.append(result)
         report(len(found))
@@ -46,21 +41,18 @@ def gathered(results, total, label):
 @contextmanager
 def processes(count):
     """A pool of so many processes. Ctrl-C ends them too, and they say nothing."""
-    import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures import ProcessPoolExecutor  # slow, so only where it is needed
 
     with ProcessPoolExecutor(count, initializer=leave_ctrl_c_to_the_parent) as pool:
         try:
             yield pool
         except BaseException:
-            for process in multiprocessing.active_children():
+            for process in active_children():
                 process.terminate()  # or leaving the pool would wait for all that was asked for
             raise
 
 
 def leave_ctrl_c_to_the_parent():
-    import signal
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
@@ -92,16 +84,11 @@ def bar(total, label):
     The bar comes after a second and is wiped at the end. report does nothing where stderr is no
     terminal, where tqdm is not installed, and in a process of the pool, since bars would mix.
     """
-    if sys.stderr is None or not sys.stderr.isatty():
-        return nothing
-    try:
-        from multiprocessing import parent_process
+    unseen = sys.stderr is None or not sys.stderr.isatty() or parent_process() is not None
+    if unseen or find_spec("tqdm") is None:
+        return lambda done: None
+    from tqdm import tqdm
 
-        from tqdm import tqdm
-    except ImportError:
-        return nothing
-    if parent_process() is not None:
-        return nothing
     shown = tqdm(total=total, desc=label, leave=False, delay=1.0)
 
     def report(done):
@@ -110,7 +97,3 @@ def bar(total, label):
             shown.close()
 
     return report
-
-
-def nothing(done):
-    """The report of a bar that nobody would see."""

@@ -44,8 +44,6 @@ def write(path, runs, scene):
         for model, run in runs.items():
             send_table(recording, model)
             send_balls(recording, model, run, scene, colors(runs)[model])
-            if len(scene.radius) <= MOST_ARROWS:
-                send_pushes(recording, model, run, scene)
         send_curves(recording, runs, drawn)
         recording.disconnect()
         contact.write_whole(path, temporary.read_bytes())
@@ -72,48 +70,45 @@ def send_table(recording, model):
     (0.26) draws a thick line thinner by a hundredth, which left a gap under the thin one.
     """
     wide = 50.0  # m; a longer line is drawn with gaps where it is magnified
+
+    def send_lines(name, depths, color, radii, order):
+        lines = [[[-wide, depth], [wide, depth]] for depth in depths]
+        shown = rr.LineStrips2D(lines, colors=rgba(color), radii=radii, draw_order=order)
+        recording.log(f"world/{model}/{name}", shown, static=True)
+
     depths = [0.005, 0.05, 0.5, 5.0, 50.0]
-    ground = [[[-wide, deep], [wide, deep]] for deep in depths]
-    recording.log(
-        f"world/{model}/ground",
-        rr.LineStrips2D(ground, colors=rgba(GROUND), radii=depths, draw_order=-10.0),
-        static=True,
-    )
-    thin = rr.Radius.ui_points(0.6)
-    line = [[[-wide, 0.0], [wide, 0.0]]]
-    recording.log(
-        f"world/{model}/table",
-        rr.LineStrips2D(line, colors=rgba(LINE), radii=[thin], draw_order=40.0),
-        static=True,
-    )
+    send_lines("ground", depths, GROUND, depths, -10.0)
+    send_lines("table", [0.0], LINE, [rr.Radius.ui_points(0.6)], 40.0)
 
 
 def send_balls(recording, model, run, scene, color):
-    """The balls, where the run had them."""
-    balls, count = f"world/{model}/balls", len(scene.radius)
+    """The balls, where the run had them, and the push on each as an arrow from its centre."""
+    count, times = len(scene.radius), timelines(run.t)
+    rows = [count] * len(run.t)
     look = rr.Points2D.from_fields(
         radii=scene.radius, colors=np.repeat(rgba(color), count), draw_order=20.0
     )
-    recording.log(balls, look, static=True)
-    columns = rr.Points2D.columns(positions=flat(run.q))
-    recording.send_columns(balls, timelines(run.t), columns.partition([count] * len(run.t)))
+    columns = rr.Points2D.columns(positions=flat(run.q)).partition(rows)
+    send(recording, f"world/{model}/balls", look, times, columns)
+    if count > MOST_ARROWS:
+        return
+    look = rr.Arrows2D.from_fields(
+        radii=0.06 * scene.radius, colors=np.repeat(rgba(PUSH), count), draw_order=30.0
+    )
+    arrows = rr.Arrows2D.columns(origins=flat(run.q), vectors=flat(arrow_vectors(run, scene)))
+    send(recording, f"world/{model}/pushes", look, times, arrows.partition(rows))
+
+
+def send(recording, entity, look, times, columns):
+    """An entity: its look, once, and what changes of it, a row a step."""
+    recording.log(entity, look, static=True)
+    recording.send_columns(entity, times, columns)
 
 
 def flat(rows):
     """Vectors (S, 2, N) as a list (S N, 2) with y down, in 32 bits, which is what rerun keeps."""
     with np.errstate(over="ignore"):
         return np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2).astype(np.float32)
-
-
-def send_pushes(recording, model, run, scene):
-    """The push on each ball as an arrow from its centre."""
-    arrows, count = f"world/{model}/pushes", len(scene.radius)
-    look = rr.Arrows2D.from_fields(
-        radii=0.06 * scene.radius, colors=np.repeat(rgba(PUSH), count), draw_order=30.0
-    )
-    recording.log(arrows, look, static=True)
-    columns = rr.Arrows2D.columns(origins=flat(run.q), vectors=flat(arrow_vectors(run, scene)))
-    recording.send_columns(arrows, timelines(run.t), columns.partition([count] * len(run.t)))
 
 
 @np.errstate(all="ignore")
@@ -142,9 +137,8 @@ def send_curves(recording, runs, drawn):
             aggregation_policy="MinMax",  # an average hides the peaks
         )
         for title, lines in drawn.items():
-            curve = f"{title.split()[0]}/{model}"
-            recording.log(curve, look, static=True)
-            recording.send_columns(curve, times, rr.Scalars.columns(scalars=lines[model]))
+            columns = rr.Scalars.columns(scalars=lines[model])
+            send(recording, f"{title.split()[0]}/{model}", look, times, columns)
 
 
 def layout(runs, scene, drawn):
@@ -156,7 +150,10 @@ def layout(runs, scene, drawn):
     """
     large = float(scene.radius.max())
     x_range, y_range = frame(runs, scene, large)
-    lanes = [lane(model, ending(run, scene), x_range, y_range) for model, run in runs.items()]
+    lanes = []
+    for model, run in runs.items():
+        end = ending(run, scene)
+        lanes.append(view(model, model if end == "ok" else f"{model}: {end}", x_range, y_range))
     wide = x_range[1] - x_range[0] > 1.2 * (y_range[1] - y_range[0])
     rows = [rrb.Vertical(*lanes) if wide else rrb.Horizontal(*lanes)]
     x = scene.q0[0]
@@ -168,13 +165,10 @@ def layout(runs, scene, drawn):
     return rrb.Blueprint(views, time_panel(), collapse_panels=True)
 
 
-def lane(model, end, x_range, y_range):
-    """The view of a model's balls; its name says how the run ended, if not well."""
-    return rrb.Spatial2DView(
-        origin=f"world/{model}",
-        name=model if end == "ok" else f"{model}: {end}",
-        visual_bounds=rrb.VisualBounds2D(x_range=x_range, y_range=y_range),
-    )
+def view(model, name, x_range, y_range):
+    """A view of what a model's balls do in these ranges of x and of -y [m]."""
+    bounds = rrb.VisualBounds2D(x_range=x_range, y_range=y_range)
+    return rrb.Spatial2DView(origin=f"world/{model}", name=name, visual_bounds=bounds)
 
 
 def frame(runs, scene, large):
@@ -201,11 +195,8 @@ def reach(values, large):
 def magnified(model, x, large):
     """A view of the place where the balls stand on the table, MAGNIFIED radii high."""
     high = MAGNIFIED * large
-    bounds = rrb.VisualBounds2D(
-        x_range=[x - 1.2 * high, x + 1.2 * high], y_range=[-0.4 * high, 0.6 * high]
-    )
     name = f"the table, magnified: {MAGNIFIED:g} r high"
-    return rrb.Spatial2DView(origin=f"world/{model}", name=name, visual_bounds=bounds)
+    return view(model, name, [x - 1.2 * high, x + 1.2 * high], [-0.4 * high, 0.6 * high])
 
 
 def plots(drawn):
