@@ -57,27 +57,28 @@ def qualities(job):
 def summary(model, found):
     """{"model median": row, "model lowest": row, "model highest": row} of many qualities, by key.
 
-    A row also counts the runs, those that exploded, and others that went through something. A
-    number that is not finite counts as larger than any other; None where a run has none.
+    A row also counts the runs, those that exploded, and others that went through something.
     """
+    if not found:
+        return {}
     counts = {
         "runs": len(found),
         "blew_up": sum(row["blew_up"] for row in found),
         "through": sum(row["through"] is not None and not row["blew_up"] for row in found),
     }
-    rows = {f"{model} {name}": dict(counts) for name in ("median", "lowest", "highest") if found}
-    for key, _ in contact.COLUMNS.values():
-        for row, value in zip(rows.values(), median_and_range([row[key] for row in found])):
-            row[key] = value
-    return rows
+    keys = [key for key, _ in contact.COLUMNS.values()]
+    ways = {"median": statistics.median, "lowest": min, "highest": max}
+    return {
+        f"{model} {name}": counts | {key: chosen(way, [row[key] for row in found]) for key in keys}
+        for name, way in ways.items()
+    }
 
 
-def median_and_range(values):
-    """Median, lowest and highest."""
-    if None in values or not values:
-        return None, None, None
-    values = [value if math.isfinite(value) else math.inf for value in values]
-    return statistics.median(values), min(values), max(values)
+def chosen(way, values):
+    """way(values), where infinity stands for a number that is not finite; None if one is None."""
+    if None in values:
+        return None
+    return way([value if math.isfinite(value) else math.inf for value in values])
 
 
 def ending(row, count):

@@ -209,12 +209,12 @@ def test_measuring_writes_a_whole_row_of_todays_code(project):
             copied = project / path.relative_to(ROOT)
             copied.parent.mkdir(exist_ok=True)
             shutil.copy(path, copied)
-    command = [sys.executable, "-B", "-m", "curriculum.text.ledger", "--runs", "1"]
+    command = [sys.executable, "-B", "-m", "curriculum.text.ledger", "cpu", "--runs", "1"]
     run = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
     assert run.returncode == 0 and " min (" in run.stdout and "stale" not in run.stdout, run.stderr
     header, pending, row = (project / "wallclock.csv").read_text("utf-8").splitlines()
     assert f"{header}\n{pending}\n" == PENDING
-    assert row.startswith("ch3.5-contact,cpu") and row.endswith(",MEASURED")
+    assert row.startswith("ch3.5-contact,cpu,") and row.endswith(",MEASURED")
 
 
 def test_block_of_the_readme_is_written_whole_and_waits_for_a_reader(project):

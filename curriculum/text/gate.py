@@ -143,7 +143,7 @@ class Gate:
             for line, row in enumerate(ledger.rows(), 2):
                 if ledger.stale(row):
                     what = f"{row['tier']} was measured on other code"
-                    self.say("wallclock.csv", line, what, ledger.COMMAND)
+                    self.say("wallclock.csv", line, what, f"{ledger.COMMAND} {row['tier']}")
         except ValueError as error:
             self.problems.append(f"{error}; repair: correct the row")
 

@@ -1,6 +1,6 @@
 """The ledger of measured wall-clock, wallclock.csv, and the command that measures a row of it.
 
-    python -m curriculum.text.ledger    # time `python contact.py` here, write this machine's row
+    python -m curriculum.text.ledger cpu-laptop    # time `python contact.py` here, write that row
 
 Seven columns, no quoting. wallclock_min is in minutes for a whole process, recording included, the
 median of several. A row is MEASURED with every column filled, or PENDING with none; no time is ever
@@ -63,14 +63,6 @@ def stale(row) -> bool:
     return row["config_hash"] not in ("", code_hash())
 
 
-def this_tier() -> str:
-    """What this machine's CPU is: cpu-vm under a hypervisor, cpu-laptop with a battery, or cpu."""
-    info, supplies = Path("/proc/cpuinfo"), Path("/sys/class/power_supply")
-    if info.is_file() and " hypervisor" in info.read_text("utf-8"):
-        return "cpu-vm"
-    return "cpu-laptop" if supplies.is_dir() and list(supplies.glob("BAT*")) else "cpu"
-
-
 def measure(runs: int) -> float:
     """Minutes of `python contact.py` as a whole process, the median after one that warms caches.
 
@@ -89,21 +81,22 @@ def measure(runs: int) -> float:
 
 
 def main(argv=None) -> int:
-    """Measure this machine's row, write and show it. Returns the exit status."""
+    """Measure a tier's row, write and show it. Returns the exit status."""
     parser = argparse.ArgumentParser(prog=COMMAND, description=__doc__.split("\n")[0])
+    parser.add_argument("tier", help="what the ledger calls this machine, such as cpu-laptop")
     parser.add_argument("--runs", type=int, default=9, help="counted runs (9)")
     args = parser.parse_args(argv)
     try:
         table = {row["tier"]: row for row in rows()}
-        about, tier, minutes = machine(), this_tier(), measure(args.runs)
+        about, minutes = machine(), measure(args.runs)
         facts = f"{minutes:.3g}", code_hash(), about["commit"], about["date"], "MEASURED"
-        table[tier] = dict(zip(COLUMNS, (CHAPTER, tier, *facts)))
+        table[args.tier] = dict(zip(COLUMNS, (CHAPTER, args.tier, *facts)))
         lines = [COLUMNS, *(row.values() for row in table.values())]
         write_whole(LEDGER, "".join(",".join(line) + "\n" for line in lines))
     except (OSError, RuntimeError, ValueError) as error:
         print(f"nothing written: {error}", file=sys.stderr)
         return 1
-    print(f"{tier}: {show(table[tier])}")
+    print(f"{args.tier}: {show(table[args.tier])}")
     return 0
 
 

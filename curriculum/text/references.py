@@ -54,10 +54,7 @@ def load_meta() -> dict:
 
 
 def cached(name: str, inputs, make, code=CODE):
-    """make()'s result (JSON), made anew where `inputs` or the code changed since the last time.
-
-    A folder that cannot be written costs time only.
-    """
+    """make()'s result (JSON), made anew where `inputs` or the code changed since the last time."""
     about = [inputs, fingerprint(*code), version("numpy"), sys.version]
     path = KEPT / f"{name}.json"
     try:
@@ -67,10 +64,7 @@ def cached(name: str, inputs, make, code=CODE):
     except (OSError, ValueError):
         pass
     made = make()
-    try:
-        contact.write_whole(path, json.dumps({"about": about, "made": made}))
-    except OSError:
-        pass
+    contact.write_whole(path, json.dumps({"about": about, "made": made}))
     return made
 
 
