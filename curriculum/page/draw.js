@@ -1,7 +1,7 @@
 /* What every picture of the page shares: numbers as text, the look of a model, a small plotter, and
  * balls, tables and arrows. All of it makes SVG as text and touches no document, so the same code
  * draws in a reader's browser and, when the page is built, the still pictures that need no script.
- * A model is told apart three ways: colour (CSS class m-NAME), dash (same class), and marker (here). */
+ * A model is told apart three ways: colour and dash (CSS class m-NAME), and marker (here). */
 
 const ZERO_DECADES = 1; // room that a zero gets below the smallest decade of a log axis
 const NOISE = 5e-13; // contact.py prints twelve decimals; less is rounding
@@ -13,7 +13,8 @@ export const escape = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.ch
 // One element as text; children are text already. Numbers are rounded to a hundredth of a pixel.
 export function el(tag, attributes, ...children) {
   const written = Object.entries(attributes)
-    .map(([name, value]) => ` ${name}="${typeof value === "number" ? round(value) : escape(value)}"`);
+    .map(([name, value]) => [name, typeof value === "number" ? round(value) : escape(value)])
+    .map(([name, value]) => ` ${name}="${value}"`);
   return `<${tag}${written.join("")}>${children.join("")}</${tag}>`;
 }
 
@@ -30,8 +31,10 @@ export const path = (points, kind) =>
   el("path", { d: `M${points.map((point) => point.map(round).join(" ")).join("L")}`, class: kind });
 
 // What lies within a rectangle.
-export const clipped = (x, y, width, height, ...children) =>
-  el("svg", { x, y, width, height, viewBox: [x, y, width, height].map(round).join(" ") }, ...children);
+export function clipped(x, y, width, height, ...children) {
+  const viewBox = [x, y, width, height].map(round).join(" ");
+  return el("svg", { x, y, width, height, viewBox }, ...children);
+}
 
 // ---- numbers
 
@@ -74,28 +77,17 @@ export function markerPath(model, x, y, r) {
 export const mark = (model, x, y, r = 4.5) =>
   el("path", { d: markerPath(model, x, y, r), class: `mark m-${model}` });
 
-// The key of a model: a bit of its line with its marker on it.
-export const key = (model) =>
-  el(
-    "svg",
-    { class: `key m-${model}`, width: 34, height: 14, viewBox: "0 0 34 14", "aria-hidden": "true" },
-    line(0, 7, 34, 7, `line m-${model}`),
-    mark(model, 17, 7, 5),
-  );
-
 // ---- scales
 
 // From the domain of an axis to px; `back` leads from px to the domain.
-function scaleOf({ domain: [low, high], log, zero, root }, from, to) {
-  const straight = log ? (v) => (v > 0 ? Math.log10(v) : -Infinity) : root ? Math.sqrt : (v) => v;
-  const [first, last] = [straight(low) - (log && zero ? ZERO_DECADES : 0), straight(high)];
-  const scale = (v) => {
-    const at = log || root ? Math.max(straight(Math.max(0, v)), first) : v;
-    return from + ((at - first) / (last - first)) * (to - from);
-  };
+function scaleOf({ domain: [low, high], log, zero }, from, to) {
+  const first = log ? Math.log10(low) - (zero ? ZERO_DECADES : 0) : low;
+  const last = log ? Math.log10(high) : high;
+  const straight = (v) => (log ? (v > 0 ? Math.max(first, Math.log10(v)) : first) : v);
+  const scale = (v) => from + ((straight(v) - first) / (last - first)) * (to - from);
   scale.back = (px) => {
     const at = first + within(0, (px - from) / (to - from), 1) * (last - first);
-    return log ? 10 ** at : root ? at * at : at;
+    return log ? 10 ** at : at;
   };
   return scale;
 }
@@ -106,17 +98,6 @@ export const axis = (domain, name, ...at) => ({
   label: name,
   ticks: at.map((each) => (Array.isArray(each) ? each : [each, plain(each).replace("-", "−")])),
 });
-
-// Decades from low to high for a log axis, at most `most` of them.
-export function decades(low, high, most = 5) {
-  const from = Math.ceil(Math.log10(low) - 1e-9);
-  const to = Math.floor(Math.log10(high) + 1e-9);
-  const every = Math.max(1, Math.ceil((to - from + 1) / most));
-  const ticks = [];
-  for (let p = from; p <= to; p += every)
-    ticks.push([10 ** p, p >= -3 && p <= 3 ? plain(10 ** p) : `1e${p}`.replace("-", "−")]);
-  return ticks;
-}
 
 // About `most` round numbers between low and high for a plain axis.
 export function steps(low, high, most = 5) {
@@ -161,7 +142,8 @@ function frame({ x, y }, { sx, sy, box }) {
   const along = x.ticks.map(([value, text]) => {
     const at = sx(value);
     const [place, anchor] = at > right - 14 ? [right, "end"] : [at, "middle"];
-    return line(at, bottom, at, bottom + 5, "axis") + label(text, place, bottom + 20, anchor, "tick");
+    const name = label(text, place, bottom + 20, anchor, "tick");
+    return line(at, bottom, at, bottom + 5, "axis") + name;
   });
   if (y.label) across.push(label(y.label, box.edge, top - 12, "start", "axis-name"));
   if (x.label) along.push(label(x.label, right, low - 4, "end", "axis-name"));
@@ -181,10 +163,10 @@ function ruleOf({ x, y, text = "", kind = "", side = "start", row = 0 }, { sx, s
   ];
 }
 
-/* A plot within the rectangle [left, top, width, height] of the drawing. options: {x, y, lines, rules,
- * points, margin, under}. x and y: {domain: [low, high], log, zero, root, ticks: [[value, text]...],
- * label}; lines: {model, xs, ys, markers, from, to, kind}; rules: {x or y, text, kind, side, row};
- * points: {model, x, y, size}; under(chart): what is drawn beneath. Returns {svg, sx, sy, box}. */
+/* A plot within the rectangle [left, top, width, height] of the drawing: {svg, sx, sy, box}.
+ * x and y: {domain: [low, high], log, zero, ticks: [[value, text]...], label};
+ * lines: {model, xs, ys, markers, from, to, kind}; rules: {x or y, text, kind, side, row};
+ * points: {model, x, y, size}; margin: px left of it; under(chart): what is drawn beneath. */
 export function plot([edge, above, width, height], options) {
   const { x, y, lines = [], rules = [], points = [], under = () => "" } = options;
   const wide = Math.max(0, ...y.ticks.map(([, text]) => text.length));
@@ -225,7 +207,8 @@ export function plot([edge, above, width, height], options) {
 export function ball(model, x, y, r, kind = "ball") {
   const disc = circle(x, y, r, `${kind} m-${model}`);
   if (kind !== "ball" || r < 7) return disc;
-  return disc + el("path", { d: markerPath(model, x, y, Math.min(8, r * 0.4)), class: "ball-mark" });
+  const d = markerPath(model, x, y, Math.min(8, r * 0.4));
+  return disc + el("path", { d, class: "ball-mark" });
 }
 
 // The table: its top is the line, what lies below is hatched.

@@ -1,5 +1,5 @@
-/* What the explaining figures share: scenes of balls, results that are kept, a chart beside a picture, a
- * lens, and handles that set a number. */
+/* What the explaining figures share: scenes of balls, results that are kept, a chart beside a
+ * picture, a lens, and handles that set a number. */
 import { ball, circle, clipped, el, label, plot, table, within } from "./draw.js";
 import { data } from "./data.js";
 import { GRAVITY } from "./engine.js";
@@ -15,6 +15,20 @@ export function scene(heights, more = {}) {
   const same = (value) => heights.map(() => value);
   const each = { x: same(0), vx: same(0), vy: same(0), mass: same(1), radius: same(R) };
   return { ...each, y: heights, restitution: 0, damping: 0, ...more };
+}
+
+/* Heights [m] of a ball of 1 kg that is dropped on a spring: penalty's steps, bit for bit, in one
+ * loop for figures that look at many drops at once. */
+export function drops(dt, stiffness, damping, steps) {
+  const heights = new Float64Array(steps + 1).fill(START);
+  let speed = 0;
+  for (let row = 1; row <= steps; row++) {
+    const depth = R - heights[row - 1];
+    const force = depth > 0 ? Math.max(0, stiffness * depth - damping * speed) : 0;
+    speed += dt * (force - G);
+    heights[row] = heights[row - 1] + dt * speed;
+  }
+  return heights;
 }
 
 // A function that keeps its last results, by its arguments.
@@ -84,9 +98,9 @@ export const forceLength = (weights, unit = 26) => unit * Math.sqrt(Math.max(wei
  *   step, times   what an arrow key to the right or up adds, or multiplies by
  *   get(), set(v) in place of the state; r: px; release()
  * A number of its own that is set takes the figure's clock back to before its start. */
-export function grip(view, name, x, y, options) {
+export function grip(view, name, x, y, label, text, options) {
   const quantity = QUANTITIES[name];
-  const { low, high, r = 14, at, step, times, get, set, ...rest } = { ...quantity, ...options };
+  const { low, high, r = 14, at, step, times, get, set, release } = { ...quantity, ...options };
   const value = get || (() => (quantity ? view.get(name) : view.own[name]));
   const put = (wanted) => {
     const held = within(low, wanted, high);
@@ -96,7 +110,7 @@ export function grip(view, name, x, y, options) {
   };
   const drag = (toX, toY) => put(at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
-  return { name, x, y, r, value: value(), ...rest, drag, nudge };
+  return { name, x, y, r, label, text, value: value(), drag, nudge, release };
 }
 
 const tidy = (value) => Number(value.toFixed(4));

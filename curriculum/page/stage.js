@@ -1,25 +1,24 @@
 /* The stage: it puts a figure into the page, hands it drags and arrow keys, and runs its clock.
  *
  * A figure is a plain object and touches no document, so the still picture that a reader without
- * scripts sees is the same drawing. curriculum/page/figures/NAME.js has `export const figure = {...}`,
- * or `export const figures = {name: {...}}` where several have one form:
+ * scripts sees is the same drawing. figures/NAME.js has `export const figure = {...}`, or
+ * `export const figures = {name: {...}}` where several have one form:
  *
  *   title, caption   its name in words; one sentence below it
- *   height, narrow   px; of the drawing, and where it is narrower than 480 px (`height` if left out)
+ *   height, narrow   px; of the drawing, and of one narrower than 480 px
  *   knobs            names of the quantities that stand as sliders below it
  *   shows            values of quantities for its still picture
  *   start()          its own state, a plain object: view.own
  *   draw(view)       {svg, words, handles, lit}; svg is text, words what is seen, in one sentence;
  *                    lit: [[region, text of a line]], the lines of code that run now
- *   clock(view)      {from, end, rate, names}: own.time (null: not begun) runs from `from` to `end`,
- *                    `rate` s in a second, once the button with the first of the two names is pressed
- *   buttons          [{label, press(view)}]; label may be a function of the view
+ *   clock(view)      {from, end, rate, name}: own.time (null: not begun) runs from `from` to `end`,
+ *                    `rate` s in a second, once the button of that name is pressed
  *   tick(view, s)    in place of a clock: so many real seconds passed; false ends it
- *   jobs             {name(args)}: what takes long, computed in a worker (view.result)
+ *   buttons          [{label, press(view)}]; label may be a function of the view
  *
- * A handle is {name, x, y, r, label, value, text, drag(x, y), nudge(dx, dy), release()}: what can be
- * grabbed, mostly made by `grip` in parts.js. dx and dy are -1, 0 or 1, ten times that with shift;
- * release() is called when it is let go, and at Enter. The view is the stage itself. */
+ * A handle is {name, x, y, r, label, value, text, drag(x, y), nudge(dx, dy), release()}: what can
+ * be grabbed, mostly made by `grip` in parts.js. dx and dy are those of an arrow key, ten times as
+ * much with shift; release() is called when it is let go, and at Enter. The view is the stage. */
 import { escape, plain } from "./draw.js";
 import { fitting, fromSlider, shown, sliderRange, toSlider } from "./store.js";
 
@@ -39,19 +38,15 @@ export const stillView = (figure, values, width) => ({
   dragging: false,
   grabbed: null,
   get: (name) => shown(values, name),
-  result: (job, args) => figure.jobs[job](args),
   open: () => false,
 });
 
-// The button of a figure's clock, and its others.
-const clockButton = ({ clock }) => ({
-  label: (view) => clock(view).names[view.running ? 1 : 0],
-  press: (view) => (view.running ? view.stop() : view.play()),
-});
-export const buttonsOf = (figure) => [
-  ...(figure.clock ? [clockButton(figure)] : []),
-  ...(figure.buttons || []),
-];
+// The buttons of a figure, that of its clock first.
+export function buttonsOf({ clock, buttons = [] }) {
+  const label = (view) => (view.running ? "Stop" : clock(view).name);
+  const press = (view) => (view.running ? view.stop() : view.play());
+  return clock ? [{ label, press }, ...buttons] : buttons;
+}
 
 // ---- handles
 
@@ -85,7 +80,7 @@ function showHandles(layer, handles) {
 // ---- knobs: a slider and a number for one quantity
 
 let knobs = 0;
-export function mountKnob(box, name, store) {
+function mountKnob(box, name, store) {
   const each = store.quantities[name];
   const id = `knob-${++knobs}`;
   const { min, max, step } = sliderRange(each);
@@ -126,26 +121,24 @@ export function mountKnob(box, name, store) {
 
 // ---- a figure in the page
 
-/* A live figure in `box`, which holds .drawing with an svg, .words, .knobs and .buttons, as the template
- * makes them. page: {store, still, worker(figure, job, args, done), open(bet), light(name, lines)}.
- *
- * What a figure uses of it: own, values, get(name), width, height, set(changes), play(), run(), stop(),
- * running, flick(), result(job, args), reset(), and open(bet): has it been made? still: nothing may
- * move by itself; dragging: a drag is under way; grabbed: the name of the handle that is held. */
+/* A live figure in `box`, which holds .drawing with an svg, .words, .knobs and .buttons, as the
+ * template makes them. page: {store, still, open(bet), light(name, lines)}. Figures use own, get(),
+ * values, set(changes), width, height, play(), run(), stop(), running, flick(), still (nothing may
+ * move by itself), dragging, grabbed (the name of the handle that is held), open(bet). */
 export class Stage {
   width = 0;
   height = 0;
   running = false;
   grabbed = null;
   #handles = [];
-  #results = new Map();
   #pending = 0;
   #last = 0; // ms, of the last frame
   #trail = []; // of the pointer: [ms, x, y]
 
   constructor(box, name, figure, page) {
     const { store, open, still } = page;
-    Object.assign(this, { box, name, figure, page, open, still, get: store.get, reset: store.reset });
+    const { get, reset } = store;
+    Object.assign(this, { box, name, figure, page, open, still, get, reset });
     this.own = figure.start ? figure.start() : {};
     this.svg = box.querySelector(".drawing svg");
     this.words = box.querySelector(".words");
@@ -154,7 +147,12 @@ export class Stage {
     this.#listen();
     store.on(null, this.redraw);
     new ResizeObserver(() => this.#resize()).observe(this.svg.parentElement);
-    const seen = ([{ isIntersecting }]) => this.#sight(isIntersecting);
+    // a figure far from the window keeps its picture and does not run
+    const seen = ([{ isIntersecting: near }]) => {
+      this.near = near;
+      if (near) this.redraw();
+      else this.stop();
+    };
     new IntersectionObserver(seen, { rootMargin: `${NEAR}px` }).observe(box);
   }
 
@@ -167,13 +165,6 @@ export class Stage {
   }
 
   set = (changes) => this.page.store.set(changes, this.dragging ? "drag" : "act");
-
-  // A figure far from the window keeps its picture and does not run; near it, it is drawn.
-  #sight(near) {
-    this.near = near;
-    if (near) this.redraw();
-    else this.stop();
-  }
 
   #resize() {
     const { clientWidth, clientHeight } = this.svg.parentElement;
@@ -200,7 +191,8 @@ export class Stage {
     const { svg } = this;
     svg.addEventListener("pointerdown", (event) => this.#grab(event));
     svg.addEventListener("pointermove", (event) => this.#drag(event));
-    for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => this.#letGo());
+    svg.addEventListener("pointerup", () => this.#letGo());
+    svg.addEventListener("pointercancel", () => this.#letGo());
     svg.addEventListener("keydown", (event) => this.#key(event));
   }
 
@@ -213,7 +205,7 @@ export class Stage {
     event.target.focus({ preventScroll: true });
     this.svg.setPointerCapture(event.pointerId);
     this.grabbed = handle.name;
-    this.aside = [handle.x - event.clientX, handle.y - event.clientY]; // it does not jump to the pointer
+    this.aside = [handle.x - event.clientX, handle.y - event.clientY]; // of the pointer
     this.#trail = [];
     if (this.figure.clock) this.stop();
     this.page.store.drag(true);
@@ -278,13 +270,13 @@ export class Stage {
   // ---- time
 
   // Run the figure's clock: on from where it stopped, or from its start.
-  play() {
+  play = () => {
     const { from = 0, end } = this.figure.clock(this);
     const { own } = this;
     if (own.time === null || own.time >= end) own.time = from;
     if (this.still) own.time = end;
     else this.run();
-  }
+  };
 
   run() {
     if (this.running) return;
@@ -310,20 +302,5 @@ export class Stage {
     if (own.time === null) return false;
     own.time = Math.min(end, own.time + rate * seconds);
     return own.time < end;
-  }
-
-  // What a job of the figure gives for these arguments: now, or the last that is known (null: nothing
-  // yet) and the figure is drawn again when it is there.
-  result(job, args) {
-    const key = JSON.stringify(args);
-    const held = this.#results.get(job) || { value: null };
-    if (held.wanted === key) return held.value;
-    this.#results.set(job, { ...held, wanted: key });
-    this.page.worker(this.name, job, args, (value) => {
-      if (this.#results.get(job).wanted !== key) return;
-      this.#results.set(job, { wanted: key, value });
-      this.redraw();
-    });
-    return held.value;
   }
 }

@@ -1,4 +1,4 @@
-/* Colliding blocks count the digits of pi (Galperin 2003): a wall, a block of mass 1, and one of 100^n. */
+/* Colliding blocks count the digits of pi (Galperin 2003): a wall, a block of mass 1, of 100^n. */
 import { clipped, label, line, plural, rect, table, whole } from "../draw.js";
 import { runExact, runModel } from "../engine.js";
 import { grip, kept, knobs, R, scene } from "../parts.js";
@@ -33,7 +33,7 @@ const byLcp = kept((n, told) => {
 
 function lane(view, model, { run, times }, k) {
   const { n, time } = view.own;
-  const [wall, unit, high] = [22, (view.width - 30) / 2.1, (view.height - 8) / 2]; // px, a metre, a lane
+  const [wall, unit, high] = [22, (view.width - 30) / 2.1, (view.height - 8) / 2]; // px
   const [floor, big] = [(k + 1) * high - 14, LIGHT + 16 * n];
   const row = Math.min(run.steps, Math.round((time ?? 0) / run.dt));
   const gap = (i) => unit * (run.x[3 * row + i] - run.x[3 * row + i - 1] - 2 * R);
@@ -63,22 +63,23 @@ function draw(view) {
   const above = lane(view, "exact", exact, 0);
   const counted = `exact counts ${plural(exact.times.length, "impact")}`;
   const missed = `lcp at dt = ${1000 * DT} ms counts ${whole(lcp.times.length)}`;
-  const about = { label: "the heavy block’s mass", text: `100 to the power of ${n}` };
+  const text = `100 to the power of ${n}`;
   const at = (x, y) => Math.round((above.floor - y - LIGHT) / 16);
+  const range = { low: 0, high: MOST, step: 1, at };
   return {
     svg: above.svg + lane(view, "lcp", lcp, 1).svg,
     words: `Mass 1 and ${whole(100 ** n)}: ${counted}, ${missed}.`,
-    handles: [grip(view, "n", ...above.corner, { ...about, low: 0, high: MOST, step: 1, at })],
+    handles: [grip(view, "n", ...above.corner, "the heavy block’s mass", text, range)],
   };
 }
 
 export const figure = {
   title: "Colliding blocks count the digits of π",
   caption:
-    "exact counts 3, 31, 314, 3,141 impacts, and lcp loses count where they come faster than its steps: " +
-    "drag the corner of the heavy block to make it heavier.",
+    "exact counts 3, 31, 314, 3,141 impacts, and lcp loses count where they come faster than its " +
+    "steps: drag the corner of the heavy block to make it heavier.",
   height: 260,
   start: () => ({ n: 2, time: null }),
-  clock: () => ({ end: SECONDS, rate: 0.4, names: ["Play", "Stop"] }),
+  clock: () => ({ end: SECONDS, rate: 0.4, name: "Play" }),
   draw,
 };

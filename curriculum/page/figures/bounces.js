@@ -30,7 +30,7 @@ function draw(view) {
   const text = `e = ${e.toFixed(2)}`;
   const high = `every bounce is e² = ${number(e * e, 2)} times as high as the last`;
   const lift = (x, to) => Math.sqrt(Math.max(0, sy.back(to) - R) / (START - R));
-  const about = { label: "the top of the first bounce", text, r: 16 };
+  const range = { r: 16, high: 0.95, step: 0.01, at: lift };
   return {
     svg: [
       ...balls.map((at) => ball("exact", ...at, r, "ghost")),
@@ -38,14 +38,15 @@ function draw(view) {
       ball("exact", sx(until) - r, sy(R), r),
     ].join(""),
     words: `${text}: ${high}, and all are over at ${number(end)} s.`,
-    handles: [grip(view, "restitution", ...balls[0], { ...about, high: 0.95, step: 0.01, at: lift })],
+    handles: [grip(view, "restitution", ...balls[0], "the top of the first bounce", text, range)],
   };
 }
 
 export const figure = {
   title: "Bounces that end",
   caption:
-    "There are infinitely many bounces, and they are over at a finite time: drag the top of the first.",
+    "There are infinitely many bounces, and they are over at a finite time: drag the top of the " +
+    "first.",
   height: 250,
   shows: { scene: "bounce", restitution: 0.7 },
   draw,

@@ -1,4 +1,4 @@
-/* The clamp is on the sum of the changes: a ball falls into a groove, and one contact must take back. */
+/* The clamp is on the sum of the changes. In a groove one contact must take some push back. */
 import { arrow, ball, label, number, shift, within } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
 import { kept } from "../parts.js";
@@ -56,12 +56,12 @@ function draw(view) {
     drag: (toX, toY) => set((x - toX) / scale, (toY - y) / scale),
     nudge: (dx, dy) => set(view.own.vx - 0.1 * dx, view.own.vy + 0.1 * dy),
   };
-  const sum = `at ${number(right.speed, 2)} m/s where the sum is clamped`;
+  const [sum, each] = [right, wrong].map(({ speed }) => `at ${number(speed, 2)} m/s where`);
   return {
     svg:
       groove(view.own, right, "sum ≥ 0", x, y, r) +
       shift(view.width / 2, 0, groove(view.own, wrong, "each change ≥ 0", x, y, r)),
-    words: `After 20 sweeps the ball moves ${sum}, at ${number(wrong.speed, 2)} m/s where each change is.`,
+    words: `After 20 sweeps the ball moves ${sum} the sum is clamped, ${each} each change is.`,
     handles: [came],
   };
 }
@@ -69,8 +69,8 @@ function draw(view) {
 export const figure = {
   title: "A ball falls into a groove, with two clamps",
   caption:
-    "With a clamp on each change nothing is ever taken back, and the ball is thrown out of the groove: " +
-    "drag where it comes from.",
+    "With a clamp on each change nothing is ever taken back, and the ball is thrown out of the " +
+    "groove: drag where it comes from.",
   height: 320,
   narrow: 230,
   start: () => ({ vx: 0.5, vy: -1 }),

@@ -1,7 +1,7 @@
-/* The cliff: a step longer than the critical one, and the ball never rests; a little longer, it explodes. */
+/* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. */
 import { axis, label, number, plain, plot, within } from "../draw.js";
 import { criticalDt, quality, runModel } from "../engine.js";
-import { grip, kept, R, scene, START } from "../parts.js";
+import { drops, grip, kept, R, scene, START } from "../parts.js";
 
 const [LOW, HIGH] = [0.0005, 0.064]; // s
 const SECONDS = 4;
@@ -10,18 +10,21 @@ const MOST = 1e9; // r: as much as can be read off
 const COURSE = 150; // px of the upper chart
 const [BOTTOM, TOP] = [-0.5, 1.5]; // m that it shows
 
-const ball = scene([START]);
-const drop = (dt, stiffness, damping) => runModel("penalty", ball, { dt, stiffness, damping }, STEPS);
-
-// How far the ball still moves in the last quarter of a run [r].
-function moves({ y }) {
-  const late = y.subarray(0.75 * STEPS);
+// How far the dropped ball still moves in the last quarter of a run [r].
+function moves(...knobs) {
+  const late = drops(...knobs, STEPS).subarray(0.75 * STEPS);
   const far = (Math.max(...late) - Math.min(...late)) / R;
   return Number.isFinite(far) ? Math.min(MOST, far) : MOST;
 }
-const dropped = kept((...knobs) => {
-  const run = drop(...knobs);
-  return { run, far: moves(run), ...quality(run, ball) };
+const dropped = kept((dt, stiffness, damping) => {
+  const ball = scene([START]);
+  const run = runModel("penalty", ball, { dt, stiffness, damping }, STEPS);
+  return { run, ...quality(run, ball) };
+});
+// That for many steps, from one on to one 16 times as long.
+const curve = kept((low, ...spring) => {
+  const xs = Array.from({ length: 97 }, (_, k) => low * 16 ** (k / 96));
+  return { xs, ys: xs.map((dt) => moves(dt, ...spring)) };
 });
 
 // The height over time, up to where the ball leaves the chart: there stands how far it goes.
@@ -44,11 +47,11 @@ function course(view, { t, y }) {
 
 function draw(view) {
   const [dt, k, c] = ["dt", "stiffness", "damping"].map(view.get);
-  const { run, far, blew_up: explodes, energy_excess: gained } = dropped(dt, k, c);
+  const { run, blew_up: explodes, energy_excess: gained } = dropped(dt, k, c);
+  const far = moves(dt, k, c);
   const { damped, undamped } = criticalDt(1, k, c);
-  // the steps that are shown: seven times shorter than the critical one, and more than twice as long
+  // the shortest step that is shown: the critical one is seven times, the longest 16 times as long
   const low = within(LOW, Number((damped / 6.8).toPrecision(1)), HIGH / 16);
-  const known = view.result("curve", [k, c, low]) || { xs: [], ys: [] };
   const shown = within(low, dt, 16 * low);
   const critical = { x: damped, text: `with its damper ${number(1000 * damped)}`, side: "end" };
   const free = { x: undamped, text: `2√(m/k) ${number(1000 * undamped)}`, kind: "dashed", row: 1 };
@@ -58,34 +61,28 @@ function draw(view) {
     margin: 64,
     x: { ...axis([low, 16 * low], "time step dt (ms)", ...ticks), log: true },
     y: { ...axis([1e-5, MOST], "still moving at the end / r", ...tens), log: true, zero: true },
-    lines: [{ model: "penalty", ...known, kind: "plainly" }],
+    lines: [{ model: "penalty", ...curve(low, k, c), kind: "plainly" }],
     rules: view.width < 480 ? [critical] : [critical, free],
     points: [{ model: "penalty", x: shown, y: far, size: 8 }],
   });
   const gains = gained > 1e-9 ? `${number(gained, 4)} times its energy` : "no energy";
   const ends = explodes ? "explodes" : far < 1e-6 ? "comes to rest" : "never rests";
   const text = `dt = ${number(1000 * dt)} ms: the ball gains ${gains} and ${ends}`;
-  const about = { label: "the time step", text, times: 1.03, at: (x) => chart.sx.back(x) };
+  const range = { times: 1.03, at: chart.sx.back };
   return {
     svg: course(view, run) + chart.svg,
     words: `${text}.`,
-    handles: [grip(view, "dt", chart.sx(shown), chart.sy(far), about)],
+    handles: [grip(view, "dt", chart.sx(shown), chart.sy(far), "the time step", text, range)],
   };
 }
 
 export const figure = {
   title: "The cliff",
   caption:
-    "Drag the time step: past the critical one the dropped ball never rests, and a little further it " +
-    "explodes.",
+    "Drag the time step: past the critical one the dropped ball never rests, and a little " +
+    "further it explodes.",
   height: 400,
   knobs: ["stiffness", "damping"],
   shows: { dt: 0.03 },
-  jobs: {
-    curve([stiffness, damping, low]) {
-      const xs = Array.from({ length: 49 }, (_, k) => low * 16 ** (k / 48));
-      return { xs, ys: xs.map((dt) => moves(drop(dt, stiffness, damping))) };
-    },
-  },
   draw,
 };

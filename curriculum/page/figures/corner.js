@@ -1,18 +1,18 @@
-/* The corner, five times: gap to the right, force upwards, what a model allows as a line, and the state
- * that runs along it while the reader lifts the ball or presses it into the table. */
+/* The corner, five times: gap to the right, force upwards, what a model allows as a line, and the
+ * state that runs along it while the reader lifts the ball or presses it into the table. */
 import { arrow, axis, ball, circle, label, line, number, path, table } from "../draw.js";
 import { pushOfTable, runModel, soften } from "../engine.js";
 import { beside, forceLength, G, grip, kept, knobs, R, scene, softKnobs } from "../parts.js";
 
 const PULL = 64; // px below the ball at which the hand presses hardest
-// What a picture shows: gaps from low to high [r], a radius in px, the hardest press in weights, ticks.
+// What a picture shows: gaps from low to high [r], a radius in px, the hardest press [m g], ticks.
 const WIDE = { low: -0.4, high: 1, r: 60, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
 const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.02, 0, 0.04], ys: [0, 4, 8, 12] };
 
-/* A figure of the corner with a model's law(view): {gap(load), curve, most}, the gap [r] under a load
- * [weights], the line that it allows as points, and the hardest press that fits into the picture.
+/* A figure of the corner with a model's law(view): {gap(load), curve, most}, the gap [r] under a
+ * load [m g], the line that it allows as points, and the hardest press that fits into the picture.
  * extra(view, load): what else is seen, {under(chart), deepest [r], words}. */
-function corner(about, model, law, { extra = () => ({}), hand = 0.5, shown = WIDE } = {}) {
+function corner(model, law, { extra = () => ({}), hand = 0.5, shown = WIDE, ...about }) {
   const draw = (view) => drawn(view, { model, shown, ...law(view) }, extra);
   return { height: 260, start: () => ({ hand }), draw, ...about };
 }
@@ -49,12 +49,12 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
   const px = (up) => (up ? r * shown.high : PULL); // from there to where it is at 1, or at -1
   const told = load > 0 ? `Pressed with ${number(load, 2)} m g` : "Held by the hand";
   const text = `gap ${number(gap, 2)} r, force ${number(load, 2)} m g`;
-  const about = { label: "the ball: lift it or press it", text, r: 20 };
-  const range = { low: -1, high: 1, step: 0.05, at: (x, y) => (held - y) / px(y < held) };
+  const range = { r: 20, low: -1, high: 1, step: 0.05, at: (x, y) => (held - y) / px(y < held) };
+  const y = held - hand * px(hand > 0);
   return {
     svg,
     words: `${told}: ${text}.${words}`,
-    handles: [grip(view, "hand", middle, held - hand * px(hand > 0), { ...about, ...range })],
+    handles: [grip(view, "hand", middle, y, "the ball: lift it or press it", text, range)],
   };
 }
 
@@ -76,8 +76,8 @@ function ramp(view) {
   return { gap: (load) => -load / steep, curve, most: -WIDE.low * steep };
 }
 
-/* lcp: the ball comes from FROM radii above, drawn down by the load, and lcp looks once a step. A load of
- * L weights is a gravity of L g, and that is our own gravity where the clock runs sqrt(L) as fast. */
+/* lcp: the ball comes from FROM radii above, drawn down by the load, and lcp looks once a step. A
+ * load of L weights is a gravity of L g: our own gravity where the clock runs sqrt(L) as fast. */
 const FROM = 0.8;
 const arrival = kept((load, told) => {
   const one = scene([(1 + FROM) * R]);
@@ -127,37 +127,35 @@ function rounded(view) {
   return { gap, curve, most: load(NEAR.low) };
 }
 
-const plain = {
-  title: "The corner: gap to the right, force upwards",
-  caption: "Lift the ball and the gap grows with no force; press it and the force grows with no gap.",
-};
-const exact = {
-  title: "exact on the corner",
-  caption: "exact keeps to the corner and asks only when the ball turns from one side into the other.",
-};
-const penalty = {
-  title: "penalty’s ramp beside the corner",
-  caption: "penalty has a ramp beside the wall: the ball must get in before the table pushes.",
-  knobs: ["stiffness"],
-};
-const lcp = {
-  title: "lcp meets the corner once a step",
-  caption:
-    "Press, and the ball comes down step by step: each ring is one look, the last of the fall is past " +
-    "the wall, and the next looks bring it back.",
-  knobs: ["dt"],
-};
-const soft = {
-  title: "soft rounds the corner off",
-  caption:
-    "soft rounds the corner: the ball gives way at first and the slope grows steeper, seen here twenty " +
-    "times nearer.",
-  knobs: ["impedance"],
-};
 export const figures = {
-  corner: corner(plain, "exact", () => wall),
-  "corner-exact": corner(exact, "exact", () => wall, { extra: events }),
-  "corner-penalty": corner(penalty, "penalty", ramp, { hand: -0.5 }),
-  "corner-lcp": corner(lcp, "lcp", () => wall, { extra: looksOf, hand: -0.6 }),
-  "corner-soft": corner(soft, "soft", rounded, { hand: -0.5, shown: NEAR }),
+  corner: corner("exact", () => wall, {
+    title: "The corner: gap to the right, force upwards",
+    caption:
+      "Lift the ball and the gap grows with no force; press it and the force grows with no gap.",
+  }),
+  "corner-exact": corner("exact", () => wall, {
+    title: "exact on the corner",
+    caption:
+      "exact keeps to the corner and asks only when the ball turns from one side into the other.",
+    extra: events,
+  }),
+  "corner-penalty": corner("penalty", ramp, {
+    title: "penalty’s ramp beside the corner",
+    caption: "penalty has a ramp beside the wall: the ball must get in before the table pushes.",
+    hand: -0.5, knobs: ["stiffness"],
+  }),
+  "corner-lcp": corner("lcp", () => wall, {
+    title: "lcp meets the corner once a step",
+    caption:
+      "Press, and the ball comes down step by step: each ring is one look, the last of the fall " +
+      "is past the wall, and the next looks bring it back.",
+    extra: looksOf, hand: -0.6, knobs: ["dt"],
+  }),
+  "corner-soft": corner("soft", rounded, {
+    title: "soft rounds the corner off",
+    caption:
+      "soft rounds the corner: the ball gives way at first and the slope grows steeper, seen " +
+      "here twenty times nearer.",
+    hand: -0.5, shown: NEAR, knobs: ["impedance"],
+  }),
 };

@@ -8,11 +8,12 @@ const APART = 1e-3; // r: the gap where the impacts come one after another
 const PACE = Math.sqrt(G / LENGTH); // 1/s, of a small swing
 const QUARTER = Math.PI / 2 / PACE; // s of a small swing down
 
-// The speeds after the first ball has come in with `speed`; no weight to speak of while they strike.
+// The speeds after the first ball has come in with `speed`; they have no weight while they strike.
 const strike = kept((speed, apart) => {
   const x = Array.from({ length: COUNT }, (_, i) => i * (2 + (apart ? APART : 0)) * R);
   x[0] -= 1e-3 * R;
-  const balls = scene(x.map(() => 0.5), { x, vx: x.map((_, i) => (i ? 0 : speed)), restitution: 1 });
+  const vx = x.map((_, i) => (i ? 0 : speed));
+  const balls = scene(x.map(() => 0.5), { x, vx, restitution: 1 });
   const rows = 200;
   const run = runExact(balls, { dt: 1e-5 }, rows, 1e-9);
   return Array.from(run.vx.subarray(rows * COUNT, (rows + 1) * COUNT));
@@ -48,26 +49,26 @@ function draw(view) {
   const [once, chain] = [strike(speed, false), strike(speed, true)];
   const list = (after) => after.map((v) => number(v / speed, 2)).join(", ");
   const text = `pulled back by ${number((pulled * 180) / Math.PI, 2)}°`;
-  const about = { r, label: "the first ball: pull it back", text, release: () => view.play() };
   const at = (x, y) => Math.atan2(first - x, Math.max(10, y - top));
+  const range = { r, low: 0.1, high: 0.9, step: 0.05, at, release: view.play };
   const [x, y] = place(0, angles(view.own, once)[0]);
   const second = shift(narrow ? 0 : wide, narrow ? 200 : 0, ...frame(chain, "one after another"));
   const all = `All impacts at one moment: they leave with ${list(once)} of its speed.`;
   return {
     svg: frame(once, "at one moment").join("") + second,
     words: `${all} One shortly after another: ${list(chain)}.`,
-    handles: [grip(view, "pulled", x, y, { ...about, low: 0.1, high: 0.9, step: 0.05, at })],
+    handles: [grip(view, "pulled", x, y, "the first ball: pull it back", text, range)],
   };
 }
 
 export const figure = {
   title: "Newton’s cradle, with two laws of impact",
   caption:
-    "Pull back the first ball and let go: how the others leave depends on whether all impacts happen at " +
-    "one moment or one shortly after another.",
+    "Pull back the first ball and let go: how the others leave depends on whether all impacts " +
+    "happen at one moment or one shortly after another.",
   height: 210,
   narrow: 400,
   start: () => ({ pulled: 0.6, time: null }),
-  clock: () => ({ end: 2 * QUARTER, rate: 0.35, names: ["Let go", "Stop"] }),
+  clock: () => ({ end: 2 * QUARTER, rate: 0.35, name: "Let go" }),
   draw,
 };

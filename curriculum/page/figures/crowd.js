@@ -45,12 +45,13 @@ function draw(view) {
   ];
   const mark = bars + begun * unit;
   const set = (i) => (v) => (view.own.speeds = view.own.speeds.with(i, Number(v.toFixed(2))));
-  const hold = (v, i) =>
-    grip(view, String(i), at(i) + px * v, ROWS[0] + up(i), {
-      ...{ label: `the speed of ball ${i + 1}`, text: `${number(v, 2)} m/s`, r: 11 },
-      ...{ low: -MOST, high: MOST, step: 0.1, at: (x) => (x - at(i)) / px },
-      ...{ get: () => view.own.speeds[i], set: set(i) },
-    });
+  const hold = (v, i) => {
+    const range = { r: 11, low: -MOST, high: MOST, step: 0.1, at: (x) => (x - at(i)) / px };
+    const state = { get: () => view.own.speeds[i], set: set(i) };
+    const [name, text] = [`the speed of ball ${i + 1}`, `${number(v, 2)} m/s`];
+    const y = ROWS[0] + up(i);
+    return grip(view, String(i), at(i) + px * v, y, name, text, { ...range, ...state });
+  };
   const gain = repaired / begun - 1;
   const more = gain > 1e-9 ? `${number(100 * gain, 2)} % more energy` : "no more energy";
   const told = cases.map((each) => list(each[1]));
@@ -70,8 +71,8 @@ function draw(view) {
 export const figure = {
   title: "Three elastic balls, and the energy of the impact",
   caption:
-    "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair that allows " +
-    "no target below zero adds some; drag the speeds.",
+    "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair " +
+    "that allows no target below zero adds some; drag the speeds.",
   height: 384,
   start: () => ({ speeds: [-1, 0, -3] }),
   draw,

@@ -1,5 +1,5 @@
-/* The first screen: a ball that can be lifted, dropped and thrown. It moves by the exact model, in real
- * time, and gives back a fixed share of its speed. */
+/* The first screen: a ball that can be lifted, dropped and thrown. It moves by the exact model, in
+ * real time, and gives back a fixed share of its speed. */
 import { arrow, ball, el, label, number, table, within } from "../draw.js";
 import { runExact, stateAt } from "../engine.js";
 import { R, scene } from "../parts.js";
@@ -36,7 +36,8 @@ function hold(view, x, y) {
 
 function letGo(view, velocity) {
   const { own } = view;
-  Object.assign(own, { from: own.place, thrown: velocity, run: thrown(own.place, velocity), time: 0 });
+  Object.assign(own, { from: own.place, thrown: velocity, time: 0 });
+  own.run = thrown(own.place, velocity);
   if (view.still) seek(view, LONG);
   else view.run();
 }
@@ -74,8 +75,13 @@ function draw(view) {
       : `${text}. Let go.`,
     handles: [
       {
-        ...{ name: "ball", x, y, r: R * scale, value: gap, text },
+        name: "ball",
+        x,
+        y,
+        r: R * scale,
         label: "the ball; arrow keys move it, Enter lets it go",
+        value: gap,
+        text,
         drag: (toX, toY) => hold(view, toX / scale, (floor - toY) / scale),
         nudge: (dx, dy) => hold(view, own.place[0] + 0.02 * dx, own.place[1] - 0.02 * dy),
         release() {

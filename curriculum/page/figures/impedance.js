@@ -32,14 +32,14 @@ function draw(view) {
     label(share, left / 2, floor - 20 - 110 * d, "middle");
   const { svg, sx, sy } = beside(view, chart, picture);
   const text = `${number(1000 * depth * width, 2)} mm deep, d = ${number(d, digits)}`;
-  const about = { label: "the depth", text, low: 0, high: MOST, step: 0.05, at: sx.back };
+  const range = { low: 0, high: MOST, step: 0.05, at: sx.back };
   const rise = depth <= middle ? "rise = raised" : "rise = 1.0";
   return {
     svg,
     words:
       `${text}: of the acceleration that a hard contact would give it gives ${share}, and ` +
       `R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass.`,
-    handles: [grip(view, "depth", sx(depth), sy(d), about)],
+    handles: [grip(view, "depth", sx(depth), sy(d), "the depth", text, range)],
     lit: [["soft-impedance", depth >= 1 ? "return d1" : rise]],
   };
 }
@@ -47,8 +47,8 @@ function draw(view) {
 export const figure = {
   title: "MuJoCo’s impedance",
   caption:
-    "The deeper the ball, the larger its share of a hard contact’s answer: drag the point, and see the " +
-    "ball twenty times nearer.",
+    "The deeper the ball, the larger its share of a hard contact’s answer: drag the point, and " +
+    "see the ball twenty times nearer.",
   height: 250,
   knobs: ["impedance"],
   start: () => ({ depth: 0.5 }),

@@ -44,21 +44,21 @@ function draw(view) {
   const { svg, middle } = beside(view, chart, picture, 0.46);
   const step = wide(2 * middle);
   const text = `${number(100 * share, 2)} % of a step after a look`;
-  const about = { label: "the landing within the step", text };
+  const place = [(share + 1.3) * step, floor];
   const range = { low: 0, high: 0.99, step: 0.05, at: (x) => x / step - 1.3 };
   const found = `is found ${number(deepest, 2)} r deep and hops ${number(hop, 2)} r high`;
   return {
     svg,
     words: `It lands ${text}, ${found}.`,
-    handles: [grip(view, "share", (share + 1.3) * step, floor, { ...about, ...range })],
+    handles: [grip(view, "share", ...place, "the landing within the step", text, range)],
   };
 }
 
 export const figure = {
   title: "The landing within a step, and the hop",
   caption:
-    "lcp looks once a step: the sooner after a look the ball lands, the deeper the next look finds it, " +
-    "and the higher Baumgarte’s push makes it hop.",
+    "lcp looks once a step: the sooner after a look the ball lands, the deeper the next look " +
+    "finds it, and the higher Baumgarte’s push makes it hop.",
   height: 270,
   knobs: ["baumgarte"],
   start: () => ({ share: 0.3 }),

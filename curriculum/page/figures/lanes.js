@@ -1,6 +1,6 @@
-/* The live figure: the four models over one table. What stands in it (models, scene, quantity, window of
- * time) follows the text. A ball whose end would tell the answer of a bet waits until the bet is made. */
-import { arrow, axis, ball, decades, label, number, plot, steps, table } from "../draw.js";
+/* The live figure: the four models over one table. What stands in it (models, scene, quantity,
+ * window of time) follows the text. A ball whose end would tell what a bet asks waits for it. */
+import { arrow, axis, ball, label, number, plot, steps, table } from "../draw.js";
 import { MODELS, criticalDt, runModel, series } from "../engine.js";
 import { grip, kept, knobs, R } from "../parts.js";
 import { sceneOf } from "../store.js";
@@ -10,7 +10,7 @@ const SECONDS = 5; // that a run through the window takes
 const GROUND = 26; // px
 const NEXT = {
   scene: { drop: "bounce", bounce: "stack", stack: "drop" },
-  chart: { gap: "push", push: "energy", energy: "gap" },
+  chart: { gap: "energy", energy: "gap" },
 };
 // which quantities change a model's run
 const USES = {
@@ -55,7 +55,7 @@ function hiddenBy(view, model) {
 
 const timeOf = ({ own }) => Math.min(own.to, Math.max(own.from, own.time ?? own.from));
 
-// Of each model its run, the first and last row that may be seen of the window, and the row shown now.
+// Of each model its run, first and last row of the window that may be seen, and the row of now.
 function shownOf(view) {
   const { models, from } = view.own;
   return models.map((model) => {
@@ -122,30 +122,24 @@ const CHARTS = {
     const low = Math.min(least, -0.002);
     return around(low, Math.max(Math.min(most, 2), -0.25 * low), "gap / r (below 0: overlap)");
   },
-  push([, most]) {
-    const top = Math.max(2, Math.min(most, 1e7));
-    const ticks = [0, 1, 10, 100, 1000, 1e4, 1e5, 1e6].filter((v) => v <= top);
-    const few = ticks.length > 4 ? [0, 1, ...ticks.slice(-2)] : ticks;
-    return { ...axis([0, top], "push / weight (root scale)", ...few), root: true };
-  },
   energy([least, most]) {
     if (most <= 5) return around(least, most, "energy / start");
     const top = Math.min(1e12, 10 ** Math.ceil(Math.log10(most)));
-    const ticks = decades(0.1, top, 4);
-    return { ...axis([0.1, top], "energy / start", ...ticks), log: true, zero: true };
+    const tens = [1, [1e3, "10³"], [1e6, "10⁶"], [1e9, "10⁹"], [1e12, "10¹²"]];
+    return { ...axis([0.1, top], "energy / start", ...tens), log: true, zero: true };
   },
 };
 
 function chartOf(view, shown, height) {
   const { from, to, chart } = view.own;
   const lines = shown.map(({ model, run, first, last, ...each }, k) => {
-    const rows = (to - from) / run.dt;
-    const at = [0.12, 0.37, 0.62, 0.87].map((share) => Math.round(first + (share + 0.05 * k) * rows));
-    const markers = at.filter((row) => row <= last);
+    const shares = [0.12, 0.37, 0.62, 0.87].map((share) => (share + 0.05 * k) * (to - from));
+    const rows = shares.map((time) => Math.round(first + time / run.dt));
+    const markers = rows.filter((row) => row <= last);
     return { model, xs: run.t, ys: each[chart], from: first, to: last + 1, markers };
   });
   const cursor = { x: timeOf(view), kind: "cursor" };
-  const level = { gap: [{ y: 0 }], push: [{ y: 1, kind: "dashed" }], energy: [] }[chart];
+  const level = chart === "gap" ? [{ y: 0 }] : [];
   return plot([0, view.height - height, view.width, height], {
     margin: 52,
     x: axis([from, to], "time (s)", ...steps(from, to, view.width < 420 ? 4 : 6)),
@@ -165,7 +159,7 @@ function draw(view) {
   const time = timeOf(view);
   const text = `${time.toFixed(3)} s`;
   const { from, to } = view.own;
-  const about = { label: "the time shown", text, low: from, high: to, step: view.get("dt") };
+  const sight = { low: from, high: to, step: view.get("dt"), at: sx.back, get: () => timeOf(view) };
   const told = shown.map(
     (each) => `${each.model} ${each.waits ? "waits for your bet" : placeWords(each)}`,
   );
@@ -174,9 +168,7 @@ function draw(view) {
   return {
     svg: table(0, floor, view.width, GROUND) + lanes.join("") + svg,
     words: `${text}: ${told.join(", ")}.`,
-    handles: [
-      grip(view, "time", sx(time), box.bottom, { ...about, at: sx.back, get: () => timeOf(view) }),
-    ],
+    handles: [grip(view, "time", sx(time), box.bottom, "the time shown", text, sight)],
     lit: touching.map((each) => LINES[each.model]),
   };
 }
@@ -190,7 +182,7 @@ export const figure = {
   start: () => ({ models: MODELS, chart: "gap", from: 0.3, to: 1.2, time: null }),
   clock({ own: { from, to } }) {
     const slower = number(SECONDS / (to - from), 2);
-    return { from, end: to, rate: (to - from) / SECONDS, names: [`Play, ${slower} × slower`, "Stop"] };
+    return { from, end: to, rate: (to - from) / SECONDS, name: `Play, ${slower} × slower` };
   },
   buttons: [
     { label: "More", press: (view) => view.box.classList.toggle("all") },
@@ -207,11 +199,13 @@ export const figure = {
   // What the text asks to see: {models, chart, from, to} as an address has them.
   look(view, { models, chart, from, to }, anew) {
     const { own } = view;
-    if (models || anew) own.models = MODELS.filter((model) => !models || models.split(",").includes(model));
+    const named = (model) => !models || models.split(",").includes(model);
+    if (models || anew) own.models = MODELS.filter(named);
     if (chart || anew) own.chart = chart || "gap";
     if (from || to || anew) {
       own.from = Math.min(Number(from || 0.3), LONGEST - 0.1);
-      own.to = Math.min(LONGEST, Math.max(own.from + 8 * view.get("dt"), Number(to || own.from + 0.9)));
+      const least = own.from + 8 * view.get("dt");
+      own.to = Math.min(LONGEST, Math.max(least, Number(to || own.from + 0.9)));
     }
   },
   // Once through the window, from its start.

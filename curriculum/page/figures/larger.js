@@ -44,15 +44,15 @@ function draw(view) {
   const high = ({ ys }) => number(Math.max(0, ...ys), 2);
   const wanted = `bounce ${number(bounce)} m/s, bias ${number(bias)} m/s`;
   const text = `${number(depth, 2)} r deep: ${wanted}`;
-  const about = { label: "the ball: how deep lcp finds it", text, r: PX };
-  const range = { low: 0, high: DEEPEST, step: -0.02, at: (x, to) => (to - floor) / PX + 1 };
+  const at = (x, to) => (to - floor) / PX + 1;
+  const range = { r: PX, low: 0, high: DEEPEST, step: -0.02, at };
   const line = bias > 0 ? "return max(bias" : "return bounce if";
   return {
     svg,
     words:
       `${text}. The larger lifts the ball to ${high(larger)} of the drop, the sum (dotted) to ` +
       `${high(both)}.`,
-    handles: [grip(view, "depth", middle, y, { ...about, ...range })],
+    handles: [grip(view, "depth", middle, y, "the ball: how deep lcp finds it", text, range)],
     lit: [["lcp-target", e === 0 ? "return bias" : line]],
   };
 }
@@ -60,8 +60,8 @@ function draw(view) {
 export const figure = {
   title: "A landing: bounce and bias",
   caption:
-    "The target is the larger of bounce and bias: with their sum (dotted) a ball that is found deep " +
-    "bounces higher than its material allows.",
+    "The target is the larger of bounce and bias: with their sum (dotted) a ball that is found " +
+    "deep bounces higher than its material allows.",
   height: 280,
   shows: { scene: "bounce", restitution: 0.7 },
   start: () => ({ depth: 0.06 }),

@@ -1,5 +1,5 @@
-/* One long step by hand: what it does to place and speed is a 2 x 2 matrix; its eigenvalues say whether
- * the next steps grow. */
+/* One long step by hand: what it does to place and speed is a 2 x 2 matrix, and its eigenvalues say
+ * whether the next steps grow. */
 import { axis, circle, label, line, mark, number, plot, within } from "../draw.js";
 import { criticalDt, runModel } from "../engine.js";
 import { grip, kept, R, scene } from "../parts.js";
@@ -10,7 +10,7 @@ const TOP = 1.8; // r
 const FINE = 2e-5; // s
 const TEXT = 56; // px below the chart
 
-// Depth x and upward speed v after one step from (x, v), x from the place of rest: mass 1, no clamp.
+// Depth x (from the place of rest) and upward speed v after one step from (x, v): 1 kg, no clamp.
 const stepMatrix = (dt, k, c) => [
   [1 - k * dt * dt, -dt * (1 - c * dt)],
   [k * dt, 1 - c * dt],
@@ -34,6 +34,7 @@ const pressed = kept((dt, stiffness, damping, count) => {
 function circleOf(pairs, left, width, height) {
   const unit = Math.min(width / 4.8, (height - 50) / 2.4);
   const [x, y] = [left + width - 1.7 * unit, height / 2];
+  const least = Math.min(...pairs.map(([real]) => real));
   const at = ([real, imaginary]) => [x + within(-2.8, real, 1.5) * unit, y - imaginary * unit];
   return [
     label("eigenvalues", x, 14, "middle", "axis-name"),
@@ -43,6 +44,7 @@ function circleOf(pairs, left, width, height) {
     label("−1", x - unit - 5, y + 18, "end", "tick"),
     label("1", x + unit + 5, y + 18, "start", "tick"),
     ...pairs.map((pair) => mark("penalty", ...at(pair), 7)),
+    least < -2.8 ? label(`← ${number(least)}`, x - 2.8 * unit - 8, y - 14) : "",
   ].join("");
 }
 
@@ -68,21 +70,21 @@ function draw(view) {
   const fate = size < 1 - 1e-9 ? "die away" : size > 1 + 1e-9 ? "grow" : "stay as large";
   const { damped } = criticalDt(1, k, c);
   const text = `dt = ${number(1000 * dt)} ms`;
-  const about = { label: "the end of the step", text, high: LONGEST, step: 0.0005 };
+  const range = { high: LONGEST, step: 0.0005, at: (to) => sx.back(to) / 1000 };
   return {
     svg: svg + circleOf(pairs, left + 16, view.width - left - 16, height) + rows.join(""),
     words:
-      `${text}: the larger eigenvalue has size ${number(size)}, so the steps ${fate}; they grow from ` +
-      `dt = ${number(1000 * damped)} ms on.`,
-    handles: [grip(view, "dt", sx(x), sy(y), { ...about, at: (to) => sx.back(to) / 1000 })],
+      `${text}: the larger eigenvalue has size ${number(size)}, so the steps ${fate}; ` +
+      `they grow from dt = ${number(1000 * damped)} ms on.`,
+    handles: [grip(view, "dt", sx(x), sy(y), "the end of the step", text, range)],
   };
 }
 
 export const figure = {
   title: "One long step of a pressed spring",
   caption:
-    "One step multiplies place and speed by a matrix: drag its end, and the ball never rests once an " +
-    "eigenvalue leaves the circle.",
+    "One step multiplies place and speed by a matrix: drag its end, and the ball never rests " +
+    "once an eigenvalue leaves the circle.",
   height: 310,
   shows: { dt: 0.016 },
   draw,

@@ -1,5 +1,5 @@
-/* One line: every contact with a softness R lies where its target is R times what it must carry. The
- * spring of penalty taken at the end of the step is one of them. */
+/* One line: every contact with a softness R lies where its target is R times what it must carry.
+ * The spring of penalty taken at the end of the step is one of them. */
 import { axis, circle, label, mark, number } from "../draw.js";
 import { detectContacts, GRAVITY, makeRows, soften, solveContacts } from "../engine.js";
 import { charted, G, grip, kept, R, scene, softKnobs } from "../parts.js";
@@ -30,7 +30,8 @@ const rests = kept((way, knobs) => {
     const asked = contacts.map((c) => WAYS[way](c, knobs, state, one));
     const [targets, softness] = ["target", "softness"].map((key) => asked.map((each) => each[key]));
     state.vy[0] += knobs.dt * GRAVITY;
-    solveContacts(makeRows(contacts, one.mass, targets, softness), state.vx, state.vy, { iters: 1 });
+    const rows = makeRows(contacts, one.mass, targets, softness);
+    solveContacts(rows, state.vx, state.vy, { iters: 1 });
     state.y[0] += knobs.dt * state.vy[0];
     if (asked.length) last = asked[0];
     if (asked.length && Math.abs(state.vy[0]) < 1e-9) break; // m/s
@@ -60,23 +61,25 @@ function draw(view) {
   );
   const hard = mark("lcp", sx(0), sy(0), 7) + label("lcp, R = 0", sx(0) + 14, sy(0) - 10);
   const softnessAt = (x) => sx.back(x) / (G * dt);
-  const [k, d] = [view.get("stiffness"), view.get("impedance")];
   const spring = {
-    ...{ r: 15, label: "the implicit spring: its stiffness", text: `k = ${number(k)} N/m`, times: 1.1 },
+    times: 1.1,
     at: (x) => (1 / softnessAt(x) - damping * dt) / (dt * dt),
   };
   const soft = {
-    ...{ r: 15, label: "soft: its impedance", text: `d = ${d}`, value: d },
-    ...{ low: 1e-4, high: 0.5, times: 1.1, get: () => 1 - view.get("impedance") }, // 1 - d
+    low: 1e-4, // of 1 - d
+    high: 0.5,
+    times: 1.1,
+    get: () => 1 - view.get("impedance"),
     at: (x) => softnessAt(x) / (1 + softnessAt(x)),
     set: (left) => view.set({ impedance: Number((1 - left).toPrecision(5)) }),
   };
+  const [k, d] = [`k = ${number(view.get("stiffness"))} N/m`, `d = ${view.get("impedance")}`];
   return {
     svg: svg + hard + marks.join(""),
     words: `At rest on one line, target = R m g dt: lcp R = 0; ${told.join("; ")}.`,
     handles: [
-      grip(view, "stiffness", ...places[0], spring),
-      grip(view, "impedance", ...places[1], soft),
+      grip(view, "stiffness", ...places[0], "the implicit spring: its stiffness", k, spring),
+      grip(view, "impedance", ...places[1], "soft: its impedance", d, soft),
     ],
   };
 }
@@ -84,8 +87,9 @@ function draw(view) {
 export const figure = {
   title: "One line: target and softness R of a ball at rest",
   caption:
-    "A spring taken at the end of the step, MuJoCo’s contact and other engines’ are lcp’s sweep with a " +
-    "softness R, and at rest their targets lie on one line: drag the spring or soft along it.",
+    "A spring taken at the end of the step, MuJoCo’s contact and other engines’ are lcp’s sweep " +
+    "with a softness R, and at rest their targets lie on one line: drag the spring or soft along " +
+    "it.",
   height: 330,
   draw,
 };

@@ -34,12 +34,15 @@ function step(view, told) {
 function draw(view) {
   const { balls, model } = view.own;
   const [scale, floor] = [scaleOf(view), view.height - GROUND];
-  const place = (each) => [each.x * scale, floor - each.y * scale];
   const put = (k, x, y) =>
     Object.assign(view.own.balls[k], { x, y: Math.max(R, y), vx: 0, vy: 0 });
   const hold = (each, k) => ({
     name: String(k),
-    ...{ x: place(each)[0], y: place(each)[1], r: R * scale, label: `ball ${k + 1}`, value: each.y },
+    x: each.x * scale,
+    y: floor - each.y * scale,
+    r: R * scale,
+    label: `ball ${k + 1}`,
+    value: each.y,
     text: `${number(each.y - R, 2)} m above the table`,
     drag(x, y) {
       put(k, x / scale, (floor - y) / scale);
@@ -51,12 +54,12 @@ function draw(view) {
       Object.assign(view.own.balls[k], { vx, vy: -vy });
     },
   });
+  const handles = balls.map(hold);
+  const drawn = handles.map(({ x, y, r }) => ball(model, x, y, r));
   return {
-    svg:
-      table(0, floor, view.width, GROUND) +
-      balls.map((each) => ball(model, ...place(each), R * scale)).join(""),
+    svg: table(0, floor, view.width, GROUND) + drawn.join(""),
     words: `${balls.length} balls by ${model}, at steps of ${round(1000 * view.get("dt"))} ms.`,
-    handles: balls.map(hold),
+    handles,
   };
 }
 
@@ -69,8 +72,8 @@ function add(view) {
 export const figure = {
   title: "Sandbox",
   caption:
-    "Throw balls, build a stack, and change the model under them. Real time, by the time step and the " +
-    "knobs that are set on this page.",
+    "Throw balls, build a stack, and change the model under them. Real time, by the time step " +
+    "and the knobs that are set on this page.",
   height: 380,
   narrow: 320,
   knobs: ["restitution", "dt"],
@@ -80,7 +83,10 @@ export const figure = {
       label: (view) => (view.running ? "Stop" : "Run"),
       press: (view) => (view.running ? view.stop() : view.run()),
     },
-    { label: ({ own }) => `Model: ${own.model}`, press: ({ own }) => (own.model = NEXT[own.model]) },
+    {
+      label: ({ own }) => `Model: ${own.model}`,
+      press: ({ own }) => (own.model = NEXT[own.model]),
+    },
     { label: "Add a ball", press: add },
     { label: "Stack again", press: ({ own }) => (own.balls = stack(0.5)) },
   ],

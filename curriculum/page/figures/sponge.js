@@ -59,23 +59,24 @@ function draw(view) {
   const { svg, sx, sy, middle } = beside(view, chart, picture);
   const place = `${number(Math.abs(depth))} r ${depth < 0 ? "above" : "deep"}`;
   const text = `${place}, push ${number(push)} m g`;
-  const settled = Math.abs(depth - rest) < 1e-3 * rest;
+  const settled = Math.abs(depth - rest) < 1e-3 * rest ? "It rests" : "At rest it would be";
   const hold = {
+    r: PX,
     low: -1,
-    high: Math.min(DEEPEST, Math.sqrt(2 * HIGHEST * rest)), // thrown higher it would leave the picture
+    high: Math.min(DEEPEST, Math.sqrt(2 * HIGHEST * rest)), // it stays in the picture
     step: -Math.max(0.1 * rest, 0.001),
     at: (x, to) => (to - floor) / PX + 1,
     get: () => depthOf(view, rest),
-    release: () => view.play(),
+    release: view.play,
   };
   const turn = { times: 1.1, at: (x) => (MOST * G) / (Math.max(0.001, sx.back(x)) * R) };
-  const ramp = { label: "the stiffness k", text: `${number(k)} N/m` };
+  const steep = `${number(k)} N/m`;
   return {
     svg,
-    words: `${text}. ${settled ? "It rests" : "At rest it would be"} m g / k = ${number(rest)} r deep.`,
+    words: `${text}. ${settled} m g / k = ${number(rest)} r deep.`,
     handles: [
-      grip(view, "press", middle, y, { r: PX, label: "the ball: press it or lift it", text, ...hold }),
-      grip(view, "stiffness", sx(end), sy(end / rest), { ...ramp, ...turn }),
+      grip(view, "press", middle, y, "the ball: press it or lift it", text, hold),
+      grip(view, "stiffness", sx(end), sy(end / rest), "the stiffness k", steep, turn),
     ],
     lit: depth > 0 ? [["penalty", "return max(0.0"]] : [],
   };
@@ -84,11 +85,11 @@ function draw(view) {
 export const figure = {
   title: "A ball on a spring",
   caption:
-    "The ball rests where the spring pushes with its weight, m g / k deep: press the ball, or turn the " +
-    "ramp.",
+    "The ball rests where the spring pushes with its weight, m g / k deep: press the ball, or " +
+    "turn the ramp.",
   height: 290,
   knobs: ["stiffness"],
   start: () => ({ press: null, time: null }),
-  clock: () => ({ end: SECONDS, rate: 0.25, names: ["Let go", "Stop"] }),
+  clock: () => ({ end: SECONDS, rate: 0.25, name: "Let go" }),
   draw,
 };

@@ -1,15 +1,15 @@
-/* A stack on springs: the lowest contact carries all. Lift a ball and those above it come along; press
- * the stack from above and it carries that as well. */
+/* A stack on springs: the lowest contact carries all. Lift a ball and those above it come along;
+ * press one and those below it carry that as well. */
 import { arrow, ball, clipped, label, number, plural, table } from "../draw.js";
 import { runModel } from "../engine.js";
 import { forceLength, G, grip, kept, lens, R, scene } from "../parts.js";
 
 const [COUNT, PX, DT, SECONDS] = [3, 34, 0.0005, 1.2];
 const ABOVE = 1.6; // r: how high a ball can be lifted
-const HARDEST = 9; // weights
+const [HARDEST, PRESS] = [9, 6]; // weights; weights for a radius that the hand goes down
 
-/* Heights [m] of balls at rest on springs of stiffness k. The hand holds ball `from`: it lifts it by so
- * many radii, and those above come along, or it presses it down with so many weights. */
+/* Heights [m] of balls at rest on springs of stiffness k. The hand holds ball `from`: it lifts it
+ * by so many radii, and those above come along, or it presses it down with so many weights. */
 function heightsAtRest(k, from, hand) {
   const heights = [];
   let surface = 0;
@@ -59,21 +59,29 @@ function draw(view) {
   );
   const open = depths.findIndex((depth) => depth < 0);
   const carried = plural(open < 0 ? COUNT : open, "ball");
-  const bottom = depths[0] < 0 ? "is open" : `is ${number(depths[0])} r deep`;
+  const bottom = depths[0] < 0 ? "open" : `${number(depths[0])} r deep`;
+  const lowest = `the lowest contact is ${bottom}`;
   const more = pressed ? `, and a hand that presses with ${number(-hand, 2)} m g` : "";
-  const text = `the lowest contact ${bottom}, ${number(forces[0], 2)} m g`;
+  const text = `${lowest}, ${number(forces[0], 2)} m g`;
   const resting = heightsAtRest(k, COUNT, 0);
-  const hold = (height, i) =>
-    grip(view, `ball-${i}`, x, Math.min(at(height), view.height - 20), {
-      ...{ r: PX, label: `ball ${i + 1} from below: lift it or press it`, text },
-      ...{ low: -HARDEST, high: ABOVE, step: 0.1, release: () => view.own.hand && view.play() },
-      at: (toX, y) => ((at(resting[i]) - y) / PX) * (y > at(resting[i]) ? 6 : 1),
+  const hold = (height, i) => {
+    const low = at(resting[i]);
+    const range = {
+      r: PX,
+      low: -HARDEST,
+      high: ABOVE,
+      step: 0.1,
+      at: (toX, y) => ((low - y) / PX) * (y > low ? PRESS : 1),
       get: () => (i === view.own.from ? view.own.hand : 0),
       set: (to) => Object.assign(view.own, { from: i, hand: Number(to.toFixed(3)), time: null }),
-    });
+      release: () => view.own.hand && view.play(),
+    };
+    const name = `ball ${i + 1} from below: lift it or press it`;
+    return grip(view, `ball-${i}`, x, Math.min(at(height), view.height - 20), name, text, range);
+  };
   return {
     svg,
-    words: `It carries ${carried}${more}: the lowest contact ${bottom}, m g / k is ${number(G / k / R)} r.`,
+    words: `It carries ${carried}${more}: ${lowest}, m g / k is ${number(G / k / R)} r.`,
     handles: heights.map(hold),
   };
 }
@@ -81,11 +89,11 @@ function draw(view) {
 export const figure = {
   title: "A stack on springs",
   caption:
-    "The lowest contact carries every ball above it: lift one off, and the rest come up; press one down, " +
-    "and all below it feel it.",
+    "The lowest contact carries every ball above it: lift one off, and the rest come up; press " +
+    "one down, and all below it feel it.",
   height: 330,
   knobs: ["stiffness"],
   start: () => ({ from: COUNT - 1, hand: 0, time: null }),
-  clock: () => ({ end: SECONDS, rate: 0.25, names: ["Let go", "Stop"] }),
+  clock: () => ({ end: SECONDS, rate: 0.25, name: "Let go" }),
   draw,
 };

@@ -1,4 +1,4 @@
-/* The sweeps, contact after contact: a stack of three, its impulses as bars, and the clamp at zero. */
+/* The sweeps, contact after contact: a stack of three, its impulses as bars, the clamp at zero. */
 import { arrow, axis, ball, circle, label, number, plural, rect, table } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
 import { beside, grip, kept, R, scene } from "../parts.js";
@@ -8,8 +8,8 @@ const LAST = COUNT * SWEEPS;
 const UNIT = 24; // px of an arrow for a speed of g dt
 const names = ["ball 1 on the table", "ball 2 on ball 1", "ball 3 on ball 2"];
 
-/* What the sweeps do, contact by contact: [{contact, wanted, lam, vy}], impulses in m g dt and speeds in
- * g dt. All balls have fallen for one step; the uppermost has the speed `top` besides. */
+/* What the sweeps do, contact by contact: [{contact, wanted, lam, vy}], impulses in m g dt, speeds
+ * in g dt. All balls have fallen for one step; the uppermost has the speed `top` besides. */
 const course = kept((top) => {
   const balls = scene([R, 3 * R, 5 * R]);
   const contacts = names.map((_, i) => ({ i, j: i - 1, nx: 0, ny: 1, depth: 0 }));
@@ -67,24 +67,20 @@ function draw(view) {
   const { svg, sx, middle } = beside(view, chart, picture);
   // to the first moment at which the lowest contact carries so much
   const carrying = (wanted) => seen.findIndex((each) => each.lam[0] >= wanted - 0.02);
-  const sweep = {
-    ...{ label: "the sweeps", text: `${plural(at, "contact")} mended`, r: 12 },
-    ...{ low: 0, high: LAST, step: 1, get: () => timeOf(view) },
-    at: (x) => (carrying(sx.back(x)) + LAST + 1) % (LAST + 1),
-  };
-  const throwTop = {
-    label: "the uppermost ball’s speed before the sweeps",
-    ...{ text: `${number(top - 1, 2)} g dt`, r: 12, low: -1, high: 3, step: 0.1 },
-    at: (x, y) => 1 + (heightOf(2) - PX - y) / UNIT,
-  };
+  const until = (x) => (carrying(sx.back(x)) + LAST + 1) % (LAST + 1);
+  const sweep = { low: 0, high: LAST, step: 1, at: until, get: () => timeOf(view) };
+  const thrownAt = (x, y) => 1 + (heightOf(2) - PX - y) / UNIT;
+  const range = { low: -1, high: 3, step: 0.1, at: thrownAt };
+  const bottom = [sx(lam[0]), heightOf(0) - 12];
+  const [mended, speed] = [`${plural(at, "contact")} mended`, `${number(top - 1, 2)} g dt`];
   const tip = [0.8 * middle + PX + 12, heightOf(2) - PX - UNIT * vy[2]];
   const carried = lam.map((each) => number(each)).join(", ");
   return {
     svg,
     words: `${saying(seen[at], at)}. The contacts carry ${carried} m g dt.`,
     handles: [
-      grip(view, "time", sx(lam[0]), heightOf(0) - 12, sweep),
-      grip(view, "top", ...tip, throwTop),
+      grip(view, "time", ...bottom, "the sweeps", mended, sweep),
+      grip(view, "top", ...tip, "the uppermost ball’s speed before the sweeps", speed, range),
     ],
     lit: at ? [["sweep", "lam = max"]] : [],
   };
@@ -93,11 +89,11 @@ function draw(view) {
 export const figure = {
   title: "The sweeps, contact after contact",
   caption:
-    "Each contact mends itself and disturbs its neighbours; drag the uppermost ball’s speed upwards, and " +
-    "the clamp stops its contact from pulling.",
+    "Each contact mends itself and disturbs its neighbours; drag the uppermost ball’s speed " +
+    "upwards, and the clamp stops its contact from pulling.",
   height: 260,
   start: () => ({ time: COUNT, top: 0 }),
-  clock: () => ({ end: LAST, rate: 2, names: ["Play", "Stop"] }),
+  clock: () => ({ end: LAST, rate: 2, name: "Play" }),
   buttons: [
     {
       label: "One contact on",

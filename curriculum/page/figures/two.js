@@ -1,5 +1,5 @@
-/* The question: two balls, same gravity, same drop, and two answers to what force the table applies. They
- * fall to the table; what happens there is shown once the first bet is made. */
+/* The question: two balls, same gravity, same drop, two answers to what force the table applies.
+ * They fall to the table; what happens there is shown once the first bet is made. */
 import { ball, label, number, table } from "../draw.js";
 import { runModel, series } from "../engine.js";
 import { kept } from "../parts.js";
@@ -30,7 +30,7 @@ function draw(view) {
   const r = Math.min(74, view.width / 7);
   const lanes = drops().map(({ model, dt, gap, push, landing }, k) => {
     const wanted = Math.floor(time / dt + 1e-6);
-    const row = open ? wanted : Math.min(wanted, landing - 1); // without a bet nothing past the landing
+    const row = open ? wanted : Math.min(wanted, landing - 1); // no answer before the bet
     const [x, y] = [view.width * (0.25 + 0.5 * k), floor - r - gap[row] * r];
     const told = wanted > row ? "and now?" : push[row] > 0 ? gapWords(gap[row]) : "";
     const high = label(`↑ ${number(gap[row], 2)} r up`, x, 24, "middle", "tick");
@@ -53,8 +53,8 @@ function draw(view) {
 export const figure = {
   title: "Two balls fall onto two tables",
   caption:
-    `The same ball, the same gravity, the same drop, ${SLOW} times slower than it happens. They differ in ` +
-    "one thing: the force that the table applies.",
+    `The same ball, the same gravity, the same drop, ${SLOW} times slower than it happens. They ` +
+    "differ in one thing: the force that the table applies.",
   height: 330,
   narrow: 280,
   start: () => ({ time: null }),
@@ -62,7 +62,7 @@ export const figure = {
     from: FROM,
     end: view.open("ex1") ? SECONDS : (drops()[0].landing + 2) * drops()[0].dt,
     rate: 1 / SLOW,
-    names: ["Drop both", "Stop"],
+    name: "Drop both",
   }),
   draw,
 };
