@@ -62,14 +62,15 @@ def everything(args):
     large, small = QUICK if args.quick else FULL
     sections = {
         "scenes": jobs.scene_jobs(range(large)) + jobs.scene_jobs(range(small), small=True),
-        "maps": list(maps.map_jobs(args.quick)),
-        "extremes": list(extremes.extreme_jobs(args.quick)),
+        "maps": maps.map_jobs(args.quick),
+        "extremes": extremes.extreme_jobs(args.quick),
         "mujoco": mujoco_match.match_jobs(args.quick),
     }
-    todo = [job for given in sections.values() for job in given]
-    found = iter(pool.spread(jobs.run, todo, "stress", args.workers, args.scheduler))
-    results = {name: [next(found) for _ in given] for name, given in sections.items()}
-    return report.write(results, report.QUICK if args.quick else report.RESULTS)
+    found = {
+        name: pool.spread(jobs.run, todo, name, args.workers, args.scheduler)
+        for name, todo in sections.items()
+    }
+    return report.write(found, report.QUICK if args.quick else report.RESULTS)
 
 
 def main(argv=None):

@@ -66,13 +66,9 @@ def complaint(status, said, refused, path):
         return None if len(lines) == 1 else f"refuses so: {lines[-3:]}"
     if status != 0 or refused.strip():
         return f"exit status {status}, stderr {refused.strip()[-100:]!r}"
-    metrics = json.loads(path.read_text("utf-8"), parse_constant=not_json)
+    metrics = json.loads(path.read_text("utf-8"), parse_constant=int)  # so NaN is refused
     for model, quality in metrics["quality"].items():
         (line,) = [line for line in said.splitlines() if line.split()[:1] == [model]][:1]
         if line.endswith(" ok") and (quality["blew_up"] or quality["through"]):
             return f"{model} is called ok: {line}"
     return None
-
-
-def not_json(word):
-    raise ValueError(f"{word} is not JSON")

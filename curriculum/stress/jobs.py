@@ -3,7 +3,6 @@
 A job: (place, subject, properties). A place is how its violations are said, such as "scene 17".
 """
 
-import curriculum.stress.exact_properties  # noqa: F401 (registers what it states)
 from curriculum.stress import properties, scenes
 from curriculum.stress.claims import judge
 from curriculum.stress.trial import Trial
@@ -43,13 +42,14 @@ def added_up(found):
 
 def unfinished(section):
     """Energy that unfinished sweeps of lcp add: in how many scenes, and the worst of them."""
-    cases = section["notes"].get(properties.UNFINISHED, {})
     judged = section["properties"]["lcp_gains_energy_by_unfinished_sweeps_alone"][0]
-    counts = {"scenes": judged, "rises": len(cases)}
-    counts["above_start"] = sum(case["gained"] > 1e-9 * case["start"] for case in cases.values())
-    if cases:
-        place, worst = max(cases.items(), key=lambda case: case[1]["gained"] / case[1]["start"])
-        most = worst["start"] + worst["gained"]
-        counts["worst"] = {"place": place, "start": worst["start"], "most": most}
-        counts["sweeps_most"] = max(case["sweeps"] for case in cases.values())
-    return counts
+    cases = section["notes"].get(properties.UNFINISHED, {})
+    grown = {place: case["most"] / case["start"] for place, case in cases.items()}
+    worst = max(grown, key=grown.get, default=None)
+    return {
+        "scenes": judged,
+        "rises": len(cases),
+        "above_start": sum(factor > 1.0 + 1e-9 for factor in grown.values()),
+        "sweeps_most": max((case["sweeps"] for case in cases.values()), default=0),
+        "worst": {"place": worst} | cases.get(worst, {}),
+    }

@@ -1,7 +1,8 @@
 """results.json, README.md and the figure, from the results of the jobs."""
 
 from contact import write_whole
-from curriculum.stress import extremes, figures, jobs, maps, mujoco_match
+from curriculum import plotting
+from curriculum.stress import extremes, jobs, maps, mujoco_match
 from curriculum.stress.claims import PROPERTIES
 from curriculum.text import results
 
@@ -20,6 +21,9 @@ OTHERS = (
     extremes.a_right_report_or_one_line_that_refuses,
     mujoco_match.soft_is_mujoco,
 )
+COLOURS = ("#fde9c9", "#ec9c5a", "#9c4058", "#2b1741")  # light to dark, as an outcome gets worse
+LINE = "#111111"  # over coloured cells, which stay as they are in the dark
+MARKS = (0.3, 1, 3, 10, 30, 100, 300)  # ms
 STATED = PROPERTIES | {function.__name__: function for function in OTHERS}
 HEAD = """# Stress: what must hold on any scene, and where each model breaks
 
@@ -28,6 +32,8 @@ HEAD = """# Stress: what must hold on any scene, and where each model breaks
 A judgement is one property on one scene, row of a map, command line or match, counted only where \
 it could have failed: without a contact nothing is said of contacts. What was done is read from \
 the states before and after each step, and held against the chapter's formulas."""
+UNFINISHED = """Unfinished sweeps took {above_start:,} scenes above their start's energy, at worst \
+{place}, from {start:.4g} J to {most:.4g} J; {sweeps_most:,.0f} sweeps a step ended every rise."""
 
 
 def write(found, folder):
@@ -44,7 +50,7 @@ def write(found, folder):
         sections[name] = results.save("stress", name, section, command, folder=folder)
     write_whole(folder / "README.md", page(sections))
     try:
-        write_whole(folder / "penalty-map.svg", figures.penalty_map(sections["maps"]))
+        write_whole(folder / "penalty-map.svg", penalty_map(sections["maps"]))
     except ImportError as error:
         print(f"no figure: {error}")
     if folder == RESULTS:
@@ -74,7 +80,9 @@ def readme(sections):
 
 def page(sections):
     """README.md of the results."""
-    parts = [HEAD.format(summary(sections))]
+    parts, unfinished = [HEAD.format(summary(sections))], sections["scenes"]["unfinished"]
+    if unfinished["rises"]:
+        parts.append(UNFINISHED.format(**unfinished, **unfinished["worst"]))
     for name, section in sections.items():
         head = ["property", "judged", "comparisons", "off, as a share of the bound"]
         parts += [f"## {TITLES[name]}", results.table(head, rows_of(section["properties"]))]
@@ -82,8 +90,6 @@ def page(sections):
         notes = [f"- {what}: {count:,}" for what, count in section["notes"].items()]
         if notes:
             parts += ["Not judged, or limits that were met, in scenes:", "\n".join(notes)]
-        if "worst" in section.get("unfinished", {}):
-            parts.append(worst_of(section["unfinished"]))
     parts += ["![](penalty-map.svg)", results.footer(sections["scenes"])]
     return "\n\n".join(parts) + "\n"
 
@@ -95,10 +101,41 @@ def rows_of(properties):
         yield [words, f"{judged:,}", f"{count:,}", f"{share or 0:.1g}"]
 
 
-def worst_of(unfinished):
-    """What unfinished sweeps of lcp did at worst."""
-    place = "at worst {place}, from {start:.4g} J to {most:.4g} J".format(**unfinished["worst"])
-    return (
-        f"Unfinished sweeps took {unfinished['above_start']:,} scenes above their start's energy, "
-        f"{place}; {unfinished['sweeps_most']:,.0f} sweeps a step ended every rise."
+def penalty_map(section):
+    """What the drop does over dt and stiffness, a panel for each damper, with the theory: SVG."""
+    figure, axes = plotting.figure(
+        rows=2,
+        title="penalty: what a ball dropped 1 m does",
+        below=0.6,
+        explained="Left of the line a ball that stays in contact is stable; circles: measured. "
+        "The speckle is luck: where in a step the ball meets the table.",
     )
+    for axis, damping in zip(axes, (0.0, 80.0)):
+        rows = [row for row in section["penalty"] if row["damping"] == damping]
+        draw_panel(axis, rows, f"c = {damping:g} N s/m; line: k dt² + 2 c dt = 4 m")
+    axes[0].get_legend().remove()
+    axes[0].set_xlabel("")
+    return plotting.svg(figure, section)
+
+
+def draw_panel(axis, rows, title):
+    """The outcomes at one damping, the theory, and every fourth critical dt that was measured."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    dt, stiffness = rows[0]["dt"], [row["stiffness"] for row in rows]
+    classes = [[maps.OUTCOMES.index(letter) for letter in row["outcomes"]] for row in rows]
+    look = dict(cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5, shading="nearest")
+    axis.pcolormesh(dt, stiffness, classes, rasterized=True, **look)
+    axis.grid(False)
+    for look in (dict(color="white", lw=4), dict(color=LINE, lw=1.8)):
+        axis.plot([row["theory"] for row in rows], stiffness, **look)
+    measured = [row["measured"] for row in rows[::4]]
+    axis.plot(measured, stiffness[::4], "o", color=LINE, mfc="white", markersize=5)
+    patches = [Patch(color=colour, label=text) for colour, text in zip(COLOURS, maps.WORDS)]
+    axis.legend(handles=patches, loc="upper left", bbox_to_anchor=(-0.1, -0.17), ncols=2)
+    axis.set(xscale="log", yscale="log", xlim=(dt[0], dt[-1]), ylim=(stiffness[0], stiffness[-1]))
+    axis.set(ylabel="stiffness k [N/m]", title=title)
+    axis.set_xticks([1e-3 * mark for mark in MARKS], MARKS)
+    axis.minorticks_off()
+    axis.set_xlabel("time step dt [ms]", loc="right")
