@@ -64,16 +64,9 @@ def page_data(veils):
 # ---- what stands in the slots
 
 
-def data_address(svg):
-    """An SVG as an address that holds it, its paths rounded to a tenth of a pixel."""
-    drawn = re.sub(
-        r"<\?xml.*?\?>|<!DOCTYPE.*?>|<!--.*?-->|<metadata>.*?</metadata>", "", svg, flags=re.DOTALL
-    )
-    paths = re.sub(r'(?<= d=")[^"]+', lambda d: re.sub(r"(\.\d)\d+", r"\1", d[0]), drawn)
-    short = re.sub(r">\s+<", "><", re.sub(r"\s+", " ", paths))
-    named = short.replace("'", "&apos;").replace('"', "'")
-    escaped = named.replace("%", "%25").replace("#", "%23").replace("&", "&amp;")
-    return Markup("data:image/svg+xml," + escaped)
+def data_address(kind, content):
+    """Bytes as an address that holds them."""
+    return Markup(f"data:{kind};base64,{base64.b64encode(content).decode()}")
 
 
 def drawn_by(kind, name):
@@ -85,9 +78,13 @@ def drawn_by(kind, name):
     box = re.search(r'<svg\b[^>]*?\bviewBox="\S+ \S+ ([\d.]+) ([\d.]+)"', text, re.DOTALL)
     title = re.search(r"<title[^>]*>(.*?)</title>", text, re.DOTALL)
     what = title[1].strip() if title else name.replace("-", " ")
-    width, height = (round(SCALE * float(side)) for side in box.groups())
-    told = ("Run time against error" if kind == "bench" else "Stability") + f": {what}"
-    return {"kind": kind, "alt": told, "src": data_address(text), "width": width, "height": height}
+    return {
+        "kind": kind,
+        "alt": ("Run time against error" if kind == "bench" else "Stability") + f": {what}",
+        "src": data_address("image/svg+xml", text.encode()),
+        "width": round(SCALE * float(box[1])),
+        "height": round(SCALE * float(box[2])),
+    }
 
 
 class Filler:
@@ -136,17 +133,7 @@ class Filler:
         return self.macros.figure(name, known[name], self.alone)
 
 
-# ---- the head
-
-
-def early_script(veils):
-    """What must run before the first paint, so that nothing moves after it."""
-    return (
-        'document.documentElement.className = "js";\n'
-        f"for (const id of {veils})\n"
-        '  try { if (localStorage.getItem("contact-chapter:" + id)) '
-        'document.documentElement.classList.add("open-" + id); } catch {}\n'
-    )
+# ---- the page
 
 
 def policy(*scripts):
@@ -155,38 +142,17 @@ def policy(*scripts):
     allowed = " ".join(f"'sha256-{each}'" for each in hashes)
     return (
         "default-src 'none'; img-src data:; font-src data:; base-uri 'none'; form-action 'none'; "
-        f"worker-src blob:; style-src 'unsafe-inline'; script-src {allowed}"
+        f"style-src 'unsafe-inline'; script-src {allowed}"
     )
 
 
-def stylesheet(veils):
-    """The page's style, with the models' colours, the formulas' font, and what veils each bet."""
+def stylesheet():
+    """The page's style, without what only its authors read."""
     css = (HERE / "style.css").read_text("utf-8")
-    css = re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL))
-    colors = "".join(f"--{model}: {color}; " for model, color in curves.COLORS.items())
-    font = base64.b64encode(maths_font.FILE.read_bytes()).decode()
-    face = f'"{maths_font.NAME}"; src: url("data:font/woff;base64,{font}") format("woff")'
-    hidden = "".join(
-        f".js:not(.open-{name}) .veiled-{name} > .answer, .open-{name} .veiled-{name} > .veil-bar "
-        "{ display: none; }\n"
-        for name in veils
-    )
-    return f":root {{ {colors}}}\n@font-face {{ font-family: {face}; }}\n{css}{hidden}"
+    return Markup(re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL)))
 
 
-def favicon():
-    """A ball on a table."""
-    return data_address(
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 16 16">'
-        '<path d="M0 11h16v5H0z" fill="#888"/>'
-        f'<circle cx="8" cy="6" r="5" fill="{curves.COLORS["exact"]}"/></svg>'
-    )
-
-
-# ---- the page
-
-
-def environment(keys):
+def environment(veils):
     """The templates' environment."""
     made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE / "templates"),
@@ -196,8 +162,8 @@ def environment(keys):
     )
     repository = os.environ.get("GITHUB_REPOSITORY")
     colab = COLAB.format(repository) if repository else None
-    keys = {model: Markup(key) for model, key in keys.items()}
-    made.globals.update(course=COURSE, colab=colab, keys=keys)
+    font = {"name": maths_font.NAME, "src": data_address("font/woff", maths_font.FILE.read_bytes())}
+    made.globals.update(course=COURSE, colab=colab, font=font, colors=curves.COLORS, veils=veils)
     return made
 
 
@@ -210,17 +176,16 @@ def build(text=None):
     veils = [*bets, "puzzle"]
     data = page_data(veils)
     drawn = evaluate("still.js", data, "stills()")
-    templates = environment(drawn["keys"])
+    templates = environment(veils)
     macros = templates.get_template("parts.html.j2").module
     fill = Filler(macros, drawn["figures"], exercises)
     parts = chapter.blocks(Numbers().fill(text), drawn["ranges"])
     body, ((_, _, title), *contents) = chapter.assemble(parts, fill, macros, bets)
-    script, early = bundle("main.js", data), early_script(veils)
+    script, early = bundle("main.js", data), macros.early()
     return templates.get_template("page.html.j2").render(
         policy=policy(early, script),
-        icon=favicon(),
-        style=Markup(stylesheet(veils)),
-        early=Markup(early),
+        style=stylesheet(),
+        early=early,
         script=Markup(script),
         heading=Markup(re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title)),
         figures=drawn["figures"],

@@ -11,7 +11,7 @@ import re
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-from py_mini_racer import MiniRacer
+from py_mini_racer import JSEvalException, MiniRacer
 
 HERE = Path(__file__).resolve().parent
 IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
@@ -71,10 +71,15 @@ def bundle(start, data):
 
 
 def evaluate(start, data, call):
-    """What `call` of a module gives in an embedded V8: of the page's own code, without a page."""
+    """What `call` of a module gives in an embedded V8: of the page's own code, without a page.
+
+    Raises ValueError at what it throws.
+    """
     engine = MiniRacer()
     try:
         engine.eval(f"const made = {bundle(start, data)};")
         return json.loads(engine.eval(f"JSON.stringify(made.{call})"))
+    except JSEvalException as error:
+        raise ValueError(str(error).partition("\n")[0]) from None
     finally:
         engine.close()  # its thread would keep Python from ending

@@ -1,5 +1,4 @@
-/* The start: in the page, everything is bound together; in a worker, figures compute what takes
- * long. */
+/* The start: everything is bound together. */
 import { Bets } from "./bets.js";
 import { startBlank } from "./blank.js";
 import { data } from "./data.js";
@@ -7,30 +6,6 @@ import { figures } from "./figures.js";
 import { Reader } from "./reader.js";
 import { Stage } from "./stage.js";
 import { Store } from "./store.js";
-
-// ---- the worker: the same script, without a document
-
-function work({ data: { figure, job, args, ticket } }) {
-  self.postMessage({ ticket, value: figures[figure].jobs[job](args) });
-}
-
-// compute(figure, job, args, done) beside the page; where no worker can be had, in the page.
-function helper(source) {
-  const waiting = new Map();
-  let [worker, ticket] = [null, 0];
-  try {
-    worker = new Worker(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
-    worker.onmessage = ({ data: { ticket, value } }) => waiting.get(ticket)(value);
-    worker.onerror = () => (worker = null);
-  } catch {
-    // it is done in the page, once what is going on there has ended
-  }
-  return (figure, job, args, done) => {
-    if (!worker) return void setTimeout(() => done(figures[figure].jobs[job](args)));
-    waiting.set(++ticket, done);
-    worker.postMessage({ figure, job, args, ticket });
-  };
-}
 
 // ---- the address
 
@@ -68,27 +43,23 @@ function light(by, lines) {
   lit.set(by, found);
 }
 
-function start() {
-  const store = new Store();
-  const bets = new Bets(data.bets);
-  const page = {
-    store,
-    open: bets.open,
-    still: window.matchMedia("(prefers-reduced-motion: reduce)").matches,
-    worker: helper(document.getElementById("script").textContent),
-    light,
-  };
-  bindAddress(store);
-  const stages = {};
-  for (const box of document.querySelectorAll("[data-figure]")) {
-    const name = box.dataset.figure;
-    stages[name] = new Stage(box, name, figures[name], page);
-  }
-  bets.onOpen(() => Object.values(stages).forEach((stage) => stage.redraw()));
-  if (document.getElementById("blank")) startBlank(document.getElementById("blank"), data.blank);
-  new Reader(store, stages.lanes);
-  document.documentElement.dataset.ready = "yes";
-}
+// ---- the page
 
-if (typeof document === "undefined") self.onmessage = work;
-else start();
+const store = new Store();
+const bets = new Bets(data.bets);
+const page = {
+  store,
+  open: bets.open,
+  still: window.matchMedia("(prefers-reduced-motion: reduce)").matches,
+  light,
+};
+bindAddress(store);
+const stages = {};
+for (const box of document.querySelectorAll("[data-figure]")) {
+  const name = box.dataset.figure;
+  stages[name] = new Stage(box, name, figures[name], page);
+}
+bets.onOpen(() => Object.values(stages).forEach((stage) => stage.redraw()));
+if (document.getElementById("blank")) startBlank(document.getElementById("blank"), data.blank);
+new Reader(store, stages.lanes);
+document.documentElement.dataset.ready = "yes";

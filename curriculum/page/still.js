@@ -1,6 +1,4 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
-import { data } from "./data.js";
-import { key } from "./draw.js";
 import { figures } from "./figures.js";
 import { buttonsOf, heightOf, stillView } from "./stage.js";
 import { QUANTITIES, startOf } from "./store.js";
@@ -23,6 +21,7 @@ function still([name, figure]) {
 
 export const stills = () => ({
   figures: Object.fromEntries(Object.entries(figures).map(still)),
-  keys: Object.fromEntries(data.models.map((model) => [model, key(model)])),
-  ranges: Object.fromEntries(Object.entries(QUANTITIES).map(([k, { low, high }]) => [k, [low, high]])),
+  ranges: Object.fromEntries(
+    Object.entries(QUANTITIES).map(([name, { low, high }]) => [name, [low, high]]),
+  ),
 });
