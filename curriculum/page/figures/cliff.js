@@ -40,8 +40,8 @@ function course(view, { t, y }) {
   });
   if (out > end) return chart.svg;
   const far = y.subarray(0, end).reduce((most, each) => Math.max(most, Math.abs(each)), 0);
-  const told = `↕ leaves the chart, goes as far as ${number(far, 2)} m`;
-  const place = within(chart.box.left, chart.sx(t[out]) + 8, chart.box.right - 300);
+  const told = `↕ it leaves the chart, to ${number(far, 2)} m`;
+  const place = Math.min(chart.sx(t[out]) + 8, chart.box.right - 190);
   return chart.svg + label(told, place, chart.box.top + 14);
 }
 

@@ -31,7 +31,7 @@ function draw(view) {
   const bars = view.width - Math.min(150, 0.25 * view.width);
   const unit = (view.width - bars - 8) / Math.max(begun, moreau, repaired, 0.1);
   const at = (i) => (bars - 16) / 2 + 2 * r * (i - 1);
-  const up = (i) => -r - 12 - 16 * i; // the arrows stand over one another
+  const up = (i) => -r - 12 - 13 * i; // the arrows stand over one another
   const row = ([title, after], k) => [
     label(title, 0, ROWS[k] - r - 48, "start", "axis-name"),
     ...after.map(
