@@ -41,6 +41,10 @@ MANY = 60           # balls: from here on MuJoCo gets CG and a sparse Jacobian
 class Session:
     """One world, ready to step, in metres and seconds. A subclass gives step() and state()."""
 
+    @staticmethod
+    def cannot(scene):
+        """Why the engine does not run a scene, or None."""
+
     def advance(self, n):
         """Take n steps and read nothing: the bare cost of stepping."""
         step = self.step
@@ -181,10 +185,11 @@ class Pymunk(Session):
             space.add(body, ball)
             self.bodies.append(body)
         self.step = partial(space.step, dt)
-        if len(self.bodies) == 1:
-            self.heights = lambda: (self.bodies[0].position[1],)
-        elif not np.isinf(scene.mass).any() and not sleep:
+        if len(self.bodies) > 1 and not np.isinf(scene.mass).any() and not sleep:
             self.heights = self.many_heights
+
+    def heights(self):
+        return [body.position[1] for body in self.bodies]
 
     def many_heights(self):
         """All at once, by the engine's own batch call; the floor comes last."""
@@ -282,6 +287,11 @@ class Drake(Session):
         self.simulator.Initialize()
 
     @staticmethod
+    def cannot(scene):
+        some = 0.0 < scene.restitution < 1.0
+        return "has no coefficient of restitution, only a dissipation" if some else None
+
+    @staticmethod
     def skin(scene, stiffness, dt):
         """Stiffness and dissipation of every surface: none for e = 1, strong for e = 0."""
         from pydrake.geometry import AddContactMaterial, ProximityProperties
@@ -313,17 +323,6 @@ class Drake(Session):
         return q, v
 
 
-def no_coefficient(scene):
-    """Why Drake does not run a scene, or None."""
-    if 0.0 < scene.restitution < 1.0:
-        return "has no coefficient of restitution, only a dissipation"
-    return None
-
-
-def anything(scene):
-    """Of an engine that runs every scene."""
-
-
 # what is measured
 
 
@@ -334,7 +333,7 @@ class Setting(NamedTuple):
     words: str              # the setting, for a reader
     build: Callable
     adaptive: bool = False  # it chooses its own steps: dt is only how often it is looked at
-    cannot: Callable = anything     # scene -> why it does not run it, or None
+    cannot: Callable = Session.cannot
     only: tuple = ()        # the problems it is for; none means all
 
     @property
@@ -357,11 +356,12 @@ RIGID, PUSHED = partial(direct, 0.0, 0.9999), partial(direct, 0.2, 0.999)
 
 def setting(engine, words, *given, **options):
     """The setting of an engine with these options of its session."""
-    def build(scene, dt):
-        return ENGINES[engine][-1](scene, dt, *given, **options)
+    session = ENGINES[engine][-1]
 
-    cannot = no_coefficient if engine == "drake" else anything
-    return Setting(engine, words, build, "scheme" in options, cannot)
+    def build(scene, dt):
+        return session(scene, dt, *given, **options)
+
+    return Setting(engine, words, build, "scheme" in options, session.cannot)
 
 
 mujoco, pymunk, box2d3, drake = (partial(setting, engine) for engine in ENGINES)

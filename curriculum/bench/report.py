@@ -5,7 +5,8 @@ All of it is made from results.json alone, so that the same results give the sam
 
 import math
 
-from contact import write_whole
+from contact import MODELS, write_whole
+from contact import figure as number
 from curriculum import plotting
 from curriculum.bench import accuracy, piles, problems, skips
 from curriculum.text import results
@@ -14,16 +15,6 @@ from curriculum.text.results import table
 TINY = 1e-10        # r, what exact has to stay within
 PILE_LIMIT = 0.6    # of the fastest peer's time
 LEAST = 1e-17       # r: an error of exactly zero is drawn here
-OURS = ("penalty", "lcp", "soft", "exact")
-
-
-def number(value):
-    """A number with three digits, without an exponent where it is of a handy size."""
-    if value is None:
-        return "-"
-    if value == 0.0 or 1e-3 <= abs(value) < 1e5:
-        return f"{float(f'{value:.3g}'):,.10g}"
-    return f"{value:.1e}"
 
 
 def ranged(about):
@@ -36,11 +27,10 @@ def called(row):
     return f"{accuracy.LABELS[row['family']]}: {row['words']}"
 
 
-def whole(section, problem, peers=None):
-    """The points of a problem that did not diverge; only ours, or only peers' if asked."""
+def whole(section, problem):
+    """The points of a problem that did not diverge."""
     return [p for p in accuracy.unpacked(section["points"])
-            if p["problem"] == problem and not p["diverged"] and p["error"] is not None
-            and peers in (None, p["family"] not in OURS)]
+            if p["problem"] == problem and not p["diverged"] and p["error"] is not None]
 
 
 # goals
@@ -59,11 +49,12 @@ def goals(sections):
 
 def exact_goals(section):
     for problem in section["problems"]:
-        exact = [p for p in whole(section, problem) if p["family"] == "exact"]
+        points = whole(section, problem)
+        exact = [p for p in points if p["family"] == "exact"]
         if exact:
             error, ms = exact[0]["error"], exact[0]["read_median"]
             yield f"exact, {problem}: at most {TINY:g} r off", f"{number(error)} r", error <= TINY
-        peers = whole(section, problem, peers=True)
+        peers = [p for p in points if p["family"] not in MODELS]
         if exact and peers and problem in ("drop", "bounce"):
             fast = min(peers, key=lambda p: p["read_median"])
             ratio = ms / fast["read_median"]
@@ -133,7 +124,7 @@ def error_rows(section):
         return f"{number(found['error'])} r, {number(found['ms'])} ms" if found else "-"
 
     for problem, found in section["headline"].items():
-        peers = [dict(about, family=name) for name, about in found.items() if name not in OURS]
+        peers = [dict(about, family=name) for name, about in found.items() if name not in MODELS]
         best = min(peers, key=lambda about: about["error"], default=None)
         yield [problem, cell(found.get("exact")), cell(found.get("lcp")),
                f"{called(best)}: {cell(best)}" if best else "-"]
