@@ -59,22 +59,19 @@ def pyplot():
     return plt
 
 
-def figure(rows=1, title="", explained="", height=3.4, columns=1, share=None, below=0.0,
-           left=0.125):
+def figure(rows=1, title="", explained="", height=3.4, share=(1,), below=0.0):
     """A figure with its heading, and the list of its axes, row by row.
 
     height: inches of a row of panels. share: widths of the columns, as ratios. below: inches kept
-    free under the panels, for a legend; left: the share of the width kept free for the labels of
-    the rows. The note wraps by itself.
+    free under the panels, for a legend. The note wraps by itself.
     """
     lines = textwrap.wrap(explained, 84)
     top, bottom = 0.7 + 0.17 * len(lines), 0.62 + below
     tall = top + bottom + rows * height
     made, axes = pyplot().subplots(
-        rows, columns, figsize=(WIDTH, tall), squeeze=False,
-        gridspec_kw=dict(width_ratios=share or [1] * columns, left=left, right=0.98,
-                         top=1 - top / tall, bottom=bottom / tall, hspace=0.42,
-                         wspace=0.08 if share else 0.3))
+        rows, len(share), figsize=(WIDTH, tall), squeeze=False,
+        gridspec_kw=dict(width_ratios=share, left=0.125, right=0.98, top=1 - top / tall,
+                         bottom=bottom / tall, hspace=0.42, wspace=0.08))
     made.text(0.01, 1 - 0.26 / tall, title, fontsize=12, fontweight="bold")
     for k, words in enumerate(lines):
         made.text(0.01, 1 - (0.46 + 0.17 * k) / tall, words, fontsize=9, color=PALE)
@@ -94,13 +91,10 @@ def line(axis, x, y, name, label=None, **changes):
     axis.plot(x, y, label=label or name, **{**look(name), **changes})
 
 
-def legend_below(axis, columns=2, of=None, down=0.2):
-    """The legend under a panel, where it covers nothing; `of`: the panel whose lines it names.
-
-    down: how far below the panel it begins, in heights of the panel.
-    """
-    axis.legend(*(of or axis).get_legend_handles_labels(), loc="upper left", ncols=columns,
-                bbox_to_anchor=(-0.1, -down), borderaxespad=0, columnspacing=1.0, fontsize=8.5)
+def legend_below(axis, columns, down):
+    """The legend under a panel, where it covers nothing: `down` heights of the panel below it."""
+    axis.legend(loc="upper left", ncols=columns, bbox_to_anchor=(-0.1, -down), borderaxespad=0,
+                columnspacing=1.0, fontsize=8.5)
 
 
 def svg(figure, section=None) -> str:

@@ -256,7 +256,7 @@ def error_figure(section, problem):
     for p in whole(section, problem):
         families.setdefault(p["family"], []).append(dict(p, error=max(p["error"], LEAST)))
     figure, (left, axis) = plotting.figure(
-        columns=2, share=(1, 6), height=3.6, below=1.7, title=about["title"],
+        share=(1, 6), height=3.6, below=1.7, title=about["title"],
         explained="Left and down is better. A faint dot is one setting at one step; a line joins "
         "the best of a family, whose best setting at 2 ms is named. Numbers: lcp's dt in ms. "
         "Compiling lcp is not counted.")
