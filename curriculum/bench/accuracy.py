@@ -117,10 +117,10 @@ def errors_of(job):
     return found
 
 
-def prepare(name, way, scene, dt, steps):
-    """The call of a contestant that takes these steps, and no more."""
+def seconds_of(name, way, scene, dt, steps):
+    """CPU seconds that a contestant takes for these steps, without its preparation."""
     session = BY_NAME[name].build(scene, dt)
-    return partial(session.trace if way == "read" else session.advance, steps)
+    return timing.timed(partial(session.trace if way == "read" else session.advance, steps))
 
 
 def times_of(job):
@@ -130,10 +130,10 @@ def times_of(job):
     ways = ("read", "bare") if BY_NAME[name].engine in engines.ENGINES else ("read",)
     seconds = {way: [] for way in ways}
     for way in ways:
-        prepare(name, way, scene, dt, min(50, steps))()
+        seconds_of(name, way, scene, dt, min(50, steps))
     for _ in range(3):
         for way in ways:
-            seconds[way].append(timing.timed(prepare(name, way, scene, dt, steps)))
+            seconds[way].append(seconds_of(name, way, scene, dt, steps))
         if sum(map(sum, seconds.values())) > ENOUGH:
             break
     return {way: statistics.median(values) for way, values in seconds.items()}

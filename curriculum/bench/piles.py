@@ -122,8 +122,7 @@ def measure(quick=False):
 def measured(count, chosen, states, quick):
     """The rows of one size: settle all settings, then time them. states[k]: the last settled."""
     scene = shaft(count)
-    jobs = [(count, k, states.get(k)) for k in chosen
-            if not SETTINGS[k].refuses(scene)]
+    jobs = [(count, k, states.get(k)) for k in chosen if not SETTINGS[k].refuses(scene)]
     print(f"pile of {count}: {len(jobs)} settings settle, then they are timed", flush=True)
     settled = pool.spread(settle, jobs, f"{count} balls settle")
     states.update((k, found[:2]) for (_, k, _), found in zip(jobs, settled))

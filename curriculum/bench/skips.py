@@ -2,7 +2,6 @@
 
 import importlib.util
 import itertools
-import random
 import statistics
 import sys
 import tempfile
@@ -71,12 +70,10 @@ def processes(quick):
         if importlib.util.find_spec("rerun") is not None:
             commands |= {"rerun": [python, "-c", "import rerun"],
                          RECORDED: [*run, "--rerun", "--scene", "drop"]}
-        seconds = {name: [] for name in commands}
-        for number in range(rounds + 1):    # the first warms the disk cache and the bytecode
-            for name in random.Random(number).sample(list(commands), len(commands)):
-                took = timing.whole_process(commands[name], out)
-                seconds[name] += [took] if number else []
-    found = {name: timing.spread(values) for name, values in seconds.items()}
+        seconds = timing.interleave({name: partial(timing.whole_process, command, out)
+                                     for name, command in commands.items()}, rounds + 1)
+    # the first round warms the disk cache and the bytecode
+    found = {name: timing.spread(values[1:]) for name, values in seconds.items()}
     for name in LIMITS:
         base = "rerun" if name == RECORDED else "numpy"
         if name in found:
@@ -90,7 +87,7 @@ def against_pymunk(quick):
     found, ways = {}, {"lcp: 20 sweeps": "read", "pymunk: 10 iterations": "bare"}
     for name in SCENES if not engines.missing("pymunk") else ():
         given = contact.build_scene(name), DT, STEPS
-        tasks = {setting.split(":")[0]: partial(accuracy.prepare, setting, way, *given)
+        tasks = {setting.split(":")[0]: partial(accuracy.seconds_of, setting, way, *given)
                  for setting, way in ways.items()}
         times = {key: timing.spread([1e3 * value for value in values])
                  for key, values in timing.interleave(tasks, 5 if quick else 31).items()}
@@ -103,9 +100,10 @@ def speed_up(quick):
     rows = []
     for name, model in itertools.product(SCENES, STEPPED):
         given = model, contact.build_scene(name), DT, STEPS
-        tasks = {skip: partial(partial, contact.run_model, *given, contact.Settings(skip=skip))
-                 for skip in (True, False)}
-        times = timing.interleave(tasks, 2 if quick else 7)
+        runs = {skip: partial(contact.run_model, *given, contact.Settings(skip=skip))
+                for skip in (True, False)}
+        times = timing.interleave({skip: partial(timing.timed, run) for skip, run in runs.items()},
+                                  2 if quick else 7)
         skipped, taken = (1e3 * statistics.median(times[skip]) for skip in (True, False))
         rows.append(dict(scene=name, model=model, skipped=skipped, taken=taken,
                          ratio=taken / skipped))

@@ -53,15 +53,11 @@ def in_fresh_processes(work, jobs, processes, label) -> list:
 
 
 def interleave(tasks, rounds) -> dict:
-    """Time every task once a round: {key: [seconds, one a round]}. tasks: {key: prepare}.
-
-    prepare() makes what one timed call needs and returns that call; it is not timed. The order
-    changes from round to round.
-    """
+    """{key: [seconds, one a round]} of tasks {key: call that gives seconds}, in changing order."""
     seconds = {key: [] for key in tasks}
     for number in range(rounds):
         for key in random.Random(number).sample(list(tasks), len(tasks)):
-            seconds[key].append(timed(tasks[key]()))
+            seconds[key].append(tasks[key]())
     return seconds
 
 
