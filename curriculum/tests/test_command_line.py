@@ -216,6 +216,31 @@ def test_a_ball_that_fell_through_is_not_ok_also_in_the_stability_lines(tmp_path
     assert re.search(r"^soft .* through a ball$", out, re.MULTILINE)
 
 
+def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
+    flags = "--scene stack --bodies 4 --seed 5 --mass 2 --restitution 0.5 --damping 20 --dt 0.004"
+    knobs = "--stiffness 5e3 --baumgarte 0.4 --iters 3 --warm 0.5 --solref 0.03 0.8"
+    words = f"{flags} --steps 150 {knobs} --solimp 0.5 0.9 0.002 0.4 3 --no-rerun".split()
+    assert main(capsys, *words, "--out", tmp_path)[0] == 0
+    scene = contact.build_scene("stack", 5, 4, 0.5, 20.0)
+    scene = scene._replace(mass=2.0 * scene.mass)
+    settings = contact.Settings(5e3, 0.4, 3, 0.5, (0.03, 0.8), (0.5, 0.9, 0.002, 0.4, 3.0))
+    runs = {model: contact.run_model(model, scene, 0.004, 150, settings)
+            for model in contact.MODELS}
+    quality = strict_json(tmp_path / "metrics.json")["quality"]
+    for model, run in runs.items():
+        expected = contact.contact_quality(run, scene, 0.004, runs["exact"])
+        assert quality[model] == pytest.approx(expected, abs=1e-11)
+
+
+@pytest.mark.parametrize("flags, line", [
+    ("--stiffness 1e15 --steps 300", "penalty explodes at every dt tried that comes to a contact"),
+    ("--dt 1e-6 --steps 3", "lcp comes to no contact within these steps"),
+])
+def test_the_stability_lines_say_also_what_has_no_largest_step(flags, line, tmp_path, capsys):
+    _, out, _ = main(capsys, *flags.split(), "--no-rerun", "--out", tmp_path)
+    assert f"stability: {line}" in out.splitlines()
+
+
 @pytest.mark.parametrize("flags", [
     ("--dt", "1000", "--stiffness", "1e15"), ("--dt", "1e-6", "--steps", "3"),
     ("--mass", "1e9", "--iters", "1"), ("--solref", "-1e12", "-1e12"), ("--damping", "1e9"),

@@ -110,6 +110,17 @@ def test_a_dropped_ball_follows_its_parabolas(e):
             assert np.abs(q[:, 1, 0] - R - height(h, e, t)).max() < 3e-13
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_balls_over_one_another_run_as_in_contact_py(seed):
+    """Two programs that share nothing: thrown up and down, of unequal mass, at any e."""
+    rng, t = np.random.default_rng(seed), np.linspace(0.0, 1.0, 101)
+    y = R + np.cumsum(rng.uniform(0.25, 0.5, 3)) - 0.2
+    scene = balls([0.0] * 3, y, rng.uniform(0.5, 2.0, 3), e=(0.0, 0.5, 1.0)[seed % 3])
+    scene.v0[1] = rng.uniform(-2.0, 1.0, 3)
+    for here, there in zip(run(scene, t), exact_run(scene, t)):
+        assert here == pytest.approx(there, abs=1e-10)
+
+
 def test_a_touching_stack_falls_as_one_and_stays():
     t, lift = np.linspace(0.0, 1.0, 101), 0.017
     rest = R * (1.0 + 2.0 * np.arange(12))
