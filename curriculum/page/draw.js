@@ -61,7 +61,7 @@ export const plain = (value) => String(Number(value.toPrecision(12)));
 // ---- models
 
 // The marker of a model around (x, y): triangle, disc, square, star.
-export function markerPath(model, x, y, r) {
+function markerPath(model, x, y, r) {
   const ring = (count, size, first = 0) =>
     Array.from({ length: count }, (_, k) => {
       const angle = 2 * Math.PI * (first + k / count);

@@ -1,14 +1,13 @@
 /* The first screen: a ball that can be lifted, dropped and thrown. It moves by the exact model, in
  * real time, and gives back a fixed share of its speed. */
-import { arrow, ball, el, label, number, table, within } from "../draw.js";
+import { arrow, ball, el, label, table, within } from "../draw.js";
 import { runExact, stateAt } from "../engine.js";
-import { R, scene } from "../parts.js";
+import { inHand, R, scene } from "../parts.js";
 
 const BOUNCE = 0.6;
 const DT = 1 / 240; // s between two rows of a throw
 const LONG = 12; // s that are computed at once
 const GROUND = 46; // px of table below its top
-const FASTEST = 6; // m/s
 
 const scaleOf = (view) => (view.height - GROUND) / 0.8; // px for a metre
 const wide = (view) => view.width / scaleOf(view); // m
@@ -57,39 +56,28 @@ function draw(view) {
   const { own } = view;
   const [scale, floor] = [scaleOf(view), view.height - GROUND];
   own.place = held(view, ...(own.place || [0.5 * wide(view), 0.5]));
-  const [x, y] = [own.place[0] * scale, floor - own.place[1] * scale];
-  const gap = own.place[1] - R;
+  const hand = {
+    place: () => own.place,
+    put: (toX, toY) => hold(view, toX, toY),
+    letGo: (velocity) => letGo(view, velocity),
+  };
+  const told = "the ball; arrow keys move it, Enter lets it go";
+  const grip = inHand(view, "ball", told, floor, scale, hand);
+  const { x, y, r, value: gap } = grip;
   const rests = own.run && gap < 1e-9 && Math.abs(own.velocity[1]) < 1e-9;
-  const rx = R * scale * (1 - 0.4 * Math.min(1, gap));
-  const text = `${number(gap, 2)} m above the table`;
+  const rx = r * (1 - 0.4 * Math.min(1, gap));
   return {
     svg: [
       table(0, floor, view.width, GROUND),
       el("ellipse", { cx: x, cy: floor + 6, rx, ry: 5, class: "shadow" }),
-      ball("exact", x, y, R * scale),
+      ball("exact", x, y, r),
       arrow("weight", x, y, 0, 70) + label("weight", x + 7, y + 70),
       rests ? arrow("push m-exact", x, floor, 0, -70) + label("push", x + 7, floor - 60) : "",
     ].join(""),
     words: rests
       ? "It rests: the table pushes with exactly the ball’s weight."
-      : `${text}. Let go.`,
-    handles: [
-      {
-        name: "ball",
-        x,
-        y,
-        r: R * scale,
-        label: "the ball; arrow keys move it, Enter lets it go",
-        value: gap,
-        text,
-        drag: (toX, toY) => hold(view, toX / scale, (floor - toY) / scale),
-        nudge: (dx, dy) => hold(view, own.place[0] + 0.02 * dx, own.place[1] - 0.02 * dy),
-        release() {
-          const [vx, vy] = view.flick().map((v) => within(-FASTEST, v / scale, FASTEST));
-          letGo(view, [vx, -vy]);
-        },
-      },
-    ],
+      : `${grip.text}. Let go.`,
+    handles: [grip],
   };
 }
 

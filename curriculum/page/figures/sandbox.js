@@ -1,14 +1,13 @@
 /* The sandbox: balls to throw, in real time, by the model that the reader chooses. */
-import { ball, number, round, table, within } from "../draw.js";
+import { ball, round, table } from "../draw.js";
 import { lcpStep, penaltyStep, softStep } from "../engine.js";
-import { knobs, R } from "../parts.js";
+import { inHand, knobs, R } from "../parts.js";
 
 const STEP = { soft: softStep, lcp: lcpStep, penalty: penaltyStep };
 const NEXT = { soft: "lcp", lcp: "penalty", penalty: "soft" };
 const GROUND = 40; // px
 const MOST = 9; // balls
 const WALL = 1e3; // m: the radius of two held balls that serve as walls
-const FASTEST = 5; // m/s
 
 const scaleOf = (view) => (view.height - GROUND) / 1.6; // px for a metre
 const wide = (view) => view.width / scaleOf(view); // m
@@ -34,26 +33,15 @@ function step(view, told) {
 function draw(view) {
   const { balls, model } = view.own;
   const [scale, floor] = [scaleOf(view), view.height - GROUND];
-  const put = (k, x, y) =>
-    Object.assign(view.own.balls[k], { x, y: Math.max(R, y), vx: 0, vy: 0 });
-  const hold = (each, k) => ({
-    name: String(k),
-    x: each.x * scale,
-    y: floor - each.y * scale,
-    r: R * scale,
-    label: `ball ${k + 1}`,
-    value: each.y,
-    text: `${number(each.y - R, 2)} m above the table`,
-    drag(x, y) {
-      put(k, x / scale, (floor - y) / scale);
-      if (!view.still) view.run();
-    },
-    nudge: (dx, dy) => put(k, each.x + 0.02 * dx, each.y - 0.02 * dy),
-    release() {
-      const [vx, vy] = view.flick().map((v) => within(-FASTEST, v / scale, FASTEST));
-      Object.assign(view.own.balls[k], { vx, vy: -vy });
-    },
-  });
+  const hold = (each, k) =>
+    inHand(view, String(k), `ball ${k + 1}`, floor, scale, {
+      place: () => [each.x, each.y],
+      put(x, y) {
+        Object.assign(each, { x, y: Math.max(R, y), vx: 0, vy: 0 });
+        if (view.grabbed && !view.still) view.run();
+      },
+      letGo: ([vx, vy]) => Object.assign(each, { vx, vy }),
+    });
   const handles = balls.map(hold);
   const drawn = handles.map(({ x, y, r }) => ball(model, x, y, r));
   return {

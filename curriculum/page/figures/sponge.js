@@ -1,9 +1,9 @@
 /* Press the ball into the spring: it rests where weight and push are equal, m g / k deep. */
-import { arrow, axis, ball, el, number, round, table } from "../draw.js";
+import { arrow, axis, ball, el, number, round, table, within } from "../draw.js";
 import { runModel } from "../engine.js";
 import { beside, forceLength, G, grip, kept, lens, R, scene } from "../parts.js";
 
-const PX = 54; // a radius
+const [PX, GROUND] = [54, 104]; // px: a radius, the table
 const [DT, SECONDS] = [0.0002, 1.2];
 const [DEEPEST, HIGHEST] = [1.1, 1.2]; // r
 const MOST = 2.7; // weights, at the end of the ramp
@@ -30,33 +30,36 @@ function coil(x, top, bottom, stiffness) {
   return el("path", { d, class: "coil", "stroke-width": Math.log10(stiffness) - 0.5 });
 }
 
+function picture(left, height, stiffness, depth, push) {
+  const [x, floor, aside] = [left / 2, height - GROUND, Math.min(PX + 12, left / 2 - 10)];
+  const y = floor + (depth - 1) * PX;
+  const under = Math.max(y + PX, floor);
+  return [
+    table(0, floor, left, GROUND),
+    coil(x, under, height - 4, stiffness),
+    ball("penalty", x, y, PX),
+    arrow("weight", x - aside, y, 0, forceLength(1)),
+    arrow("push m-penalty", x + aside, under, 0, -Math.min(150, forceLength(push))),
+    lens("sponge-lens", "penalty", left - 34, 36, PX, depth, 30),
+  ].join("");
+}
+
 function draw(view) {
   const k = view.get("stiffness");
   const rest = G / k / R; // r
   const depth = depthOf(view, rest);
   const push = Math.max(0, depth / rest); // weights
-  const [floor, end] = [view.height - 104, Math.min(DEEPEST, MOST * rest)];
+  const [floor, end] = [view.height - GROUND, Math.min(DEEPEST, MOST * rest)];
   const y = floor + (depth - 1) * PX;
   const chart = {
     x: axis([0, DEEPEST], "depth / r", 0, 0.5, 1),
     y: axis([0, 3], "force / m g", 0, 1, 2, 3),
     lines: [{ model: "penalty", xs: [0, end], ys: [0, end / rest] }],
     rules: [{ y: 1, text: "weight", kind: "dashed" }],
-    points: [{ model: "penalty", x: depth, y: Math.min(MOST, push), size: 7 }],
+    points: [{ model: "penalty", x: within(0, depth, end), y: Math.min(MOST, push), size: 7 }],
   };
-  const picture = (left) => {
-    const [x, aside] = [left / 2, Math.min(PX + 12, left / 2 - 10)];
-    const under = Math.max(y + PX, floor);
-    return [
-      table(0, floor, left, 104),
-      coil(x, under, view.height - 4, k),
-      ball("penalty", x, y, PX),
-      arrow("weight", x - aside, y, 0, forceLength(1)),
-      arrow("push m-penalty", x + aside, under, 0, -Math.min(150, forceLength(push))),
-      lens("sponge-lens", "penalty", left - 34, 36, PX, depth, 30),
-    ].join("");
-  };
-  const { svg, sx, sy, middle } = beside(view, chart, picture);
+  const drawn = (left) => picture(left, view.height, k, depth, push);
+  const { svg, sx, sy, middle } = beside(view, chart, drawn);
   const place = `${number(Math.abs(depth))} r ${depth < 0 ? "above" : "deep"}`;
   const text = `${place}, push ${number(push)} m g`;
   const settled = Math.abs(depth - rest) < 1e-3 * rest ? "It rests" : "At rest it would be";
