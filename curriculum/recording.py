@@ -185,9 +185,8 @@ def frame(runs, scene, large):
 
 
 def reach(values, large):
-    """The largest of the values by size [m], at most FARTHEST radii."""
-    far = np.abs(values).max()
-    return float(min(far, FARTHEST * large)) if np.isfinite(far) else FARTHEST * large
+    """The largest of the values by size [m], at most FARTHEST radii, also if one is not finite."""
+    return float(np.fmin(np.abs(values), FARTHEST * large).max())
 
 
 def magnified(model, x, large):
@@ -198,25 +197,13 @@ def magnified(model, x, large):
 
 
 def plots(drawn):
-    """A plot for every title. One of them has the legend, since a legend hides curves under it."""
-    emptiest = min(drawn, key=lambda title: late_height(drawn[title]))
-    return [
-        rrb.TimeSeriesView(
-            origin=title.split()[0],
-            name=title,
-            plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=title == emptiest),
-        )
-        for title in drawn
-    ]
-
-
-@np.errstate(over="ignore")
-def late_height(lines):
-    """How high the lines {model: values} come in their last half, as a share of their range."""
-    values = np.array([np.where(np.isfinite(line), line, 0.0) for line in lines.values()])
-    height = float(np.ptp(values))
-    late = float(values[:, values.shape[1] // 2 :].max() - values.min())
-    return late / height if 0.0 < height < np.inf else 1.0
+    """A plot for every title. One has the legend, which hides the least where impulses are over."""
+    found = []
+    for title in drawn:
+        name = title.split()[0]
+        legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=name == "impulse")
+        found.append(rrb.TimeSeriesView(origin=name, name=title, plot_legend=legend))
+    return found
 
 
 def time_panel():
