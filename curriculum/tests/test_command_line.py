@@ -190,6 +190,7 @@ def test_no_step_one_step_and_two_steps_of_every_scene_work(scene, steps, tmp_pa
     assert (status, err) == (0, "")
     metrics = strict_json(tmp_path / "metrics.json")
     assert set(metrics["quality"]) == set(contact.MODELS) and metrics["steps"] == steps
+    assert (tmp_path / "contact.rrd").stat().st_size > 0
 
 
 def test_figures_stand_under_their_headings_and_every_heading_is_explained(tmp_path, capsys):
