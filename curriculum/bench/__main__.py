@@ -39,7 +39,7 @@ def main(argv=None):
     try:
         for name in PARTS if args.part == "all" else {args.part} & set(PARTS):
             start, command = time.monotonic(), f"python -m curriculum.bench {name}"
-            results.save("bench", name, PARTS[name](args.quick), command, folder=folder)
+            results.save(folder, name, PARTS[name](args.quick), command)
             print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
         sections = json.loads((folder / results.NAME).read_text("utf-8"))
         for wanted, found, met in report.goals(sections):

@@ -47,7 +47,7 @@ def write(found, folder):
     command = "python -m curriculum.stress" + " --quick" * (folder == QUICK)
     for name, section in sections.items():
         section["notes"] = {what: len(places) for what, places in sorted(section["notes"].items())}
-        sections[name] = results.save("stress", name, section, command, folder=folder)
+        sections[name] = results.save(folder, name, section, command)
     write_whole(folder / "README.md", page(sections))
     try:
         write_whole(folder / "penalty-map.svg", penalty_map(sections["maps"]))

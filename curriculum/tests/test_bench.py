@@ -179,7 +179,7 @@ def test_the_page_shows_every_point_and_marks_what_is_missed(tmp_path):
               for job in jobs]
     about = dict(problems={"drop": dict(title="Drop", stresses="much", duration=4.0)},
                  points=accuracy.packed(points), headline=accuracy.headline(points), left_out={})
-    saved = results.save("bench", "accuracy", about, "measure", folder=tmp_path)
+    saved = results.save(tmp_path, "accuracy", about, "measure")
     report.write(tmp_path, {"accuracy": saved})
     page = (tmp_path / "README.md").read_text("utf-8")
     assert page.count("| penalty: k 1e4 |") == 2 and "met |" in page

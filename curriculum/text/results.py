@@ -9,6 +9,7 @@ one of those files has changed since, comments and docstrings aside.
 import json
 import math
 import re
+from pathlib import Path
 
 from contact import write_json, write_whole
 from curriculum.machine import fingerprint, machine
@@ -25,15 +26,14 @@ def load(name: str) -> dict:
     return json.loads(path.read_text("utf-8")) if path.exists() else {}
 
 
-def save(name: str, section: str, values: dict, command: str, code=CODE, folder=None) -> dict:
-    """Put one section into the results file, whole or not at all; returns it as it reads back.
+def save(folder: Path, section: str, values: dict, command: str) -> dict:
+    """Put one section into a folder's results, whole or not at all; returns it as it reads back.
 
-    command: what measures it again, as one types it. code: the files that were measured. folder: of
-    another results file than the repository's, for quick runs.
+    command: what measures it again, as one types it.
     """
-    path = (ROOT / FOLDERS[name] if folder is None else folder) / NAME
+    path = folder / NAME
     sections = json.loads(path.read_text("utf-8")) if path.exists() else {}
-    about = {"command": command, **machine(), "code": fingerprint(*code)}
+    about = {"command": command, **machine(), "code": fingerprint(*CODE)}
     sections[section] = rounded({"measured": about, **values})
     write_json(path, sections)
     return sections[section]
