@@ -161,6 +161,14 @@ def test_springs_show_the_depths_of_contact_py(tab):
     assert numbers(stack)[:2] == pytest.approx([1, WEIGHT / 5e3 / RADIUS], rel=5e-3)
 
 
+@pytest.mark.parametrize("dt, k, c", [(0.002, 1e4, 80.0), (0.0141, 1e4, 80.0), (0.01, 300.0, 0.0)])
+def test_drops_that_a_figure_looks_at_in_one_loop_have_the_bits_of_contact_py(dt, k, c):
+    shown = evaluate("parts.js", page_data([]), f"drops({dt}, {k}, {c}, 2000).join()")
+    scene = contact.build_scene("drop", damping=c)
+    run = contact.run_model("penalty", scene, dt, 2000, contact.Settings(stiffness=k))
+    assert [float(each) for each in shown.split(",")] == run.q[:, 1, 0].tolist()
+
+
 def test_one_long_step_has_the_eigenvalues_of_its_matrix_and_the_cliff_explodes(tab):
     set_knobs(tab, "?dt=0.012")
     k, c, dt = 1e4, 80.0, 0.012

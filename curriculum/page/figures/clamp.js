@@ -32,7 +32,7 @@ function groove({ vx, vy }, after, title, x, y, r) {
     ...pushes,
     arrow("before", x - scale * vx, y + scale * vy, scale * vx, -scale * vy),
     moves ? arrow("weight", x, y, scale * after.vx, -scale * after.vy) : "",
-    moves ? label(`leaves with ${number(after.speed, 2)} m/s`, x, y + 2.6 * r + 18, "middle") : "",
+    moves ? label(`leaves: ${number(after.speed, 2)} m/s`, x, y + 2.6 * r + 18, "middle") : "",
   ].join("");
 }
 

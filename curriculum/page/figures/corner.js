@@ -100,7 +100,7 @@ function looksOf(view, load) {
   const deep = `the step before the first push ended ${number(-deepest, 2)} r deep`;
   return {
     deepest,
-    under: (chart) => looks.map((look) => ring(chart, look)).join(""),
+    under: (chart) => looks.map((look) => (look.gap < WIDE.low ? "" : ring(chart, look))).join(""),
     words: ` It came in ${looks.length} steps; ${deep}.`,
   };
 }

@@ -37,7 +37,7 @@ function circleOf(pairs, left, width, height) {
   const least = Math.min(...pairs.map(([real]) => real));
   const at = ([real, imaginary]) => [x + within(-2.8, real, 1.5) * unit, y - imaginary * unit];
   return [
-    label("eigenvalues", x, 14, "middle", "axis-name"),
+    label("eigenvalues", left + width, 14, "end", "axis-name"),
     line(x - 2.8 * unit, y, x + 1.6 * unit, y, "grid"),
     line(x, y - 1.2 * unit, x, y + 1.2 * unit, "grid"),
     circle(x, y, unit, "rule"),
