@@ -11,7 +11,7 @@ const SIGNS = {
   "/": (a, b) => a / b,
 };
 
-/* The text as a function of an object of values. Raises Error, in one sentence, where it is none. */
+/* The text as a function of an object of values. Throws Error, in a sentence, where it is none. */
 export function compile(text, names) {
   const rest = [...text.trim().matchAll(TOKEN)].map(([, number, name, sign]) =>
     number === undefined ? name || sign : Number(number),
@@ -59,7 +59,8 @@ export function compile(text, names) {
     if (CALLS[token]) return call(token);
     if (names.includes(name)) return (v) => v[name];
     if (token === undefined) throw new Error("Something is missing at the end.");
-    throw new Error(`“${token}” is not known here; known: ${names.join(", ")} + − * / ( ) max min.`);
+    const known = `${names.join(", ")} + − * / ( ) max min`;
+    throw new Error(`“${token}” is not known here; known: ${known}.`);
   }
   const found = sum();
   if (rest.length) throw new Error(`“${rest[0]}” is too much.`);

@@ -13,8 +13,9 @@ function turned([angle, rate], h, k) {
   return [angle + h * mean(0), rate + h * mean(1)];
 }
 
-/* The upper ball, from `angle` on, every dt [s], with small steps: {path: [[x, y]...], vx, vy, leaves},
- * places [m] from the held ball's middle, which is `reach` [m] below; and the angle where it leaves. */
+/* The upper ball, from `angle` on, every dt [s], with small steps: {path, last, leaves}. The path
+ * holds its places [x, y], in m from the held ball's middle, `reach` m apart as long as they touch; `last`
+ * is the last of them in touch, `leaves` the angle where it leaves. */
 export function slideOff(angle, reach, gravity, dt, steps) {
   const k = gravity / reach;
   const force = ([at, rate]) => k * Math.cos(at) - rate * rate;

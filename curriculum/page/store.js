@@ -2,7 +2,7 @@
  * address read it and write it, so they agree at every moment.
  *
  * A quantity is {low, high, log, step, whole, digits, unit, label}, by the name of contact.py's
- * flag where it has one. Nothing here touches the document; main.js binds the store to the address. */
+ * flag where it has one. Nothing here touches the document; main.js binds it to the address. */
 import { data } from "./data.js";
 import { plain } from "./draw.js";
 
