@@ -12,7 +12,7 @@ import numpy as np
 import contact
 
 BODY = ("x", "y", "vx", "vy", "mass", "radius")
-KNOBS = ("stiffness", "baumgarte", "iters", "solref", "warm")
+KNOBS = ("stiffness", "baumgarte", "iters", "solref", "warm")  # fields of contact.Settings
 
 
 def to_scene(spec):
@@ -25,11 +25,6 @@ def to_scene(spec):
 def state(q, v):
     """The entries of a spec that begins in this state."""
     return dict(zip(BODY, [*q.tolist(), *v.tolist()]))
-
-
-def to_settings(spec):
-    """The contact.Settings of a spec."""
-    return contact.Settings(**{name: spec[name] for name in KNOBS})
 
 
 def scattered(rng, radius):

@@ -43,8 +43,9 @@ class Trial:
         key = model, way, repr(changes)
         if key not in self.made:
             spec, take = self.spec | changes, simulate if way == "twin" else contact.run_model
-            settings = scenes.to_settings(spec)._replace(skip=way != "plain")
-            self.made[key] = take(model, scenes.to_scene(spec), spec["dt"], spec["steps"], settings)
+            knobs = {name: spec[name] for name in scenes.KNOBS} | {"skip": way != "plain"}
+            given = model, scenes.to_scene(spec), spec["dt"], spec["steps"]
+            self.made[key] = take(*given, contact.Settings(**knobs))
         return self.made[key]
 
     @cached_property
