@@ -13,7 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "box2d", "pyb2d3", "drake", "scipy")
+PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
 
 
 def machine() -> dict:
