@@ -53,6 +53,25 @@ export const softKnobs = (view) => ({
   restitution: 0,
 });
 
+// What a contact of a ball of 1 kg carries [m g] where it is at rest, at a depth [r]: its
+// law(contact) says {target, softness}.
+const onFloor = (depth) => ({ i: 0, j: -1, nx: 0, ny: 1, depth: depth * R });
+export function loadAt(law, dt, depth) {
+  const { target, softness } = law(onFloor(depth));
+  return target / softness / (G * dt);
+}
+
+// Where it is at rest under a load, found by halving: {depth, target, softness}.
+export function atRest(law, dt, load = 1) {
+  let [less, depth] = [0, 2];
+  for (let k = 0; k < 50; k++) {
+    const middle = 0.5 * (less + depth);
+    if (loadAt(law, dt, middle) > load) depth = middle;
+    else less = middle;
+  }
+  return { depth, ...law(onFloor(depth)) };
+}
+
 // ---- pictures
 
 // A chart as large as the drawing, or from `left` on.

@@ -2,7 +2,8 @@
  * state that runs along it while the reader lifts the ball or presses it into the table. */
 import { arrow, axis, ball, circle, label, line, number, path, table } from "../draw.js";
 import { pushOfTable, runModel, soften } from "../engine.js";
-import { beside, forceLength, G, grip, kept, knobs, R, scene, softKnobs } from "../parts.js";
+import { atRest, beside, forceLength, G, grip, kept, knobs, loadAt } from "../parts.js";
+import { R, scene, softKnobs } from "../parts.js";
 
 const PULL = 64; // px below the ball at which the hand presses hardest
 // What a picture shows: gaps from low to high [r], a radius in px, the hardest press [m g], ticks.
@@ -108,23 +109,15 @@ function looksOf(view, load) {
 // soft: at rest the solver asks for no velocity where lam = target / R.
 function rounded(view) {
   const told = softKnobs(view);
-  const load = (gap) => {
-    const contact = { i: 0, j: -1, nx: 0, ny: 1, depth: -gap * R };
-    const { target, softness } = soften(contact, scene([R * (1 + gap)]), scene([R]), told);
-    return target / softness / (G * told.dt);
+  const one = scene([R]);
+  const law = (contact) => soften(contact, one, one, told);
+  const load = (depth) => loadAt(law, told.dt, depth);
+  const depths = Array.from({ length: 60 }, (_, k) => (-1.2 * NEAR.low * (k + 1)) / 60);
+  return {
+    gap: (wanted) => -atRest(law, told.dt, wanted).depth,
+    curve: [[NEAR.high, 0], [0, 0], ...depths.map((each) => [-each, load(each)])],
+    most: load(-NEAR.low),
   };
-  const gap = (wanted) => {
-    let [low, high] = [-2, 0];
-    for (let k = 0; k < 50; k++) {
-      const middle = 0.5 * (low + high);
-      if (load(middle) > wanted) low = middle;
-      else high = middle;
-    }
-    return low;
-  };
-  const gaps = Array.from({ length: 61 }, (_, k) => (1.2 * NEAR.low * k) / 60);
-  const curve = [[NEAR.high, 0], ...gaps.map((each) => [each, each < 0 ? load(each) : 0])];
-  return { gap, curve, most: load(NEAR.low) };
 }
 
 export const figures = {

@@ -1,9 +1,10 @@
-/* The live figure: the four models over one table. What stands in it (models, scene, quantity,
- * window of time) follows the text. A ball whose end would tell what a bet asks waits for it. */
+/* The models side by side over one table: the live figure, in which models, scene, quantity and
+ * window of time follow the text, and the question of the first bet, two of them in the chapter's
+ * own drop. A ball whose end would tell what a bet asks waits for it. */
 import { arrow, axis, ball, label, number, plot, steps, table } from "../draw.js";
 import { MODELS, criticalDt, runModel, series } from "../engine.js";
-import { grip, kept, knobs, R } from "../parts.js";
-import { sceneOf } from "../store.js";
+import { grip, kept, R } from "../parts.js";
+import { knobsOf, sceneOf, startOf } from "../store.js";
 
 const LONGEST = 4; // s
 const SECONDS = 5; // that a run through the window takes
@@ -35,7 +36,7 @@ const held = kept((model, scene, told, count) => {
 
 // The run of a model up to the end of the window.
 function runOf(view, model) {
-  const all = knobs(view);
+  const all = knobsOf(view.values);
   const told = Object.fromEntries(USES[model].map((name) => [name, all[name]]));
   const count = Math.max(1, Math.floor(view.own.to / all.dt + 1e-9));
   return held(model, view.values.scene, told, count);
@@ -84,10 +85,11 @@ function range(shown, column) {
   return low <= high ? [low, high] : [0, 1];
 }
 
-function placeWords({ gap, row }) {
+const [SHORT, LONG] = [["touching", "in", "up"], ["on the table", "inside", "above"]];
+function placeWords({ gap, row }, least = 1e-9, [touches, below, above] = SHORT) {
   if (!Number.isFinite(gap[row])) return "nowhere";
-  if (Math.abs(gap[row]) < 1e-9) return "touching";
-  return `${number(Math.abs(gap[row]), 2)} r ${gap[row] < 0 ? "in" : "up"}`;
+  if (Math.abs(gap[row]) < least) return touches;
+  return `${number(Math.abs(gap[row]), 2)} r ${gap[row] < 0 ? below : above}`;
 }
 
 // One model's balls over the table; `high`: the height [m] up to which the lanes show them.
@@ -164,18 +166,16 @@ function draw(view) {
     (each) => `${each.model} ${each.waits ? "waits for your bet" : placeWords(each)}`,
   );
   const touching = shown.filter((each) => view.running && each.push[each.row] > 0);
-  const lanes = shown.map((each, k) => lane(each, k, wide, floor, high));
+  const drawn = shown.map((each, k) => lane(each, k, wide, floor, high));
   return {
-    svg: table(0, floor, view.width, GROUND) + lanes.join("") + svg,
+    svg: table(0, floor, view.width, GROUND) + drawn.join("") + svg,
     words: `${text}: ${told.join(", ")}.`,
     handles: [grip(view, "time", sx(time), box.bottom, "the time shown", text, sight)],
     lit: touching.map((each) => LINES[each.model]),
   };
 }
 
-// ---- the figure
-
-export const figure = {
+const lanes = {
   title: "Four models, one table",
   height: 560,
   knobs: "dt stiffness damping baumgarte iters warm impedance timeconst restitution".split(" "),
@@ -215,3 +215,58 @@ export const figure = {
   },
   draw,
 };
+
+// ---- the question: what force does the table apply?
+
+const ASKED = { models: ["penalty", "lcp"], from: 0.3, to: 1.6 }; // s
+const FIRST = 0.39; // s, of the still
+const SLOW = 6; // times slower than it happens
+const DEEP = 54; // px of table below its top
+
+// Both runs are the chapter's own drop, whatever is set elsewhere: the bet is about them.
+const askedOf = ({ own, open }) =>
+  shownOf({ own: { ...ASKED, time: own.time ?? FIRST }, values: startOf("drop"), open });
+
+function drawTwo(view) {
+  const shown = askedOf(view);
+  const floor = view.height - DEEP;
+  const r = Math.min(74, view.width / 7);
+  const place = (each) => placeWords(each, 5e-5, LONG);
+  const drawn = shown.map((each, k) => {
+    const { model, gap, push, row, waits } = each;
+    const [x, y] = [view.width * (0.25 + 0.5 * k), floor - r - gap[row] * r];
+    const told = waits ? "and now?" : push[row] > 0 ? place(each) : "";
+    const high = label(`↑ ${number(gap[row], 2)} r up`, x, 24, "middle", "tick");
+    return [
+      y > -r ? ball(model, x, y, r) : high,
+      label(told, x, floor + 24, "middle"),
+      label(model, x, floor + 44, "middle", "tick"),
+    ].join("");
+  });
+  const places = `${shown.map((each) => `${each.model} is ${place(each)}`).join(", ")}.`;
+  const asked = "Both are about to touch. What happens now is your first bet.";
+  const told = `At ${(view.own.time ?? FIRST).toFixed(2)} s: ${view.open("ex1") ? places : asked}`;
+  const landed = shown.every(({ row, landing }) => row >= landing - 1);
+  return {
+    svg: table(0, floor, view.width, DEEP) + drawn.join(""),
+    words: landed ? told : "Both fall side by side.",
+  };
+}
+
+const two = {
+  title: "Two balls fall onto two tables",
+  caption:
+    `The same ball, the same gravity, the same drop, ${SLOW} times slower than it happens. They ` +
+    "differ in one thing: the force that the table applies.",
+  height: 330,
+  narrow: 280,
+  start: () => ({ time: null }),
+  clock(view) {
+    const [{ landing, run }] = askedOf(view);
+    const end = view.open("ex1") ? ASKED.to : (landing + 2) * run.dt;
+    return { from: ASKED.from, end, rate: 1 / SLOW, name: "Drop both" };
+  },
+  draw: drawTwo,
+};
+
+export const figures = { lanes, two };

@@ -1,15 +1,16 @@
 /* One line: every contact with a softness R lies where its target is R times what it must carry.
  * The spring of penalty taken at the end of the step is one of them. */
 import { axis, circle, label, mark, number } from "../draw.js";
-import { detectContacts, GRAVITY, makeRows, soften, solveContacts } from "../engine.js";
-import { charted, G, grip, kept, R, scene, softKnobs } from "../parts.js";
+import { soften } from "../engine.js";
+import { atRest, charted, G, grip, kept, R, scene, softKnobs } from "../parts.js";
 
 const [LOW, HIGH] = [1e-6, 1];
+const ONE = scene([R]);
 const OMEGA = 2 * Math.PI * 30; // 1/s, Box2D's 30 Hz, with a damping ratio of 10
 const WAYS = {
   // {target, softness} of a contact of a ball of 1 kg, as each engine chooses them
   "implicit spring": (c, { stiffness, damping, dt }) => implicit(stiffness, damping, c.depth, dt),
-  "MuJoCo’s soft": (c, knobs, state, one) => soften(c, state, one, knobs),
+  "MuJoCo’s soft": (c, knobs) => soften(c, ONE, ONE, knobs),
   "Box2D’s soft step": (c, { dt }) => implicit(OMEGA ** 2, 2 * 10 * OMEGA, c.depth, dt),
   "CFM and ERP": (c, { dt }) => ({ softness: 1e-5 / dt, target: (0.2 / dt) * c.depth }), // ODE's
 };
@@ -20,24 +21,8 @@ function implicit(k, c, depth, dt) {
   return { softness, target: dt * k * depth * softness };
 }
 
-// A ball of 1 kg comes to rest by lcp's sweep in one of these ways: {softness, target, depth [r]}.
-const rests = kept((way, knobs) => {
-  const one = scene([R]);
-  const state = scene([R]);
-  let last = { softness: 0, target: 0 };
-  for (let step = 0; step < 4000; step++) {
-    const contacts = detectContacts(state.x, state.y, one.radius, 0);
-    const asked = contacts.map((c) => WAYS[way](c, knobs, state, one));
-    const [targets, softness] = ["target", "softness"].map((key) => asked.map((each) => each[key]));
-    state.vy[0] += knobs.dt * GRAVITY;
-    const rows = makeRows(contacts, one.mass, targets, softness);
-    solveContacts(rows, state.vx, state.vy, { iters: 1 });
-    state.y[0] += knobs.dt * state.vy[0];
-    if (asked.length) last = asked[0];
-    if (asked.length && Math.abs(state.vy[0]) < 1e-9) break; // m/s
-  }
-  return { ...last, depth: 1 - state.y[0] / R };
-});
+// Where a ball of 1 kg is at rest in one of these ways: {softness, target, depth [r]}.
+const rests = kept((way, knobs) => atRest((c) => WAYS[way](c, knobs), knobs.dt));
 
 function draw(view) {
   const knobs = softKnobs(view);
