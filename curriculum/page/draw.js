@@ -115,21 +115,16 @@ export function steps(low, high, most = 5) {
 /* A line through many points: of those in half a pixel the first, the least, the greatest and the
  * last, so that spikes survive. Values that are not finite end the line. */
 function linePath({ xs, ys, from = 0, to = xs.length }, { sx, sy, box }) {
-  const columns = [];
+  const columns = new Map();
   for (let i = from; i < to && Number.isFinite(ys[i]); i++) {
     const x = Math.round(2 * sx(xs[i])) / 2;
-    const y = round(within(box.top - 40, sy(ys[i]), box.bottom + 40));
-    const column = columns[columns.length - 1];
-    if (!column || column.x !== x) columns.push({ x, first: y, least: y, most: y, last: y });
-    else {
-      column.least = Math.min(column.least, y);
-      column.most = Math.max(column.most, y);
-      column.last = y;
-    }
+    if (!columns.has(x)) columns.set(x, []);
+    columns.get(x).push(round(within(box.top - 40, sy(ys[i]), box.bottom + 40)));
   }
-  const drawn = columns.map(({ x, first, least, most, last }) =>
-    least < most ? `${x} ${first}V${least}V${most}V${last}` : `${x} ${first}`,
-  );
+  const drawn = [...columns].map(([x, all]) => {
+    const few = [all[0], Math.min(...all), Math.max(...all), all[all.length - 1]];
+    return `${x} ${few[1] < few[2] ? few.join("V") : few[0]}`;
+  });
   return drawn.length ? `M${drawn.join("L")}` : "";
 }
 

@@ -1,6 +1,6 @@
 /* What the explaining figures share: scenes of balls, results that are kept, a chart beside a
  * picture, a lens, and handles that set a number. */
-import { ball, circle, clipped, el, label, number, plot, table, within } from "./draw.js";
+import { ball, circle, clipped, el, label, plot, table, within } from "./draw.js";
 import { data } from "./data.js";
 import { GRAVITY } from "./engine.js";
 import { knobsOf, QUANTITIES } from "./store.js";
@@ -8,7 +8,6 @@ import { knobsOf, QUANTITIES } from "./store.js";
 export const R = data.radius; // m
 export const G = -GRAVITY; // m/s^2, and the weight in N of a ball of 1 kg
 export const START = data.scenes.drop.start[0]; // m, of the ball that is dropped
-const FASTEST = 6; // m/s, of a ball that is thrown by hand
 export const ARRIVES = Math.sqrt(2 * G * (START - R)); // m/s, and it reaches the table so fast
 
 // A scene of balls: `more` holds what differs from balls of 1 kg at rest over one another.
@@ -131,27 +130,6 @@ export function grip(view, name, x, y, label, text, options) {
   const drag = (toX, toY) => put(at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
   return { name, x, y, r, label, text, value: value(), drag, nudge, release };
-}
-
-/* A handle for a ball that is thrown, now at place() [m], where the table's top is `floor` px down
- * and a metre is `scale` px: put(x, y) moves it, letGo([vx, vy]) lets it go. */
-export function inHand(view, name, label, floor, scale, { place, put, letGo }) {
-  const [x, y] = place();
-  return {
-    name,
-    label,
-    x: x * scale,
-    y: floor - y * scale,
-    r: R * scale,
-    value: y - R,
-    text: `${number(y - R, 2)} m above the table`,
-    drag: (toX, toY) => put(toX / scale, (floor - toY) / scale),
-    nudge: (dx, dy) => put(place()[0] + 0.02 * dx, place()[1] - 0.02 * dy),
-    release() {
-      const [vx, vy] = view.flick().map((v) => within(-FASTEST, v / scale, FASTEST));
-      letGo([vx, -vy]);
-    },
-  };
 }
 
 const tidy = (value) => Number(value.toFixed(4));

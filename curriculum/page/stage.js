@@ -14,7 +14,7 @@
  *   clock(view)      {from, end, rate, name}: own.time (null: not begun) runs from `from` to `end`,
  *                    `rate` s in a second, once the button of that name is pressed
  *   tick(view, s)    in place of a clock: so many real seconds passed; false ends it
- *   buttons          [{label, press(view)}]; label may be a function of the view
+ *   buttons          [[label, press(view)]]; the label may be a function of the view
  *
  * A handle is {name, x, y, r, label, value, text, drag(x, y), nudge(dx, dy), release()}: what can
  * be grabbed, mostly made by `grip` in parts.js. dx and dy are those of an arrow key, ten times as
@@ -45,7 +45,7 @@ export const stillView = (figure, values, width) => ({
 export function buttonsOf({ clock, buttons = [] }) {
   const label = (view) => (view.running ? "Stop" : clock(view).name);
   const press = (view) => (view.running ? view.stop() : view.play());
-  return clock ? [{ label, press }, ...buttons] : buttons;
+  return clock ? [[label, press], ...buttons] : buttons;
 }
 
 // ---- handles
@@ -172,7 +172,7 @@ export class Stage {
     this.draw(); // at once: the picture may not lag behind its frame
   }
 
-  #button({ label, press }) {
+  #button([label, press]) {
     const node = document.createElement("button");
     node.type = "button";
     node.addEventListener("click", () => {

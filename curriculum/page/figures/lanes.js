@@ -9,10 +9,8 @@ import { knobsOf, sceneOf, startOf } from "../store.js";
 const LONGEST = 4; // s
 const SECONDS = 5; // that a run through the window takes
 const GROUND = 26; // px
-const NEXT = {
-  scene: { drop: "bounce", bounce: "stack", stack: "drop" },
-  chart: { gap: "energy", energy: "gap" },
-};
+const NEXT = { drop: "bounce", bounce: "stack", stack: "drop", gap: "energy", energy: "gap" };
+const nextScene = ({ values }) => NEXT[values.scene];
 // which quantities change a model's run
 const USES = {
   penalty: ["dt", "stiffness", "damping"],
@@ -185,16 +183,10 @@ const lanes = {
     return { from, end: to, rate: (to - from) / SECONDS, name: `Play, ${slower} × slower` };
   },
   buttons: [
-    { label: "More", press: (view) => view.box.classList.toggle("all") },
-    {
-      label: ({ values }) => `A ${NEXT.scene[values.scene]} instead`,
-      press: (view) => view.set({ scene: NEXT.scene[view.values.scene] }),
-    },
-    {
-      label: ({ own }) => `Show ${NEXT.chart[own.chart]}`,
-      press: ({ own }) => (own.chart = NEXT.chart[own.chart]),
-    },
-    { label: "The chapter’s values", press: (view) => view.reset() },
+    ["More", (view) => view.box.classList.toggle("all")],
+    [(view) => `A ${nextScene(view)} instead`, (view) => view.set({ scene: nextScene(view) })],
+    [({ own }) => `Show ${NEXT[own.chart]}`, ({ own }) => (own.chart = NEXT[own.chart])],
+    ["The chapter’s values", (view) => view.reset()],
   ],
   // What the text asks to see: {models, chart, from, to} as an address has them.
   look(view, { models, chart, from, to }, anew) {

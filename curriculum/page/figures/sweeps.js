@@ -94,11 +94,6 @@ export const figure = {
   height: 260,
   start: () => ({ time: COUNT, top: 0 }),
   clock: () => ({ end: LAST, rate: 2, name: "Play" }),
-  buttons: [
-    {
-      label: "One contact on",
-      press: (view) => (view.own.time = (timeOf(view) + 1) % (LAST + 1)),
-    },
-  ],
+  buttons: [["One contact on", (view) => (view.own.time = (timeOf(view) + 1) % (LAST + 1))]],
   draw,
 };
