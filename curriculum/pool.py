@@ -2,9 +2,8 @@
 
 import os
 import signal
-import sys
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from importlib.util import find_spec
 from multiprocessing import active_children, parent_process
 
 from curriculum import hints
@@ -38,22 +37,38 @@ def gathered(results, total, label):
     return found
 
 
+def bar(total, label):
+    """report(done), to be called with how many of `total` are done; it draws a bar with tqdm.
+
+    The bar comes after a second and is wiped at the end. report does nothing where stderr is no
+    terminal, where tqdm is not installed, and in a process of the pool, since bars would mix.
+    """
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        return lambda done: None
+    unseen = parent_process() is not None or None  # None: where stderr is no terminal
+    shown = tqdm(total=total, desc=label, leave=False, delay=1.0, disable=unseen)
+
+    def report(done):
+        shown.update(done - shown.n)
+        if done >= total:
+            shown.close()
+
+    return report
+
+
 @contextmanager
 def processes(count):
     """A pool of so many processes. Ctrl-C ends them too, and they say nothing."""
-    from concurrent.futures import ProcessPoolExecutor  # slow, so only where it is needed
-
-    with ProcessPoolExecutor(count, initializer=leave_ctrl_c_to_the_parent) as pool:
+    quiet = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_IGN)}
+    with ProcessPoolExecutor(count, **quiet) as pool:
         try:
             yield pool
         except BaseException:
             for process in active_children():
                 process.terminate()  # or leaving the pool would wait for all that was asked for
             raise
-
-
-def leave_ctrl_c_to_the_parent():
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextmanager
@@ -71,29 +86,4 @@ def machines(scheduler):
             "host:port, as `dask scheduler` prints it"
         ) from None
     with client:
-        pool = client.get_executor(pure=False)
-        try:
-            yield pool
-        finally:
-            pool.shutdown(wait=False)
-
-
-def bar(total, label):
-    """report(done), to be called with how many of `total` are done; it draws a bar with tqdm.
-
-    The bar comes after a second and is wiped at the end. report does nothing where stderr is no
-    terminal, where tqdm is not installed, and in a process of the pool, since bars would mix.
-    """
-    unseen = sys.stderr is None or not sys.stderr.isatty() or parent_process() is not None
-    if unseen or find_spec("tqdm") is None:
-        return lambda done: None
-    from tqdm import tqdm
-
-    shown = tqdm(total=total, desc=label, leave=False, delay=1.0)
-
-    def report(done):
-        shown.update(done - shown.n)
-        if done >= total:
-            shown.close()
-
-    return report
+        yield client.get_executor(pure=False)  # leaving the client cancels what is still asked for
