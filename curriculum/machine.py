@@ -2,7 +2,6 @@
 
 import ast
 import hashlib
-import importlib.metadata
 import io
 import os
 import platform
@@ -10,10 +9,12 @@ import subprocess
 import tokenize
 from datetime import date
 from functools import lru_cache
+from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
+COMMIT = "describe --always --abbrev=10 --exclude=* --dirty=+".split()
 
 
 def machine() -> dict:
@@ -24,27 +25,28 @@ def machine() -> dict:
     """
     return {
         "date": date.today().isoformat(),
-        "commit": commit(),
+        "commit": git(*COMMIT).strip() or "unknown",
         "cpu": processor(),
         "cores": str(os.cpu_count()),
         "os": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
-        "versions": {name: text for name in PACKAGES if (text := version(name))},
+        "versions": {
+            name: found.version for name in PACKAGES for found in metadata.distributions(name=name)
+        },
     }
 
 
-def fingerprint(*paths, root=ROOT) -> dict:
-    """{path: 12 hexadecimal digits of its code}; a file that is not there has None.
+def fingerprint(*paths) -> dict:
+    """{path: 12 hexadecimal digits of its code}, of Python files; one that is not there is empty.
 
-    `paths` are relative to `root`. Of Python only what runs counts, not comments, docstrings and
-    blank lines: a better word in a comment shall not make a day of measuring stale.
+    `paths` are relative to the project's folder. Only what runs counts, not comments, docstrings
+    and blank lines: a better word in a comment shall not make a day of measuring stale.
     """
     found = {}
-    for path in map(str, paths):
-        file = Path(root) / path
-        text = file.read_text("utf-8") if file.is_file() else None
-        code = code_of(text) if text and path.endswith(".py") else text
-        found[path] = None if text is None else hashlib.sha256(code.encode()).hexdigest()[:12]
+    for path in paths:
+        file = ROOT / path
+        code = code_of(file.read_text("utf-8") if file.is_file() else "")
+        found[path] = hashlib.sha256(code.encode()).hexdigest()[:12]
     return found
 
 
@@ -64,23 +66,12 @@ def code_of(text: str) -> str:
     return "\n".join(line.rstrip() for line in lines if line.strip())
 
 
-def version(package: str):
-    """The installed version of a package, None where it is not installed."""
+def git(*words) -> str:
+    """What a git command prints; nothing where it fails or there is no git."""
     try:
-        return importlib.metadata.version(package)
-    except importlib.metadata.PackageNotFoundError:
-        return None
-
-
-def commit() -> str:
-    """The short hash of the commit, "+" behind it where tracked files differ from it."""
-    words = "git describe --always --abbrev=10 --exclude=* --dirty=+".split()
-    try:
-        return subprocess.check_output(
-            words, cwd=ROOT, text=True, stderr=subprocess.DEVNULL
-        ).strip()
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
+        return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout
+    except OSError:
+        return ""
 
 
 def processor() -> str:

@@ -188,7 +188,7 @@ def test_results_and_ledger_of_other_code_are_stale_until_measured_again(project
         "(contact.py); repair: python -m curriculum.bench skip\n" in printed
     )
     assert "wallclock.csv:3: cpu was measured on other code; repair: python -m " in printed
-    measured["code"] = fingerprint("contact.py", root=project)
+    measured["code"] = fingerprint("contact.py")
     (folder / "results.json").write_text(json.dumps({"skip": {"measured": measured, "n": 3}}))
     edit(project / "contact.py", "# --- region: sweep ---\n", "# --- region: sweep ---\n# a word\n")
     assert "section skip was measured" not in run_gate(project).stdout

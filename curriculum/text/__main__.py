@@ -28,10 +28,7 @@ def main(argv=None) -> int:
 
         return gate.check() if args.accept is None else gate.accept(args.accept)
     except ModuleNotFoundError as error:
-        package = error.name.split(".")[0]
-        if package in ("contact", "curriculum"):
-            raise
-        wrong = f"the gate needs {package}, which is missing: pip install -e '.[dev]'"
+        wrong = f"the gate needs {error.name}, which is missing: pip install -e '.[dev]'"
     except SyntaxError as error:
         wrong = f"{error.filename}:{error.lineno}: not Python: {error.msg}"
     except (OSError, ValueError) as error:

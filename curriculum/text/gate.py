@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections import Counter
 
 from contact import write_whole
 from curriculum.text import ledger, results
@@ -28,6 +29,7 @@ NOT_PROSE = re.compile(
     """,
     re.DOTALL | re.MULTILINE | re.IGNORECASE | re.VERBOSE,
 )
+TYPED = re.compile(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*")  # a token that begins with a digit
 
 
 class Gate:
@@ -43,19 +45,10 @@ class Gate:
         """Note a problem."""
         self.problems.append(f"{file}:{line}: {what}; repair: {repair}")
 
-    def check(self):
-        """All checks. Returns the problems."""
-        self.check_includes()
-        self.check_sections()
-        self.check_typed()
-        self.check_numbers()
-        self.check_results()
-        self.check_ledger()
-        return self.problems
-
     def check_includes(self):
         """Every include exists and stands alone in its fence, every region is included once."""
-        shown, lines = set(), self.chapter.split("\n")
+        shown, lines = Counter(), self.chapter.split("\n")
+        known = {(region.file, region.name): region for region in self.regions.values()}
         for at, text in enumerate(lines):
             if "include-by-region" not in text:
                 continue
@@ -64,39 +57,34 @@ class Gate:
                 what = "an include that is not alone in its fence, or not well formed"
                 self.say(CHAPTER, at + 1, what, "write [include-by-region: FILE#NAME] in a fence")
                 continue
-            file, name = match["file"], match["name"]
-            known = [region.name for region in self.regions.values() if region.file == file]
-            if name not in known:
+            file, name = match.groups()
+            shown[file, name] += 1
+            if (file, name) not in known:
                 what = f"includes {name}, and {file} has no such region"
-                self.say(CHAPTER, at + 1, what, f"name one of {', '.join(known)}")
-            elif name in shown:
+                names = ", ".join(name for other, name in known if other == file)
+                self.say(CHAPTER, at + 1, what, f"name one of {names}")
+            elif shown[file, name] > 1:
                 self.say(CHAPTER, at + 1, f"includes {name} a second time", "delete one of the two")
-            shown.add(name)
-        for region in self.regions.values():
-            if region.name not in shown:
-                what = f"region {region.name} is never shown"
-                include = f"[include-by-region: {region.file}#{region.name}]"
-                self.say(region.file, region.line - 1, what, f"put {include} into {CHAPTER}")
+        for (file, name), region in known.items():
+            if not shown[file, name]:
+                repair = f"put [include-by-region: {file}#{name}] into {CHAPTER}"
+                self.say(file, region.line - 1, f"region {name} is never shown", repair)
 
     def check_sections(self):
         """Section and region hashes of meta.yaml are those of today."""
+        was = self.meta["region_hashes"]
         for section in self.unread:
-            what = f"section {section.name} {self.why_unread(section)}"
+            changed = [each.name for each in section.regions if was.get(each.name) != each.sha]
+            why = f"speaks of {', '.join(changed)}, which changed" if changed else "changed"
+            if section.name not in self.meta["section_hashes"]:
+                why = "was never read"
             repair = f"read it, then {GATE} --accept {section.name}"
-            self.say(section.file, section.line, what, repair)
+            self.say(section.file, section.line, f"section {section.name} {why}", repair)
         for key, hashes in self.hashes().items():
             wrong = hashes.items() ^ self.meta[key].items()
             if wrong and not self.unread:
                 what = f"{key} that are not those of today: {', '.join(dict(wrong))}"
                 self.say("meta.yaml", 1, what, f"{GATE} --accept, with no name")
-
-    def why_unread(self, section) -> str:
-        """Why a section waits for a reader."""
-        if section.name not in self.meta["section_hashes"]:
-            return "was never read"
-        was = self.meta["region_hashes"]
-        changed = [region.name for region in section.regions if was.get(region.name) != region.sha]
-        return f"speaks of {', '.join(changed)}, which changed" if changed else "changed"
 
     def hashes(self, accepted=()) -> dict:
         """What meta.yaml holds once these sections have been read; those that are gone are not."""
@@ -107,16 +95,13 @@ class Gate:
             "section_hashes": {name: now[name] for name in self.sections if name in now},
         }
 
-    def check_typed(self):
-        """No number is typed into the chapter's prose: it would stay when the code changes."""
-        for index, token in typed_numbers(self.chapter):
-            repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {token} | REASON}}}}"
-            self.say(CHAPTER, line_at(self.chapter, index), f"a typed number, {token}", repair)
-
     def check_numbers(self):
-        """Every reference of chapter and README can be made, every `holds:` is true."""
-        numbers = Numbers()
-        texts = {file: read_text(file) for file in TEXTS.values()}
+        """None is typed into the chapter's prose, every reference can be made, `holds:` is true."""
+        for token in TYPED.finditer(blank(NOT_PROSE, self.chapter)):
+            line, number = line_at(self.chapter, token.start()), token[0].rstrip(".,")
+            repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
+            self.say(CHAPTER, line, f"a typed number, {number}", repair)
+        numbers, texts = Numbers(), {file: read_text(file) for file in TEXTS.values()}
         numbers.prepare("".join(texts.values()))
         for file, text in texts.items():
             for pattern, call in ((REFERENCE, numbers.text), (HOLDS, numbers.holds)):
@@ -128,17 +113,14 @@ class Gate:
                     except ValueError as error:
                         self.say(file, line, f"{match[1]!r}: {error}", "name what is known")
 
-    def check_results(self):
-        """Every section of results is of today's code."""
+    def check_measured(self):
+        """Results and rows of the ledger are of today's code, and the rows well formed."""
         for name, folder in results.FOLDERS.items():
             for section, found in results.load(name).items():
                 files = results.stale(found)
                 if files:
                     what = f"section {section} was measured on other code ({', '.join(files)})"
                     self.say(f"{folder}/{results.NAME}", 1, what, found["measured"]["command"])
-
-    def check_ledger(self):
-        """Every row of the ledger is well formed and of today's code."""
         try:
             for line, row in enumerate(ledger.rows(), 2):
                 if ledger.stale(row):
@@ -148,23 +130,18 @@ class Gate:
             self.problems.append(f"{error}; repair: correct the row")
 
 
-def typed_numbers(text) -> list:
-    """(index, token) of every number typed into prose: a token that begins with a digit."""
-    tokens = re.finditer(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*", blank(NOT_PROSE, text))
-    return [(token.start(), token[0].rstrip(".,")) for token in tokens]
-
-
 def check() -> int:
     """Print every problem, and what changed in the sections that wait for a reader."""
     gate = Gate()
-    problems = gate.check()
+    for each in (gate.check_includes, gate.check_sections, gate.check_numbers, gate.check_measured):
+        each()
     recorded = gate.meta["section_hashes"]
     print(changes([s for s in gate.unread if s.name in recorded], recorded), end="")
-    print(*problems or ["text, code, numbers and results agree"], sep="\n")
+    print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")
     if len(gate.unread) > 1:
         names = " ".join(section.name for section in gate.unread)
         print(f"\nwhen all of them are read: {GATE} --accept {names}")
-    return 1 if problems else 0
+    return 1 if gate.problems else 0
 
 
 def accept(names) -> int:

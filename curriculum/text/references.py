@@ -26,6 +26,8 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
+import yaml
+
 import contact
 from curriculum.machine import fingerprint
 from curriculum.text import ledger, results
@@ -33,19 +35,16 @@ from curriculum.text.regions import CODE, NAME, ROOT
 
 INCLUDE = re.compile(rf"\[include-by-region: (?P<file>[\w./-]+\.py)#(?P<name>{NAME})\]")
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")
-TYPED = re.compile(r"=\s*(.+?)\s*\|\s*(.+?)\s*")
 HOLDS = re.compile(r"<!--\s*holds:\s*(.*?)\s*-->", re.DOTALL)
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
 FORMULA = re.compile(r"[\d.e+\-*/()<>=\s]+")  # of numbers and signs alone
-FACTS = "curriculum/text/facts.py"
+MEASURES = "curriculum/text/facts.py"
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
 
 @cache
 def load_meta() -> dict:
     """meta.yaml. Raises ValueError, which says where, when it is not YAML."""
-    import yaml
-
     try:
         with open(ROOT / "meta.yaml", encoding="utf-8") as file:
             return {"region_hashes": {}, "section_hashes": {}} | yaml.safe_load(file)
@@ -77,17 +76,6 @@ def run_contact(flags) -> dict:
             words = " ".join(map(str, flags))
             raise ValueError(f"contact.py {words} fails: {run.stderr.strip()[-300:]}")
         return json.loads((Path(out) / "metrics.json").read_text("utf-8"))
-
-
-def measure(name) -> dict:
-    """One fact: what the function of this name in curriculum/text/facts.py returns."""
-
-    def made():
-        from curriculum.text import facts
-
-        return dig(facts.FACTS, name, f"fact:{name}")()
-
-    return cached(f"fact-{name}", None, made, (*CODE, FACTS))
 
 
 class Numbers:
@@ -123,8 +111,11 @@ class Numbers:
         if name == "wallclock":
             return dig({row["tier"]: ledger.show(row) for row in ledger.rows()}, key, text)
         if name == "fact":
+            from curriculum.text.facts import FACTS  # slow, so only where it is needed
+
             fact, _, key = key.partition(".")
-            return dig(measure(fact), key, text)
+            measure = dig(FACTS, fact, f"fact:{fact}")
+            return dig(cached(f"fact-{fact}", None, measure, (*CODE, MEASURES)), key, text)
         if name in results.FOLDERS:
             return dig(results.load(name), key, text)
         return dig(self.run(name or next(iter(load_meta()["runs"]))), key, text)
@@ -150,12 +141,11 @@ class Numbers:
 
     def text(self, reference) -> str:
         """What a reader sees in place of {{reference}}."""
-        typed = TYPED.fullmatch(reference.strip())
-        if typed:
-            return typed[1]
-        if reference.strip().startswith("="):
-            raise ValueError("a typed number needs a reason: {{= NUMBER | REASON}}")
         formula, _, form = (part.strip() for part in reference.partition("|"))
+        if formula.startswith("="):
+            if not form:
+                raise ValueError("a typed number needs a reason: {{= NUMBER | REASON}}")
+            return formula[1:].strip()
         value = self.value(formula)
         if not (is_number(value) or isinstance(value, str)):
             raise ValueError(f"{formula!r} is no number; known there: {known(value)}")
@@ -188,16 +178,16 @@ def is_number(value) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def inside(tree) -> dict:
-    """{name: value} of what is in a dict, a list or a tuple; nothing is in anything else."""
-    if isinstance(tree, dict):
-        return {str(name): value for name, value in tree.items()}
-    return {str(k): each for k, each in enumerate(tree)} if isinstance(tree, (list, tuple)) else {}
-
-
 def known(tree) -> str:
     """The names of what is in a tree, for a message."""
     return ", ".join(inside(tree)) or "nothing"
+
+
+def inside(tree) -> dict:
+    """{name: value} of what is in a dict, a list or a tuple; nothing is in anything else."""
+    if isinstance(tree, (list, tuple)):
+        return {str(k): each for k, each in enumerate(tree)}
+    return tree if isinstance(tree, dict) else {}
 
 
 def dig(tree, key: str, whole: str):

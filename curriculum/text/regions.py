@@ -10,26 +10,26 @@ indentation that all of them share, each ended by one "\\n", as UTF-8.
 
 import hashlib
 import re
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from textwrap import dedent
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
 CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")  # what a run runs
 LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/text/facts.py")  # what has regions
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
 NAME = r"[a-z][a-z0-9_-]*"
-BEGIN = re.compile(rf" *# --- region: ({NAME}) ---")
-END = "# --- endregion ---"
-MARKER = re.compile(r"^\s*#\s*-+\s*(end)?\s*region\b.*$", re.IGNORECASE)
+REGION = re.compile(
+    rf"^ *# --- region: ({NAME}) ---\n(.*?)(^ *# --- endregion --- *$|\Z)", re.DOTALL | re.MULTILINE
+)
+MARKER = re.compile(r"^ *# *-+ *(end)? *region\b.*$", re.IGNORECASE | re.MULTILINE)
 # What a piece of code defines: functions, classes, and constants by their capitals.
 DEFINITION = re.compile(r"^\s*(?:(?:def|class)\s+(\w+)|([A-Z][A-Z0-9_]*)\s*=(?!=))", re.MULTILINE)
 DOCSTRING = re.compile(r'(?:#[^\n]*\n|\s)*(?:""".*?""")?', re.DOTALL)
+CODE_LINE = re.compile(r"^[^\s#].*", re.MULTILINE)
 
 
-@dataclass(frozen=True)
-class Region:
+class Region(NamedTuple):
     """One region; `line` is the number of its first line of code (the marker stands above it)."""
 
     name: str
@@ -42,39 +42,42 @@ class Region:
         """64 hexadecimal digits."""
         return hashlib.sha256(self.code.encode("utf-8")).hexdigest()
 
-    @cached_property
-    def defines(self) -> frozenset:
+    @property
+    def defines(self) -> set:
         """The functions, methods, classes and constants that the region defines."""
         names = {name or constant for name, constant in DEFINITION.findall(self.code)}
-        return frozenset(name for name in names if not name.startswith("__"))
+        return {name for name in names if not name.startswith("__")}
+
+
+def blank(pattern, text):
+    """The text with every match replaced by blanks, so that lines and places stay."""
+    return pattern.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+
+
+def line_at(text, index) -> int:
+    """The number of the line that holds text[index]."""
+    return text.count("\n", 0, index) + 1
 
 
 def split(text: str, file: str) -> tuple:
     """([Region] in reading order, problems) of one file's text; each problem is one line."""
-    found, problems = [], []
-    name, first = None, 0
-
-    def say(line, what):
-        problems.append(f"{file}:{line}: {what}; repair: edit the markers of the region")
-
-    lines = text.split("\n")
-    head = text.count("\n", 0, DOCSTRING.match(text).end()) + 1 if file in WHOLE else len(lines)
-    for number, line in enumerate(lines, 1):
-        begin = BEGIN.fullmatch(line)
-        if begin and name is None:
-            name, first = begin[1], number + 1
-        elif line.strip() == END and name is not None:
-            code = dedent("\n".join([*lines[first - 1 : number - 1], ""]))
-            found.append(Region(name, code, first, file))
-            name = None
-        elif MARKER.fullmatch(line):
-            where = f"inside region {name}" if name else "outside any region"
-            say(number, f"{line.strip()!r} {where}, where it does not belong")
-        elif name is None and number > head and line[:1].strip("# "):
-            say(number, f"code outside any region: {line[:60]!r}")
-    if name is not None:
-        say(first - 1, f"region {name} is never closed")
-    return found, problems
+    found, wrong, outside = [], [], blank(REGION, text)
+    for match in REGION.finditer(text):
+        name, code, end = match.groups()
+        found.append(Region(name, dedent(code), line_at(text, match.start(2)), file))
+        if not end:
+            wrong.append((match.start(), f"region {name} is never closed"))
+        for marker in MARKER.finditer(code):
+            what = f"{marker[0].strip()!r} inside region {name}, where it does not belong"
+            wrong.append((match.start(2) + marker.start(), what))
+    for marker in MARKER.finditer(outside):
+        what = f"{marker[0].strip()!r} outside any region, where it does not belong"
+        wrong.append((marker.start(), what))
+    head = DOCSTRING.match(text).end() if file in WHOLE else len(text)
+    for line in CODE_LINE.finditer(outside, head):
+        wrong.append((line.start(), f"code outside any region: {line[0][:60]!r}"))
+    repair = "edit the markers of the region"
+    return found, [f"{file}:{line_at(text, k)}: {what}; repair: {repair}" for k, what in wrong]
 
 
 def read_text(file):

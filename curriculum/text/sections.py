@@ -8,13 +8,13 @@ section: of its text, and of the code of every region that the section includes 
 import hashlib
 import json
 import re
-import subprocess
 from difflib import unified_diff
 from functools import cache
 from typing import NamedTuple
 
+from curriculum.machine import git
 from curriculum.text.references import INCLUDE
-from curriculum.text.regions import ROOT, read_text, split_all
+from curriculum.text.regions import blank, line_at, read_text, split_all
 
 TEXTS = {"chapter": "curriculum/prose/chapter.md", "README": "README.md"}
 FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)
@@ -41,16 +41,6 @@ class Section(NamedTuple):
         """{what: lines}: the text, and the code of each region, for a diff."""
         code = {f"region {region.name}": region.code for region in self.regions}
         return {name: text.splitlines() for name, text in {self.file: self.text, **code}.items()}
-
-
-def blank(pattern, text):
-    """The text with every match replaced by blanks, so that lines and places stay."""
-    return pattern.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
-
-
-def line_at(text, index) -> int:
-    """The number of the line that holds text[index]."""
-    return text.count("\n", 0, index) + 1
 
 
 def bound(text, regions) -> tuple:
@@ -95,10 +85,10 @@ def differences(section: Section, accepted) -> list:
     if accepted is None:
         return ["(never read)"]
     commit = git("log", "-n1", "--format=%h", f"-S{accepted}", "--", "meta.yaml").strip() or "HEAD"
-    was = sections(lambda file: git("show", f"{commit}:{file}")).get(section.name)
+    was = accepted_in(commit).get(section.name)
     old, new = was.parts() if was else {}, section.parts()
     found = []
-    for part in [*new, *(part for part in old if part not in new)]:
+    for part in new | old:
         names = f"{part}, accepted", f"{part}, now"
         lines = unified_diff(old.get(part, []), new.get(part, []), *names, n=1, lineterm="")
         found.append("\n".join(lines))
@@ -106,9 +96,6 @@ def differences(section: Section, accepted) -> list:
 
 
 @cache
-def git(*words) -> str:
-    """What a git command prints; nothing where it fails or there is no git."""
-    try:
-        return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout
-    except OSError:
-        return ""
+def accepted_in(commit) -> dict:
+    """The sections as they were in a commit."""
+    return sections(lambda file: git("show", f"{commit}:{file}"))
