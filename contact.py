@@ -44,6 +44,7 @@ import math
 import os
 import re
 import sys
+from pathlib import Path
 from typing import NamedTuple
 
 try:
@@ -56,8 +57,8 @@ GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
 CONTACT_MARGIN = 1e-3   # m: lcp treats a smaller gap as contact, so a resting ball stays listed
 MOST_SWEEPS = 10_000    # exact and soft give up here, if their impulses have not settled
+LAST_BITS = 2.0**-45    # of soft: a correction below this share of the speeds is rounding
 SCENES = ("drop", "bounce", "stack", "pile")
-MODELS = ("penalty", "lcp", "soft", "exact")
 # --- endregion ---
 
 
@@ -78,19 +79,24 @@ def build_scene(name: str, seed: int = 0, bodies: int | None = None,
                 restitution: float | None = None, damping: float | None = None) -> Scene:
     """The scene of that name, all balls at rest. None stands for the scene's own value.
 
-    The seed draws one height, uniform in +-0.02 m. It shifts the start of drop and bounce. It only
-    lifts stack and pile, so that they never start inside the floor. In a pile it also numbers and
-    nudges the balls. Raises ValueError for an unknown name.
+    The seed moves the start height a little; in a pile it also numbers and nudges the balls.
+    Raises ValueError for an unknown name.
     """
     rng = np.random.default_rng(seed)
-    draw = rng.uniform(-0.02, 0.02)
+    draw = rng.uniform(-0.02, 0.02)     # m
+    lift = abs(draw)                    # m: stack and pile never start inside the floor
     if name in ("drop", "bounce"):
         x, y = [0.0], [1.0 + draw]
     elif name == "stack":
-        y = [(2 * i + 1) * RADIUS + abs(draw) for i in range(bodies or 3)]
+        y = [(2 * i + 1) * RADIUS + lift for i in range(bodies or 3)]
         x = [0.0] * len(y)
-    elif name == "pile":
-        x, y = pile_lattice(bodies or 24, abs(draw), rng)
+    elif name == "pile":                # a lattice of pitch 2.5 r, numbered at random and nudged
+        count = bodies or 24
+        width = math.ceil(math.sqrt(2 * count))
+        row, column = np.divmod(rng.permutation(count), width)
+        nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
+        x = 2.5 * RADIUS * (column - 0.5 * (width - 1)) + nudge[0]
+        y = 2.5 * RADIUS * (row + 0.5) + lift + nudge[1]
     else:
         raise ValueError(f"scene {name!r}; allowed: {', '.join(SCENES)}")
     own_restitution, own_damping = (0.7, 0.0) if name == "bounce" else (0.0, 80.0)
@@ -98,16 +104,6 @@ def build_scene(name: str, seed: int = 0, bodies: int | None = None,
                  np.full(len(x), RADIUS),
                  own_restitution if restitution is None else restitution,
                  own_damping if damping is None else damping)
-
-
-def pile_lattice(count, lift, rng):
-    """x and y (count,) [m] on a lattice of pitch 2.5 r, numbered at random and nudged by 0.1 r."""
-    place = rng.permutation(count)
-    width = math.ceil(math.sqrt(2 * count))
-    nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
-    x = 2.5 * RADIUS * (place % width - 0.5 * (width - 1)) + nudge[0]
-    y = 2.5 * RADIUS * (place // width + 0.5) + lift + nudge[1]
-    return x, y
 # --- endregion ---
 
 
@@ -115,7 +111,7 @@ def pile_lattice(count, lift, rng):
 class Ball:
     """A ball: position [m], velocity [m/s], mass [kg], radius [m], and the force on it [N]."""
 
-    __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()   # quicker; no misspelt one
+    __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()   # a typo is an error
 
     def __init__(self, x, y, vx, vy, mass, radius):
         self.x, self.y = x, y
@@ -124,10 +120,10 @@ class Ball:
         self.mass = mass
         self.inv_mass = 1.0 / mass      # 0 for infinite mass: nothing moves that ball
         self.radius = radius
-        self.pushed = {}                # lam of the step before, by the other ball
+        self.pushed = {}                # {other ball: lam of the step before}
 
 
-FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)
+FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)     # shared by all runs; nothing moves it
 
 
 def make_balls(scene):
@@ -163,7 +159,7 @@ class Contact:
         a, b = self.a, self.b
         a.vx += impulse * self.ax
         a.vy += impulse * self.ay
-        if b is not FLOOR:      # the floor is shared by all runs: even NaN must not move it
+        if b is not FLOOR:      # 0 times NaN is NaN, and even that must not move the floor
             b.vx -= impulse * self.bx
             b.vy -= impulse * self.by
 # --- endregion ---
@@ -173,17 +169,16 @@ class Contact:
 def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
     """The contacts of balls with the floor and with each other whose gap is below `margin` [m].
 
-    The floor's contacts come first, by ball, then those of pairs, by the first ball and then the
-    second: a solver takes them in this order, so the order is part of the result. Looks at every
-    pair, which is for few balls. Two balls with the same centre get the normal (0, 1), since some
-    direction must be chosen.
+    First the floor's, by ball, then those of pairs, by the first ball and then the second: a
+    solver takes them in this order, so the order is part of the result. Two balls with the same
+    centre get the normal (0, 1), since some direction must be chosen.
     """
     contacts = []
     for ball in balls:
         depth = ball.radius - ball.y
         if depth > -margin:
             contacts.append(Contact(ball, FLOOR, 0.0, 1.0, depth))
-    for a, b in itertools.combinations(balls, 2):
+    for a, b in itertools.combinations(balls, 2):       # every pair, which is for few balls
         dx = a.x - b.x
         dy = a.y - b.y
         distance = math.sqrt(dx * dx + dy * dy)
@@ -243,11 +238,9 @@ def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -
     """The largest stable step [s] of penalty for a ball kept in contact; inf without a spring.
 
     In contact a step is a 2 x 2 matrix. Its eigenvalues stay within 1 (Jury's test) while
-    k dt^2 + 2 c dt < 4 m; solved for dt. Without a damper that is the textbook's 2 sqrt(m / k). A
-    stack of `count` balls has one swing that is stiffer than all others; it sees
-    4 cos^2(pi / (2 count + 1)) times the spring and the damper.
+    k dt^2 + 2 c dt < 4 m; solved for dt. Without a damper that is the textbook's 2 sqrt(m / k).
     """
-    if count > 1:
+    if count > 1:   # the stiffest swing of a stack sees so many times the spring and the damper
         more = 4.0 * math.cos(math.pi / (2 * count + 1)) ** 2
         stiffness, damping = more * stiffness, more * damping
     root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
@@ -261,9 +254,8 @@ def contact_target(c, restitution, baumgarte, dt):
 
     With e = 0 it is the bias velocity (Baumgarte 1972): an overlap opens by the share beta in a
     step, and a gap may close by that share. With e > 0 bodies that touch, or would meet within
-    this step, get the bounce -e v_n, in an overlap the larger of bias and bounce. Across a wider
-    gap they may come as close as touching. Only a bias is above -e v_n: then impulses add no
-    energy (Moreau 1988).
+    this step, get the bounce -e v_n, in an overlap the larger of bias and bounce. A target up to
+    -e v_n lets impulses add no energy (Moreau 1988); only the bias of an overlap is above it.
     """
     bias = baumgarte / dt * c.depth     # < 0 across a gap
     if restitution == 0.0:
@@ -272,8 +264,8 @@ def contact_target(c, restitution, baumgarte, dt):
     bounce = -restitution * v_n
     if bias > 0.0:
         return max(bias, bounce)
-    meets = dt * v_n <= c.depth         # what the step closes, -dt v_n, is at least the gap, -depth
-    return bounce if meets else min(bounce, c.depth / dt)
+    meets = -dt * v_n >= -c.depth       # what this step closes is at least the gap
+    return bounce if meets else min(bounce, c.depth / dt)   # else: until they touch
 # --- endregion ---
 
 
@@ -284,9 +276,8 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
     Projected Gauss-Seidel: each sweep mends one contact after the other, by the impulse that
     brings it to its target, and disturbs its neighbours; the next sweep mends those. Changes lam
     of the contacts and the velocities of their balls. Ends early, and returns True, after a sweep
-    in which no correction changed a velocity by more than `tolerance` [m/s]: with 0, every further
-    sweep would change nothing. In velocities and impulses: Moreau (1988); Stewart and Trinkle
-    (1996); Anitescu and Potra (1997).
+    in which no correction changed a velocity by more than `tolerance` [m/s]. In velocities and
+    impulses: Moreau (1988); Stewart and Trinkle (1996); Anitescu and Potra (1997).
     """
     for _ in range(iters):
         settled = True
@@ -297,7 +288,7 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
             c.push(change)
             c.lam = lam
             settled = settled and abs(change) <= tolerance * c.m_eff    # NaN never settles
-        if settled:
+        if settled:             # with a tolerance of 0 no further sweep would change a bit
             return True
     return False
 # --- endregion ---
@@ -305,13 +296,9 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
 
 # --- region: lcp ---
 def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0):
-    """One step [s]: gravity predicts the velocities, impulses correct them, the balls move.
-
-    Targets come before gravity: a bounce gives back the speed of the approach. With the speed
-    that gravity adds in this step, a ball at rest would bounce for ever.
-    """
+    """One step [s]: gravity predicts the velocities, impulses correct them, the balls move."""
     contacts = detect_contacts(balls)
-    for c in contacts:
+    for c in contacts:      # before gravity: what it adds would have a ball at rest bounce for ever
         c.target = contact_target(c, restitution, baumgarte, dt)
     accelerate(balls, dt)
     if warm > 0.0:
@@ -338,7 +325,7 @@ def remember(balls, contacts):
     for ball in balls:
         ball.pushed = {}
     for c in contacts:
-        c.a.pushed[c.b] = c.lam
+        c.a.pushed[c.b] = c.lam     # a pair always comes in this order, so a's side is enough
 # --- endregion ---
 
 
@@ -350,12 +337,12 @@ STILL = 1e-12           # m/s: a smaller v_n is rounding, so the contact rests
 MOST_IMPACTS = 20_000   # a run with more is given up
 
 
-def exact_run(scene, times):
+def exact_run(scene, times, report=None):
     """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, of balls over one another.
 
     Between two impacts every acceleration stays the same, so a gap is a parabola in time, and the
-    next impact is its root: no time step, and no error but rounding. Raises RuntimeError where
-    the impacts have no end in sight, or the masses are too unequal for the sweeps.
+    next impact is its root: no time step, no error but rounding. Raises RuntimeError where the
+    impacts have no end in sight, or the masses are too unequal for the sweeps.
     """
     balls = make_balls(scene)
     pairs = detect_contacts(balls, margin=math.inf)     # all of them: who may touch, ever
@@ -377,6 +364,8 @@ def exact_run(scene, times):
         now, done = now + span, last
         if done == len(times):
             return q, v
+        if report:
+            report(done)
     raise RuntimeError(f"more than {MOST_IMPACTS:,} impacts by {now:.6g} s: the balls rattle")
 # --- endregion ---
 
@@ -386,22 +375,21 @@ def bounce(touching, restitution):
     """All impacts of one moment: v_n becomes -e v_n where a contact pushes."""
     for c in touching:
         back = -restitution * c.v_n()
-        c.target = 0.0 if 0.0 <= back < SLOW else back      # back < 0: it parts already
+        c.target = 0.0 if 0.0 <= back < SLOW else back      # back < 0: it parts, and none pushes
     settle(touching)
 
 
 def accelerations(balls, touching, pairs):
     """What the balls do next, and how every gap accelerates [m/s^2]; None if it stays closed.
 
-    The same sweep, one derivative higher: with accelerations in place of velocities, the impulses
-    are forces. A resting contact may open and may not close, so its gap has no acceleration < 0.
+    The same sweep, one derivative higher: accelerations for velocities, and forces for impulses.
     """
     resting = [c for c in touching if abs(c.v_n()) < STILL]
-    speeds = [ball.vy for ball in balls]
+    speeds = [ball.vy for ball in balls]        # for now vy holds accelerations
     for ball in balls:
         ball.vy = GRAVITY if ball.inv_mass > 0.0 else 0.0
     for c in resting:
-        c.target = 0.0
+        c.target = 0.0      # m/s^2: it may open and may not close
     settle(resting)
     a = [ball.vy for ball in balls]
     gap_a = [None if c in resting and c.v_n() < STILL else c.v_n() for c in pairs]
@@ -442,23 +430,19 @@ def time_to_impact(gap, v_n, a_n):
     if square < 0.0:
         return math.inf
     root = math.sqrt(square)
-    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n
+    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n   # nothing cancels
 # --- endregion ---
 
 
 # --- region: soft-impedance ---
 def impedance(depth, solimp):
-    """How hard the contact is at that depth [m]: d, 0 gives way and 1 is hard (getimpedance).
-
-    It grows from d0 at the surface to d1 at the depth `width` [m], along an S made of two powers
-    that meet at the share `mid` of the width.
-    """
-    d0, d1, width, mid, power = solimp
+    """How hard the contact is at that depth [m]: d, 0 gives way and 1 is hard (getimpedance)."""
+    d0, d1, width, mid, power = solimp                  # from d0 at the surface to d1 at the width
     if width <= 1e-15:                                  # m; MuJoCo takes the mean then
         return 0.5 * (d0 + d1)
     if depth >= width:
         return d1
-    share = depth / width
+    share = depth / width                               # an S of two powers, which meet at mid
     if share <= mid:
         rise = raised(share, power) / raised(mid, power - 1.0)
     else:
@@ -468,19 +452,11 @@ def impedance(depth, solimp):
 
 def raised(x, power):
     """x to that power; a whole power by products, whose bits are the same in every language."""
-    if power != int(power):
-        return x**power
-    product = 1.0
-    for _ in range(int(power)):
-        product *= x
-    return product
+    return math.prod([x] * int(power)) if power == int(power) else x**power
 # --- endregion ---
 
 
 # --- region: soft ---
-LAST_BITS = 2.0**-45    # a correction below this share of the speeds is rounding
-
-
 def soften(c, dt, solref, solimp):
     """Give contact c the target and the softness that MuJoCo's contact has.
 
@@ -499,7 +475,7 @@ def soften(c, dt, solref, solimp):
         B = -solref[1] / d1
     v_n = c.v_n()                                       # before gravity acts
     c.target = v_n + dt * (K * d * c.depth - B * v_n)
-    c.softness = max(1e-15, (1.0 - d) / d * c.inv_mass)
+    c.softness = max(1e-15, (1.0 - d) / d * c.inv_mass)         # no less: MuJoCo's mjMINVAL
     c.m_eff = 1.0 / (c.inv_mass + c.softness)
 
 
@@ -507,8 +483,7 @@ def soft_step(balls, dt, solref, solimp):
     """One step [s] of MuJoCo's contact: lcp's step with another target, and softness.
 
     With R > 0 the problem has one answer, wherever the sweeps begin. So they begin at the
-    impulses of the step before, and go on until their corrections drown in the rounding of the
-    velocities. Returns False if MOST_SWEEPS were not enough for that.
+    impulses of the step before. Returns False if they did not come down to rounding.
     """
     contacts = detect_contacts(balls, margin=0.0)
     for c in contacts:
@@ -543,10 +518,9 @@ def state_of(balls):
 def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, report=None) -> Run:
     """Take that many steps, `step(balls)` each, and record every state.
 
-    With `skip` two kinds of steps are not taken, and no bit changes. A flight without contact is
-    summed up in one go. And when a state comes back (rest, or any cycle), the rest of the run is
-    a copy: a step depends on nothing but the state and the impulses that it starts from.
-    `report(k)` is called with the steps done; a step returns False if its sweeps did not settle.
+    With `skip` a flight is summed up in one go. And when a state comes back (rest, or any cycle),
+    the rest of the run is a copy, since a step depends on nothing but the state and the impulses
+    that it starts from. No bit changes.
     """
     balls = make_balls(scene)
     rows = np.zeros((steps + 1, 4 * len(balls) + 1))    # the last column: sweeps unsettled, 0 or 1
@@ -556,57 +530,42 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, repor
     while k < steps:
         if skip:
             pushed = [each for ball in balls for each in ball.pushed.items()]
-            state = rows[k].tobytes(), *pushed
-            first = seen.setdefault(state, k)
-            period = k - first
-            if period > 0:
-                for past in range(first + 1, k + 1):    # what came then comes again and again
-                    rows[past + period::period] = rows[past]
+            first = seen.setdefault((rows[k].tobytes(), *pushed), k)
+            if first < k:                               # what came then comes again and again
+                rows[k + 1:] = rows[first + 1 + np.arange(steps - k) % (k - first)]
                 break
             flight = fly(balls, dt, steps - k)
             if len(flight) > 0:
                 rows[k + 1:k + 1 + len(flight), :-1] = flight
                 k += len(flight)
                 continue
-        settled = step(balls)
+        settled = step(balls)                           # False if sweeps of soft did not settle
         k += 1
         rows[k] = [*state_of(balls), settled is False]
         if report:
             report(k)
-    return recorded(rows, len(balls), dt)
-
-
-def recorded(rows, count, dt):
-    """The Run of such rows. Signs that chance decides go: -0.0 becomes 0.0, -nan becomes nan."""
-    rows += 0.0
-    rows[np.isnan(rows)] = math.nan
-    states = rows[:, :-1].reshape(len(rows), count, 4).transpose(0, 2, 1).copy()
-    return Run(np.arange(len(rows)) * dt, states[:, :2], states[:, 2:], int(rows[:, -1].sum()))
+    rows += 0.0                                         # -0.0 becomes 0.0, and -nan nan:
+    rows[np.isnan(rows)] = math.nan                     # chance decides these signs
+    states = rows[:, :-1].reshape(steps + 1, -1, 4).transpose(0, 2, 1).copy()
+    return Run(np.arange(steps + 1) * dt, states[:, :2], states[:, 2:], int(rows[:, -1].sum()))
 # --- endregion ---
 
 
 # --- region: flight ---
 def fly(balls, dt, most):
-    """The next states (n, 4 N), n <= most, of balls that touch nothing; the balls go there.
-
-    Without contact a step adds dt g to v and dt v to q. np.add.accumulate adds in the same order
-    as the steps do, so the bits agree. The flight ends before the first step that sees a contact.
-    """
-    for ball in balls:                                  # the quick look first
-        if ball.y - ball.radius < CONTACT_MARGIN:
-            return ()
-    if detect_contacts(balls):
+    """The next states (n, 4 N), n <= most, of balls that touch nothing; the balls go there."""
+    low = any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls)      # the quick look first
+    if low or detect_contacts(balls):
         return ()
-    states = np.empty((min(most, 250) + 1, len(balls), 4))
+    states = np.zeros((min(most, 250) + 1, len(balls), 4))
     states[0] = np.reshape(state_of(balls), (-1, 4))
     q, v = states[:, :, :2], states[:, :, 2:]           # views of the states
-    v[1:, :, 0] = 0.0
     v[1:, :, 1] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
     np.add.accumulate(v, out=v)                         # v, v + dt g, v + dt g + dt g, ...
     q[1:] = dt * v[1:]
-    np.add.accumulate(q, out=q)
+    np.add.accumulate(q, out=q)                         # in the order of the steps: the same bits
     gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
-    near = np.flatnonzero(gap < CONTACT_MARGIN)
+    near = np.flatnonzero(gap < CONTACT_MARGIN)         # a step from such a state sees a contact
     states = states[:near[0] + 1] if len(near) > 0 else states
     for ball, values in zip(balls, states[-1].tolist()):
         ball.x, ball.y, ball.vx, ball.vy = values
@@ -616,7 +575,8 @@ def fly(balls, dt, most):
 
 
 # --- region: run ---
-MANY = 5e6              # steps times pairs: from here on, loading the compiled loops pays
+MODELS = ("penalty", "lcp", "soft", "exact")
+MANY = 5e6              # about steps times pairs: from here on, loading the compiled loops pays
 SOLREF = (0.02, 1.0)    # MuJoCo's default: time constant [s], damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)       # MuJoCo's default: d0, d1, width [m], mid, power
 HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # the hardest contact that MuJoCo allows
@@ -646,8 +606,7 @@ def run_model(model: str, scene: Scene, dt: float, steps: int,
               settings: Settings = Settings(), report=None) -> Run:
     """The run of a scene by one of MODELS. Raises ValueError for any other name.
 
-    Raises RuntimeError where exact cannot keep its promise of accuracy, and says why. Many balls
-    are stepped by curriculum/fast.py, where it can be had, to the same bits.
+    Raises RuntimeError where exact cannot keep its promise of accuracy, and says why.
     """
     if model not in MODELS:
         raise ValueError(f"model {model!r}; allowed: {', '.join(MODELS)}")
@@ -656,7 +615,7 @@ def run_model(model: str, scene: Scene, dt: float, steps: int,
     if model == "exact":
         return Run(times, *run_exact(scene, times, report))
     many = settings.skip and steps * len(scene.mass)**2 > MANY
-    if many and (fast := beside("fast")):
+    if many and (fast := beside("fast")):       # compiled loops, the same bits
         return Run(times, *fast.simulate(model, scene, dt, steps, settings, report))
     e = scene.restitution
     solref, solimp = soft_defaults(e, dt, settings.solref, settings.solimp)
@@ -669,13 +628,10 @@ def run_model(model: str, scene: Scene, dt: float, steps: int,
 
 
 def soft_defaults(restitution, dt, solref=None, solimp=None):
-    """The solref and solimp that a run uses, within MuJoCo's bounds. None stands for the default.
-
-    Restitution needs the direct form of solref, minus stiffness and minus damping, and a hard
-    contact: the damping (1 + e) / dt turns v_n into -e v_n within one step. There is no spring
-    then, so a ball at rest sinks on, slowly.
-    """
+    """The solref and solimp a run uses, within MuJoCo's bounds. None stands for the default."""
     if solref is None and restitution > 0.0:
+        # minus stiffness and minus damping: this damping, in a hard contact, turns v_n into -e v_n
+        # within one step; there is no spring then, so a ball at rest sinks on, slowly
         solref, solimp = (0.0, -(1.0 + restitution) / dt), solimp or HARD
     elif solref is None or solref[0] > 0.0:
         timeconst, dampratio = solref or SOLREF
@@ -691,11 +647,10 @@ def run_exact(scene, times, report):
     apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
     if apart and (scene.q0[0] == scene.q0[0, 0]).all() and not scene.v0[0].any():
         try:
-            return exact_run(scene, times)
+            return exact_run(scene, times, report)
         except RuntimeError as error:
             reason = str(error)
-    exact = beside("exact")
-    if exact is None:
+    if not (exact := beside("exact")):
         raise RuntimeError(reason)
     return exact.simulate_exact(scene, times, GRAVITY, report or (lambda k: None))
 # --- endregion ---
@@ -707,37 +662,27 @@ EXPLODED = 10.0     # a run that gains more than this many times its start energ
 
 @np.errstate(all="ignore")
 def energy(q, v, mass):
-    """Kinetic plus potential energy [J] of states (..., 2, N), zero at the floor.
-
-    Balls of infinite mass are held, so they do not count.
-    """
-    mass = np.where(np.isfinite(mass), mass, 0.0)
+    """Kinetic plus potential energy [J] of states (..., 2, N), zero at the floor."""
+    mass = np.where(np.isfinite(mass), mass, 0.0)       # a ball of infinite mass is held
     return (0.5 * mass * (v * v).sum(-2) - mass * GRAVITY * q[..., 1, :]).sum(-1)
 
 
 @np.errstate(all="ignore")
 def smallest_gap(q, radius):
-    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N).
-
-    Ball i is compared with ball i + lag, for all i and all states at once, and for every lag.
-    """
+    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
     if q.size * len(radius) > MANY and (fast := beside("fast")):
         return fast.smallest_gap(q, radius)
     gap = (q[:, 1] - radius).min(-1)
-    for lag in range(1, len(radius)):
-        dx = q[:, 0, lag:] - q[:, 0, :-lag]
-        dy = q[:, 1, lag:] - q[:, 1, :-lag]
+    for lag in range(1, len(radius)):       # ball i and ball i + lag, for all i, all states at once
+        dx, dy = (q[:, :, lag:] - q[:, :, :-lag]).swapaxes(0, 1)
         reach = radius[lag:] + radius[:-lag]
         gap = np.minimum(gap, (np.sqrt(dx * dx + dy * dy) - reach).min(-1))
     return gap
 
 
 def blow_up_step(total):
-    """The first step at which the energy [J] has gained EXPLODED times its start, or None.
-
-    An energy that is not a number counts as exploded.
-    """
-    bad = ~(total - total[0] < EXPLODED * (abs(total[0]) or 1.0))
+    """The first step at which the energy [J] has gained EXPLODED times its start, or None."""
+    bad = ~(total - total[0] < EXPLODED * (abs(total[0]) or 1.0))   # NaN counts as exploded
     return int(bad.argmax()) if bad.any() else None
 # --- endregion ---
 
@@ -745,25 +690,27 @@ def blow_up_step(total):
 # --- region: quality ---
 @np.errstate(all="ignore")
 def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None) -> dict:
-    """The error measures of a run: lengths in radii of the first ball, energies in start energies.
+    """The measures of a run: lengths in radii of the first ball, energies in start energies.
 
-    The table says what most mean (COLUMNS). rest_penetration_frac is the overlap at the end;
-    blew_up and blew_up_step whether and when the run exploded. through is "the floor" if a ball's
-    centre was below it, "a ball" if two overlapped by a radius. unsettled_steps counts the steps
-    in which the sweeps of soft did not settle. height_error_frac, against the run `reference`, is
-    the sum of flight_error_frac and contact_error_frac.
+    COLUMNS says what most mean. Errors of height are taken against the run `reference`.
     """
     total = energy(run.q, run.v, scene.mass)
     scale = abs(float(total[0])) or 1.0
     gap = smallest_gap(run.q, scene.radius) / float(scene.radius[0])
     depth = np.maximum(-gap, 0.0)
     landing = first_contact(run, scene, dt)
-    below = (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any()
-    inside = depth.max() * scene.radius[0] > scene.radius.max()
+    below = (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any()      # a centre, below the floor
+    inside = depth.max() * scene.radius[0] > scene.radius.max()     # an overlap by a radius
     step = blow_up_step(total)
-    quality = {
+    worst = flight = added = None       # errors of height: in all, before contact, by contact
+    if reference is not None:
+        error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius[0])
+        both_fly = min(landing, first_contact(reference, scene, dt))
+        worst, flight = float(error.max()), float(error[:both_fly].max(initial=0.0))
+        added = worst - flight
+    return {
         "max_penetration_frac": float(depth.max()),
-        "rest_penetration_frac": float(depth[-1]),
+        "rest_penetration_frac": float(depth[-1]),          # the overlap at the end
         "rest_gap_frac": float(gap[-1]),
         "rebound_frac": float(gap[landing:].max(initial=0.0)),
         "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])),
@@ -772,30 +719,17 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
         "blew_up": step is not None,
         "blew_up_step": step,
         "through": "the floor" if below else "a ball" if inside else None,
-        "unsettled_steps": run.unsettled}
-    return quality | height_errors(run, scene, dt, reference)
+        "unsettled_steps": run.unsettled,               # whose sweeps, of soft, did not settle
+        "height_error_frac": worst, "flight_error_frac": flight, "contact_error_frac": added}
 
 
 def first_contact(run, scene, dt):
     """The first step after which surfaces touch, or a velocity shows more than gravity's change."""
-    gained = np.zeros((2, len(scene.mass)))             # from gravity, in one step
-    gained[1] = dt * GRAVITY * np.isfinite(scene.mass)
+    gained = np.outer((0.0, dt * GRAVITY), np.isfinite(scene.mass))     # from gravity, in one step
     rounding = 1e-9 * (np.abs(run.v[:-1]) + np.abs(gained))
     touched = smallest_gap(run.q, scene.radius) <= 0.0
     touched[1:] |= (np.abs(np.diff(run.v, axis=0) - gained) > rounding).any((1, 2))
     return int(touched.argmax()) if touched.any() else len(touched)
-
-
-def height_errors(run, scene, dt, reference):
-    """The worst height error [radius]; its part before the first contact, and what is added."""
-    worst = flight = added = None
-    if reference is not None:
-        error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius[0])
-        landing = min(first_contact(run, scene, dt), first_contact(reference, scene, dt))
-        worst = float(error.max())
-        flight = float(error[:landing].max(initial=0.0))
-        added = worst - flight
-    return {"height_error_frac": worst, "flight_error_frac": flight, "contact_error_frac": added}
 # --- endregion ---
 
 
@@ -806,22 +740,20 @@ DT_GRID = (1, 2, 4, 8, 16, 32)      # multiples of --dt that the stability lines
 def measure_stability(run, scene, dt, stiffness, first):
     """The largest step of the grid without an explosion, by model, and what happens there.
 
-    0.0 stands for a model that explodes at every step, None for one that never comes to a
-    contact. `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model. The
-    largest step comes first, and no run is made that cannot be the answer. soft is left out: its
-    default time constant is never below two steps, so it stays bounded at any step.
+    `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model. The largest step
+    comes first, so that no run is made that cannot be the answer.
     """
-    known = float(scene.mass[0]), stiffness
-    grid = {"dt_crit_penalty": critical_dt(*known, 0.0),
-            "dt_crit_damped": critical_dt(*known, scene.damping),
-            "dt_crit_stack": critical_dt(*known, scene.damping, len(scene.mass))}
-    for model in ("penalty", "lcp"):
-        largest = depth = through = None
-        for step in sorted((dt * factor for factor in DT_GRID), reverse=True):
+    ball = float(scene.mass[0]), stiffness
+    grid = {"dt_crit_penalty": critical_dt(*ball, 0.0),
+            "dt_crit_damped": critical_dt(*ball, scene.damping),
+            "dt_crit_stack": critical_dt(*ball, scene.damping, len(scene.mass))}
+    for model in ("penalty", "lcp"):    # soft's time constant grows with the step: it stays bounded
+        largest = depth = through = None                # what stays if no run comes to a contact
+        for step in (dt * factor for factor in reversed(DT_GRID)):
             found = first[model] if step == dt else run(model, step)
             quality = contact_quality(found, scene, step)
             if quality["blew_up"]:
-                largest = 0.0
+                largest = 0.0                           # what stays if all others explode
             elif first_contact(found, scene, step) < len(found.t):
                 largest = step
                 depth, through = quality["max_penetration_frac"], quality["through"]
@@ -833,11 +765,7 @@ def measure_stability(run, scene, dt, stiffness, first):
 
 # --- region: flags ---
 class Parser(argparse.ArgumentParser):
-    """Answers bad input with one line and exit status 2. -1e4 is a value, and no flag."""
-
-    def __init__(self, **named):
-        super().__init__(**named)
-        self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)", re.IGNORECASE)
+    """Answers bad input with one line and exit status 2."""
 
     def error(self, message):
         sys.exit(fail(" ".join(message.split())))
@@ -900,18 +828,20 @@ def parse_flags(argv):
     """The checked command line. Bad input ends with one line on stderr and exit status 2."""
     parser = Parser(prog="contact.py", description=__doc__, allow_abbrev=False, formatter_class=(
         lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=100)))
+    parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")     # -1e4 is a value
     add_flags(parser.add_argument)
     args = parser.parse_args(argv)
-    ref = args.solref
     for wrong, message in (
             (args.smoke and args.steps is not None, "--smoke has 800 steps: leave out --steps"),
             (args.seeds and args.seed is not None, "--seeds or --seed: leave out one of them"),
+            (args.seeds and not beside("seeds"), "--seeds needs the folder curriculum "
+             "beside contact.py"),
             (args.seeds and args.plot, "--plot draws one run: leave out --seeds"),
             (args.scheduler and not args.seeds, "--scheduler is for many seeds: give --seeds"),
             (args.bodies and args.scene in ("drop", "bounce"), "--bodies is for stack and pile"),
             ((args.steps or 0) * (args.bodies or 24) > 2.5e7,
              "--steps times --bodies: allowed: up to 2.5e7, which needs 8 GB of memory"),
-            (ref and max(ref) > 0.0 and min(ref) < 1e-6,
+            (args.solref and max(args.solref) > 0.0 and min(args.solref) < 1e-6,
              "argument --solref: allowed: two numbers from 1e-06 up, or two that are 0 or less")):
         if wrong:
             parser.error(message)
@@ -935,12 +865,11 @@ COLUMNS = {     # title: key of contact_quality, meaning
 
 def figure(value, digits=3):
     """A number as a person reads it, "-" for None: an exponent only where zeros would hide it."""
-    if value is None or value == 0.0:
-        return "-" if value is None else "0"
-    size = abs(value)
-    if size < 1e-4 or size >= 1e6:
-        return f"{value:.1e}"
-    return f"{value:,.0f}" if size >= 1000.0 else f"{value:.{digits}g}"
+    if value is None:
+        return "-"
+    if value == 0.0 or 1e-4 <= abs(value) < 1e3:
+        return f"{value:.{digits}g}"
+    return f"{value:,.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.1e}"
 
 
 def ending(row):
@@ -978,15 +907,13 @@ def print_verdict(quality):
 def print_stability(grid, count):
     """The largest step that each model stood, and the critical steps of penalty."""
     print("stability: tried at", ", ".join(map(str, DT_GRID)), "times --dt")
+    without = {None: "comes to no contact within these steps",
+               0.0: "explodes at every dt tried that comes to a contact"}
     for model in ("penalty", "lcp"):
         depth, through = grid[f"{model}_penetration_frac"], grid[f"{model}_through"]
-        if grid[model] is None:
-            text = "comes to no contact within these steps"
-        elif grid[model] == 0.0:
-            text = "explodes at every dt tried that comes to a contact"
-        else:
-            text = (f"does not explode up to dt = {grid[model]:g} s, where it goes "
-                    f"{figure(depth)} r deep" + (f", through {through}" if through else ""))
+        text = without.get(grid[model]) or (
+            f"does not explode up to dt = {grid[model]:g} s, where it goes "
+            f"{figure(depth)} r deep" + (f", through {through}" if through else ""))
         print(f"stability: {model} {text}")
     stack = f"a stack of {count}: {figure(grid['dt_crit_stack'], 4)} s; " if count > 1 else ""
     print(f"critical dt of penalty, one ball: {figure(grid['dt_crit_damped'], 4)} s; {stack}"
@@ -996,26 +923,21 @@ def print_stability(grid, count):
 
 # --- region: files ---
 def rounded(value):
-    """`value` with every float rounded to 12 decimals; None where it is not finite."""
-    if isinstance(value, dict):
-        return {key: rounded(item) for key, item in value.items()}
-    if isinstance(value, float):
-        return round(value, 12) + 0.0 if math.isfinite(value) else None
-    return value
+    """`value` as JSON holds it, its floats rounded to 12 decimals; None where one is not finite."""
+    return json.loads(json.dumps(value), parse_float=lambda text: round(float(text), 12) + 0.0,
+                      parse_constant=lambda name: None)
 
 
 def write_whole(path, content):
     """Replace the file at `path` by str or bytes, whole or not at all. Makes missing folders."""
-    path = os.path.realpath(path)
-    temporary = f"{path}.{os.getpid()}.tmp"
-    os.makedirs(os.path.dirname(path), exist_ok=True)
+    path = Path(os.path.realpath(path))
+    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with open(temporary, "wb") as file:
-            file.write(content.encode() if isinstance(content, str) else content)
-        os.replace(temporary, path)
+        temporary.write_bytes(content.encode() if isinstance(content, str) else content)
+        temporary.replace(path)
     finally:
-        if os.path.lexists(temporary):
-            os.unlink(temporary)
+        temporary.unlink(missing_ok=True)
 
 
 def write_json(path, data):
@@ -1029,20 +951,16 @@ def write_files(args, metrics, runs, scene):
     write_json(path, metrics)
     print("metrics:", path)
     title = f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
-    if args.rerun and runs:
-        write_extra("recording", os.path.join(args.out, "contact.rrd"), runs, scene)
-    if args.plot and runs:
-        write_extra("picture", os.path.join(args.out, "contact.svg"), runs, scene, title)
-
-
-def write_extra(name, path, *given):
-    """Have curriculum/NAME.py write a file, or say in one line what is missing."""
-    try:
-        importlib.import_module(f"curriculum.{name}").write(path, *given)
-        print(f"{name}: {path}")
-    except ImportError as error:
-        alone = error.name == "curriculum"
-        print(f"no {name}:", "it needs the folder curriculum beside contact.py" if alone else error)
+    for name, file, asked, *more in (("recording", "contact.rrd", args.rerun),
+                                     ("picture", "contact.svg", args.plot, title)):
+        if asked and runs:
+            path = os.path.join(args.out, file)
+            try:
+                importlib.import_module(f"curriculum.{name}").write(path, runs, scene, *more)
+                print(f"{name}: {path}")
+            except ImportError as error:
+                missing = "it needs the folder curriculum beside contact.py"
+                print(f"no {name}:", missing if error.name == "curriculum" else error)
 # --- endregion ---
 
 
@@ -1057,7 +975,7 @@ def chosen_scene(args, seed):
 def run_flags(args, scene, model, dt):
     """The run that the flags ask for, at that dt; a terminal shows how far it is."""
     settings = Settings(*(getattr(args, knob) for knob in Settings._fields))
-    pool = beside("pool") if sys.stderr.isatty() else None
+    pool = beside("pool") if sys.stderr and sys.stderr.isatty() else None
     bar = pool.bar(args.steps, f"{model}, dt = {dt:g} s") if pool else None
     return run_model(model, scene, dt, args.steps, settings, bar)
 
@@ -1085,8 +1003,7 @@ def collect(args, scene):
                           for model, found in runs.items()}
     if args.contact == "all" and args.scene != "pile":
         metrics["stability"] = measure_stability(
-            lambda model, dt: run_flags(args, scene, model, dt), scene, args.dt, args.stiffness,
-            runs)
+            lambda *case: run_flags(args, scene, *case), scene, args.dt, args.stiffness, runs)
     return runs, rounded(metrics)
 
 
@@ -1123,12 +1040,8 @@ def main(argv=None):
     argv = sys.argv[1:] if argv is None else argv
     try:
         args = parse_flags(argv)
-        many = beside("seeds") if args.seeds else None
-        if args.seeds and many is None:
-            return fail("--seeds needs the folder curriculum beside contact.py")
-        status = many.report(args) if many else report(args, argv)
-        if sys.stdout:
-            sys.stdout.flush()                          # an error at Python's end has no handler
+        status = beside("seeds").report(args) if args.seeds else report(args, argv)
+        print(end="", flush=True)                       # an error at Python's end has no handler
         return status
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)

@@ -15,7 +15,7 @@ from pygments.lexers import PythonLexer
 LONG = 15  # lines of code
 BOOKKEEPING = set(  # regions, and definitions of others, that are no idea of the chapter
     "setup scenes ball flight run measure flags report files main quality stability "
-    "warm_start remember raised make_balls state_of recorded".split()
+    "warm_start remember raised make_balls state_of".split()
 )
 OPEN = {"exact_run", "slide"}  # long, and the heart of their sections
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
