@@ -100,27 +100,17 @@ def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_balls_rest(model):
     check_same(model, contact.build_scene("pile", 1, 24, restitution=0.4), 0.004, 150)
 
 
-def test_the_twin_counts_the_steps_that_do_not_settle_as_the_plain_loops_do():
-    scene = contact.build_scene("stack", 0, 2, restitution=0.5)
-    scene.q0[1] -= scene.q0[1, 0] - contact.RADIUS
-    unsettled = check_same("soft", scene._replace(mass=np.array((1.0, 1e5))), 0.002, 6)[2]
-    assert 0 < unsettled <= 6
-
-
-def test_steps_that_a_cycle_copies_are_counted_as_taken():
+def test_the_twin_counts_the_steps_that_do_not_settle_also_where_a_cycle_is_copied():
     scene = contact.build_scene("stack", 0, 2, restitution=0.5)
     scene = scene._replace(mass=np.array((1.0, 1e3)))
-    taken, copied = (fast.simulate("soft", scene, 0.002, 600, contact.Settings(skip=skip))
-                     for skip in (False, True))
-    assert taken[2] == copied[2] > 0
-    assert np.array_equal(taken[:2], copied[:2])
+    assert 0 < check_same("soft", scene, 0.002, 600)[2] <= 600
 
 
 # Walls, and balls of unequal size
 
-def shaft(count, width, wall=0.1, seed=0):
+def shaft(count, width, wall=0.1):
     """Balls over one another in a shaft, `width` of them wide, between walls of fixed balls."""
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     place = rng.permutation(count)
     x = 0.25 * (place % width - 0.5 * (width - 1)) + rng.uniform(-0.01, 0.01, count)
     y = 0.25 * (place // width + 0.5) + rng.uniform(0.0, 0.01, count)
@@ -141,16 +131,11 @@ def add_ball(scene, x, y, radius, mass):
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls(model):
-    check_same(model, shaft(20, 4), 0.004, 120)
-    check_same(model, shaft(20, 4, wall=1.0), 0.004, 120)
-
-
-@pytest.mark.parametrize("model", MODELS)
-def test_the_twin_has_the_bytes_of_the_plain_loops_under_a_large_ball(model):
+def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls_and_under_a_large_ball(model):
     crushed = add_ball(shaft(16, 4), 0.3, 12.0, 10.0, 1000.0)
     crushed.v0[1, -1] = -5.0
-    check_same(model, crushed, 0.004, 120)
+    for scene in (shaft(20, 4), shaft(20, 4, wall=1.0), crushed):
+        check_same(model, scene, 0.004, 120)
 
 
 def test_a_large_ball_adds_no_pairs_of_small_ones():
