@@ -31,6 +31,14 @@ export function drops(dt, stiffness, damping, steps) {
   return heights;
 }
 
+// How far such a ball still moves in the last rows [r]; as much as can be read off if it is nowhere.
+export const FARTHEST = 1e9;
+export function stillMoves(dt, stiffness, damping, steps, rows) {
+  const late = drops(dt, stiffness, damping, steps).subarray(-rows);
+  const far = (Math.max(...late) - Math.min(...late)) / R;
+  return Number.isFinite(far) ? Math.min(FARTHEST, far) : FARTHEST;
+}
+
 // A function that keeps its last results, by its arguments.
 export function kept(compute) {
   const held = new Map();

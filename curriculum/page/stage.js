@@ -27,16 +27,12 @@ const NEAR = 600; // px beyond the window in which figures are drawn
 
 export const heightOf = (figure, width) => (width < NARROW && figure.narrow) || figure.height;
 
-// The view of a figure whose drawing stays as it is: for the stills.
+// The view of a figure that nobody touches and that does not run: for the stills.
 export const stillView = (figure, values, width) => ({
   own: figure.start ? figure.start() : {},
   values,
   width,
   height: heightOf(figure, width),
-  still: true,
-  running: false,
-  dragging: false,
-  grabbed: null,
   get: (name) => shown(values, name),
   open: () => false,
 });

@@ -1,21 +1,15 @@
 /* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. */
 import { axis, label, number, plain, plot, within } from "../draw.js";
 import { criticalDt, quality, runModel } from "../engine.js";
-import { drops, grip, kept, R, scene, START } from "../parts.js";
+import { FARTHEST, grip, kept, scene, START, stillMoves } from "../parts.js";
 
 const [LOW, HIGH] = [0.0005, 0.064]; // s
 const SECONDS = 4;
 const STEPS = 2000; // as many as contact.py takes
-const MOST = 1e9; // r: as much as can be read off
 const COURSE = 150; // px of the upper chart
 const [BOTTOM, TOP] = [-0.5, 1.5]; // m that it shows
 
-// How far the dropped ball still moves in the last quarter of a run [r].
-function moves(...knobs) {
-  const late = drops(...knobs, STEPS).subarray(0.75 * STEPS);
-  const far = (Math.max(...late) - Math.min(...late)) / R;
-  return Number.isFinite(far) ? Math.min(MOST, far) : MOST;
-}
+const moves = (...knobs) => stillMoves(...knobs, STEPS, STEPS / 4 + 1); // in the last quarter
 const dropped = kept((dt, stiffness, damping) => {
   const ball = scene([START]);
   const run = runModel("penalty", ball, { dt, stiffness, damping }, STEPS);
@@ -61,7 +55,7 @@ function draw(view) {
   const chart = plot([0, COURSE, view.width, view.height - COURSE], {
     margin: 64,
     x: { ...axis([low, 16 * low], "time step dt (ms)", ...ticks), log: true },
-    y: { ...axis([1e-5, MOST], "still moving at the end / r", ...tens), log: true, zero: true },
+    y: { ...axis([1e-5, FARTHEST], "still moving at the end / r", ...tens), log: true, zero: true },
     lines: [{ model: "penalty", ...curve(low, k, c), kind: "plainly" }],
     rules: view.width < 480 ? [critical] : [critical, free],
     points: [{ model: "penalty", x: shown, y: far, size: 8 }],

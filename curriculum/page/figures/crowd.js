@@ -19,7 +19,7 @@ const energy = (speeds) => speeds.reduce((sum, v) => sum + 0.5 * v * v, 0);
 const list = (speeds) => speeds.map((v) => number(v, 2)).join(", ");
 
 function draw(view) {
-  const { speeds } = view.own;
+  const speeds = ["v1", "v2", "v3"].map((name) => view.own[name]);
   const cases = [
     ["before", speeds],
     ["after, each target −e v_n", struck(speeds, false)],
@@ -44,13 +44,10 @@ function draw(view) {
     label(`${number(energy(after), 4)} J`, bars, ROWS[k] + 30),
   ];
   const mark = bars + begun * unit;
-  const set = (i) => (v) => (view.own.speeds = view.own.speeds.with(i, Number(v.toFixed(2))));
   const hold = (v, i) => {
     const range = { r: 11, low: -MOST, high: MOST, step: 0.1, at: (x) => (x - at(i)) / px };
-    const state = { get: () => view.own.speeds[i], set: set(i) };
     const [name, text] = [`the speed of ball ${i + 1}`, `${number(v, 2)} m/s`];
-    const y = ROWS[0] + up(i);
-    return grip(view, String(i), at(i) + px * v, y, name, text, { ...range, ...state });
+    return grip(view, `v${i + 1}`, at(i) + px * v, ROWS[0] + up(i), name, text, range);
   };
   const gain = repaired / begun - 1;
   const more = gain > 1e-9 ? `${number(100 * gain, 2)} % more energy` : "no more energy";
@@ -74,6 +71,6 @@ export const figure = {
     "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair " +
     "that allows no target below zero adds some; drag the speeds.",
   height: 384,
-  start: () => ({ speeds: [-1, 0, -3] }),
+  start: () => ({ v1: -1, v2: 0, v3: -3 }),
   draw,
 };

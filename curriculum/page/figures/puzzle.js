@@ -1,6 +1,6 @@
 /* The puzzle: one spring, two wishes. Every try is a drop of 40 s. */
 import { axis, circle, number, within } from "../draw.js";
-import { charted, drops, G, kept, R, START } from "../parts.js";
+import { charted, G, kept, R, stillMoves } from "../parts.js";
 import { QUANTITIES } from "../store.js";
 
 const DT = 0.01; // s
@@ -9,11 +9,9 @@ const LONG = 40; // s
 const { stiffness: K, damping: C } = QUANTITIES;
 
 // Whether a ball dropped on this spring is at rest after LONG.
-const rests = kept(({ stiffness, damping }) => {
-  const late = drops(DT, stiffness, damping, Math.round(LONG / DT)).slice(-200);
-  const spread = (Math.max(...late) - Math.min(...late)) / R;
-  return spread < 1e-3 && Math.abs(late[0]) < START;
-});
+const rests = kept(
+  ({ stiffness, damping }) => stillMoves(DT, stiffness, damping, LONG / DT, 200) < 1e-3,
+);
 
 function draw(view) {
   const { own } = view;
