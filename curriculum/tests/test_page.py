@@ -16,7 +16,11 @@ from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
 from curriculum.tests.page_browser import firefox, running, visiting
 
-BETS = ("ex1", "ex3", "ex4")
+BETS = {  # their files, and a number of each that tells its answer, as the page writes it
+    "ex1": ("ex1_predict_contact", "penalty_deepest", ".3f"),
+    "ex3": ("ex3_dt_stability", "limit", ".4f"),
+    "ex4": ("ex4_predict_soft", "penalty_heavy", ".5f"),
+}
 MOST = 900_000  # bytes of the page
 TO_LAST_BIT = ("penalty", "lcp", "soft")
 
@@ -32,12 +36,7 @@ def random_case(pick):
     scene = contact.build_scene(name, int(pick.integers(100)), 6 if name == "pile" else None, e, c)
     v0 = pick.uniform(-1, 1, scene.v0.shape) if name == "pile" else scene.v0
     solref = (float(pick.uniform(0.002, 0.1)), float(pick.uniform(0.2, 2)))
-    solimp = (
-        *pick.random(2),
-        10 ** pick.uniform(-4, -1),
-        pick.random(),
-        float(pick.integers(1, 6)),
-    )
+    solimp = (*pick.random(2), 10 ** pick.uniform(-4, -1), pick.random(), pick.integers(1, 6))
     settings = contact.Settings(
         stiffness=float(10 ** pick.uniform(2, 6)),
         baumgarte=float(pick.choice([0.0, 1.0, pick.random()])),
@@ -75,13 +74,8 @@ def cases():
     return found
 
 
-def columns_of(answer):
-    """x, y, vx, vy (steps + 1, N) from the base64 of a browser."""
-    return [np.frombuffer(base64.b64decode(text), float) for text in answer]
-
-
 def runs_in(evaluate):
-    """What engine.js gives for all cases, where `evaluate` gives the value of an expression."""
+    """x, y, vx, vy by engine.js of all cases; `evaluate` gives the value of an expression."""
     script = f"""(() => {{
       const engine = {bundle("engine.js", page_data([]))};
       const letters = (a) => Array.from(new Uint8Array(a.buffer), (b) => String.fromCharCode(b));
@@ -92,7 +86,7 @@ def runs_in(evaluate):
         return [run.x, run.y, run.vx, run.vy].map(coded);
       }});
     }})()"""
-    return [columns_of(answer) for answer in evaluate(script)]
+    return [[np.frombuffer(base64.b64decode(text)) for text in run] for run in evaluate(script)]
 
 
 def judge(found):
@@ -277,15 +271,9 @@ def test_a_link_of_the_text_sets_the_store_and_the_live_figure_follows_the_text(
 
 
 def answers(name):
-    """Numbers, as the page writes them, that tell the answer of a bet."""
-    words = {
-        "ex1": ("penalty_deepest", ".3f"),
-        "ex3": ("limit", ".4f"),
-        "ex4": ("penalty_heavy", ".5f"),
-    }
-    key, form = words[name]
-    module = {"ex1": "ex1_predict_contact", "ex3": "ex3_dt_stability", "ex4": "ex4_predict_soft"}
-    return format(measured(module[name])[key], form)
+    """The number that tells the answer of a bet."""
+    file, key, form = BETS[name]
+    return format(measured(file)[key], form)
 
 
 def test_no_answer_of_a_bet_is_seen_before_one_click_and_then_it_stays_open(visit):
@@ -322,10 +310,8 @@ def test_show_me_lifts_a_veil_without_a_bet_and_focus_stays_there(visit):
 
 def test_the_blank_names_a_slip_and_takes_the_right_lines(visit):
     with visit() as page:
-        force, impulse = (
-            page.locator("#blank-penalty_normal_force"),
-            page.locator("#blank-project_impulse"),
-        )
+        force = page.locator("#blank-penalty_normal_force")
+        impulse = page.locator("#blank-project_impulse")
         force.fill("stiffness * depth - damping * v_n")
         impulse.fill("lam + max(0, dlam)")
         page.locator("#blank button").click()
