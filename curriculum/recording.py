@@ -68,15 +68,13 @@ def send_table(recording, model):
     (0.26) draws a thick line thinner by a hundredth, which left a gap under the thin one.
     """
     wide = 50.0  # m; a longer line is drawn with gaps where it is magnified
-
-    def send_lines(name, depths, color, radii, order):
-        lines = [[[-wide, depth], [wide, depth]] for depth in depths]
+    depths = [0.005, 0.05, 0.5, 5.0, 50.0]
+    ground = "ground", depths, depths, GROUND, -10.0
+    table = "table", [0.0], [rr.Radius.ui_points(0.6)], LINE, 40.0
+    for name, below, radii, color, order in (ground, table):
+        lines = [[[-wide, depth], [wide, depth]] for depth in below]
         shown = rr.LineStrips2D(lines, colors=rgba(color), radii=radii, draw_order=order)
         recording.log(f"world/{model}/{name}", shown, static=True)
-
-    depths = [0.005, 0.05, 0.5, 5.0, 50.0]
-    send_lines("ground", depths, GROUND, depths, -10.0)
-    send_lines("table", [0.0], LINE, [rr.Radius.ui_points(0.6)], 40.0)
 
 
 def send_balls(recording, model, run, scene, color):
@@ -125,8 +123,7 @@ def arrow_vectors(run, scene):
 
 def send_curves(recording, runs, drawn):
     """The curves {title: {model: values}}, each at the title's first word / MODEL."""
-    widths = WIDTHS[-len(runs) :]
-    for width, model in zip(widths, sorted(runs)):
+    for width, model in zip(WIDTHS[-len(runs) :], sorted(runs)):
         times = timelines(runs[model].t)
         look = rr.SeriesLines(
             colors=rgba(colors(runs)[model]),
@@ -144,20 +141,25 @@ def layout(runs, scene, drawn):
 
     Every run has views of its own, so balls that roll far never cross into another run's. Where
     they roll, the views are as wide as the screen, one below the other; where they stand above one
-    another, the table is magnified under them.
+    another, the table is magnified under them. A run that explodes does not widen the views, unless
+    all do.
     """
-    large = float(scene.radius.max())
-    x_range, y_range = frame(runs, scene, large)
-    lanes = []
-    for model, run in runs.items():
-        end = ending(run, scene)
-        lanes.append(view(model, model if end == "ok" else f"{model}: {end}", x_range, y_range))
-    wide = x_range[1] - x_range[0] > 1.2 * (y_range[1] - y_range[0])
+    large, x = float(scene.radius.max()), scene.q0[0]
+    ends = {model: ending(run, scene) for model, run in runs.items()}
+    calm = [run for model, run in runs.items() if "EXPLODED" not in ends[model]]
+    shown = frame(calm or list(runs.values())[:1], x, large)
+    lanes = [
+        view(model, model if end == "ok" else f"{model}: {end}", *shown)
+        for model, end in ends.items()
+    ]
+    wide = np.ptp(shown[0]) > 1.2 * np.ptp(shown[1])
     rows = [rrb.Vertical(*lanes) if wide else rrb.Horizontal(*lanes)]
-    x = scene.q0[0]
     if np.ptp(x) < large and not wide:
-        rows.append(rrb.Horizontal(*[magnified(model, float(x[0]), large) for model in runs]))
-    rows.append(rrb.Horizontal(*plots(drawn)))
+        high, middle = MAGNIFIED * large, float(x[0])
+        near = [middle - 1.2 * high, middle + 1.2 * high], [-0.4 * high, 0.6 * high]
+        name = f"the table, magnified: {MAGNIFIED:g} r high"
+        rows.append(rrb.Horizontal(*[view(model, name, *near) for model in runs]))
+    rows.append(rrb.Horizontal(*map(plot, drawn)))
     shares = [5, 2, 3] if len(rows) == 3 else [5, 3]
     views = rrb.Vertical(*rows, row_shares=shares)
     return rrb.Blueprint(views, time_panel(), collapse_panels=True)
@@ -169,18 +171,14 @@ def view(model, name, x_range, y_range):
     return rrb.Spatial2DView(origin=f"world/{model}", name=name, visual_bounds=bounds)
 
 
-def frame(runs, scene, large):
+def frame(runs, x, large):
     """The ranges of x and of -y [m] that hold all balls of the runs, from first to last.
 
-    A run that explodes does not count, unless all do. A ball that leaves by more than FARTHEST
-    radii is let go, or the others would be dots.
+    A ball that leaves by more than FARTHEST radii is let go, or the others would be dots.
     """
-    calm = [run for run in runs.values() if "EXPLODED" not in ending(run, scene)]
-    shown = calm or [next(iter(runs.values()))]
-    x = scene.q0[0]
     middle = 0.5 * (float(x.min()) + float(x.max()))
-    half = max(reach(run.q[:, 0] - middle, large) for run in shown) + 2.5 * large
-    top = max(reach(run.q[:, 1], large) for run in shown) + 2.0 * large
+    half = max(reach(run.q[:, 0] - middle, large) for run in runs) + 2.5 * large
+    top = max(reach(run.q[:, 1], large) for run in runs) + 2.0 * large
     return [middle - half, middle + half], [-top, 0.12 * top]
 
 
@@ -189,21 +187,11 @@ def reach(values, large):
     return float(np.fmin(np.abs(values), FARTHEST * large).max())
 
 
-def magnified(model, x, large):
-    """A view of the place where the balls stand on the table, MAGNIFIED radii high."""
-    high = MAGNIFIED * large
-    name = f"the table, magnified: {MAGNIFIED:g} r high"
-    return view(model, name, [x - 1.2 * high, x + 1.2 * high], [-0.4 * high, 0.6 * high])
-
-
-def plots(drawn):
-    """A plot for every title. One has the legend, which hides the least where impulses are over."""
-    found = []
-    for title in drawn:
-        name = title.split()[0]
-        legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=name == "impulse")
-        found.append(rrb.TimeSeriesView(origin=name, name=title, plot_legend=legend))
-    return found
+def plot(title):
+    """A plot. One has the legend, which hides the least where impulses are over."""
+    name = title.split()[0]
+    legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=name == "impulse")
+    return rrb.TimeSeriesView(origin=name, name=title, plot_legend=legend)
 
 
 def time_panel():

@@ -25,11 +25,17 @@ def report(args):
     rows = {}
     for model in contact.MODELS:
         rows |= summary(model, [each[model] for each in found if model in each])
-    rows = contact.rounded(rows)
-    span = f"seeds {seeds[0]} to {seeds[-1]}"
+    rows, span = contact.rounded(rows), f"seeds {seeds[0]} to {seeds[-1]}"
     print(f"scene {args.scene}, {span}: {args.steps} steps of {args.dt:g} s")
     contact.print_table(rows, lambda row: ending(row, len(seeds)))
-    return save(args, seeds, rows)
+    path = os.path.join(args.out, "seeds.json")
+    kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps}
+    try:
+        contact.write_json(path, kept | {"seeds": [seeds[0], seeds[-1] + 1], "rows": rows})
+    except OSError as error:
+        return contact.fail(f"cannot write to {args.out}: {error.strerror}; the report is whole")
+    print("seeds:", path)
+    return 0
 
 
 def read_range(text):
@@ -89,15 +95,3 @@ def ending(row, count):
         "could not be run": count - row["runs"],
     }
     return ", ".join(f"{n} of {count} {end}" for end, n in ends.items() if n) or "ok"
-
-
-def save(args, seeds, rows):
-    """Write seeds.json and say so. Returns the exit status."""
-    path = os.path.join(args.out, "seeds.json")
-    kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps}
-    try:
-        contact.write_json(path, kept | {"seeds": [seeds[0], seeds[-1] + 1], "rows": rows})
-    except OSError as error:
-        return contact.fail(f"cannot write to {args.out}: {error.strerror}; the report is whole")
-    print("seeds:", path)
-    return 0
