@@ -1,4 +1,4 @@
-"""exact, held to its promise: closed forms, enumeration, golden numbers and another integrator."""
+"""exact, held to its promise: closed forms, enumeration, golden numbers."""
 
 import itertools
 import json
@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import quad
 
-from contact import GRAVITY, Scene, build_scene, exact_run
+from contact import GRAVITY, Scene, build_scene, energy, exact_run, smallest_gap
+from curriculum.bench.closed_form import bounce_motion
 from curriculum.exact import simulate_exact, solve_lcp
 
 G, R = -GRAVITY, 0.1
@@ -24,23 +25,6 @@ def balls(x, y, mass=1.0, radius=R, e=0.0, vx=0.0, vy=0.0):
 
 def run(scene, times):
     return simulate_exact(scene, np.asarray(times, float), GRAVITY)
-
-
-def gaps(scene, q):
-    """All gaps (S, K) at positions q (S, 2, N), those of two fixed balls left out."""
-    movable = np.isfinite(scene.mass)
-    found = [q[:, 1, a] - scene.radius[a] for a in np.flatnonzero(movable)]
-    for a, b in itertools.combinations(range(len(scene.mass)), 2):
-        if movable[a] or movable[b]:
-            d = q[:, :, a] - q[:, :, b]
-            found.append(np.hypot(*d.T) - scene.radius[a] - scene.radius[b])
-    return np.array(found).T
-
-
-def energy(scene, q, v):
-    """Total energy [J] (S,) of what can move."""
-    mass = np.where(np.isfinite(scene.mass), scene.mass, 0.0)
-    return (mass * (0.5 * (v**2).sum(1) + G * q[:, 1])).sum(1)
 
 
 # Complementarity
@@ -76,28 +60,7 @@ def test_pivot_finds_the_answer_that_enumeration_finds(contacts, rank, decades):
             assert s == pytest.approx(other, abs=1e-8 * size)
 
 
-def test_each_contact_of_a_standing_column_carries_the_weight_above_it():
-    count = 30
-    W = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
-    W[0, 0] = 1.0
-    lam = solve_lcp(W, np.where(np.arange(count) == 0, -G, 0.0))
-    assert lam == pytest.approx(G * np.arange(count, 0, -1), rel=1e-12)
-
-
 # Closed forms
-
-
-def height(h, e, t):
-    """The gap at times t (S,) of a ball dropped from the gap h, as the sum of its flights."""
-    y, start, speed = np.zeros(len(t)), np.sqrt(2.0 * h / G), np.sqrt(2.0 * G * h)
-    y[t < start] = h - 0.5 * G * t[t < start] ** 2
-    for _ in range(400):
-        speed *= e
-        s = t - start
-        flies = (s >= 0.0) & (s < 2.0 * speed / G)
-        y[flies] = s[flies] * (speed - 0.5 * G * s[flies])
-        start += 2.0 * speed / G
-    return y
 
 
 @pytest.mark.parametrize("e", [0.0, 0.3, 0.7, 0.9, 1.0])
@@ -107,7 +70,7 @@ def test_a_dropped_ball_follows_its_parabolas(e):
     for h in (0.9, 0.13):
         scene = balls([0.0], [R + h], 0.7, e=e)
         for q in (run(scene, t)[0], exact_run(scene, t)[0]):
-            assert np.abs(q[:, 1, 0] - R - height(h, e, t)).max() < 3e-13
+            assert np.abs(q[:, 1, 0] - R - bounce_motion(h, e, t)[0]).max() < 3e-13
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -144,29 +107,7 @@ def test_balls_that_cycle_together_are_copied_to_the_flight():
     t = np.linspace(0.0, 40.0, 801)
     q, _ = run(balls([0.0, 1.0], [R + 0.0625, R + 0.25], e=1.0), t)
     for k, h in enumerate((0.0625, 0.25)):
-        half = np.sqrt(2.0 * h / G)
-        s = (t + half) % (2.0 * half) - half
-        assert np.abs(q[:, 1, k] - (R + h - 0.5 * G * s**2)).max() < 1e-10 * R
-
-
-def test_a_ball_that_slides_off_another_leaves_it_at_two_thirds():
-    """Energy gives the angle's rate; the force ends at cos theta = 2/3 cos theta0; it flies."""
-    start, reach, floor = 0.3, 2.0 * R, 2.0
-    end = np.arccos(2.0 / 3.0 * np.cos(start))
-
-    def rate(angle):
-        return np.sqrt(2.0 * G / reach * (np.cos(start) - np.cos(angle)))
-
-    time = quad(lambda u: 2.0 * u / rate(start + u * u), 0.0, np.sqrt(end - start), epsabs=1e-13)[0]
-    x, y = [0.0, reach * np.sin(start)], [floor, floor + reach * np.cos(start)]
-    t = np.array((0.0, 0.999 * time, time + 0.05, time + 0.2))
-    q, _ = run(balls(x, y, np.array((np.inf, 1.0))), t)
-    assert np.hypot(q[1, 0, 1], q[1, 1, 1] - floor) == pytest.approx(reach, abs=1e-13)
-    speed = reach * rate(end)
-    for s, (px, py) in zip(t[2:] - time, q[2:, :, 1]):
-        expected_x = reach * np.sin(end) + s * speed * np.cos(end)
-        expected_y = floor + reach * np.cos(end) - s * speed * np.sin(end) - 0.5 * G * s * s
-        assert np.hypot(px - expected_x, py - expected_y) < 1e-10 * R
+        assert np.abs(q[:, 1, k] - R - bounce_motion(h, 1.0, t)[0]).max() < 1e-10 * R
 
 
 def test_a_pyramid_of_three_slides_apart_releases_and_lands_as_its_energy_says():
@@ -215,8 +156,8 @@ def test_blocks_count_the_digits_of_pi(digits, hits):
 def test_a_pile_neither_overlaps_nor_gains_energy_nor_loses_any_at_e_1(bodies, e):
     scene = build_scene("pile", 3, bodies, e)
     q, v = run(scene, np.linspace(0.0, 0.9, 301))
-    total = energy(scene, q, v)
-    assert gaps(scene, q).min() >= -1e-12 * R
+    total = energy(q, v, scene.mass)
+    assert smallest_gap(q, scene.radius).min() >= -1e-12 * R
     assert np.diff(total).max() <= 1e-12 * total[0]
     assert e < 1.0 or total.min() >= (1.0 - 1e-12) * total[0]
     assert e == 1.0 or total[-1] < 0.9 * total[0]  # else nothing has happened
@@ -248,88 +189,6 @@ def test_a_ball_that_comes_down_beside_the_one_that_it_touched_grazes_it_without
 def test_fixed_balls_alone_and_no_ball_in_reach_make_no_event():
     q, v = run(balls([0.0, 0.1], [R, R], np.inf), [0.0, 1.0])
     assert np.array_equal(q[0], q[1]) and not v.any()
-
-
-# Another integrator
-
-
-def contact_rows(scene, q, v):
-    """Gaps, rows J (K, 2 N) and what their turning adds to J a, by plain loops."""
-    n = len(scene.mass)
-    found, J, turn = [], [], []
-    for a, b in itertools.combinations(range(-1, n), 2):
-        row = np.zeros((2, n))
-        if a < 0:
-            found.append(q[1, b] - scene.radius[b])
-            row[1, b] = 1.0
-            turn.append(0.0)
-        else:
-            d, u = q[:, b] - q[:, a], v[:, b] - v[:, a]
-            length = np.hypot(*d)
-            found.append(length - scene.radius[a] - scene.radius[b])
-            row[:, b], row[:, a] = d / length, -d / length
-            turn.append((u @ u - (d @ u / length) ** 2) / length)
-        J.append(row.ravel())
-    return np.array(found), np.array(J), np.array(turn)
-
-
-def pushes(J, w, b):
-    """lam (K,) of the one choice of contacts that fits, found by trying them all."""
-    for on in itertools.product((True, False), repeat=len(b)):
-        on, lam = np.array(on, bool), np.zeros(len(b))
-        lam[on] = np.linalg.lstsq((J * w @ J.T)[np.ix_(on, on)], -b[on], rcond=None)[0]
-        if lam.min(initial=0.0) >= -1e-9 and (J * w @ J.T @ lam + b).min(initial=0.0) >= -1e-9:
-            return lam
-    raise AssertionError("no choice fits")
-
-
-def integrated(scene, end):
-    """q (2, N) at `end`, e = 0: by DOP853 from event to event, who pushes by trying all."""
-    n, w = len(scene.mass), np.tile(1.0 / scene.mass, 2)
-    fall, now = np.repeat((0.0, -G), n), 0.0
-    state = np.concatenate((scene.q0.ravel(), scene.v0.ravel()))
-    while now < end:
-        q, v = state.reshape(2, 2, n)
-        found, J, turn = contact_rows(scene, q, v)
-        near = np.flatnonzero(found < 1e-9)
-        v = v.ravel() + w * (pushes(J[near], w, J[near] @ v.ravel()) @ J[near])
-        state[2 * n :] = v
-        slow = near[J[near] @ v < 1e-7]
-        turn = contact_rows(scene, q, v.reshape(2, n))[2]
-        held = slow[pushes(J[slow], w, J[slow] @ fall + turn[slow]) > 1e-9]
-
-        def forces(y, held=held):
-            _, J, turn = contact_rows(scene, *y.reshape(2, 2, n))
-            J = J[held]
-            return J, np.linalg.solve(J * w @ J.T, -(J @ fall + turn[held]))
-
-        def motion(t, y):
-            J, lam = forces(y)
-            return np.concatenate((y[2 * n :], fall + w * (lam @ J)))
-
-        events = [lambda t, y, k=k: forces(y)[1][k] + 1e-10 for k in range(len(held))]
-        events += [
-            lambda t, y, k=k: contact_rows(scene, *y.reshape(2, 2, n))[0][k]
-            for k in range(len(found))
-            if k not in near
-        ]
-        for event in events:
-            event.terminal, event.direction = True, -1
-        limits = {"max_step": 0.02, "rtol": 1e-12, "atol": 1e-13}
-        answer = solve_ivp(motion, (now, end), state, "DOP853", events=events, **limits)
-        state, now = answer.y[:, -1], answer.t[-1]
-    return state[: 2 * n].reshape(2, n)
-
-
-@pytest.mark.parametrize("end", [0.2, 0.3])
-def test_a_heap_that_falls_and_slides_is_that_of_another_integrator(end):
-    """Five unequal balls, two of which fall between and onto three, and press them apart."""
-    x, y = [0.0, 0.27, 0.6, 0.12, 0.45], [0.1, 0.08, 0.12, 0.30, 0.33]
-    mass, radius = np.array((1.0, 0.7, 1.5, 0.8, 1.2)), np.array((0.1, 0.08, 0.12, 0.09, 0.1))
-    scene = balls(x, y, mass, radius)
-    q, _ = run(scene, [0.0, end])
-    assert np.abs(q[1] - integrated(scene, end)).max() < 1e-8 * R
-    assert np.abs(q[1, 0, :3] - scene.q0[0, :3]).min() > 1e-3  # all three have been moved
 
 
 # Golden numbers
