@@ -13,7 +13,7 @@ from pathlib import Path
 
 from contact import write_json, write_whole
 from curriculum.machine import fingerprint, machine
-from curriculum.text.regions import CODE, ROOT
+from curriculum.text.regions import CODE, ROOT, read_text
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 NAME = "results.json"
@@ -22,8 +22,7 @@ DIGITS = 6  # significant digits that a results file keeps
 
 def load(name: str) -> dict:
     """{section: results} of "bench" or "stress"; {} where nothing has been measured yet."""
-    path = ROOT / FOLDERS[name] / NAME
-    return json.loads(path.read_text("utf-8")) if path.exists() else {}
+    return json.loads(read_text(f"{FOLDERS[name]}/{NAME}") or "{}")
 
 
 def save(folder: Path, section: str, values: dict, command: str) -> dict:
@@ -69,13 +68,12 @@ def footer(section: dict) -> str:
     """One paragraph for the end of a page: when and on what it was measured, and if it is stale."""
     about, changed = section["measured"], stale(section)
     versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
-    line = (
+    note = f" **Stale**: {', '.join(changed)} changed since; measure again." if changed else ""
+    return (
         f"Measured by `{about['command']}` on {about['date']} at commit {about['commit']}, on "
         f"{about['cores']} cores of {about['cpu']} ({about['os']}), with Python {about['python']}, "
-        f"{versions}."
+        f"{versions}.{note}"
     )
-    note = f" **Stale**: {', '.join(changed)} changed since; measure again." if changed else ""
-    return line + note
 
 
 def write_block(name: str, markdown: str):
