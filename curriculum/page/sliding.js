@@ -14,8 +14,8 @@ function turned([angle, rate], h, k) {
 }
 
 /* The upper ball, from `angle` on, every dt [s], with small steps: {path, last, leaves}. The path
- * holds its places [x, y], in m from the held ball's middle, `reach` m apart as long as they touch; `last`
- * is the last of them in touch, `leaves` the angle where it leaves. */
+ * holds its places [x, y], in m from the held ball's middle, `reach` m apart as long as they touch;
+ * `last` is the last of them in touch, `leaves` the angle where it leaves. */
 export function slideOff(angle, reach, gravity, dt, steps) {
   const k = gravity / reach;
   const force = ([at, rate]) => k * Math.cos(at) - rate * rate;

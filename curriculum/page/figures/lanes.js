@@ -8,7 +8,7 @@ import { knobsOf, sceneOf, startOf } from "../store.js";
 
 const LONGEST = 4; // s
 const SECONDS = 5; // that a run through the window takes
-const GROUND = 26; // px
+const [GROUND, BELOW] = [26, 66]; // px of table, and of all that is below its top
 const NEXT = { drop: "bounce", bounce: "stack", stack: "drop", gap: "energy", energy: "gap" };
 const nextScene = ({ values }) => NEXT[values.scene];
 // which quantities change a model's run
@@ -90,8 +90,8 @@ function placeWords({ gap, row }, least = 1e-9, [touches, below, above] = SHORT)
   return `${number(Math.abs(gap[row]), 2)} r ${gap[row] < 0 ? below : above}`;
 }
 
-// One model's balls over the table; `high`: the height [m] up to which the lanes show them.
-function lane(each, k, wide, floor, high) {
+// One model's balls over the table, and where they are; `high`: the height [m] that a lane shows.
+function lane(each, k, told, wide, floor, high) {
   const x = wide * (k + 0.5);
   const scale = Math.min((floor - 8) / high, (0.4 * wide) / R);
   const { run, row, model } = each;
@@ -101,7 +101,6 @@ function lane(each, k, wide, floor, high) {
     return y < floor + 2 * R * scale ? ball(model, x, y, R * scale) : "";
   });
   const push = row > 0 ? Math.min(40, 14 * Math.sqrt(Math.max(each.push[row], 0))) : 0;
-  const told = each.waits ? `then? ${each.waits}` : placeWords(each);
   return [
     ...balls,
     push > 1 ? arrow(`push m-${model}`, x, floor + GROUND - 4, 0, -push) : "",
@@ -152,7 +151,7 @@ function chartOf(view, shown, height) {
 function draw(view) {
   const shown = shownOf(view);
   const height = Math.min(180, Math.round(0.42 * view.height)); // px, of the chart
-  const [floor, wide] = [view.height - height - 66, view.width / shown.length];
+  const [floor, wide] = [view.height - height - BELOW, view.width / shown.length];
   const [, top] = range(shown, ({ run }) => [run.y, run.n]);
   const high = Math.min(Math.max(3.2 * R, top + 1.2 * R), 1.3);
   const { svg, sx, box } = chartOf(view, shown, height);
@@ -160,11 +159,12 @@ function draw(view) {
   const text = `${time.toFixed(3)} s`;
   const { from, to } = view.own;
   const sight = { low: from, high: to, step: view.get("dt"), at: sx.back, get: () => timeOf(view) };
-  const told = shown.map(
-    (each) => `${each.model} ${each.waits ? "waits for your bet" : placeWords(each)}`,
-  );
+  const place = (each, waiting) => (each.waits ? waiting : placeWords(each));
+  const told = shown.map((each) => `${each.model} ${place(each, "waits for your bet")}`);
   const touching = shown.filter((each) => view.running && each.push[each.row] > 0);
-  const drawn = shown.map((each, k) => lane(each, k, wide, floor, high));
+  const drawn = shown.map((each, k) =>
+    lane(each, k, place(each, `then? ${each.waits}`), wide, floor, high),
+  );
   return {
     svg: table(0, floor, view.width, GROUND) + drawn.join("") + svg,
     words: `${text}: ${told.join(", ")}.`,
@@ -213,7 +213,6 @@ const lanes = {
 const ASKED = { models: ["penalty", "lcp"], from: 0.3, to: 1.6 }; // s
 const FIRST = 0.39; // s, of the still
 const SLOW = 6; // times slower than it happens
-const DEEP = 54; // px of table below its top
 
 // Both runs are the chapter's own drop, whatever is set elsewhere: the bet is about them.
 const askedOf = ({ own, open }) =>
@@ -221,27 +220,18 @@ const askedOf = ({ own, open }) =>
 
 function drawTwo(view) {
   const shown = askedOf(view);
-  const floor = view.height - DEEP;
-  const r = Math.min(74, view.width / 7);
+  const [floor, wide] = [view.height - BELOW, view.width / 2];
+  const high = ((floor - 8) * R) / Math.min(74, 0.28 * wide); // a radius is 74 px
   const place = (each) => placeWords(each, 5e-5, LONG);
-  const drawn = shown.map((each, k) => {
-    const { model, gap, push, row, waits } = each;
-    const [x, y] = [view.width * (0.25 + 0.5 * k), floor - r - gap[row] * r];
-    const told = waits ? "and now?" : push[row] > 0 ? place(each) : "";
-    const high = label(`↑ ${number(gap[row], 2)} r up`, x, 24, "middle", "tick");
-    return [
-      y > -r ? ball(model, x, y, r) : high,
-      label(told, x, floor + 24, "middle"),
-      label(model, x, floor + 44, "middle", "tick"),
-    ].join("");
-  });
+  const told = (each) => (each.waits ? "and now?" : place(each));
+  const drawn = shown.map((each, k) => lane(each, k, told(each), wide, floor, high));
   const places = `${shown.map((each) => `${each.model} is ${place(each)}`).join(", ")}.`;
   const asked = "Both are about to touch. What happens now is your first bet.";
-  const told = `At ${(view.own.time ?? FIRST).toFixed(2)} s: ${view.open("ex1") ? places : asked}`;
+  const now = `At ${(view.own.time ?? FIRST).toFixed(2)} s`;
   const landed = shown.every(({ row, landing }) => row >= landing - 1);
   return {
-    svg: table(0, floor, view.width, DEEP) + drawn.join(""),
-    words: landed ? told : "Both fall side by side.",
+    svg: table(0, floor, view.width, GROUND) + drawn.join(""),
+    words: landed ? `${now}: ${view.open("ex1") ? places : asked}` : "Both fall side by side.",
   };
 }
 
