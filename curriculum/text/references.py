@@ -97,6 +97,7 @@ class Numbers:
     def prepare(self, text):
         """Make the runs that a text names, on all cores."""
         wanted = [name for name in load_meta()["runs"] if f"{name}:" in text]
+        fingerprint(*CODE)      # and kept: Python 3.11 cannot parse in two threads at once
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(self.run, wanted))
 
