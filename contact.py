@@ -57,7 +57,7 @@ GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
 CONTACT_MARGIN = 1e-3   # m: lcp treats a smaller gap as contact, so a resting ball stays listed
 MOST_SWEEPS = 10_000    # exact and soft give up here, if their impulses have not settled
-LAST_BITS = 2.0**-45    # of soft: a correction below this share of the speeds is rounding
+LAST_BITS = 2.0**-42    # of soft: a correction below this share of the speeds is rounding
 SCENES = ("drop", "bounce", "stack", "pile")
 # --- endregion ---
 
@@ -554,8 +554,10 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, repor
 # --- region: flight ---
 def fly(balls, dt, most):
     """The next states (n, 4 N), n <= most, of balls that touch nothing; the balls go there."""
-    low = any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls)      # the quick look first
-    if low or detect_contacts(balls):
+    for ball in balls:                                  # the quick look first
+        if ball.y - ball.radius < CONTACT_MARGIN:
+            return ()
+    if detect_contacts(balls):
         return ()
     states = np.zeros((min(most, 250) + 1, len(balls), 4))
     states[0] = np.reshape(state_of(balls), (-1, 4))
