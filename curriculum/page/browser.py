@@ -12,6 +12,9 @@ FLAGS = (  # no request of its own
 SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
   localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
 PICTURE = "page-live.png"  # of the README
+# the live figure stands also where the text has no use for it, and no other one in its place
+STANDING = """.alone { visibility: hidden }
+.live { opacity: 1 !important; visibility: visible !important }"""
 # what a knob costs: set a quantity by its slider, and wait until the next frame is painted
 KNOB = """([name, figure]) => new Promise((done) => {
   const box = document.getElementById(`fig-${figure}`);
@@ -71,7 +74,7 @@ def show(tab, page, query=""):
 def photograph(page, folder):
     """Save PICTURE in a folder, the four balls just after the landing; its path."""
     with opened(page, query="?scene=drop", reduced_motion="reduce", device_scale_factor=2) as tab:
-        tab.evaluate("document.getElementById('figure').classList.remove('back')")
+        tab.add_style_tag(content=STANDING)
         tab.locator("#figure").scroll_into_view_if_needed()
         tab.locator("#fig-lanes .handle").focus()
         for _ in range(8):  # from 0.3 s on, ten steps each
