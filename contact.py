@@ -57,7 +57,7 @@ GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
 CONTACT_MARGIN = 1e-3   # m: lcp treats a smaller gap as contact, so a resting ball stays listed
 MOST_SWEEPS = 10_000    # exact and soft give up here, if their impulses have not settled
-LAST_BITS = 2.0**-42    # of soft: a correction below this share of the speeds is rounding
+LAST_BITS = 2.0**-42    # of soft: its sweeps end at corrections below this share of the speeds
 SCENES = ("drop", "bounce", "stack", "pile")
 # --- endregion ---
 
@@ -255,7 +255,7 @@ def contact_target(c, restitution, baumgarte, dt):
     With e = 0 it is the bias velocity (Baumgarte 1972): an overlap opens by the share beta in a
     step, and a gap may close by that share. With e > 0 bodies that touch, or would meet within
     this step, get the bounce -e v_n, in an overlap the larger of bias and bounce. A target up to
-    -e v_n lets impulses add no energy (Moreau 1988); only the bias of an overlap is above it.
+    -e v_n lets impulses add no energy (Moreau 1988); only the bias of an overlap can be above it.
     """
     bias = baumgarte / dt * c.depth     # < 0 across a gap
     if restitution == 0.0:
@@ -265,7 +265,7 @@ def contact_target(c, restitution, baumgarte, dt):
     if bias > 0.0:
         return max(bias, bounce)
     meets = -dt * v_n >= -c.depth       # what this step closes is at least the gap
-    return bounce if meets else min(bounce, c.depth / dt)   # else: until they touch
+    return bounce if meets else min(bounce, c.depth / dt)   # else at most until they touch
 # --- endregion ---
 
 
@@ -375,7 +375,7 @@ def bounce(touching, restitution):
     """All impacts of one moment: v_n becomes -e v_n where a contact pushes."""
     for c in touching:
         back = -restitution * c.v_n()
-        c.target = 0.0 if 0.0 <= back < SLOW else back      # back < 0: it parts, and none pushes
+        c.target = 0.0 if 0.0 <= back < SLOW else back      # back < 0: they part already
     settle(touching)
 
 
@@ -483,7 +483,7 @@ def soft_step(balls, dt, solref, solimp):
     """One step [s] of MuJoCo's contact: lcp's step with another target, and softness.
 
     With R > 0 the problem has one answer, wherever the sweeps begin. So they begin at the
-    impulses of the step before. Returns False if they did not come down to rounding.
+    impulses of the step before. Returns False if they did not come down to LAST_BITS.
     """
     contacts = detect_contacts(balls, margin=0.0)
     for c in contacts:
@@ -516,11 +516,10 @@ def state_of(balls):
 
 @np.errstate(all="ignore")
 def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, report=None) -> Run:
-    """Take that many steps, `step(balls)` each, and record every state.
+    """Take that many steps, `step(balls)` each, and record every state; report(k) hears of each.
 
-    With `skip` a flight is summed up in one go. And when a state comes back (rest, or any cycle),
-    the rest of the run is a copy, since a step depends on nothing but the state and the impulses
-    that it starts from. No bit changes.
+    With `skip` a flight is summed up in one go. And when a state comes back, impulses and all
+    (rest, or any cycle), the rest of the run is a copy: a step sees nothing else. No bit changes.
     """
     balls = make_balls(scene)
     rows = np.zeros((steps + 1, 4 * len(balls) + 1))    # the last column: sweeps unsettled, 0 or 1
@@ -529,7 +528,7 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, repor
     k = 0
     while k < steps:
         if skip:
-            pushed = [each for ball in balls for each in ball.pushed.items()]
+            pushed = [(a, b, lam) for a in balls for b, lam in a.pushed.items()]
             first = seen.setdefault((rows[k].tobytes(), *pushed), k)
             if first < k:                               # what came then comes again and again
                 rows[k + 1:] = rows[first + 1 + np.arange(steps - k) % (k - first)]
@@ -597,7 +596,7 @@ class Settings(NamedTuple):
 
 
 def beside(name):
-    """A module of the folder curriculum beside this file; None where it or its packages lack."""
+    """A module of the folder curriculum beside this file; None if it cannot be imported."""
     try:
         return importlib.import_module(f"curriculum.{name}")
     except ImportError:
@@ -745,10 +744,10 @@ def measure_stability(run, scene, dt, stiffness, first):
     `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model. The largest step
     comes first, so that no run is made that cannot be the answer.
     """
-    ball = float(scene.mass[0]), stiffness
-    grid = {"dt_crit_penalty": critical_dt(*ball, 0.0),
-            "dt_crit_damped": critical_dt(*ball, scene.damping),
-            "dt_crit_stack": critical_dt(*ball, scene.damping, len(scene.mass))}
+    mass, damping = float(scene.mass[0]), scene.damping
+    grid = {"dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
+            "dt_crit_damped": critical_dt(mass, stiffness, damping),
+            "dt_crit_stack": critical_dt(mass, stiffness, damping, len(scene.mass))}
     for model in ("penalty", "lcp"):    # soft's time constant grows with the step: it stays bounded
         largest = depth = through = None                # what stays if no run comes to a contact
         for step in (dt * factor for factor in reversed(DT_GRID)):
@@ -833,6 +832,12 @@ def parse_flags(argv):
     parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")     # -1e4 is a value
     add_flags(parser.add_argument)
     args = parser.parse_args(argv)
+    steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
+    count = args.bodies or {"stack": 3, "pile": 24}.get(args.scene, 1)
+    need = steps * (320 * count + 1500)     # bytes, measured: all four models and their recording
+    have = 8e9                              # bytes, chosen, where the machine does not say
+    if hasattr(os, "sysconf"):
+        have = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     for wrong, message in (
             (args.smoke and args.steps is not None, "--smoke has 800 steps: leave out --steps"),
             (args.seeds and args.seed is not None, "--seeds or --seed: leave out one of them"),
@@ -841,14 +846,13 @@ def parse_flags(argv):
             (args.seeds and args.plot, "--plot draws one run: leave out --seeds"),
             (args.scheduler and not args.seeds, "--scheduler is for many seeds: give --seeds"),
             (args.bodies and args.scene in ("drop", "bounce"), "--bodies is for stack and pile"),
-            ((args.steps or 0) * (args.bodies or 24) > 2.5e7,
-             "--steps times --bodies: allowed: up to 2.5e7, which needs 8 GB of memory"),
+            (need > have, f"--steps {steps} of {count} balls need {need / 1e9:.0f} GB of memory; "
+             f"allowed: {have / 1e9:.0f} GB, what there is"),
             (args.solref and max(args.solref) > 0.0 and min(args.solref) < 1e-6,
              "argument --solref: allowed: two numbers from 1e-06 up, or two that are 0 or less")):
         if wrong:
             parser.error(message)
-    args.seed = args.seed or 0
-    args.steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
+    args.seed, args.steps = args.seed or 0, steps
     return args
 # --- endregion ---
 
@@ -1048,6 +1052,8 @@ def main(argv=None):
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
         return 130
+    except MemoryError:
+        return fail("not enough memory; allowed: fewer --steps or --bodies")
     except OSError as error:                            # nobody reads on, or the disk is full
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         unread = isinstance(error, BrokenPipeError)

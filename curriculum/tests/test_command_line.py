@@ -99,6 +99,7 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
     "--scheduler localhost:8786",
     "--scene drop --bodies 2", "--scene bounce --bodies 1", "--solref 0.02 0", "--solref -1 1",
     "--solref 0.02 1e-162", "--stiff 3", "--no-such-flag",
+    "--scene pile --steps 1000000 --bodies 10000",
 ])  # fmt: skip
 def test_flags_that_contradict_one_another_are_refused(flags, capsys):
     err = refused(main(capsys, *flags.split()))
