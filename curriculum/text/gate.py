@@ -114,15 +114,11 @@ class Gate:
                         self.say(file, line, f"{match[1]!r}: {error}", "name what is known")
 
     def check_measured(self):
-        """Results and rows of the ledger are of today's code, and the rows well formed.
-
-        A section that meta.yaml lists as `stale` may wait: then only the text says so.
-        """
-        waiting = self.meta.get("stale") or ()
+        """Results and rows of the ledger are of today's code, and the rows well formed."""
         for name, folder in results.FOLDERS.items():
             for section, found in results.load(name).items():
                 files = results.stale(found)
-                if files and f"{name}/{section}" not in waiting:
+                if files:
                     what = f"section {section} was measured on other code ({', '.join(files)})"
                     self.say(f"{folder}/{results.NAME}", 1, what, found["measured"]["command"])
         try:
