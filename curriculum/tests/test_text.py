@@ -5,12 +5,13 @@ import json
 import shutil
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 from curriculum.machine import fingerprint
-from curriculum.text import references, regions
+from curriculum.text import references, regions, results
 
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
 ROOT = Path(__file__).resolve().parents[2]
@@ -108,6 +109,7 @@ def test_every_fault_of_the_chapter_is_named_with_its_line_and_repair(project):
     edit(chapter, "contact.py#measure]", "contact.py#sweep]")
     edit(chapter, "r deep,", "r deep, 0.25 r, {{= 3}} {{quality.penalty.depth|.1f}},")
     edit(chapter, "frac > quality.lcp", "frac < quality.lcp")
+    edit(chapter, "are no typed numbers.", "are no typed numbers, {{no reference,\n0.5}}")
     printed = run_gate(project).stdout
     false = "quality.penalty.rest_penetration_frac < quality.lcp.rest_penetration_frac"
     for line, what in (
@@ -115,6 +117,7 @@ def test_every_fault_of_the_chapter_is_named_with_its_line_and_repair(project):
         (5, "'= 3': a typed number needs a reason: {{= NUMBER | REASON}}"),
         (5, "'quality.penalty.depth|.1f': 'quality.penalty.depth' is not there: no 'depth'"),
         (7, f"'{false}' does not hold; repair: correct the text"),
+        (12, "a typed number, 0.5; repair: write {{KEY|FORMAT}}"),
     ):
         assert f"{CHAPTER}:{line}: {what}" in printed
     assert "includes fligt, and contact.py has no such region; repair: name one of" in printed
@@ -151,6 +154,18 @@ def test_changed_comment_costs_one_command_after_the_diff_was_read(project):
     assert (
         hashes["sweep"] == hashlib.sha256((first.code + "# a better word\n").encode()).hexdigest()
     )
+
+
+def test_region_hash_moves_only_when_every_section_that_speaks_of_it_was_read(project):
+    def hashes():
+        return yaml.safe_load((project / "meta.yaml").read_text("utf-8"))["region_hashes"]
+
+    before = hashes()
+    edit(project / "contact.py", "# --- region: sweep ---\n", "# --- region: sweep ---\n# new\n")
+    run_gate(project, "--accept", "chapter/code")
+    assert hashes() == before
+    run_gate(project, "--accept", "chapter/a-sweep")
+    assert {name for name, sha in hashes().items() if sha != before[name]} == {"sweep"}
 
 
 def test_edited_sentence_waits_for_a_reader_and_shows_what_changed(project):
@@ -194,12 +209,13 @@ def test_results_and_ledger_of_other_code_are_stale_until_measured_again(project
     assert "section skip was measured" not in run_gate(project).stdout
 
 
-def test_row_of_the_ledger_is_whole_or_pending(project):
-    (project / "wallclock.csv").write_text(PENDING + "ch3.5-contact,cpu,0.01,,,,PENDING\n")
-    assert (
-        "wallclock.csv:3: neither a whole MEASURED row nor a PENDING one"
-        in run_gate(project).stdout
-    )
+def test_ledger_has_its_header_and_each_row_is_whole_or_pending(project):
+    for text, wrong in (
+        (PENDING + "ch3.5-contact,cpu,0.01,,,,PENDING\n", "3: neither a whole MEASURED row nor a"),
+        (PENDING.replace("tier", "machine"), "1: the header must be chapter,tier,wallclock_min"),
+    ):
+        (project / "wallclock.csv").write_text(text)
+        assert f"wallclock.csv:{wrong}" in run_gate(project).stdout
 
 
 def test_measuring_writes_a_whole_row_of_todays_code(project):
@@ -223,6 +239,14 @@ def test_block_of_the_readme_is_written_whole_and_waits_for_a_reader(project):
     head, end = README.split("<!-- end -->")
     assert (project / "README.md").read_text("utf-8") == f"{head}| a |\n<!-- end -->{end}"
     assert "section README/run changed; repair: read it, then" in run_gate(project).stdout
+
+
+def test_blocks_of_the_readme_are_what_is_written_of_the_results():
+    pytest.importorskip("scipy", reason="scipy is not installed")
+    text = (ROOT / "README.md").read_text("utf-8")
+    for name in results.FOLDERS:
+        block = import_module(f"curriculum.{name}.report").readme(results.load(name))
+        assert f"-->\n{block.strip()}\n<!-- end -->" in text, name
 
 
 def test_runs_are_kept_until_the_code_changes(project):

@@ -18,7 +18,7 @@ NOT_PROSE = re.compile(
     FENCE.pattern + r"""
     |<!--.*?-->
     |\$\$.+?\$\$|\$[^$\n]+\$
-    |\{\{.*?\}\}
+    |\{\{[^\n]*?\}\}
     |\[[^]]*\]\((?:try|drag):[^)]*\)|\]\([^)]*\)|https?://\S+|</?[a-z][^>]*>
     |^\[[^]]*\]:[^\n]*
     |(`+)[^`]+\2
@@ -87,12 +87,19 @@ class Gate:
                 self.say("meta.yaml", 1, what, f"{GATE} --accept, with no name")
 
     def hashes(self, accepted=()) -> dict:
-        """What meta.yaml holds once these sections have been read; those that are gone are not."""
-        was = self.meta["section_hashes"]
-        now = was | {name: self.sections[name].sha for name in accepted}
+        """What meta.yaml holds once these sections have been read; those that are gone are not.
+
+        A region's hash moves when all sections that speak of the region have been read.
+        """
+        read = self.meta["section_hashes"] | {name: self.sections[name].sha for name in accepted}
+        regions = {name: region.sha for name, region in self.regions.items()}
+        for section in self.unread:
+            if section.name not in accepted:
+                waiting = {region.name for region in section.regions}
+                regions |= {n: self.meta["region_hashes"].get(n, "") for n in waiting}
         return {
-            "region_hashes": {name: region.sha for name, region in self.regions.items()},
-            "section_hashes": {name: now[name] for name in self.sections if name in now},
+            "region_hashes": regions,
+            "section_hashes": {name: read[name] for name in self.sections if name in read},
         }
 
     def check_numbers(self):

@@ -33,7 +33,9 @@ TIMED = (*CODE, "curriculum/recording.py")  # what a default run runs
 
 def rows() -> list:
     """The rows, dicts of str. Raises ValueError `file:line: what`."""
-    _, *lines = LEDGER.read_text("utf-8").splitlines()
+    header, *lines = LEDGER.read_text("utf-8").splitlines()
+    if header != ",".join(COLUMNS):
+        raise ValueError(f"wallclock.csv:1: the header must be {','.join(COLUMNS)}")
     for number, line in enumerate(lines, 2):
         if not ROW.fullmatch(line):
             what = "neither a whole MEASURED row nor a PENDING one"
