@@ -32,7 +32,7 @@ def write(path, runs, scene):
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
 
     A run that is no model's may have any name of [a-z0-9_.]. Whole columns are sent, in rerun's
-    strict mode. The timelines are step and sim_time (at most 9e9 s). The entities are
+    strict mode. The timelines are step and sim_time (up to 9e9 s). The entities are
     world/MODEL/{ground,table,balls,pushes} and CURVE/MODEL.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
@@ -55,10 +55,12 @@ def rgba(color):
 
 
 def timelines(t):
-    """The columns of time, step and sim_time, in whole nanoseconds, so that no stamp is off."""
-    nanoseconds = np.round(t * 1e9).astype("timedelta64[ns]")
-    steps = rr.TimeColumn("step", sequence=np.arange(len(t)))
-    return [steps, rr.TimeColumn("sim_time", duration=nanoseconds)]
+    """The columns of time: step, and sim_time where 64 bits of nanoseconds can hold it."""
+    times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
+    if t[-1] < 9e9:
+        nanoseconds = np.round(t * 1e9).astype("timedelta64[ns]")  # whole: no stamp is off
+        times.append(rr.TimeColumn("sim_time", duration=nanoseconds))
+    return times
 
 
 def send_table(recording, model):

@@ -174,8 +174,8 @@ def test_other_runs_than_the_models_are_recorded_under_their_names_in_colours_of
     assert "/world/yours/pushes" not in recording.static, "of many balls the arrows are a thicket"
 
 
-@pytest.mark.parametrize("model, dt, stiffness", [("penalty", 1e3, 1e300), ("lcp", 1e3, 1e4)])
-def test_a_run_that_overflows_or_has_the_longest_steps_is_recorded(
+@pytest.mark.parametrize("model, dt, stiffness", [("penalty", 1e5, 1e300), ("lcp", 1e200, 1e4)])
+def test_a_run_that_overflows_or_outlasts_64_bit_nanoseconds_is_recorded(
     model, dt, stiffness, tmp_path
 ):
     scene = contact.build_scene("drop")
