@@ -24,6 +24,8 @@ import ex4_predict_soft as ex4  # noqa: E402
 import predict  # noqa: E402
 import trials  # noqa: E402
 
+import contact  # noqa: E402
+
 ALL_DONE = "all exercises are done"
 BETS = {"ex1": ex1, "ex3": ex3, "ex4": ex4}
 FILES = {path.name[:3]: path.name for path in sorted((ROOT / "exercises").glob("ex[0-9]_*.py"))}
@@ -192,6 +194,28 @@ RIGHT = [
 @pytest.mark.parametrize("blank, function", RIGHT)
 def test_a_right_fill_passes_in_every_form(blank, function):
     assert trials.judge(exercise(**{blank: function}), blank) == ("right", "")
+
+
+def test_the_answers_of_exercise_5_fulfil_what_a_contact_is():
+    """No pull, no v_n below its target, and no push where v_n is above it: only one answer does."""
+    for case in blanks.stacks():
+        count, found = len(case["contacts"]), blanks.run_stack(contact.solve_contacts, case)
+        lam, v = found[:count], np.reshape([*found[count:], 0.0, 0.0], (-1, 2))  # -1: the floor
+        for push, (a, b, angle, target) in zip(lam, case["contacts"]):
+            above = (v[a] - v[b]) @ (math.sin(angle), math.cos(angle)) - target
+            assert push >= 0.0 and above >= -1e-9 and push * above <= 1e-9
+
+
+def test_the_matrix_of_exercise_6_is_the_step_of_penalty():
+    for case in blanks.BLANKS["step_matrix"].inputs:
+        mass, stiffness, damping, dt = case.values()
+        rest = contact.GRAVITY * mass / stiffness
+        for column, (depth, v_n) in enumerate([(-0.1 * rest, 0.0), (0.0, 1e-5)]):
+            ball = contact.Ball(0.0, 0.1 + rest - depth, 0.0, v_n, mass, 0.1)
+            contact.penalty_step([ball], dt, stiffness, damping)
+            after = np.array([0.1 + rest - ball.y, ball.vy]) / (depth or v_n)
+            expected = np.array(blanks.matrix(*case.values()))[:, column]
+            assert after == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize(

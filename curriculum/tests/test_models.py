@@ -5,6 +5,7 @@ the scenes, and shrinks one that fails to the simplest.
 """
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -131,8 +132,7 @@ def depths_at_rest(model, mass, stiffness=1e4):
 TOWERS = [[1.0], [0.1], [10.0], [1.0, 0.5, 2.0]]
 
 
-@pytest.mark.parametrize("mass", TOWERS)
-@pytest.mark.parametrize("stiffness", [1e4, 1e5])
+@pytest.mark.parametrize("mass, stiffness", [*product(TOWERS, (1e4, 1e5)), ([1.0], 1e6)])
 def test_ball_at_rest_sinks_by_the_weight_that_its_contact_carries_over_k(mass, stiffness):
     depth, load = depths_at_rest("penalty", mass, stiffness)
     assert depth == pytest.approx(load / stiffness, rel=1e-6)
@@ -224,6 +224,11 @@ def test_no_seed_starts_a_stack_or_pile_inside_the_floor():
     for seed in range(50):
         for scene in (build_scene("stack", seed), build_scene("pile", seed, 30)):
             assert contact.smallest_gap(scene.q0[None], scene.radius)[0] > -1e-15
+
+
+def test_the_damper_resists_closing_and_never_pulls():
+    force = contact.penalty_normal_force
+    assert [force(0.01, v_n, 1e4, 80.0) for v_n in (-1.0, 0.0, 1.0, 2.0)] == [180, 100, 20, 0]
 
 
 @pytest.mark.parametrize("model", STEPPED)
