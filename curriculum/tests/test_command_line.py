@@ -99,11 +99,15 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
     "--scheduler localhost:8786",
     "--scene drop --bodies 2", "--scene bounce --bodies 1", "--solref 0.02 0", "--solref -1 1",
     "--solref 0.02 1e-162", "--stiff 3", "--no-such-flag",
-    "--scene pile --steps 1000000 --bodies 10000",
 ])  # fmt: skip
 def test_flags_that_contradict_one_another_are_refused(flags, capsys):
     err = refused(main(capsys, *flags.split()))
     assert any(word in err for word in flags.split() if word.startswith("--"))
+
+
+def test_what_no_machine_can_hold_is_refused_before_it_runs(capsys):
+    err = refused(main(capsys, "--scene", "pile", "--steps", "1000000", "--bodies", "10000"))
+    assert "--steps 1000000 of 10000 balls need 3202 GB of memory; allowed: " in err
 
 
 def test_the_scenes_own_restitution_and_damping_can_be_asked_for_as_published(tmp_path, capsys):

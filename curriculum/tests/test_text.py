@@ -186,6 +186,9 @@ def test_section_that_does_not_exist_cannot_be_accepted_and_gone_ones_are_taken_
     assert "section chapter/a-sponge-in-water was never read" in failed.stdout
     assert run_gate(project, "--accept", "chapter/a-sponge-in-water").returncode == 0
     assert "chapter/a-sponge:" not in (project / "meta.yaml").read_text("utf-8")
+    edit(project / "meta.yaml", "  sweep:", "  swept:")
+    assert "region_hashes that are not those of today: swe" in run_gate(project).stdout
+    assert run_gate(project, "--accept").returncode == 0
     assert run_gate(project).returncode == 0
 
 
