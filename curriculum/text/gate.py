@@ -83,7 +83,7 @@ class Gate:
         for key, hashes in self.hashes().items():
             wrong = hashes.items() ^ self.meta[key].items()
             if wrong and not self.unread:
-                what = f"{key} that are not those of today: {', '.join(dict(wrong))}"
+                what = f"{key} that are not those of today: {', '.join(sorted(dict(wrong)))}"
                 self.say("meta.yaml", 1, what, f"{GATE} --accept, with no name")
 
     def hashes(self, accepted=()) -> dict:
