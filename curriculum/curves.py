@@ -4,12 +4,8 @@ import numpy as np
 
 import contact
 
-COLORS = {
-    "penalty": "#d55e00",
-    "lcp": "#0072b2",
-    "soft": "#cc79a7",
-    "exact": "#009e73",
-}  # safe for colour-blind readers (Okabe and Ito)
+# safe for colour-blind readers (Okabe and Ito)
+COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "soft": "#cc79a7", "exact": "#009e73"}
 OTHERS = ("#e69f00", "#56b4e9", "#f0e442", "#999999")  # of runs with names of their own
 
 
@@ -34,25 +30,19 @@ def contact_impulses(run, scene):
 @np.errstate(all="ignore")
 def curves(runs, scene):
     """What is plotted of runs {model: Run}, {title: {model: values (S,)}}."""
-    drawn = {
-        "height [m], mean": {},
-        "penetration [r]": {},
-        "impulse of floor [N s]": {},
-        "energy above start [J]": {},
-        "rises of energy [J]": {},
-    }
+    drawn = {}
     for model, run in runs.items():
         total = contact.energy(run.q, run.v, scene.mass)
         depth = np.maximum(-contact.smallest_gap(run.q, scene.radius), 0.0)
-        values = (
-            run.q[:, 1].mean(-1),
-            depth / scene.radius[0],
-            contact_impulses(run, scene)[:, 1].sum(-1),
-            total - total[0],
-            np.maximum(np.diff(total, prepend=total[0]), 0.0).cumsum(),
-        )
-        for lines, line in zip(drawn.values(), values):
-            lines[model] = line
+        lines = {
+            "height [m], mean": run.q[:, 1].mean(-1),
+            "penetration [r]": depth / scene.radius[0],
+            "impulse of floor [N s]": contact_impulses(run, scene)[:, 1].sum(-1),
+            "energy above start [J]": total - total[0],
+            "rises of energy [J]": np.maximum(np.diff(total, prepend=total[0]), 0.0).cumsum(),
+        }
+        for title, line in lines.items():
+            drawn.setdefault(title, {})[model] = line
     return drawn
 
 
