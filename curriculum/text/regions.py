@@ -24,7 +24,9 @@ REGION = re.compile(
 )
 MARKER = re.compile(r"^ *# *-+ *(end)? *region\b.*$", re.IGNORECASE | re.MULTILINE)
 # What a piece of code defines: functions, classes, and constants by their capitals.
-DEFINITION = re.compile(r"^\s*(?:(?:def|class)\s+(\w+)|([A-Z][A-Z0-9_]*)\s*=(?!=))", re.MULTILINE)
+DEFINITION = re.compile(
+    r"^\s*(?:(?:def|class)\s+(\w+)|([A-Z][A-Z0-9_]*)(?:, \w+)*\s*=(?!=))", re.MULTILINE
+)
 DOCSTRING = re.compile(r'(?:#[^\n]*\n|\s)*(?:""".*?""")?', re.DOTALL)
 CODE_LINE = re.compile(r"^[^\s#].*", re.MULTILINE)
 
