@@ -57,7 +57,7 @@ GRAVITY = -9.81         # m/s^2, along y
 RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
 CONTACT_MARGIN = 1e-3   # m: lcp treats a smaller gap as contact, so a resting ball stays listed
 MOST_SWEEPS = 10_000    # exact and soft give up here, if their impulses have not settled
-LAST_BITS = 2.0**-42    # of soft: its sweeps end at corrections below this share of the speeds
+LAST_BITS = 2.0**-42    # chosen: soft's sweeps end at corrections below this share of the speeds
 SCENES = ("drop", "bounce", "stack", "pile")
 # --- endregion ---
 

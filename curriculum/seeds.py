@@ -24,7 +24,8 @@ def report(args):
         return contact.fail(f"argument --scheduler: {error}")
     rows = {}
     for model in contact.MODELS:
-        rows |= summary(model, [each[model] for each in found if model in each])
+        if mine := [each[model] for each in found if model in each]:
+            rows |= summary(model, mine)
     rows, span = contact.rounded(rows), f"seeds {seeds[0]} to {seeds[-1]}"
     print(f"scene {args.scene}, {span}: {args.steps} steps of {args.dt:g} s")
     contact.print_table(rows, lambda row: ending(row, len(seeds)))
@@ -65,8 +66,6 @@ def summary(model, found):
 
     A row also counts the runs, those that exploded, and others that went through something.
     """
-    if not found:
-        return {}
     counts = {
         "runs": len(found),
         "blew_up": sum(row["blew_up"] for row in found),

@@ -166,7 +166,7 @@ def test_watch_checks_again_when_an_exercise_is_saved(copy):
     assert "implicit_spring is still a blank" in seen
 
 
-# Fills: ten right ones and every slip
+# Fills: right ones and every slip
 
 
 RIGHT = [
