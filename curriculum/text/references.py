@@ -22,6 +22,7 @@ import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -63,7 +64,8 @@ def cached(name: str, inputs, make, code=CODE):
     except (OSError, ValueError):
         pass
     made = make()
-    contact.write_whole(path, json.dumps({"about": about, "made": made}))
+    with suppress(OSError):     # a folder that cannot be written costs time, and no number
+        contact.write_whole(path, json.dumps({"about": about, "made": made}))
     return made
 
 
