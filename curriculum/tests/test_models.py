@@ -131,8 +131,9 @@ def depths_at_rest(model, mass, stiffness=1e4):
 TOWERS = [[1.0], [0.1], [10.0], [1.0, 0.5, 2.0]]
 
 
-@pytest.mark.parametrize("mass", TOWERS)
-@pytest.mark.parametrize("stiffness", [1e4, 1e5])
+@pytest.mark.parametrize(
+    "mass, stiffness", [*((mass, k) for mass in TOWERS for k in (1e4, 1e5)), ([1.0], 1e6)]
+)
 def test_ball_at_rest_sinks_by_the_weight_that_its_contact_carries_over_k(mass, stiffness):
     depth, load = depths_at_rest("penalty", mass, stiffness)
     assert depth == pytest.approx(load / stiffness, rel=1e-6)
