@@ -67,9 +67,8 @@ def complaint(status, said, refused, path):
     if status != 0 or refused.strip():
         return f"exit status {status}, stderr {refused.strip()[-100:]!r}"
     metrics = json.loads(path.read_text("utf-8"), parse_constant=int)  # so NaN is refused
-    known = [key for key, _ in contact.COLUMNS.values()]
-    if "exact" not in metrics["quality"]:  # which errors are taken against
-        known = [key for key in known if not key.endswith("error_frac")]
+    every = "exact" in metrics["quality"]  # else there is nothing to take errors against
+    known = [key for key, _ in contact.COLUMNS.values() if every or not key.endswith("error_frac")]
     for model, quality in metrics["quality"].items():
         (line,) = [line for line in said.splitlines() if line.split()[:1] == [model]][:1]
         unknown = None in map(quality.get, known)  # as metrics.json has what is not finite
