@@ -174,7 +174,7 @@ def test_a_pyramid_of_three_slides_apart_releases_and_lands_as_its_energy_says()
     assert np.abs(q[1:, 0] - np.array((-right, right, 0.0 * right)).T).max() < 1e-10 * R
 
 
-@pytest.mark.parametrize("digits, hits", [(0, 3), (1, 31), (2, 314)])
+@pytest.mark.parametrize("digits, hits", [(0, 3), (1, 31), (2, 314), (3, 3141)])
 def test_blocks_count_the_digits_of_pi(digits, hits):
     """A ball of 100^digits comes at 1 m/s, one of 1 waits, a fixed one is the wall (Galperin 2003).
 
