@@ -83,8 +83,7 @@ class PenaltyRow:
     def leaves(self, dt):
         """Whether a ball that starts a little off its rest depth moves away from it.
 
-        So little, half a percent of what would lift it or stop the damper's push, that no clamp
-        acts.
+        So little that no clamp acts: half a percent of what would lift it or stop the damper.
         """
         rest = R - G / self.stiffness
         little = 0.005 * G * min(1.0 / self.stiffness, dt * dt)
@@ -102,14 +101,8 @@ def penalty_leaves_above_its_critical_dt(row):
     theory = contact.critical_dt(1.0, k, c)
     measured = row.critical_dt(theory)
     yield "critical dt [s]", abs(measured - theory), LATE * theory
-    row.noted["penalty"] = {
-        "damping": c,
-        "stiffness": k,
-        "dt": row.dts,
-        "outcomes": "".join(map(row.outcome, row.dts)),
-        "theory": theory,
-        "measured": measured,
-    }
+    found = dict(damping=c, stiffness=k, dt=row.dts, theory=theory, measured=measured)
+    row.noted["penalty"] = found | {"outcomes": "".join(map(row.outcome, row.dts))}
 
 
 def lcp_sinks_as_deep_as_its_landing_step(dt):

@@ -263,10 +263,9 @@ def rises(run, motion, e):
 
 def soft_law(motion, e, solref):
     """(target [m/s], softness R [1/kg]) of every contact, by MuJoCo's formulas."""
-    (d0, d1, width, mid, power), (T, damping) = MUJOCO[0], solref or MUJOCO[1]
     bounces = e > 0.0 and solref is None
-    if bounces:
-        d0, d1, width, mid, power = HARD
+    d0, d1, width, mid, power = HARD if bounces else MUJOCO[0]
+    T, damping = solref or MUJOCO[1]
     x = np.clip(motion.depth / width, 0.0, 1.0)
     low, high = x**power / mid ** (power - 1), 1 - (1 - x) ** power / (1 - mid) ** (power - 1)
     y = np.where(x <= mid, low, high)

@@ -130,11 +130,10 @@ class Motion:
         distance = np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1])
         self.reach = np.concatenate((radius, radius[self.a] + radius[self.b]))
         self.depth = self.reach - np.concatenate((q[:, 1], distance), axis=1)
-        up = np.array([[0.0], [1.0]])
-        with np.errstate(invalid="ignore"):
-            normal = np.where(distance[:, None] > 0.0, apart / distance[:, None], up)
-        floor = np.broadcast_to(up, (*q.shape[:2], len(radius)))
-        self.normal = np.concatenate((floor, normal), axis=2)
+        self.normal = np.zeros((len(q), 2, len(self.sides)))
+        self.normal[:, 1] = 1.0  # up, at the floor and where two centres are one
+        of_pairs, distance = self.normal[:, :, len(radius) :], distance[:, None]
+        np.divide(apart, distance, out=of_pairs, where=distance > 0.0)
 
     def along(self, v):
         """The normal velocity [m/s] of every contact (S, C)."""

@@ -229,6 +229,22 @@ def test_a_wrong_fill_fails_and_is_named_from_its_values(blank, number):
     assert all(part in words for part in (f"{blank}(", "got ", "expected ", "where to look: "))
 
 
+@pytest.mark.parametrize("case", blanks.stacks())
+def test_the_stacks_are_solved_contact_by_contact(case):
+    """lam >= 0, v_n >= target, and one of the two holds as an equation; pushes keep momentum."""
+    count, mass = len(case["contacts"]), np.array(case["masses"])
+    found = blanks.run_stack(blanks.BLANKS["solve_contacts"].right, case)
+    lam, v = np.array(found[:count]), np.reshape(found[count:], (-1, 2))
+    gained, rest = np.zeros_like(v), np.append(v, [[0.0, 0.0]], axis=0)
+    for push, (a, b, angle, target) in zip(lam, case["contacts"]):
+        normal = np.array((math.sin(angle), math.cos(angle)))
+        spare = normal @ (rest[a] - rest[b]) - target
+        assert push >= 0.0 and spare > -1e-9 and abs(push * spare) < 1e-9
+        gained[a] += push * normal
+        gained[b] -= (b >= 0) * push * normal
+    assert gained == pytest.approx(mass[:, None] * (v - case["speeds"]), abs=1e-12)
+
+
 def test_what_raises_or_gives_no_number_fails_in_one_line():
     for function, part in (
         (lambda lam, dlam: lamda, "raised NameError"),  # noqa: F821

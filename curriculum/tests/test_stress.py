@@ -1,5 +1,6 @@
 """The stress test sees every fault that is put in, sees none where there is none, and counts."""
 
+import json
 import re
 import shutil
 import subprocess
@@ -8,9 +9,11 @@ from pathlib import Path
 
 import pytest
 
+import contact
 from curriculum.stress import __main__ as command
 from curriculum.stress import extremes, jobs, maps, scenes
 from curriculum.stress.claims import PROPERTIES
+from curriculum.stress.trial import Trial
 
 ROOT = Path(__file__).resolve().parents[2]
 HALF = "(1.0 if c.b is FLOOR else 0.5)"  # of pairs of balls
@@ -24,6 +27,8 @@ FAULTS = {  # what is wrong: (what stands in contact.py or exact.py, what is put
     "the stiffness of pairs is halved": (FORCE, FORCE.replace("stiffness", f"stiffness * {HALF}")),
     "the damping of pairs is halved": (FORCE, FORCE.replace("damping", f"damping * {HALF}")),
     "the Baumgarte gain of pairs is halved": (BIAS, BIAS.replace("baum", f"{HALF} * baum")),
+    "pairs have no Baumgarte gain":
+        (BIAS, BIAS.replace("baum", "(1.0 if c.b is FLOOR else 0.0) * baum")),
     "the time constant of soft is 10 % longer for pairs":
         (SPRING, SPRING.replace("solref", "(1.0 if c.b is FLOOR else 1.1) * solref[0], solref[1]")),
     "exact bounces with 0.9 e": (BACK, BACK.replace("-rest", "-0.9 * rest")),
@@ -100,6 +105,17 @@ def test_counts_add_up_and_what_could_not_fail_is_not_counted():
         assert share == max(row[2] for row in rows)
 
 
+def test_a_number_that_is_off_is_a_violation_and_a_flight_says_nothing_of_springs():
+    ball = {"x": [0.0], "y": [9.0], "vx": [0.0], "vy": [0.0], "mass": [1.0], "radius": [0.1]}
+    flight = Trial(scenes.numbered_spec(0, small=True) | ball | {"steps": 5})
+    found = jobs.judge(flight)
+    assert found["springs_push_as_hooke_and_the_damper_say"] == [0, 0.0, None]
+    assert found["what_nothing_touches_falls"][0] > 0
+    flight.run("lcp").v[3, 1, 0] += 1e-9
+    del flight.motions
+    assert "lcp, fall: off by 1e-09" in jobs.judge(flight)["what_nothing_touches_falls"][2]
+
+
 def assert_no_violation(todo):
     """Nothing that these jobs judge is violated, and each of them judges something."""
     added = jobs.added_up([jobs.run(job) for job in todo])
@@ -110,6 +126,12 @@ def test_maps_meet_the_theory_on_a_coarse_grid():
     assert_no_violation(list(maps.map_jobs(quick=True))[::3])
 
 
+def test_at_the_critical_dt_the_map_turns_from_settling_to_not():
+    row = maps.PenaltyRow(80.0, 1e4, maps.grid(1e-3, 0.1, 20))
+    settles = [dt for dt in row.dts if row.outcome(dt) == maps.SETTLES]
+    assert settles == [dt for dt in row.dts if dt < contact.critical_dt(1.0, 1e4, 80.0)]
+
+
 @pytest.mark.parametrize("flag", extremes.FLAGS)
 def test_the_ends_of_every_flag_give_a_right_report_or_one_line(flag):
     todo = [job for job in extremes.extreme_jobs(quick=True) if f" {flag} " in job[0]]
@@ -118,9 +140,12 @@ def test_the_ends_of_every_flag_give_a_right_report_or_one_line(flag):
 
 def test_a_wrong_word_and_a_traceback_would_be_seen(tmp_path):
     path = tmp_path / "metrics.json"
-    sunk = '{"quality": {"lcp": {"blew_up": false, "through": "the floor"}}}'
-    path.write_text(sunk, "utf-8")
-    assert "called ok" in extremes.complaint(0, "lcp  0.1 ok\n", "", path)
+    right = dict.fromkeys((key for key, _ in contact.COLUMNS.values()), 0.5)
+    right |= {"blew_up": False, "through": None, "contact_error_frac": None}
+    for wrong in ({}, {"through": "the floor"}, {"blew_up": True}, {"rest_jitter": None}):
+        path.write_text(json.dumps({"quality": {"lcp": right | wrong}}), "utf-8")
+        trouble = extremes.complaint(0, "lcp  0.1 ok\n", "", path)
+        assert "called ok" in trouble if wrong else trouble is None
     path.write_text('{"quality": {"lcp": {"depth": Infinity}}}', "utf-8")
     with pytest.raises(ValueError, match="Infinity"):
         extremes.complaint(0, "lcp ok\n", "", path)
