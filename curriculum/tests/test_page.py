@@ -309,7 +309,8 @@ def test_the_live_figure_shows_the_gaps_energy_and_push_of_contact_py(visit):
                 assert shown == pytest.approx(gaps[name][row], rel=0.05), (name, told)
             assert all(abs(gaps[name][row]) < 1e-9 for name in re.findall(r"(\w+) touching", told))
         for label in ("push / weight", "energy / start", "gap / r"):
-            page.locator("#fig-lanes button:text-matches('^Show')").evaluate("(node) => node.click()")
+            show = page.locator("#fig-lanes button:text-matches('^Show')")
+            show.evaluate("(node) => node.click()")
             page.wait_for_selector(f"#fig-lanes .axis-name:text('{label}')")
 
 
@@ -420,8 +421,8 @@ def test_sandbox_balls_fall_by_the_model_that_is_chosen_and_one_more_can_be_adde
         box.locator("button:text('Model: soft')").click()
         box.locator("button:text('Add a ball')").click()
         page.wait_for_selector("#fig-sandbox .words:text('5 balls by lcp')")
-        falls = "Number(document.querySelector('#fig-sandbox [data-handle=\"4\"]').ariaValueNow) < 1"
-        page.wait_for_function(f"() => {falls}")
+        last = "document.querySelector('#fig-sandbox [data-handle=\"4\"]')"
+        page.wait_for_function(f"() => Number({last}.ariaValueNow) < 1")
 
 
 def test_print_has_figures_and_answers_and_nothing_to_press(visit):
