@@ -3,19 +3,12 @@
 
 const KEY = "contact-chapter:";
 
-function kept(id) {
+// What `act` gives of the browser's storage; without one a bet lasts as long as the page is open.
+function stored(act) {
   try {
-    return JSON.parse(localStorage.getItem(KEY + id));
+    return act(localStorage);
   } catch {
     return null;
-  }
-}
-
-function keep(id, value) {
-  try {
-    localStorage.setItem(KEY + id, JSON.stringify(value));
-  } catch {
-    // without storage a bet lasts as long as the page is open
   }
 }
 
@@ -25,7 +18,7 @@ export class Bets {
 
   constructor(ids) {
     for (const id of ids) {
-      const before = kept(id);
+      const before = stored((held) => JSON.parse(held.getItem(KEY + id)));
       if (before) this.#made.set(id, before);
       if (document.getElementById(id)) this.#listen(id, document.getElementById(id));
       if (before) this.#show(id);
@@ -52,7 +45,7 @@ export class Bets {
 
   make(id, bet) {
     this.#made.set(id, bet);
-    keep(id, bet);
+    stored((held) => held.setItem(KEY + id, JSON.stringify(bet)));
     this.#show(id);
     this.#hear();
   }

@@ -90,22 +90,27 @@ def link_open(self, tokens, index, options, env):
     token = tokens[index]
     scheme, _, rest = token.attrGet("href").partition(":")
     if scheme == "try":
-        check(parse_qsl(rest) or [(rest, "")], **env)
+        check(asked(rest), **env)
         token.attrs = {"class": "try", "href": f"?{rest}"}
     elif scheme == "drag":
-        check([(rest, tokens[index + 1].content)], **env)
+        check([(rest, tokens[index + 1].content)], **env, others={})
         token.attrs = {"class": "drag", "data-knob": rest}
     return self.renderToken(tokens, index, options, env)
 
 
-def check(pairs, line, ranges):
+def asked(query):
+    """The (name, value) pairs of a query, also those without a value; at least one."""
+    return parse_qsl(query, keep_blank_values=True) or [(query, "")]
+
+
+def check(pairs, line, ranges, others=SETTINGS):
     """Raise ValueError at the first (name, value) that cannot be set."""
     for name, value in pairs:
         low, high = ranges.get(name, (1.0, 0.0))
         number = re.fullmatch(r"[\d.]+(e[+-]?\d+)?", value.replace(",", ""))
         fits = number and low <= float(number[0]) <= high
-        if not fits and not re.fullmatch(SETTINGS.get(name, r"\b\B"), value):
-            known = SETTINGS.get(name, f"the names {', '.join((*SETTINGS, *ranges))}")
+        if not fits and not re.fullmatch(others.get(name, r"\b\B"), value):
+            known = others.get(name, f"the names {', '.join((*others, *ranges))}")
             allowed = f"{low:g} to {high:g}" if name in ranges else known
             raise ValueError(f"{CHAPTER}:{line}: {name}={value} sets nothing; allowed: {allowed}")
 
@@ -173,7 +178,7 @@ def slots(text, line, ranges):
         )
     for kind, name in SLOT.findall(text):
         if kind == "show":
-            check(parse_qsl(name) if name != "none" else [], line, ranges)
+            check(asked(name) if name != "none" else [], line, ranges)
             yield "show", name
         else:
             yield "slot", f"{kind}:{name}" if name else kind

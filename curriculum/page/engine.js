@@ -58,7 +58,7 @@ const penaltyNormalForce = (depth, speed, stiffness, damping) =>
   positive(stiffness * depth - damping * speed);
 
 // One step of penalty. knobs.clampForce stands in for the clamped force.
-export function penaltyStep(state, { mass, radius }, knobs) {
+function penaltyStep(state, { mass, radius }, knobs) {
   const { x, y, vx, vy } = state;
   const { dt, stiffness, damping, clampForce = penaltyNormalForce } = knobs;
   const fx = y.map(() => 0);
@@ -162,7 +162,7 @@ function contactTarget(c, state, { dt, restitution, baumgarte }) {
 }
 
 // One step of lcp. knobs.project stands in for the clamp.
-export function lcpStep(state, { mass, radius }, knobs) {
+function lcpStep(state, { mass, radius }, knobs) {
   const { dt, iters, warm, project } = knobs;
   const contacts = detectContacts(state.x, state.y, radius, CONTACT_MARGIN);
   const targets = contacts.map((c) => contactTarget(c, state, knobs));
@@ -222,7 +222,7 @@ export function soften(c, state, { mass }, knobs) {
 }
 
 // One step of soft: lcp's step with another target, and softness.
-export function softStep(state, { mass, radius }, knobs) {
+function softStep(state, { mass, radius }, knobs) {
   const contacts = detectContacts(state.x, state.y, radius, 0);
   const soft = contacts.map((c) => soften(c, state, { mass }, knobs));
   const [targets, softness] = ["target", "softness"].map((key) => soft.map((each) => each[key]));
@@ -232,7 +232,7 @@ export function softStep(state, { mass, radius }, knobs) {
 
 // ---- runs
 
-const STEP = { penalty: penaltyStep, lcp: lcpStep, soft: softStep };
+export const STEP = { penalty: penaltyStep, lcp: lcpStep, soft: softStep };
 const PARTS = ["x", "y", "vx", "vy"];
 
 // A recording: n balls, steps + 1 rows; x, y, vx, vy are flat, row by row.

@@ -23,8 +23,20 @@ def module(name):
 
 
 def blank_cases():
-    """The inputs on which checks.py tries the blanks of exercise 2."""
-    return {name: module("blanks").BLANKS[name].inputs for name in BLANKS}
+    """How checks.py tries the blanks of exercise 2: inputs, what is right on them, and the slips,
+    each as what it gives, to five digits, and what it means."""
+    return {name: tried(module("blanks").BLANKS[name]) for name in BLANKS}
+
+
+def tried(blank):
+    """One of them."""
+    right, *slips = (
+        [function(*case.values()) for case in blank.inputs]
+        for function in (blank.right, *(slip for slip, _ in blank.slips))
+    )
+    rough = [[float(f"{value:.5g}") for value in values] for values in slips]
+    words = [meaning.replace("`", "") for _, meaning in blank.slips]
+    return {"inputs": blank.inputs, "right": right, "slips": list(zip(rough, words))}
 
 
 @functools.cache

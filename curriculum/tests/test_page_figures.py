@@ -18,6 +18,7 @@ SLOT = re.compile(r"<!-- figure: ([\w-]+) -->")
 SLOTS = sorted(SLOT.findall((ROOT / CHAPTER).read_text("utf-8")))
 # the other figures of the page are tested with the page itself
 EXPLAINING = sorted(set(SLOTS) - {"grab", "two", "lanes", "puzzle", "sandbox"})
+SHOWN = [*EXPLAINING, "puzzle"]
 DT, RADIUS, WEIGHT = 0.002, contact.RADIUS, -contact.GRAVITY
 
 
@@ -30,7 +31,7 @@ def page_of_figures():
     """A page that holds every explaining figure, and nothing else."""
     from curriculum.page.build import build
 
-    sections = "\n\n".join(f"## {name}\n\n<!-- figure: {name} -->" for name in EXPLAINING)
+    sections = "\n\n".join(f"## The {name}\n\n<!-- figure: {name} -->" for name in SHOWN)
     return build(f"# Figures\n\n{sections}\n")
 
 
@@ -100,7 +101,7 @@ def set_knobs(tab, query):
     tab.wait_for_selector("[data-ready]", state="attached")
 
 
-@pytest.mark.parametrize("name", EXPLAINING)
+@pytest.mark.parametrize("name", SHOWN)
 def test_every_handle_answers_to_arrow_keys_and_to_a_drag(tab, name):
     """Held where it is dragged: what a handle tells changes, and keyboard focus stays on it."""
     box = figure(tab, name)
@@ -161,6 +162,39 @@ def test_springs_show_the_depths_of_contact_py(tab):
     assert numbers(stack)[:2] == pytest.approx([1, WEIGHT / 5e3 / RADIUS], rel=5e-3)
 
 
+def pressed(tab, name):
+    """Gap [r] and force [m g] in a figure of the corner, its ball pressed as hard as it goes."""
+    box = figure(tab, name)
+    press(tab, handle(box, "hand"), "Shift+ArrowDown", 4)
+    text = said(box)
+    return float(re.search(r"gap (\S+) r", text)[1]), float(re.search(r"force (\S+) m g", text)[1])
+
+
+def test_each_model_keeps_to_its_own_law_on_the_corner(tab):
+    """Pressed: no gap with a wall; on a ramp F / k; in soft K d^2 depth = (1 - d) F."""
+    set_knobs(tab, "?stiffness=20000")
+    for name in ("corner", "corner-exact", "corner-lcp"):
+        gap, force = pressed(tab, name)
+        assert gap == 0 and force == 30
+    gap, force = pressed(tab, "corner-penalty")
+    assert -gap * RADIUS == pytest.approx(force * WEIGHT / 20000, rel=0.05)
+    gap, force = pressed(tab, "corner-soft")
+    (timeconst, ratio), solimp = contact.soft_defaults(0.0, DT)
+    stiff = 1 / (solimp[1] * timeconst * ratio) ** 2
+    d = contact.impedance(-gap * RADIUS, solimp)
+    assert stiff * d**2 * -gap * RADIUS == pytest.approx((1 - d) * force * WEIGHT, rel=0.05)
+
+
+@pytest.mark.parametrize("k, rests", [(1e4, True), (1e6, False)])
+def test_puzzle_tells_how_deep_a_spring_sinks_and_whether_it_comes_to_rest(tab, k, rests):
+    set_knobs(tab, f"?stiffness={k:.0f}&damping=80")
+    late = depths("penalty", dt=0.01, stiffness=k)[-200:]
+    assert (np.ptp(late) < 1e-3) == rests
+    puzzle = figure(tab, "puzzle")
+    assert numbers(puzzle)[0] == pytest.approx(WEIGHT / k / RADIUS, rel=5e-3)
+    assert f"It {'comes' if rests else 'never comes'} to rest" in said(puzzle)
+
+
 @pytest.mark.parametrize("dt, k, c", [(0.002, 1e4, 80.0), (0.0141, 1e4, 80.0), (0.01, 300.0, 0.0)])
 def test_drops_that_a_figure_looks_at_in_one_loop_have_the_bits_of_contact_py(dt, k, c):
     shown = evaluate("parts.js", page_data([]), f"drops({dt}, {k}, {c}, 2000).join()")
@@ -210,6 +244,8 @@ def test_crowd_and_blocks_show_the_chapters_numbers(tab):
         press(tab, handle(blocks, "n"), "ArrowDown", 4)
         press(tab, handle(blocks, "n"), "ArrowUp", n)
         assert f"exact counts {impacts} impacts" in said(blocks)
+        counted = int(re.search(r"lcp at dt = 2 ms counts (\d+)", said(blocks))[1])
+        assert n < 3 or counted < impacts  # they come faster than its steps
 
 
 def test_slide_leaves_at_two_thirds_and_bounces_end_when_they_should(tab):

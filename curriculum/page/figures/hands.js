@@ -1,7 +1,7 @@
 /* Balls to lift, drop and throw, in real time: on the first screen one, by the exact model, which
  * gives back a fixed share of its speed; in the sandbox many, by the model that is chosen. */
 import { arrow, ball, el, label, number, round, table, within } from "../draw.js";
-import { lcpStep, penaltyStep, runExact, softStep, stateAt } from "../engine.js";
+import { runExact, stateAt, STEP } from "../engine.js";
 import { knobs, R, scene } from "../parts.js";
 
 const GROUND = 46; // px of table below its top
@@ -112,7 +112,6 @@ const grab = {
 
 // ---- the sandbox
 
-const STEP = { soft: softStep, lcp: lcpStep, penalty: penaltyStep };
 const NEXT = { soft: "lcp", lcp: "penalty", penalty: "soft" };
 const MOST = 9; // balls
 const WALL = 1e3; // m: the radius of two held balls that serve as walls

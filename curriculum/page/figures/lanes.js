@@ -9,7 +9,8 @@ import { knobsOf, sceneOf, startOf } from "../store.js";
 const LONGEST = 4; // s
 const SECONDS = 5; // that a run through the window takes
 const [GROUND, BELOW] = [26, 66]; // px of table, and of all that is below its top
-const NEXT = { drop: "bounce", bounce: "stack", stack: "drop", gap: "energy", energy: "gap" };
+const NEXT = { drop: "bounce", bounce: "stack", stack: "drop" }; // scenes, and what the chart shows
+Object.assign(NEXT, { gap: "push", push: "energy", energy: "gap" });
 const nextScene = ({ values }) => NEXT[values.scene];
 // which quantities change a model's run
 const USES = {
@@ -116,16 +117,22 @@ function around(low, high, name) {
   return axis(domain, name, ...steps(...domain, 4));
 }
 
+// One in powers of ten up to the greatest value, with room for a zero; `first`: its lowest ticks.
+function decades(most, name, ...first) {
+  const top = Math.min(1e12, 10 ** Math.ceil(Math.log10(most)));
+  const tens = [[1e3, "10³"], [1e6, "10⁶"], [1e9, "10⁹"], [1e12, "10¹²"]];
+  const ticks = [...first, ...tens].filter((each) => (each[0] ?? each) <= top);
+  return { ...axis([0.1, top], name, ...ticks), log: true, zero: true };
+}
+
 const CHARTS = {
   gap([least, most]) {
     const low = Math.min(least, -0.002);
     return around(low, Math.max(Math.min(most, 2), -0.25 * low), "gap / r (below 0: overlap)");
   },
+  push: ([, most]) => decades(Math.max(10, most), "push / weight", [0, "0"], 1, 10, 100),
   energy([least, most]) {
-    if (most <= 5) return around(least, most, "energy / start");
-    const top = Math.min(1e12, 10 ** Math.ceil(Math.log10(most)));
-    const tens = [1, [1e3, "10³"], [1e6, "10⁶"], [1e9, "10⁹"], [1e12, "10¹²"]];
-    return { ...axis([0.1, top], "energy / start", ...tens), log: true, zero: true };
+    return most > 5 ? decades(most, "energy / start", 1) : around(least, most, "energy / start");
   },
 };
 
@@ -138,7 +145,7 @@ function chartOf(view, shown, height) {
     return { model, xs: run.t, ys: each[chart], from: first, to: last + 1, markers };
   });
   const cursor = { x: timeOf(view), kind: "cursor" };
-  const level = chart === "gap" ? [{ y: 0 }] : [];
+  const level = { gap: [{ y: 0 }], push: [{ y: 1, kind: "dashed" }], energy: [] }[chart];
   return plot([0, view.height - height, view.width, height], {
     margin: 52,
     x: axis([from, to], "time (s)", ...steps(from, to, view.width < 420 ? 4 : 6)),
