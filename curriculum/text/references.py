@@ -180,7 +180,7 @@ def stale(operand: str) -> bool:
 def typeset(number: str) -> str:
     """A number as print has it: -7e-05 as −7 × 10⁻⁵."""
     mantissa, _, power = number.partition("e")
-    raised = f" × 10{str(int(power)).translate(RAISED)}" if power else ""
+    raised = f"\u00a0×\u00a010{str(int(power)).translate(RAISED)}" if power else ""
     return mantissa.replace("-", "−") + raised
 
 
