@@ -8,7 +8,7 @@ import { R, scene, softKnobs } from "../parts.js";
 const PULL = 64; // px below the ball at which the hand presses hardest
 // What a picture shows: gaps from low to high [r], a radius in px, the hardest press [m g], ticks.
 const WIDE = { low: -0.4, high: 1, r: 60, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
-const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.02, 0, 0.04], ys: [0, 4, 8, 12] };
+const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12] };
 
 /* A figure of the corner with a model's law(view): {gap(load), curve, most}, the gap [r] under a
  * load [m g], the line that it allows as points, and the hardest press that fits into the picture.
