@@ -70,13 +70,14 @@ def exercise(path, facts):
     if hasattr(source, "CHOICES"):
         text = re.sub(r"\s*Read CHOICES.*?(?=\n\s*\n|$)", "", text, flags=re.DOTALL)
         numbers = measured(path.stem)
+        table = module("predict").table(source, numbers).splitlines()
         shown |= {
             "choices": list(source.CHOICES.items()),
             "question": source.QUESTION,
             "why": source.WHY_PROMPT,
             "answer": facts["answer"],
             "reasons": {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()},
-            "table": module("predict").table(source, numbers),
+            "table": [re.split(r"\s{2,}", row) for row in table],
         }
     return shown | {"task": task_of(text)}
 

@@ -10,7 +10,7 @@ import { Store } from "./store.js";
 // ---- the address
 
 function bindAddress(store) {
-  let timer = 0;
+  let [timer, begun] = [0, false];
   const write = (how) => {
     try {
       history[how](null, "", (store.write() || location.pathname) + location.hash);
@@ -20,9 +20,10 @@ function bindAddress(store) {
   };
   store.on(null, (values, changed, how) => {
     clearTimeout(timer);
-    if (how === "act" || how === "begin") write("pushState");
+    if (how === "act" || (how === "drag" && begun)) write("pushState");
     else if (how === "drag") timer = setTimeout(() => write("replaceState"), 100);
-    else if (how !== "address") write("replaceState");
+    else if (how === "text" || how === "end") write("replaceState");
+    begun = how === "begin"; // a drag that changes nothing leaves no trace behind the back button
   });
   window.addEventListener("popstate", () => store.read(location.search));
   store.read(location.search);

@@ -476,6 +476,29 @@ def test_on_a_phone_a_link_opens_half_a_screen_that_closes_as_one_reads_on(visit
         page.wait_for_selector("#figure:not(.docked)", state="attached")
 
 
+def finger(page, node, along, up):
+    """Put a finger on a node and draw it by so many px; it stays on the screen."""
+    node.evaluate("(node) => node.scrollIntoView({ block: 'center' })")
+    box, touch = node.bounding_box(), page.context.new_cdp_session(page)
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    for k in range(6):
+        at = {"x": x + along * k / 5, "y": y - up * k / 5}
+        kind = "touchMove" if k else "touchStart"
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [at]})
+        page.wait_for_timeout(30)
+
+
+def test_a_finger_holds_the_ball_and_drags_a_number_and_the_page_does_not_scroll(visit):
+    with visit(width=390, height=800, has_touch=True, is_mobile=True) as page:
+        finger(page, page.locator("#fig-grab .handle"), 20, 60)
+        assert "A hand holds it 0.5" in page.locator("#fig-grab .words").inner_text()
+        assert page.evaluate("scrollY") == 0
+    with visit(width=390, height=800, has_touch=True, is_mobile=True) as page:
+        number = page.locator(".drag[data-knob=stiffness]").first
+        finger(page, number, 50, 70)
+        assert number.inner_text() == "17,800"
+
+
 def test_without_scripts_text_figures_and_exercises_are_there(visit):
     with visit(javascript=False, shown=False) as page:
         assert not page.locator(".needs-js").filter(visible=True).count()

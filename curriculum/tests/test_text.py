@@ -289,6 +289,7 @@ def numbers():
         ("drop-dt-0.03:quality.lcp.depth|.1f", "1.3"),
         ("1 + quality.lcp.depth * 2|.4f", "1.1134"),
         ("(1 - quality.lcp.depth) / 1e-2|.2f", "94.33"),
+        ("0 - quality.lcp.depth|.1e", "−5.7\N{NO-BREAK SPACE}×\N{NO-BREAK SPACE}10⁻²"),
         ("quality.lcp.state", "ok"),
         ("= 1972 | year of the paper", "1972"),
         ("contact.RADIUS|.1f", "0.1"),

@@ -38,6 +38,7 @@ INCLUDE = re.compile(rf"\[include-by-region: (?P<file>[\w./-]+\.py)#(?P<name>{NA
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")
 HOLDS = re.compile(r"<!--\s*holds:\s*(.*?)\s*-->", re.DOTALL)
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FORMULA = re.compile(r"[\d.e+\-*/()<>=\s]+")  # of numbers and signs alone
 MEASURES = "curriculum/text/facts.py"
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
@@ -154,7 +155,9 @@ class Numbers:
             raise ValueError(f"{formula!r} is no number; known there: {known(value)}")
         if isinstance(value, float) and not form:
             raise ValueError(f"{formula!r} is a fraction and needs a format, such as |.3f")
-        return format(value, form) + " (stale)" * any(map(stale, OPERAND.findall(formula)))
+        text = format(value, form)
+        shown = typeset(text) if is_number(value) else text
+        return shown + " (stale)" * any(map(stale, OPERAND.findall(formula)))
 
     def holds(self, claim) -> bool:
         """Whether FORMULA < FORMULA (or <= > >= ==) is true."""
@@ -174,6 +177,13 @@ def stale(operand: str) -> bool:
     name, _, key = operand.partition(":")
     found = name in results.FOLDERS and results.load(name)[key.split(".")[0]]
     return bool(found and results.stale(found))
+
+
+def typeset(number: str) -> str:
+    """A number as print has it: -7e-05 as −7 × 10⁻⁵."""
+    mantissa, _, power = number.partition("e")
+    raised = f"\u00a0×\u00a010{str(int(power)).translate(RAISED)}" if power else ""
+    return mantissa.replace("-", "−") + raised
 
 
 def is_number(value) -> bool:

@@ -18,11 +18,12 @@ function draw(view) {
   const e = Math.min(0.95, view.get("restitution"));
   const [end, until] = [over(e), Math.max(1, 1.15 * over(e))];
   const { t, y } = run(e, until);
+  const side = end < 0.5 * until ? "start" : "end"; // where its words have room
   const { svg, sx, sy } = charted(view, {
     x: axis([0, until], "time (s)", ...steps(0, until)),
     y: axis([0, 1.15], "height (m)", 0, 0.5, 1),
     lines: [{ model: "exact", xs: t, ys: y }],
-    rules: [{ x: end, text: `over at ${number(end)} s`, kind: "dashed", row: 1, side: "end" }],
+    rules: [{ x: end, text: `over at ${number(end)} s`, kind: "dashed", row: 1, side }],
   });
   const r = sy(0) - sy(R);
   const tops = [1, 2, 3, 4].map((k) => top(e, k)).filter((time) => time < until);

@@ -34,10 +34,10 @@ function course(view, { t, y }) {
   });
   if (out > end) return chart.svg;
   const far = y.subarray(0, end).reduce((most, each) => Math.max(most, Math.abs(each)), 0);
-  const told = `↕ it leaves the chart, to ${number(far, 2)} m`;
+  const told = `↕ it goes to ${number(far, 2)} m`;
   const { right, top } = chart.box;
   const x = chart.sx(t[out]) + 8;
-  return chart.svg + label(told, ...(x + 230 < right ? [x, top + 14] : [right, top + 14, "end"]));
+  return chart.svg + label(told, ...(x + 150 < right ? [x, top + 14] : [right, top + 14, "end"]));
 }
 
 function draw(view) {

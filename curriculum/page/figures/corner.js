@@ -8,7 +8,7 @@ import { R, scene, softKnobs } from "../parts.js";
 const PULL = 64; // px below the ball at which the hand presses hardest
 // What a picture shows: gaps from low to high [r], a radius in px, the hardest press [m g], ticks.
 const WIDE = { low: -0.4, high: 1, r: 60, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
-const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.02, 0, 0.04], ys: [0, 4, 8, 12] };
+const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12] };
 
 /* A figure of the corner with a model's law(view): {gap(load), curve, most}, the gap [r] under a
  * load [m g], the line that it allows as points, and the hardest press that fits into the picture.
@@ -33,16 +33,18 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
   };
   const small = Math.min(1, view.width / 430);
   const [floor, r] = [view.height - 74, shown.r * small]; // px
+  const near = r > 100 && "inside"; // all arrows lie on the ball
   const picture = (left) => {
     const [x, y] = [left / 2, floor - r - gap * r];
-    const pull = Math.min(forceLength(load, 14), y - r - 2);
+    const top = Math.max(y - r, 64); // where the hand presses, also on a ball beyond the picture
+    const pull = Math.min(forceLength(load, 14), top - 2);
     const push = forceLength(load, 100 / Math.sqrt(shown.most));
     return [
       table(0, floor, left, 74),
-      ball(model, x, y, r, r > 100 ? "ball plainly" : "ball"),
+      ball(model, x, y, r, near ? "ball plainly" : "ball"),
       deepest === null ? "" : ball(model, x, floor - r - deepest * r, r, "ghost"),
-      arrow(`push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
-      hand > 0 ? line(x, y, x, 0, "hand") : arrow("weight", x, y - r - pull, 0, pull),
+      arrow(near || `push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
+      hand > 0 ? line(x, y, x, 0, "hand") : arrow(near || "weight", x, top - pull, 0, pull),
     ].join("");
   };
   const { svg, middle } = beside(view, chart, picture);

@@ -94,7 +94,7 @@ function drawGrab(view) {
     ].join(""),
     words: rests
       ? "It rests: the table pushes with exactly the ball’s weight."
-      : `${grip.text}. Let go.`,
+      : `${own.free ? "" : "A hand holds it "}${grip.text}.`,
     handles: [grip],
   };
 }

@@ -28,8 +28,8 @@ function draw(view) {
   const picture = (left) =>
     table(0, floor, left, 70) +
     ball("soft", left / 2, floor + ((depth * width) / R - 1) * PX, PX, "ball plainly") +
-    arrow("push m-soft", left / 2, floor - 12, 0, -110 * d) +
-    label(share, left / 2, floor - 20 - 110 * d, "middle");
+    arrow("inside", left / 2, floor - 12, 0, -110 * d) +
+    label(share, left / 2, floor - 20 - 110 * d, "middle", "tick on-ball");
   const { svg, sx, sy } = beside(view, chart, picture);
   const text = `${number(1000 * depth * width, 2)} mm deep, d = ${number(d, digits)}`;
   const range = { low: 0, high: MOST, step: 0.05, at: sx.back };

@@ -8,7 +8,7 @@ import { knobsOf, sceneOf, startOf } from "../store.js";
 
 const LONGEST = 4; // s
 const SECONDS = 5; // that a run through the window takes
-const [GROUND, BELOW] = [26, 66]; // px of table, and of all that is below its top
+const [GROUND, BELOW] = [26, 72]; // px of table, and of all that is below its top
 const NEXT = { drop: "bounce", bounce: "stack", stack: "drop" }; // scenes, and what the chart shows
 Object.assign(NEXT, { gap: "push", push: "energy", energy: "gap" });
 const nextScene = ({ values }) => NEXT[values.scene];
@@ -85,7 +85,7 @@ function range(shown, column) {
 }
 
 const [SHORT, LONG] = [["touching", "in", "up"], ["on the table", "inside", "above"]];
-function placeWords({ gap, row }, least = 1e-9, [touches, below, above] = SHORT) {
+function placeWords({ gap, row }, least = 1e-6, [touches, below, above] = SHORT) {
   if (!Number.isFinite(gap[row])) return "nowhere";
   if (Math.abs(gap[row]) < least) return touches;
   return `${number(Math.abs(gap[row]), 2)} r ${gap[row] < 0 ? below : above}`;
@@ -167,15 +167,15 @@ function draw(view) {
   const { from, to } = view.own;
   const sight = { low: from, high: to, step: view.get("dt"), at: sx.back, get: () => timeOf(view) };
   const place = (each, waiting) => (each.waits ? waiting : placeWords(each));
-  const told = shown.map((each) => `${each.model} ${place(each, "waits for your bet")}`);
+  const told = shown.map((each) => `${each.model} ${place(each, `waits for your bet in ${each.waits}`)}`);
   const touching = shown.filter((each) => view.running && each.push[each.row] > 0);
   const drawn = shown.map((each, k) =>
-    lane(each, k, place(each, `then? ${each.waits}`), wide, floor, high),
+    lane(each, k, place(each, "bet first"), wide, floor, high),
   );
   return {
     svg: table(0, floor, view.width, GROUND) + drawn.join("") + svg,
     words: `${text}: ${told.join(", ")}.`,
-    handles: [grip(view, "time", sx(time), box.bottom, "the time shown", text, sight)],
+    handles: [grip(view, "time", sx(time), box.bottom - 14, "the time shown", text, sight)],
     lit: touching.map((each) => LINES[each.model]),
   };
 }
@@ -247,7 +247,7 @@ const two = {
   caption:
     `The same ball, the same gravity, the same drop, ${SLOW} times slower than it happens. They ` +
     "differ in one thing: the force that the table applies.",
-  height: 330,
+  height: 346,
   narrow: 280,
   start: () => ({ time: null }),
   clock(view) {

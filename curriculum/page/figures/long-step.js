@@ -44,7 +44,7 @@ function circleOf(pairs, left, width, height) {
     label("−1", x - unit - 5, y + 18, "end", "tick"),
     label("1", x + unit + 5, y + 18, "start", "tick"),
     ...pairs.map((pair) => mark("penalty", ...at(pair), 7)),
-    least < -2.8 ? label(`← ${number(least)}`, x - 2.8 * unit - 8, y - 14) : "",
+    least < -2.8 ? label(`← ${number(least)}`, x - 2.8 * unit - 8, y - unit - 8) : "",
   ].join("");
 }
 

@@ -44,7 +44,7 @@ function draw(view) {
   const told = all.map(
     ([name, { softness, depth }]) => `${name} R = ${number(softness)} /kg, ${number(depth)} r deep`,
   );
-  const hard = mark("lcp", sx(0), sy(0), 7) + label("lcp, R = 0", sx(0) + 14, sy(0) - 10);
+  const hard = mark("lcp", sx(0), sy(0), 7) + label("lcp, R = 0", sx(0) + 58, sy(0) - 4);
   const softnessAt = (x) => sx.back(x) / (G * dt);
   const spring = {
     times: 1.1,

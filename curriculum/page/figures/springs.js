@@ -135,7 +135,7 @@ function drawStack(view) {
   const forces = depths.map((depth) => Math.max(0, (k * depth * R) / G));
   const pushes = forces.map((force, i) => {
     const y = at(i ? heights[i - 1] + R : 0);
-    const name = force > 0 ? label(`${number(force, 2)} m g`, x + PX + 24, y - 4) : "";
+    const name = force > 0 ? label(`${number(force, 2)} m g`, x + PX + 24, y - 8) : "";
     return arrow("push m-penalty", x + PX + 14, y, 0, -Math.min(60, forceLength(force, 20))) + name;
   });
   const pressed = time === null ? forceLength(-hand, 20) : 0;
@@ -150,9 +150,8 @@ function drawStack(view) {
   const open = depths.findIndex((depth) => depth < 0);
   const carried = plural(open < 0 ? COUNT : open, "ball");
   const bottom = depths[0] < 0 ? "open" : `${number(depths[0])} r deep`;
-  const lowest = `the lowest contact is ${bottom}`;
   const more = pressed ? `, and a hand that presses with ${number(-hand, 2)} m g` : "";
-  const text = `${lowest}, ${number(forces[0], 2)} m g`;
+  const text = `the lowest contact is ${bottom}, ${number(forces[0], 2)} m g`;
   const resting = heightsAtRest(k, COUNT, 0);
   const hold = (height, i) => {
     const low = at(resting[i]);
@@ -171,7 +170,7 @@ function drawStack(view) {
   };
   return {
     svg,
-    words: `It carries ${carried}${more}: ${lowest}, m g / k is ${number(G / k / R)} r.`,
+    words: `The lowest contact carries ${carried}${more}, ${bottom}; m g / k is ${number(G / k / R)} r.`,
     handles: heights.map(hold),
   };
 }

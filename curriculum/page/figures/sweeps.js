@@ -90,7 +90,7 @@ export const figure = {
   title: "The sweeps, contact after contact",
   caption:
     "Each contact mends itself and disturbs its neighbours; drag the uppermost ball’s speed " +
-    "upwards, and the clamp stops its contact from pulling.",
+    "upwards, play, and the clamp stops its contact from pulling.",
   height: 260,
   start: () => ({ time: COUNT, top: 0 }),
   clock: () => ({ end: LAST, rate: 2, name: "Play" }),
