@@ -33,6 +33,7 @@ from curriculum.text.references import INCLUDE
 
 CHAPTER = "curriculum/prose/chapter.md"
 SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock|show)(?:\s*:\s*(\S+))?\s*-->")
+UNIT = re.compile(r"(\d|^) (?=(?:r|s|m|mm|kg|J|N/m|m/s)\b)")  # the blank between number and unit
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 SETTINGS = {  # beside the quantities: what each may be
     "scene": "drop|bounce|stack",
@@ -76,6 +77,11 @@ def formula(text, options):
             "lacks; see curriculum/page/maths_font.py"
         )
     return shown
+
+
+def text(self, tokens, index, options, env):
+    """Plain words; no line ends between a number and its unit."""
+    return UNIT.sub("\\1\u00a0", escape(tokens[index].content))
 
 
 def code_inline(self, tokens, index, options, env):
@@ -125,7 +131,7 @@ def parser():
     md = MarkdownIt("commonmark", {"html": True, "typographer": True})
     md.enable(["table", "smartquotes", "replacements"])
     md.use(dollarmath_plugin, renderer=formula).use(anchors_plugin, max_level=4, slug_func=slug)
-    for rule in (code_inline, link_open):
+    for rule in (text, code_inline, link_open):
         md.add_render_rule(rule.__name__, rule)
     return md
 

@@ -4,6 +4,7 @@
  * A model is told apart three ways: colour and dash (CSS class m-NAME), and marker (here). */
 
 const ZERO_DECADES = 1; // room that a zero gets below the smallest decade of a log axis
+const RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 const NOISE = 5e-13; // contact.py prints twelve decimals; less is rounding
 
 export const round = (a) => Math.round(a * 100) / 100;
@@ -49,7 +50,8 @@ export function number(value, digits = 3) {
   if (size < NOISE) return "0";
   if (size < 1e-3 || size >= 1e6) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
-    return `${mantissa}e${Number(exponent)}`.replace(/-/g, "−");
+    const raised = exponent.replace("+", "").replace(/./g, (c) => RAISED["-0123456789".indexOf(c)]);
+    return `${mantissa} × 10${raised}`.replace("-", "−");
   }
   const long = size >= 10 ** (digits - 1);
   return (value < 0 ? "−" : "") + (long ? whole(Math.round(size)) : size.toPrecision(digits));

@@ -17,7 +17,6 @@ BOOKKEEPING = set(  # regions, and definitions of others, that are no idea of th
     "setup scenes ball flight run measure flags report files main quality stability "
     "warm_start remember raised make_balls state_of".split()
 )
-OPEN = {"exact_run", "slide"}  # long, and the heart of their sections
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
 
@@ -64,10 +63,9 @@ def piece(text, html, node, start, region):
     while not text[-1].strip():
         text, html = text[:-1], html[:-1]
     name = node.name if node else None
-    long = len(text) - said > LONG and name not in OPEN
     return {
         "html": Markup("".join(html)),
         "head": next(line for line in text if line.strip() and line[0] != "@"),
         "lines": len(text),
-        "folded": long or node is None or bool({name, region} & BOOKKEEPING),
+        "folded": len(text) - said > LONG or node is None or bool({name, region} & BOOKKEEPING),
     }

@@ -19,6 +19,7 @@ SLOTS = sorted(SLOT.findall((ROOT / CHAPTER).read_text("utf-8")))
 # the other figures of the page are tested with the page itself
 EXPLAINING = sorted(set(SLOTS) - {"grab", "two", "lanes", "puzzle", "sandbox"})
 SHOWN = [*EXPLAINING, "puzzle"]
+PLAIN = str.maketrans("−⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "--0123456789")  # how print sets minus and powers
 DT, RADIUS, WEIGHT = 0.002, contact.RADIUS, -contact.GRAVITY
 
 
@@ -54,8 +55,8 @@ def figure(tab, name):
 
 
 def said(box):
-    """What the figure says in words, with a plain minus and no commas within numbers."""
-    text = box.locator(".words").inner_text().replace("−", "-")
+    """What the figure says in words, its numbers as Python writes them."""
+    text = box.locator(".words").inner_text().replace(" × 10", "e").translate(PLAIN)
     return re.sub(r"(?<=\d),(?=\d{3}\b)", "", text)
 
 
@@ -160,6 +161,17 @@ def test_springs_show_the_depths_of_contact_py(tab):
     assert numbers(stack)[:2] == pytest.approx([3, 3 * WEIGHT / 5e3 / RADIUS], rel=5e-3)
     press(tab, handle(stack, "ball-1"), "ArrowUp", 3)
     assert numbers(stack)[:2] == pytest.approx([1, WEIGHT / 5e3 / RADIUS], rel=5e-3)
+
+
+def test_signs_are_those_of_contact_py(tab):
+    box = figure(tab, "signs")
+    press(tab, handle(box, "ball"), "ArrowLeft", 5)
+    press(tab, handle(box, "velocity"), "ArrowUp", 12)
+    a = contact.Ball(0.19, 0.3, 0.3, 0.0, 1.0, RADIUS)
+    b = contact.Ball(0.0, RADIUS, 0.0, 0.0, 1.0, RADIUS)
+    found = [c for c in contact.detect_contacts([a, b], margin=1.0) if c.a is a]
+    wanted = [number for c in found for number in (c.depth / RADIUS, c.v_n())]
+    assert numbers(box) == pytest.approx(wanted, rel=5e-3)
 
 
 def pressed(tab, name):

@@ -44,12 +44,12 @@ def rows() -> list:
 
 
 def show(row) -> str:
-    """A row's minutes as text: two digits, and seconds beside them where one feels those."""
+    """A row's time as text, with two digits: in seconds below a minute."""
     if row["status"] == "PENDING":
         return "not yet measured"
     minutes = float(row["wallclock_min"])
-    seconds = f" ({60 * minutes:.2g} s)" if minutes < 1 else ""
-    return f"{minutes:.2g} min{seconds}" + " (stale)" * stale(row)
+    time = f"{minutes:.2g} min" if minutes >= 1 else f"{60 * minutes:.2g} s"
+    return time + " (stale)" * stale(row)
 
 
 def code_hash() -> str:

@@ -7,7 +7,7 @@ import { R, scene, softKnobs } from "../parts.js";
 
 const PULL = 64; // px below the ball at which the hand presses hardest
 // What a picture shows: gaps from low to high [r], a radius in px, the hardest press [m g], ticks.
-const WIDE = { low: -0.4, high: 1, r: 60, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
+const WIDE = { low: -0.4, high: 1, r: 70, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
 const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12] };
 
 /* A figure of the corner with a model's law(view): {gap(load), curve, most}, the gap [r] under a
@@ -15,7 +15,7 @@ const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.03, 0, 0.05], 
  * extra(view, load): what else is seen, {under(chart), deepest [r], words}. */
 function corner(model, law, { extra = () => ({}), hand = 0.5, shown = WIDE, ...about }) {
   const draw = (view) => drawn(view, { model, shown, ...law(view) }, extra);
-  return { height: 260, start: () => ({ hand }), draw, ...about };
+  return { height: 300, start: () => ({ hand }), draw, ...about };
 }
 
 function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, extra) {

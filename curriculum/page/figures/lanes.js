@@ -85,7 +85,7 @@ function range(shown, column) {
 }
 
 const [SHORT, LONG] = [["touching", "in", "up"], ["on the table", "inside", "above"]];
-function placeWords({ gap, row }, least = 1e-6, [touches, below, above] = SHORT) {
+function placeWords({ gap, row }, least = 1e-9, [touches, below, above] = SHORT) {
   if (!Number.isFinite(gap[row])) return "nowhere";
   if (Math.abs(gap[row]) < least) return touches;
   return `${number(Math.abs(gap[row]), 2)} r ${gap[row] < 0 ? below : above}`;
@@ -98,7 +98,7 @@ function lane(each, k, told, wide, floor, high) {
   const { run, row, model } = each;
   const balls = Array.from(run.y.subarray(row * run.n, (row + 1) * run.n), (height) => {
     const y = floor - height * scale;
-    if (y < -R * scale) return label("↑", x, 20, "middle");
+    if (y < -R * scale) return arrow("weight", x, 58, 0, -50);
     return y < floor + 2 * R * scale ? ball(model, x, y, R * scale) : "";
   });
   const push = row > 0 ? Math.min(40, 14 * Math.sqrt(Math.max(each.push[row], 0))) : 0;

@@ -1,0 +1,81 @@
+/* The signs of a contact: normal, depth and v_n, of a ball with another ball and with the table. */
+import { arrow, ball, label, number, table, within } from "../draw.js";
+import { detectContacts, normalSpeed } from "../engine.js";
+import { R } from "../parts.js";
+
+const GROUND = 26; // px of table
+const ARROW = 0.1; // m in the picture for 1 m/s
+const [SIDE, TOP, FASTEST] = [0.45, 0.34, 1.5]; // m, m, m/s: how far one can drag
+
+const tidy = (value) => Number(value.toFixed(3));
+const wayOf = (speed) => (speed > 0 ? "separating" : speed < 0 ? "closing" : "neither");
+
+function draw(view) {
+  const { own } = view;
+  const { x, y, vx, vy } = own; // of ball a; ball b lies still in the middle
+  const scale = Math.min(680, view.width / 1.1); // px for 1 m
+  const floor = view.height - GROUND;
+  const place = (toX, toY) => [view.width / 2 + toX * scale, floor - toY * scale];
+  const contacts = detectContacts([x, 0], [y, R], [R, R], Infinity).filter((c) => c.i === 0);
+  const told = contacts.map((c) => {
+    const speed = normalSpeed(c, [vx, 0], [vy, 0]);
+    const [depth, v] = [number(c.depth / R), number(speed)];
+    return `a and ${c.j < 0 ? "table" : "b"}: depth ${depth} r, v_n ${v} m/s, ${wayOf(speed)}`;
+  });
+  const normals = contacts.map(({ j, nx, ny }) => {
+    const [fromX, fromY] = j < 0 ? place(x, 0) : place(nx * R, R + ny * R);
+    const [dx, dy] = [0.7 * R * scale * nx, -0.7 * R * scale * ny];
+    const name = label("n", fromX + dx + 8, fromY + dy + 5, "start", "axis-name");
+    return arrow("push m-exact", fromX, fromY, dx, dy) + name;
+  });
+  const [ax, ay] = place(x, y);
+  const [bx, by] = place(0, R);
+  const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);
+  const moveTo = (toX, toY) => {
+    own.x = tidy(within(-SIDE, toX, SIDE));
+    own.y = tidy(within(0, toY, TOP));
+  };
+  const speedTo = (toX, toY) => {
+    own.vx = tidy(within(-FASTEST, toX, FASTEST));
+    own.vy = tidy(within(-FASTEST, toY, FASTEST));
+  };
+  const back = (toX, toY) => [(toX - view.width / 2) / scale, (floor - toY) / scale];
+  const pull = (toX, toY) => [(toX - ax) / scale / ARROW, (ay - toY) / scale / ARROW];
+  const held = {
+    name: "ball",
+    ...{ x: ax, y: ay, r: R * scale, label: "ball a", value: y, text: told.join("; ") },
+    drag: (toX, toY) => moveTo(...back(toX, toY)),
+    nudge: (dx, dy) => moveTo(own.x + 0.01 * dx, own.y - 0.01 * dy),
+  };
+  const tip = {
+    name: "velocity",
+    ...{ x: tipX, y: tipY, r: 14, label: "the velocity of ball a", value: vy },
+    text: `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told.join("; ")}`,
+    drag: (toX, toY) => speedTo(...pull(toX, toY)),
+    nudge: (dx, dy) => speedTo(own.vx + 0.1 * dx, own.vy - 0.1 * dy),
+  };
+  return {
+    svg: [
+      table(0, floor, view.width, GROUND),
+      ball("fixed", bx, by, R * scale, "body"),
+      label("b", bx, by + 5, "middle", "on-ball"),
+      ball("exact", ax, ay, R * scale, "ball plainly"),
+      label("a", ax, ay - 0.5 * R * scale, "middle", "on-ball"),
+      ...normals,
+      arrow("weight", ax, ay, tipX - ax, tipY - ay),
+    ].join(""),
+    words: told.map((each) => `Contact of ${each}.`).join(" "),
+    handles: [held, tip],
+  };
+}
+
+export const figure = {
+  title: "The signs of a contact",
+  caption:
+    "The normal n points to a, the depth is positive in an overlap, and v_n while the two " +
+    "separate: drag ball a, and the tip of its velocity.",
+  height: 330,
+  narrow: 200,
+  start: () => ({ x: 0.24, y: 0.3, vx: 0.3, vy: -1.2 }),
+  draw,
+};
