@@ -98,7 +98,7 @@ const sponge = {
   caption:
     "The ball rests where the spring pushes with its weight, m g / k deep: press the ball, or " +
     "turn the ramp.",
-  height: 290,
+  height: 350,
   start: () => ({ press: null, time: null }),
   draw: drawSponge,
   ...springs,
