@@ -33,7 +33,7 @@ from curriculum.text.references import INCLUDE
 
 CHAPTER = "curriculum/prose/chapter.md"
 SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock|show)(?:\s*:\s*(\S+))?\s*-->")
-UNIT = re.compile(r"(\d|^) (?=(?:r|s|m|mm|kg|J|N/m|m/s)\b)")  # the blank between number and unit
+UNIT = re.compile(r"(\d|^) (?=(?:r|s|m|mm|kg|J|N|N/m|m/s)\b)")  # the blank between number and unit
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 SETTINGS = {  # beside the quantities: what each may be
     "scene": "drop|bounce|stack",
