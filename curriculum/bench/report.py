@@ -107,14 +107,13 @@ def skip_goals(section):
 
 def readme(sections):
     """The block of the project's README: a figure, a table, and what is missed."""
-    missed = [f"- {wanted} ({found})" for wanted, found, met in goals(sections) if not met]
+    missed = [f"{wanted} ({found})" for wanted, found, met in goals(sections) if not met]
     parts = ["![Run time against error: bounce](curriculum/bench/results/error-bounce.svg)",
              table(["", "exact", "lcp, best at 2 ms", "best other engine at 2 ms"],
                    error_rows(sections["accuracy"])) if "accuracy" in sections else "",
              table(["1,000 balls at rest", "lcp, compiled", "fastest other engine", "ratio"],
                    rest_rows(sections["pile"])) if "pile" in sections else "",
-             "Goals that are missed:" if missed else "No goal is missed.",
-             "\n".join(missed),
+             f"Missed: {'; '.join(missed)}." if missed else "No goal is missed.",
              "Everything, with settings and spread: [results](curriculum/bench/results/README.md)."]
     return "\n\n".join(filter(None, parts))
 

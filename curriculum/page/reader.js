@@ -52,13 +52,14 @@ export class Reader {
     lanes.redraw();
   }
 
-  // The last mark above the middle of the window says what is shown; and nothing is, while a figure
+  // The last mark above a line of the window says what is shown; and nothing is, while a figure
   // that takes the whole width is in sight.
   follow(set = true) {
     const { innerHeight } = window;
     const place = (each) => each.getBoundingClientRect();
     const seen = this.marks.filter((mark) => mark.offsetParent); // not behind a veil
-    const mark = seen.findLast((each) => place(each).top < 0.55 * innerHeight) || seen[0];
+    const line = this.beside.matches ? 0.7 : 1; // of the window; where no figure stands, at once
+    const mark = seen.findLast((each) => place(each).top < line * innerHeight) || seen[0];
     if (!mark) return;
     const over = (box) => box.height > 0 && box.top < innerHeight && box.bottom > 0;
     const back = mark.dataset.show === "none" || this.wide.some((each) => over(place(each)));
