@@ -31,7 +31,7 @@ export function drops(dt, stiffness, damping, steps) {
   return heights;
 }
 
-// How far such a ball still moves in the last rows [r]; as much as can be read off if it is nowhere.
+// How far such a ball still moves in the last rows [r]; FARTHEST if it is nowhere.
 export const FARTHEST = 1e9;
 export function stillMoves(dt, stiffness, damping, steps, rows) {
   const late = drops(dt, stiffness, damping, steps).subarray(-rows);

@@ -186,7 +186,7 @@ export class Stage {
   #listen() {
     const { svg } = this;
     svg.addEventListener("pointerdown", (event) => this.#grab(event));
-    // on a touch screen: within an SVG the style cannot say that a handle is no place to scroll from
+    // a finger: within an SVG the style cannot say that a handle is no place to scroll from
     const stay = (event) => this.#handle(event.target.dataset.handle) && event.preventDefault();
     svg.addEventListener("touchstart", stay, { passive: false });
     svg.addEventListener("pointermove", (event) => this.#drag(event));

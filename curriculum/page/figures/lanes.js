@@ -9,8 +9,11 @@ import { knobsOf, sceneOf, startOf } from "../store.js";
 const LONGEST = 4; // s
 const SECONDS = 5; // that a run through the window takes
 const [GROUND, BELOW] = [26, 72]; // px of table, and of all that is below its top
-const NEXT = { drop: "bounce", bounce: "stack", stack: "drop" }; // scenes, and what the chart shows
-Object.assign(NEXT, { gap: "push", push: "energy", energy: "gap" });
+// what a button shows next, of the scenes and of what the chart can show
+const NEXT = {
+  drop: "bounce", bounce: "stack", stack: "drop",
+  gap: "push", push: "energy", energy: "gap",
+};
 const nextScene = ({ values }) => NEXT[values.scene];
 // which quantities change a model's run
 const USES = {
@@ -166,8 +169,9 @@ function draw(view) {
   const text = `${time.toFixed(3)} s`;
   const { from, to } = view.own;
   const sight = { low: from, high: to, step: view.get("dt"), at: sx.back, get: () => timeOf(view) };
-  const place = (each, waiting) => (each.waits ? waiting : placeWords(each));
-  const told = shown.map((each) => `${each.model} ${place(each, `waits for your bet in ${each.waits}`)}`);
+  const place = (each, until) => (each.waits ? until : placeWords(each));
+  const waiting = (each) => `waits for your bet in ${each.waits}`;
+  const told = shown.map((each) => `${each.model} ${place(each, waiting(each))}`);
   const touching = shown.filter((each) => view.running && each.push[each.row] > 0);
   const drawn = shown.map((each, k) =>
     lane(each, k, place(each, "bet first"), wide, floor, high),

@@ -10,9 +10,46 @@ const [SIDE, TOP, FASTEST] = [0.45, 0.34, 1.5]; // m, m, m/s: how far one can dr
 const tidy = (value) => Number(value.toFixed(3));
 const wayOf = (speed) => (speed > 0 ? "separating" : speed < 0 ? "closing" : "neither");
 
+// Ball a and the tip of its velocity, as what one drags.
+function handlesOf({ own, width }, { scale, floor, place }, told) {
+  const { x, y, vx, vy } = own;
+  const [ax, ay] = place(x, y);
+  const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);
+  const moveTo = (toX, toY) => {
+    own.x = tidy(within(-SIDE, toX, SIDE));
+    own.y = tidy(within(0, toY, TOP));
+  };
+  const speedTo = (toX, toY) => {
+    own.vx = tidy(within(-FASTEST, toX, FASTEST));
+    own.vy = tidy(within(-FASTEST, toY, FASTEST));
+  };
+  const held = {
+    name: "ball",
+    x: ax,
+    y: ay,
+    r: R * scale,
+    label: "ball a",
+    value: y,
+    text: told,
+    drag: (toX, toY) => moveTo((toX - width / 2) / scale, (floor - toY) / scale),
+    nudge: (dx, dy) => moveTo(own.x + 0.01 * dx, own.y - 0.01 * dy),
+  };
+  const tip = {
+    name: "velocity",
+    x: tipX,
+    y: tipY,
+    r: 14,
+    label: "the velocity of ball a",
+    value: vy,
+    text: `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told}`,
+    drag: (toX, toY) => speedTo((toX - ax) / scale / ARROW, (ay - toY) / scale / ARROW),
+    nudge: (dx, dy) => speedTo(own.vx + 0.1 * dx, own.vy - 0.1 * dy),
+  };
+  return [held, tip];
+}
+
 function draw(view) {
-  const { own } = view;
-  const { x, y, vx, vy } = own; // of ball a; ball b lies still in the middle
+  const { x, y, vx, vy } = view.own; // of ball a; ball b lies still in the middle
   const scale = Math.min(680, view.width / 1.1); // px for 1 m
   const floor = view.height - GROUND;
   const place = (toX, toY) => [view.width / 2 + toX * scale, floor - toY * scale];
@@ -30,30 +67,6 @@ function draw(view) {
   });
   const [ax, ay] = place(x, y);
   const [bx, by] = place(0, R);
-  const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);
-  const moveTo = (toX, toY) => {
-    own.x = tidy(within(-SIDE, toX, SIDE));
-    own.y = tidy(within(0, toY, TOP));
-  };
-  const speedTo = (toX, toY) => {
-    own.vx = tidy(within(-FASTEST, toX, FASTEST));
-    own.vy = tidy(within(-FASTEST, toY, FASTEST));
-  };
-  const back = (toX, toY) => [(toX - view.width / 2) / scale, (floor - toY) / scale];
-  const pull = (toX, toY) => [(toX - ax) / scale / ARROW, (ay - toY) / scale / ARROW];
-  const held = {
-    name: "ball",
-    ...{ x: ax, y: ay, r: R * scale, label: "ball a", value: y, text: told.join("; ") },
-    drag: (toX, toY) => moveTo(...back(toX, toY)),
-    nudge: (dx, dy) => moveTo(own.x + 0.01 * dx, own.y - 0.01 * dy),
-  };
-  const tip = {
-    name: "velocity",
-    ...{ x: tipX, y: tipY, r: 14, label: "the velocity of ball a", value: vy },
-    text: `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told.join("; ")}`,
-    drag: (toX, toY) => speedTo(...pull(toX, toY)),
-    nudge: (dx, dy) => speedTo(own.vx + 0.1 * dx, own.vy - 0.1 * dy),
-  };
   return {
     svg: [
       table(0, floor, view.width, GROUND),
@@ -62,10 +75,10 @@ function draw(view) {
       ball("exact", ax, ay, R * scale, "ball plainly"),
       label("a", ax, ay - 0.5 * R * scale, "middle", "on-ball"),
       ...normals,
-      arrow("weight", ax, ay, tipX - ax, tipY - ay),
+      arrow("weight", ax, ay, ARROW * vx * scale, -ARROW * vy * scale),
     ].join(""),
     words: told.map((each) => `Contact of ${each}.`).join(" "),
-    handles: [held, tip],
+    handles: handlesOf(view, { scale, floor, place }, told.join("; ")),
   };
 }
 

@@ -148,6 +148,7 @@ function drawStack(view) {
     lens("stack-lens", "penalty", ...aside, PX, depths[0], 44),
   );
   const open = depths.findIndex((depth) => depth < 0);
+  const one = number(G / k / R); // r, of a ball alone
   const carried = plural(open < 0 ? COUNT : open, "ball");
   const bottom = depths[0] < 0 ? "open" : `${number(depths[0])} r deep`;
   const more = pressed ? `, and a hand that presses with ${number(-hand, 2)} m g` : "";
@@ -170,7 +171,7 @@ function drawStack(view) {
   };
   return {
     svg,
-    words: `The lowest contact carries ${carried}${more}, ${bottom}; m g / k is ${number(G / k / R)} r.`,
+    words: `The lowest contact carries ${carried}${more}, ${bottom}; m g / k is ${one} r.`,
     handles: heights.map(hold),
   };
 }
