@@ -20,9 +20,9 @@ sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
 import predict  # noqa: E402
 import trials  # noqa: E402
-from progress import FILES, done  # noqa: E402
+from progress import FILES, done, practise  # noqa: E402
 
-from curriculum.hints import command, missing, practise  # noqa: E402
+from curriculum.commands import command, missing  # noqa: E402
 
 try:
     import pytest
@@ -72,8 +72,11 @@ def watch(argv):
 
 def main():
     """Run the checks once, or again and again. Returns the exit status."""
-    parser = argparse.ArgumentParser(description="Check the exercises.", allow_abbrev=False,
-                                     epilog="All other flags are pytest's: -k ex2, --junit-xml.")
+    parser = argparse.ArgumentParser(
+        description="Check the exercises.",
+        allow_abbrev=False,
+        epilog="All other flags are pytest's: -k ex2, --junit-xml.",
+    )
     parser.add_argument("--watch", action="store_true", help="again whenever an exercise is saved")
     args, words = parser.parse_known_args()
     try:

@@ -841,7 +841,7 @@ def parse_flags(argv):
     for wrong, message in (
             (args.smoke and args.steps is not None, "--smoke has 800 steps: leave out --steps"),
             (args.seeds and args.seed is not None, "--seeds or --seed: leave out one of them"),
-            (args.seeds and not beside("seeds"), "--seeds needs the folder curriculum "
+            (args.seeds and not beside("run.seeds"), "--seeds needs the folder curriculum "
              "beside contact.py"),
             (args.seeds and args.plot, "--plot draws one run: leave out --seeds"),
             (args.scheduler and not args.seeds, "--scheduler is for many seeds: give --seeds"),
@@ -962,7 +962,7 @@ def write_files(args, metrics, runs, scene):
         if asked and runs:
             path = os.path.join(args.out, file)
             try:
-                importlib.import_module(f"curriculum.{name}").write(path, runs, scene, *more)
+                importlib.import_module(f"curriculum.run.{name}").write(path, runs, scene, *more)
                 print(f"{name}: {path}")
             except ImportError as error:
                 missing = "it needs the folder curriculum beside contact.py"
@@ -981,7 +981,7 @@ def chosen_scene(args, seed):
 def run_flags(args, scene, model, dt):
     """The run that the flags ask for, at that dt; a terminal shows how far it is."""
     settings = Settings(*(getattr(args, knob) for knob in Settings._fields))
-    pool = beside("pool") if sys.stderr and sys.stderr.isatty() else None
+    pool = beside("run.pool") if sys.stderr and sys.stderr.isatty() else None
     bar = pool.bar(args.steps, f"{model}, dt = {dt:g} s") if pool else None
     return run_model(model, scene, dt, args.steps, settings, bar)
 
@@ -1030,7 +1030,7 @@ def report(args, argv):
     except OSError as error:
         return fail(f"cannot write to {args.out}: {error.strerror}; the report is whole, give "
                     "another --out to keep its files")
-    if hints := beside("hints"):
+    if hints := beside("run.next_steps"):
         hints.print_next(args, argv)
     return 0 if runs else 2
 
@@ -1046,7 +1046,7 @@ def main(argv=None):
     argv = sys.argv[1:] if argv is None else argv
     try:
         args = parse_flags(argv)
-        status = beside("seeds").report(args) if args.seeds else report(args, argv)
+        status = beside("run.seeds").report(args) if args.seeds else report(args, argv)
         print(end="", flush=True)                       # an error at Python's end has no handler
         return status
     except KeyboardInterrupt:

@@ -31,22 +31,22 @@ from functools import cached_property
 
 import numpy as np
 
-ORDER = 14          # of the series of balls that slide; a longer one lasts longer and costs more
-TOUCH = 1e-12       # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
-LAST = 1e-13        # of a radius: a bounce that would rise less is the last of its series
-NOISE = 1e-12       # of g, of sqrt(g r): a smaller push or speed is rounding, which leaves 1e-15
-RATIO = 100.0       # of masses: above it, where 0 < e < 1, light balls rattle under heavy ones
-EVENTS = 3000       # a ball: a run with more stops; a pile of 24 has some hundreds in 4 s
+ORDER = 14  # of the series of balls that slide; a longer one lasts longer and costs more
+TOUCH = 1e-12  # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
+LAST = 1e-13  # of a radius: a bounce that would rise less is the last of its series
+NOISE = 1e-12  # of g, of sqrt(g r): a smaller push or speed is rounding, which leaves 1e-15
+RATIO = 100.0  # of masses: above it, where 0 < e < 1, light balls rattle under heavy ones
+EVENTS = 3000  # a ball: a run with more stops; a pile of 24 has some hundreds in 4 s
 
 
 # --- region: slide-lcp ---
 def inverse(W):
     """W^-1 of a Delassus matrix (K, K). Of many that fit, as under a slab, the least."""
     unit = 1.0 / np.sqrt(W.diagonal())
-    unit = unit * unit[:, None]                     # makes the diagonal 1, whatever the masses
+    unit = unit * unit[:, None]  # makes the diagonal 1, whatever the masses
     try:
         found = np.linalg.inv(W * unit)
-        if np.abs(found.diagonal()).max(initial=0.0) < 1e10:    # no contact depends on others
+        if np.abs(found.diagonal()).max(initial=0.0) < 1e10:  # no contact depends on others
             return found * unit
     except np.linalg.LinAlgError:
         pass
@@ -84,6 +84,8 @@ def solve_lcp(W, b):
             return lam
         active[s.argmin()] = True
     raise RuntimeError(f"exact: the pushes of {len(b)} contacts at one moment cannot be told apart")
+
+
 # --- endregion ---
 
 
@@ -98,7 +100,7 @@ class Contacts:
         pairs = np.array([(a, b) for a, b in pairs if w[a] + w[b] > 0.0], int).reshape(-1, 2).T
         balls = np.arange(count)[:, None]
         self.w, self.sign = w[:-1], 1.0 * (pairs[0] == balls) - (pairs[1] == balls)
-        self.reach, self.share = radius[pairs].sum(0), w[pairs].sum(0)      # r_a + r_b; 1 / m_eff
+        self.reach, self.share = radius[pairs].sum(0), w[pairs].sum(0)  # r_a + r_b; 1 / m_eff
         self.radius, self.floor = radius[pairs[0]], pairs[1] == count
         self.n = np.zeros((2, len(self.reach)))
 
@@ -154,10 +156,10 @@ class Motion:
         self.q, self.v, self.w = scene.q0.copy(), scene.v0.copy(), 1.0 / scene.mass
         self.radius, self.e, self.g = scene.radius, scene.restitution, -gravity
         self.all = Contacts(scene)
-        self.gap = self.all.locate(self.q)          # [m]
+        self.gap = self.all.locate(self.q)  # [m]
         self.rests = np.zeros(len(self.gap), bool)  # it touched at the last event and did not part
-        self.since = np.full(len(self.gap), math.inf)   # the time [s] since it touched,
-        self.parting = np.ones(len(self.gap))           # and |v_n| [m/s] then
+        self.since = np.full(len(self.gap), math.inf)  # the time [s] since it touched,
+        self.parting = np.ones(len(self.gap))  # and |v_n| [m/s] then
         self.speed = np.sqrt(self.g * self.all.radius)  # [m/s], the measure of a slow v_n
 
     def touch(self):
@@ -172,14 +174,14 @@ class Motion:
         self.gap = np.where(np.abs(self.found) < 1e4 * self.small, self.gap, self.found)
         self.separate()
         v_n = self.all.along(self.v)
-        opened = (self.parting + np.abs(v_n)) * self.since      # about how wide it has been
+        opened = (self.parting + np.abs(v_n)) * self.since  # about how wide it has been
         still = self.rests & (v_n <= NOISE * self.speed)
         least = np.where(still, self.small, np.minimum(self.small, 1e-4 * opened))
         return np.flatnonzero(self.gap <= least)
 
     def separate(self):
         """Move apart what overlaps, as at a start, by pushes that heavy balls feel less."""
-        for _ in range(50):                         # what a push closes is for the next round
+        for _ in range(50):  # what a push closes is for the next round
             if not (self.found < -self.small).any():
                 break
             near = self.found <= -2.0 * self.found.min()
@@ -213,8 +215,9 @@ class Motion:
         self.gap[touching], self.since[touching], self.parting[touching] = 0.0, 0.0, np.abs(v_n)
         a = np.zeros_like(self.q)
         a[1] = np.where(self.w > 0.0, -self.g, 0.0)
-        needs = np.where(np.abs(v_n) > NOISE * self.speed[touching],
-                         v_n ** 2 / (2.0 * LAST * contacts.radius), 0.0)
+        needs = np.where(
+            np.abs(v_n) > NOISE * self.speed[touching], v_n**2 / (2.0 * LAST * contacts.radius), 0.0
+        )
         still = needs <= self.g
         while True:
             resting = contacts.pick(still)
@@ -227,14 +230,14 @@ class Motion:
         touching, contacts = touching[still], resting
         self.rests[:] = False
         self.rests[touching] = True
-        if (np.abs(self.found[touching]) > self.bits).any():        # close what counts as closed
+        if (np.abs(self.found[touching]) > self.bits).any():  # close what counts as closed
             self.q = contacts.match(self.q, contacts.along(self.q) - self.found[touching])
         pushes = lam * contacts.share > NOISE * self.g
         held = contacts.pick(pushes)
         if pushes.any():
             beside = held.sign.any(1)
             a, self.v = held.match(a, -turn[pushes]), held.match(self.v, 0.0)
-            a[:, beside] *= np.abs(a[:, beside]) > NOISE * self.g   # else a heap at rest creeps
+            a[:, beside] *= np.abs(a[:, beside]) > NOISE * self.g  # else a heap at rest creeps
             slow = NOISE * np.sqrt(self.g * self.radius[beside])
             self.v[:, beside] *= np.abs(self.v[:, beside]) > slow
         return touching[pushes], held, a
@@ -266,13 +269,14 @@ class Motion:
             a = (lam[:k, None] * n[k:0:-1]).sum(0) @ held.sign.T * held.w
             a[1] -= self.g * (held.w > 0.0) * (k == 0)
             factor = (k + 1) * (k + 2)
-            turn = 0.5 * factor * held.reach * (n[1:k + 2] * n[k + 1:0:-1]).sum((0, 1))
-            for _ in range(2):                      # once more, for the last digits
+            turn = 0.5 * factor * held.reach * (n[1 : k + 2] * n[k + 1 : 0 : -1]).sum((0, 1))
+            for _ in range(2):  # once more, for the last digits
                 lam[k] -= held.inverse @ (held.along(a + held.push(lam[k])) + turn)
             Q[k + 2] = (a + held.push(lam[k])) / factor
         lam[0] = np.maximum(lam[0], 0.0) + NOISE * self.g / held.share
-        size = np.abs(Q[-2:] / self.radius).max((1, 2))     # the last two terms stay below 1e-16 r
+        size = np.abs(Q[-2:] / self.radius).max((1, 2))  # the last two terms stay below 1e-16 r
         return Q, lam, min((1e-16 / size) ** (1.0 / np.array((ORDER - 1, ORDER))))
+
     # --- endregion ---
 
     def next_event(self, Q, which, lam, horizon):
@@ -283,7 +287,7 @@ class Motion:
         """
         free = np.ones(len(self.gap), bool)
         free[which] = False
-        if horizon < math.inf:                      # who is out of reach until then
+        if horizon < math.inf:  # who is out of reach until then
             moves = (np.abs(Q[1:]).sum(1) * horizon ** np.arange(1, len(Q))[:, None]).sum(0)
             free &= self.gap <= moves @ np.abs(self.all.sign)
         near = np.flatnonzero(free)
@@ -291,14 +295,14 @@ class Motion:
         P = gap_series(part, gap, Q)
         wider = np.where(rests, 0.5 * self.small[near], np.minimum(4.0 * self.bits, 1e-9 * gap))
         falls = np.zeros((len(P), len(near) + lam.shape[1]))
-        falls[:, :len(near)] = P
-        falls[0, :len(near)] += np.where(part.floor, wider, wider * (wider + 2.0 * part.reach))
-        falls[:len(lam), len(near):] = lam
+        falls[:, : len(near)] = P
+        falls[0, : len(near)] += np.where(part.floor, wider, wider * (wider + 2.0 * part.reach))
+        falls[: len(lam), len(near) :] = lam
         span, first = first_fall(falls, horizon)
         value = evaluate(P, span)
-        root = value / (part.reach + np.sqrt(part.reach ** 2 + value))
+        root = value / (part.reach + np.sqrt(part.reach**2 + value))
         self.gap[near] = np.where(part.floor, value, root)
-        self.gap[near[first:first + 1]] = 0.0
+        self.gap[near[first : first + 1]] = 0.0
         self.since += span
         return span
 
@@ -319,11 +323,11 @@ def rate(P):
 def gap_series(contacts, gap, Q):
     """Series (terms, K) with the signs of the gaps, from `gap` on: y - r, or d . d - reach^2."""
     d = Q @ contacts.sign
-    P = np.zeros((max(len(d), 5), d.shape[2]))      # 5: a parabola's square is whole
+    P = np.zeros((max(len(d), 5), d.shape[2]))  # 5: a parabola's square is whole
     for k, row in enumerate(d):
-        P[k:k + len(d)] += (row * d[:len(P) - k]).sum(1)
+        P[k : k + len(d)] += (row * d[: len(P) - k]).sum(1)
     flat = np.zeros_like(P)
-    flat[:len(d)] = d[:, 1]
+    flat[: len(d)] = d[:, 1]
     P = np.where(contacts.floor, flat, P)
     P[0] = np.where(contacts.floor, gap, gap * (gap + 2.0 * contacts.reach))
     return P
@@ -341,10 +345,10 @@ def first_fall(P, horizon):
     bends, live, t = 0.5 * power[1:-1] * slopes[1:], np.arange(column), np.zeros(column)
     for _ in range(200):
         end = np.minimum(np.maximum(2.0 * t, horizon / 16.0), horizon)
-        bend, powers = least(bends[:, live], t, end), t ** power
+        bend, powers = least(bends[:, live], t, end), t**power
         value = np.maximum((P[:, live] * powers).sum(0), 0.0)
         slope = (slopes[:, live] * powers[:-1]).sum(0)
-        root = np.sqrt(slope * slope - 4.0 * value * bend)      # NaN: it never falls
+        root = np.sqrt(slope * slope - 4.0 * value * bend)  # NaN: it never falls
         step = np.where(slope < 0.0, 2.0 * value / (root - slope), (slope + root) / (-2.0 * bend))
         step = np.where((step >= 0.0) & ((slope < 0.0) | (bend < 0.0)), step, math.inf)
         found = step <= 1e-15 * t
@@ -355,7 +359,7 @@ def first_fall(P, horizon):
         live, t = live[on], np.where(far, end, t + step)[on]
         if not len(live):
             return first, column
-    k = t.argmin()                                  # next to no curvature: it is as good as there
+    k = t.argmin()  # next to no curvature: it is as good as there
     return (t[k], live[k]) if t[k] <= first else (first, column)
 
 
@@ -364,7 +368,7 @@ def least(P, t, end):
     c, b, a = P[:3]
     vertex = np.where(a > 0.0, np.minimum(np.maximum(-0.5 * b / a, t), end), t)
     values = [c + s * (b + s * a) for s in (t, vertex, end)]
-    rest = [np.abs(row) * end ** k for k, row in enumerate(P[3:], 3)]
+    rest = [np.abs(row) * end**k for k, row in enumerate(P[3:], 3)]
     return np.fmin(np.fmin(*values[:2]), values[2]) - sum(rest)
 
 
@@ -384,7 +388,7 @@ class Cycle:
             return True
         if len(self.flights) == self.length or self.saved is None:
             self.saved, self.flights = state, []
-            self.length = min(2 * self.length, 1000)    # a bound of memory
+            self.length = min(2 * self.length, 1000)  # a bound of memory
         return False
 
     def read(self, times):
@@ -409,8 +413,10 @@ def refuse(scene):
     e, mass = scene.restitution, scene.mass[np.isfinite(scene.mass)]
     ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
     if 0.0 < e < 1.0 and ratio > RATIO:
-        raise RuntimeError(f"exact: masses {ratio:.4g} : 1 at restitution {e:g}; at most {RATIO:g}"
-                           " : 1 where 0 < e < 1. Take closer masses, or restitution 0 or 1")
+        raise RuntimeError(
+            f"exact: masses {ratio:.4g} : 1 at restitution {e:g}; at most {RATIO:g}"
+            " : 1 where 0 < e < 1. Take closer masses, or restitution 0 or 1"
+        )
 
 
 @np.errstate(all="ignore")
@@ -444,5 +450,7 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
         if done == len(times):
             return tuple(out)
         motion.q, motion.v, now = evaluate(Q, span), evaluate(rate(Q), span), now + span
-    raise RuntimeError(f"exact: more than {most} events by {now:.6g} s, balls rattle without end."
-                       " Take a shorter run, another restitution, or closer masses")
+    raise RuntimeError(
+        f"exact: more than {most} events by {now:.6g} s, balls rattle without end."
+        " Take a shorter run, another restitution, or closer masses"
+    )

@@ -14,33 +14,44 @@ import numpy as np
 
 import contact
 
-if numba.config.DISABLE_JIT:    # then contact.py's own loops are faster
+if numba.config.DISABLE_JIT:  # then contact.py's own loops are faster
     raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
 
 MODELS = ("penalty", "lcp", "soft")
 PENALTY, LCP, SOFT = range(3)
-STATES = 200_000    # positions of balls that are filled in one go, before report() hears of it
-BALL = np.dtype([(name, float) for name in (    # listed: where it was when pairs were listed
-    "vx vy inv_mass radius x y listed_x listed_y fx fy mass").split()])
-CONTACT = np.dtype([("a", int), ("b", int), *[(name, float) for name in (
-    "nx ny depth m_eff target softness lam").split()]])
+STATES = 200_000  # positions of balls that are filled in one go, before report() hears of it
+BALL = np.dtype(
+    [
+        (name, float)
+        for name in (  # listed: where it was when pairs were listed
+            "vx vy inv_mass radius x y listed_x listed_y fx fy mass"
+        ).split()
+    ]
+)
+CONTACT = np.dtype(
+    [
+        ("a", int),
+        ("b", int),
+        *[(name, float) for name in ("nx ny depth m_eff target softness lam").split()],
+    ]
+)
 
 
 class Knobs(NamedTuple):
     """What a step needs to know, in numbers: contact.Settings, and what contact.py fixes."""
 
-    model: int              # of MODELS
+    model: int  # of MODELS
     dt: float
     gravity: float
-    margin: float           # of lcp
-    skin: float             # m: how much farther the list of pairs looks than it must
+    margin: float  # of lcp
+    skin: float  # m: how much farther the list of pairs looks than it must
     stiffness: float
     damping: float
     restitution: float
     baumgarte: float
     iters: int
-    warm: float             # share of the last step's impulses that the sweeps start from
-    most_sweeps: int        # of soft
+    warm: float  # share of the last step's impulses that the sweeps start from
+    most_sweeps: int  # of soft
     last_bits: float
     solref: tuple
     solimp: tuple
@@ -50,7 +61,7 @@ def compiled(function):
     """The function compiled, and kept on disk for the next process if there is a place for it."""
     try:
         return numba.njit(function, cache=True)
-    except RuntimeError:                        # none of the folders that numba tries is writable
+    except RuntimeError:  # none of the folders that numba tries is writable
         return numba.njit(function)
 
 
@@ -327,7 +338,7 @@ def soft_step(balls, contacts, last, knobs):
     for c in contacts:
         soften(c, balls, knobs.dt, knobs.solref, knobs.solimp)
     accelerate(balls, knobs)
-    fastest = abs(contacts[0].target) if len(contacts) > 0 else 0.0     # NaN if that is NaN
+    fastest = abs(contacts[0].target) if len(contacts) > 0 else 0.0  # NaN if that is NaN
     for c in contacts:
         fastest = larger(fastest, abs(c.target))
     for ball in balls[:-1]:
@@ -399,15 +410,27 @@ class Motion:
     """A run by penalty, lcp or soft that can be taken on by some steps at a time."""
 
     def __init__(self, model, scene, dt, settings):
-        solref, solimp = contact.soft_defaults(scene.restitution, dt, settings.solref,
-                                               settings.solimp)
+        solref, solimp = contact.soft_defaults(
+            scene.restitution, dt, settings.solref, settings.solimp
+        )
         warm = {"penalty": 0.0, "lcp": float(settings.warm), "soft": 1.0}[model]
         self.knobs = Knobs(
-            MODELS.index(model), float(dt), contact.GRAVITY,
-            contact.CONTACT_MARGIN if model == "lcp" else 0.0, float(np.median(scene.radius)),
-            float(settings.stiffness), float(scene.damping), float(scene.restitution),
-            float(settings.baumgarte), int(settings.iters), warm, contact.MOST_SWEEPS,
-            contact.LAST_BITS, tuple(map(float, solref)), tuple(map(float, solimp)))
+            MODELS.index(model),
+            float(dt),
+            contact.GRAVITY,
+            contact.CONTACT_MARGIN if model == "lcp" else 0.0,
+            float(np.median(scene.radius)),
+            float(settings.stiffness),
+            float(scene.damping),
+            float(scene.restitution),
+            float(settings.baumgarte),
+            int(settings.iters),
+            warm,
+            contact.MOST_SWEEPS,
+            contact.LAST_BITS,
+            tuple(map(float, solref)),
+            tuple(map(float, solimp)),
+        )
         self.balls = make_balls(scene.q0, scene.v0, scene.mass, scene.radius)
         self.pairs = list_pairs(self.balls, self.knobs.margin + self.knobs.skin)
         self.last = np.empty(0, CONTACT)
@@ -415,7 +438,8 @@ class Motion:
     def take(self, rows, settled, cycles):
         """Take len(rows) - 1 steps at most, as take_steps does; returns steps and period."""
         self.pairs, self.last, *taken = take_steps(
-            rows, settled, self.balls, self.pairs, self.last, cycles, self.knobs)
+            rows, settled, self.balls, self.pairs, self.last, cycles, self.knobs
+        )
         return taken
 
 
@@ -431,15 +455,15 @@ def simulate(model, scene, dt, steps, settings, report=None):
     k, period = 0, 0
     while k < steps and not period:
         end = min(k + 1 + STATES // len(scene.mass), steps)
-        taken, period = motion.take(rows[k:end + 1], settled[k:end + 1], settings.skip)
+        taken, period = motion.take(rows[k : end + 1], settled[k : end + 1], settings.skip)
         k += taken
         if report:
             report(k)
-    for past in range(k - period + 1, k + 1):           # what comes again and again
-        rows[past + period::period] = rows[past]
-        settled[past + period::period] = settled[past]
-    rows += 0.0                                         # turns -0.0 into 0.0
-    rows[np.isnan(rows)] = math.nan                     # which has a sign too, left to chance
+    for past in range(k - period + 1, k + 1):  # what comes again and again
+        rows[past + period :: period] = rows[past]
+        settled[past + period :: period] = settled[past]
+    rows += 0.0  # turns -0.0 into 0.0
+    rows[np.isnan(rows)] = math.nan  # which has a sign too, left to chance
     return rows[:, :2], rows[:, 2:], int((~settled).sum())
 
 

@@ -17,13 +17,13 @@ class Blank(NamedTuple):
     """A function that a learner writes."""
 
     exercise: str
-    hint: int               # the first that helps
-    inputs: list            # [{argument: value}]
+    hint: int  # the first that helps
+    inputs: list  # [{argument: value}]
     right: Callable
-    slips: list             # [(a function that makes it, what it means)]
-    within: float = 1e-9    # what counts as equal, as a share of the size of what is right
+    slips: list  # [(a function that makes it, what it means)]
+    within: float = 1e-9  # what counts as equal, as a share of the size of what is right
     run: Callable = lambda function, case: function(*case.values())
-    legend: tuple = ()      # how to read what goes in and comes out
+    legend: tuple = ()  # how to read what goes in and comes out
 
 
 def drawn(*first, **ranges):
@@ -31,15 +31,21 @@ def drawn(*first, **ranges):
     powers."""
     draw, inputs = random.Random(35), [dict(zip(ranges, values)) for values in first]
     for _ in range(60):
-        inputs.append({name: low * (high / low) ** draw.random() if low > 0.0
-                       else draw.uniform(low, high) for name, (low, high) in ranges.items()})
+        inputs.append(
+            {
+                name: low * (high / low) ** draw.random() if low > 0.0 else draw.uniform(low, high)
+                for name, (low, high) in ranges.items()
+            }
+        )
     return inputs
 
 
 def table(names, right, slips):
     """The right function and the slips of a blank with these arguments, from expressions."""
-    made = [eval(f"lambda {names}: {text}", globals())  # noqa: S307  our own text
-            for text in (right, *slips)]
+    made = [
+        eval(f"lambda {names}: {text}", globals())  # noqa: S307  our own text
+        for text in (right, *slips)
+    ]
     return {"right": made[0], "slips": list(zip(made[1:], slips.values()))}
 
 
@@ -49,14 +55,28 @@ def matrix(m, k, c, dt):
     return [[1.0 - dt * dt * k / m, -dt * slowed], [dt * k / m, slowed]]
 
 
-def solver(missing="c.target - c.v_n()", total="max(0.0, c.lam + add)", mass="c.m_eff",
-           push="c.push(lam - c.lam)", most=10**9, kept="lam", **names):
+def solver(
+    missing="c.target - c.v_n()",
+    total="max(0.0, c.lam + add)",
+    mass="c.m_eff",
+    push="c.push(lam - c.lam)",
+    most=10**9,
+    kept="lam",
+    **names,
+):
     """A solve_contacts with one of its parts exchanged; `names` are what the parts may use."""
-    lines = (f"for _ in range(min({most}, iters)):", " for c in contacts:",
-             f"  add = ({missing}) * {mass}", f"  lam = {total}", f"  {push}", f"  c.lam = {kept}")
+    lines = (
+        f"for _ in range(min({most}, iters)):",
+        " for c in contacts:",
+        f"  add = ({missing}) * {mass}",
+        f"  lam = {total}",
+        f"  {push}",
+        f"  c.lam = {kept}",
+    )
     code = compile("\n".join(lines), "a solve_contacts", "exec")
     return lambda contacts, iters: exec(  # noqa: S102
-        code, names | {"contacts": contacts, "iters": iters})
+        code, names | {"contacts": contacts, "iters": iters}
+    )
 
 
 def stacks():
@@ -69,18 +89,25 @@ def stacks():
     for count in (1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 5, 5):
         pairs = [(k, k - 1, draw.uniform(-0.5, 0.5)) for k in range(count)]
         pairs += [(0, -1, draw.uniform(0.6, 0.9))] if len(inputs) % 3 else []
-        inputs.append({"masses": [draw.uniform(0.6, 1.6) for _ in range(count)],
-                       "speeds": [(draw.uniform(-0.5, 0.5), draw.uniform(-1.0, 0.5))
-                                  for _ in range(count)],
-                       "contacts": [(*pair, draw.uniform(-0.3, 0.4)) for pair in pairs]})
+        inputs.append(
+            {
+                "masses": [draw.uniform(0.6, 1.6) for _ in range(count)],
+                "speeds": [
+                    (draw.uniform(-0.5, 0.5), draw.uniform(-1.0, 0.5)) for _ in range(count)
+                ],
+                "contacts": [(*pair, draw.uniform(-0.3, 0.4)) for pair in pairs],
+            }
+        )
     return inputs
 
 
 def run_stack(function, case):
     """The impulses and the velocities that a solver leaves in a stack; ... where it is a blank."""
-    balls = [contact.Ball(0.0, 0.1, *speed, mass, 0.1)
-             for mass, speed in zip(case["masses"], case["speeds"])]
-    floor, contacts = contact.Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0), []   # one of its own
+    balls = [
+        contact.Ball(0.0, 0.1, *speed, mass, 0.1)
+        for mass, speed in zip(case["masses"], case["speeds"])
+    ]
+    floor, contacts = contact.Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0), []  # one of its own
     for a, b, angle, target in case["contacts"]:
         c = contact.Contact(balls[a], [*balls, floor][b], math.sin(angle), math.cos(angle), 0.0)
         c.target = target
@@ -90,6 +117,7 @@ def run_stack(function, case):
     return [c.lam for c in contacts] + [speed for ball in balls for speed in (ball.vx, ball.vy)]
 
 
+# fmt: off
 PULLS = "nothing keeps the table from pulling"
 SPRING = "1 / (k * dt * dt + c * dt)"
 STEEL = {"mass": (0.1, 5.0), "stiffness": (500.0, 2e4), "damping": (2.0, 100.0)}
@@ -172,3 +200,4 @@ BLANKS = {
         f"(dt * k * x * {SPRING}, {SPRING})": "the order: softness first, then target",
     })),
 }
+# fmt: on

@@ -18,20 +18,25 @@ QUESTION = "A ball drops onto the table. What do the two contact models do diffe
 CHOICES = {
     "A": "Nothing that matters: both stop the ball at the surface. A contact is a contact.",
     "B": "The penalty ball never gets into the table but bounces for ever; "
-         "the lcp ball gets in and settles.",
+    "the lcp ball gets in and settles.",
     "C": "The penalty ball gets much deeper into the table on landing and also comes to rest "
-         "inside it; the lcp ball ends on the surface.",
+    "inside it; the lcp ball ends on the surface.",
 }
 WHY_PROMPT = "One sentence: when the ball lies still, how does each model arrive at a push of m g?"
 
-PREDICTION = None       # "A", "B" or "C"
-WHY = ""                # your sentence, see WHY_PROMPT
+PREDICTION = None  # "A", "B" or "C"
+WHY = ""  # your sentence, see WHY_PROMPT
 
 
 def measure():
     """The drop at the length of --smoke, by both models: {name: a number}, lengths in r."""
-    numbers = predict.measured(contact.build_scene("drop"), dt=0.002, steps=800,
-                               deepest="max_penetration_frac", at_rest="rest_penetration_frac")
+    numbers = predict.measured(
+        contact.build_scene("drop"),
+        dt=0.002,
+        steps=800,
+        deepest="max_penetration_frac",
+        at_rest="rest_penetration_frac",
+    )
     return numbers | {"factor": numbers["penalty_deepest"] / numbers["lcp_deepest"]}
 
 

@@ -20,7 +20,7 @@ def penalty_normal_force(depth, v_n, stiffness, damping):
     depth > 0. The spring has `stiffness` [N/m]; the damper has `damping` [N s/m] and works against
     the motion; v_n [m/s] is positive when the bodies separate.
     """
-    f_n = ...           # TODO: blank 1
+    f_n = ...  # TODO: blank 1
     return f_n
 
 
@@ -30,7 +30,7 @@ def project_impulse(lam, dlam):
     `lam` has been accumulated so far; `dlam`, of either sign, is the change that would bring this
     contact to its target velocity right now.
     """
-    new_lam = ...       # TODO: blank 2
+    new_lam = ...  # TODO: blank 2
     return new_lam
 
 

@@ -21,21 +21,26 @@ CHOICES = {
 }
 WHY_PROMPT = "One sentence: in each model, what happens between two looks at the depth?"
 
-PREDICTION = None       # "A", "B" or "C"
-WHY = ""                # your sentence, see WHY_PROMPT
+PREDICTION = None  # "A", "B" or "C"
+WHY = ""  # your sentence, see WHY_PROMPT
 
 
 def measure():
     """The drop at both steps, by both models, and the critical step: {name: a number}."""
     scene = contact.build_scene("drop")
     usual = predict.measured(scene, dt=0.002, steps=2000, usual="energy_excess")
-    longer = predict.measured(scene, dt=0.03, steps=2000, long="energy_excess",
-                              long_depth="max_penetration_frac")
+    longer = predict.measured(
+        scene, dt=0.03, steps=2000, long="energy_excess", long_depth="max_penetration_frac"
+    )
     return usual | longer | {"limit": contact.critical_dt(1.0, 1e4, scene.damping)}
 
 
-TABLE = ("energy gained", ("penalty", "lcp"), {"usual": "dt = 0.002 s", "long": "dt = 0.03 s"},
-         "{:.4g}")
+TABLE = (
+    "energy gained",
+    ("penalty", "lcp"),
+    {"usual": "dt = 0.002 s", "long": "dt = 0.03 s"},
+    "{:.4g}",
+)
 
 
 if __name__ == "__main__":

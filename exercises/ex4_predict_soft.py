@@ -13,8 +13,10 @@ Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
 import predict
 from predict import contact
 
-QUESTION = ("A ball and one ten times as heavy come to rest in MuJoCo's contact. "
-            "Where does each of them lie?")
+QUESTION = (
+    "A ball and one ten times as heavy come to rest in MuJoCo's contact. "
+    "Where does each of them lie?"
+)
 CHOICES = {
     "A": "Both lie a little way inside the table, equally deep.",
     "B": "Both lie inside the table, the heavy one ten times as deep.",
@@ -22,16 +24,17 @@ CHOICES = {
 }
 WHY_PROMPT = "One sentence: at rest nothing accelerates. In which term does the mass stand?"
 
-PREDICTION = None       # "A", "B" or "C"
-WHY = ""                # your sentence, see WHY_PROMPT
+PREDICTION = None  # "A", "B" or "C"
+WHY = ""  # your sentence, see WHY_PROMPT
 
 
 def measure():
     """The depth at rest of both balls, in both models: {name: a number}, in r."""
     light, models, depth = contact.build_scene("drop"), ("soft", "penalty"), "rest_penetration_frac"
     heavy = light._replace(mass=10.0 * light.mass)
-    return (predict.measured(light, 0.002, 2000, models, light=depth)
-            | predict.measured(heavy, 0.002, 2000, models, heavy=depth))
+    return predict.measured(light, 0.002, 2000, models, light=depth) | predict.measured(
+        heavy, 0.002, 2000, models, heavy=depth
+    )
 
 
 TABLE = ("depth at rest", ("soft", "penalty"), {"light": "1 kg", "heavy": "10 kg"}, "{:.5f} r")

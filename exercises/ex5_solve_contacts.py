@@ -24,7 +24,7 @@ def solve_contacts(contacts, iters):
     push that changes its lam, and so disturbs its neighbours; the next sweep mends those. Changes
     lam of the contacts and the velocities of their bodies. Returns nothing.
     """
-    return ...          # TODO: your loop, in place of this line
+    return ...  # TODO: your loop, in place of this line
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ def step_matrix(mass, stiffness, damping, dt):
 
     v_n > 0 is upwards, out of the table, so it makes the depth smaller.
     """
-    return ...          # TODO: blank 1
+    return ...  # TODO: blank 1
 
 
 def longest_step(mass, stiffness, damping):
@@ -31,7 +31,7 @@ def longest_step(mass, stiffness, damping):
 
     Above 1 in size, that is: eigenvalues may be negative or complex. damping > 0.
     """
-    return ...          # TODO: blank 2
+    return ...  # TODO: blank 2
 
 
 if __name__ == "__main__":

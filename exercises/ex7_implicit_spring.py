@@ -19,8 +19,8 @@ import predict
 
 def implicit_spring(depth, stiffness, damping, dt):
     """(softness [1/kg], target [m/s]) of a contact that overlaps by `depth` [m] before the step."""
-    softness = ...      # TODO: blank 1
-    target = ...        # TODO: blank 2
+    softness = ...  # TODO: blank 1
+    target = ...  # TODO: blank 2
     return softness, target
 
 

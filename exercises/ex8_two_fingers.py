@@ -15,14 +15,14 @@ and how light is the lightest thing that hangs on it?
 
 import predict
 
-MODEL = None            # "penalty" or "soft"
-DT = 0.002              # s
+MODEL = None  # "penalty" or "soft"
+DT = 0.002  # s
 
-STIFFNESS = 1e4         # N/m, of penalty
-DAMPING = 80.0          # N s/m, of penalty
+STIFFNESS = 1e4  # N/m, of penalty
+DAMPING = 80.0  # N s/m, of penalty
 
-SOLREF = (0.02, 1.0)    # of soft: time constant [s] and damping ratio
-SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)   # of soft: the impedance, see contact.impedance
+SOLREF = (0.02, 1.0)  # of soft: time constant [s] and damping ratio
+SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # of soft: the impedance, see contact.impedance
 
 
 if __name__ == "__main__":

@@ -8,10 +8,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from progress import DONE, done
+from progress import DONE, done, practise
 
 import contact
-from curriculum.hints import near, practise
+from curriculum.commands import near
 
 FACTS = json.loads(Path(__file__).with_name("answers.json").read_text("utf-8"))
 ANSWERS = {name: facts["answer"] for name, facts in FACTS.items() if "answer" in facts}
@@ -23,8 +23,13 @@ def main():
     name = Path(exercise.__file__).name[:3]
     hints = FACTS[name]["hints"]
     parser = argparse.ArgumentParser(description=f"Exercise {name}.", allow_abbrev=False)
-    parser.add_argument("--hint", type=int, choices=range(1, len(hints) + 1), metavar="N",
-                        help=f"print hint N, 1 to {len(hints)}, and do nothing else")
+    parser.add_argument(
+        "--hint",
+        type=int,
+        choices=range(1, len(hints) + 1),
+        metavar="N",
+        help=f"print hint N, 1 to {len(hints)}, and do nothing else",
+    )
     hint = parser.parse_args().hint
     try:
         if hint:
@@ -33,6 +38,7 @@ def main():
             sys.exit(bet(name, exercise))
         else:
             import trials
+
             sys.exit(trials.fill(name, exercise))
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
@@ -72,8 +78,10 @@ def columns(corner, heads, rows, form):
     """A small table as text. rows {name: values}; `form` writes a value, as "{:.3f} r" does."""
     wide = max(16, *map(len, rows))
     lines = [f"{corner:<{wide}}" + "".join(f"{head:>15}" for head in heads)]
-    lines += [f"{name:<{wide}}" + "".join(f"{form.format(value):>15}" for value in values)
-              for name, values in rows.items()]
+    lines += [
+        f"{name:<{wide}}" + "".join(f"{form.format(value):>15}" for value in values)
+        for name, values in rows.items()
+    ]
     return "\n".join(lines)
 
 
@@ -90,8 +98,10 @@ def missing(exercise):
     if chosen(exercise) not in exercise.CHOICES:
         return f"PREDICTION in {file}: given {exercise.PREDICTION!r}, allowed: {choices}"
     if len(str(exercise.WHY).split()) < 4:
-        return (f"no reason yet: WHY in {file} is {exercise.WHY!r}; write a sentence of four words "
-                f"or more. {exercise.WHY_PROMPT}")
+        return (
+            f"no reason yet: WHY in {file} is {exercise.WHY!r}; write a sentence of four words "
+            f"or more. {exercise.WHY_PROMPT}"
+        )
     return None
 
 
@@ -107,9 +117,13 @@ def verdict(name, exercise, numbers):
     """What the learner reads after the run: the bet first, then a word on every choice."""
     answer, mine, choices = ANSWERS[name], chosen(exercise), exercise.CHOICES
     wrong = f"What happens is {answer}: {choices[answer]}"
-    lines = [f"You predicted {mine}: {choices[mine]}", f"Because: {str(exercise.WHY).strip()}", "",
-             "That is what happens." if mine == answer else wrong]
-    for choice in sorted(choices, key=lambda choice: choice != answer):     # the right one first
+    lines = [
+        f"You predicted {mine}: {choices[mine]}",
+        f"Because: {str(exercise.WHY).strip()}",
+        "",
+        "That is what happens." if mine == answer else wrong,
+    ]
+    for choice in sorted(choices, key=lambda choice: choice != answer):  # the right one first
         word = "Why" if choice == answer else "Why not"
         lines += ["", f"{word} {choice}: {FACTS[name]['reasons'][choice].format(**numbers)}"]
     return "\n".join(textwrap.fill(line, 96) for line in lines)

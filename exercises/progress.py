@@ -1,7 +1,9 @@
-"""Which exercises are done. It needs nothing but Python, so that any command can ask."""
+"""Which exercises are done, and which comes next. It needs no numpy: any command can ask."""
 
 import json
 import os
+
+from curriculum.commands import command
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DONE = os.path.join(os.path.dirname(HERE), "outputs", "ch3.5-contact", "exercises.json")
@@ -21,3 +23,11 @@ def next_exercise():
     """The first exercise that is not done, "exercises/ex1_predict_contact.py"; None if all are."""
     noted = done()
     return next((f"exercises/{file}.py" for file in FILES if file[:3] not in noted), None)
+
+
+def practise():
+    """The line that names the next exercise that is not done, or what comes after them."""
+    file = next_exercise()
+    if file is None:
+        return "all exercises are done; next, the questions at the end of the chapter"
+    return f"next, an exercise: {command(os.path.join(os.path.dirname(HERE), file))}"

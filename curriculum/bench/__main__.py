@@ -17,11 +17,11 @@ import os
 import sys
 import time
 
-for _library in ("OMP", "OPENBLAS", "MKL"):     # one thread each; said before numpy is loaded
+for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
 from curriculum.bench import accuracy, piles, report, skips
-from curriculum.text import results
+from curriculum.measured import results
 
 PARTS = {"accuracy": accuracy.measure, "pile": piles.measure, "skip": skips.measure}
 FULL = results.ROOT / results.FOLDERS["bench"]
@@ -30,8 +30,11 @@ QUICK = results.ROOT / "outputs" / "bench-quick"
 
 def main(argv=None):
     """Returns the exit status: 1 where figures could not be drawn, 130 after Ctrl-C."""
-    parser = argparse.ArgumentParser(prog="python -m curriculum.bench", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="python -m curriculum.bench",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("part", nargs="?", default="all", choices=("all", *PARTS, "draw"))
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
     args = parser.parse_args(argv)

@@ -14,13 +14,13 @@ from functools import partial
 import numpy as np
 
 import contact
-from curriculum import pool
 from curriculum.bench import engines, problems, timing
 from curriculum.bench.engines import Setting
+from curriculum.run import pool
 
 ERRORS = ("error", "final_error", "energy_error", "depth")
 PROCESSES = 3
-ENOUGH = 0.1        # s: once the runs of a cell have taken so long, it is not timed again
+ENOUGH = 0.1  # s: once the runs of a cell have taken so long, it is not timed again
 QUICK = dict(names=("drop", "stack", "slide"), dts=(0.002, 0.008), starts=2, processes=1)
 
 
@@ -37,24 +37,26 @@ class Model(engines.Session):
     def states(self, n):
         if self.compiled:
             from curriculum import fast
+
             q, v, _ = fast.simulate(*self.given, n * self.substeps, self.settings)
         else:
             _, q, v, _ = contact.run_model(*self.given, n * self.substeps, self.settings)
-        return q[::self.substeps], v[::self.substeps]
+        return q[:: self.substeps], v[:: self.substeps]
 
     trace = states
 
 
 def ours(model, words, *cut, only=(), adaptive=False, **knobs):
     """A setting of a model of contact.py."""
+
     def build(scene, dt):
         return Model(scene, dt, model, *cut, **knobs)
 
     return Setting(model, words, build, adaptive, only=only)
 
 
-ANSWERED = ("drop", "bounce", "stack", "slide", "elastic")      # not by exact itself
-MANY = ("stack", "pile")        # where contacts share balls, and the number of sweeps matters
+ANSWERED = ("drop", "bounce", "stack", "slide", "elastic")  # not by exact itself
+MANY = ("stack", "pile")  # where contacts share balls, and the number of sweeps matters
 STIFF = dict(solref=(1e-9, 5.0), solimp=contact.HARD)
 CONTESTANTS = (
     ours("penalty", "k 1e4"),
@@ -67,15 +69,16 @@ CONTESTANTS = (
     ours("lcp", "compiled, 20 sweeps, warm", True, only=MANY, warm=0.8),
     ours("lcp", "compiled, 20 sweeps, 4 substeps", True, 4),
     ours("lcp", "compiled, 20 sweeps, 16 substeps", True, 16),
-    ours("lcp", "compiled, 5 sweeps, 16 substeps, warm", True, 16, only=MANY, iters=5,
-         warm=0.8),
+    ours("lcp", "compiled, 5 sweeps, 16 substeps, warm", True, 16, only=MANY, iters=5, warm=0.8),
     ours("soft", "as MuJoCo ships it, or direct where e > 0"),
     ours("soft", "time constant 2 dt, ratio 5, d 0.9999", only=("drop", "slide", *MANY), **STIFF),
     ours("exact", "event to event", only=ANSWERED, adaptive=True),
-    *engines.SETTINGS)
+    *engines.SETTINGS,
+)
 BY_NAME = {contestant.name: contestant for contestant in CONTESTANTS}
 LABELS = {name: name for name in contact.MODELS} | {
-    name: about[0] for name, about in engines.ENGINES.items()}
+    name: about[0] for name, about in engines.ENGINES.items()
+}
 
 
 def measure(quick=False):
@@ -84,13 +87,18 @@ def measure(quick=False):
     jobs = list(cells(chosen, quick))
     print(f"accuracy: {len(jobs)} points, their errors first, then their times", flush=True)
     errors = pool.spread(errors_of, jobs, "errors")
-    times = timing.in_fresh_processes(times_of, jobs, QUICK["processes"] if quick else PROCESSES,
-                                      "run times")
+    times = timing.in_fresh_processes(
+        times_of, jobs, QUICK["processes"] if quick else PROCESSES, "run times"
+    )
     points = [point(*each) for each in zip(jobs, errors, times)]
     return dict(
-        problems={p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration)
-                  for p in chosen},
-        points=packed(points), headline=headline(points), left_out=left_out(chosen))
+        problems={
+            p.name: dict(title=p.title, stresses=p.stresses, duration=p.duration) for p in chosen
+        },
+        points=packed(points),
+        headline=headline(points),
+        left_out=left_out(chosen),
+    )
 
 
 def cells(chosen, quick):
@@ -143,8 +151,13 @@ def point(job, errors, times):
     """One point as a flat dict. diverged: of how many starts. An error that is none is None."""
     problem, name, dt, _ = job
     c = BY_NAME[name]
-    found = dict(problem=problem, family=c.engine, words=c.words, dt=dt,
-                 diverged=sum(e["diverged"] is not None for e in errors))
+    found = dict(
+        problem=problem,
+        family=c.engine,
+        words=c.words,
+        dt=dt,
+        diverged=sum(e["diverged"] is not None for e in errors),
+    )
     for key in ERRORS:
         found[key] = statistics.median(e[key] for e in errors)
     found["least"] = min(e["error"] for e in errors)
@@ -162,14 +175,19 @@ def headline(points):
     for p in sorted(points, key=lambda p: p["error"], reverse=True):
         if p["dt"] == problems.REFERENCE_DT and not p["diverged"]:
             found.setdefault(p["problem"], {})[p["family"]] = dict(
-                words=p["words"], error=p["error"], ms=p["read_median"])
+                words=p["words"], error=p["error"], ms=p["read_median"]
+            )
     return found
 
 
 def left_out(chosen):
     """{label: why} of whoever does not run every problem."""
-    return {LABELS[c.engine]: why for problem in chosen for c in CONTESTANTS
-            if (why := c.refuses(problem.build(0)))}
+    return {
+        LABELS[c.engine]: why
+        for problem in chosen
+        for c in CONTESTANTS
+        if (why := c.refuses(problem.build(0)))
+    }
 
 
 def packed(rows):

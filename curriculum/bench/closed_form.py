@@ -18,8 +18,8 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
-g = 9.81    # m/s^2, the magnitude of gravity
-FLIGHTS = 10_000    # after so many a bounce is over in the last bit, or the run
+g = 9.81  # m/s^2, the magnitude of gravity
+FLIGHTS = 10_000  # after so many a bounce is over in the last bit, or the run
 
 
 def first_impact_time(gap):
@@ -29,7 +29,7 @@ def first_impact_time(gap):
 
 def impact_time(gap, restitution, k):
     """Time [s] of impact number k (0 is the first): the partial sum of the geometric series."""
-    e = restitution     # 1 - e^k is taken as -expm1(k log e), which keeps its digits near e = 1
+    e = restitution  # 1 - e^k is taken as -expm1(k log e), which keeps its digits near e = 1
     series = k if e == 1.0 else -e * np.expm1(k * np.log(e)) / (1.0 - e)
     return first_impact_time(gap) * (1.0 + 2.0 * series)
 
@@ -49,12 +49,12 @@ def bounce_motion(gap, restitution, t):
     still, speed = np.zeros_like(t), np.zeros_like(t)
     if e > 0.0:
         flying = (t >= t1) & (t < rest_time(gap, e))
-        after = np.where(flying, t, t1)     # any harmless time where the answer is not a flight
+        after = np.where(flying, t, t1)  # any harmless time where the answer is not a flight
         impacts = impact_time(gap, e, np.arange(FLIGHTS))
         k = np.searchsorted(impacts, after, side="right") - 1
         leaving = g * t1 * e ** (k + 1)
         s = after - impacts[k]
-        flight = np.maximum(leaving * s - 0.5 * g * s * s, 0.0)     # s may round to just outside
+        flight = np.maximum(leaving * s - 0.5 * g * s * s, 0.0)  # s may round to just outside
         still = np.where(flying, flight, 0.0)
         speed = np.where(flying, leaving - g * s, 0.0)
     return np.where(falling, gap - 0.5 * g * t * t, still), np.where(falling, -g * t, speed)
@@ -68,6 +68,7 @@ def slide_motion(theta0, length, radius, height, t):
     speed and slides on. Sliding is a pendulum upside down, theta'' = g / length sin(theta), by an
     integrator of order 8 that keeps twelve digits.
     """
+
     def slope(t, state):
         return state[1], g / length * math.sin(state[0])
 
@@ -75,8 +76,16 @@ def slide_motion(theta0, length, radius, height, t):
         return math.cos(state[0]) - 2.0 / 3.0 * math.cos(theta0)
 
     leaves.terminal = True
-    found = solve_ivp(slope, (0.0, 1e3), (theta0, 0.0), "DOP853", dense_output=True, events=leaves,
-                      rtol=3e-14, atol=1e-16)
+    found = solve_ivp(
+        slope,
+        (0.0, 1e3),
+        (theta0, 0.0),
+        "DOP853",
+        dense_output=True,
+        events=leaves,
+        rtol=3e-14,
+        atol=1e-16,
+    )
     release = found.t_events[0][0]
     theta, speed = found.sol(np.minimum(t, release))
     sine, cosine = np.sin(theta), np.cos(theta)
@@ -87,7 +96,7 @@ def slide_motion(theta0, length, radius, height, t):
 
 def thrown(q, v, free, radius):
     """q, v of a ball that has flown for the time `free` [s], lands without rebound, slides on."""
-    fall = q[:, 1] - radius     # constant once it is free, as q and v are held
+    fall = q[:, 1] - radius  # constant once it is free, as q and v are held
     land = (v[:, 1] + np.sqrt(np.maximum(v[:, 1] ** 2 + 2.0 * g * fall, 0.0))) / g
     down = free >= land
     x = q[:, 0] + v[:, 0] * free

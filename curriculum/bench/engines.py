@@ -32,10 +32,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-GRAVITY = 9.81      # m/s^2, downwards
-SCALE = 10.0        # Box2D sees a world this much larger
-FLOOR = 1000.0      # m, half the length of the floor, where an engine wants an end to it
-MANY = 60           # balls: from here on MuJoCo gets CG and a sparse Jacobian
+GRAVITY = 9.81  # m/s^2, downwards
+SCALE = 10.0  # Box2D sees a world this much larger
+FLOOR = 1000.0  # m, half the length of the floor, where an engine wants an end to it
+MANY = 60  # balls: from here on MuJoCo gets CG and a sparse Jacobian
 
 
 class Session:
@@ -110,7 +110,7 @@ class Mujoco(Session):
         from mujoco import rollout
 
         self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
-        mujoco.set_mju_user_warning(lambda text: None)      # its default writes a log file
+        mujoco.set_mju_user_warning(lambda text: None)  # its default writes a log file
         solref, solimp = contact(scene, dt)
         balls, many = balls_of(scene), len(scene.mass) >= MANY and "solver" not in options
         options = {"solver": "CG", "jacobian": "sparse"} | options if many else options
@@ -122,7 +122,8 @@ class Mujoco(Session):
             f'<flag autoreset="disable"{flags}/></option>'
             f'<default><geom condim="1" solref="{solref}" solimp="{solimp}"/></default>'
             f'<worldbody><geom type="plane" size="0 0 1"/>{"".join(map(self.body, balls))}'
-            "</worldbody></mujoco>")
+            "</worldbody></mujoco>"
+        )
         self.data = mujoco.MjData(self.model)
         self.data.qvel[:] = scene.v0[:, self.moving].T.ravel()
         self.full = mujoco.mjtState.mjSTATE_FULLPHYSICS
@@ -132,8 +133,10 @@ class Mujoco(Session):
     def body(ball):
         (x, y), _, mass, radius, fixed = ball
         joints = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
-        return (f'<body pos="{x!r} 0 {y!r}">{"" if fixed else joints}'
-                f'<geom type="sphere" size="{radius!r}" mass="{1.0 if fixed else mass!r}"/></body>')
+        return (
+            f'<body pos="{x!r} 0 {y!r}">{"" if fixed else joints}'
+            f'<geom type="sphere" size="{radius!r}" mass="{1.0 if fixed else mass!r}"/></body>'
+        )
 
     def advance(self, n):
         self.mujoco.mj_step(self.model, self.data, nstep=n)
@@ -143,7 +146,7 @@ class Mujoco(Session):
         self.mujoco.mj_getState(self.model, self.data, self.start, self.full)
         rows = self.rollout(self.model, self.data, self.start, nstep=n)[0][0]
         y0 = self.scene.q0[1, self.moving]
-        return np.vstack([y0, y0 + rows[:, 2:1 + 2 * len(y0):2]])
+        return np.vstack([y0, y0 + rows[:, 2 : 1 + 2 * len(y0) : 2]])
 
     def state(self):
         q, v = self.scene.q0.copy(), self.scene.v0.copy()
@@ -169,7 +172,7 @@ class Pymunk(Session):
             space.collision_bias = bias
         if sleep:
             space.sleep_time_threshold = 0.5
-        bounce = math.sqrt(scene.restitution)   # the engine multiplies the two bodies' values
+        bounce = math.sqrt(scene.restitution)  # the engine multiplies the two bodies' values
         floor = pymunk.Segment(space.static_body, (-FLOOR, 0), (FLOOR, 0), 0)
         floor.elasticity, floor.friction = bounce, 0.0
         space.add(floor)
@@ -177,8 +180,9 @@ class Pymunk(Session):
             space.use_spatial_hash(2.0 * scene.radius.max(), 10 * len(scene.mass))
         self.bodies = []
         for place, velocity, mass, radius, fixed in balls_of(scene):
-            body = (pymunk.Body(body_type=pymunk.Body.STATIC) if fixed
-                    else pymunk.Body(mass, math.inf))
+            body = (
+                pymunk.Body(body_type=pymunk.Body.STATIC) if fixed else pymunk.Body(mass, math.inf)
+            )
             body.position, body.velocity = place, velocity
             ball = pymunk.Circle(body, radius)
             ball.elasticity, ball.friction = bounce, 0.0
@@ -212,24 +216,32 @@ class Box2d3(Session):
         import pyb2d3
 
         self.world = world = pyb2d3.World(
-            gravity=(0, -GRAVITY * SCALE), restitution_threshold=0.0, maximum_linear_speed=1e6)
+            gravity=(0, -GRAVITY * SCALE), restitution_threshold=0.0, maximum_linear_speed=1e6
+        )
         world.sleeping_enabled = sleep
-        if hertz is not None:       # frequency [Hz], damping ratio, push-out speed
+        if hertz is not None:  # frequency [Hz], damping ratio, push-out speed
             world.set_contact_tuning(hertz, 10.0, 1e9)
         material = pyb2d3.surface_material(friction=0.0, restitution=scene.restitution)
         floor = world.create_static_body(position=(0, 0))
-        floor.create_shape(pyb2d3.shape_def(material=material),
-                           pyb2d3.segment((-FLOOR * SCALE, 0), (FLOOR * SCALE, 0)))
+        floor.create_shape(
+            pyb2d3.shape_def(material=material),
+            pyb2d3.segment((-FLOOR * SCALE, 0), (FLOOR * SCALE, 0)),
+        )
         self.bodies = pyb2d3.Bodies()
         for place, velocity, mass, radius, fixed in balls_of(scene, SCALE):
             if fixed:
                 body = world.create_static_body(position=place)
             else:
-                body = world.create_dynamic_body(position=place, linear_velocity=velocity,
-                                                 fixed_rotation=True, enable_sleep=sleep)
+                body = world.create_dynamic_body(
+                    position=place,
+                    linear_velocity=velocity,
+                    fixed_rotation=True,
+                    enable_sleep=sleep,
+                )
             density = 1.0 if fixed else mass / (math.pi * radius * radius)
-            body.create_shape(pyb2d3.shape_def(density=density, material=material),
-                              pyb2d3.circle(radius=radius))
+            body.create_shape(
+                pyb2d3.shape_def(density=density, material=material), pyb2d3.circle(radius=radius)
+            )
             self.bodies.append(body)
         self.step = partial(world.step, dt, substeps)
         if len(scene.mass) == 1:
@@ -300,8 +312,10 @@ class Drake(Session):
         skin, elastic = ProximityProperties(), scene.restitution == 1.0
         AddContactMaterial(
             dissipation=0.0 if elastic else 1e3,
-            point_stiffness=2.0 * stiffness,    # two surfaces in series: half of it
-            friction=CoulombFriction(0.0, 0.0), properties=skin)
+            point_stiffness=2.0 * stiffness,  # two surfaces in series: half of it
+            friction=CoulombFriction(0.0, 0.0),
+            properties=skin,
+        )
         skin.AddProperty("material", "relaxation_time", 0.0 if elastic else dt)
         return skin
 
@@ -329,12 +343,12 @@ class Drake(Session):
 class Setting(NamedTuple):
     """One engine, or one of our models, with one set of choices; build(scene, dt) -> a session."""
 
-    engine: str             # a key of ENGINES, or a model
-    words: str              # the setting, for a reader
+    engine: str  # a key of ENGINES, or a model
+    words: str  # the setting, for a reader
     build: Callable
     adaptive: bool = False  # it chooses its own steps: dt is only how often it is looked at
     cannot: Callable = Session.cannot
-    only: tuple = ()        # the problems it is for; none means all
+    only: tuple = ()  # the problems it is for; none means all
 
     @property
     def name(self):
@@ -345,7 +359,7 @@ class Setting(NamedTuple):
         return missing(self.engine) or self.cannot(scene)
 
 
-ENGINES = {     # label, package, module, session
+ENGINES = {  # label, package, module, session
     "mujoco": ("MuJoCo", "mujoco", "mujoco", Mujoco),
     "pymunk": ("pymunk", "pymunk", "pymunk", Pymunk),
     "box2d3": ("Box2D 3", "pyb2d3", "pyb2d3", Box2d3),
@@ -376,8 +390,11 @@ SETTINGS = (
     pymunk("10 iterations"),
     pymunk("30 iterations", iterations=30),
     pymunk("100 iterations", iterations=100),
-    Setting("pymunk", "10 iterations, bias 0.2 a step",
-            lambda scene, dt: Pymunk(scene, dt, bias=0.8 ** (1.0 / dt))),
+    Setting(
+        "pymunk",
+        "10 iterations, bias 0.2 a step",
+        lambda scene, dt: Pymunk(scene, dt, bias=0.8 ** (1.0 / dt)),
+    ),
     pymunk("10 iterations, may sleep", sleep=True),
     box2d3("4 substeps, as shipped", 4),
     box2d3("4 substeps, hardest", 4, hertz=1e9),

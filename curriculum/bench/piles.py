@@ -19,18 +19,18 @@ from functools import partial
 import numpy as np
 
 import contact
-from curriculum import pool
 from curriculum.bench import engines, timing
 from curriculum.bench.engines import Session, Setting, box2d3, mujoco, pymunk
+from curriculum.run import pool
 
-DT = 0.002                  # s
-WATCHED, TURN, TURNS = 250, 50, 3       # steps at the end; timed steps in one go; how many goes
-AT_REST = 1e-3              # m/s
-DEPTHS = (1e-3, 1e-4)       # r
+DT = 0.002  # s
+WATCHED, TURN, TURNS = 250, 50, 3  # steps at the end; timed steps in one go; how many goes
+AT_REST = 1e-3  # m/s
+DEPTHS = (1e-3, 1e-4)  # r
 SIZES = {12: (4, 6000), 100: (10, 6000), 1000: (25, 6000)}  # balls: side by side, steps to settle
-MANY, COPIES, AGAIN = 10_000, 10, 1500      # made of settled copies; steps to settle again
+MANY, COPIES, AGAIN = 10_000, 10, 1500  # made of settled copies; steps to settle again
 PROCESSES, QUICK_SIZES = 3, (12,)
-ASLEEP = "may sleep"        # in the words of a setting that is shown and not compared
+ASLEEP = "may sleep"  # in the words of a setting that is shown and not compared
 
 
 def shaft(count):
@@ -42,21 +42,26 @@ def shaft(count):
     nudge = rng.uniform(-0.1 * r, 0.1 * r, (2, count))
     x = 2.5 * r * (place % wide - 0.5 * (wide - 1)) + nudge[0]
     y = 2.5 * r * (place // wide + 0.5) + nudge[1]
-    wall = np.arange(1.05 * r, y.max() + 2.0 * r, 2.05 * r)     # no wall ball touches another
+    wall = np.arange(1.05 * r, y.max() + 2.0 * r, 2.05 * r)  # no wall ball touches another
     side = 1.25 * r * wide + r
     x = np.concatenate((x, np.full(len(wall), -side), np.full(len(wall), side)))
     y = np.concatenate((y, wall, wall))
     mass = np.repeat((1.0, math.inf), (count, 2 * len(wall)))
-    return contact.Scene("shaft", np.array((x, y)), np.zeros((2, len(x))), mass,
-                         np.full(len(x), r), 0.0, 80.0)
+    return contact.Scene(
+        "shaft", np.array((x, y)), np.zeros((2, len(x))), mass, np.full(len(x), r), 0.0, 80.0
+    )
 
 
 def side_by_side(scene):
     """So many copies of a shaft, each with its own walls."""
     apart = np.ptp(scene.q0[0]) + 3.0 * contact.RADIUS
     q0 = np.concatenate([scene.q0 + [[k * apart], [0.0]] for k in range(COPIES)], axis=1)
-    return scene._replace(q0=q0, v0=np.tile(scene.v0, COPIES), mass=np.tile(scene.mass, COPIES),
-                          radius=np.tile(scene.radius, COPIES))
+    return scene._replace(
+        q0=q0,
+        v0=np.tile(scene.v0, COPIES),
+        mass=np.tile(scene.mass, COPIES),
+        radius=np.tile(scene.radius, COPIES),
+    )
 
 
 class Twin(Session):
@@ -64,6 +69,7 @@ class Twin(Session):
 
     def __init__(self, scene, dt, sweeps, warm=0.0, substeps=1):
         from curriculum import fast
+
         chosen = contact.Settings(iters=sweeps, warm=warm)
         self.motion, self.substeps = fast.Motion("lcp", scene, dt / substeps, chosen), substeps
         self.rows = np.empty((TURN * substeps + 1, 4, len(scene.mass)))
@@ -71,7 +77,7 @@ class Twin(Session):
 
     def advance(self, n):
         for first in range(0, n, TURN):
-            rows = self.rows[:min(TURN, n - first) * self.substeps + 1]
+            rows = self.rows[: min(TURN, n - first) * self.substeps + 1]
             self.motion.take(rows, self.settled, False)
 
     def state(self):
@@ -89,17 +95,27 @@ def too_many(scene):
 
 SPRING = partial(engines.standard, 2.0, 1.0, 0.99)
 SETTINGS = (
-    twin("10 sweeps", 10), twin("20 sweeps", 20), twin("40 sweeps", 40), twin("80 sweeps", 80),
-    twin("4 sweeps, warm", 4, 0.8), twin("8 sweeps, warm", 8, 0.8),
-    twin("15 sweeps, warm", 15, 0.8), twin("30 sweeps, warm", 30, 0.8),
-    twin("5 sweeps, 4 substeps", 5, 0.0, 4), twin("3 sweeps, warm, 4 substeps", 3, 0.8, 4),
+    twin("10 sweeps", 10),
+    twin("20 sweeps", 20),
+    twin("40 sweeps", 40),
+    twin("80 sweeps", 80),
+    twin("4 sweeps, warm", 4, 0.8),
+    twin("8 sweeps, warm", 8, 0.8),
+    twin("15 sweeps, warm", 15, 0.8),
+    twin("30 sweeps, warm", 30, 0.8),
+    twin("5 sweeps, 4 substeps", 5, 0.0, 4),
+    twin("3 sweeps, warm, 4 substeps", 3, 0.8, 4),
     twin("6 sweeps, warm, 4 substeps", 6, 0.8, 4),
     twin("12 sweeps, warm, 4 substeps", 12, 0.8, 4),
-    box2d3("4 substeps, as shipped", 4), box2d3("4 substeps, hardest", 4, hertz=1e9),
-    box2d3("8 substeps, hardest", 8, hertz=1e9), box2d3("16 substeps, hardest", 16, hertz=1e9),
-    box2d3("64 substeps, hardest", 64, hertz=1e9), box2d3("32 substeps, 240 Hz", 32, hertz=240.0),
+    box2d3("4 substeps, as shipped", 4),
+    box2d3("4 substeps, hardest", 4, hertz=1e9),
+    box2d3("8 substeps, hardest", 8, hertz=1e9),
+    box2d3("16 substeps, hardest", 16, hertz=1e9),
+    box2d3("64 substeps, hardest", 64, hertz=1e9),
+    box2d3("32 substeps, 240 Hz", 32, hertz=240.0),
     box2d3(f"4 substeps, hardest, {ASLEEP}", 4, hertz=1e9, sleep=True),
-    pymunk("10 iterations"), pymunk("30 iterations", iterations=30),
+    pymunk("10 iterations"),
+    pymunk("30 iterations", iterations=30),
     pymunk(f"10 iterations, {ASLEEP}", sleep=True),
     mujoco("as shipped, CG", engines.shipped),
     mujoco("2 dt, ratio 1, d 0.99, CG", SPRING),
@@ -129,10 +145,19 @@ def measured(count, chosen, states, quick):
     work = [(count, k, states[k]) for _, k, _ in jobs]
     processes = 1 if quick else PROCESSES - (count == MANY)
     times = timing.in_fresh_processes(time_of, work, processes, f"{count} balls")
-    return [dict(bodies=count, engine=SETTINGS[k].engine, words=SETTINGS[k].words,
-                 **state[2], **{phase: timing.spread([each[phase] for each in found])
-                                for phase in ("falling", "resting")})
-            for (_, k, _), state, found in zip(jobs, settled, times)]
+    return [
+        dict(
+            bodies=count,
+            engine=SETTINGS[k].engine,
+            words=SETTINGS[k].words,
+            **state[2],
+            **{
+                phase: timing.spread([each[phase] for each in found])
+                for phase in ("falling", "resting")
+            },
+        )
+        for (_, k, _), state, found in zip(jobs, settled, times)
+    ]
 
 
 def settle(job):
@@ -158,13 +183,17 @@ def settle(job):
 def depths(q, scene):
     """Overlaps in a state q (2, N): contacts counted, mean and worst depth [r]."""
     from curriculum import fast
+
     balls = fast.make_balls(q, 0.0 * q, scene.mass, scene.radius)
     a, b = fast.list_pairs(balls, 0.0)
     pairs = scene.radius[a] + scene.radius[b] - np.hypot(*(q[:, a] - q[:, b]))
     found = np.concatenate((scene.radius - q[1], pairs)) / contact.RADIUS
     found = found[found > 0.0]
-    return dict(contacts=len(found), mean_depth=float(found.mean()) if len(found) else 0.0,
-                worst_depth=float(found.max(initial=0.0)))
+    return dict(
+        contacts=len(found),
+        mean_depth=float(found.mean()) if len(found) else 0.0,
+        worst_depth=float(found.max(initial=0.0)),
+    )
 
 
 def time_of(job):
@@ -182,16 +211,24 @@ def time_of(job):
 
 def fastest(rows, engine, count, depth):
     """The fastest row of an engine that rests within that depth, or None."""
-    found = [row for row in rows if (row["engine"], row["bodies"]) == (engine, count)
-             and row["at_rest"] and row["mean_depth"] <= depth and ASLEEP not in row["words"]]
+    found = [
+        row
+        for row in rows
+        if (row["engine"], row["bodies"]) == (engine, count)
+        and row["at_rest"]
+        and row["mean_depth"] <= depth
+        and ASLEEP not in row["words"]
+    ]
     return min(found, key=lambda row: row["resting"]["median"], default=None)
 
 
 def winners(rows):
     """The numbers of the settings that are worth running with 10,000 balls."""
-    words = {(row["engine"], row["words"])
-             for engine, depth in itertools.product(LABELS, DEPTHS)
-             if (row := fastest(rows, engine, 1000, 0.8 * depth))}
+    words = {
+        (row["engine"], row["words"])
+        for engine, depth in itertools.product(LABELS, DEPTHS)
+        if (row := fastest(rows, engine, 1000, 0.8 * depth))
+    }
     return [k for k, s in enumerate(SETTINGS) if (s.engine, s.words) in words]
 
 
@@ -202,8 +239,9 @@ def best(rows):
         table = {}
         for engine in LABELS:
             if row := fastest(rows, engine, count, depth):
-                table[engine] = dict(words=row["words"], us=row["resting"]["median"],
-                                     depth=row["mean_depth"])
+                table[engine] = dict(
+                    words=row["words"], us=row["resting"]["median"], depth=row["mean_depth"]
+                )
         peers = [about["us"] for engine, about in table.items() if engine != "lcp"]
         ratio = table["lcp"]["us"] / min(peers) if "lcp" in table and peers else None
         found.setdefault(str(count), {})[f"{depth:g}"] = dict(engines=table, ratio=ratio)
@@ -211,10 +249,13 @@ def best(rows):
 
 
 def compiling():
-    """{fresh, again}: seconds of a process that takes one step by the twin; compiled fresh, or not.
-    """
-    code = ("import contact; from curriculum import fast; "
-            "fast.simulate('lcp', contact.build_scene('drop'), 0.002, 1, contact.Settings())")
+    """{fresh, again}: seconds of a process that takes one step by the twin, compiled or not."""
+    code = (
+        "import contact; from curriculum import fast; "
+        "fast.simulate('lcp', contact.build_scene('drop'), 0.002, 1, contact.Settings())"
+    )
     with tempfile.TemporaryDirectory() as folder:
-        return {name: timing.whole_process([sys.executable, "-c", code], folder)
-                for name in ("fresh", "again")}
+        return {
+            name: timing.whole_process([sys.executable, "-c", code], folder)
+            for name in ("fresh", "again")
+        }

@@ -10,8 +10,8 @@ import numpy as np
 import contact
 from curriculum.bench import closed_form
 
-DTS = (0.001, 0.002, 0.004, 0.008, 0.016)   # s
-REFERENCE_DT = 0.002    # s, the step of contact.py's own default run
+DTS = (0.001, 0.002, 0.004, 0.008, 0.016)  # s
+REFERENCE_DT = 0.002  # s, the step of contact.py's own default run
 R = contact.RADIUS
 
 
@@ -20,11 +20,11 @@ class Problem(NamedTuple):
 
     name: str
     title: str
-    stresses: str           # what it is hard on, for the reader
+    stresses: str  # what it is hard on, for the reader
     duration: float
-    build: Callable         # start -> contact.Scene
-    truth: Callable         # (scene, t) -> q, v, (len(t), 2, N)
-    starts: int = 5         # the error of one is a lottery of where a step falls
+    build: Callable  # start -> contact.Scene
+    truth: Callable  # (scene, t) -> q, v, (len(t), 2, N)
+    starts: int = 5  # the error of one is a lottery of where a step falls
     dts: tuple = DTS
 
     def steps(self, dt):
@@ -74,24 +74,57 @@ def scene_of(name, bodies=None, restitution=None):
 
 
 PROBLEMS = (
-    Problem("drop", "Drop: one ball, no rebound, 4 s",
-            "a free fall, one impact that must stop the ball, then rest at no depth",
-            4.0, scene_of("drop"), column),
-    Problem("bounce", "Bounce: one ball, restitution 0.7, 4 s",
-            "infinitely many impacts in 2.4 s: an error in any impact time shifts all flights "
-            "after it", 4.0, scene_of("bounce"), column),
-    Problem("stack", "Stack: three balls, no rebound, 4 s",
-            "three contacts that share balls: the impact stops all at once, then nothing may sink",
-            4.0, scene_of("stack"), column),
-    Problem("slide", "Slide: a ball off a fixed ball, 0.7 s",
-            "a contact that turns while it pushes, and must let go at cos = 2/3 of its start",
-            0.7, slide_scene, slide),
-    Problem("pile", "Pile: eight balls fall beside and over one another, 1 s",
-            "impacts that decide where everything goes next: small errors grow",
-            1.0, scene_of("pile", 8), pile, 3),
-    Problem("elastic", "Elastic bounce: one ball, restitution 1, 20 s",
-            "two dozen impacts that may neither take nor give energy, and whose times add up",
-            20.0, scene_of("bounce", restitution=1.0), column, 3, DTS[1:]),
+    Problem(
+        "drop",
+        "Drop: one ball, no rebound, 4 s",
+        "a free fall, one impact that must stop the ball, then rest at no depth",
+        4.0,
+        scene_of("drop"),
+        column,
+    ),
+    Problem(
+        "bounce",
+        "Bounce: one ball, restitution 0.7, 4 s",
+        "infinitely many impacts in 2.4 s: an error in any impact time shifts all flights after it",
+        4.0,
+        scene_of("bounce"),
+        column,
+    ),
+    Problem(
+        "stack",
+        "Stack: three balls, no rebound, 4 s",
+        "three contacts that share balls: the impact stops all at once, then nothing may sink",
+        4.0,
+        scene_of("stack"),
+        column,
+    ),
+    Problem(
+        "slide",
+        "Slide: a ball off a fixed ball, 0.7 s",
+        "a contact that turns while it pushes, and must let go at cos = 2/3 of its start",
+        0.7,
+        slide_scene,
+        slide,
+    ),
+    Problem(
+        "pile",
+        "Pile: eight balls fall beside and over one another, 1 s",
+        "impacts that decide where everything goes next: small errors grow",
+        1.0,
+        scene_of("pile", 8),
+        pile,
+        3,
+    ),
+    Problem(
+        "elastic",
+        "Elastic bounce: one ball, restitution 1, 20 s",
+        "two dozen impacts that may neither take nor give energy, and whose times add up",
+        20.0,
+        scene_of("bounce", restitution=1.0),
+        column,
+        3,
+        DTS[1:],
+    ),
 )
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
 
@@ -110,6 +143,10 @@ def quality(problem, scene, run):
     total = contact.energy(run.q, run.v, scene.mass)
     energy = np.abs(total - contact.energy(q, v, scene.mass)) / abs(total[0])
     gap = contact.smallest_gap(run.q, scene.radius)
-    return dict(error=float(distance.max()), final_error=float(distance[-1]),
-                energy_error=float(energy.max()), depth=float(np.maximum(-gap, 0.0).max() / R),
-                diverged=contact.blow_up_step(total))
+    return dict(
+        error=float(distance.max()),
+        final_error=float(distance[-1]),
+        energy_error=float(energy.max()),
+        depth=float(np.maximum(-gap, 0.0).max() / R),
+        diverged=contact.blow_up_step(total),
+    )

@@ -7,14 +7,14 @@ import math
 
 from contact import MODELS, write_whole
 from contact import figure as number
-from curriculum import plotting
 from curriculum.bench import accuracy, piles, problems, skips
-from curriculum.text import results
-from curriculum.text.results import table
+from curriculum.measured import results
+from curriculum.measured.results import table
+from curriculum.run import plotting
 
-TINY = 1e-10        # r, what exact has to stay within
-PILE_LIMIT = 0.6    # of the fastest peer's time
-LEAST = 1e-17       # r: an error of exactly zero is drawn here
+TINY = 1e-10  # r, what exact has to stay within
+PILE_LIMIT = 0.6  # of the fastest peer's time
+LEAST = 1e-17  # r: an error of exactly zero is drawn here
 
 
 def ranged(about):
@@ -29,8 +29,11 @@ def called(row):
 
 def whole(section, problem):
     """The points of a problem that did not diverge."""
-    return [p for p in accuracy.unpacked(section["points"])
-            if p["problem"] == problem and not p["diverged"] and p["error"] is not None]
+    return [
+        p
+        for p in accuracy.unpacked(section["points"])
+        if p["problem"] == problem and not p["diverged"] and p["error"] is not None
+    ]
 
 
 # goals
@@ -58,8 +61,11 @@ def exact_goals(section):
         if exact and peers and problem in ("drop", "bounce"):
             fast = min(peers, key=lambda p: p["read_median"])
             ratio = ms / fast["read_median"]
-            yield (f"exact, {problem}: no slower than the fastest peer, every height read",
-                   f"{number(ratio)} times {called(fast)}", ratio <= 1.0)
+            yield (
+                f"exact, {problem}: no slower than the fastest peer, every height read",
+                f"{number(ratio)} times {called(fast)}",
+                ratio <= 1.0,
+            )
 
 
 def stack_goals(section):
@@ -67,20 +73,30 @@ def stack_goals(section):
     for problem in section["problems"]:
         lcp = [p for p in whole(section, problem) if p["words"].startswith("compiled")]
         rivals = [p for p in whole(section, problem) if p["family"] == "box2d3"]
-        beaten = [p for p in rivals if any(
-            mine["read_median"] <= p["read_median"] and mine["error"] <= p["error"]
-            for mine in lcp)]
+        beaten = [
+            p
+            for p in rivals
+            if any(
+                mine["read_median"] <= p["read_median"] and mine["error"] <= p["error"]
+                for mine in lcp
+            )
+        ]
         if rivals:
-            yield (f"lcp, compiled, {problem}: for every point of Box2D 3 one that is neither "
-                   "slower nor less accurate", f"for {len(beaten)} of {len(rivals)}",
-                   len(beaten) == len(rivals))
+            yield (
+                f"lcp, compiled, {problem}: for every point of Box2D 3 one that is neither "
+                "slower nor less accurate",
+                f"for {len(beaten)} of {len(rivals)}",
+                len(beaten) == len(rivals),
+            )
 
 
 def pile_goals(section):
     for count, depths in sorted(section["best"].items(), key=lambda each: int(each[0])):
         for depth, found in depths.items():
-            wanted = (f"{int(count):,} balls at rest, {depth} r deep at most: lcp, compiled, in "
-                      f"{PILE_LIMIT} of the fastest peer's time")
+            wanted = (
+                f"{int(count):,} balls at rest, {depth} r deep at most: lcp, compiled, in "
+                f"{PILE_LIMIT} of the fastest peer's time"
+            )
             if found["ratio"] is None:
                 absent = "no peer" if "lcp" in found["engines"] else "lcp does not"
                 yield wanted, f"{absent} gets there at rest", "lcp" in found["engines"]
@@ -90,16 +106,25 @@ def pile_goals(section):
 
 def skip_goals(section):
     bits = section["same_bits"]
-    yield ("the same bits with and without skips",
-           f"{len(bits['differing'])} of {bits['runs']} runs differ", not bits["differing"])
+    yield (
+        "the same bits with and without skips",
+        f"{len(bits['differing'])} of {bits['runs']} runs differ",
+        not bits["differing"],
+    )
     for name, limit in skips.LIMITS.items():
         if found := section["processes"].get(name):
-            yield (f"whole process, {name}: at most {limit} times `import {found['base']}`",
-                   number(found["ratio"]), found["ratio"] <= limit)
+            yield (
+                f"whole process, {name}: at most {limit} times `import {found['base']}`",
+                number(found["ratio"]),
+                found["ratio"] <= limit,
+            )
     for name, found in section["against_pymunk"].items():
         limit = skips.LCP_LIMITS[name]
-        yield (f"lcp, {name}, in process: at most {limit} times pymunk, 10 iterations, unread",
-               number(found["ratio"]), found["ratio"] <= limit)
+        yield (
+            f"lcp, {name}, in process: at most {limit} times pymunk, 10 iterations, unread",
+            number(found["ratio"]),
+            found["ratio"] <= limit,
+        )
 
 
 # pages
@@ -108,26 +133,41 @@ def skip_goals(section):
 def readme(sections):
     """The block of the project's README: a figure, a table, and what is missed."""
     missed = [f"{wanted} ({found})" for wanted, found, met in goals(sections) if not met]
-    parts = ["![Run time against error: bounce](curriculum/bench/results/error-bounce.svg)",
-             table(["", "exact", "lcp, best at 2 ms", "best other engine at 2 ms"],
-                   error_rows(sections["accuracy"])) if "accuracy" in sections else "",
-             table(["1,000 balls at rest", "lcp, compiled", "fastest other engine", "ratio"],
-                   rest_rows(sections["pile"])) if "pile" in sections else "",
-             f"Missed: {'; '.join(missed)}." if missed else "No goal is missed.",
-             "Everything, with settings and spread: [results](curriculum/bench/results/README.md)."]
+    parts = [
+        "![Run time against error: bounce](curriculum/bench/results/error-bounce.svg)",
+        table(
+            ["", "exact", "lcp, best at 2 ms", "best other engine at 2 ms"],
+            error_rows(sections["accuracy"]),
+        )
+        if "accuracy" in sections
+        else "",
+        table(
+            ["1,000 balls at rest", "lcp, compiled", "fastest other engine", "ratio"],
+            rest_rows(sections["pile"]),
+        )
+        if "pile" in sections
+        else "",
+        f"Missed: {'; '.join(missed)}." if missed else "No goal is missed.",
+        "Everything, with settings and spread: [results](curriculum/bench/results/README.md).",
+    ]
     return "\n\n".join(filter(None, parts))
 
 
 def error_rows(section):
     """For each problem the worst error [r] and the time [ms] of exact, lcp and the best peer."""
+
     def cell(found):
         return f"{number(found['error'])} r, {number(found['ms'])} ms" if found else "-"
 
     for problem, found in section["headline"].items():
         peers = [dict(about, family=name) for name, about in found.items() if name not in MODELS]
         best = min(peers, key=lambda about: about["error"], default=None)
-        yield [problem, cell(found.get("exact")), cell(found.get("lcp")),
-               f"{called(best)}: {cell(best)}" if best else "-"]
+        yield [
+            problem,
+            cell(found.get("exact")),
+            cell(found.get("lcp")),
+            f"{called(best)}: {cell(best)}" if best else "-",
+        ]
 
 
 def rest_rows(section):
@@ -137,17 +177,25 @@ def rest_rows(section):
         mine = found["engines"].get("lcp")
         peers = {name: about for name, about in found["engines"].items() if name != "lcp"}
         fast = min(peers, key=lambda name: peers[name]["us"], default=None)
-        yield [f"at most {depth} r deep", f"{number(mine['us'])} µs" if mine else "-",
-               f"{piles.LABELS[fast]}: {number(peers[fast]['us'])} µs" if fast else "-",
-               number(found["ratio"])]
+        yield [
+            f"at most {depth} r deep",
+            f"{number(mine['us'])} µs" if mine else "-",
+            f"{piles.LABELS[fast]}: {number(peers[fast]['us'])} µs" if fast else "-",
+            number(found["ratio"]),
+        ]
 
 
 def page(sections):
     """README.md of the results folder: goals, and every table."""
     verdict = {True: "met", False: "**missed**"}
-    parts = ["# Run time against error", "Written by `python -m curriculum.bench`; do not edit.",
-             table(["goal", "measured", ""],
-                   [[wanted, found, verdict[met]] for wanted, found, met in goals(sections)])]
+    parts = [
+        "# Run time against error",
+        "Written by `python -m curriculum.bench`; do not edit.",
+        table(
+            ["goal", "measured", ""],
+            [[wanted, found, verdict[met]] for wanted, found, met in goals(sections)],
+        ),
+    ]
     makers = {"accuracy": accuracy_part, "pile": pile_part, "skip": skip_part}
     for name, section in sections.items():
         parts += [*makers[name](section), results.footer(section)]
@@ -155,23 +203,37 @@ def page(sections):
 
 
 def accuracy_part(section):
-    yield ("An error is the median over several starts, a time the median over fresh processes "
-           "(CPU time, one thread; least to greatest). In all alike every height is read after "
-           "every step; bare is an engine's stepping alone. contact.py copies a state of rest, as "
-           "engines do in the rows that may sleep; compiling is not counted. Engines in float32 "
-           "are right to about 1e-6 r, the closed forms to 1e-12 r; of the pile `exact` is the "
-           "reference. A better setting? Add a line to SETTINGS in [engines.py](../engines.py) and "
-           "send it.")
+    yield (
+        "An error is the median over several starts, a time the median over fresh processes "
+        "(CPU time, one thread; least to greatest). In all alike every height is read after "
+        "every step; bare is an engine's stepping alone. contact.py copies a state of rest, as "
+        "engines do in the rows that may sleep; compiling is not counted. Engines in float32 "
+        "are right to about 1e-6 r, the closed forms to 1e-12 r; of the pile `exact` is the "
+        "reference. A better setting? Add a line to SETTINGS in [engines.py](../engines.py) and "
+        "send it."
+    )
     yield from (f"Not everywhere: {label}, {why}." for label, why in section["left_out"].items())
     for name, about in section["problems"].items():
         yield f"## {about['title']}\n\nHard on: {about['stresses']}."
         yield f"![Run time against error: {name}](error-{name}.svg)"
         points = [p for p in accuracy.unpacked(section["points"]) if p["problem"] == name]
-        yield table(["at 2 ms", "worst error / r", "at the end", "energy / E0", "deepest / r",
-                     "time [ms]", "bare [ms]"], list(rows_at(points, problems.REFERENCE_DT)))
+        yield table(
+            [
+                "at 2 ms",
+                "worst error / r",
+                "at the end",
+                "energy / E0",
+                "deepest / r",
+                "time [ms]",
+                "bare [ms]",
+            ],
+            list(rows_at(points, problems.REFERENCE_DT)),
+        )
         dts = sorted({p["dt"] for p in points})
-        yield table(["worst error / r at dt [ms]", *(f"{1e3 * dt:g}" for dt in dts)],
-                    list(rows_by_dt(points, dts)))
+        yield table(
+            ["worst error / r at dt [ms]", *(f"{1e3 * dt:g}" for dt in dts)],
+            list(rows_by_dt(points, dts)),
+        )
 
 
 def rows_at(points, dt):
@@ -180,49 +242,91 @@ def rows_at(points, dt):
         if p["dt"] == dt:
             error = ranged(dict(median=p["error"], min=p["least"], max=p["greatest"]))
             time = ranged({which: p[f"read_{which}"] for which in ("median", "min", "max")})
-            yield [called(p), f"diverged in {p['diverged']} starts" if p["diverged"] else error,
-                   *(number(p[key]) for key in ("final_error", "energy_error", "depth")), time,
-                   number(p["bare_median"])]
+            yield [
+                called(p),
+                f"diverged in {p['diverged']} starts" if p["diverged"] else error,
+                *(number(p[key]) for key in ("final_error", "energy_error", "depth")),
+                time,
+                number(p["bare_median"]),
+            ]
 
 
 def rows_by_dt(points, dts):
     """One row a contestant, its error at every step."""
     for name in dict.fromkeys(map(called, points)):
-        found = {p["dt"]: "diverged" if p["diverged"] else number(p["error"])
-                 for p in points if called(p) == name}
+        found = {
+            p["dt"]: "diverged" if p["diverged"] else number(p["error"])
+            for p in points
+            if called(p) == name
+        }
         yield [name, *(found.get(dt, "-") for dt in dts)]
 
 
 def pile_part(section):
     yield "## Piles between walls of fixed balls"
-    yield ("The same walls in every engine, steps of 2 ms. A pile counts as settled only where no "
-           f"ball was faster than {piles.AT_REST:g} m/s over the last {piles.WATCHED} steps; depth "
-           "is the mean of the overlapping contacts. Times are CPU time, median over fresh "
-           "processes (least to greatest). A process that takes one step by the twin needs "
-           f"{number(section['compile'].get('fresh'))} s where it must be compiled, and "
-           f"{number(section['compile'].get('again'))} s later on; neither is in the table.")
-    yield ("Ten thousand balls begin as ten settled copies of each engine's own thousand, since a "
-           "lattice of so many does not come to rest in reach; only the winners at a thousand run "
-           "there. An engine that does not come to rest there has a row, and counts in no goal.")
+    yield (
+        "The same walls in every engine, steps of 2 ms. A pile counts as settled only where no "
+        f"ball was faster than {piles.AT_REST:g} m/s over the last {piles.WATCHED} steps; depth "
+        "is the mean of the overlapping contacts. Times are CPU time, median over fresh "
+        "processes (least to greatest). A process that takes one step by the twin needs "
+        f"{number(section['compile'].get('fresh'))} s where it must be compiled, and "
+        f"{number(section['compile'].get('again'))} s later on; neither is in the table."
+    )
+    yield (
+        "Ten thousand balls begin as ten settled copies of each engine's own thousand, since a "
+        "lattice of so many does not come to rest in reach; only the winners at a thousand run "
+        "there. An engine that does not come to rest there has a row, and counts in no goal."
+    )
     yield "![Time a step against depth](settled.svg)"
     for count in dict.fromkeys(row["bodies"] for row in section["rows"]):
-        rows = [[f"{piles.LABELS[row['engine']]}: {row['words']}",
-                 "yes" if row["at_rest"] else "**no**", number(row["speed"]),
-                 number(row["mean_depth"]), number(row["worst_depth"]),
-                 ranged(row["resting"]), ranged(row["falling"])]
-                for row in section["rows"] if row["bodies"] == count]
-        yield table([f"{count:,} balls", "at rest", "fastest ball [m/s]", "mean depth / r",
-                     "worst", "settled [µs a step]", "falling [µs a step]"], rows)
+        rows = [
+            [
+                f"{piles.LABELS[row['engine']]}: {row['words']}",
+                "yes" if row["at_rest"] else "**no**",
+                number(row["speed"]),
+                number(row["mean_depth"]),
+                number(row["worst_depth"]),
+                ranged(row["resting"]),
+                ranged(row["falling"]),
+            ]
+            for row in section["rows"]
+            if row["bodies"] == count
+        ]
+        yield table(
+            [
+                f"{count:,} balls",
+                "at rest",
+                "fastest ball [m/s]",
+                "mean depth / r",
+                "worst",
+                "settled [µs a step]",
+                "falling [µs a step]",
+            ],
+            rows,
+        )
 
 
 def skip_part(section):
     yield "## What skipping saves"
-    yield table(["whole process", "seconds", "times its import", "by the least times"],
-                [[name, ranged(about), number(about.get("ratio")), number(about.get("least"))]
-                 for name, about in section["processes"].items()])
-    yield table(["2,000 steps", "all taken [ms]", "with skips [ms]", "ratio"],
-                [[f"{row['scene']}, {row['model']}", number(row["taken"]), number(row["skipped"]),
-                  number(row["ratio"])] for row in section["speed_up"]])
+    yield table(
+        ["whole process", "seconds", "times its import", "by the least times"],
+        [
+            [name, ranged(about), number(about.get("ratio")), number(about.get("least"))]
+            for name, about in section["processes"].items()
+        ],
+    )
+    yield table(
+        ["2,000 steps", "all taken [ms]", "with skips [ms]", "ratio"],
+        [
+            [
+                f"{row['scene']}, {row['model']}",
+                number(row["taken"]),
+                number(row["skipped"]),
+                number(row["ratio"]),
+            ]
+            for row in section["speed_up"]
+        ],
+    )
 
 
 # figures
@@ -232,8 +336,10 @@ def figures(sections):
     """{file name: SVG text}."""
     made = {}
     if "accuracy" in sections:
-        made |= {f"error-{name}.svg": error_figure(sections["accuracy"], name)
-                 for name in sections["accuracy"]["problems"]}
+        made |= {
+            f"error-{name}.svg": error_figure(sections["accuracy"], name)
+            for name in sections["accuracy"]["problems"]
+        }
     if "pile" in sections:
         made["settled.svg"] = pile_figure(sections["pile"])
     return made
@@ -256,52 +362,86 @@ def error_figure(section, problem):
     for p in whole(section, problem):
         families.setdefault(p["family"], []).append(dict(p, error=max(p["error"], LEAST)))
     figure, (left, axis) = plotting.figure(
-        share=(1, 6), height=3.6, below=1.7, title=about["title"],
+        share=(1, 6),
+        height=3.6,
+        below=1.7,
+        title=about["title"],
         explained="Left and down is better. A faint dot is one setting at one step; a line joins "
         "the best of a family, whose best setting at 2 ms is named. Numbers: lcp's dt in ms. "
-        "Compiling lcp is not counted.")
+        "Compiling lcp is not counted.",
+    )
     for family, points in families.items():
         draw_family(left if family == "exact" else axis, section, family, points)
     everything = [p["read_median"] for points in families.values() for p in points]
     for panel in (left, axis):
-        panel.set(xscale="log", yscale="log",
-                  ylim=(min(everything) / 1.6, max(everything) * 1.6))
-    left.set(xlim=(1e-17, 1e-9), xticks=[1e-16, 1e-10],
-             ylabel=f"time for {about['duration']:g} s of motion [ms]")
+        panel.set(xscale="log", yscale="log", ylim=(min(everything) / 1.6, max(everything) * 1.6))
+    left.set(
+        xlim=(1e-17, 1e-9),
+        xticks=[1e-16, 1e-10],
+        ylabel=f"time for {about['duration']:g} s of motion [ms]",
+    )
     left.minorticks_off()
     axis.set(xlabel="worst position error [r]", xlim=(None, min(axis.get_xlim()[1], 30.0)))
     axis.tick_params(labelleft=False)
     handles = [h for panel in (left, axis) for h in zip(*panel.get_legend_handles_labels())]
-    figure.legend(*zip(*handles), loc="lower left", handlelength=3.2, borderaxespad=0,
-                  bbox_to_anchor=(0.0, 0.22 / figure.get_figheight()), fontsize=8.5)
+    figure.legend(
+        *zip(*handles),
+        loc="lower left",
+        handlelength=3.2,
+        borderaxespad=0,
+        bbox_to_anchor=(0.0, 0.22 / figure.get_figheight()),
+        fontsize=8.5,
+    )
     return plotting.svg(figure, section)
 
 
 def draw_family(axis, section, family, points):
     """The points of one family on one panel."""
     color = plotting.look(family)["color"]
-    axis.scatter([p["error"] for p in points], [p["read_median"] for p in points], s=7,
-                 color=color, alpha=0.35, linewidths=0)
+    axis.scatter(
+        [p["error"] for p in points],
+        [p["read_median"] for p in points],
+        s=7,
+        color=color,
+        alpha=0.35,
+        linewidths=0,
+    )
     best = section["headline"].get(points[0]["problem"], {}).get(family)
     label = called(dict(best, family=family)) if best else accuracy.LABELS[family]
     line = draw_front(axis, points, "error", "read_median", family, label)
     for p in line if family == "lcp" else ():
-        axis.annotate(f"{1e3 * p['dt']:g}", (p["error"], p["read_median"]), (-3, -4), ha="right",
-                      va="top", textcoords="offset points", fontsize=7.5, color=color)
+        axis.annotate(
+            f"{1e3 * p['dt']:g}",
+            (p["error"], p["read_median"]),
+            (-3, -4),
+            ha="right",
+            va="top",
+            textcoords="offset points",
+            fontsize=7.5,
+            color=color,
+        )
 
 
 def pile_figure(section):
     """Time a step against depth, a panel for each size; a setting that does not rest is hollow."""
     counts = list(dict.fromkeys(row["bodies"] for row in section["rows"]))
     figure, axes = plotting.figure(
-        rows=len(counts), height=2.6, below=0.7, title="Piles at rest: time a step against depth",
+        rows=len(counts),
+        height=2.6,
+        below=0.7,
+        title="Piles at rest: time a step against depth",
         explained="Left and down is better. A dot is a setting, hollow where balls are still "
-        "moving; a line joins the best of an engine at rest.")
+        "moving; a line joins the best of an engine at rest.",
+    )
     for axis, count in zip(axes, counts):
         for engine, label in piles.LABELS.items():
-            rows = [dict(row, x=max(row["mean_depth"], 1e-9), y=row["resting"]["median"])
-                    for row in section["rows"] if (row["bodies"], row["engine"]) == (count, engine)
-                    and piles.ASLEEP not in row["words"] and row["mean_depth"]]
+            rows = [
+                dict(row, x=max(row["mean_depth"], 1e-9), y=row["resting"]["median"])
+                for row in section["rows"]
+                if (row["bodies"], row["engine"]) == (count, engine)
+                and piles.ASLEEP not in row["words"]
+                and row["mean_depth"]
+            ]
             for row in rows:
                 look = dict(plotting.look(engine), ls="", alpha=0.6)
                 face = {} if row["at_rest"] else {"mfc": "none"}

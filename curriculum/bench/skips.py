@@ -8,8 +8,8 @@ import tempfile
 from functools import partial
 
 import contact
-from curriculum import pool
 from curriculum.bench import accuracy, engines, timing
+from curriculum.run import pool
 
 SCENES, STEPPED = ("drop", "bounce", "stack"), ("penalty", "lcp", "soft")
 DT, STEPS = 0.002, 2000
@@ -46,16 +46,20 @@ def same_bits(quick):
     """
     jobs = list(cases(quick))
     same = pool.spread(is_same, jobs, "same bits")
-    return dict(runs=len(jobs), differing=[" ".join(map(str, job))
-                                           for job, fine in zip(jobs, same) if not fine])
+    return dict(
+        runs=len(jobs),
+        differing=[" ".join(map(str, job)) for job, fine in zip(jobs, same) if not fine],
+    )
 
 
 def is_same(case):
     """Whether a run has the same bits with and without skips."""
     scene, seed, balls, model, dt, steps = case
     scene = contact.build_scene(scene, seed, balls)
-    one, other = (contact.run_model(model, scene, dt, steps, contact.Settings(skip=skip))
-                  for skip in (True, False))
+    one, other = (
+        contact.run_model(model, scene, dt, steps, contact.Settings(skip=skip))
+        for skip in (True, False)
+    )
     same = all(a.tobytes() == b.tobytes() for a, b in zip(one[:3], other[:3]))
     return same and one.unsettled == other.unsettled
 
@@ -65,20 +69,32 @@ def processes(quick):
     python, rounds = sys.executable, 3 if quick else 15
     with tempfile.TemporaryDirectory() as out:
         run = [python, "contact.py", "--out", out]
-        commands = {"numpy": [python, "-c", "import numpy"],
-                    **{scene: [*run, "--no-rerun", "--scene", scene] for scene in SCENES}}
+        commands = {
+            "numpy": [python, "-c", "import numpy"],
+            **{scene: [*run, "--no-rerun", "--scene", scene] for scene in SCENES},
+        }
         if importlib.util.find_spec("rerun") is not None:
-            commands |= {"rerun": [python, "-c", "import rerun"],
-                         RECORDED: [*run, "--rerun", "--scene", "drop"]}
-        seconds = timing.interleave({name: partial(timing.whole_process, command, out)
-                                     for name, command in commands.items()}, rounds + 1)
+            commands |= {
+                "rerun": [python, "-c", "import rerun"],
+                RECORDED: [*run, "--rerun", "--scene", "drop"],
+            }
+        seconds = timing.interleave(
+            {
+                name: partial(timing.whole_process, command, out)
+                for name, command in commands.items()
+            },
+            rounds + 1,
+        )
     # the first round warms the disk cache and the bytecode
     found = {name: timing.spread(values[1:]) for name, values in seconds.items()}
     for name in LIMITS:
         base = "rerun" if name == RECORDED else "numpy"
         if name in found:
-            found[name] |= dict(base=base, ratio=found[name]["median"] / found[base]["median"],
-                                least=found[name]["min"] / found[base]["min"])
+            found[name] |= dict(
+                base=base,
+                ratio=found[name]["median"] / found[base]["median"],
+                least=found[name]["min"] / found[base]["min"],
+            )
     return found
 
 
@@ -87,10 +103,14 @@ def against_pymunk(quick):
     found, ways = {}, {"lcp: 20 sweeps": "read", "pymunk: 10 iterations": "bare"}
     for name in SCENES if not engines.missing("pymunk") else ():
         given = contact.build_scene(name), DT, STEPS
-        tasks = {setting.split(":")[0]: partial(accuracy.seconds_of, setting, way, *given)
-                 for setting, way in ways.items()}
-        times = {key: timing.spread([1e3 * value for value in values])
-                 for key, values in timing.interleave(tasks, 5 if quick else 31).items()}
+        tasks = {
+            setting.split(":")[0]: partial(accuracy.seconds_of, setting, way, *given)
+            for setting, way in ways.items()
+        }
+        times = {
+            key: timing.spread([1e3 * value for value in values])
+            for key, values in timing.interleave(tasks, 5 if quick else 31).items()
+        }
         found[name] = dict(times, ratio=times["lcp"]["median"] / times["pymunk"]["median"])
     return found
 
@@ -100,11 +120,15 @@ def speed_up(quick):
     rows = []
     for name, model in itertools.product(SCENES, STEPPED):
         given = model, contact.build_scene(name), DT, STEPS
-        runs = {skip: partial(contact.run_model, *given, contact.Settings(skip=skip))
-                for skip in (True, False)}
-        times = timing.interleave({skip: partial(timing.timed, run) for skip, run in runs.items()},
-                                  2 if quick else 7)
+        runs = {
+            skip: partial(contact.run_model, *given, contact.Settings(skip=skip))
+            for skip in (True, False)
+        }
+        times = timing.interleave(
+            {skip: partial(timing.timed, run) for skip, run in runs.items()}, 2 if quick else 7
+        )
         skipped, taken = (1e3 * statistics.median(times[skip]) for skip in (True, False))
-        rows.append(dict(scene=name, model=model, skipped=skipped, taken=taken,
-                         ratio=taken / skipped))
+        rows.append(
+            dict(scene=name, model=model, skipped=skipped, taken=taken, ratio=taken / skipped)
+        )
     return rows

@@ -17,8 +17,8 @@ import subprocess
 import time
 from concurrent.futures import ProcessPoolExecutor
 
-from curriculum.machine import ROOT
-from curriculum.pool import bar
+from curriculum.measured.machine import ROOT
+from curriculum.run.pool import bar
 
 
 def timed(call) -> float:

@@ -10,14 +10,14 @@ import jinja2
 from markupsafe import Markup
 
 import contact
-from curriculum import curves
+from curriculum.measured import ledger
 from curriculum.page import chapter, maths_font
 from curriculum.page.bundle import bundle, evaluate
 from curriculum.page.exercises import all_exercises, blank_cases
 from curriculum.page.panels import pieces
-from curriculum.text import ledger
+from curriculum.regions import ROOT, read_all
+from curriculum.run import curves
 from curriculum.text.references import Numbers, load_meta
-from curriculum.text.regions import ROOT, read_all
 
 HERE = Path(__file__).resolve().parent
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column

@@ -7,7 +7,7 @@ import re
 import sys
 
 from curriculum.page.chapter import inline, markdown
-from curriculum.text.regions import ROOT
+from curriculum.regions import ROOT
 
 FOLDER = ROOT / "exercises"
 TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")

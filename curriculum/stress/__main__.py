@@ -16,7 +16,7 @@ for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before nump
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
 import contact
-from curriculum import pool
+from curriculum.run import pool
 from curriculum.stress import jobs
 
 FULL, QUICK = (10_000, 1_000), (60, 100)  # random scenes of up to 30 balls, and of up to four

@@ -1,10 +1,10 @@
 """results.json, README.md and the figure, from the results of the jobs."""
 
 from contact import write_whole
-from curriculum import plotting
+from curriculum.measured import results
+from curriculum.run import plotting
 from curriculum.stress import extremes, jobs, maps, mujoco_match
 from curriculum.stress.claims import PROPERTIES
-from curriculum.text import results
 
 FOLDER = results.FOLDERS["stress"]
 RESULTS, QUICK = results.ROOT / FOLDER, results.ROOT / "outputs" / "stress-quick"

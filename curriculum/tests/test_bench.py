@@ -12,7 +12,7 @@ fast = pytest.importorskip("curriculum.fast", reason="numba is missing", exc_typ
 
 from curriculum.bench import __main__ as bench  # noqa: E402
 from curriculum.bench import accuracy, closed_form, engines, piles, problems, report, skips, timing  # noqa: E402
-from curriculum.text import results  # noqa: E402
+from curriculum.measured import results  # noqa: E402
 
 R = contact.RADIUS
 HERE = [s for s in engines.SETTINGS if not engines.missing(s.engine)]
@@ -26,8 +26,10 @@ each_setting = pytest.mark.parametrize("setting", HERE, ids=lambda s: f"{s.engin
 def test_exact_has_no_error_and_penalty_has_one(problem):
     scene, dt = problem.build(1), 0.004
     steps = min(problem.steps(dt), 300)
-    found = {model: problems.quality(problem, scene, contact.run_model(model, scene, dt, steps))
-             for model in ("exact", "penalty")}
+    found = {
+        model: problems.quality(problem, scene, contact.run_model(model, scene, dt, steps))
+        for model in ("exact", "penalty")
+    }
     assert found["exact"]["error"] < 1e-10
     assert found["exact"]["energy_error"] < 1e-10
     assert found["penalty"]["error"] > 1e-4
@@ -48,7 +50,7 @@ def test_an_engine_falls_as_a_ball_does_and_comes_to_rest_on_the_floor(setting):
     session.advance(1000)
     q, v = session.state()
     assert q.shape == v.shape == (2, 1)
-    slow = setting.engine == "drake" or "no push" in setting.words    # to push an overlap out
+    slow = setting.engine == "drake" or "no push" in setting.words  # to push an overlap out
     assert abs(q[1, 0] - R) < (0.2 if slow else 0.02) * R
     assert abs(v).max() < 1e-2
 
@@ -65,8 +67,14 @@ def test_an_engine_holds_the_fixed_ball_and_lets_the_other_slide_off(setting):
     assert problems.quality(problem, scene, run)["error"] < 0.2
 
 
-@pytest.mark.parametrize("setting", [s for s in HERE if s.engine in ("pymunk", "box2d3") or
-                                     s.words.startswith("direct, no push, d 0")])
+@pytest.mark.parametrize(
+    "setting",
+    [
+        s
+        for s in HERE
+        if s.engine in ("pymunk", "box2d3") or s.words.startswith("direct, no push, d 0")
+    ],
+)
 def test_an_engine_bounces_with_the_restitution_of_the_scene(setting):
     _, v = setting.build(contact.build_scene("bounce"), 0.001).states(700)
     impact = int(np.argmax(np.diff(v[:, 1, 0]) > 1.0))
@@ -110,8 +118,10 @@ def test_depths_are_those_of_the_contacts():
     assert found["worst_depth"] == pytest.approx(0.2)
 
 
-@pytest.mark.parametrize("number", [k for k, s in enumerate(piles.SETTINGS)
-                                    if s.engine == "lcp" or not engines.missing(s.engine)])
+@pytest.mark.parametrize(
+    "number",
+    [k for k, s in enumerate(piles.SETTINGS) if s.engine == "lcp" or not engines.missing(s.engine)],
+)
 def test_a_pile_of_twelve_settles_between_walls_in_every_engine(number):
     q, v, row = piles.settle((12, number, None))
     assert row["at_rest"] and row["speed"] < 1e-3
@@ -120,14 +130,25 @@ def test_a_pile_of_twelve_settles_between_walls_in_every_engine(number):
 
 
 def row(engine, us, depth, words="", at_rest=True):
-    return dict(bodies=12, engine=engine, words=words, at_rest=at_rest, mean_depth=depth,
-                resting=timing.spread([us]))
+    return dict(
+        bodies=12,
+        engine=engine,
+        words=words,
+        at_rest=at_rest,
+        mean_depth=depth,
+        resting=timing.spread([us]),
+    )
 
 
 def test_only_what_rests_awake_within_the_depth_is_compared():
-    rows = [row("lcp", 30.0, 5e-5), row("lcp", 5.0, 5e-4), row("lcp", 1.0, 5e-5, at_rest=False),
-            row("box2d3", 40.0, 9e-5), row("box2d3", 0.1, 9e-5, piles.ASLEEP),
-            row("pymunk", 3.0, 2e-3)]
+    rows = [
+        row("lcp", 30.0, 5e-5),
+        row("lcp", 5.0, 5e-4),
+        row("lcp", 1.0, 5e-5, at_rest=False),
+        row("box2d3", 40.0, 9e-5),
+        row("box2d3", 0.1, 9e-5, piles.ASLEEP),
+        row("pymunk", 3.0, 2e-3),
+    ]
     found = piles.best(rows)["12"]
     assert found["0.001"]["engines"]["lcp"]["us"] == 5.0
     assert found["0.001"]["ratio"] == 5.0 / 40.0
@@ -144,20 +165,34 @@ def test_skips_change_no_bit_of_the_cases_that_are_compared():
 
 
 def test_the_page_shows_every_point_and_marks_what_is_missed(tmp_path):
-    jobs = [("drop", name, dt, 2) for name in ("penalty: k 1e4", "lcp: 20 sweeps", "lcp: compiled, "
-            "20 sweeps", "exact: event to event") for dt in (0.002, 0.008)]
-    points = [accuracy.point(job, accuracy.errors_of(job), [accuracy.times_of(job)])
-              for job in jobs]
-    about = dict(problems={"drop": dict(title="Drop", stresses="much", duration=4.0)},
-                 points=accuracy.packed(points), headline=accuracy.headline(points), left_out={})
+    jobs = [
+        ("drop", name, dt, 2)
+        for name in (
+            "penalty: k 1e4",
+            "lcp: 20 sweeps",
+            "lcp: compiled, 20 sweeps",
+            "exact: event to event",
+        )
+        for dt in (0.002, 0.008)
+    ]
+    points = [
+        accuracy.point(job, accuracy.errors_of(job), [accuracy.times_of(job)]) for job in jobs
+    ]
+    about = dict(
+        problems={"drop": dict(title="Drop", stresses="much", duration=4.0)},
+        points=accuracy.packed(points),
+        headline=accuracy.headline(points),
+        left_out={},
+    )
     saved = results.save(tmp_path, "accuracy", about, "measure")
     report.write(tmp_path, {"accuracy": saved})
     page = (tmp_path / "README.md").read_text("utf-8")
     assert page.count("| penalty: k 1e4 |") == 2 and "met |" in page
     figure = (tmp_path / "error-drop.svg").read_text("utf-8")
     assert "worst position error [r]" in figure and "lcp: compiled, 20 sweeps" in figure
-    spoiled = json.loads(json.dumps(saved).replace('"exact"', '"soft"').replace('"penalty"',
-                                                                                '"exact"'))
+    spoiled = json.loads(
+        json.dumps(saved).replace('"exact"', '"soft"').replace('"penalty"', '"exact"')
+    )
     assert "**missed**" in report.page({"accuracy": spoiled})
 
 

@@ -49,8 +49,9 @@ def plainly(model, scene, dt, steps, chosen):
 
 PLACE = st.one_of(st.integers(-6, 6).map(lambda k: 0.1 * k), st.floats(-0.7, 0.7))
 SPEED = st.one_of(st.just(0.0), st.floats(-5.0, 5.0))
-MASS = st.one_of(st.just(1.0), st.floats(-1.5, 1.5).map(lambda power: 10.0**power),
-                 st.just(math.inf))
+MASS = st.one_of(
+    st.just(1.0), st.floats(-1.5, 1.5).map(lambda power: 10.0**power), st.just(math.inf)
+)
 RADIUS = st.sampled_from((0.1, 0.1, 0.1, 0.05, 0.3, 0.0123, 2.0, 10.0))
 OFFSET = st.sampled_from((0.0, 0.0, 0.0, 1e5, -1e9, 1e15))
 
@@ -61,35 +62,46 @@ def scenes(draw):
     count = draw(st.one_of(st.integers(1, 6), st.integers(1, 40)))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     few = min(count, 8)
-    columns = [st.lists(kind, min_size=few, max_size=few)
-               for kind in (PLACE, PLACE, SPEED, SPEED, MASS, RADIUS)]
-    x, y, vx, vy, mass, radius = (np.resize(np.array(draw(column), float), count)
-                                  for column in columns)
+    columns = [
+        st.lists(kind, min_size=few, max_size=few)
+        for kind in (PLACE, PLACE, SPEED, SPEED, MASS, RADIUS)
+    ]
+    x, y, vx, vy, mass, radius = (
+        np.resize(np.array(draw(column), float), count) for column in columns
+    )
     side = 0.1 * math.sqrt(count) if count > few else 0.0
     q0 = np.array((x, abs(y))) + rng.uniform(-side, side, (2, count))
     v0 = np.array((vx, vy))
     if draw(st.integers(0, 3)) == 0:
         state = draw(st.sampled_from((q0, v0)))
         state[draw(st.integers(0, 1)), draw(st.integers(0, count - 1))] = draw(
-            st.sampled_from(WILD))
+            st.sampled_from(WILD)
+        )
     q0[0] += draw(OFFSET)
     e = draw(st.sampled_from((0.0, 0.0, 0.5, 1.0)))
     return contact.Scene("drawn", q0, v0, mass, radius, e, draw(st.sampled_from((0.0, 80.0))))
 
 
-@settings(max_examples=200, deadline=None, derandomize=True,
-          suppress_health_check=[HealthCheck.too_slow])
-@given(scene=scenes(), model=st.sampled_from(MODELS),
-       dt=st.sampled_from((0.002, 0.002, 1e-4, 0.03, 1e154)),
-       stiffness=st.sampled_from((1e4, 0.0, 1e300)), baumgarte=st.floats(0.0, 1.0),
-       iters=st.integers(1, 20), warm=st.sampled_from((0.0, 0.8, 1.0)),
-       solimp=st.sampled_from((None, None, (0.0, 0.99, 0.02, 0.4, 2.5), (0.5, 0.9, 0.0, 0.5, 1.0))))
+@settings(
+    max_examples=200, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+)
+@given(
+    scene=scenes(),
+    model=st.sampled_from(MODELS),
+    dt=st.sampled_from((0.002, 0.002, 1e-4, 0.03, 1e154)),
+    stiffness=st.sampled_from((1e4, 0.0, 1e300)),
+    baumgarte=st.floats(0.0, 1.0),
+    iters=st.integers(1, 20),
+    warm=st.sampled_from((0.0, 0.8, 1.0)),
+    solimp=st.sampled_from((None, None, (0.0, 0.99, 0.02, 0.4, 2.5), (0.5, 0.9, 0.0, 0.5, 1.0))),
+)
 def test_the_twin_has_the_bytes_of_the_plain_loops(scene, model, dt, solimp, **knobs):
     solref = None
-    if model == "soft":     # whose sweeps take long where many hard contacts share balls
+    if model == "soft":  # whose sweeps take long where many hard contacts share balls
         solref = (-1e3, -50.0) if scene.restitution > 0.0 else None
-        scene = scene._replace(q0=scene.q0[:, :8], v0=scene.v0[:, :8], mass=scene.mass[:8],
-                               radius=scene.radius[:8])
+        scene = scene._replace(
+            q0=scene.q0[:, :8], v0=scene.v0[:, :8], mass=scene.mass[:8], radius=scene.radius[:8]
+        )
     check_same(model, scene, dt, 12, solimp=solimp, solref=solref, **knobs)
 
 
@@ -107,6 +119,7 @@ def test_the_twin_counts_the_steps_that_do_not_settle_also_where_a_cycle_is_copi
 
 
 # Walls, and balls of unequal size
+
 
 def shaft(count, width, wall=0.1):
     """Balls over one another in a shaft, `width` of them wide, between walls of fixed balls."""
@@ -126,8 +139,11 @@ def shaft(count, width, wall=0.1):
 def add_ball(scene, x, y, radius, mass):
     """The scene with one ball more."""
     return scene._replace(
-        q0=np.append(scene.q0, [[x], [y]], axis=1), v0=np.append(scene.v0, [[0.0], [0.0]], axis=1),
-        mass=np.append(scene.mass, mass), radius=np.append(scene.radius, radius))
+        q0=np.append(scene.q0, [[x], [y]], axis=1),
+        v0=np.append(scene.v0, [[0.0], [0.0]], axis=1),
+        mass=np.append(scene.mass, mass),
+        radius=np.append(scene.radius, radius),
+    )
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -141,8 +157,9 @@ def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls_and_under_a_lar
 def test_a_large_ball_adds_no_pairs_of_small_ones():
     alone = contact.build_scene("pile", 0, 2000)
     beside = add_ball(alone, 0.0, 30.0, 10.0, 1.0)
-    pairs = [fast.Motion("lcp", scene, 0.002, contact.Settings()).pairs
-             for scene in (alone, beside)]
+    pairs = [
+        fast.Motion("lcp", scene, 0.002, contact.Settings()).pairs for scene in (alone, beside)
+    ]
     assert np.array_equal(*pairs)
 
 
@@ -151,7 +168,7 @@ def test_a_pile_comes_to_rest_from_a_warm_start_and_lies_less_deep():
     scene = shaft(60, 8)
     for warm in (0.0, 0.8):
         q, v, _ = fast.simulate("lcp", scene, 0.002, 6000, contact.Settings(warm=warm))
-        speed[warm] = np.sqrt((v[-1]**2).sum(0)).max()
+        speed[warm] = np.sqrt((v[-1] ** 2).sum(0)).max()
         depth[warm] = -fast.smallest_gap(q[-1:], scene.radius)[0]
     assert max(speed.values()) < 1e-3
     assert 0.0 < depth[0.8] < 0.6 * depth[0.0]
@@ -163,7 +180,7 @@ def test_a_run_taken_on_in_parts_has_the_bytes_of_the_whole():
     motion = fast.Motion("lcp", scene, 0.002, chosen)
     rows = np.empty((301, 4, 30))
     for first, last in ((0, 1), (1, 120), (120, 300)):
-        motion.take(rows[first:last + 1], np.ones(301, bool), False)
+        motion.take(rows[first : last + 1], np.ones(301, bool), False)
     assert np.array_equal(rows[1:, :2], whole[0][1:])
     assert np.array_equal(rows[1:, 2:], whole[1][1:])
 
@@ -177,11 +194,19 @@ def test_run_model_gives_many_balls_to_the_twin_and_says_how_far_it_is():
 
 @pytest.mark.parametrize("prepare", ["", "import sys; sys.modules['numba'] = None; "])
 def test_where_nothing_is_compiled_contact_takes_its_plain_loops(prepare):
-    code = (prepare + "import contact; assert contact.beside('fast') is None; "
-            "scene = contact.build_scene('pile', 0, 40); "
-            "print(contact.run_model('lcp', scene, 0.002, 20).q.sum())")
+    code = (
+        prepare + "import contact; assert contact.beside('fast') is None; "
+        "scene = contact.build_scene('pile', 0, 40); "
+        "print(contact.run_model('lcp', scene, 0.002, 20).q.sum())"
+    )
     environment = dict(os.environ, NUMBA_DISABLE_JIT="0" if prepare else "1")
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment,
-                          capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     whole = fast.simulate("lcp", contact.build_scene("pile", 0, 40), 0.002, 20, contact.Settings())
     assert float(done.stdout) == whole[0].sum()

@@ -1,6 +1,6 @@
 """What users see, pinned: the README's commands and the trajectories of four scenes.
 
-    python -m curriculum.tests.test_golden      # pin it anew, and say why in CHANGELOG.md
+python -m curriculum.tests.test_golden      # pin it anew, and say why in CHANGELOG.md
 """
 
 import contextlib

@@ -107,8 +107,13 @@ def specs(draw):
     } | {name: draw(st.sampled_from(values)) for name, values in knobs.items()}
 
 
-@settings(max_examples=150, deadline=None, derandomize=True, database=None,
-          suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
 @given(spec=specs())
 def test_every_property_holds_on_scenes_that_hypothesis_draws(spec):
     still = [0.0 if math.isinf(mass) else 1.0 for mass in spec["mass"]]
@@ -361,8 +366,9 @@ def test_soft_is_mujoco_in_each_step_and_in_a_whole_run(case):
 
 def same_bytes_both_ways(model, scene, dt, steps, **knobs):
     """Whether the run with skips has the bytes of the run without."""
-    runs = [run_model(model, scene, dt, steps, Settings(**knobs, skip=skip))
-            for skip in (True, False)]
+    runs = [
+        run_model(model, scene, dt, steps, Settings(**knobs, skip=skip)) for skip in (True, False)
+    ]
     return all(a.tobytes() == b.tobytes() for a, b in zip(runs[0][:3], runs[1][:3]))
 
 

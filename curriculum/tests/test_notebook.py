@@ -10,7 +10,7 @@ import sys
 import pytest
 
 import contact
-from curriculum.text import regions
+from curriculum import regions
 
 for package in ("nbformat", "nbclient", "ipykernel", "matplotlib", "yaml"):
     pytest.importorskip(package, reason=f"{package} is missing: pip install -e '.[notebook]'")
@@ -18,7 +18,7 @@ for package in ("nbformat", "nbclient", "ipykernel", "matplotlib", "yaml"):
 import nbclient  # noqa: E402
 import nbformat  # noqa: E402
 
-from curriculum import notebook  # noqa: E402
+from curriculum.notebook import build as notebook  # noqa: E402
 
 SOFTER = "def penalty_normal_force(depth, v_n, stiffness, damping):\n    return 0.0\n"
 ASKED = f"""\

@@ -10,9 +10,9 @@ import contact
 from curriculum.page.build import page_data
 from curriculum.page.bundle import evaluate
 from curriculum.page.chapter import CHAPTER
+from curriculum.regions import ROOT
 from curriculum.tests.page_browser import running, visiting
 from curriculum.text import facts
-from curriculum.text.regions import ROOT
 
 SLOT = re.compile(r"<!-- figure: ([\w-]+) -->")
 SLOTS = sorted(SLOT.findall((ROOT / CHAPTER).read_text("utf-8")))

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum import curves, hints, picture, pool
+from curriculum.regions import ROOT
+from curriculum.run import curves, picture, pool
 
-ROOT = hints.ROOT
 DT, STEPS = 0.002, 600
 CURVES = ("height", "penetration", "impulse", "energy", "rises")
 Recording = namedtuple("Recording", "series static blueprint application")
@@ -59,7 +59,7 @@ def opened(path):
 
 
 def recorded(folder, scene, runs):
-    recording = pytest.importorskip("curriculum.recording", reason="rerun is not installed")
+    recording = pytest.importorskip("curriculum.run.recording", reason="rerun is not installed")
     recording.write(str(folder / "contact.rrd"), runs, scene)
     assert [path.name for path in folder.iterdir()] == ["contact.rrd"], "nothing else is left"
     return opened(folder / "contact.rrd")

@@ -54,12 +54,15 @@ def judge_a_copy(folder, count, old, new):
     Without the compiled twin, which has the right lines still.
     """
     leave = shutil.ignore_patterns("results", "__pycache__")
-    shutil.copytree(ROOT / "curriculum/stress", folder / "curriculum/stress", ignore=leave)
+    for room in ("curriculum/stress", "curriculum/run"):
+        shutil.copytree(ROOT / room, folder / room, ignore=leave)
     for path in [ROOT / "contact.py", *(ROOT / "curriculum").glob("*.py")]:
         if path.name != "fast.py":
             shutil.copy(path, folder / path.relative_to(ROOT))
-    texts = {path: path.read_text("utf-8") for path in
-             (folder / "contact.py", folder / "curriculum/exact.py")}
+    texts = {
+        path: path.read_text("utf-8")
+        for path in (folder / "contact.py", folder / "curriculum/exact.py")
+    }
     assert sum(text.count(old) for text in texts.values()) == 1, f"not in one place: {old!r}"
     for path, text in texts.items():
         path.write_text(text.replace(old, new), "utf-8")

@@ -11,8 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from curriculum.machine import fingerprint
-from curriculum.text import references, regions, results
+from curriculum import regions
+from curriculum.measured import results
+from curriculum.measured.machine import fingerprint
+from curriculum.text import references
 
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
 ROOT = Path(__file__).resolve().parents[2]
@@ -61,12 +63,14 @@ def edit(path, old, new):
 def accepted(tmp_path_factory):
     """A project that is in order and in git; its runs are cached."""
     project = tmp_path_factory.mktemp("project")
-    for file in ("contact.py", "curriculum/__init__.py", "curriculum/machine.py", ".gitignore"):
-        (project / file).parent.mkdir(exist_ok=True)
-        shutil.copy(ROOT / file, project / file)
-    shutil.copytree(ROOT / "curriculum/text", project / "curriculum/text")
+    for room in ("curriculum/text", "curriculum/measured"):
+        shutil.copytree(ROOT / room, project / room)
+    for name in ("__init__", "regions", "implicit"):
+        shutil.copy(ROOT / f"curriculum/{name}.py", project / "curriculum")
+    for file in (".gitignore", "contact.py"):
+        shutil.copy(ROOT / file, project)
     (project / "curriculum/prose").mkdir()
-    files = ("contact.py", "curriculum/text/facts.py")
+    files = ("contact.py", "curriculum/implicit.py")
     shown = "".join(
         f"\n```\n[include-by-region: {file}#{name}]\n```\n"
         for file in files
@@ -224,12 +228,12 @@ def test_ledger_has_its_header_and_each_row_is_whole_or_pending(project):
 
 def test_measuring_writes_a_whole_row_of_todays_code(project):
     pytest.importorskip("rerun", reason="rerun is not installed, and the default run records")
-    for pattern in ("checks.py", "curriculum/*.py", "exercises/*"):
+    for pattern in ("checks.py", "curriculum/*.py", "curriculum/run/*.py", "exercises/*"):
         for path in filter(Path.is_file, ROOT.glob(pattern)):
             copied = project / path.relative_to(ROOT)
             copied.parent.mkdir(exist_ok=True)
             shutil.copy(path, copied)
-    command = [sys.executable, "-B", "-m", "curriculum.text.ledger", "cpu", "--runs", "1"]
+    command = [sys.executable, "-B", "-m", "curriculum.measured.ledger", "cpu", "--runs", "1"]
     run = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
     assert run.returncode == 0 and re.search(r": [\d.]+ (s|min)$", run.stdout.strip()), run.stderr
     header, pending, row = (project / "wallclock.csv").read_text("utf-8").splitlines()
@@ -238,7 +242,7 @@ def test_measuring_writes_a_whole_row_of_todays_code(project):
 
 
 def test_block_of_the_readme_is_written_whole_and_waits_for_a_reader(project):
-    write = "from curriculum.text import results; results.write_block('bench', '\\n| a |\\n')"
+    write = "from curriculum.measured import results; results.write_block('bench', '\\n| a |\\n')"
     subprocess.run([sys.executable, "-B", "-c", write], cwd=project, check=True)
     head, end = README.split("<!-- end -->")
     assert (project / "README.md").read_text("utf-8") == f"{head}| a |\n<!-- end -->{end}"

@@ -11,26 +11,9 @@ from unittest.mock import patch
 import numpy as np
 
 import contact
+from curriculum.implicit import implicit_step
 
 DT = 0.002
-
-
-# --- region: implicit-spring ---
-def implicit_step(balls, dt, spring):
-    """One step [s] of penalty's spring, taken at the end of the step and not at its beginning.
-
-    spring(depth) gives softness R and target; then it is lcp's step: the sweep knows R already.
-    """
-    contacts = contact.detect_contacts(balls, margin=0.0)
-    for c in contacts:
-        c.softness, c.target = spring(c.depth)
-        c.m_eff = 1.0 / (c.inv_mass + c.softness)
-    contact.accelerate(balls, dt)
-    contact.solve_contacts(contacts, 100)
-    contact.move(balls, dt)
-
-
-# --- endregion ---
 
 
 def implicit_spring():

@@ -5,9 +5,9 @@ import re
 from collections import Counter
 
 from contact import write_whole
-from curriculum.text import ledger, results
+from curriculum.measured import ledger, results
+from curriculum.regions import ROOT, read_text, split_all
 from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, load_meta
-from curriculum.text.regions import ROOT, read_text, split_all
 from curriculum.text.sections import FENCE, TEXTS, blank, changes, line_at, sections
 
 GATE = "python -m curriculum.text"
@@ -15,7 +15,8 @@ CHAPTER = TEXTS["chapter"]
 # Where numbers may be typed: code, comments, formulas, references, links, tags, numbers of headings
 # and lists, versions with two dots, and what follows some words.
 NOT_PROSE = re.compile(
-    FENCE.pattern + r"""
+    FENCE.pattern
+    + r"""
     |<!--.*?-->
     |\$\$.+?\$\$|\$[^$\n]+\$
     |\{\{[^\n]*?\}\}

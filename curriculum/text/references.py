@@ -30,9 +30,9 @@ from pathlib import Path
 import yaml
 
 import contact
-from curriculum.machine import fingerprint
-from curriculum.text import ledger, results
-from curriculum.text.regions import CODE, NAME, ROOT
+from curriculum.measured import ledger, results
+from curriculum.measured.machine import fingerprint
+from curriculum.regions import CODE, NAME, ROOT
 
 INCLUDE = re.compile(rf"\[include-by-region: (?P<file>[\w./-]+\.py)#(?P<name>{NAME})\]")
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")
@@ -65,7 +65,7 @@ def cached(name: str, inputs, make, code=CODE):
     except (OSError, ValueError):
         pass
     made = make()
-    with suppress(OSError):     # a folder that cannot be written costs time, and no number
+    with suppress(OSError):  # a folder that cannot be written costs time, and no number
         contact.write_whole(path, json.dumps({"about": about, "made": made}))
     return made
 
@@ -100,7 +100,7 @@ class Numbers:
     def prepare(self, text):
         """Make the runs that a text names, on all cores."""
         wanted = [name for name in load_meta()["runs"] if f"{name}:" in text]
-        fingerprint(*CODE)      # and kept: Python 3.11 cannot parse in two threads at once
+        fingerprint(*CODE)  # and kept: Python 3.11 cannot parse in two threads at once
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(self.run, wanted))
 

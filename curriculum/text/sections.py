@@ -12,9 +12,9 @@ from difflib import unified_diff
 from functools import cache
 from typing import NamedTuple
 
-from curriculum.machine import git
+from curriculum.measured.machine import git
+from curriculum.regions import blank, line_at, read_text, split_all
 from curriculum.text.references import INCLUDE
-from curriculum.text.regions import blank, line_at, read_text, split_all
 
 TEXTS = {"chapter": "curriculum/prose/chapter.md", "README": "README.md"}
 FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)

@@ -1,31 +1,36 @@
 """The chapter as a notebook that runs from top to bottom, wherever it is.
 
-    python -m curriculum.notebook [--out FILE]          # outputs/contact.ipynb
-
 Prose with its numbers; the regions of contact.py as cells, so that a change is felt in every cell
-below; knobs and pictures (curriculum/notebook_cells.py) where the chapter has its figures; the
+below; knobs and pictures (curriculum/notebook/cells.py) where the chapter has its figures; the
 exercises as files to write and run. Its first cell carries the course's folder with it and needs
 numpy and matplotlib, which it installs where they are missing. Same inputs, same bytes.
 """
 
-import argparse
 import base64
 import hashlib
 import io
 import re
-import sys
 import textwrap
 import zipfile
 
 import contact
+from curriculum.regions import ROOT, read_all
 from curriculum.text.references import INCLUDE, Numbers
-from curriculum.text.regions import ROOT, read_all
 
 CHAPTER = ROOT / "curriculum/prose/chapter.md"
-CELLS = ROOT / "curriculum/notebook_cells.py"
-CARRIED = ("contact.py", "checks.py", "exercises/*.py", "exercises/*.json",
-           "curriculum/__init__.py", "curriculum/curves.py", "curriculum/exact.py",
-           "curriculum/hints.py", "curriculum/text/__init__.py", "curriculum/text/facts.py")
+CELLS = ROOT / "curriculum/notebook/cells.py"
+CARRIED = (
+    "contact.py",
+    "checks.py",
+    "exercises/*.py",
+    "exercises/*.json",
+    "curriculum/__init__.py",
+    "curriculum/run/__init__.py",
+    "curriculum/run/curves.py",
+    "curriculum/exact.py",
+    "curriculum/commands.py",
+    "curriculum/implicit.py",
+)
 MARK = re.compile(
     rf"^```\w*\n{INCLUDE.pattern}\n```$|^<!-- (?P<kind>figure|exercise): (?P<slot>[\w-]+) -->$"
     r"|^(?=#{1,3} )",
@@ -54,7 +59,7 @@ def folder():
 
 
 def own_cells():
-    """{name: source} of notebook_cells.py."""
+    """{name: source} of cells.py."""
     parts = re.split(r"^# %% ([\w-]+)\n", CELLS.read_text("utf-8"), flags=re.MULTILINE)
     return {name: source.strip() for name, source in zip(parts[1::2], parts[2::2])}
 
@@ -148,23 +153,3 @@ def build():
     made = book.v4.new_notebook(cells=book.cells, metadata=metadata)
     nbformat.validate(made)
     return nbformat.writes(made) + "\n"
-
-
-def main():
-    """Build and write. Returns the exit status: 0 written, 1 the notebook can't be built."""
-    parser = argparse.ArgumentParser(description="The chapter as a notebook.", allow_abbrev=False)
-    parser.add_argument("--out", default="outputs/contact.ipynb", metavar="FILE")
-    args = parser.parse_args()
-    try:
-        text = build()
-        contact.write_whole(args.out, text)
-    except (ImportError, OSError, ValueError) as error:
-        hint = f" ({sys.executable} -m pip install -e '.[notebook]')"
-        print(f"{error}{hint if isinstance(error, ImportError) else ''}", file=sys.stderr)
-        return 1
-    print(f"{args.out}: {len(text.encode()) / 1000:.0f} kB")
-    return 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -14,11 +14,11 @@ import math
 import re
 import textwrap
 
-from curriculum import hints
-from curriculum.curves import COLORS
+from curriculum import commands
+from curriculum.run.curves import COLORS
 
 INK, PALE, GRID = "#222222", "#666666", "#e2e2e2"
-WIDTH = 6.0     # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
+WIDTH = 6.0  # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
 
 # colour, marker, dash: told apart without colour too
 LOOKS = {
@@ -32,16 +32,38 @@ LOOKS = {
     "drake": ("#56b4e9", "X", (0, (6, 2, 1, 2))),
 }
 IN_THE_DARK = {
-    INK: "#e6e6e6", PALE: "#a8a8a8", GRID: "#3a3f4a", "#0072b2": "#56a8e0", "#7b5ea7": "#b59ae0",
-    "#a6611a": "#cf8f4f", "#d55e00": "#ef7a2a", "#009e73": "#2fc79a", "#cc79a7": "#e096bd",
+    INK: "#e6e6e6",
+    PALE: "#a8a8a8",
+    GRID: "#3a3f4a",
+    "#0072b2": "#56a8e0",
+    "#7b5ea7": "#b59ae0",
+    "#a6611a": "#cf8f4f",
+    "#d55e00": "#ef7a2a",
+    "#009e73": "#2fc79a",
+    "#cc79a7": "#e096bd",
 }
 SETTINGS = {
-    "svg.hashsalt": "contact", "svg.fonttype": "none", "font.size": 10,
-    "font.family": "DejaVu Sans", "text.color": INK, "axes.labelcolor": INK, "xtick.color": INK,
-    "ytick.color": INK, "axes.titlesize": 10.5, "axes.titlelocation": "left",
-    "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": INK, "axes.grid": True,
-    "grid.color": GRID, "grid.linewidth": 0.6, "axes.axisbelow": True, "legend.frameon": False,
-    "legend.fontsize": 9, "lines.linewidth": 1.5, "figure.facecolor": "none",
+    "svg.hashsalt": "contact",
+    "svg.fonttype": "none",
+    "font.size": 10,
+    "font.family": "DejaVu Sans",
+    "text.color": INK,
+    "axes.labelcolor": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.titlesize": 10.5,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": INK,
+    "axes.grid": True,
+    "grid.color": GRID,
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "legend.frameon": False,
+    "legend.fontsize": 9,
+    "lines.linewidth": 1.5,
+    "figure.facecolor": "none",
     "axes.facecolor": "none",
 }
 
@@ -51,7 +73,7 @@ def pyplot():
     try:
         import matplotlib
     except ImportError:
-        raise ImportError(hints.missing("matplotlib")) from None
+        raise ImportError(commands.missing("matplotlib")) from None
     matplotlib.use("svg")
     matplotlib.rcParams.update(SETTINGS)
     from matplotlib import pyplot as plt
@@ -69,9 +91,20 @@ def figure(rows=1, title="", explained="", height=3.4, share=(1,), below=0.0):
     top, bottom = 0.7 + 0.17 * len(lines), 0.62 + below
     tall = top + bottom + rows * height
     made, axes = pyplot().subplots(
-        rows, len(share), figsize=(WIDTH, tall), squeeze=False,
-        gridspec_kw=dict(width_ratios=share, left=0.125, right=0.98, top=1 - top / tall,
-                         bottom=bottom / tall, hspace=0.42, wspace=0.08))
+        rows,
+        len(share),
+        figsize=(WIDTH, tall),
+        squeeze=False,
+        gridspec_kw=dict(
+            width_ratios=share,
+            left=0.125,
+            right=0.98,
+            top=1 - top / tall,
+            bottom=bottom / tall,
+            hspace=0.42,
+            wspace=0.08,
+        ),
+    )
     made.text(0.01, 1 - 0.26 / tall, title, fontsize=12, fontweight="bold")
     for k, words in enumerate(lines):
         made.text(0.01, 1 - (0.46 + 0.17 * k) / tall, words, fontsize=9, color=PALE)
@@ -93,8 +126,14 @@ def line(axis, x, y, name, label=None, **changes):
 
 def legend_below(axis, columns, down):
     """The legend under a panel, where it covers nothing: `down` heights of the panel below it."""
-    axis.legend(loc="upper left", ncols=columns, bbox_to_anchor=(-0.1, -down), borderaxespad=0,
-                columnspacing=1.0, fontsize=8.5)
+    axis.legend(
+        loc="upper left",
+        ncols=columns,
+        bbox_to_anchor=(-0.1, -down),
+        borderaxespad=0,
+        columnspacing=1.0,
+        fontsize=8.5,
+    )
 
 
 def svg(figure, section=None) -> str:
@@ -107,8 +146,11 @@ def svg(figure, section=None) -> str:
         whole_decades(axis.xaxis)
         whole_decades(axis.yaxis)
     out, (title, explained) = io.StringIO(), figure.words
-    figure.savefig(out, format="svg", metadata={
-        "Date": None, "Creator": None, "Title": title, "Description": explained})
+    figure.savefig(
+        out,
+        format="svg",
+        metadata={"Date": None, "Creator": None, "Title": title, "Description": explained},
+    )
     pyplot().close(figure)
     return smaller(out.getvalue())
 
@@ -132,8 +174,11 @@ def smaller(text):
         return f"{float(match[0]):.2f}".rstrip("0").rstrip(".")
 
     text = re.sub(r"<[^>]*>", lambda tag: re.sub(r"-?\d+\.\d{3,}", shorter, tag[0]), text)
-    rules = "".join(f'[style*="{part}: {day}"]{{{part}:{night}!important}}'
-                    for day, night in IN_THE_DARK.items() for part in ("fill", "stroke"))
+    rules = "".join(
+        f'[style*="{part}: {day}"]{{{part}:{night}!important}}'
+        for day, night in IN_THE_DARK.items()
+        for part in ("fill", "stroke")
+    )
     dark = f"@media (prefers-color-scheme: dark) {{svg{{background:#14161b}}{rules}}}"
     text = re.sub(r"(<svg\b[^>]*>)", rf"\1\n<style>{dark}</style>", text, count=1)
     return "\n".join(words.rstrip() for words in text.splitlines()) + "\n"

@@ -5,7 +5,7 @@ import os
 import statistics
 
 import contact
-from curriculum import pool
+from curriculum.run import pool
 
 
 def report(args):

@@ -6,7 +6,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import active_children, parent_process
 
-from curriculum import hints
+from curriculum import commands
 
 
 def spread(function, jobs, label, workers=None, scheduler=None):
@@ -77,7 +77,7 @@ def machines(scheduler):
     try:
         from dask.distributed import Client
     except ImportError:
-        raise ImportError(hints.missing("dask[distributed]")) from None
+        raise ImportError(commands.missing("dask[distributed]")) from None
     try:
         client = Client(scheduler, timeout=10)
     except (OSError, ValueError) as error:

@@ -12,7 +12,8 @@ from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+from curriculum.regions import ROOT
+
 PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
 COMMIT = "describe --always --abbrev=10 --exclude=* --dirty=+".split()
 

@@ -2,8 +2,8 @@
 
 The benchmark and the stress report each keep one file results.json, with a section per command. A
 section says under "measured" how it came to be: the command that measures it again, the machine
-(curriculum/machine.py) and the hash of every file whose behaviour was measured. It is stale when
-one of those files has changed since, comments and docstrings aside.
+(machine.py) and the hash of every file whose behaviour was measured. It is stale when one of those
+files has changed since, comments and docstrings aside.
 """
 
 import json
@@ -12,8 +12,8 @@ import re
 from pathlib import Path
 
 from contact import write_json, write_whole
-from curriculum.machine import fingerprint, machine
-from curriculum.text.regions import CODE, ROOT, read_text
+from curriculum.measured.machine import fingerprint, machine
+from curriculum.regions import CODE, ROOT, read_text
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 NAME = "results.json"

@@ -14,9 +14,9 @@ from pathlib import Path
 from textwrap import dedent
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")  # what a run runs
-LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/text/facts.py")  # what has regions
+LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/implicit.py")  # what has regions
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
 NAME = r"[a-z][a-z0-9_-]*"
 REGION = re.compile(

@@ -3,8 +3,8 @@
 import numpy as np
 
 import contact
-from curriculum import plotting
-from curriculum.curves import curves
+from curriculum.run import plotting
+from curriculum.run.curves import curves
 
 DASHES = ("-", (0, (6, 2)), (0, (2, 1)), (0, (1, 2)))  # lines that coincide are seen beneath
 

@@ -1,6 +1,6 @@
 """The cells that only the notebook has: its set-up, its knobs and its pictures.
 
-Each cell begins with a line `# %% NAME`. curriculum/notebook.py puts it where the chapter has the
+Each cell begins with a line `# %% NAME`. curriculum/notebook/ puts it where the chapter has the
 figure of that name; `start` and `tools` come first. Names that are not defined here are
 contact.py's.
 """
@@ -28,7 +28,7 @@ import zlib
 import matplotlib.pyplot as plt
 from IPython.display import SVG, display
 
-from curriculum.curves import COLORS
+from curriculum.run.curves import COLORS
 
 
 def course(*words):
@@ -265,4 +265,3 @@ def try_soft(timeconst, impedance_at_surface, dt):
 
 knobs(try_soft, timeconst=(0.002, 0.02, 0.2), dt=(0.0005, 0.002, 0.064),
       impedance_at_surface=(0.0, 0.9, 0.9999))
-

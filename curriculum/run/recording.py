@@ -11,14 +11,14 @@ from pathlib import Path
 import numpy as np
 
 import contact
-from curriculum import hints
-from curriculum.curves import colors, contact_impulses, curves, ending
+from curriculum import commands
+from curriculum.run.curves import colors, contact_impulses, curves, ending
 
 try:
     import rerun as rr
     import rerun.blueprint as rrb
 except ImportError:
-    raise ImportError(hints.missing("rerun-sdk")) from None
+    raise ImportError(commands.missing("rerun-sdk")) from None
 
 PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"

@@ -1,6 +1,6 @@
 """The ledger of measured wall-clock, wallclock.csv, and the command that measures a row of it.
 
-    python -m curriculum.text.ledger cpu-laptop    # time `python contact.py` here, write that row
+    python -m curriculum.measured.ledger cpu-laptop   # time `python contact.py` here, write its row
 
 Seven columns, no quoting. wallclock_min is in minutes for a whole process, recording included, the
 median of several. A row is MEASURED with every column filled, or PENDING with none; no time is ever
@@ -19,16 +19,16 @@ import time
 from pathlib import Path
 
 from contact import write_whole
-from curriculum.machine import fingerprint, machine
-from curriculum.text.regions import CODE, ROOT
+from curriculum.measured.machine import fingerprint, machine
+from curriculum.regions import CODE, ROOT
 
 LEDGER = ROOT / "wallclock.csv"
 CHAPTER = "ch3.5-contact"
 COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", "status")
 FILLED = r"\d[\d.e-]*,[0-9a-f]{12},[0-9a-f]+\+?,\d{4}-\d\d-\d\d,MEASURED"
 ROW = re.compile(rf"[\w.-]+,[\w-]+,({FILLED}|,,,,PENDING)")
-COMMAND = "python -m curriculum.text.ledger"
-TIMED = (*CODE, "curriculum/recording.py")  # what a default run runs
+COMMAND = "python -m curriculum.measured.ledger"
+TIMED = (*CODE, "curriculum/run/recording.py")  # what a default run runs
 
 
 def rows() -> list:

@@ -1,0 +1,1 @@
+"""The chapter as a notebook: `python -m curriculum.notebook [--out FILE]`."""
