@@ -58,10 +58,10 @@ const penaltyNormalForce = (depth, speed, stiffness, damping) =>
   positive(stiffness * depth - damping * speed);
 
 // One step of penalty. knobs.clampForce stands in for the clamped force.
-function penaltyStep(state, { mass, radius }, knobs) {
+function penaltyStep(state, { mass, radius, motor = [] }, knobs) {
   const { x, y, vx, vy } = state;
   const { dt, stiffness, damping, clampForce = penaltyNormalForce } = knobs;
-  const fx = y.map(() => 0);
+  const fx = y.map((_, i) => motor[i] ?? 0); // N, sideways
   const fy = y.map(() => 0);
   for (const c of detectContacts(x, y, radius, 0)) {
     const f = clampForce(c.depth, normalSpeed(c, vx, vy), stiffness, damping);
