@@ -10,8 +10,9 @@ import numpy as np
 import contact
 from curriculum.bench import closed_form
 
-DTS = (0.001, 0.002, 0.004, 0.008, 0.016)  # s
 REFERENCE_DT = 0.002  # s, the step of contact.py's own default run
+SUBSTEPS = (1, 4, 16)  # at that step; coarser ones are taken whole
+COARSER = (0.004, 0.008, 0.016)  # s
 R = contact.RADIUS
 
 
@@ -25,7 +26,6 @@ class Problem(NamedTuple):
     build: Callable  # start -> contact.Scene
     truth: Callable  # (scene, t) -> q, v, (len(t), 2, N)
     starts: int = 5  # the error of one is a lottery of where a step falls
-    dts: tuple = DTS
 
     def steps(self, dt):
         return round(self.duration / dt)
@@ -67,6 +67,11 @@ def pile_at(places, count, steps, dt):
     scene = scene._replace(q0=np.frombuffer(places).reshape(2, count))
     run = contact.run_model("exact", scene, dt, steps - 1)
     return run.q, run.v
+
+
+def heavy(ratio, start):
+    """A ball of so many kg on a ball of one, a little above the floor."""
+    return contact.build_scene("stack", start, 2)._replace(mass=np.array((1.0, ratio)))
 
 
 def scene_of(name, bodies=None, restitution=None):
@@ -123,7 +128,27 @@ PROBLEMS = (
         scene_of("bounce", restitution=1.0),
         column,
         3,
-        DTS[1:],
+    ),
+    *(
+        Problem(
+            f"heavy_{ratio}",
+            f"Heavy on light: {ratio} kg on 1 kg, no rebound, 2 s",
+            "a large impulse that must go through a small ball: sweeps hand on little of it",
+            2.0,
+            partial(heavy, ratio),
+            column,
+            3,
+        )
+        for ratio in (100, 1000)
+    ),
+    Problem(
+        "tower",
+        "Tower: twenty balls, no rebound, 2 s",
+        "twenty contacts in a row, each of which has to carry all that is above it",
+        2.0,
+        scene_of("stack", 20),
+        column,
+        3,
     ),
 )
 BY_NAME = {problem.name: problem for problem in PROBLEMS}

@@ -28,7 +28,16 @@ from typing import NamedTuple
 import numpy as np
 
 import contact
-from contact import FLOOR, GRAVITY, Contact, accelerate, detect_contacts, move, remember
+from contact import (
+    CONTACT_MARGIN,
+    FLOOR,
+    GRAVITY,
+    Contact,
+    accelerate,
+    detect_contacts,
+    move,
+    remember,
+)
 from curriculum.bench import problems
 from curriculum.run import pool
 
@@ -96,12 +105,8 @@ def step(balls, dt, s, count):
 
 
 def look(balls, dt, ahead):
-    """The contacts that may close in a step: within twice what the fastest ball travels."""
-    if not ahead:
-        return detect_contacts(balls)
-    fastest = max(math.hypot(ball.vx, ball.vy) for ball in balls)
-    reach = 2.0 * dt * (fastest - dt * GRAVITY)
-    return detect_contacts(balls, max(contact.CONTACT_MARGIN, reach))
+    """The contacts of a step: within the margin, or as far as the balls travel in it."""
+    return detect_contacts(balls, contact.step_reach(balls, dt) if ahead else CONTACT_MARGIN)
 
 
 def renewed(c):
@@ -120,19 +125,14 @@ def renewed(c):
 
 def aim(c, h, s):
     """What contact c wants of a substep [s]: its target, and its softness."""
-    if not s.ahead:
-        c.target = contact.contact_target(c, 0.0, s.gain, h)
-    elif c.depth <= 0.0:
-        c.target = c.depth / h
-    elif s.hertz:  # twice as stiff against what does not move, as Box2D has it
+    c.target = contact.contact_target(c, 0.0, s.gain, h, s.ahead)
+    if s.hertz and c.depth > 0.0:  # twice as stiff against what does not move, as Box2D has it
         held = c.a.inv_mass == 0.0 or c.b.inv_mass == 0.0
         omega = 2.0 * math.pi * min(s.hertz, 0.25 / h) * (1.0 + held)
         damping = 20.0 + h * omega
         c.target = omega / damping * c.depth
         c.softness = c.inv_mass / (h * omega * damping)
         c.m_eff = 1.0 / (c.inv_mass + c.softness)
-    else:
-        c.target = s.gain * c.depth / h
 
 
 def sweep(contacts, sweeps, count):
