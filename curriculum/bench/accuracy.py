@@ -151,32 +151,35 @@ def point(job, errors, times):
     return found
 
 
-def allowed(p, budget=None):
+def allowed(p, budget=None, work=WORK):
     """Whether a point competes: at equal work, or within so many us a ball in 2 ms, awake."""
     if p["error"] is None or p["diverged"]:
         return False
     if budget is None:
-        return p["dt"] == problems.REFERENCE_DT and (p["work"] <= WORK or p["adaptive"])
+        return p["dt"] == problems.REFERENCE_DT and (p["work"] <= work or p["adaptive"])
     looks = problems.BY_NAME[p["problem"]].duration / problems.REFERENCE_DT
     return p["awake_median"] <= 1e-3 * budget * p["balls"] * looks
 
 
-def headline(points, budget=None):
+def headline(points, *limits, **limit):
     """{problem: {family: {words, dt, error, ms, user_ms}}}: the setting with the least error.
 
-    Of those that compete at equal work, or at equal time; ms awake.
+    Of those that are allowed to compete; of equal errors, in three digits, the fastest. ms awake.
     """
     found = {}
-    for p in sorted(points, key=lambda p: (p["error"] is not None, p["error"]), reverse=True):
-        if allowed(p, budget):
-            found.setdefault(p["problem"], {})[p["family"]] = dict(
-                words=p["words"],
-                dt=p["dt"],
-                error=p["error"],
-                ms=p["awake_median"],
-                user_ms=p["user_median"],
-            )
+    for p in points:
+        if allowed(p, *limits, **limit):
+            about = {key: p[key] for key in ("words", "dt", "error")}
+            about |= dict(ms=p["awake_median"], user_ms=p["user_median"])
+            rivals = found.setdefault(p["problem"], {})
+            best = rivals.setdefault(p["family"], about)
+            rivals[p["family"]] = min(best, about, key=rank)
     return found
+
+
+def rank(about):
+    """What decides between two settings: the error in three digits, then the time."""
+    return float(f"{about['error']:.3g}"), about["ms"]
 
 
 def left_out(chosen):
