@@ -228,10 +228,10 @@ def test_ledger_has_its_header_and_each_row_is_whole_or_pending(project):
 
 def test_measuring_writes_a_whole_row_of_todays_code(project):
     pytest.importorskip("rerun", reason="rerun is not installed, and the default run records")
-    for pattern in ("checks.py", "curriculum/*.py", "curriculum/run/*.py", "exercises/*"):
+    for pattern in ("checks.py", "curriculum/*.py", "curriculum/run/*.py", "exercises/**/*"):
         for path in filter(Path.is_file, ROOT.glob(pattern)):
             copied = project / path.relative_to(ROOT)
-            copied.parent.mkdir(exist_ok=True)
+            copied.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, copied)
     command = [sys.executable, "-B", "-m", "curriculum.measured.ledger", "cpu", "--runs", "1"]
     run = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)

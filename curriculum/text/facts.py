@@ -127,6 +127,11 @@ def jump():
     return found
 
 
+def finger():
+    """The critical step [s] of a finger of 0.2 kg on penalty's default spring and damper."""
+    return {"limit": contact.critical_dt(0.2, 1e4, 80.0)}
+
+
 def heavy_on_light():
     """The quality where the upper ball of two is heavier: lcp cold and warm, soft."""
     found, scene = {}, contact.build_scene("stack", bodies=2)
@@ -188,5 +193,5 @@ def blocks():
 FACTS = {
     each.__name__: each
     for each in (implicit_spring, tower_sweeps, ratio_sweeps, soft_sweeps, no_margin, order)
-    + (air_push, jump, heavy_on_light, crowd, slide, blocks)
+    + (air_push, jump, finger, heavy_on_light, crowd, slide, blocks)
 }
