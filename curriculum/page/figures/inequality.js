@@ -53,6 +53,7 @@ function draw(view) {
     const [aside, far] = [x + r + 14, x - r - 12];
     return [
       table(0, floor, left, GROUND),
+      label(`gaps × ${number(PX / unit / r, 2)}`, 4, 14, "start", "tick"),
       ball("lcp", x, y - r, r),
       ghost(end.gap),
       line(x, y, aside, y, "grid"),

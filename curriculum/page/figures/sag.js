@@ -93,7 +93,8 @@ function draw(view) {
   const { own } = view;
   const masses = own.masses.slice(0, own.count);
   const ways = waysOf(knobs(view));
-  const now = Math.max(0, ways.findLastIndex(({ parts }) => parts <= own.parts));
+  const off = ways.map(({ parts }) => Math.abs(Math.log(parts / own.parts)));
+  const now = off.indexOf(Math.min(...off)); // the nearest to what is wished for
   const all = ways.map((way) => ({ ...sags(masses, way), law: lawOf(masses, way) }));
   const { depths, rests, law } = all[now];
   let made;
