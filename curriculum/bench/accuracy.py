@@ -131,7 +131,7 @@ def point(job, errors, times):
     found = dict(
         problem=problem,
         family=c.engine,
-        words=c.words if substeps == 1 else f"{c.words}, {substeps} x",
+        words=c.cut(substeps),
         dt=dt,
         work=substeps * c.inner,
         adaptive=c.adaptive,

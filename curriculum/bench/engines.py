@@ -61,16 +61,20 @@ class Session:
         for _ in range(n):
             step()
 
+    def go(self, n):
+        """Take the steps of n looks, and read nothing."""
+        self.advance(n * self.substeps)
+
     def heights(self):
         """The height of every ball."""
         return self.state()[0][1]
 
     def looks(self, read, n):
         """read() at the start and at each of n looks."""
-        go = self.step if self.substeps == 1 else partial(self.advance, self.substeps)
+        steps = self.step if self.substeps == 1 else partial(self.advance, self.substeps)
         rows = [read()]
         for _ in range(n):
-            go()
+            steps()
             rows.append(read())
         return rows
 
@@ -98,12 +102,11 @@ class Ours(Session):
     def states(self, n):
         model, scene, dt = self.given
         if self.python or model == "exact":
-            run = contact.run_model(model, scene, dt, n * self.substeps, self.settings)
-            return run.q[:: self.substeps], run.v[:: self.substeps]
-        from curriculum import fast
-
-        q, v, _ = fast.simulate(model, scene, dt, n * self.substeps, self.settings)[-3:]
-        return q[:: self.substeps], v[:: self.substeps]
+            simulate = contact.run_model
+        else:
+            from curriculum.fast import simulate
+        run = simulate(model, scene, dt, n * self.substeps, self.settings)
+        return run.q[:: self.substeps], run.v[:: self.substeps]
 
     trace = states
 
@@ -410,6 +413,10 @@ class Setting(NamedTuple):
     @property
     def name(self):
         return f"{self.engine}: {self.words}"
+
+    def cut(self, substeps):
+        """The words, with that many substeps for each look."""
+        return self.words if substeps == 1 else f"{self.words}, {substeps} x"
 
     def refuses(self, scene):
         """Why it does not run a scene, or does not run here, or None."""

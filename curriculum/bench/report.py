@@ -7,10 +7,11 @@ import math
 
 import numpy as np
 
-from contact import MODELS, write_whole
+from contact import MODELS
 from contact import figure as number
 from curriculum.bench import accuracy, piles, problems, skips, solvers
 from curriculum.bench.accuracy import BUDGET, LABELS, WORK
+from curriculum.files import write_whole
 from curriculum.measured import results
 from curriculum.measured.results import table
 from curriculum.run import plotting
@@ -48,14 +49,9 @@ def best_peer(found):
     return min(peers, key=lambda about: about["error"], default=None)
 
 
-def wins(section, contest):
-    """{problem: whether lcp is at least as accurate as every other engine} of a contest."""
-    found = {name: (about.get("lcp"), best_peer(about)) for name, about in section[contest].items()}
-    return {
-        name: mine is not None and mine["error"] <= peer["error"]
-        for name, (mine, peer) in found.items()
-        if peer
-    }
+def beats(one, other):
+    """Whether an error is no larger than another, in three digits; of two that are measured."""
+    return bool(one and other) and accuracy.rank(one)[0] <= accuracy.rank(other)[0]
 
 
 # goals
@@ -86,12 +82,11 @@ def accuracy_goals(section):
                     ratio <= 1.0,
                 )
     for contest, words in EQUAL.items():
-        for problem, met in wins(section, contest).items():
-            found, peer = section[contest][problem], best_peer(section[contest][problem])
-            mine = f"{number(found['lcp']['error'])} r" if "lcp" in found else "nothing"
-            wanted = f"lcp {words}: no less accurate than any other engine"
-            against = f"{mine}, {LABELS[peer['family']]} {number(peer['error'])} r"
-            yield wanted, problem, against, met
+        for problem, found in section[contest].items():
+            if (mine := found.get("lcp")) and (peer := best_peer(found)):
+                wanted = f"lcp {words}: no less accurate than any other engine"
+                against = f"{LABELS[peer['family']]} {number(peer['error'])} r"
+                yield wanted, problem, f"{number(mine['error'])} r, {against}", beats(mine, peer)
 
 
 def pile_goals(section):
@@ -174,12 +169,14 @@ def missed(sections):
 def contest_rows(section):
     """For each problem the worst error [r] and time [ms] of exact, lcp and the best peer; twice."""
 
-    def cell(about, won):
+    def cell(about, won=False):
         if not about:
             return "-"
         who = f"{LABELS[about['family']]} " if "family" in about else ""
         error = "reference" if about["error"] is None else f"{number(about['error'])} r"
         text = f"{who}{error}, {number(about['ms'])} ms"
+        if about.get("user_ms", math.inf) < 0.9 * about["ms"]:
+            text += f" ({number(about['user_ms'])})"
         return f"**{text}**" if won else text
 
     times = {
@@ -187,10 +184,11 @@ def contest_rows(section):
     }
     for problem in section["problems"]:
         p = times.get(problem)
-        row = [problem, cell(p and dict(error=p["error"], ms=p["awake_median"]), False)]
+        row = [problem, cell(p and dict(error=p["error"], ms=p["awake_median"]))]
         for contest in EQUAL:
-            found, won = section[contest].get(problem, {}), wins(section, contest).get(problem)
-            row += [cell(found.get("lcp"), won), cell(best_peer(found), won is False)]
+            found = section[contest].get(problem, {})
+            mine, peer = found.get("lcp"), best_peer(found)
+            row += [cell(mine, beats(mine, peer)), cell(peer, beats(peer, mine))]
         yield row
 
 
@@ -198,9 +196,9 @@ def good_for(section):
     """One sentence on what lcp is still good for, from the numbers."""
     parts = []
     for contest, when in (("headline", "at equal work"), ("in_time", "in equal time")):
-        won = wins(section, contest)
-        names = ", ".join(name for name, met in won.items() if met) or "none"
-        parts.append(f"{when} in {sum(won.values())} of {len(won)} ({names})")
+        found = section[contest]
+        names = [name for name, f in found.items() if beats(f.get("lcp"), best_peer(f))]
+        parts.append(f"{when} in {len(names)} of {len(found)} ({', '.join(names) or 'none'})")
     ratios = []
     for problem in section["problems"]:
         step = [p for p in points_of(section, problem) if p["work"] == 1 and p["dt"] == 0.002]
