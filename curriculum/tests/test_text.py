@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from curriculum import regions
-from curriculum.measured import results
-from curriculum.measured.machine import fingerprint
+from curriculum.measured import results, stale
 from curriculum.text import references
 
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
@@ -52,6 +51,12 @@ def run_gate(project, *flags):
     return subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
 
 
+def commit(project):
+    """Commit all that there is."""
+    for words in ("init", "add .", "-c user.name=x -c user.email=x@x commit --message x"):
+        subprocess.run(["git", *words.split()], cwd=project, check=True, capture_output=True)
+
+
 def edit(path, old, new):
     """Replace a text that stands once in a file."""
     text = path.read_text("utf-8")
@@ -87,8 +92,7 @@ def accepted(tmp_path_factory):
     for flags in (("--accept", *sections.split()), ()):
         run = run_gate(project, *flags)
         assert run.returncode == 0, run.stdout + run.stderr
-    for words in ("init", "add .", "-c user.name=x -c user.email=x@x commit --message x"):
-        subprocess.run(["git", *words.split()], cwd=project, check=True, capture_output=True)
+    commit(project)
     return project
 
 
@@ -211,7 +215,7 @@ def test_results_and_ledger_of_other_code_are_stale_until_measured_again(project
         "(contact.py); repair: python -m curriculum.bench skip\n" in printed
     )
     assert "wallclock.csv:3: cpu was measured on other code; repair: python -m " in printed
-    measured["code"] = fingerprint("contact.py")
+    measured["code"] = stale.fingerprint("contact.py")
     (folder / "results.json").write_text(json.dumps({"skip": {"measured": measured, "n": 3}}))
     edit(project / "contact.py", "# --- region: sweep ---\n", "# --- region: sweep ---\n# a word\n")
     assert "section skip was measured" not in run_gate(project).stdout
@@ -234,6 +238,9 @@ def test_measuring_writes_a_whole_row_of_todays_code(project):
             copied.parent.mkdir(exist_ok=True)
             shutil.copy(path, copied)
     command = [sys.executable, "-B", "-m", "curriculum.measured.ledger", "cpu", "--runs", "1"]
+    run = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
+    assert run.returncode == 1 and "commit these first: ?? checks.py" in run.stderr
+    commit(project)
     run = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
     assert run.returncode == 0 and re.search(r": [\d.]+ (s|min)$", run.stdout.strip()), run.stderr
     header, pending, row = (project / "wallclock.csv").read_text("utf-8").splitlines()
