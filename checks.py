@@ -18,9 +18,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent
 sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
-import predict  # noqa: E402
-import trials  # noqa: E402
-from progress import FILES, done, practise  # noqa: E402
+from kit import predict, trials  # noqa: E402
+from kit.progress import FILES, done, practise  # noqa: E402
 
 from curriculum.commands import command, missing  # noqa: E402
 
@@ -33,17 +32,17 @@ except ModuleNotFoundError:
 def load(file):
     """The module of an exercise; a file that is no Python fails its own checks and no others."""
     try:
-        return importlib.import_module(file)
+        return importlib.import_module(Path(file).stem)
     except (NameError, SyntaxError) as error:
         hint = f" ({error.name} needs quotes around it)" if type(error) is NameError else ""
         trouble = f"{type(error).__name__}: {error}{hint}"
-    pytest.fail(f"exercises/{file}.py cannot be read: {trouble}", pytrace=False)
+    pytest.fail(f"{file} cannot be read: {trouble}", pytrace=False)
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file[:3])
-def test_exercise(file):
+@pytest.mark.parametrize("name", FILES)
+def test_exercise(name):
     """Skip what is still to be done, and fail what is wrong. A bet is done once it was read."""
-    name, exercise = file[:3], load(file)
+    exercise = load(FILES[name])
     if name in predict.ANSWERS:
         words = predict.missing(exercise)
         if words is None and name not in done():

@@ -249,23 +249,28 @@ def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -
 
 
 # --- region: lcp-target ---
-def contact_target(c, restitution, baumgarte, dt):
+def contact_target(c, restitution, baumgarte, dt, ahead=False):
     """The least normal velocity [m/s] with which contact c may leave the step.
 
-    With e = 0 it is the bias velocity (Baumgarte 1972): an overlap opens by the share beta in a
-    step, and a gap may close by that share. With e > 0 bodies that touch, or would meet within
-    this step, get the bounce -e v_n, in an overlap the larger of bias and bounce. A target up to
-    -e v_n lets impulses add no energy (Moreau 1988); only the bias of an overlap can be above it.
+    At the end of the step the gap is gap + dt v_n, which must not be negative. So v_n has to be at
+    least -gap / dt = depth / dt: a gap may close, and an overlap must open. To open it in one step
+    would throw the balls apart, so it opens by the share beta (Baumgarte 1972): that v_n is the
+    bias. As published, a gap closes by that share too; with `ahead` it may close wholly.
+
+    With e > 0, and whatever `ahead` is, balls that touch or would meet within this step get the
+    bounce -e v_n, in an overlap the larger of bias and bounce; others may come as near as touching.
+    A target up to -e v_n lets impulses add no energy (Moreau 1988); only a bias can be above it.
     """
+    close = c.depth / dt                # this v_n ends the step with a gap of 0
     bias = baumgarte / dt * c.depth     # < 0 across a gap
     if restitution == 0.0:
-        return bias
+        return close if ahead and c.depth < 0.0 else bias
     v_n = c.v_n()
     bounce = -restitution * v_n
     if bias > 0.0:
         return max(bias, bounce)
     meets = -dt * v_n >= -c.depth       # what this step closes is at least the gap
-    return bounce if meets else min(bounce, c.depth / dt)   # else at most until they touch
+    return bounce if meets else min(bounce, close)
 # --- endregion ---
 
 
@@ -295,11 +300,15 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
 
 
 # --- region: lcp ---
-def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0):
-    """One step [s]: gravity predicts the velocities, impulses correct them, the balls move."""
-    contacts = detect_contacts(balls)
-    for c in contacts:      # before gravity: what it adds would have a ball at rest bounce for ever
-        c.target = contact_target(c, restitution, baumgarte, dt)
+def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False):
+    """One step [s]: gravity predicts the velocities, impulses correct them, the balls move.
+
+    With `ahead`, and e = 0, it looks as far as the balls can come in this step.
+    """
+    far = ahead and restitution == 0.0
+    contacts = detect_contacts(balls, step_reach(balls, dt)) if far else detect_contacts(balls)
+    for c in contacts:      # before gravity: else e would also return the g dt just added
+        c.target = contact_target(c, restitution, baumgarte, dt, ahead)
     accelerate(balls, dt)
     if warm > 0.0:
         warm_start(contacts, warm)
@@ -307,6 +316,12 @@ def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0):
     if warm > 0.0:
         remember(balls, contacts)
     move(balls, dt)
+
+
+def step_reach(balls, dt):
+    """How far [m] two balls come towards each other in a step if both are as fast as any."""
+    fastest = max(0.0, *(math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy) for ball in balls))
+    return max(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))
 
 
 def warm_start(contacts, share=1.0):
@@ -553,10 +568,8 @@ def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, repor
 # --- region: flight ---
 def fly(balls, dt, most):
     """The next states (n, 4 N), n <= most, of balls that touch nothing; the balls go there."""
-    for ball in balls:                                  # the quick look first
-        if ball.y - ball.radius < CONTACT_MARGIN:
-            return ()
-    if detect_contacts(balls):
+    reach = step_reach(balls, dt)                       # no model looks farther
+    if any(ball.y - ball.radius < reach for ball in balls) or detect_contacts(balls, reach):
         return ()
     states = np.zeros((min(most, 250) + 1, len(balls), 4))
     states[0] = np.reshape(state_of(balls), (-1, 4))
@@ -566,12 +579,14 @@ def fly(balls, dt, most):
     q[1:] = dt * v[1:]
     np.add.accumulate(q, out=q)                         # in the order of the steps: the same bits
     gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
-    near = np.flatnonzero(gap < CONTACT_MARGIN)         # a step from such a state sees a contact
+    speed = np.fmax.reduce(np.sqrt(v[:, :, 0] * v[:, :, 0] + v[:, :, 1] * v[:, :, 1]), axis=1)
+    reach = np.maximum(CONTACT_MARGIN, 2.0 * dt * (speed - dt * GRAVITY))   # as step_reach has it
+    near = np.flatnonzero(~(gap >= reach))              # from here a step may see a contact; or NaN
     states = states[:near[0] + 1] if len(near) > 0 else states
     for ball, values in zip(balls, states[-1].tolist()):
         ball.x, ball.y, ball.vx, ball.vy = values
         ball.pushed = {}
-    return states[1:].reshape(len(states) - 1, -1)
+    return states[1:].reshape(len(states) - 1, 4 * len(balls))
 # --- endregion ---
 
 
@@ -592,6 +607,7 @@ class Settings(NamedTuple):
     warm: float = 0.0           # of lcp: the share of a step's impulses that the next begins with
     solref: tuple | None = None     # of soft: time constant [s], damping ratio; see soft_defaults
     solimp: tuple | None = None     # of soft: how hard, at which depth; see impedance
+    ahead: bool = False         # of lcp: look as far as a step travels, and let a gap close wholly
     skip: bool = True           # leave out steps whose result is known; no bit changes
 
 
@@ -623,7 +639,7 @@ def run_model(model: str, scene: Scene, dt: float, steps: int,
     step = {
         "penalty": lambda balls: penalty_step(balls, dt, settings.stiffness, scene.damping),
         "lcp": lambda balls: lcp_step(balls, dt, e, settings.baumgarte, settings.iters,
-                                      settings.warm),
+                                      settings.warm, settings.ahead),
         "soft": lambda balls: soft_step(balls, dt, solref, solimp)}
     return simulate(step[model], scene, dt, steps, settings.skip, report)
 
@@ -815,6 +831,8 @@ def add_flags(flag):
     flag("--solimp", type=number(float, 0, 100), nargs=5,
          metavar=("D0", "D1", "WIDTH", "MID", "POWER"),
          help="soft: how hard at which depth (0.9 0.95 0.001 0.5 2; with e > 0: 0.9999)")
+    flag("--ahead", action="store_true", help="lcp with e = 0: look as far as a step travels, and "
+         "let a gap close wholly")
     flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
     flag("--seeds", metavar="A:B", help="all seeds from A to B - 1: median and range")
     flag("--scheduler", metavar="HOST:PORT", help="with --seeds: run them on a dask cluster")

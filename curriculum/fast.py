@@ -44,6 +44,7 @@ class Knobs(NamedTuple):
     dt: float
     gravity: float
     margin: float  # of lcp
+    ahead: bool  # of lcp: look as far as a step travels
     skin: float  # m: how much farther the list of pairs looks than it must
     stiffness: float
     damping: float
@@ -224,16 +225,28 @@ def move(balls, dt):
 
 
 @compiled
-def contact_target(c, balls, restitution, baumgarte, dt):
+def step_reach(balls, knobs):
+    """How far [m] a step looks: by a margin, or as far as two of the fastest balls travel in it."""
+    if not knobs.ahead:
+        return knobs.margin
+    fastest = 0.0
+    for ball in balls[:-1]:
+        fastest = larger(fastest, math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy))
+    return larger(knobs.margin, 2.0 * knobs.dt * (fastest - knobs.dt * knobs.gravity))
+
+
+@compiled
+def contact_target(c, balls, restitution, baumgarte, dt, ahead):
     """The normal velocity [m/s] with which contact c must leave at least."""
+    close = c.depth / dt
     bias = baumgarte / dt * c.depth
     if restitution == 0.0:
-        return bias
+        return close if ahead and c.depth < 0.0 else bias
     v_n = normal_velocity(c, balls)
     bounce = -restitution * v_n
     if bias > 0.0:
         return larger(bias, bounce)
-    return bounce if dt * v_n <= c.depth or not c.depth / dt < bounce else c.depth / dt
+    return bounce if dt * v_n <= c.depth or not close < bounce else close
 
 
 @compiled
@@ -275,7 +288,9 @@ def solve_contacts(balls, contacts, iters, tolerance):
 def lcp_step(balls, contacts, last, knobs):
     """One step: gravity predicts the velocities, impulses correct them, the balls move."""
     for c in contacts:
-        c.target = contact_target(c, balls, knobs.restitution, knobs.baumgarte, knobs.dt)
+        c.target = contact_target(
+            c, balls, knobs.restitution, knobs.baumgarte, knobs.dt, knobs.ahead
+        )
     accelerate(balls, knobs)
     if knobs.warm > 0.0:
         warm_start(balls, contacts, last, knobs.warm)
@@ -371,22 +386,25 @@ def same(state, other, contacts, others):
 
 
 @compiled
-def take_steps(rows, settled, balls, pairs, last, cycles, knobs):
+def take_steps(rows, settled, balls, pairs, listed, last, cycles, knobs):
     """Take len(rows) - 1 steps, and write the states to rows[1:].
 
-    settled[k] becomes False where the sweeps of step k did not settle. `last` are the contacts of
-    the step before. Returns pairs and contacts at the end, the steps taken, and 0. With `cycles` a
-    state that has come before ends the steps, and in place of 0 stands how many steps ago it was.
-    A state is compared with one other, that of the largest power of two (Brent 1980).
+    settled[k] becomes False where the sweeps of step k did not settle. `pairs` had gaps of at most
+    `listed` [m]; `last` are the contacts of the step before. Returns these three at the end, the
+    steps taken, and 0. With `cycles` a state that has come before ends the steps, and in place of
+    0 stands how many steps ago it was. A state is compared with one other, that of the largest
+    power of two (Brent 1980).
     """
     contacts = spare = np.empty(0, CONTACT)
     mark, marked = 1, last[:0]
     for k in range(1, len(rows)):
-        if farthest_move(balls) > 0.499 * knobs.skin:
-            pairs = list_pairs(balls, knobs.margin + knobs.skin)
+        reach = step_reach(balls, knobs)
+        if not farthest_move(balls) <= 0.499 * (listed - reach):  # two balls may have come so near
+            listed = reach + knobs.skin
+            pairs = list_pairs(balls, listed)
         if len(contacts) < len(balls) + pairs.shape[1]:
             contacts = np.empty(len(balls) + 2 * pairs.shape[1], CONTACT)
-        found = detect_contacts(balls, pairs, knobs.margin, contacts)
+        found = detect_contacts(balls, pairs, reach, contacts)
         if knobs.model == PENALTY:
             penalty_step(balls, found, knobs)
         elif knobs.model == LCP:
@@ -400,10 +418,10 @@ def take_steps(rows, settled, balls, pairs, last, cycles, knobs):
             last = found
             contacts, spare = spare, contacts
         if cycles and k > mark and same(rows[k], rows[mark], last, marked):
-            return pairs, last.copy(), k, k - mark
+            return pairs, listed, last.copy(), k, k - mark
         if k == 2 * mark or k == 1:
             mark, marked = k, last.copy()
-    return pairs, last.copy(), len(rows) - 1, 0
+    return pairs, listed, last.copy(), len(rows) - 1, 0
 
 
 class Motion:
@@ -419,6 +437,7 @@ class Motion:
             float(dt),
             contact.GRAVITY,
             contact.CONTACT_MARGIN if model == "lcp" else 0.0,
+            bool(settings.ahead and model == "lcp" and scene.restitution == 0.0),
             float(np.median(scene.radius)),
             float(settings.stiffness),
             float(scene.damping),
@@ -432,13 +451,14 @@ class Motion:
             tuple(map(float, solimp)),
         )
         self.balls = make_balls(scene.q0, scene.v0, scene.mass, scene.radius)
-        self.pairs = list_pairs(self.balls, self.knobs.margin + self.knobs.skin)
+        self.listed = step_reach(self.balls, self.knobs) + self.knobs.skin
+        self.pairs = list_pairs(self.balls, self.listed)
         self.last = np.empty(0, CONTACT)
 
     def take(self, rows, settled, cycles):
         """Take len(rows) - 1 steps at most, as take_steps does; returns steps and period."""
-        self.pairs, self.last, *taken = take_steps(
-            rows, settled, self.balls, self.pairs, self.last, cycles, self.knobs
+        self.pairs, self.listed, self.last, *taken = take_steps(
+            rows, settled, self.balls, self.pairs, self.listed, self.last, cycles, self.knobs
         )
         return taken
 

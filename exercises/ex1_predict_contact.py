@@ -11,8 +11,8 @@ Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
     python checks.py -k ex1
 """
 
-import predict
-from predict import contact
+from kit import predict
+from kit.predict import contact
 
 QUESTION = "A ball drops onto the table. What do the two contact models do differently?"
 CHOICES = {

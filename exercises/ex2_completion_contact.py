@@ -11,7 +11,7 @@ signs are those of the table at the top of contact.py.
 Out of scope: friction, and several contacts at once (your second line is called for each in turn).
 """
 
-import predict
+from kit import predict
 
 
 def penalty_normal_force(depth, v_n, stiffness, damping):

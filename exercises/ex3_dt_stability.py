@@ -10,8 +10,8 @@ Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
     python checks.py -k ex3
 """
 
-import predict
-from predict import contact
+from kit import predict
+from kit.predict import contact
 
 QUESTION = "The drop with dt = 0.03 s. How much energy does each contact model gain?"
 CHOICES = {

@@ -10,8 +10,8 @@ Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
     python checks.py -k ex4
 """
 
-import predict
-from predict import contact
+from kit import predict
+from kit.predict import contact
 
 QUESTION = (
     "A ball and one ten times as heavy come to rest in MuJoCo's contact. "

@@ -14,7 +14,7 @@ read it; now write it without looking. A contact c gives you
     python checks.py -k ex5                     # random stacks, against contact.py's answers
 """
 
-import predict
+from kit import predict
 
 
 def solve_contacts(contacts, iters):

@@ -15,7 +15,7 @@ velocity first, from force k depth - c v_n, and then the depth with the new velo
 """
 
 import numpy as np  # noqa: F401  np.linalg.eigvals(matrix) is what you need
-import predict
+from kit import predict
 
 
 def step_matrix(mass, stiffness, damping, dt):

@@ -14,7 +14,7 @@ where it pushes. Which softness and which target make that the equation above?
     python checks.py -k ex7
 """
 
-import predict
+from kit import predict
 
 
 def implicit_spring(depth, stiffness, damping, dt):

@@ -13,7 +13,7 @@ and how light is the lightest thing that hangs on it?
     python checks.py -k ex8
 """
 
-import predict
+from kit import predict
 
 MODEL = None  # "penalty" or "soft"
 DT = 0.002  # s

@@ -3,6 +3,7 @@
     python -m curriculum.bench            everything below, one after the other (20 minutes)
     python -m curriculum.bench accuracy   run time against error, on problems with a known answer
     python -m curriculum.bench pile       time a step of 12 to 10,000 balls, at equal depth
+    python -m curriculum.bench solvers    twenty contact solves a step, spent in many ways
     python -m curriculum.bench skip       same bits with and without skips; what skipping saves
     python -m curriculum.bench draw       page and figures again, from the results alone
 
@@ -16,16 +17,21 @@ import json
 import os
 import sys
 import time
+from pathlib import Path
 
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
-from curriculum.bench import accuracy, piles, report, skips
+from curriculum.bench import accuracy, piles, report, skips, solvers
 from curriculum.measured import results
 
-PARTS = {"accuracy": accuracy.measure, "pile": piles.measure, "skip": skips.measure}
-MADE_BY = {  # the modules of each section; stale.py finds what they import of this folder
-    "accuracy": ["curriculum/bench/accuracy.py"],
+PARTS = {
+    "accuracy": accuracy.measure,
+    "pile": piles.measure,
+    "solvers": solvers.measure,
+    "skip": skips.measure,
+}
+MADE_BY = {name: [f"curriculum/bench/{name}.py"] for name in ("accuracy", "solvers")} | {
     "pile": ["curriculum/bench/piles.py"],
     "skip": ["curriculum/bench/skips.py", "contact.py"],  # which it times as whole processes
 }
@@ -42,8 +48,9 @@ def main(argv=None):
     )
     parser.add_argument("part", nargs="?", default="all", choices=("all", *PARTS, "draw"))
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
+    parser.add_argument("--out", type=Path, help="a folder of your own, which nothing quotes")
     args = parser.parse_args(argv)
-    folder = QUICK if args.quick else FULL
+    folder = args.out or (QUICK if args.quick else FULL)
     try:
         for name in PARTS if args.part == "all" else {args.part} & set(PARTS):
             start, command = time.monotonic(), f"python -m curriculum.bench {name}"
@@ -54,7 +61,7 @@ def main(argv=None):
         for wanted, found, met in report.goals(sections):
             print(f"{'met   ' if met else 'MISSED'} {wanted}: {found}")
         report.write(folder, sections)
-        if not args.quick:
+        if folder == FULL:
             results.write_block("bench", report.readme(sections))
     except KeyboardInterrupt:
         print("stopped; what was finished is kept", file=sys.stderr)

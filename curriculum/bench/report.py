@@ -5,9 +5,11 @@ All of it is made from results.json alone, so that the same results give the sam
 
 import math
 
+import numpy as np
+
 from contact import MODELS, write_whole
 from contact import figure as number
-from curriculum.bench import accuracy, piles, problems, skips
+from curriculum.bench import accuracy, piles, problems, skips, solvers
 from curriculum.measured import results
 from curriculum.measured.results import table
 from curriculum.run import plotting
@@ -196,7 +198,12 @@ def page(sections):
             [[wanted, found, verdict[met]] for wanted, found, met in goals(sections)],
         ),
     ]
-    makers = {"accuracy": accuracy_part, "pile": pile_part, "skip": skip_part}
+    makers = {
+        "accuracy": accuracy_part,
+        "pile": pile_part,
+        "solvers": solvers_part,
+        "skip": skip_part,
+    }
     for name, section in sections.items():
         parts += [*makers[name](section), results.footer(section)]
     return "\n\n".join(parts) + "\n"
@@ -306,6 +313,50 @@ def pile_part(section):
         )
 
 
+def solved(section):
+    """({row: its judged problems}, the problems), of the section "solvers"."""
+    rows = {row: section[row] for row in solvers.SOLVERS}
+    return rows, [name for name in solvers.PROBLEMS if name in rows["lcp"]]
+
+
+def solvers_part(section):
+    yield "## Twenty contact solves, spent in many ways"
+    yield (
+        "Steps of 1/64 s; each solver may solve every contact twenty times a step, whether in one "
+        "go, in substeps or for positions. `exact` judges: worst distance of a ball's height from "
+        "where it should be, in radii. A direct solve is counted as one per guess."
+    )
+    yield "![Worst error, and overlap at rest beside its law](solvers.svg)"
+    rows, names = solved(section)
+    titles = [solvers.PROBLEMS[name][0] for name in names]
+
+    def error(about):
+        gained = f", +{number(about['energy'])} E" if about["energy"] > 1e-3 else ""
+        return number(about["error"]) + gained
+
+    yield table(
+        ["worst error / r; + energy gained", *titles, "solves"],
+        [
+            [
+                about["words"],
+                *(error(about[name]) for name in names),
+                number(max(about[name]["solves"] for name in names)),
+            ]
+            for about in rows.values()
+        ],
+    )
+    names = [name for name in names if rows["lcp"][name]["law"]]
+    yield table(
+        ["overlap at rest / r; (law)", *(solvers.PROBLEMS[name][0] for name in names)],
+        [[about["words"], *(rested(about[name]) for name in names)] for about in rows.values()],
+    )
+
+
+def rested(about):
+    law = f" ({number(about['law'])})" if about["law"] else ""
+    return "moves" if about["rest"] is None else number(about["rest"]) + law
+
+
 def skip_part(section):
     yield "## What skipping saves"
     yield table(
@@ -342,6 +393,8 @@ def figures(sections):
         }
     if "pile" in sections:
         made["settled.svg"] = pile_figure(sections["pile"])
+    if "solvers" in sections:
+        made["solvers.svg"] = solvers_figure(sections["solvers"])
     return made
 
 
@@ -450,6 +503,66 @@ def pile_figure(section):
         axis.set(xscale="log", yscale="log", title=f"{count:,} balls", ylabel="time a step [µs]")
     axes[-1].set_xlabel("mean depth of the overlapping contacts [r]")
     plotting.legend_below(axes[-1], columns=3, down=0.24)
+    return plotting.svg(figure, section)
+
+
+SHOWN = {  # problem: colour, marker
+    "stack_30": (plotting.LOOKS["lcp"][0], "o"),
+    "heavy_100": (plotting.LOOKS["pymunk"][0], "D"),
+    "heavy_1000": (plotting.LOOKS["penalty"][0], "s"),
+    "pile_8": (plotting.INK, "x"),
+}
+LAWFUL = {  # row: colour, marker
+    "lcp": (plotting.LOOKS["lcp"][0], "o"),
+    "ahead": (plotting.LOOKS["pymunk"][0], "D"),
+    "small_steps": (plotting.LOOKS["box2d3"][0], "^"),
+    "xpbd": (plotting.LOOKS["penalty"][0], "s"),
+}
+
+
+def solvers_figure(section):
+    """Above the worst errors, a line a solver; below the overlaps at rest, and their law."""
+    rows, names = solved(section)
+    figure, (upper, lower) = plotting.figure(
+        rows=2,
+        height=3.6,
+        below=0.55,
+        title="Twenty contact solves a step, spent in many ways",
+        explained="Left is better. Below: overlap under the lowest ball at rest, as measured "
+        "(dots), and by the law of unfinished sweeps (lines), which takes nothing from the dots.",
+    )
+    box = upper.get_position()
+    upper.set_position([0.36, box.y0 + 0.01, 0.62, box.height])
+    order = list(reversed(rows))
+    for name in filter(names.__contains__, SHOWN):
+        color, marker = SHOWN[name]
+        x = [min(rows[row][name]["error"], 30.0) for row in order]
+        upper.plot(x, range(len(order)), color=color, marker=marker, ls="", ms=5.5, label=name)
+    upper.set(xscale="log", yticks=range(len(order)), xlabel="worst error [r]")
+    upper.set_yticklabels([rows[row]["words"] for row in order], fontsize=8.5)
+    upper.legend(
+        [solvers.PROBLEMS[name][0] for name in SHOWN if name in names],
+        loc="lower left",
+        bbox_to_anchor=(-0.02, 1.0),
+        ncols=4,
+        columnspacing=0.8,
+        handletextpad=0.1,
+        fontsize=8.5,
+        borderaxespad=0.2,
+    )
+    for row, (color, marker) in LAWFUL.items():
+        dots = sorted(
+            (about["law"] / solvers.sag(solvers.SOLVERS[row], np.ones(2)), about["rest"])
+            for name, about in rows[row].items()
+            if name in names and about["law"] and about["rest"]
+        )
+        x, y = zip(*dots)
+        lower.plot(x, y, color=color, marker=marker, ls="", ms=5.5, label=rows[row]["words"])
+        law = [solvers.sag(solvers.SOLVERS[row], np.array([1.0, share])) for share in (2, 1000)]
+        lower.plot((2, 1000), law, color=color, lw=1.0)
+    lower.set(xscale="log", yscale="log", ylim=(5e-5, 5.0), ylabel="overlap at rest [r]")
+    lower.set_xlabel("mass on top of the lowest ball / its own mass")
+    plotting.legend_below(lower, columns=2, down=0.2)
     return plotting.svg(figure, section)
 
 

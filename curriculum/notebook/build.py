@@ -12,6 +12,7 @@ import io
 import re
 import textwrap
 import zipfile
+from pathlib import Path
 
 import contact
 from curriculum.regions import ROOT, read_all
@@ -23,7 +24,7 @@ CARRIED = (
     "contact.py",
     "checks.py",
     "exercises/*.py",
-    "exercises/*.json",
+    "exercises/kit/*",
     "curriculum/__init__.py",
     "curriculum/run/__init__.py",
     "curriculum/run/curves.py",
@@ -52,7 +53,7 @@ def folder():
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as packed:
         for pattern in CARRIED:
-            for path in sorted(ROOT.glob(pattern)):
+            for path in sorted(filter(Path.is_file, ROOT.glob(pattern))):
                 name = zipfile.ZipInfo(path.relative_to(ROOT).as_posix())  # dated 1980: same bytes
                 packed.writestr(name, path.read_bytes(), zipfile.ZIP_DEFLATED)
     return base64.encodebytes(made.getvalue()).decode()

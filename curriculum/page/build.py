@@ -4,6 +4,7 @@ import base64
 import hashlib
 import os
 import re
+from collections import Counter
 from pathlib import Path
 
 import jinja2
@@ -94,6 +95,7 @@ class Filler:
         self.macros, self.figures, self.exercises = macros, figures, exercises
         self.regions = read_all()
         self.alone = False  # whether the live figure has stepped back here
+        self.seen = Counter()  # how often each figure stands above
 
     def __call__(self, kind, value):
         if kind == "heading":
@@ -130,7 +132,9 @@ class Filler:
             raise ValueError(f"{chapter.CHAPTER}: there is no {kind} {name}; known: {[*known]}")
         if kind == "exercise":
             return self.macros.exercise(known[name])
-        return self.macros.figure(name, known[name], self.alone)
+        self.seen[name] += 1
+        again = f"-{self.seen[name]}" if self.seen[name] > 1 else ""
+        return self.macros.figure(name, known[name], self.alone, again)
 
 
 # ---- the page

@@ -6,8 +6,8 @@
  *
  * Names and signs are those of contact.py; the floor is j = -1. A scene is {x, y, vx, vy, mass,
  * radius, restitution, damping}, arrays with one number a ball; a state is {x, y, vx, vy}, and of
- * soft, pushed. The knobs are {dt, stiffness, damping, restitution, iters, baumgarte, warm, solref,
- * solimp}. */
+ * soft, pushed. The knobs are {dt, stiffness, damping, restitution, iters, baumgarte, warm, ahead,
+ * solref, solimp}. */
 import { data } from "./data.js";
 
 const { CONTACT_MARGIN, SOLREF, SOLIMP, HARD, MOST_SWEEPS, LAST_BITS, EXPLODED } = data.engine;
@@ -58,10 +58,10 @@ const penaltyNormalForce = (depth, speed, stiffness, damping) =>
   positive(stiffness * depth - damping * speed);
 
 // One step of penalty. knobs.clampForce stands in for the clamped force.
-function penaltyStep(state, { mass, radius }, knobs) {
+function penaltyStep(state, { mass, radius, motor = [] }, knobs) {
   const { x, y, vx, vy } = state;
   const { dt, stiffness, damping, clampForce = penaltyNormalForce } = knobs;
-  const fx = y.map(() => 0);
+  const fx = y.map((_, i) => motor[i] ?? 0); // N, sideways
   const fy = y.map(() => 0);
   for (const c of detectContacts(x, y, radius, 0)) {
     const f = clampForce(c.depth, normalSpeed(c, vx, vy), stiffness, damping);
@@ -151,20 +151,28 @@ function solveStep(state, { mass }, dt, rows, { warm, last = 0, ...options }) {
 }
 
 // The normal velocity with which a contact of lcp must leave at least.
-function contactTarget(c, state, { dt, restitution, baumgarte }) {
+function contactTarget(c, state, { dt, restitution, baumgarte, ahead }) {
+  const close = c.depth / dt; // gap + dt v_n = 0 at the end of the step
   const bias = (baumgarte / dt) * c.depth;
-  if (restitution === 0) return bias;
+  if (restitution === 0) return ahead && c.depth < 0 ? close : bias;
   const speed = normalSpeed(c, state.vx, state.vy);
   const bounce = -restitution * speed;
   if (bias > 0) return greatest([bias, bounce]);
   const meets = dt * speed <= c.depth;
-  return meets || !(c.depth / dt < bounce) ? bounce : c.depth / dt;
+  return meets || !(close < bounce) ? bounce : close;
+}
+
+// How far a step looks: by the margin, or with `ahead` as far as two of the fastest balls travel.
+function stepReach({ vx, vy }, { dt, restitution, ahead }) {
+  if (!ahead || restitution !== 0) return CONTACT_MARGIN;
+  const fastest = greatest([0, ...vx.map((v, i) => Math.sqrt(v * v + vy[i] * vy[i]))]);
+  return greatest([CONTACT_MARGIN, 2 * dt * (fastest - dt * GRAVITY)]);
 }
 
 // One step of lcp. knobs.project stands in for the clamp.
 function lcpStep(state, { mass, radius }, knobs) {
   const { dt, iters, warm, project } = knobs;
-  const contacts = detectContacts(state.x, state.y, radius, CONTACT_MARGIN);
+  const contacts = detectContacts(state.x, state.y, radius, stepReach(state, knobs));
   const targets = contacts.map((c) => contactTarget(c, state, knobs));
   const rows = makeRows(contacts, mass, targets);
   return solveStep(state, { mass }, dt, rows, { iters, project, warm });

@@ -25,7 +25,7 @@ def module(name):
 def blank_cases():
     """How checks.py tries the blanks of exercise 2: inputs, what is right on them, and the slips,
     each as what it gives, to five digits, and what it means."""
-    return {name: tried(module("blanks").BLANKS[name]) for name in BLANKS}
+    return {name: tried(module("kit.blanks").BLANKS[name]) for name in BLANKS}
 
 
 def tried(blank):
@@ -70,7 +70,7 @@ def exercise(path, facts):
     if hasattr(source, "CHOICES"):
         text = re.sub(r"\s*Read CHOICES.*?(?=\n\s*\n|$)", "", text, flags=re.DOTALL)
         numbers = measured(path.stem)
-        table = module("predict").table(source, numbers).splitlines()
+        table = module("kit.predict").table(source, numbers).splitlines()
         shown |= {
             "choices": list(source.CHOICES.items()),
             "question": source.QUESTION,
@@ -84,6 +84,6 @@ def exercise(path, facts):
 
 def all_exercises():
     """{name: exercise} in order."""
-    facts = json.loads((FOLDER / "answers.json").read_text("utf-8"))
+    facts = json.loads((FOLDER / "kit/answers.json").read_text("utf-8"))
     paths = {path.stem.split("_")[0]: path for path in sorted(FOLDER.glob("ex*_*.py"))}
     return {name: exercise(path, facts.get(name, {})) for name, path in paths.items()}

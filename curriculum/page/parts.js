@@ -122,12 +122,13 @@ export const forceLength = (weights, unit = 26) => unit * Math.sqrt(Math.max(wei
 /* A handle at (x, y) for one number: `name` in the figure's own state, or a quantity of the page.
  *   label, text   what it is, and its value in words
  *   at(x, y)      the number where the handle is dragged to; kept from `low` to `high`
+ *   by(dx, dy)    in place of it: what a drag by so many px adds
  *   step, times   what an arrow key to the right or up adds, or multiplies by
- *   get(), set(v) in place of the state; r: px; release()
+ *   get(), set(v) in place of the state; r: px of a ball; release()
  * A number of its own that is set takes the figure's clock back to before its start. */
 export function grip(view, name, x, y, label, text, options) {
   const quantity = QUANTITIES[name];
-  const { low, high, r = 14, at, step, times, get, set, release } = { ...quantity, ...options };
+  const { low, high, r, at, by, step, times, get, set, release } = { ...quantity, ...options };
   const value = get || (() => (quantity ? view.get(name) : view.own[name]));
   const put = (wanted) => {
     const held = within(low, wanted, high);
@@ -135,7 +136,8 @@ export function grip(view, name, x, y, label, text, options) {
     else if (quantity) view.set({ [name]: Number(held.toPrecision(quantity.digits)) });
     else Object.assign(view.own, "time" in view.own && { time: null }, { [name]: tidy(held) });
   };
-  const drag = (toX, toY) => put(at(toX, toY));
+  const moved = (toX, toY) => view.from.value + by(toX - view.from.x, toY - view.from.y);
+  const drag = (toX, toY) => put(by ? moved(toX, toY) : at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
   return { name, x, y, r, label, text, value: value(), drag, nudge, release };
 }

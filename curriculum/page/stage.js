@@ -17,8 +17,9 @@
  *   buttons          [[label, press(view)]]; the label may be a function of the view
  *
  * A handle is {name, x, y, r, label, value, text, drag(x, y), nudge(dx, dy), release()}: what can
- * be grabbed, mostly made by `grip` in parts.js. dx and dy are those of an arrow key, ten times as
- * much with shift; release() is called when it is let go, and at Enter. The view is the stage. */
+ * be grabbed, mostly made by `grip` in parts.js. A ball is grabbed as a whole: r is its radius;
+ * without an r the handle is a knob, a filled point. dx and dy are those of an arrow key, ten times
+ * as much with shift; release() is called when it is let go, and at Enter. The view is the stage. */
 import { escape, plain } from "./draw.js";
 import { fitting, fromSlider, shown, sliderRange, toSlider } from "./store.js";
 
@@ -56,12 +57,12 @@ function showHandles(layer, handles) {
     const node = held.get(name) || layer.appendChild(document.createElementNS(SVG, "circle"));
     held.delete(name);
     const about = {
-      class: "handle",
+      class: r ? "handle" : "handle knob",
       role: "slider",
       tabindex: 0,
       cx: x,
       cy: y,
-      r: Math.max(r, 14),
+      r: r ? Math.max(r, 14) : 8,
       "aria-label": label,
       "aria-valuenow": plain(value),
       "aria-valuetext": text,
@@ -120,7 +121,8 @@ function mountKnob(box, name, store) {
 /* A live figure in `box`, which holds .drawing with an svg, .words, .knobs and .buttons, as the
  * template makes them. page: {store, still, open(bet), light(name, lines)}. Figures use own, get(),
  * values, set(changes), width, height, play(), run(), stop(), running, flick(), still (nothing may
- * move by itself), dragging, grabbed (the name of the handle that is held), open(bet). */
+ * move by itself), dragging, grabbed (the name of the handle that is held), from (that handle as it
+ * was when it was grabbed), open(bet). */
 export class Stage {
   width = 0;
   height = 0;
@@ -204,6 +206,7 @@ export class Stage {
     event.target.focus({ preventScroll: true });
     this.svg.setPointerCapture(event.pointerId);
     this.grabbed = handle.name;
+    this.from = handle;
     this.aside = [handle.x - event.clientX, handle.y - event.clientY]; // of the pointer
     this.#trail = [];
     if (this.figure.clock) this.stop();

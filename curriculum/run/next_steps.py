@@ -5,7 +5,7 @@ from importlib.util import find_spec
 
 from curriculum.commands import command
 from curriculum.regions import ROOT
-from exercises.progress import practise
+from exercises.kit.progress import practise
 
 
 def print_next(args, argv):

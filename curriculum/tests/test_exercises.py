@@ -17,18 +17,17 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
-import blanks  # noqa: E402
 import ex1_predict_contact as ex1  # noqa: E402
 import ex3_dt_stability as ex3  # noqa: E402
 import ex4_predict_soft as ex4  # noqa: E402
-import predict  # noqa: E402
-import trials  # noqa: E402
+from kit import blanks, predict, trials  # noqa: E402
+from kit.progress import FILES as PLACES  # noqa: E402
 
 import contact  # noqa: E402
 
 ALL_DONE = "all exercises are done"
 BETS = {"ex1": ex1, "ex3": ex3, "ex4": ex4}
-FILES = {path.name[:3]: path.name for path in sorted((ROOT / "exercises").glob("ex[0-9]_*.py"))}
+FILES = {name: place.partition("/")[2] for name, place in PLACES.items()}
 FILLED = {      # name: [(a line of the file, what a learner writes there)]
     "ex1": [("PREDICTION = None ", "PREDICTION = ' c) ' "), ('WHY = ""', 'WHY = "so it must be"')],
     "ex2": [("f_n = ...", "f_n = max(0, stiffness * depth - damping * v_n)"),
@@ -40,10 +39,10 @@ FILLED = {      # name: [(a line of the file, what a learner writes there)]
             lam = max(0.0, c.lam + (c.target - c.v_n()) * c.m_eff)
             c.push(lam - c.lam)
             c.lam = lam""")],
-    "ex6": [("return ...          # TODO: blank 1", """a = 1 - dt * damping / mass
+    "ex6": [("return ...  # TODO: blank 1", """a = 1 - dt * damping / mass
     b = dt * stiffness / mass
     return [[1 - dt * b, -dt * a], [b, a]]"""),
-            ("return ...          # TODO: blank 2", """low, high = 0.0, 10.0
+            ("return ...  # TODO: blank 2", """low, high = 0.0, 10.0
     while high - low > 1e-6:
         mid = 0.5 * (low + high)
         size = abs(np.linalg.eigvals(step_matrix(mass, stiffness, damping, mid))).max()
@@ -116,7 +115,7 @@ def test_a_learners_way_through_all_eight(copy):
         )
         assert script.returncode == 0, script.stdout + script.stderr
         last = script.stdout.splitlines()[-1]
-        following = FILES.get(f"ex{int(name[2]) + 1}")
+        following = dict(zip(FILES, [*FILES.values()][1:])).get(name)
         assert last.startswith(ALL_DONE) if following is None else last.endswith(following)
         assert following is None or sys.executable in last
     result = run(folder, "checks.py")

@@ -93,6 +93,7 @@ def scenes(draw):
     baumgarte=st.floats(0.0, 1.0),
     iters=st.integers(1, 20),
     warm=st.sampled_from((0.0, 0.8, 1.0)),
+    ahead=st.booleans(),
     solimp=st.sampled_from((None, None, (0.0, 0.99, 0.02, 0.4, 2.5), (0.5, 0.9, 0.0, 0.5, 1.0))),
 )
 def test_the_twin_has_the_bytes_of_the_plain_loops(scene, model, dt, solimp, **knobs):
@@ -109,6 +110,7 @@ def test_the_twin_has_the_bytes_of_the_plain_loops(scene, model, dt, solimp, **k
 def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_balls_rest(model):
     for name in ("drop", "bounce", "stack"):
         check_same(model, contact.build_scene(name, 3), 0.002, 1200, warm=0.8)
+        check_same(model, contact.build_scene(name, 3), 0.002, 1200, ahead=True, baumgarte=1.0)
     check_same(model, contact.build_scene("pile", 1, 24, restitution=0.4), 0.004, 150)
 
 

@@ -253,6 +253,53 @@ def test_penalty_goes_deeper_than_lcp_and_exact_never_overlaps_at_any_seed(name)
         assert rows["exact"]["contact_energy"] < 1e-12 and rows["exact"][key] < 1e-12
 
 
+# --- ahead ---------------------------------------------------------------------------------------
+
+AHEAD = Settings(ahead=True, baumgarte=1.0)
+
+
+def seen_coming(name, steps, seeds, mass=1.0, **given):
+    """Of lcp with ahead and gain 1: the median worst height error, and the deepest overlap [r]."""
+    rows = []
+    for seed in seeds:
+        scene = build_scene(name, seed, **given)
+        scene = scene._replace(mass=np.resize(mass, len(scene.mass)).astype(float))
+        runs = [run_model(model, scene, DT, steps, AHEAD) for model in ("lcp", "exact")]
+        row = contact_quality(runs[0], scene, DT, runs[1])
+        assert row["energy_excess"] <= 1e-12
+        rows.append((row["height_error_frac"], row["max_penetration_frac"], row["rebound_frac"]))
+    return np.median(rows, 0)[0], *np.max(rows, 0)[1:]
+
+
+def test_ahead_lands_without_a_dive_or_a_hop():
+    assert seen_coming("drop", 1000, range(10))[1:] == (0.0, 0.0)
+    assert seen_coming("pile", 250, range(3), bodies=8)[1] < 1e-6, "what 20 sweeps leave"
+    assert seen_coming("stack", 300, range(3), bodies=30)[0] < 0.04, "0.085 without"
+    assert seen_coming("stack", 600, range(3), [1.0, 100.0], bodies=2)[0] < 0.012, "0.018 without"
+
+
+def test_ahead_makes_random_heaps_a_hundred_times_shallower_and_adds_no_energy():
+    deepest = {False: [], True: []}
+    for number in range(60):
+        rng = np.random.default_rng(number)
+        scene = build_scene("pile", number, int(rng.integers(2, 9)))
+        count = len(scene.mass)
+        v0, mass = rng.uniform(-6.0, 6.0, (2, count)), 10.0 ** rng.uniform(-1.0, 1.0, count)
+        scene = scene._replace(v0=v0, mass=mass, radius=rng.uniform(0.05, 0.1, count))
+        for ahead, depths in deepest.items():
+            run = run_model("lcp", scene, DT, 200, AHEAD if ahead else Settings())
+            row = contact_quality(run, scene, DT)
+            depths.append(row["max_penetration_frac"])
+            assert row["energy_excess"] <= 1e-12 or not ahead
+    assert np.median(deepest[True]) < 0.01 * np.median(deepest[False])
+
+
+def test_ahead_leaves_a_bounce_as_it_was():
+    for scene in (build_scene("bounce"), build_scene("stack", restitution=0.3)):
+        runs = [run_model("lcp", scene, DT, 400, Settings(ahead=ahead)) for ahead in (False, True)]
+        assert runs[0].q.tobytes() == runs[1].q.tobytes()
+
+
 # --- the sweep, and bodies that turn -------------------------------------------------------------
 
 
@@ -381,6 +428,8 @@ def test_a_skip_never_changes_a_bit(name, model):
         assert same_bytes_both_ways(model, build_scene(name, 3), dt, 9), dt
     for knobs in ({"baumgarte": 1.0, "stiffness": 0.0, "iters": 1}, {"solref": (-1e4, -50.0)}):
         assert same_bytes_both_ways(model, build_scene(name), DT, 400, **knobs), knobs
+    for dt in (1e-4, DT, 0.064):
+        assert same_bytes_both_ways(model, build_scene(name, 3), dt, 300, ahead=True), dt
     bouncing = build_scene("stack", 1, 4, restitution=0.3, damping=0.0)
     assert same_bytes_both_ways(model, bouncing, DT, 300)
 

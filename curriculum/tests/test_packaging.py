@@ -146,7 +146,7 @@ def test_every_import_is_of_a_package_that_an_extra_brings():
     for name in known & installed.keys():  # and what those require: Jinja2 brings MarkupSafe
         known = known | {plain(each) for each in installed[name].requires or []}
     owners = importlib.metadata.packages_distributions()
-    places = ("*.py", "exercises/*.py", "curriculum/**/*.py")
+    places = ("*.py", "exercises/**/*.py", "curriculum/**/*.py")
     for path in (path for place in places for path in ROOT.glob(place)):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []

@@ -44,6 +44,7 @@ def random_case(pick):
         warm=float(pick.choice([0.0, 0.8, 1.0])),
         solref=solref if pick.random() < 0.5 else None,
         solimp=tuple(map(float, solimp)) if pick.random() < 0.5 else None,
+        ahead=bool(pick.random() < 0.5),
     )
     return scene._replace(v0=v0), float(10 ** pick.uniform(-3.3, -1.2)), settings
 

@@ -221,6 +221,48 @@ def test_results_and_ledger_of_other_code_are_stale_until_measured_again(project
     assert "section skip was measured" not in run_gate(project).stdout
 
 
+MADE = {  # file: (what stands there, what takes its place, whether results are stale then)
+    "contact.py": [
+        ('help="', 'help="please, ', False),
+        ("# m/s^2", "# metres", False),
+        ("/ dt * c.depth", "  / (dt) * c.depth", False),
+        ('"""One step [s]', '"""One single step [s]', False),
+        ("def print_table(", "def print_tables(", False),  # of the report
+        ("/ dt * c.depth", "/ dt / c.depth", True),
+        ("EXPLODED = 10.0", "EXPLODED = 11.0", True),
+    ],
+    "curriculum/stress/properties.py": [
+        ("PROMISE = 1e-12", "PROMISE = 1e-4", True),
+        ("Bound: 8 U a push", "Bound: some", False),
+    ],
+    "curriculum/stress/jobs.py": [("FULL, QUICK = (10_000", "FULL, QUICK = (1_000", True)],
+    "curriculum/stress/claims.py": [("off == 0.0", "off <= 1.0", True)],
+    "curriculum/exact.py": [("ORDER = 14 ", "ORDER = 13 ", True)],
+    "curriculum/bench/problems.py": [("        4.0,", "        1.0,", True)],
+    "curriculum/bench/engines.py": [("hertz", "hurts", True)],
+}
+
+
+@pytest.mark.parametrize("file", MADE)
+def test_results_are_stale_when_what_made_them_changed_and_not_for_words(file, monkeypatch):
+    read = stale.read_text
+    room = "stress/jobs" if "stress" in file else "bench/accuracy"
+    made = stale.fingerprint(*stale.made_by(f"curriculum/{room}.py"))
+    for old, new, counts in MADE[file]:
+        assert old in read(file), (file, old)
+        texts = {file: read(file).replace(old, new)}
+        monkeypatch.setattr(stale, "read_text", lambda name, own=texts: own.get(name) or read(name))
+        assert bool(stale.changed(made)) == counts, (old, new)
+
+
+def test_a_change_of_the_command_line_is_one_of_the_whole_file_alone():
+    text = stale.read_text("contact.py")
+    other = text.replace("800 if", "900 if")
+    assert stale.digits("contact.py", text) != stale.digits("contact.py", other)
+    assert stale.digits(stale.LESSON, text) == stale.digits(stale.LESSON, other)
+    assert set(stale.COMMAND_LINE) <= set(regions.read_all())
+
+
 def test_ledger_has_its_header_and_each_row_is_whole_or_pending(project):
     for text, wrong in (
         (PENDING + "ch3.5-contact,cpu,0.01,,,,PENDING\n", "3: neither a whole MEASURED row nor a"),
@@ -232,10 +274,10 @@ def test_ledger_has_its_header_and_each_row_is_whole_or_pending(project):
 
 def test_measuring_writes_a_whole_row_of_todays_code(project):
     pytest.importorskip("rerun", reason="rerun is not installed, and the default run records")
-    for pattern in ("checks.py", "curriculum/*.py", "curriculum/run/*.py", "exercises/*"):
+    for pattern in ("checks.py", "curriculum/*.py", "curriculum/run/*.py", "exercises/**/*"):
         for path in filter(Path.is_file, ROOT.glob(pattern)):
             copied = project / path.relative_to(ROOT)
-            copied.parent.mkdir(exist_ok=True)
+            copied.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, copied)
     command = [sys.executable, "-B", "-m", "curriculum.measured.ledger", "cpu", "--runs", "1"]
     run = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)

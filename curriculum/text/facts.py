@@ -5,6 +5,7 @@ Each returns {name: number}; the text quotes one as {{fact:tower_sweeps.20}}.
 
 import itertools
 import math
+import statistics
 from functools import partial
 from unittest.mock import patch
 
@@ -127,6 +128,63 @@ def jump():
     return found
 
 
+def seeds():
+    """What lcp does to the drop from forty start heights; `hover`: how often without a gain."""
+    with_gain, without = (
+        [
+            contact.contact_quality(contact.run_model("lcp", scene, DT, 1000, settings), scene, DT)
+            for scene in map(partial(contact.build_scene, "drop"), range(40))
+        ]
+        for settings in (contact.Settings(), contact.Settings(baumgarte=0.0))
+    )
+    depths = [quality["max_penetration_frac"] for quality in with_gain]
+    return {
+        "depth": {"least": min(depths), "most": max(depths), "none": depths.count(0.0)},
+        "hop": statistics.median(quality["rebound_frac"] for quality in with_gain),
+        "hover": sum(quality["rest_gap_frac"] > 0.0 for quality in without),
+    }
+
+
+def sag():
+    """The overlap [r] that sweeps leave under the lowest ball of a stack, and what the law says."""
+    cases = {"ten": (10, 1e-4, 1, 1.0, 0.0), "thirty": (30, DT, 20, 0.2, 0.0)}
+    cases |= {"three": (3, DT, 20, 0.2, 0.0), "twenty": (20, DT, 20, 0.2, 0.0)}
+    cases |= {
+        f"{name}_substeps": (n, DT / 4, 5, 0.2, 0.0) for name, n in (("three", 3), ("twenty", 20))
+    }
+    cases |= {f"warm_{warm:g}": (10, 1e-3, 1, 1.0, warm) for warm in (0.5, 0.75)}
+    found = {}
+    for name, (bodies, dt, iters, gain, warm) in cases.items():
+        scene = contact.build_scene("stack", bodies=bodies)
+        settings = contact.Settings(baumgarte=gain, iters=iters, warm=warm)
+        run = contact.run_model("lcp", scene, dt, int(2.0 / dt), settings)
+        law = (warm - 1.0) * (bodies - 1) * contact.GRAVITY * dt * dt / gain / iters
+        found[name] = contact.contact_quality(run, scene, dt) | {"law": law / contact.RADIUS}
+    return found
+
+
+def ahead():
+    """The quality of lcp as it is, looking ahead, and looking ahead with a gain of 1."""
+    stack, found = partial(contact.build_scene, "stack"), {}
+    scenes = {
+        "drop": contact.build_scene("drop"),
+        "ten": stack(bodies=10),
+        "thirty": stack(bodies=30),
+    }
+    scenes["heavy"] = stack(bodies=2)._replace(mass=np.array([1.0, 100.0]))
+    ways = {"lcp": {}, "ahead": {"ahead": True}, "gain_1": {"ahead": True, "baumgarte": 1.0}}
+    for (name, scene), (way, knobs) in itertools.product(scenes.items(), ways.items()):
+        exact = contact.run_model("exact", scene, DT, 1000)
+        run = contact.run_model("lcp", scene, DT, 1000, contact.Settings(**knobs))
+        found.setdefault(name, {})[way] = contact.contact_quality(run, scene, DT, exact)
+    return found
+
+
+def finger():
+    """The critical step [s] of a finger of 0.2 kg on penalty's default spring and damper."""
+    return {"limit": contact.critical_dt(0.2, 1e4, 80.0)}
+
+
 def heavy_on_light():
     """The quality where the upper ball of two is heavier: lcp cold and warm, soft."""
     found, scene = {}, contact.build_scene("stack", bodies=2)
@@ -188,5 +246,5 @@ def blocks():
 FACTS = {
     each.__name__: each
     for each in (implicit_spring, tower_sweeps, ratio_sweeps, soft_sweeps, no_margin, order)
-    + (air_push, jump, heavy_on_light, crowd, slide, blocks)
+    + (air_push, jump, seeds, sag, ahead, finger, heavy_on_light, crowd, slide, blocks)
 }

@@ -31,7 +31,7 @@ function draw(view) {
   const text = `e = ${e.toFixed(2)}`;
   const high = `every bounce is e² = ${number(e * e, 2)} times as high as the last`;
   const lift = (x, to) => Math.sqrt(Math.max(0, sy.back(to) - R) / (START - R));
-  const range = { r: 16, high: 0.95, step: 0.01, at: lift };
+  const range = { high: 0.95, step: 0.01, at: lift };
   return {
     svg: [
       ...balls.map((at) => ball("exact", ...at, r, "ghost")),

@@ -49,7 +49,6 @@ function draw(view) {
     name: "ball",
     x: x - scale * vx,
     y: y + scale * vy,
-    r: 14,
     label: "where the ball comes from",
     value: vx,
     text: `comes with ${number(vx, 2)} m/s to the right and ${number(-vy, 2)} m/s down`,

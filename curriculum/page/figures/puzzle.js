@@ -34,7 +34,6 @@ function draw(view) {
     name: "spring",
     x: sx(now.stiffness),
     y: sy(now.damping),
-    r: 16,
     value: now.stiffness,
     label: "the spring: stiffness and damping",
     text: `k ${number(now.stiffness)} N/m, c ${number(now.damping)} N s/m`,
@@ -45,7 +44,6 @@ function draw(view) {
     svg: [
       chart.svg,
       ...own.tries.map((each) => dot(each, 6, "look m-penalty")),
-      dot(now, 6, "dot"),
     ].join(""),
     words: `${sinks} It ${rests(now) ? "comes" : "never comes"} to rest.`,
     handles: [spring],

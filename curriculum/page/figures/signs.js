@@ -38,7 +38,6 @@ function handlesOf({ own, width }, { scale, floor, place }, told) {
     name: "velocity",
     x: tipX,
     y: tipY,
-    r: 14,
     label: "the velocity of ball a",
     value: vy,
     text: `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told}`,

@@ -9,12 +9,13 @@ from functools import partial
 from unittest.mock import patch
 
 import numpy as np
-import predict
-from blanks import BLANKS, solver
-from predict import contact
-from progress import practise
 
 from curriculum.commands import command, near
+
+from . import predict
+from .blanks import BLANKS, solver
+from .predict import contact
+from .progress import practise
 
 
 def row(name, function, case):

@@ -6,12 +6,10 @@ import sys
 import textwrap
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-from progress import DONE, done, practise
-
 import contact
 from curriculum.commands import near
+
+from .progress import DONE, done, practise
 
 FACTS = json.loads(Path(__file__).with_name("answers.json").read_text("utf-8"))
 ANSWERS = {name: facts["answer"] for name, facts in FACTS.items() if "answer" in facts}
@@ -20,7 +18,7 @@ ANSWERS = {name: facts["answer"] for name, facts in FACTS.items() if "answer" in
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
-    name = Path(exercise.__file__).name[:3]
+    name = Path(exercise.__file__).stem.split("_")[0]
     hints = FACTS[name]["hints"]
     parser = argparse.ArgumentParser(description=f"Exercise {name}.", allow_abbrev=False)
     parser.add_argument(
@@ -37,7 +35,7 @@ def main():
         elif name in ANSWERS:
             sys.exit(bet(name, exercise))
         else:
-            import trials
+            from . import trials
 
             sys.exit(trials.fill(name, exercise))
     except KeyboardInterrupt:

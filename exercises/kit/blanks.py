@@ -10,7 +10,7 @@ from collections.abc import Callable
 from math import sqrt  # noqa: F401  expressions below use it
 from typing import NamedTuple
 
-from predict import contact
+from .predict import contact
 
 
 class Blank(NamedTuple):
