@@ -18,7 +18,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from contact import write_whole
+from curriculum.files import write_whole
 from curriculum.measured.machine import dirty, machine
 from curriculum.measured.stale import fingerprint
 from curriculum.regions import ROOT

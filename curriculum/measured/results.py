@@ -13,7 +13,7 @@ import math
 import re
 from pathlib import Path
 
-from contact import write_json, write_whole
+from curriculum.files import write_json, write_whole
 from curriculum.measured import stale
 from curriculum.measured.machine import dirty, machine
 from curriculum.regions import ROOT, read_text
