@@ -57,7 +57,7 @@ function showHandles(layer, handles) {
     const node = held.get(name) || layer.appendChild(document.createElementNS(SVG, "circle"));
     held.delete(name);
     const about = {
-      class: r ? "handle" : "handle knob",
+      class: r ? "handle" : "handle point",
       role: "slider",
       tabindex: 0,
       cx: x,
