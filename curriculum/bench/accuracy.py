@@ -107,7 +107,10 @@ def seconds_of(job, sleep, steps):
     """CPU seconds that a point takes for these looks, without its preparation."""
     problem, name, dt, substeps, _ = job
     session = BY_NAME[name].build(problems.BY_NAME[problem].build(0), dt, substeps, sleep)
-    return timing.timed(partial(session.trace, steps))
+    seconds, heights = timing.timed(partial(session.trace, steps))
+    if len(heights) != steps + 1:
+        raise RuntimeError(f"{name} was looked at {len(heights)} times instead of {steps + 1}")
+    return seconds
 
 
 def times_of(job):

@@ -108,7 +108,8 @@ class Ours(Session):
         run = simulate(model, scene, dt, n * self.substeps, self.settings)
         return run.q[:: self.substeps], run.v[:: self.substeps]
 
-    trace = states
+    def trace(self, n):
+        return self.states(n)[0][:, 1]
 
     def advance(self, n):
         if self.motion is None:
@@ -155,15 +156,15 @@ def direct(beta, d, scene, dt):
 
 
 class Mujoco(Session):
-    """Spring and damper made implicit and convex. `contact(scene, dt)` gives solref and solimp."""
+    """Spring and damper made implicit and convex. `soften(scene, dt)` gives solref and solimp."""
 
-    def __init__(self, scene, dt, contact, sleep=False, speculative=False, **options):
+    def __init__(self, scene, dt, soften, sleep=False, speculative=False, **options):
         import mujoco
         from mujoco import rollout
 
         self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
         mujoco.set_mju_user_warning(lambda text: None)  # its default writes a log file
-        solref, solimp = contact(scene, dt)
+        solref, solimp = soften(scene, dt)
         balls, many = balls_of(scene), len(scene.mass) >= MANY and "solver" not in options
         options = {"solver": "CG", "jacobian": "sparse"} | options if many else options
         flags = ' sleep="enable"' * sleep + ' speculative="enable"' * speculative

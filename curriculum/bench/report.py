@@ -129,22 +129,17 @@ def readme(sections):
     parts = ["![Run time against error: bounce](curriculum/bench/results/error-bounce.svg)"]
     if section := sections.get("accuracy"):
         about = section["measured"]
-        engines = [e[1] for e in accuracy.engines.ENGINES.values() if e[1] in about["versions"]]
-        versions = ", ".join(f"{name} {about['versions'][name]}" for name in engines)
+        modules = [engine[1] for engine in accuracy.engines.ENGINES.values()]
+        versions = [f"{name} {about['versions'].get(name, '-')}" for name in modules]
+        whos = [
+            f"{who}, equal {what}" for what in ("work", "time") for who in ("lcp", "best other")
+        ]
         parts += [
-            table(
-                ["worst error, time awake", "exact"]
-                + [
-                    f"{who}, {when}"
-                    for when in ("equal work", "equal time")
-                    for who in ("lcp", "best other")
-                ],
-                contest_rows(section),
-            ),
-            f"Equal work is at most {WORK} substeps in 2 ms, equal time {BUDGET} µs a ball for 2 ms; "
-            "everyone takes every step, and loops are compiled. With sleep and skips times differ: "
-            f"see the results. {good_for(section)} On {about['cores']} cores of {about['cpu']}: "
-            f"{versions}; settings stand in the results.",
+            table(["", "exact", *whos], contest_rows(section)),
+            "Worst error in radii, time awake (and as a user gets it, with sleep and skips). Equal "
+            f"work: at most {WORK} substeps in 2 ms; equal time: {BUDGET} µs a ball for 2 ms, "
+            f"awake. Loops are compiled, settings stand in the results. {good_for(section)} On "
+            f"{about['cores']} cores of {about['cpu']}, with {', '.join(versions)}.",
         ]
     if "pile" in sections:
         head = ["1,000 balls at rest", "lcp, compiled", "fastest other engine", "ratio"]
