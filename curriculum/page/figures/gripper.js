@@ -1,6 +1,6 @@
 /* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors. On
  * the first screen it plays by itself; later its time step and its stiffness can be dragged, too. */
-import { axis, ball, circle, clipped, el, label, line, number, plot, rect } from "../draw.js";
+import { axis, ball, circle, clipped, el, label, line, number, path, plot, rect } from "../draw.js";
 import { table, within } from "../draw.js";
 import { criticalDt, runModel, series, stateAt } from "../engine.js";
 import { grip, kept, R, scene } from "../parts.js";
@@ -44,12 +44,16 @@ function picture({ own, width }, { run, depths }) {
   const late = LATE + (((own.time ?? SECONDS) - LATE) % (SECONDS - LATE)); // over and over
   const time = own.time <= SECONDS ? (own.time ?? SECONDS) : late;
   const row = Math.min(run.steps, Math.round(time / run.dt));
-  const { x, y } = stateAt(run, row);
-  const far = Math.max(0.33, ...x.map((each) => (Math.abs(each) < 1e9 ? Math.abs(each) : 0)));
-  const scale = Math.min(360, (width / 2 - 8) / (far + R)); // px for 1 m
-  const [floor, r] = [TOP - 14 - GROUND, Math.max(3, R * scale)];
-  const place = (each, i) => [width / 2 + each * scale, floor - within(R, y[i], 9) * scale];
-  const at = x.map(place);
+  const seen = (all) => Array.from(all.subarray(0, 3 * row + 3), (each) => (each < 1e9 ? each : 0));
+  const [xs, ys] = [seen(run.x), seen(run.y)]; // until now
+  const [far, high] = [xs, ys].map((all) => all.reduce((most, v) => Math.max(most, v), 0.3));
+  const floor = TOP - 14 - GROUND;
+  const scale = Math.min(360, (width / 2 - 8) / (far + R), (floor - 8) / (high + R)); // px for 1 m
+  const r = Math.max(3, R * scale);
+  const place = (_, k) => [width / 2 + xs[k] * scale, floor - Math.max(R, ys[k]) * scale];
+  const places = xs.map(place);
+  const at = places.slice(-3);
+  const trail = (i) => path(places.filter((_, k) => k % 3 === i), "line m-fixed thin");
   const arm = ([tip, up], side) => rect(side < 0 ? -9 : tip, up - 0.3 * r, width, 0.6 * r, "arm");
   const ten = 10 ** Math.floor(Math.log10((0.3 * width) / scale)); // m
   const ruler = label(`${number(ten, 1)} m`, 8, 20) + line(8, 28, 8 + ten * scale, 28, "scale");
@@ -59,10 +63,10 @@ function picture({ own, width }, { run, depths }) {
   const rim = { cx: cupX, cy: cupY - 0.72 * r, rx: 0.62 * r, ry: 0.15 * r, class: "cup" };
   const drawn = [
     table(0, floor, width, GROUND),
-    far > 0.4 ? ruler : arms,
+    far > 0.3 ? ruler + trail(0) + trail(2) : arms,
     ...at.map(([x, y], i) => ball(i === 1 ? "penalty" : "fixed", x, y, r, "ball plainly")),
     el("ellipse", rim),
-    far > 0.4 ? "" : line(touch, cupY, 52, 50, "hand") + lens(52, 50, 44, r, depths[row]),
+    far > 0.3 ? "" : line(touch, cupY, 52, 50, "hand") + lens(52, 50, 44, r, depths[row]),
   ];
   return { svg: clipped(0, 0, width, TOP - 14, ...drawn), at, r, scale };
 }
