@@ -152,4 +152,13 @@ export function grip(view, name, x, y, label, text, options) {
   return { name, x, y, r, label, text, value: value(), drag, nudge, release };
 }
 
+/* A handle for two numbers, [a, b]: at(x, y) gives those where it is dragged to, put(a, b) sets them,
+ * and an arrow key to the right or up moves it by `px` on the screen. */
+export function pair(name, [x, y], label, text, { value, at, put, px = 4, r }) {
+  const drag = (toX, toY) => put(...at(toX, toY));
+  let [nowX, nowY] = [x, y];
+  const nudge = (dx, dy) => drag((nowX += px * dx), (nowY += px * dy));
+  return { name, x, y, r, label, text, value, drag, nudge };
+}
+
 const tidy = (value) => Number(value.toFixed(4));

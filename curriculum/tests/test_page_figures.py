@@ -166,6 +166,7 @@ def test_springs_show_the_depths_of_contact_py(tab):
 
 
 def test_signs_are_those_of_contact_py(tab):
+    set_knobs(tab, "")
     box = figure(tab, "signs")
     press(tab, handle(box, "ball"), "ArrowLeft", 5)
     press(tab, handle(box, "velocity"), "ArrowUp", 12)

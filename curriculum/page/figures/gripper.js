@@ -3,7 +3,7 @@
 import { axis, ball, circle, clipped, el, label, line, number, path, plot, rect } from "../draw.js";
 import { table, within } from "../draw.js";
 import { criticalDt, runModel, series, stateAt } from "../engine.js";
-import { grip, kept, R, scene } from "../parts.js";
+import { grip, kept, pair, R, scene, tens } from "../parts.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
 const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s, s: what is judged comes after it
@@ -11,6 +11,8 @@ const [GROUND, TOP, TIMES] = [24, 190, 60]; // px of table, px of the picture; o
 const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be set
 const NAMES = ["the left finger", "the cup", "the right finger"];
 const start = () => ({ dt: 0.004, k: 1e4, x0: AT[0], x1: AT[1], x2: AT[2], time: null, tries: [] });
+
+const tellsOf = ({ dt, k }) => `dt = ${number(1000 * dt, 2)} ms, k = ${number(k, 2)} N/m`;
 
 // The run, its deepest overlap row by row [r], and what happens in the last quarter.
 const squeezed = kept((dt, stiffness, ...x) => {
@@ -77,10 +79,9 @@ function choices(view, does) {
   const ticks = [0.5, 1, 2, 4, 8].map((ms) => [ms / 1000, String(ms)]);
   const ks = Array.from({ length: 25 }, (_, i) => K[0] * (K[1] / K[0]) ** (i / 24));
   const limits = ks.map((k) => criticalDt(MASS[0], k, DAMPING).damped);
-  const tens = [[1e4, "10⁴"], [1e5, "10⁵"], [1e6, "10⁶"]];
   const { svg, sx, sy } = plot([0, TOP, width, height - TOP], {
     x: { ...axis(DT, "time step dt (ms)", ...ticks), log: true },
-    y: { ...axis(K, "stiffness k (N/m)", ...tens), log: true },
+    y: { ...tens(4, 6), domain: K, label: "stiffness k (N/m)" },
     lines: [{ model: "fixed", xs: limits, ys: ks, kind: "plainly" }],
   });
   const now = own.tries.find(({ dt, k }) => dt === own.dt && k === own.k);
@@ -90,20 +91,14 @@ function choices(view, does) {
     edge[does] ? circle(sx(dt), sy(k), 6, `${edge[does]} m-penalty`)
       : label("×", sx(dt), sy(k) + 6, "middle"));
   const beyond = label("a finger’s critical step", sx(limits[limit]) + 8, sy(ks[limit]));
-  const set = (dt, k) => {
+  const put = (dt, k) => {
     const [step, spring] = [within(DT[0], dt, DT[1]), within(K[0], k, K[1])];
     Object.assign(own, { dt: +step.toPrecision(2), k: +spring.toPrecision(2), time: null });
   };
-  return {
-    svg: svg + beyond + tried.join(""),
-    knob: {
-      name: "choice", x: sx(own.dt), y: sy(own.k), value: own.dt,
-      label: "time step and stiffness",
-      text: `dt = ${number(1000 * own.dt, 2)} ms, k = ${number(own.k, 2)} N/m`,
-      drag: (x, y) => set(sx.back(x), sy.back(y)),
-      nudge: (dx, dy) => set(own.dt * 1.05 ** dx, own.k * 1.1 ** -dy),
-    },
-  };
+  const told = ["time step and stiffness", tellsOf(own)];
+  const at = (x, y) => [sx.back(x), sy.back(y)];
+  const knob = pair("choice", [sx(own.dt), sy(own.k)], ...told, { value: own.dt, at, put, px: 8 });
+  return { svg: svg + beyond + tried.join(""), knob };
 }
 
 // `small`: without what can be chosen, and it plays by itself where things may move.
@@ -121,10 +116,9 @@ function drawn(view, small) {
   };
   const moves = does === "trembles" ? ` by ${number(trembling, 2)} r` : "";
   const holds = `it overlaps by ${number(deepest, 2)} r and ${does}${moves}`;
-  const told = `dt = ${number(1000 * own.dt, 2)} ms, k = ${number(own.k, 2)} N/m`;
   return {
     svg: svg + map,
-    words: `${told}: ${does === "is gone" ? "fingers and cup fly apart" : holds}.`,
+    words: `${tellsOf(own)}: ${does === "is gone" ? "fingers and cup fly apart" : holds}.`,
     handles: at.map(hold).concat(knob ?? []),
   };
 }
