@@ -18,7 +18,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from contact import write_whole
+from curriculum.files import write_whole
 from curriculum.measured.machine import fingerprint, machine
 from curriculum.regions import CODE, ROOT
 

@@ -11,7 +11,7 @@ import math
 import re
 from pathlib import Path
 
-from contact import write_json, write_whole
+from curriculum.files import write_json, write_whole
 from curriculum.measured.machine import fingerprint, machine
 from curriculum.regions import CODE, ROOT, read_text
 

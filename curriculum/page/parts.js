@@ -117,6 +117,16 @@ export function lens(id, model, x, y, r, depth, size) {
 // How long an arrow for a force is, in weights: the root, since impacts are hundreds of weights.
 export const forceLength = (weights, unit = 26) => unit * Math.sqrt(Math.max(weights, 0));
 
+// An axis of powers of ten, from 10^low to 10^high.
+const RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
+export function tens(low, high) {
+  const ticks = Array.from({ length: high - low + 1 }, (_, k) => {
+    const raised = String(low + k).replace(/./g, (c) => RAISED["-0123456789".indexOf(c)]);
+    return [10 ** (low + k), `10${raised}`];
+  });
+  return { domain: [10 ** low, 10 ** high], ticks, log: true };
+}
+
 // ---- handles
 
 /* A handle at (x, y) for one number: `name` in the figure's own state, or a quantity of the page.

@@ -57,7 +57,7 @@ const KNOB = 8; // px, of a point; the style gives it a halo of 22 px
 
 // What a handle looks like: all of a ball, a box, or a knob on a point.
 function shapeOf({ x, y, r, box }) {
-  if (!box) return { class: r ? "handle" : "handle knob", cx: x, cy: y, r: r || KNOB };
+  if (!box) return { class: r ? "handle" : "handle point", cx: x, cy: y, r: r || KNOB };
   return { class: "handle", x: box[0], y: box[1], width: box[2], height: box[3] };
 }
 

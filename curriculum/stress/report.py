@@ -1,6 +1,6 @@
 """results.json, README.md and the figure, from the results of the jobs."""
 
-from contact import write_whole
+from curriculum.files import write_whole
 from curriculum.measured import results
 from curriculum.run import plotting
 from curriculum.stress import extremes, jobs, maps, mujoco_match

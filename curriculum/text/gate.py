@@ -4,7 +4,7 @@ import json
 import re
 from collections import Counter
 
-from contact import write_whole
+from curriculum.files import write_whole
 from curriculum.measured import ledger, results
 from curriculum.regions import ROOT, read_text, split_all
 from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, load_meta

@@ -30,6 +30,7 @@ from pathlib import Path
 import yaml
 
 import contact
+from curriculum.files import write_whole
 from curriculum.measured import ledger, results
 from curriculum.measured.machine import fingerprint
 from curriculum.regions import CODE, NAME, ROOT
@@ -66,7 +67,7 @@ def cached(name: str, inputs, make, code=CODE):
         pass
     made = make()
     with suppress(OSError):  # a folder that cannot be written costs time, and no number
-        contact.write_whole(path, json.dumps({"about": about, "made": made}))
+        write_whole(path, json.dumps({"about": about, "made": made}))
     return made
 
 
