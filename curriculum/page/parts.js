@@ -104,7 +104,7 @@ export function lens(id, model, x, y, r, depth, size) {
   const inside = [
     circle(x, y, size, "lens-ground"),
     table(x - size, y, 2 * size, size),
-    ball(model, x, y + (depth - 1) * r * times, r * times, "ball plainly"),
+    ball(model, x, y + (depth - 1) * r * times, r * times, "magnified"),
   ];
   return [
     el("clipPath", { id }, circle(x, y, size, "")),

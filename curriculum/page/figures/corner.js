@@ -42,7 +42,7 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
     const push = forceLength(load, 100 / Math.sqrt(shown.most));
     return [
       table(0, floor, left, 74),
-      ball(model, x, y, r, near ? "ball plainly" : "ball"),
+      ball(model, x, y, r, near ? "magnified" : "ball"),
       deepest === null ? "" : ball(model, x, floor - r - deepest * r, r, "ghost"),
       arrow(near || `push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
       hand > 0 ? line(x, y, x, 0, "hand") : arrow(near || "weight", x, top - pull, 0, pull),

@@ -4,7 +4,7 @@ import { makeRows, normalSpeed, solveContacts } from "../engine.js";
 import { grip, kept, wholly } from "../parts.js";
 
 const MOST = 3.5; // m/s
-const ROWS = [92, 216, 340]; // px
+const ROWS = [112, 236, 360]; // px
 
 // The speeds after the impact of three touching elastic balls; `repair`: no target below zero.
 const struck = kept((speeds, repair) => {
@@ -31,7 +31,7 @@ function draw(view) {
   const bars = view.width - Math.min(150, 0.25 * view.width);
   const unit = (view.width - bars - 8) / Math.max(begun, moreau, repaired, 0.1);
   const at = (i) => (bars - 16) / 2 + 2 * r * (i - 1);
-  const up = (i) => -r - 12 - 13 * i; // the arrows stand over one another
+  const up = (i) => -r - 14 - 22 * i; // the arrows stand over one another
   const row = ([title, after], k) => [
     label(title, 0, ROWS[k] - r - 48, "start", "axis-name"),
     ...after.map(
@@ -71,7 +71,7 @@ export const figure = {
   caption:
     "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair " +
     "that allows no target below zero adds some; drag the speeds.",
-  height: 384,
+  height: 404,
   start: () => ({ v1: -1, v2: 0, v3: -3 }),
   draw,
 };

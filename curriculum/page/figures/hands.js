@@ -102,7 +102,7 @@ function drawGrab(view) {
 const grab = {
   title: "A ball over a table",
   caption: "Grab the ball: lift it, drop it, throw it.",
-  height: 480,
+  height: 360,
   narrow: 340,
   start: () => ({ place: null, velocity: [0, 0], free: false }),
   buttons: [["Drop it", drop]],
