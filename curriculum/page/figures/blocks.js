@@ -1,5 +1,5 @@
 /* Colliding blocks count the digits of pi (Galperin 2003): a wall, a block of mass 1, of 100^n. */
-import { clipped, label, line, number, plural, rect, table, whole } from "../draw.js";
+import { clipped, label, line, plain, plural, rect, table, whole } from "../draw.js";
 import { runExact, runModel } from "../engine.js";
 import { grip, kept, knobs, R, scene } from "../parts.js";
 
@@ -62,7 +62,7 @@ function draw(view) {
   const [exact, lcp] = [byExact(n), byLcp(n, told)];
   const above = lane(view, "exact", exact, 0);
   const counted = `exact counts ${plural(exact.times.length, "impact")}`;
-  const missed = `lcp at dt = ${number(1000 * told.dt)} ms counts ${whole(lcp.times.length)}`;
+  const missed = `lcp at dt = ${plain(1000 * told.dt)} ms counts ${whole(lcp.times.length)}`;
   const text = `100 to the power of ${n}`;
   const at = (x, y) => Math.round((above.floor - y - LIGHT) / 16);
   const range = { box: above.box, hold: above.corner, low: 0, high: MOST, step: 1, at };
