@@ -20,8 +20,6 @@ from curriculum.commands import number
 from curriculum.run import pool
 from curriculum.stress import jobs
 
-FULL, QUICK = (10_000, 1_000), (60, 100)  # random scenes of up to 30 balls, and of up to four
-
 
 def parse(argv):
     """The checked command line."""
@@ -63,9 +61,15 @@ def some_scenes(todo):
 
 def everything(args):
     """A full or quick run, and its report. Returns the violations."""
+    from curriculum.measured import results
     from curriculum.stress import extremes, maps, mujoco_match, report
 
-    large, small = QUICK if args.quick else FULL
+    command = "python -m curriculum.stress" + " --quick" * args.quick
+    origins = {
+        name: results.origin(command, *files, kept=not args.quick)
+        for name, files in jobs.MADE_BY.items()
+    }
+    large, small = jobs.QUICK if args.quick else jobs.FULL
     sections = {
         "scenes": jobs.scene_jobs(range(large)) + jobs.scene_jobs(range(small), small=True),
         "maps": maps.map_jobs(args.quick),
@@ -76,7 +80,7 @@ def everything(args):
         name: pool.spread(jobs.run, todo, name, args.workers, args.scheduler)
         for name, todo in sections.items()
     }
-    return report.write(found, report.QUICK if args.quick else report.RESULTS)
+    return report.write(found, origins, report.QUICK if args.quick else report.RESULTS)
 
 
 def main(argv=None):
@@ -94,5 +98,5 @@ def main(argv=None):
 if __name__ == "__main__":
     try:
         sys.exit(main())
-    except OSError as error:  # a scheduler that does not answer, a folder that cannot be written
+    except (OSError, ValueError) as error:  # a scheduler that does not answer, a tree not committed
         sys.exit(f"python -m curriculum.stress: {error}")
