@@ -95,12 +95,12 @@ export function beside(view, options, picture, share = 0.4) {
 }
 
 /* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
- * `depth` deep [r], enlarged so that it can be seen; a radius is `r` px. Nothing where that is seen
- * without a lens. */
-export function lens(id, model, x, y, r, depth, size) {
+ * `depth` deep [r], enlarged so that it can be seen, or `given` times; a radius is `r` px. Nothing
+ * where that is seen without a lens. */
+export function lens(id, model, x, y, r, depth, size, given) {
   const steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
-  const times = steps.find((each) => each * depth * r >= 12) || 10000;
-  if (times <= 2 || depth <= 0) return "";
+  const times = given || steps.find((each) => each * depth * r >= 12) || 10000;
+  if (!given && (times <= 2 || depth <= 0)) return "";
   const inside = [
     circle(x, y, size, "lens-ground"),
     table(x - size, y, 2 * size, size),
