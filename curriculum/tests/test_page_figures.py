@@ -119,6 +119,7 @@ def test_every_handle_answers_to_arrow_keys_and_to_a_drag(tab, name):
             told.append(grip.get_attribute("aria-valuetext"))
         assert told[0] != told[1], f"{label}: arrow keys change nothing"
         assert tab.evaluate("() => document.activeElement.dataset.handle") == label
+        press(tab, grip, "ArrowDown")
         before = box.locator(".drawing").inner_html()
         drag(tab, grip, (48, -24))
         assert box.locator(".drawing").inner_html() != before, f"{label}: a drag changes nothing"
