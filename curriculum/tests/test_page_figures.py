@@ -304,6 +304,7 @@ def test_sag_is_that_of_contact_py_and_its_law_holds_for_one_sweep(tab):
     press(tab, handle(box, "parts"), "ArrowLeft", 9)
     for _ in range(6):
         box.locator("button:text('less')").click()
+    settle(tab)
     drag(tab, handle(box, "ball-1"), (0, -60))  # ten times as heavy
     assert numbers(box)[-2] == pytest.approx(at_rest([1, 10], dt=DT), rel=0.02)
 
