@@ -58,7 +58,7 @@ def is_same(case, run=contact.run_model):
 
 def processes(quick):
     """{name: median, min, max [s], base, ratio, least: ratio of the least times} of processes."""
-    python, rounds = sys.executable, 3 if quick else 15
+    python, rounds = sys.executable, 2 if quick else 15
     with tempfile.TemporaryDirectory() as out:
         run = [python, "contact.py", "--out", out]
         commands = {scene: [*run, "--no-rerun", "--scene", scene] for scene in SCENES}
