@@ -28,7 +28,7 @@ except ModuleNotFoundError:
     sys.exit(f"checks.py: {missing('pytest')}")
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", FILES, ids=lambda name: Path(FILES[name]).stem)
 def test_exercise(name):
     """Skip what is still to be done, and fail what is wrong. A bet is done once it was read."""
     state, words = predict.checked(name, ROOT / FILES[name])

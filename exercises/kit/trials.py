@@ -207,19 +207,25 @@ def seeing(exercise, balls, dt, restitution=0.0, baumgarte=0.2, iters=20):
     contact.move(balls, dt)
 
 
+def meeting():
+    """A ball thrown up meets one that falls."""
+    of = balls(((0.0, 0.3, 1.0), (0.0, 1.504, 1.0)))
+    of.v0[1] = 4.0, -4.0
+    return of
+
+
 def landings(exercise, dt=0.002):
     """{scene: (worst height error beside exact, deepest overlap; and both as published)}, in r."""
-    rows = {}
-    for name, bodies, steps in (("drop", 1, 500), ("bounce", 1, 1000), ("stack", 3, 500),
-                                ("pile", 8, 250)):  # fmt: skip
-        of = contact.build_scene(name, bodies=bodies)
+    rows, scenes = {}, {"meeting": meeting()}
+    for name, bodies in ("drop", 1), ("bounce", 1), ("stack", 3), ("pile", 8):
+        scenes[name] = contact.build_scene(name, bodies=bodies)
+    for name, of in scenes.items():
         step = partial(seeing, exercise, dt=dt, restitution=of.restitution)
-        exact = contact.run_model("exact", of, dt, steps)
-        runs = contact.simulate(step, of, dt, steps), contact.run_model("lcp", of, dt, steps)
+        exact = contact.run_model("exact", of, dt, 250)
+        runs = contact.simulate(step, of, dt, 250), contact.run_model("lcp", of, dt, 250)
         found = [contact.contact_quality(run, of, dt, exact) for run in runs]
-        rows[name] = [
-            q[key] for key in ("height_error_frac", "max_penetration_frac") for q in found
-        ]
+        keys = "height_error_frac", "max_penetration_frac"
+        rows[name] = [quality[key] for key in keys for quality in found]
     return rows
 
 
@@ -228,7 +234,7 @@ def land(exercise, name):
     if name != "applies":
         return ""
     heads = "error, yours", "error, lcp", "deepest, yours", "deepest, lcp"
-    return predict.columns("beside exact, in r", heads, landings(exercise), "{:.5f}")
+    return predict.columns("beside exact, in r", heads, landings(exercise), "{:.4g}")
 
 
 SHOWN = {**dict.fromkeys(TRIALS, compare), "longest_step": cliffs, "implicit_spring": drops}
