@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-import contact
+from curriculum.files import write_whole
 from curriculum.notebook.build import build
 
 
@@ -14,7 +14,7 @@ def main():
     args = parser.parse_args()
     try:
         text = build()
-        contact.write_whole(args.out, text)
+        write_whole(args.out, text)
     except (ImportError, OSError, ValueError) as error:
         hint = f" ({sys.executable} -m pip install -e '.[notebook]')"
         print(f"{error}{hint if isinstance(error, ImportError) else ''}", file=sys.stderr)

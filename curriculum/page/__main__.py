@@ -22,7 +22,7 @@ def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 it can't be built, 2 bad usage."""
     args = parse(argv)
     try:
-        from contact import write_whole
+        from curriculum.files import write_whole
         from curriculum.page.build import build
 
         page = build()

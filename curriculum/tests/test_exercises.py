@@ -87,7 +87,7 @@ def copy(tmp_path):
     shutil.copytree(ROOT / "exercises", folder / "exercises", ignore=leave)
     (folder / "curriculum").mkdir()
     for name in ("contact.py", "checks.py", *(f"curriculum/{name}.py" for name in (
-            "commands", "implicit", "exact"))):  # fmt: skip
+            "commands", "files", "implicit", "exact"))):  # fmt: skip
         shutil.copy(ROOT / name, folder / name)
 
     def fill(name, *changes):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import contact
 from curriculum.commands import command, near
+from curriculum.files import write_json
 
 from . import alone
 from .progress import DONE, done, practise
@@ -55,7 +56,7 @@ def note(name, value):
     noted = {key: found for key, found in (done() | {name: value}).items() if found}
     try:
         if noted != done():
-            contact.write_json(DONE, noted)
+            write_json(DONE, noted)
     except OSError as error:
         print(f"cannot note that {name} is done: {error}", file=sys.stderr)
 

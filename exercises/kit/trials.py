@@ -109,29 +109,21 @@ def failing(name, case, got, right):
 
 def pressed():
     """A ball is pressed into the table and let go: how high it jumps."""
-    of = contact.build_scene("drop", damping=60.0)._replace(q0=np.array([[0.0], [0.07]]))
+    of = contact.scene_of(0.0, 0.07, damping=60.0)
     run = contact.run_model("penalty", of, 0.001, 1000, contact.Settings(stiffness=8e3))
     return run.q[:, 1].max() / 0.1 - 1.0
 
 
 def thrown():
     """A ball is thrown up from the table: how high it comes."""
-    of = contact.build_scene("drop")._replace(q0=np.array([[0.0], [0.1]]))
-    of.v0[1] = 2.0
+    of = contact.scene_of(0.0, 0.1, vy=2.0)
     return contact.run_model("lcp", of, 0.002, 600).q[:, 1].max() / 0.1 - 1.0
 
 
 def groove():
     """A ball drops into the groove of two balls that are held: how far off it ends."""
-    of = balls(((-0.12, 0.1, math.inf), (0.12, 0.1, math.inf), (0.0, 0.6, 1.0)))
+    of = contact.scene_of([-0.12, 0.12, 0.0], [0.1, 0.1, 0.6], [math.inf, math.inf, 1.0])
     return abs(contact.run_model("lcp", of, 0.002, 600).q[-1, 0, 2]) / 0.1
-
-
-def balls(rows):
-    """A scene of balls (x, y, mass) at rest."""
-    x, y, mass = np.transpose(rows)
-    q0 = np.array((x, y))
-    return contact.Scene("balls", q0, np.zeros_like(q0), mass, np.full(len(mass), 0.1), 0.0, 0.0)
 
 
 TRIALS = {
@@ -207,16 +199,9 @@ def seeing(exercise, balls, dt, restitution=0.0, baumgarte=0.2, iters=20):
     contact.move(balls, dt)
 
 
-def meeting():
-    """A ball thrown up meets one that falls."""
-    of = balls(((0.0, 0.3, 1.0), (0.0, 1.504, 1.0)))
-    of.v0[1] = 4.0, -4.0
-    return of
-
-
 def landings(exercise, dt=0.002):
     """{scene: (worst height error beside exact, deepest overlap; and both as published)}, in r."""
-    rows, scenes = {}, {"meeting": meeting()}
+    rows, scenes = {}, {"meeting": contact.scene_of(0.0, [0.3, 1.504], vy=[4.0, -4.0])}
     for name, bodies in ("drop", 1), ("bounce", 1), ("stack", 3), ("pile", 8):
         scenes[name] = contact.build_scene(name, bodies=bodies)
     for name, of in scenes.items():
@@ -246,7 +231,7 @@ SHOWN["applies"] = land
 
 def fingers(exercise):
     """What the choice of exercise 8 does to the cup: {name: number}, lengths in r."""
-    dt, of = exercise.DT, balls(((-0.205, 0.1, 0.2), (0.0, 0.1, 1.0), (0.205, 0.1, 0.2)))
+    dt, of = exercise.DT, contact.scene_of([-0.205, 0.0, 0.205], 0.1, [0.2, 1.0, 0.2])
     solref, solimp = contact.soft_defaults(0.0, dt, exercise.SOLREF, exercise.SOLIMP)
 
     def step(balls):
