@@ -122,8 +122,8 @@ def thrown():
 
 def groove():
     """A ball drops into the groove of two balls that are held: how far off it ends."""
-    of = contact.scene_of([-0.12, 0.12, 0.0], [0.1, 0.1, 0.6], [math.inf, math.inf, 1.0])
-    return abs(contact.run_model("lcp", of, 0.002, 600).q[-1, 0, 2]) / 0.1
+    of = contact.scene_of([0.0, -0.105, 0.105], [0.8, 0.1, 0.1], [1.0, math.inf, math.inf])
+    return abs(contact.run_model("lcp", of, 0.002, 600).q[-1, 0, 0]) / 0.1
 
 
 TRIALS = {
