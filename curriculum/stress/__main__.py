@@ -15,9 +15,12 @@ import sys
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-import contact
-from curriculum.run import pool
-from curriculum.stress import jobs
+from curriculum.commands import needs
+
+with needs("dev"):
+    import contact
+    from curriculum.run import pool
+    from curriculum.stress import jobs
 
 FULL, QUICK = (10_000, 1_000), (60, 100)  # random scenes of up to 30 balls, and of up to four
 
@@ -87,6 +90,10 @@ def main(argv=None):
 
 if __name__ == "__main__":
     try:
-        sys.exit(main())
-    except OSError as error:  # a scheduler that does not answer, a folder that cannot be written
+        with needs("dev"):
+            sys.exit(main())
+    except (
+        ImportError,
+        OSError,
+    ) as error:  # a scheduler that does not answer, a folder that cannot be written
         sys.exit(f"python -m curriculum.stress: {error}")
