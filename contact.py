@@ -75,6 +75,13 @@ class Scene(NamedTuple):
     damping: float          # c of penalty [N s/m]
 
 
+def scene_of(x, y, mass=1.0, radius=RADIUS, vx=0.0, vy=0.0, restitution=0.0, damping=80.0,
+             name="own") -> Scene:
+    """The Scene of balls at x, y: a list of numbers each, or one number for all of them."""
+    rows = np.array(np.broadcast_arrays(np.atleast_1d(x), y, vx, vy, mass, radius), float)
+    return Scene(name, rows[:2], rows[2:4], rows[4], rows[5], restitution, damping)
+
+
 def build_scene(name: str, seed: int = 0, bodies: int | None = None,
                 restitution: float | None = None, damping: float | None = None) -> Scene:
     """The scene of that name, all balls at rest. None stands for the scene's own value.
@@ -100,10 +107,9 @@ def build_scene(name: str, seed: int = 0, bodies: int | None = None,
     else:
         raise ValueError(f"scene {name!r}; allowed: {', '.join(SCENES)}")
     own_restitution, own_damping = (0.7, 0.0) if name == "bounce" else (0.0, 80.0)
-    return Scene(name, np.array((x, y)), np.zeros((2, len(x))), np.ones(len(x)),
-                 np.full(len(x), RADIUS),
-                 own_restitution if restitution is None else restitution,
-                 own_damping if damping is None else damping)
+    return scene_of(x, y, name=name,
+                    restitution=own_restitution if restitution is None else restitution,
+                    damping=own_damping if damping is None else damping)
 # --- endregion ---
 
 
@@ -633,7 +639,7 @@ def run_model(model: str, scene: Scene, dt: float, steps: int,
         return Run(times, *run_exact(scene, times, report))
     many = settings.skip and steps * len(scene.mass)**2 > MANY
     if many and (fast := beside("fast")):       # compiled loops, the same bits
-        return Run(times, *fast.simulate(model, scene, dt, steps, settings, report))
+        return fast.simulate(model, scene, dt, steps, settings, report)
     e = scene.restitution
     solref, solimp = soft_defaults(e, dt, settings.solref, settings.solimp)
     step = {
@@ -804,7 +810,7 @@ def number(kind, low, high):
 
 
 NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, meaning
-    "--seed": (int, 0, 1e18, None, "draws the start height (0)"),
+    "--seed": (int, 0, 1e18, 0, "draws the start height (0)"),
     "--dt": (float, 1e-6, 1e3, 0.002, "time step [s] (0.002)"),
     "--steps": (int, 0, 1e6, None, "how many (2000)"),
     "--bodies": (int, 1, 1e4, None, "balls of stack (3) and pile (24)"),
@@ -834,8 +840,6 @@ def add_flags(flag):
     flag("--ahead", action="store_true", help="lcp with e = 0: look as far as a step travels, and "
          "let a gap close wholly")
     flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
-    flag("--seeds", metavar="A:B", help="all seeds from A to B - 1: median and range")
-    flag("--scheduler", metavar="HOST:PORT", help="with --seeds: run them on a dask cluster")
     flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
     flag("--skip", action=switch, default=True, help="leave out work that changes no bit (yes)")
     flag("--rerun", action=switch, default=True, help="write the recording contact.rrd (yes)")
@@ -852,25 +856,17 @@ def parse_flags(argv):
     args = parser.parse_args(argv)
     steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
     count = args.bodies or {"stack": 3, "pile": 24}.get(args.scene, 1)
-    need = steps * (320 * count + 1500)     # bytes, measured: all four models and their recording
-    have = 8e9                              # bytes, chosen, where the machine does not say
-    if hasattr(os, "sysconf"):
-        have = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    memory = beside("run.memory")
+    too_much = memory.too_much(steps, count) if memory else None
     for wrong, message in (
             (args.smoke and args.steps is not None, "--smoke has 800 steps: leave out --steps"),
-            (args.seeds and args.seed is not None, "--seeds or --seed: leave out one of them"),
-            (args.seeds and not beside("run.seeds"), "--seeds needs the folder curriculum "
-             "beside contact.py"),
-            (args.seeds and args.plot, "--plot draws one run: leave out --seeds"),
-            (args.scheduler and not args.seeds, "--scheduler is for many seeds: give --seeds"),
             (args.bodies and args.scene in ("drop", "bounce"), "--bodies is for stack and pile"),
-            (need > have, f"--steps {steps} of {count} balls need {need / 1e9:.0f} GB of memory; "
-             f"allowed: {have / 1e9:.0f} GB, what there is"),
+            (too_much, too_much),
             (args.solref and max(args.solref) > 0.0 and min(args.solref) < 1e-6,
              "argument --solref: allowed: two numbers from 1e-06 up, or two that are 0 or less")):
         if wrong:
             parser.error(message)
-    args.seed, args.steps = args.seed or 0, steps
+    args.steps = steps
     return args
 # --- endregion ---
 
@@ -952,27 +948,12 @@ def rounded(value):
                       parse_constant=lambda name: None)
 
 
-def write_whole(path, content):
-    """Replace the file at `path` by str or bytes, whole or not at all. Makes missing folders."""
-    path = Path(os.path.realpath(path))
-    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    try:
-        temporary.write_bytes(content.encode() if isinstance(content, str) else content)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def write_json(path, data):
-    """Write strict JSON, whole or not at all. Raises ValueError on NaN and infinity."""
-    write_whole(path, json.dumps(data, indent=2, sort_keys=True, allow_nan=False) + "\n")
-
-
 def write_files(args, metrics, runs, scene):
     """Write metrics.json, and recording and picture if asked. Raises OSError if it cannot."""
     path = os.path.join(args.out, "metrics.json")
-    write_json(path, metrics)
+    os.makedirs(args.out, exist_ok=True)
+    text = json.dumps(metrics, indent=2, sort_keys=True, allow_nan=False)
+    Path(path).write_bytes(f"{text}\n".encode())
     print("metrics:", path)
     title = f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
     for name, file, asked, *more in (("recording", "contact.rrd", args.rerun),
@@ -1064,7 +1045,7 @@ def main(argv=None):
     argv = sys.argv[1:] if argv is None else argv
     try:
         args = parse_flags(argv)
-        status = beside("run.seeds").report(args) if args.seeds else report(args, argv)
+        status = report(args, argv)
         print(end="", flush=True)                       # an error at Python's end has no handler
         return status
     except KeyboardInterrupt:

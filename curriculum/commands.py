@@ -6,6 +6,7 @@ import shlex
 import shutil
 import sys
 import sysconfig
+from argparse import ArgumentTypeError
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -76,3 +77,18 @@ def near(word):
     """A path as one would type it here: relative below this folder; other words as they are."""
     below = os.path.isabs(word) and Path(word).is_relative_to(Path.cwd())
     return os.path.relpath(word) if below else word
+
+
+def number(kind, low, high):
+    """An argparse type: a number of that kind, int or float, from low to high."""
+
+    def read(text):
+        try:
+            value = kind(text)
+        except (ValueError, OverflowError):
+            value = None
+        if value is None or not low <= value <= high:
+            raise ArgumentTypeError(f"given {text[:40]!r}; allowed: {low:g} to {high:g}")
+        return value
+
+    return read

@@ -464,7 +464,7 @@ class Motion:
 
 
 def simulate(model, scene, dt, steps, settings, report=None):
-    """q and v (steps + 1, 2, N) [m, m/s] of a run by penalty, lcp or soft, and unsettled steps.
+    """The contact.Run by penalty, lcp or soft: what contact.run_model gives, bit for bit.
 
     `report(k)` is called with the steps done, now and then.
     """
@@ -484,7 +484,7 @@ def simulate(model, scene, dt, steps, settings, report=None):
         settled[past + period :: period] = settled[past]
     rows += 0.0  # turns -0.0 into 0.0
     rows[np.isnan(rows)] = math.nan  # which has a sign too, left to chance
-    return rows[:, :2], rows[:, 2:], int((~settled).sum())
+    return contact.Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:], int((~settled).sum()))
 
 
 def smallest_gap(q, radius):

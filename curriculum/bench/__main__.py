@@ -34,6 +34,10 @@ PARTS = {
     "solvers": solvers.measure,
     "skip": skips.measure,
 }
+MADE_BY = {name: [f"curriculum/bench/{name}.py"] for name in ("accuracy", "solvers")} | {
+    "pile": ["curriculum/bench/piles.py"],
+    "skip": ["curriculum/bench/skips.py", "contact.py"],  # which it times as whole processes
+}
 FULL = results.ROOT / results.FOLDERS["bench"]
 QUICK = results.ROOT / "outputs" / "bench-quick"
 
@@ -53,7 +57,8 @@ def main(argv=None):
     try:
         for name in PARTS if args.part == "all" else {args.part} & set(PARTS):
             start, command = time.monotonic(), f"python -m curriculum.bench {name}"
-            results.save(folder, name, PARTS[name](args.quick), command)
+            origin = results.origin(command, *MADE_BY[name], kept=folder == FULL)
+            results.save(folder, name, PARTS[name](args.quick), origin)
             print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
         sections = json.loads((folder / results.NAME).read_text("utf-8"))
         for wanted, found, met in report.goals(sections):
@@ -64,7 +69,7 @@ def main(argv=None):
     except KeyboardInterrupt:
         print("stopped; what was finished is kept", file=sys.stderr)
         return 130
-    except (ImportError, FileNotFoundError) as error:
+    except (ImportError, FileNotFoundError, ValueError) as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1
     print(f"wrote {folder}")

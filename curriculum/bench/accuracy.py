@@ -38,7 +38,7 @@ class Model(engines.Session):
         if self.compiled:
             from curriculum import fast
 
-            q, v, _ = fast.simulate(*self.given, n * self.substeps, self.settings)
+            _, q, v, _ = fast.simulate(*self.given, n * self.substeps, self.settings)
         else:
             _, q, v, _ = contact.run_model(*self.given, n * self.substeps, self.settings)
         return q[:: self.substeps], v[:: self.substeps]

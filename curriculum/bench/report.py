@@ -7,9 +7,10 @@ import math
 
 import numpy as np
 
-from contact import MODELS, write_whole
+from contact import MODELS
 from contact import figure as number
 from curriculum.bench import accuracy, piles, problems, skips, solvers
+from curriculum.files import write_whole
 from curriculum.measured import results
 from curriculum.measured.results import table
 from curriculum.run import plotting

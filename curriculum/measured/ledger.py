@@ -18,9 +18,10 @@ import tempfile
 import time
 from pathlib import Path
 
-from contact import write_whole
-from curriculum.measured.machine import fingerprint, machine
-from curriculum.regions import CODE, ROOT
+from curriculum.files import write_whole
+from curriculum.measured.machine import dirty, machine
+from curriculum.measured.stale import fingerprint
+from curriculum.regions import ROOT
 
 LEDGER = ROOT / "wallclock.csv"
 CHAPTER = "ch3.5-contact"
@@ -28,7 +29,7 @@ COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", 
 FILLED = r"\d[\d.e-]*,[0-9a-f]{12},[0-9a-f]+\+?,\d{4}-\d\d-\d\d,MEASURED"
 ROW = re.compile(rf"[\w.-]+,[\w-]+,({FILLED}|,,,,PENDING)")
 COMMAND = "python -m curriculum.measured.ledger"
-TIMED = (*CODE, "curriculum/run/recording.py")  # what a default run runs
+TIMED = ("contact.py", "curriculum/run/recording.py", "curriculum/run/curves.py")  # a default run
 
 
 def rows() -> list:
@@ -88,6 +89,8 @@ def main(argv=None) -> int:
     args = parser.parse_args(argv)
     try:
         table = {row["tier"]: row for row in rows()}
+        if dirty():
+            raise ValueError(f"a row is kept with its commit; commit these first: {dirty()}")
         about, minutes = machine(), measure(args.runs)
         facts = f"{minutes:.3g}", code_hash(), about["commit"], about["date"], "MEASURED"
         table[args.tier] = dict(zip(COLUMNS, (CHAPTER, args.tier, *facts)))

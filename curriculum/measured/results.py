@@ -2,8 +2,10 @@
 
 The benchmark and the stress report each keep one file results.json, with a section per command. A
 section says under "measured" how it came to be: the command that measures it again, the machine
-(machine.py) and the hash of every file whose behaviour was measured. It is stale when one of those
-files has changed since, comments and docstrings aside.
+(machine.py), and the fingerprints of the code that made it, by which it is stale or not (stale.py):
+
+    origin = results.origin("python -m curriculum.bench skip", "curriculum/bench/skips.py")
+    results.save(folder, "skip", skips.measure(), origin)
 """
 
 import json
@@ -11,9 +13,10 @@ import math
 import re
 from pathlib import Path
 
-from contact import write_json, write_whole
-from curriculum.measured.machine import fingerprint, machine
-from curriculum.regions import CODE, ROOT, read_text
+from curriculum.files import write_json, write_whole
+from curriculum.measured import stale
+from curriculum.measured.machine import dirty, machine
+from curriculum.regions import ROOT, read_text
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 NAME = "results.json"
@@ -25,15 +28,23 @@ def load(name: str) -> dict:
     return json.loads(read_text(f"{FOLDERS[name]}/{NAME}") or "{}")
 
 
-def save(folder: Path, section: str, values: dict, command: str) -> dict:
-    """Put one section into a folder's results, whole or not at all; returns it as it reads back.
+def origin(command: str, *files, kept=True) -> dict:
+    """How a section comes to be; to be asked before it is measured.
 
-    command: what measures it again, as one types it.
+    command: what measures it again, as one types it. files: the modules that measure; what they
+    import of bench/ and stress/ is found. Raises ValueError where the results are to be kept, and
+    the code is not that of a commit.
     """
+    if kept and dirty():
+        raise ValueError(f"{command} is kept with its commit; commit these first: {dirty()}")
+    return {"command": command, **machine(), "code": stale.fingerprint(*stale.made_by(*files))}
+
+
+def save(folder: Path, section: str, values: dict, origin: dict) -> dict:
+    """Put one section into a folder's results, whole or not at all; returns it as it reads back."""
     path = folder / NAME
     sections = json.loads(path.read_text("utf-8")) if path.exists() else {}
-    about = {"command": command, **machine(), "code": fingerprint(*CODE)}
-    sections[section] = rounded({"measured": about, **values})
+    sections[section] = rounded({"measured": origin, **values})
     write_json(path, sections)
     return sections[section]
 
@@ -51,13 +62,6 @@ def rounded(value):
     return value
 
 
-def stale(section: dict) -> list:
-    """The files whose code is no longer what a section measured."""
-    code = section["measured"]["code"]
-    now = fingerprint(*code)
-    return [file for file, digits in code.items() if now[file] != digits]
-
-
 def table(head, rows) -> str:
     """A Markdown table."""
     lines = [head, ["---"] * len(head), *rows]
@@ -66,7 +70,7 @@ def table(head, rows) -> str:
 
 def footer(section: dict) -> str:
     """One paragraph for the end of a page: when and on what it was measured, and if it is stale."""
-    about, changed = section["measured"], stale(section)
+    about, changed = section["measured"], stale.changed(section["measured"]["code"])
     versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
     note = f" **Stale**: {', '.join(changed)} changed since; measure again." if changed else ""
     return (

@@ -6,7 +6,7 @@ import sys
 from curriculum.commands import needs
 
 with needs("notebook"):
-    import contact
+    from curriculum.files import write_whole
     from curriculum.notebook.build import build
 
 
@@ -22,7 +22,7 @@ def main():
     try:
         with needs("notebook"):
             text = build()
-        contact.write_whole(args.out, text)
+        write_whole(args.out, text)
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1

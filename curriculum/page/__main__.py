@@ -25,7 +25,7 @@ def main(argv=None):
     args = parse(argv)
     try:
         with needs("page"):
-            from contact import write_whole
+            from curriculum.files import write_whole
             from curriculum.page.build import build
 
             page = build()

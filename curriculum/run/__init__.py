@@ -1,1 +1,1 @@
-"""What the folder adds to a run of contact.py: recording, picture, many seeds, what to do next."""
+"""What the folder adds to a run of contact.py: recording, picture, memory, what to do next."""

@@ -13,7 +13,7 @@ def print_next(args, argv):
 
     args: the flags as contact.parse_flags gives them; argv: the words they were read from.
     """
-    lines = [None if args.seeds else see(args, argv), practise()]
+    lines = [see(args, argv), practise()]
     print(*filter(None, lines), sep="\n")
 
 

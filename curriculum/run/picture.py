@@ -2,7 +2,7 @@
 
 import numpy as np
 
-import contact
+from curriculum.files import write_whole
 from curriculum.run import plotting
 from curriculum.run.curves import curves
 
@@ -26,4 +26,4 @@ def write(path, runs, scene, title):
             plotting.line(axis, runs[model].t, seen, model, **look)
     axes[-1].set_xlabel("time [s]")
     plotting.legend_below(axes[-1], columns=len(runs), down=0.4)
-    contact.write_whole(path, plotting.svg(figure))
+    write_whole(path, plotting.svg(figure))

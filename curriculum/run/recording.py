@@ -12,6 +12,7 @@ import numpy as np
 
 import contact
 from curriculum import commands
+from curriculum.files import write_whole
 from curriculum.run.curves import colors, contact_impulses, curves, ending
 
 try:
@@ -46,7 +47,7 @@ def write(path, runs, scene):
             send_balls(recording, model, run, scene, colors(runs)[model])
         send_curves(recording, runs, drawn)
         recording.disconnect()
-        contact.write_whole(path, temporary.read_bytes())
+        write_whole(path, temporary.read_bytes())
 
 
 def rgba(color):

@@ -9,38 +9,41 @@
 Exit status 0: no violation; 1: violations; 2: bad command line.
 """
 
+import argparse
 import os
 import sys
 
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-from curriculum.commands import needs
+from curriculum.commands import needs, number
 
 with needs("dev"):
-    import contact
     from curriculum.run import pool
     from curriculum.stress import jobs
-
-FULL, QUICK = (10_000, 1_000), (60, 100)  # random scenes of up to 30 balls, and of up to four
 
 
 def parse(argv):
     """The checked command line."""
-    parser = contact.Parser(prog="python -m curriculum.stress", description=__doc__)
-    flag, number = parser.add_argument, contact.number(int, 1, 1e6)
+    parser = argparse.ArgumentParser(
+        prog="python -m curriculum.stress",
+        description=__doc__,
+        usage=argparse.SUPPRESS,  # an error is one line then
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    flag, count = parser.add_argument, number(int, 1, 1e6)
     flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
-    flag("--workers", type=number, metavar="N", help="processes (all cores)")
+    flag("--workers", type=count, metavar="N", help="processes (all cores)")
     flag("--scheduler", metavar="HOST:PORT", help="run on the workers of this dask scheduler")
-    flag("--small", type=number, metavar="N", help="small scenes alone, to the first violation")
+    flag("--small", type=count, metavar="N", help="small scenes alone, to the first violation")
     flag("--scene", type=scene, metavar="[small:]NUMBER", help="what all properties say of it")
     return parser.parse_args(argv)
 
 
 def scene(text):
     """The job of one scene."""
-    number = contact.number(int, 0, 1e9)(text.removeprefix("small:"))
-    return jobs.scene_jobs([number], small=text.startswith("small:"))
+    chosen = number(int, 0, 1e9)(text.removeprefix("small:"))
+    return jobs.scene_jobs([chosen], small=text.startswith("small:"))
 
 
 def some_scenes(todo):
@@ -60,9 +63,15 @@ def some_scenes(todo):
 
 def everything(args):
     """A full or quick run, and its report. Returns the violations."""
+    from curriculum.measured import results
     from curriculum.stress import extremes, maps, mujoco_match, report
 
-    large, small = QUICK if args.quick else FULL
+    command = "python -m curriculum.stress" + " --quick" * args.quick
+    origins = {
+        name: results.origin(command, *files, kept=not args.quick)
+        for name, files in jobs.MADE_BY.items()
+    }
+    large, small = jobs.QUICK if args.quick else jobs.FULL
     sections = {
         "scenes": jobs.scene_jobs(range(large)) + jobs.scene_jobs(range(small), small=True),
         "maps": maps.map_jobs(args.quick),
@@ -73,7 +82,7 @@ def everything(args):
         name: pool.spread(jobs.run, todo, name, args.workers, args.scheduler)
         for name, todo in sections.items()
     }
-    return report.write(found, report.QUICK if args.quick else report.RESULTS)
+    return report.write(found, origins, report.QUICK if args.quick else report.RESULTS)
 
 
 def main(argv=None):
@@ -92,8 +101,5 @@ if __name__ == "__main__":
     try:
         with needs("dev"):
             sys.exit(main())
-    except (
-        ImportError,
-        OSError,
-    ) as error:  # a scheduler that does not answer, a folder that cannot be written
+    except (ImportError, OSError, ValueError) as error:  # no answer, a tree not committed
         sys.exit(f"python -m curriculum.stress: {error}")

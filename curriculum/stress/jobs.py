@@ -7,6 +7,14 @@ from curriculum.stress import properties, scenes
 from curriculum.stress.claims import judge
 from curriculum.stress.trial import Trial
 
+FULL, QUICK = (10_000, 1_000), (60, 100)  # random scenes of up to 30 balls, and of up to four
+MADE_BY = {  # the modules of each section; stale.py finds what they import
+    "scenes": ["curriculum/stress/jobs.py"],
+    "maps": ["curriculum/stress/jobs.py", "curriculum/stress/maps.py"],
+    "extremes": ["curriculum/stress/jobs.py", "curriculum/stress/extremes.py", "contact.py"],
+    "mujoco": ["curriculum/stress/jobs.py", "curriculum/stress/mujoco_match.py"],
+}
+
 
 def scene_jobs(numbers, small=False):
     """Jobs for the random scenes with these numbers."""

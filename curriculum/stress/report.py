@@ -1,6 +1,6 @@
 """results.json, README.md and the figure, from the results of the jobs."""
 
-from contact import write_whole
+from curriculum.files import write_whole
 from curriculum.measured import results
 from curriculum.run import plotting
 from curriculum.stress import extremes, jobs, maps, mujoco_match
@@ -36,7 +36,7 @@ UNFINISHED = """Unfinished sweeps took {above_start:,} scenes above their start'
 {place}, from {start:.4g} J to {most:.4g} J; {sweeps_most:,.0f} sweeps a step ended every rise."""
 
 
-def write(found, folder):
+def write(found, origins, folder):
     """Write what the jobs of each section found. Returns the violations [place, name, words]."""
     sections = {name: jobs.added_up(each) for name, each in found.items()}
     unfinished = jobs.unfinished(sections["scenes"])
@@ -44,10 +44,9 @@ def write(found, folder):
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     error = max(abs(row["measured"] / row["theory"] - 1) for row in rows)
     sections["maps"] |= {"penalty": rows, "boundary_worst_error": error}
-    command = "python -m curriculum.stress" + " --quick" * (folder == QUICK)
     for name, section in sections.items():
         section["notes"] = {what: len(places) for what, places in sorted(section["notes"].items())}
-        sections[name] = results.save(folder, name, section, command)
+        sections[name] = results.save(folder, name, section, origins[name])
     write_whole(folder / "README.md", page(sections))
     try:
         write_whole(folder / "penalty-map.svg", penalty_map(sections["maps"]))

@@ -184,7 +184,7 @@ def test_the_page_shows_every_point_and_marks_what_is_missed(tmp_path):
         headline=accuracy.headline(points),
         left_out={},
     )
-    saved = results.save(tmp_path, "accuracy", about, "measure")
+    saved = results.save(tmp_path, "accuracy", about, results.origin("measure", kept=False))
     report.write(tmp_path, {"accuracy": saved})
     page = (tmp_path / "README.md").read_text("utf-8")
     assert page.count("| penalty: k 1e4 |") == 2 and "met |" in page

@@ -69,7 +69,6 @@ BAD = {
     "--device": "cuda",
     "--solref": "soft nan",
     "--solimp": "-0.1 nan",
-    "--seeds": "3 4:4 5:2 -1:3 0:1.5 a:b 0:1000000",
 }
 WORDS = {"--solref": 2, "--solimp": 5}
 
@@ -91,12 +90,11 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
     parser = argparse.ArgumentParser(add_help=False)
     contact.add_flags(parser.add_argument)
     takes = {each.option_strings[0] for each in parser._actions if each.nargs != 0}
-    assert takes - {"--skip", "--rerun"} == {*BAD, "--out", "--scheduler"}
+    assert takes - {"--skip", "--rerun"} == {*BAD, "--out"}
 
 
 @pytest.mark.parametrize("flags", [
-    "--smoke --steps 100", "--seeds 0:5 --seed 3", "--seeds 0:5 --plot",
-    "--scheduler localhost:8786",
+    "--smoke --steps 100",
     "--scene drop --bodies 2", "--scene bounce --bodies 1", "--solref 0.02 0", "--solref -1 1",
     "--solref 0.02 1e-162", "--stiff 3", "--no-such-flag",
 ])  # fmt: skip
@@ -152,8 +150,6 @@ def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(flags, tmp
 
 def test_what_needs_the_folder_says_so_in_one_line_when_it_is_not_there(tmp_path):
     lone = shutil.copy(ROOT / "contact.py", tmp_path)
-    seeds = command("--seeds", "0:5", script=lone, cwd=tmp_path)
-    refused((seeds.returncode, seeds.stdout, seeds.stderr))
     plot = command("--plot", "--steps", "5", script=lone, cwd=tmp_path)
     assert (plot.returncode, plot.stderr) == (0, "")
     assert sum(line.startswith("no picture") for line in plot.stdout.splitlines()) == 1
@@ -287,13 +283,19 @@ def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
     assert run.stdout.splitlines()[-1] == "[]", run.stderr
 
 
-@pytest.mark.parametrize("flags", ["--no-skip --steps 1000000", "--no-skip --seeds 0:2000"])
-def test_ctrl_c_ends_a_run_and_its_workers_with_one_word_and_leaves_no_file(flags, tmp_path):
+@pytest.mark.parametrize(
+    "program, flags",
+    [("contact", "--no-skip --steps 1000000"), ("curriculum.seeds", "0:2000 --no-skip")],
+)
+def test_ctrl_c_ends_a_run_and_its_workers_with_one_word_and_leaves_no_file(
+    program, flags, tmp_path
+):
     code = (  # a shell in the background has its children ignore Ctrl-C
-        "import signal, sys, contact; signal.signal(signal.SIGINT, signal.default_int_handler); "
-        "print('ready', flush=True); sys.exit(contact.main(sys.argv[1:]))"
+        "import signal, sys, runpy; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "print('ready', flush=True); program = sys.argv.pop(1); "
+        "runpy.run_module(program, run_name='__main__', alter_sys=True)"
     )
-    words = [sys.executable, "-c", code, *flags.split(), "--out", tmp_path / "out"]
+    words = [sys.executable, "-c", code, program, *flags.split(), "--out", tmp_path / "out"]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as run:
         assert run.stdout.readline() == "ready\n"

@@ -31,18 +31,18 @@ def check_same(model, scene, dt, steps, **knobs):
     if isinstance(one, type) or isinstance(other, type):
         assert one is other
         return None
-    for name, left, right in zip("qv", one, other):
-        differ = (left.view(np.int64) != right.view(np.int64)).any((1, 2))
+    for name, left, right in zip("tqv", one, other):
+        differ = (left.view(np.int64) != right.view(np.int64)).reshape(len(left), -1).any(1)
         assert not differ.any(), f"{name} of {model} first differs at step {differ.argmax()}"
-    assert one[2] == other[2], "steps that did not settle"
-    gaps = [way(other[0], scene.radius) for way in (fast.smallest_gap, contact.smallest_gap)]
+    assert one.unsettled == other.unsettled, "steps that did not settle"
+    gaps = [way(other.q, scene.radius) for way in (fast.smallest_gap, contact.smallest_gap)]
     np.testing.assert_array_equal(*gaps)
     return other
 
 
 def plainly(model, scene, dt, steps, chosen):
-    """q, v and unsettled steps by contact.py's own loops, no step left out."""
-    return contact.run_model(model, scene, dt, steps, chosen._replace(skip=False))[1:]
+    """The run by contact.py's own loops, no step left out."""
+    return contact.run_model(model, scene, dt, steps, chosen._replace(skip=False))
 
 
 # Scenes of every kind
@@ -117,7 +117,7 @@ def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_balls_rest(model):
 def test_the_twin_counts_the_steps_that_do_not_settle_also_where_a_cycle_is_copied():
     scene = contact.build_scene("stack", 0, 2, restitution=0.5)
     scene = scene._replace(mass=np.array((1.0, 1e3)))
-    assert 0 < check_same("soft", scene, 0.002, 600)[2] <= 600
+    assert 0 < check_same("soft", scene, 0.002, 600).unsettled <= 600
 
 
 # Walls, and balls of unequal size
@@ -169,7 +169,7 @@ def test_a_pile_comes_to_rest_from_a_warm_start_and_lies_less_deep():
     speed, depth = {}, {}
     scene = shaft(60, 8)
     for warm in (0.0, 0.8):
-        q, v, _ = fast.simulate("lcp", scene, 0.002, 6000, contact.Settings(warm=warm))
+        _, q, v, _ = fast.simulate("lcp", scene, 0.002, 6000, contact.Settings(warm=warm))
         speed[warm] = np.sqrt((v[-1] ** 2).sum(0)).max()
         depth[warm] = -fast.smallest_gap(q[-1:], scene.radius)[0]
     assert max(speed.values()) < 1e-3
@@ -183,15 +183,15 @@ def test_a_run_taken_on_in_parts_has_the_bytes_of_the_whole():
     rows = np.empty((301, 4, 30))
     for first, last in ((0, 1), (1, 120), (120, 300)):
         motion.take(rows[first : last + 1], np.ones(301, bool), False)
-    assert np.array_equal(rows[1:, :2], whole[0][1:])
-    assert np.array_equal(rows[1:, 2:], whole[1][1:])
+    assert np.array_equal(rows[1:, :2], whole.q[1:])
+    assert np.array_equal(rows[1:, 2:], whole.v[1:])
 
 
 def test_run_model_gives_many_balls_to_the_twin_and_says_how_far_it_is():
     scene, heard = contact.build_scene("pile", 0, 200), []
     run = contact.run_model("lcp", scene, 0.002, 130, report=heard.append)
     assert heard == [130], "the plain loops report every step"
-    assert run.q.tobytes() == plainly("lcp", scene, 0.002, 130, contact.Settings())[0].tobytes()
+    assert run.q.tobytes() == plainly("lcp", scene, 0.002, 130, contact.Settings()).q.tobytes()
 
 
 @pytest.mark.parametrize("prepare", ["", "import sys; sys.modules['numba'] = None; "])
@@ -211,4 +211,4 @@ def test_where_nothing_is_compiled_contact_takes_its_plain_loops(prepare):
         check=True,
     )
     whole = fast.simulate("lcp", contact.build_scene("pile", 0, 40), 0.002, 20, contact.Settings())
-    assert float(done.stdout) == whole[0].sum()
+    assert float(done.stdout) == whole.q.sum()

@@ -197,21 +197,22 @@ def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(
         assert content.count(f"stroke: {color}".encode()) == len(CURVES) + 2  # legend, dark mode
 
 
-def command(*flags):
-    """contact.py in a process of its own."""
-    words = [sys.executable, ROOT / "contact.py", *map(str, flags)]
+def command(*flags, program=("contact.py",)):
+    """contact.py, or another program, in a process of its own."""
+    words = [sys.executable, *program, *map(str, flags)]
     return subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=120)
 
 
 def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path):
     """A cluster of two workers, as it would be on two machines."""
     distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
-    flags = ("--seeds", "0:5", "--contact", "lcp", "--steps", 300)
-    here = command(*flags, "--out", tmp_path / "here")
+    program = "-m", "curriculum.seeds", "0:5", "--contact", "lcp", "--steps", "300"
+    here = command("--out", tmp_path / "here", program=program)
     assert here.returncode == 0, here.stderr
     cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with distributed.LocalCluster(**cluster) as two:
-        there = command(*flags, "--out", tmp_path / "there", "--scheduler", two.scheduler_address)
+        address = "--scheduler", two.scheduler_address
+        there = command(*address, "--out", tmp_path / "there", program=program)
     assert there.returncode == 0, there.stderr
     found = (tmp_path / "here/seeds.json").read_text("utf-8")
     assert found == (tmp_path / "there/seeds.json").read_text("utf-8")
@@ -223,6 +224,15 @@ def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path)
     rows = json.loads(found)["rows"]
     for name, depth in (("lowest", deepest[0]), ("median", deepest[2]), ("highest", deepest[-1])):
         assert abs(rows[f"lcp {name}"]["max_penetration_frac"] - depth) < 1e-12
+
+
+@pytest.mark.parametrize(
+    "words", [*"3 4:4 5:2 0:1.5 a:b 0:1000000".split(), "0:5 --seed 3", "0:5 --plot", "0:5 --dt 0"]
+)
+def test_seeds_refuses_bad_input_in_one_line(words):
+    run = command(*words.split(), program=("-m", "curriculum.seeds"))
+    assert (run.returncode, run.stdout, run.stderr.count("\n")) == (2, "", 1), run.stderr
+    assert "error: " in run.stderr and words.split()[min(1, words.count(" "))] in run.stderr
 
 
 def test_work_is_spread_over_processes_in_the_order_of_the_jobs():

@@ -174,6 +174,7 @@ def test_one_scene_is_judged_and_said_again(capsys):
 
 
 def test_a_run_writes_its_report_and_says_what_was_judged(tmp_path):
+    from curriculum.measured import results
     from curriculum.stress import report
 
     sections = {
@@ -183,7 +184,8 @@ def test_a_run_writes_its_report_and_says_what_was_judged(tmp_path):
         "mujoco": [],
     }
     found = {name: [jobs.run(job) for job in todo] for name, todo in sections.items()}
-    assert report.write(found, tmp_path) == []
+    origins = dict.fromkeys(found, results.origin("stress", kept=False))
+    assert report.write(found, origins, tmp_path) == []
     page = (tmp_path / "README.md").read_text("utf-8")
     assert "no violation" in page and "](penalty-map.svg)" in page
     assert "settles at m g / k" in (tmp_path / "penalty-map.svg").read_text("utf-8")

@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from curriculum import regions
-from curriculum.measured import results
-from curriculum.measured.machine import fingerprint
+from curriculum.measured import results, stale
 from curriculum.text import references
 
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
@@ -52,6 +51,12 @@ def run_gate(project, *flags):
     return subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
 
 
+def commit(project):
+    """Commit all that there is."""
+    for words in ("init", "add .", "-c user.name=x -c user.email=x@x commit --message x"):
+        subprocess.run(["git", *words.split()], cwd=project, check=True, capture_output=True)
+
+
 def edit(path, old, new):
     """Replace a text that stands once in a file."""
     text = path.read_text("utf-8")
@@ -65,7 +70,7 @@ def accepted(tmp_path_factory):
     project = tmp_path_factory.mktemp("project")
     for room in ("curriculum/text", "curriculum/measured"):
         shutil.copytree(ROOT / room, project / room)
-    for name in ("__init__", "regions", "commands", "implicit"):
+    for name in ("__init__", "commands", "files", "regions", "implicit"):
         shutil.copy(ROOT / f"curriculum/{name}.py", project / "curriculum")
     for file in (".gitignore", "contact.py"):
         shutil.copy(ROOT / file, project)
@@ -87,8 +92,7 @@ def accepted(tmp_path_factory):
     for flags in (("--accept", *sections.split()), ()):
         run = run_gate(project, *flags)
         assert run.returncode == 0, run.stdout + run.stderr
-    for words in ("init", "add .", "-c user.name=x -c user.email=x@x commit --message x"):
-        subprocess.run(["git", *words.split()], cwd=project, check=True, capture_output=True)
+    commit(project)
     return project
 
 
@@ -211,10 +215,52 @@ def test_results_and_ledger_of_other_code_are_stale_until_measured_again(project
         "(contact.py); repair: python -m curriculum.bench skip\n" in printed
     )
     assert "wallclock.csv:3: cpu was measured on other code; repair: python -m " in printed
-    measured["code"] = fingerprint("contact.py")
+    measured["code"] = stale.fingerprint("contact.py")
     (folder / "results.json").write_text(json.dumps({"skip": {"measured": measured, "n": 3}}))
     edit(project / "contact.py", "# --- region: sweep ---\n", "# --- region: sweep ---\n# a word\n")
     assert "section skip was measured" not in run_gate(project).stdout
+
+
+MADE = {  # file: (what stands there, what takes its place, whether results are stale then)
+    "contact.py": [
+        ('help="', 'help="please, ', False),
+        ("# m/s^2", "# metres", False),
+        ("/ dt * c.depth", "  / (dt) * c.depth", False),
+        ('"""One step [s]', '"""One single step [s]', False),
+        ("def print_table(", "def print_tables(", False),  # of the report
+        ("/ dt * c.depth", "/ dt / c.depth", True),
+        ("EXPLODED = 10.0", "EXPLODED = 11.0", True),
+    ],
+    "curriculum/stress/properties.py": [
+        ("PROMISE = 1e-12", "PROMISE = 1e-4", True),
+        ("Bound: 8 U a push", "Bound: some", False),
+    ],
+    "curriculum/stress/jobs.py": [("FULL, QUICK = (10_000", "FULL, QUICK = (1_000", True)],
+    "curriculum/stress/claims.py": [("off == 0.0", "off <= 1.0", True)],
+    "curriculum/exact.py": [("ORDER = 14 ", "ORDER = 13 ", True)],
+    "curriculum/bench/problems.py": [("        4.0,", "        1.0,", True)],
+    "curriculum/bench/engines.py": [("hertz", "hurts", True)],
+}
+
+
+@pytest.mark.parametrize("file", MADE)
+def test_results_are_stale_when_what_made_them_changed_and_not_for_words(file, monkeypatch):
+    read = stale.read_text
+    room = "stress/jobs" if "stress" in file else "bench/accuracy"
+    made = stale.fingerprint(*stale.made_by(f"curriculum/{room}.py"))
+    for old, new, counts in MADE[file]:
+        assert old in read(file), (file, old)
+        texts = {file: read(file).replace(old, new)}
+        monkeypatch.setattr(stale, "read_text", lambda name, own=texts: own.get(name) or read(name))
+        assert bool(stale.changed(made)) == counts, (old, new)
+
+
+def test_a_change_of_the_command_line_is_one_of_the_whole_file_alone():
+    text = stale.read_text("contact.py")
+    other = text.replace("800 if", "900 if")
+    assert stale.digits("contact.py", text) != stale.digits("contact.py", other)
+    assert stale.digits(stale.LESSON, text) == stale.digits(stale.LESSON, other)
+    assert set(stale.COMMAND_LINE) <= set(regions.read_all())
 
 
 def test_ledger_has_its_header_and_each_row_is_whole_or_pending(project):
@@ -234,6 +280,9 @@ def test_measuring_writes_a_whole_row_of_todays_code(project):
             copied.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, copied)
     command = [sys.executable, "-B", "-m", "curriculum.measured.ledger", "cpu", "--runs", "1"]
+    run = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
+    assert run.returncode == 1 and "commit these first: ?? checks.py" in run.stderr
+    commit(project)
     run = subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
     assert run.returncode == 0 and re.search(r": [\d.]+ (s|min)$", run.stdout.strip()), run.stderr
     header, pending, row = (project / "wallclock.csv").read_text("utf-8").splitlines()

@@ -4,8 +4,9 @@ import json
 import re
 from collections import Counter
 
-from contact import write_whole
+from curriculum.files import write_whole
 from curriculum.measured import ledger, results
+from curriculum.measured.stale import changed
 from curriculum.regions import ROOT, read_text, split_all
 from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, load_meta
 from curriculum.text.sections import FENCE, TEXTS, blank, changes, line_at, sections
@@ -125,9 +126,8 @@ class Gate:
         """Results and rows of the ledger are of today's code, and the rows well formed."""
         for name, folder in results.FOLDERS.items():
             for section, found in results.load(name).items():
-                files = results.stale(found)
-                if files:
-                    what = f"section {section} was measured on other code ({', '.join(files)})"
+                if names := changed(found["measured"]["code"]):
+                    what = f"section {section} was measured on other code ({', '.join(names)})"
                     self.say(f"{folder}/{results.NAME}", 1, what, found["measured"]["command"])
         try:
             for line, row in enumerate(ledger.rows(), 2):

@@ -30,8 +30,9 @@ from pathlib import Path
 import yaml
 
 import contact
+from curriculum.files import write_whole
 from curriculum.measured import ledger, results
-from curriculum.measured.machine import fingerprint
+from curriculum.measured.stale import changed, fingerprint
 from curriculum.regions import CODE, NAME, ROOT
 
 INCLUDE = re.compile(rf"\[include-by-region: (?P<file>[\w./-]+\.py)#(?P<name>{NAME})\]")
@@ -66,7 +67,7 @@ def cached(name: str, inputs, make, code=CODE):
         pass
     made = make()
     with suppress(OSError):  # a folder that cannot be written costs time, and no number
-        contact.write_whole(path, json.dumps({"about": about, "made": made}))
+        write_whole(path, json.dumps({"about": about, "made": made}))
     return made
 
 
@@ -176,7 +177,7 @@ def stale(operand: str) -> bool:
     """Whether it quotes a result of other code than today's."""
     name, _, key = operand.partition(":")
     found = name in results.FOLDERS and results.load(name)[key.split(".")[0]]
-    return bool(found and results.stale(found))
+    return bool(found and changed(found["measured"]["code"]))
 
 
 def typeset(number: str) -> str:

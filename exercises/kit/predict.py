@@ -8,6 +8,7 @@ from pathlib import Path
 
 import contact
 from curriculum.commands import near
+from curriculum.files import write_json
 
 from .progress import DONE, done, practise
 
@@ -48,7 +49,7 @@ def note(name, value):
     noted = {key: found for key, found in (done() | {name: value}).items() if found}
     try:
         if noted != done():
-            contact.write_json(DONE, noted)
+            write_json(DONE, noted)
     except OSError as error:
         print(f"cannot note that {name} is done: {error}", file=sys.stderr)
 

@@ -1,66 +1,83 @@
-/* Where within a step the ball lands decides how deep lcp finds it, and so how high it hops. */
-import { axis, label, line, mark, number, path, steps, table } from "../draw.js";
+/* Where within a step the ball lands decides how deep lcp finds it, and so how high Baumgarte's push
+ * makes it hop. Where it bounces, too, the target is the larger of bounce and bias, not their sum. */
+import { arrow, axis, ball, label, number, steps, table, within } from "../draw.js";
 import { runModel } from "../engine.js";
-import { ARRIVES, beside, G, grip, kept, knobs, R, scene } from "../parts.js";
+import { ARRIVES, beside, grip, kept, knobs, R, scene } from "../parts.js";
 
-const LOOKS = 5; // steps in the near picture: one before the landing, four after it
-const STEP = 56; // px of the fall of one step
-const SECONDS = 0.3;
+const [FALL, GROUND, PX] = [70, 96, 44]; // px: the fall of one step, the table, a radius
+const [ARROW, SHORT, LONG] = [22, 0.3, 0.9]; // px for 1 m/s; s, of a hop and of a bounce
 
-// The ball from the last look before the landing on: it lands `share` of a step later. Gaps in r.
-const lands = kept((share, told) => {
-  const before = scene([R + share * ARRIVES * told.dt], { vy: [-ARRIVES] });
-  const count = Math.max(LOOKS, Math.ceil(SECONDS / told.dt));
-  const run = runModel("lcp", before, { ...told, restitution: 0 }, count);
-  const gaps = Array.from(run.y, (y) => y / R - 1);
-  return { t: run.t, gaps, deepest: -Math.min(...gaps), hop: Math.max(0, ...gaps.slice(1)) };
+// A flight that begins at a gap [r] with a speed: times and gaps [r].
+const flight = kept((gap, v, told, seconds) => {
+  const found = scene([(1 + gap) * R], { vy: [v] });
+  const run = runModel("lcp", found, told, Math.max(5, Math.ceil(seconds / told.dt)));
+  return { xs: run.t, ys: Array.from(run.y, (y) => y / R - 1) };
 });
 
 function draw(view) {
-  const { share } = view.own;
-  const { t, gaps, deepest, hop } = lands(share, knobs(view));
-  const drop = (ARRIVES * view.get("dt")) / R; // r of one step
-  const most = Math.max((view.get("baumgarte") * ARRIVES) ** 2 / (2 * G * R), 0.05);
-  const floor = 0.55 * view.height;
+  const told = knobs(view);
+  const { dt, baumgarte, restitution: e } = told;
+  const seconds = e > 0 ? LONG : SHORT;
+  const fall = (ARRIVES * dt) / R; // r of one step
+  const before = view.own.share * fall; // r, at the last look before the landing
+  const larger = flight(before, -ARRIVES, told, seconds);
+  const depth = -Math.min(0, ...larger.ys.slice(0, 4));
+  const [bounce, bias] = [e * ARRIVES, (baumgarte / dt) * depth * R]; // m/s
+  const sum = flight(-depth, bounce + bias, { ...told, restitution: 0 }, seconds);
+  const high = ({ ys }) => Math.max(0, ...ys.slice(1));
+  const top = 1.15 * Math.max(0.5 * fall, high(larger), e > 0 ? high(sum) : 0);
   const chart = {
-    x: axis([0, SECONDS], "time (s)", ...steps(0, SECONDS, view.width < 480 ? 2 : 3)),
-    y: axis([-1.2 * drop, 1.15 * most], "gap / r", ...steps(0, 1.15 * most, 3)),
-    lines: [{ model: "lcp", xs: t, ys: gaps }],
+    x: axis([0, seconds], "time (s)", ...steps(0, seconds, 3)),
+    y: axis([-1.2 * fall, top], "gap / r", ...steps(0, top, 3)),
+    lines: [{ model: "lcp", ...larger, kind: "plainly" }],
     rules: [{ y: 0 }],
   };
-  // the looks around the landing, a step apart, and the ball's lowest point at each
-  const wide = (left) => left / (LOOKS + 0.6);
+  if (e > 0) chart.lines.push({ model: "lcp", ...sum, kind: "thin dotted" });
+  const floor = view.height - GROUND;
+  const px = FALL / fall; // for 1 r
   const picture = (left) => {
-    const place = (gap, k) => [(k + 1.3) * wide(left), floor - (gap / drop) * STEP];
-    const at = gaps.slice(0, LOOKS + 1).map(place);
+    const x = left / 2;
+    const lowest = (gap, kind) => ball("lcp", x, floor - gap * px - PX, PX, kind);
+    const wish = (name, v, at) => {
+      const kind = v < Math.max(bounce, bias) ? "push m-lcp weaker" : "push m-lcp";
+      const drawn = arrow(kind, at, floor, 0, -Math.min(floor - 24, ARROW * v));
+      return v > 0 ? drawn + label(name, at, floor + 18, "middle") : "";
+    };
+    const aside = Math.min(PX + 22, x - 24);
     return [
-      table(0, floor, left, view.height - floor),
-      label("a look a step", 4, 16, "start", "axis-name"),
-      ...at.map(([x]) => line(x, 26, x, floor, "grid")),
-      path([place(gaps[0] + drop, -1), ...at], "line m-lcp thin"),
-      ...at.map(([x, y]) => mark("lcp", x, y, 6)),
+      table(0, floor, left, GROUND),
+      label(`gaps × ${number(px / PX, 2)}`, 4, 14, "start", "tick"),
+      lowest(before, "ghost"),
+      lowest(-depth, "ball"),
+      wish("bounce", bounce, x - aside),
+      wish("bias", bias, x + aside),
     ].join("");
   };
-  const { svg, middle } = beside(view, chart, picture, 0.46);
-  const step = wide(2 * middle);
-  const text = `${number(100 * share, 2)} % of a step after a look`;
-  const place = [(share + 1.3) * step, floor];
-  const range = { low: 0, high: 0.99, step: 0.05, at: (x) => x / step - 1.3 };
-  const found = `is found ${number(deepest, 2)} r deep and hops ${number(hop, 2)} r high`;
+  const { svg, middle } = beside(view, chart, picture);
+  const text = `${number(100 * view.own.share, 2)} % of a step after a look`;
+  const at = (x, y) => 1 - (y + PX - floor) / FALL;
+  const range = { r: PX, low: 0, high: 0.99, step: 0.05, at };
+  const place = [middle, floor + depth * px - PX, "the ball: how deep it is found", text];
+  const hops = `hops ${number(high(larger), 2)} r high`;
+  const [r, more] = [number(high(larger), 3), number(high(sum), 3)];
+  const both = `the larger lifts it ${r} r, their sum (dotted) ${more} r`;
+  const bounces = `bounce ${number(bounce)} m/s, bias ${number(bias)} m/s; ${both}`;
+  const found = `It lands ${text} and is found ${number(depth, 2)} r deep`;
   return {
     svg,
-    words: `It lands ${text}, ${found}.`,
-    handles: [grip(view, "share", ...place, "the landing within the step", text, range)],
+    words: e > 0 ? `${found}: ${bounces}.` : `${found}; it ${hops}.`,
+    handles: [grip(view, "share", ...place, range)],
+    lit: [["lcp-target", e > 0 ? "return max(bias" : "return close if"]],
   };
 }
 
 export const figure = {
-  title: "The landing within a step, and the hop",
+  title: "A landing within a step",
   caption:
-    "lcp looks once a step: the sooner after a look the ball lands, the deeper the next look " +
-    "finds it, and the higher Baumgarte’s push makes it hop.",
-  height: 270,
-  knobs: ["baumgarte"],
+    "The dashed ball is the last look before the landing: the sooner after a look it lands, the " +
+    "deeper the next one finds it, and the more Baumgarte’s bias asks for.",
+  height: 290,
+  knobs: ["baumgarte", "restitution"],
   start: () => ({ share: 0.327 }), // the chapter's own drop
   draw,
 };

@@ -1,25 +1,60 @@
-"""Many seeds of a scene: the median and the range of every measure, on all cores or machines."""
+"""Many seeds of a scene: the median and the range of every measure, on all cores or machines.
 
+    python -m curriculum.seeds 0:20 --scene stack                   # seeds 0 to 19
+    python -m curriculum.seeds 0:20 --scheduler localhost:8786      # on a dask cluster
+
+Other flags are those of contact.py. Writes seeds.json into the folder of --out.
+"""
+
+import argparse
 import math
 import os
 import statistics
+import sys
 
 import contact
+from curriculum.files import write_json
 from curriculum.run import pool
 
 
-def report(args):
-    """Run the models from every seed, print the table and write seeds.json.
+def seed_range(text):
+    """An argparse type: the seeds of "A:B", from A to B - 1."""
+    first, _, last = text.partition(":")
+    if not (first.isdecimal() and last.isdecimal() and 0 < int(last) - int(first) <= 10_000):
+        raise argparse.ArgumentTypeError(
+            f"given {text[:40]!r}; allowed: A:B, whole numbers, A < B, at most 10,000 seeds, "
+            "such as 0:20 for 0 to 19"
+        )
+    return range(int(first), int(last))
 
-    args: the flags as contact.parse_flags gives them; args.seeds is "A:B". With args.scheduler the
-    machines of a dask scheduler do the work. Returns the exit status.
+
+def parse(argv):
+    """The seeds, the scheduler or None, and the other flags as contact.parse_flags gives them."""
+    parser = argparse.ArgumentParser(
+        prog="python -m curriculum.seeds",
+        description=__doc__,
+        usage=argparse.SUPPRESS,  # an error is one line then
+        allow_abbrev=False,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("seeds", type=seed_range, metavar="A:B", help="from A to B - 1")
+    parser.add_argument("--scheduler", metavar="HOST:PORT", help="run them on a dask cluster")
+    mine, rest = parser.parse_known_args(argv)
+    for flag in ("--seed", "--plot", "--rerun"):
+        if any(word.split("=")[0] == flag for word in rest):
+            parser.error(f"{flag} is for one run: leave it out")
+    return mine.seeds, mine.scheduler, contact.parse_flags(rest)
+
+
+def main(argv=None):
+    """Run the models from every seed, print the table, write seeds.json. Returns the exit status.
+
+    With a scheduler the machines of a dask cluster do the work.
     """
+    seeds, scheduler, args = parse(argv)
     try:
-        seeds = read_range(args.seeds)
         jobs = [(args, seed) for seed in seeds]
-        found = pool.spread(qualities, jobs, "seeds", scheduler=args.scheduler)
-    except ValueError as error:
-        return contact.fail(f"argument --seeds: {error}")
+        found = pool.spread(qualities, jobs, "seeds", scheduler=scheduler)
     except (ImportError, OSError) as error:
         return contact.fail(f"argument --scheduler: {error}")
     rows = {}
@@ -32,22 +67,11 @@ def report(args):
     path = os.path.join(args.out, "seeds.json")
     kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps}
     try:
-        contact.write_json(path, kept | {"seeds": [seeds[0], seeds[-1] + 1], "rows": rows})
+        write_json(path, kept | {"seeds": [seeds[0], seeds[-1] + 1], "rows": rows})
     except OSError as error:
         return contact.fail(f"cannot write to {args.out}: {error.strerror}; the report is whole")
     print("seeds:", path)
     return 0
-
-
-def read_range(text):
-    """The seeds of "A:B", from A to B - 1. Raises ValueError."""
-    first, _, last = text.partition(":")
-    if not (first.isdecimal() and last.isdecimal() and 0 < int(last) - int(first) <= 10_000):
-        raise ValueError(
-            f"given {text[:40]!r}; allowed: A:B, whole numbers, A < B, at most 10,000 seeds, "
-            "such as 0:20 for 0 to 19"
-        )
-    return range(int(first), int(last))
 
 
 def qualities(job):
@@ -94,3 +118,11 @@ def ending(row, count):
         "could not be run": count - row["runs"],
     }
     return ", ".join(f"{n} of {count} {end}" for end, n in ends.items() if n) or "ok"
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        sys.exit(130)

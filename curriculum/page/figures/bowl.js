@@ -1,0 +1,114 @@
+/* The sweep as a walk: the impulses of two contacts are a plane, the cost a bowl over it, and each
+ * visit to a contact goes to the lowest point along its own axis, but not below zero. */
+import { arrow, axis, ball, circle, clipped, label, number, path, plural, rect } from "../draw.js";
+import { steps, table, within } from "../draw.js";
+import { makeRows, solveContacts } from "../engine.js";
+import { beside, grip, kept } from "../parts.js";
+
+const [PX, UNIT, GROUND] = [36, 22, 40]; // px: a radius, an arrow for g dt, the table
+const SWEEPS = 40;
+const [SLOW, FAST] = [-2, 3]; // g dt, of a ball before the sweeps
+const LEVELS = [0.02, 0.1, 0.3, 0.7, 1.4, 2.5, 4]; // of the contours, as shares of the picture
+
+/* From the impulses `begin` of table and lower ball, and of the two balls, [m g dt]: those after
+ * every visit. Speeds in g dt; the upper ball is `heavy` times as heavy. */
+const walk = kept((speeds, begin, heavy) => {
+  const contacts = [0, 1].map((i) => ({ i, j: i - 1, nx: 0, ny: 1, depth: 0 }));
+  const rows = makeRows(contacts, [1, heavy]);
+  const [vx, vy] = [[0, 0], [speeds[0] + begin[0] - begin[1], speeds[1] + begin[1] / heavy]];
+  rows.forEach((row, k) => (row.lam = begin[k]));
+  const seen = [begin];
+  for (let at = 0; at < 2 * SWEEPS; at++) {
+    solveContacts([rows[at % 2]], vx, vy, { iters: 1 });
+    seen.push(rows.map(({ lam }) => lam));
+  }
+  return seen;
+});
+
+// The contour of the bowl so high above its lowest point, where both balls are stopped.
+const contourOf = ([v1, v2], heavy) => (height) =>
+  Array.from({ length: 73 }, (_, k) => {
+    const [size, angle] = [Math.sqrt(2 * height), (k * Math.PI) / 36];
+    const second = size * Math.sqrt(heavy) * Math.sin(angle);
+    return [size * Math.cos(angle) + second - v1 - heavy * v2, second - heavy * v2];
+  });
+
+function chartOf({ seen, contour, most, end }) {
+  const ticks = steps(0, most, 3);
+  const under = ({ sx, sy, box: { left, top, right, bottom } }) => {
+    const drawn = (points, kind) => path(points.map(([x, y]) => [sx(x), sy(y)]), kind);
+    const [width, height] = [right - left, bottom - top];
+    return [
+      rect(left, top, sx(0) - left, height, "region"),
+      rect(sx(0), sy(0), right - sx(0), bottom - sy(0), "region"),
+      clipped(left, top, width, height, ...LEVELS.map((c) => drawn(contour(c * most), "contour"))),
+      drawn(seen, "line m-lcp plainly"),
+      ...seen.slice(1, 9).map(([x, y]) => circle(sx(x), sy(y), 4, "look m-lcp")),
+    ].join("");
+  };
+  return {
+    x: axis([-0.1 * most, 1.25 * most], "table on lower ball / m g dt", ...ticks),
+    y: axis([-0.1 * most, most], "lower on upper / m g dt", ...ticks),
+    points: [{ model: "lcp", x: end[0], y: end[1], size: 7 }],
+    under,
+  };
+}
+
+function draw(view) {
+  const { own } = view;
+  const { v1, v2, heavy } = own;
+  const most = 3.5 * heavy; // m g dt, that are seen
+  const begin = own.begin.map((each) => Math.min(each, most));
+  const seen = walk([v1, v2], begin, heavy);
+  const end = seen[2 * SWEEPS];
+  const contour = contourOf([v1, v2], heavy);
+  const floor = view.height - GROUND;
+  const at = [1, 2].map((k) => floor - (2 * k - 1) * PX);
+  const picture = (left) => {
+    const speed = (v, k) => arrow("weight", 0.5 * left, at[k], 0, -UNIT * v);
+    const balls = at.map((y, k) => ball("lcp", 0.5 * left, y, PX, "ball plainly") + speed([v1, v2][k], k));
+    const name = heavy > 1 ? label(`${heavy} kg`, 0.5 * left, at[1] - PX - 8, "middle") : "";
+    return table(0, floor, left, GROUND) + balls.join("") + name;
+  };
+  const { svg, sx, sy, middle } = beside(view, chartOf({ seen, contour, most, end }), picture, 0.3);
+  const hold = (y, k) => {
+    const by = (dx, dy) => -dy / UNIT;
+    const range = { r: PX, low: SLOW, high: FAST, step: 0.1, by };
+    const name = `the ${["lower", "upper"][k]} ball’s speed before the sweeps`;
+    return grip(view, `v${k + 1}`, middle, y, name, `${number(own[`v${k + 1}`], 2)} g dt`, range);
+  };
+  const set = (x, y) =>
+    (own.begin = [x, y].map((each) => Number(within(0, each, most).toPrecision(3))));
+  const list = (pair) => pair.map((each) => number(each, 3)).join(" and ");
+  const from = {
+    name: "start", x: sx(begin[0]), y: sy(begin[1]), value: begin[0],
+    label: "where the sweeps start", text: `${list(begin)} m g dt`,
+    drag: (x, y) => set(sx.back(x), sy.back(y)),
+    nudge: (dx, dy) => set(begin[0] + 0.1 * dx * heavy, begin[1] - 0.1 * dy * heavy),
+  };
+  const near = ([x, y]) => Math.hypot(x - end[0], y - end[1]) < 1e-3 * Math.hypot(...end, 1);
+  const visits = seen.findIndex(near);
+  return {
+    svg,
+    words: `From ${list(begin)} m g dt the sweeps come to ${list(end)}, within a thousandth ` +
+      `after ${plural(Math.ceil(visits / 2), "sweep")}.`,
+    handles: [...at.map(hold), from],
+    lit: [["sweep", "lam = max"]],
+  };
+}
+
+export const figure = {
+  title: "The sweep walks down a bowl",
+  caption:
+    "Each visit goes to the lowest point along one axis and stops at the wall: drag where the " +
+    "sweeps start, and the balls’ speeds, until one contact need not push.",
+  height: 330,
+  start: () => ({ v1: -1, v2: -1, heavy: 1, begin: [0, 2.5] }),
+  buttons: [
+    [
+      ({ own }) => `The upper ball ${own.heavy > 1 ? "as" : "ten times as"} heavy`,
+      ({ own }) => (own.heavy = own.heavy > 1 ? 1 : 10),
+    ],
+  ],
+  draw,
+};

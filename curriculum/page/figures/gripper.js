@@ -1,0 +1,148 @@
+/* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors. On
+ * the first screen it plays by itself; later its time step and its stiffness can be dragged, too. */
+import { axis, ball, circle, clipped, el, label, line, number, plot, rect } from "../draw.js";
+import { table, within } from "../draw.js";
+import { criticalDt, runModel, series, stateAt } from "../engine.js";
+import { grip, kept, R, scene } from "../parts.js";
+
+const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
+const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s, s: what is judged comes after it
+const [GROUND, TOP, TIMES] = [24, 190, 60]; // px of table, px of the picture; of the lens
+const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be set
+const NAMES = ["the left finger", "the cup", "the right finger"];
+const start = () => ({ dt: 0.004, k: 1e4, x0: AT[0], x1: AT[1], x2: AT[2], time: null, tries: [] });
+
+// The run, its deepest overlap row by row [r], and what happens in the last quarter.
+const squeezed = kept((dt, stiffness, ...x) => {
+  const all = scene([R, R, R], { x, mass: MASS, motor: MOTOR });
+  const steps = Math.ceil(SECONDS / dt - 1e-9);
+  const run = runModel("penalty", all, { dt, stiffness, damping: DAMPING }, steps);
+  const depths = series(run, all).gap.map((gap) => Math.max(0, -gap));
+  const late = depths.subarray(Math.floor(LATE * (steps + 1)));
+  const deepest = Math.max(...late);
+  const trembling = deepest - Math.min(...late);
+  const held = stateAt(run, steps).x.every((each) => Math.abs(each) < 0.3);
+  const does = held ? (trembling < 1e-5 ? "holds still" : "trembles") : "is gone";
+  return { run, depths, deepest, trembling, does };
+});
+
+// Where finger and cup meet, enlarged: how far they overlap.
+function lens(x, y, size, r, depth) {
+  const [far, half] = [r * TIMES, 0.5 * depth * r * TIMES];
+  const edge = (model, side) => ball(model, x + side * (far - half), y, far, "magnified");
+  return [
+    el("clipPath", { id: "gripper-lens" }, circle(x, y, size, "")),
+    circle(x, y, size, "lens-ground"),
+    el("g", { "clip-path": "url(#gripper-lens)" }, edge("fixed", -1), edge("penalty", 1)),
+    circle(x, y, size, "lens-rim"),
+    label(`× ${TIMES}`, x + size + 6, y + 5, "start", "tick"),
+  ].join("");
+}
+
+// Fingers and cup over the table; from further away, with a scale, where they have flown apart.
+function picture({ own, width }, { run, depths }) {
+  const late = LATE + (((own.time ?? SECONDS) - LATE) % (SECONDS - LATE)); // over and over
+  const time = own.time <= SECONDS ? (own.time ?? SECONDS) : late;
+  const row = Math.min(run.steps, Math.round(time / run.dt));
+  const { x, y } = stateAt(run, row);
+  const far = Math.max(0.33, ...x.map((each) => (Math.abs(each) < 1e9 ? Math.abs(each) : 0)));
+  const scale = Math.min(360, (width / 2 - 8) / (far + R)); // px for 1 m
+  const [floor, r] = [TOP - 14 - GROUND, Math.max(3, R * scale)];
+  const place = (each, i) => [width / 2 + each * scale, floor - within(R, y[i], 9) * scale];
+  const at = x.map(place);
+  const arm = ([tip, up], side) => rect(side < 0 ? -9 : tip, up - 0.3 * r, width, 0.6 * r, "arm");
+  const ten = 10 ** Math.floor(Math.log10((0.3 * width) / scale)); // m
+  const ruler = label(`${number(ten, 1)} m`, 8, 20) + line(8, 28, 8 + ten * scale, 28, "scale");
+  const arms = clipped(0, 0, at[0][0], TOP, arm(at[0], -1)) + arm(at[2], 1);
+  const [cupX, cupY] = at[1];
+  const touch = (at[0][0] + cupX) / 2;
+  const rim = { cx: cupX, cy: cupY - 0.72 * r, rx: 0.62 * r, ry: 0.15 * r, class: "cup" };
+  const drawn = [
+    table(0, floor, width, GROUND),
+    far > 0.4 ? ruler : arms,
+    ...at.map(([x, y], i) => ball(i === 1 ? "penalty" : "fixed", x, y, r, "ball plainly")),
+    el("ellipse", rim),
+    far > 0.4 ? "" : line(touch, cupY, 52, 50, "hand") + lens(52, 50, 44, r, depths[row]),
+  ];
+  return { svg: clipped(0, 0, width, TOP - 14, ...drawn), at, r, scale };
+}
+
+// Time step and stiffness: what can be set, what was tried, and from where on a finger trembles.
+function choices(view, does) {
+  const { own, width, height } = view;
+  const ticks = [0.5, 1, 2, 4, 8].map((ms) => [ms / 1000, String(ms)]);
+  const ks = Array.from({ length: 25 }, (_, i) => K[0] * (K[1] / K[0]) ** (i / 24));
+  const limits = ks.map((k) => criticalDt(MASS[0], k, DAMPING).damped);
+  const tens = [[1e4, "10⁴"], [1e5, "10⁵"], [1e6, "10⁶"]];
+  const { svg, sx, sy } = plot([0, TOP, width, height - TOP], {
+    x: { ...axis(DT, "time step dt (ms)", ...ticks), log: true },
+    y: { ...axis(K, "stiffness k (N/m)", ...tens), log: true },
+    lines: [{ model: "fixed", xs: limits, ys: ks, kind: "plainly" }],
+  });
+  const now = own.tries.find(({ dt, k }) => dt === own.dt && k === own.k);
+  if (!view.dragging && !now) own.tries.push({ dt: own.dt, k: own.k, does });
+  const [limit, edge] = [ks.findIndex((k) => k > 2e5), { "holds still": "dot", trembles: "look" }];
+  const tried = own.tries.map(({ dt, k, does }) =>
+    edge[does] ? circle(sx(dt), sy(k), 6, `${edge[does]} m-penalty`)
+      : label("×", sx(dt), sy(k) + 6, "middle"));
+  const beyond = label("a finger’s critical step", sx(limits[limit]) + 8, sy(ks[limit]));
+  const set = (dt, k) => {
+    const [step, spring] = [within(DT[0], dt, DT[1]), within(K[0], k, K[1])];
+    Object.assign(own, { dt: +step.toPrecision(2), k: +spring.toPrecision(2), time: null });
+  };
+  return {
+    svg: svg + beyond + tried.join(""),
+    knob: {
+      name: "choice", x: sx(own.dt), y: sy(own.k), value: own.dt,
+      label: "time step and stiffness",
+      text: `dt = ${number(1000 * own.dt, 2)} ms, k = ${number(own.k, 2)} N/m`,
+      drag: (x, y) => set(sx.back(x), sy.back(y)),
+      nudge: (dx, dy) => set(own.dt * 1.05 ** dx, own.k * 1.1 ** -dy),
+    },
+  };
+}
+
+// `small`: without what can be chosen, and it plays by itself where things may move.
+function drawn(view, small) {
+  const { own } = view;
+  const found = squeezed(own.dt, own.k, own.x0, own.x1, own.x2);
+  const { does, deepest, trembling } = found;
+  const { svg, at, r, scale } = picture(view, found);
+  const { svg: map, knob } = small ? { svg: "" } : choices(view, does);
+  if (small && own.time === null && view.near && !view.still) view.play();
+  const hold = ([x, y], i) => {
+    const range = { r, low: AT[i] - 0.03, high: AT[i] + 0.03, step: 0.002, release: view.play };
+    const text = `starts at ${number(own[`x${i}`], 3)} m`;
+    return grip(view, `x${i}`, x, y, NAMES[i], text, { ...range, by: (dx) => dx / scale });
+  };
+  const moves = does === "trembles" ? ` by ${number(trembling, 2)} r` : "";
+  const holds = `it overlaps by ${number(deepest, 2)} r and ${does}${moves}`;
+  const told = `dt = ${number(1000 * own.dt, 2)} ms, k = ${number(own.k, 2)} N/m`;
+  return {
+    svg: svg + map,
+    words: `${told}: ${does === "is gone" ? "fingers and cup fly apart" : holds}.`,
+    handles: at.map(hold).concat(knob ?? []),
+  };
+}
+
+const promise = {
+  title: "A gripper that trembles",
+  caption: "Two fingers squeeze a cup, in slow motion; the lens shows where the left one touches.",
+  height: TOP - 14,
+  start,
+  clock: () => ({ from: LATE, end: 1e6, rate: 0.04, name: "Play" }),
+  draw: (view) => drawn(view, true),
+};
+
+const gripper = {
+  title: "A gripper",
+  caption:
+    "It holds still, trembles or flies apart: drag time step and stiffness, and push the fingers " +
+    "or the cup.",
+  height: 440,
+  start,
+  clock: () => ({ end: SECONDS, rate: 0.1, name: "Squeeze" }),
+  draw: (view) => drawn(view, false),
+};
+
+export const figures = { promise, gripper };

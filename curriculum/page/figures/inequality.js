@@ -1,0 +1,103 @@
+/* One inequality: at the end of a step the gap, gap + dt v_n, must not be negative. What lcp asks
+ * for in its place is a choice: how much of an overlap to open, and how far ahead to look. */
+import { arrow, axis, ball, circle, el, label, line, number, table, within } from "../draw.js";
+import { GRAVITY, runModel } from "../engine.js";
+import { beside, grip, kept, knobs, R, scene } from "../parts.js";
+
+const [DOWN, UP] = [-5, 2]; // m/s; gaps go as far as a ball flies in a step, so fast
+const [PX, GROUND] = [26, 92]; // px: what 1 m/s does in a step, the table
+
+// One step of lcp from a gap [r] with a speed [m/s]: gap and speed at its end.
+const stepped = kept((gap, v, told) => {
+  const start = scene([(1 + gap) * R], { vy: [v] });
+  const run = runModel("lcp", start, { ...told, restitution: 0 }, 1);
+  return { gap: run.y[1] / R - 1, v: run.vy[1] };
+});
+
+// The plane of gap and speed: where a step ends inside, and the speeds that lcp asks for.
+function chartOf(unit, told, { gap, free, end }) {
+  const speeds = Array.from({ length: 141 }, (_, k) => -UP + ((UP - DOWN) * k) / 140);
+  const asked = speeds.map((k) => stepped(k * unit, -90, told).v); // of a ball that comes fast
+  return {
+    x: axis([-UP * unit, -DOWN * unit], "gap / r", 0, +(2 * unit).toPrecision(2)),
+    y: axis([DOWN, UP], "v_n (m/s)", DOWN, 0, UP),
+    lines: [{ model: "lcp", xs: speeds.map((k) => k * unit), ys: asked, kind: "plainly" }],
+    under: ({ sx, sy, box: { left, bottom } }) => {
+      const [from, to] = [sx(-UP * unit), sx(-DOWN * unit)];
+      const d = `M${from} ${sy(UP)}L${to} ${sy(DOWN)}L${left} ${bottom}Z`;
+      const [x, y] = [sx(gap), sy(Math.max(DOWN, free))];
+      return [
+        el("path", { d, class: "region" }),
+        line(sx(0), sy(UP), sx(0), bottom, "grid") + line(from, sy(UP), to, sy(DOWN), "rule"),
+        label("ends inside", left + 8, bottom - 12, "start", "tick"),
+        arrow("push m-lcp", x, y, 0, sy(end.v) - y) + circle(x, y, 5, "dot"),
+      ].join("");
+    },
+  };
+}
+
+function draw(view) {
+  const { own } = view;
+  const told = { ...knobs(view), ahead: own.ahead };
+  const unit = told.dt / R; // r that 1 m/s does in a step
+  const gap = within(-UP * unit, own.gap, -DOWN * unit);
+  const free = own.v + told.dt * GRAVITY; // m/s, once gravity has acted
+  const end = stepped(gap, own.v, told);
+  const moves = unit * free; // r
+  const [floor, r] = [view.height - GROUND, Math.min(40, 0.08 * view.width)]; // px
+  const px = (far) => (far / unit) * PX;
+  const tip = Math.min(view.height - 14, floor - px(gap + moves));
+  const picture = (left) => {
+    const [x, y] = [0.42 * left, floor - px(gap)]; // of the ball's lowest point
+    const ghost = (to) => ball("lcp", x, floor - px(to) - r, r, "ghost");
+    const [aside, far] = [x + r + 14, x - r - 12];
+    return [
+      table(0, floor, left, GROUND),
+      label(`gaps × ${number(PX / unit / r, 2)}`, 4, 14, "start", "tick"),
+      ball("lcp", x, y - r, r),
+      ghost(end.gap),
+      line(x, y, aside, y, "grid"),
+      arrow("push m-fixed", far, floor, 0, -px(gap)),
+      label("gap", far, floor + 18, "middle"),
+      arrow("weight", aside, y, 0, tip - y),
+      label("dt v_n", aside, y + (tip < y ? 18 : -8), "middle"),
+    ].join("");
+  };
+  const { svg, middle } = beside(view, chartOf(unit, told, { gap, free, end }), picture, 0.42);
+  const [x, y] = [0.84 * middle, floor - px(gap)];
+  const sum = gap + moves;
+  const text = `gap ${number(gap, 2)} r + dt v_n ${number(moves, 2)} r = ${number(sum, 2)} r`;
+  const pushed = end.v > free + 1e-9;
+  const does = pushed ? `lcp pushes, and it ends at ${number(end.gap, 2)} r` : "lcp does not push";
+  const lift = { r, low: -UP * unit, high: -DOWN * unit, step: 0.1 * unit };
+  const fly = { low: DOWN, high: UP, step: 0.1, at: (toX, to) => (y - to) / PX };
+  const speed = `${number(own.v, 2)} m/s`;
+  const [tall, fast] = ["the ball: its gap", "its speed"];
+  const by = (dx, dy) => (-dy / PX) * unit;
+  return {
+    svg,
+    words: `${text}${sum < 0 ? ", inside" : ""}; ${does}.`,
+    handles: [
+      grip(view, "gap", x, y - r, tall, `${number(gap, 2)} r`, { ...lift, by }),
+      grip(view, "v", x + r + 14, tip, fast, speed, fly),
+    ],
+    lit: pushed ? [["lcp-target", "bias = "]] : [],
+  };
+}
+
+export const figure = {
+  title: "One inequality: where a step ends",
+  caption:
+    "Gap and dt v_n may not add up to less than nothing: drag the ball and its speed, and see " +
+    "which speeds lcp asks for in place of that, from how far away, and where the step ends.",
+  height: 350,
+  knobs: ["baumgarte"],
+  start: () => ({ gap: 0.06, v: -4, ahead: false }),
+  buttons: [
+    [
+      ({ own }) => (own.ahead ? "Look one millimetre ahead" : "Look as far as a step goes"),
+      ({ own }) => (own.ahead = !own.ahead),
+    ],
+  ],
+  draw,
+};

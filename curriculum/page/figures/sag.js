@@ -1,0 +1,139 @@
+/* What unfinished sweeps leave: a column at rest under lcp sags as on springs. Its law stands beside
+ * it, and the sweeps of a step can be spent on substeps. */
+import { axis, ball, circle, el, label, number, path, plural, rect, table } from "../draw.js";
+import { runModel } from "../engine.js";
+import { beside, G, grip, kept, knobs, R, scene, tens } from "../parts.js";
+
+const [FEWEST, MOST, HEAVIEST] = [2, 8, 100]; // balls, balls, kg
+const [LENS, GROUND, LARGEST] = [15, 30, 30]; // px: a lens, the table, a ball
+const ROWS = 500; // steps until all is at rest: the run starts where the law has it
+
+// The law: how deep each ball is pressed into what is below it [r]; `masses` from below.
+const lawOf = (masses, { dt, iters, baumgarte, warm }) =>
+  masses.map((own, i) => {
+    const above = masses.slice(i + 1).reduce((sum, mass) => sum + mass, 0);
+    const deep = ((1 - warm) / (baumgarte * iters)) * (above / own) * ((G * dt * dt) / R);
+    return above ? Math.min(1, deep) : 0;
+  });
+
+// The same of a run of lcp; and whether it is at rest.
+const sags = kept((masses, told) => {
+  let top = 0;
+  const heights = lawOf(masses, told).map((deep) => (top += (2 - deep) * R) - R);
+  const run = runModel("lcp", scene(heights, { mass: masses }), { ...told, restitution: 0 }, ROWS);
+  const depths = (row) =>
+    masses.map((_, i) => {
+      const at = row * masses.length + i;
+      return i ? 2 - (run.y[at] - run.y[at - 1]) / R : 1 - run.y[at] / R;
+    });
+  const before = depths(ROWS - 9);
+  const rests = (deep, i) => Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9;
+  return { depths: depths(ROWS), rests: depths(ROWS).every(rests) };
+});
+
+// All ways to spend the sweeps of a step on equal substeps.
+const waysOf = (told) =>
+  Array.from({ length: told.iters }, (_, k) => k + 1)
+    .filter((parts) => told.iters % parts === 0)
+    .map((parts) => ({ ...told, parts, dt: told.dt / parts, iters: told.iters / parts }));
+
+// A contact through a lens: a ball in what is below it, both in px, and the law as a bracket.
+function lens(id, x, y, deep, law) {
+  const [near, far] = [x + LENS + 3, x + LENS + 9];
+  return [
+    el("clipPath", { id }, circle(x, y, LENS, "")),
+    circle(x, y, LENS, "lens-ground"),
+    el("g", { "clip-path": `url(#${id})` },
+      rect(x - LENS, y, 2 * LENS, LENS, "body m-fixed"),
+      rect(x - LENS, y - LENS, 2 * LENS, LENS + deep, "ball m-lcp")),
+    circle(x, y, LENS, "lens-rim"),
+    path([[far, y], [near, y], [near, y + law], [far, y + law]], "rule"),
+  ].join("");
+}
+
+// The column, a lens at each contact, and how deep it is: what is drawn, and the place of each ball.
+function column(left, height, masses, depths, law) {
+  const r = Math.min(LARGEST, (height - GROUND - 14) / (2 * masses.length)); // px
+  const floor = height - GROUND;
+  const size = (0.85 * LENS) / Math.max(1e-9, ...depths, ...law); // px for an overlap of 1 r
+  const places = masses.map((_, i) => [r + 6, floor - (2 * i + 1) * r]);
+  const drawn = masses.map((mass, i) => {
+    const [x, y] = places[i];
+    const heavy = mass === 1 ? "" : label(number(mass, 2), x, y + 5, "middle", "on-ball");
+    const at = x + r + LENS + 12;
+    const told = left > 170 ? `${number(depths[i], 2)} r` : "";
+    return [
+      ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
+      lens(`sag-${i}`, at, y + r, size * depths[i], size * law[i]),
+      label(told, at + LENS + 16, y + r + 5, "start", "tick strong"),
+    ].join("");
+  });
+  const enlarged = label(`× ${number(size / r, 2)}`, left - 4, 14, "end", "tick");
+  return { svg: table(0, floor, left, GROUND) + drawn.join("") + enlarged, places, r };
+}
+
+// The lowest overlap with each way to spend the sweeps, and the law as a line.
+function chartOf(ways, all) {
+  const [ys, laws] = [all.map(({ depths }) => Math.max(0, depths[0])), all.map(({ law }) => law[0])];
+  const xs = ways.map(({ parts }) => parts);
+  const top = Math.ceil(Math.log10(Math.max(1e-9, ...ys, ...laws)) + 0.1);
+  const most = ways[0].iters; // substeps of one sweep
+  return {
+    x: { ...axis([0.9, 1.12 * most], "substeps", ...new Set([1, most])), log: true },
+    y: { ...tens(top - 3, top), label: "lowest overlap / r" },
+    lines: [
+      { model: "fixed", xs, ys: laws, kind: "plainly" },
+      { model: "lcp", xs, ys, kind: "thin" },
+    ],
+    points: xs.map((x, k) => ({ model: "lcp", x, y: ys[k], size: 5 })),
+  };
+}
+
+function draw(view) {
+  const { own } = view;
+  const masses = own.masses.slice(0, own.count);
+  const ways = waysOf(knobs(view));
+  const off = ways.map(({ parts }) => Math.abs(Math.log(parts / own.parts)));
+  const now = off.indexOf(Math.min(...off)); // the nearest to what is wished for
+  const all = ways.map((way) => ({ ...sags(masses, way), law: lawOf(masses, way) }));
+  const { depths, rests, law } = all[now];
+  let made;
+  const picture = (left) => (made = column(left, view.height, masses, depths, law)).svg;
+  const { svg, sx, sy } = beside(view, chartOf(ways, all), picture, 0.44);
+  const hold = ([x, y], i) => {
+    const get = () => Math.log10(own.masses[i]);
+    const set = (to) => (own.masses[i] = Number((10 ** to).toPrecision(2)));
+    const range = { r: made.r, low: 0, high: Math.log10(HEAVIEST), step: 0.1, get, set };
+    const text = `${number(own.masses[i], 2)} kg`;
+    const name = `ball ${i + 1} from below: drag it up, and it is heavier`;
+    return grip(view, `ball-${i}`, x, y, name, text, { ...range, by: (dx, dy) => -dy / 60 });
+  };
+  const { dt, iters, baumgarte, parts } = ways[now];
+  const spent = `${plural(parts, "substep")} of ${plural(iters, "sweep")}`;
+  const lawful = number(law[0], 2);
+  const way = { low: 1, high: ways[0].iters, at: sx.back, get: () => parts };
+  const next = (by) => (own.parts = ways[Math.min(ways.length - 1, Math.max(0, now + by))].parts);
+  const told = `K = ${iters}, β = ${baumgarte}, dt = ${number(1000 * dt)} ms`;
+  const deep = `${number(depths[0], 2)} r deep${rests ? "" : ", and still moves"}`;
+  const knob = grip(view, "parts", sx(parts), sy(Math.max(0, depths[0])), "substeps", spent, way);
+  return {
+    svg,
+    words: `${told}: the lowest of ${own.count} balls is ${deep}; the law says ${lawful} r.`,
+    handles: [...made.places.map(hold), { ...knob, nudge: (dx, dy) => next(dx - dy) }],
+  };
+}
+
+export const figure = {
+  title: "What unfinished sweeps leave",
+  caption:
+    "Each lens shows how deep a ball lies in what is below it, and the bracket what the law says: " +
+    "drag a ball up to make it heavier, and spend the sweeps of a step on substeps.",
+  height: 360,
+  knobs: ["iters", "baumgarte", "dt", "warm"],
+  start: () => ({ masses: Array(MOST).fill(1), count: MOST, parts: 1 }),
+  buttons: [
+    ["A ball more", ({ own }) => (own.count = Math.min(MOST, own.count + 1))],
+    ["A ball less", ({ own }) => (own.count = Math.max(FEWEST, own.count - 1))],
+  ],
+  draw,
+};
