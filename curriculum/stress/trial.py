@@ -48,6 +48,11 @@ class Trial:
             self.made[key] = take(*given, contact.Settings(**knobs))
         return self.made[key]
 
+    def ran(self):
+        """The models whose run could be judged."""
+        runs = self.motions | {"exact": self.exact}
+        return [model for model, motion in runs.items() if motion and len(motion.push)]
+
     @cached_property
     def motions(self):
         """{model: Motion} of the stepped models."""
