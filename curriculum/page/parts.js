@@ -104,7 +104,7 @@ export function lens(id, model, x, y, r, depth, size) {
   const inside = [
     circle(x, y, size, "lens-ground"),
     table(x - size, y, 2 * size, size),
-    ball(model, x, y + (depth - 1) * r * times, r * times, "ball plainly"),
+    ball(model, x, y + (depth - 1) * r * times, r * times, "magnified"),
   ];
   return [
     el("clipPath", { id }, circle(x, y, size, "")),
@@ -134,11 +134,12 @@ export function tens(low, high) {
  *   at(x, y)      the number where the handle is dragged to; kept from `low` to `high`
  *   by(dx, dy)    in place of it: what a drag by so many px adds
  *   step, times   what an arrow key to the right or up adds, or multiplies by
- *   get(), set(v) in place of the state; r: px of a ball; release()
+ *   get(), set(v) in place of the state; r, box, hold, release() as in stage.js
  * A number of its own that is set takes the figure's clock back to before its start. */
 export function grip(view, name, x, y, label, text, options) {
   const quantity = QUANTITIES[name];
-  const { low, high, r, at, by, step, times, get, set, release } = { ...quantity, ...options };
+  const { low, high, at, by, step, times, get, set, ...more } = { ...quantity, ...options };
+  const { r, box, hold, release } = more;
   const value = get || (() => (quantity ? view.get(name) : view.own[name]));
   const put = (wanted) => {
     const held = within(low, wanted, high);
@@ -149,7 +150,11 @@ export function grip(view, name, x, y, label, text, options) {
   const moved = (toX, toY) => view.from.value + by(toX - view.from.x, toY - view.from.y);
   const drag = (toX, toY) => put(by ? moved(toX, toY) : at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
-  return { name, x, y, r, label, text, value: value(), drag, nudge, release };
+  return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release };
 }
+
+// The same handle at another place, too: all of a ball, from where the hand goes on as at the first.
+export const wholly = (handle, name, x, y, r, box) =>
+  ({ ...handle, name, x, y, r, box, hold: handle.hold || [handle.x, handle.y] });
 
 const tidy = (value) => Number(value.toFixed(4));

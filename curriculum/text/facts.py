@@ -17,6 +17,12 @@ from curriculum.implicit import implicit_step
 DT = 0.002
 
 
+def _quality(model, scene, dt=DT, steps=2000, exact=None, **knobs):
+    """The quality of a run with these Settings."""
+    run = contact.run_model(model, scene, dt, steps, contact.Settings(**knobs))
+    return contact.contact_quality(run, scene, dt, exact)
+
+
 def implicit_spring():
     """The quality of the drop under the implicit spring, c = 80, by stiffness and step."""
     found, scene = {"10000": {}, "1e+06": {}}, contact.build_scene("drop")
@@ -73,15 +79,11 @@ def soft_sweeps():
 
 
 def no_margin():
-    """The quality of lcp where detect_contacts has no margin, by scene."""
-    found, touching = {}, partial(contact.detect_contacts, margin=0.0)
-    for name in ("stack", "bounce"):
-        scene = contact.build_scene(name)
-        exact = contact.run_model("exact", scene, DT, 2000)
-        with patch.object(contact, "detect_contacts", touching):
-            run = contact.run_model("lcp", scene, DT, 2000, contact.Settings(skip=False))
-        found[name] = contact.contact_quality(run, scene, DT, exact)
-    return found
+    """The quality of lcp's stack where detect_contacts has no margin."""
+    scene, touching = contact.build_scene("stack"), partial(contact.detect_contacts, margin=0.0)
+    exact = contact.run_model("exact", scene, DT, 2000)
+    with patch.object(contact, "detect_contacts", touching):
+        return _quality("lcp", scene, exact=exact, skip=False)
 
 
 def order():
@@ -109,8 +111,7 @@ def air_push():
     """What lcp does to a ball 0.9 mm above the table at -0.3 m/s, without and with a bounce."""
     found = {}
     for name, e in (("e0", 0.0), ("e1e-9", 1e-9)):
-        scene = contact.build_scene("drop", restitution=e)
-        scene = scene._replace(q0=np.array([[0.0], [0.1009]]), v0=np.array([[0.0], [-0.3]]))
+        scene = contact.scene_of([0.0], [0.1009], vy=[-0.3], restitution=e)
         run = contact.run_model("lcp", scene, DT, 200)
         found[f"{name}_speed"] = float(run.v[1, 1, 0])
         found[f"{name}_steps"] = int((run.q[:, 1, 0] - 0.1 < 1e-6).argmax())
@@ -130,13 +131,9 @@ def jump():
 
 def seeds():
     """What lcp does to the drop from forty start heights; `hover`: how often without a gain."""
-    with_gain, without = (
-        [
-            contact.contact_quality(contact.run_model("lcp", scene, DT, 1000, settings), scene, DT)
-            for scene in map(partial(contact.build_scene, "drop"), range(40))
-        ]
-        for settings in (contact.Settings(), contact.Settings(baumgarte=0.0))
-    )
+    scenes = [contact.build_scene("drop", seed) for seed in range(40)]
+    with_gain = [_quality("lcp", scene) for scene in scenes]
+    without = [_quality("lcp", scene, baumgarte=0.0) for scene in scenes]
     depths = [quality["max_penetration_frac"] for quality in with_gain]
     return {
         "depth": {"least": min(depths), "most": max(depths), "none": depths.count(0.0)},
@@ -146,55 +143,39 @@ def seeds():
 
 
 def sag():
-    """The overlap [r] that sweeps leave under the lowest ball of a stack, and what the law says."""
+    """The quality of lcp's stacks whose sweeps are not done, and the overlap [r] by the law."""
     cases = {"ten": (10, 1e-4, 1, 1.0, 0.0), "thirty": (30, DT, 20, 0.2, 0.0)}
-    cases |= {"three": (3, DT, 20, 0.2, 0.0), "twenty": (20, DT, 20, 0.2, 0.0)}
-    cases |= {
-        f"{name}_substeps": (n, DT / 4, 5, 0.2, 0.0) for name, n in (("three", 3), ("twenty", 20))
-    }
+    for name, bodies in (("three", 3), ("twenty", 20)):
+        cases[name] = (bodies, DT, 20, 0.2, 0.0)
+        cases[f"{name}_substeps"] = (bodies, DT / 4, 5, 0.2, 0.0)
     cases |= {f"warm_{warm:g}": (10, 1e-3, 1, 1.0, warm) for warm in (0.5, 0.75)}
     found = {}
     for name, (bodies, dt, iters, gain, warm) in cases.items():
-        scene = contact.build_scene("stack", bodies=bodies)
-        settings = contact.Settings(baumgarte=gain, iters=iters, warm=warm)
-        run = contact.run_model("lcp", scene, dt, int(2.0 / dt), settings)
+        scene, knobs = contact.build_scene("stack", bodies=bodies), {"iters": iters, "warm": warm}
+        found[name] = _quality("lcp", scene, dt, int(2.0 / dt), baumgarte=gain, **knobs)
         law = (warm - 1.0) * (bodies - 1) * contact.GRAVITY * dt * dt / gain / iters
-        found[name] = contact.contact_quality(run, scene, dt) | {"law": law / contact.RADIUS}
+        found[name]["law"] = law / contact.RADIUS
     return found
 
 
 def ahead():
     """The quality of lcp as it is, looking ahead, and looking ahead with a gain of 1."""
-    stack, found = partial(contact.build_scene, "stack"), {}
-    scenes = {
-        "drop": contact.build_scene("drop"),
-        "ten": stack(bodies=10),
-        "thirty": stack(bodies=30),
-    }
-    scenes["heavy"] = stack(bodies=2)._replace(mass=np.array([1.0, 100.0]))
+    scenes = {"drop": contact.build_scene("drop")}
+    scenes |= {str(n): contact.build_scene("stack", bodies=n) for n in (10, 30)}
+    scenes["heavy"] = contact.scene_of([0.0, 0.0], [0.1055, 0.3055], mass=[1.0, 100.0])
     ways = {"lcp": {}, "ahead": {"ahead": True}, "gain_1": {"ahead": True, "baumgarte": 1.0}}
-    for (name, scene), (way, knobs) in itertools.product(scenes.items(), ways.items()):
+    found = {}
+    for name, scene in scenes.items():
         exact = contact.run_model("exact", scene, DT, 1000)
-        run = contact.run_model("lcp", scene, DT, 1000, contact.Settings(**knobs))
-        found.setdefault(name, {})[way] = contact.contact_quality(run, scene, DT, exact)
+        found[name] = {
+            way: _quality("lcp", scene, DT, 1000, exact, **knobs) for way, knobs in ways.items()
+        }
     return found
 
 
-def finger():
-    """The critical step [s] of a finger of 0.2 kg on penalty's default spring and damper."""
-    return {"limit": contact.critical_dt(0.2, 1e4, 80.0)}
-
-
-def heavy_on_light():
-    """The quality where the upper ball of two is heavier: lcp cold and warm, soft."""
-    found, scene = {}, contact.build_scene("stack", bodies=2)
-    ways = {"cold": ("lcp", False), "warm": ("lcp", True), "soft": ("soft", False)}
-    for ratio in (100, 1000):
-        heavy = scene._replace(mass=np.array([1.0, ratio]))
-        for name, (model, warm) in ways.items():
-            run = contact.run_model(model, heavy, DT, 2000, contact.Settings(warm=warm))
-            found[f"{name}_{ratio}"] = contact.contact_quality(run, heavy, DT)
-    return found
+def soft_heavy():
+    """The quality of soft where the upper one of two balls is a hundred times as heavy."""
+    return _quality("soft", contact.scene_of([0.0, 0.0], [0.1055, 0.3055], mass=[1.0, 100.0]))
 
 
 def crowd():
@@ -216,9 +197,7 @@ def slide():
     """cos of the angle at which a ball leaves a fixed one, over cos at the start, by model."""
     found, start, dt = {}, math.radians(20.0), 1e-4
     x, y = 0.2 * math.sin(start), 0.2 * math.cos(start)
-    scene = contact.build_scene("stack", bodies=2)._replace(
-        q0=np.array([[0.0, x], [1.0, 1.0 + y]]), mass=np.array([math.inf, 1.0])
-    )
+    scene = contact.scene_of([0.0, x], [1.0, 1.0 + y], mass=[math.inf, 1.0])
     for model in ("penalty", "exact"):
         run = contact.run_model(model, scene, dt, 7000)
         gained = np.diff(run.v[:, :, 1], axis=0) - [0.0, dt * contact.GRAVITY]
@@ -234,10 +213,9 @@ def blocks():
     Samples are 0.02 ms apart, so that no two impacts fall between them.
     """
     found = {}
-    x, v = np.array([[0.0, 1.0, 2.0], [0.1, 0.1, 0.1]]), np.array([[0.0, 0.0, -1.0], [0.0] * 3])
     for n in (0, 1, 2):
-        scene = contact.build_scene("stack", restitution=1.0)
-        scene = scene._replace(q0=x, v0=v, mass=np.array([math.inf, 1.0, 100.0**n]))
+        x, vx, mass = [0.0, 1.0, 2.0], [0.0, 0.0, -1.0], [math.inf, 1.0, 100.0**n]
+        scene = contact.scene_of(x, [0.1] * 3, mass, vx=vx, restitution=1.0)
         run = contact.run_model("exact", scene, 2e-5, 350_000)
         found[f"exact_{100**n}"] = int((np.abs(np.diff(run.v[:, 0, 1])) > 1e-9).sum())
     return found
@@ -246,5 +224,5 @@ def blocks():
 FACTS = {
     each.__name__: each
     for each in (implicit_spring, tower_sweeps, ratio_sweeps, soft_sweeps, no_margin, order)
-    + (air_push, jump, seeds, sag, ahead, finger, heavy_on_light, crowd, slide, blocks)
+    + (air_push, jump, seeds, sag, ahead, soft_heavy, crowd, slide, blocks)
 }

@@ -31,12 +31,13 @@ function draw(view) {
   const text = `e = ${e.toFixed(2)}`;
   const high = `every bounce is e² = ${number(e * e, 2)} times as high as the last`;
   const lift = (x, to) => Math.sqrt(Math.max(0, sy.back(to) - R) / (START - R));
-  const range = { high: 0.95, step: 0.01, at: lift };
+  const range = { r: Math.max(r, 14), high: 0.95, step: 0.01, at: lift };
   return {
     svg: [
-      ...balls.map((at) => ball("exact", ...at, r, "ghost")),
+      ...balls.slice(1).map((at) => ball("exact", ...at, r, "ghost")),
       svg,
-      ball("exact", sx(until) - r, sy(R), r),
+      ball("exact", ...balls[0], r),
+      ball("exact", sx(until) - r, sy(R), r, "ghost"),
     ].join(""),
     words: `${text}: ${high}, and all are over at ${number(end)} s.`,
     handles: [grip(view, "restitution", ...balls[0], "the top of the first bounce", text, range)],

@@ -34,14 +34,15 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
   const small = Math.min(1, view.width / 430);
   const [floor, r] = [view.height - 74, shown.r * small]; // px
   const near = r > 100 && "inside"; // all arrows lie on the ball
+  const centre = floor - r - gap * r;
   const picture = (left) => {
-    const [x, y] = [left / 2, floor - r - gap * r];
+    const [x, y] = [left / 2, centre];
     const top = Math.max(y - r, 64); // where the hand presses, also on a ball beyond the picture
     const pull = Math.min(forceLength(load, 14), top - 2);
     const push = forceLength(load, 100 / Math.sqrt(shown.most));
     return [
       table(0, floor, left, 74),
-      ball(model, x, y, r, near ? "ball plainly" : "ball"),
+      ball(model, x, y, r, near ? "magnified" : "ball"),
       deepest === null ? "" : ball(model, x, floor - r - deepest * r, r, "ghost"),
       arrow(near || `push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
       hand > 0 ? line(x, y, x, 0, "hand") : arrow(near || "weight", x, top - pull, 0, pull),
@@ -52,12 +53,14 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
   const px = (up) => (up ? r * shown.high : PULL); // from there to where it is at 1, or at -1
   const told = load > 0 ? `Pressed with ${number(load, 2)} m g` : "Held by the hand";
   const text = `gap ${number(gap, 2)} r, force ${number(load, 2)} m g`;
-  const range = { r: 20, low: -1, high: 1, step: 0.05, at: (x, y) => (held - y) / px(y < held) };
-  const y = held - hand * px(hand > 0);
+  const hold = [middle, held - hand * px(hand > 0)];
+  const shape = near ? { box: [0, 0, 2 * middle, centre + r] } : { r };
+  const at = (x, y) => (held - y) / px(y < held);
+  const range = { ...shape, hold, low: -1, high: 1, step: 0.05, at };
   return {
     svg,
     words: `${told}: ${text}.${words}`,
-    handles: [grip(view, "hand", middle, y, "the ball: lift it or press it", text, range)],
+    handles: [grip(view, "hand", middle, centre, "the ball: lift it or press it", text, range)],
   };
 }
 

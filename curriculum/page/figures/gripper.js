@@ -29,7 +29,7 @@ const squeezed = kept((dt, stiffness, ...x) => {
 // Where finger and cup meet, enlarged: how far they overlap.
 function lens(x, y, size, r, depth) {
   const [far, half] = [r * TIMES, 0.5 * depth * r * TIMES];
-  const edge = (model, side) => ball(model, x + side * (far - half), y, far, "ball plainly");
+  const edge = (model, side) => ball(model, x + side * (far - half), y, far, "magnified");
   return [
     el("clipPath", { id: "gripper-lens" }, circle(x, y, size, "")),
     circle(x, y, size, "lens-ground"),

@@ -1,7 +1,7 @@
 /* MuJoCo's impedance: how firmly a soft contact asks, by its depth. */
 import { arrow, axis, ball, label, number, table } from "../draw.js";
 import { impedance, softDefaults } from "../engine.js";
-import { beside, grip, R, softKnobs } from "../parts.js";
+import { beside, grip, R, softKnobs, wholly } from "../parts.js";
 
 const PX = 1200; // a radius: twenty times nearer than in the other pictures
 const MOST = 1.5; // widths
@@ -27,19 +27,25 @@ function draw(view) {
   const share = `${number(100 * d, digits)} %`;
   const picture = (left) =>
     table(0, floor, left, 70) +
-    ball("soft", left / 2, floor + ((depth * width) / R - 1) * PX, PX, "ball plainly") +
+    ball("soft", left / 2, floor + ((depth * width) / R - 1) * PX, PX, "magnified") +
     arrow("inside", left / 2, floor - 12, 0, -110 * d) +
     label(share, left / 2, floor - 20 - 110 * d, "middle", "tick on-ball");
-  const { svg, sx, sy } = beside(view, chart, picture);
+  const { svg, sx, sy, middle: centre } = beside(view, chart, picture);
   const text = `${number(1000 * depth * width, 2)} mm deep, d = ${number(d, digits)}`;
   const range = { low: 0, high: MOST, step: 0.05, at: sx.back };
+  const under = floor + ((depth * width) / R) * PX; // the ball's lowest point
+  const press = { ...range, step: -0.05, at: (x, y) => ((y - floor) / PX) * (R / width) };
   const rise = depth <= middle ? "rise = raised" : "rise = 1.0";
   return {
     svg,
     words:
       `${text}: of the acceleration that a hard contact would give it gives ${share}, and ` +
       `R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass.`,
-    handles: [grip(view, "depth", sx(depth), sy(d), "the depth", text, range)],
+    handles: [
+      wholly(grip(view, "depth", centre, under, "the ball: press it", text, press), "ball",
+        centre, under, 0, [0, 0, 2 * centre, under]),
+      grip(view, "depth", sx(depth), sy(d), "the depth", text, range),
+    ],
     lit: [["soft-impedance", depth >= 1 ? "return d1" : rise]],
   };
 }
