@@ -71,7 +71,8 @@ def summary(sections):
     scenes, error = sections["scenes"]["scenes"], sections["maps"]["boundary_worst_error"]
     ran = ", ".join(f"{model} in {n:,}" for model, n in sections["scenes"]["ran"].items())
     return (
-        f"On {scenes:,} random scenes ({ran}), over the maps and at the ends of every flag, {total:,} judgements found {wrong or 'no'} violation{'s' * (wrong > 1)}; "
+        f"On {scenes:,} random scenes ({ran}), over the maps and at the ends of every flag, "
+        f"{total:,} judgements found {wrong or 'no'} violation{'s' * (wrong > 1)}; "
         f"the critical step of `penalty` is measured within {error:.2%} of theory."
     )
 
