@@ -65,7 +65,7 @@ function column(left, height, masses, depths, law) {
     return [
       ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
       lens(`sag-${i}`, at, y + r, size * depths[i], size * law[i]),
-      label(told, at + LENS + 16, y + r + 5, "start", "tick strong"),
+      label(told, at + LENS + 16, y + r + (i ? 5 : -4), "start", "tick strong"),
     ].join("");
   });
   const enlarged = label(`× ${number(size / r, 2)}`, left - 4, 14, "end", "tick");
