@@ -1,6 +1,5 @@
 """The explaining figures answer to a drag and to arrow keys, and show what contact.py finds."""
 
-import functools
 import re
 from types import SimpleNamespace
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum.page.build import page_data
+from curriculum.page.build import build, page_data
 from curriculum.page.bundle import evaluate
 from curriculum.page.chapter import CHAPTER
 from curriculum.regions import ROOT
@@ -29,26 +28,18 @@ def test_every_figure_has_a_slot_in_the_chapter_and_every_slot_a_figure():
     assert sorted(evaluate("still.js", page_data([]), "stills()")["figures"]) == SLOTS
 
 
-@functools.cache
-def page_of_figures():
-    """A page with one section, which holds every explaining figure."""
-    from curriculum.page.build import build
-
-    slots = "\n\n".join(f"The {name}.\n\n<!-- figure: {name} -->" for name in SHOWN)
-    return build(f"# Figures\n\n## All\n\n{slots}\n")
-
-
 @pytest.fixture(scope="module")
 def tab(tmp_path_factory):
-    """A browser tab on that page; what a test sets, it takes back by loading anew."""
+    """A browser tab on a page with one section, which holds every explaining figure."""
     file = tmp_path_factory.mktemp("figures") / "figures.html"
-    file.write_text(page_of_figures(), encoding="utf-8")
+    slots = "\n\n".join(f"The {name}.\n\n<!-- figure: {name} -->" for name in SHOWN)
+    file.write_text(build(f"# Figures\n\n## All\n\n{slots}\n"), encoding="utf-8")
     with running() as browser, visiting(browser, file.as_uri()) as page:
         yield page
 
 
 def figure(tab, name, query=None):
-    """A figure by its name, drawn and in sight; on a fresh page with this query, if there is one."""
+    """A figure by its name, in sight; on a fresh page with this query, if there is one."""
     if query is not None:
         tab.goto(tab.url.split("?")[0].split("#")[0] + query)
         tab.wait_for_selector("[data-ready]", state="attached")
@@ -66,12 +57,10 @@ def said(box):
 
 
 def numbers(box):
-    """The numbers in what the figure says."""
     return [float(each) for each in re.findall(r"-?\d+(?:\.\d+)?(?:e-?\d+)?", said(box))]
 
 
 def handle(box, name):
-    """A handle of a figure, by its name."""
     return box.locator(f'.handle[data-handle="{name}"]')
 
 
@@ -88,13 +77,11 @@ def drag(tab, grip, by):
 
 
 def settle(tab):
-    """Wait until what has changed is drawn."""
     for _ in range(2):
         tab.evaluate("() => new Promise(requestAnimationFrame)")
 
 
 def press(tab, grip, key, times=1):
-    """Press an arrow key on a handle."""
     grip.focus()
     for _ in range(times):
         tab.keyboard.press(key)
@@ -150,9 +137,7 @@ def depths(model, dt=DT, **knobs):
 def test_springs_show_the_depths_of_contact_py(tab):
     sponge = figure(tab, "sponge", "?stiffness=5000")
     assert numbers(sponge)[0] == pytest.approx(depths("penalty", stiffness=5e3)[-1], rel=5e-3)
-    drag(
-        tab, handle(sponge, "press"), (0, 30)
-    )  # let go, and nothing may move: it is at rest at once
+    drag(tab, handle(sponge, "press"), (0, 30))  # nothing may move: it is at rest at once
     assert "It rests" in said(sponge)
     stack = figure(tab, "stack")
     assert numbers(stack)[:2] == pytest.approx([3, 3 * WEIGHT / 5e3 / RADIUS], rel=5e-3)
@@ -194,21 +179,20 @@ def test_each_model_keeps_to_its_own_law_on_the_corner(tab):
     assert stiff * d**2 * -gap * RADIUS == pytest.approx((1 - d) * force * WEIGHT, rel=0.05)
 
 
-@pytest.mark.parametrize("k, rests", [(1e4, True), (1e6, False)])
-def test_puzzle_tells_how_deep_a_spring_sinks_and_whether_it_comes_to_rest(tab, k, rests):
-    late = depths("penalty", dt=0.01, stiffness=k)[-200:]
-    assert (np.ptp(late) < 1e-3) == rests
-    puzzle = figure(tab, "puzzle", f"?stiffness={k:.0f}&damping=80")
-    assert numbers(puzzle)[0] == pytest.approx(WEIGHT / k / RADIUS, rel=5e-3)
-    assert f"It {'comes' if rests else 'never comes'} to rest" in said(puzzle)
+def test_puzzle_tells_how_deep_a_spring_sinks_and_whether_it_comes_to_rest(tab):
+    for k, told in ((1e4, "comes"), (1e6, "never comes")):
+        puzzle = figure(tab, "puzzle", f"?stiffness={k:.0f}&damping=80")
+        assert numbers(puzzle)[0] == pytest.approx(WEIGHT / k / RADIUS, rel=5e-3)
+        late = depths("penalty", dt=0.01, stiffness=k)[-200:]
+        assert f"It {told} to rest" in said(puzzle) and (np.ptp(late) < 1e-3) == (told == "comes")
 
 
-@pytest.mark.parametrize("dt, k, c", [(0.002, 1e4, 80.0), (0.0141, 1e4, 80.0), (0.01, 300.0, 0.0)])
-def test_drops_that_a_figure_looks_at_in_one_loop_have_the_bits_of_contact_py(dt, k, c):
-    shown = evaluate("parts.js", page_data([]), f"drops({dt}, {k}, {c}, 2000).join()")
-    scene = contact.build_scene("drop", damping=c)
-    run = contact.run_model("penalty", scene, dt, 2000, contact.Settings(stiffness=k))
-    assert [float(each) for each in shown.split(",")] == run.q[:, 1, 0].tolist()
+def test_drops_that_a_figure_looks_at_in_one_loop_have_the_bits_of_contact_py():
+    for dt, k, c in ((0.002, 1e4, 80.0), (0.0141, 1e4, 80.0), (0.01, 300.0, 0.0)):
+        shown = evaluate("parts.js", page_data([]), f"drops({dt}, {k}, {c}, 2000).join()")
+        scene = contact.build_scene("drop", damping=c)
+        run = contact.run_model("penalty", scene, dt, 2000, contact.Settings(stiffness=k))
+        assert [float(each) for each in shown.split(",")] == run.q[:, 1, 0].tolist()
 
 
 def test_one_long_step_has_the_eigenvalues_of_its_matrix_and_the_cliff_explodes(tab):
@@ -226,9 +210,8 @@ def test_one_long_step_has_the_eigenvalues_of_its_matrix_and_the_cliff_explodes(
 
 
 def test_sweeps_carry_what_contact_py_finds_contact_by_contact(tab):
-    balls = contact.make_balls(contact.build_scene("stack"))
-    for k, ball in enumerate(balls):
-        ball.y = (2 * k + 1) * RADIUS
+    heights = [RADIUS, 3 * RADIUS, 5 * RADIUS]
+    balls = contact.make_balls(contact.scene_of([0.0] * 3, heights))
     contacts = contact.detect_contacts(balls, margin=1e-9)
     contact.accelerate(balls, DT)
     contact.solve_contacts(contacts, 3)
@@ -267,12 +250,10 @@ def test_the_sum_of_bounce_and_bias_throws_the_ball_higher_than_the_larger_of_th
     assert [larger, both] == pytest.approx(heights, rel=0.02) and both > larger + 0.1
 
 
-def at_rest(masses, **knobs):
+def at_rest(masses, dt, **knobs):
     """How deep [r] the lowest of touching balls lies in the table after two seconds of lcp."""
-    q0 = np.array([np.zeros(len(masses)), (2 * np.arange(len(masses)) + 1) * RADIUS])
-    radius, mass = np.full(len(masses), RADIUS), np.array(masses, float)
-    scene = contact.Scene("column", q0, 0 * q0, mass, radius, 0.0, 0.0)
-    dt = knobs.pop("dt")
+    heights = (2 * np.arange(len(masses)) + 1) * RADIUS
+    scene = contact.scene_of(0 * heights, heights, masses)
     run = contact.run_model("lcp", scene, dt, round(2 / dt), contact.Settings(**knobs))
     return 1 - run.q[-1, 1, 0] / RADIUS
 
@@ -299,40 +280,37 @@ def test_gripper_trembles_as_exercise_8_has_it_holds_at_half_the_step_and_is_gon
     chosen = {"MODEL": "penalty", "STIFFNESS": 1e4, "DAMPING": 80.0, "SOLREF": None, "SOLIMP": None}
     seen = trials.fingers(SimpleNamespace(DT=0.004, **chosen))
     for name in ("promise", "gripper"):
-        told = numbers(figure(tab, name, ""))
-        assert told == pytest.approx([4, 1e4, seen["deepest"], seen["trembling"]], rel=0.03)
-    box = figure(tab, "gripper")
+        box = figure(tab, name, "")
+        told = [4, 1e4, seen["deepest"], seen["trembling"]]
+        assert numbers(box) == pytest.approx(told, rel=0.03)
     width = box.locator(".drawing").bounding_box()["width"]
     drag(tab, handle(box, "choice"), (-0.25 * width, 0))  # half the step
     assert "holds still" in said(box) and numbers(box)[0] == pytest.approx(2, abs=0.3)
     drag(tab, handle(box, "choice"), (0.33 * width, 0))
     assert "fly apart" in said(box) and box.locator(".scale").count()
-    seen = trials.fingers(SimpleNamespace(DT=numbers(box)[0] / 1000, **chosen))
-    assert not seen["held"]
+    assert not trials.fingers(SimpleNamespace(DT=numbers(box)[0] / 1000, **chosen))["held"]
 
 
 def test_inequality_ends_where_a_step_of_contact_py_ends_with_and_without_looking_ahead(tab):
     box = figure(tab, "inequality", "")
+    gap, moves, end = numbers(box)
+    after = {}
     for ahead in (False, True):
-        gap, moves, end = (numbers(box) + [None])[:3]
         ball = contact.Ball(0.0, (1 + gap) * RADIUS, 0.0, -4.0, 1.0, RADIUS)
         contact.lcp_step([ball], DT, 0.0, 0.2, 20, ahead=ahead)
-        after = ball.y / RADIUS - 1
-        assert gap + moves == pytest.approx(end, abs=2e-3) and end < 0
-        if ahead:
-            assert "it ends at 0 r" in said(box) and abs(after) < 1e-12
-        else:
-            assert "does not push" in said(box) and after == pytest.approx(end, abs=2e-3)
-            box.locator("button:text('Look as far')").click()
-            settle(tab)
+        after[ahead] = ball.y / RADIUS - 1
+    assert [gap + moves, end] == pytest.approx(2 * [after[False]], abs=2e-3)
+    assert "does not push" in said(box) and end < 0
+    box.locator("button:text('Look as far')").click()
+    settle(tab)
+    assert "it ends at 0 r" in said(box) and abs(after[True]) < 1e-12
 
 
 def test_bowl_ends_at_the_direct_solution_inside_the_quadrant_and_on_its_wall(tab):
-    """Inside both contacts push: the solution of a linear system. On the wall one of them does not."""
+    """Inside both contacts push: a linear system. On the wall the upper one does not."""
     box = figure(tab, "bowl", "")
     inside = np.linalg.solve([[1, -1], [-1, 2]], [1, 0])
     assert numbers(box)[2:4] == pytest.approx(inside.tolist(), rel=5e-3)
-    drag(tab, handle(box, "v2"), (0, -66))  # the upper ball flies up, three g dt faster
-    assert numbers(box)[2:4] == pytest.approx([1, 0], abs=5e-3)
-    drag(tab, handle(box, "start"), (60, 40))
-    assert numbers(box)[2:4] == pytest.approx([1, 0], abs=5e-3)
+    for name, by in (("v2", (0, -66)), ("start", (60, 40))):  # the upper ball flies up
+        drag(tab, handle(box, name), by)
+        assert numbers(box)[2:4] == pytest.approx([1, 0], abs=5e-3)
