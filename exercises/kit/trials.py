@@ -172,7 +172,7 @@ def drops(spring, _):
         found = [
             contact.contact_quality(run, of, dt)
             for run in (
-                contact.simulate(step, of, dt, int(8.0 / dt)),
+                contact.simulate_faster(step, of, dt, int(8.0 / dt)),
                 contact.run_model("penalty", of, dt, int(8.0 / dt)),
             )
         ]
@@ -213,7 +213,7 @@ def fingers(exercise):
         contact.accelerate(balls, dt)
         contact.move(balls, dt)
 
-    run = contact.simulate(step, of, dt, math.ceil(1.0 / dt - 1e-9), skip=False)
+    run = contact.simulate(step, of, dt, math.ceil(1.0 / dt - 1e-9))
     with np.errstate(all="ignore"):
         depth = np.maximum(-contact.smallest_gap(run.q, radius) / 0.1, 0.0)[3 * len(run.q) // 4 :]
         return {
