@@ -22,8 +22,11 @@ from pathlib import Path
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
-from curriculum.bench import accuracy, piles, report, skips, solvers
-from curriculum.measured import results
+from curriculum.commands import needs
+
+with needs("bench"):
+    from curriculum.bench import accuracy, piles, report, skips, solvers
+    from curriculum.measured import results
 
 PARTS = {
     "accuracy": accuracy.measure,

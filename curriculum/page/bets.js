@@ -50,11 +50,16 @@ export class Bets {
     this.#hear();
   }
 
-  // Open without a bet, and keep the focus at what came out from behind the veil.
+  /* Open without a bet: what comes out from behind the veil stands where the bar was, whatever opens
+   * above it, and takes the focus. */
   #reveal(button) {
     const veil = button.closest(".veiled");
+    const { top } = veil.getBoundingClientRect();
+    const { style } = document.documentElement;
+    style.overflowAnchor = "none"; // the browser shall not correct it a second time
     this.make(button.dataset.show, { shown: true });
-    if (!veil) return;
+    window.scrollBy(0, veil.getBoundingClientRect().top - top);
+    requestAnimationFrame(() => (style.overflowAnchor = ""));
     const answer = veil.querySelector(".answer");
     answer.tabIndex = -1;
     answer.focus({ preventScroll: true });

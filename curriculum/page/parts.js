@@ -95,16 +95,16 @@ export function beside(view, options, picture, share = 0.4) {
 }
 
 /* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
- * `depth` deep [r], enlarged so that it can be seen; a radius is `r` px. Nothing where that is seen
- * without a lens. */
-export function lens(id, model, x, y, r, depth, size) {
+ * `depth` deep [r], enlarged so that it can be seen, or `given` times; a radius is `r` px. Nothing
+ * where that is seen without a lens. */
+export function lens(id, model, x, y, r, depth, size, given) {
   const steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
-  const times = steps.find((each) => each * depth * r >= 12) || 10000;
-  if (times <= 2 || depth <= 0) return "";
+  const times = given || steps.find((each) => each * depth * r >= 12) || 10000;
+  if (!given && (times <= 2 || depth <= 0)) return "";
   const inside = [
     circle(x, y, size, "lens-ground"),
     table(x - size, y, 2 * size, size),
-    ball(model, x, y + (depth - 1) * r * times, r * times, "ball plainly"),
+    ball(model, x, y + (depth - 1) * r * times, r * times, "magnified"),
   ];
   return [
     el("clipPath", { id }, circle(x, y, size, "")),
@@ -134,11 +134,12 @@ export function tens(low, high) {
  *   at(x, y)      the number where the handle is dragged to; kept from `low` to `high`
  *   by(dx, dy)    in place of it: what a drag by so many px adds
  *   step, times   what an arrow key to the right or up adds, or multiplies by
- *   get(), set(v) in place of the state; r: px of a ball; release()
+ *   get(), set(v) in place of the state; r, box, hold, release() as in stage.js
  * A number of its own that is set takes the figure's clock back to before its start. */
 export function grip(view, name, x, y, label, text, options) {
   const quantity = QUANTITIES[name];
-  const { low, high, r, at, by, step, times, get, set, release } = { ...quantity, ...options };
+  const { low, high, at, by, step, times, get, set, ...more } = { ...quantity, ...options };
+  const { r, box, hold, release } = more;
   const value = get || (() => (quantity ? view.get(name) : view.own[name]));
   const put = (wanted) => {
     const held = within(low, wanted, high);
@@ -149,7 +150,20 @@ export function grip(view, name, x, y, label, text, options) {
   const moved = (toX, toY) => view.from.value + by(toX - view.from.x, toY - view.from.y);
   const drag = (toX, toY) => put(by ? moved(toX, toY) : at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
-  return { name, x, y, r, label, text, value: value(), drag, nudge, release };
+  return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release };
 }
+
+/* A handle for two numbers, [a, b]: at(x, y) gives those where it is dragged to, put(a, b) sets them,
+ * and an arrow key to the right or up moves it by `px` on the screen. */
+export function pair(name, [x, y], label, text, { value, at, put, px = 4, r }) {
+  const drag = (toX, toY) => put(...at(toX, toY));
+  let [nowX, nowY] = [x, y];
+  const nudge = (dx, dy) => drag((nowX += px * dx), (nowY += px * dy));
+  return { name, x, y, r, label, text, value, drag, nudge };
+}
+
+// The same handle at another place, too: all of a ball, from where the hand goes on as at the first.
+export const wholly = (handle, name, x, y, r, box) =>
+  ({ ...handle, name, x, y, r, box, hold: handle.hold || [handle.x, handle.y] });
 
 const tidy = (value) => Number(value.toFixed(4));

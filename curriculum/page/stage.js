@@ -16,10 +16,14 @@
  *   tick(view, s)    in place of a clock: so many real seconds passed; false ends it
  *   buttons          [[label, press(view)]]; the label may be a function of the view
  *
- * A handle is {name, x, y, r, label, value, text, drag(x, y), nudge(dx, dy), release()}: what can
- * be grabbed, mostly made by `grip` in parts.js. A ball is grabbed as a whole: r is its radius;
- * without an r the handle is a knob, a filled point. dx and dy are those of an arrow key, ten times
- * as much with shift; release() is called when it is let go, and at Enter. The view is the stage. */
+ * A handle is {name, x, y, label, value, text, drag(x, y), nudge(dx, dy), release()}: what can be
+ * grabbed, mostly made by `grip` in parts.js. dx and dy are those of an arrow key, ten times as
+ * much with shift; release() is called when it is let go, and at Enter.
+ *   r      of a ball: all of it is grabbed; without r (or box) it is a point, and gets a knob
+ *   box    [x, y, width, height] in place of a circle: a block, or what is seen of a large ball
+ *   hold   [x, y]: where drag(x, y) starts from, if that is not the middle
+ * Whatever is drawn as `ball` must have a handle over it; what cannot be grabbed is drawn as
+ * "seen", "body" or "ghost". The view is the stage. */
 import { escape, plain } from "./draw.js";
 import { fitting, fromSlider, shown, sliderRange, toSlider } from "./store.js";
 
@@ -49,20 +53,26 @@ export function buttonsOf({ clock, buttons = [] }) {
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 const SVG = "http://www.w3.org/2000/svg";
+const KNOB = 8; // px, of a point; the style gives it a halo of 22 px
 
-// The handles of a drawing: circles above it that stay when it is drawn anew, so that focus stays.
+// What a handle looks like: all of a ball, a box, or a knob on a point.
+function shapeOf({ x, y, r, box }) {
+  if (!box) return { class: r ? "handle" : "handle point", cx: x, cy: y, r: r || KNOB };
+  return { class: "handle", x: box[0], y: box[1], width: box[2], height: box[3] };
+}
+
+// The handles of a drawing: shapes above it that stay when it is drawn anew, so that focus stays.
 function showHandles(layer, handles) {
   const held = new Map([...layer.children].map((node) => [node.dataset.handle, node]));
-  for (const { name, x, y, r, label, value, text } of handles) {
-    const node = held.get(name) || layer.appendChild(document.createElementNS(SVG, "circle"));
+  for (const handle of handles) {
+    const { name, label, value, text } = handle;
+    const make = () => document.createElementNS(SVG, handle.box ? "rect" : "circle");
+    const node = held.get(name) || layer.appendChild(make());
     held.delete(name);
     const about = {
-      class: r ? "handle" : "handle point",
+      ...shapeOf(handle),
       role: "slider",
       tabindex: 0,
-      cx: x,
-      cy: y,
-      r: r ? Math.max(r, 14) : 8,
       "aria-label": label,
       "aria-valuenow": plain(value),
       "aria-valuetext": text,
@@ -207,7 +217,8 @@ export class Stage {
     this.svg.setPointerCapture(event.pointerId);
     this.grabbed = handle.name;
     this.from = handle;
-    this.aside = [handle.x - event.clientX, handle.y - event.clientY]; // of the pointer
+    const [x, y] = handle.hold || [handle.x, handle.y];
+    this.aside = [x - event.clientX, y - event.clientY]; // of the pointer
     this.#trail = [];
     if (this.figure.clock) this.stop();
     this.page.store.drag(true);

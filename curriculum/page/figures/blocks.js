@@ -1,10 +1,9 @@
 /* Colliding blocks count the digits of pi (Galperin 2003): a wall, a block of mass 1, of 100^n. */
-import { clipped, label, line, plural, rect, table, whole } from "../draw.js";
+import { clipped, label, line, plain, plural, rect, table, whole } from "../draw.js";
 import { runExact, runModel } from "../engine.js";
 import { grip, kept, knobs, R, scene } from "../parts.js";
 
 const SECONDS = 4;
-const DT = 0.002; // s, of lcp
 const MOST = 3; // n: 100^3 and 3,141 impacts
 const ROWS = 1500; // of exact, to be looked at
 const LIGHT = 30; // px, and a heavier block is larger
@@ -23,11 +22,11 @@ const byExact = kept((n) => {
 
 // lcp has a floor and a weight; an impact is a step that changes the light block's speed along it.
 const byLcp = kept((n, told) => {
-  const steps = Math.ceil(SECONDS / DT);
+  const steps = Math.ceil(SECONDS / told.dt);
   const run = runModel("lcp", scene([R, R, R], lineUp(n)), told, steps);
   const times = [];
   for (let row = 1; row <= steps; row++)
-    if (Math.abs(run.vx[3 * row + 1] - run.vx[3 * row - 2]) > 1e-9) times.push(row * DT);
+    if (Math.abs(run.vx[3 * row + 1] - run.vx[3 * row - 2]) > 1e-9) times.push(row * told.dt);
   return { run, times };
 });
 
@@ -53,19 +52,20 @@ function lane(view, model, { run, times }, k) {
     label(count, view.width - 4, floor - high + 32, "end"),
   ].join("");
   const corner = [Math.min(far + big, view.width - 14), floor - big];
-  return { svg: clipped(0, floor - high + 14, view.width, high, svg), corner, floor };
+  const box = [far, floor - big, Math.min(big, view.width - far), big];
+  return { svg: clipped(0, floor - high + 14, view.width, high, svg), corner, box, floor };
 }
 
 function draw(view) {
   const { n } = view.own;
-  const told = { ...knobs(view), dt: DT, restitution: 1 };
+  const told = { ...knobs(view), dt: view.get("dt"), restitution: 1 };
   const [exact, lcp] = [byExact(n), byLcp(n, told)];
   const above = lane(view, "exact", exact, 0);
   const counted = `exact counts ${plural(exact.times.length, "impact")}`;
-  const missed = `lcp at dt = ${1000 * DT} ms counts ${whole(lcp.times.length)}`;
+  const missed = `lcp at dt = ${plain(1000 * told.dt)} ms counts ${whole(lcp.times.length)}`;
   const text = `100 to the power of ${n}`;
   const at = (x, y) => Math.round((above.floor - y - LIGHT) / 16);
-  const range = { low: 0, high: MOST, step: 1, at };
+  const range = { box: above.box, hold: above.corner, low: 0, high: MOST, step: 1, at };
   return {
     svg: above.svg + lane(view, "lcp", lcp, 1).svg,
     words: `Mass 1 and ${whole(100 ** n)}: ${counted}, ${missed}.`,
@@ -77,9 +77,10 @@ export const figure = {
   title: "Colliding blocks count the digits of π",
   caption:
     "exact counts 3, 31, 314, 3,141 impacts, and lcp loses count where they come faster than its " +
-    "steps: drag the corner of the heavy block to make it heavier.",
+    "steps: drag the heavy block upwards to make it heavier.",
   height: 260,
-  start: () => ({ n: 2, time: null }),
+  knobs: ["dt"],
+  start: () => ({ n: MOST, time: null }),
   clock: () => ({ end: SECONDS, rate: 0.4, name: "Play" }),
   draw,
 };

@@ -1,7 +1,7 @@
 /* The clamp is on the sum of the changes. In a groove one contact must take some push back. */
 import { arrow, ball, label, number, shift, within } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
-import { kept } from "../parts.js";
+import { kept, wholly } from "../parts.js";
 
 const SIDES = [-1, 1];
 
@@ -61,7 +61,11 @@ function draw(view) {
       groove(view.own, right, "sum ≥ 0", x, y, r) +
       shift(view.width / 2, 0, groove(view.own, wrong, "each change ≥ 0", x, y, r)),
     words: `After 20 sweeps the ball moves ${sum} the sum is clamped, ${each} each change is.`,
-    handles: [came],
+    handles: [
+      wholly(came, "left", x, y, r),
+      wholly(came, "right", x + view.width / 2, y, r),
+      came,
+    ],
   };
 }
 

@@ -1,7 +1,7 @@
 /* Newton's cradle: the same ball, all impacts at one moment or one shortly after another. */
 import { ball, label, line, number, shift } from "../draw.js";
 import { runExact } from "../engine.js";
-import { G, grip, kept, R, scene } from "../parts.js";
+import { G, grip, kept, R, scene, wholly } from "../parts.js";
 
 const [COUNT, LENGTH] = [4, 0.5]; // balls; m of a string
 const APART = 1e-3; // r: the gap where the impacts come one after another
@@ -42,7 +42,7 @@ function draw(view) {
     line(first - r, top, first + 7 * r, top, "table-top"),
     ...angles(view.own, after).map((angle, i) => {
       const [x, y] = place(i, angle);
-      return line(first + 2 * r * i, top, x, y, "axis") + ball("exact", x, y, r);
+      return line(first + 2 * r * i, top, x, y, "axis") + ball("exact", x, y, r, i ? "seen" : "ball");
     }),
   ];
   const speed = pulled * PACE * LENGTH; // of a small swing, at its lowest
@@ -51,13 +51,15 @@ function draw(view) {
   const text = `pulled back by ${number((pulled * 180) / Math.PI, 2)}°`;
   const at = (x, y) => Math.atan2(first - x, Math.max(10, y - top));
   const range = { r, low: 0.1, high: 0.9, step: 0.05, at, release: view.play };
-  const [x, y] = place(0, angles(view.own, once)[0]);
-  const second = shift(narrow ? 0 : wide, narrow ? 200 : 0, ...frame(chain, "one after another"));
+  const [[x, y], [x2, y2]] = [once, chain].map((each) => place(0, angles(view.own, each)[0]));
+  const aside = [narrow ? 0 : wide, narrow ? 200 : 0];
+  const second = shift(...aside, ...frame(chain, "one after another"));
+  const pull = grip(view, "pulled", x, y, "the first ball: pull it back", text, range);
   const all = `All impacts at one moment: they leave with ${list(once)} of its speed.`;
   return {
     svg: frame(once, "at one moment").join("") + second,
     words: `${all} One shortly after another: ${list(chain)}.`,
-    handles: [grip(view, "pulled", x, y, "the first ball: pull it back", text, range)],
+    handles: [pull, wholly(pull, "other", x2 + aside[0], y2 + aside[1], r)],
   };
 }
 

@@ -1,10 +1,10 @@
 /* No target above -e v_n: two elastic balls are just parting when a third strikes one of them. */
 import { arrow, ball, label, line, number, rect } from "../draw.js";
 import { makeRows, normalSpeed, solveContacts } from "../engine.js";
-import { grip, kept } from "../parts.js";
+import { grip, kept, wholly } from "../parts.js";
 
 const MOST = 3.5; // m/s
-const ROWS = [92, 216, 340]; // px
+const ROWS = [112, 236, 360]; // px
 
 // The speeds after the impact of three touching elastic balls; `repair`: no target below zero.
 const struck = kept((speeds, repair) => {
@@ -31,24 +31,25 @@ function draw(view) {
   const bars = view.width - Math.min(150, 0.25 * view.width);
   const unit = (view.width - bars - 8) / Math.max(begun, moreau, repaired, 0.1);
   const at = (i) => (bars - 16) / 2 + 2 * r * (i - 1);
-  const up = (i) => -r - 12 - 13 * i; // the arrows stand over one another
+  const up = (i) => -r - 14 - 22 * i; // the arrows stand over one another
   const row = ([title, after], k) => [
     label(title, 0, ROWS[k] - r - 48, "start", "axis-name"),
     ...after.map(
       (v, i) =>
-        ball("lcp", at(i), ROWS[k], r, "ball plainly") +
+        ball("lcp", at(i), ROWS[k], r, k ? "seen" : "ball plainly") +
         arrow("weight", at(i), ROWS[k] + up(i), px * v, 0) +
-        label(number(v, 2), at(i), ROWS[k] + 5, "middle", "on-ball"),
+        label(number(v, 2), at(i), ROWS[k] + 5, "middle", k ? "tick strong" : "on-ball"),
     ),
     rect(bars, ROWS[k] - 10, energy(after) * unit, 20, "bar-fill m-lcp"),
     label(`${number(energy(after), 4)} J`, bars, ROWS[k] + 30),
   ];
   const mark = bars + begun * unit;
   const hold = (v, i) => {
-    const range = { r: 11, low: -MOST, high: MOST, step: 0.1, at: (x) => (x - at(i)) / px };
+    const range = { low: -MOST, high: MOST, step: 0.1, at: (x) => (x - at(i)) / px };
     const [name, text] = [`the speed of ball ${i + 1}`, `${number(v, 2)} m/s`];
     return grip(view, `v${i + 1}`, at(i) + px * v, ROWS[0] + up(i), name, text, range);
   };
+  const knobs = speeds.map(hold);
   const gain = repaired / begun - 1;
   const more = gain > 1e-9 ? `${number(100 * gain, 2)} % more energy` : "no more energy";
   const told = cases.map((each) => list(each[1]));
@@ -61,7 +62,7 @@ function draw(view) {
     words:
       `Before: ${told[0]} m/s. With −e v_n: ${told[1]} m/s and the same energy. ` +
       `With no target below 0: ${told[2]} m/s and ${more}.`,
-    handles: speeds.map(hold),
+    handles: [...knobs.map((each, i) => wholly(each, `ball-${i}`, at(i), ROWS[0], r)), ...knobs],
   };
 }
 
@@ -70,7 +71,7 @@ export const figure = {
   caption:
     "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair " +
     "that allows no target below zero adds some; drag the speeds.",
-  height: 384,
+  height: 404,
   start: () => ({ v1: -1, v2: 0, v3: -3 }),
   draw,
 };

@@ -102,7 +102,7 @@ function drawGrab(view) {
 const grab = {
   title: "A ball over a table",
   caption: "Grab the ball: lift it, drop it, throw it.",
-  height: 480,
+  height: 360,
   narrow: 340,
   start: () => ({ place: null, velocity: [0, 0], free: false }),
   buttons: [["Drop it", drop]],
@@ -131,7 +131,8 @@ function step(view, told) {
   own.balls.forEach((each, k) => {
     if (String(k) === view.grabbed) return;
     for (const key of ["x", "y", "vx", "vy"]) each[key] = next[key][k];
-    if (!(Math.abs(each.y) < 50)) Object.assign(each, fresh(0.5 * wide(view), 1.2));
+    const lost = !(Math.abs(each.y) < 50 && each.x > -R && each.x < wide(view) + R);
+    if (lost) Object.assign(each, fresh(0.5 * wide(view), 1.2));
   });
 }
 
@@ -141,7 +142,8 @@ function drawSandbox(view) {
     inHand(view, String(k), `ball ${k + 1}`, {
       place: () => [each.x, each.y],
       put(x, y) {
-        Object.assign(each, { x, y: Math.max(R, y), vx: 0, vy: 0 });
+        const place = { x: within(R, x, wide(view) - R), y: within(R, y, high(view) - R) };
+        Object.assign(each, place, { vx: 0, vy: 0 });
         if (view.grabbed && !view.still) view.run();
       },
       letGo: ([vx, vy]) => Object.assign(each, { vx, vy }),

@@ -1,12 +1,13 @@
 /* The models side by side over one table: the live figure, in which models, scene, quantity and
  * window of time follow the text, and the question of the first bet, two of them in the chapter's
  * own drop. A ball whose end would tell what a bet asks waits for it. */
-import { arrow, axis, ball, label, number, plot, steps, table } from "../draw.js";
+import { arrow, axis, ball, label, line, number, plot, steps, table, within } from "../draw.js";
 import { MODELS, criticalDt, runModel, series } from "../engine.js";
-import { grip, kept, R } from "../parts.js";
+import { grip, kept, R, START } from "../parts.js";
 import { knobsOf, sceneOf, startOf } from "../store.js";
 
 const LONGEST = 4; // s
+const [LEAST, HIGHEST] = [1.05 * R - START, 1.3]; // m: how far down the balls are held, and how high
 const SECONDS = 5; // that a run through the window takes
 const [GROUND, BELOW] = [26, 72]; // px of table, and of all that is below its top
 // what a button shows next, of the scenes and of what the chart can show
@@ -30,8 +31,10 @@ const LINES = {
   exact: ["exact", "bounce(touching"],
 };
 
-const held = kept((model, scene, told, count) => {
+// A run of balls that start `lift` m above the scene's own places.
+const held = kept((model, scene, told, count, lift) => {
   const each = sceneOf({ scene, restitution: told.restitution, damping: told.damping });
+  each.y = each.y.map((height) => height + lift);
   const run = runModel(model, each, told, count);
   return { model, run, ...series(run, each) };
 });
@@ -41,7 +44,7 @@ function runOf(view, model) {
   const all = knobsOf(view.values);
   const told = Object.fromEntries(USES[model].map((name) => [name, all[name]]));
   const count = Math.max(1, Math.floor(view.own.to / all.dt + 1e-9));
-  return held(model, view.values.scene, told, count);
+  return held(model, view.values.scene, told, count, view.own.lift);
 }
 
 // ---- what may be shown
@@ -94,15 +97,36 @@ function placeWords({ gap, row }, least = 1e-9, [touches, below, above] = SHORT)
   return `${number(Math.abs(gap[row]), 2)} r ${gap[row] < 0 ? below : above}`;
 }
 
-// One model's balls over the table, and where they are; `high`: the height [m] that a lane shows.
-function lane(each, k, told, wide, floor, high) {
-  const x = wide * (k + 0.5);
-  const scale = Math.min((floor - 8) / high, (0.4 * wide) / R);
-  const { run, row, model } = each;
-  const balls = Array.from(run.y.subarray(row * run.n, (row + 1) * run.n), (height) => {
+// Heights of a model's balls now.
+const nowOf = ({ run, row }) => Array.from(run.y.subarray(row * run.n, (row + 1) * run.n));
+
+/* What a picture of such a width and height shows: {floor, scale, high}. Where a ball flies off,
+ * the picture shows all that is above the table, and how high it is. */
+function sightOf(shown, wide, floor, calm) {
+  const far = Math.max(...shown.flatMap(nowOf).filter(Number.isFinite), 0);
+  const high = Math.max(calm, 1.2 * far);
+  return { floor, high, wide, scale: Math.min((floor - 8) / high, (0.4 * wide) / R), far: high > calm };
+}
+
+function ruler({ floor, scale, high, far }) {
+  const mark = (height) => {
     const y = floor - height * scale;
-    if (y < -R * scale) return arrow("weight", x, 58, 0, -50);
-    return y < floor + 2 * R * scale ? ball(model, x, y, R * scale) : "";
+    return line(0, y, 6, y, "axis") + label(`${number(height, 2)} m`, 9, y + 5, "start", "tick");
+  };
+  return far ? line(0, 8, 0, floor, "axis") + steps(0, high, 4).slice(1).map(mark).join("") : "";
+}
+
+const radiusOf = ({ scale }) => Math.max(4, R * scale);
+
+// One model's balls over the table, and where they are.
+function lane(each, k, told, sight) {
+  const { floor, scale, wide } = sight;
+  const x = wide * (k + 0.5);
+  const { row, model } = each;
+  const balls = nowOf(each).map((height) => {
+    const y = floor - height * scale;
+    if (y > floor + 2 * radiusOf(sight)) return arrow("weight", x, floor - 54, 0, 50);
+    return Number.isFinite(y) ? ball(model, x, y, radiusOf(sight)) : "";
   });
   const push = row > 0 ? Math.min(40, 14 * Math.sqrt(Math.max(each.push[row], 0))) : 0;
   return [
@@ -111,6 +135,28 @@ function lane(each, k, told, wide, floor, high) {
     label(model, x, floor + GROUND + 16, "middle"),
     label(told, x, floor + GROUND + 35, "middle", "tick"),
   ].join("");
+}
+
+/* Every ball is a handle. Where one is held all models begin anew, each with its balls so high, and
+ * let them fall when it is let go. */
+function handlesOf(view, shown, sight, [least, most]) {
+  const { floor, scale, wide } = sight;
+  const start = sceneOf(startOf(view.values.scene || "drop")).y;
+  const one = (each, k) => (height, i) => {
+    const y = within(4, floor - height * scale, floor + radiusOf(sight));
+    const range = {
+      r: Math.max(14, radiusOf(sight)),
+      low: least,
+      high: most - start[start.length - 1],
+      step: 0.02,
+      at: (toX, toY) => (floor - toY) / scale - start[i],
+      set: (lift) => Object.assign(view.own, { lift: Number(lift.toFixed(4)), from: 0, time: 0 }),
+      release: view.play,
+    };
+    const [name, text] = [`${each.model}, ball ${i + 1}`, `${number(height - R, 2)} m above`];
+    return { ...grip(view, "lift", wide * (k + 0.5), y, name, text, range), name };
+  };
+  return shown.flatMap((each, k) => nowOf(each).map(one(each, k)));
 }
 
 // A plain axis around the values from low to high, and a little more.
@@ -163,23 +209,26 @@ function draw(view) {
   const height = Math.min(180, Math.round(0.42 * view.height)); // px, of the chart
   const [floor, wide] = [view.height - height - BELOW, view.width / shown.length];
   const [, top] = range(shown, ({ run }) => [run.y, run.n]);
-  const high = Math.min(Math.max(3.2 * R, top + 1.2 * R), 1.3);
+  // while a ball is held the picture does not change under the hand
+  if (!view.grabbed || !view.own.calm) view.own.calm = within(3.2 * R, top + 1.2 * R, HIGHEST);
+  const sight = sightOf(shown, wide, floor, view.own.calm);
   const { svg, sx, box } = chartOf(view, shown, height);
   const time = timeOf(view);
   const text = `${time.toFixed(3)} s`;
   const { from, to } = view.own;
-  const sight = { low: from, high: to, step: view.get("dt"), at: sx.back, get: () => timeOf(view) };
+  const times = { low: from, high: to, step: view.get("dt"), at: sx.back, get: () => timeOf(view) };
   const place = (each, until) => (each.waits ? until : placeWords(each));
   const waiting = (each) => `waits for your bet in ${each.waits}`;
   const told = shown.map((each) => `${each.model} ${place(each, waiting(each))}`);
   const touching = shown.filter((each) => view.running && each.push[each.row] > 0);
-  const drawn = shown.map((each, k) =>
-    lane(each, k, place(each, "bet first"), wide, floor, high),
-  );
+  const drawn = shown.map((each, k) => lane(each, k, place(each, "bet first"), sight));
   return {
-    svg: table(0, floor, view.width, GROUND) + drawn.join("") + svg,
+    svg: table(0, floor, view.width, GROUND) + drawn.join("") + ruler(sight) + svg,
     words: `${text}: ${told.join(", ")}.`,
-    handles: [grip(view, "time", sx(time), box.bottom - 14, "the time shown", text, sight)],
+    handles: [
+      ...handlesOf(view, shown, sight, [LEAST, HIGHEST]),
+      grip(view, "time", sx(time), box.bottom - 14, "the time shown", text, times),
+    ],
     lit: touching.map((each) => LINES[each.model]),
   };
 }
@@ -188,7 +237,7 @@ const lanes = {
   title: "Four models, one table",
   height: 560,
   knobs: "dt stiffness damping baumgarte iters warm impedance timeconst restitution".split(" "),
-  start: () => ({ models: MODELS, chart: "gap", from: 0.3, to: 1.2, time: null }),
+  start: () => ({ models: MODELS, chart: "gap", from: 0.3, to: 1.2, time: null, lift: 0 }),
   clock({ own: { from, to } }) {
     const slower = number(SECONDS / (to - from), 2);
     return { from, end: to, rate: (to - from) / SECONDS, name: `Play, ${slower} × slower` };
@@ -202,6 +251,7 @@ const lanes = {
   // What the text asks to see: {models, chart, from, to} as an address has them.
   look(view, { models, chart, from, to }, anew) {
     const { own } = view;
+    own.lift = 0;
     const named = (model) => !models || models.split(",").includes(model);
     if (models || anew) own.models = MODELS.filter(named);
     if (chart || anew) own.chart = chart || "gap";
@@ -221,28 +271,36 @@ const lanes = {
 
 // ---- the question: what force does the table apply?
 
-const ASKED = { models: ["penalty", "lcp"], from: 0.3, to: 1.6 }; // s
+const ASKED = { models: ["penalty", "lcp"], to: 1.6 }; // s
+const FROM = ({ lift }) => (lift ? 0 : 0.3); // s
 const FIRST = 0.39; // s, of the still
 const SLOW = 6; // times slower than it happens
 
 // Both runs are the chapter's own drop, whatever is set elsewhere: the bet is about them.
-const askedOf = ({ own, open }) =>
-  shownOf({ own: { ...ASKED, time: own.time ?? FIRST }, values: startOf("drop"), open });
+const timeOfTwo = ({ own }) => own.time ?? (own.lift ? 0 : FIRST);
+function askedOf({ own, open }) {
+  const asked = { ...ASKED, from: FROM(own), time: timeOfTwo({ own }), lift: own.lift };
+  return shownOf({ own: asked, values: startOf("drop"), open });
+}
 
 function drawTwo(view) {
   const shown = askedOf(view);
   const [floor, wide] = [view.height - BELOW, view.width / 2];
   const high = ((floor - 8) * R) / Math.min(74, 0.28 * wide); // a radius is 74 px
+  const sight = { floor, wide, high, scale: (floor - 8) / high };
+  const held = shown.filter((each) => nowOf(each)[0] < high);
   const place = (each) => placeWords(each, 5e-5, LONG);
   const told = (each) => (each.waits ? "and now?" : place(each));
-  const drawn = shown.map((each, k) => lane(each, k, told(each), wide, floor, high));
+  const drawn = shown.map((each, k) => lane(each, k, told(each), sight));
   const places = `${shown.map((each) => `${each.model} is ${place(each)}`).join(", ")}.`;
   const asked = "Both are about to touch. What happens now is your first bet.";
-  const now = `At ${(view.own.time ?? FIRST).toFixed(2)} s`;
+  const now = `At ${timeOfTwo(view).toFixed(2)} s`;
   const landed = shown.every(({ row, landing }) => row >= landing - 1);
   return {
     svg: table(0, floor, view.width, GROUND) + drawn.join(""),
     words: landed ? `${now}: ${view.open("ex1") ? places : asked}` : "Both fall side by side.",
+    // they are held above the table, so that no bet is told
+    handles: handlesOf(view, held, sight, [1.3 * R - START, high - R]),
   };
 }
 
@@ -253,11 +311,11 @@ const two = {
     "differ in one thing: the force that the table applies.",
   height: 346,
   narrow: 280,
-  start: () => ({ time: null }),
+  start: () => ({ time: null, lift: 0 }),
   clock(view) {
     const [{ landing, run }] = askedOf(view);
     const end = view.open("ex1") ? ASKED.to : (landing + 2) * run.dt;
-    return { from: ASKED.from, end, rate: 1 / SLOW, name: "Drop both" };
+    return { from: FROM(view.own), end, rate: 1 / SLOW, name: "Drop both" };
   },
   draw: drawTwo,
 };

@@ -30,7 +30,7 @@ function draw(view) {
   const at = (toX, toY) => Math.atan2(toX - x, Math.max(1, y - toY));
   const [start, end, said] = [angle, leaves, predicted].map(degrees);
   const text = `starts at ${start}`;
-  const range = { r: 0.8 * R * scale, low: 0.05, high: 1.2, step: 0.03, at, release: view.play };
+  const range = { r: R * scale, low: 0.05, high: 1.2, step: 0.03, at, release: view.play };
   return {
     svg: [
       ball("fixed", x, y, R * scale, "body"),

@@ -1,7 +1,7 @@
 /* The sweeps, contact after contact: a stack of three, its impulses as bars, the clamp at zero. */
 import { arrow, axis, ball, circle, label, number, plural, rect, table } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
-import { beside, grip, kept, R, scene } from "../parts.js";
+import { beside, grip, kept, R, scene, wholly } from "../parts.js";
 
 const [COUNT, PX, SWEEPS] = [3, 34, 20];
 const LAST = COUNT * SWEEPS;
@@ -9,12 +9,12 @@ const UNIT = 24; // px of an arrow for a speed of g dt
 const names = ["ball 1 on the table", "ball 2 on ball 1", "ball 3 on ball 2"];
 
 /* What the sweeps do, contact by contact: [{contact, wanted, lam, vy}], impulses in m g dt, speeds
- * in g dt. All balls have fallen for one step; the uppermost has the speed `top` besides. */
-const course = kept((top) => {
+ * in g dt. All balls have fallen for one step, and each has a speed besides. */
+const course = kept((...besides) => {
   const balls = scene([R, 3 * R, 5 * R]);
   const contacts = names.map((_, i) => ({ i, j: i - 1, nx: 0, ny: 1, depth: 0 }));
   const rows = makeRows(contacts, balls.mass, [0, 0, 0], [0, 0, 0]);
-  const [vx, vy] = [[0, 0, 0], [-1, -1, top - 1]];
+  const [vx, vy] = [[0, 0, 0], besides.map((v) => v - 1)];
   const seen = [{ contact: null, wanted: 0, lam: [0, 0, 0], vy: vy.slice() }];
   for (let at = 0; at < LAST; at++) {
     let wanted = 0;
@@ -47,8 +47,8 @@ function saying({ contact, wanted, lam }, at) {
 const timeOf = (view) => Math.floor(view.own.time ?? 0); // contacts that have been mended
 
 function draw(view) {
-  const { top } = view.own;
-  const [at, seen] = [timeOf(view), course(top)];
+  const speeds = ["low", "middle", "top"];
+  const [at, seen] = [timeOf(view), course(...speeds.map((name) => view.own[name]))];
   const { contact, lam, vy } = seen[at];
   const heightOf = (c) => view.height - 42 - 2 * c * PX; // of a contact
   const chart = {
@@ -69,18 +69,25 @@ function draw(view) {
   const carrying = (wanted) => seen.findIndex((each) => each.lam[0] >= wanted - 0.02);
   const until = (x) => (carrying(sx.back(x)) + LAST + 1) % (LAST + 1);
   const sweep = { low: 0, high: LAST, step: 1, at: until, get: () => timeOf(view) };
-  const thrownAt = (x, y) => 1 + (heightOf(2) - PX - y) / UNIT;
-  const range = { low: -1, high: 3, step: 0.1, at: thrownAt };
   const bottom = [sx(lam[0]), heightOf(0) - 12];
-  const [mended, speed] = [`${plural(at, "contact")} mended`, `${number(top - 1, 2)} g dt`];
-  const tip = [0.8 * middle + PX + 12, heightOf(2) - PX - UNIT * vy[2]];
+  const mended = `${plural(at, "contact")} mended`;
+  const tips = speeds.map((name, i) => {
+    const middleOf = heightOf(i) - PX;
+    const range = { low: -1, high: 3, step: 0.1, at: (x, y) => 1 + (middleOf - y) / UNIT };
+    const tip = [0.8 * middle + PX + 12, middleOf - UNIT * vy[i]];
+    const told = `the speed of ball ${i + 1} before the sweeps`;
+    return grip(view, name, ...tip, told, `${number(view.own[name] - 1, 2)} g dt`, range);
+  });
+  const whole = (tip, i) =>
+    wholly(tip, `ball-${i + 1}`, 0.8 * middle, heightOf(i) - PX, PX);
   const carried = lam.map((each) => number(each)).join(", ");
   return {
     svg,
     words: `${saying(seen[at], at)}. The contacts carry ${carried} m g dt.`,
     handles: [
       grip(view, "time", ...bottom, "the sweeps", mended, sweep),
-      grip(view, "top", ...tip, "the uppermost ball’s speed before the sweeps", speed, range),
+      ...tips.map(whole),
+      tips[2],
     ],
     lit: at ? [["sweep", "lam = max"]] : [],
   };
@@ -92,7 +99,7 @@ export const figure = {
     "Each contact mends itself and disturbs its neighbours; drag the uppermost ball’s speed " +
     "upwards, play, and the clamp stops its contact from pulling.",
   height: 260,
-  start: () => ({ time: COUNT, top: 0 }),
+  start: () => ({ time: COUNT, low: 0, middle: 0, top: 0 }),
   clock: () => ({ end: LAST, rate: 2, name: "Play" }),
   buttons: [["One contact on", (view) => (view.own.time = (timeOf(view) + 1) % (LAST + 1))]],
   draw,
