@@ -138,12 +138,15 @@ def test_every_fault_of_the_chapter_is_named_with_its_line_and_repair(project):
 
 def test_markers_that_are_wrong_and_code_outside_of_regions_are_named(project):
     script = project / "contact.py"
-    edit(script, "# --- region: flight ---", "# --- region flight ---\nlost = 1")
+    edit(script, "# --- region: flight ---", "# --- region flight ---")
+    edit(script, "# --- region: setup ---", "lost = 1\n# --- region: setup ---")
     text = script.read_text("utf-8")
     line = text[: text.index("# --- region flight ---")].count("\n") + 1
     printed = run_gate(project).stdout
-    assert f"contact.py:{line}: '# --- region flight ---' outside any region" in printed
-    assert f"contact.py:{line + 1}: code outside any region: 'lost = 1'" in printed
+    wrong = "'# --- region flight ---' inside region skips, where it does not belong"
+    assert f"contact.py:{line}: {wrong}" in printed
+    line = text[: text.index("lost = 1")].count("\n") + 1
+    assert f"contact.py:{line}: code outside any region: 'lost = 1'" in printed
     assert "includes flight, and contact.py has no such region" in printed
 
 
