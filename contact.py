@@ -705,7 +705,8 @@ def beside(name: str):
     try:
         return importlib.import_module(f"curriculum.{name}")
     except ImportError as error:
-        if error.name is None or f"curriculum.{name}.".startswith(f"{error.name}."):
+        absent = f"curriculum.{name}.".startswith(f"{error.name}.")
+        if error.name is None or (isinstance(error, ModuleNotFoundError) and absent):
             return None
         raise
 
