@@ -8,7 +8,9 @@ Beside plain Markdown the chapter may hold
   <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. Other comments vanish;
 - <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
   from there on, by the store's quantities and `models`, `chart` (gap, push, energy), `from`, `to`;
-  <!-- show: none --> lets it step back;
+  <!-- show: none --> lets it step back, and may set quantities, too: <!-- show: none&dt=0.014 -->.
+  A passage goes from a heading or such a mark to the next. Its quantities are those that its mark
+  sets, and else contact.py's own; what the reader changes in one stays there;
 - links that set the same, [words](try:scene=drop&dt=0.03), and numbers to drag, [0.002](drag:dt).
 
 Nothing on the page tells the answer of a bet before the reader has bet or has asked to be shown. A
@@ -96,10 +98,16 @@ def link_open(self, tokens, index, options, env):
     token = tokens[index]
     scheme, _, rest = token.attrGet("href").partition(":")
     if scheme == "try":
-        check(asked(rest), **env)
+        check(asked(rest), env["line"], env["ranges"])
         token.attrs = {"class": "try", "href": f"?{rest}"}
     elif scheme == "drag":
-        check([(rest, tokens[index + 1].content)], **env, others={})
+        held = tokens[index + 1].content
+        check([(rest, held)], env["line"], env["ranges"], others={})
+        if float(held.replace(",", "")) != env["home"].get(rest, float("nan")):
+            raise ValueError(
+                f"{CHAPTER}:{env['line']}: {held} is to be dragged, and here {rest} is "
+                f"{env['home'].get(rest)}; set it before: <!-- show: none&{rest}={held} -->"
+            )
         token.attrs = {"class": "drag", "data-knob": rest}
     return self.renderToken(tokens, index, options, env)
 
@@ -149,12 +157,14 @@ def inline(text):
 # ---- the parts of the chapter
 
 
-def blocks(text, ranges):
+def blocks(text, ranges, starts=None):
     """The chapter as a list of (kind, value): html, heading (level, id, html), show, slot, or
-    include (region). `ranges` are those of what the text may set, {name: (low, high)}."""
-    md, out = parser(), []
+    include (region). `ranges` are those of what the text may set, {name: (low, high)}; `starts`
+    all values of a section, by the scene that it shows."""
+    md, out, starts = parser(), [], starts or {"drop": {}}
+    home = starts["drop"]
     for node in SyntaxTreeNode(md.parse(text)).children:
-        env = {"line": node.map[0] + 1, "ranges": ranges}
+        env = {"line": node.map[0] + 1, "ranges": ranges, "home": home}
         shown = COMMENT.sub("", md.renderer.render(node.to_tokens(), md.options, env))
         include = node.type == "fence" and INCLUDE.fullmatch(node.content.strip())
         if include:
@@ -163,6 +173,7 @@ def blocks(text, ranges):
             code = escape(node.content)
             out.append(("html", f'<pre class="shell" tabindex="0"><code>{code}</code></pre>'))
         elif node.type == "heading":
+            home = starts["drop"]
             inner = re.sub(r"^<h\d[^>]*>|</h\d>\s*$", "", shown)
             out.append(("heading", (int(node.tag[1]), node.attrs["id"], inner)))
         elif node.type == "table":
@@ -170,10 +181,24 @@ def blocks(text, ranges):
             around = '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
             out.append(("html", f"{around}{held}</div>"))
         elif node.type == "html_block":
-            out += slots(node.content, **env)
+            for part in slots(node.content, env["line"], ranges):
+                home = home_of(part[1], starts) if part[0] == "show" else home
+                out.append(part)
         else:
             out.append(("html", shown))
     return out
+
+
+def changes_of(show):
+    """What a mark of what the text shows sets, {name: value}."""
+    pairs = parse_qsl(show)
+    return {name: float(v) if re.fullmatch(r"[\d.e+-]+", v) else v for name, v in pairs}
+
+
+def home_of(show, starts):
+    """The values of a passage that shows this."""
+    changes = changes_of(show)
+    return starts[changes.get("scene", "drop")] | changes
 
 
 def slots(text, line, ranges):
@@ -184,7 +209,7 @@ def slots(text, line, ranges):
         )
     for kind, name in SLOT.findall(text):
         if kind == "show":
-            check(asked(name) if name != "none" else [], line, ranges)
+            check([pair for pair in asked(name) if pair[0] != "none"], line, ranges)
             yield "show", name
         else:
             yield "slot", f"{kind}:{name}" if name else kind
@@ -204,8 +229,8 @@ def assemble(parts, fill, macros, bets):
             segments.append([])
         segments[-1].append((kind, value))
     for (kind, value), *rest in filter(None, segments):
-        inner = [fill(*part) for part in rest]
         html.append(fill(kind, value))
+        inner = [fill(*part) for part in rest]
         if ("slot", "figure:puzzle") in rest:  # what follows it is its answer
             at = rest.index(("slot", "figure:puzzle")) + 1
             inner[at:] = [macros.veil("puzzle"), *inner[at:], "</div></div>"]

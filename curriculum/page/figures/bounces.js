@@ -50,6 +50,5 @@ export const figure = {
     "There are infinitely many bounces, and they are over at a finite time: drag the top of the " +
     "first.",
   height: 250,
-  shows: { scene: "bounce", restitution: 0.7 },
   draw,
 };
