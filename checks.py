@@ -9,7 +9,6 @@ fill that is wrong fails with what went in, what came out, what was expected, an
 """
 
 import argparse
-import importlib
 import subprocess
 import sys
 import time
@@ -18,10 +17,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent
 sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
-from kit import predict, trials  # noqa: E402
-from kit.progress import FILES, done, practise  # noqa: E402
+from kit import predict  # noqa: E402
+from kit.progress import FILES, practise  # noqa: E402
 
-from curriculum.commands import command, missing  # noqa: E402
+from curriculum.commands import missing  # noqa: E402
 
 try:
     import pytest
@@ -29,28 +28,10 @@ except ModuleNotFoundError:
     sys.exit(f"checks.py: {missing('pytest')}")
 
 
-def load(file):
-    """The module of an exercise; a file that is no Python fails its own checks and no others."""
-    try:
-        return importlib.import_module(Path(file).stem)
-    except (NameError, SyntaxError) as error:
-        hint = f" ({error.name} needs quotes around it)" if type(error) is NameError else ""
-        trouble = f"{type(error).__name__}: {error}{hint}"
-    pytest.fail(f"{file} cannot be read: {trouble}", pytrace=False)
-
-
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", FILES, ids=lambda name: Path(FILES[name]).stem)
 def test_exercise(name):
     """Skip what is still to be done, and fail what is wrong. A bet is done once it was read."""
-    exercise = load(FILES[name])
-    if name in predict.ANSWERS:
-        words = predict.missing(exercise)
-        if words is None and name not in done():
-            words = f"the bet is made; now read what happens: {command(exercise.__file__)}"
-        state = "blank" if words else "right"
-    else:
-        state, found = trials.judged(name, exercise)
-        words = "\n\n".join(why for _, each, why in found if each == state)
+    state, words = predict.checked(name, ROOT / FILES[name])
     if state == "blank":
         pytest.skip(f"{name}: {words}")
     if state == "wrong":

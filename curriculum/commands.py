@@ -1,25 +1,76 @@
 """Commands as one types them here: how to run a file, how to install what is missing."""
 
+import contextlib
 import os
 import shlex
+import shutil
 import sys
+import sysconfig
 from argparse import ArgumentTypeError
+from importlib.util import find_spec
 from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+OURS = ("checks", "contact", "curriculum", "exercises")  # a slip in these is no missing package
 
 
 def command(*words):
     """A command for the Python that is running, quoted for this system's shell."""
-    words = [near(str(word)) for word in (sys.executable, *words)]
+    python = ("uv", "run", "python") if "UV" in os.environ else (sys.executable,)  # uv run sets it
+    return quoted(*python, *words)
+
+
+def quoted(*words):
+    """The words as one line for this system's shell, paths as short as they can be."""
+    words = [near(str(word)) for word in words]
     if os.name != "nt":
         return shlex.join(words)
     import subprocess  # slow, so only where it is needed
 
-    return subprocess.list2cmdline(words)
+    line = [subprocess.list2cmdline([word]) for word in words]
+    return " ".join(f'"{word}"' if word[0] != '"' and "[" in word else word for word in line)
 
 
-def missing(package):
-    """One line that says how to install a package that is not there."""
-    return f"{package} is missing; install it: {command('-m', 'pip', 'install', package)}"
+def missing(package, extra=None):
+    """One line that says how to install a package that is not there, or the extra that brings it.
+
+    uv's environments have no pip: there it is the same run again, with the package. The system's
+    own Python often refuses to be changed: there it is an environment of one's own.
+    """
+    wanted = ("-e", f"{near(str(ROOT))}[{extra}]") if extra else (package,)
+    system = sys.prefix == sys.base_prefix
+    refused = system and Path(sysconfig.get_path("stdlib"), "EXTERNALLY-MANAGED").exists()
+    pip = find_spec("pip") is not None and not refused
+    if "UV" in os.environ or not pip and shutil.which("uv"):
+        more = ("--extra", extra) if extra else ("--with", package)
+        line = quoted("uv", "run", *more, "python", *this_run())
+    elif pip:
+        line = quoted(sys.executable, "-m", "pip", "install", *wanted)
+    else:
+        line = f"python3 -m venv .venv && {quoted('.venv/bin/pip', 'install', *wanted)}"
+    return f"{package} is missing; install it: {line}"
+
+
+def this_run():
+    """What one typed after `python` to start this program."""
+    spec = sys.modules["__main__"].__spec__
+    start = ("-m", spec.name.removesuffix(".__main__")) if spec else (sys.argv[0],)
+    return *start, *sys.argv[1:]
+
+
+@contextlib.contextmanager
+def needs(extra):
+    """Within it, a package that is missing ends the program with the line that brings it."""
+    try:
+        import numpy  # noqa: F401  # first, or contact.py names it without the extra
+
+        yield
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if not package or package in OURS:
+            raise
+        print(missing(package, extra), file=sys.stderr)
+        sys.exit(2)
 
 
 def near(word):

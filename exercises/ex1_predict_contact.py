@@ -8,7 +8,7 @@ moment and at the end, in ball radii r.
 Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
 
     python exercises/ex1_predict_contact.py     # add --hint 1 (2, 3) for a question that helps
-    python checks.py -k ex1
+    python checks.py -k ex1_
 """
 
 from kit import predict

@@ -25,12 +25,15 @@ PREDICTION = None  # "A", "B" or "C"
 WHY = ""  # your sentence, see WHY_PROMPT
 
 
+SHORT, LONG = 0.002, 0.03  # s
+
+
 def measure():
     """The drop at both steps, by both models, and the critical step: {name: a number}."""
     scene = contact.build_scene("drop")
-    usual = predict.measured(scene, dt=0.002, steps=2000, usual="energy_excess")
+    usual = predict.measured(scene, dt=SHORT, steps=2000, usual="energy_excess")
     longer = predict.measured(
-        scene, dt=0.03, steps=2000, long="energy_excess", long_depth="max_penetration_frac"
+        scene, dt=LONG, steps=2000, long="energy_excess", long_depth="max_penetration_frac"
     )
     return usual | longer | {"limit": contact.critical_dt(1.0, 1e4, scene.damping)}
 
@@ -38,7 +41,7 @@ def measure():
 TABLE = (
     "energy gained",
     ("penalty", "lcp"),
-    {"usual": "dt = 0.002 s", "long": "dt = 0.03 s"},
+    {"usual": f"dt = {SHORT} s", "long": f"dt = {LONG} s"},
     "{:.4g}",
 )
 

@@ -2,11 +2,12 @@
 
 A cup, here a ball of 1 kg, stands on a table. Two fingers of 0.2 kg close on it from left and right
 and squeeze it with 20 N each, for one second. This is the gripper from the first page of the
-chapter, the one that trembles. Make it hold still: choose a model, its numbers and the time step so
-that in the last quarter of the second nothing overlaps by more than a thousandth of a radius, and
-the deepest overlap trembles by less than a hundredth of that, with at most 2,000 steps for the
-second. There is more than one way. Before you try numbers, estimate: what do 20 N do to a spring,
-and how light is the lightest thing that hangs on it?
+chapter, and it trembles: set MODEL = "penalty", leave the numbers as they are, and see by how much.
+Then make it hold still: choose a model, its numbers and the time step so that in the last quarter
+of the second nothing overlaps by more than a thousandth of a radius, and the deepest overlap varies
+by less than a hundredth of that, with at most 2,000 steps for the second. There is more than one
+way. Before you try numbers, estimate: what do 20 N do to a spring, and how light is the lightest
+thing that hangs on it?
 
     python exercises/ex8_two_fingers.py         # what your choice does, and what stops it
     python exercises/ex8_two_fingers.py --hint 1    # 1 to 3
@@ -16,7 +17,7 @@ and how light is the lightest thing that hangs on it?
 from kit import predict
 
 MODEL = None  # "penalty" or "soft"
-DT = 0.002  # s
+DT = 0.004  # s
 
 STIFFNESS = 1e4  # N/m, of penalty
 DAMPING = 80.0  # N s/m, of penalty

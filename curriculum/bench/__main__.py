@@ -22,8 +22,11 @@ from pathlib import Path
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
-from curriculum.bench import accuracy, piles, report, skips, solvers
-from curriculum.measured import results
+from curriculum.commands import needs
+
+with needs("bench"):
+    from curriculum.bench import accuracy, piles, report, skips, solvers
+    from curriculum.measured import results
 
 PARTS = {
     "accuracy": accuracy.measure,
@@ -31,8 +34,10 @@ PARTS = {
     "solvers": solvers.measure,
     "skip": skips.measure,
 }
-MADE_BY = {name: [f"curriculum/bench/{name}.py"] for name in ("accuracy", "solvers")} | {
+MADE_BY = {  # the modules of each section; what they import of bench/ is found
+    "accuracy": ["curriculum/bench/accuracy.py"],
     "pile": ["curriculum/bench/piles.py"],
+    "solvers": ["curriculum/bench/solvers.py"],
     "skip": ["curriculum/bench/skips.py", "contact.py"],  # which it times as whole processes
 }
 FULL = results.ROOT / results.FOLDERS["bench"]
@@ -58,8 +63,8 @@ def main(argv=None):
             results.save(folder, name, PARTS[name](args.quick), origin)
             print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
         sections = json.loads((folder / results.NAME).read_text("utf-8"))
-        for wanted, found, met in report.goals(sections):
-            print(f"{'met   ' if met else 'MISSED'} {wanted}: {found}")
+        for wanted, case, found, met in report.goals(sections):
+            print(f"{'met   ' if met else 'MISSED'} {wanted}; {case}: {found}")
         report.write(folder, sections)
         if folder == FULL:
             results.write_block("bench", report.readme(sections))

@@ -1,11 +1,14 @@
-"""Run time against error: every problem, contestant and time step, over several starts.
+"""Run time against error: every problem, contestant and step, over several starts.
 
-A point is one problem, contestant and dt. Its errors are medians over the starts; its times are
-medians over fresh processes, with least and greatest:
+A point is one problem and contestant, looked at every dt, after so many substeps. At 2 ms all take
+1, 4 and 16, their own inner substeps counted: equal work. Its errors are medians over the starts,
+its times medians over fresh processes, with least and greatest, every height read at each look:
 
-    read    the whole run with every height read after every step: the same for all, and plotted
-    bare    the engines' stepping loop alone, nothing read. contact.py's models have no such form:
-            they always record
+    awake   every step is taken, by everyone; this is what is plotted, and compared
+    user    as a user gets it: balls may sleep where an engine has that, contact.py skips steps
+
+The best of a family at equal work takes at most 16 substeps in 2 ms; at equal time it is any
+setting at any step that stays, awake, within so many microseconds a ball for each 2 ms of motion.
 """
 
 import statistics
@@ -15,66 +18,17 @@ import numpy as np
 
 import contact
 from curriculum.bench import engines, problems, timing
-from curriculum.bench.engines import Setting
 from curriculum.run import pool
 
 ERRORS = ("error", "final_error", "energy_error", "depth")
+WAYS = ("awake", "user")
+WORK, BUDGETS, BUDGET = 16, (1, 10, 100), 10  # substeps in 2 ms; us a ball in 2 ms
 PROCESSES = 3
-ENOUGH = 0.1  # s: once the runs of a cell have taken so long, it is not timed again
-QUICK = dict(names=("drop", "stack", "slide"), dts=(0.002, 0.008), starts=2, processes=1)
-
-
-class Model(engines.Session):
-    """A model of contact.py: as run_model runs it, or by the compiled twin; steps cut in parts.
-
-    It always records, so it has no bare form.
-    """
-
-    def __init__(self, scene, dt, model, compiled=False, substeps=1, **knobs):
-        self.given, self.substeps = (model, scene, dt / substeps), substeps
-        self.compiled, self.settings = compiled, contact.Settings(**knobs)
-
-    def states(self, n):
-        if self.compiled:
-            from curriculum import fast
-
-            _, q, v, _ = fast.simulate(*self.given, n * self.substeps, self.settings)
-        else:
-            _, q, v, _ = contact.run_model(*self.given, n * self.substeps, self.settings)
-        return q[:: self.substeps], v[:: self.substeps]
-
-    trace = states
-
-
-def ours(model, words, *cut, only=(), adaptive=False, **knobs):
-    """A setting of a model of contact.py."""
-
-    def build(scene, dt):
-        return Model(scene, dt, model, *cut, **knobs)
-
-    return Setting(model, words, build, adaptive, only=only)
-
-
-ANSWERED = ("drop", "bounce", "stack", "slide", "elastic")  # not by exact itself
-MANY = ("stack", "pile")  # where contacts share balls, and the number of sweeps matters
-STIFF = dict(solref=(1e-9, 5.0), solimp=contact.HARD)
-CONTESTANTS = (
-    ours("penalty", "k 1e4"),
-    ours("lcp", "20 sweeps"),
-    ours("lcp", "10 sweeps", only=MANY, iters=10),
-    ours("lcp", "100 sweeps", only=MANY, iters=100),
-    ours("lcp", "20 sweeps, warm", only=MANY, warm=0.8),
-    ours("lcp", "20 sweeps, 4 substeps", substeps=4),
-    ours("lcp", "compiled, 20 sweeps", True),
-    ours("lcp", "compiled, 20 sweeps, warm", True, only=MANY, warm=0.8),
-    ours("lcp", "compiled, 20 sweeps, 4 substeps", True, 4),
-    ours("lcp", "compiled, 20 sweeps, 16 substeps", True, 16),
-    ours("lcp", "compiled, 5 sweeps, 16 substeps, warm", True, 16, only=MANY, iters=5, warm=0.8),
-    ours("soft", "as MuJoCo ships it, or direct where e > 0"),
-    ours("soft", "time constant 2 dt, ratio 5, d 0.9999", only=("drop", "slide", *MANY), **STIFF),
-    ours("exact", "event to event", only=ANSWERED, adaptive=True),
-    *engines.SETTINGS,
-)
+ENOUGH = 0.03  # s: once the runs of a point have taken so long, it is not timed again
+QUICK = dict(names=("drop", "slide"), steps=((0.002, 1), (0.002, 4)), starts=1, processes=1)
+STEPS = tuple((problems.REFERENCE_DT, substeps) for substeps in problems.SUBSTEPS)
+STEPS += tuple((dt, 1) for dt in problems.COARSER)
+CONTESTANTS = engines.OURS + engines.SETTINGS
 BY_NAME = {contestant.name: contestant for contestant in CONTESTANTS}
 LABELS = {name: name for name in contact.MODELS} | {
     name: about[0] for name, about in engines.ENGINES.items()
@@ -82,13 +36,13 @@ LABELS = {name: name for name in contact.MODELS} | {
 
 
 def measure(quick=False):
-    """The whole benchmark as one section: problems, points, headline, what is left out."""
+    """The whole benchmark as one section: problems, points, the best, what is left out."""
     chosen = [p for p in problems.PROBLEMS if not quick or p.name in QUICK["names"]]
     jobs = list(cells(chosen, quick))
     print(f"accuracy: {len(jobs)} points, their errors first, then their times", flush=True)
     errors = pool.spread(errors_of, jobs, "errors")
     times = timing.in_fresh_processes(
-        times_of, jobs, QUICK["processes"] if quick else PROCESSES, "run times"
+        times_of, jobs, QUICK["processes"] if quick else PROCESSES, "run times", is_rare
     )
     points = [point(*each) for each in zip(jobs, errors, times)]
     return dict(
@@ -97,51 +51,77 @@ def measure(quick=False):
         },
         points=packed(points),
         headline=headline(points),
+        in_time=headline(points, BUDGET),
         left_out=left_out(chosen),
     )
 
 
 def cells(chosen, quick):
-    """(problem, contestant, dt, starts) of every point, by names."""
+    """(problem, contestant, dt, substeps, starts) of every point, by names."""
     for problem in chosen:
         for c in CONTESTANTS:
             kept_out = c.only and problem.name not in c.only or quick and c.engine == "drake"
             if kept_out or c.refuses(problem.build(0)):
                 continue
-            for dt in (problems.REFERENCE_DT,) if c.adaptive else problem.dts:
-                if not quick or dt in QUICK["dts"]:
-                    yield (problem.name, c.name, dt, QUICK["starts"] if quick else problem.starts)
+            starts = 1 if c.slow or quick else problem.starts
+            for dt, substeps in QUICK["steps"] if quick else STEPS:
+                if (
+                    c.adaptive
+                    and (dt, substeps) != STEPS[0]
+                    or "Python" in c.words
+                    and substeps > 1
+                ):
+                    continue
+                if substeps == 1 or substeps * c.inner <= WORK:
+                    yield problem.name, c.name, dt, substeps, starts
+
+
+def is_rare(job):
+    """Whether one process has to be enough."""
+    return BY_NAME[job[1]].slow
+
+
+def sleeps(job):
+    """Whether a point is measured as a user gets it, too."""
+    return BY_NAME[job[1]].sleeps and job[2] == problems.REFERENCE_DT
 
 
 def errors_of(job):
-    """The errors of a cell: a list of problems.quality's dicts, one a start."""
-    problem, contestant, dt, starts = job
-    problem, found = problems.BY_NAME[problem], []
+    """The errors of a point: a list of problems.quality's dicts, one a start."""
+    name, contestant, dt, substeps, starts = job
+    problem, found = problems.BY_NAME[name], []
     for start in range(starts):
         scene = problem.build(start)
-        states = BY_NAME[contestant].build(scene, dt).states(problem.steps(dt))
-        run = contact.Run(np.arange(len(states[0])) * dt, *states)
-        found.append(problems.quality(problem, scene, run))
+        for sleep in (False, True) if sleeps(job) else (False,):
+            states = BY_NAME[contestant].build(scene, dt, substeps, sleep).states(problem.steps(dt))
+            run = contact.Run(np.arange(len(states[0])) * dt, *states)
+            quality = problems.quality(problem, scene, run)
+            if sleep:
+                found[-1]["user_error"] = quality["error"]
+            else:
+                found.append(quality)
     return found
 
 
-def seconds_of(name, way, scene, dt, steps):
-    """CPU seconds that a contestant takes for these steps, without its preparation."""
-    session = BY_NAME[name].build(scene, dt)
-    return timing.timed(partial(session.trace if way == "read" else session.advance, steps))
+def seconds_of(job, sleep, steps):
+    """CPU seconds that a point takes for these looks, without its preparation."""
+    problem, name, dt, substeps, _ = job
+    session = BY_NAME[name].build(problems.BY_NAME[problem].build(0), dt, substeps, sleep)
+    seconds, heights = timing.timed(partial(session.trace, steps))
+    if len(heights) != steps + 1:
+        raise RuntimeError(f"{name} was looked at {len(heights)} times instead of {steps + 1}")
+    return seconds
 
 
 def times_of(job):
-    """{way: seconds} of a cell: the median of up to three runs, after a short one as a warm-up."""
-    problem, name, dt, _ = job
-    scene, steps = problems.BY_NAME[problem].build(0), problems.BY_NAME[problem].steps(dt)
-    ways = ("read", "bare") if BY_NAME[name].engine in engines.ENGINES else ("read",)
-    seconds = {way: [] for way in ways}
-    for way in ways:
-        seconds_of(name, way, scene, dt, min(50, steps))
+    """{way: seconds} of a point: the median of up to three runs, after a short one as a warm-up."""
+    steps = problems.BY_NAME[job[0]].steps(job[2])
+    seconds = {way: [] for way in (WAYS if sleeps(job) else WAYS[:1])}
+    for way in seconds:
+        seconds_of(job, way == "user", min(50, steps))
     for _ in range(3):
-        for way in ways:
-            seconds[way].append(seconds_of(name, way, scene, dt, steps))
+        for way in seconds:
+            seconds[way].append(seconds_of(job, way == "user", steps))
         if sum(map(sum, seconds.values())) > ENOUGH:
             break
     return {way: statistics.median(values) for way, values in seconds.items()}
@@ -149,35 +129,60 @@ def times_of(job):
 
 def point(job, errors, times):
     """One point as a flat dict. diverged: of how many starts. An error that is none is None."""
-    problem, name, dt, _ = job
+    problem, name, dt, substeps, _ = job
     c = BY_NAME[name]
     found = dict(
         problem=problem,
         family=c.engine,
-        words=c.words,
+        words=c.cut(substeps),
         dt=dt,
+        work=substeps * c.inner,
+        adaptive=c.adaptive,
+        balls=int(np.isfinite(problems.BY_NAME[problem].build(0).mass).sum()),
         diverged=sum(e["diverged"] is not None for e in errors),
     )
+    itself = (problem, c.engine) == ("pile", "exact")  # the reference has no error of its own
     for key in ERRORS:
-        found[key] = statistics.median(e[key] for e in errors)
+        found[key] = None if itself else statistics.median(e[key] for e in errors)
     found["least"] = min(e["error"] for e in errors)
     found["greatest"] = max(e["error"] for e in errors)
-    for way in ("read", "bare"):
-        about = timing.spread([1e3 * each[way] for each in times]) if way in times[0] else {}
-        for which in ("median", "min", "max"):
-            found[f"{way}_{which}"] = about.get(which)
+    asleep = [e["user_error"] for e in errors if "user_error" in e]
+    found["user_error"] = statistics.median(asleep) if asleep else found["error"]
+    for way in WAYS:
+        about = timing.spread([1e3 * each.get(way, each["awake"]) for each in times])
+        found |= {f"{way}_{which}": value for which, value in about.items()}
     return found
 
 
-def headline(points):
-    """{problem: {family: {words, error, ms}}}: the setting with the least error at 2 ms."""
+def allowed(p, budget=None, work=WORK):
+    """Whether a point competes: at equal work, or within so many us a ball in 2 ms, awake."""
+    if p["error"] is None or p["diverged"]:
+        return False
+    if budget is None:
+        return p["dt"] == problems.REFERENCE_DT and (p["work"] <= work or p["adaptive"])
+    looks = problems.BY_NAME[p["problem"]].duration / problems.REFERENCE_DT
+    return p["awake_median"] <= 1e-3 * budget * p["balls"] * looks
+
+
+def headline(points, *limits, **limit):
+    """{problem: {family: {words, dt, error, ms, user_ms}}}: the setting with the least error.
+
+    Of those that are allowed to compete; of equal errors, in three digits, the fastest. ms awake.
+    """
     found = {}
-    for p in sorted(points, key=lambda p: p["error"], reverse=True):
-        if p["dt"] == problems.REFERENCE_DT and not p["diverged"]:
-            found.setdefault(p["problem"], {})[p["family"]] = dict(
-                words=p["words"], error=p["error"], ms=p["read_median"]
-            )
+    for p in points:
+        if allowed(p, *limits, **limit):
+            about = {key: p[key] for key in ("words", "dt", "error")}
+            about |= dict(ms=p["awake_median"], user_ms=p["user_median"])
+            rivals = found.setdefault(p["problem"], {})
+            best = rivals.setdefault(p["family"], about)
+            rivals[p["family"]] = min(best, about, key=rank)
     return found
+
+
+def rank(about):
+    """What decides between two settings: the error in three digits, then the time."""
+    return float(f"{about['error']:.3g}"), about["ms"]
 
 
 def left_out(chosen):
@@ -196,5 +201,5 @@ def packed(rows):
 
 
 def unpacked(table):
-    """The dicts again."""
+    """Rows of a packed table, as dicts."""
     return [dict(zip(table["columns"], row)) for row in table["rows"]]

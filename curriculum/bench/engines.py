@@ -6,7 +6,9 @@ the front of all settings of an engine, and names the best. Nothing else has to 
 Every engine is optional (`pip install -e '.[bench]'`); one that is missing is said to be. The same
 for all: balls that cannot rotate, no friction, no threads, the scene's masses, radii and
 restitution, gravity 9.81 m/s^2, and a floor along y = 0. A ball of infinite mass is one that
-nothing moves. No ball may sleep, but in the settings that say so. What had to be chosen:
+nothing moves. The same means for all: a session takes so many substeps for each step that is looked
+at, and no ball sleeps, or all may that can. What is left of the last step, impulses or forces,
+begins the next one in every engine as shipped. What had to be chosen:
 
     mujoco    solref: a time constant and a damping ratio, or, both negative, a stiffness and a
               damping given directly. "0 -(1+e)/dt" with solimp near 1 is Newton's impact law:
@@ -32,6 +34,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+import contact
+
+BLOCK = 200  # steps that a twin takes in one go
 GRAVITY = 9.81  # m/s^2, downwards
 SCALE = 10.0  # Box2D sees a world this much larger
 FLOOR = 1000.0  # m, half the length of the floor, where an engine wants an end to it
@@ -39,7 +44,12 @@ MANY = 60  # balls: from here on MuJoCo gets CG and a sparse Jacobian
 
 
 class Session:
-    """One world, ready to step, in metres and seconds. A subclass gives step() and state()."""
+    """One world, ready to step, in metres and seconds. A subclass gives step() and state().
+
+    It is looked at after every `substeps` of its steps.
+    """
+
+    substeps = 1
 
     @staticmethod
     def cannot(scene):
@@ -51,27 +61,70 @@ class Session:
         for _ in range(n):
             step()
 
+    def go(self, n):
+        """Take the steps of n looks, and read nothing."""
+        self.advance(n * self.substeps)
+
     def heights(self):
         """The height of every ball."""
         return self.state()[0][1]
 
-    def trace(self, n):
-        """Take n steps and read every height after each: what a user needs from them."""
-        step, heights = self.step, self.heights
-        rows = [heights()]
+    def looks(self, read, n):
+        """read() at the start and at each of n looks."""
+        steps = self.step if self.substeps == 1 else partial(self.advance, self.substeps)
+        rows = [read()]
         for _ in range(n):
-            step()
-            rows.append(heights())
+            steps()
+            rows.append(read())
         return rows
 
+    def trace(self, n):
+        """Every height at each of n looks: what a user needs from them."""
+        return self.looks(self.heights, n)
+
     def states(self, n):
-        """q and v after each of n steps, (n + 1, 2, N)."""
-        rows = [self.state()]
-        for _ in range(n):
-            self.advance(1)
-            rows.append(self.state())
-        q, v = (np.array(part) for part in zip(*rows))
+        """q and v at each of n looks, (n + 1, 2, N)."""
+        q, v = (np.array(part) for part in zip(*self.looks(self.state, n)))
         return q, v
+
+
+class Ours(Session):
+    """A model of contact.py, by its compiled twin or in Python. To `sleep` is to skip steps.
+
+    It always records. exact has no steps.
+    """
+
+    def __init__(self, scene, dt, model, sleep=False, python=False, **knobs):
+        self.given = model, scene, dt
+        self.settings, self.python = contact.Settings(skip=sleep, **knobs), python
+        self.motion = None
+
+    def states(self, n):
+        model, scene, dt = self.given
+        if self.python or model == "exact":
+            simulate = contact.run_model
+        else:
+            from curriculum.fast import simulate
+        run = simulate(model, scene, dt, n * self.substeps, self.settings)
+        return run.q[:: self.substeps], run.v[:: self.substeps]
+
+    def trace(self, n):
+        return self.states(n)[0][:, 1]
+
+    def advance(self, n):
+        if self.motion is None:
+            from curriculum import fast
+
+            self.motion = fast.Motion(*self.given, self.settings)
+            self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))
+            self.settled = np.ones(BLOCK + 1, bool)
+        for first in range(0, n, BLOCK):
+            last = min(BLOCK, n - first) + 1
+            self.motion.take(self.rows[:last], self.settled[:last], False)
+
+    def state(self):
+        balls = self.motion.balls[:-1]
+        return np.array((balls["x"], balls["y"])), np.array((balls["vx"], balls["vy"]))
 
 
 def balls_of(scene, scale=1.0):
@@ -103,17 +156,18 @@ def direct(beta, d, scene, dt):
 
 
 class Mujoco(Session):
-    """Spring and damper made implicit and convex. `contact(scene, dt)` gives solref and solimp."""
+    """Spring and damper made implicit and convex. `soften(scene, dt)` gives solref and solimp."""
 
-    def __init__(self, scene, dt, contact, flags="", **options):
+    def __init__(self, scene, dt, soften, sleep=False, speculative=False, **options):
         import mujoco
         from mujoco import rollout
 
         self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
         mujoco.set_mju_user_warning(lambda text: None)  # its default writes a log file
-        solref, solimp = contact(scene, dt)
+        solref, solimp = soften(scene, dt)
         balls, many = balls_of(scene), len(scene.mass) >= MANY and "solver" not in options
         options = {"solver": "CG", "jacobian": "sparse"} | options if many else options
+        flags = ' sleep="enable"' * sleep + ' speculative="enable"' * speculative
         chosen = " ".join(f'{name}="{value}"' for name, value in options.items())
         self.moving = [k for k, ball in enumerate(balls) if not ball[-1]]
         self.model = mujoco.MjModel.from_xml_string(
@@ -125,6 +179,7 @@ class Mujoco(Session):
             "</worldbody></mujoco>"
         )
         self.data = mujoco.MjData(self.model)
+        self.step = partial(mujoco.mj_step, self.model, self.data)
         self.data.qvel[:] = scene.v0[:, self.moving].T.ravel()
         self.full = mujoco.mjtState.mjSTATE_FULLPHYSICS
         self.start = np.empty(mujoco.mj_stateSize(self.model, self.full))
@@ -144,9 +199,12 @@ class Mujoco(Session):
     def trace(self, n):
         """MuJoCo's own rollout, a loop in C that keeps every state: time, positions, velocities."""
         self.mujoco.mj_getState(self.model, self.data, self.start, self.full)
-        rows = self.rollout(self.model, self.data, self.start, nstep=n)[0][0]
+        steps = n * self.substeps
+        rows = self.rollout(self.model, self.data, self.start, nstep=steps)[0][0]
         y0 = self.scene.q0[1, self.moving]
-        return np.vstack([y0, y0 + rows[:, 2 : 1 + 2 * len(y0) : 2]])
+        return np.vstack(
+            [y0, y0 + rows[self.substeps - 1 :: self.substeps, 2 : 1 + 2 * len(y0) : 2]]
+        )
 
     def state(self):
         q, v = self.scene.q0.copy(), self.scene.v0.copy()
@@ -161,15 +219,15 @@ class Mujoco(Session):
 class Pymunk(Session):
     """Chipmunk: sequential impulses with cached sums; position error is pushed out on its own."""
 
-    def __init__(self, scene, dt, iterations=10, bias=None, sleep=False):
+    def __init__(self, scene, dt, iterations=10, push=None, sleep=False):
         import pymunk
         import pymunk.batch
 
         self.batch, self.buffer = pymunk.batch, pymunk.batch.Buffer()
         self.space = space = pymunk.Space()
         space.gravity, space.iterations, space.collision_slop = (0, -GRAVITY), iterations, 1e-6
-        if bias is not None:
-            space.collision_bias = bias
+        if push is not None:  # a share of an overlap in each step; as shipped, in each second
+            space.collision_bias = (1.0 - push) ** (1.0 / dt)
         if sleep:
             space.sleep_time_threshold = 0.5
         bounce = math.sqrt(scene.restitution)  # the engine multiplies the two bodies' values
@@ -212,7 +270,7 @@ class Pymunk(Session):
 class Box2d3(Session):
     """Box2D 3: soft contacts solved over small substeps, then relaxed."""
 
-    def __init__(self, scene, dt, substeps=4, hertz=None, sleep=False):
+    def __init__(self, scene, dt, inner=4, hertz=None, sleep=False):
         import pyb2d3
 
         self.world = world = pyb2d3.World(
@@ -243,7 +301,7 @@ class Box2d3(Session):
                 pyb2d3.shape_def(density=density, material=material), pyb2d3.circle(radius=radius)
             )
             self.bodies.append(body)
-        self.step = partial(world.step, dt, substeps)
+        self.step = partial(world.step, dt, inner)
         if len(scene.mass) == 1:
             self.heights = lambda: (body.position[1] / SCALE,)
 
@@ -341,12 +399,15 @@ class Drake(Session):
 
 
 class Setting(NamedTuple):
-    """One engine, or one of our models, with one set of choices; build(scene, dt) -> a session."""
+    """One engine, or one of our models, with one set of choices."""
 
     engine: str  # a key of ENGINES, or a model
     words: str  # the setting, for a reader
-    build: Callable
+    make: Callable  # (scene, dt of a step) -> a session; with sleep=True where it `sleeps`
+    inner: int = 1  # substeps that the engine takes by itself in each step
     adaptive: bool = False  # it chooses its own steps: dt is only how often it is looked at
+    sleeps: bool = False  # it can leave out steps
+    slow: bool = False  # one start, one process
     cannot: Callable = Session.cannot
     only: tuple = ()  # the problems it is for; none means all
 
@@ -354,9 +415,19 @@ class Setting(NamedTuple):
     def name(self):
         return f"{self.engine}: {self.words}"
 
+    def cut(self, substeps):
+        """The words, with that many substeps for each look."""
+        return self.words if substeps == 1 else f"{self.words}, {substeps} x"
+
     def refuses(self, scene):
         """Why it does not run a scene, or does not run here, or None."""
         return missing(self.engine) or self.cannot(scene)
+
+    def build(self, scene, dt, substeps=1, sleep=False):
+        """A session that is looked at every dt [s], after so many steps."""
+        session = self.make(scene, dt / substeps, **({"sleep": True} if sleep else {}))
+        session.substeps = substeps
+        return session
 
 
 ENGINES = {  # label, package, module, session
@@ -372,37 +443,64 @@ def setting(engine, words, *given, **options):
     """The setting of an engine with these options of its session."""
     session = ENGINES[engine][-1]
 
-    def build(scene, dt):
-        return session(scene, dt, *given, **options)
+    def make(scene, dt, **sleep):
+        return session(scene, dt, *given, **options, **sleep)
 
-    return Setting(engine, words, build, "scheme" in options, session.cannot)
+    return Setting(
+        engine,
+        words,
+        make,
+        options.get("inner", 1),
+        adaptive="scheme" in options,
+        sleeps=engine != "drake",
+        slow=engine == "drake" and "scheme" not in options,
+        cannot=session.cannot,
+    )
 
 
+def ours(model, words, only=(), **knobs):
+    """The setting of a model of contact.py."""
+
+    def make(scene, dt, **sleep):
+        return Ours(scene, dt, model, **knobs, **sleep)
+
+    return Setting(
+        model, words, make, adaptive=model == "exact", sleeps=model != "exact", only=only
+    )
+
+
+SHARED = ("stack", "pile", "heavy_100", "heavy_1000", "tower")  # where sweeps have to agree
+STIFF = dict(solref=(1e-9, 5.0), solimp=contact.HARD)
+OURS = (
+    ours("penalty", "k 1e4"),
+    ours("lcp", "20 sweeps"),
+    ours("lcp", "20 sweeps, in Python", python=True),
+    ours("lcp", "100 sweeps", SHARED, iters=100),
+    ours("lcp", "5 sweeps, warm", SHARED, iters=5, warm=0.8),
+    ours("lcp", "20 sweeps, warm", SHARED, warm=0.8),
+    ours("lcp", "20 sweeps, ahead, gain 1", baumgarte=1.0, ahead=True),
+    ours("lcp", "5 sweeps, ahead, gain 1", SHARED, iters=5, baumgarte=1.0, ahead=True),
+    ours("lcp", "100 sweeps, ahead, gain 1", SHARED, iters=100, baumgarte=1.0, ahead=True),
+    ours("soft", "as MuJoCo ships it, or direct where e > 0"),
+    ours("soft", "time constant 2 dt, ratio 5, d 0.9999", ("drop", "slide", *SHARED), **STIFF),
+    ours("exact", "event to event"),
+)
 mujoco, pymunk, box2d3, drake = (partial(setting, engine) for engine in ENGINES)
 SETTINGS = (
     mujoco("as shipped", shipped),
     mujoco("time constant 2 dt, ratio 5, d 0.9999", partial(standard, 2.0, 5.0, 0.9999)),
-    mujoco("direct, no push, d 0.99", partial(direct, 0.0, 0.99)),
     mujoco("direct, no push, d 0.9999", RIGID),
     mujoco("direct, push 0.2, d 0.999", PUSHED),
-    mujoco("direct, push 0.2, d 0.9999", partial(direct, 0.2, 0.9999)),
-    mujoco("direct, no push, speculative", RIGID, flags=' speculative="enable"'),
+    mujoco("direct, no push, speculative", RIGID, speculative=True),
     pymunk("10 iterations"),
-    pymunk("30 iterations", iterations=30),
     pymunk("100 iterations", iterations=100),
-    Setting(
-        "pymunk",
-        "10 iterations, bias 0.2 a step",
-        lambda scene, dt: Pymunk(scene, dt, bias=0.8 ** (1.0 / dt)),
-    ),
-    pymunk("10 iterations, may sleep", sleep=True),
-    box2d3("4 substeps, as shipped", 4),
-    box2d3("4 substeps, hardest", 4, hertz=1e9),
-    box2d3("16 substeps, hardest", 16, hertz=1e9),
-    box2d3("64 substeps, hardest", 64, hertz=1e9),
-    box2d3("32 substeps, 240 Hz", 32, hertz=240.0),
-    box2d3("4 substeps, hardest, may sleep", 4, hertz=1e9, sleep=True),
-    box2d3("32 substeps, 240 Hz, may sleep", 32, hertz=240.0, sleep=True),
+    pymunk("10 iterations, push 0.2 a step", push=0.2),
+    box2d3("4 substeps, as shipped", inner=4),
+    box2d3("1 substep, hardest", inner=1, hertz=1e9),
+    box2d3("4 substeps, hardest", inner=4, hertz=1e9),
+    box2d3("16 substeps, hardest", inner=16, hertz=1e9),
+    box2d3("64 substeps, hardest", inner=64, hertz=1e9),
+    box2d3("32 substeps, 240 Hz", inner=32, hertz=240.0),
     drake("discrete, k 1e8"),
     drake("CENIC, accuracy 1e-3", scheme="cenic", accuracy=1e-3),
     drake("CENIC, accuracy 1e-5", scheme="cenic", accuracy=1e-5),

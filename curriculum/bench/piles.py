@@ -20,7 +20,7 @@ import numpy as np
 
 import contact
 from curriculum.bench import engines, timing
-from curriculum.bench.engines import Session, Setting, box2d3, mujoco, pymunk
+from curriculum.bench.engines import box2d3, mujoco, ours, pymunk
 from curriculum.run import pool
 
 DT = 0.002  # s
@@ -45,48 +45,16 @@ def shaft(count):
     wall = np.arange(1.05 * r, y.max() + 2.0 * r, 2.05 * r)  # no wall ball touches another
     side = 1.25 * r * wide + r
     x = np.concatenate((x, np.full(len(wall), -side), np.full(len(wall), side)))
-    y = np.concatenate((y, wall, wall))
     mass = np.repeat((1.0, math.inf), (count, 2 * len(wall)))
-    return contact.Scene(
-        "shaft", np.array((x, y)), np.zeros((2, len(x))), mass, np.full(len(x), r), 0.0, 80.0
-    )
+    return contact.scene_of(x, np.concatenate((y, wall, wall)), mass, name="shaft")
 
 
 def side_by_side(scene):
     """So many copies of a shaft, each with its own walls."""
     apart = np.ptp(scene.q0[0]) + 3.0 * contact.RADIUS
-    q0 = np.concatenate([scene.q0 + [[k * apart], [0.0]] for k in range(COPIES)], axis=1)
-    return scene._replace(
-        q0=q0,
-        v0=np.tile(scene.v0, COPIES),
-        mass=np.tile(scene.mass, COPIES),
-        radius=np.tile(scene.radius, COPIES),
-    )
-
-
-class Twin(Session):
-    """The compiled twin of lcp: `substeps` steps for each, `sweeps` in each of them."""
-
-    def __init__(self, scene, dt, sweeps, warm=0.0, substeps=1):
-        from curriculum import fast
-
-        chosen = contact.Settings(iters=sweeps, warm=warm)
-        self.motion, self.substeps = fast.Motion("lcp", scene, dt / substeps, chosen), substeps
-        self.rows = np.empty((TURN * substeps + 1, 4, len(scene.mass)))
-        self.settled = np.ones(len(self.rows), bool)
-
-    def advance(self, n):
-        for first in range(0, n, TURN):
-            rows = self.rows[: min(TURN, n - first) * self.substeps + 1]
-            self.motion.take(rows, self.settled, False)
-
-    def state(self):
-        balls = self.motion.balls[:-1]
-        return np.array((balls["x"], balls["y"])), np.array((balls["vx"], balls["vy"]))
-
-
-def twin(words, *knobs):
-    return Setting("lcp", words, lambda scene, dt: Twin(scene, dt, *knobs))
+    x = np.concatenate([scene.q0[0] + k * apart for k in range(COPIES)])
+    y, mass = np.tile(scene.q0[1], COPIES), np.tile(scene.mass, COPIES)
+    return contact.scene_of(x, y, mass, name="shafts")
 
 
 def too_many(scene):
@@ -94,35 +62,31 @@ def too_many(scene):
 
 
 SPRING = partial(engines.standard, 2.0, 1.0, 0.99)
-SETTINGS = (
-    twin("10 sweeps", 10),
-    twin("20 sweeps", 20),
-    twin("40 sweeps", 40),
-    twin("80 sweeps", 80),
-    twin("4 sweeps, warm", 4, 0.8),
-    twin("8 sweeps, warm", 8, 0.8),
-    twin("15 sweeps, warm", 15, 0.8),
-    twin("30 sweeps, warm", 30, 0.8),
-    twin("5 sweeps, 4 substeps", 5, 0.0, 4),
-    twin("3 sweeps, warm, 4 substeps", 3, 0.8, 4),
-    twin("6 sweeps, warm, 4 substeps", 6, 0.8, 4),
-    twin("12 sweeps, warm, 4 substeps", 12, 0.8, 4),
-    box2d3("4 substeps, as shipped", 4),
-    box2d3("4 substeps, hardest", 4, hertz=1e9),
-    box2d3("8 substeps, hardest", 8, hertz=1e9),
-    box2d3("16 substeps, hardest", 16, hertz=1e9),
-    box2d3("64 substeps, hardest", 64, hertz=1e9),
-    box2d3("32 substeps, 240 Hz", 32, hertz=240.0),
-    box2d3(f"4 substeps, hardest, {ASLEEP}", 4, hertz=1e9, sleep=True),
-    pymunk("10 iterations"),
-    pymunk("30 iterations", iterations=30),
-    pymunk(f"10 iterations, {ASLEEP}", sleep=True),
-    mujoco("as shipped, CG", engines.shipped),
-    mujoco("2 dt, ratio 1, d 0.99, CG", SPRING),
-    mujoco("direct, push 0.2, d 0.999, CG", engines.PUSHED),
-    mujoco("direct, push 0.2, d 0.999, CG, 10 iterations", engines.PUSHED, iterations=10),
-    mujoco("2 dt, ratio 1, d 0.99, Newton", SPRING, solver="Newton")._replace(cannot=too_many),
+AHEAD = dict(ahead=True, baumgarte=1.0)
+# fmt: off
+SETTINGS = (  # and how many substeps they take for a step of 2 ms
+    (ours("lcp", "20 sweeps"), 1),
+    (ours("lcp", "8 sweeps, warm", iters=8, warm=0.8), 1),
+    (ours("lcp", "6 sweeps, warm", iters=6, warm=0.8), 4),
+    *((ours("lcp", f"{n} sweeps, ahead, gain 1", iters=n, **AHEAD), substeps)
+      for n, substeps in ((2, 1), (4, 1), (6, 1), (7, 1), (12, 1), (4, 2), (2, 4), (4, 4), (2, 6))),
+    (ours("lcp", "6 sweeps, ahead, gain 1, half warm", iters=6, warm=0.5, **AHEAD), 1),
+    (box2d3("4 substeps, as shipped", inner=4), 1),
+    *((box2d3(f"{n} substeps, hardest", inner=n, hertz=1e9), 1) for n in (4, 8, 16)),
+    (box2d3("1 substep, hardest", inner=1, hertz=1e9), 4),
+    (box2d3(f"4 substeps, hardest, {ASLEEP}", inner=4, hertz=1e9, sleep=True), 1),
+    (pymunk("10 iterations"), 1),
+    (pymunk("10 iterations, push 0.2 a step", push=0.2), 1),
+    (pymunk("30 iterations", iterations=30), 1),
+    (pymunk("10 iterations"), 4),
+    (pymunk(f"10 iterations, {ASLEEP}", sleep=True), 1),
+    (mujoco("as shipped, CG", engines.shipped), 1),
+    (mujoco("2 dt, ratio 1, d 0.99, CG", SPRING), 1),
+    (mujoco("direct, push 0.2, d 0.999, CG", engines.PUSHED), 1),
+    (mujoco("direct, push 0.2, d 0.999, CG, 10 iterations", engines.PUSHED, iterations=10), 1),
+    (mujoco("2 dt, ratio 1, d 0.99, Newton", SPRING, solver="Newton")._replace(cannot=too_many), 1),
 )
+# fmt: on
 LABELS = {"lcp": "lcp, compiled", "mujoco": "MuJoCo", "pymunk": "pymunk", "box2d3": "Box2D 3"}
 
 
@@ -130,34 +94,37 @@ def measure(quick=False):
     """rows, one per setting and size; the winners at each depth; what compiling takes."""
     rows, states = [], {}
     for count in QUICK_SIZES if quick else (*SIZES, MANY):
-        chosen = winners(rows) if count == MANY else range(len(SETTINGS))
+        chosen = winners(rows) if count == MANY else range(0, len(SETTINGS), 4 if quick else 1)
         rows += measured(count, chosen, states, quick)
     return dict(rows=rows, best=best(rows), compile={} if quick else compiling())
 
 
 def measured(count, chosen, states, quick):
     """The rows of one size: settle all settings, then time them. states[k]: the last settled."""
-    scene = shaft(count)
-    jobs = [(count, k, states.get(k)) for k in chosen if not SETTINGS[k].refuses(scene)]
+    scene, phases = shaft(count), ("falling", "resting")
+    jobs = [(count, k, states.get(k)) for k in chosen if not SETTINGS[k][0].refuses(scene)]
     print(f"pile of {count}: {len(jobs)} settings settle, then they are timed", flush=True)
     settled = pool.spread(settle, jobs, f"{count} balls settle")
     states.update((k, found[:2]) for (_, k, _), found in zip(jobs, settled))
     work = [(count, k, states[k]) for _, k, _ in jobs]
     processes = 1 if quick else PROCESSES - (count == MANY)
     times = timing.in_fresh_processes(time_of, work, processes, f"{count} balls")
-    return [
-        dict(
-            bodies=count,
-            engine=SETTINGS[k].engine,
-            words=SETTINGS[k].words,
-            **state[2],
-            **{
-                phase: timing.spread([each[phase] for each in found])
-                for phase in ("falling", "resting")
-            },
-        )
-        for (_, k, _), state, found in zip(jobs, settled, times)
-    ]
+    rows = []
+    for (_, k, _), state, found in zip(jobs, settled, times):
+        spreads = {phase: timing.spread([each[phase] for each in found]) for phase in phases}
+        rows.append(dict(bodies=count, engine=SETTINGS[k][0].engine, words=words(k)))
+        rows[-1] |= state[2] | spreads
+    return rows
+
+
+def words(k):
+    setting, substeps = SETTINGS[k]
+    return setting.cut(substeps)
+
+
+def build(k, scene):
+    setting, substeps = SETTINGS[k]
+    return setting.build(scene, DT, substeps)
 
 
 def settle(job):
@@ -169,11 +136,11 @@ def settle(job):
         scene = side_by_side(one._replace(q0=np.array(start[0]), v0=np.array(start[1])))
     else:
         steps = SIZES[count][1]
-    session = SETTINGS[k].build(scene, DT)
-    session.advance(steps - WATCHED)
+    session = build(k, scene)
+    session.go(steps - WATCHED)
     speeds = []
     for _ in range(WATCHED // TURN):
-        session.advance(TURN)
+        session.go(TURN)
         q, v = session.state()
         speeds.append(float(np.sqrt((v**2).sum(0)).max()))
     speed = max(speeds) if np.isfinite(speeds).all() else math.inf
@@ -202,9 +169,9 @@ def time_of(job):
     scene, found = shaft(count), {}
     rest = scene._replace(q0=np.array(q, float), v0=np.array(v, float))
     for phase, start in (("falling", scene), ("resting", rest)):
-        session = SETTINGS[k].build(start, DT)
-        session.advance(100)
-        seconds = [timing.timed(partial(session.advance, TURN)) for _ in range(TURNS)]
+        session = build(k, start)
+        session.go(100)
+        seconds = [timing.timed(partial(session.go, TURN))[0] for _ in range(TURNS)]
         found[phase] = 1e6 * statistics.median(seconds) / TURN
     return found
 
@@ -214,8 +181,7 @@ def fastest(rows, engine, count, depth):
     found = [
         row
         for row in rows
-        if (row["engine"], row["bodies"]) == (engine, count)
-        and row["at_rest"]
+        if (row["engine"], row["bodies"], row["at_rest"]) == (engine, count, True)
         and row["mean_depth"] <= depth
         and ASLEEP not in row["words"]
     ]
@@ -224,12 +190,9 @@ def fastest(rows, engine, count, depth):
 
 def winners(rows):
     """The numbers of the settings that are worth running with 10,000 balls."""
-    words = {
-        (row["engine"], row["words"])
-        for engine, depth in itertools.product(LABELS, DEPTHS)
-        if (row := fastest(rows, engine, 1000, 0.8 * depth))
-    }
-    return [k for k, s in enumerate(SETTINGS) if (s.engine, s.words) in words]
+    found = (fastest(rows, engine, 1000, 0.8 * d) for engine in LABELS for d in DEPTHS)
+    chosen = {(row["engine"], row["words"]) for row in found if row}
+    return [k for k, (s, _) in enumerate(SETTINGS) if (s.engine, words(k)) in chosen]
 
 
 def best(rows):

@@ -10,8 +10,9 @@ import numpy as np
 import contact
 from curriculum.bench import closed_form
 
-DTS = (0.001, 0.002, 0.004, 0.008, 0.016)  # s
 REFERENCE_DT = 0.002  # s, the step of contact.py's own default run
+SUBSTEPS = (1, 4, 16)  # at that step; coarser ones are taken whole
+COARSER = (0.004, 0.008, 0.016)  # s
 R = contact.RADIUS
 
 
@@ -20,12 +21,11 @@ class Problem(NamedTuple):
 
     name: str
     title: str
-    stresses: str  # what it is hard on, for the reader
-    duration: float
+    duration: float  # s
     build: Callable  # start -> contact.Scene
     truth: Callable  # (scene, t) -> q, v, (len(t), 2, N)
+    stresses: str  # what it is hard on, for the reader
     starts: int = 5  # the error of one is a lottery of where a step falls
-    dts: tuple = DTS
 
     def steps(self, dt):
         return round(self.duration / dt)
@@ -43,9 +43,8 @@ def column(scene, t):
 def slide_scene(start):
     """A ball at rest on a fixed one, off the top by an angle that the start chooses."""
     theta = 0.1 + 0.02 * start
-    q0 = np.array([[0.0, 2.0 * R * math.sin(theta)], [R, R + 2.0 * R * math.cos(theta)]])
-    mass, radius = np.array([math.inf, 1.0]), np.full(2, R)
-    return contact.Scene("slide", q0, np.zeros((2, 2)), mass, radius, 0.0, 80.0)
+    x, y = 2.0 * R * math.sin(theta), R + 2.0 * R * math.cos(theta)
+    return contact.scene_of([0.0, x], [R, y], [math.inf, 1.0])
 
 
 def slide(scene, t):
@@ -69,63 +68,40 @@ def pile_at(places, count, steps, dt):
     return run.q, run.v
 
 
-def scene_of(name, bodies=None, restitution=None):
+def heavy(ratio, start):
+    """A ball of so many kg on a ball of one, a little above the floor."""
+    return contact.build_scene("stack", start, 2)._replace(mass=np.array((1.0, ratio)))
+
+
+def built(name, bodies=None, restitution=None):
     return partial(contact.build_scene, name, bodies=bodies, restitution=restitution)
 
 
+# fmt: off
 PROBLEMS = (
-    Problem(
-        "drop",
-        "Drop: one ball, no rebound, 4 s",
-        "a free fall, one impact that must stop the ball, then rest at no depth",
-        4.0,
-        scene_of("drop"),
-        column,
-    ),
-    Problem(
-        "bounce",
-        "Bounce: one ball, restitution 0.7, 4 s",
-        "infinitely many impacts in 2.4 s: an error in any impact time shifts all flights after it",
-        4.0,
-        scene_of("bounce"),
-        column,
-    ),
-    Problem(
-        "stack",
-        "Stack: three balls, no rebound, 4 s",
-        "three contacts that share balls: the impact stops all at once, then nothing may sink",
-        4.0,
-        scene_of("stack"),
-        column,
-    ),
-    Problem(
-        "slide",
-        "Slide: a ball off a fixed ball, 0.7 s",
-        "a contact that turns while it pushes, and must let go at cos = 2/3 of its start",
-        0.7,
-        slide_scene,
-        slide,
-    ),
-    Problem(
-        "pile",
-        "Pile: eight balls fall beside and over one another, 1 s",
-        "impacts that decide where everything goes next: small errors grow",
-        1.0,
-        scene_of("pile", 8),
-        pile,
-        3,
-    ),
-    Problem(
-        "elastic",
-        "Elastic bounce: one ball, restitution 1, 20 s",
-        "two dozen impacts that may neither take nor give energy, and whose times add up",
-        20.0,
-        scene_of("bounce", restitution=1.0),
-        column,
-        3,
-        DTS[1:],
-    ),
+    Problem("drop", "Drop: one ball, no rebound, 4 s", 4.0, built("drop"), column,
+            "a free fall, one impact that must stop the ball, then rest at no depth"),
+    Problem("bounce", "Bounce: one ball, restitution 0.7, 4 s", 4.0, built("bounce"), column,
+            "infinitely many impacts in 2.4 s: an error in any impact time shifts all that follow"),
+    Problem("stack", "Stack: three balls, no rebound, 4 s", 4.0, built("stack"), column,
+            "three contacts that share balls: the impact stops all at once, then nothing may sink"),
+    Problem("slide", "Slide: a ball off a fixed ball, 0.7 s", 0.7, slide_scene, slide,
+            "a contact that turns while it pushes, and must let go at cos = 2/3 of its start"),
+    Problem("pile", "Pile: eight balls fall beside and over one another, 1 s", 1.0,
+            built("pile", 8), pile,
+            "impacts that decide where everything goes next: small errors grow", 3),
+    Problem("elastic", "Elastic bounce: one ball, restitution 1, 20 s", 20.0,
+            built("bounce", restitution=1.0), column,
+            "two dozen impacts that may neither take nor give energy, and whose times add up", 3),
+    Problem("heavy_100", "Heavy on light: 100 kg on 1 kg, no rebound, 2 s", 2.0,
+            partial(heavy, 100.0), column,
+            "a large impulse must go through a small ball: a sweep hands on little of it", 3),
+    Problem("heavy_1000", "Heavy on light: 1,000 kg on 1 kg, no rebound, 2 s", 2.0,
+            partial(heavy, 1000.0), column, "the same, ten times as hard", 3),
+    Problem("tower", "Tower: twenty balls, no rebound, 2 s", 2.0, built("stack", 20), column,
+            "twenty contacts in a row, each of which carries all that is above it", 3),
 )
+# fmt: on
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
 
 

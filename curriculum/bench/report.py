@@ -10,14 +10,19 @@ import numpy as np
 from contact import MODELS
 from contact import figure as number
 from curriculum.bench import accuracy, piles, problems, skips, solvers
+from curriculum.bench.accuracy import BUDGET, LABELS, WORK
 from curriculum.files import write_whole
 from curriculum.measured import results
 from curriculum.measured.results import table
 from curriculum.run import plotting
 
 TINY = 1e-10  # r, what exact has to stay within
-PILE_LIMIT = 0.6  # of the fastest peer's time
+PILE_LIMIT = 0.2  # of the fastest peer's time
 LEAST = 1e-17  # r: an error of exactly zero is drawn here
+EQUAL = {  # the two contests: key of the section, words
+    "headline": f"at equal work, at most {WORK} substeps in 2 ms",
+    "in_time": f"in equal time, {BUDGET} µs a ball and 2 ms",
+}
 
 
 def ranged(about):
@@ -25,165 +30,195 @@ def ranged(about):
     return f"{number(about['median'])} ({number(about['min'])} to {number(about['max'])})"
 
 
+def timed(p, way):
+    return ranged({which: p[f"{way}_{which}"] for which in ("median", "min", "max")})
+
+
 def called(row):
     """Family and setting of a point, for a reader."""
-    return f"{accuracy.LABELS[row['family']]}: {row['words']}"
+    return f"{LABELS[row['family']]}: {row['words']}"
 
 
-def whole(section, problem):
-    """The points of a problem that did not diverge."""
-    return [
-        p
-        for p in accuracy.unpacked(section["points"])
-        if p["problem"] == problem and not p["diverged"] and p["error"] is not None
-    ]
+def points_of(section, problem):
+    return [p for p in accuracy.unpacked(section["points"]) if p["problem"] == problem]
+
+
+def best_peer(found):
+    """The most accurate other engine of {family: about}, with its family; or None."""
+    peers = [dict(about, family=name) for name, about in found.items() if name not in MODELS]
+    return min(peers, key=lambda about: about["error"], default=None)
+
+
+def beats(one, other):
+    """Whether an error is no larger than another, in three digits; of two that are measured."""
+    return bool(one and other) and accuracy.rank(one)[0] <= accuracy.rank(other)[0]
 
 
 # goals
 
 
 def goals(sections):
-    """(what was wanted, what was measured, whether that is enough), one by one."""
-    if "accuracy" in sections:
-        yield from exact_goals(sections["accuracy"])
-        yield from stack_goals(sections["accuracy"])
-    if "pile" in sections:
-        yield from pile_goals(sections["pile"])
-    if "skip" in sections:
-        yield from skip_goals(sections["skip"])
+    """(what was wanted, of what, what was measured, whether that is enough), one by one."""
+    for name, section in sections.items():
+        yield from GOALS[name](section)
 
 
-def exact_goals(section):
+def accuracy_goals(section):
     for problem in section["problems"]:
-        points = whole(section, problem)
-        exact = [p for p in points if p["family"] == "exact"]
-        if exact:
-            error, ms = exact[0]["error"], exact[0]["read_median"]
-            yield f"exact, {problem}: at most {TINY:g} r off", f"{number(error)} r", error <= TINY
+        points = [p for p in points_of(section, problem) if not p["diverged"]]
         peers = [p for p in points if p["family"] not in MODELS]
-        if exact and peers and problem in ("drop", "bounce"):
-            fast = min(peers, key=lambda p: p["read_median"])
-            ratio = ms / fast["read_median"]
-            yield (
-                f"exact, {problem}: no slower than the fastest peer, every height read",
-                f"{number(ratio)} times {called(fast)}",
-                ratio <= 1.0,
-            )
-
-
-def stack_goals(section):
-    """Whether lcp, compiled, has something better for every setting of Box2D 3."""
-    for problem in section["problems"]:
-        lcp = [p for p in whole(section, problem) if p["words"].startswith("compiled")]
-        rivals = [p for p in whole(section, problem) if p["family"] == "box2d3"]
-        beaten = [
-            p
-            for p in rivals
-            if any(
-                mine["read_median"] <= p["read_median"] and mine["error"] <= p["error"]
-                for mine in lcp
-            )
-        ]
-        if rivals:
-            yield (
-                f"lcp, compiled, {problem}: for every point of Box2D 3 one that is neither "
-                "slower nor less accurate",
-                f"for {len(beaten)} of {len(rivals)}",
-                len(beaten) == len(rivals),
-            )
+        for p in points:
+            if p["family"] == "exact" and p["error"] is not None:
+                wanted = f"exact: at most {TINY:g} r off"
+                yield wanted, problem, f"{number(p['error'])} r", p["error"] <= TINY
+            if p["family"] == "exact" and peers:
+                fast = min(peers, key=lambda p: p["awake_median"])
+                ratio = p["awake_median"] / fast["awake_median"]
+                wanted = "exact: no slower than the fastest other engine, awake, at any step"
+                yield (
+                    wanted,
+                    problem,
+                    f"{number(ratio)} times {LABELS[fast['family']]}",
+                    ratio <= 1.0,
+                )
+    for contest, words in EQUAL.items():
+        for problem, found in section[contest].items():
+            if (mine := found.get("lcp")) and (peer := best_peer(found)):
+                wanted = f"lcp {words}: no less accurate than any other engine"
+                against = f"{LABELS[peer['family']]} {number(peer['error'])} r"
+                yield wanted, problem, f"{number(mine['error'])} r, {against}", beats(mine, peer)
 
 
 def pile_goals(section):
+    wanted = (
+        f"lcp, compiled, piles at rest: at most {PILE_LIMIT} of the fastest other engine's time"
+    )
     for count, depths in sorted(section["best"].items(), key=lambda each: int(each[0])):
         for depth, found in depths.items():
-            wanted = (
-                f"{int(count):,} balls at rest, {depth} r deep at most: lcp, compiled, in "
-                f"{PILE_LIMIT} of the fastest peer's time"
-            )
+            case = f"{int(count):,} balls, {depth} r"
             if found["ratio"] is None:
-                absent = "no peer" if "lcp" in found["engines"] else "lcp does not"
-                yield wanted, f"{absent} gets there at rest", "lcp" in found["engines"]
+                absent = "no other engine" if "lcp" in found["engines"] else "lcp does not"
+                yield wanted, case, f"{absent} gets there at rest", "lcp" in found["engines"]
             else:
-                yield wanted, number(found["ratio"]), found["ratio"] <= PILE_LIMIT
+                yield wanted, case, number(found["ratio"]), found["ratio"] <= PILE_LIMIT
 
 
 def skip_goals(section):
     bits = section["same_bits"]
-    yield (
-        "the same bits with and without skips",
-        f"{len(bits['differing'])} of {bits['runs']} runs differ",
-        not bits["differing"],
-    )
+    found = f"{len(bits['differing'])} of {bits['runs']} runs differ"
+    yield "the same bits with and without skips", "all scenes", found, not bits["differing"]
     for name, limit in skips.LIMITS.items():
-        if found := section["processes"].get(name):
-            yield (
-                f"whole process, {name}: at most {limit} times `import {found['base']}`",
-                number(found["ratio"]),
-                found["ratio"] <= limit,
-            )
-    for name, found in section["against_pymunk"].items():
-        limit = skips.LCP_LIMITS[name]
-        yield (
-            f"lcp, {name}, in process: at most {limit} times pymunk, 10 iterations, unread",
-            number(found["ratio"]),
-            found["ratio"] <= limit,
-        )
+        if about := section["processes"].get(name):
+            wanted = f"whole process: at most {limit} times `import {about['base']}`"
+            yield wanted, name, number(about["ratio"]), about["ratio"] <= limit
+
+
+GOALS = {
+    "accuracy": accuracy_goals,
+    "pile": pile_goals,
+    "skip": skip_goals,
+    "solvers": lambda section: (),
+}
 
 
 # pages
 
 
 def readme(sections):
-    """The block of the project's README: a figure, a table, and what is missed."""
-    missed = [f"{wanted} ({found})" for wanted, found, met in goals(sections) if not met]
-    parts = [
-        "![Run time against error: bounce](curriculum/bench/results/error-bounce.svg)",
-        table(
-            ["", "exact", "lcp, best at 2 ms", "best other engine at 2 ms"],
-            error_rows(sections["accuracy"]),
-        )
-        if "accuracy" in sections
-        else "",
-        table(
-            ["1,000 balls at rest", "lcp, compiled", "fastest other engine", "ratio"],
-            rest_rows(sections["pile"]),
-        )
-        if "pile" in sections
-        else "",
-        f"Missed: {'; '.join(missed)}." if missed else "No goal is missed.",
-        "Everything, with settings and spread: [results](curriculum/bench/results/README.md).",
-    ]
-    return "\n\n".join(filter(None, parts))
-
-
-def error_rows(section):
-    """For each problem the worst error [r] and the time [ms] of exact, lcp and the best peer."""
-
-    def cell(found):
-        return f"{number(found['error'])} r, {number(found['ms'])} ms" if found else "-"
-
-    for problem, found in section["headline"].items():
-        peers = [dict(about, family=name) for name, about in found.items() if name not in MODELS]
-        best = min(peers, key=lambda about: about["error"], default=None)
-        yield [
-            problem,
-            cell(found.get("exact")),
-            cell(found.get("lcp")),
-            f"{called(best)}: {cell(best)}" if best else "-",
+    """The block of the project's README: a figure, tables, what lcp is good for, what is missed."""
+    parts = ["![Run time against error: bounce](curriculum/bench/results/error-bounce.svg)"]
+    if section := sections.get("accuracy"):
+        about = section["measured"]
+        modules = [engine[1] for engine in accuracy.engines.ENGINES.values()]
+        versions = [f"{name} {about['versions'].get(name, '-')}" for name in modules]
+        whos = [
+            f"{who}, equal {what}" for what in ("work", "time") for who in ("lcp", "best other")
         ]
+        parts += [
+            table(["", "exact", *whos], contest_rows(section)),
+            "Worst error in radii, time awake (and as a user gets it, with sleep and skips). Equal "
+            f"work: at most {WORK} substeps in 2 ms; equal time: {BUDGET} µs a ball for 2 ms, "
+            f"awake. Loops are compiled, settings stand in the results. {good_for(section)} On "
+            f"{about['cores']} cores of {about['cpu']}, with {', '.join(versions)}.",
+        ]
+    if "pile" in sections:
+        head = ["1,000 balls at rest", "lcp, compiled", "fastest other engine", "ratio"]
+        parts.append(table(head, rest_rows(sections["pile"])))
+    parts.append(missed(sections))
+    parts.append(
+        "Everything, with settings and spread: [results](curriculum/bench/results/README.md)."
+    )
+    return "\n\n".join(parts)
+
+
+def missed(sections):
+    """One paragraph: what is missed, goal by goal."""
+    found = {}
+    for wanted, case, about, met in goals(sections):
+        if not met:
+            found.setdefault(wanted, []).append(f"{case} ({about})")
+    lines = [f"*{wanted}* in {'; '.join(cases)}" for wanted, cases in found.items()]
+    return f"Missed: {'. '.join(lines)}." if lines else "No goal is missed."
+
+
+def contest_rows(section):
+    """For each problem the worst error [r] and time [ms] of exact, lcp and the best peer; twice."""
+
+    def cell(about, won=False):
+        if not about:
+            return "-"
+        who = f"{LABELS[about['family']]} " if "family" in about else ""
+        error = "reference" if about["error"] is None else f"{number(about['error'])} r"
+        text = f"{who}{error}, {number(about['ms'])} ms"
+        if about.get("user_ms", math.inf) < 0.9 * about["ms"]:
+            text += f" ({number(about['user_ms'])})"
+        return f"**{text}**" if won else text
+
+    times = {
+        p["problem"]: p for p in accuracy.unpacked(section["points"]) if p["family"] == "exact"
+    }
+    for problem in section["problems"]:
+        p = times.get(problem)
+        row = [problem, cell(p and dict(error=p["error"], ms=p["awake_median"]))]
+        for contest in EQUAL:
+            found = section[contest].get(problem, {})
+            mine, peer = found.get("lcp"), best_peer(found)
+            row += [cell(mine, beats(mine, peer)), cell(peer, beats(peer, mine))]
+        yield row
+
+
+def good_for(section):
+    """One sentence on what lcp is still good for, from the numbers."""
+    parts = []
+    for contest, when in (("headline", "at equal work"), ("in_time", "in equal time")):
+        found = section[contest]
+        names = [name for name, f in found.items() if beats(f.get("lcp"), best_peer(f))]
+        parts.append(f"{when} in {len(names)} of {len(found)} ({', '.join(names) or 'none'})")
+    ratios = []
+    for problem in section["problems"]:
+        step = [p for p in points_of(section, problem) if p["work"] == 1 and p["dt"] == 0.002]
+        mine = [p["awake_median"] for p in step if p["family"] == "lcp"]
+        peers = [p["awake_median"] for p in step if p["family"] not in MODELS]
+        ratios += [min(mine) / min(peers)] if mine and peers else []
+    words = f"lcp is the most accurate {' and '.join(parts)}"
+    if ratios and max(ratios) < 1.0:
+        words += (
+            f"; what it is still good for is many small steps, since its step costs "
+            f"{number(min(ratios), 2)} to {number(max(ratios), 2)} of the cheapest other engine's"
+        )
+    return words + "."
 
 
 def rest_rows(section):
     """Microseconds a step at 1,000 balls, or at the most that were measured, at each depth."""
     count = "1000" if "1000" in section["best"] else list(section["best"])[-1]
     for depth, found in section["best"][count].items():
-        mine = found["engines"].get("lcp")
-        peers = {name: about for name, about in found["engines"].items() if name != "lcp"}
-        fast = min(peers, key=lambda name: peers[name]["us"], default=None)
+        us = {name: about["us"] for name, about in found["engines"].items()}
+        mine, fast = us.pop("lcp", None), min(us, key=us.get, default=None)
         yield [
             f"at most {depth} r deep",
-            f"{number(mine['us'])} µs" if mine else "-",
-            f"{piles.LABELS[fast]}: {number(peers[fast]['us'])} µs" if fast else "-",
+            f"{number(mine)} µs" if mine else "-",
+            f"{piles.LABELS[fast]}: {number(us[fast])} µs" if fast else "-",
             number(found["ratio"]),
         ]
 
@@ -195,122 +230,100 @@ def page(sections):
         "# Run time against error",
         "Written by `python -m curriculum.bench`; do not edit.",
         table(
-            ["goal", "measured", ""],
-            [[wanted, found, verdict[met]] for wanted, found, met in goals(sections)],
+            ["goal", "case", "measured", ""],
+            [[*row, verdict[met]] for *row, met in goals(sections)],
         ),
     ]
-    makers = {
-        "accuracy": accuracy_part,
-        "pile": pile_part,
-        "solvers": solvers_part,
-        "skip": skip_part,
-    }
     for name, section in sections.items():
-        parts += [*makers[name](section), results.footer(section)]
+        parts += [*PARTS[name](section), results.footer(section)]
     return "\n\n".join(parts) + "\n"
 
 
 def accuracy_part(section):
     yield (
         "An error is the median over several starts, a time the median over fresh processes "
-        "(CPU time, one thread; least to greatest). In all alike every height is read after "
-        "every step; bare is an engine's stepping alone. contact.py copies a state of rest, as "
-        "engines do in the rows that may sleep; compiling is not counted. Engines in float32 "
-        "are right to about 1e-6 r, the closed forms to 1e-12 r; of the pile `exact` is the "
-        "reference. A better setting? Add a line to SETTINGS in [engines.py](../engines.py) and "
-        "send it."
+        "(CPU time, one thread; least to greatest). Everyone is looked at alike: every height, "
+        "every 2 ms; `16 x` are sixteen steps between two looks. Awake, everyone takes every "
+        "step. As a user gets it, balls may sleep where an engine has that, and contact.py skips "
+        "what it knows; Drake has neither. lcp, penalty and soft are compiled but where the words "
+        "say Python; compiling is not counted (see the piles). Pymunk, Box2D and Drake have no "
+        "loop of their own and are called from Python, about 1 µs a call. Of Drake's discrete "
+        "solver, which is slow, there is one start and one process. Engines in float32 are right "
+        "to about 1e-6 r, the closed forms to 1e-12 r; of the pile `exact` is the reference. Left "
+        "out: PyBullet, whose restitution depends on the step; Box2D 2.3, which version 3 "
+        "replaces; Siconos, which has no package here. A better setting? Add a line to SETTINGS "
+        "in [engines.py](../engines.py) and send it."
     )
     yield from (f"Not everywhere: {label}, {why}." for label, why in section["left_out"].items())
     for name, about in section["problems"].items():
         yield f"## {about['title']}\n\nHard on: {about['stresses']}."
         yield f"![Run time against error: {name}](error-{name}.svg)"
-        points = [p for p in accuracy.unpacked(section["points"]) if p["problem"] == name]
-        yield table(
-            [
-                "at 2 ms",
-                "worst error / r",
-                "at the end",
-                "energy / E0",
-                "deepest / r",
-                "time [ms]",
-                "bare [ms]",
-            ],
-            list(rows_at(points, problems.REFERENCE_DT)),
-        )
-        dts = sorted({p["dt"] for p in points})
-        yield table(
-            ["worst error / r at dt [ms]", *(f"{1e3 * dt:g}" for dt in dts)],
-            list(rows_by_dt(points, dts)),
-        )
+        points = points_of(section, name)
+        yield contests(points, name)
+        head = ["at 2 ms", "worst error / r", "asleep", "at the end", "energy / E0", "deepest / r"]
+        yield table([*head, "awake [ms]", "user [ms]"], list(rows_at(points)))
 
 
-def rows_at(points, dt):
-    """One row a contestant, at one step."""
+def contests(points, problem):
+    """The best of each family with ever more work, and in ever more time."""
+    columns = {f"{work} substeps": dict(work=work) for work in problems.SUBSTEPS}
+    columns |= {f"{us} µs": dict(budget=us) for us in accuracy.BUDGETS}
+    found = [accuracy.headline(points, **given).get(problem, {}) for given in columns.values()]
+
+    def cell(about):
+        return f"{number(about['error'])} ({about['words']}, {1e3 * about['dt']:g} ms)"
+
+    families = [f for f in LABELS if any(f in each for each in found) and f != "exact"]
+    return table(
+        ["least error / r within", *columns],
+        [[LABELS[f], *(cell(each[f]) if f in each else "-" for each in found)] for f in families],
+    )
+
+
+def rows_at(points):
+    """One row a contestant and number of substeps, at 2 ms."""
     for p in points:
-        if p["dt"] == dt:
+        if p["dt"] == problems.REFERENCE_DT:
             error = ranged(dict(median=p["error"], min=p["least"], max=p["greatest"]))
-            time = ranged({which: p[f"read_{which}"] for which in ("median", "min", "max")})
+            itself = "reference" if p["error"] is None else error
             yield [
                 called(p),
-                f"diverged in {p['diverged']} starts" if p["diverged"] else error,
+                f"diverged in {p['diverged']} starts" if p["diverged"] else itself,
+                number(p["user_error"]) if p["user_error"] != p["error"] else "same",
                 *(number(p[key]) for key in ("final_error", "energy_error", "depth")),
-                time,
-                number(p["bare_median"]),
+                timed(p, "awake"),
+                timed(p, "user"),
             ]
 
 
-def rows_by_dt(points, dts):
-    """One row a contestant, its error at every step."""
-    for name in dict.fromkeys(map(called, points)):
-        found = {
-            p["dt"]: "diverged" if p["diverged"] else number(p["error"])
-            for p in points
-            if called(p) == name
-        }
-        yield [name, *(found.get(dt, "-") for dt in dts)]
-
-
 def pile_part(section):
+    fresh, again = (number(section["compile"].get(name)) for name in ("fresh", "again"))
     yield "## Piles between walls of fixed balls"
     yield (
         "The same walls in every engine, steps of 2 ms. A pile counts as settled only where no "
         f"ball was faster than {piles.AT_REST:g} m/s over the last {piles.WATCHED} steps; depth "
         "is the mean of the overlapping contacts. Times are CPU time, median over fresh "
         "processes (least to greatest). A process that takes one step by the twin needs "
-        f"{number(section['compile'].get('fresh'))} s where it must be compiled, and "
-        f"{number(section['compile'].get('again'))} s later on; neither is in the table."
-    )
-    yield (
+        f"{fresh} s where it must be compiled, and {again} s later on; neither is in the table. "
         "Ten thousand balls begin as ten settled copies of each engine's own thousand, since a "
         "lattice of so many does not come to rest in reach; only the winners at a thousand run "
         "there. An engine that does not come to rest there has a row, and counts in no goal."
     )
     yield "![Time a step against depth](settled.svg)"
+    head = ["at rest", "fastest ball [m/s]", "mean depth / r", "worst"]
     for count in dict.fromkeys(row["bodies"] for row in section["rows"]):
-        rows = [
-            [
-                f"{piles.LABELS[row['engine']]}: {row['words']}",
-                "yes" if row["at_rest"] else "**no**",
-                number(row["speed"]),
-                number(row["mean_depth"]),
-                number(row["worst_depth"]),
-                ranged(row["resting"]),
-                ranged(row["falling"]),
-            ]
-            for row in section["rows"]
-            if row["bodies"] == count
-        ]
         yield table(
+            [f"{count:,} balls", *head, "settled [µs a step]", "falling [µs a step]"],
             [
-                f"{count:,} balls",
-                "at rest",
-                "fastest ball [m/s]",
-                "mean depth / r",
-                "worst",
-                "settled [µs a step]",
-                "falling [µs a step]",
+                [
+                    f"{piles.LABELS[row['engine']]}: {row['words']}",
+                    "yes" if row["at_rest"] else "**no**",
+                    *(number(row[key]) for key in ("speed", "mean_depth", "worst_depth")),
+                    *(ranged(row[phase]) for phase in ("resting", "falling")),
+                ]
+                for row in section["rows"]
+                if row["bodies"] == count
             ],
-            rows,
         )
 
 
@@ -329,37 +342,32 @@ def solvers_part(section):
     )
     yield "![Worst error, and overlap at rest beside its law](solvers.svg)"
     rows, names = solved(section)
-    titles = [solvers.PROBLEMS[name][0] for name in names]
 
     def error(about):
         gained = f", +{number(about['energy'])} E" if about["energy"] > 1e-3 else ""
         return number(about["error"]) + gained
 
-    yield table(
-        ["worst error / r; + energy gained", *titles, "solves"],
-        [
-            [
-                about["words"],
-                *(error(about[name]) for name in names),
-                number(max(about[name]["solves"] for name in names)),
-            ]
-            for about in rows.values()
-        ],
-    )
-    names = [name for name in names if rows["lcp"][name]["law"]]
-    yield table(
-        ["overlap at rest / r; (law)", *(solvers.PROBLEMS[name][0] for name in names)],
-        [[about["words"], *(rested(about[name]) for name in names)] for about in rows.values()],
-    )
+    def rest(about):
+        law = f" ({number(about['law'])})" if about["law"] else ""
+        return "moves" if about["rest"] is None else number(about["rest"]) + law
 
+    def listed(names, cell):
+        return [[about["words"], *(cell(about[name]) for name in names)] for about in rows.values()]
 
-def rested(about):
-    law = f" ({number(about['law'])})" if about["law"] else ""
-    return "moves" if about["rest"] is None else number(about["rest"]) + law
+    most = [[number(max(about[name]["solves"] for name in names))] for about in rows.values()]
+    titles = {name: solvers.PROBLEMS[name][0] for name in names}
+    yield table(
+        ["worst error / r; + energy gained", *titles.values(), "solves"],
+        [row + last for row, last in zip(listed(names, error), most)],
+    )
+    towers = [name for name in names if rows["lcp"][name]["law"]]
+    yield table(
+        ["overlap at rest / r; (law)", *(titles[name] for name in towers)], listed(towers, rest)
+    )
 
 
 def skip_part(section):
-    yield "## What skipping saves"
+    yield "## What a whole process takes"
     yield table(
         ["whole process", "seconds", "times its import", "by the least times"],
         [
@@ -367,18 +375,14 @@ def skip_part(section):
             for name, about in section["processes"].items()
         ],
     )
-    yield table(
-        ["2,000 steps", "all taken [ms]", "with skips [ms]", "ratio"],
-        [
-            [
-                f"{row['scene']}, {row['model']}",
-                number(row["taken"]),
-                number(row["skipped"]),
-                number(row["ratio"]),
-            ]
-            for row in section["speed_up"]
-        ],
-    )
+
+
+PARTS = {
+    "accuracy": accuracy_part,
+    "pile": pile_part,
+    "solvers": solvers_part,
+    "skip": skip_part,
+}
 
 
 # figures
@@ -400,40 +404,41 @@ def figures(sections):
 
 
 def draw_front(axis, points, across, up, name, label):
-    """A line through the points that no other beats in both at once; these points."""
+    """A line through the points that no other beats in both at once."""
     best, found = math.inf, []
     for point in sorted(points, key=lambda p: (p[across], p[up])):
         if point[up] < best:
             best = point[up]
             found.append(point)
     plotting.line(axis, [p[across] for p in found], [p[up] for p in found], name, label)
-    return found
 
 
 def error_figure(section, problem):
     """Time against error: every setting a faint dot, the best of each family a line."""
     about, families = section["problems"][problem], {}
-    for p in whole(section, problem):
-        families.setdefault(p["family"], []).append(dict(p, error=max(p["error"], LEAST)))
+    for p in points_of(section, problem):
+        if not p["diverged"] and (p["error"] is not None or p["family"] == "exact"):
+            families.setdefault(p["family"], []).append(dict(p, error=max(p["error"] or 0, LEAST)))
     figure, (left, axis) = plotting.figure(
         share=(1, 6),
-        height=3.6,
-        below=1.7,
+        height=3.7,
+        below=1.5,
         title=about["title"],
-        explained="Left and down is better. A faint dot is one setting at one step; a line joins "
-        "the best of a family, whose best setting at 2 ms is named. Numbers: lcp's dt in ms. "
-        "Compiling lcp is not counted.",
+        explained="Left and down is better. A faint dot is one setting at one step, every step "
+        "taken; a line joins the best of a family, whose best at equal work is named.",
     )
     for family, points in families.items():
-        draw_family(left if family == "exact" else axis, section, family, points)
-    everything = [p["read_median"] for points in families.values() for p in points]
+        panel = left if family == "exact" else axis
+        x, y = ([p[key] for p in points] for key in ("error", "awake_median"))
+        panel.scatter(x, y, s=7, color=plotting.look(family)["color"], alpha=0.35, linewidths=0)
+        best = section["headline"].get(problem, {}).get(family)
+        label = called(dict(best, family=family)) if best else LABELS[family]
+        draw_front(panel, points, "error", "awake_median", family, label)
+    everything = [p["awake_median"] for points in families.values() for p in points]
     for panel in (left, axis):
         panel.set(xscale="log", yscale="log", ylim=(min(everything) / 1.6, max(everything) * 1.6))
-    left.set(
-        xlim=(1e-17, 1e-9),
-        xticks=[1e-16, 1e-10],
-        ylabel=f"time for {about['duration']:g} s of motion [ms]",
-    )
+    ylabel = f"time for {about['duration']:g} s of motion [ms]"
+    left.set(xlim=(1e-18, 1e-9), xticks=[1e-16, 1e-10], ylabel=ylabel)
     left.minorticks_off()
     axis.set(xlabel="worst position error [r]", xlim=(None, min(axis.get_xlim()[1], 30.0)))
     axis.tick_params(labelleft=False)
@@ -444,36 +449,9 @@ def error_figure(section, problem):
         handlelength=3.2,
         borderaxespad=0,
         bbox_to_anchor=(0.0, 0.22 / figure.get_figheight()),
-        fontsize=8.5,
+        fontsize=9,
     )
     return plotting.svg(figure, section)
-
-
-def draw_family(axis, section, family, points):
-    """The points of one family on one panel."""
-    color = plotting.look(family)["color"]
-    axis.scatter(
-        [p["error"] for p in points],
-        [p["read_median"] for p in points],
-        s=7,
-        color=color,
-        alpha=0.35,
-        linewidths=0,
-    )
-    best = section["headline"].get(points[0]["problem"], {}).get(family)
-    label = called(dict(best, family=family)) if best else accuracy.LABELS[family]
-    line = draw_front(axis, points, "error", "read_median", family, label)
-    for p in line if family == "lcp" else ():
-        axis.annotate(
-            f"{1e3 * p['dt']:g}",
-            (p["error"], p["read_median"]),
-            (-3, -4),
-            ha="right",
-            va="top",
-            textcoords="offset points",
-            fontsize=7.5,
-            color=color,
-        )
 
 
 def pile_figure(section):
@@ -482,43 +460,33 @@ def pile_figure(section):
     figure, axes = plotting.figure(
         rows=len(counts),
         height=2.6,
-        below=0.7,
+        below=0.5,
         title="Piles at rest: time a step against depth",
         explained="Left and down is better. A dot is a setting, hollow where balls are still "
         "moving; a line joins the best of an engine at rest.",
     )
+    every = [
+        dict(row, x=max(row["mean_depth"], 1e-9), y=row["resting"]["median"])
+        for row in section["rows"]
+        if piles.ASLEEP not in row["words"] and row["mean_depth"]
+    ]
     for axis, count in zip(axes, counts):
         for engine, label in piles.LABELS.items():
-            rows = [
-                dict(row, x=max(row["mean_depth"], 1e-9), y=row["resting"]["median"])
-                for row in section["rows"]
-                if (row["bodies"], row["engine"]) == (count, engine)
-                and piles.ASLEEP not in row["words"]
-                and row["mean_depth"]
-            ]
+            rows = [r for r in every if (r["bodies"], r["engine"]) == (count, engine)]
             for row in rows:
                 look = dict(plotting.look(engine), ls="", alpha=0.6)
-                face = {} if row["at_rest"] else {"mfc": "none"}
-                axis.plot(row["x"], row["y"], **look, **face)
+                axis.plot(row["x"], row["y"], **look, **({} if row["at_rest"] else {"mfc": "none"}))
             draw_front(axis, [row for row in rows if row["at_rest"]], "x", "y", engine, label)
         axis.set(xscale="log", yscale="log", title=f"{count:,} balls", ylabel="time a step [µs]")
+        axis.set_xlim(min(r["x"] for r in every) / 1.5, max(r["x"] for r in every) * 1.5)
     axes[-1].set_xlabel("mean depth of the overlapping contacts [r]")
-    plotting.legend_below(axes[-1], columns=3, down=0.24)
+    plotting.legend_below(axes[-1], columns=4, down=0.24)
     return plotting.svg(figure, section)
 
 
-SHOWN = {  # problem: colour, marker
-    "stack_30": (plotting.LOOKS["lcp"][0], "o"),
-    "heavy_100": (plotting.LOOKS["pymunk"][0], "D"),
-    "heavy_1000": (plotting.LOOKS["penalty"][0], "s"),
-    "pile_8": (plotting.INK, "x"),
-}
-LAWFUL = {  # row: colour, marker
-    "lcp": (plotting.LOOKS["lcp"][0], "o"),
-    "ahead": (plotting.LOOKS["pymunk"][0], "D"),
-    "small_steps": (plotting.LOOKS["box2d3"][0], "^"),
-    "xpbd": (plotting.LOOKS["penalty"][0], "s"),
-}
+HUES = [plotting.LOOKS[name][:2] for name in ("lcp", "pymunk", "penalty", "box2d3")]
+SHOWN = ("stack_30", "heavy_100", "heavy_1000", "pile_8")
+LAWFUL = ("lcp", "ahead", "xpbd", "small_steps")
 
 
 def solvers_figure(section):
@@ -526,23 +494,22 @@ def solvers_figure(section):
     rows, names = solved(section)
     figure, (upper, lower) = plotting.figure(
         rows=2,
-        height=3.6,
-        below=0.55,
+        height=3.4,
+        below=0.5,
         title="Twenty contact solves a step, spent in many ways",
-        explained="Left is better. Below: overlap under the lowest ball at rest, as measured "
-        "(dots), and by the law of unfinished sweeps (lines), which takes nothing from the dots.",
+        explained="Above: left is better. Below: the overlap under the lowest ball, measured "
+        "(dots), and what the law of unfinished sweeps gives (lines), with nothing fitted.",
     )
-    box = upper.get_position()
-    upper.set_position([0.36, box.y0 + 0.01, 0.62, box.height])
+    (_, low), (_, high) = upper.get_position().get_points()
+    upper.set_position([0.36, low - 0.02, 0.62, high - low])
     order = list(reversed(rows))
-    for name in filter(names.__contains__, SHOWN):
-        color, marker = SHOWN[name]
-        x = [min(rows[row][name]["error"], 30.0) for row in order]
-        upper.plot(x, range(len(order)), color=color, marker=marker, ls="", ms=5.5, label=name)
+    for (color, marker), name in zip(HUES, SHOWN):
+        x = [min(rows[row].get(name, {}).get("error", math.nan), 30.0) for row in order]
+        label = solvers.PROBLEMS[name][0]
+        upper.plot(x, range(len(order)), color=color, marker=marker, ls="", ms=5.5, label=label)
     upper.set(xscale="log", yticks=range(len(order)), xlabel="worst error [r]")
     upper.set_yticklabels([rows[row]["words"] for row in order], fontsize=8.5)
     upper.legend(
-        [solvers.PROBLEMS[name][0] for name in SHOWN if name in names],
         loc="lower left",
         bbox_to_anchor=(-0.02, 1.0),
         ncols=4,
@@ -551,19 +518,16 @@ def solvers_figure(section):
         fontsize=8.5,
         borderaxespad=0.2,
     )
-    for row, (color, marker) in LAWFUL.items():
-        dots = sorted(
-            (about["law"] / solvers.sag(solvers.SOLVERS[row], np.ones(2)), about["rest"])
-            for name, about in rows[row].items()
-            if name in names and about["law"] and about["rest"]
-        )
-        x, y = zip(*dots)
-        lower.plot(x, y, color=color, marker=marker, ls="", ms=5.5, label=rows[row]["words"])
-        law = [solvers.sag(solvers.SOLVERS[row], np.array([1.0, share])) for share in (2, 1000)]
-        lower.plot((2, 1000), law, color=color, lw=1.0)
-    lower.set(xscale="log", yscale="log", ylim=(5e-5, 5.0), ylabel="overlap at rest [r]")
+    for (color, marker), row in zip(HUES, LAWFUL):
+        one = solvers.sag(solvers.SOLVERS[row], np.ones(2))  # as much on top as below
+        found = [rows[row][name] for name in names]
+        dots = [(about["law"] / one, about["rest"]) for about in found if about["law"]]
+        look = dict(color=color, marker=marker, ls="", ms=5.5, label=rows[row]["words"])
+        lower.plot(*zip(*((x, y) for x, y in dots if y)), **look)
+        lower.plot((2, 1000), (2 * one, 1000 * one), color=color, lw=1.0)
+    lower.set(xscale="log", yscale="log", ylim=(3e-5, 10.0), ylabel="overlap at rest [r]")
     lower.set_xlabel("mass on top of the lowest ball / its own mass")
-    plotting.legend_below(lower, columns=2, down=0.2)
+    plotting.legend_below(lower, columns=2, down=0.17)
     return plotting.svg(figure, section)
 
 

@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 import contact
-from contact import FLOOR, GRAVITY, Contact, accelerate, detect_contacts, move, remember
+from contact import FLOOR, GRAVITY, Contact, accelerate, move, remember
 from curriculum.bench import problems
 from curriculum.run import pool
 
@@ -96,12 +96,9 @@ def step(balls, dt, s, count):
 
 
 def look(balls, dt, ahead):
-    """The contacts that may close in a step: within twice what the fastest ball travels."""
-    if not ahead:
-        return detect_contacts(balls)
-    fastest = max(math.hypot(ball.vx, ball.vy) for ball in balls)
-    reach = 2.0 * dt * (fastest - dt * GRAVITY)
-    return detect_contacts(balls, max(contact.CONTACT_MARGIN, reach))
+    """The contacts of a step: within the margin, or as far as the balls travel in it."""
+    reach = contact.step_reach(balls, dt) if ahead else contact.CONTACT_MARGIN
+    return contact.detect_contacts(balls, reach)
 
 
 def renewed(c):
@@ -120,19 +117,14 @@ def renewed(c):
 
 def aim(c, h, s):
     """What contact c wants of a substep [s]: its target, and its softness."""
-    if not s.ahead:
-        c.target = contact.contact_target(c, 0.0, s.gain, h)
-    elif c.depth <= 0.0:
-        c.target = c.depth / h
-    elif s.hertz:  # twice as stiff against what does not move, as Box2D has it
+    c.target = contact.contact_target(c, 0.0, s.gain, h, s.ahead)
+    if s.hertz and c.depth > 0.0:  # twice as stiff against what does not move, as Box2D has it
         held = c.a.inv_mass == 0.0 or c.b.inv_mass == 0.0
         omega = 2.0 * math.pi * min(s.hertz, 0.25 / h) * (1.0 + held)
         damping = 20.0 + h * omega
         c.target = omega / damping * c.depth
         c.softness = c.inv_mass / (h * omega * damping)
         c.m_eff = 1.0 / (c.inv_mass + c.softness)
-    else:
-        c.target = s.gain * c.depth / h
 
 
 def sweep(contacts, sweeps, count):
@@ -180,12 +172,12 @@ def direct(contacts, sweeps, count):
 def system(contacts):
     """A, b of w = A lam - b: what impulses do to the normal velocities beyond their targets."""
     balls = list({ball for c in contacts for ball in (c.a, c.b)})
-    J = np.zeros((len(contacts), 2, len(balls)))
+    J = np.zeros((len(contacts), len(balls), 2))
     for row, c in zip(J, contacts):
-        for ball, sign in ((c.a, 1.0), (c.b, -1.0)):
-            row[:, balls.index(ball)] += sign * c.nx, sign * c.ny
+        row[balls.index(c.a)] += c.nx, c.ny
+        row[balls.index(c.b)] -= c.nx, c.ny
     J = J.reshape(len(contacts), -1)
-    inverse = np.tile([ball.inv_mass for ball in balls], 2)
+    inverse = np.repeat([ball.inv_mass for ball in balls], 2)
     A = J * inverse @ J.T + np.diag([c.softness for c in contacts])
     lam = np.array([c.lam for c in contacts])
     return A, A @ lam + [c.target - c.v_n() - c.softness * c.lam for c in contacts]
@@ -250,11 +242,11 @@ def judged(job):
     """What a solver makes of a problem; see KEY above."""
     row, name = job
     _, seconds, build = PROBLEMS[name]
-    scene, s, steps, count, listed = build(), SOLVERS[row], round(seconds / DT), [0], [0]
+    scene, s, steps, solves, listed = build(), SOLVERS[row], round(seconds / DT), [0], [0]
 
     def counted(balls):
         listed[0] += len(look(balls, DT, s.ahead))
-        step(balls, DT, s, count)
+        step(balls, DT, s, solves)
 
     run = contact.simulate(counted, scene, DT, steps, skip=False)
     truth = contact.run_model("exact", scene, DT, steps)
@@ -267,7 +259,7 @@ def judged(job):
         rest=float(max(0.0, r - run.q[-1, 1, 0]) / r) if rests else None,
         law=sag(s, scene.mass) if towers else None,
         energy=float((total - total[0]).max() / total[0]),
-        solves=count[0] / max(1, listed[0]),
+        solves=solves[0] / max(1, listed[0]),
     )
 
 

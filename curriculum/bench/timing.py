@@ -21,13 +21,13 @@ from curriculum.measured.machine import ROOT
 from curriculum.run.pool import bar
 
 
-def timed(call) -> float:
-    """CPU seconds of this process that call() takes, with the garbage collector held back."""
+def timed(call) -> tuple:
+    """CPU seconds of this process that call() takes, garbage collector held back; its result."""
     gc.disable()
     try:
         start = time.process_time()
-        call()
-        return time.process_time() - start
+        result = call()
+        return time.process_time() - start, result
     finally:
         gc.enable()
 
@@ -37,13 +37,17 @@ def spread(values) -> dict:
     return dict(median=statistics.median(values), min=min(values), max=max(values))
 
 
-def in_fresh_processes(work, jobs, processes, label) -> list:
-    """[[work(job) in each process] for job in jobs], each process in its own random order."""
+def in_fresh_processes(work, jobs, processes, label, rare=lambda job: False) -> list:
+    """[[work(job) in each process] for job in jobs], each process in its own random order.
+
+    A rare job runs in the first process only.
+    """
     jobs, spawn = list(jobs), multiprocessing.get_context("spawn")
     found = [[] for _ in jobs]
     report = bar(processes * len(jobs), label)
     for number in range(processes):
         order = random.Random(number).sample(range(len(jobs)), len(jobs))
+        order = [k for k in order if number == 0 or not rare(jobs[k])]
         with ProcessPoolExecutor(1, spawn) as pool:
             results = pool.map(work, [jobs[k] for k in order])
             for done, (k, result) in enumerate(zip(order, results)):

@@ -30,6 +30,7 @@ CARRIED = (
     "curriculum/run/curves.py",
     "curriculum/exact.py",
     "curriculum/commands.py",
+    "curriculum/files.py",
     "curriculum/implicit.py",
 )
 MARK = re.compile(

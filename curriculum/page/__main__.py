@@ -4,6 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from curriculum.commands import needs
+
 
 def parse(argv):
     """The flags."""
@@ -22,21 +24,19 @@ def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 it can't be built, 2 bad usage."""
     args = parse(argv)
     try:
-        from curriculum.files import write_whole
-        from curriculum.page.build import build
+        with needs("page"):
+            from curriculum.files import write_whole
+            from curriculum.page.build import build
 
-        page = build()
+            page = build()
         write_whole(args.out, page)
-    except ModuleNotFoundError as error:
-        print(f"the page needs {error.name}: pip install -e '.[page]'", file=sys.stderr)
-        return 1
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
-    if args.pictures or args.measure:
-        from curriculum.page import browser
-
+    with needs("dev"):
+        if args.pictures or args.measure:
+            from curriculum.page import browser
         if args.pictures:
             print(browser.photograph(args.out, args.pictures))
         for line in browser.measure(args.out) if args.measure else []:

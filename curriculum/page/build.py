@@ -187,6 +187,7 @@ def environment(veils):
     colab = COLAB.format(repository) if repository else None
     font = {"name": maths_font.NAME, "src": data_address("font/woff", maths_font.FILE.read_bytes())}
     made.globals.update(course=COURSE, colab=colab, font=font, colors=curves.COLORS, veils=veils)
+    made.globals.update(hides=chapter.HIDES)
     return made
 
 

@@ -15,9 +15,11 @@ Beside plain Markdown the chapter may hold
 
 Nothing on the page tells the answer of a bet before the reader has bet or has asked to be shown. A
 segment, from a heading or an exercise to the next, that tells the answer of a bet above is put into
-a veil, but not its heading. What tells an answer is found by its words, in text, code and figures.
+a veil, and a run of such segments behind one bar; the first heading of the run is seen. What tells
+an answer is found by its words, in text, code and figures.
 """
 
+import itertools
 import re
 from html import escape, unescape
 from urllib.parse import parse_qsl
@@ -63,6 +65,7 @@ TELLS = {
         re.IGNORECASE,
     ),
 }
+HIDES = {"ex1": "How they land", "ex3": "What happens then", "ex4": "Where it rests"}
 END = "what-you-built-and-what-comes-next"  # from here on answers are named, and none is told
 
 
@@ -221,15 +224,11 @@ def slots(text, line, ranges):
 def assemble(parts, fill, macros, bets):
     """(HTML, [(level, id, text)] of its headings). fill(kind, value) gives the HTML of a part;
     `bets` are the exercises whose answers are veiled."""
-    segments, html, contents, met = [[]], [], [], []
-    for kind, value in parts:
+    contents, met, found, kinds = [], [], [], kinds_of(parts)
+    for ((kind, value), *rest), column in zip(segments_of(parts), kinds):
         if kind == "heading":
             contents.append((*value[:2], Markup(re.sub(r"</?(code|a|math)[^>]*>", "", value[2]))))
-        if kind == "heading" or value.startswith("exercise:"):
-            segments.append([])
-        segments[-1].append((kind, value))
-    for (kind, value), *rest in filter(None, segments):
-        html.append(fill(kind, value))
+        head = fill(kind, value)
         inner = [fill(*part) for part in rest]
         if ("slot", "figure:puzzle") in rest:  # what follows it is its answer
             at = rest.index(("slot", "figure:puzzle")) + 1
@@ -239,8 +238,50 @@ def assemble(parts, fill, macros, bets):
         met = [] if kind == "heading" and value[1] == END else met
         said = words(" ".join(inner))
         veils = [name for name in met if said and (name == last or TELLS[name].search(said))]
-        html += [*map(macros.veil, veils), *inner, *["</div></div>"] * len(veils)]
-    return Markup("\n".join(html)), contents
+        head, inner = (f'<div class="part {column}">{each}</div>' for each in (head, "\n".join(inner)))
+        if kind == "slot" or value[0] <= 2:  # exercises, and what begins a part, are always seen
+            found.append((head, "", ()))
+            head = ""
+        found.append((head, inner, veils))
+    return Markup("\n".join(veiled(found, bets, macros))), contents
+
+
+def segments_of(parts):
+    """The parts from each heading or exercise to the next."""
+    found = []
+    for kind, value in parts:
+        if kind == "heading" or value.startswith("exercise:"):
+            found.append([])
+        found[-1].append((kind, value))
+    return found
+
+
+def kinds_of(parts):
+    """Of each segment whether the live figure stands beside its section somewhere."""
+    sections = []
+    for segment in segments_of(parts):
+        if segment[0][0] == "heading":
+            sections.append([])
+        sections[-1].append(segment)
+    for section in sections:
+        shows = [value for each in section for kind, value in each if kind == "show"]
+        column = "beside" if any(not value.startswith("none") for value in shows) else "centred"
+        yield from [column] * len(section)
+
+
+def veiled(segments, bets, macros):
+    """The HTML of segments [(head, inner, veils)]: a run of them behind one veil has one bar."""
+    if not bets:
+        return [each for head, inner, _ in segments for each in (head, inner)]
+    out, (bet, *others) = [], bets
+    for behind, run in itertools.groupby(segments, key=lambda each: bet in each[2]):
+        (head, inner, veils), *rest = run
+        if behind:
+            out += [head, macros.veil(bet)]
+            head = ""
+        out += veiled([(head, inner, veils), *rest], others, macros)
+        out += ["</div></div>"] if behind else []
+    return out
 
 
 def words(html):

@@ -75,7 +75,7 @@ def exercise(path, facts):
             "choices": list(source.CHOICES.items()),
             "question": source.QUESTION,
             "why": source.WHY_PROMPT,
-            "answer": facts["answer"],
+            "answer": module("kit.predict").answer(shown["id"], numbers),
             "reasons": {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()},
             "table": [re.split(r"\s{2,}", row) for row in table],
         }

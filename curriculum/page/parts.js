@@ -95,12 +95,12 @@ export function beside(view, options, picture, share = 0.4) {
 }
 
 /* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
- * `depth` deep [r], enlarged so that it can be seen; a radius is `r` px. Nothing where that is seen
- * without a lens. */
-export function lens(id, model, x, y, r, depth, size) {
+ * `depth` deep [r], enlarged so that it can be seen, or `given` times; a radius is `r` px. Nothing
+ * where that is seen without a lens. */
+export function lens(id, model, x, y, r, depth, size, given) {
   const steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
-  const times = steps.find((each) => each * depth * r >= 12) || 10000;
-  if (times <= 2 || depth <= 0) return "";
+  const times = given || steps.find((each) => each * depth * r >= 12) || 10000;
+  if (!given && (times <= 2 || depth <= 0)) return "";
   const inside = [
     circle(x, y, size, "lens-ground"),
     table(x - size, y, 2 * size, size),
@@ -151,6 +151,15 @@ export function grip(view, name, x, y, label, text, options) {
   const drag = (toX, toY) => put(by ? moved(toX, toY) : at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
   return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release, put };
+}
+
+/* A handle for two numbers, [a, b]: at(x, y) gives those where it is dragged to, put(a, b) sets them,
+ * and an arrow key to the right or up moves it by `px` on the screen. */
+export function pair(name, [x, y], label, text, { value, at, put, px = 4, r }) {
+  const drag = (toX, toY) => put(...at(toX, toY));
+  let [nowX, nowY] = [x, y];
+  const nudge = (dx, dy) => drag((nowX += px * dx), (nowY += px * dy));
+  return { name, x, y, r, label, text, value, drag, nudge };
 }
 
 // The same handle at another place, too: all of a ball, from where the hand goes on as at the first.

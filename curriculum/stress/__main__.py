@@ -16,9 +16,11 @@ import sys
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-from curriculum.commands import number
-from curriculum.run import pool
-from curriculum.stress import jobs
+from curriculum.commands import needs, number
+
+with needs("dev"):
+    from curriculum.run import pool
+    from curriculum.stress import jobs
 
 
 def parse(argv):
@@ -97,6 +99,7 @@ def main(argv=None):
 
 if __name__ == "__main__":
     try:
-        sys.exit(main())
-    except (OSError, ValueError) as error:  # a scheduler that does not answer, a tree not committed
+        with needs("dev"):
+            sys.exit(main())
+    except (ImportError, OSError, ValueError) as error:  # no answer, a tree not committed
         sys.exit(f"python -m curriculum.stress: {error}")

@@ -72,7 +72,7 @@ def test_two_builds_are_the_same_bytes_whatever_the_hash_seed(text, tmp_path):
 
 def test_it_opens_on_a_ball_that_falls_before_anything_has_run(text):
     book = nbformat.reads(text, as_version=4)
-    shown = [cell for cell in book.cells[:6] if cell.get("outputs")]
+    shown = [cell for cell in book.cells[:7] if cell.get("outputs")]
     (picture,) = [output.data["image/svg+xml"] for cell in shown for output in cell.outputs]
     assert "@keyframes" in picture and "exact</text>" in picture
 

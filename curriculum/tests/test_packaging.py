@@ -6,7 +6,6 @@ import os
 import re
 import subprocess
 import sys
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -71,25 +70,6 @@ def test_exercises_and_checks_work_with_numpy_and_pytest_alone(only):
     assert checked.returncode == 0, checked.stdout
     bet = run("-S", "exercises/ex1_predict_contact.py", PYTHONPATH=packages)
     assert "Traceback" not in bet.stderr and "A" in bet.stdout + bet.stderr
-
-
-def test_wheel_holds_contact_alone_and_runs_from_another_folder(tmp_path):
-    pytest.importorskip("setuptools", reason="setuptools is not installed")
-    source = tmp_path / "source"
-    source.mkdir()
-    for file in ("contact.py", "pyproject.toml", "README.md", "LICENSE"):
-        (source / file).write_bytes((ROOT / file).read_bytes())
-    pip = ("-m", "pip", "--disable-pip-version-check", "wheel", "--quiet", "--no-deps")
-    built = run(*pip, "--no-build-isolation", "--wheel-dir", tmp_path, source)
-    assert built.returncode == 0, built.stderr
-    (wheel,) = tmp_path.glob("*.whl")
-    with zipfile.ZipFile(wheel) as files:
-        assert [name for name in files.namelist() if ".dist-info/" not in name] == ["contact.py"]
-        files.extractall(tmp_path / "site")
-    done = run(
-        "-m", "contact", "--contact", "exact", cwd=tmp_path, PYTHONPATH=str(tmp_path / "site")
-    )
-    assert done.returncode == 0 and "exact" in done.stdout, done.stderr
 
 
 def test_readme_is_short_and_shows_the_balls_first():

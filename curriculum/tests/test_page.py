@@ -294,7 +294,7 @@ def test_the_live_figure_shows_the_gaps_of_contact_py(visit):
 
 
 def test_an_explosion_is_drawn_with_a_scale_of_heights(visit):
-    with visit("?dt=0.04#in-a-hurry") as page:
+    with visit("?dt=0.04#in-a-hurry.2") as page:
         page.wait_for_selector("#fig-lanes .line.m-penalty")
         page.locator("#fig-lanes .handle[data-handle=time]").focus()
         page.keyboard.press("End")

@@ -2,6 +2,7 @@
 
 import functools
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from curriculum.page.chapter import CHAPTER
 from curriculum.regions import ROOT
 from curriculum.tests.page_browser import running, visiting
 from curriculum.text import facts
+from exercises.kit import trials
 
 SLOT = re.compile(r"<!-- figure: ([\w-]+) -->")
 SLOTS = sorted(set(SLOT.findall((ROOT / CHAPTER).read_text("utf-8"))))
@@ -164,6 +166,7 @@ def test_springs_show_the_depths_of_contact_py(tab):
 
 
 def test_signs_are_those_of_contact_py(tab):
+    set_knobs(tab, "")
     box = figure(tab, "signs")
     press(tab, handle(box, "ball"), "ArrowLeft", 5)
     press(tab, handle(box, "velocity"), "ArrowUp", 12)
@@ -275,3 +278,78 @@ def test_the_sum_of_bounce_and_bias_throws_the_ball_higher_than_the_larger_of_th
     bounce, bias, larger, both = numbers(figure(tab, "landing"))[2:]
     heights = [v * v / (2 * WEIGHT * RADIUS) for v in (max(bounce, bias), bounce + bias)]
     assert [larger, both] == pytest.approx(heights, rel=0.02) and both > larger + 0.1
+
+
+def at_rest(masses, **knobs):
+    """How deep [r] the lowest of touching balls lies in the table after two seconds of lcp."""
+    q0 = np.array([np.zeros(len(masses)), (2 * np.arange(len(masses)) + 1) * RADIUS])
+    radius, mass = np.full(len(masses), RADIUS), np.array(masses, float)
+    scene = contact.Scene("column", q0, 0 * q0, mass, radius, 0.0, 0.0)
+    dt = knobs.pop("dt")
+    run = contact.run_model("lcp", scene, dt, round(2 / dt), contact.Settings(**knobs))
+    return 1 - run.q[-1, 1, 0] / RADIUS
+
+
+def test_sag_is_that_of_contact_py_and_its_law_holds_for_one_sweep(tab):
+    """At one sweep within 1 %; later the law is above it. Also for substeps, and heavy on light."""
+    set_knobs(tab, "")
+    box = figure(tab, "sag")
+    deep, law = numbers(box)[-2:]
+    assert deep == pytest.approx(at_rest([1] * 8, dt=DT), rel=0.02) and deep < law
+    press(tab, handle(box, "parts"), "ArrowRight", 9)  # as many substeps as there are sweeps
+    deep, law = numbers(box)[-2:]
+    assert deep == pytest.approx(at_rest([1] * 8, dt=DT / 20, iters=1), rel=0.02)
+    assert law == pytest.approx(7 * WEIGHT * (DT / 20) ** 2 / 0.2 / RADIUS, rel=0.01)
+    assert deep == pytest.approx(law, rel=0.01)
+    press(tab, handle(box, "parts"), "ArrowLeft", 9)
+    for _ in range(6):
+        box.locator("button:text('less')").click()
+    settle(tab)
+    drag(tab, handle(box, "ball-1"), (0, -60))  # ten times as heavy
+    assert numbers(box)[-2] == pytest.approx(at_rest([1, 10], dt=DT), rel=0.02)
+
+
+def test_gripper_trembles_as_exercise_8_has_it_holds_at_half_the_step_and_is_gone_beyond(tab):
+    set_knobs(tab, "")
+    chosen = {"MODEL": "penalty", "STIFFNESS": 1e4, "DAMPING": 80.0, "SOLREF": None, "SOLIMP": None}
+    seen = trials.fingers(SimpleNamespace(DT=0.004, **chosen))
+    for name in ("promise", "gripper"):
+        told = numbers(figure(tab, name))
+        assert told == pytest.approx([4, 1e4, seen["deepest"], seen["trembling"]], rel=0.03)
+    box = figure(tab, "gripper")
+    width = box.locator(".drawing").bounding_box()["width"]
+    drag(tab, handle(box, "choice"), (-0.25 * width, 0))  # half the step
+    assert "holds still" in said(box) and numbers(box)[0] == pytest.approx(2, abs=0.3)
+    drag(tab, handle(box, "choice"), (0.33 * width, 0))
+    assert "fly apart" in said(box) and box.locator(".scale").count()
+    seen = trials.fingers(SimpleNamespace(DT=numbers(box)[0] / 1000, **chosen))
+    assert not seen["held"]
+
+
+def test_inequality_ends_where_a_step_of_contact_py_ends_with_and_without_looking_ahead(tab):
+    set_knobs(tab, "")
+    box = figure(tab, "inequality")
+    for ahead in (False, True):
+        gap, moves, end = (numbers(box) + [None])[:3]
+        ball = contact.Ball(0.0, (1 + gap) * RADIUS, 0.0, -4.0, 1.0, RADIUS)
+        contact.lcp_step([ball], DT, 0.0, 0.2, 20, ahead=ahead)
+        after = ball.y / RADIUS - 1
+        assert gap + moves == pytest.approx(end, abs=2e-3) and end < 0
+        if ahead:
+            assert "it ends at 0 r" in said(box) and abs(after) < 1e-12
+        else:
+            assert "does not push" in said(box) and after == pytest.approx(end, abs=2e-3)
+            box.locator("button:text('Look as far')").click()
+            settle(tab)
+
+
+def test_bowl_ends_at_the_direct_solution_inside_the_quadrant_and_on_its_wall(tab):
+    """Inside both contacts push: the solution of a linear system. On the wall one of them does not."""
+    set_knobs(tab, "")
+    box = figure(tab, "bowl")
+    inside = np.linalg.solve([[1, -1], [-1, 2]], [1, 0])
+    assert numbers(box)[2:4] == pytest.approx(inside.tolist(), rel=5e-3)
+    drag(tab, handle(box, "v2"), (0, -66))  # the upper ball flies up, three g dt faster
+    assert numbers(box)[2:4] == pytest.approx([1, 0], abs=5e-3)
+    drag(tab, handle(box, "start"), (60, 40))
+    assert numbers(box)[2:4] == pytest.approx([1, 0], abs=5e-3)

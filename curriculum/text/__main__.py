@@ -12,6 +12,8 @@ of the ledger are of today's code.
 import argparse
 import sys
 
+from curriculum.commands import needs
+
 
 def main(argv=None) -> int:
     """Check or accept. Returns the exit status: 0 in order, 1 not, 2 could not be done."""
@@ -24,11 +26,10 @@ def main(argv=None) -> int:
     parser.add_argument("--accept", metavar="SECTION", nargs="*", help="these have been read")
     args = parser.parse_args(argv)
     try:
-        from curriculum.text import gate
+        with needs("dev"):
+            from curriculum.text import gate
 
-        return gate.check() if args.accept is None else gate.accept(args.accept)
-    except ModuleNotFoundError as error:
-        wrong = f"the gate needs {error.name}, which is missing: pip install -e '.[dev]'"
+            return gate.check() if args.accept is None else gate.accept(args.accept)
     except SyntaxError as error:
         wrong = f"{error.filename}:{error.lineno}: not Python: {error.msg}"
     except (OSError, ValueError) as error:

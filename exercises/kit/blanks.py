@@ -1,16 +1,16 @@
-"""The blanks: how each is tried, what belongs in it, and the slips that are seen most.
+"""The blanks: how each is tried, and what belongs in it. Much here gives an answer away.
 
 A fill is judged by what it gives on all inputs, beside what the right one gives; a wrong one is
-named by the slip that gives the same. Nothing to fill in here, and much that gives an answer away.
+named by the slip of answers.json that gives the same.
 """
 
 import math
 import random
 from collections.abc import Callable
-from math import sqrt  # noqa: F401  expressions below use it
+from math import inf, sqrt  # noqa: F401  expressions of answers.json use them
 from typing import NamedTuple
 
-from .predict import contact
+from .predict import FACTS, contact
 
 
 class Blank(NamedTuple):
@@ -23,30 +23,21 @@ class Blank(NamedTuple):
     slips: list  # [(a function that makes it, what it means)]
     within: float = 1e-9  # what counts as equal, as a share of the size of what is right
     run: Callable = lambda function, case: function(*case.values())
-    legend: tuple = ()  # how to read what goes in and comes out
+    labels: Callable = lambda case: ("",)  # of the numbers that come out
+    after: str = ""  # the blank that this one is built on
 
 
 def drawn(*first, **ranges):
-    """Inputs: the first ones as given, then random ones. A range that begins above 0 is drawn by
-    powers."""
+    """Inputs: the first ones as given, then random ones of two digits. A range that begins above 0
+    is drawn by powers."""
     draw, inputs = random.Random(35), [dict(zip(ranges, values)) for values in first]
     for _ in range(60):
-        inputs.append(
-            {
-                name: low * (high / low) ** draw.random() if low > 0.0 else draw.uniform(low, high)
-                for name, (low, high) in ranges.items()
-            }
-        )
+        made = {
+            name: low * (high / low) ** draw.random() if low > 0.0 else draw.uniform(low, high)
+            for name, (low, high) in ranges.items()
+        }
+        inputs.append({name: float(f"{value:.2g}") for name, value in made.items()})
     return inputs
-
-
-def table(names, right, slips):
-    """The right function and the slips of a blank with these arguments, from expressions."""
-    made = [
-        eval(f"lambda {names}: {text}", globals())  # noqa: S307  our own text
-        for text in (right, *slips)
-    ]
-    return {"right": made[0], "slips": list(zip(made[1:], slips.values()))}
 
 
 def matrix(m, k, c, dt):
@@ -74,9 +65,16 @@ def solver(
         f"  c.lam = {kept}",
     )
     code = compile("\n".join(lines), "a solve_contacts", "exec")
-    return lambda contacts, iters: exec(  # noqa: S102
-        code, names | {"contacts": contacts, "iters": iters}
-    )
+    return lambda contacts, iters: exec(code, names | {"contacts": contacts, "iters": iters})
+
+
+def jacobi(contacts, iters):
+    """A solve_contacts that pushes nothing before it has looked at every contact."""
+    for _ in range(iters):
+        wanted = [max(0.0, c.lam + (c.target - c.v_n()) * c.m_eff) for c in contacts]
+        for c, lam in zip(contacts, wanted):
+            c.push(lam - c.lam)
+            c.lam = lam
 
 
 def stacks():
@@ -86,18 +84,17 @@ def stacks():
     floor), the normal's angle from the vertical [rad] and the target [m/s].
     """
     draw, inputs = random.Random(35), []
+
+    def some(low, high):
+        return round(draw.uniform(low, high), 2)
+
     for count in (1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 5, 5):
-        pairs = [(k, k - 1, draw.uniform(-0.5, 0.5)) for k in range(count)]
-        pairs += [(0, -1, draw.uniform(0.6, 0.9))] if len(inputs) % 3 else []
-        inputs.append(
-            {
-                "masses": [draw.uniform(0.6, 1.6) for _ in range(count)],
-                "speeds": [
-                    (draw.uniform(-0.5, 0.5), draw.uniform(-1.0, 0.5)) for _ in range(count)
-                ],
-                "contacts": [(*pair, draw.uniform(-0.3, 0.4)) for pair in pairs],
-            }
-        )
+        pairs = [(k, k - 1, some(-0.5, 0.5)) for k in range(count)]
+        pairs += [(0, -1, some(0.6, 0.9))] if len(inputs) % 3 else []
+        masses = [some(0.6, 1.6) for _ in range(count)]
+        speeds = [(some(-0.5, 0.5), some(-1.0, 0.5)) for _ in range(count)]
+        contacts = [(*pair, some(-0.3, 0.4)) for pair in pairs]
+        inputs.append({"masses": masses, "speeds": speeds, "contacts": contacts})
     return inputs
 
 
@@ -117,87 +114,67 @@ def run_stack(function, case):
     return [c.lam for c in contacts] + [speed for ball in balls for speed in (ball.vx, ball.vy)]
 
 
+def label_stack(case):
+    """What the numbers of run_stack are."""
+    lam = [f"lam, {a} on {'floor' if b < 0 else b}" for a, b, _, _ in case["contacts"]]
+    return [*lam, *(f"{v} of {ball}" for ball in range(len(case["masses"])) for v in ("vx", "vy"))]
+
+
+def run_reach(function, case):
+    """What exercise 10 calls far enough: any reach that misses nothing and is not much longer."""
+    got, (v, dt) = function(*case.values()), case.values()
+    usual, least = 2 * dt * (v + 9.81 * dt), max(2 * dt * v, dt * (v + 9.81 * dt))
+    try:
+        return usual if 0.999999 * least <= got <= max(4.0 * usual, 2e-3) else got
+    except TypeError:
+        return got  # no number: said elsewhere
+
+
+def fills(exercise, blank, names, right):
+    """The right function and the slips of a blank with these arguments, from expressions."""
+    head = f"lambda {names}: " if names else ""
+    slips = FACTS[exercise]["slips"][blank]
+    made = [eval(head + text, globals()) for text in (right, *slips)]  # our own text
+    return {"right": made[0], "slips": list(zip(made[1:], slips.values()))}
+
+
 # fmt: off
-PULLS = "nothing keeps the table from pulling"
-SPRING = "1 / (k * dt * dt + c * dt)"
 STEEL = {"mass": (0.1, 5.0), "stiffness": (500.0, 2e4), "damping": (2.0, 100.0)}
+SPRING = "1 / (k * dt * dt + c * dt)"
 BLANKS = {
     "penalty_normal_force": Blank("ex2", 1, drawn(
         (0.01, 0.5, 5e3, 80.0), (0.001, 2.0, 5e3, 80.0), (0.01, 0.625, 5e3, 80.0),
-        depth=(1e-4, 0.05), v_n=(-3.0, 3.0), stiffness=(1e2, 1e5), damping=(0.0, 300.0),
-    ), **table("x, v, k, c", "max(0, k * x - c * v)", {
-        "k * x - c * v": f"{PULLS}: the damper can outweigh the spring on the way out",
-        "k * x + c * v": f"the damper pushes along with the motion, and {PULLS}",
-        "max(0, k * x + c * v)": "the damper pushes along with the motion: look up the sign of v_n",
-        "max(0, k * x - c * abs(v))": "the damper takes from the push on the way in too",
-        "max(0, k * x + c * abs(v))": "the damper adds to the push on the way out too",
-        "max(0, k * x - c * max(0, v))": "the damper works on the way out only",
-        "k * x": "the damper is missing",
-        "max(0, -c * v)": "the spring is missing",
-        "abs(k * x - c * v)": "a pull has been turned round into a push",
-        "max(0, -k * x - c * v)": "the spring pulls: depth > 0 is an overlap",
-        "max(0, 1e4 * x - 80 * v)": "numbers stand where `stiffness` and `damping` should",
-    })),
+        depth=(1e-4, 0.05), v_n=(-3.0, 3.0), stiffness=(1e2, 1e5), damping=(0.0, 300.0)),
+        **fills("ex2", "penalty_normal_force", "x, v, k, c", "max(0, k * x - c * v)"),
+        labels=lambda case: ("force [N]",)),
     "project_impulse": Blank("ex2", 3, drawn(
         (0.0, 0.0), (0.0, 0.3), (0.2, 0.3), (0.0, -0.3), (0.2, -0.5), (0.2, -0.2),
-        lam=(0.0, 2.0), dlam=(-3.0, 3.0),
-    ), **table("lam, dlam", "max(0, lam + dlam)", {
-        "lam + dlam": f"{PULLS}: the sum may not become negative",
-        "lam + max(0, dlam)": "the clamp is on the change: what is too much stays for good",
-        "max(0, dlam)": "only the last correction comes out: what was pushed before is forgotten",
-        "max(0, lam - dlam)": "the correction is taken off: dlam is to be added",
-        "abs(lam + dlam)": "a negative sum has been turned round into a push",
-        "lam": "the correction is not used",
-    })),
-    "solve_contacts": Blank("ex5", 1, stacks(), contact.solve_contacts, [
-        (solver(total="c.lam + max(0.0, add)"), "the clamp is on the change, and it belongs on the "
-         "sum: what was pushed too much must be taken back"),
-        (solver(total="c.lam + add"), "no clamp: a contact never pulls, so lam is never negative"),
-        (solver("c.v_n() - c.target"), "the sign of what is missing: it is target - v_n"),
-        (solver("-c.target - c.v_n()"), "the sign of the target"),
-        (solver(push="c.a.vx += (lam - c.lam) * c.ax; c.a.vy += (lam - c.lam) * c.ay"),
-         "the other body is forgotten: push moves both"),
-        (solver(most=1), "one sweep: the neighbours that it disturbs are never mended"),
-        (solver(push="c.push(lam)"), "the whole lam is pushed at each visit, and not its change"),
-        (solver(total="max(0.0, add)", kept="0.0"), "c.lam does not hold the sum of corrections"),
-        (solver(push=""), "lam is worked out and never pushed"),
-        (solver(mass="1.0"), "m_eff is missing: an impulse is a mass times a velocity"),
-    ], 1e-5, run_stack, (
-        "  these are lam of every contact, then vx and vy of every ball; of a contact you see the",
-        "  upper ball, the lower one (-1: the floor), the angle of its normal, and its target")),
-    "step_matrix": Blank("ex6", 1, drawn(**STEEL, dt=(0.001, 0.03)), **table(
-        "m, k, c, dt", "matrix(m, k, c, dt)", {
-            "[[1, -dt], [dt * k / m, 1 - dt * c / m]]":
-                "the depth moves with the old velocity: that is explicit Euler",
-            "matrix(m, k, -c, dt)": "the sign of the damper",
-            "matrix(m, -k, c, dt)": "the sign of the spring: a depth pushes up",
-            "matrix(m, k, 0, dt)": "the damper is missing",
-            "list(zip(*matrix(m, k, c, dt)))": "rows and columns are exchanged",
-            "[row[::-1] for row in matrix(m, k, c, dt)[::-1]]":
-                "the order is (v_n, depth), asked for is (depth, v_n)",
-            "[[1 + dt * dt * k / m, dt - dt * dt * c / m], [dt * k / m, 1 - dt * c / m]]":
-                "v_n > 0 goes out of the table, so the depth becomes smaller",
-        })),
-    "longest_step": Blank("ex6", 3, drawn(**STEEL)[:12], within=2e-3, **table(
-        "m, k, c", "contact.critical_dt(m, k, c)", {
-            "2 * sqrt(m / k)": "that is the limit without the damper",
-            "(c + sqrt(c * c + 4 * k * m)) / k":
-                "the damper's sign: it should bring the limit nearer",
-            "sqrt(m / k)": "that is half the limit without the damper",
-        })),
+        lam=(0.0, 2.0), dlam=(-3.0, 3.0)),
+        **fills("ex2", "project_impulse", "lam, dlam", "max(0, lam + dlam)"),
+        labels=lambda case: ("impulse [N s]",)),
+    "solve_contacts": Blank("ex5", 1, stacks(),
+        **fills("ex5", "solve_contacts", "", "contact.solve_contacts"),
+        within=1e-5, run=run_stack, labels=label_stack),
+    "step_matrix": Blank("ex6", 1, drawn(**STEEL, dt=(0.001, 0.03)),
+        **fills("ex6", "step_matrix", "m, k, c, dt", "matrix(m, k, c, dt)"),
+        labels=lambda case: ("row 1, depth", "row 1, v_n", "row 2, depth", "row 2, v_n")),
+    "longest_step": Blank("ex6", 3, drawn(**STEEL)[:12], within=2e-3, after="step_matrix",
+        **fills("ex6", "longest_step", "m, k, c", "contact.critical_dt(m, k, c)"),
+        labels=lambda case: ("step [s]",)),
     "implicit_spring": Blank("ex7", 1, drawn(
-        depth=(1e-4, 0.05), stiffness=(1e2, 1e6), damping=(1.0, 300.0), dt=(3e-4, 0.1),
-    ), **table("x, k, c, dt", f"({SPRING}, dt * k * x * {SPRING})", {
-        "(1 / (k * dt * dt), x / dt)": "the damper is missing",
-        "(1 / (k * dt + c), k * x / (k * dt + c))":
-            "that softness is for a force; lam is an impulse, dt times as large",
-        "(k * dt * dt + c * dt, dt * k * x / (k * dt * dt + c * dt))":
-            "the softness is upside down: a stiff spring is not soft",
-        f"({SPRING}, dt * k * x)":
-            "the target is an impulse still: the equation has to be divided as a whole",
-        f"({SPRING}, x / dt)": "the target asks for the whole depth, and the damper slows that",
-        f"({SPRING}, -dt * k * x * {SPRING})": "the sign of the target: an overlap should open",
-        f"(dt * k * x * {SPRING}, {SPRING})": "the order: softness first, then target",
-    })),
+        depth=(1e-4, 0.05), stiffness=(1e2, 1e6), damping=(1.0, 300.0), dt=(3e-4, 0.1)),
+        **fills("ex7", "implicit_spring", "x, k, c, dt", f"({SPRING}, dt * k * x * {SPRING})"),
+        labels=lambda case: ("softness", "target")),
+    "how_far": Blank("ex10", 1, drawn(
+        (0.0, 0.002), (0.01, 0.002), (5.0, 0.002), fastest=(1e-3, 10.0), dt=(5e-4, 0.02)),
+        **fills("ex10", "how_far", "v, dt", "2 * dt * (v + dt * 9.81)"),
+        run=run_reach, labels=lambda case: ("distance [m]",)),
+    "least_speed": Blank("ex10", 3, drawn(
+        (0.01, 0.2, 0.002), (-0.01, 0.2, 0.002), (0.0, 0.2, 0.002),
+        depth=(-0.05, 0.05), baumgarte=(0.05, 0.9), dt=(5e-4, 0.02)),
+        **fills("ex10", "least_speed", "x, b, dt", "(b if x > 0 else 1) * x / dt"),
+        labels=lambda case: ("v_n [m/s]",)),
+    "applies": Blank("ex10", 5, [{"restitution": e} for e in (0.0, 0.5, 0.7, 1.0)],
+        **fills("ex10", "applies", "e", "e == 0"), labels=lambda case: ("1 yes, 0 no",)),
 }
 # fmt: on

@@ -3,8 +3,10 @@
 Nothing to fill in here, and much that gives an answer away.
 """
 
+import contextlib
+import io
 import math
-import textwrap
+import sys
 from functools import partial
 from unittest.mock import patch
 
@@ -15,14 +17,13 @@ from curriculum.commands import command, near
 from . import predict
 from .blanks import BLANKS, solver
 from .predict import contact
-from .progress import practise
 
 
 def row(name, function, case):
     """What comes out, as a row of numbers; None of a blank. Raises ValueError, in words."""
     try:
         got = BLANKS[name].run(function, case)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise ValueError(f"{name} raised {type(error).__name__}: {error}") from None
     if got is ... or (isinstance(got, tuple) and any(part is ... for part in got)):
         return None
@@ -55,7 +56,9 @@ def slip(name, found):
 @np.errstate(all="ignore")
 def judge(exercise, name):
     """("blank", "wrong" or "right", why in words): a learner's function on all inputs."""
-    blank, function = BLANKS[name], getattr(exercise, name)
+    blank, function = BLANKS[name], getattr(exercise, name, None)
+    if not callable(function):
+        return "wrong", f"{name} is no longer a function in {near(exercise.__file__)}"
     try:
         found = [row(name, function, case) for case in blank.inputs]
     except ValueError as error:
@@ -71,21 +74,34 @@ def judge(exercise, name):
     ]
     if not wrong:
         return "right", ""
-    case, *rows = wrong[0]
-    given = ", ".join(f"{key}={np.round(value, 6).tolist()}" for key, value in case.items())
-    got, right = (" ".join(f"{value:.6g}" for value in each) for each in rows)
-    script = command(exercise.__file__, "--hint", blank.hint)
+    smallest = min(wrong, key=lambda each: len(str(each[0])))
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        row(name, function, smallest[0])
+    many = f"wrong on {len(wrong)} of {len(found)} inputs, of which this is the smallest:"
+    hint = command(exercise.__file__, "--hint", blank.hint)
     return "wrong", "\n".join(
         [
-            f"{name}({given})",
-            f"  got       {got}",
-            f"  expected  {right}",
-            *blank.legend,
-            f"  wrong on {len(wrong)} of {len(found)} inputs, of which this is the first",
+            f"{name} is {many}",
+            *failing(name, *smallest),
+            *(f"  printed   {line:.80}" for line in said.getvalue().splitlines()[:8]),
             f"  likely: {slip(name, found)}",
-            f"  where to look: the signs at the top of contact.py, or {script}",
+            f"  where to look: the signs at the top of contact.py, or {hint}",
         ]
     )
+
+
+def failing(name, case, got, right):
+    """The lines that show what went in, and what came out beside what was expected."""
+    lines = [f"  {name}({', '.join(f'{key}={value}' for key, value in case.items())})"]
+    if name == "solve_contacts":
+        lines.append("  (a contact: upper ball, lower ball, angle of its normal, target)")
+    if got.shape != right.shape:
+        return [*lines, f"  got {got.size} numbers, expected {right.size}"]
+    lines.append(f"  {'':<16}{'got':>12}{'expected':>14}")
+    for label, mine, other in zip(BLANKS[name].labels(case), got, right):
+        mark = "" if agree(np.array([mine]), np.array([other]), 1e-3) else "   <"
+        lines.append(f"  {label:<16}{mine:>12.5g}{other:>14.5g}{mark}")
+    return lines
 
 
 # What the fills do to balls
@@ -93,29 +109,20 @@ def judge(exercise, name):
 
 def pressed():
     """A ball is pressed into the table and let go: how high it jumps."""
-    of = contact.build_scene("drop", damping=60.0)._replace(q0=np.array([[0.0], [0.07]]))
+    of = contact.scene_of(0.0, 0.07, damping=60.0)
     run = contact.run_model("penalty", of, 0.001, 1000, contact.Settings(stiffness=8e3))
     return run.q[:, 1].max() / 0.1 - 1.0
 
 
 def thrown():
     """A ball is thrown up from the table: how high it comes."""
-    of = contact.build_scene("drop")._replace(q0=np.array([[0.0], [0.1]]))
-    of.v0[1] = 2.0
+    of = contact.scene_of(0.0, 0.1, vy=2.0)
     return contact.run_model("lcp", of, 0.002, 600).q[:, 1].max() / 0.1 - 1.0
 
 
 def groove():
     """A ball drops into the groove of two balls that are held: how far off it ends."""
-    of = contact.Scene(
-        "groove",
-        np.array([[0.0, -0.07, 0.07], [0.6, 0.1, 0.1]]),
-        np.zeros((2, 3)),
-        np.array([1.0, np.inf, np.inf]),
-        np.full(3, 0.1),
-        0.0,
-        0.0,
-    )
+    of = contact.scene_of([0.0, -0.105, 0.105], [0.8, 0.1, 0.1], [1.0, math.inf, math.inf])
     return abs(contact.run_model("lcp", of, 0.002, 600).q[-1, 0, 0]) / 0.1
 
 
@@ -128,62 +135,95 @@ TRIALS = {
 
 def in_place(function, name):
     """contact.py with the learner's function in place of its own, while the context lasts."""
+
+    def number(*values):  # also where it is an array that holds a single one
+        return float(np.squeeze(function(*values)))
+
+    if name == "solve_contacts":
+        return patch.object(contact, name, function)
     if name == "project_impulse":  # which contact.py writes out in its sweep
-        name, function = "solve_contacts", solver(total="project(c.lam, add)", project=function)
-    return patch.object(contact, name, function)
+        sweep = solver(total="project(c.lam, add)", project=number)
+        return patch.object(contact, "solve_contacts", sweep)
+    return patch.object(contact, name, number)
 
 
-def compare(function, name):
+def compare(exercise, name):
     """The trials of a blank, the learner's beside contact.py's."""
     rows = {}
     for trial in TRIALS[name]:
-        with in_place(function, name):
+        with in_place(getattr(exercise, name), name):
             rows[trial.__doc__] = [trial()]
         rows[trial.__doc__].append(trial())
     return predict.columns("lengths in ball radii", ("yours", "contact.py"), rows, "{:.3f}")
 
 
-def cliffs(longest_step, _):
+def cliffs(exercise, _):
     """The longest steps that the learner found, beside two formulas."""
-    rows = {
-        f"k {k:g}, c {c:g}": (
-            longest_step(1.0, k, c),
-            contact.critical_dt(1.0, k, c),
-            2.0 / math.sqrt(k),
-        )
-        for k, c in ((1e4, 5.0), (1e4, 80.0), (1e6, 80.0), (1e3, 80.0))
-    }
-    heads = "yours", "critical_dt", "2 sqrt(m / k)"
-    return (
-        predict.columns("longest step", heads, rows, "{:.5f} s") + "\ncritical_dt solves "
-        "k dt^2 + 2 c dt = 4 m: the damper brings the cliff nearer."
+    rows = {}
+    for k, c in ((1e4, 5.0), (1e4, 80.0), (1e6, 80.0), (1e3, 80.0)):
+        mine, formula = exercise.longest_step(1.0, k, c), contact.critical_dt(1.0, k, c)
+        rows[f"k {k:g}, c {c:g}"] = mine, formula, 2.0 / math.sqrt(k)
+    table = predict.columns(
+        "longest step", ("yours", "critical_dt", "2 sqrt(m / k)"), rows, "{:.5f} s"
     )
+    return f"{table}\ncritical_dt solves k dt^2 + 2 c dt = 4 m: the damper brings the cliff nearer."
 
 
-def drops(spring, _):
+def drops(exercise, _):
     """What the drop does under the learner's spring and under penalty, at longer steps."""
     from curriculum.implicit import implicit_step
 
     of, rows = contact.build_scene("drop"), {}
     for dt in (0.002, 0.008, 0.016, 0.064):
-        step = partial(
-            implicit_step, dt=dt, spring=lambda depth, dt=dt: spring(depth, 1e4, 80.0, dt)
-        )
-        found = [
-            contact.contact_quality(run, of, dt)
-            for run in (
-                contact.simulate(step, of, dt, int(8.0 / dt)),
-                contact.run_model("penalty", of, dt, int(8.0 / dt)),
-            )
-        ]
-        rows[f"dt {dt:.3f} s"] = [
-            quality[key] for key in ("energy_excess", "rest_penetration_frac") for quality in found
-        ]
+        spring = partial(exercise.implicit_spring, stiffness=1e4, damping=80.0, dt=dt)
+        step, steps = partial(implicit_step, dt=dt, spring=spring), int(8.0 / dt)
+        runs = contact.simulate(step, of, dt, steps), contact.run_model("penalty", of, dt, steps)
+        mine, other = (contact.contact_quality(run, of, dt) for run in runs)
+        rest = [None if q["blew_up"] else q["rest_penetration_frac"] for q in (mine, other)]
+        rows[f"dt {dt:.3f} s"] = mine["energy_excess"], other["energy_excess"], *rest
     heads = "gain, yours", "gain, penalty", "rests, yours", "rests, penalty"
     return predict.columns("energy, depth", heads, rows, "{:.5g}")
 
 
+def seeing(exercise, balls, dt, restitution=0.0, baumgarte=0.2, iters=20):
+    """lcp_step with the three lines of exercise 10."""
+    applies, margin = exercise.applies(restitution), contact.CONTACT_MARGIN
+    fastest = max(math.hypot(ball.vx, ball.vy) for ball in balls)
+    contacts = contact.detect_contacts(balls, exercise.how_far(fastest, dt) if applies else margin)
+    for c in contacts:
+        c.target = contact.contact_target(c, restitution, baumgarte, dt)
+        if applies:
+            c.target = exercise.least_speed(c.depth, baumgarte, dt)
+    contact.accelerate(balls, dt)
+    contact.solve_contacts(contacts, iters)
+    contact.move(balls, dt)
+
+
+def landings(exercise, dt=0.002):
+    """{scene: (worst height error beside exact, deepest overlap; and both as published)}, in r."""
+    rows, scenes = {}, {"meeting": contact.scene_of(0.0, [0.3, 1.504], vy=[4.0, -4.0])}
+    for name, bodies in ("drop", 1), ("bounce", 1), ("stack", 3), ("pile", 8):
+        scenes[name] = contact.build_scene(name, bodies=bodies)
+    for name, of in scenes.items():
+        step = partial(seeing, exercise, dt=dt, restitution=of.restitution)
+        exact = contact.run_model("exact", of, dt, 250)
+        runs = contact.simulate(step, of, dt, 250), contact.run_model("lcp", of, dt, 250)
+        found = [contact.contact_quality(run, of, dt, exact) for run in runs]
+        keys = "height_error_frac", "max_penetration_frac"
+        rows[name] = [quality[key] for key in keys for quality in found]
+    return rows
+
+
+def land(exercise, name):
+    """The table of landings, once all three lines are there."""
+    if name != "applies":
+        return ""
+    heads = "error, yours", "error, lcp", "deepest, yours", "deepest, lcp"
+    return predict.columns("beside exact, in r", heads, landings(exercise), "{:.4g}")
+
+
 SHOWN = {**dict.fromkeys(TRIALS, compare), "longest_step": cliffs, "implicit_spring": drops}
+SHOWN["applies"] = land
 
 
 # Exercise 8
@@ -191,16 +231,7 @@ SHOWN = {**dict.fromkeys(TRIALS, compare), "longest_step": cliffs, "implicit_spr
 
 def fingers(exercise):
     """What the choice of exercise 8 does to the cup: {name: number}, lengths in r."""
-    dt, radius = exercise.DT, np.full(3, 0.1)
-    of = contact.Scene(
-        "fingers",
-        np.array([[-0.205, 0.0, 0.205], [0.1, 0.1, 0.1]]),
-        np.zeros((2, 3)),
-        np.array([0.2, 1.0, 0.2]),
-        radius,
-        0.0,
-        0.0,
-    )
+    dt, of = exercise.DT, contact.scene_of([-0.205, 0.0, 0.205], 0.1, [0.2, 1.0, 0.2])
     solref, solimp = contact.soft_defaults(0.0, dt, exercise.SOLREF, exercise.SOLIMP)
 
     def step(balls):
@@ -215,36 +246,30 @@ def fingers(exercise):
 
     run = contact.simulate(step, of, dt, math.ceil(1.0 / dt - 1e-9), skip=False)
     with np.errstate(all="ignore"):
-        depth = np.maximum(-contact.smallest_gap(run.q, radius) / 0.1, 0.0)[3 * len(run.q) // 4 :]
-        return {
-            "deepest": depth.max(),
-            "trembling": np.ptp(depth),
-            "steps": len(run.q) - 1,
-            "held": bool((np.abs(run.q[-1, 0]) < 0.3).all()),
-        }
+        depth = np.maximum(-contact.smallest_gap(run.q, of.radius) / 0.1, 0.0)
+        last = depth[3 * len(depth) // 4 :]
+        held = bool((np.abs(run.q[-1, 0]) < 0.3).all())
+        return {"deepest": last.max(), "trembling": np.ptp(last), "held": held}
 
 
 def judge_fingers(exercise):
-    """("blank", "wrong" or "right", why in words): the choice of exercise 8."""
-    model, k = exercise.MODEL, exercise.STIFFNESS
+    """("blank", "wrong" or "right", why in words, what was seen): the choice of exercise 8."""
+    model, k, dt = exercise.MODEL, exercise.STIFFNESS, exercise.DT
     if model is None:
-        return "blank", (
-            f'no choice yet: set MODEL in {near(exercise.__file__)} to "penalty" '
-            'or "soft", and then its numbers; --hint 1 asks a question that helps'
-        )
+        return "blank", f"no choice yet: set MODEL in {near(exercise.__file__)}", ""
     try:
-        if model not in ("penalty", "soft") or not 1e-5 <= exercise.DT <= 0.1 or not k > 0.0:
+        if model not in ("penalty", "soft") or not 0.0005 <= dt <= 0.1 or not k > 0.0:
             raise ValueError(
-                "allowed: MODEL 'penalty' or 'soft', DT from 0.00001 to 0.1 s, STIFFNESS above 0"
+                "allowed: MODEL 'penalty' or 'soft', DT from 0.0005 s (2,000 steps) to 0.1 s, "
+                "STIFFNESS above 0"
             )
         seen = fingers(exercise)
     except Exception as error:
-        return "wrong", f"the fingers cannot be run with {model!r}, {exercise.DT!r} s: {error}"
-    print("overlap {deepest:.2g} r, trembling {trembling:.2g} r, {steps} steps".format(**seen))
+        return "wrong", f"the fingers cannot be run with {model!r}, {dt!r} s: {error}", ""
+    shown = "overlap {deepest:.2g} r, trembling {trembling:.2g} r".format(**seen)
     faults = [
         words
         for words, wrong in (
-            ("it takes more than 2,000 steps", seen["steps"] > 2000),
             ("the cup is gone: the fingers flew off or went through it", not seen["held"]),
             ("it trembles", seen["held"] and not seen["trembling"] < 1e-5),
             ("it overlaps too much", seen["held"] and not seen["deepest"] < 1e-3),
@@ -252,7 +277,7 @@ def judge_fingers(exercise):
         if wrong
     ]
     if not faults:
-        return "right", ""
+        return "right", "", shown
     advice = (
         "a shorter time constant (at least two steps) stiffens soft, and a higher impedance "
         "lets less of the squeeze through"
@@ -262,42 +287,37 @@ def judge_fingers(exercise):
             f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and a finger on it "
             f"wants steps below {contact.critical_dt(0.1, k, exercise.DAMPING):.1g} s"
         )
-    return "wrong", f"{', and '.join(faults)}; {advice}"
+    return "wrong", f"{', and '.join(faults)}; {advice}", shown
 
 
 # A whole exercise
 
 
 def judged(name, exercise):
-    """The state of an exercise, and (what, state, words) of everything that it asks for."""
-    found = [(blank, *judge(exercise, blank)) for blank in BLANKS if BLANKS[blank].exercise == name]
+    """The state of an exercise, and [what, state, words, shown] of everything that it asks for."""
     if name == "ex8":
-        found = [("two_fingers", *judge_fingers(exercise))]
-    states = [state for _, state, _ in found]
-    state = next((each for each in ("wrong", "blank") if each in states), "right")
-    predict.note(name, "done" if state == "right" else None)
-    return state, found
+        found = [["two_fingers", *judge_fingers(exercise)]]
+    else:
+        found, states = [], {"": "right"}
+        for blank in (each for each in BLANKS if BLANKS[each].exercise == name):
+            print(f"trying {blank}", file=sys.stderr, flush=True)
+            state, words = judge(exercise, blank)
+            after = BLANKS[blank].after
+            if state == "wrong" and states[after] != "right":
+                state, words = "blank", f"{blank} is tried once {after} is right"
+            states[blank] = state
+            seen = state, words, ""
+            if "blank" not in states.values():
+                seen = shown(exercise, blank, state, words)
+            found.append([blank, *seen])
+    states = [state for _, state, *_ in found]
+    return next((each for each in ("wrong", "blank") if each in states), "right"), found
 
 
-def show(function, name):
-    """Print what a fill does to balls, also one that is wrong: to see is to know why."""
+def shown(exercise, name, state, words):
+    """State, words, and what a fill does to balls, also a wrong one: to see is to know why."""
     try:
-        if name in SHOWN:
-            print(SHOWN[name](function, name))
-    except Exception as error:
-        print(f"the trial stopped: {type(error).__name__}: {error}")
-
-
-def fill(name, exercise):
-    """Judge what is filled and try it. Exit status: 0 right, 1 wrong, 2 not filled yet."""
-    state, found = judged(name, exercise)
-    for what, each, words in found:
-        function = getattr(exercise, what, None)
-        if each == "blank" and function:
-            print(textwrap.fill(f"{what}: {' '.join(function.__doc__.split())}", 96))
-        elif function:
-            show(function, what)
-        print(words or f"{what} is right", flush=True)
-    if state == "right":
-        print(f"\n{practise()}")
-    return ("right", "wrong", "blank").index(state)
+        return state, words, SHOWN[name](exercise, name) if name in SHOWN else ""
+    except (Exception, SystemExit) as error:
+        trouble = f"a trial of {name} stopped: {type(error).__name__}: {error}"
+        return "wrong", "\n".join(filter(None, (words, trouble))), ""

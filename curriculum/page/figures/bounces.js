@@ -15,7 +15,7 @@ const run = kept((restitution, until) =>
 );
 
 function draw(view) {
-  const e = Math.min(0.95, view.get("restitution"));
+  const { e } = view.own;
   const [end, until] = [over(e), Math.max(1, 1.15 * over(e))];
   const { t, y } = run(e, until);
   const side = end < 0.5 * until ? "start" : "end"; // where its words have room
@@ -31,7 +31,7 @@ function draw(view) {
   const text = `e = ${e.toFixed(2)}`;
   const high = `every bounce is e² = ${number(e * e, 2)} times as high as the last`;
   const lift = (x, to) => Math.sqrt(Math.max(0, sy.back(to) - R) / (START - R));
-  const range = { r: Math.max(r, 14), high: 0.95, step: 0.01, at: lift };
+  const range = { r: Math.max(r, 14), low: 0, high: 0.95, step: 0.01, at: lift };
   return {
     svg: [
       ...balls.slice(1).map((at) => ball("exact", ...at, r, "ghost")),
@@ -40,7 +40,7 @@ function draw(view) {
       ball("exact", sx(until) - r, sy(R), r, "ghost"),
     ].join(""),
     words: `${text}: ${high}, and all are over at ${number(end)} s.`,
-    handles: [grip(view, "restitution", ...balls[0], "the top of the first bounce", text, range)],
+    handles: [grip(view, "e", ...balls[0], "the top of the first bounce", text, range)],
   };
 }
 
@@ -50,5 +50,6 @@ export const figure = {
     "There are infinitely many bounces, and they are over at a finite time: drag the top of the " +
     "first.",
   height: 250,
+  start: () => ({ e: 0.7 }), // that of the scene bounce
   draw,
 };

@@ -3,7 +3,7 @@
 import { arrow, axis, ball, circle, clipped, label, number, path, plural, rect } from "../draw.js";
 import { steps, table, within } from "../draw.js";
 import { makeRows, solveContacts } from "../engine.js";
-import { beside, grip, kept } from "../parts.js";
+import { beside, grip, kept, pair } from "../parts.js";
 
 const [PX, UNIT, GROUND] = [36, 22, 40]; // px: a radius, an arrow for g dt, the table
 const SWEEPS = 40;
@@ -77,22 +77,19 @@ function draw(view) {
     const name = `the ${["lower", "upper"][k]} ball’s speed before the sweeps`;
     return grip(view, `v${k + 1}`, middle, y, name, `${number(own[`v${k + 1}`], 2)} g dt`, range);
   };
-  const set = (x, y) =>
+  const put = (x, y) =>
     (own.begin = [x, y].map((each) => Number(within(0, each, most).toPrecision(3))));
   const list = (pair) => pair.map((each) => number(each, 3)).join(" and ");
-  const from = {
-    name: "start", x: sx(begin[0]), y: sy(begin[1]), value: begin[0],
-    label: "where the sweeps start", text: `${list(begin)} m g dt`,
-    drag: (x, y) => set(sx.back(x), sy.back(y)),
-    nudge: (dx, dy) => set(begin[0] + 0.1 * dx * heavy, begin[1] - 0.1 * dy * heavy),
-  };
+  const told = ["where the sweeps start", `${list(begin)} m g dt`];
+  const from = [sx(begin[0]), sy(begin[1])];
+  const to = { value: begin[0], at: (x, y) => [sx.back(x), sy.back(y)], put };
   const near = ([x, y]) => Math.hypot(x - end[0], y - end[1]) < 1e-3 * Math.hypot(...end, 1);
   const visits = seen.findIndex(near);
   return {
     svg,
     words: `From ${list(begin)} m g dt the sweeps come to ${list(end)}, within a thousandth ` +
       `after ${plural(Math.ceil(visits / 2), "sweep")}.`,
-    handles: [...at.map(hold), from],
+    handles: [...at.map(hold), pair("start", from, ...told, to)],
     lit: [["sweep", "lam = max"]],
   };
 }

@@ -1,11 +1,12 @@
 /* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. */
-import { axis, label, number, plain, plot, within } from "../draw.js";
+import { axis, number, plain, plot, within } from "../draw.js";
 import { criticalDt, quality, runModel } from "../engine.js";
-import { FARTHEST, grip, kept, scene, START, stillMoves } from "../parts.js";
+import { FARTHEST, grip, kept, scene, START, stillMoves, tens } from "../parts.js";
 
 const [LOW, HIGH] = [0.0005, 0.064]; // s
 const SECONDS = 4;
 const STEPS = 2000; // as many as contact.py takes
+const LEFT = [[0, "0"], 0.001, 1, 1000, [1e6, "10⁶"]]; // ticks
 const COURSE = 150; // px of the upper chart
 const [BOTTOM, TOP] = [-0.5, 1.5]; // m that it shows
 
@@ -21,23 +22,21 @@ const curve = kept((low, ...spring) => {
   return { xs, ys: xs.map((dt) => moves(dt, ...spring)) };
 });
 
-// The height over time, up to where the ball leaves the chart: there stands how far it goes.
+// The height over time; in powers of ten, where the ball flies away.
 function course(view, { t, y }) {
   const end = Math.min(STEPS, t.findIndex((time) => time > SECONDS) >>> 0);
-  const out = y.findIndex((height, row) => row < end && !(height > BOTTOM && height < TOP)) >>> 0;
-  const chart = plot([0, 0, view.width, COURSE], {
+  const seen = y.subarray(0, end + 1);
+  const far = seen.reduce((most, each) => (each > most ? each : most), TOP);
+  const top = Math.min(12, Math.ceil(Math.log10(far)));
+  const heights = { ...tens(-1, top), zero: true, label: "height (m)" };
+  heights.ticks = heights.ticks.filter((_, k) => (k - 1) % Math.ceil(top / 4) === 0);
+  return plot([0, 0, view.width, COURSE], {
     x: axis([0, SECONDS], "time (s)", 0, 1, 2, 3, 4),
-    y: axis([BOTTOM, TOP], "height (m)", 0, 1),
+    y: far > TOP ? heights : axis([BOTTOM, TOP], "height (m)", 0, 1),
     margin: 64,
-    lines: [{ model: "penalty", xs: t, ys: y, to: Math.min(end, out + 1) }],
-    rules: [{ y: 0 }],
-  });
-  if (out > end) return chart.svg;
-  const far = y.subarray(0, end).reduce((most, each) => Math.max(most, Math.abs(each)), 0);
-  const told = `↕ it goes to ${number(far, 2)} m`;
-  const { right, top } = chart.box;
-  const x = chart.sx(t[out]) + 8;
-  return chart.svg + label(told, ...(x + 150 < right ? [x, top + 14] : [right, top + 14, "end"]));
+    lines: [{ model: "penalty", xs: t, ys: y, to: end }],
+    rules: far > TOP ? [] : [{ y: 0 }],
+  }).svg;
 }
 
 function draw(view) {
@@ -51,11 +50,10 @@ function draw(view) {
   const critical = { x: damped, text: `with its damper ${number(1000 * damped)}`, side: "end" };
   const free = { x: undamped, text: `2√(m/k) ${number(1000 * undamped)}`, kind: "dashed", row: 1 };
   const ticks = [1, 2, 4, 8, 16].map((times) => [times * low, plain(1000 * times * low)]);
-  const tens = [[0, "0"], 0.001, 1, 1000, [1e6, "10⁶"]];
   const chart = plot([0, COURSE, view.width, view.height - COURSE], {
     margin: 64,
     x: { ...axis([low, 16 * low], "time step dt (ms)", ...ticks), log: true },
-    y: { ...axis([1e-5, FARTHEST], "still moving at the end / r", ...tens), log: true, zero: true },
+    y: { ...axis([1e-5, FARTHEST], "still moving at the end / r", ...LEFT), log: true, zero: true },
     lines: [{ model: "penalty", ...curve(low, k, c), kind: "plainly" }],
     rules: view.width < 480 ? [critical] : [critical, free],
     points: [{ model: "penalty", x: shown, y: far, size: 8 }],

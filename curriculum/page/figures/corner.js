@@ -2,13 +2,13 @@
  * state that runs along it while the reader lifts the ball or presses it into the table. */
 import { arrow, axis, ball, circle, label, line, number, path, table } from "../draw.js";
 import { pushOfTable, runModel, soften } from "../engine.js";
-import { atRest, beside, forceLength, G, grip, kept, knobs, loadAt } from "../parts.js";
-import { R, scene, softKnobs } from "../parts.js";
+import { atRest, beside, forceLength, G, grip, kept, knobs, lens } from "../parts.js";
+import { loadAt, R, scene, softKnobs } from "../parts.js";
 
-const PULL = 64; // px below the ball at which the hand presses hardest
-// What a picture shows: gaps from low to high [r], a radius in px, the hardest press [m g], ticks.
-const WIDE = { low: -0.4, high: 1, r: 70, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
-const NEAR = { low: -0.03, high: 0.06, r: 1200, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12] };
+const PX = 70; // a radius, and how far the hand goes down until it presses hardest
+// What a picture shows: gaps from low to high [r], the hardest press [m g], ticks, and the lens.
+const WIDE = { low: -0.4, high: 1, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
+const NEAR = { low: -0.03, high: 0.06, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12], times: 10 };
 
 /* A figure of the corner with a model's law(view): {gap(load), curve, most}, the gap [r] under a
  * load [m g], the line that it allows as points, and the hardest press that fits into the picture.
@@ -32,31 +32,25 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
     under: (each) => path(axes(each), "allowed") + under(each),
   };
   const small = Math.min(1, view.width / 430);
-  const [floor, r] = [view.height - 74, shown.r * small]; // px
-  const near = r > 100 && "inside"; // all arrows lie on the ball
+  const [floor, r] = [view.height - 74, PX * small]; // px
   const centre = floor - r - gap * r;
   const picture = (left) => {
     const [x, y] = [left / 2, centre];
-    const top = Math.max(y - r, 64); // where the hand presses, also on a ball beyond the picture
-    const pull = Math.min(forceLength(load, 14), top - 2);
+    const pull = Math.min(forceLength(load, 14), y - r - 2);
     const push = forceLength(load, 100 / Math.sqrt(shown.most));
     return [
       table(0, floor, left, 74),
-      ball(model, x, y, r, near ? "magnified" : "ball"),
+      ball(model, x, y, r),
       deepest === null ? "" : ball(model, x, floor - r - deepest * r, r, "ghost"),
-      arrow(near || `push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
-      hand > 0 ? line(x, y, x, 0, "hand") : arrow(near || "weight", x, top - pull, 0, pull),
+      arrow(`push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
+      hand > 0 ? line(x, y, x, 0, "hand") : arrow("weight", x, y - r - pull, 0, pull),
+      shown.times ? lens("corner-lens", model, 40, 42, r, -gap, 38, shown.times) : "",
     ].join("");
   };
   const { svg, middle } = beside(view, chart, picture);
-  const held = floor - 60 * small; // where the hand is at rest
-  const px = (up) => (up ? r * shown.high : PULL); // from there to where it is at 1, or at -1
   const told = load > 0 ? `Pressed with ${number(load, 2)} m g` : "Held by the hand";
   const text = `gap ${number(gap, 2)} r, force ${number(load, 2)} m g`;
-  const hold = [middle, held - hand * px(hand > 0)];
-  const shape = near ? { box: [0, 0, 2 * middle, centre + r] } : { r };
-  const at = (x, y) => (held - y) / px(y < held);
-  const range = { ...shape, hold, low: -1, high: 1, step: 0.05, at };
+  const range = { r, low: -1, high: 1, step: 0.05, by: (dx, dy) => -dy / r };
   return {
     svg,
     words: `${told}: ${text}.${words}`,
@@ -152,8 +146,8 @@ export const figures = {
   "corner-soft": corner("soft", rounded, {
     title: "soft rounds the corner off",
     caption:
-      "soft rounds the corner: the ball gives way at first and the slope grows steeper, seen " +
-      "here twenty times nearer.",
+      "soft rounds the corner: the ball gives way at first and the slope grows steeper, as the " +
+      "lens shows.",
     hand: -0.5, shown: NEAR, knobs: ["impedance"],
   }),
 };

@@ -1,9 +1,9 @@
 /* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors. On
  * the first screen it plays by itself; later its time step and its stiffness can be dragged, too. */
-import { axis, ball, circle, clipped, el, label, line, number, plot, rect } from "../draw.js";
+import { axis, ball, circle, clipped, el, label, line, number, path, plot, rect } from "../draw.js";
 import { table, within } from "../draw.js";
 import { criticalDt, runModel, series, stateAt } from "../engine.js";
-import { grip, kept, R, scene } from "../parts.js";
+import { grip, kept, pair, R, scene, tens } from "../parts.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
 const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s, s: what is judged comes after it
@@ -11,6 +11,8 @@ const [GROUND, TOP, TIMES] = [24, 190, 60]; // px of table, px of the picture; o
 const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be set
 const NAMES = ["the left finger", "the cup", "the right finger"];
 const start = () => ({ dt: 0.004, k: 1e4, x0: AT[0], x1: AT[1], x2: AT[2], time: null, tries: [] });
+
+const tellsOf = ({ dt, k }) => `dt = ${number(1000 * dt, 2)} ms, k = ${number(k, 2)} N/m`;
 
 // The run, its deepest overlap row by row [r], and what happens in the last quarter.
 const squeezed = kept((dt, stiffness, ...x) => {
@@ -44,12 +46,16 @@ function picture({ own, width }, { run, depths }) {
   const late = LATE + (((own.time ?? SECONDS) - LATE) % (SECONDS - LATE)); // over and over
   const time = own.time <= SECONDS ? (own.time ?? SECONDS) : late;
   const row = Math.min(run.steps, Math.round(time / run.dt));
-  const { x, y } = stateAt(run, row);
-  const far = Math.max(0.33, ...x.map((each) => (Math.abs(each) < 1e9 ? Math.abs(each) : 0)));
-  const scale = Math.min(360, (width / 2 - 8) / (far + R)); // px for 1 m
-  const [floor, r] = [TOP - 14 - GROUND, Math.max(3, R * scale)];
-  const place = (each, i) => [width / 2 + each * scale, floor - within(R, y[i], 9) * scale];
-  const at = x.map(place);
+  const seen = (all) => Array.from(all.subarray(0, 3 * row + 3), (each) => (each < 1e9 ? each : 0));
+  const [xs, ys] = [seen(run.x), seen(run.y)]; // until now
+  const [far, high] = [xs, ys].map((all) => all.reduce((most, v) => Math.max(most, v), 0.3));
+  const floor = TOP - 14 - GROUND;
+  const scale = Math.min(360, (width / 2 - 8) / (far + R), (floor - 8) / (high + R)); // px for 1 m
+  const r = Math.max(3, R * scale);
+  const place = (_, k) => [width / 2 + xs[k] * scale, floor - Math.max(R, ys[k]) * scale];
+  const places = xs.map(place);
+  const at = places.slice(-3);
+  const trail = (i) => path(places.filter((_, k) => k % 3 === i), "line m-fixed thin");
   const arm = ([tip, up], side) => rect(side < 0 ? -9 : tip, up - 0.3 * r, width, 0.6 * r, "arm");
   const ten = 10 ** Math.floor(Math.log10((0.3 * width) / scale)); // m
   const ruler = label(`${number(ten, 1)} m`, 8, 20) + line(8, 28, 8 + ten * scale, 28, "scale");
@@ -59,10 +65,10 @@ function picture({ own, width }, { run, depths }) {
   const rim = { cx: cupX, cy: cupY - 0.72 * r, rx: 0.62 * r, ry: 0.15 * r, class: "cup" };
   const drawn = [
     table(0, floor, width, GROUND),
-    far > 0.4 ? ruler : arms,
+    far > 0.3 ? ruler + trail(0) + trail(2) : arms,
     ...at.map(([x, y], i) => ball(i === 1 ? "penalty" : "fixed", x, y, r, "ball plainly")),
     el("ellipse", rim),
-    far > 0.4 ? "" : line(touch, cupY, 52, 50, "hand") + lens(52, 50, 44, r, depths[row]),
+    far > 0.3 ? "" : line(touch, cupY, 52, 50, "hand") + lens(52, 50, 44, r, depths[row]),
   ];
   return { svg: clipped(0, 0, width, TOP - 14, ...drawn), at, r, scale };
 }
@@ -73,10 +79,9 @@ function choices(view, does) {
   const ticks = [0.5, 1, 2, 4, 8].map((ms) => [ms / 1000, String(ms)]);
   const ks = Array.from({ length: 25 }, (_, i) => K[0] * (K[1] / K[0]) ** (i / 24));
   const limits = ks.map((k) => criticalDt(MASS[0], k, DAMPING).damped);
-  const tens = [[1e4, "10⁴"], [1e5, "10⁵"], [1e6, "10⁶"]];
   const { svg, sx, sy } = plot([0, TOP, width, height - TOP], {
     x: { ...axis(DT, "time step dt (ms)", ...ticks), log: true },
-    y: { ...axis(K, "stiffness k (N/m)", ...tens), log: true },
+    y: { ...tens(4, 6), domain: K, label: "stiffness k (N/m)" },
     lines: [{ model: "fixed", xs: limits, ys: ks, kind: "plainly" }],
   });
   const now = own.tries.find(({ dt, k }) => dt === own.dt && k === own.k);
@@ -86,20 +91,14 @@ function choices(view, does) {
     edge[does] ? circle(sx(dt), sy(k), 6, `${edge[does]} m-penalty`)
       : label("×", sx(dt), sy(k) + 6, "middle"));
   const beyond = label("a finger’s critical step", sx(limits[limit]) + 8, sy(ks[limit]));
-  const set = (dt, k) => {
+  const put = (dt, k) => {
     const [step, spring] = [within(DT[0], dt, DT[1]), within(K[0], k, K[1])];
     Object.assign(own, { dt: +step.toPrecision(2), k: +spring.toPrecision(2), time: null });
   };
-  return {
-    svg: svg + beyond + tried.join(""),
-    knob: {
-      name: "choice", x: sx(own.dt), y: sy(own.k), value: own.dt,
-      label: "time step and stiffness",
-      text: `dt = ${number(1000 * own.dt, 2)} ms, k = ${number(own.k, 2)} N/m`,
-      drag: (x, y) => set(sx.back(x), sy.back(y)),
-      nudge: (dx, dy) => set(own.dt * 1.05 ** dx, own.k * 1.1 ** -dy),
-    },
-  };
+  const told = ["time step and stiffness", tellsOf(own)];
+  const at = (x, y) => [sx.back(x), sy.back(y)];
+  const knob = pair("choice", [sx(own.dt), sy(own.k)], ...told, { value: own.dt, at, put, px: 8 });
+  return { svg: svg + beyond + tried.join(""), knob };
 }
 
 // `small`: without what can be chosen, and it plays by itself where things may move.
@@ -117,10 +116,9 @@ function drawn(view, small) {
   };
   const moves = does === "trembles" ? ` by ${number(trembling, 2)} r` : "";
   const holds = `it overlaps by ${number(deepest, 2)} r and ${does}${moves}`;
-  const told = `dt = ${number(1000 * own.dt, 2)} ms, k = ${number(own.k, 2)} N/m`;
   return {
     svg: svg + map,
-    words: `${told}: ${does === "is gone" ? "fingers and cup fly apart" : holds}.`,
+    words: `${tellsOf(own)}: ${does === "is gone" ? "fingers and cup fly apart" : holds}.`,
     handles: at.map(hold).concat(knob ?? []),
   };
 }

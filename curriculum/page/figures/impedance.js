@@ -1,9 +1,9 @@
 /* MuJoCo's impedance: how firmly a soft contact asks, by its depth. */
 import { arrow, axis, ball, label, number, table } from "../draw.js";
 import { impedance, softDefaults } from "../engine.js";
-import { beside, grip, R, softKnobs, wholly } from "../parts.js";
+import { beside, grip, lens, R, softKnobs } from "../parts.js";
 
-const PX = 1200; // a radius: twenty times nearer than in the other pictures
+const [GROUND, HARD, TIMES] = [60, 120, 40]; // px of the table, of an arrow for d = 1; of the lens
 const MOST = 1.5; // widths
 
 function draw(view) {
@@ -23,18 +23,21 @@ function draw(view) {
     lines: [{ model: "soft", xs, ys: xs.map(at) }],
     points: [{ model: "soft", x: depth, y: d, size: 8 }],
   };
-  const floor = view.height - 70;
+  const [floor, r] = [view.height - GROUND, Math.min(50, 0.09 * view.width)]; // px
   const share = `${number(100 * d, digits)} %`;
+  const deep = (depth * width) / R; // r
   const picture = (left) =>
-    table(0, floor, left, 70) +
-    ball("soft", left / 2, floor + ((depth * width) / R - 1) * PX, PX, "magnified") +
-    arrow("inside", left / 2, floor - 12, 0, -110 * d) +
-    label(share, left / 2, floor - 20 - 110 * d, "middle", "tick on-ball");
+    table(0, floor, left, GROUND) +
+    ball("soft", left / 2, floor + (deep - 1) * r, r) +
+    lens("impedance-lens", "soft", 40, 42, r, deep, 38, TIMES) +
+    arrow("push m-soft weaker", left - 22, floor, 0, -HARD) +
+    arrow("push m-soft", left - 34, floor, 0, -HARD * d) +
+    label(share, left - 4, floor - HARD - 8, "end", "tick");
   const { svg, sx, sy, middle: centre } = beside(view, chart, picture);
   const text = `${number(1000 * depth * width, 2)} mm deep, d = ${number(d, digits)}`;
   const range = { low: 0, high: MOST, step: 0.05, at: sx.back };
-  const under = floor + ((depth * width) / R) * PX; // the ball's lowest point
-  const press = { ...range, step: -0.05, at: (x, y) => ((y - floor) / PX) * (R / width) };
+  const press = { ...range, r, step: -0.05, by: (dx, dy) => dy / 60 };
+  const whole = grip(view, "depth", centre, floor - r, "the ball: press it", text, press);
   const rise = depth <= middle ? "rise = raised" : "rise = 1.0";
   return {
     svg,
@@ -42,8 +45,7 @@ function draw(view) {
       `${text}: of the acceleration that a hard contact would give it gives ${share}, and ` +
       `R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass.`,
     handles: [
-      wholly(grip(view, "depth", centre, under, "the ball: press it", text, press), "ball",
-        centre, under, 0, [0, 0, 2 * centre, under]),
+      { ...whole, name: "ball" },
       grip(view, "depth", sx(depth), sy(d), "the depth", text, range),
     ],
     lit: [["soft-impedance", depth >= 1 ? "return d1" : rise]],
@@ -53,8 +55,8 @@ function draw(view) {
 export const figure = {
   title: "MuJoCo’s impedance",
   caption:
-    "The deeper the ball, the larger its share of a hard contact’s answer: drag the point, and " +
-    "see the ball twenty times nearer.",
+    "The deeper the ball, the larger its share of a hard contact’s answer: press the ball, or " +
+    "drag the point.",
   height: 250,
   knobs: ["impedance"],
   start: () => ({ depth: 0.5 }),

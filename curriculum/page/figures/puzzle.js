@@ -1,6 +1,6 @@
 /* The puzzle: one spring, two wishes. Every try is a drop of 40 s. */
 import { axis, circle, number, within } from "../draw.js";
-import { charted, G, kept, R, stillMoves } from "../parts.js";
+import { charted, G, kept, pair, R, stillMoves, tens } from "../parts.js";
 import { QUANTITIES } from "../store.js";
 
 const DT = 0.01; // s
@@ -16,37 +16,27 @@ const rests = kept(
 function draw(view) {
   const { own } = view;
   const now = { stiffness: view.get("stiffness"), damping: view.get("damping") };
-  const tens = [[1e4, "10⁴"], [1e5, "10⁵"], [1e6, "10⁶"]];
   const chart = charted(view, {
-    x: { ...axis([K.low, K.high], "stiffness k (N/m)", 100, 1000, ...tens), log: true },
+    x: { ...tens(2, 6), label: "stiffness k (N/m)" },
     y: axis([C.low, C.high], "damping c (N s/m)", 0, 100, 200, 300),
   });
   const { sx, sy } = chart;
   const same = (each) => each.stiffness === now.stiffness && each.damping === now.damping;
   if (!view.dragging && !own.tries.some(same)) own.tries.push(now);
-  const dot = (each, r, kind) => circle(sx(each.stiffness), sy(each.damping), r, kind);
-  const set = (k, c) => {
+  const dot = (each) => circle(sx(each.stiffness), sy(each.damping), 6, "look m-penalty");
+  const put = (k, c) => {
     const stiffness = Number(within(K.low, k, K.high).toPrecision(3));
     view.set({ stiffness, damping: within(C.low, Math.round(c), C.high) });
   };
   const sinks = `It sinks ${number(G / now.stiffness / R, 2)} r; less than ${SINK} is wanted.`;
-  const spring = {
-    name: "spring",
-    x: sx(now.stiffness),
-    y: sy(now.damping),
-    value: now.stiffness,
-    label: "the spring: stiffness and damping",
-    text: `k ${number(now.stiffness)} N/m, c ${number(now.damping)} N s/m`,
-    drag: (x, y) => set(sx.back(x), sy.back(y)),
-    nudge: (dx, dy) => set(view.get("stiffness") * 1.05 ** dx, view.get("damping") - 2 * dy),
-  };
+  const at = (x, y) => [sx.back(x), sy.back(y)];
+  const place = [sx(now.stiffness), sy(now.damping)];
+  const text = `k ${number(now.stiffness)} N/m, c ${number(now.damping)} N s/m`;
+  const told = ["the spring: stiffness and damping", text];
   return {
-    svg: [
-      chart.svg,
-      ...own.tries.map((each) => dot(each, 6, "look m-penalty")),
-    ].join(""),
+    svg: chart.svg + own.tries.map(dot).join(""),
     words: `${sinks} It ${rests(now) ? "comes" : "never comes"} to rest.`,
-    handles: [spring],
+    handles: [pair("spring", place, ...told, { value: now.stiffness, at, put })],
   };
 }
 

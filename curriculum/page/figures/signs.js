@@ -1,7 +1,7 @@
 /* The signs of a contact: normal, depth and v_n, of a ball with another ball and with the table. */
 import { arrow, ball, label, number, table, within } from "../draw.js";
 import { detectContacts, normalSpeed } from "../engine.js";
-import { R } from "../parts.js";
+import { pair, R } from "../parts.js";
 
 const GROUND = 26; // px of table
 const ARROW = 0.1; // m in the picture for 1 m/s
@@ -14,7 +14,7 @@ const wayOf = (speed) => (speed > 0 ? "separating" : speed < 0 ? "closing" : "ne
 function handlesOf({ own, width }, { scale, floor, place }, told) {
   const { x, y, vx, vy } = own;
   const [ax, ay] = place(x, y);
-  const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);
+  const tip = place(x + ARROW * vx, y + ARROW * vy);
   const moveTo = (toX, toY) => {
     own.x = tidy(within(-SIDE, toX, SIDE));
     own.y = tidy(within(0, toY, TOP));
@@ -23,28 +23,17 @@ function handlesOf({ own, width }, { scale, floor, place }, told) {
     own.vx = tidy(within(-FASTEST, toX, FASTEST));
     own.vy = tidy(within(-FASTEST, toY, FASTEST));
   };
-  const held = {
-    name: "ball",
-    x: ax,
-    y: ay,
-    r: R * scale,
-    label: "ball a",
-    value: y,
-    text: told,
-    drag: (toX, toY) => moveTo((toX - width / 2) / scale, (floor - toY) / scale),
-    nudge: (dx, dy) => moveTo(own.x + 0.01 * dx, own.y - 0.01 * dy),
-  };
-  const tip = {
-    name: "velocity",
-    x: tipX,
-    y: tipY,
-    label: "the velocity of ball a",
-    value: vy,
-    text: `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told}`,
-    drag: (toX, toY) => speedTo((toX - ax) / scale / ARROW, (ay - toY) / scale / ARROW),
-    nudge: (dx, dy) => speedTo(own.vx + 0.1 * dx, own.vy - 0.1 * dy),
-  };
-  return [held, tip];
+  const fast = `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told}`;
+  return [
+    pair("ball", [ax, ay], "ball a", told, {
+      ...{ value: y, put: moveTo, px: 0.01 * scale, r: R * scale },
+      at: (toX, toY) => [(toX - width / 2) / scale, (floor - toY) / scale],
+    }),
+    pair("velocity", tip, "the velocity of ball a", fast, {
+      ...{ value: vy, put: speedTo, px: 0.1 * ARROW * scale },
+      at: (toX, toY) => [(toX - ax) / scale / ARROW, (ay - toY) / scale / ARROW],
+    }),
+  ];
 }
 
 function draw(view) {
