@@ -34,7 +34,7 @@ FAULTS = {  # what is wrong: (what stands in contact.py or exact.py, what is put
     "exact bounces with 0.9 e": (BACK, BACK.replace("-rest", "-0.9 * rest")),
     "exact bounces pairs with half of e": (BACK, BACK.replace("-rest", f"-{HALF} * rest")),
     "exact loses a thousandth of v at an event":
-        ("ball.vy += span * a[k]", "ball.vy = 0.999 * (ball.vy + span * a[k])"),
+        ("a[k]), speed(span, ball.vy, a[k])", "a[k]), 0.999 * speed(span, ball.vy, a[k])"),
     "the reaction is short by 1e-9":
         ("b.vx -= impulse * self.bx", "b.vx -= (1.0 - 1e-9) * impulse * self.bx"),
     "gravity is short by a thousandth": (GRAVITY, f"{GRAVITY} * 0.999 "),
