@@ -389,7 +389,7 @@ def test_what_is_timed_is_called_and_heights_are_read_at_every_look():
         heights = np.array(setting.build(contact.build_scene("drop"), 0.002, 4).trace(5))
         assert heights.shape == (6, 1) and len(set(heights[:, 0])) == 6
     jobs, rare = [1, 2, 3], [2]
-    found = timing.in_fresh_processes(abs, jobs, 2, "test", rare.__contains__)
+    found = timing.in_fresh_processes(abs, jobs, 2, "test", rare)
     assert found == [[1, 1], [2], [3, 3]]
 
 
