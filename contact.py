@@ -4,7 +4,7 @@
 # ///
 """Contact between bodies, built four times and measured honestly (robotics course, chapter 3.5).
 
-A table pushes a ball up while they touch, and it never pulls it down. Four models of that push:
+A table keeps a ball from falling through it: it pushes up, and it never pulls down. Four models:
     penalty   a stiff spring and a damper: one more force under an unchanged integrator
     lcp       impulses, found by sweeps: each contact pushes, or its bodies part (a linear
               complementarity problem, solved by projected Gauss-Seidel)
@@ -27,7 +27,7 @@ Left out: friction, rotation, and all shapes but balls over the line y = 0.
     e         restitution: share of the speed that a bounce gives back, 0 to 1
 
 Run it:
-    python contact.py --contact exact               # what should happen; then make your bets
+    python contact.py --contact exact               # what should happen; what will the others do?
     python contact.py --scene drop                  # all models; then: bounce, stack, pile
     python contact.py --contact penalty --dt 0.03   # one model, a longer step
     python contact.py --smoke --no-rerun            # fixed length, the same bytes every time
@@ -53,13 +53,12 @@ except ModuleNotFoundError:
     print(f'contact.py needs numpy: "{sys.executable}" -m pip install numpy', file=sys.stderr)
     sys.exit(2)
 
-GRAVITY = -9.81         # m/s^2, along y
-RADIUS = 0.1            # m, of every ball in the scenes; lengths are reported in units of it
-CONTACT_MARGIN = 1e-3   # m: lcp treats a smaller gap as contact, so a resting ball stays listed
-MOST_SWEEPS = 10_000    # exact and soft give up here, if their impulses have not settled
-LAST_BITS = 2.0**-42    # chosen: soft's sweeps end at corrections below this share of the speeds
+GRAVITY = -9.81  # m/s^2, along y
+RADIUS = 0.1  # m, of every ball in the scenes; lengths are reported in units of it
+CONTACT_MARGIN = 1e-3  # m: lcp treats a smaller gap as contact, so it also pushes across it
+MOST_SWEEPS = 10_000  # exact and soft give up here, if their impulses have not settled
+LAST_BITS = 2.0**-42  # chosen: soft's sweeps end at corrections below this share of the speeds
 SCENES = ("drop", "bounce", "stack", "pile")
-# --- endregion ---
 
 
 # --- region: scenes ---
@@ -69,35 +68,33 @@ class Scene(NamedTuple):
     name: str
     q0: np.ndarray
     v0: np.ndarray
-    mass: np.ndarray        # nothing changes the velocity of a ball of infinite mass
+    mass: np.ndarray  # nothing changes the velocity of a ball of infinite mass
     radius: np.ndarray
-    restitution: float      # e, of lcp, soft and exact; penalty has no such knob
-    damping: float          # c of penalty [N s/m]
+    restitution: float  # e, of lcp, soft and exact; penalty has no such knob
+    damping: float  # c of penalty [N s/m]
 
 
-def scene_of(x, y, mass=1.0, radius=RADIUS, vx=0.0, vy=0.0, restitution=0.0, damping=80.0,
-             name="own") -> Scene:
+def scene_of(
+    x, y, mass=1.0, radius=RADIUS, vx=0.0, vy=0.0, restitution=0.0, damping=80.0, name="own"
+) -> Scene:
     """The Scene of balls at x, y: a list of numbers each, or one number for all of them."""
     rows = np.array(np.broadcast_arrays(np.atleast_1d(x), y, vx, vy, mass, radius), float)
     return Scene(name, rows[:2], rows[2:4], rows[4], rows[5], restitution, damping)
 
 
-def build_scene(name: str, seed: int = 0, bodies: int | None = None,
-                restitution: float | None = None, damping: float | None = None) -> Scene:
+def build_scene(name: str, seed=0, bodies=None, restitution=None, damping=None) -> Scene:
     """The scene of that name, all balls at rest. None stands for the scene's own value.
 
     The seed moves the start height a little; in a pile it also numbers and nudges the balls.
-    Raises ValueError for an unknown name.
     """
     rng = np.random.default_rng(seed)
-    draw = rng.uniform(-0.02, 0.02)     # m
-    lift = abs(draw)                    # m: stack and pile never start inside the floor
+    draw = rng.uniform(-0.02, 0.02)  # m
+    lift = abs(draw)  # m: stack and pile never start inside the floor
     if name in ("drop", "bounce"):
-        x, y = [0.0], [1.0 + draw]
+        x, y = 0.0, 1.0 + draw
     elif name == "stack":
-        y = [(2 * i + 1) * RADIUS + lift for i in range(bodies or 3)]
-        x = [0.0] * len(y)
-    elif name == "pile":                # a lattice of pitch 2.5 r, numbered at random and nudged
+        x, y = 0.0, [(2 * i + 1) * RADIUS + lift for i in range(bodies or 3)]
+    elif name == "pile":  # a lattice of pitch 2.5 r, numbered at random and nudged
         count = bodies or 24
         width = math.ceil(math.sqrt(2 * count))
         row, column = np.divmod(rng.permutation(count), width)
@@ -106,34 +103,33 @@ def build_scene(name: str, seed: int = 0, bodies: int | None = None,
         y = 2.5 * RADIUS * (row + 0.5) + lift + nudge[1]
     else:
         raise ValueError(f"scene {name!r}; allowed: {', '.join(SCENES)}")
-    own_restitution, own_damping = (0.7, 0.0) if name == "bounce" else (0.0, 80.0)
-    return scene_of(x, y, name=name,
-                    restitution=own_restitution if restitution is None else restitution,
-                    damping=own_damping if damping is None else damping)
-# --- endregion ---
+    e, c = (0.7, 0.0) if name == "bounce" else (0.0, 80.0)
+    e = e if restitution is None else restitution
+    c = c if damping is None else damping
+    return scene_of(x, y, restitution=e, damping=c, name=name)
 
 
 # --- region: ball ---
 class Ball:
     """A ball: position [m], velocity [m/s], mass [kg], radius [m], and the force on it [N]."""
 
-    __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()   # a typo is an error
+    __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()  # a typo is an error
 
     def __init__(self, x, y, vx, vy, mass, radius):
         self.x, self.y = x, y
         self.vx, self.vy = vx, vy
         self.fx, self.fy = 0.0, 0.0
         self.mass = mass
-        self.inv_mass = 1.0 / mass      # 0 for infinite mass: nothing moves that ball
+        self.inv_mass = 1.0 / mass  # 0 for infinite mass: nothing moves that ball
         self.radius = radius
-        self.pushed = {}                # {other ball: lam of the step before}
+        self.pushed = {}  # {other ball: impulse of the last step}, where sweeps may start from
 
 
-FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)     # shared by all runs; nothing moves it
+FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)  # shared by all runs; nothing moves it
 
 
-def make_balls(scene):
-    """The scene's balls, as the steps move them. Raises ValueError if its arrays do not fit."""
+def make_balls(scene: Scene) -> list[Ball]:
+    """The scene's balls, as the steps move them."""
     columns = np.stack((*scene.q0, *scene.v0, scene.mass, scene.radius), axis=1)
     return [Ball(*values) for values in columns.tolist()]
 
@@ -147,28 +143,27 @@ class Contact:
         self.a, self.b = a, b
         self.nx, self.ny = nx, ny
         self.depth = depth
-        self.ax, self.ay = a.inv_mass * nx, a.inv_mass * ny     # what 1 N s adds to a's velocity
-        self.bx, self.by = b.inv_mass * nx, b.inv_mass * ny     # and takes from b's
+        self.ax, self.ay = a.inv_mass * nx, a.inv_mass * ny  # what 1 N s adds to a's velocity
+        self.bx, self.by = b.inv_mass * nx, b.inv_mass * ny  # and takes from b's
         self.inv_mass = a.inv_mass + b.inv_mass
-        self.m_eff = 1.0 / self.inv_mass if self.inv_mass > 0.0 else 0.0    # effective mass [kg]
-        self.target = 0.0       # the v_n [m/s] to leave with at least
-        self.softness = 0.0     # R [1/kg] of soft; 0 is hard
-        self.lam = 0.0          # the impulse [N s] so far; a new step starts again from 0
+        self.m_eff = 1.0 / self.inv_mass if self.inv_mass > 0.0 else 0.0  # effective mass [kg]
+        self.target = 0.0  # the v_n [m/s] to leave with at least
+        self.softness = 0.0  # R [1/kg] of soft; 0 is hard
+        self.lam = 0.0  # the impulse [N s] so far; a new step starts again from 0
 
-    def v_n(self):
+    def v_n(self) -> float:
         """Normal velocity [m/s], positive when the balls separate."""
         a, b = self.a, self.b
         return self.nx * (a.vx - b.vx) + self.ny * (a.vy - b.vy)
 
-    def push(self, impulse):
+    def push(self, impulse: float) -> None:
         """Give ball a this impulse [N s] along the normal, and ball b the opposite one."""
         a, b = self.a, self.b
         a.vx += impulse * self.ax
         a.vy += impulse * self.ay
-        if b is not FLOOR:      # 0 times NaN is NaN, and even that must not move the floor
+        if b is not FLOOR:  # 0 times NaN is NaN, and even that must not move the floor
             b.vx -= impulse * self.bx
             b.vy -= impulse * self.by
-# --- endregion ---
 
 
 # --- region: contacts ---
@@ -184,7 +179,7 @@ def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
         depth = ball.radius - ball.y
         if depth > -margin:
             contacts.append(Contact(ball, FLOOR, 0.0, 1.0, depth))
-    for a, b in itertools.combinations(balls, 2):       # every pair, which is for few balls
+    for a, b in itertools.combinations(balls, 2):  # every pair, which is for few balls
         dx = a.x - b.x
         dy = a.y - b.y
         distance = math.sqrt(dx * dx + dy * dy)
@@ -193,7 +188,6 @@ def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
             nx, ny = (dx / distance, dy / distance) if distance > 0.0 else (0.0, 1.0)
             contacts.append(Contact(a, b, nx, ny, depth))
     return contacts
-# --- endregion ---
 
 
 # --- region: penalty ---
@@ -208,22 +202,21 @@ def penalty_force(contacts, stiffness, damping):
         f_n = penalty_normal_force(c.depth, c.v_n(), stiffness, damping)
         c.a.fx += f_n * c.nx
         c.a.fy += f_n * c.ny
-        c.b.fx -= f_n * c.nx        # equal and opposite
+        c.b.fx -= f_n * c.nx  # equal and opposite
         c.b.fy -= f_n * c.ny
 
 
-def penalty_step(balls, dt, stiffness, damping):
+def penalty_step(balls, dt: float, stiffness: float, damping: float) -> None:
     """One step [s] in which contact is one more force, and the integrator stays what it was."""
     for ball in balls:
-        ball.fx = ball.fy = 0.0     # not the floor's: nobody reads what it adds up
+        ball.fx = ball.fy = 0.0  # not the floor's: nobody reads what it adds up
     penalty_force(detect_contacts(balls, margin=0.0), stiffness, damping)
     accelerate(balls, dt)
     move(balls, dt)
-# --- endregion ---
 
 
 # --- region: integrator ---
-def accelerate(balls, dt):
+def accelerate(balls, dt: float) -> None:
     """The first half of semi-implicit Euler: gravity and forces change the velocities."""
     for ball in balls:
         if ball.inv_mass > 0.0:
@@ -231,27 +224,11 @@ def accelerate(balls, dt):
             ball.vy += dt * (GRAVITY + ball.fy / ball.mass)
 
 
-def move(balls, dt):
+def move(balls, dt: float) -> None:
     """The second half: the new velocities, not the old ones, move the balls."""
     for ball in balls:
         ball.x += dt * ball.vx
         ball.y += dt * ball.vy
-# --- endregion ---
-
-
-# --- region: critical-dt ---
-def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -> float:
-    """The largest stable step [s] of penalty for a ball kept in contact; inf without a spring.
-
-    In contact a step is a 2 x 2 matrix. Its eigenvalues stay within 1 (Jury's test) while
-    k dt^2 + 2 c dt < 4 m; solved for dt. Without a damper that is the textbook's 2 sqrt(m / k).
-    """
-    if count > 1:   # the stiffest swing of a stack sees so many times the spring and the damper
-        more = 4.0 * math.cos(math.pi / (2 * count + 1)) ** 2
-        stiffness, damping = more * stiffness, more * damping
-    root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
-    return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
-# --- endregion ---
 
 
 # --- region: lcp-target ---
@@ -267,17 +244,16 @@ def contact_target(c, restitution, baumgarte, dt, ahead=False):
     bounce -e v_n, in an overlap the larger of bias and bounce; others may come as near as touching.
     A target up to -e v_n lets impulses add no energy (Moreau 1988); only a bias can be above it.
     """
-    close = c.depth / dt                # this v_n ends the step with a gap of 0
-    bias = baumgarte / dt * c.depth     # < 0 across a gap
+    close = c.depth / dt  # this v_n ends the step with a gap of 0
+    bias = baumgarte / dt * c.depth  # < 0 across a gap
     if restitution == 0.0:
         return close if ahead and c.depth < 0.0 else bias
     v_n = c.v_n()
     bounce = -restitution * v_n
     if bias > 0.0:
         return max(bias, bounce)
-    meets = -dt * v_n >= -c.depth       # what this step closes is at least the gap
+    meets = -dt * v_n >= -c.depth  # what this step closes is at least the gap
     return bounce if meets else min(bounce, close)
-# --- endregion ---
 
 
 # --- region: sweep ---
@@ -293,27 +269,26 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
     for _ in range(iters):
         settled = True
         for c in contacts:
-            missing = c.target - c.v_n() - c.softness * c.lam   # -w, the velocity that is missing
-            lam = max(0.0, c.lam + missing * c.m_eff)           # the sum is clamped: only a push
+            missing = c.target - c.v_n() - c.softness * c.lam  # -w, the velocity that is missing
+            lam = max(0.0, c.lam + missing * c.m_eff)  # the sum is clamped: only a push
             change = lam - c.lam
             c.push(change)
             c.lam = lam
-            settled = settled and abs(change) <= tolerance * c.m_eff    # NaN never settles
-        if settled:             # with a tolerance of 0 no further sweep would change a bit
+            settled = settled and abs(change) <= tolerance * c.m_eff  # NaN never settles
+        if settled:  # with a tolerance of 0 no further sweep would change a bit
             return True
     return False
-# --- endregion ---
 
 
 # --- region: lcp ---
-def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False):
+def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False) -> None:
     """One step [s]: gravity predicts the velocities, impulses correct them, the balls move.
 
     With `ahead`, and e = 0, it looks as far as the balls can come in this step.
     """
     far = ahead and restitution == 0.0
     contacts = detect_contacts(balls, step_reach(balls, dt)) if far else detect_contacts(balls)
-    for c in contacts:      # before gravity: else e would also return the g dt just added
+    for c in contacts:  # before gravity: else e would also return the g dt just added
         c.target = contact_target(c, restitution, baumgarte, dt, ahead)
     accelerate(balls, dt)
     if warm > 0.0:
@@ -324,7 +299,7 @@ def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False):
     move(balls, dt)
 
 
-def step_reach(balls, dt):
+def step_reach(balls, dt: float) -> float:
     """How far [m] two balls come towards each other in a step if both are as fast as any."""
     fastest = max(0.0, *(math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy) for ball in balls))
     return max(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))
@@ -346,101 +321,109 @@ def remember(balls, contacts):
     for ball in balls:
         ball.pushed = {}
     for c in contacts:
-        c.a.pushed[c.b] = c.lam     # a pair always comes in this order, so a's side is enough
-# --- endregion ---
+        c.a.pushed[c.b] = c.lam  # a pair always comes in this order, so a's side is enough
 
 
 # --- region: exact ---
-TOUCH = 1e-13           # m: balls that start with a smaller gap start in touch
-SLOW = 1e-7             # m/s: a slower bounce, 1e-15 m high, is the last of its series
-TOGETHER = 1.0 + 1e-12    # impacts within this factor of the shortest time come at one moment
-STILL = 1e-12           # m/s: a smaller v_n is rounding, so the contact rests
-MOST_IMPACTS = 20_000   # a run with more is given up
+TOUCH = 1e-13  # m: balls that start with a smaller gap start in touch
+SLOW = 1e-7  # m/s: a slower bounce, 1e-15 m high, is the last of its series
+TOGETHER = 1.0 + 1e-12  # impacts within this factor of the shortest time come at one moment
+STILL = 1e-12  # m/s: a smaller v_n is rounding, so the contact rests
+ROUNDING = 2.0**-50  # of the speeds: the sweeps of exact go on until no correction is above it
+MOST_IMPACTS = 20_000  # a run with more is given up
 
 
-def exact_run(scene, times, report=None):
+def exact_run(scene: Scene, times, report=None):
     """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, of balls over one another.
 
     Between two impacts every acceleration stays the same, so a gap is a parabola in time, and the
-    next impact is its root: no time step, no error but rounding. Raises RuntimeError where the
-    impacts have no end in sight, or the masses are too unequal for the sweeps.
+    next impact is its root: no time step, no error but rounding (1e-10 r over seconds and metres).
+    Raises RuntimeError where impacts have no end in sight, ArithmeticError if sweeps do not settle.
     """
     balls = make_balls(scene)
-    pairs = detect_contacts(balls, margin=math.inf)     # all of them: who may touch, ever
-    gaps = [-c.depth if -c.depth > TOUCH else 0.0 for c in pairs]
+    pairs = detect_contacts(balls, margin=math.inf)  # all of them: who may touch, ever
+    touching = [c for c in pairs if -c.depth <= TOUCH]
+    gaps = [0.0 if -c.depth <= TOUCH else -c.depth for c in pairs]
     q, v = np.tile(scene.q0, (len(times), 1, 1)), np.tile(scene.v0, (len(times), 1, 1))
     now, done = 0.0, 0
     for _ in range(MOST_IMPACTS):
-        touching = [c for c, gap in zip(pairs, gaps) if gap == 0.0]     # as next_impact sets it
-        bounce(touching, scene.restitution)
+        strike(touching, scene.restitution)
         a, gap_a = accelerations(balls, touching, pairs)
-        span, gaps = next_impact(pairs, gaps, gap_a)
+        span, gaps, touching = next_impact(pairs, gaps, gap_a)
         last = int(np.searchsorted(times, now + span, "right"))
-        t = times[done:last] - now
         for k, ball in enumerate(balls):
-            q[done:last, 1, k] = ball.y + t * (ball.vy + 0.5 * t * a[k])
-            v[done:last, 1, k] = ball.vy + t * a[k]
-            ball.y += span * (ball.vy + 0.5 * span * a[k])
-            ball.vy += span * a[k]
+            t = times[done:last] - now
+            q[done:last, 1, k] = place(t, ball.y, ball.vy, a[k])
+            v[done:last, 1, k] = speed(t, ball.vy, a[k])
+            ball.y, ball.vy = place(span, ball.y, ball.vy, a[k]), speed(span, ball.vy, a[k])
         now, done = now + span, last
         if done == len(times):
             return q, v
         if report:
             report(done)
     raise RuntimeError(f"more than {MOST_IMPACTS:,} impacts by {now:.6g} s: the balls rattle")
-# --- endregion ---
+
+
+def place(t, start, v, a):
+    """Where something is after t [s] of constant acceleration: a ball [m], or how wide a gap."""
+    return start + t * (v + 0.5 * t * a)
+
+
+def speed(t, v, a):
+    """How fast it is then [m/s]."""
+    return v + t * a
 
 
 # --- region: exact-impact ---
-def bounce(touching, restitution):
+def strike(touching, restitution):
     """All impacts of one moment: v_n becomes -e v_n where a contact pushes."""
     for c in touching:
-        back = -restitution * c.v_n()
-        c.target = 0.0 if 0.0 <= back < SLOW else back      # back < 0: they part already
+        back = -restitution * c.v_n()  # < 0: they part already
+        c.target = 0.0 if 0.0 <= back < SLOW else back
     settle(touching)
 
 
 def accelerations(balls, touching, pairs):
     """What the balls do next, and how every gap accelerates [m/s^2]; None if it stays closed.
 
-    The same sweep, one derivative higher: accelerations for velocities, and forces for impulses.
+    The same sweep, with accelerations in place of velocities, and forces in place of impulses.
     """
     resting = [c for c in touching if abs(c.v_n()) < STILL]
-    speeds = [ball.vy for ball in balls]        # for now vy holds accelerations
-    for ball in balls:
+    speeds = [ball.vy for ball in balls]
+    for ball in balls:  # the sweep changes vy, so here vy holds accelerations, up to the last line
         ball.vy = GRAVITY if ball.inv_mass > 0.0 else 0.0
     for c in resting:
-        c.target = 0.0      # m/s^2: it may open and may not close
+        c.target = 0.0  # m/s^2: it may open and may not close
     settle(resting)
     a = [ball.vy for ball in balls]
     gap_a = [None if c in resting and c.v_n() < STILL else c.v_n() for c in pairs]
-    for ball, speed in zip(balls, speeds):
-        ball.vy = speed
+    for ball, vy in zip(balls, speeds):
+        ball.vy = vy
     return a, gap_a
 
 
 def settle(contacts):
-    """Sweep until only rounding is left. Raises RuntimeError if the sweeps do not get there."""
+    """Sweep until only rounding is left. Raises ArithmeticError if the sweeps do not get there."""
     speeds = [speed for c in contacts for speed in (c.a.vy, c.b.vy, c.target)]
-    rounding = 2.0**-50 * max(map(abs, speeds), default=0.0)
     for c in contacts:
         c.lam = 0.0
-    if not solve_contacts(contacts, MOST_SWEEPS, rounding):
-        raise RuntimeError("the masses are too unequal: the sweeps do not settle")
-# --- endregion ---
+    if not solve_contacts(contacts, MOST_SWEEPS, ROUNDING * max(map(abs, speeds), default=0.0)):
+        raise ArithmeticError("the masses are too unequal: the sweeps do not settle")
 
 
 # --- region: exact-when ---
 def next_impact(pairs, gaps, gap_a):
-    """How long until the next gap closes [s]; and all gaps [m] at that moment, 0 in touch."""
+    """How long until the next gap closes [s]; all gaps [m] at that moment, and who touches then."""
     speeds = [c.v_n() for c in pairs]
     roots = list(map(time_to_impact, gaps, speeds, gap_a))
     span = min(roots)
-    after = []
-    for root, gap, v_n, a_n in zip(roots, gaps, speeds, gap_a):
-        closed = a_n is None or root <= span * TOGETHER
-        after.append(0.0 if closed else max(0.0, gap + span * (v_n + 0.5 * span * a_n)))
-    return span, after
+    after, touching = [], []
+    for c, root, gap, v_n, a_n in zip(pairs, roots, gaps, speeds, gap_a):
+        gap = 0.0 if a_n is None or root <= span * TOGETHER else place(span, gap, v_n, a_n)
+        after.append(max(0.0, gap))
+        if gap <= 0.0:
+            touching.append(c)
+    return span, after, touching
 
 
 def time_to_impact(gap, v_n, a_n):
@@ -451,19 +434,18 @@ def time_to_impact(gap, v_n, a_n):
     if square < 0.0:
         return math.inf
     root = math.sqrt(square)
-    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n   # nothing cancels
-# --- endregion ---
+    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n  # nothing cancels
 
 
 # --- region: soft-impedance ---
-def impedance(depth, solimp):
+def impedance(depth: float, solimp: tuple) -> float:
     """How hard the contact is at that depth [m]: d, 0 gives way and 1 is hard (getimpedance)."""
-    d0, d1, width, mid, power = solimp                  # from d0 at the surface to d1 at the width
-    if width <= 1e-15:                                  # m; MuJoCo takes the mean then
+    d0, d1, width, mid, power = solimp  # from d0 at the surface to d1 at the width
+    if width <= 1e-15:  # m; MuJoCo takes the mean then
         return 0.5 * (d0 + d1)
     if depth >= width:
         return d1
-    share = depth / width                               # an S of two powers, which meet at mid
+    share = depth / width  # an S of two powers, which meet at mid
     if share <= mid:
         rise = raised(share, power) / raised(mid, power - 1.0)
     else:
@@ -474,33 +456,32 @@ def impedance(depth, solimp):
 def raised(x, power):
     """x to that power; a whole power by products, whose bits are the same in every language."""
     return math.prod([x] * int(power)) if power == int(power) else x**power
-# --- endregion ---
 
 
 # --- region: soft ---
 def soften(c, dt, solref, solimp):
     """Give contact c the target and the softness that MuJoCo's contact has.
 
-    A spring K [1/s^2] and a damper B [1/s] wish for the acceleration a_ref = K d depth - B v_n
+    A spring K [1/s^2] and a damper B [1/s] ask for the acceleration a_ref = K d depth - B v_n
     (mj_makeImpedance, mj_referenceConstraint). They act per unit of mass, so any ball follows
     them alike. The softness R [1/kg] lets the contact give way: the harder, the less.
     """
     d = impedance(c.depth, solimp)
     d1 = solimp[1]
-    if solref[0] > 0.0:                                 # time constant [s] and damping ratio
+    if solref[0] > 0.0:  # time constant [s] and damping ratio
         timeconst, dampratio = solref
         K = 1.0 / (d1 * d1 * timeconst * timeconst * dampratio * dampratio)
         B = 2.0 / (d1 * timeconst)
-    else:                                               # direct: minus stiffness, minus damping
+    else:  # direct: minus stiffness, minus damping
         K = -solref[0] / (d1 * d1)
         B = -solref[1] / d1
-    v_n = c.v_n()                                       # before gravity acts
+    v_n = c.v_n()  # before gravity acts
     c.target = v_n + dt * (K * d * c.depth - B * v_n)
-    c.softness = max(1e-15, (1.0 - d) / d * c.inv_mass)         # no less: MuJoCo's mjMINVAL
+    c.softness = max(1e-15, (1.0 - d) / d * c.inv_mass)  # no less: MuJoCo's mjMINVAL
     c.m_eff = 1.0 / (c.inv_mass + c.softness)
 
 
-def soft_step(balls, dt, solref, solimp):
+def soft_step(balls, dt: float, solref: tuple, solimp: tuple) -> bool:
     """One step [s] of MuJoCo's contact: lcp's step with another target, and softness.
 
     With R > 0 the problem has one answer, wherever the sweeps begin. So they begin at the
@@ -517,7 +498,6 @@ def soft_step(balls, dt, solref, solimp):
     remember(balls, contacts)
     move(balls, dt)
     return settled
-# --- endregion ---
 
 
 # --- region: simulate ---
@@ -527,78 +507,95 @@ class Run(NamedTuple):
     t: np.ndarray
     q: np.ndarray
     v: np.ndarray
-    unsettled: int = 0      # steps whose sweeps did not settle
-
-
-def state_of(balls):
-    """A flat list: x, y, vx, vy of one ball after the other."""
-    return [value for ball in balls for value in (ball.x, ball.y, ball.vx, ball.vy)]
+    unsettled: int = 0  # steps whose sweeps did not settle
 
 
 @np.errstate(all="ignore")
-def simulate(step, scene: Scene, dt: float, steps: int, skip: bool = True, report=None) -> Run:
-    """Take that many steps, `step(balls)` each, and record every state; report(k) hears of each.
+def simulate(step, scene: Scene, dt: float, steps: int) -> Run:
+    """Take that many steps, `step(balls)` each, and record every state."""
+    balls = make_balls(scene)
+    rows, settled = np.zeros((steps + 1, len(balls), 4)), np.ones(steps + 1, bool)
+    rows[0] = state_of(balls)
+    for k in range(steps):
+        settled[k + 1] = step(balls) is not False  # False: sweeps of soft that did not settle
+        rows[k + 1] = state_of(balls)
+    return as_run(rows, settled, dt)
 
-    With `skip` a flight is summed up in one go. And when a state comes back, impulses and all
-    (rest, or any cycle), the rest of the run is a copy: a step sees nothing else. No bit changes.
+
+def state_of(balls) -> list[tuple]:
+    """x, y, vx, vy of every ball."""
+    return [(ball.x, ball.y, ball.vx, ball.vy) for ball in balls]
+
+
+def as_run(rows, settled, dt) -> Run:
+    """The Run of states (steps + 1, N, 4), and of whether the sweeps of each step settled."""
+    rows += 0.0  # -0.0 becomes 0.0, and -nan nan: chance decides these signs
+    rows[np.isnan(rows)] = math.nan
+    q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()
+    return Run(np.arange(len(rows)) * dt, q, v, int((~settled).sum()))
+
+
+# --- region: skips ---
+@np.errstate(all="ignore")
+def simulate_faster(step, scene: Scene, dt: float, steps: int, report=None) -> Run:
+    """What simulate gives, bit for bit, without the steps whose result is known.
+
+    A flight is summed up in one go. And a step sees nothing but a state, impulses of the last step
+    included: when one comes back (rest, or any cycle), the rest of the run is a copy. report(k)
+    hears how many steps are done.
     """
     balls = make_balls(scene)
-    rows = np.zeros((steps + 1, 4 * len(balls) + 1))    # the last column: sweeps unsettled, 0 or 1
-    rows[0, :-1] = state_of(balls)
-    seen = {}                                           # a state: the step it came at
-    k = 0
+    rows, settled = np.zeros((steps + 1, len(balls), 4)), np.ones(steps + 1, bool)
+    rows[0] = state_of(balls)
+    seen, k = {}, 0  # a state: the step it came at
     while k < steps:
-        if skip:
-            pushed = [(a, b, lam) for a in balls for b, lam in a.pushed.items()]
-            first = seen.setdefault((rows[k].tobytes(), *pushed), k)
-            if first < k:                               # what came then comes again and again
-                rows[k + 1:] = rows[first + 1 + np.arange(steps - k) % (k - first)]
-                break
-            flight = fly(balls, dt, steps - k)
-            if len(flight) > 0:
-                rows[k + 1:k + 1 + len(flight), :-1] = flight
-                k += len(flight)
-                continue
-        settled = step(balls)                           # False if sweeps of soft did not settle
-        k += 1
-        rows[k] = [*state_of(balls), settled is False]
+        pushed = [(a, b, lam) for a in balls for b, lam in a.pushed.items()]
+        first = seen.setdefault((rows[k].tobytes(), *pushed), k)
+        if first < k:  # what came then comes again and again
+            again = first + 1 + np.arange(steps - k) % (k - first)
+            rows[k + 1 :], settled[k + 1 :] = rows[again], settled[again]
+            break
+        flown = fly(balls, dt, rows[k : k + 251])
+        if flown == 0:
+            settled[k + 1] = step(balls) is not False
+            rows[k + 1] = state_of(balls)
+        k += flown or 1
         if report:
             report(k)
-    rows += 0.0                                         # -0.0 becomes 0.0, and -nan nan:
-    rows[np.isnan(rows)] = math.nan                     # chance decides these signs
-    states = rows[:, :-1].reshape(steps + 1, -1, 4).transpose(0, 2, 1).copy()
-    return Run(np.arange(steps + 1) * dt, states[:, :2], states[:, 2:], int(rows[:, -1].sum()))
-# --- endregion ---
+    return as_run(rows, settled, dt)
 
 
 # --- region: flight ---
-def fly(balls, dt, most):
-    """The next states (n, 4 N), n <= most, of balls that touch nothing; the balls go there."""
-    reach = step_reach(balls, dt)                       # no model looks farther
+def fly(balls, dt, rows):
+    """Fill rows (n + 1, N, 4) from the first on, and move the balls, as long as nothing touches.
+
+    Returns how many steps that is: 0 if the next one may see a contact, or is not finite.
+    """
+    reach = step_reach(balls, dt)  # no model looks farther
     if any(ball.y - ball.radius < reach for ball in balls) or detect_contacts(balls, reach):
-        return ()
-    states = np.zeros((min(most, 250) + 1, len(balls), 4))
-    states[0] = np.reshape(state_of(balls), (-1, 4))
-    q, v = states[:, :, :2], states[:, :, 2:]           # views of the states
+        return 0
+    q, v = rows[..., :2], rows[..., 2:]  # views of the rows
     v[1:, :, 1] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
-    np.add.accumulate(v, out=v)                         # v, v + dt g, v + dt g + dt g, ...
+    np.add.accumulate(v, out=v)  # v, v + dt g, v + dt g + dt g, ...
     q[1:] = dt * v[1:]
-    np.add.accumulate(q, out=q)                         # in the order of the steps: the same bits
+    np.add.accumulate(q, out=q)  # in the order of the steps: the same bits
     gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
-    speed = np.fmax.reduce(np.sqrt(v[:, :, 0] * v[:, :, 0] + v[:, :, 1] * v[:, :, 1]), axis=1)
-    reach = np.maximum(CONTACT_MARGIN, 2.0 * dt * (speed - dt * GRAVITY))   # as step_reach has it
-    near = np.flatnonzero(~(gap >= reach))              # from here a step may see a contact; or NaN
-    states = states[:near[0] + 1] if len(near) > 0 else states
-    for ball, values in zip(balls, states[-1].tolist()):
+    fastest = np.sqrt(v[..., 0] * v[..., 0] + v[..., 1] * v[..., 1]).max(-1)
+    reach = np.maximum(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))  # as step_reach has it
+    near = np.flatnonzero(~(gap >= reach))  # NaN is not far away
+    flown = int(near[0]) if len(near) > 0 else len(rows) - 1
+    rows[flown + 1 :] = 0.0
+    for ball, values in zip(balls, rows[flown].tolist()):
         ball.x, ball.y, ball.vx, ball.vy = values
-        ball.pushed = {}
-    return states[1:].reshape(len(states) - 1, 4 * len(balls))
-# --- endregion ---
+        ball.pushed = ball.pushed if flown == 0 else {}
+    return flown
 
 
 # --- region: run ---
+# fmt: off
 MODELS = ("penalty", "lcp", "soft", "exact")
 MANY = 5e6              # about steps times pairs: from here on, loading the compiled loops pays
+MOST_BALLS = 300        # of exact, chosen: its memory grows as their cube, to 0.1 GB here
 SOLREF = (0.02, 1.0)    # MuJoCo's default: time constant [s], damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)       # MuJoCo's default: d0, d1, width [m], mid, power
 HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # the hardest contact that MuJoCo allows
@@ -607,50 +604,66 @@ HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # the hardest contact that MuJoCo al
 class Settings(NamedTuple):
     """The knobs of the models. What belongs to a material, e and damping, is in the scene."""
 
-    stiffness: float = 1e4      # k of penalty [N/m]
-    baumgarte: float = 0.2      # beta of lcp: the share of an overlap that one step removes
-    iters: int = 20             # of lcp: Gauss-Seidel sweeps a step, at most
-    warm: float = 0.0           # of lcp: the share of a step's impulses that the next begins with
+    stiffness: float = 1e4  # k of penalty [N/m]
+    baumgarte: float = 0.2  # beta of lcp: the share of an overlap that one step removes
+    iters: int = 20         # of lcp: Gauss-Seidel sweeps a step, at most
+    warm: float = 0.0       # of lcp: the share of a step's impulses that the next begins with
     solref: tuple | None = None     # of soft: time constant [s], damping ratio; see soft_defaults
     solimp: tuple | None = None     # of soft: how hard, at which depth; see impedance
-    ahead: bool = False         # of lcp: look as far as a step travels, and let a gap close wholly
-    skip: bool = True           # leave out steps whose result is known; no bit changes
+    ahead: bool = False     # of lcp: look as far as a step travels, and let a gap close wholly
+    skip: bool = True       # leave out steps whose result is known; no bit changes
+# fmt: on
 
 
-def beside(name):
-    """A module of the folder curriculum beside this file; None if it cannot be imported."""
-    try:
-        return importlib.import_module(f"curriculum.{name}")
-    except ImportError:
-        return None
+def run_model(
+    model: str, scene: Scene, dt: float, steps: int, settings: Settings = Settings(), report=None
+) -> Run:
+    """The run of a scene by one of MODELS; report(k) hears how far it is.
 
-
-def run_model(model: str, scene: Scene, dt: float, steps: int,
-              settings: Settings = Settings(), report=None) -> Run:
-    """The run of a scene by one of MODELS. Raises ValueError for any other name.
-
-    Raises RuntimeError where exact cannot keep its promise of accuracy, and says why.
+    Raises ValueError for what is no scene, and RuntimeError where exact cannot be exact.
     """
-    if model not in MODELS:
-        raise ValueError(f"model {model!r}; allowed: {', '.join(MODELS)}")
-    with np.errstate(over="ignore"):
-        times = np.arange(steps + 1) * dt
+    check(model, scene, dt)
     if model == "exact":
-        return Run(times, *run_exact(scene, times, report))
-    many = settings.skip and steps * len(scene.mass)**2 > MANY
-    if many and (fast := beside("fast")):       # compiled loops, the same bits
+        return run_exact(scene, dt, steps, report)
+    many = settings.skip and steps * len(scene.mass) ** 2 > MANY
+    if many and (fast := beside("fast")):  # compiled loops, the same bits
         return fast.simulate(model, scene, dt, steps, settings, report)
-    e = scene.restitution
-    solref, solimp = soft_defaults(e, dt, settings.solref, settings.solimp)
-    step = {
-        "penalty": lambda balls: penalty_step(balls, dt, settings.stiffness, scene.damping),
-        "lcp": lambda balls: lcp_step(balls, dt, e, settings.baumgarte, settings.iters,
-                                      settings.warm, settings.ahead),
-        "soft": lambda balls: soft_step(balls, dt, solref, solimp)}
-    return simulate(step[model], scene, dt, steps, settings.skip, report)
+    step = step_of(model, scene, dt, settings)
+    if settings.skip:
+        return simulate_faster(step, scene, dt, steps, report)
+    return simulate(step, scene, dt, steps)
 
 
-def soft_defaults(restitution, dt, solref=None, solimp=None):
+def check(model, scene, dt):
+    """Raise ValueError, with the name of the field, for what no model can run."""
+    mass, radius, e = scene.mass, scene.radius, scene.restitution
+    for field, given, fine, allowed in (
+        ("model", model, model in MODELS, ", ".join(MODELS)),
+        ("dt", dt, 0.0 < dt < math.inf, "above 0 and finite"),
+        ("q0", scene.q0, np.isfinite(scene.q0), "finite"),
+        ("v0", scene.v0, np.isfinite(scene.v0), "finite"),
+        ("mass", mass, mass > 0.0, "above 0; infinite for a ball that nothing moves"),
+        ("radius", radius, (radius > 0.0) & (radius < math.inf), "above 0 and finite"),
+        ("restitution", e, 0.0 <= e <= 1.0, "from 0 to 1"),
+        ("damping", scene.damping, math.isfinite(scene.damping), "finite"),
+    ):
+        if not np.all(fine):
+            wrong = np.asarray(given)[~np.asarray(fine)].tolist()[0]
+            raise ValueError(f"{field}: given {wrong!r}; allowed: {allowed}")
+
+
+def step_of(model: str, scene: Scene, dt: float, settings: Settings):
+    """step(balls) of penalty, lcp or soft."""
+    e, (k, beta, iters, warm, solref, solimp, ahead, _) = scene.restitution, settings
+    soft = soft_defaults(e, dt, solref, solimp)
+    return {
+        "penalty": lambda balls: penalty_step(balls, dt, k, scene.damping),
+        "lcp": lambda balls: lcp_step(balls, dt, e, beta, iters, warm, ahead),
+        "soft": lambda balls: soft_step(balls, dt, *soft),
+    }[model]
+
+
+def soft_defaults(restitution, dt, solref=None, solimp=None) -> tuple[tuple, tuple]:
     """The solref and solimp a run uses, within MuJoCo's bounds. None stands for the default."""
     if solref is None and restitution > 0.0:
         # minus stiffness and minus damping: this damping, in a hard contact, turns v_n into -e v_n
@@ -658,35 +671,54 @@ def soft_defaults(restitution, dt, solref=None, solimp=None):
         solref, solimp = (0.0, -(1.0 + restitution) / dt), solimp or HARD
     elif solref is None or solref[0] > 0.0:
         timeconst, dampratio = solref or SOLREF
-        solref = max(timeconst, 2.0 * dt), dampratio    # MuJoCo's refsafe: no faster than two steps
+        solref = max(timeconst, 2.0 * dt), dampratio  # MuJoCo's refsafe: no faster than two steps
     d0, d1, width, mid, power = solimp or SOLIMP
     d0, d1, mid = (min(max(share, 0.0001), 0.9999) for share in (d0, d1, mid))
     return solref, (d0, d1, width, mid, max(power, 1.0))
 
 
-def run_exact(scene, times, report):
-    """q, v of balls over one another by exact_run, of others by curriculum/exact.py."""
+@np.errstate(over="ignore")
+def run_exact(scene, dt, steps, report=None):
+    """The Run of balls over one another by exact_run, of others by curriculum/exact.py."""
+    if len(scene.mass) > MOST_BALLS:
+        raise RuntimeError(f"given {len(scene.mass):,} balls; allowed: {MOST_BALLS} at most")
+    times = np.arange(steps + 1) * dt
     reason = "balls that lie beside one another need curriculum/exact.py"
     apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
     if apart and (scene.q0[0] == scene.q0[0, 0]).all() and not scene.v0[0].any():
         try:
-            return exact_run(scene, times, report)
-        except RuntimeError as error:
+            return Run(times, *exact_run(scene, times, report))
+        except ArithmeticError as error:
             reason = str(error)
     if not (exact := beside("exact")):
         raise RuntimeError(reason)
-    return exact.simulate_exact(scene, times, GRAVITY, report or (lambda k: None))
-# --- endregion ---
+    return Run(times, *exact.simulate_exact(scene, times, GRAVITY, report or (lambda k: None)))
+
+
+def beside(name: str):
+    """A module of the folder curriculum beside this file; None where it, or what it needs, is not.
+
+    A module says what it needs by a plain ImportError. A fault in a module is raised.
+    """
+    if (home := str(Path(__file__).resolve().parent)) not in sys.path:
+        sys.path.append(home)
+    try:
+        return importlib.import_module(f"curriculum.{name}")
+    except ImportError as error:
+        if error.name is None or f"curriculum.{name}.".startswith(f"{error.name}."):
+            return None
+        raise
 
 
 # --- region: measure ---
-EXPLODED = 10.0     # a run that gains more than this many times its start energy has exploded
+EXPLODED = 10.0  # a run that gains more than this many times its start energy has exploded
+RESTLESS = 1e-6  # r, chosen: an overlap that varies by less than this is at rest
 
 
 @np.errstate(all="ignore")
 def energy(q, v, mass):
     """Kinetic plus potential energy [J] of states (..., 2, N), zero at the floor."""
-    mass = np.where(np.isfinite(mass), mass, 0.0)       # a ball of infinite mass is held
+    mass = np.where(np.isfinite(mass), mass, 0.0)  # a ball of infinite mass is held
     return (0.5 * mass * (v * v).sum(-2) - mass * GRAVITY * q[..., 1, :]).sum(-1)
 
 
@@ -696,7 +728,7 @@ def smallest_gap(q, radius):
     if q.size * len(radius) > MANY and (fast := beside("fast")):
         return fast.smallest_gap(q, radius)
     gap = (q[:, 1] - radius).min(-1)
-    for lag in range(1, len(radius)):       # ball i and ball i + lag, for all i, all states at once
+    for lag in range(1, len(radius)):  # ball i and ball i + lag, for all i, all states at once
         dx, dy = (q[:, :, lag:] - q[:, :, :-lag]).swapaxes(0, 1)
         reach = radius[lag:] + radius[:-lag]
         gap = np.minimum(gap, (np.sqrt(dx * dx + dy * dy) - reach).min(-1))
@@ -705,9 +737,29 @@ def smallest_gap(q, radius):
 
 def blow_up_step(total):
     """The first step at which the energy [J] has gained EXPLODED times its start, or None."""
-    bad = ~(total - total[0] < EXPLODED * (abs(total[0]) or 1.0))   # NaN counts as exploded
+    bad = ~(total - total[0] < EXPLODED * (abs(total[0]) or 1.0))  # NaN counts as exploded
     return int(bad.argmax()) if bad.any() else None
-# --- endregion ---
+
+
+def first_contact(run: Run, scene: Scene, dt: float) -> int:
+    """The first step after which surfaces touch, or a velocity shows more than gravity's change."""
+    gained = np.outer((0.0, dt * GRAVITY), np.isfinite(scene.mass))  # from gravity, in one step
+    rounding = 1e-9 * (np.abs(run.v[:-1]) + np.abs(gained))
+    touched = smallest_gap(run.q, scene.radius) <= 0.0
+    touched[1:] |= (np.abs(np.diff(run.v, axis=0) - gained) > rounding).any((1, 2))
+    return int(touched.argmax()) if touched.any() else len(touched)
+
+
+def trembles(depth) -> bool:
+    """Whether the overlap [r] goes up and down every few steps to the end, and does not die out.
+
+    That is penalty past its critical step: the clamp cuts a swing that would grow.
+    """
+    early, late = np.array_split(depth[3 * len(depth) // 4 :], 2)
+    if len(early) < 50 or not early.std() > RESTLESS:  # 50: chosen, a shorter run is no evidence
+        return False
+    turns = np.count_nonzero(np.diff(np.sign(np.diff(late))))
+    return bool(late.std() > 0.9 * early.std() and turns > len(late) / 8)
 
 
 # --- region: quality ---
@@ -722,254 +774,188 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     gap = smallest_gap(run.q, scene.radius) / float(scene.radius[0])
     depth = np.maximum(-gap, 0.0)
     landing = first_contact(run, scene, dt)
-    below = (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any()      # a centre, below the floor
-    inside = depth.max() * scene.radius[0] > scene.radius.max()     # an overlap by a radius
     step = blow_up_step(total)
-    worst = flight = added = None       # errors of height: in all, before contact, by contact
-    if reference is not None:
-        error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius[0])
-        both_fly = min(landing, first_contact(reference, scene, dt))
-        worst, flight = float(error.max()), float(error[:both_fly].max(initial=0.0))
-        added = worst - flight
-    return {
-        "max_penetration_frac": float(depth.max()),
-        "rest_penetration_frac": float(depth[-1]),          # the overlap at the end
-        "rest_gap_frac": float(gap[-1]),
-        "rebound_frac": float(gap[landing:].max(initial=0.0)),
-        "rest_jitter": float(np.std(depth[3 * len(depth) // 4:])),
-        "energy_excess": float((total - total[0]).max()) / scale,
-        "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
-        "blew_up": step is not None,
-        "blew_up_step": step,
-        "through": "the floor" if below else "a ball" if inside else None,
-        "unsettled_steps": run.unsettled,               # whose sweeps, of soft, did not settle
-        "height_error_frac": worst, "flight_error_frac": flight, "contact_error_frac": added}
+    return (
+        {
+            "max_penetration_frac": float(depth.max()),
+            "rest_penetration_frac": float(depth[-1]),  # the overlap at the end
+            "rest_gap_frac": float(gap[-1]),
+            "rebound_frac": float(gap[landing:].max(initial=0.0)),
+            "rest_jitter": float(np.std(depth[3 * len(depth) // 4 :])),
+            "energy_excess": float((total - total[0]).max()) / scale,
+            "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
+            "blew_up": step is not None,
+            "blew_up_step": step,
+            "trembles": trembles(depth),
+            "rests": at_rest(run, scene),
+            "through": fell_through(run, scene, depth),
+            "unsettled_steps": run.unsettled,  # whose sweeps, of soft, did not settle
+        }
+        | height_errors(run, scene, dt, reference)
+    )
 
 
-def first_contact(run, scene, dt):
-    """The first step after which surfaces touch, or a velocity shows more than gravity's change."""
-    gained = np.outer((0.0, dt * GRAVITY), np.isfinite(scene.mass))     # from gravity, in one step
-    rounding = 1e-9 * (np.abs(run.v[:-1]) + np.abs(gained))
-    touched = smallest_gap(run.q, scene.radius) <= 0.0
-    touched[1:] |= (np.abs(np.diff(run.v, axis=0) - gained) > rounding).any((1, 2))
-    return int(touched.argmax()) if touched.any() else len(touched)
-# --- endregion ---
+def fell_through(run, scene, depth):
+    """What a ball went through, in words, or None."""
+    if (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any():
+        return "the floor"  # a centre, below it
+    inside = depth.max() * scene.radius[0] > scene.radius.max()  # an overlap by a radius
+    return "a ball" if inside else None
+
+
+def height_errors(run, scene, dt, reference):
+    """The worst errors of height [r]: in all, before contact, and what contact adds."""
+    keys = "height_error_frac", "flight_error_frac", "contact_error_frac"
+    if reference is None:
+        return dict.fromkeys(keys)
+    error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius[0])
+    both_fly = min(first_contact(each, scene, dt) for each in (run, reference))
+    worst, flight = float(error.max()), float(error[:both_fly].max(initial=0.0))
+    return dict(zip(keys, (worst, flight, worst - flight)))
+
+
+def at_rest(run: Run, scene: Scene) -> bool:
+    """Whether every ball that can move lies still at the end: slower than 1 mm/s, and supported."""
+    moving = np.isfinite(scene.mass)
+    still = np.abs(run.v[-1][:, moving]).max(initial=0.0) < 1e-3
+    falling = np.abs(np.diff(run.v[-2:, 1][:, moving], axis=0)).max(initial=0.0)
+    return bool(still and (len(run.t) > 1) and falling < 0.5 * abs(GRAVITY) * run.t[1])
+
+
+# --- region: critical-dt ---
+def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -> float:
+    """The largest stable step [s] of penalty for a ball kept in contact, or a stack of them.
+
+    In contact a step is a 2 x 2 matrix. Its eigenvalues stay within 1 (Jury's test) while c >= 0
+    and k dt^2 + 2 c dt < 4 m; solved for dt. Without a damper that is 2 sqrt(m / k).
+    """
+    if damping < 0.0:
+        return 0.0  # such a damper feeds every swing
+    if count > 1:  # the stiffest swing of a stack sees so many times the spring and the damper
+        more = 4.0 * math.cos(math.pi / (2 * count + 1)) ** 2
+        stiffness, damping = more * stiffness, more * damping
+    root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
+    return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
 
 
 # --- region: stability ---
-DT_GRID = (1, 2, 4, 8, 16, 32)      # multiples of --dt that the stability lines try
+DT_GRID = (1, 2, 4, 8, 16, 32)  # multiples of --dt that the stability lines try
 
 
-def measure_stability(run, scene, dt, stiffness, first):
+def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dict) -> dict:
     """The largest step of the grid without an explosion, by model, and what happens there.
 
     `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model. The largest step
     comes first, so that no run is made that cannot be the answer.
     """
-    mass, damping = float(scene.mass[0]), scene.damping
-    grid = {"dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
-            "dt_crit_damped": critical_dt(mass, stiffness, damping),
-            "dt_crit_stack": critical_dt(mass, stiffness, damping, len(scene.mass))}
-    for model in ("penalty", "lcp"):    # soft's time constant grows with the step: it stays bounded
-        largest = depth = through = None                # what stays if no run comes to a contact
+    mass, damping, count = float(scene.mass[0]), scene.damping, len(scene.mass)
+    grid = {
+        "dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
+        "dt_crit_damped": critical_dt(mass, stiffness, damping),
+        "dt_crit_stack": critical_dt(mass, stiffness, damping, count),
+    }
+    for model in ("penalty", "lcp"):  # soft's time constant grows with the step: it stays bounded
+        largest, there = None, {}  # what stays if no run comes to a contact
         for step in (dt * factor for factor in reversed(DT_GRID)):
             found = first[model] if step == dt else run(model, step)
             quality = contact_quality(found, scene, step)
             if quality["blew_up"]:
-                largest = 0.0                           # what stays if all others explode
+                largest = 0.0  # what stays if all others explode
             elif first_contact(found, scene, step) < len(found.t):
-                largest = step
-                depth, through = quality["max_penetration_frac"], quality["through"]
+                largest, there = step, quality
                 break
-        grid |= {model: largest, f"{model}_penetration_frac": depth, f"{model}_through": through}
+        grid |= {model: largest, f"{model}_penetration_frac": there.get("max_penetration_frac")}
+        grid |= {f"{model}_{key}": there.get(key) for key in ("through", "trembles")}
     return grid
-# --- endregion ---
 
 
 # --- region: flags ---
-class Parser(argparse.ArgumentParser):
-    """Answers bad input with one line and exit status 2."""
-
-    def error(self, message):
-        sys.exit(fail(" ".join(message.split())))
+# fmt: off
+USUAL = Settings()
+NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, meaning
+    "--seed": (int, 0, 10**18, 0, "draws the start height"),
+    "--dt": (float, 1e-6, 1e3, 0.002, "time step [s]"),
+    "--steps": (int, 0, 10**6, None, "how many (2000)"),
+    "--bodies": (int, 1, 10**4, None, "balls of stack (3) and pile (24)"),
+    "--mass": (float, 1e-9, 1e9, 1.0, "of every ball [kg]"),
+    "--stiffness": (float, 0, 1e15, USUAL.stiffness, "k of penalty [N/m]"),
+    "--damping": (float, -1e9, 1e9, -1.0, "c of penalty [N s/m]; below 0: the scene's, 80 or 0"),
+    "--restitution": (float, -1, 1, -1.0, "e of the others; below 0: the scene's, 0 or 0.7"),
+    "--baumgarte": (float, 0, 1, USUAL.baumgarte, "beta of lcp: share of an overlap to remove"),
+    "--warm": (float, 0, 1, USUAL.warm, "of lcp: share of the last impulses to begin with"),
+    "--iters": (int, 1, MOST_SWEEPS, USUAL.iters, "of lcp: sweeps a step, at most"),
+}
+# fmt: on
 
 
 def number(kind, low, high):
-    """An argparse type: a number of that kind, from low to high."""
+    """An argparse type: a number of that kind, from low to high; a whole one may be 1e3."""
+
     def read(text):
         try:
-            value = kind(text)
-        except (ValueError, OverflowError):
+            value = float(text)
+            if kind is int and value.is_integer():
+                value = int(text) if "e" not in text.lower() else int(value)
+        except ValueError:
             value = math.nan
-        if not low <= value <= high:
+        if not (isinstance(value, kind) and low <= value <= high):
             what = "a whole number" if kind is int else "a number"
-            raise argparse.ArgumentTypeError(
-                f"given {text[:40]!r}; allowed: {what} from {low:g} to {high:g}")
-        return value + 0                                # -0.0 becomes 0.0
+            allowed = f"{what} from {low:g} to {high:g}"
+            raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
+        return value + 0  # -0.0 becomes 0.0
+
     return read
-
-
-NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, meaning
-    "--seed": (int, 0, 1e18, 0, "draws the start height (0)"),
-    "--dt": (float, 1e-6, 1e3, 0.002, "time step [s] (0.002)"),
-    "--steps": (int, 0, 1e6, None, "how many (2000)"),
-    "--bodies": (int, 1, 1e4, None, "balls of stack (3) and pile (24)"),
-    "--mass": (float, 1e-9, 1e9, 1.0, "of every ball [kg] (1)"),
-    "--stiffness": (float, 0, 1e15, 1e4, "k of penalty [N/m] (1e4)"),
-    "--damping": (float, -1e9, 1e9, -1.0, "c of penalty [N s/m] (below 0: the scene's, 80 or 0)"),
-    "--restitution": (float, -1, 1, -1.0, "e of the others (below 0: the scene's, 0 or 0.7)"),
-    "--baumgarte": (float, 0, 1, 0.2, "beta of lcp: share of an overlap that a step removes (0.2)"),
-    "--warm": (float, 0, 1, 0.0, "lcp: share of the last impulses to begin with (0)"),
-    "--iters": (int, 1, MOST_SWEEPS, 20, "sweeps a step of lcp, at most (20)")}
 
 
 def add_flags(flag):
     """All flags, by argparse's add_argument."""
-    switch = argparse.BooleanOptionalAction
-    flag("--scene", choices=SCENES, default="drop", help="one ball, drop (e = 0) or bounce "
-         "(e = 0.7), or many, stack or pile (drop)")
+    flag("--scene", choices=SCENES, default="drop", help="one ball, drop or bounce; or many (drop)")
     flag("--contact", choices=("all", *MODELS), default="all", help="the model (all)")
     for name, (kind, low, high, usual, text) in NUMBERS.items():
-        flag(name, type=number(kind, low, high), default=usual, metavar="N", help=text)
-    flag("--solref", type=number(float, -1e12, 1e6), nargs=2, metavar=("T", "ZETA"),
-         help="soft: time constant [s] and damping ratio (0.02 1), or minus a stiffness and minus "
-              "a damping (with e > 0: 0 and -(1 + e) / dt)")
-    flag("--solimp", type=number(float, 0, 100), nargs=5,
-         metavar=("D0", "D1", "WIDTH", "MID", "POWER"),
-         help="soft: how hard at which depth (0.9 0.95 0.001 0.5 2; with e > 0: 0.9999)")
-    flag("--ahead", action="store_true", help="lcp with e = 0: look as far as a step travels, and "
-         "let a gap close wholly")
+        shown = "" if usual is None else f" ({usual:g})"
+        flag(name, type=number(kind, low, high), default=usual, metavar="N", help=text + shown)
+    real, switch = number(float, -1e12, 1e6), argparse.BooleanOptionalAction
+    spring = "of soft: time constant [s], damping ratio (0.02 1); or minus a stiffness, a damping"
+    flag("--solref", type=real, nargs=2, metavar="N", help=spring)
+    curve = "of soft: d0 d1 width mid power (0.9 0.95 0.001 0.5 2)"
+    flag("--solimp", type=number(float, 0, 100), nargs=5, metavar="N", help=curve)
+    flag("--ahead", action="store_true", help="lcp, e = 0: look as far as a step travels")
     flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
     flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
     flag("--skip", action=switch, default=True, help="leave out work that changes no bit (yes)")
     flag("--rerun", action=switch, default=True, help="write the recording contact.rrd (yes)")
     flag("--plot", action="store_true", help="draw contact.svg, by matplotlib")
-    flag("--out", default="outputs/ch3.5-contact", help="folder for what is written (%(default)s)")
+    flag("--out", default="outputs/ch3.5-contact", help="folder of the files (%(default)s)")
 
 
-def parse_flags(argv):
+def parse_flags(argv=None):
     """The checked command line. Bad input ends with one line on stderr and exit status 2."""
-    parser = Parser(prog="contact.py", description=__doc__, allow_abbrev=False, formatter_class=(
-        lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=100)))
-    parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")     # -1e4 is a value
+    raw = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(
+        "contact.py", argparse.SUPPRESS, __doc__, allow_abbrev=False, formatter_class=raw
+    )
+    parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")  # -1e4 is a value
     add_flags(parser.add_argument)
     args = parser.parse_args(argv)
     steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
     count = args.bodies or {"stack": 3, "pile": 24}.get(args.scene, 1)
-    memory = beside("run.memory")
-    too_much = memory.too_much(steps, count) if memory else None
-    for wrong, message in (
-            (args.smoke and args.steps is not None, "--smoke has 800 steps: leave out --steps"),
-            (args.bodies and args.scene in ("drop", "bounce"), "--bodies is for stack and pile"),
-            (too_much, too_much),
-            (args.solref and max(args.solref) > 0.0 and min(args.solref) < 1e-6,
-             "argument --solref: allowed: two numbers from 1e-06 up, or two that are 0 or less")):
+    memory, solref = beside("run.memory"), args.solref or (0.0, 0.0)
+    for wrong in (
+        args.smoke and args.steps is not None and "--smoke has 800 steps: leave out --steps",
+        args.bodies and args.scene in SCENES[:2] and "--bodies is for stack and pile",
+        max(solref) > 0.0
+        and min(solref) < 1e-6
+        and "argument --solref: allowed: two numbers from 1e-06 up, or two that are 0 or less",
+        not args.out.strip() and "argument --out: given ''; allowed: the name of a folder",
+        memory and memory.too_much(steps, count),
+    ):
         if wrong:
-            parser.error(message)
+            parser.error(wrong)
     args.steps = steps
     return args
-# --- endregion ---
-
-
-# --- region: report ---
-COLUMNS = {     # title: key of contact_quality, meaning
-    "max pen/r": ("max_penetration_frac", "the deepest overlap; r is the radius of a ball"),
-    "rest gap/r": ("rest_gap_frac", "the smallest gap at the end: below 0 it is an overlap"),
-    "rebound/r": ("rebound_frac", "the most that all surfaces are apart after the first contact"),
-    "energy+": ("energy_excess", "the most energy above the start, as a share of the start's"),
-    "energy in": ("contact_energy", "all rises of it, added up; what a spring gives back counts"),
-    "flight err/r": ("flight_error_frac", "the worst height error before the first contact"),
-    "contact err/r": ("contact_error_frac", "what contact adds to it; both against exact"),
-    "jitter/r": ("rest_jitter", "standard deviation of the overlap in the last quarter")}
-
-
-def figure(value, digits=3):
-    """A number as a person reads it, "-" for None: an exponent only where zeros would hide it."""
-    if value is None:
-        return "-"
-    if value == 0.0 or 1e-4 <= abs(value) < 1e3:
-        return f"{value:.{digits}g}"
-    return f"{value:,.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.1e}"
-
-
-def ending(row):
-    """How a run ended, in words."""
-    if row["blew_up"]:
-        return f"EXPLODED at step {row['blew_up_step']}"
-    text = f"through {row['through']}" if row["through"] else "ok"
-    steps = row["unsettled_steps"]
-    return f"{text}, sweeps unsettled in {steps} steps" if steps else text
-
-
-def print_table(rows, ending):
-    """A line per row {name: {key: value}} with ending(row) behind it, then the columns' meaning."""
-    wide = max(map(len, ["contact", *rows]))
-    titles = [title.rpartition(" ") for title in COLUMNS]   # in two lines: "max" over "pen/r"
-    print(" " * wide + "".join(f"{above:>10}" for above, _, _ in titles))
-    print(f"{'contact':<{wide}}" + "".join(f"{below:>10}" for _, _, below in titles) + "  state")
-    for name, row in rows.items():
-        cells = "".join(f"{figure(row[key]):>10}" for key, _ in COLUMNS.values())
-        print(f"{name:<{wide}}{cells}  {ending(row)}")
-    for title, (_, meaning) in COLUMNS.items():
-        print(f"  {title:<15}{meaning}")
-
-
-def print_verdict(quality):
-    """Which model overlaps most and which least, at worst and at rest."""
-    whole = [name for name in quality if not quality[name]["blew_up"]]
-    for when, key in (("at worst", "max_penetration_frac"), ("at rest", "rest_penetration_frac")):
-        groups = {}
-        for name in sorted(whole, key=lambda name: -quality[name][key]):
-            groups.setdefault(quality[name][key], []).append(name)
-        print(f"verdict: depth {when}:", " > ".join(map(" = ".join, groups.values())))
-
-
-def print_stability(grid, count):
-    """The largest step that each model stood, and the critical steps of penalty."""
-    print("stability: tried at", ", ".join(map(str, DT_GRID)), "times --dt")
-    without = {None: "comes to no contact within these steps",
-               0.0: "explodes at every dt tried that comes to a contact"}
-    for model in ("penalty", "lcp"):
-        depth, through = grid[f"{model}_penetration_frac"], grid[f"{model}_through"]
-        text = without.get(grid[model]) or (
-            f"does not explode up to dt = {grid[model]:g} s, where it goes "
-            f"{figure(depth)} r deep" + (f", through {through}" if through else ""))
-        print(f"stability: {model} {text}")
-    stack = f"a stack of {count}: {figure(grid['dt_crit_stack'], 4)} s; " if count > 1 else ""
-    print(f"critical dt of penalty, one ball: {figure(grid['dt_crit_damped'], 4)} s; {stack}"
-          f"without the damper, 2 sqrt(m/k): {figure(grid['dt_crit_penalty'], 4)} s")
-# --- endregion ---
 
 
 # --- region: files ---
-def rounded(value):
-    """`value` as JSON holds it, its floats rounded to 12 decimals; None where one is not finite."""
-    return json.loads(json.dumps(value), parse_float=lambda text: round(float(text), 12) + 0.0,
-                      parse_constant=lambda name: None)
-
-
-def write_files(args, metrics, runs, scene):
-    """Write metrics.json, and recording and picture if asked. Raises OSError if it cannot."""
-    path = os.path.join(args.out, "metrics.json")
-    os.makedirs(args.out, exist_ok=True)
-    text = json.dumps(metrics, indent=2, sort_keys=True, allow_nan=False)
-    Path(path).write_bytes(f"{text}\n".encode())
-    print("metrics:", path)
-    title = f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
-    for name, file, asked, *more in (("recording", "contact.rrd", args.rerun),
-                                     ("picture", "contact.svg", args.plot, title)):
-        if asked and runs:
-            path = os.path.join(args.out, file)
-            try:
-                importlib.import_module(f"curriculum.run.{name}").write(path, runs, scene, *more)
-                print(f"{name}: {path}")
-            except ImportError as error:
-                missing = "it needs the folder curriculum beside contact.py"
-                print(f"no {name}:", missing if error.name == "curriculum" else error)
-# --- endregion ---
-
-
-# --- region: main ---
 def chosen_scene(args, seed):
     """The scene that the flags ask for; a restitution or damping below 0 is the scene's own."""
     e, c = (None if value < 0.0 else value for value in (args.restitution, args.damping))
@@ -1001,22 +987,139 @@ def run_all(args, scene):
 def collect(args, scene):
     """The runs {model: Run}, and what metrics.json holds: knobs, measures, the stability grid."""
     runs, without = run_all(args, scene)
-    metrics = {name: getattr(args, name)
-               for name in ("scene", "contact", "dt", "steps", "seed", "stiffness")}
+    keys = "scene", "contact", "dt", "steps", "seed", "stiffness"
+    metrics = {key: getattr(args, key) for key in keys}
     metrics |= {"restitution": scene.restitution, "without": without, "stability": {}}
-    metrics["quality"] = {model: contact_quality(found, scene, args.dt, runs.get("exact"))
-                          for model, found in runs.items()}
+    metrics["quality"] = {
+        model: contact_quality(run, scene, args.dt, runs.get("exact"))
+        for model, run in runs.items()
+    }
     if args.contact == "all" and args.scene != "pile":
         metrics["stability"] = measure_stability(
-            lambda *case: run_flags(args, scene, *case), scene, args.dt, args.stiffness, runs)
+            lambda *case: run_flags(args, scene, *case), scene, args.dt, args.stiffness, runs
+        )
     return runs, rounded(metrics)
 
 
+def rounded(value):
+    """`value` as JSON holds it, its floats rounded to 12 decimals; None where one is not finite."""
+    return json.loads(
+        json.dumps(value),
+        parse_float=lambda text: round(float(text), 12) + 0.0,
+        parse_constant=lambda name: None,
+    )
+
+
+def write_files(args, metrics, runs, scene):
+    """Write metrics.json, and recording and picture if asked; a line on each. Raises OSError."""
+    out, title = Path(args.out), f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
+    out.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(metrics, indent=2, sort_keys=True, allow_nan=False)
+    (out / "metrics.json").write_bytes(f"{text}\n".encode())
+    yield f"metrics: {out / 'metrics.json'}"
+    recording = args.rerun, "recording", "contact.rrd"
+    for asked, name, file, *more in (recording, (args.plot, "picture", "contact.svg", title)):
+        if asked and runs:
+            try:
+                maker = importlib.import_module(f"curriculum.run.{name}")
+                maker.write(str(out / file), runs, scene, *more)
+                yield f"{name}: {out / file}"
+            except ImportError as error:
+                if error.name not in (None, "curriculum"):
+                    raise
+                absent = "it needs the folder curriculum beside contact.py"
+                yield f"no {name}: {absent if error.name else error}"
+
+
+# --- region: report ---
+# fmt: off
+COLUMNS = {     # title: key of contact_quality, meaning
+    "max pen/r": ("max_penetration_frac", "the deepest overlap; r is the radius of a ball"),
+    "rest gap/r": ("rest_gap_frac", "the smallest gap at the end: below 0 it is an overlap"),
+    "rebound/r": ("rebound_frac", "the most that all surfaces are apart after the first contact"),
+    "energy+": ("energy_excess", "the most energy above the start, as a share of the start's"),
+    "energy in": ("contact_energy", "all rises of it, added up; what a spring gives back counts"),
+    "flight err/r": ("flight_error_frac", "the worst height error before the first contact"),
+    "contact err/r": ("contact_error_frac", "what contact adds to it; both against exact"),
+    "jitter/r": ("rest_jitter", "standard deviation of the overlap in the last quarter"),
+}
+# fmt: on
+
+
+def shown(value, digits=3) -> str:
+    """A number as a person reads it, "-" for None: an exponent only where zeros would hide it."""
+    if value is None:
+        return "-"
+    if value == 0.0 or 1e-4 <= abs(value) < 1e3:
+        return f"{value:.{digits}g}"
+    return f"{value:,.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.1e}"
+
+
+def ending(row) -> str:
+    """How a run ended, in words."""
+    if row["blew_up"]:
+        return f"EXPLODED at step {row['blew_up_step']}"
+    calm = "trembles" if row["trembles"] else "ok"
+    text = f"through {row['through']}" if row["through"] else calm
+    steps = row["unsettled_steps"]
+    return f"{text}, sweeps unsettled in {steps} steps" if steps else text
+
+
+def print_table(rows, ending):
+    """A line per row {name: {key: value}} with ending(row) behind it, then the columns' meaning."""
+    wide = max(map(len, ["contact", *rows]))
+    titles = [title.rpartition(" ") for title in COLUMNS]  # in two lines: "max" over "pen/r"
+    print(" " * wide + "".join(f"{above:>10}" for above, _, _ in titles))
+    print(f"{'contact':<{wide}}" + "".join(f"{below:>10}" for _, _, below in titles) + "  state")
+    for name, row in rows.items():
+        cells = "".join(f"{shown(row[key]):>10}" for key, _ in COLUMNS.values())
+        print(f"{name:<{wide}}{cells}  {ending(row)}")
+    for title, (_, meaning) in COLUMNS.items():
+        print(f"  {title:<15}{meaning}")
+
+
+def print_verdict(quality):
+    """Which model overlaps most and which least: at worst, and of those at rest at the end."""
+    whole = [name for name, row in quality.items() if not row["blew_up"]]
+    resting = [name for name in whole if quality[name]["rests"]]
+    for when, names, key in (
+        ("at worst", whole, "max_penetration_frac"),
+        ("at rest", resting, "rest_penetration_frac"),
+    ):
+        ranked = sorted(names, key=lambda name: -quality[name][key])
+        groups = itertools.groupby(ranked, key=lambda name: quality[name][key])
+        text = " > ".join(" = ".join(group) for _, group in groups)
+        print(f"verdict: depth {when}:", text or "none is")
+    if moving := [name for name in whole if name not in resting]:
+        print("verdict: not at rest at the end:", ", ".join(moving))
+
+
+def print_stability(grid, count):
+    """The largest step that each model stood, and the critical steps of penalty."""
+    print("stability: tried at", ", ".join(map(str, DT_GRID)), "times --dt")
+    without = {None: "comes to no contact within these steps"}
+    without[0.0] = "explodes at every dt tried that comes to a contact"
+    for model in ("penalty", "lcp"):
+        depth, through = grid[f"{model}_penetration_frac"], grid[f"{model}_through"]
+        there = f"it goes {shown(depth)} r deep" + (f", through {through}" if through else "")
+        there += ", and trembles" if grid[f"{model}_trembles"] else ""
+        text = f"does not explode up to dt = {grid[model] or 0:g} s, where {there}"
+        print(f"stability: {model} {without.get(grid[model], text)}")
+    stack = f"a stack of {count}: {shown(grid['dt_crit_stack'], 4)} s; " if count > 1 else ""
+    print(
+        f"critical dt of penalty, one ball: {shown(grid['dt_crit_damped'], 4)} s; {stack}"
+        f"without the damper, 2 sqrt(m/k): {shown(grid['dt_crit_penalty'], 4)} s"
+    )
+
+
+# --- region: main ---
 def report(args, argv):
     """Run the models, print what was found, write the files. Returns the exit status."""
     scene = chosen_scene(args, args.seed)
     runs, metrics = collect(args, scene)
     print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
+    if remarks := beside("run.remarks"):
+        remarks.print_remarks(args, runs, scene)
     print_table(metrics["quality"], ending)
     for model, reason in metrics["without"].items():
         print(f"no {model}: {reason}")
@@ -1025,10 +1128,13 @@ def report(args, argv):
     if metrics["stability"]:
         print_stability(metrics["stability"], len(scene.mass))
     try:
-        write_files(args, metrics, runs, scene)
+        lines = list(write_files(args, metrics, runs, scene))
     except OSError as error:
-        return fail(f"cannot write to {args.out}: {error.strerror}; the report is whole, give "
-                    "another --out to keep its files")
+        return fail(
+            f"cannot write to {args.out}: {error.strerror}; the report is whole, give another "
+            "--out to keep its files"
+        )
+    print(*lines, sep="\n")
     if hints := beside("run.next_steps"):
         hints.print_next(args, argv)
     return 0 if runs else 2
@@ -1044,22 +1150,19 @@ def main(argv=None):
     """The command line. Returns the exit status: 2 for bad input, 130 after Ctrl-C."""
     argv = sys.argv[1:] if argv is None else argv
     try:
-        args = parse_flags(argv)
-        status = report(args, argv)
-        print(end="", flush=True)                       # an error at Python's end has no handler
+        status = report(parse_flags(argv), argv)
+        print(end="", flush=True)  # an error at Python's end has no handler
         return status
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
         return 130
     except MemoryError:
         return fail("not enough memory; allowed: fewer --steps or --bodies")
-    except OSError as error:                            # nobody reads on, or the disk is full
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:  # nobody reads on, or the disk is full: Python's own flush would fail
         unread = isinstance(error, BrokenPipeError)
-        return 141 if unread else fail(f"cannot print the rest: {error.strerror}")
+        os._exit(141 if unread else fail(f"cannot print the rest: {error.strerror}"))
 
 
 if __name__ == "__main__":
-    sys.modules["contact"] = sys.modules[__name__]      # the folder imports this, no second copy
+    sys.modules["contact"] = sys.modules[__name__]  # the folder imports this, no second copy
     sys.exit(main())
-# --- endregion ---

@@ -9,10 +9,15 @@ last ball is the floor. Nothing may be rounded differently: no fast-math, no fus
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 import contact
+from curriculum import commands
+
+try:
+    import numba
+except ModuleNotFoundError:
+    raise ImportError(commands.missing("numba")) from None
 
 if numba.config.DISABLE_JIT:  # then contact.py's own loops are faster
     raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")

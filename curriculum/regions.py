@@ -1,11 +1,11 @@
 """The named regions of the literate files: the pieces of code that the chapter shows.
 
-A region stands between `# --- region: NAME ---` and `# --- endregion ---`, at the left margin or,
-within a class, further in. Regions are flat and closed, and a name belongs to one region of all
-files.
+A region begins at `# --- region: NAME ---`, at the left margin or, within a class, further in. It
+ends at `# --- endregion ---`; in a file that is shown from top to bottom, at the next region.
+Regions are flat, and a name belongs to one region of all files.
 
 Its hash is the sha256 of the text that a reader sees: the lines between the two markers, less the
-indentation that all of them share, each ended by one "\\n", as UTF-8.
+indentation that they share and blank lines at the end, each ended by one "\\n", as UTF-8.
 """
 
 import hashlib
@@ -20,7 +20,8 @@ LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/implicit.py")  # wh
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
 NAME = r"[a-z][a-z0-9_-]*"
 REGION = re.compile(
-    rf"^ *# --- region: ({NAME}) ---\n(.*?)(^ *# --- endregion --- *$|\Z)", re.DOTALL | re.MULTILINE
+    rf"^ *# --- region: ({NAME}) ---\n(.*?)(^ *# --- endregion --- *$|(?=^# --- region: )|\Z)",
+    re.DOTALL | re.MULTILINE,
 )
 MARKER = re.compile(r"^ *# *-+ *(end)? *region\b.*$", re.IGNORECASE | re.MULTILINE)
 # What a piece of code defines: functions, classes, and constants by their capitals.
@@ -66,8 +67,9 @@ def split(text: str, file: str) -> tuple:
     found, wrong, outside = [], [], blank(REGION, text)
     for match in REGION.finditer(text):
         name, code, end = match.groups()
-        found.append(Region(name, dedent(code), line_at(text, match.start(2)), file))
-        if not end:
+        code = dedent(code).rstrip("\n") + "\n"
+        found.append(Region(name, code, line_at(text, match.start(2)), file))
+        if not end and file not in WHOLE:
             wrong.append((match.start(), f"region {name} is never closed"))
         for marker in MARKER.finditer(code):
             what = f"{marker[0].strip()!r} inside region {name}, where it does not belong"

@@ -51,7 +51,15 @@ def main(argv=None):
 
     With a scheduler the machines of a dask cluster do the work.
     """
-    seeds, scheduler, args = parse(argv)
+    try:
+        return report(*parse(argv))
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        return 130
+
+
+def report(seeds, scheduler, args):
+    """The same, of checked flags."""
     try:
         jobs = [(args, seed) for seed in seeds]
         found = pool.spread(qualities, jobs, "seeds", scheduler=scheduler)
@@ -121,8 +129,4 @@ def ending(row, count):
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        sys.exit(130)
+    sys.exit(main())

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from contact import MODELS
-from contact import figure as number
+from contact import shown as number
 from curriculum.bench import accuracy, piles, problems, skips, solvers
 from curriculum.bench.accuracy import BUDGET, LABELS, WORK
 from curriculum.files import write_whole

@@ -248,7 +248,7 @@ def judged(job):
         listed[0] += len(look(balls, DT, s.ahead))
         step(balls, DT, s, solves)
 
-    run = contact.simulate(counted, scene, DT, steps, skip=False)
+    run = contact.simulate(counted, scene, DT, steps)
     truth = contact.run_model("exact", scene, DT, steps)
     total, r = contact.energy(run.q, run.v, scene.mass), contact.RADIUS
     towers = name.startswith(("stack", "heavy"))

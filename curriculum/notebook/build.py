@@ -34,11 +34,19 @@ CARRIED = (
     "curriculum/implicit.py",
 )
 MARK = re.compile(
-    rf"^```\w*\n{INCLUDE.pattern}\n```$|^<!-- (?P<kind>figure|exercise): (?P<slot>[\w-]+) -->$"
-    r"|^(?=#{1,3} )",
+    rf"^```\w*\n{INCLUDE.pattern}\n```$|^(?=#{{1,3}} )"
+    r"|^<!-- (?P<kind>figure|exercise|bench|stress): (?P<slot>[\w-]+) -->$",
     re.MULTILINE,
 )
 COMMENT = re.compile(r"<!--.*?-->\n*", re.DOTALL)
+STORED = {  # a picture of a report, by its slot in the chapter
+    "bounce": "curriculum/bench/results/error-bounce.svg",
+    "penalty-map": "curriculum/stress/results/penalty-map.svg",
+}
+SAID = (  # what only the page can do, and what to do here
+    (r"Take it, lift it,\s+throw it\.", "Hold the mouse on it, and it stops."),
+    (r"\bDrag the (\w+)", r"Run the cell above, turn its \1"),
+)
 LIVE = re.compile(r"\[([^\]]*)\]\((?:try|drag):[^)]*\)")
 MAIN = re.compile(r'^if __name__ == "__main__":.*', re.DOTALL | re.MULTILINE)
 OPENING = "grab"  # the figure that the notebook opens on
@@ -53,7 +61,7 @@ def folder():
     """The files that the notebook carries, as a zip in base64, 76 characters a line."""
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as packed:
-        for pattern in CARRIED:
+        for pattern in (*CARRIED, *STORED.values()):
             for path in sorted(filter(Path.is_file, ROOT.glob(pattern))):
                 name = zipfile.ZipInfo(path.relative_to(ROOT).as_posix())  # dated 1980: same bytes
                 packed.writestr(name, path.read_bytes(), zipfile.ZIP_DEFLATED)
@@ -85,6 +93,8 @@ class Book:
     def prose(self, text):
         """Markdown; comments and live links are for the page."""
         text = LIVE.sub(r"\1", COMMENT.sub("", text)).strip()
+        for page, here in SAID:
+            text = re.sub(page, here, text)
         if text:
             self.add("markdown", text)
 
@@ -101,7 +111,7 @@ class Book:
 
     def figure(self, name):
         """The cell of this name; the page has figures that the notebook has not."""
-        if name in self.own:
+        if name in self.own and self.own[name] not in {cell.source for cell in self.cells}:
             source = self.own[name]
             self.add("code", source, folded=source.startswith("#@title"))
         if name == OPENING:
@@ -120,7 +130,14 @@ class Book:
             file = path.relative_to(ROOT).as_posix()
             source = path.read_text("utf-8").strip()
             self.add("code", f"%%writefile contact_chapter/{file}\n{source}")
-            self.add("code", f'course("{file}")')
+            hint = f'course("{file}", "--hint", "1")'
+            self.add("code", f'course("{file}")\n# a question that helps: {hint}')
+
+    def bench(self, name):
+        """A picture of the benchmark."""
+        self.add("code", f'SVG(filename=os.path.join(COURSE, "{STORED[name]}"))')
+
+    stress = bench
 
     def start(self):
         """What the notebook is, the cell that carries the folder, and what the pictures share."""

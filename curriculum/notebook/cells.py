@@ -132,6 +132,31 @@ for model, quality in qualities.items():
           f"gap at rest {plain(quality['rest_gap_frac'])} r,",
           f"rebound {plain(quality['rebound_frac'])} r")
 
+# %% corner
+drawing, axes = plt.subplots(figsize=(5, 3.2))
+axes.plot([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], color="0.2", linewidth=4, solid_joinstyle="miter")
+axes.annotate("in touch: any push", (0.02, 0.7), (0.15, 0.75), arrowprops={"arrowstyle": "->"})
+axes.annotate("apart: no push", (0.6, 0.02), (0.5, 0.25), arrowprops={"arrowstyle": "->"})
+axes.set(xlim=(-0.3, 1.0), ylim=(-0.15, 1.0), xticks=[0.0], yticks=[0.0], xlabel="gap",
+         ylabel="force", title="the corner: where a contact may be")
+
+# %% signs
+drawing, axes = plt.subplots(figsize=(6, 3.4))
+a, b = Ball(0.13, 0.22, -0.6, -0.3, 1.0, RADIUS), Ball(0.0, RADIUS, 0.0, 0.0, 1.0, RADIUS)
+axes.axhspan(-0.06, 0.0, color="0.8")
+for name, ball in ("a", a), ("b", b):
+    axes.add_patch(plt.Circle((ball.x, ball.y), RADIUS, color=COLORS["exact"], alpha=0.3))
+    axes.text(ball.x, ball.y, name, ha="center", va="center")
+arrow = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.008}
+axes.quiver(a.x, a.y, 0.2 * a.vx, 0.2 * a.vy, color="0.4", **arrow)
+for other, c in zip(("the floor", "b"), (c for c in detect_contacts([a, b], 0.2) if c.a is a)):
+    foot = c.b.x + RADIUS * c.nx if c.b is b else a.x, c.b.y + c.b.radius * c.ny
+    axes.quiver(*foot, 0.08 * c.nx, 0.08 * c.ny, color=COLORS["lcp"], **arrow)
+    axes.text(0.32, foot[1] + 0.05, f"a and {other}: depth {plain(c.depth / RADIUS, 2)} r,\n    "
+              f"v_n {plain(c.v_n(), 2)} m/s: {'separating' if c.v_n() > 0.0 else 'closing'}")
+axes.set(xlim=(-0.15, 0.85), ylim=(-0.06, 0.36), aspect="equal", xticks=[], yticks=[],
+         title="blue: n, from b to a and from the floor up; grey: the velocity of a")
+
 # %% sponge
 #@title penalty: turn the stiffness, the damping and the step
 def try_penalty(stiffness, damping, dt):
@@ -192,13 +217,11 @@ def fall_into_groove(sweep):
     """The path of a ball that falls into a groove of two fixed balls, [r]."""
     global solve_contacts
     right, solve_contacts = solve_contacts, sweep
-    fixed = [Ball(x, 1.0, 0.0, 0.0, math.inf, RADIUS) for x in (-0.12, 0.12)]
-    ball, path = Ball(0.0, 2.0, 0.0, 0.0, 1.0, RADIUS), []
-    for _ in range(500):
-        lcp_step([*fixed, ball], 0.002, 0.0, 0.2, 20)
-        path.append((ball.x / RADIUS, (ball.y - 1.0) / RADIUS))
+    fixed = math.inf
+    scene = scene_of([0.0, -0.12, 0.12], [2.0, 1.0, 1.0], [1.0, fixed, fixed])
+    run = run_model("lcp", scene, 0.002, 500)
     solve_contacts = right
-    return np.transpose(path)
+    return run.q[:, 0, 0] / RADIUS, (run.q[:, 1, 0] - 1.0) / RADIUS
 
 
 grooves = {"on the sum": fall_into_groove(solve_contacts),
@@ -228,8 +251,7 @@ drawing, pictures = plt.subplots(1, 2, sharey=True, figsize=(8, 3))
 for axes, between in zip(pictures, (0.0, 0.01)):
     x = np.arange(4) * (2.0 + between) * RADIUS
     x[0] -= 0.3
-    row = Scene("cradle", np.array((x, np.full(4, RADIUS))), np.array([[1.0, 0, 0, 0], [0.0] * 4]),
-                np.ones(4), np.full(4, RADIUS), 1.0, 0.0)
+    row = scene_of(x, RADIUS, vx=[1.0, 0.0, 0.0, 0.0], restitution=1.0)
     run = run_model("exact", row, 0.005, 150)
     axes.plot(run.t, run.q[:, 0], color=COLORS["exact"])
     axes.set(xlabel="time [s]", ylabel="x [m]", title="touching" if between == 0.0 else
@@ -237,9 +259,8 @@ for axes, between in zip(pictures, (0.0, 0.01)):
 
 # %% slide
 start, middle = 0.3, 5.0        # rad from the top of a ball that is held at this height [m]
-place = [[0.0, 2 * RADIUS * math.sin(start)], [middle, middle + 2 * RADIUS * math.cos(start)]]
-hill = Scene("slide", np.array(place), np.zeros((2, 2)), np.array([np.inf, 1.0]),
-             np.full(2, RADIUS), 0.0, 80.0)
+x, y = 2 * RADIUS * math.sin(start), middle + 2 * RADIUS * math.cos(start)
+hill = scene_of([0.0, x], [middle, y], [math.inf, 1.0])
 drawing, axes = plt.subplots(figsize=(7, 3))
 for model in ("exact", "penalty", "lcp", "soft"):
     run = run_model(model, hill, 0.001, 400)

@@ -16,7 +16,12 @@ import pytest
 import contact
 
 ROOT = Path(contact.__file__).resolve().parent
-FOLDER_ONLY = ("recording:", "next,", "no recording:")  # lines that the folder beside it adds
+FOLDER_ONLY = (
+    "recording:",
+    "next,",
+    "no recording:",
+    "exact: ",
+)  # lines that the folder beside it adds
 
 
 def command(*flags, script=ROOT / "contact.py", cwd=ROOT, python=(), **environment):
@@ -291,11 +296,10 @@ def test_ctrl_c_ends_a_run_and_its_workers_with_one_word_and_leaves_no_file(
     program, flags, tmp_path
 ):
     code = (  # a shell in the background has its children ignore Ctrl-C
-        "import signal, sys, runpy; signal.signal(signal.SIGINT, signal.default_int_handler); "
-        "print('ready', flush=True); program = sys.argv.pop(1); "
-        "runpy.run_module(program, run_name='__main__', alter_sys=True)"
+        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        f"from {program} import main; print('ready', flush=True); sys.exit(main(sys.argv[1:]))"
     )
-    words = [sys.executable, "-c", code, program, *flags.split(), "--out", tmp_path / "out"]
+    words = [sys.executable, "-c", code, *flags.split(), "--out", tmp_path / "out"]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as run:
         assert run.stdout.readline() == "ready\n"
@@ -319,13 +323,56 @@ def test_output_to_a_full_disk_is_one_line_and_no_output_at_all_is_no_error(tmp_
     assert (closed.returncode, closed.stderr) == (0, "")
 
 
-def test_a_pipe_that_nobody_reads_ends_it_without_a_word(tmp_path):
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_pipe_that_nobody_reads_ends_it_without_a_word(unbuffered, tmp_path):
     reader, writer = os.pipe()
     os.close(reader)
-    words = [sys.executable, ROOT / "contact.py", "--no-rerun", "--out", tmp_path]
-    run = subprocess.run(words, stdout=writer, stderr=subprocess.PIPE, text=True)
+    words = [sys.executable, ROOT / "contact.py", "--steps", "5", "--no-rerun", "--out", tmp_path]
+    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    run = subprocess.run(words, stdout=writer, stderr=subprocess.PIPE, text=True, env=environment)
     os.close(writer)
     assert (run.returncode, run.stderr) == (141, "")
+
+
+@pytest.mark.parametrize("flags", [["-O"], ["-OO"]])
+def test_it_runs_without_asserts_docstrings_and_in_an_ascii_locale(flags, tmp_path):
+    ascii_only = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    run = command("--steps", "1e1", "--plot", "--out", tmp_path, python=flags, **ascii_only)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert strict_json(tmp_path / "metrics.json")["steps"] == 10
+
+
+def test_a_folder_without_a_name_is_refused(capsys):
+    assert "--out: given ''; allowed: " in refused(main(capsys, "--out", ""))
+
+
+@pytest.mark.parametrize(
+    "flags, line",
+    [
+        ("--contact exact", r"exact: the ball lands after 0\.429\d+ s, at 4\.21\d+ m/s"),
+        (
+            "--contact exact --scene bounce",
+            r"exact: its bounces rise to 0\.4437, 0\.2174, .* m \.\.\.",
+        ),
+        ("--contact lcp --stiffness 5", "--stiffness is for penalty, and changes nothing here"),
+        ("--scene bounce --ahead", "--ahead is for restitution 0, and changes nothing here"),
+        ("--scene stack --dt 0.006 --steps 4000", "penalty .*  trembles"),
+        ("--scene stack --dt 0.003", "stability: penalty .* 0.006 s, .* r deep, and trembles"),
+        ("--scene bounce", "verdict: depth at rest: soft > lcp .*"),
+        ("--scene bounce", "verdict: not at rest at the end: penalty"),
+        ("--smoke --scene bounce", "verdict: not at rest at the end: penalty, lcp, soft, exact"),
+    ],
+)
+def test_the_report_says_what_a_reader_would_ask(flags, line, tmp_path, capsys):
+    _, out, _ = main(capsys, *flags.split(), "--no-rerun", "--out", tmp_path)
+    assert any(re.fullmatch(line, each) for each in out.splitlines()), out
+
+
+def test_a_knob_has_one_default():
+    args = contact.parse_flags([])
+    assert contact.Settings() == contact.Settings(
+        *(getattr(args, k) for k in contact.Settings._fields)
+    )
 
 
 def test_the_last_line_knows_when_all_exercises_are_done(tmp_path):

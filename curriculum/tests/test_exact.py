@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from contact import GRAVITY, Scene, build_scene, exact_run
+from contact import GRAVITY, Scene, build_scene, exact_run, run_model
 from curriculum.bench.closed_form import bounce_motion, slide_motion
 from curriculum.exact import simulate_exact, solve_lcp
 
@@ -322,6 +322,24 @@ def test_a_mass_ratio_above_100_is_refused_where_balls_would_rattle():
     run(heavy._replace(mass=np.array((np.inf, 1.0))), [0.0, 0.3])
 
 
+def test_more_balls_than_can_be_held_are_refused_before_anything_is_allocated():
+    for count in (301, 10_000):
+        with pytest.raises(RuntimeError, match=f"given {count:,} balls; allowed: 300 at most"):
+            run_model("exact", build_scene("pile", 0, count), 0.002, 10)
+
+
+def test_a_ball_that_is_crushed_is_called_so():
+    press = balls([0.0, 0.0], [R, 0.5], np.array((1.0, np.inf)), vy=[0.0, -1.0])
+    with pytest.raises(RuntimeError, match="a ball is crushed between two that nothing moves"):
+        run(press, [0.0, 1.0])
+
+
+def test_the_reason_is_that_of_the_one_that_got_further():
+    scene = build_scene("bounce", restitution=1.0 - 1e-12)
+    with pytest.raises(RuntimeError, match="more than 20,000 impacts by 1[0-9]{4}"):
+        run_model("exact", scene, 1.0, 20_000)
+
+
 def test_balls_that_rattle_without_end_are_one_clear_error():
-    with pytest.raises(RuntimeError, match="more than 3000 events by .* rattle without end"):
+    with pytest.raises(RuntimeError, match="more than 20,000 events by .* rattle without end"):
         run(balls([0.0], [R + 1e-8], e=0.999999), [0.0, 4.0])

@@ -443,6 +443,51 @@ def test_a_flight_ends_at_a_contact_that_one_state_alone_shows(model):
     assert run_model(model, scene, DT, 40).v[-1, 0, 0] != 150.0, "they met"
 
 
+@pytest.mark.parametrize("wild", [math.nan, math.inf, 1e200])
+@pytest.mark.parametrize("model", STEPPED)
+def test_a_ball_that_is_nowhere_does_not_let_another_fall_through_the_floor(model, wild):
+    scene = contact.scene_of([0.0, 1.0], [0.5, wild], damping=80.0)
+    step = contact.step_of(model, scene, DT, Settings())
+    plain, fast = (way(step, scene, DT, 400) for way in (contact.simulate, contact.simulate_faster))
+    assert plain.q.tobytes() == fast.q.tobytes() and plain.v.tobytes() == fast.v.tobytes()
+    assert fast.q[-1, 1, 0] > 0.09
+
+
+@pytest.mark.parametrize(
+    "field, value",
+    [
+        ("q0", np.array([[0.0], [math.inf]])),
+        ("v0", np.array([[math.nan], [0.0]])),
+        ("mass", np.array([0.0])),
+        ("mass", np.array([math.nan])),
+        ("radius", np.array([-0.1])),
+        ("restitution", -1.0),
+        ("restitution", 1.1),
+        ("damping", math.nan),
+    ],
+)
+def test_what_is_no_scene_is_refused_by_the_name_of_its_field(field, value):
+    for model in contact.MODELS:
+        with pytest.raises(ValueError, match=f"{field}: given .*; allowed: "):
+            run_model(model, build_scene("drop")._replace(**{field: value}), DT, 5)
+    for dt in (0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(ValueError, match="dt: given .*; allowed: "):
+            run_model("lcp", build_scene("drop"), dt, 5)
+
+
+def test_critical_dt_without_a_spring_and_with_a_damper_that_feeds():
+    assert contact.critical_dt(1.0, 0.0, 80.0) == pytest.approx(0.025, rel=1e-14)
+    assert contact.critical_dt(1.0, 0.0, 0.0) == math.inf
+    assert contact.critical_dt(1.0, 1e4, -1.0) == 0.0
+
+
+def test_penalty_trembles_past_its_critical_step_and_nothing_else_does():
+    for dt, trembling in ((0.0056, False), (0.006, True), (0.008, True)):
+        assert quality("stack", "penalty", dt, 4000)["trembles"] == trembling, dt
+    for name, model in product(("drop", "bounce", "stack"), contact.MODELS):
+        assert not quality(name, model)["trembles"], (name, model)
+
+
 @pytest.mark.parametrize("period, start", [(1, 5), (2, 0), (3, 17), (30, 100)])
 def test_a_cycle_of_any_period_is_recognised_and_copied(period, start):
     """A made-up step with a known answer: up by one until `start`, then round and round."""
@@ -454,7 +499,7 @@ def test_a_cycle_of_any_period_is_recognised_and_copied(period, start):
         calls.append(k)
 
     scene = build_scene("drop")._replace(q0=np.array([[0.0], [0.05]]))
-    run = contact.simulate(step, scene, DT, 500)
+    run = contact.simulate_faster(step, scene, DT, 500)
     want = [k if k < start else start + (k - start) % period for k in range(501)]
     assert run.v[:, 0, 0].tolist() == want and len(calls) <= start + period + 1
 

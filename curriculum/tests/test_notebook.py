@@ -30,7 +30,7 @@ fallen = run_model("penalty", build_scene("drop"), 0.002, 2000)
 found["fallen"] = contact_quality(fallen, build_scene("drop"), 0.002)["through"]
 print(json.dumps(found))
 """
-BET = 'course("exercises/ex1_predict_contact.py")'
+BET = 'course("exercises/ex1_predict_contact.py")\n'
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +72,7 @@ def test_two_builds_are_the_same_bytes_whatever_the_hash_seed(text, tmp_path):
 
 def test_it_opens_on_a_ball_that_falls_before_anything_has_run(text):
     book = nbformat.reads(text, as_version=4)
-    shown = [cell for cell in book.cells[:6] if cell.get("outputs")]
+    shown = [cell for cell in book.cells[:8] if cell.get("outputs")]
     (picture,) = [output.data["image/svg+xml"] for cell in shown for output in cell.outputs]
     assert "@keyframes" in picture and "exact</text>" in picture
 
@@ -85,6 +85,16 @@ def test_what_the_chapter_shows_of_contact_is_a_cell_and_no_mark_of_the_page_is_
         assert known[name].code.split("\n\n\n")[0].strip() in code, name
     prose = "\n".join(cell.source for cell in book.cells if cell.cell_type == "markdown")
     assert not re.search(r"\{\{|<!--|include-by-region|\]\(try:|\]\(drag:", prose)
+    said = r"[Tt]ake it, lift|throw it\.|\b[Dd]rag (it|the (?!ball back))|[Cc]lick"
+    assert not re.search(said, prose), "only the page can do that"
+
+
+def test_corner_signs_and_benchmark_are_pictures_and_each_exercise_shows_how_to_ask(executed):
+    for part in ("the corner: where", "blue: n, from b to a", "error-bounce.svg"):
+        (cell,) = [cell for cell in executed.cells if part in cell.source and cell.outputs]
+        assert {*("image/png", "image/svg+xml")} & set(cell.outputs[-1].data), part
+    runs = [c.source for c in executed.cells if c.source.startswith('course("exercises/ex')]
+    assert len(runs) == 10 and all('"--hint", "1")' in source for source in runs)
 
 
 def test_cells_of_pictures_and_knobs_are_all_used_and_take_no_name_of_contacts(text):
@@ -107,6 +117,6 @@ def test_it_runs_beside_no_project_and_finds_what_contact_finds(executed, tmp_pa
 
 
 def test_a_bet_made_in_its_cell_is_judged_by_the_next(executed):
-    (cell,) = [cell for cell in executed.cells if cell.source == BET]
+    (cell,) = [cell for cell in executed.cells if cell.source.startswith(BET)]
     assert "no prediction" not in printed(cell) and "Traceback" not in printed(cell)
     assert "0.25" in printed(cell), "how deep penalty dives"

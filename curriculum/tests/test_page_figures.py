@@ -1,6 +1,5 @@
 """The explaining figures answer to a drag and to arrow keys, and show what contact.py finds."""
 
-import functools
 import re
 from types import SimpleNamespace
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum.page.build import page_data
+from curriculum.page.build import build, page_data
 from curriculum.page.bundle import evaluate
 from curriculum.page.chapter import CHAPTER
 from curriculum.regions import ROOT
@@ -29,26 +28,21 @@ def test_every_figure_has_a_slot_in_the_chapter_and_every_slot_a_figure():
     assert sorted(evaluate("still.js", page_data([]), "stills()")["figures"]) == SLOTS
 
 
-@functools.cache
-def page_of_figures():
-    """A page that holds every explaining figure, and nothing else."""
-    from curriculum.page.build import build
-
-    sections = "\n\n".join(f"## The {name}\n\n<!-- figure: {name} -->" for name in SHOWN)
-    return build(f"# Figures\n\n{sections}\n")
-
-
 @pytest.fixture(scope="module")
 def tab(tmp_path_factory):
-    """A browser tab on that page; what a test sets, it takes back by loading anew."""
+    """A browser tab on a page with one section, which holds every explaining figure."""
     file = tmp_path_factory.mktemp("figures") / "figures.html"
-    file.write_text(page_of_figures(), encoding="utf-8")
+    slots = "\n\n".join(f"The {name}.\n\n<!-- figure: {name} -->" for name in SHOWN)
+    file.write_text(build(f"# Figures\n\n## All\n\n{slots}\n"), encoding="utf-8")
     with running() as browser, visiting(browser, file.as_uri()) as page:
         yield page
 
 
-def figure(tab, name):
-    """A figure by its name, drawn and in sight."""
+def figure(tab, name, query=None):
+    """A figure by its name, in sight; on a fresh page with this query, if there is one."""
+    if query is not None:
+        tab.goto(tab.url.split("?")[0].split("#")[0] + query)
+        tab.wait_for_selector("[data-ready]", state="attached")
     box = tab.locator(f"#fig-{name}")
     box.scroll_into_view_if_needed()
     box.locator(".handle").first.wait_for(state="attached")
@@ -63,12 +57,10 @@ def said(box):
 
 
 def numbers(box):
-    """The numbers in what the figure says."""
     return [float(each) for each in re.findall(r"-?\d+(?:\.\d+)?(?:e-?\d+)?", said(box))]
 
 
 def handle(box, name):
-    """A handle of a figure, by its name."""
     return box.locator(f'.handle[data-handle="{name}"]')
 
 
@@ -85,23 +77,15 @@ def drag(tab, grip, by):
 
 
 def settle(tab):
-    """Wait until what has changed is drawn."""
     for _ in range(2):
         tab.evaluate("() => new Promise(requestAnimationFrame)")
 
 
 def press(tab, grip, key, times=1):
-    """Press an arrow key on a handle."""
     grip.focus()
     for _ in range(times):
         tab.keyboard.press(key)
     settle(tab)
-
-
-def set_knobs(tab, query):
-    """The page with these values in its address."""
-    tab.goto(tab.url.split("?")[0].split("#")[0] + query)
-    tab.wait_for_selector("[data-ready]", state="attached")
 
 
 @pytest.mark.parametrize("name", SHOWN)
@@ -135,8 +119,7 @@ def test_every_figure_is_told_in_words_and_has_a_caption_of_one_sentence(tab):
 
 
 def test_a_quantity_dragged_in_one_figure_is_the_same_in_all(tab):
-    set_knobs(tab, "")
-    drag(tab, handle(figure(tab, "sponge"), "stiffness"), (60, 0))
+    drag(tab, handle(figure(tab, "sponge", ""), "stiffness"), (60, 0))
     shown = handle(figure(tab, "sponge"), "stiffness").get_attribute("aria-valuenow")
     assert float(shown) < 5000
     for name in ("corner-penalty", "stack", "cliff"):
@@ -152,12 +135,9 @@ def depths(model, dt=DT, **knobs):
 
 
 def test_springs_show_the_depths_of_contact_py(tab):
-    set_knobs(tab, "?stiffness=5000")
-    sponge = figure(tab, "sponge")
+    sponge = figure(tab, "sponge", "?stiffness=5000")
     assert numbers(sponge)[0] == pytest.approx(depths("penalty", stiffness=5e3)[-1], rel=5e-3)
-    drag(
-        tab, handle(sponge, "press"), (0, 30)
-    )  # let go, and nothing may move: it is at rest at once
+    drag(tab, handle(sponge, "press"), (0, 30))  # nothing may move: it is at rest at once
     assert "It rests" in said(sponge)
     stack = figure(tab, "stack")
     assert numbers(stack)[:2] == pytest.approx([3, 3 * WEIGHT / 5e3 / RADIUS], rel=5e-3)
@@ -166,8 +146,7 @@ def test_springs_show_the_depths_of_contact_py(tab):
 
 
 def test_signs_are_those_of_contact_py(tab):
-    set_knobs(tab, "")
-    box = figure(tab, "signs")
+    box = figure(tab, "signs", "")
     press(tab, handle(box, "ball"), "ArrowLeft", 5)
     press(tab, handle(box, "velocity"), "ArrowUp", 12)
     a = contact.Ball(0.19, 0.3, 0.3, 0.0, 1.0, RADIUS)
@@ -187,7 +166,7 @@ def pressed(tab, name):
 
 def test_each_model_keeps_to_its_own_law_on_the_corner(tab):
     """Pressed: no gap with a wall; on a ramp F / k; in soft K d^2 depth = (1 - d) F."""
-    set_knobs(tab, "?stiffness=20000")
+    figure(tab, "corner", "?stiffness=20000")
     for name in ("corner", "corner-exact", "corner-lcp"):
         gap, force = pressed(tab, name)
         assert gap == 0 and force == 30
@@ -200,49 +179,43 @@ def test_each_model_keeps_to_its_own_law_on_the_corner(tab):
     assert stiff * d**2 * -gap * RADIUS == pytest.approx((1 - d) * force * WEIGHT, rel=0.05)
 
 
-@pytest.mark.parametrize("k, rests", [(1e4, True), (1e6, False)])
-def test_puzzle_tells_how_deep_a_spring_sinks_and_whether_it_comes_to_rest(tab, k, rests):
-    set_knobs(tab, f"?stiffness={k:.0f}&damping=80")
-    late = depths("penalty", dt=0.01, stiffness=k)[-200:]
-    assert (np.ptp(late) < 1e-3) == rests
-    puzzle = figure(tab, "puzzle")
-    assert numbers(puzzle)[0] == pytest.approx(WEIGHT / k / RADIUS, rel=5e-3)
-    assert f"It {'comes' if rests else 'never comes'} to rest" in said(puzzle)
+def test_puzzle_tells_how_deep_a_spring_sinks_and_whether_it_comes_to_rest(tab):
+    for k, told in ((1e4, "comes"), (1e6, "never comes")):
+        puzzle = figure(tab, "puzzle", f"?stiffness={k:.0f}&damping=80")
+        assert numbers(puzzle)[0] == pytest.approx(WEIGHT / k / RADIUS, rel=5e-3)
+        late = depths("penalty", dt=0.01, stiffness=k)[-200:]
+        assert f"It {told} to rest" in said(puzzle) and (np.ptp(late) < 1e-3) == (told == "comes")
 
 
-@pytest.mark.parametrize("dt, k, c", [(0.002, 1e4, 80.0), (0.0141, 1e4, 80.0), (0.01, 300.0, 0.0)])
-def test_drops_that_a_figure_looks_at_in_one_loop_have_the_bits_of_contact_py(dt, k, c):
-    shown = evaluate("parts.js", page_data([]), f"drops({dt}, {k}, {c}, 2000).join()")
-    scene = contact.build_scene("drop", damping=c)
-    run = contact.run_model("penalty", scene, dt, 2000, contact.Settings(stiffness=k))
-    assert [float(each) for each in shown.split(",")] == run.q[:, 1, 0].tolist()
+def test_drops_that_a_figure_looks_at_in_one_loop_have_the_bits_of_contact_py():
+    for dt, k, c in ((0.002, 1e4, 80.0), (0.0141, 1e4, 80.0), (0.01, 300.0, 0.0)):
+        shown = evaluate("parts.js", page_data([]), f"drops({dt}, {k}, {c}, 2000).join()")
+        scene = contact.build_scene("drop", damping=c)
+        run = contact.run_model("penalty", scene, dt, 2000, contact.Settings(stiffness=k))
+        assert [float(each) for each in shown.split(",")] == run.q[:, 1, 0].tolist()
 
 
 def test_one_long_step_has_the_eigenvalues_of_its_matrix_and_the_cliff_explodes(tab):
-    set_knobs(tab, "?dt=0.012")
     k, c, dt = 1e4, 80.0, 0.012
     step = np.array([[1 - k * dt * dt, -dt * (1 - c * dt)], [k * dt, 1 - c * dt]])
-    shown = numbers(figure(tab, "long-step"))
+    shown = numbers(figure(tab, "long-step", "?dt=0.012"))
     assert shown[1] == pytest.approx(np.abs(np.linalg.eigvals(step)).max(), rel=5e-3)
     assert shown[2] == pytest.approx(1000 * contact.critical_dt(1.0, k, c), rel=5e-3)
     assert "comes to rest" in said(figure(tab, "cliff"))
-    set_knobs(tab, "?dt=0.03")
     scene = contact.build_scene("drop")
     run = contact.run_model("penalty", scene, 0.03, 2000)
     gained = contact.contact_quality(run, scene, 0.03)["energy_excess"]
-    assert numbers(figure(tab, "cliff"))[1] == pytest.approx(gained, rel=1e-3)
+    assert numbers(figure(tab, "cliff", "?dt=0.03"))[1] == pytest.approx(gained, rel=1e-3)
     assert "explodes" in said(figure(tab, "cliff"))
 
 
 def test_sweeps_carry_what_contact_py_finds_contact_by_contact(tab):
-    set_knobs(tab, "")
-    balls = contact.make_balls(contact.build_scene("stack"))
-    for k, ball in enumerate(balls):
-        ball.y = (2 * k + 1) * RADIUS
+    heights = [RADIUS, 3 * RADIUS, 5 * RADIUS]
+    balls = contact.make_balls(contact.scene_of([0.0] * 3, heights))
     contacts = contact.detect_contacts(balls, margin=1e-9)
     contact.accelerate(balls, DT)
     contact.solve_contacts(contacts, 3)
-    box = figure(tab, "sweeps")
+    box = figure(tab, "sweeps", "")
     press(tab, handle(box, "time"), "ArrowRight", 6)
     assert numbers(box)[-3:] == pytest.approx([c.lam / (WEIGHT * DT) for c in contacts], rel=5e-3)
     press(tab, handle(box, "top"), "ArrowUp", 15)
@@ -251,8 +224,7 @@ def test_sweeps_carry_what_contact_py_finds_contact_by_contact(tab):
 
 
 def test_crowd_and_blocks_show_the_chapters_numbers(tab):
-    set_knobs(tab, "")
-    crowd, shown = facts.crowd(), numbers(figure(tab, "crowd"))
+    crowd, shown = facts.crowd(), numbers(figure(tab, "crowd", ""))
     assert shown[3:6] == pytest.approx([crowd["moreau"][k] for k in ("0", "1", "2")], abs=0.05)
     blocks = figure(tab, "blocks")
     for n, impacts in enumerate((3, 31, 314, 3141)):
@@ -264,8 +236,7 @@ def test_crowd_and_blocks_show_the_chapters_numbers(tab):
 
 
 def test_slide_leaves_at_two_thirds_and_bounces_end_when_they_should(tab):
-    set_knobs(tab, "?restitution=0.7")
-    start, left, expected = numbers(figure(tab, "slide"))[:3]
+    start, left, expected = numbers(figure(tab, "slide", "?restitution=0.7"))[:3]
     assert left == pytest.approx(expected, abs=0.11)
     release = np.arccos(2 / 3 * np.cos(np.radians(start)))
     assert expected == pytest.approx(np.degrees(release), abs=0.1)
@@ -274,26 +245,22 @@ def test_slide_leaves_at_two_thirds_and_bounces_end_when_they_should(tab):
 
 
 def test_the_sum_of_bounce_and_bias_throws_the_ball_higher_than_the_larger_of_them(tab):
-    set_knobs(tab, "?restitution=0.7")
-    bounce, bias, larger, both = numbers(figure(tab, "landing"))[2:]
+    bounce, bias, larger, both = numbers(figure(tab, "landing", "?restitution=0.7"))[2:]
     heights = [v * v / (2 * WEIGHT * RADIUS) for v in (max(bounce, bias), bounce + bias)]
     assert [larger, both] == pytest.approx(heights, rel=0.02) and both > larger + 0.1
 
 
-def at_rest(masses, **knobs):
+def at_rest(masses, dt, **knobs):
     """How deep [r] the lowest of touching balls lies in the table after two seconds of lcp."""
-    q0 = np.array([np.zeros(len(masses)), (2 * np.arange(len(masses)) + 1) * RADIUS])
-    radius, mass = np.full(len(masses), RADIUS), np.array(masses, float)
-    scene = contact.Scene("column", q0, 0 * q0, mass, radius, 0.0, 0.0)
-    dt = knobs.pop("dt")
+    heights = (2 * np.arange(len(masses)) + 1) * RADIUS
+    scene = contact.scene_of(0 * heights, heights, masses)
     run = contact.run_model("lcp", scene, dt, round(2 / dt), contact.Settings(**knobs))
     return 1 - run.q[-1, 1, 0] / RADIUS
 
 
 def test_sag_is_that_of_contact_py_and_its_law_holds_for_one_sweep(tab):
     """At one sweep within 1 %; later the law is above it. Also for substeps, and heavy on light."""
-    set_knobs(tab, "")
-    box = figure(tab, "sag")
+    box = figure(tab, "sag", "")
     deep, law = numbers(box)[-2:]
     assert deep == pytest.approx(at_rest([1] * 8, dt=DT), rel=0.02) and deep < law
     press(tab, handle(box, "parts"), "ArrowRight", 9)  # as many substeps as there are sweeps
@@ -310,46 +277,40 @@ def test_sag_is_that_of_contact_py_and_its_law_holds_for_one_sweep(tab):
 
 
 def test_gripper_trembles_as_exercise_8_has_it_holds_at_half_the_step_and_is_gone_beyond(tab):
-    set_knobs(tab, "")
     chosen = {"MODEL": "penalty", "STIFFNESS": 1e4, "DAMPING": 80.0, "SOLREF": None, "SOLIMP": None}
     seen = trials.fingers(SimpleNamespace(DT=0.004, **chosen))
     for name in ("promise", "gripper"):
-        told = numbers(figure(tab, name))
-        assert told == pytest.approx([4, 1e4, seen["deepest"], seen["trembling"]], rel=0.03)
-    box = figure(tab, "gripper")
+        box = figure(tab, name, "")
+        told = [4, 1e4, seen["deepest"], seen["trembling"]]
+        assert numbers(box) == pytest.approx(told, rel=0.03)
     width = box.locator(".drawing").bounding_box()["width"]
     drag(tab, handle(box, "choice"), (-0.25 * width, 0))  # half the step
     assert "holds still" in said(box) and numbers(box)[0] == pytest.approx(2, abs=0.3)
     drag(tab, handle(box, "choice"), (0.33 * width, 0))
     assert "fly apart" in said(box) and box.locator(".scale").count()
-    seen = trials.fingers(SimpleNamespace(DT=numbers(box)[0] / 1000, **chosen))
-    assert not seen["held"]
+    assert not trials.fingers(SimpleNamespace(DT=numbers(box)[0] / 1000, **chosen))["held"]
 
 
 def test_inequality_ends_where_a_step_of_contact_py_ends_with_and_without_looking_ahead(tab):
-    set_knobs(tab, "")
-    box = figure(tab, "inequality")
+    box = figure(tab, "inequality", "")
+    gap, moves, end = numbers(box)
+    after = {}
     for ahead in (False, True):
-        gap, moves, end = (numbers(box) + [None])[:3]
         ball = contact.Ball(0.0, (1 + gap) * RADIUS, 0.0, -4.0, 1.0, RADIUS)
         contact.lcp_step([ball], DT, 0.0, 0.2, 20, ahead=ahead)
-        after = ball.y / RADIUS - 1
-        assert gap + moves == pytest.approx(end, abs=2e-3) and end < 0
-        if ahead:
-            assert "it ends at 0 r" in said(box) and abs(after) < 1e-12
-        else:
-            assert "does not push" in said(box) and after == pytest.approx(end, abs=2e-3)
-            box.locator("button:text('Look as far')").click()
-            settle(tab)
+        after[ahead] = ball.y / RADIUS - 1
+    assert [gap + moves, end] == pytest.approx(2 * [after[False]], abs=2e-3)
+    assert "does not push" in said(box) and end < 0
+    box.locator("button:text('Look as far')").click()
+    settle(tab)
+    assert "it ends at 0 r" in said(box) and abs(after[True]) < 1e-12
 
 
 def test_bowl_ends_at_the_direct_solution_inside_the_quadrant_and_on_its_wall(tab):
-    """Inside both contacts push: the solution of a linear system. On the wall one of them does not."""
-    set_knobs(tab, "")
-    box = figure(tab, "bowl")
+    """Inside both contacts push: a linear system. On the wall the upper one does not."""
+    box = figure(tab, "bowl", "")
     inside = np.linalg.solve([[1, -1], [-1, 2]], [1, 0])
     assert numbers(box)[2:4] == pytest.approx(inside.tolist(), rel=5e-3)
-    drag(tab, handle(box, "v2"), (0, -66))  # the upper ball flies up, three g dt faster
-    assert numbers(box)[2:4] == pytest.approx([1, 0], abs=5e-3)
-    drag(tab, handle(box, "start"), (60, 40))
-    assert numbers(box)[2:4] == pytest.approx([1, 0], abs=5e-3)
+    for name, by in (("v2", (0, -66)), ("start", (60, 40))):  # the upper ball flies up
+        drag(tab, handle(box, name), by)
+        assert numbers(box)[2:4] == pytest.approx([1, 0], abs=5e-3)

@@ -138,12 +138,15 @@ def test_every_fault_of_the_chapter_is_named_with_its_line_and_repair(project):
 
 def test_markers_that_are_wrong_and_code_outside_of_regions_are_named(project):
     script = project / "contact.py"
-    edit(script, "# --- region: flight ---", "# --- region flight ---\nlost = 1")
+    edit(script, "# --- region: flight ---", "# --- region flight ---")
+    edit(script, "# --- region: setup ---", "lost = 1\n# --- region: setup ---")
     text = script.read_text("utf-8")
     line = text[: text.index("# --- region flight ---")].count("\n") + 1
     printed = run_gate(project).stdout
-    assert f"contact.py:{line}: '# --- region flight ---' outside any region" in printed
-    assert f"contact.py:{line + 1}: code outside any region: 'lost = 1'" in printed
+    wrong = "'# --- region flight ---' inside region skips, where it does not belong"
+    assert f"contact.py:{line}: {wrong}" in printed
+    line = text[: text.index("lost = 1")].count("\n") + 1
+    assert f"contact.py:{line}: code outside any region: 'lost = 1'" in printed
     assert "includes flight, and contact.py has no such region" in printed
 
 
@@ -385,8 +388,8 @@ def test_sentence_in_words_is_held_to_the_numbers(numbers):
 def test_hash_of_a_region_is_that_of_the_text_between_its_markers():
     lines = (ROOT / "contact.py").read_bytes().split(b"\n")
     first = lines.index(b"# --- region: sweep ---")
-    last = lines.index(b"# --- endregion ---", first)
-    shown = b"".join(line + b"\n" for line in lines[first + 1 : last])
+    last = lines.index(b"# --- region: lcp ---", first)
+    shown = b"".join(line + b"\n" for line in lines[first + 1 : last]).rstrip() + b"\n"
     sweep = regions.read_all()["sweep"]
     assert sweep.sha == hashlib.sha256(shown).hexdigest() and sweep.line == first + 2
     assert "solve_contacts" in sweep.defines

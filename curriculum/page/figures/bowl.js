@@ -47,8 +47,8 @@ function chartOf({ seen, contour, most, end }) {
     ].join("");
   };
   return {
-    x: axis([-0.1 * most, 1.25 * most], "table on lower ball / m g dt", ...ticks),
-    y: axis([-0.1 * most, most], "lower on upper / m g dt", ...ticks),
+    x: axis([-0.1 * most, 1.25 * most], "table’s push / m g dt", ...ticks),
+    y: axis([-0.1 * most, most], "upper push / m g dt", ...ticks),
     points: [{ model: "lcp", x: end[0], y: end[1], size: 7 }],
     under,
   };

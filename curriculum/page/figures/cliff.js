@@ -29,7 +29,7 @@ function course(view, { t, y }) {
   const far = seen.reduce((most, each) => (each > most ? each : most), TOP);
   const top = Math.min(12, Math.ceil(Math.log10(far)));
   const heights = { ...tens(-1, top), zero: true, label: "height (m)" };
-  heights.ticks = heights.ticks.filter((_, k) => (k - 1) % Math.ceil(top / 4) === 0);
+  heights.ticks = heights.ticks.filter((_, k) => (k - 1) % Math.ceil(top / 2) === 0);
   return plot([0, 0, view.width, COURSE], {
     x: axis([0, SECONDS], "time (s)", 0, 1, 2, 3, 4),
     y: far > TOP ? heights : axis([BOTTOM, TOP], "height (m)", 0, 1),

@@ -33,7 +33,7 @@ function draw(view) {
   const at = (i) => (bars - 16) / 2 + 2 * r * (i - 1);
   const up = (i) => -r - 14 - 22 * i; // the arrows stand over one another
   const row = ([title, after], k) => [
-    label(title, 0, ROWS[k] - r - 48, "start", "axis-name"),
+    label(title, 0, ROWS[k] - r - 53, "start", "axis-name"),
     ...after.map(
       (v, i) =>
         ball("lcp", at(i), ROWS[k], r, k ? "seen" : "ball plainly") +

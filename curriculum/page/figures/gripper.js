@@ -90,7 +90,7 @@ function choices(view, does) {
   const tried = own.tries.map(({ dt, k, does }) =>
     edge[does] ? circle(sx(dt), sy(k), 6, `${edge[does]} m-penalty`)
       : label("×", sx(dt), sy(k) + 6, "middle"));
-  const beyond = label("a finger’s critical step", sx(limits[limit]) + 8, sy(ks[limit]));
+  const beyond = label("critical step", sx(limits[limit]) + 8, sy(ks[limit]));
   const put = (dt, k) => {
     const [step, spring] = [within(DT[0], dt, DT[1]), within(K[0], k, K[1])];
     Object.assign(own, { dt: +step.toPrecision(2), k: +spring.toPrecision(2), time: null });

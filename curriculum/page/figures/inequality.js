@@ -1,10 +1,10 @@
 /* One inequality: at the end of a step the gap, gap + dt v_n, must not be negative. What lcp asks
  * for in its place is a choice: how much of an overlap to open, and how far ahead to look. */
-import { arrow, axis, ball, circle, el, label, line, number, table, within } from "../draw.js";
+import { arrow, axis, ball, circle, el, label, line, number, table } from "../draw.js";
 import { GRAVITY, runModel } from "../engine.js";
 import { beside, grip, kept, knobs, R, scene } from "../parts.js";
 
-const [DOWN, UP] = [-5, 2]; // m/s; gaps go as far as a ball flies in a step, so fast
+const [DOWN, UP] = [-5, 2]; // m/s; a gap is counted in what 1 m/s closes in a step
 const [PX, GROUND] = [26, 92]; // px: what 1 m/s does in a step, the table
 
 // One step of lcp from a gap [r] with a speed [m/s]: gap and speed at its end.
@@ -40,7 +40,7 @@ function draw(view) {
   const { own } = view;
   const told = { ...knobs(view), ahead: own.ahead };
   const unit = told.dt / R; // r that 1 m/s does in a step
-  const gap = within(-UP * unit, own.gap, -DOWN * unit);
+  const gap = own.gap * unit;
   const free = own.v + told.dt * GRAVITY; // m/s, once gravity has acted
   const end = stepped(gap, own.v, told);
   const moves = unit * free; // r
@@ -69,16 +69,15 @@ function draw(view) {
   const text = `gap ${number(gap, 2)} r + dt v_n ${number(moves, 2)} r = ${number(sum, 2)} r`;
   const pushed = end.v > free + 1e-9;
   const does = pushed ? `lcp pushes, and it ends at ${number(end.gap, 2)} r` : "lcp does not push";
-  const lift = { r, low: -UP * unit, high: -DOWN * unit, step: 0.1 * unit };
+  const lift = { r, low: -UP, high: -DOWN, step: 0.1, by: (dx, dy) => -dy / PX };
   const fly = { low: DOWN, high: UP, step: 0.1, at: (toX, to) => (y - to) / PX };
   const speed = `${number(own.v, 2)} m/s`;
   const [tall, fast] = ["the ball: its gap", "its speed"];
-  const by = (dx, dy) => (-dy / PX) * unit;
   return {
     svg,
     words: `${text}${sum < 0 ? ", inside" : ""}; ${does}.`,
     handles: [
-      grip(view, "gap", x, y - r, tall, `${number(gap, 2)} r`, { ...lift, by }),
+      grip(view, "gap", x, y - r, tall, `${number(gap, 2)} r`, lift),
       grip(view, "v", x + r + 14, tip, fast, speed, fly),
     ],
     lit: pushed ? [["lcp-target", "bias = "]] : [],
@@ -92,7 +91,7 @@ export const figure = {
     "which speeds lcp asks for in place of that, from how far away, and where the step ends.",
   height: 350,
   knobs: ["baumgarte"],
-  start: () => ({ gap: 0.06, v: -4, ahead: false }),
+  start: () => ({ gap: 3, v: -4, ahead: false }),
   buttons: [
     [
       ({ own }) => (own.ahead ? "Look one millimetre ahead" : "Look as far as a step goes"),

@@ -4,7 +4,7 @@ import { arrow, axis, ball, label, number, steps, table, within } from "../draw.
 import { runModel } from "../engine.js";
 import { ARRIVES, beside, grip, kept, knobs, R, scene } from "../parts.js";
 
-const [FALL, GROUND, PX] = [70, 96, 44]; // px: the fall of one step, the table, a radius
+const [FALL, GROUND] = [70, 96]; // px: the fall of one step, the table
 const [ARROW, SHORT, LONG] = [22, 0.3, 0.9]; // px for 1 m/s; s, of a hop and of a bounce
 
 // A flight that begins at a gap [r] with a speed: times and gaps [r].
@@ -34,19 +34,19 @@ function draw(view) {
   };
   if (e > 0) chart.lines.push({ model: "lcp", ...sum, kind: "thin dotted" });
   const floor = view.height - GROUND;
-  const px = FALL / fall; // for 1 r
+  const [px, r] = [FALL / fall, Math.min(44, 0.08 * view.width)]; // of a gap of 1 r, of a radius
   const picture = (left) => {
     const x = left / 2;
-    const lowest = (gap, kind) => ball("lcp", x, floor - gap * px - PX, PX, kind);
+    const lowest = (gap, kind) => ball("lcp", x, floor - gap * px - r, r, kind);
     const wish = (name, v, at) => {
       const kind = v < Math.max(bounce, bias) ? "push m-lcp weaker" : "push m-lcp";
       const drawn = arrow(kind, at, floor, 0, -Math.min(floor - 24, ARROW * v));
       return v > 0 ? drawn + label(name, at, floor + 18, "middle") : "";
     };
-    const aside = Math.min(PX + 22, x - 24);
+    const aside = Math.min(r + 22, x - 24);
     return [
       table(0, floor, left, GROUND),
-      label(`gaps × ${number(px / PX, 2)}`, 4, 14, "start", "tick"),
+      label(`gaps × ${number(px / r, 2)}`, 4, 14, "start", "tick"),
       lowest(before, "ghost"),
       lowest(-depth, "ball"),
       wish("bounce", bounce, x - aside),
@@ -55,12 +55,12 @@ function draw(view) {
   };
   const { svg, middle } = beside(view, chart, picture);
   const text = `${number(100 * view.own.share, 2)} % of a step after a look`;
-  const at = (x, y) => 1 - (y + PX - floor) / FALL;
-  const range = { r: PX, low: 0, high: 0.99, step: 0.05, at };
-  const place = [middle, floor + depth * px - PX, "the ball: how deep it is found", text];
+  const at = (x, y) => 1 - (y + r - floor) / FALL;
+  const range = { r, low: 0, high: 0.99, step: 0.05, at };
+  const place = [middle, floor + depth * px - r, "the ball: how deep it is found", text];
   const hops = `hops ${number(high(larger), 2)} r high`;
-  const [r, more] = [number(high(larger), 3), number(high(sum), 3)];
-  const both = `the larger lifts it ${r} r, their sum (dotted) ${more} r`;
+  const [one, more] = [number(high(larger), 3), number(high(sum), 3)];
+  const both = `the larger lifts it ${one} r, their sum (dotted) ${more} r`;
   const bounces = `bounce ${number(bounce)} m/s, bias ${number(bias)} m/s; ${both}`;
   const found = `It lands ${text} and is found ${number(depth, 2)} r deep`;
   return {

@@ -37,6 +37,12 @@ const waysOf = (told) =>
     .filter((parts) => told.iters % parts === 0)
     .map((parts) => ({ ...told, parts, dt: told.dt / parts, iters: told.iters / parts }));
 
+// Which of them has about so many substeps.
+function nearest(ways, wanted) {
+  const off = ways.map(({ parts }) => Math.abs(Math.log(parts / wanted)));
+  return off.indexOf(Math.min(...off));
+}
+
 // A contact through a lens: a ball in what is below it, both in px, and the law as a bracket.
 function lens(id, x, y, deep, law) {
   const [near, far] = [x + LENS + 3, x + LENS + 9];
@@ -65,7 +71,7 @@ function column(left, height, masses, depths, law) {
     return [
       ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
       lens(`sag-${i}`, at, y + r, size * depths[i], size * law[i]),
-      label(told, at + LENS + 16, y + r + 5, "start", "tick strong"),
+      label(told, at + LENS + 16, y + r + (i ? 5 : -4), "start", "tick strong"),
     ].join("");
   });
   const enlarged = label(`× ${number(size / r, 2)}`, left - 4, 14, "end", "tick");
@@ -93,8 +99,7 @@ function draw(view) {
   const { own } = view;
   const masses = own.masses.slice(0, own.count);
   const ways = waysOf(knobs(view));
-  const off = ways.map(({ parts }) => Math.abs(Math.log(parts / own.parts)));
-  const now = off.indexOf(Math.min(...off)); // the nearest to what is wished for
+  const now = nearest(ways, own.parts);
   const all = ways.map((way) => ({ ...sags(masses, way), law: lawOf(masses, way) }));
   const { depths, rests, law } = all[now];
   let made;
@@ -112,14 +117,14 @@ function draw(view) {
   const spent = `${plural(parts, "substep")} of ${plural(iters, "sweep")}`;
   const lawful = number(law[0], 2);
   const way = { low: 1, high: ways[0].iters, at: sx.back, get: () => parts };
-  const next = (by) => (own.parts = ways[Math.min(ways.length - 1, Math.max(0, now + by))].parts);
+  const next = (by) => (own.parts = ways[nearest(ways, own.parts) + by]?.parts ?? own.parts);
   const told = `K = ${iters}, β = ${baumgarte}, dt = ${number(1000 * dt)} ms`;
   const deep = `${number(depths[0], 2)} r deep${rests ? "" : ", and still moves"}`;
   const knob = grip(view, "parts", sx(parts), sy(Math.max(0, depths[0])), "substeps", spent, way);
   return {
     svg,
     words: `${told}: the lowest of ${own.count} balls is ${deep}; the law says ${lawful} r.`,
-    handles: [...made.places.map(hold), { ...knob, nudge: (dx, dy) => next(dx - dy) }],
+    handles: [...made.places.map(hold), { ...knob, nudge: (dx, dy) => next(Math.sign(dx - dy)) }],
   };
 }
 
