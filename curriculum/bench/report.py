@@ -11,7 +11,6 @@ from contact import MODELS
 from contact import shown as number
 from curriculum.bench import accuracy, piles, problems, skips, solvers
 from curriculum.bench.accuracy import BUDGET, LABELS, WORK
-from curriculum.files import write_whole
 from curriculum.measured import results
 from curriculum.measured.results import table
 from curriculum.run import plotting
@@ -524,6 +523,6 @@ def solvers_figure(section):
 
 def write(folder, sections):
     """README.md and the figures into the results folder. Raises ImportError without matplotlib."""
-    write_whole(folder / "README.md", page(sections))
+    results.write_page(folder, "README.md", page(sections))
     for name, text in figures(sections).items():
-        write_whole(folder / name, text)
+        results.write_page(folder, name, text)
