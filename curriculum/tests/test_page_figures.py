@@ -118,14 +118,14 @@ def test_every_figure_is_told_in_words_and_has_a_caption_of_one_sentence(tab):
         assert re.fullmatch(r"[^.]+\.", re.sub(r"\d\.\d", "", caption)), caption
 
 
-def test_a_quantity_dragged_in_one_figure_is_the_same_in_all(tab):
+def test_a_quantity_dragged_in_one_figure_is_the_same_in_all_of_its_section(tab):
     drag(tab, handle(figure(tab, "sponge", ""), "stiffness"), (60, 0))
     shown = handle(figure(tab, "sponge"), "stiffness").get_attribute("aria-valuenow")
     assert float(shown) < 5000
     for name in ("corner-penalty", "stack", "cliff"):
         knob = figure(tab, name).locator('[data-knob="stiffness"] input[type="text"]')
         assert knob.input_value() == shown
-    assert f"stiffness={shown}" in tab.url
+    assert tab.url.endswith(f"?stiffness={shown}#all")
 
 
 def depths(model, dt=DT, **knobs):
@@ -282,7 +282,7 @@ def test_gripper_trembles_as_exercise_8_has_it_holds_at_half_the_step_and_is_gon
     for name in ("promise", "gripper"):
         box = figure(tab, name, "")
         told = [4, 1e4, seen["deepest"], seen["trembling"]]
-        assert numbers(box) == pytest.approx(told, rel=0.03)
+        assert numbers(box)[: len(told)] == pytest.approx(told, rel=0.03)
     width = box.locator(".drawing").bounding_box()["width"]
     drag(tab, handle(box, "choice"), (-0.25 * width, 0))  # half the step
     assert "holds still" in said(box) and numbers(box)[0] == pytest.approx(2, abs=0.3)
