@@ -61,7 +61,7 @@ def visiting(
         context.add_init_script(once)
     page = context.new_page()
     page.set_default_timeout(20_000)
-    trouble, own = [], ("data:", "blob:", url)
+    trouble, own = [], ("data:", "blob:", re.split("[?#]", url)[0])
 
     def listen(message):
         if message.type in ("error", "warning"):
