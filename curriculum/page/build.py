@@ -106,7 +106,9 @@ class Filler:
         if kind == "show":
             self.marks += 1
             shown = value.replace("&", "&amp;")
-            return Markup(f'<i class="show" id="{self.place}.{self.marks}" data-show="{shown}"></i>')
+            return Markup(
+                f'<i class="show" id="{self.place}.{self.marks}" data-show="{shown}"></i>'
+            )
         if kind == "include":
             return self.panel(value)
         return self.slot(*value.partition(":")[::2]) if kind == "slot" else Markup(value)

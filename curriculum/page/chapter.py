@@ -238,7 +238,9 @@ def assemble(parts, fill, macros, bets):
         met = [] if kind == "heading" and value[1] == END else met
         said = words(" ".join(inner))
         veils = [name for name in met if said and (name == last or TELLS[name].search(said))]
-        head, inner = (f'<div class="part {column}">{each}</div>' for each in (head, "\n".join(inner)))
+        head, inner = (
+            f'<div class="part {column}">{each}</div>' for each in (head, "\n".join(inner))
+        )
         if kind == "slot" or value[0] <= 2:  # exercises, and what begins a part, are always seen
             found.append((head, "", ()))
             head = ""

@@ -13,9 +13,11 @@ import { asked, Section } from "./store.js";
  * of what the text shows (`none`: the live figure steps back). */
 function findPassages() {
   const found = [];
+  let last = ""; // a section beside which the live figure stands goes on with what it showed
   for (const node of document.querySelectorAll("article :is(h2, h3)[id]:not(.exercise *), .show")) {
     const query = node.dataset.show || "none";
-    found.push({ node, section: new Section(node.id, asked(query)), look: /^none/.test(query) ? "" : query });
+    if (node.dataset.show || !node.closest(".beside")) last = /^none/.test(query) ? "" : query;
+    found.push({ node, section: new Section(node.id, asked(query)), look: last });
   }
   return found;
 }

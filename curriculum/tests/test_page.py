@@ -14,7 +14,7 @@ from curriculum.page.build import build, page_data
 from curriculum.page.bundle import bundle
 from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
-from curriculum.tests.page_browser import firefox, running, visiting
+from curriculum.tests.page_browser import HANDLES, HITS, MIDDLE, WORDS, firefox, running, visiting
 
 BETS = {  # their files, and a number of each that tells its answer, as the page writes it
     "ex1": ("ex1_predict_contact", "penalty_deepest", ".3f"),
@@ -296,11 +296,9 @@ def test_the_live_figure_shows_the_gaps_of_contact_py(visit):
 def test_an_explosion_is_drawn_with_a_scale_of_heights(visit):
     with visit("?dt=0.04#in-a-hurry.2") as page:
         page.wait_for_selector("#fig-lanes .line.m-penalty")
-        page.locator("#fig-lanes .handle[data-handle=time]").focus()
-        page.keyboard.press("End")
-        for _ in range(12):
-            page.keyboard.press("Shift+ArrowRight")
-        page.wait_for_selector("#fig-lanes text:text-matches('^[\\d,.]+ m$')", state="attached")
+        page.wait_for_function(
+            "[...document.querySelectorAll('#fig-lanes text')].some((n) => / m$/.test(n.textContent))"
+        )
         assert page.locator("#fig-lanes circle.ball").count() == 2  # none is lost
 
 
@@ -328,7 +326,7 @@ def test_no_answer_of_a_bet_is_seen_before_one_click_and_then_it_stays_open(visi
     with visit(shown=False) as page:
         for name in BETS:
             assert answers(name) not in page.locator("article").inner_text(), name
-            after = page.locator(f"#{name} + .veiled")  # what follows the bet
+            after = page.locator(f".part:has(> #{name}) + .veiled")  # what follows the bet
             assert after.locator(".veil-bar").first.is_visible()
             assert not after.locator(".answer").first.is_visible()
         page.locator("#fig-two button").click()
@@ -377,6 +375,66 @@ def test_the_blank_names_a_slip_and_takes_the_right_lines(visit):
 
 
 # ---- grabbing, keyboard, screens
+
+
+WIDTHS = (1280, 1024, 390)
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_at_the_middle_of_every_button_knob_handle_and_ball_is_that_thing(visit, width):
+    with visit(width=width, height=800) as page:
+        assert page.evaluate(HITS) == []
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_so_it_is_in_firefox(gecko, url, width):
+    gecko.visit(url, width=width)
+    assert gecko.evaluate(HITS) == []
+
+
+def test_whatever_a_mouse_presses_and_moves_changes_the_words_of_its_figure(visit):
+    with visit() as page:
+        for name, handle in page.evaluate(HANDLES):
+            (x, y), before = page.evaluate(MIDDLE, [name, handle]), page.evaluate(WORDS, name)
+            page.mouse.move(x, y)
+            page.mouse.down()
+            told = {before}
+            for dx, dy in ((24, -24), (-30, 30)):  # one of them, where it stands at an end
+                page.mouse.move(x + dx, y + dy, steps=2)
+                told.add(page.evaluate(WORDS, name))
+            page.mouse.up()
+            assert len(told) > 1, (name, handle, before)
+
+
+def test_so_it_is_with_a_mouse_in_firefox(gecko, url):
+    gecko.visit(url)
+    first = dict(reversed(gecko.evaluate(HANDLES)))  # one of each figure
+    for name, handle in first.items():
+        x, y = gecko.evaluate(f"{MIDDLE}({json.dumps([name, handle])})")
+        before = gecko.evaluate(f"{WORDS}({json.dumps(name)})")
+        gecko.pointer((x, y), (x - 12, y + 12), (x + 24, y - 24))
+        if gecko.evaluate(f"{WORDS}({json.dumps(name)})") == before:
+            gecko.pointer((x, y), (x - 30, y + 30))
+        assert gecko.evaluate(f"{WORDS}({json.dumps(name)})") != before, (name, handle)
+
+
+def test_so_it_is_with_a_finger(visit):
+    with visit(width=390, height=800, has_touch=True, is_mobile=True) as page:
+        touch = page.context.new_cdp_session(page)
+        for name, handle in dict(reversed(page.evaluate(HANDLES))).items():
+            (x, y), before = page.evaluate(MIDDLE, [name, handle]), page.evaluate(WORDS, name)
+            told = {before}
+            for kind, by in (
+                ("Start", 0),
+                ("Move", -12),
+                ("Move", 24),
+                ("Move", -30),
+                ("End", None),
+            ):
+                at = [] if by is None else [{"x": x + by, "y": y - by}]
+                touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": at})
+                told.add(page.evaluate(WORDS, name))
+            assert len(told) > 1, (name, handle, before)
 
 
 HEIGHT = "Number(document.querySelector('#fig-grab .handle').getAttribute('aria-valuenow'))"
@@ -501,6 +559,7 @@ def test_firefox_runs_the_page_without_complaint_and_its_ball_falls(gecko, url):
     gecko.visit(url)
     ready = "document.documentElement.dataset.ready"
     assert gecko.evaluate(ready) == "yes"
+    gecko.evaluate(f"{MIDDLE}(['fig-grab', 'ball'])")
     gecko.evaluate("document.querySelector('#fig-grab .handle').focus()")
     gecko.press("\ue013", "\ue007")  # arrow up, Enter
     words = "document.querySelector('#fig-grab .words').textContent"
