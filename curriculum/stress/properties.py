@@ -5,6 +5,10 @@ Bounds are U times the number of operations times the size of what is added; whe
 derived so, it says so. Those of exact are its promises, and it is judged where it gives any.
 """
 
+import importlib.util
+import itertools
+import math
+
 import numpy as np
 
 import contact
@@ -19,27 +23,66 @@ MOST = 2**17  # sweeps, by which it must have ended
 PROMISE = 1e-12  # of exact: of a radius, and of the energy at the start
 NEAR = 1e-9  # share of the sizes that a flight or an impact in closed form may be off
 STEEP = 0.05  # least share of the speed that goes into an impact which is judged: others graze
+SETTLED, SWEEPS = 2.0**-42, 10_000  # soft: what its last sweep may still change; sweeps at most
+TINY = 1e-6  # s: forces are read from what they do in so short a time
+LOOSE = 1e-6  # of the speeds, and a hundred times that of g: where an impulse or force is read so
+AHEAD = {"ahead": True, "baumgarte": 1.0, "restitution": 0.0, "warm": 0.0}
+PUBLISHED = AHEAD | {"ahead": False, "baumgarte": 0.2}
+DEPTHS = "lcp: deepest overlap of balls that start apart"
 UNFINISHED = "lcp: unfinished sweeps add energy, without any push of Baumgarte's"
+
+
+def beside_one_that_overflows(trial):
+    """The changes that add a ball which overflows at once, and is NaN from then on."""
+    odd = {"x": 3.0, "y": -1e307, "vx": 0.0, "vy": 0.0, "mass": 1.0, "radius": 0.1}
+    return {name: [*trial.spec[name], value] for name, value in odd.items()}
 
 
 @stated
 def finite_or_said_to_have_exploded(trial):
     """Every number of a run is finite, or contact_quality says that it blew up, and when."""
-    for model in STEPPED:
-        run = trial.run(model)
-        quality = contact.contact_quality(run, trial.scene, trial.dt)
+    odd = [beside_one_that_overflows(trial)] if len(trial.mass) <= 2 else []
+    for model, more in itertools.product(STEPPED, ({}, *odd)):
+        run = trial.run(model, **more)
+        scene = scenes.to_scene(trial.spec | more)
+        quality = contact.contact_quality(run, scene, trial.dt)
         finite = np.isfinite(run.q).all() and np.isfinite(run.v).all()
         told = quality["blew_up"] and quality["blew_up_step"] is not None
         yield f"{model} is not finite, and that is not said", not (finite or told), 0.0
+    if trial.exact:
+        yield "exact is not finite", trial.exact.astray, 0.0
+
+
+def three_ways(trial, **changes):
+    """The claims that plain steps, skips and the compiled twin give the same bits."""
+    for model, more in (*((each, {}) for each in STEPPED), ("lcp", AHEAD)):
+        ways = (trial.run(model, way, **changes | more) for way in ("plain", "skips", "twin"))
+        plain, *others = ways
+        for way, other in zip(("skips", "twin"), others):
+            yield f"{model}{' ahead' * bool(more)}, {way}", *unlike(plain, other)
 
 
 @stated
 def a_skip_changes_no_bit(trial):
     """The compiled twin and the skips of contact.py give the bits of its plain steps."""
-    for model in STEPPED:
-        plain, *others = (trial.run(model, way, steps=8) for way in ("plain", "skips", "twin"))
-        for way, other in zip(("skips", "twin"), others):
-            yield f"{model}, first steps, {way}", *unlike(plain, other)
+    yield from three_ways(trial, steps=8)
+
+
+@stated
+def a_skip_survives_what_is_no_number(trial):
+    """So they do beside a ball that overflows at once, and is NaN from then on."""
+    if len(trial.mass) <= 2:
+        yield from three_ways(trial, **beside_one_that_overflows(trial))
+
+
+@stated
+def two_that_come_from_afar_meet_in_the_twin(trial):
+    """So they do where two balls that are not neighbours at the start fly into each other."""
+    if len(trial.mass) <= 2:
+        r, dt, steps = 0.1, trial.dt, trial.spec["steps"]
+        half, speed = r + r * steps / 80, r / 40 / dt
+        pair = {"x": [-half, half], "y": [50.0, 50.0], "vx": [speed, -speed], "vy": [0.0, 0.0]}
+        yield from three_ways(trial, **pair, mass=[1.0, 1.0], radius=[r, r], steps=90)
 
 
 @stated
@@ -83,6 +126,29 @@ def a_far_ball_changes_nothing(trial):
 
 
 @stated
+def renumbering_the_balls_renumbers_the_run(trial):
+    """Balls in the opposite order do the same in a step of penalty, soft and exact.
+
+    The sweeps of lcp have an order, which is part of its answer. Bounds: those of the pushes; for
+    exact 1e-9 of the speeds, not derived.
+    """
+    turned = {name: trial.spec[name][::-1] for name in scenes.BODY}
+    penalty, soft = trial.motions["penalty"], trial.motions["soft"]
+    bounds = {"penalty": spring_force(trial, penalty)[1], "soft": soft_force(trial, soft)[1]}
+    for model, left in bounds.items():
+        motion = trial.motions[model]
+        if motion.listed[:1].any() and not motion.unsettled:
+            other = trial.run(model, **turned, steps=1)
+            off = np.abs(other.v[1][:, ::-1] - motion.v[1])
+            yield f"{model}, v [m/s]", off, 2.0 * left[0] * inverse(motion.mass)
+    if trial.exact and struck(trial.exact)[:1].any():
+        scene = scenes.to_scene(trial.spec | turned)
+        other = contact.run_model("exact", scene, trial.dt, 1)
+        off = np.abs(other.v[1][:, ::-1] - trial.exact.v[1])
+        yield "exact, v [m/s]", off, NEAR * trial.exact.top[0]
+
+
+@stated
 def momentum_along_x_is_kept(trial):
     """The floor pushes up only, so sum m v_x stays where nothing is fixed. Bound: 8 U a push.
 
@@ -90,7 +156,7 @@ def momentum_along_x_is_kept(trial):
     """
     if trial.fixed.any() or len(trial.mass) == 1:
         return
-    sweeps = {"penalty": 1, "lcp": trial.spec["iters"], "soft": contact.MOST_SWEEPS}
+    sweeps = {"penalty": 1, "lcp": trial.spec["iters"], "soft": SWEEPS}
     for model, motion in trial.motions.items():
         pairs = motion.listed[:, len(trial.mass) :].sum(1)
         off = np.abs((motion.mass * np.diff(motion.v[:, 0], axis=0)).sum(1))
@@ -115,12 +181,18 @@ def springs_push_as_hooke_and_the_damper_say(trial):
 
     Bound: 8 U of the lengths that make a depth, of the speeds that make a v_n, and of the sums.
     """
-    k, c, motion = trial.spec["stiffness"], trial.spec["damping"], trial.motions["penalty"]
-    force = np.where(motion.listed, np.maximum(0.0, k * motion.depth - c * motion.before), 0.0)
+    motion = trial.motions["penalty"]
+    force, allowed = spring_force(trial, motion)
     off = np.abs(motion.push - motion.total(motion.dt * force))
-    size = motion.listed * motion.dt * (k * motion.lengths + c * motion.speeds + 2 * force)
-    allowed = 8 * U * (motion.on_balls(size) + (motion.count + 2) * motion.size)
     yield "impulse [N s]", off, allowed, motion.pushed
+
+
+def spring_force(trial, motion):
+    """The force of every contact (S, C) [N]; what rounding leaves in momenta (S, 2, N) [kg m/s]."""
+    k, c = trial.spec["stiffness"], trial.spec["damping"]
+    force = np.where(motion.listed, np.maximum(0.0, k * motion.depth - c * motion.before), 0.0)
+    size = motion.listed * motion.dt * (k * motion.lengths + c * motion.speeds + 2 * force)
+    return force, 8 * U * (motion.on_balls(size) + (motion.count + 2) * motion.size)
 
 
 @stated
@@ -287,10 +359,8 @@ def soft_pushes_as_mujoco_says(trial):
     motion = trial.motions["soft"]
     if not motion.listed.any():
         return
-    target, R = soft_law(motion, trial.spec["restitution"], trial.spec["solref"])
-    lam = np.where(motion.listed, np.maximum(0.0, (target - motion.after) / R), 0.0)
+    lam, allowed = soft_force(trial, motion)
     off = np.abs(motion.push - motion.total(lam)) * (motion.mass > 0.0)
-    allowed = soft_bound(motion, target, R)
     if motion.unsettled:
         trial.note("soft: steps whose sweeps did not settle", steps=motion.unsettled)
         beyond = (~(off <= allowed)).any((1, 2)).sum()
@@ -299,12 +369,16 @@ def soft_pushes_as_mujoco_says(trial):
         yield "impulse [N s]", off, allowed, motion.pushed
 
 
-def soft_bound(motion, target, R):
-    """What settled sweeps and rounding may leave in the momenta (S, 2, N) [kg m/s]."""
+def soft_force(trial, motion):
+    """The impulse of every contact (S, C) [N s], and what settled sweeps and rounding may leave in
+    the momenta (S, 2, N) [kg m/s].
+    """
+    target, R = soft_law(motion, trial.spec["restitution"], trial.spec["solref"])
+    lam = np.where(motion.listed, np.maximum(0.0, (target - motion.after) / R), 0.0)
     size = np.where(motion.listed, np.abs(target) + motion.speeds, 0.0).max(1, keepdims=True)
-    left = (contact.LAST_BITS + 16 * U) * (motion.listed.sum(1, keepdims=True) + 1) * size
+    left = (SETTLED + 16 * U) * (motion.listed.sum(1, keepdims=True) + 1) * size
     own = motion.on_balls(np.where(motion.listed, left / R, 0.0))
-    return own + 8 * U * (motion.count * contact.MOST_SWEEPS + 4) * motion.size
+    return lam, own + 8 * U * (motion.count * SWEEPS + 4) * motion.size
 
 
 @stated
@@ -324,6 +398,66 @@ def an_impact_alone_returns_e_of_the_speed(trial):
         if e > 0.0 and (model == "lcp" or solref is None):
             size = motion.speeds + motion.dt * G
             yield f"{model}, v_n [m/s]", np.abs(motion.after - back), share * size, fair
+
+
+@stated
+def looking_ahead_adds_no_energy_where_balls_start_apart(trial):
+    """lcp ahead, gain 1, e = 0: balls that start apart never have more energy than at the start."""
+    if contact.smallest_gap(trial.scene.q0[None], trial.scene.radius)[0] < 0.0:
+        return
+    ahead, today = (trial.run("lcp", **knobs, steps=300) for knobs in (AHEAD, PUBLISHED))
+    total = contact.energy(ahead.q, ahead.v, trial.scene.mass)
+    size = np.maximum(total[0], (trial.mass * G * trial.scene.radius).sum())
+    yield "gained since the start [J]", np.maximum(total - total[0], 0.0), NOTABLE * size
+    gaps = (contact.smallest_gap(run.q, trial.scene.radius).min() for run in (ahead, today))
+    trial.note(DEPTHS, **{name: max(0.0, -gap) for name, gap in zip(("ahead", "today"), gaps)})
+
+
+@stated
+def exact_pushes_and_never_pulls(trial):
+    """exact, where balls start in touch: the impulses are those of another solver, and the forces
+    after them are >= 0, close no gap, and are 0 where one opens. Bound: 1e-6 of the speeds, 1e-4 of
+    the accelerations, chosen.
+    """
+    motion = trial.exact
+    on = motion and (np.abs(motion.depth[0]) < 1e-13) & (motion.inv_mass > 0.0)
+    if not motion or not on.any() or not importlib.util.find_spec("scipy"):
+        return
+    run, n = contact.run_model("exact", trial.scene, TINY, 3), directions(motion, 0, on)
+    v, a = (2 * run.v[1] - run.v[2]).ravel(), (run.v[2] - run.v[1]).ravel() / TINY  # after all
+    if np.abs(np.diff(run.v[1:], 2, axis=0)).max() > 1e-9:
+        return  # another impact follows at once
+    loose = LOOSE * (motion.top.max() + math.sqrt(G * motion.reach[on].max())) + 5 * G * TINY
+    bounced = bounces(trial.scene.v0.ravel(), n, motion.mass, trial.spec["restitution"])
+    yield "velocity after the impacts [m/s]", np.abs(v - bounced), loose
+    across = np.array((-motion.normal[0, 1], motion.normal[0, 0]))
+    turn = (run.v[1] @ motion.sides.T * across).sum(0) ** 2 / motion.reach
+    turn[: len(motion.mass)] = 0.0  # the floor's normal stays
+    opens, rests = (n.T @ a + turn[on]), np.abs(n.T @ v) < loose
+    loose = 100 * LOOSE * (G + turn[on].max())
+    yield "a gap at rest closes [m/s^2]", np.maximum(-opens, 0.0), loose, rests
+    force = motion.mass * (a.reshape(2, -1) + np.outer((0.0, G), ~trial.fixed))
+    weight = np.tile(np.sqrt(inverse(motion.mass)), 2)
+    left = solved(n[:, rests & (opens <= loose)] * weight[:, None], force.ravel() * weight)[1]
+    yield "forces that are no pushes", left, loose * math.sqrt(motion.mass.sum())
+
+
+def bounces(v, n, mass, e):
+    """The velocities (2 N,) after the impacts of one moment, each round of them an LCP, by least
+    squares: lam >= 0 has the least |A lam + (1 + e) M^(1/2) v| with A = M^(-1/2) n.
+    """
+    weight, root = (np.tile(np.sqrt(each), 2) for each in (inverse(mass), mass))
+    A = n * weight[:, None]
+    while (n.T @ v < -1e-12).any():
+        v = v + weight * (A @ solved(A, -(1 + e) * root * v)[0])
+    return v
+
+
+def solved(n, total):
+    """lam >= 0 (K,) that brings n lam next to total, and how far it stays off; nnls needs a K."""
+    from scipy.optimize import nnls  # slow, so only where it is needed
+
+    return nnls(n, total) if n.shape[1] else (np.zeros(0), np.linalg.norm(total))
 
 
 @stated

@@ -32,6 +32,8 @@ HEAD = """# Stress: what must hold on any scene, and where each model breaks
 A judgement is one property on one scene, row of a map, command line or match, counted only where \
 it could have failed: without a contact nothing is said of contacts. What was done is read from \
 the states before and after each step, and held against the chapter's formulas."""
+DEPTHS = """Where balls start apart ({scenes:,} scenes), the median of lcp's deepest overlap is \
+{today:.3g} m, and {ahead:.3g} m looking ahead with the gain 1."""
 UNFINISHED = """Unfinished sweeps took {above_start:,} scenes above their start's energy, at worst \
 {place}, from {start:.4g} J to {most:.4g} J; {sweeps_most:,.0f} sweeps a step ended every rise."""
 
@@ -41,6 +43,10 @@ def write(found, origins, folder):
     sections = {name: jobs.added_up(each) for name, each in found.items()}
     unfinished = jobs.unfinished(sections["scenes"])
     sections["scenes"] |= {"scenes": len(found["scenes"]), "unfinished": unfinished}
+    sections["scenes"] |= {
+        "ran": jobs.ran(sections["scenes"]),
+        "depths": jobs.depths(sections["scenes"]),
+    }
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     error = max(abs(row["measured"] / row["theory"] - 1) for row in rows)
     sections["maps"] |= {"penalty": rows, "boundary_worst_error": error}
@@ -63,9 +69,10 @@ def summary(sections):
     total = sum(section["judgements"] for section in sections.values())
     wrong = sum(len(section["violations"]) for section in sections.values())
     scenes, error = sections["scenes"]["scenes"], sections["maps"]["boundary_worst_error"]
+    ran = ", ".join(f"{model} in {n:,}" for model, n in sections["scenes"]["ran"].items())
     return (
-        f"On {scenes:,} random scenes for each of the four models, over the maps and at the ends "
-        f"of every flag, {total:,} judgements found {wrong or 'no'} violation{'s' * (wrong > 1)}; "
+        f"On {scenes:,} random scenes ({ran}), over the maps and at the ends of every flag, "
+        f"{total:,} judgements found {wrong or 'no'} violation{'s' * (wrong > 1)}; "
         f"the critical step of `penalty` is measured within {error:.2%} of theory."
     )
 
@@ -82,6 +89,7 @@ def page(sections):
     parts, unfinished = [HEAD.format(summary(sections))], sections["scenes"]["unfinished"]
     if unfinished["rises"]:
         parts.append(UNFINISHED.format(**unfinished, **unfinished["worst"]))
+    parts.append(DEPTHS.format(**sections["scenes"]["depths"]))
     for name, section in sections.items():
         head = ["property", "judged", "comparisons", "off, as a share of the bound"]
         parts += [f"## {TITLES[name]}", results.table(head, rows_of(section["properties"]))]

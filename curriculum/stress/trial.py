@@ -48,6 +48,11 @@ class Trial:
             self.made[key] = take(*given, contact.Settings(**knobs))
         return self.made[key]
 
+    def ran(self):
+        """The models whose run could be judged."""
+        runs = self.motions | {"exact": self.exact}
+        return [model for model, motion in runs.items() if motion and len(motion.push)]
+
     @cached_property
     def motions(self):
         """{model: Motion} of the stepped models."""
@@ -104,7 +109,7 @@ class Motion:
         near = (np.abs(np.concatenate((run.q, run.v), axis=1)) < ASTRAY).all((1, 2))
         states = max(1, int(np.append(near, False).argmin()))  # those before it goes astray
         self.dt, self.mass, self.unsettled = trial.dt, trial.mass, run.unsettled
-        self.q, self.v = run.q[:states], run.v[:states]
+        self.q, self.v, self.astray = run.q[:states], run.v[:states], states < len(run.q)
         self.a, self.b = np.triu_indices(len(trial.mass), 1)
         eye = np.eye(len(trial.mass))
         self.sides = np.concatenate((eye, eye[self.a] - eye[self.b]))

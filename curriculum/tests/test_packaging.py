@@ -72,6 +72,61 @@ def test_exercises_and_checks_work_with_numpy_and_pytest_alone(only):
     assert "Traceback" not in bet.stderr and "A" in bet.stdout + bet.stderr
 
 
+COMMANDS = sorted(
+    ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__main__")
+    for path in ROOT.glob("curriculum/**/*.py")
+    if "tests" not in path.parts and '\nif __name__ == "__main__":' in path.read_text("utf-8")
+)
+
+
+def one_line_of(done):
+    """Whether a process printed its help, or one line that says what to type instead."""
+    says = done.stderr.count("\n") == 1 and re.search("install it: |pip install", done.stderr)
+    return "Traceback" not in done.stderr and (done.returncode == 0 or says)
+
+
+@pytest.mark.parametrize("module", COMMANDS)
+def test_without_its_packages_a_command_says_in_one_line_what_to_install(only, tmp_path, module):
+    numpy = str(only("numpy"))
+    for flags in ((), ("--help",)):
+        done = run("-S", "-m", module, *flags, PYTHONPATH=str(tmp_path))
+        assert one_line_of(done) or done.stderr.startswith("usage: "), done.stderr
+    helped = run("-S", "-m", module, "--help", PYTHONPATH=numpy)
+    assert one_line_of(helped), helped.stderr
+    if module.rpartition(".")[2] in ("bench", "notebook", "page", "text"):  # they need more
+        done = run("-S", "-m", module, PYTHONPATH=numpy)
+        assert done.returncode == 2 and one_line_of(done), done.stderr
+        assert " is missing; install it: " in done.stderr
+
+
+def test_what_to_install_is_said_for_the_program_that_runs_here(tmp_path):
+    (tmp_path / "pip").mkdir()
+    (tmp_path / "pip/__init__.py").touch()
+    code = "from curriculum.commands import missing; print(missing('yaml', 'page'), end='')"
+    words, nowhere = ("-S", "-c", code), str(tmp_path / "empty")
+    uv = run(*words, UV="uv").stdout
+    assert uv == "yaml is missing; install it: uv run --extra page python -c"
+    pip = run(*words, PYTHONPATH=str(tmp_path), PATH=nowhere).stdout
+    assert pip.endswith("-m pip install -e '.[page]'") or "venv .venv" in pip  # or it is refused
+    neither = run(*words, PATH=nowhere).stdout
+    assert neither.endswith("python3 -m venv .venv && .venv/bin/pip install -e '.[page]'")
+
+
+def test_a_broken_import_of_our_own_is_raised():
+    code = "from curriculum.commands import needs\nwith needs('page'):\n    import curriculum.pgae"
+    done = run("-c", code)
+    assert done.returncode == 1 and "No module named 'curriculum.pgae'" in done.stderr
+
+
+def test_tests_without_a_package_are_skipped_by_its_name(only, tmp_path):
+    (tmp_path / "conftest.py").write_bytes((ROOT / "curriculum/tests/conftest.py").read_bytes())
+    (tmp_path / "test_a.py").write_text("import yaml\n")
+    (tmp_path / "test_b.py").write_text("import curriculum.pgae\n")
+    words = ("-S", "-m", "pytest", "-p", "no:cacheprovider", "-rs", "--rootdir", tmp_path, tmp_path)
+    printed = run(*words, PYTHONPATH=os.pathsep.join((str(only("pytest")), str(ROOT)))).stdout
+    assert "test_a.py: yaml is missing" in printed and "1 skipped, 1 error" in printed
+
+
 def test_readme_is_short_and_shows_the_balls_first():
     lines = README.splitlines()
     assert len(lines) <= 130
@@ -95,12 +150,13 @@ def test_links_of_the_texts_lead_somewhere(file):
 def test_commands_of_the_texts_exist_with_their_flags():
     text = "".join((ROOT / file).read_text("utf-8") for file in TEXTS[:2])
     modules = set(re.findall(r"python -m (curriculum[\w.]*)", text))
-    for module in sorted(modules):
-        flags = set(re.findall(rf"python -m {module}((?: --[a-z]+)*)", text))
+    assert modules <= {*COMMANDS, "curriculum.tests.test_golden"}
+    for module in sorted(modules & set(COMMANDS)):
         helped = run("-m", module, "--help")
-        assert helped.returncode == 0, module
-        for flag in {word for each in flags for word in each.split()}:
-            assert flag in helped.stdout, (module, flag)
+        if " is missing; install it: " not in helped.stderr:
+            assert helped.returncode == 0, module
+            for flags in re.findall(rf"python -m {module}((?: --[a-z]+)*)", text):
+                assert all(flag in helped.stdout for flag in flags.split()), (module, flags)
     helped = run("contact.py", "--help").stdout
     for flag in set(re.findall(r"contact\.py[^`\n]*?(--[a-z]+)", text)) - {"--help"}:
         assert flag in helped, flag

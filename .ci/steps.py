@@ -1,0 +1,173 @@
+"""The steps of `.ci/run`: the README's lines as they stand there, then what authors run.
+
+python3 .ci/steps.py FOLDER    # works in that folder; its last line is "N passed, N failed"
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import readme
+
+WORK = Path(sys.argv[1])
+TEXT = (readme.ROOT / "README.md").read_text("utf-8")
+LEFT_OUT = ("UV", "VIRTUAL_ENV", "PYTHONPATH", "CONDA_PREFIX")  # a newcomer's shell has none
+SHELL = {k: v for k, v in os.environ.items() if k not in LEFT_OUT} | {
+    "CI": "true",
+    "RERUN_STRICT": "1",
+    "RERUN_ANALYTICS": "0",
+    "MPLBACKEND": "Agg",
+    "UV_PYTHON": sys.executable,
+}
+ASKS = 2  # the exit status of a bet that is not made yet
+done, run, start = [], [], time.monotonic()  # (passed, failed) of each; the lines that were run
+
+
+def check(name, command, folder, expect=0, **more):
+    """Run a line in bash, its input closed; print how it ended. Returns its output."""
+    began = time.monotonic()
+    run.append(command)
+    words = ["bash", "-euo", "pipefail", "-c", command]
+    ended = subprocess.run(
+        words, cwd=WORK / folder, env=SHELL | more, stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
+    )  # fmt: skip
+    good = ended.returncode == expect and "Traceback" not in ended.stdout
+    lines = ended.stdout.rstrip().splitlines() or [""]
+    now = time.monotonic()
+    print(
+        f"{'ok    ' if good else 'FAILED'} exit {ended.returncode}, {now - began:5.1f} s, "
+        f"at {now - start:3.0f} s | {name}: {command}",
+        *(f"       | {line}" for line in (lines[-1:] if good else lines[-60:])),
+        sep="\n", flush=True,
+    )  # fmt: skip
+    done.append((1, 0) if good else (0, 1))
+    return ended.stdout
+
+
+def fresh(folder):
+    """A fresh clone of what is committed."""
+    shutil.rmtree(WORK / folder, ignore_errors=True)
+    check("a fresh clone", f"git clone --quiet '{readme.ROOT}' {folder}", ".")
+
+
+def linked(source, target):
+    """The same folder once more, by hard links: pip replaces files and never writes into them."""
+    shutil.rmtree(target, ignore_errors=True)
+    shutil.copytree(source, target, symlinks=True, copy_function=os.link)
+
+
+def kept(folder):
+    """Keep page and notebook of a row for a look into them; forget what else it made."""
+    for path in (WORK / folder / "outputs").glob("contact.*"):
+        path.rename(WORK / f"{folder}-{path.name}")
+
+
+def row(folder, what, command):
+    """One row of "What to do next", with its expected exit status, or why it is not run."""
+    if why := readme.why_not(command.rsplit(" && ", 1)[-1]):
+        print(f"not run | {what}: {command} ({why})", flush=True)
+        first, _, last = command.rpartition(" && ")
+        command = " && ".join(filter(None, (first, last.replace("rerun ", "rerun rrd verify "))))
+    check(what, command, folder, ASKS if "/ex1_" in command else 0)
+    kept(folder)
+
+
+def pip_column():
+    """The first set-up line; then every row in the environment that it made, and nothing else."""
+    folder = WORK / "pip"
+    check("README, pip: run", readme.set_up(TEXT)["pip"][0], "pip")
+    assert list(folder.glob("outputs/*/contact.rrd")), "the main job made no recording"
+    (folder / ".venv").rename(WORK / "first")
+    for what, command, _ in readme.rows(TEXT):
+        linked(WORK / "first", folder / ".venv")
+        row("pip", what, command)
+
+
+def uv_column():
+    """The same by uv, each time from no environment at all."""
+    check("README, uv: run", readme.set_up(TEXT)["uv"][0], "uv")
+    for what, _, command in readme.rows(TEXT):
+        shutil.rmtree(WORK / "uv/.venv", ignore_errors=True)
+        row("uv", what, command)
+
+
+def suite():
+    """The tests, by the README's own line; none may be skipped. uv's line collects them only."""
+    fresh("dev")
+    printed = check("README, pip: test", readme.set_up(TEXT)["pip"][1], "dev")
+    found = re.findall(r"(\d+) (passed|failed|errors?|skipped)\b", printed[-200:])
+    passed = sum(int(number) for number, word in found if word == "passed")
+    done.append((passed, sum(int(number) for number, _ in found) - passed))
+    print(*re.findall(r"^(?:SKIPPED|FAILED|ERROR) .*", printed, re.M), sep="\n", flush=True)
+
+
+def authors():
+    """What an author has beside the tests, in the environment that the README's line made."""
+    python = ".venv/bin/python"
+    check("the gate", f"{python} -m curriculum.text", "dev")
+    check("ruff check", ".venv/bin/ruff check .", "dev")
+    check("ruff format", ".venv/bin/ruff format --check .", "dev")
+    if "[tool.mypy]" in (readme.ROOT / "pyproject.toml").read_text("utf-8"):
+        check("types", f"{python} -m mypy", "dev")
+    check(
+        "CONTRIBUTING",
+        ".venv/bin/pre-commit install && .venv/bin/pre-commit validate-config",
+        "dev",
+    )
+    made = " ".join(str(path) for path in sorted(WORK.glob("*-contact.*")))
+    check("page and notebook, looked into", f"{python} .ci/look.py {made}", "dev")
+
+
+def measuring():
+    """The quick benchmark and the quick stress run."""
+    check("quick benchmark", ".venv/bin/python -m curriculum.bench --quick", "dev")
+    check("quick stress", ".venv/bin/python -m curriculum.stress --quick", "dev")
+
+
+def alone():
+    """contact.py in an empty folder with numpy alone; and with rerun and pytest, the tests."""
+    shutil.copy(readme.ROOT / "contact.py", WORK / "alone")
+    for scene in ("drop", "bounce", "stack"):
+        line = f"uv run --no-project --with numpy python contact.py --scene {scene} --out {scene}"
+        check("contact.py alone, numpy alone", f"{line} && test -s {scene}/metrics.json", "alone")
+    fresh("bare")
+    check("numpy, rerun-sdk and pytest", ".ci/python", "bare", PYTHON=sys.executable)
+
+
+def side_by_side(*lanes):
+    """Run them at the same time; a fault in one is counted, and the others go on."""
+    with ThreadPoolExecutor() as pool:
+        for lane, future in [(lane, pool.submit(lane)) for lane in lanes]:
+            if error := future.exception():
+                print(f"FAILED | {lane.__name__}: {error!r}", flush=True)
+                done.append((0, 1))
+
+
+def main():
+    """All steps. Returns the exit status."""
+    (WORK / "alone").mkdir()
+    fresh("pip"), fresh("uv")
+    if subprocess.run(["git", "status", "--short"], cwd=readme.ROOT, capture_output=True).stdout:
+        print("note: the clones hold what is committed; the changes in this folder are not tested")
+    side_by_side(pip_column, uv_column)
+    side_by_side(suite)
+    uv_tests = f"{readme.set_up(TEXT)['uv'][1]} --collect-only -q"
+    collect = lambda: check("README, uv: test, collected only", uv_tests, "uv")  # noqa: E731
+    side_by_side(authors, measuring, alone, collect)
+    for text, command, why in dict.fromkeys(readme.left_out(run)):
+        print(f"not run | {text}: {command} ({why})")
+        done.append((0, int(why.isupper())))
+    passed, failed = (sum(each) for each in zip(*done))
+    print(f"{len(done)} commands, {time.monotonic() - start:.0f} s; with the tests of the suite:")
+    print(f"{passed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
