@@ -297,7 +297,8 @@ def test_an_explosion_is_drawn_with_a_scale_of_heights(visit):
     with visit("?dt=0.04#in-a-hurry.2") as page:
         page.wait_for_selector("#fig-lanes .line.m-penalty")
         page.wait_for_function(
-            "[...document.querySelectorAll('#fig-lanes text')].some((n) => / m$/.test(n.textContent))"
+            "[...document.querySelectorAll('#fig-lanes text')].some(({ textContent }) => "
+            "/ m$/.test(textContent))"
         )
         assert page.locator("#fig-lanes circle.ball").count() == 2  # none is lost
 

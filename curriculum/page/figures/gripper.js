@@ -120,8 +120,8 @@ function drawn(view, small) {
   return {
     svg: svg + map,
     words:
-      `${tellsOf(own)}, from gaps of ${began.join(" and ")} mm: ` +
-      `${does === "is gone" ? "fingers and cup fly apart" : holds}.`,
+      `${tellsOf(own)}: ${does === "is gone" ? "fingers and cup fly apart" : holds}. ` +
+      `The gaps at the start are ${began.join(" and ")} mm.`,
     handles: at.map(hold).concat(knob ?? []),
   };
 }
