@@ -18,7 +18,8 @@ COURSE = os.path.abspath("contact_chapter")
 zipfile.ZipFile(io.BytesIO(base64.b64decode(FOLDER))).extractall(COURSE)
 sys.path.insert(0, COURSE)
 sys.modules["contact"] = sys.modules["__main__"]    # whatever you change below is used everywhere
-with open(os.path.join(COURSE, "contact.py"), encoding="utf-8") as file:
+__file__ = os.path.join(COURSE, "contact.py")
+with open(__file__, encoding="utf-8") as file:
     exec(file.read().split('if __name__ == "__main__"')[0])
 
 # %% tools

@@ -2,6 +2,7 @@
 
 import base64
 import hashlib
+import json
 import os
 import re
 from collections import Counter
@@ -94,16 +95,20 @@ class Filler:
     def __init__(self, macros, figures, exercises):
         self.macros, self.figures, self.exercises = macros, figures, exercises
         self.regions = read_all()
-        self.alone = False  # whether the live figure has stepped back here
+        self.place, self.marks = "", 0  # the last heading, and the marks since
         self.seen = Counter()  # how often each figure stands above
 
     def __call__(self, kind, value):
         if kind == "heading":
             level, name, inner = value
+            self.place, self.marks = name, 1
             return self.macros.heading(level, name, Markup(inner)) if level > 1 else ""
         if kind == "show":
-            self.alone = value == "none"
-            return Markup(f'<i class="show" data-show="{value.replace("&", "&amp;")}"></i>')
+            self.marks += 1
+            shown = value.replace("&", "&amp;")
+            return Markup(
+                f'<i class="show" id="{self.place}.{self.marks}" data-show="{shown}"></i>'
+            )
         if kind == "include":
             return self.panel(value)
         return self.slot(*value.partition(":")[::2]) if kind == "slot" else Markup(value)
@@ -127,14 +132,30 @@ class Filler:
             return self.macros.recall()
         if name == "grab":
             return ""  # it stands at the top of the page
-        known = self.figures if kind == "figure" else self.exercises
-        if name not in known:
-            raise ValueError(f"{chapter.CHAPTER}: there is no {kind} {name}; known: {[*known]}")
         if kind == "exercise":
-            return self.macros.exercise(known[name])
+            if name not in self.exercises:
+                known = [*self.exercises]
+                raise ValueError(f"{chapter.CHAPTER}: there is no {kind} {name}; known: {known}")
+            return self.macros.exercise(self.exercises[name])
         self.seen[name] += 1
         again = f"-{self.seen[name]}" if self.seen[name] > 1 else ""
-        return self.macros.figure(name, known[name], self.alone, again)
+        return self.macros.figure(name, self.figures[name + again], again)
+
+
+def figures_in(parts, known):
+    """The figures of the chapter, {id: [name, what its passage sets]}, for still.js."""
+    found, seen, changes = {name: [name, {}] for name in ("grab", "lanes")}, Counter(), {}
+    for kind, value in parts:
+        if kind in ("show", "heading"):
+            changes = chapter.changes_of(value) if kind == "show" else {}
+        name = value.removeprefix("figure:") if kind == "slot" else value
+        if kind != "slot" or name == value or name in ("grab", "lanes"):
+            continue
+        if name not in known:
+            raise ValueError(f"{chapter.CHAPTER}: there is no figure {name}; known: {known}")
+        seen[name] += 1
+        found[f"{name}-{seen[name]}" if seen[name] > 1 else name] = [name, changes]
+    return found
 
 
 # ---- the page
@@ -168,6 +189,7 @@ def environment(veils):
     colab = COLAB.format(repository) if repository else None
     font = {"name": maths_font.NAME, "src": data_address("font/woff", maths_font.FILE.read_bytes())}
     made.globals.update(course=COURSE, colab=colab, font=font, colors=curves.COLORS, veils=veils)
+    made.globals.update(hides=chapter.HIDES)
     return made
 
 
@@ -179,11 +201,14 @@ def build(text=None):
     bets = [name for name, each in exercises.items() if each["choices"]]
     veils = [*bets, "puzzle"]
     data = page_data(veils)
-    drawn = evaluate("still.js", data, "stills()")
+    text = Numbers().fill(text)
+    settable = evaluate("still.js", data, "settable()")
+    parts = chapter.blocks(text, settable["ranges"], settable["starts"])
+    wanted = json.dumps(figures_in(parts, settable["names"]))
+    drawn = evaluate("still.js", data, f"stills({wanted})")
     templates = environment(veils)
     macros = templates.get_template("parts.html.j2").module
     fill = Filler(macros, drawn["figures"], exercises)
-    parts = chapter.blocks(Numbers().fill(text), drawn["ranges"])
     body, ((_, _, title), *contents) = chapter.assemble(parts, fill, macros, bets)
     script, early = bundle("main.js", data), macros.early()
     return templates.get_template("page.html.j2").render(

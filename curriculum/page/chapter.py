@@ -8,14 +8,18 @@ Beside plain Markdown the chapter may hold
   <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. Other comments vanish;
 - <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
   from there on, by the store's quantities and `models`, `chart` (gap, push, energy), `from`, `to`;
-  <!-- show: none --> lets it step back;
+  <!-- show: none --> lets it step back, and may set quantities, too: <!-- show: none&dt=0.014 -->.
+  A passage goes from a heading or such a mark to the next. Its quantities are those that its mark
+  sets, and else contact.py's own; what the reader changes in one stays there;
 - links that set the same, [words](try:scene=drop&dt=0.03), and numbers to drag, [0.002](drag:dt).
 
 Nothing on the page tells the answer of a bet before the reader has bet or has asked to be shown. A
 segment, from a heading or an exercise to the next, that tells the answer of a bet above is put into
-a veil, but not its heading. What tells an answer is found by its words, in text, code and figures.
+a veil, and a run of such segments behind one bar; the first heading of the run is seen. What tells
+an answer is found by its words, in text, code and figures.
 """
 
+import itertools
 import re
 from html import escape, unescape
 from urllib.parse import parse_qsl
@@ -61,6 +65,7 @@ TELLS = {
         re.IGNORECASE,
     ),
 }
+HIDES = {"ex1": "How they land", "ex3": "What happens then", "ex4": "Where it rests"}
 END = "what-you-built-and-what-comes-next"  # from here on answers are named, and none is told
 
 
@@ -96,10 +101,16 @@ def link_open(self, tokens, index, options, env):
     token = tokens[index]
     scheme, _, rest = token.attrGet("href").partition(":")
     if scheme == "try":
-        check(asked(rest), **env)
+        check(asked(rest), env["line"], env["ranges"])
         token.attrs = {"class": "try", "href": f"?{rest}"}
     elif scheme == "drag":
-        check([(rest, tokens[index + 1].content)], **env, others={})
+        held = tokens[index + 1].content
+        check([(rest, held)], env["line"], env["ranges"], others={})
+        if float(held.replace(",", "")) != env["home"].get(rest, float("nan")):
+            raise ValueError(
+                f"{CHAPTER}:{env['line']}: {held} is to be dragged, and here {rest} is "
+                f"{env['home'].get(rest)}; set it before: <!-- show: none&{rest}={held} -->"
+            )
         token.attrs = {"class": "drag", "data-knob": rest}
     return self.renderToken(tokens, index, options, env)
 
@@ -149,12 +160,14 @@ def inline(text):
 # ---- the parts of the chapter
 
 
-def blocks(text, ranges):
+def blocks(text, ranges, starts=None):
     """The chapter as a list of (kind, value): html, heading (level, id, html), show, slot, or
-    include (region). `ranges` are those of what the text may set, {name: (low, high)}."""
-    md, out = parser(), []
+    include (region). `ranges` are those of what the text may set, {name: (low, high)}; `starts`
+    all values of a section, by the scene that it shows."""
+    md, out, starts = parser(), [], starts or {"drop": {}}
+    home = starts["drop"]
     for node in SyntaxTreeNode(md.parse(text)).children:
-        env = {"line": node.map[0] + 1, "ranges": ranges}
+        env = {"line": node.map[0] + 1, "ranges": ranges, "home": home}
         shown = COMMENT.sub("", md.renderer.render(node.to_tokens(), md.options, env))
         include = node.type == "fence" and INCLUDE.fullmatch(node.content.strip())
         if include:
@@ -163,6 +176,7 @@ def blocks(text, ranges):
             code = escape(node.content)
             out.append(("html", f'<pre class="shell" tabindex="0"><code>{code}</code></pre>'))
         elif node.type == "heading":
+            home = starts["drop"]
             inner = re.sub(r"^<h\d[^>]*>|</h\d>\s*$", "", shown)
             out.append(("heading", (int(node.tag[1]), node.attrs["id"], inner)))
         elif node.type == "table":
@@ -170,10 +184,24 @@ def blocks(text, ranges):
             around = '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
             out.append(("html", f"{around}{held}</div>"))
         elif node.type == "html_block":
-            out += slots(node.content, **env)
+            for part in slots(node.content, env["line"], ranges):
+                home = home_of(part[1], starts) if part[0] == "show" else home
+                out.append(part)
         else:
             out.append(("html", shown))
     return out
+
+
+def changes_of(show):
+    """What a mark of what the text shows sets, {name: value}."""
+    pairs = parse_qsl(show)
+    return {name: float(v) if re.fullmatch(r"[\d.e+-]+", v) else v for name, v in pairs}
+
+
+def home_of(show, starts):
+    """The values of a passage that shows this."""
+    changes = changes_of(show)
+    return starts[changes.get("scene", "drop")] | changes
 
 
 def slots(text, line, ranges):
@@ -184,7 +212,7 @@ def slots(text, line, ranges):
         )
     for kind, name in SLOT.findall(text):
         if kind == "show":
-            check(asked(name) if name != "none" else [], line, ranges)
+            check([pair for pair in asked(name) if pair[0] != "none"], line, ranges)
             yield "show", name
         else:
             yield "slot", f"{kind}:{name}" if name else kind
@@ -196,16 +224,12 @@ def slots(text, line, ranges):
 def assemble(parts, fill, macros, bets):
     """(HTML, [(level, id, text)] of its headings). fill(kind, value) gives the HTML of a part;
     `bets` are the exercises whose answers are veiled."""
-    segments, html, contents, met = [[]], [], [], []
-    for kind, value in parts:
+    contents, met, found, kinds = [], [], [], kinds_of(parts)
+    for ((kind, value), *rest), column in zip(segments_of(parts), kinds):
         if kind == "heading":
             contents.append((*value[:2], Markup(re.sub(r"</?(code|a|math)[^>]*>", "", value[2]))))
-        if kind == "heading" or value.startswith("exercise:"):
-            segments.append([])
-        segments[-1].append((kind, value))
-    for (kind, value), *rest in filter(None, segments):
+        head = fill(kind, value)
         inner = [fill(*part) for part in rest]
-        html.append(fill(kind, value))
         if ("slot", "figure:puzzle") in rest:  # what follows it is its answer
             at = rest.index(("slot", "figure:puzzle")) + 1
             inner[at:] = [macros.veil("puzzle"), *inner[at:], "</div></div>"]
@@ -214,8 +238,52 @@ def assemble(parts, fill, macros, bets):
         met = [] if kind == "heading" and value[1] == END else met
         said = words(" ".join(inner))
         veils = [name for name in met if said and (name == last or TELLS[name].search(said))]
-        html += [*map(macros.veil, veils), *inner, *["</div></div>"] * len(veils)]
-    return Markup("\n".join(html)), contents
+        head, inner = (
+            f'<div class="part {column}">{each}</div>' for each in (head, "\n".join(inner))
+        )
+        if kind == "slot" or value[0] <= 2:  # exercises, and what begins a part, are always seen
+            found.append((head, "", ()))
+            head = ""
+        found.append((head, inner, veils))
+    return Markup("\n".join(veiled(found, bets, macros))), contents
+
+
+def segments_of(parts):
+    """The parts from each heading or exercise to the next."""
+    found = []
+    for kind, value in parts:
+        if kind == "heading" or value.startswith("exercise:"):
+            found.append([])
+        found[-1].append((kind, value))
+    return found
+
+
+def kinds_of(parts):
+    """Of each segment whether the live figure stands beside its section somewhere."""
+    sections = []
+    for segment in segments_of(parts):
+        if segment[0][0] == "heading":
+            sections.append([])
+        sections[-1].append(segment)
+    for section in sections:
+        shows = [value for each in section for kind, value in each if kind == "show"]
+        column = "beside" if any(not value.startswith("none") for value in shows) else "centred"
+        yield from [column] * len(section)
+
+
+def veiled(segments, bets, macros):
+    """The HTML of segments [(head, inner, veils)]: a run of them behind one veil has one bar."""
+    if not bets:
+        return [each for head, inner, _ in segments for each in (head, inner)]
+    out, (bet, *others) = [], bets
+    for behind, run in itertools.groupby(segments, key=lambda each: bet in each[2]):
+        (head, inner, veils), *rest = run
+        if behind:
+            out += [head, macros.veil(bet)]
+            head = ""
+        out += veiled([(head, inner, veils), *rest], others, macros)
+        out += ["</div></div>"] if behind else []
+    return out
 
 
 def words(html):

@@ -5,28 +5,75 @@ import { data } from "./data.js";
 import { figures } from "./figures.js";
 import { Reader } from "./reader.js";
 import { Stage } from "./stage.js";
-import { Store } from "./store.js";
+import { asked, Section } from "./store.js";
+
+// ---- sections
+
+/* The passages of the page: [{node, section, look}]. Each heading begins one, and so does each mark
+ * of what the text shows (`none`: the live figure steps back). */
+function findPassages() {
+  const found = [];
+  let last = ""; // a section beside which the live figure stands goes on with what it showed
+  for (const node of document.querySelectorAll("article :is(h2, h3)[id]:not(.exercise *), .show")) {
+    const query = node.dataset.show || "none";
+    if (node.dataset.show || !node.closest(".beside")) last = /^none/.test(query) ? "" : query;
+    found.push({ node, section: new Section(node.id, asked(query)), look: last });
+  }
+  return found;
+}
+
+// The section in which something stands: of the last passage that begins above it.
+function sectionIn(passages) {
+  const above = (each) => ({ node }) => each.compareDocumentPosition(node) & 2;
+  return (each) => (passages.findLast(above(each)) || passages[0]).section;
+}
 
 // ---- the address
 
-function bindAddress(store) {
-  let [timer, begun] = [0, false];
-  const write = (how) => {
+/* One entry of the history an act: a drag, or a run of arrow keys, is one. The address names the
+ * section and what is changed there; the entry keeps that of all of them. */
+function bindAddress(sections, sectionOf, stages) {
+  let [under, timer] = [false, 0]; // whether the newest entry is that of the act under way
+  const state = () => Object.fromEntries(sections.map((each) => [each.id, each.changes()]));
+  const write = (how, address) => {
     try {
-      history[how](null, "", (store.write() || location.pathname) + location.hash);
+      history[how](state(), "", address);
     } catch {
       // a frame without an address of its own: the state is kept until the page is closed
     }
   };
-  store.on(null, (values, changed, how) => {
+  const restore = (held) => sections.forEach((each) => each.restore(held[each.id] || {}));
+  function acted(section, act) {
+    if (!act) return;
+    const address = () => `${location.pathname}?${section.query()}#${section.id}`.replace("?#", "#");
     clearTimeout(timer);
-    if (how === "act" || (how === "drag" && begun)) write("pushState");
-    else if (how === "drag") timer = setTimeout(() => write("replaceState"), 100);
-    else if (how === "text" || how === "end") write("replaceState");
-    begun = how === "begin"; // a drag that changes nothing leaves no trace behind the back button
+    if (under) timer = setTimeout(() => write("replaceState", address()), 150);
+    else write("pushState", address());
+    under = true;
+  }
+  for (const each of sections) each.on(acted);
+  for (const kind of ["pointerdown", "focusin", "click"])
+    window.addEventListener(kind, () => (under = false), true);
+  // What the address asks for: of a section and its passages, of a figure, or, without one, of all.
+  function read() {
+    const wanted = asked(location.search);
+    const target = document.getElementById(location.hash.slice(1));
+    const one = target?.dataset.figure && sectionOf(target);
+    const heading = (each) => each.id.replace(/\.\d+$/, "");
+    for (const each of sections)
+      if (!target || each === one || each.id === target.id || heading(each) === target.id)
+        each.restore(wanted);
+    stages.find(({ box }) => box === target)?.take(location.search);
+  }
+  if (history.state) restore(history.state);
+  else read();
+  write("replaceState", location.href);
+  window.addEventListener("popstate", (event) => {
+    clearTimeout(timer);
+    under = false;
+    if (event.state) restore(event.state);
+    else write("replaceState", location.href); // a link within the page
   });
-  window.addEventListener("popstate", () => store.read(location.search));
-  store.read(location.search);
 }
 
 // ---- lines of code that run now
@@ -46,21 +93,23 @@ function light(by, lines) {
 
 // ---- the page
 
-const store = new Store();
 const bets = new Bets(data.bets);
 const page = {
-  store,
   open: bets.open,
   still: window.matchMedia("(prefers-reduced-motion: reduce)").matches,
   light,
 };
-bindAddress(store);
-const stages = {};
-for (const box of document.querySelectorAll("[data-figure]")) {
+const passages = findPassages();
+const sectionOf = sectionIn(passages);
+const stages = [...document.querySelectorAll("[data-figure]")].map((box) => {
   const name = box.dataset.figure;
-  stages[name] = new Stage(box, name, figures[name], page);
-}
-bets.onOpen(() => Object.values(stages).forEach((stage) => stage.redraw()));
+  return new Stage(box, name, figures[name], page, sectionOf(box));
+});
+const sections = passages.map(({ section }) => section);
+for (const each of sections)
+  each.on(() => stages.forEach((stage) => stage.section === each && stage.redraw()));
+bets.onOpen(() => stages.forEach((stage) => stage.redraw()));
+bindAddress(sections, sectionOf, stages);
 if (document.getElementById("blank")) startBlank(document.getElementById("blank"), data.blank);
-new Reader(store, stages.lanes);
+new Reader(passages, sectionOf, stages.find(({ name }) => name === "lanes"));
 document.documentElement.dataset.ready = "yes";

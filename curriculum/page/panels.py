@@ -22,16 +22,12 @@ STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf",
 
 
 def code_lines(text):
-    """Highlighted code, a piece of HTML a line; a line too long for its column goes on below."""
+    """Highlighted code, a piece of HTML a line."""
     shown = highlight(text, PythonLexer(stripnl=False), HtmlFormatter(nowrap=True))
     shown = re.sub(
         r'<span class="(\w+)">([^<]*)</span>', lambda m: m[0] if m[1] in STYLED else m[2], shown
     )
-    indents = [len(line) - len(line.lstrip(" ")) for line in text.splitlines()]
-    return [
-        f'<span class="ln" style="--i:{indent}">{line}\n</span>'
-        for indent, line in zip(indents, shown.rstrip("\n").split("\n"))
-    ]
+    return [f'<span class="ln">{line}\n</span>' for line in shown.rstrip("\n").split("\n")]
 
 
 def pieces(region):

@@ -150,7 +150,7 @@ export function grip(view, name, x, y, label, text, options) {
   const moved = (toX, toY) => view.from.value + by(toX - view.from.x, toY - view.from.y);
   const drag = (toX, toY) => put(by ? moved(toX, toY) : at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
-  return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release };
+  return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release, put };
 }
 
 /* A handle for two numbers, [a, b]: at(x, y) gives those where it is dragged to, put(a, b) sets them,

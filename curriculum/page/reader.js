@@ -1,50 +1,63 @@
-/* Reading: numbers that can be dragged, links that set something, the live figure that follows the
- * text, and on a small screen the dock in which it comes up. */
+/* Reading: numbers that can be dragged, links that set something, the live figure that takes the
+ * section in sight, and on a small screen the dock in which it comes up. */
 import { plain } from "./draw.js";
-import { fromSlider, sliderRange, startOf, toSlider } from "./store.js";
+import { asked, fromSlider, grouped, QUANTITIES, sliderRange, toSlider } from "./store.js";
 
 const KEYS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 20, PageDown: -20 };
 const VIEW = ["models", "chart", "from", "to"]; // of what the text shows, what is no quantity
 
 export class Reader {
-  constructor(store, lanes) {
-    Object.assign(this, { store, lanes, shown: null, called: null });
-    this.marks = [...document.querySelectorAll(".show")];
-    this.wide = [...document.querySelectorAll(".fig.alone")];
+  // passages: [{node, section, look}] in the order of the page; look: what the live figure shows
+  constructor(passages, sectionOf, lanes) {
+    Object.assign(this, { passages, sectionOf, lanes, shown: null, called: null });
+    this.wide = [...document.querySelectorAll(".centred .fig, .centred .code, .centred .scroll")];
     this.live = document.getElementById("figure");
-    this.beside = window.matchMedia("(min-width: 64rem)");
+    this.beside = window.matchMedia("(min-width: 75rem)");
     for (const span of document.querySelectorAll(".drag")) this.#number(span);
+    for (const link of document.querySelectorAll("a.try")) link.hash = sectionOf(link).id;
     document.addEventListener("click", (event) => this.#clicked(event));
     window.addEventListener("scroll", () => this.#scrolled(), { passive: true });
     this.beside.addEventListener("change", () => this.undock());
-    this.follow(!location.search);
+    this.follow();
   }
 
   #clicked(event) {
-    const touched = event.target.closest("a.try, [data-dock], #undock, [data-copy]");
+    const touched = event.target.closest("a, [data-dock], #undock, [data-copy], [data-take]");
     if (!touched) return;
+    const { take } = touched.dataset;
     if (touched.matches("a.try")) {
       event.preventDefault();
-      this.#set(new URLSearchParams(new URL(touched.href).search), "act");
-    }
-    if (touched.matches("[data-copy]")) this.#copy(touched.closest(".code"));
-    else if (touched.id === "undock") this.undock();
-    else this.dock(touched);
+      this.#try(touched);
+    } else if (touched.matches(".own-link")) {
+      event.preventDefault();
+      history.pushState(history.state, "", touched.href);
+      this.#copy(touched.href);
+    } else if (touched.matches("[data-copy]")) this.#copy(codeOf(touched.closest(".code")));
+    else if (take) {
+      const section = touched.closest("#figure") ? this.lanes.section : this.sectionOf(touched);
+      section.set({ [take]: section.home[take] });
+    } else if (touched.id === "undock") this.undock();
+    else if (touched.matches("[data-dock]")) this.dock(touched);
+    else if (touched.matches('a[href^="#"]')) showVeil(touched.hash);
   }
 
   // ---- what the text sets
 
-  // Set the quantities of a query in the store, and the rest in the live figure.
-  #set(given, how) {
-    const { store, lanes } = this;
-    const changes = store.asked(given);
-    if (how === "act") {
-      // a link shows what its sentence says: all else stands as in the chapter
-      store.set(startOf(changes.scene || store.get("scene")), "text");
-      store.set(changes);
-    } else store.follow(changes);
+  // A link shows what its sentence says: all else stands as in the section's text.
+  #try(link) {
+    const section = this.sectionOf(link);
+    section.set(asked(link.search), section.home);
+    this.#look(section, link.search, false);
+    this.dock(link);
+  }
+
+  // The live figure shows a section, and of it what a query says.
+  #look(section, query, anew) {
+    const { lanes } = this;
+    const given = new URLSearchParams(query);
+    lanes.section = section;
     const own = VIEW.filter((name) => given.has(name)).map((name) => [name, given.get(name)]);
-    lanes.figure.look(lanes, Object.fromEntries(own), how === "text");
+    lanes.figure.look(lanes, Object.fromEntries(own), anew);
     lanes.figure.replay(lanes);
     // the knobs that the text speaks of stand open, the others behind one word
     for (const knob of this.live.querySelectorAll(".knob"))
@@ -52,22 +65,20 @@ export class Reader {
     lanes.redraw();
   }
 
-  // The last mark above a line of the window says what is shown; and nothing is, while a figure
-  // that takes the whole width is in sight.
-  follow(set = true) {
+  // The last passage that begins above a line of the window is in sight. The live figure steps back
+  // where that has no use for it, and where something else needs its room.
+  follow() {
     const { innerHeight } = window;
     const place = (each) => each.getBoundingClientRect();
-    const seen = this.marks.filter((mark) => mark.offsetParent); // not behind a veil
+    const seen = this.passages.filter(({ node }) => node.offsetParent); // not behind a veil
     const line = this.beside.matches ? 0.7 : 1; // of the window; where no figure stands, at once
-    const mark = seen.findLast((each) => place(each).top < line * innerHeight) || seen[0];
-    if (!mark) return;
+    const last = seen.findLast(({ node }) => place(node).top < line * innerHeight) || seen[0];
+    if (!last) return;
     const over = (box) => box.height > 0 && box.top < innerHeight && box.bottom > 0;
-    const back = mark.dataset.show === "none" || this.wide.some((each) => over(place(each)));
-    this.live.classList.toggle("back", back);
-    if (mark === this.shown) return;
-    this.shown = mark;
-    if (set && mark.dataset.show !== "none")
-      this.#set(new URLSearchParams(mark.dataset.show), "text");
+    this.live.classList.toggle("back", !last.look || this.wide.some((each) => over(place(each))));
+    if (last === this.shown) return;
+    this.shown = last;
+    if (last.look) this.#look(last.section, last.look, true);
   }
 
   #scrolled() {
@@ -101,59 +112,82 @@ export class Reader {
   // ---- numbers to drag
 
   #number(span) {
-    const { store } = this;
+    const section = this.sectionOf(span);
     const name = span.dataset.knob;
-    const each = store.quantities[name];
+    const each = QUANTITIES[name];
     const range = sliderRange(each);
     const about = { role: "slider", tabindex: 0, "aria-label": each.label };
     Object.assign(about, { "aria-valuemin": each.low, "aria-valuemax": each.high });
     for (const [key, value] of Object.entries(about)) span.setAttribute(key, value);
+    span.insertAdjacentHTML("afterend", `<button class="chip" data-take="${name}" hidden></button>`);
+    const chip = span.nextElementSibling;
     const show = () => {
-      const value = store.get(name);
-      span.textContent = value < 1e4 ? plain(value) : value.toLocaleString("en");
+      const value = section.get(name);
+      span.textContent = grouped(value);
       span.setAttribute("aria-valuenow", plain(value));
       span.setAttribute("aria-valuetext", `${plain(value)} ${each.unit}`.trim());
+      chip.hidden = section.values[name] === section.home[name];
+      chip.textContent = `text: ${grouped(section.home[name])}`;
     };
-    const turn = (from, by, how) => {
+    const turn = (from, by) => {
       const position = Math.min(range.max, Math.max(range.min, from + by * range.step));
-      store.set({ [name]: fromSlider(each, position) }, how);
+      section.set({ [name]: fromSlider(each, position) });
     };
-    this.#grab(span, () => toSlider(each, store.get(name)), turn);
-    store.on([name], show);
+    this.#grab(span, section, () => toSlider(each, section.get(name)), turn);
+    section.on(show);
     show();
   }
 
-  #grab(span, position, turn) {
+  #grab(span, section, position, turn) {
     let [startX, from] = [0, 0];
     span.addEventListener("pointerdown", (event) => {
       event.preventDefault();
       span.focus({ preventScroll: true });
       span.setPointerCapture(event.pointerId);
       [startX, from] = [event.clientX, position()];
-      this.store.drag(true);
-      this.dock(span);
+      section.drag(true);
+      this.#call(span, section);
     });
     span.addEventListener("pointermove", (event) => {
-      if (!span.hasPointerCapture(event.pointerId)) return;
-      turn(from, Math.round((event.clientX - startX) / 2), "drag");
+      if (span.hasPointerCapture(event.pointerId))
+        turn(from, Math.round((event.clientX - startX) / 2));
     });
     for (const end of ["pointerup", "pointercancel"])
-      span.addEventListener(end, () => this.store.drag(false));
+      span.addEventListener(end, () => section.drag(false));
     span.addEventListener("keydown", (event) => {
       if (!KEYS[event.key]) return;
       event.preventDefault();
-      turn(position(), KEYS[event.key], "act");
-      this.dock(span);
+      turn(position(), KEYS[event.key]);
+      this.#call(span, section);
     });
   }
 
-  // The code as it stands in the file.
-  #copy(code) {
-    const text = [...code.querySelectorAll("pre")].map((pre) => pre.textContent).join("\n\n");
+  // Call the live figure to a number, if it is one of a passage that speaks of it.
+  #call(span, section) {
+    if (this.lanes.section !== section) {
+      const passage = this.passages.find((each) => each.section === section);
+      this.#look(section, passage.look || "", true);
+    }
+    this.dock(span);
+  }
+
+  #copy(text) {
     const said = document.getElementById("said");
     navigator.clipboard.writeText(text).then(
       () => (said.textContent = "Copied."),
       () => (said.textContent = "The browser does not let the page copy."),
     );
   }
+}
+
+// The code as it stands in the file.
+const codeOf = (code) =>
+  [...code.querySelectorAll("pre")].map((pre) => pre.textContent).join("\n\n");
+
+// Where what a link leads to waits behind a veil, its bar comes into sight.
+function showVeil(hash) {
+  const veil = document.getElementById(hash.slice(1))?.closest(".veiled");
+  for (let each = veil; each; each = each.parentElement.closest(".veiled"))
+    if (each.querySelector(":scope > .veil-bar").offsetParent)
+      each.scrollIntoView({ block: "center" });
 }

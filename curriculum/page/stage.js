@@ -7,7 +7,6 @@
  *   title, caption   its name in words; one sentence below it
  *   height, narrow   px; of the drawing, and of one narrower than 480 px
  *   knobs            names of the quantities that stand as sliders below it
- *   shows            values of quantities for its still picture
  *   start()          its own state, a plain object: view.own
  *   draw(view)       {svg, words, handles, lit}; svg is text, words what is seen, in one sentence;
  *                    lit: [[region, text of a line]], the lines of code that run now
@@ -25,7 +24,7 @@
  * Whatever is drawn as `ball` must have a handle over it; what cannot be grabbed is drawn as
  * "seen", "body" or "ghost". The view is the stage. */
 import { escape, plain } from "./draw.js";
-import { fitting, fromSlider, shown, sliderRange, toSlider } from "./store.js";
+import { fitting, fromSlider, QUANTITIES, shown, sliderRange, toSlider } from "./store.js";
 
 const NARROW = 480; // px: from this width on a drawing is wide
 const NEAR = 600; // px beyond the window in which figures are drawn
@@ -87,8 +86,8 @@ function showHandles(layer, handles) {
 // ---- knobs: a slider and a number for one quantity
 
 let knobs = 0;
-function mountKnob(box, name, store) {
-  const each = store.quantities[name];
+function mountKnob(box, name, stage) {
+  const each = QUANTITIES[name];
   const id = `knob-${++knobs}`;
   const { min, max, step } = sliderRange(each);
   const what = escape(each.label);
@@ -101,35 +100,33 @@ function mountKnob(box, name, store) {
   );
   const [range, field] = box.lastElementChild.querySelectorAll("input");
   const show = () => {
-    const value = store.get(name);
+    const value = stage.section.get(name);
     range.value = toSlider(each, value);
     range.setAttribute("aria-valuetext", `${plain(value)} ${each.unit}`.trim());
     if (document.activeElement !== field) field.value = plain(value);
     field.removeAttribute("aria-invalid");
   };
-  range.addEventListener("pointerdown", () => store.drag(true));
+  range.addEventListener("pointerdown", () => stage.section.drag(true));
   for (const end of ["pointerup", "pointercancel", "blur"])
-    range.addEventListener(end, () => store.drag(false));
-  range.addEventListener("input", () => {
-    const value = fromSlider(each, Number(range.value));
-    store.set({ [name]: value }, store.dragging() ? "drag" : "act");
-  });
+    range.addEventListener(end, () => stage.section.drag(false));
+  range.addEventListener("input", () => stage.set({ [name]: fromSlider(each, Number(range.value)) }));
   field.addEventListener("change", () => {
     const value = Number(field.value.replace(",", "."));
     const fits = field.value.trim() !== "" && value === fitting(each, value);
-    if (fits) store.set({ [name]: value });
+    if (fits) stage.set({ [name]: value });
     else field.setAttribute("aria-invalid", "true");
     field.title = fits ? "" : `${each.label}: ${each.low} to ${each.high}`;
   });
   field.addEventListener("blur", show);
-  store.on([name], show);
   show();
+  return show;
 }
 
 // ---- a figure in the page
 
 /* A live figure in `box`, which holds .drawing with an svg, .words, .knobs and .buttons, as the
- * template makes them. page: {store, still, open(bet), light(name, lines)}. Figures use own, get(),
+ * template makes them. page: {still, open(bet), light(name, lines)}; `section` is the one in which
+ * it stands, whose values it shows. Figures use own, get(),
  * values, set(changes), width, height, play(), run(), stop(), running, flick(), still (nothing may
  * move by itself), dragging, grabbed (the name of the handle that is held), from (that handle as it
  * was when it was grabbed), open(bet). */
@@ -141,19 +138,20 @@ export class Stage {
   #handles = [];
   #pending = 0;
   #last = 0; // ms, of the last frame
+  #asked = ""; // what an address has asked for before it was drawn
   #trail = []; // of the pointer: [ms, x, y]
 
-  constructor(box, name, figure, page) {
-    const { store, open, still } = page;
-    const { get, reset } = store;
-    Object.assign(this, { box, name, figure, page, open, still, get, reset });
+  constructor(box, name, figure, page, section) {
+    const { open, still } = page;
+    Object.assign(this, { box, name, figure, page, open, still, section });
+    this.uses = new Set(figure.knobs); // quantities that it has asked for
     this.own = figure.start ? figure.start() : {};
     this.svg = box.querySelector(".drawing svg");
     this.words = box.querySelector(".words");
-    for (const knob of figure.knobs || []) mountKnob(box.querySelector(".knobs"), knob, store);
+    const knobs = box.querySelector(".knobs");
+    this.knobs = (figure.knobs || []).map((knob) => mountKnob(knobs, knob, this));
     this.buttons = buttonsOf(figure).map((button) => this.#button(button));
     this.#listen();
-    store.on(null, this.redraw);
     new ResizeObserver(() => this.#resize()).observe(this.svg.parentElement);
     // a figure far from the window keeps its picture and does not run
     const seen = ([{ isIntersecting: near }]) => {
@@ -165,14 +163,16 @@ export class Stage {
   }
 
   get values() {
-    return this.page.store.all();
+    return this.section.values;
   }
 
   get dragging() {
-    return this.page.store.dragging();
+    return this.section.dragging;
   }
 
-  set = (changes) => this.page.store.set(changes, this.dragging ? "drag" : "act");
+  get = (name) => this.section.get(this.uses.add(name) && name);
+  set = (changes) => this.section.set(changes);
+  reset = () => this.section.reset();
 
   #resize() {
     const { clientWidth, clientHeight } = this.svg.parentElement;
@@ -221,7 +221,7 @@ export class Stage {
     this.aside = [x - event.clientX, y - event.clientY]; // of the pointer
     this.#trail = [];
     if (this.figure.clock) this.stop();
-    this.page.store.drag(true);
+    this.section.drag(true);
     this.#drag(event);
   }
 
@@ -237,7 +237,7 @@ export class Stage {
     const handle = this.#handle(this.grabbed);
     this.grabbed = null;
     handle?.release?.();
-    this.page.store.drag(false);
+    this.section.drag(false);
     this.redraw();
   }
 
@@ -275,9 +275,45 @@ export class Stage {
     svg.setAttribute("aria-label", `${figure.title}. ${made.words}`);
     svg.children[0].innerHTML = made.svg;
     showHandles(svg.children[1], this.#handles);
-    for (const show of this.buttons) show();
+    for (const show of [...this.buttons, ...this.knobs]) show();
+    this.#showChips();
     if (made.lit) this.page.light(this.name, made.lit);
     if (words.textContent !== made.words) words.textContent = made.words;
+    if (!this.#asked) return;
+    const query = this.#asked;
+    this.#asked = "";
+    this.take(query);
+  }
+
+  // What differs from the text, each with a click that takes it back; and the figure's own address.
+  #showChips() {
+    const told = this.section.told().filter(([name]) => name === "scene" || this.uses.has(name));
+    const html = told.map(([name, words]) =>
+      `<button type="button" class="chip" data-take="${name}" title="Take it back">` +
+      `${escape(words)}</button>`).join("");
+    const chips = this.box.querySelector(".chips");
+    if (chips.innerHTML !== html) chips.innerHTML = html;
+    const link = this.box.querySelector(".own-link");
+    const parts = [this.section.query(), ...this.#ownParts()].filter(Boolean);
+    if (link) link.href = `?${parts.join("&")}#${this.box.id}`;
+  }
+
+  // Of its own numbers those that are not as at the start, as an address has them.
+  #ownParts() {
+    const start = this.figure.start ? this.figure.start() : {};
+    const moved = this.#handles.filter(({ name, put }) => put && name in start &&
+      start[name] !== this.own[name] && Number.isFinite(this.own[name]));
+    return moved.map(({ name }) => `${name}=${plain(this.own[name])}`);
+  }
+
+  // Set its own numbers as its address asks; each is kept to where it could be dragged.
+  take(query) {
+    if (!this.near) return void (this.#asked = query);
+    for (const [name, text] of new URLSearchParams(query)) {
+      const number = text.trim() === "" ? NaN : Number(text);
+      if (Number.isFinite(number) && name in this.own) this.#handle(name)?.put?.(number);
+    }
+    this.redraw();
   }
 
   // ---- time

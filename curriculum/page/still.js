@@ -1,26 +1,37 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
 import { figures } from "./figures.js";
 import { buttonsOf, heightOf, stillView } from "./stage.js";
-import { QUANTITIES, startOf } from "./store.js";
+import { data } from "./data.js";
+import { QUANTITIES, Section, startOf } from "./store.js";
 
 const WIDTH = 640;
 
-// What a figure shows first: {svg, words, height, narrow, ...}.
-function still([name, figure]) {
-  const { title, caption = "", knobs = [], shows = {} } = figure;
+// What a figure shows first in a section: {svg, words, height, narrow, ...}.
+function still([id, [name, changes]]) {
+  const figure = figures[name];
+  const { title, caption = "", knobs = [] } = figure;
   try {
-    const made = figure.draw(stillView(figure, { ...startOf("drop"), ...shows }, WIDTH));
+    const made = figure.draw(stillView(figure, new Section(id, changes).values, WIDTH));
     const [height, narrow] = [heightOf(figure, WIDTH), heightOf(figure, 1)];
     const counts = { knobs: knobs.length, buttons: buttonsOf(figure).length };
     const { svg, words = "" } = made;
-    return [name, { svg, words, title, caption, width: WIDTH, height, narrow, ...counts }];
+    return [id, { svg, words, title, caption, width: WIDTH, height, narrow, ...counts }];
   } catch (error) {
     throw new Error(`curriculum/page/figures, ${name}: ${error}`);
   }
 }
 
-export const stills = () => ({
-  figures: Object.fromEntries(Object.entries(figures).map(still)),
+const everyOne = () => Object.fromEntries(Object.keys(figures).map((name) => [name, [name, {}]]));
+
+// Of figures {id: [name, what its section sets]}; without any, of each one by its name.
+export const stills = (wanted = everyOne()) => ({
+  figures: Object.fromEntries(Object.entries(wanted).map(still)),
+});
+
+// What the text may set: {quantity: [low, high]}, and every value as a scene has it at first.
+export const settable = () => ({
+  names: Object.keys(figures),
+  starts: Object.fromEntries(Object.keys(data.scenes).map((scene) => [scene, startOf(scene)])),
   ranges: Object.fromEntries(
     Object.entries(QUANTITIES).map(([name, { low, high }]) => [name, [low, high]]),
   ),

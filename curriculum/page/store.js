@@ -1,5 +1,5 @@
-/* One state for the whole page. Every number in a sentence, every knob, every figure and the
- * address read it and write it, so they agree at every moment.
+/* The state of the page, a section at a time: within one every number in a sentence, every knob,
+ * every figure and the address agree at every moment; the next begins with what its own text says.
  *
  * A quantity is {low, high, log, step, whole, digits, unit, label}, by the name of contact.py's
  * flag where it has one. Nothing here touches the document; main.js binds it to the address. */
@@ -63,91 +63,93 @@ export function fitting({ low, high, whole }, value) {
   return whole ? Math.round(held) : held;
 }
 
-// ---- the store
+// ---- a section
 
-export class Store {
-  quantities = QUANTITIES;
-  #values = startOf("drop");
-  #listeners = [];
-  #touched = new Set(); // what the reader has set by hand since the text last named it
-  #dragging = false;
+const known = (name) => name === "scene" || name in QUANTITIES;
 
-  all = () => this.#values;
-  get = (name) => shown(this.#values, name);
-  dragging = () => this.#dragging;
+function allowed(name, value) {
+  if (name === "scene") return SCENES.includes(value);
+  return value === null ? START[name] === null : value === fitting(QUANTITIES[name], value);
+}
 
-  allowed(name, value) {
-    if (name === "scene") return SCENES.includes(value);
-    const each = QUANTITIES[name];
-    if (!each || value === null) return START[name] === null;
-    return value === fitting(each, value);
+// What a query asks for; what is not allowed is left out.
+export function asked(query) {
+  const found = {};
+  for (const [name, text] of new URLSearchParams(query)) {
+    const value = name === "scene" ? text : Number(text);
+    if (known(name) && text.trim() !== "" && allowed(name, value)) found[name] = value;
+  }
+  return found;
+}
+
+// These values, with some changed: another scene brings along its own.
+function changed(values, changes) {
+  const { scene } = changes;
+  const moved = SCENES.includes(scene) && scene !== values.scene ? own(scene) : {};
+  const fit = Object.entries(changes).filter(([name, value]) => known(name) && allowed(name, value));
+  return { ...values, ...moved, ...Object.fromEntries(fit) };
+}
+
+/* A section of the chapter: `home`, what its text speaks of, and `values`, what the reader has made
+ * of it. hear(section) is told of every change. */
+export class Section {
+  dragging = false; // meanwhile figures draw coarsely
+  #hear = [];
+
+  constructor(id, changes) {
+    Object.assign(this, { id, home: changed(startOf("drop"), changes) });
+    this.values = this.home;
   }
 
-  // Call `hear(values, changed, how)` whenever one of `names` (null: any) changes.
-  on(names, hear) {
-    this.#listeners.push({ names, hear });
+  on(hear) {
+    this.#hear.push(hear);
   }
 
-  #tell(changed, how) {
-    for (const { names, hear } of this.#listeners)
-      if (!names || names.some((name) => changed.has(name))) hear(this.#values, changed, how);
+  #put(values, act) {
+    const same = Object.keys(values).every((name) => values[name] === this.values[name]);
+    this.values = values;
+    if (!same) for (const hear of this.#hear) hear(this, act);
   }
 
-  // Set some values. `how`: "act" (one act of the reader), "drag" (one of many), "text", "address".
-  set(changes, how = "act") {
-    const next = { ...this.#values };
-    if (SCENES.includes(changes.scene) && changes.scene !== next.scene)
-      Object.assign(next, own(changes.scene));
-    for (const [name, value] of Object.entries(changes))
-      if (this.allowed(name, value)) next[name] = value;
-    const changed = new Set(Object.keys(next).filter((name) => next[name] !== this.#values[name]));
-    if (!changed.size) return;
-    this.#values = next;
-    const byHand = how === "act" || how === "drag";
-    for (const name of changed) this.#touched[byHand ? "add" : "delete"](name);
-    this.#tell(changed, how);
-  }
+  // The reader sets some values; `from`: what the others become.
+  set = (changes, from = this.values) => this.#put(changed(from, changes), true);
+  // An address or the back button does.
+  restore = (changes) => this.#put(changed(this.home, changes), false);
+  reset = () => this.set({}, this.home);
 
-  // A drag begins or ends. While it lasts figures draw coarsely; after it they draw once more.
   drag(underWay) {
-    if (this.#dragging === underWay) return;
-    this.#dragging = underWay;
-    this.#tell(new Set(Object.keys(this.#values)), underWay ? "begin" : "end");
+    if (this.dragging === underWay) return;
+    this.dragging = underWay;
+    for (const hear of this.#hear) hear(this, false);
   }
 
-  // What the text sets; what it does not name and nobody has touched returns to the chapter's.
-  follow(changes) {
-    for (const name of Object.keys(changes)) this.#touched.delete(name);
-    const kept = Object.fromEntries([...this.#touched].map((name) => [name, this.#values[name]]));
-    this.set({ ...startOf(changes.scene || kept.scene || "drop"), ...kept, ...changes }, "text");
+  get = (name) => shown(this.values, name);
+
+  // What the reader has changed, {name: value}.
+  changes() {
+    const differs = Object.entries(this.values).filter(([name, v]) => v !== this.home[name]);
+    return Object.fromEntries(differs);
   }
 
-  reset = () => this.set(startOf("drop"));
-
-  // What a query asks for; what is not allowed is left out.
-  asked(query) {
-    const found = {};
-    for (const [name, text] of new URLSearchParams(query)) {
-      const value = name === "scene" ? text : Number(text);
-      if (text.trim() !== "" && this.allowed(name, value)) found[name] = value;
-    }
-    return found;
+  // That as an address has it.
+  query() {
+    const parts = Object.entries(this.changes()).filter(([, value]) => value !== null);
+    return parts.map(([name, v]) => `${name}=${name === "scene" ? v : plain(v)}`).join("&");
   }
 
-  read(query, how = "address") {
-    const found = this.asked(query);
-    this.set({ ...startOf(found.scene || "drop"), ...found }, how);
-  }
-
-  // The values that differ from the chapter's, as an address has them.
-  write() {
-    const chapter = { ...startOf(this.#values.scene), scene: "drop" };
-    const parts = Object.entries(this.#values)
-      .filter(([name, value]) => value !== chapter[name])
-      .map(([name, value]) => `${name}=${name === "scene" ? value : plain(value)}`);
-    return parts.length ? `?${parts.join("&")}` : "";
+  // That in words: [name, "Stiffness k = 2,000, text: 10,000"].
+  told() {
+    return Object.keys(this.changes()).map((name) => {
+      const say = (values) =>
+        name === "scene" ? values[name] : grouped(shown(values, name));
+      const label = name === "scene" ? "scene" : QUANTITIES[name].label;
+      return [name, `${label} = ${say(this.values)}, text: ${say(this.home)}`];
+    });
   }
 }
+
+// A number as a sentence has it.
+export const grouped = (value) => (value < 1e3 ? plain(value) : value.toLocaleString("en"));
 
 // ---- what the engine wants
 

@@ -211,7 +211,7 @@ def plot(title, end):
 
 
 def time_panel():
-    """Opens at t = 0, four times slowed down; rerun-sdk before 0.28 cannot wait, and starts."""
+    """Opens at t = 0, four times slowed down. rerun-sdk before 0.28 starts there at once."""
     try:
         return rrb.TimePanel(
             timeline="sim_time", play_state="paused", playback_speed=0.25, state="collapsed"

@@ -61,7 +61,7 @@ def visiting(
         context.add_init_script(once)
     page = context.new_page()
     page.set_default_timeout(20_000)
-    trouble, own = [], ("data:", "blob:", url)
+    trouble, own = [], ("data:", "blob:", re.split("[?#]", url)[0])
 
     def listen(message):
         if message.type in ("error", "warning"):
@@ -76,6 +76,53 @@ def visiting(
     yield page
     context.close()
     assert not trouble, trouble
+
+
+SHOWS = "checkVisibility({ opacityProperty: true, visibilityProperty: true })"
+# in every figure: what lies at the middle of each button, knob, handle, link and ball, if not that
+HITS = f"""(async () => {{
+  const [wrong, parts] = [[], ".handle, button, input, a, circle.ball"];
+  const frames = async (n) => {{ while (n--) await new Promise(requestAnimationFrame); }};
+  for (const fig of document.querySelectorAll(".fig")) {{
+    fig.scrollIntoView({{ block: "center" }});
+    await frames(4);
+    const all = () => [...fig.querySelectorAll(parts)].filter((node) => node.{SHOWS});
+    for (let k = 0; k < all().length; k++) {{
+      all()[k].scrollIntoView({{ block: "center" }});
+      await frames(2);
+      const node = all()[k];
+      const box = node.getBoundingClientRect();
+      const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+      const grabbed = node.matches(".ball") && at?.matches(".handle") && fig.contains(at);
+      if (!grabbed && !node.contains(at))
+        wrong.push([fig.id, node.outerHTML.slice(0, 80), at?.outerHTML.slice(0, 80)]);
+    }}
+  }}
+  return wrong;
+}})()"""
+# the handles of the page, [figure, handle]; the middle of one, once it is in sight; what is said
+HANDLES = """(async () => {
+  const found = [];
+  for (const fig of document.querySelectorAll("article .fig, .hero .fig")) {
+    fig.scrollIntoView({ block: "center" });
+    for (let k = 0; k < 4; k++) await new Promise(requestAnimationFrame);
+    for (const { dataset } of fig.querySelectorAll(".handle")) found.push([fig.id, dataset.handle]);
+  }
+  return found;
+})()"""
+MIDDLE = """(async ([id, name]) => {
+  const find = () => document.querySelector(`#${id} .handle[data-handle="${name}"]`);
+  document.getElementById(id).scrollIntoView({ block: "center" });
+  for (let k = 0; k < 4; k++) await new Promise(requestAnimationFrame);
+  find().scrollIntoView({ block: "center" });
+  await new Promise(requestAnimationFrame);
+  const { x, y, width, height } = find().getBoundingClientRect();
+  return [x + width / 2, y + height / 2];
+})"""
+WORDS = """(async (id) => {
+  for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
+  return document.querySelector(`#${id} .words`).textContent;
+})"""
 
 
 class Tab:
@@ -113,6 +160,14 @@ class Tab:
         answer = self.call("script.evaluate", expression=told, target=target, awaitPromise=True)
         assert answer["type"] != "exception", answer.get("exceptionDetails", {}).get("text")
         return json.loads(answer["result"]["value"]) if "value" in answer["result"] else None
+
+    def pointer(self, *places):
+        """Press the mouse at the first place [x, y], move it to the others, release it."""
+        move = [{"type": "pointerMove", "x": round(x), "y": round(y)} for x, y in places]
+        down, up = ({"type": f"pointer{way}", "button": 0} for way in ("Down", "Up"))
+        actions = [move[0], down, *move[1:], up]
+        source = {"type": "pointer", "id": "mouse", "actions": actions}
+        self.call("input.performActions", context=self.context, actions=[source])
 
     def press(self, *keys):
         """Press and release keys, one after the other."""

@@ -14,7 +14,7 @@ from curriculum.page.build import build, page_data
 from curriculum.page.bundle import bundle
 from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
-from curriculum.tests.page_browser import firefox, running, visiting
+from curriculum.tests.page_browser import HANDLES, HITS, MIDDLE, WORDS, firefox, running, visiting
 
 BETS = {  # their files, and a number of each that tells its answer, as the page writes it
     "ex1": ("ex1_predict_contact", "penalty_deepest", ".3f"),
@@ -189,90 +189,71 @@ def test_a_chapter_with_a_figure_that_does_not_exist_is_refused():
         build("# Title\n\n<!-- figure: nowhere -->\n")
 
 
-# every place that shows a quantity, as a number: sentences, sliders, fields, the address
-PLACES = """(name) => {
-  const numbers = [...document.querySelectorAll(`.drag[data-knob=${name}]`)];
-  const found = numbers.map((each) => each.textContent.replace(/,/g, ""));
-  for (const knob of document.querySelectorAll(`.knob[data-knob=${name}]`)) {
-    found.push(knob.querySelector("[inputmode]").value);
-    found.push(knob.querySelector("[type=range]").getAttribute("aria-valuetext").split(" ")[0]);
-  }
-  const asked = new URLSearchParams(location.search).get(name);
-  return { found: [...new Set(found.map(Number))], asked: asked === null ? null : Number(asked) };
-}"""
-# click, key or drag as a reader would do it, without scrolling 60,000 px for each
-PRESS = """([selector, key, shiftKey = false]) => {
-  const about = { key, shiftKey, bubbles: true, cancelable: true };
-  document.querySelector(selector).dispatchEvent(new KeyboardEvent("keydown", about));
-}"""
-SLIDE = """([selector, share]) => {
-  const range = document.querySelector(selector);
-  range.value = Number(range.min) + share * (Number(range.max) - Number(range.min));
-  range.dispatchEvent(new Event("input", { bubbles: true }));
-}"""
-TYPE = """([selector, text]) => {
-  const field = document.querySelector(selector);
-  field.value = text;
-  field.dispatchEvent(new Event("change", { bubbles: true }));
-}"""
+# what a reader sees of a section: its numbers in sentences and fields, its chips, the address
+SEEN = """() => ({
+  number: document.querySelector(".drag[data-knob=stiffness]").textContent,
+  field: document.querySelector("#fig-stack [data-knob=stiffness] [inputmode]").value,
+  elsewhere: document.querySelector("#fig-sponge [data-knob=stiffness] [inputmode]").value,
+  chips: document.querySelector("#fig-stack .chips").textContent,
+  asked: location.href.split(".html")[1], entries: history.length})"""
 
 
-ENTERED = {  # by hand, into a field
-    "dt": "0.0123",
-    "stiffness": "1230",
-    "damping": "123",
-    "baumgarte": "0.12",
-    "iters": "12",
-    "warm": "0.15",
-    "restitution": "0.12",
-    "impedance": "0.912",
-    "timeconst": "0.123",
-}
+def keyed(page, selector, *keys):
+    """Keys on what a selector finds, which scrolls into sight; what is seen after it."""
+    page.locator(selector).first.focus()
+    for key in keys:
+        page.keyboard.press(key)
+    page.wait_for_timeout(400)  # the address of a run of keys is written in its pauses
+    return page.evaluate(SEEN)
 
 
-def test_every_quantity_has_one_value_wherever_it_is_set(visit):
-    """Set by a number in a sentence, a slider, a field, the address: all places then agree."""
+def test_a_section_keeps_its_own_values_and_one_act_is_one_entry_of_the_history(visit):
     with visit() as page:
-        names = page.evaluate(
-            "[...document.querySelectorAll('.knob, .drag')].map((each) => each.dataset.knob)"
-        )
-        assert {"dt", "stiffness", "damping", "baumgarte", "iters", "restitution"} <= set(names)
-        for name in sorted(set(names)):
-            before = page.evaluate(PLACES, name)["found"]
-            ways = [(SLIDE, f".knob[data-knob={name}] [type=range]", 0.3)]
-            ways += [(SLIDE, f".live .knob[data-knob={name}] [type=range]", 0.7)]
-            ways += [(PRESS, f".drag[data-knob={name}]", "PageDown")]
-            ways += [(TYPE, f".knob[data-knob={name}] [inputmode]", ENTERED[name])]
-            for act, selector, given in ways:
-                if page.locator(selector).count() == 0:
-                    continue
-                page.evaluate(act, [selector, given])
-                now = page.evaluate(PLACES, name)
-                assert len(now["found"]) == 1 and now["found"] != before, (name, act, now)
-                assert now["asked"] in (*now["found"], None), (name, now)
-                before = now["found"]
-
-
-def test_a_field_an_address_and_the_back_button_set_every_place(visit):
-    with visit("?dt=0.011&stiffness=2500") as page:
-        told = page.evaluate(PLACES, "stiffness")
-        assert told == {"found": [2500], "asked": 2500}
-        page.evaluate(TYPE, [".knob[data-knob=stiffness] [inputmode]", "31000"])
-        assert page.evaluate(PLACES, "stiffness") == {"found": [31000], "asked": 31000}
+        number = ".drag[data-knob=stiffness]"
+        page.locator("#fig-sponge").scroll_into_view_if_needed()
+        page.locator("#fig-stack").scroll_into_view_if_needed()
+        page.wait_for_timeout(300)
+        before = page.evaluate(SEEN)
+        assert before["number"] == "10,000" and before["chips"] == before["asked"] == ""
+        now = keyed(page, number, *["ArrowRight"] * 15)
+        assert now["entries"] == before["entries"] + 1  # a run of keys is one
+        value = now["number"].replace(",", "")
+        assert float(value) > 10000 and now["field"] == value and now["elsewhere"] == "10000"
+        assert now["chips"] == f"Stiffness k = {now['number']}, text: 10,000"
+        assert re.fullmatch(rf"\?stiffness={value}#the-bill[.\d]*", now["asked"])
+        page.reload()
+        page.wait_for_selector("[data-ready]", state="attached")
+        assert page.locator(number).first.inner_text() == now["number"]
+        chip = page.locator(f"{number} + .chip").first
+        chip.click()
+        assert page.locator(number).first.inner_text() == "10,000" and not chip.is_visible()
         page.go_back()
-        assert page.evaluate(PLACES, "stiffness") == {"found": [2500], "asked": 2500}
-        assert page.evaluate(PLACES, "dt") == {"found": [0.011], "asked": 0.011}
-        page.evaluate(TYPE, [".knob[data-knob=stiffness] [inputmode]", "7"])  # below the least
-        assert page.locator(".knob[data-knob=stiffness] [aria-invalid]").count() > 0
-        assert page.evaluate(PLACES, "stiffness")["asked"] == 2500
+        page.wait_for_function(
+            f"(text) => document.querySelector({number!r}).textContent === text", arg=now["number"]
+        )
 
 
-def test_a_link_of_the_text_sets_the_store_and_the_live_figure_follows_the_text(visit):
+def test_an_address_opens_a_section_and_a_figure_as_they_stand_and_scrolling_never_writes_it(visit):
+    with visit("?dt=0.02&k=3&stiffness=5#in-a-hurry") as page:
+        page.wait_for_selector("#fig-cliff .words:text('dt = 20.0 ms')", state="attached")
+        assert page.locator("#fig-cliff .chips").inner_text() == "Time step dt = 0.02, text: 0.03"
+        asked = page.evaluate("location.href")
+        page.mouse.wheel(0, 3000)
+        page.wait_for_timeout(500)
+        assert page.evaluate("location.href") == asked
+    with visit("?n=1&dt=0.01#fig-blocks") as page:
+        page.wait_for_selector("#fig-blocks .words:text('31 impacts, lcp at dt = 10 ms')")
+        link = page.locator("#fig-blocks .own-link").get_attribute("href")
+        assert link == "?dt=0.01&n=1#fig-blocks"
+
+
+def test_a_link_of_the_text_sets_its_section_and_the_live_figure_follows_the_text(visit):
     with visit() as page:
-        link = page.locator("a.try[href*=stiffness]").first
-        wanted = float(re.search(r"stiffness=([\d.e]+)", link.get_attribute("href"))[1])
+        link = page.locator("a.try[href*='stiffness=100&']").first
         link.click()
-        assert page.evaluate(PLACES, "stiffness")["found"] == [wanted]
+        assert "lcp" not in page.locator("#fig-lanes .words").inner_text()
+        assert "text: 10,000" in page.locator("#fig-lanes .chips").inner_text()
+        assert page.locator(".drag[data-knob=stiffness]").first.inner_text() == "100"
         for mark in page.locator(".show[data-show*=models]").all()[:4]:
             mark.evaluate(
                 "(node) => window.scrollTo(0, node.getBoundingClientRect().top + scrollY - 300)"
@@ -280,16 +261,15 @@ def test_a_link_of_the_text_sets_the_store_and_the_live_figure_follows_the_text(
             asked = mark.get_attribute("data-show")
             models = re.search(r"models=([\w,]+)", asked)[1].split(",")
             shown = "".join(f":has(.line.m-{model})" for model in models)
-            page.wait_for_selector(f"#fig-lanes svg{shown}")
+            page.wait_for_selector(f"#fig-lanes svg{shown}", state="attached")
             assert page.locator("#fig-lanes .line").count() == len(models)
-            assert page.locator("#fig-lanes .knob").filter(visible=True).count() <= 2
         page.locator("[data-show=none]").last.evaluate(
             "(node) => node.scrollIntoView({ block: 'center' })"
         )
         page.wait_for_selector("#figure.back", state="attached")
 
 
-def test_the_live_figure_shows_the_gaps_energy_and_push_of_contact_py(visit):
+def test_the_live_figure_shows_the_gaps_of_contact_py(visit):
     """Of all four models at any time, and how deep the spring is pressed in at most."""
     with visit() as page:
         every = page.locator("[data-show*='penalty,lcp,soft,exact&']").first
@@ -299,21 +279,28 @@ def test_the_live_figure_shows_the_gaps_energy_and_push_of_contact_py(visit):
         runs = {name: contact.run_model(name, scene, 0.002, 700) for name in contact.MODELS}
         gaps = {name: run.q[:, 1, 0] / contact.RADIUS - 1 for name, run in runs.items()}
         deepest = int(gaps["penalty"].argmin())
-        now = "Number(document.querySelector('#fig-lanes .handle').getAttribute('aria-valuenow'))"
+        time = page.locator("#fig-lanes .handle[data-handle=time]")
+        time.focus()
         for row in (deepest + 100, deepest):
-            tens, ones = divmod(round(page.evaluate(now) / 0.002) - row, 10)
-            for tenfold in [True] * tens + [False] * ones:
-                page.evaluate(PRESS, ["#fig-lanes .handle", "ArrowLeft", tenfold])
+            away = round(float(time.get_attribute("aria-valuenow")) / 0.002) - row
+            for key in ["Shift+ArrowLeft"] * (away // 10) + ["ArrowLeft"] * (away % 10):
+                page.keyboard.press(key)
             page.wait_for_selector(f"#fig-lanes .words:text('{0.002 * row:.3f} s')")
             told = page.locator("#fig-lanes .words").inner_text()
             for name, size, way in re.findall(r"(\w+) ([\d.]+) r (in|up)", told):
                 shown = float(size) * {"in": -1, "up": 1}[way]
                 assert shown == pytest.approx(gaps[name][row], rel=0.05), (name, told)
             assert all(abs(gaps[name][row]) < 1e-9 for name in re.findall(r"(\w+) touching", told))
-        for label in ("push / weight", "energy / start", "gap / r"):
-            show = page.locator("#fig-lanes button:text-matches('^Show')")
-            show.evaluate("(node) => node.click()")
-            page.wait_for_selector(f"#fig-lanes .axis-name:text('{label}')")
+
+
+def test_an_explosion_is_drawn_with_a_scale_of_heights(visit):
+    with visit("?dt=0.04#in-a-hurry.2") as page:
+        page.wait_for_selector("#fig-lanes .line.m-penalty")
+        page.wait_for_function(
+            "[...document.querySelectorAll('#fig-lanes text')].some(({ textContent }) => "
+            "/ m$/.test(textContent))"
+        )
+        assert page.locator("#fig-lanes circle.ball").count() == 2  # none is lost
 
 
 def test_a_line_of_code_is_lit_while_it_runs(visit):
@@ -340,7 +327,7 @@ def test_no_answer_of_a_bet_is_seen_before_one_click_and_then_it_stays_open(visi
     with visit(shown=False) as page:
         for name in BETS:
             assert answers(name) not in page.locator("article").inner_text(), name
-            after = page.locator(f"#{name} + .veiled")  # what follows the bet
+            after = page.locator(f".part:has(> #{name}) + .veiled")  # what follows the bet
             assert after.locator(".veil-bar").first.is_visible()
             assert not after.locator(".answer").first.is_visible()
         page.locator("#fig-two button").click()
@@ -389,6 +376,66 @@ def test_the_blank_names_a_slip_and_takes_the_right_lines(visit):
 
 
 # ---- grabbing, keyboard, screens
+
+
+WIDTHS = (1280, 1024, 390)
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_at_the_middle_of_every_button_knob_handle_and_ball_is_that_thing(visit, width):
+    with visit(width=width, height=800) as page:
+        assert page.evaluate(HITS) == []
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_so_it_is_in_firefox(gecko, url, width):
+    gecko.visit(url, width=width)
+    assert gecko.evaluate(HITS) == []
+
+
+def test_whatever_a_mouse_presses_and_moves_changes_the_words_of_its_figure(visit):
+    with visit() as page:
+        for name, handle in page.evaluate(HANDLES):
+            (x, y), before = page.evaluate(MIDDLE, [name, handle]), page.evaluate(WORDS, name)
+            page.mouse.move(x, y)
+            page.mouse.down()
+            told = {before}
+            for dx, dy in ((24, -24), (-30, 30)):  # one of them, where it stands at an end
+                page.mouse.move(x + dx, y + dy, steps=2)
+                told.add(page.evaluate(WORDS, name))
+            page.mouse.up()
+            assert len(told) > 1, (name, handle, before)
+
+
+def test_so_it_is_with_a_mouse_in_firefox(gecko, url):
+    gecko.visit(url)
+    first = dict(reversed(gecko.evaluate(HANDLES)))  # one of each figure
+    for name, handle in first.items():
+        x, y = gecko.evaluate(f"{MIDDLE}({json.dumps([name, handle])})")
+        before = gecko.evaluate(f"{WORDS}({json.dumps(name)})")
+        gecko.pointer((x, y), (x - 12, y + 12), (x + 24, y - 24))
+        if gecko.evaluate(f"{WORDS}({json.dumps(name)})") == before:
+            gecko.pointer((x, y), (x - 30, y + 30))
+        assert gecko.evaluate(f"{WORDS}({json.dumps(name)})") != before, (name, handle)
+
+
+def test_so_it_is_with_a_finger(visit):
+    with visit(width=390, height=800, has_touch=True, is_mobile=True) as page:
+        touch = page.context.new_cdp_session(page)
+        for name, handle in dict(reversed(page.evaluate(HANDLES))).items():
+            (x, y), before = page.evaluate(MIDDLE, [name, handle]), page.evaluate(WORDS, name)
+            told = {before}
+            for kind, by in (
+                ("Start", 0),
+                ("Move", -12),
+                ("Move", 24),
+                ("Move", -30),
+                ("End", None),
+            ):
+                at = [] if by is None else [{"x": x + by, "y": y - by}]
+                touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": at})
+                told.add(page.evaluate(WORDS, name))
+            assert len(told) > 1, (name, handle, before)
 
 
 HEIGHT = "Number(document.querySelector('#fig-grab .handle').getAttribute('aria-valuenow'))"
@@ -513,6 +560,7 @@ def test_firefox_runs_the_page_without_complaint_and_its_ball_falls(gecko, url):
     gecko.visit(url)
     ready = "document.documentElement.dataset.ready"
     assert gecko.evaluate(ready) == "yes"
+    gecko.evaluate(f"{MIDDLE}(['fig-grab', 'ball'])")
     gecko.evaluate("document.querySelector('#fig-grab .handle').focus()")
     gecko.press("\ue013", "\ue007")  # arrow up, Enter
     words = "document.querySelector('#fig-grab .words').textContent"

@@ -76,6 +76,5 @@ export const figure = {
     "further it explodes.",
   height: 400,
   knobs: ["stiffness", "damping"],
-  shows: { dt: 0.03 },
   draw,
 };

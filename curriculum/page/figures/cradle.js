@@ -58,7 +58,7 @@ function draw(view) {
   const all = `All impacts at one moment: they leave with ${list(once)} of its speed.`;
   return {
     svg: frame(once, "at one moment").join("") + second,
-    words: `${all} One shortly after another: ${list(chain)}.`,
+    words: `P${text.slice(1)}. ${all} One shortly after another: ${list(chain)}.`,
     handles: [pull, wholly(pull, "other", x2 + aside[0], y2 + aside[1], r)],
   };
 }

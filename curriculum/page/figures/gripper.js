@@ -115,10 +115,13 @@ function drawn(view, small) {
     return grip(view, `x${i}`, x, y, NAMES[i], text, { ...range, by: (dx) => dx / scale });
   };
   const moves = does === "trembles" ? ` by ${number(trembling, 2)} r` : "";
+  const began = [own.x1 - own.x0, own.x2 - own.x1].map((far) => number(1000 * (far - 2 * R), 2));
   const holds = `it overlaps by ${number(deepest, 2)} r and ${does}${moves}`;
   return {
     svg: svg + map,
-    words: `${tellsOf(own)}: ${does === "is gone" ? "fingers and cup fly apart" : holds}.`,
+    words:
+      `${tellsOf(own)}: ${does === "is gone" ? "fingers and cup fly apart" : holds}. ` +
+      `The gaps at the start are ${began.join(" and ")} mm.`,
     handles: at.map(hold).concat(knob ?? []),
   };
 }

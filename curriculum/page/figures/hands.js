@@ -137,13 +137,14 @@ function step(view, told) {
 }
 
 function drawSandbox(view) {
-  const { balls, model } = view.own;
+  const { balls, model, last } = view.own;
   const hold = (each, k) =>
     inHand(view, String(k), `ball ${k + 1}`, {
       place: () => [each.x, each.y],
       put(x, y) {
         const place = { x: within(R, x, wide(view) - R), y: within(R, y, high(view) - R) };
         Object.assign(each, place, { vx: 0, vy: 0 });
+        view.own.last = k;
         if (view.grabbed && !view.still) view.run();
       },
       letGo: ([vx, vy]) => Object.assign(each, { vx, vy }),
@@ -152,7 +153,9 @@ function drawSandbox(view) {
   const drawn = handles.map(({ x, y, r }) => ball(model, x, y, r));
   return {
     svg: ground(view) + drawn.join(""),
-    words: `${balls.length} balls by ${model}, at steps of ${round(1000 * view.get("dt"))} ms.`,
+    words:
+      `${balls.length} balls by ${model}, at steps of ${round(1000 * view.get("dt"))} ms; ` +
+      `${handles[last].label} ${handles[last].text}.`,
     handles,
   };
 }
@@ -171,7 +174,7 @@ const sandbox = {
   height: 380,
   narrow: 320,
   knobs: ["restitution", "dt"],
-  start: () => ({ model: "soft", balls: stack(0.5).concat(fresh(1.1, R)), late: 0 }),
+  start: () => ({ model: "soft", balls: stack(0.5).concat(fresh(1.1, R)), late: 0, last: 0 }),
   buttons: [
     [
       (view) => (view.running ? "Stop" : "Run"),
@@ -179,7 +182,7 @@ const sandbox = {
     ],
     [({ own }) => `Model: ${own.model}`, ({ own }) => (own.model = NEXT[own.model])],
     ["Add a ball", add],
-    ["Stack again", ({ own }) => (own.balls = stack(0.5))],
+    ["Stack again", ({ own }) => Object.assign(own, { balls: stack(0.5), last: 0 })],
   ],
   draw: drawSandbox,
   tick(view, seconds) {

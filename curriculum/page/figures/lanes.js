@@ -295,10 +295,12 @@ function drawTwo(view) {
   const places = `${shown.map((each) => `${each.model} is ${place(each)}`).join(", ")}.`;
   const asked = "Both are about to touch. What happens now is your first bet.";
   const now = `At ${timeOfTwo(view).toFixed(2)} s`;
+  const above = number(nowOf(shown[0])[0] / R - 1, 2);
+  const falling = `Both are ${above} r above the table, and fall side by side.`;
   const landed = shown.every(({ row, landing }) => row >= landing - 1);
   return {
     svg: table(0, floor, view.width, GROUND) + drawn.join(""),
-    words: landed ? `${now}: ${view.open("ex1") ? places : asked}` : "Both fall side by side.",
+    words: landed ? `${now}: ${view.open("ex1") ? places : asked}` : falling,
     // they are held above the table, so that no bet is told
     handles: handlesOf(view, held, sight, [1.3 * R - START, high - R]),
   };

@@ -86,6 +86,5 @@ export const figure = {
     "One step multiplies place and speed by a matrix: drag its end, and the ball never rests " +
     "once an eigenvalue leaves the circle.",
   height: 310,
-  shows: { dt: 0.016 },
   draw,
 };

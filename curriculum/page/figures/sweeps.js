@@ -80,10 +80,11 @@ function draw(view) {
   });
   const whole = (tip, i) =>
     wholly(tip, `ball-${i + 1}`, 0.8 * middle, heightOf(i) - PX, PX);
+  const thrownWith = speeds.map((name) => number(view.own[name] - 1, 2)).join(", ");
   const carried = lam.map((each) => number(each)).join(", ");
   return {
     svg,
-    words: `${saying(seen[at], at)}. The contacts carry ${carried} m g dt.`,
+    words: `Speeds at the start: ${thrownWith} g dt. ${saying(seen[at], at)}. The contacts carry ${carried} m g dt.`,
     handles: [
       grip(view, "time", ...bottom, "the sweeps", mended, sweep),
       ...tips.map(whole),
