@@ -77,7 +77,8 @@ def split(text: str, file: str) -> tuple:
     for marker in MARKER.finditer(outside):
         what = f"{marker[0].strip()!r} outside any region, where it does not belong"
         wrong.append((marker.start(), what))
-    head = DOCSTRING.match(text).end() if file in WHOLE else len(text)
+    opening = DOCSTRING.match(text) if file in WHOLE else None
+    head = opening.end() if opening else len(text)
     for line in CODE_LINE.finditer(outside, head):
         wrong.append((line.start(), f"code outside any region: {line[0][:60]!r}"))
     repair = "edit the markers of the region"
@@ -92,7 +93,8 @@ def read_text(file):
 
 def split_all(read=read_text) -> tuple:
     """({name: Region}, problems) over all literate files; `read(file)` gives a file's text."""
-    found, problems = {}, []
+    found: dict = {}
+    problems = []
     for file in LITERATE:
         regions, wrong = split(read(file), file)
         problems += wrong

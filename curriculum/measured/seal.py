@@ -32,4 +32,4 @@ def sealed(text: str, *sources) -> str:
 def holds(text: str) -> bool:
     """Whether a text has its seal and is what was written, of what is there today."""
     seal = SEAL.search(text)
-    return bool(seal) and seal[1] == digest(text[: seal.start()], seal[2].split())
+    return seal is not None and seal[1] == digest(text[: seal.start()], seal[2].split())

@@ -51,7 +51,8 @@ def fingerprint(*names) -> dict:
 def digits(name, text) -> str:
     """The fingerprint of a file's text under that name."""
     _, _, without = name.partition(" without ")
-    left_out, words = [], []
+    left_out: list = []
+    words: list = []
     for region in REGION.finditer(text):
         lines = range(line_at(text, region.start()), line_at(text, region.end()) + 1)
         left_out += lines if region[1] in without.split() else ()

@@ -13,7 +13,7 @@ SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
   localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
 PICTURE = "page-live.png"  # of the README
 # the live figure stands also where the text has no use for it, and no other one in its place
-STANDING = """.alone { visibility: hidden }
+STANDING = """.centred { visibility: hidden }
 .live { opacity: 1 !important; visibility: visible !important }"""
 # what a knob costs: set a quantity by its slider, and wait until the next frame is painted
 KNOB = """([name, figure]) => new Promise((done) => {
@@ -44,6 +44,21 @@ PAINT = """() => new Promise((done) => {
   setTimeout(() => done([first ? first.startTime : NaN, shift]), 500);
 })"""
 
+# pictures, and passages beside which the live figure stands, from top to bottom
+STRETCH = """() => {
+  const end = document.getElementById("honest-limits-measured").getBoundingClientRect().top;
+  const kinds = ".fig .drawing, .generated img, .beside";
+  const places = [...document.querySelectorAll(kinds)].filter((node) => node.checkVisibility() &&
+    !(node.matches(".beside") && innerWidth < 1200) && !node.closest("#figure"));
+  let [bottom, most, last, above] = [0, 0, "the top", ""];
+  const boxes = places.map((node) => [node.getBoundingClientRect(), node.closest("[id]")?.id]);
+  for (const [box, id] of boxes.sort(([a], [b]) => a.top - b.top)) {
+    if (!box.height || box.top > end) continue;
+    if (box.top - bottom > most) [most, above] = [box.top - bottom, last];
+    if (box.bottom > bottom) [bottom, last] = [box.bottom, id];
+  }
+  return [most / innerHeight, above];
+}"""
 # how much of the window is figures, and how much is code [px^2]; whether "Measure" is reached
 SEEN = """() => [".fig .drawing", ".source pre"].map((kind) => {
   let area = 0;
@@ -89,7 +104,7 @@ def photograph(page, folder):
     with opened(page, query="?scene=drop", reduced_motion="reduce", device_scale_factor=2) as tab:
         tab.add_style_tag(content=STANDING)
         tab.locator("#figure").scroll_into_view_if_needed()
-        tab.locator("#fig-lanes .handle").focus()
+        tab.locator("#fig-lanes .handle[data-handle=time]").focus()
         for _ in range(8):  # from 0.3 s on, ten steps each
             tab.keyboard.press("Shift+ArrowRight")
         tab.wait_for_timeout(300)
@@ -106,6 +121,7 @@ def measure(page):
         paint, shift = tab.evaluate(PAINT)
         yield f"first paint {paint:.0f} ms (below 500), layout shift {shift:.3f} (below 0.1)"
         yield balance(tab)
+        yield pacing(tab)
         for scene, wanted in {"drop": 50, "bounce": 50, "stack": 100}.items():
             show(tab, page, f"?scene={scene}")
             tab.locator("a.try").first.scroll_into_view_if_needed()
@@ -118,6 +134,12 @@ def measure(page):
             name, figure = knob.evaluate(WHICH)
             time = tab.evaluate(KNOB, [name, figure])
             yield f"{figure}: {name} answers in {time:.0f} ms (below 100)"
+
+
+def pacing(tab):
+    """The longest stretch without a picture before "Honest limits", in screens: a line."""
+    screens, above = tab.evaluate(STRETCH)
+    return f"longest stretch without a picture: {screens:.1f} screens, below {above} (at most 2)"
 
 
 def balance(tab):

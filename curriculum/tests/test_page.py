@@ -400,7 +400,7 @@ def test_whatever_a_mouse_presses_and_moves_changes_the_words_of_its_figure(visi
             page.mouse.move(x, y)
             page.mouse.down()
             told = {before}
-            for dx, dy in ((24, -24), (-30, 30)):  # one of them, where it stands at an end
+            for dx, dy in ((70, -60), (-70, 60)):  # one of them, where it stands at an end
                 page.mouse.move(x + dx, y + dy, steps=2)
                 told.add(page.evaluate(WORDS, name))
             page.mouse.up()

@@ -250,6 +250,7 @@ def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
 
 
 def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     folder = tmp_path / "a folder"
     lines = command("--steps", 10, "--no-rerun", "--out", folder).stdout.splitlines()
     (see,) = [line for line in lines if line.startswith("next, see it: ")]

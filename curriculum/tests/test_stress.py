@@ -271,6 +271,7 @@ def test_one_scene_is_judged_and_said_again(capsys):
 
 
 def test_a_run_writes_its_report_and_says_what_was_judged(tmp_path):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     from curriculum.measured import results
     from curriculum.stress import report
 
