@@ -165,12 +165,8 @@ class Contact:
 
 # --- region: contacts ---
 def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
-    """The contacts of balls with the floor and with each other whose gap is below `margin` [m].
-
-    First the floor's, by ball, then those of pairs, by the first ball and then the second: the
-    sweeps take them in this order, so it is part of the result.
-    """
-    contacts = []
+    """The contacts of balls with the floor and with each other whose gap is below `margin` [m]."""
+    contacts = []  # the sweeps take them in this order, so it is part of the result
     for ball in balls:
         depth = ball.radius - ball.y
         if depth > -margin:
@@ -377,13 +373,10 @@ def strike(touching, restitution):
 
 
 def accelerations(balls, touching, pairs):
-    """Of every ball, and of every gap, the acceleration [m/s^2]; None of a gap that stays closed.
-
-    The same sweep, with accelerations in place of velocities, and forces in place of impulses.
-    """
+    """The acceleration [m/s^2] of every ball, and of every gap: None of one that stays closed."""
     resting = [c for c in touching if abs(c.v_n()) < STILL]
     speeds = [ball.vy for ball in balls]
-    for ball in balls:  # the sweep changes vy: from here to the end vy holds accelerations
+    for ball in balls:  # the same sweep: from here to the end vy holds accelerations, lam forces
         ball.vy = GRAVITY if ball.inv_mass > 0.0 else 0.0
     for c in resting:
         c.target = 0.0  # m/s^2: it may open and may not close
@@ -475,18 +468,14 @@ def soften(c, dt, solref, solimp):
 
 
 def soft_step(balls, dt: float, solref: tuple, solimp: tuple) -> bool:
-    """One step [s] like lcp's, with another target, and softness.
-
-    With R > 0 the problem has one answer, wherever the sweeps begin. So they begin at the
-    impulses of the step before. Returns False if they did not come down to LAST_BITS.
-    """
+    """One step [s] like lcp's, but softened. False if the sweeps did not come down to LAST_BITS."""
     contacts = detect_contacts(balls, margin=0.0)
     for c in contacts:
         soften(c, dt, solref, solimp)
     accelerate(balls, dt)
     speeds = [c.target for c in contacts]
     speeds += [speed for ball in balls for speed in (ball.vx, ball.vy)]
-    warm_start(contacts)
+    warm_start(contacts)  # with R > 0 there is one answer, wherever the sweeps begin
     settled = solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * max(map(abs, speeds)))
     remember(balls, contacts)
     move(balls, dt)
@@ -585,13 +574,12 @@ def fly(balls, dt, rows):
 
 
 # --- region: run ---
-# fmt: off
 MODELS = ("penalty", "lcp", "soft", "exact")
-MANY = 5e6              # steps times balls squared: from here on, compiled loops pay
-MOST_BALLS = 300        # of exact, chosen: its memory grows as their cube, to 0.1 GB here
-SOLREF = (0.02, 1.0)    # MuJoCo's default: time constant [s], damping ratio
-SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)       # MuJoCo's default: d0, d1, width [m], mid, power
-HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # the hardest contact that MuJoCo allows
+MANY = 5e6  # steps times balls squared: from here on, compiled loops pay
+MOST_BALLS = 300  # of exact, chosen: its memory grows as their cube, to 0.1 GB here
+SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
+SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default: d0, d1, width [m], mid, power
+HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the hardest contact that MuJoCo allows
 
 
 class Settings(NamedTuple):
@@ -599,22 +587,18 @@ class Settings(NamedTuple):
 
     stiffness: float = 1e4  # k of penalty [N/m]
     baumgarte: float = 0.2  # beta of lcp: the share of an overlap that one step removes
-    iters: int = 20         # of lcp: Gauss-Seidel sweeps a step, at most
-    warm: float = 0.0       # of lcp: the share of a step's impulses that the next begins with
-    solref: tuple | None = None     # of soft: time constant [s], damping ratio; see soft_defaults
-    solimp: tuple | None = None     # of soft: how hard, at which depth; see impedance
-    ahead: bool = False     # of lcp: look as far as a step travels, and let a gap close wholly
-    skip: bool = True       # leave out steps whose result is known; no bit changes
-# fmt: on
+    iters: int = 20  # of lcp: Gauss-Seidel sweeps a step, at most
+    warm: float = 0.0  # of lcp: the share of a step's impulses that the next begins with
+    solref: tuple | None = None  # of soft: time constant [s], damping ratio; see soft_defaults
+    solimp: tuple | None = None  # of soft: how hard, at which depth; see impedance
+    ahead: bool = False  # of lcp: look as far as a step travels, and let a gap close wholly
+    skip: bool = True  # leave out steps whose result is known; no bit changes
 
 
 def run_model(
     model: str, scene: Scene, dt: float, steps: int, settings: Settings = Settings(), report=None
 ) -> Run:
-    """The run of a scene by one of MODELS; report(k) hears how far it is.
-
-    Raises ValueError for what is no scene, and RuntimeError where exact cannot be exact.
-    """
+    """The run of a scene by one of MODELS; RuntimeError where exact cannot be exact."""
     check(model, scene, dt)
     if model == "exact":
         return run_exact(scene, dt, steps, report)
@@ -745,10 +729,8 @@ def first_contact(run: Run, scene: Scene, dt: float) -> int:
 
 
 def trembles(depth) -> bool:
-    """Whether the overlap [r] goes up and down every few steps to the end, and does not die out.
-
-    That is penalty past its critical step: the clamp cuts a swing that would grow.
-    """
+    """Whether the overlap [r] goes up and down every few steps to the end, and does not die out."""
+    # that is penalty past its critical step: the clamp cuts a swing that would grow
     early, late = np.array_split(depth[3 * len(depth) // 4 :], 2)
     if len(early) < 50 or not early.std() > RESTLESS:  # 50: chosen, a shorter run is no evidence
         return False
@@ -759,10 +741,7 @@ def trembles(depth) -> bool:
 # --- region: quality ---
 @np.errstate(all="ignore")
 def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None) -> dict:
-    """The measures of a run: lengths in radii of the first ball, energies in start energies.
-
-    COLUMNS says what most mean. Errors of height are taken against the run `reference`.
-    """
+    """The measures of a run, in radii of the first ball and in start energies; see COLUMNS."""
     total = energy(run.q, run.v, scene.mass)
     scale = abs(float(total[0])) or 1.0
     gap = smallest_gap(run.q, scene.radius) / float(scene.radius[0])
@@ -837,10 +816,9 @@ DT_GRID = (1, 2, 4, 8, 16, 32)  # multiples of --dt that the stability lines try
 
 
 def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dict) -> dict:
-    """The largest step of the grid without an explosion, by model, and what happens there.
+    """The largest step of DT_GRID without an explosion, by model, and what happens there.
 
-    `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model. The largest step
-    comes first, so that no run is made that cannot be the answer.
+    `run(model, dt)` makes a run; `first` holds the runs {model: Run} at dt itself.
     """
     mass, damping, count = float(scene.mass[0]), scene.damping, len(scene.mass)
     grid: dict = {
@@ -850,7 +828,7 @@ def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dic
     }
     for model in ("penalty", "lcp"):  # soft's time constant grows with the step: it stays bounded
         largest, there = None, {}  # what stays if no run comes to a contact
-        for step in (dt * factor for factor in reversed(DT_GRID)):
+        for step in (dt * factor for factor in reversed(DT_GRID)):  # the answer comes first
             found = first[model] if step == dt else run(model, step)
             quality = contact_quality(found, scene, step)
             if quality["blew_up"]:
@@ -864,9 +842,8 @@ def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dic
 
 
 # --- region: flags ---
-# fmt: off
 USUAL = Settings()
-NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, meaning
+NUMBERS = {  # flag: kind, lowest, highest, what it is when it is not given, meaning
     "--seed": (int, 0, 10**18, 0, "draws the start height"),
     "--dt": (float, 1e-6, 1e3, 0.002, "time step [s]"),
     "--steps": (int, 0, 10**6, None, "how many (2000)"),
@@ -879,7 +856,6 @@ NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, 
     "--warm": (float, 0, 1, USUAL.warm, "of lcp: share of the last impulses to begin with"),
     "--iters": (int, 1, MOST_SWEEPS, USUAL.iters, "of lcp: sweeps a step, at most"),
 }
-# fmt: on
 
 
 def number(kind, low, high):
@@ -887,16 +863,13 @@ def number(kind, low, high):
 
     def read(text):
         try:
-            value = float(text)
-            if kind is int and value.is_integer():
-                value = int(text) if "e" not in text.lower() else int(value)
+            value = int(text) if text.isdecimal() else float(text)
         except ValueError:
             value = math.nan
-        if not (isinstance(value, kind) and low <= value <= high):
-            what = "a whole number" if kind is int else "a number"
-            allowed = f"{what} from {low:g} to {high:g}"
+        if not low <= value <= high or (kind is int and value % 1 > 0):
+            allowed = f"{'a whole number' if kind is int else 'a number'} from {low:g} to {high:g}"
             raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
-        return value + 0  # -0.0 becomes 0.0
+        return kind(value) + 0  # -0.0 becomes 0.0
 
     return read
 
@@ -924,27 +897,24 @@ def add_flags(flag):
 
 def parse_flags(argv=None):
     """The checked command line. Bad input ends with one line on stderr and exit status 2."""
-    raw = argparse.RawDescriptionHelpFormatter
-    parser = argparse.ArgumentParser(
-        "contact.py", argparse.SUPPRESS, __doc__, allow_abbrev=False, formatter_class=raw
-    )
+    parser = argparse.ArgumentParser("contact.py", argparse.SUPPRESS, __doc__, allow_abbrev=False)
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")  # -1e4 is a value
     add_flags(parser.add_argument)
     args = parser.parse_args(argv)
     steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
-    count = args.bodies or {"stack": 3, "pile": 24}.get(args.scene, 1)
     memory, solref = beside("run.memory"), args.solref or (0.0, 0.0)
-    for wrong in (
-        args.smoke and args.steps is not None and "--smoke has 800 steps: leave out --steps",
-        args.bodies and args.scene in SCENES[:2] and "--bodies is for stack and pile",
-        max(solref) > 0.0
-        and min(solref) < 1e-6
-        and "argument --solref: allowed: two numbers from 1e-06 up, or two that are 0 or less",
-        not args.out.strip() and "argument --out: given ''; allowed: the name of a folder",
-        memory and memory.too_much(steps, count),
-    ):
-        if wrong:
-            parser.error(wrong)
+    if args.smoke and args.steps is not None:
+        parser.error("--smoke has 800 steps: leave out --steps")
+    if args.bodies and args.scene in SCENES[:2]:
+        parser.error("--bodies is for stack and pile")
+    if max(solref) > 0.0 and min(solref) < 1e-6:
+        allowed = "two numbers from 1e-06 up, or two that are 0 or less"
+        parser.error(f"argument --solref: allowed: {allowed}")
+    if not args.out.strip():
+        parser.error("argument --out: given ''; allowed: the name of a folder")
+    if memory and (wrong := memory.too_much(steps, len(chosen_scene(args, 0).mass))):
+        parser.error(wrong)
     args.steps = steps
     return args
 
@@ -982,12 +952,10 @@ def collect(args, scene):
     """The runs {model: Run}, and what metrics.json holds: knobs, measures, the stability grid."""
     runs, without = run_all(args, scene)
     keys = "scene", "contact", "dt", "steps", "seed", "stiffness"
-    metrics = {key: getattr(args, key) for key in keys}
-    metrics |= {"restitution": scene.restitution, "without": without, "stability": {}}
-    metrics["quality"] = {
-        model: contact_quality(run, scene, args.dt, runs.get("exact"))
-        for model, run in runs.items()
-    }
+    metrics = {key: getattr(args, key) for key in keys} | {"restitution": scene.restitution}
+    metrics |= {"quality": {}, "stability": {}, "without": without}
+    for model, run in runs.items():
+        metrics["quality"][model] = contact_quality(run, scene, args.dt, runs.get("exact"))
     if args.contact == "all" and args.scene != "pile":
         metrics["stability"] = measure_stability(
             lambda *case: run_flags(args, scene, *case), scene, args.dt, args.stiffness, runs
@@ -1026,8 +994,7 @@ def write_files(args, metrics, runs, scene):
 
 
 # --- region: report ---
-# fmt: off
-COLUMNS = {     # title: key of contact_quality, meaning
+COLUMNS = {  # title: key of contact_quality, meaning
     "max pen/r": ("max_penetration_frac", "the deepest overlap; r is the radius of a ball"),
     "rest gap/r": ("rest_gap_frac", "the smallest gap at the end: below 0 it is an overlap"),
     "rebound/r": ("rebound_frac", "the most that all surfaces are apart after the first contact"),
@@ -1037,7 +1004,6 @@ COLUMNS = {     # title: key of contact_quality, meaning
     "contact err/r": ("contact_error_frac", "what contact adds to it; both against exact"),
     "jitter/r": ("rest_jitter", "standard deviation of the overlap in the last quarter"),
 }
-# fmt: on
 
 
 def shown(value, digits=3) -> str:
@@ -1076,14 +1042,11 @@ def print_verdict(quality):
     """Which model overlaps most and which least: at worst, and of those at rest at the end."""
     whole = [name for name, row in quality.items() if not row["blew_up"]]
     resting = [name for name in whole if quality[name]["rests"]]
-    for when, names, key in (
-        ("at worst", whole, "max_penetration_frac"),
-        ("at rest", resting, "rest_penetration_frac"),
-    ):
-        ranked = sorted(names, key=lambda name: -quality[name][key])
-        groups = itertools.groupby(ranked, key=lambda name: quality[name][key])
+    for when, key, names in (("worst", "max", whole), ("rest", "rest", resting)):
+        depth = {name: quality[name][f"{key}_penetration_frac"] for name in names}
+        groups = itertools.groupby(sorted(depth, key=depth.get, reverse=True), key=depth.get)
         text = " > ".join(" = ".join(group) for _, group in groups)
-        print(f"verdict: depth {when}:", text or "none is")
+        print(f"verdict: depth at {when}:", text or "none is")
     if moving := [name for name in whole if name not in resting]:
         print("verdict: not at rest at the end:", ", ".join(moving))
 
@@ -1124,10 +1087,8 @@ def report(args, argv):
     try:
         lines = list(write_files(args, metrics, runs, scene))
     except OSError as error:
-        return fail(
-            f"cannot write to {args.out}: {error.strerror}; the report is whole, give another "
-            "--out to keep its files"
-        )
+        lost = f"cannot write to {args.out}: {error.strerror}"
+        return fail(f"{lost}; the report is whole, give another --out to keep its files")
     print(*lines, sep="\n")
     if hints := beside("run.next_steps"):
         hints.print_next(args, argv)
