@@ -5,11 +5,11 @@
 """Contact between bodies, built four times and measured honestly (robotics course, chapter 3.5).
 
 A table keeps a ball from falling through it: it pushes up, and it never pulls down. Four models:
-    penalty   a stiff spring and a damper: one more force under an unchanged integrator
+    penalty   a stiff spring and a damper: one more force, and no other change
     lcp       impulses, found by sweeps: each contact pushes, or its bodies part (a linear
               complementarity problem, solved by projected Gauss-Seidel)
     exact     from one impact to the next, each at its own time: no time step
-    soft      MuJoCo's contact: lcp's sweeps, but each contact aims like a spring and gives way
+    soft      the contact of MuJoCo, a simulator of robots: lcp's sweeps, but each contact gives way
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
 
     symbol    meaning                              unit    sign
@@ -21,8 +21,8 @@ Left out: friction, rotation, and all shapes but balls over the line y = 0.
     v_n       n . (v_a - v_b)                      m/s     > 0 separating
     f_n       contact force of penalty             N       >= 0: a contact only pushes
     lam       contact impulse over one step        N s     >= 0: a contact only pushes
-    target    the least v_n to leave a step with   m/s     > 0 separating
-    softness  R: how far a push gives way; 0 hard  1/kg
+    target    the least v_n after the step         m/s     > 0 separating
+    softness  R: v_n stays R lam below its target  1/kg    0 is hard
     m_eff     effective mass, what a push moves    kg      1 / (1 / m_a + 1 / m_b + R)
     e         restitution: share of the speed that a bounce gives back, 0 to 1
 
@@ -57,7 +57,7 @@ GRAVITY = -9.81  # m/s^2, along y
 RADIUS = 0.1  # m, of every ball in the scenes; lengths are reported in units of it
 CONTACT_MARGIN = 1e-3  # m: lcp treats a smaller gap as contact, so it also pushes across it
 MOST_SWEEPS = 10_000  # exact and soft give up here, if their impulses have not settled
-LAST_BITS = 2.0**-42  # chosen: soft's sweeps end at corrections below this share of the speeds
+LAST_BITS = 2.0**-42  # of the speeds, chosen: soft sweeps until no correction is above it
 SCENES = ("drop", "bounce", "stack", "pile")
 
 
@@ -83,18 +83,15 @@ def scene_of(
 
 
 def build_scene(name: str, seed=0, bodies=None, restitution=None, damping=None) -> Scene:
-    """The scene of that name, all balls at rest. None stands for the scene's own value.
-
-    The seed moves the start height a little; in a pile it also numbers and nudges the balls.
-    """
+    """The scene of that name, its balls at rest; each None stands for the scene's own value."""
     rng = np.random.default_rng(seed)
-    draw = rng.uniform(-0.02, 0.02)  # m
+    draw = rng.uniform(-0.02, 0.02)  # m: the seed moves the start height a little
     lift = abs(draw)  # m: stack and pile never start inside the floor
     if name in ("drop", "bounce"):
         x, y = 0.0, [1.0 + draw]
     elif name == "stack":
         x, y = 0.0, [(2 * i + 1) * RADIUS + lift for i in range(bodies or 3)]
-    elif name == "pile":  # a lattice of pitch 2.5 r, numbered at random and nudged
+    elif name == "pile":  # a lattice, twice as wide as high, numbered at random and nudged
         count = bodies or 24
         width = math.ceil(math.sqrt(2 * count))
         row, column = np.divmod(rng.permutation(count), width)
@@ -113,7 +110,7 @@ def build_scene(name: str, seed=0, bodies=None, restitution=None, damping=None) 
 class Ball:
     """A ball: position [m], velocity [m/s], mass [kg], radius [m], and the force on it [N]."""
 
-    __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()  # a typo is an error
+    __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()  # no other name can be set
 
     def __init__(self, x, y, vx, vy, mass, radius):
         self.x, self.y = x, y
@@ -122,7 +119,7 @@ class Ball:
         self.mass = mass
         self.inv_mass = 1.0 / mass  # 0 for infinite mass: nothing moves that ball
         self.radius = radius
-        self.pushed = {}  # {other ball: impulse of the last step}, where sweeps may start from
+        self.pushed = {}  # {other ball: impulse of the last step}; see warm_start
 
 
 FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)  # shared by all runs; nothing moves it
@@ -147,9 +144,9 @@ class Contact:
         self.bx, self.by = b.inv_mass * nx, b.inv_mass * ny  # and takes from b's
         self.inv_mass = a.inv_mass + b.inv_mass
         self.m_eff = 1.0 / self.inv_mass if self.inv_mass > 0.0 else 0.0  # effective mass [kg]
-        self.target = 0.0  # the v_n [m/s] to leave with at least
-        self.softness = 0.0  # R [1/kg] of soft; 0 is hard
-        self.lam = 0.0  # the impulse [N s] so far; a new step starts again from 0
+        self.target = 0.0  # m/s
+        self.softness = 0.0  # R [1/kg] of soft, which then sets m_eff, too
+        self.lam = 0.0  # the impulse [N s] of this step so far
 
     def v_n(self) -> float:
         """Normal velocity [m/s], positive when the balls separate."""
@@ -168,23 +165,19 @@ class Contact:
 
 # --- region: contacts ---
 def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
-    """The contacts of balls with the floor and with each other whose gap is below `margin` [m].
-
-    First the floor's, by ball, then those of pairs, by the first ball and then the second: a
-    solver takes them in this order, so the order is part of the result. Two balls with the same
-    centre get the normal (0, 1), since some direction must be chosen.
-    """
-    contacts = []
+    """The contacts of balls with the floor and with each other whose gap is below `margin` [m]."""
+    contacts = []  # the sweeps take them in this order, so it is part of the result
     for ball in balls:
         depth = ball.radius - ball.y
         if depth > -margin:
             contacts.append(Contact(ball, FLOOR, 0.0, 1.0, depth))
-    for a, b in itertools.combinations(balls, 2):  # every pair, which is for few balls
+    for a, b in itertools.combinations(balls, 2):  # every pair once, a before b in the list
         dx = a.x - b.x
         dy = a.y - b.y
         distance = math.sqrt(dx * dx + dy * dy)
         depth = a.radius + b.radius - distance
         if depth > -margin:
+            # two balls with the same centre have no direction: they get "up"
             nx, ny = (dx / distance, dy / distance) if distance > 0.0 else (0.0, 1.0)
             contacts.append(Contact(a, b, nx, ny, depth))
     return contacts
@@ -192,7 +185,7 @@ def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
 
 # --- region: penalty ---
 def penalty_normal_force(depth, v_n, stiffness, damping):
-    """f_n [N] of a spring and a damper at `depth` > 0 [m]. The clamp makes it one-sided."""
+    """f_n [N] of a spring and a damper at `depth` > 0 [m]: max(0, ...), since it never pulls."""
     return max(0.0, stiffness * depth - damping * v_n)
 
 
@@ -209,7 +202,7 @@ def penalty_force(contacts, stiffness, damping):
 def penalty_step(balls, dt: float, stiffness: float, damping: float) -> None:
     """One step [s] in which contact is one more force, and the integrator stays what it was."""
     for ball in balls:
-        ball.fx = ball.fy = 0.0  # not the floor's: nobody reads what it adds up
+        ball.fx = ball.fy = 0.0  # the floor's may add up: nobody reads it
     penalty_force(detect_contacts(balls, margin=0.0), stiffness, damping)
     accelerate(balls, dt)
     move(balls, dt)
@@ -233,16 +226,16 @@ def move(balls, dt: float) -> None:
 
 # --- region: lcp-target ---
 def contact_target(c, restitution, baumgarte, dt, ahead=False):
-    """The least normal velocity [m/s] with which contact c may leave the step.
+    """The least normal velocity [m/s] that contact c may have after the step.
 
-    At the end of the step the gap is gap + dt v_n, which must not be negative. So v_n has to be at
-    least -gap / dt = depth / dt: a gap may close, and an overlap must open. To open it in one step
-    would throw the balls apart, so it opens by the share beta (Baumgarte 1972): that v_n is the
-    bias. As published, a gap closes by that share too; with `ahead` it may close wholly.
+    The step ends with gap + dt v_n, which must not be negative. So v_n has to be at least
+    -gap / dt = depth / dt: a gap may close, and an overlap must open. To open it in one step would
+    throw the balls apart, so only the share beta of it opens (Baumgarte 1972): that v_n is the
+    bias. The same formula lets only that share of a gap close; with `ahead` all of it may.
 
-    With e > 0, and whatever `ahead` is, balls that touch or would meet within this step get the
-    bounce -e v_n, in an overlap the larger of bias and bounce; others may come as near as touching.
-    A target up to -e v_n lets impulses add no energy (Moreau 1988); only a bias can be above it.
+    With e > 0 balls bounce, at -e v_n, if they touch or would meet within this step. An overlap
+    takes the larger of bias and bounce. Balls that would not meet may close their gap, but their
+    target is never above -e v_n: so no impulse adds energy (Moreau 1988). Only a bias can.
     """
     close = c.depth / dt  # this v_n ends the step with a gap of 0
     bias = baumgarte / dt * c.depth  # < 0 across a gap
@@ -252,7 +245,7 @@ def contact_target(c, restitution, baumgarte, dt, ahead=False):
     bounce = -restitution * v_n
     if bias > 0.0:
         return max(bias, bounce)
-    meets = -dt * v_n >= -c.depth  # what this step closes is at least the gap
+    meets = -dt * v_n >= -c.depth  # v_n < 0 closes -dt v_n of the gap -depth in this step
     return bounce if meets else min(bounce, close)
 
 
@@ -261,10 +254,9 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
     """Find impulses with lam >= 0, w >= 0 and lam w = 0, where w = v_n + R lam - target.
 
     Projected Gauss-Seidel: each sweep mends one contact after the other, by the impulse that
-    brings it to its target, and disturbs its neighbours; the next sweep mends those. Changes lam
-    of the contacts and the velocities of their balls. Ends early, and returns True, after a sweep
-    in which no correction changed a velocity by more than `tolerance` [m/s]. In velocities and
-    impulses: Moreau (1988); Stewart and Trinkle (1996); Anitescu and Potra (1997).
+    brings it to its target, and disturbs its neighbours; the next sweep mends those. Returns True
+    after a sweep in which no correction changed a velocity by more than `tolerance` [m/s]. The
+    problem is Moreau's (1988), Stewart and Trinkle's (1996), and Anitescu and Potra's (1997).
     """
     for _ in range(iters):
         settled = True
@@ -282,10 +274,7 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
 
 # --- region: lcp ---
 def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False) -> None:
-    """One step [s]: gravity predicts the velocities, impulses correct them, the balls move.
-
-    With `ahead`, and e = 0, it looks as far as the balls can come in this step.
-    """
+    """One step [s]: gravity predicts the velocities, impulses correct them, the balls move."""
     far = ahead and restitution == 0.0
     contacts = detect_contacts(balls, step_reach(balls, dt)) if far else detect_contacts(balls)
     for c in contacts:  # before gravity: else e would also return the g dt just added
@@ -300,7 +289,7 @@ def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False) ->
 
 
 def step_reach(balls, dt: float) -> float:
-    """How far [m] two balls come towards each other in a step if both are as fast as any."""
+    """The most [m] that a gap closes in a step: both balls as fast as the fastest, plus g dt."""
     fastest = max(0.0, *(math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy) for ball in balls))
     return max(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))
 
@@ -308,8 +297,8 @@ def step_reach(balls, dt: float) -> float:
 def warm_start(contacts, share=1.0):
     """Begin with a share of the impulses that the same balls gave each other in the last step.
 
-    With few sweeps take less than all: the error that they leave is handed on, and would swing
-    like a spring without a damper. A share lets it die out.
+    Few sweeps leave an error. With a share of 1 every step hands it to the next, and it swings like
+    a spring without a damper; with less it dies out.
     """
     for c in contacts:
         c.lam = share * c.a.pushed.get(c.b, 0.0)
@@ -326,10 +315,10 @@ def remember(balls, contacts):
 
 # --- region: exact ---
 TOUCH = 1e-13  # m: balls that start with a smaller gap start in touch
-SLOW = 1e-7  # m/s: a slower bounce, 1e-15 m high, is the last of its series
-TOGETHER = 1.0 + 1e-12  # impacts within this factor of the shortest time come at one moment
-STILL = 1e-12  # m/s: a smaller v_n is rounding, so the contact rests
-ROUNDING = 2.0**-50  # of the speeds: the sweeps of exact go on until no correction is above it
+SLOW = 1e-7  # m/s: a slower bounce would be 5e-16 m high, and is left out
+TOGETHER = 1.0 + 1e-12  # times the shortest time to an impact: what comes by then comes with it
+STILL = 1e-12  # m/s, or m/s^2: less than this is rounding, so the contact rests, or stays closed
+ROUNDING = 2.0**-50  # of the speeds: exact sweeps until no correction is above it
 MOST_IMPACTS = 20_000  # a run with more is given up
 
 
@@ -337,11 +326,11 @@ def exact_run(scene: Scene, times, report=None):
     """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, of balls over one another.
 
     Between two impacts every acceleration stays the same, so a gap is a parabola in time, and the
-    next impact is its root: no time step, no error but rounding (1e-10 r over seconds and metres).
-    Raises RuntimeError where impacts have no end in sight, ArithmeticError if sweeps do not settle.
+    next impact is the first root of all: no time step, no error but rounding (1e-10 r over seconds
+    and metres). Raises RuntimeError after MOST_IMPACTS; ArithmeticError if sweeps do not settle.
     """
     balls = make_balls(scene)
-    pairs = detect_contacts(balls, margin=math.inf)  # all of them: who may touch, ever
+    pairs = detect_contacts(balls, margin=math.inf)  # all of them: who may ever touch
     touching = [c for c in pairs if -c.depth <= TOUCH]
     gaps = [0.0 if -c.depth <= TOUCH else -c.depth for c in pairs]
     q, v = np.tile(scene.q0, (len(times), 1, 1)), np.tile(scene.v0, (len(times), 1, 1))
@@ -378,19 +367,16 @@ def speed(t, v, a):
 def strike(touching, restitution):
     """All impacts of one moment: v_n becomes -e v_n where a contact pushes."""
     for c in touching:
-        back = -restitution * c.v_n()  # < 0: they part already
+        back = -restitution * c.v_n()  # < 0: they part already, and need no push
         c.target = 0.0 if 0.0 <= back < SLOW else back
     settle(touching)
 
 
 def accelerations(balls, touching, pairs):
-    """What the balls do next, and how every gap accelerates [m/s^2]; None if it stays closed.
-
-    The same sweep, with accelerations in place of velocities, and forces in place of impulses.
-    """
+    """The acceleration [m/s^2] of every ball, and of every gap: None of one that stays closed."""
     resting = [c for c in touching if abs(c.v_n()) < STILL]
     speeds = [ball.vy for ball in balls]
-    for ball in balls:  # the sweep changes vy, so here vy holds accelerations, up to the last line
+    for ball in balls:  # the same sweep: from here to the end vy holds accelerations, lam forces
         ball.vy = GRAVITY if ball.inv_mass > 0.0 else 0.0
     for c in resting:
         c.target = 0.0  # m/s^2: it may open and may not close
@@ -434,18 +420,18 @@ def time_to_impact(gap, v_n, a_n):
     if square < 0.0:
         return math.inf
     root = math.sqrt(square)
-    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n  # nothing cancels
+    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n  # sums, which round well
 
 
 # --- region: soft-impedance ---
 def impedance(depth: float, solimp: tuple) -> float:
-    """How hard the contact is at that depth [m]: d, 0 gives way and 1 is hard (getimpedance)."""
-    d0, d1, width, mid, power = solimp  # from d0 at the surface to d1 at the width
+    """How hard the contact is at that depth [m], from 0 to 1: MuJoCo's d (its getimpedance)."""
+    d0, d1, width, mid, power = solimp  # d0 at the surface, d1 from a depth of `width` [m] on
     if width <= 1e-15:  # m; MuJoCo takes the mean then
         return 0.5 * (d0 + d1)
     if depth >= width:
         return d1
-    share = depth / width  # an S of two powers, which meet at mid
+    share = depth / width  # between: an S of two powers, which meet where share is mid
     if share <= mid:
         rise = raised(share, power) / raised(mid, power - 1.0)
     else:
@@ -454,7 +440,7 @@ def impedance(depth: float, solimp: tuple) -> float:
 
 
 def raised(x, power):
-    """x to that power; a whole power by products, whose bits are the same in every language."""
+    """x to that power; a whole power by products: the page's JavaScript gets the same bits."""
     return math.prod([x] * int(power)) if power == int(power) else x**power
 
 
@@ -462,9 +448,9 @@ def raised(x, power):
 def soften(c, dt, solref, solimp):
     """Give contact c the target and the softness that MuJoCo's contact has.
 
-    A spring K [1/s^2] and a damper B [1/s] ask for the acceleration a_ref = K d depth - B v_n
-    (mj_makeImpedance, mj_referenceConstraint). They act per unit of mass, so any ball follows
-    them alike. The softness R [1/kg] lets the contact give way: the harder, the less.
+    A spring K [1/s^2] and a damper B [1/s] ask for the acceleration K d depth - B v_n, whatever
+    the mass (MuJoCo's mj_makeImpedance, mj_referenceConstraint). The softness R [1/kg] lets the
+    contact miss it: the less, the nearer d is to 1.
     """
     d = impedance(c.depth, solimp)
     d1 = solimp[1]
@@ -482,18 +468,14 @@ def soften(c, dt, solref, solimp):
 
 
 def soft_step(balls, dt: float, solref: tuple, solimp: tuple) -> bool:
-    """One step [s] of MuJoCo's contact: lcp's step with another target, and softness.
-
-    With R > 0 the problem has one answer, wherever the sweeps begin. So they begin at the
-    impulses of the step before. Returns False if they did not come down to LAST_BITS.
-    """
+    """One step [s] like lcp's, but softened. False if the sweeps did not come down to LAST_BITS."""
     contacts = detect_contacts(balls, margin=0.0)
     for c in contacts:
         soften(c, dt, solref, solimp)
     accelerate(balls, dt)
     speeds = [c.target for c in contacts]
     speeds += [speed for ball in balls for speed in (ball.vx, ball.vy)]
-    warm_start(contacts)
+    warm_start(contacts)  # with R > 0 there is one answer, wherever the sweeps begin
     settled = solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * max(map(abs, speeds)))
     remember(balls, contacts)
     move(balls, dt)
@@ -528,7 +510,7 @@ def state_of(balls) -> list[tuple]:
 
 
 def as_run(rows, settled, dt) -> Run:
-    """The Run of states (steps + 1, N, 4), and of whether the sweeps of each step settled."""
+    """The Run of rows, x y vx vy by state and ball; settled: whether each step's sweeps did."""
     rows += 0.0  # -0.0 becomes 0.0, and -nan nan: chance decides these signs
     rows[np.isnan(rows)] = math.nan
     q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()
@@ -540,9 +522,9 @@ def as_run(rows, settled, dt) -> Run:
 def simulate_faster(step, scene: Scene, dt: float, steps: int, report=None) -> Run:
     """What simulate gives, bit for bit, without the steps whose result is known.
 
-    A flight is summed up in one go. And a step sees nothing but a state, impulses of the last step
-    included: when one comes back (rest, or any cycle), the rest of the run is a copy. report(k)
-    hears how many steps are done.
+    A flight, up to 250 steps of it, is summed up in one go. And a step depends on nothing but a
+    state and the impulses of the last step: when both come back (rest, or any cycle), the rest of
+    the run is a copy. report(k) hears how many steps are done.
     """
     balls = make_balls(scene)
     rows, settled = np.zeros((steps + 1, len(balls), 4)), np.ones(steps + 1, bool)
@@ -567,9 +549,9 @@ def simulate_faster(step, scene: Scene, dt: float, steps: int, report=None) -> R
 
 # --- region: flight ---
 def fly(balls, dt, rows):
-    """Fill rows (n + 1, N, 4) from the first on, and move the balls, as long as nothing touches.
+    """Fill rows[1:] with steps, and move the balls, until one may see a contact; how many.
 
-    Returns how many steps that is: 0 if the next one may see a contact, or is not finite.
+    rows (n + 1, N, 4) begins with the state now. Where numbers are not finite it stops, too.
     """
     reach = step_reach(balls, dt)  # no model looks farther
     if any(ball.y - ball.radius < reach for ball in balls) or detect_contacts(balls, reach):
@@ -592,13 +574,12 @@ def fly(balls, dt, rows):
 
 
 # --- region: run ---
-# fmt: off
 MODELS = ("penalty", "lcp", "soft", "exact")
-MANY = 5e6              # about steps times pairs: from here on, loading the compiled loops pays
-MOST_BALLS = 300        # of exact, chosen: its memory grows as their cube, to 0.1 GB here
-SOLREF = (0.02, 1.0)    # MuJoCo's default: time constant [s], damping ratio
-SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)       # MuJoCo's default: d0, d1, width [m], mid, power
-HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)    # the hardest contact that MuJoCo allows
+MANY = 5e6  # steps times balls squared: from here on, compiled loops pay
+MOST_BALLS = 300  # of exact, chosen: its memory grows as their cube, to 0.1 GB here
+SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
+SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default: d0, d1, width [m], mid, power
+HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the hardest contact that MuJoCo allows
 
 
 class Settings(NamedTuple):
@@ -606,22 +587,18 @@ class Settings(NamedTuple):
 
     stiffness: float = 1e4  # k of penalty [N/m]
     baumgarte: float = 0.2  # beta of lcp: the share of an overlap that one step removes
-    iters: int = 20         # of lcp: Gauss-Seidel sweeps a step, at most
-    warm: float = 0.0       # of lcp: the share of a step's impulses that the next begins with
-    solref: tuple | None = None     # of soft: time constant [s], damping ratio; see soft_defaults
-    solimp: tuple | None = None     # of soft: how hard, at which depth; see impedance
-    ahead: bool = False     # of lcp: look as far as a step travels, and let a gap close wholly
-    skip: bool = True       # leave out steps whose result is known; no bit changes
-# fmt: on
+    iters: int = 20  # of lcp: Gauss-Seidel sweeps a step, at most
+    warm: float = 0.0  # of lcp: the share of a step's impulses that the next begins with
+    solref: tuple | None = None  # of soft: time constant [s], damping ratio; see soft_defaults
+    solimp: tuple | None = None  # of soft: how hard, at which depth; see impedance
+    ahead: bool = False  # of lcp: look as far as a step travels, and let a gap close wholly
+    skip: bool = True  # leave out steps whose result is known; no bit changes
 
 
 def run_model(
     model: str, scene: Scene, dt: float, steps: int, settings: Settings = Settings(), report=None
 ) -> Run:
-    """The run of a scene by one of MODELS; report(k) hears how far it is.
-
-    Raises ValueError for what is no scene, and RuntimeError where exact cannot be exact.
-    """
+    """The run of a scene by one of MODELS; RuntimeError where exact cannot be exact."""
     check(model, scene, dt)
     if model == "exact":
         return run_exact(scene, dt, steps, report)
@@ -696,9 +673,9 @@ def run_exact(scene, dt, steps, report=None):
 
 
 def beside(name: str):
-    """A module of the folder curriculum beside this file; None where it, or what it needs, is not.
+    """A module of the folder curriculum beside this file; None if it, or what it needs, is absent.
 
-    A module says what it needs by a plain ImportError. A fault in a module is raised.
+    A module says what it needs by an ImportError without a name. A fault in a module is raised.
     """
     if (home := str(Path(__file__).resolve().parent)) not in sys.path:
         sys.path.append(home)
@@ -743,19 +720,17 @@ def blow_up_step(total):
 
 
 def first_contact(run: Run, scene: Scene, dt: float) -> int:
-    """The first step after which surfaces touch, or a velocity shows more than gravity's change."""
+    """Which state is the first to touch, or to have a velocity that not only gravity changed."""
     gained = np.outer((0.0, dt * GRAVITY), np.isfinite(scene.mass))  # from gravity, in one step
     rounding = 1e-9 * (np.abs(run.v[:-1]) + np.abs(gained))
     touched = smallest_gap(run.q, scene.radius) <= 0.0
     touched[1:] |= (np.abs(np.diff(run.v, axis=0) - gained) > rounding).any((1, 2))
-    return int(touched.argmax()) if touched.any() else len(touched)
+    return int(touched.argmax()) if touched.any() else len(touched)  # none
 
 
 def trembles(depth) -> bool:
-    """Whether the overlap [r] goes up and down every few steps to the end, and does not die out.
-
-    That is penalty past its critical step: the clamp cuts a swing that would grow.
-    """
+    """Whether the overlap [r] goes up and down every few steps to the end, and does not die out."""
+    # that is penalty past its critical step: the clamp cuts a swing that would grow
     early, late = np.array_split(depth[3 * len(depth) // 4 :], 2)
     if len(early) < 50 or not early.std() > RESTLESS:  # 50: chosen, a shorter run is no evidence
         return False
@@ -766,10 +741,7 @@ def trembles(depth) -> bool:
 # --- region: quality ---
 @np.errstate(all="ignore")
 def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None) -> dict:
-    """The measures of a run: lengths in radii of the first ball, energies in start energies.
-
-    COLUMNS says what most mean. Errors of height are taken against the run `reference`.
-    """
+    """The measures of a run, in radii of the first ball and in start energies; see COLUMNS."""
     total = energy(run.q, run.v, scene.mass)
     scale = abs(float(total[0])) or 1.0
     gap = smallest_gap(run.q, scene.radius) / float(scene.radius[0])
@@ -844,10 +816,9 @@ DT_GRID = (1, 2, 4, 8, 16, 32)  # multiples of --dt that the stability lines try
 
 
 def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dict) -> dict:
-    """The largest step of the grid without an explosion, by model, and what happens there.
+    """The largest step of DT_GRID without an explosion, by model, and what happens there.
 
-    `run(model, dt)` makes a run; `first` holds the runs at dt itself, by model. The largest step
-    comes first, so that no run is made that cannot be the answer.
+    `run(model, dt)` makes a run; `first` holds the runs {model: Run} at dt itself.
     """
     mass, damping, count = float(scene.mass[0]), scene.damping, len(scene.mass)
     grid: dict = {
@@ -857,7 +828,7 @@ def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dic
     }
     for model in ("penalty", "lcp"):  # soft's time constant grows with the step: it stays bounded
         largest, there = None, {}  # what stays if no run comes to a contact
-        for step in (dt * factor for factor in reversed(DT_GRID)):
+        for step in (dt * factor for factor in reversed(DT_GRID)):  # the answer comes first
             found = first[model] if step == dt else run(model, step)
             quality = contact_quality(found, scene, step)
             if quality["blew_up"]:
@@ -871,9 +842,8 @@ def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dic
 
 
 # --- region: flags ---
-# fmt: off
 USUAL = Settings()
-NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, meaning
+NUMBERS = {  # flag: kind, lowest, highest, what it is when it is not given, meaning
     "--seed": (int, 0, 10**18, 0, "draws the start height"),
     "--dt": (float, 1e-6, 1e3, 0.002, "time step [s]"),
     "--steps": (int, 0, 10**6, None, "how many (2000)"),
@@ -886,7 +856,6 @@ NUMBERS = {     # flag: kind, lowest, highest, what it is when it is not given, 
     "--warm": (float, 0, 1, USUAL.warm, "of lcp: share of the last impulses to begin with"),
     "--iters": (int, 1, MOST_SWEEPS, USUAL.iters, "of lcp: sweeps a step, at most"),
 }
-# fmt: on
 
 
 def number(kind, low, high):
@@ -894,16 +863,13 @@ def number(kind, low, high):
 
     def read(text):
         try:
-            value = float(text)
-            if kind is int and value.is_integer():
-                value = int(text) if "e" not in text.lower() else int(value)
+            value = int(text) if text.isdecimal() else float(text)
         except ValueError:
             value = math.nan
-        if not (isinstance(value, kind) and low <= value <= high):
-            what = "a whole number" if kind is int else "a number"
-            allowed = f"{what} from {low:g} to {high:g}"
+        if not low <= value <= high or (kind is int and value % 1 > 0):
+            allowed = f"{'a whole number' if kind is int else 'a number'} from {low:g} to {high:g}"
             raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
-        return value + 0  # -0.0 becomes 0.0
+        return kind(value) + 0  # -0.0 becomes 0.0
 
     return read
 
@@ -931,27 +897,24 @@ def add_flags(flag):
 
 def parse_flags(argv=None):
     """The checked command line. Bad input ends with one line on stderr and exit status 2."""
-    raw = argparse.RawDescriptionHelpFormatter
-    parser = argparse.ArgumentParser(
-        "contact.py", argparse.SUPPRESS, __doc__, allow_abbrev=False, formatter_class=raw
-    )
+    parser = argparse.ArgumentParser("contact.py", argparse.SUPPRESS, __doc__, allow_abbrev=False)
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")  # -1e4 is a value
     add_flags(parser.add_argument)
     args = parser.parse_args(argv)
     steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
-    count = args.bodies or {"stack": 3, "pile": 24}.get(args.scene, 1)
     memory, solref = beside("run.memory"), args.solref or (0.0, 0.0)
-    for wrong in (
-        args.smoke and args.steps is not None and "--smoke has 800 steps: leave out --steps",
-        args.bodies and args.scene in SCENES[:2] and "--bodies is for stack and pile",
-        max(solref) > 0.0
-        and min(solref) < 1e-6
-        and "argument --solref: allowed: two numbers from 1e-06 up, or two that are 0 or less",
-        not args.out.strip() and "argument --out: given ''; allowed: the name of a folder",
-        memory and memory.too_much(steps, count),
-    ):
-        if wrong:
-            parser.error(wrong)
+    if args.smoke and args.steps is not None:
+        parser.error("--smoke has 800 steps: leave out --steps")
+    if args.bodies and args.scene in SCENES[:2]:
+        parser.error("--bodies is for stack and pile")
+    if max(solref) > 0.0 and min(solref) < 1e-6:
+        allowed = "two numbers from 1e-06 up, or two that are 0 or less"
+        parser.error(f"argument --solref: allowed: {allowed}")
+    if not args.out.strip():
+        parser.error("argument --out: given ''; allowed: the name of a folder")
+    if memory and (wrong := memory.too_much(steps, len(chosen_scene(args, 0).mass))):
+        parser.error(wrong)
     args.steps = steps
     return args
 
@@ -989,12 +952,10 @@ def collect(args, scene):
     """The runs {model: Run}, and what metrics.json holds: knobs, measures, the stability grid."""
     runs, without = run_all(args, scene)
     keys = "scene", "contact", "dt", "steps", "seed", "stiffness"
-    metrics = {key: getattr(args, key) for key in keys}
-    metrics |= {"restitution": scene.restitution, "without": without, "stability": {}}
-    metrics["quality"] = {
-        model: contact_quality(run, scene, args.dt, runs.get("exact"))
-        for model, run in runs.items()
-    }
+    metrics = {key: getattr(args, key) for key in keys} | {"restitution": scene.restitution}
+    metrics |= {"quality": {}, "stability": {}, "without": without}
+    for model, run in runs.items():
+        metrics["quality"][model] = contact_quality(run, scene, args.dt, runs.get("exact"))
     if args.contact == "all" and args.scene != "pile":
         metrics["stability"] = measure_stability(
             lambda *case: run_flags(args, scene, *case), scene, args.dt, args.stiffness, runs
@@ -1033,8 +994,7 @@ def write_files(args, metrics, runs, scene):
 
 
 # --- region: report ---
-# fmt: off
-COLUMNS = {     # title: key of contact_quality, meaning
+COLUMNS = {  # title: key of contact_quality, meaning
     "max pen/r": ("max_penetration_frac", "the deepest overlap; r is the radius of a ball"),
     "rest gap/r": ("rest_gap_frac", "the smallest gap at the end: below 0 it is an overlap"),
     "rebound/r": ("rebound_frac", "the most that all surfaces are apart after the first contact"),
@@ -1044,7 +1004,6 @@ COLUMNS = {     # title: key of contact_quality, meaning
     "contact err/r": ("contact_error_frac", "what contact adds to it; both against exact"),
     "jitter/r": ("rest_jitter", "standard deviation of the overlap in the last quarter"),
 }
-# fmt: on
 
 
 def shown(value, digits=3) -> str:
@@ -1083,14 +1042,11 @@ def print_verdict(quality):
     """Which model overlaps most and which least: at worst, and of those at rest at the end."""
     whole = [name for name, row in quality.items() if not row["blew_up"]]
     resting = [name for name in whole if quality[name]["rests"]]
-    for when, names, key in (
-        ("at worst", whole, "max_penetration_frac"),
-        ("at rest", resting, "rest_penetration_frac"),
-    ):
-        ranked = sorted(names, key=lambda name: -quality[name][key])
-        groups = itertools.groupby(ranked, key=lambda name: quality[name][key])
+    for when, key, names in (("worst", "max", whole), ("rest", "rest", resting)):
+        depth = {name: quality[name][f"{key}_penetration_frac"] for name in names}
+        groups = itertools.groupby(sorted(depth, key=depth.get, reverse=True), key=depth.get)
         text = " > ".join(" = ".join(group) for _, group in groups)
-        print(f"verdict: depth {when}:", text or "none is")
+        print(f"verdict: depth at {when}:", text or "none is")
     if moving := [name for name in whole if name not in resting]:
         print("verdict: not at rest at the end:", ", ".join(moving))
 
@@ -1131,10 +1087,8 @@ def report(args, argv):
     try:
         lines = list(write_files(args, metrics, runs, scene))
     except OSError as error:
-        return fail(
-            f"cannot write to {args.out}: {error.strerror}; the report is whole, give another "
-            "--out to keep its files"
-        )
+        lost = f"cannot write to {args.out}: {error.strerror}"
+        return fail(f"{lost}; the report is whole, give another --out to keep its files")
     print(*lines, sep="\n")
     if hints := beside("run.next_steps"):
         hints.print_next(args, argv)

@@ -31,12 +31,12 @@ NOT_RUN = {  # how it starts: why CI does not run it
 
 def section(text, heading):
     """What stands below a heading of the second level."""
-    return text.split(f"\n## {heading}\n", 1)[1].split("\n## ", 1)[0]
+    return text.partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
 
 
 def set_up(text):
     """{"pip", "windows", "uv": the two lines each} of the block below "Run it"."""
-    block = re.search(r"```sh\n(.*?)```", section(text, "Run it"), re.DOTALL)[1]
+    block = section(text, "Run it").partition("```sh\n")[2].partition("```")[0]
     found, lines = {}, []
     for line in block.splitlines():
         if line.startswith("#"):  # a heading of the block says for whom the next lines are
@@ -51,12 +51,12 @@ def set_up(text):
 
 def rows(text):
     """[(what, the pip command, the uv command)] of the table below "What to do next"."""
-    table = re.findall(
-        r"^\| (.+?) \| `(.+?)` \| `(.+?)` \|$", section(text, "What to do next"), re.M
-    )
-    if len(table) < 5:
-        raise SystemExit(f"README.md, What to do next: five rows or more; found {table}")
-    return table
+    table = section(text, "What to do next").partition("\n| --- | --- | --- |\n")[2]
+    lines = table.split("\n\n")[0].splitlines()
+    found = [re.fullmatch(r"\| (.+?) \| `(.+?)` \| `(.+?)` \|", line) for line in lines]
+    if len(found) < 5 or not all(found):
+        raise SystemExit(f"README.md, What to do next: five rows or more of two commands; {lines}")
+    return [each.groups() for each in found]
 
 
 def why_not(command):
@@ -81,7 +81,7 @@ def left_out(run):
     for name in ("README.md", "CONTRIBUTING.md"):
         for command in others((ROOT / name).read_text("utf-8")):
             if not any(command.replace(".venv/bin/", "") in line for line in lines):
-                yield name, command, why_not(command) or "NO REASON GIVEN"
+                yield name, command, why_not(command)
 
 
 if __name__ == "__main__":

@@ -141,9 +141,8 @@ def renumbering_the_balls_renumbers_the_run(trial):
             other = trial.run(model, **turned, steps=1)
             off = np.abs(other.v[1][:, ::-1] - motion.v[1])
             yield f"{model}, v [m/s]", off, 2.0 * left[0] * inverse(motion.mass)
-    if trial.exact and struck(trial.exact)[:1].any():
-        scene = scenes.to_scene(trial.spec | turned)
-        other = contact.run_model("exact", scene, trial.dt, 1)
+    other = trial.exact and struck(trial.exact)[:1].any() and trial.brief(trial.dt, 1, **turned)
+    if other:
         off = np.abs(other.v[1][:, ::-1] - trial.exact.v[1])
         yield "exact, v [m/s]", off, NEAR * trial.exact.top[0]
 
@@ -421,9 +420,10 @@ def exact_pushes_and_never_pulls(trial):
     """
     motion = trial.exact
     on = motion and (np.abs(motion.depth[0]) < 1e-13) & (motion.inv_mass > 0.0)
-    if not motion or not on.any() or not importlib.util.find_spec("scipy"):
+    run = motion and on.any() and importlib.util.find_spec("scipy") and trial.brief(TINY, 3)
+    if not run:
         return
-    run, n = contact.run_model("exact", trial.scene, TINY, 3), directions(motion, 0, on)
+    n = directions(motion, 0, on)
     v, a = (2 * run.v[1] - run.v[2]).ravel(), (run.v[2] - run.v[1]).ravel() / TINY  # after all
     if np.abs(np.diff(run.v[1:], 2, axis=0)).max() > 1e-9:
         return  # another impact follows at once
