@@ -91,7 +91,7 @@ def build_scene(name: str, seed=0, bodies=None, restitution=None, damping=None) 
     draw = rng.uniform(-0.02, 0.02)  # m
     lift = abs(draw)  # m: stack and pile never start inside the floor
     if name in ("drop", "bounce"):
-        x, y = 0.0, 1.0 + draw
+        x, y = 0.0, [1.0 + draw]
     elif name == "stack":
         x, y = 0.0, [(2 * i + 1) * RADIUS + lift for i in range(bodies or 3)]
     elif name == "pile":  # a lattice of pitch 2.5 r, numbered at random and nudged
@@ -547,7 +547,7 @@ def simulate_faster(step, scene: Scene, dt: float, steps: int, report=None) -> R
     balls = make_balls(scene)
     rows, settled = np.zeros((steps + 1, len(balls), 4)), np.ones(steps + 1, bool)
     rows[0] = state_of(balls)
-    seen, k = {}, 0  # a state: the step it came at
+    k, seen = 0, dict[tuple, int]()  # seen: at which step a state came first
     while k < steps:
         pushed = [(a, b, lam) for a in balls for b, lam in a.pushed.items()]
         first = seen.setdefault((rows[k].tobytes(), *pushed), k)
@@ -705,7 +705,8 @@ def beside(name: str):
     try:
         return importlib.import_module(f"curriculum.{name}")
     except ImportError as error:
-        if error.name is None or f"curriculum.{name}.".startswith(f"{error.name}."):
+        absent = f"curriculum.{name}.".startswith(f"{error.name}.")
+        if error.name is None or (isinstance(error, ModuleNotFoundError) and absent):
             return None
         raise
 
@@ -849,7 +850,7 @@ def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dic
     comes first, so that no run is made that cannot be the answer.
     """
     mass, damping, count = float(scene.mass[0]), scene.damping, len(scene.mass)
-    grid = {
+    grid: dict = {
         "dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
         "dt_crit_damped": critical_dt(mass, stiffness, damping),
         "dt_crit_stack": critical_dt(mass, stiffness, damping, count),

@@ -19,7 +19,7 @@ try:
 except ModuleNotFoundError:
     raise ImportError(commands.missing("numba")) from None
 
-if numba.config.DISABLE_JIT:  # then contact.py's own loops are faster
+if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]  # contact.py's own loops are faster
     raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
 
 MODELS = ("penalty", "lcp", "soft")

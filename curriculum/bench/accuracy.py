@@ -41,9 +41,9 @@ def measure(quick=False):
     jobs = list(cells(chosen, quick))
     print(f"accuracy: {len(jobs)} points, their errors first, then their times", flush=True)
     errors = pool.spread(errors_of, jobs, "errors")
-    times = timing.in_fresh_processes(
-        times_of, jobs, QUICK["processes"] if quick else PROCESSES, "run times", is_rare
-    )
+    processes = QUICK["processes"] if quick else PROCESSES
+    slow = {job for job in jobs if BY_NAME[job[1]].slow}  # one process has to be enough
+    times = timing.in_fresh_processes(times_of, jobs, processes, "run times", slow)
     points = [point(*each) for each in zip(jobs, errors, times)]
     return dict(
         problems={
@@ -74,11 +74,6 @@ def cells(chosen, quick):
                     continue
                 if substeps == 1 or substeps * c.inner <= WORK:
                     yield problem.name, c.name, dt, substeps, starts
-
-
-def is_rare(job):
-    """Whether one process has to be enough."""
-    return BY_NAME[job[1]].slow
 
 
 def sleeps(job):

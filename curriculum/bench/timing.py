@@ -37,7 +37,7 @@ def spread(values) -> dict:
     return dict(median=statistics.median(values), min=min(values), max=max(values))
 
 
-def in_fresh_processes(work, jobs, processes, label, rare=lambda job: False) -> list:
+def in_fresh_processes(work, jobs, processes, label, rare=()) -> list:
     """[[work(job) in each process] for job in jobs], each process in its own random order.
 
     A rare job runs in the first process only.
@@ -47,7 +47,7 @@ def in_fresh_processes(work, jobs, processes, label, rare=lambda job: False) -> 
     report = bar(processes * len(jobs), label)
     for number in range(processes):
         order = random.Random(number).sample(range(len(jobs)), len(jobs))
-        order = [k for k in order if number == 0 or not rare(jobs[k])]
+        order = [k for k in order if number == 0 or jobs[k] not in rare]
         with ProcessPoolExecutor(1, spawn) as pool:
             results = pool.map(work, [jobs[k] for k in order])
             for done, (k, result) in enumerate(zip(order, results)):

@@ -16,6 +16,7 @@ from pathlib import Path
 from curriculum.files import write_json, write_whole
 from curriculum.measured import stale
 from curriculum.measured.machine import dirty, machine
+from curriculum.measured.seal import BLOCK, sealed
 from curriculum.regions import ROOT, read_text
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
@@ -80,9 +81,22 @@ def footer(section: dict) -> str:
     )
 
 
+def sources(name: str) -> tuple:
+    """What the pages and figures of "bench" or "stress" are made of."""
+    return f"{FOLDERS[name]}/{NAME}", f"curriculum/{name}/report.py", "curriculum/run/plotting.py"
+
+
+def write_page(folder: Path, file: str, text: str):
+    """Write a page or a figure of a results folder, sealed where it is kept."""
+    for name, kept in FOLDERS.items():
+        if folder == ROOT / kept:
+            text = sealed(text, *sources(name))
+    write_whole(folder / file, text)
+
+
 def write_block(name: str, markdown: str):
     """Put the Markdown of "bench" or "stress" into the project's README, between its markers."""
-    readme = ROOT / "README.md"
-    block = re.compile(rf"(<!-- generated: {name} by .*? -->\n).*?(?=<!-- end -->)", re.DOTALL)
-    text = block.sub(lambda match: f"{match[1]}{markdown.strip()}\n", readme.read_text("utf-8"))
-    write_whole(readme, text)
+    text = sealed(markdown.strip(), *sources(name))
+    own = re.compile(BLOCK.pattern.replace(r"(\w+)", f"({name})"), re.DOTALL)
+    readme = own.sub(lambda match: f"{match[1]}\n{text}", read_text("README.md"))
+    write_whole(ROOT / "README.md", readme)

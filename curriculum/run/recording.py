@@ -162,7 +162,7 @@ def layout(runs, scene, drawn):
         near = [middle - 1.2 * high, middle + 1.2 * high], [-0.4 * high, 0.6 * high]
         name = f"the table, magnified: {MAGNIFIED:g} r high"
         rows.append(rrb.Horizontal(*[view(model, name, *near) for model in runs]))
-    rows.append(rrb.Horizontal(*map(plot, drawn)))
+    rows.append(rrb.Horizontal(*[plot(title, settled_at(runs)) for title in drawn]))
     shares = [5, 2, 3] if len(rows) == 3 else [5, 3]
     views = rrb.Vertical(*rows, row_shares=shares)
     return rrb.Blueprint(views, time_panel(), collapse_panels=True)
@@ -190,16 +190,31 @@ def reach(values, large):
     return float(np.fmin(np.abs(values), FARTHEST * large).max())
 
 
-def plot(title):
-    """A plot. One has the legend, which hides the least where impulses are over."""
+def settled_at(runs):
+    """When the last ball is slower than 1 cm/s for good [s], and a tenth more; at most the end."""
+    ends = [0.0]
+    for run in runs.values():
+        moving = np.flatnonzero(~(np.abs(run.v) < 0.01).all((1, 2)))
+        ends += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]
+    return float(max(ends))
+
+
+def plot(title, end):
+    """A plot up to `end` [s]. One has the legend, which hides least where impulses are over."""
     name = title.split()[0]
     legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=name == "impulse")
-    return rrb.TimeSeriesView(origin=name, name=title, plot_legend=legend)
+    shown = None
+    if 0.0 < end < 9e9:
+        first, last = (rrb.TimeRangeBoundary.absolute(seconds=each) for each in (0.0, end))
+        shown = rrb.VisibleTimeRange("sim_time", start=first, end=last)
+    return rrb.TimeSeriesView(origin=name, name=title, plot_legend=legend, time_ranges=shown)
 
 
 def time_panel():
-    """Opens at t = 0. rerun-sdk before 0.28 cannot be told to wait there; it starts at once."""
+    """Opens at t = 0, four times slowed down. rerun-sdk before 0.28 starts there at once."""
     try:
-        return rrb.TimePanel(timeline="sim_time", play_state="paused", state="collapsed")
+        return rrb.TimePanel(
+            timeline="sim_time", play_state="paused", playback_speed=0.25, state="collapsed"
+        )
     except TypeError:
         return rrb.TimePanel(timeline="sim_time", state="collapsed", duration_cursor=0.0)

@@ -33,6 +33,7 @@ def parse(argv):
     )
     flag, count = parser.add_argument, number(int, 1, 1e6)
     flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
+    flag("--draw", action="store_true", help="page and figure again, from the results alone")
     flag("--workers", type=count, metavar="N", help="processes (all cores)")
     flag("--scheduler", metavar="HOST:PORT", help="run on the workers of this dask scheduler")
     flag("--small", type=count, metavar="N", help="small scenes alone, to the first violation")
@@ -88,6 +89,11 @@ def everything(args):
 def main(argv=None):
     """Print the violations. Returns the exit status."""
     args = parse(argv)
+    if args.draw:
+        from curriculum.stress import report
+
+        report.draw(report.RESULTS, report.results.load("stress"))
+        return 0
     if args.scene or args.small:
         violations = some_scenes(args.scene or jobs.scene_jobs(range(args.small), small=True))
     else:

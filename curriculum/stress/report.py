@@ -1,6 +1,5 @@
 """results.json, README.md and the figure, from the results of the jobs."""
 
-from curriculum.files import write_whole
 from curriculum.measured import results
 from curriculum.run import plotting
 from curriculum.stress import extremes, jobs, maps, mujoco_match
@@ -53,15 +52,20 @@ def write(found, origins, folder):
     for name, section in sections.items():
         section["notes"] = {what: len(places) for what, places in sorted(section["notes"].items())}
         sections[name] = results.save(folder, name, section, origins[name])
-    write_whole(folder / "README.md", page(sections))
+    draw(folder, sections)
+    print(f"report: {folder / 'README.md'}")
+    return [violation for section in sections.values() for violation in section["violations"]]
+
+
+def draw(folder, sections):
+    """Write page and figure, and the README's block where the results are kept."""
+    results.write_page(folder, "README.md", page(sections))
     try:
-        write_whole(folder / "penalty-map.svg", penalty_map(sections["maps"]))
+        results.write_page(folder, "penalty-map.svg", penalty_map(sections["maps"]))
     except ImportError as error:
         print(f"no figure: {error}")
     if folder == RESULTS:
         results.write_block("stress", readme(sections))
-    print(f"report: {folder / 'README.md'}")
-    return [violation for section in sections.values() for violation in section["violations"]]
 
 
 def summary(sections):

@@ -327,7 +327,7 @@ def test_a_converged_solver_leaves_the_velocities_of_the_least_change(row):
 @pytest.mark.parametrize("row", ["lcp", "warm", "ahead"])
 def test_the_rows_of_lcp_are_contact_py_bit_for_bit(row):
     s, scene = solvers.SOLVERS[row], contact.build_scene("pile", 0, 6)
-    mine = contact.simulate(lambda balls: solvers.step(balls, 0.01, s, [0]), scene, 0.01, 60, False)
+    mine = contact.simulate(lambda balls: solvers.step(balls, 0.01, s, [0]), scene, 0.01, 60)
     knobs = dict(warm=s.warm, baumgarte=s.gain, ahead=s.ahead, skip=False)
     run = contact.run_model("lcp", scene, 0.01, 60, contact.Settings(**knobs))
     assert mine.q.tobytes() == run.q.tobytes()
@@ -336,7 +336,7 @@ def test_the_rows_of_lcp_are_contact_py_bit_for_bit(row):
 def test_xpbd_is_position_based_dynamics():
     scene, dt, n = solvers.PROBLEMS["stack_10"][2](), solvers.DT, 10
     run = contact.simulate(
-        lambda balls: solvers.step(balls, dt, solvers.SOLVERS["xpbd"], [0]), scene, dt, 64, False
+        lambda balls: solvers.step(balls, dt, solvers.SOLVERS["xpbd"], [0]), scene, dt, 64
     )
     y, v, h = scene.q0[1].copy(), np.zeros(n), dt / 20
     for _ in range(64 * 20):  # predict, push apart what overlaps, take the speeds from the places
@@ -389,7 +389,7 @@ def test_what_is_timed_is_called_and_heights_are_read_at_every_look():
         heights = np.array(setting.build(contact.build_scene("drop"), 0.002, 4).trace(5))
         assert heights.shape == (6, 1) and len(set(heights[:, 0])) == 6
     jobs, rare = [1, 2, 3], [2]
-    found = timing.in_fresh_processes(abs, jobs, 2, "test", rare.__contains__)
+    found = timing.in_fresh_processes(abs, jobs, 2, "test", rare)
     assert found == [[1, 1], [2], [3, 3]]
 
 

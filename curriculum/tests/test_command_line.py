@@ -277,6 +277,21 @@ def test_where_nothing_can_be_written_the_report_is_whole(given, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["outputs"]
 
 
+@pytest.mark.parametrize(
+    "fault", ["import nmpy", "from curriculum.run import no_such_name", "1 / 0"]
+)
+def test_what_is_missing_is_none_and_what_is_broken_is_raised(fault, tmp_path):
+    shutil.copy(ROOT / "contact.py", tmp_path)
+    (tmp_path / "curriculum/run").mkdir(parents=True)
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import contact; "
+    words = [sys.executable, "-c", code + "print(contact.beside('run.broken'))"]
+    missing = subprocess.run(words, cwd="/", capture_output=True, text=True)
+    assert (missing.stdout, missing.returncode) == ("None\n", 0), missing.stderr
+    (tmp_path / "curriculum/run/broken.py").write_text(fault)
+    broken = subprocess.run(words, cwd="/", capture_output=True, text=True)
+    assert broken.returncode == 1 and "Error" in broken.stderr.splitlines()[-1]
+
+
 def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
     code = (
         "import sys, contact; contact.main(['--no-rerun', '--out', sys.argv[1]]); "

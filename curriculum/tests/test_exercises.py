@@ -155,13 +155,13 @@ def test_what_is_wrong_broken_or_without_end_fails_its_own_check_and_says_why(co
     fill("ex7", ("softness = ...", "import os; os._exit(7)"))
     fill("ex9", *FILLED["ex9"][:-1], ("SAG = None", "SAG = 1.373e-3"))
     limit = folder / "exercises/kit/alone.py"
-    limit.write_text(limit.read_text().replace("LIMIT = 20", "LIMIT = 2"))
+    limit.write_text(limit.read_text().replace("LIMIT = 20", "LIMIT = 4"))
     result = run(folder, "checks.py")
     assert result.returncode == 1 and "6 failed, 4 skipped" in result.stdout
     for words in (
         "C needs quotes around it", "SyntaxError", "implicit_spring ended its process (exit sta",
         "likely: nothing keeps the table from pulling", "printed   sum -0.3",
-        "longest_step does not end: stopped after 2 s in exercises/ex6_find_the_cliff.py, line",
+        "longest_step does not end: stopped after 4 s in exercises/ex6_find_the_cliff.py, line",
         "likely: the lowest ball carries those above it",
     ):  # fmt: skip
         assert words in result.stdout, words
@@ -551,7 +551,7 @@ def test_an_exercise_gives_nothing_away_and_hints_ask(name, file, tmp_path):
         assert giveaway not in text
     assert re.match(r'"""Exercise \d+, [\w ]+ \(\d+ minutes\): .+[.?]\n', text) and "--hint" in text
     hints = predict.FACTS[name]["hints"]
-    assert all("?" in hint for hint in hints)
+    assert all("?" in hint and not re.search(r"[=*/]|max\(", hint) for hint in hints)
     shown = subprocess.run(
         [sys.executable, ROOT / file, "--hint", "1"], cwd=tmp_path, capture_output=True, text=True
     )

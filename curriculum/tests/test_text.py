@@ -6,13 +6,12 @@ import re
 import shutil
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 from curriculum import regions
-from curriculum.measured import results, stale
+from curriculum.measured import stale
 from curriculum.text import references
 
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
@@ -40,6 +39,16 @@ README = """# Project
 <!-- end -->
 """
 META = "runs:\n  drop: [--contact, all]\n"
+OTHERS = {
+    "exercises/ex1.py": '"""Your bet."""\n',
+    "curriculum/page/figures/clamp.js": 'const x = 1;\nexport default { caption: "It pushes." };\n',
+}
+WRITE = """from curriculum.measured import results
+results.write_block('bench', '| 1 |')
+folder = results.ROOT / results.FOLDERS['bench']
+results.write_page(folder, 'a.svg', '<svg/>')
+results.write_page(folder, 'README.md', '# Page')
+"""
 PENDING = (
     "chapter,tier,wallclock_min,config_hash,commit,date,status\nch3.5-contact,t4,,,,,PENDING\n"
 )
@@ -86,8 +95,13 @@ def accepted(tmp_path_factory):
     (project / "README.md").write_text(README, "utf-8")
     (project / "meta.yaml").write_text(META, "utf-8")
     (project / "wallclock.csv").write_text(PENDING, "utf-8")
+    for file, text in OTHERS.items():
+        (project / file).parent.mkdir(parents=True, exist_ok=True)
+        (project / file).write_text(text, "utf-8")
+    subprocess.run([sys.executable, "-B", "-c", WRITE], cwd=project, check=True)
     sections = (
-        "chapter/chapter chapter/a-sponge chapter/a-sweep chapter/code README/project README/run"
+        "chapter/chapter chapter/a-sponge chapter/a-sweep chapter/code README/project README/run "
+        "contact/opening meta/runs exercises/ex1 figures/clamp"
     )
     for flags in (("--accept", *sections.split()), ()):
         run = run_gate(project, *flags)
@@ -125,7 +139,7 @@ def test_every_fault_of_the_chapter_is_named_with_its_line_and_repair(project):
         (5, "a typed number, 0.25; repair: write {{KEY|FORMAT}}"),
         (5, "'= 3': a typed number needs a reason: {{= NUMBER | REASON}}"),
         (5, "'quality.penalty.depth|.1f': 'quality.penalty.depth' is not there: no 'depth'"),
-        (7, f"'{false}' does not hold; repair: correct the text"),
+        (7, f"'{false}' does not hold: 0.00981 < "),
         (12, "a typed number, 0.5; repair: write {{KEY|FORMAT}}"),
     ):
         assert f"{CHAPTER}:{line}: {what}" in printed
@@ -207,7 +221,6 @@ def test_section_that_does_not_exist_cannot_be_accepted_and_gone_ones_are_taken_
 def test_results_and_ledger_of_other_code_are_stale_until_measured_again(project):
     measured = {"command": "python -m curriculum.bench skip", "code": {"contact.py": "0" * 12}}
     folder = project / "curriculum/bench/results"
-    folder.mkdir(parents=True)
     (folder / "results.json").write_text(json.dumps({"skip": {"measured": measured, "n": 3}}))
     row = "ch3.5-contact,cpu,0.01,0123456789ab,1234567,2026-01-02,MEASURED\n"
     (project / "wallclock.csv").write_text(PENDING + row)
@@ -293,20 +306,35 @@ def test_measuring_writes_a_whole_row_of_todays_code(project):
     assert row.startswith("ch3.5-contact,cpu,") and row.endswith(",MEASURED")
 
 
-def test_block_of_the_readme_is_written_whole_and_waits_for_a_reader(project):
-    write = "from curriculum.measured import results; results.write_block('bench', '\\n| a |\\n')"
-    subprocess.run([sys.executable, "-B", "-c", write], cwd=project, check=True)
-    head, end = README.split("<!-- end -->")
-    assert (project / "README.md").read_text("utf-8") == f"{head}| a |\n<!-- end -->{end}"
-    assert "section README/run changed; repair: read it, then" in run_gate(project).stdout
+@pytest.mark.parametrize(
+    "file, old, new, problem",
+    [
+        ("contact.py", "v_n       n . (v_a - v_b)", "v_n       n . (v_b - v_a)", "contact/opening"),
+        ("meta.yaml", "drop: [--contact, all]", "drop: [--mass, 2]", "meta/runs changed"),
+        ("exercises/ex1.py", "Your bet.", "A bet.", "exercises/ex1 changed"),
+        ("curriculum/page/figures/clamp.js", "It pushes.", "It pulls.", "figures/clamp changed"),
+        ("curriculum/page/figures/clamp.js", "x = 1", "x = 2", None),
+        ("README.md", "| 1 |", "| 2 |", "README.md:1: is not what was written"),
+        ("curriculum/bench/results/a.svg", "<svg/>", "<svg></svg>", "a.svg:1: is not what was"),
+        ("curriculum/bench/results/README.md", "# Page", "# Pages", "README.md:1: is not what was"),
+    ],
+)
+def test_each_change_of_what_a_reader_sees_is_named(project, file, old, new, problem):
+    edit(project / file, old, new)
+    run = run_gate(project)
+    assert run.returncode == (problem is not None) and (problem or "agree") in run.stdout
 
 
-def test_blocks_of_the_readme_are_what_is_written_of_the_results():
-    pytest.importorskip("scipy", reason="scipy is not installed")
-    text = (ROOT / "README.md").read_text("utf-8")
-    for name in results.FOLDERS:
-        block = import_module(f"curriculum.{name}.report").readme(results.load(name))
-        assert f"-->\n{block.strip()}\n<!-- end -->" in text, name
+def test_block_that_a_command_wrote_needs_no_reader(project):
+    subprocess.run([sys.executable, "-B", "-c", WRITE.replace("1", "2")], cwd=project, check=True)
+    assert "-->\n| 2 |\n<!-- sealed " in (project / "README.md").read_text("utf-8")
+    assert run_gate(project).returncode == 0
+
+    newer = '{"skip": {"measured": {"code": {}}}}'  # which nobody has drawn
+    (project / "curriculum/bench/results/results.json").write_text(newer)
+    assert (
+        "a.svg:1: is not what was written of today's results; repair: " in run_gate(project).stdout
+    )
 
 
 def test_runs_are_kept_until_the_code_changes(project):

@@ -5,11 +5,12 @@ import re
 from collections import Counter
 
 from curriculum.files import write_whole
-from curriculum.measured import ledger, results
+from curriculum.measured import ledger, results, seal
+from curriculum.measured.seal import BLOCK
 from curriculum.measured.stale import changed
 from curriculum.regions import ROOT, read_text, split_all
 from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, load_meta
-from curriculum.text.sections import FENCE, TEXTS, blank, changes, line_at, sections
+from curriculum.text.sections import FENCE, TEXTS, blank, changes, files, line_at, sections
 
 GATE = "python -m curriculum.text"
 CHAPTER = TEXTS["chapter"]
@@ -118,9 +119,26 @@ class Gate:
                     line = line_at(text, match.start())
                     try:
                         if call(match[1]) is False:
-                            self.say(file, line, f"{match[1]!r} does not hold", "correct the text")
+                            what = f"{match[1]!r} does not hold: {numbers.sides(match[1])}"
+                            self.say(file, line, what, "correct the text")
                     except ValueError as error:
                         self.say(file, line, f"{match[1]!r}: {error}", "name what is known")
+
+    def check_written(self):
+        """Pages, figures and blocks that a command wrote are as it wrote them."""
+        written = [
+            ("README.md", match[4], match[3]) for match in BLOCK.finditer(read_text("README.md"))
+        ]
+        again = {
+            "bench": "python -m curriculum.bench draw",
+            "stress": "python -m curriculum.stress",
+        }
+        for name, folder in results.FOLDERS.items():
+            for file in files(f"{folder}/*.md", f"{folder}/*.svg"):
+                written.append((file, read_text(file), again[name]))
+        for file, text, command in written:
+            if not seal.holds(text):
+                self.say(file, 1, "is not what was written of today's results", command)
 
     def check_measured(self):
         """Results and rows of the ledger are of today's code, and the rows well formed."""
@@ -141,7 +159,8 @@ class Gate:
 def check() -> int:
     """Print every problem, and what changed in the sections that wait for a reader."""
     gate = Gate()
-    for each in (gate.check_includes, gate.check_sections, gate.check_numbers, gate.check_measured):
+    checks = gate.check_includes, gate.check_sections, gate.check_numbers
+    for each in (*checks, gate.check_measured, gate.check_written):
         each()
     recorded = gate.meta["section_hashes"]
     print(changes([s for s in gate.unread if s.name in recorded], recorded), end="")

@@ -167,6 +167,13 @@ class Numbers:
             raise ValueError(f"{claim!r} is not 'FORMULA < FORMULA'")
         return found
 
+    def sides(self, claim) -> str:
+        """The claim with the values of its two sides."""
+        sides = re.split(r"\s+([<>=]=?)\s+", " ".join(claim.split()))
+        return " ".join(
+            side if k % 2 else f"{self.value(side):.6g}" for k, side in enumerate(sides)
+        )
+
     def fill(self, text) -> str:
         """The text with every reference replaced."""
         self.prepare(text)

@@ -1,8 +1,11 @@
-"""The sections of chapter and README, each bound to the regions of which it speaks.
+"""The sections of chapter and README, each bound to the regions of which it speaks; other texts.
 
 Whether a sentence is true of the code only a reader can say. So meta.yaml holds one hash for each
 section: of its text, and of the code of every region that the section includes or names (a name in
 `code span` that the region defines). When either side changes, somebody reads the section again.
+So it is with the opening words of contact.py and exact.py (the signs, the promise), the exercises,
+the captions of figures, and what meta.yaml promises, reads and runs; these have no regions. What a
+command writes into the README needs no reader: it has a seal (measured/seal.py).
 """
 
 import hashlib
@@ -10,15 +13,19 @@ import json
 import re
 from difflib import unified_diff
 from functools import cache
+from pathlib import Path
 from typing import NamedTuple
 
 from curriculum.measured.machine import git
-from curriculum.regions import blank, line_at, read_text, split_all
+from curriculum.measured.seal import BLOCK
+from curriculum.regions import ROOT, blank, line_at, read_text, split_all
 from curriculum.text.references import INCLUDE
 
 TEXTS = {"chapter": "curriculum/prose/chapter.md", "README": "README.md"}
 FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)
 HEADING = re.compile(r"^#{1,6} +(.*)$", re.MULTILINE)
+OPENING = re.compile(r'\A(?:#[^\n]*\n|\s)*""".*?"""', re.DOTALL)  # of a Python file
+CAPTION = re.compile(r"\b(?:title|caption):\s*(?:[\"`](?:[^\"`\\]|\\.)*[\"`][\s+]*)+")
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 
 
@@ -57,7 +64,7 @@ def sections(read=read_text) -> dict:
     regions, _ = split_all(read)
     found = {}
     for stem, file in TEXTS.items():
-        text = read(file)
+        text = BLOCK.sub(r"\1\n", read(file))
         prose = blank(FENCE, text)
         starts = [match.start() for match in HEADING.finditer(prose)]
         for first, last in zip(starts, [*starts[1:], len(text)]):
@@ -68,7 +75,31 @@ def sections(read=read_text) -> dict:
                 name += "-again"
             part = text[first:last].rstrip() + "\n"
             found[name] = Section(name, file, line_at(text, first), part, bound(part, regions))
+    for name, file, text in others(read):
+        if text:
+            found[name] = Section(name, file, 1, text, ())
     return found
+
+
+def others(read):
+    """(name, file, text) of all that has words for a reader and stands elsewhere."""
+    for file in ("contact.py", "curriculum/exact.py"):
+        opening = OPENING.match(read(file))
+        yield f"{Path(file).stem}/opening", file, opening[0] if opening else ""
+    for part in re.split(r"^(?=[a-z])", read("meta.yaml"), flags=re.MULTILINE)[1:]:
+        key = part.split(":")[0]
+        if key in ("objectives", "reading", "runs"):
+            yield f"meta/{key}", "meta.yaml", part.rstrip() + "\n"
+    for file in files("exercises/ex*.py", "exercises/kit/*.json"):
+        yield f"exercises/{Path(file).stem}", file, read(file)
+    for file in files("curriculum/page/figures/*.js"):
+        yield f"figures/{Path(file).stem}", file, "\n".join(CAPTION.findall(read(file)))
+
+
+def files(*patterns):
+    """The project's files of these patterns, as they are named in git."""
+    found = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
+    return [path.relative_to(ROOT).as_posix() for path in found]
 
 
 def changes(unread, recorded) -> str:

@@ -40,9 +40,9 @@ def judged(name, file):
 def child():
     """The other process: try, and write what was found. Nothing that is printed is in its way."""
     name, file = sys.argv[2:]
-    faulthandler.dump_traceback_later(LIMIT, exit=True)
-    from . import trials
+    from . import trials  # which takes its time, too
 
+    faulthandler.dump_traceback_later(LIMIT, exit=True)
     with open(os.devnull, "w") as nowhere, contextlib.redirect_stdout(nowhere):
         try:
             found = trials.judged(name, load(file))

@@ -33,12 +33,9 @@ def main():
     name = Path(exercise.__file__).stem.split("_")[0]
     hints = FACTS[name]["hints"]
     parser = argparse.ArgumentParser(description=f"Exercise {name}.", allow_abbrev=False)
+    most = f"print hint N, 1 to {len(hints)}, and do nothing else"
     parser.add_argument(
-        "--hint",
-        type=int,
-        choices=range(1, len(hints) + 1),
-        metavar="N",
-        help=f"print hint N, 1 to {len(hints)}, and do nothing else",
+        "--hint", type=int, choices=range(1, len(hints) + 1), metavar="N", help=most
     )
     hint = parser.parse_args().hint
     try:

@@ -262,35 +262,24 @@ def judge_fingers(exercise):
         return "blank", f"no choice yet: set MODEL in {near(exercise.__file__)}", ""
     try:
         if model not in ("penalty", "soft") or not 0.0005 <= dt <= 0.1 or not k > 0.0:
-            raise ValueError(
-                "allowed: MODEL 'penalty' or 'soft', DT from 0.0005 s (2,000 steps) to 0.1 s, "
-                "STIFFNESS above 0"
-            )
+            allowed = "MODEL 'penalty' or 'soft', DT from 0.0005 s (2,000 steps) to 0.1 s"
+            raise ValueError(f"allowed: {allowed}, STIFFNESS above 0")
         seen = fingers(exercise)
     except Exception as error:
         return "wrong", f"the fingers cannot be run with {model!r}, {dt!r} s: {error}", ""
     shown = "overlap {deepest:.2g} r, trembling {trembling:.2g} r".format(**seen)
-    faults = [
-        words
-        for words, wrong in (
-            ("the cup is gone: the fingers flew off or went through it", not seen["held"]),
-            ("it trembles", seen["held"] and not seen["trembling"] < 1e-5),
-            ("it overlaps too much", seen["held"] and not seen["deepest"] < 1e-3),
-        )
-        if wrong
-    ]
-    if not faults:
-        return "right", "", shown
-    advice = (
-        "a shorter time constant (at least two steps) stiffens soft, and a higher impedance "
-        "lets less of the squeeze through"
-    )
+    faults = [] if seen["held"] else ["the cup is gone: the fingers flew off or went through it"]
+    if seen["held"]:
+        faults += [] if seen["trembling"] < 1e-5 else ["it trembles"]
+        faults += [] if seen["deepest"] < 1e-3 else ["it overlaps too much"]
+    advice = "a shorter time constant, of two steps or more, stiffens soft, and so does impedance"
     if model == "penalty":
-        advice = (
-            f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and a finger on it "
-            f"wants steps below {contact.critical_dt(0.1, k, exercise.DAMPING):.1g} s"
-        )
-    return "wrong", f"{', and '.join(faults)}; {advice}", shown
+        step = contact.critical_dt(0.1, k, exercise.DAMPING)
+        advice = f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and a finger on it "
+        advice += f"wants steps below {step:.1g} s"
+    return (
+        ("wrong", f"{', and '.join(faults)}; {advice}", shown) if faults else ("right", "", shown)
+    )
 
 
 # A whole exercise
@@ -322,5 +311,4 @@ def shown(exercise, name, state, words):
     try:
         return state, words, SHOWN[name](exercise, name) if name in SHOWN else ""
     except (Exception, SystemExit) as error:
-        trouble = f"a trial of {name} stopped: {type(error).__name__}: {error}"
-        return "wrong", "\n".join(filter(None, (words, trouble))), ""
+        return "wrong", words or f"a trial of {name} stopped: {type(error).__name__}: {error}", ""

@@ -151,6 +151,16 @@ def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots_from_t_0(s
     assert small["y_range"][0] < 0.0 < 3 * 0.000981 < small["y_range"][1] < 0.02
 
 
+def test_plots_end_where_the_last_ball_has_come_to_rest(tmp_path):
+    scene, runs = runs_of("drop", steps=2000)
+    recording = recorded(tmp_path, scene, runs)
+    (ranges,) = {str(each) for each in recording.blueprint["VisibleTimeRanges:ranges"]}
+    end = max(int(number) for number in re.findall(r"\d{8,}", ranges)) / 1e9
+    for run in runs.values():
+        assert np.abs(run.v[run.t >= end]).max() < 0.01
+    assert 0.5 < end < 2.0, "of 4 s"
+
+
 def test_a_view_says_how_its_run_ended_and_an_explosion_does_not_widen_it(tmp_path):
     scene, runs = runs_of("drop", steps=200, dt=0.064, models=("penalty", "lcp", "exact"))
     recording = recorded(tmp_path, scene, runs)
