@@ -289,7 +289,7 @@ def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False) ->
 
 
 def step_reach(balls, dt: float) -> float:
-    """How far [m] a gap closes in a step if both its balls fall, as fast as the fastest ball."""
+    """How far [m] a gap closes in a step if its balls meet head-on, as fast as the fastest gets."""
     fastest = max(0.0, *(math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy) for ball in balls))
     return max(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))
 
@@ -1044,14 +1044,14 @@ def print_verdict(quality):
 def print_stability(grid, count):
     """The largest step that each model stood, and the critical steps of penalty."""
     print("stability: tried at", ", ".join(map(str, DT_GRID)), "times --dt")
-    none = {None: "comes to no contact within these steps"}
-    none[0.0] = "explodes at every dt tried that comes to a contact"
+    instead = {None: "comes to no contact within these steps"}
+    instead[0.0] = "explodes at every dt tried that comes to a contact"
     for model in ("penalty", "lcp"):
         depth, through = grid[f"{model}_penetration_frac"], grid[f"{model}_through"]
         there = f"it goes {shown(depth)} r deep" + (f", through {through}" if through else "")
         there += ", and trembles" if grid[f"{model}_trembles"] else ""
         text = f"does not explode up to dt = {grid[model] or 0:g} s, where {there}"
-        print(f"stability: {model} {none.get(grid[model], text)}")
+        print(f"stability: {model} {instead.get(grid[model], text)}")
     stack = f"a stack of {count}: {shown(grid['dt_crit_stack'], 4)} s; " if count > 1 else ""
     print(
         f"critical dt of penalty, one ball: {shown(grid['dt_crit_damped'], 4)} s; {stack}"
