@@ -13,7 +13,7 @@ from markupsafe import Markup
 
 import contact
 from curriculum.measured import ledger
-from curriculum.page import chapter, maths_font
+from curriculum.page import chapter, fonts
 from curriculum.page.bundle import bundle, evaluate
 from curriculum.page.exercises import all_exercises, blank_cases
 from curriculum.page.panels import pieces
@@ -187,8 +187,11 @@ def environment(veils):
     )
     repository = os.environ.get("GITHUB_REPOSITORY")
     colab = COLAB.format(repository) if repository else None
-    font = {"name": maths_font.NAME, "src": data_address("font/woff", maths_font.FILE.read_bytes())}
-    made.globals.update(course=COURSE, colab=colab, font=font, colors=curves.COLORS, veils=veils)
+    faces = [
+        (name, data_address(f"font/{kind}", (HERE / file).read_bytes()), *rest)
+        for name, file, kind, *rest in fonts.FACES
+    ]
+    made.globals.update(course=COURSE, colab=colab, faces=faces, colors=curves.COLORS, veils=veils)
     made.globals.update(hides=chapter.HIDES)
     return made
 
