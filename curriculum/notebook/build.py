@@ -41,6 +41,7 @@ MARK = re.compile(
 COMMENT = re.compile(r"<!--.*?-->\n*", re.DOTALL)
 STORED = {  # a picture of a report, by its slot in the chapter
     "bounce": "curriculum/bench/results/error-bounce.svg",
+    "solvers": "curriculum/bench/results/solvers.svg",
     "penalty-map": "curriculum/stress/results/penalty-map.svg",
 }
 SAID = (  # what only the page can do, and what to do here
