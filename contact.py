@@ -126,7 +126,7 @@ FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)  # shared by all runs; nothing m
 
 
 def make_balls(scene: Scene) -> list[Ball]:
-    """The scene's balls, as the steps move them."""
+    """The scene's balls, for the steps to move."""
     columns = np.stack((*scene.q0, *scene.v0, scene.mass, scene.radius), axis=1)
     return [Ball(*values) for values in columns.tolist()]
 
@@ -289,7 +289,7 @@ def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False) ->
 
 
 def step_reach(balls, dt: float) -> float:
-    """The most [m] that a gap closes in a step: both balls as fast as the fastest, plus g dt."""
+    """How far [m] a gap closes in a step if its balls meet head-on, as fast as the fastest gets."""
     fastest = max(0.0, *(math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy) for ball in balls))
     return max(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))
 
@@ -505,7 +505,7 @@ def simulate(step, scene: Scene, dt: float, steps: int) -> Run:
 
 
 def state_of(balls) -> list[tuple]:
-    """x, y, vx, vy of every ball."""
+    """A row of simulate."""
     return [(ball.x, ball.y, ball.vx, ball.vy) for ball in balls]
 
 
@@ -522,9 +522,8 @@ def as_run(rows, settled, dt) -> Run:
 def simulate_faster(step, scene: Scene, dt: float, steps: int, report=None) -> Run:
     """What simulate gives, bit for bit, without the steps whose result is known.
 
-    A flight, up to 250 steps of it, is summed up in one go. And a step depends on nothing but a
-    state and the impulses of the last step: when both come back (rest, or any cycle), the rest of
-    the run is a copy. report(k) hears how many steps are done.
+    Up to 250 steps of flight are one sum. And a step depends on nothing but the state and the
+    impulses of the last step: when both come back (rest, or any cycle), the rest is a copy.
     """
     balls = make_balls(scene)
     rows, settled = np.zeros((steps + 1, len(balls), 4)), np.ones(steps + 1, bool)
@@ -549,10 +548,7 @@ def simulate_faster(step, scene: Scene, dt: float, steps: int, report=None) -> R
 
 # --- region: flight ---
 def fly(balls, dt, rows):
-    """Fill rows[1:] with steps, and move the balls, until one may see a contact; how many.
-
-    rows (n + 1, N, 4) begins with the state now. Where numbers are not finite it stops, too.
-    """
+    """Take steps, up to one that may see a contact; rows[0] is the state now. Returns how many."""
     reach = step_reach(balls, dt)  # no model looks farther
     if any(ball.y - ball.radius < reach for ball in balls) or detect_contacts(balls, reach):
         return 0
@@ -564,7 +560,7 @@ def fly(balls, dt, rows):
     gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
     fastest = np.sqrt(v[..., 0] * v[..., 0] + v[..., 1] * v[..., 1]).max(-1)
     reach = np.maximum(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))  # as step_reach has it
-    near = np.flatnonzero(~(gap >= reach))  # NaN is not far away
+    near = np.flatnonzero(~(gap >= reach))  # and not gap < reach: NaN is not far away
     flown = int(near[0]) if len(near) > 0 else len(rows) - 1
     rows[flown + 1 :] = 0.0
     for ball, values in zip(balls, rows[flown].tolist()):
@@ -673,19 +669,16 @@ def run_exact(scene, dt, steps, report=None):
 
 
 def beside(name: str):
-    """A module of the folder curriculum beside this file; None if it, or what it needs, is absent.
-
-    A module says what it needs by an ImportError without a name. A fault in a module is raised.
-    """
+    """A module of curriculum/ beside this file; None if it, or what it needs, is not there."""
     if (home := str(Path(__file__).resolve().parent)) not in sys.path:
         sys.path.append(home)
     try:
         return importlib.import_module(f"curriculum.{name}")
     except ImportError as error:
-        absent = f"curriculum.{name}.".startswith(f"{error.name}.")
+        absent = f"curriculum.{name}.".startswith(f"{error.name}.")  # this module or its folder
         if error.name is None or (isinstance(error, ModuleNotFoundError) and absent):
-            return None
-        raise
+            return None  # no name: the module says so itself
+        raise  # a fault in the module
 
 
 # --- region: measure ---
@@ -788,7 +781,7 @@ def height_errors(run, scene, dt, reference):
 
 
 def at_rest(run: Run, scene: Scene) -> bool:
-    """Whether every ball that can move lies still at the end: slower than 1 mm/s, and supported."""
+    """Whether at the end all balls that can move are slower than 1 mm/s, and none is falling."""
     moving = np.isfinite(scene.mass)
     still = np.abs(run.v[-1][:, moving]).max(initial=0.0) < 1e-3
     falling = np.abs(np.diff(run.v[-2:, 1][:, moving], axis=0)).max(initial=0.0)
@@ -816,10 +809,8 @@ DT_GRID = (1, 2, 4, 8, 16, 32)  # multiples of --dt that the stability lines try
 
 
 def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dict) -> dict:
-    """The largest step of DT_GRID without an explosion, by model, and what happens there.
-
-    `run(model, dt)` makes a run; `first` holds the runs {model: Run} at dt itself.
-    """
+    """The largest step without an explosion, by model, and what happens there; see DT_GRID."""
+    # run(model, dt) makes a run; first: the runs {model: Run} at dt itself
     mass, damping, count = float(scene.mass[0]), scene.damping, len(scene.mass)
     grid: dict = {
         "dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
@@ -879,8 +870,8 @@ def add_flags(flag):
     flag("--scene", choices=SCENES, default="drop", help="one ball, drop or bounce; or many (drop)")
     flag("--contact", choices=("all", *MODELS), default="all", help="the model (all)")
     for name, (kind, low, high, usual, text) in NUMBERS.items():
-        shown = "" if usual is None else f" ({usual:g})"
-        flag(name, type=number(kind, low, high), default=usual, metavar="N", help=text + shown)
+        text += "" if usual is None else f" ({usual:g})"
+        flag(name, type=number(kind, low, high), default=usual, metavar="N", help=text)
     real, switch = number(float, -1e12, 1e6), argparse.BooleanOptionalAction
     spring = "of soft: time constant [s], damping ratio (0.02 1); or minus a stiffness, a damping"
     flag("--solref", type=real, nargs=2, metavar="N", help=spring)
@@ -902,10 +893,10 @@ def parse_flags(argv=None):
     parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")  # -1e4 is a value
     add_flags(parser.add_argument)
     args = parser.parse_args(argv)
-    steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
     memory, solref = beside("run.memory"), args.solref or (0.0, 0.0)
     if args.smoke and args.steps is not None:
         parser.error("--smoke has 800 steps: leave out --steps")
+    args.steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
     if args.bodies and args.scene in SCENES[:2]:
         parser.error("--bodies is for stack and pile")
     if max(solref) > 0.0 and min(solref) < 1e-6:
@@ -913,9 +904,8 @@ def parse_flags(argv=None):
         parser.error(f"argument --solref: allowed: {allowed}")
     if not args.out.strip():
         parser.error("argument --out: given ''; allowed: the name of a folder")
-    if memory and (wrong := memory.too_much(steps, len(chosen_scene(args, 0).mass))):
+    if memory and (wrong := memory.too_much(args.steps, len(chosen_scene(args, 0).mass))):
         parser.error(wrong)
-    args.steps = steps
     return args
 
 
@@ -1025,15 +1015,15 @@ def ending(row) -> str:
     return f"{text}, sweeps unsettled in {steps} steps" if steps else text
 
 
-def print_table(rows, ending):
-    """A line per row {name: {key: value}} with ending(row) behind it, then the columns' meaning."""
+def print_table(rows, state):
+    """A line per row {name: {key: value}} with state(row) behind it, then the columns' meaning."""
     wide = max(map(len, ["contact", *rows]))
     titles = [title.rpartition(" ") for title in COLUMNS]  # in two lines: "max" over "pen/r"
     print(" " * wide + "".join(f"{above:>10}" for above, _, _ in titles))
     print(f"{'contact':<{wide}}" + "".join(f"{below:>10}" for _, _, below in titles) + "  state")
     for name, row in rows.items():
         cells = "".join(f"{shown(row[key]):>10}" for key, _ in COLUMNS.values())
-        print(f"{name:<{wide}}{cells}  {ending(row)}")
+        print(f"{name:<{wide}}{cells}  {state(row)}")
     for title, (_, meaning) in COLUMNS.items():
         print(f"  {title:<15}{meaning}")
 
@@ -1054,14 +1044,14 @@ def print_verdict(quality):
 def print_stability(grid, count):
     """The largest step that each model stood, and the critical steps of penalty."""
     print("stability: tried at", ", ".join(map(str, DT_GRID)), "times --dt")
-    without = {None: "comes to no contact within these steps"}
-    without[0.0] = "explodes at every dt tried that comes to a contact"
+    instead = {None: "comes to no contact within these steps"}
+    instead[0.0] = "explodes at every dt tried that comes to a contact"
     for model in ("penalty", "lcp"):
         depth, through = grid[f"{model}_penetration_frac"], grid[f"{model}_through"]
         there = f"it goes {shown(depth)} r deep" + (f", through {through}" if through else "")
         there += ", and trembles" if grid[f"{model}_trembles"] else ""
         text = f"does not explode up to dt = {grid[model] or 0:g} s, where {there}"
-        print(f"stability: {model} {without.get(grid[model], text)}")
+        print(f"stability: {model} {instead.get(grid[model], text)}")
     stack = f"a stack of {count}: {shown(grid['dt_crit_stack'], 4)} s; " if count > 1 else ""
     print(
         f"critical dt of penalty, one ball: {shown(grid['dt_crit_damped'], 4)} s; {stack}"

@@ -7,6 +7,7 @@ import os
 import re
 from collections import Counter
 from pathlib import Path
+from urllib.parse import quote
 
 import jinja2
 from markupsafe import Markup
@@ -71,6 +72,13 @@ def data_address(kind, content):
     return Markup(f"data:{kind};base64,{base64.b64encode(content).decode()}")
 
 
+def svg_address(text):
+    """The same of a picture as text: a quarter shorter. The quotes in its tags change place."""
+    swap = str.maketrans("\"'", "'\"")
+    held = re.sub(r"<[^>]*>", lambda tag: tag[0].translate(swap), " ".join(text.split()))
+    return Markup("data:image/svg+xml," + re.sub('[%#&"]', lambda c: quote(c[0]), held))
+
+
 def drawn_by(kind, name):
     """The picture NAME that bench or stress has drawn, as the template wants it."""
     path = next((ROOT / "curriculum" / kind / "results").glob(f"*{name}.svg"), None)
@@ -83,7 +91,7 @@ def drawn_by(kind, name):
     return {
         "kind": kind,
         "alt": ("Run time against error" if kind == "bench" else "Stability") + f": {what}",
-        "src": data_address("image/svg+xml", text.encode()),
+        "src": svg_address(text),
         "width": round(SCALE * float(box[1])),
         "height": round(SCALE * float(box[2])),
     }

@@ -9,10 +9,10 @@ in hhea and OS/2; and another name, Chapter Maths, in the tables name and CFF, s
 (SIL Open Font License 1.1, maths.LICENSE) reserves the original's.
 
 The text is set in a cut of Charis SIL 6.101 (Debian's package fonts-sil-charis), made in the same
-way from CharisSIL-Regular, -Italic and -Bold: the characters U+20 to 7E and U+A0 to FF, the signs
-– — ‘ ’ “ ” … ′ ⅔ → − ≈ ≠ ≤ ≥, raised ⁰ and ⁴ to ⁻, lowered ₀ to ₉; the layout features kern, liga
-and mark; no hinting and no tables of Graphite; as woff2 (with the package brotli); named Chapter
-Text, since its license (the same, text.LICENSE) reserves the original's names, too.
+way from CharisSIL-Regular, -Italic and -Bold: the characters U+20 to 7E, the fixed blank, and
+© ° ± ² ³ · ¹ ½ Ä Ö Ü × ß ä è é ö ÷ ü – — ‘ ’ “ ” … ′ ⅔ → − ≈ ≠ ≤ ≥ ⁰ ⁴ to ⁻ ₀; the layout features
+kern and liga; no hinting and no tables of Graphite; as woff2 (with the package brotli); named
+Chapter Text, since its license (the same, text.LICENSE) reserves the original's names, too.
 """
 
 from pathlib import Path

@@ -73,7 +73,7 @@ function showHandles(layer, handles) {
       role: "slider",
       tabindex: 0,
       "aria-label": label,
-      "aria-valuenow": plain(value),
+      "aria-valuenow": Math.abs(value) < 1e-6 ? 0 : plain(value), // it may have no exponent
       "aria-valuetext": text,
       "data-handle": name,
     };

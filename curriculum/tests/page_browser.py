@@ -88,10 +88,12 @@ HITS = f"""(async () => {{
     await frames(4);
     const all = () => [...fig.querySelectorAll(parts)].filter((node) => node.{SHOWS});
     for (let k = 0; k < all().length; k++) {{
-      all()[k].scrollIntoView({{ block: "center" }});
-      await frames(2);
-      const node = all()[k];
-      const box = node.getBoundingClientRect();
+      const place = () => all()[k].getBoundingClientRect();
+      if (place().top < 0 || place().bottom > innerHeight) {{
+        all()[k].scrollIntoView({{ block: "center" }});
+        await frames(2);
+      }}
+      const [node, box] = [all()[k], place()];
       const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
       const grabbed = node.matches(".ball") && at?.matches(".handle") && fig.contains(at);
       if (!grabbed && !node.contains(at))
@@ -100,20 +102,21 @@ HITS = f"""(async () => {{
   }}
   return wrong;
 }})()"""
-# the handles of the page, [figure, handle]; the middle of one, once it is in sight; what is said
+# a handle of each figure, [figure, handle]; the middle of one, once it is in sight; what is said
 HANDLES = """(async () => {
   const found = [];
   for (const fig of document.querySelectorAll("article .fig, .hero .fig")) {
     fig.scrollIntoView({ block: "center" });
-    for (let k = 0; k < 4; k++) await new Promise(requestAnimationFrame);
-    for (const { dataset } of fig.querySelectorAll(".handle")) found.push([fig.id, dataset.handle]);
+    for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
+    const handle = fig.querySelector(".handle");
+    if (handle) found.push([fig.id, handle.dataset.handle]);
   }
   return found;
 })()"""
 MIDDLE = """(async ([id, name]) => {
   const find = () => document.querySelector(`#${id} .handle[data-handle="${name}"]`);
   document.getElementById(id).scrollIntoView({ block: "center" });
-  for (let k = 0; k < 4; k++) await new Promise(requestAnimationFrame);
+  for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
   find().scrollIntoView({ block: "center" });
   await new Promise(requestAnimationFrame);
   const { x, y, width, height } = find().getBoundingClientRect();
@@ -148,9 +151,12 @@ class Tab:
                 assert answer["type"] != "error", f"{method}: {answer.get('message')}"
                 return answer["result"]
 
-    def visit(self, url, width=1280, height=800):
+    def resize(self, width, height=800):
         size = {"width": width, "height": height}
         self.call("browsingContext.setViewport", context=self.context, viewport=size)
+
+    def visit(self, url):
+        self.resize(1280)
         self.call("browsingContext.navigate", context=self.context, url=url, wait="complete")
 
     def evaluate(self, script):

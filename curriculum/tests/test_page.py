@@ -161,6 +161,42 @@ def visit(browser, url):
     return lambda query="", **options: visiting(browser, url + query, **options)
 
 
+@pytest.fixture(scope="module")
+def opened(browser, url):
+    """One page for all tests that leave it as good as they found it."""
+    with visiting(browser, url) as page:
+        yield page
+
+
+@pytest.fixture
+def tab(opened):
+    """The same, as large as a desktop."""
+    opened.set_viewport_size({"width": 1280, "height": 900})
+    return opened
+
+
+@pytest.fixture(scope="module")
+def unread(browser, url):
+    """One page of a reader who has not bet."""
+    with visiting(browser, url, shown=False) as page:
+        yield page
+
+
+@pytest.fixture(scope="module")
+def phone(browser, url):
+    """One page on a phone."""
+    options = {"width": 390, "height": 800, "has_touch": True, "is_mobile": True}
+    with visiting(browser, url, **options) as page:
+        yield page
+
+
+@pytest.fixture(scope="module")
+def fox(gecko, url):
+    """The same in Firefox."""
+    gecko.visit(url)
+    return gecko
+
+
 def test_page_is_below_900_kb_and_the_same_bytes_twice(url):
     held = Path(url.removeprefix("file://")).read_bytes()
     assert len(held) < MOST
@@ -269,28 +305,27 @@ def test_a_link_of_the_text_sets_its_section_and_the_live_figure_follows_the_tex
         page.wait_for_selector("#figure.back", state="attached")
 
 
-def test_the_live_figure_shows_the_gaps_of_contact_py(visit):
+def test_the_live_figure_shows_the_gaps_of_contact_py(tab):
     """Of all four models at any time, and how deep the spring is pressed in at most."""
-    with visit() as page:
-        every = page.locator("[data-show*='penalty,lcp,soft,exact&']").first
-        every.evaluate("(node) => node.scrollIntoView({ block: 'center' })")
-        page.wait_for_selector("#fig-lanes svg:has(.line.m-exact):has(.line.m-soft)")
-        scene = contact.build_scene("drop")
-        runs = {name: contact.run_model(name, scene, 0.002, 700) for name in contact.MODELS}
-        gaps = {name: run.q[:, 1, 0] / contact.RADIUS - 1 for name, run in runs.items()}
-        deepest = int(gaps["penalty"].argmin())
-        time = page.locator("#fig-lanes .handle[data-handle=time]")
-        time.focus()
-        for row in (deepest + 100, deepest):
-            away = round(float(time.get_attribute("aria-valuenow")) / 0.002) - row
-            for key in ["Shift+ArrowLeft"] * (away // 10) + ["ArrowLeft"] * (away % 10):
-                page.keyboard.press(key)
-            page.wait_for_selector(f"#fig-lanes .words:text('{0.002 * row:.3f} s')")
-            told = page.locator("#fig-lanes .words").inner_text()
-            for name, size, way in re.findall(r"(\w+) ([\d.]+) r (in|up)", told):
-                shown = float(size) * {"in": -1, "up": 1}[way]
-                assert shown == pytest.approx(gaps[name][row], rel=0.05), (name, told)
-            assert all(abs(gaps[name][row]) < 1e-9 for name in re.findall(r"(\w+) touching", told))
+    every = tab.locator("[data-show*='penalty,lcp,soft,exact&']").first
+    every.evaluate("(node) => node.scrollIntoView({ block: 'center' })")
+    tab.wait_for_selector("#fig-lanes svg:has(.line.m-exact):has(.line.m-soft)")
+    scene = contact.build_scene("drop")
+    runs = {name: contact.run_model(name, scene, 0.002, 700) for name in contact.MODELS}
+    gaps = {name: run.q[:, 1, 0] / contact.RADIUS - 1 for name, run in runs.items()}
+    deepest = int(gaps["penalty"].argmin())
+    time = tab.locator("#fig-lanes .handle[data-handle=time]")
+    time.focus()
+    for row in (deepest + 100, deepest):
+        away = round(float(time.get_attribute("aria-valuenow")) / 0.002) - row
+        for key in ["Shift+ArrowLeft"] * (away // 10) + ["ArrowLeft"] * (away % 10):
+            tab.keyboard.press(key)
+        tab.wait_for_selector(f"#fig-lanes .words:text('{0.002 * row:.3f} s')")
+        told = tab.locator("#fig-lanes .words").inner_text()
+        for name, size, way in re.findall(r"(\w+) ([\d.]+) r (in|up)", told):
+            shown = float(size) * {"in": -1, "up": 1}[way]
+            assert shown == pytest.approx(gaps[name][row], rel=0.05), (name, told)
+        assert all(abs(gaps[name][row]) < 1e-9 for name in re.findall(r"(\w+) touching", told))
 
 
 def test_an_explosion_is_drawn_with_a_scale_of_heights(visit):
@@ -303,15 +338,14 @@ def test_an_explosion_is_drawn_with_a_scale_of_heights(visit):
         assert page.locator("#fig-lanes circle.ball").count() == 2  # none is lost
 
 
-def test_a_line_of_code_is_lit_while_it_runs(visit):
-    with visit() as page:
-        page.locator("#fig-sponge").scroll_into_view_if_needed()
-        sponge = page.locator("#fig-sponge .handle[data-handle=press]")
-        sponge.press("ArrowDown")
-        page.wait_for_selector("#code-penalty .ln.lit:text('return max(0.0')", state="attached")
-        for _ in range(2):
-            sponge.press("Shift+ArrowUp")
-        page.wait_for_selector("#code-penalty:not(:has(.ln.lit))", state="attached")
+def test_a_line_of_code_is_lit_while_it_runs(tab):
+    tab.locator("#fig-sponge").scroll_into_view_if_needed()
+    sponge = tab.locator("#fig-sponge .handle[data-handle=press]")
+    sponge.press("ArrowDown")
+    tab.wait_for_selector("#code-penalty .ln.lit:text('return max(0.0')", state="attached")
+    for _ in range(2):
+        sponge.press("Shift+ArrowUp")
+    tab.wait_for_selector("#code-penalty:not(:has(.ln.lit))", state="attached")
 
 
 # ---- bets, veils, the blank
@@ -348,94 +382,85 @@ def test_no_answer_of_a_bet_is_seen_before_one_click_and_then_it_stays_open(visi
         assert not page.locator(".veil-bar").filter(visible=True).count()
 
 
-def test_show_me_lifts_a_veil_without_a_bet_and_focus_stays_there(visit):
-    with visit(shown=False) as page:
-        page.locator("[data-show=ex1]").filter(visible=True).first.click()
-        assert not page.locator(".veiled-ex1 > .veil-bar").filter(visible=True).count()
-        assert page.evaluate("document.activeElement.className") == "answer"
+def test_print_has_figures_and_answers_and_nothing_to_press(unread):
+    unread.emulate_media(media="print", reduced_motion="reduce")
+    assert not unread.locator("button, input, .live").filter(visible=True).count()
+    assert unread.locator("#fig-corner .plot").is_visible()
+    assert answers("ex1") in unread.locator("article").inner_text()
+    unread.emulate_media(media="screen")
 
 
-def test_the_blank_names_a_slip_and_takes_the_right_lines(visit):
-    with visit() as page:
-        force = page.locator("#blank-penalty_normal_force")
-        impulse = page.locator("#blank-project_impulse")
-        force.fill("stiffness * depth - damping * v_n")
-        impulse.fill("lam + max(0, dlam)")
-        page.locator("#blank button").click()
-        told = page.locator("#blank-penalty_normal_force-said").inner_text()
-        assert "nothing keeps the table from pulling" in told
-        told = page.locator("#blank-project_impulse-said").inner_text()
-        assert "the clamp is on the change" in told
-        impulse.fill("max(0, lam + alert(1))")
-        page.locator("#blank button").click()
-        assert "alert" in page.locator("#blank-project_impulse-said").inner_text()
-        force.fill("max(0, k*depth - c*v_n)")
-        impulse.fill("max(lam + dlam, 0)")
-        page.locator("#blank button").click()
-        assert "Both clamps hold" in page.locator("#blank .tried").inner_text()
+def test_show_me_lifts_a_veil_without_a_bet_and_focus_stays_there(unread):
+    unread.locator("[data-show=ex1]").filter(visible=True).first.click()
+    assert not unread.locator(".veiled-ex1 > .veil-bar").filter(visible=True).count()
+    assert unread.evaluate("document.activeElement.className") == "answer"
+
+
+def test_the_blank_names_a_slip_and_takes_the_right_lines(tab):
+    force = tab.locator("#blank-penalty_normal_force")
+    impulse = tab.locator("#blank-project_impulse")
+    force.fill("stiffness * depth - damping * v_n")
+    impulse.fill("lam + max(0, dlam)")
+    tab.locator("#blank button").click()
+    told = tab.locator("#blank-penalty_normal_force-said").inner_text()
+    assert "nothing keeps the table from pulling" in told
+    told = tab.locator("#blank-project_impulse-said").inner_text()
+    assert "the clamp is on the change" in told
+    impulse.fill("max(0, lam + alert(1))")
+    tab.locator("#blank button").click()
+    assert "alert" in tab.locator("#blank-project_impulse-said").inner_text()
+    force.fill("max(0, k*depth - c*v_n)")
+    impulse.fill("max(lam + dlam, 0)")
+    tab.locator("#blank button").click()
+    assert "Both clamps hold" in tab.locator("#blank .tried").inner_text()
 
 
 # ---- grabbing, keyboard, screens
 
 
 WIDTHS = (1280, 1024, 390)
+WIDER = """(width) => document.documentElement.scrollWidth <= width ? [] :
+  [...document.querySelectorAll("article *")].filter((each) =>
+    each.getBoundingClientRect().right > width && !each.closest(".scroll, .math, svg"))
+    .map((each) => each.outerHTML.slice(0, 120))"""
 
 
-@pytest.mark.parametrize("width", WIDTHS)
-def test_at_the_middle_of_every_button_knob_handle_and_ball_is_that_thing(visit, width):
-    with visit(width=width, height=800) as page:
-        assert page.evaluate(HITS) == []
+def test_at_the_middle_of_every_button_knob_handle_and_ball_is_that_thing(tab):
+    """In all widths, and nothing is wider than the screen."""
+    for width in (*WIDTHS, 320):
+        tab.set_viewport_size({"width": width, "height": 800})
+        assert tab.evaluate(WIDER, width) == [], width
+        assert width == 320 or tab.evaluate(HITS) == [], width
 
 
-@pytest.mark.parametrize("width", WIDTHS)
-def test_so_it_is_in_firefox(gecko, url, width):
-    gecko.visit(url, width=width)
-    assert gecko.evaluate(HITS) == []
+def test_so_it_is_in_firefox(fox):
+    for width in WIDTHS:
+        fox.resize(width)
+        assert fox.evaluate(HITS) == [], width
 
 
-def test_whatever_a_mouse_presses_and_moves_changes_the_words_of_its_figure(visit):
-    with visit() as page:
-        for name, handle in page.evaluate(HANDLES):
-            (x, y), before = page.evaluate(MIDDLE, [name, handle]), page.evaluate(WORDS, name)
-            page.mouse.move(x, y)
-            page.mouse.down()
-            told = {before}
-            for dx, dy in ((70, -60), (-70, 60)):  # one of them, where it stands at an end
-                page.mouse.move(x + dx, y + dy, steps=2)
-                told.add(page.evaluate(WORDS, name))
-            page.mouse.up()
-            assert len(told) > 1, (name, handle, before)
+def test_whatever_a_mouse_presses_and_moves_changes_the_words_of_its_figure(tab):
+    for name, handle in tab.evaluate(HANDLES):
+        (x, y), before = tab.evaluate(MIDDLE, [name, handle]), tab.evaluate(WORDS, name)
+        tab.mouse.move(x, y)
+        tab.mouse.down()
+        told = {before}
+        for dx, dy in ((70, -60), (-70, 60)):  # one of them, where it stands at an end
+            tab.mouse.move(x + dx, y + dy, steps=2)
+            told.add(tab.evaluate(WORDS, name))
+        tab.mouse.up()
+        assert len(told) > 1, (name, handle, before)
 
 
-def test_so_it_is_with_a_mouse_in_firefox(gecko, url):
-    gecko.visit(url)
-    first = dict(reversed(gecko.evaluate(HANDLES)))  # one of each figure
-    for name, handle in first.items():
-        x, y = gecko.evaluate(f"{MIDDLE}({json.dumps([name, handle])})")
-        before = gecko.evaluate(f"{WORDS}({json.dumps(name)})")
-        gecko.pointer((x, y), (x - 12, y + 12), (x + 24, y - 24))
-        if gecko.evaluate(f"{WORDS}({json.dumps(name)})") == before:
-            gecko.pointer((x, y), (x - 30, y + 30))
-        assert gecko.evaluate(f"{WORDS}({json.dumps(name)})") != before, (name, handle)
-
-
-def test_so_it_is_with_a_finger(visit):
-    with visit(width=390, height=800, has_touch=True, is_mobile=True) as page:
-        touch = page.context.new_cdp_session(page)
-        for name, handle in dict(reversed(page.evaluate(HANDLES))).items():
-            (x, y), before = page.evaluate(MIDDLE, [name, handle]), page.evaluate(WORDS, name)
-            told = {before}
-            for kind, by in (
-                ("Start", 0),
-                ("Move", -12),
-                ("Move", 24),
-                ("Move", -30),
-                ("End", None),
-            ):
-                at = [] if by is None else [{"x": x + by, "y": y - by}]
-                touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": at})
-                told.add(page.evaluate(WORDS, name))
-            assert len(told) > 1, (name, handle, before)
+def test_so_it_is_with_a_mouse_in_firefox(fox):
+    fox.resize(1280)
+    for name, handle in fox.evaluate(HANDLES):
+        x, y = fox.evaluate(f"{MIDDLE}({json.dumps([name, handle])})")
+        before = fox.evaluate(f"{WORDS}({json.dumps(name)})")
+        fox.pointer((x, y), (x - 12, y + 12), (x + 24, y - 24))
+        if fox.evaluate(f"{WORDS}({json.dumps(name)})") == before:
+            fox.pointer((x, y), (x - 30, y + 30))
+        assert fox.evaluate(f"{WORDS}({json.dumps(name)})") != before, (name, handle)
 
 
 HEIGHT = "Number(document.querySelector('#fig-grab .handle').getAttribute('aria-valuenow'))"
@@ -454,37 +479,27 @@ def test_the_first_ball_falls_when_dropped_and_when_thrown(visit):
         page.wait_for_function(f"() => {HEIGHT} < {lifted - 0.1}")
 
 
-def test_keys_lift_and_drop_the_ball_and_move_the_time_of_the_live_figure(visit):
-    with visit() as page:
-        grip = page.locator("#fig-grab .handle")
-        before = float(grip.get_attribute("aria-valuenow"))
-        grip.focus()
-        page.keyboard.press("ArrowUp")
-        page.wait_for_function(f"() => {HEIGHT} > {before}")
-        page.keyboard.press("Enter")
-        page.wait_for_selector("#fig-grab .words:text('rests')")
-        assert page.evaluate("document.activeElement.dataset.handle") == "ball"  # focus stays
+def test_keys_lift_and_drop_the_ball_and_move_the_time_of_the_live_figure(tab):
+    grip = tab.locator("#fig-grab .handle")
+    before = float(grip.get_attribute("aria-valuenow"))
+    grip.focus()
+    tab.keyboard.press("ArrowUp")
+    tab.wait_for_function(f"() => {HEIGHT} > {before}")
+    tab.keyboard.press("Enter")
+    tab.wait_for_selector("#fig-grab .words:text('rests')")
+    assert tab.evaluate("document.activeElement.dataset.handle") == "ball"  # focus stays
 
 
-def test_sandbox_balls_fall_by_the_model_that_is_chosen_and_one_more_can_be_added(visit):
-    with visit() as page:
-        box = page.locator("#fig-sandbox")
-        box.locator("button:text('Model: soft')").click()
-        box.locator("button:text('Add a ball')").click()
-        page.wait_for_selector("#fig-sandbox .words:text('5 balls by lcp')")
-        last = "document.querySelector('#fig-sandbox [data-handle=\"4\"]')"
-        page.wait_for_function(f"() => Number({last}.ariaValueNow) < 1")
+def test_sandbox_balls_fall_by_the_model_that_is_chosen_and_one_more_can_be_added(tab):
+    box = tab.locator("#fig-sandbox")
+    box.locator("button:text('Model: soft')").click()
+    box.locator("button:text('Add a ball')").click()
+    tab.wait_for_selector("#fig-sandbox .words:text('5 balls by lcp')")
+    last = "document.querySelector('#fig-sandbox [data-handle=\"4\"]')"
+    tab.wait_for_function(f"() => Number({last}.ariaValueNow) < 1")
 
 
-def test_print_has_figures_and_answers_and_nothing_to_press(visit):
-    with visit(shown=False) as page:
-        page.emulate_media(media="print")
-        assert not page.locator("button, input, .live").filter(visible=True).count()
-        assert page.locator("#fig-corner .plot").is_visible()
-        assert answers("ex1") in page.locator("article").inner_text()
-
-
-def test_axe_finds_no_violation(visit):
+def test_axe_finds_no_violation(tab):
     from axe_playwright_python.base import AXE_SCRIPT
 
     run = """([parts, rules]) => axe.run(parts, {resultTypes: ["violations"], ...rules}).then(
@@ -493,24 +508,13 @@ def test_axe_finds_no_violation(visit):
         ["header", "#fig-grab", "#ex1", "#ex2", "#code-sweep"],
         {"runOnly": ["color-contrast"]},
     ]
-    others = [["body"], {"rules": {"color-contrast": {"enabled": False}}}]
-    for scheme, parts in (("light", [contrast, others]), ("dark", [contrast])):
-        with visit(color_scheme=scheme) as page:
-            page.evaluate(AXE_SCRIPT)
-            for part in parts:
-                assert page.evaluate(run, part) == []
-
-
-@pytest.mark.parametrize("width", (320, 390, 1024))
-def test_nothing_is_wider_than_the_screen(visit, width):
-    with visit(width=width, height=800) as page:
-        wide = page.evaluate("document.documentElement.scrollWidth")
-        assert wide <= width, page.evaluate(
-            """(width) => [...document.querySelectorAll("article *")].filter((each) =>
-            each.getBoundingClientRect().right > width && !each.closest(".scroll, .math, svg"))
-            .map((each) => each.outerHTML.slice(0, 120))""",
-            width,
-        )
+    code = ".code:not(#code-sweep) pre"  # they are all made alike
+    others = [{"exclude": [[code]]}, {"rules": {"color-contrast": {"enabled": False}}}]
+    tab.evaluate(AXE_SCRIPT)
+    assert tab.evaluate(run, others) == []
+    for scheme in ("dark", "light"):
+        tab.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+        assert tab.evaluate(run, contrast) == [], scheme
 
 
 def test_on_a_phone_a_link_opens_half_a_screen_that_closes_as_one_reads_on(visit):
@@ -535,17 +539,36 @@ def finger(page, node, along, up):
         kind = "touchMove" if k else "touchStart"
         touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [at]})
         page.wait_for_timeout(30)
+    return touch
 
 
-def test_a_finger_holds_the_ball_and_drags_a_number_and_the_page_does_not_scroll(visit):
-    with visit(width=390, height=800, has_touch=True, is_mobile=True) as page:
-        finger(page, page.locator("#fig-grab .handle"), 20, 60)
-        assert "A hand holds it 0.5" in page.locator("#fig-grab .words").inner_text()
-        assert page.evaluate("scrollY") == 0
-    with visit(width=390, height=800, has_touch=True, is_mobile=True) as page:
-        number = page.locator(".drag[data-knob=stiffness]").first
-        finger(page, number, 50, 70)
-        assert number.inner_text() == "17,800"
+def test_a_finger_holds_the_ball_and_drags_a_number_and_the_page_does_not_scroll(phone):
+    touch = finger(phone, phone.locator("#fig-grab .handle"), 20, 60)
+    assert "A hand holds it 0.5" in phone.locator("#fig-grab .words").inner_text()
+    assert phone.evaluate("scrollY") == 0
+    touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    number = phone.locator(".drag[data-knob=stiffness]").first
+    touch = finger(phone, number, 50, 70)
+    assert number.inner_text() == "17,800"
+    touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+
+def test_so_it_is_with_a_finger(phone):
+    touch = phone.context.new_cdp_session(phone)
+    for name, handle in phone.evaluate(HANDLES):
+        (x, y), before = phone.evaluate(MIDDLE, [name, handle]), phone.evaluate(WORDS, name)
+        told = {before}
+        for kind, by in (
+            ("Start", 0),
+            ("Move", -12),
+            ("Move", 24),
+            ("Move", -30),
+            ("End", None),
+        ):
+            at = [] if by is None else [{"x": x + by, "y": y - by}]
+            touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": at})
+            told.add(phone.evaluate(WORDS, name))
+        assert len(told) > 1, (name, handle, before)
 
 
 def test_without_scripts_text_figures_and_exercises_are_there(visit):
@@ -556,14 +579,13 @@ def test_without_scripts_text_figures_and_exercises_are_there(visit):
         assert page.locator("#ex1 .no-js-only").is_visible()
 
 
-def test_firefox_runs_the_page_without_complaint_and_its_ball_falls(gecko, url):
-    gecko.visit(url)
+def test_firefox_runs_the_page_without_complaint_and_its_ball_falls(fox):
     ready = "document.documentElement.dataset.ready"
-    assert gecko.evaluate(ready) == "yes"
-    gecko.evaluate(f"{MIDDLE}(['fig-grab', 'ball'])")
-    gecko.evaluate("document.querySelector('#fig-grab .handle').focus()")
-    gecko.press("\ue013", "\ue007")  # arrow up, Enter
+    assert fox.evaluate(ready) == "yes"
+    fox.evaluate(f"{MIDDLE}(['fig-grab', 'ball'])")
+    fox.evaluate("document.querySelector('#fig-grab .handle').focus()")
+    fox.press("\ue013", "\ue007")  # arrow up, Enter
     words = "document.querySelector('#fig-grab .words').textContent"
     rests = f"new Promise((done) => setTimeout(() => done({words}), 400))"
-    assert "rests" in gecko.evaluate(rests)
-    assert gecko.trouble == []
+    assert "rests" in fox.evaluate(rests)
+    assert fox.trouble == []

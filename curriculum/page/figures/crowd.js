@@ -4,7 +4,7 @@ import { makeRows, normalSpeed, solveContacts } from "../engine.js";
 import { grip, kept, wholly } from "../parts.js";
 
 const MOST = 3.5; // m/s
-const ROWS = [112, 236, 360]; // px
+const ROWS = [122, 262, 402]; // px
 
 // The speeds after the impact of three touching elastic balls; `repair`: no target below zero.
 const struck = kept((speeds, repair) => {
@@ -33,7 +33,7 @@ function draw(view) {
   const at = (i) => (bars - 16) / 2 + 2 * r * (i - 1);
   const up = (i) => -r - 14 - 22 * i; // the arrows stand over one another
   const row = ([title, after], k) => [
-    label(title, 0, ROWS[k] - r - 53, "start", "axis-name"),
+    label(title, 0, ROWS[k] - r - (k ? 72 : 84), "start", "axis-name"),
     ...after.map(
       (v, i) =>
         ball("lcp", at(i), ROWS[k], r, k ? "seen" : "ball plainly") +
@@ -56,8 +56,8 @@ function draw(view) {
   return {
     svg: [
       ...cases.flatMap(row),
-      label("energy", bars, ROWS[0] - r - 22, "start", "axis-name"),
-      line(mark, ROWS[0] - r - 14, mark, ROWS[2] + 14),
+      label("energy", bars, ROWS[0] - 30, "start", "axis-name"),
+      line(mark, ROWS[0] - 22, mark, ROWS[2] + 14),
     ].join(""),
     words:
       `Before: ${told[0]} m/s. With −e v_n: ${told[1]} m/s and the same energy. ` +
@@ -71,7 +71,7 @@ export const figure = {
   caption:
     "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair " +
     "that allows no target below zero adds some; drag the speeds.",
-  height: 404,
+  height: 446,
   start: () => ({ v1: -1, v2: 0, v3: -3 }),
   draw,
 };

@@ -29,7 +29,7 @@ function chartOf(unit, told, { gap, free, end }) {
       return [
         el("path", { d, class: "region" }),
         line(sx(0), sy(UP), sx(0), bottom, "grid") + line(from, sy(UP), to, sy(DOWN), "rule"),
-        label("ends inside", left + 8, bottom - 12, "start", "tick"),
+        label("ends inside", left + 6, bottom - 8, "start", "tick"),
         arrow("push m-lcp", x, y, 0, sy(end.v) - y) + circle(x, y, 5, "dot"),
       ].join("");
     },
@@ -58,12 +58,12 @@ function draw(view) {
       ghost(end.gap),
       line(x, y, aside, y, "grid"),
       arrow("push m-fixed", far, floor, 0, -px(gap)),
-      label("gap", far, floor + 18, "middle"),
+      label("gap", Math.max(14, far), floor + 18, "middle"),
       arrow("weight", aside, y, 0, tip - y),
-      label("dt v_n", aside, y + (tip < y ? 18 : -8), "middle"),
+      label("dt v_n", Math.min(aside + 8, left - 46), 0.5 * (y + tip) + 5, "start", "strong"),
     ].join("");
   };
-  const { svg, middle } = beside(view, chartOf(unit, told, { gap, free, end }), picture, 0.42);
+  const { svg, middle } = beside(view, chartOf(unit, told, { gap, free, end }), picture, 0.46);
   const [x, y] = [0.84 * middle, floor - px(gap)];
   const sum = gap + moves;
   const text = `gap ${number(gap, 2)} r + dt v_n ${number(moves, 2)} r = ${number(sum, 2)} r`;

@@ -41,7 +41,7 @@ function draw(view) {
     const wish = (name, v, at) => {
       const kind = v < Math.max(bounce, bias) ? "push m-lcp weaker" : "push m-lcp";
       const drawn = arrow(kind, at, floor, 0, -Math.min(floor - 24, ARROW * v));
-      return v > 0 ? drawn + label(name, at, floor + 18, "middle") : "";
+      return v > 0 ? drawn + label(name, Math.max(28, at), view.height - 10, "middle") : "";
     };
     const aside = Math.min(r + 22, x - 24);
     return [
