@@ -20,6 +20,11 @@ NOT_RUN = {  # how it starts: why CI does not run it
     "python -m curriculum.measured.ledger": "measures this machine, and writes into the tree",
     "python -m curriculum.page --pictures": "writes the README's picture into the tree",
     "python -m curriculum.tests.test_golden": "pins anew what the tests compare with",
+    "python3 -m venv .venv && .venv/bin/pip install -e '.[dev]' && .venv/bin/pre-commit": (
+        "CI runs its first half by the README's line, and then its second"
+    ),
+    ".venv/bin/python -m ...": "a form of commands",
+    "uv run --extra dev ...": "a form of commands",
     "python contact.py --scene NAME": "NAME is yours",
     "python contact.py --help": "test_packaging runs it",
     "pytest checks.py -k exN": "N is yours",

@@ -58,11 +58,13 @@ def test_exact_has_no_error_and_penalty_has_one(problem):
 # engines
 
 
-@pytest.mark.parametrize("substeps", [1, 4])
-@pytest.mark.parametrize("setting", ALL, ids=lambda s: s.name)
+# beyond 16 substeps the lag drowns in the rounding of float32
+@pytest.mark.parametrize(
+    "setting, substeps",
+    [(each, n) for n in (1, 4) for each in ALL if each.inner * n <= 16],
+    ids=lambda value: getattr(value, "name", value),
+)
 def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setting, substeps):
-    if setting.inner * substeps > 16:
-        pytest.skip("in float32 the lag drowns in rounding")
     scene, dt, t = contact.build_scene("drop"), 0.002, 0.4
     heights = np.array(setting.build(scene, dt, substeps).trace(200))
     assert heights.shape == (201, 1)

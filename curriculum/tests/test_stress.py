@@ -32,7 +32,7 @@ FAULTS = {
         "a_skip_survives_what_is_no_number"),
     "a distance depends on the sign of x": ("dx = a.x - b.x\n", "dx = a.x - b.x + 1e-15\n",
         "a_mirrored_scene_runs_mirrored"),
-    "forces are kept": ("ball.fx = ball.fy = 0.0  # not", "pass  # not",
+    "forces are kept": ("ball.fx = ball.fy = 0.0  # the", "pass  # the",
         "a_run_can_be_taken_up_anywhere"),
     "a target depends on how many contacts there are":
         ("c.target = contact_target(c", "c.target = (1 + 1e-15 * len(contacts)) * contact_target(c",
