@@ -122,7 +122,8 @@ def test_every_figure_is_told_in_words_and_has_a_caption_of_one_sentence(tab):
 def test_a_quantity_dragged_in_one_figure_is_the_same_in_its_section_and_stays_in_others(tab):
     drag(tab, handle(figure(tab, "sponge", ""), "stiffness"), (60, 0))
     shown = handle(figure(tab, "sponge"), "stiffness").get_attribute("aria-valuenow")
-    assert float(shown) < 5000 and tab.url.endswith(f"?stiffness={shown}#all")
+    assert float(shown) < 5000
+    tab.wait_for_function("end => location.href.endsWith(end)", arg=f"?stiffness={shown}#all")
     values = {"corner-penalty": shown, "stack": shown, "cliff": shown, "sponge-2": "10000"}
     for name, value in values.items():
         knob = figure(tab, name).locator('[data-knob="stiffness"] input[type="text"]')
