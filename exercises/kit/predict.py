@@ -7,7 +7,7 @@ import textwrap
 from pathlib import Path
 
 import contact
-from curriculum.commands import command, near
+from curriculum.commands import command, near, unread
 from curriculum.files import write_json
 
 from . import alone
@@ -27,6 +27,7 @@ def unquoted(kind, error, trace):
 sys.excepthook = unquoted  # PREDICTION = A
 
 
+@unread()
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
