@@ -266,7 +266,7 @@ def test_a_wrong_fill_fails_and_is_named_from_its_values(blank, number):
 def test_the_stacks_are_solved_contact_by_contact(case):
     """lam >= 0, v_n >= target, and one of the two holds as an equation; pushes keep momentum."""
     count, mass = len(case["contacts"]), np.array(case["masses"])
-    found = blanks.run_stack(blanks.BLANKS["solve_contacts"].right, case)
+    found = blanks.run_stack(blanks.BLANKS["solve_contacts"].right, **case)
     lam, v = np.array(found[:count]), np.reshape(found[count:], (-1, 2))
     gained, rest = np.zeros_like(v), np.append(v, [[0.0, 0.0]], axis=0)
     for push, (a, b, angle, target) in zip(lam, case["contacts"]):
