@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent
 sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
-from kit import predict  # noqa: E402
+from kit import script  # noqa: E402
 from kit.progress import FILES, practise  # noqa: E402
 
 from curriculum.commands import missing, unread  # noqa: E402
@@ -31,7 +31,7 @@ except ModuleNotFoundError:
 @pytest.mark.parametrize("name", FILES, ids=lambda name: Path(FILES[name]).stem)
 def test_exercise(name):
     """Skip what is still to be done, and fail what is wrong. A bet is done once it was read."""
-    state, words = predict.checked(name, ROOT / FILES[name])
+    state, words = script.checked(name, ROOT / FILES[name])
     if state == "blank":
         pytest.skip(f"{name}: {words}")
     if state == "wrong":

@@ -50,7 +50,8 @@ from typing import NamedTuple
 try:
     import numpy as np
 except ModuleNotFoundError:
-    print(f'contact.py needs numpy: "{sys.executable}" -m pip install numpy', file=sys.stderr)
+    pip = f'"{sys.executable}" -m pip install numpy'
+    print(f"contact.py needs numpy: {pip}, or: uv run contact.py", file=sys.stderr)
     sys.exit(2)
 
 GRAVITY = -9.81  # m/s^2, along y
@@ -237,16 +238,16 @@ def contact_target(c, restitution, baumgarte, dt, ahead=False):
     takes the larger of bias and bounce. Balls that would not meet may close their gap, but their
     target is never above -e v_n: so no impulse adds energy (Moreau 1988). Only a bias can.
     """
-    close = c.depth / dt  # this v_n ends the step with a gap of 0
+    closing = c.depth / dt  # this v_n ends the step with a gap of 0
     bias = baumgarte / dt * c.depth  # < 0 across a gap
     if restitution == 0.0:
-        return close if ahead and c.depth < 0.0 else bias
+        return closing if ahead and c.depth < 0.0 else bias
     v_n = c.v_n()
     bounce = -restitution * v_n
     if bias > 0.0:
         return max(bias, bounce)
     meets = -dt * v_n >= -c.depth  # v_n < 0 closes -dt v_n of the gap -depth in this step
-    return bounce if meets else min(bounce, close)
+    return bounce if meets else min(bounce, closing)
 
 
 # --- region: sweep ---
@@ -513,7 +514,7 @@ def as_run(rows, settled, dt) -> Run:
     """The Run of rows, x y vx vy by state and ball; settled: whether each step's sweeps did."""
     rows += 0.0  # -0.0 becomes 0.0, and -nan nan: chance decides these signs
     rows[np.isnan(rows)] = math.nan
-    q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()
+    q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # 2 kinds of 2 axes
     return Run(np.arange(len(rows)) * dt, q, v, int((~settled).sum()))
 
 
@@ -627,11 +628,11 @@ def check(model, scene, dt):
 
 def step_of(model: str, scene: Scene, dt: float, settings: Settings):
     """step(balls) of penalty, lcp or soft."""
-    e, (k, beta, iters, warm, solref, solimp, ahead, _) = scene.restitution, settings
-    soft = soft_defaults(e, dt, solref, solimp)
+    s, e = settings, scene.restitution
+    soft = soft_defaults(e, dt, s.solref, s.solimp)
     return {
-        "penalty": lambda balls: penalty_step(balls, dt, k, scene.damping),
-        "lcp": lambda balls: lcp_step(balls, dt, e, beta, iters, warm, ahead),
+        "penalty": lambda balls: penalty_step(balls, dt, s.stiffness, scene.damping),
+        "lcp": lambda balls: lcp_step(balls, dt, e, s.baumgarte, s.iters, s.warm, s.ahead),
         "soft": lambda balls: soft_step(balls, dt, *soft),
     }[model]
 
@@ -736,13 +737,14 @@ def trembles(depth) -> bool:
 def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None) -> dict:
     """The measures of a run, in radii of the first ball and in start energies; see COLUMNS."""
     total = energy(run.q, run.v, scene.mass)
-    scale = abs(float(total[0])) or 1.0
+    scale = abs(float(total[0])) or 1.0  # J; 1 for a run that starts with none
     gap = smallest_gap(run.q, scene.radius) / float(scene.radius[0])
     depth = np.maximum(-gap, 0.0)
     landing = first_contact(run, scene, dt)
     step = blow_up_step(total)
     return (
-        {
+        height_errors(run, scene, dt, reference)
+        | {
             "max_penetration_frac": float(depth.max()),
             "rest_penetration_frac": float(depth[-1]),  # the overlap at the end
             "rest_gap_frac": float(gap[-1]),
@@ -757,7 +759,6 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
             "through": fell_through(run, scene, depth),
             "unsettled_steps": run.unsettled,  # whose sweeps, of soft, did not settle
         }
-        | height_errors(run, scene, dt, reference)
     )
 
 
@@ -907,6 +908,30 @@ def parse_flags(argv=None):
     if memory and (wrong := memory.too_much(args.steps, len(chosen_scene(args, 0).mass))):
         parser.error(wrong)
     return args
+
+
+# --- region: main ---
+def fail(message):
+    """One line on stderr. Returns the exit status."""
+    print(f"contact.py: error: {message}", file=sys.stderr)
+    return 2
+
+
+def main(argv=None):
+    """The command line. Returns the exit status: 2 for bad input, 130 after Ctrl-C."""
+    argv = sys.argv[1:] if argv is None else argv
+    try:
+        status = report(parse_flags(argv), argv)
+        print(end="", flush=True)  # an error at Python's end has no handler
+        return status
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        return 130
+    except MemoryError:
+        return fail("not enough memory; allowed: fewer --steps or --bodies")
+    except OSError as error:  # nobody reads on, or the disk is full: Python's own flush would fail
+        unread = isinstance(error, BrokenPipeError)
+        os._exit(141 if unread else fail(f"cannot print the rest: {error.strerror}"))
 
 
 # --- region: files ---
@@ -1059,7 +1084,6 @@ def print_stability(grid, count):
     )
 
 
-# --- region: main ---
 def report(args, argv):
     """Run the models, print what was found, write the files. Returns the exit status."""
     scene = chosen_scene(args, args.seed)
@@ -1083,29 +1107,6 @@ def report(args, argv):
     if hints := beside("run.next_steps"):
         hints.print_next(args, argv)
     return 0 if runs else 2
-
-
-def fail(message):
-    """One line on stderr. Returns the exit status."""
-    print(f"contact.py: error: {message}", file=sys.stderr)
-    return 2
-
-
-def main(argv=None):
-    """The command line. Returns the exit status: 2 for bad input, 130 after Ctrl-C."""
-    argv = sys.argv[1:] if argv is None else argv
-    try:
-        status = report(parse_flags(argv), argv)
-        print(end="", flush=True)  # an error at Python's end has no handler
-        return status
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        return 130
-    except MemoryError:
-        return fail("not enough memory; allowed: fewer --steps or --bodies")
-    except OSError as error:  # nobody reads on, or the disk is full: Python's own flush would fail
-        unread = isinstance(error, BrokenPipeError)
-        os._exit(141 if unread else fail(f"cannot print the rest: {error.strerror}"))
 
 
 if __name__ == "__main__":
