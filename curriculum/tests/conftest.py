@@ -1,8 +1,11 @@
 """A test file that needs a package which is not installed is skipped, by the package's name."""
 
+import functools
+import importlib.metadata
 import importlib.util
 import os
 import re
+from pathlib import Path
 
 import pytest
 
@@ -19,3 +22,22 @@ def pytest_make_collect_report(collector):
         words = f"Skipped: {lacking[1]} is missing, which the extra `dev` brings"
         report.longrepr = (str(collector.path), None, words)
     return report
+
+
+@pytest.fixture(scope="session")
+def only(tmp_path_factory):
+    """A function: a folder of links to exactly these distributions and what they require."""
+
+    @functools.cache
+    def make(*names):
+        folder, wanted = tmp_path_factory.mktemp("only"), list(names)
+        for name in wanted:
+            found = importlib.metadata.distribution(name)
+            for part in {file.parts[0] for file in found.files} - {".."}:
+                if not (folder / part).exists() and not part.startswith("__"):
+                    (folder / part).symlink_to(Path(found.locate_file(part)))
+            needs = [each for each in found.requires or [] if ";" not in each]
+            wanted += [re.match(r"[\w.-]+", each)[0] for each in needs]
+        return str(folder)
+
+    return make
