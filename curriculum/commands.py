@@ -72,6 +72,18 @@ def needs(extra):
         sys.exit(2)
 
 
+@contextlib.contextmanager
+def unread():
+    """Within it, output that nobody reads on (`| head -1`) ends the program without a word."""
+    try:
+        try:
+            yield
+        finally:
+            print(end="", flush=True)  # an error at Python's end has no handler
+    except BrokenPipeError:
+        os._exit(141)
+
+
 def near(word):
     """A path as one would type it here: relative below this folder; other words as they are."""
     below = os.path.isabs(word) and Path(word).is_relative_to(Path.cwd())
