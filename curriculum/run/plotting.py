@@ -13,11 +13,12 @@ import io
 import math
 import re
 import textwrap
+from pathlib import Path
 
 from curriculum import commands
 from curriculum.run.curves import COLORS
 
-INK, PALE, GRID = "#222222", "#666666", "#e2e2e2"
+INK, PALE, GRID = "#222222", "#666666", "#e2e2e2"  # INK and GRID as in figures.mplstyle
 WIDTH = 6.0  # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
 
 # colour, marker, dash: told apart without colour too
@@ -42,30 +43,6 @@ IN_THE_DARK = {
     "#009e73": "#2fc79a",
     "#cc79a7": "#e096bd",
 }
-SETTINGS = {
-    "svg.hashsalt": "contact",
-    "svg.fonttype": "none",
-    "font.size": 10,
-    "font.family": "DejaVu Sans",
-    "text.color": INK,
-    "axes.labelcolor": INK,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "axes.titlesize": 10.5,
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": INK,
-    "axes.grid": True,
-    "grid.color": GRID,
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    "legend.frameon": False,
-    "legend.fontsize": 9,
-    "lines.linewidth": 1.5,
-    "figure.facecolor": "none",
-    "axes.facecolor": "none",
-}
 
 
 def pyplot():
@@ -75,8 +52,9 @@ def pyplot():
     except ImportError:
         raise ImportError(commands.to_install("matplotlib")) from None
     matplotlib.use("svg")
-    matplotlib.rcParams.update(SETTINGS)
     from matplotlib import pyplot as plt
+
+    plt.style.use(Path(__file__).with_name("figures.mplstyle"))
 
     return plt
 
