@@ -32,7 +32,7 @@ FARTHEST = 150  # radii: how far out of the middle a ball is still kept in view
 MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sinks by 0.01
 
 
-def write(path, runs, scene):
+def write(path: str, runs: dict[str, contact.Run], scene: contact.Scene) -> None:
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
 
     A run that is no model's may have any name of [a-z0-9_.]. Whole columns are sent, in rerun's
@@ -42,24 +42,25 @@ def write(path, runs, scene):
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
     drawn, seconds = curves(runs, scene), worth_seeing(runs, scene)
+    times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         temporary = Path(folder, os.path.basename(path))
         recording.save(temporary, default_blueprint=layout(runs, scene, drawn, seconds))
         for model, run in runs.items():
             send_table(recording, model)
-            send_balls(recording, model, run, scene, colors(runs)[model], seconds[0])
-        send_curves(recording, runs, drawn, seconds[0])
+            send_balls(recording, model, run, scene, colors(runs)[model], times[model])
+        send_curves(recording, runs, drawn, times)
         recording.disconnect()
         write_whole(path, temporary.read_bytes())
 
 
-def rgba(color):
+def rgba(color: str) -> np.ndarray:
     """The colour "#rrggbb" as rerun stores it."""
     return np.array([int(color[1:] + "ff", 16)], np.uint32)
 
 
-def timelines(t, first):
+def timelines(t: np.ndarray, first: float) -> list:
     """The columns of time; those in seconds where 64 bits of nanoseconds can hold them."""
     times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
     if t[-1] < LONGEST:
@@ -85,10 +86,9 @@ def send_table(recording, model):
         recording.log(f"world/{model}/{name}", shown, static=True)
 
 
-def send_balls(recording, model, run, scene, color, first):
+def send_balls(recording, model, run, scene, color, times):
     """The balls, where the run had them, and the push on each as an arrow from its centre."""
-    count, times = len(scene.radius), timelines(run.t, first)
-    rows = [count] * len(run.t)
+    count, rows = len(scene.radius), [len(scene.radius)] * len(run.t)
     look = rr.Points2D.from_fields(
         radii=scene.radius, colors=np.repeat(rgba(color), count), draw_order=20.0
     )
@@ -103,20 +103,20 @@ def send_balls(recording, model, run, scene, color, first):
     send(recording, f"world/{model}/pushes", look, times, arrows.partition(rows))
 
 
-def send(recording, entity, look, times, columns):
+def send(recording, entity: str, look, times, columns) -> None:
     """An entity: its look, once, and what changes of it, a row a step."""
     recording.log(entity, look, static=True)
     recording.send_columns(entity, times, columns)
 
 
-def flat(rows):
+def flat(rows: np.ndarray) -> np.ndarray:
     """Vectors (S, 2, N) as a list (S N, 2) with y down, in 32 bits, which is what rerun keeps."""
     with np.errstate(over="ignore"):
         return np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2).astype(np.float32)
 
 
 @np.errstate(all="ignore")
-def arrow_vectors(run, scene):
+def arrow_vectors(run: contact.Run, scene: contact.Scene) -> np.ndarray:
     """Arrows (S, 2, N) along the pushes, r log2(1 + push / weight) long [m].
 
     So a ball at rest has an arrow as long as its radius, and an impact still fits in the view.
@@ -129,10 +129,9 @@ def arrow_vectors(run, scene):
     return np.where(drawn[:, None], pushes * (length / size)[:, None], 0.0)
 
 
-def send_curves(recording, runs, drawn, first):
+def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
     """The curves {title: {model: values}}, each at the title's first word / MODEL."""
     for width, model in zip(WIDTHS[-len(runs) :], sorted(runs)):
-        times = timelines(runs[model].t, first)
         look = rr.SeriesLines(
             colors=rgba(colors(runs)[model]),
             names=[model],
@@ -141,10 +140,10 @@ def send_curves(recording, runs, drawn, first):
         )
         for title, lines in drawn.items():
             columns = rr.Scalars.columns(scalars=lines[model])
-            send(recording, f"{title.split()[0]}/{model}", look, times, columns)
+            send(recording, f"{title.split()[0]}/{model}", look, times[model], columns)
 
 
-def layout(runs, scene, drawn, seconds):
+def layout(runs, scene: contact.Scene, drawn, seconds: tuple) -> rrb.Blueprint:
     """The blueprint that travels in the file: the balls, the table magnified, the plots.
 
     Every run has views of its own, so balls that roll far never cross into another run's. Where
@@ -173,13 +172,13 @@ def layout(runs, scene, drawn, seconds):
     return rrb.Blueprint(views, time_panel(), collapse_panels=True)
 
 
-def view(model, name, x_range, y_range):
+def view(model: str, name: str, x_range: list, y_range: list) -> rrb.Spatial2DView:
     """A view of what a model's balls do in these ranges of x and of -y [m]."""
     bounds = rrb.VisualBounds2D(x_range=x_range, y_range=y_range)
     return rrb.Spatial2DView(origin=f"world/{model}", name=name, visual_bounds=bounds)
 
 
-def frame(runs, x, large):
+def frame(runs: list, x: np.ndarray, large: float) -> tuple[list, list]:
     """The ranges of x and of -y [m] that hold all balls of the runs, from first to last.
 
     A ball that leaves by more than FARTHEST radii is let go, or the others would be dots.
@@ -190,13 +189,13 @@ def frame(runs, x, large):
     return [middle - half, middle + half], [-top, 0.12 * top]
 
 
-def reach(values, large):
+def reach(values: np.ndarray, large: float) -> float:
     """The largest of the values by size [m], at most FARTHEST radii, also if one is not finite."""
     return float(np.fmin(np.abs(values), FARTHEST * large).max())
 
 
 @np.errstate(all="ignore")
-def worth_seeing(runs, scene):
+def worth_seeing(runs: dict, scene: contact.Scene) -> tuple[float, float]:
     """From when to when [s]: BEFORE the first contact, to when the last ball has come to rest.
 
     It rests once it is slower than 1 cm/s for good; a tenth more is shown, at most to the end.
@@ -210,7 +209,7 @@ def worth_seeing(runs, scene):
     return max(0.0, min(struck, default=0.0) - BEFORE), float(max(rests))
 
 
-def plot(title, first, last):
+def plot(title: str, first: float, last: float) -> rrb.TimeSeriesView:
     """A plot of these seconds. One has the legend, which hides least where impulses are over."""
     name = title.split()[0]
     legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=name == "impulse")
