@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from curriculum.commands import command
+from curriculum.commands import command, unread
 
 from . import FACTS, alone, knobs, predict
 from .progress import done, note, practise
@@ -22,6 +22,7 @@ def unquoted(kind, error, trace):
 sys.excepthook = unquoted  # PREDICTION = A
 
 
+@unread()
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
