@@ -17,7 +17,7 @@ from curriculum import commands
 try:
     import numba
 except ModuleNotFoundError:
-    raise ImportError(commands.missing("numba")) from None
+    raise ImportError(commands.to_install("numba")) from None
 
 if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]  # contact.py's own loops are faster
     raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
@@ -429,7 +429,7 @@ def take_steps(rows, settled, balls, pairs, listed, last, cycles, knobs):
     return pairs, listed, last.copy(), len(rows) - 1, 0
 
 
-class Motion:
+class Stepper:
     """A run by penalty, lcp or soft that can be taken on by some steps at a time."""
 
     def __init__(self, model, scene, dt, settings):
@@ -473,14 +473,14 @@ def simulate(model, scene, dt, steps, settings, report=None):
 
     `report(k)` is called with the steps done, now and then.
     """
-    motion = Motion(model, scene, dt, settings)
+    stepper = Stepper(model, scene, dt, settings)
     rows = np.empty((steps + 1, 4, len(scene.mass)))
     rows[0, :2], rows[0, 2:] = scene.q0, scene.v0
     settled = np.ones(steps + 1, bool)
     k, period = 0, 0
     while k < steps and not period:
         end = min(k + 1 + STATES // len(scene.mass), steps)
-        taken, period = motion.take(rows[k : end + 1], settled[k : end + 1], settings.skip)
+        taken, period = stepper.take(rows[k : end + 1], settled[k : end + 1], settings.skip)
         k += taken
         if report:
             report(k)

@@ -13,6 +13,7 @@ import statistics
 import sys
 
 import contact
+from curriculum.commands import unread
 from curriculum.files import write_json
 from curriculum.run import pool
 
@@ -46,6 +47,7 @@ def parse(argv):
     return mine.seeds, mine.scheduler, contact.parse_flags(rest)
 
 
+@unread()
 def main(argv=None):
     """Run the models from every seed, print the table, write seeds.json. Returns the exit status.
 
@@ -62,7 +64,7 @@ def report(seeds, scheduler, args):
     """The same, of checked flags."""
     try:
         jobs = [(args, seed) for seed in seeds]
-        found = pool.spread(qualities, jobs, "seeds", scheduler=scheduler)
+        found = pool.run_jobs(qualities, jobs, "seeds", scheduler=scheduler)
     except (ImportError, OSError) as error:
         return contact.fail(f"argument --scheduler: {error}")
     rows = {}

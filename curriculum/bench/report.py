@@ -110,6 +110,12 @@ def skip_goals(section):
         if about := section["processes"].get(name):
             wanted = f"whole process: at most {limit} times `import {about['base']}`"
             yield wanted, name, number(about["ratio"]), about["ratio"] <= limit
+    for name, about in section.get("in_process", {}).items():
+        limit = skips.IN_PROCESS[name]
+        wanted = (
+            f"lcp's readable loops, skips and all: at most {limit} times pymunk, in one process"
+        )
+        yield wanted, name, ranged(about), about["median"] <= limit
 
 
 GOALS = {"accuracy": accuracy_goals, "pile": pile_goals, "skip": skip_goals}

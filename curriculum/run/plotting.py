@@ -73,7 +73,7 @@ def pyplot():
     try:
         import matplotlib
     except ImportError:
-        raise ImportError(commands.missing("matplotlib")) from None
+        raise ImportError(commands.to_install("matplotlib")) from None
     matplotlib.use("svg")
     matplotlib.rcParams.update(SETTINGS)
     from matplotlib import pyplot as plt

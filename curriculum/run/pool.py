@@ -9,7 +9,7 @@ from multiprocessing import active_children, parent_process
 from curriculum import commands
 
 
-def spread(function, jobs, label, workers=None, scheduler=None):
+def run_jobs(function, jobs, label, workers=None, scheduler=None):
     """[function(job) for job in jobs], worked out in parallel, in the order of the jobs.
 
     function: one that another process can import. workers: how many processes, all cores if None;
@@ -73,11 +73,11 @@ def processes(count):
 
 @contextmanager
 def machines(scheduler):
-    """The executor of a dask scheduler; see spread."""
+    """The executor of a dask scheduler; see run_jobs."""
     try:
         from dask.distributed import Client
     except ImportError:
-        raise ImportError(commands.missing("dask[distributed]")) from None
+        raise ImportError(commands.to_install("dask[distributed]")) from None
     try:
         client = Client(scheduler, timeout=10)
     except (OSError, ValueError) as error:

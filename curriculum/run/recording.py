@@ -19,7 +19,7 @@ try:
     import rerun as rr
     import rerun.blueprint as rrb
 except ImportError:
-    raise ImportError(commands.missing("rerun-sdk")) from None
+    raise ImportError(commands.to_install("rerun-sdk")) from None
 
 PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"

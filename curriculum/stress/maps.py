@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 import contact
-from curriculum.stress.trial import G, U, simulate
+from curriculum.stress.trial import G, U, run_twin
 
 SETTLES, RESTLESS, GAINS, EXPLODES = OUTCOMES = "srgx"
 WORDS = ("settles at m g / k", "keeps moving", "gains over 1 % energy", "explodes (gains over 10x)")
@@ -43,7 +43,7 @@ def map_jobs(quick):
 def run(model, scene, dt, seconds, **knobs):
     """A run of that many seconds, at least 50 steps."""
     steps = max(50, math.ceil(seconds / dt))
-    return simulate(model, scene, dt, steps, contact.Settings(**knobs))
+    return run_twin(model, scene, dt, steps, contact.Settings(**knobs))
 
 
 class PenaltyRow:

@@ -42,7 +42,7 @@ class Trial:
         """
         key = model, way, repr(changes)
         if key not in self.made:
-            spec, take = self.spec | changes, simulate if way == "twin" else contact.run_model
+            spec, take = self.spec | changes, run_twin if way == "twin" else contact.run_model
             knobs = {name: spec[name] for name in scenes.KNOBS} | {"skip": way != "plain"}
             given = model, scenes.to_scene(spec), spec["dt"], spec["steps"]
             self.made[key] = take(*given, contact.Settings(**knobs))
@@ -55,12 +55,12 @@ class Trial:
 
     @cached_property
     def motions(self):
-        """{model: Motion} of the stepped models."""
-        return {model: Motion(self, self.run(model), model) for model in STEPPED}
+        """{model: Trajectory} of the stepped models."""
+        return {model: Trajectory(self, self.run(model), model) for model in STEPPED}
 
     @cached_property
     def exact(self):
-        """The Motion of exact as far as SECONDS go; None, and a note, where it promises nothing."""
+        """Its Trajectory, as far as SECONDS go; None, and a note, where it promises nothing."""
         if contact.smallest_gap(self.scene.q0[None], self.scene.radius)[0] < -TOUCHING:
             self.note("exact: starts in an overlap")
             return None
@@ -93,17 +93,19 @@ class Trial:
         return None
 
     def take_exact(self, steps, report=None):
-        return Motion(self, contact.run_model("exact", self.scene, self.dt, steps, report=report))
+        return Trajectory(
+            self, contact.run_model("exact", self.scene, self.dt, steps, report=report)
+        )
 
 
-def simulate(model, scene, dt, steps, settings):
+def run_twin(model, scene, dt, steps, settings):
     """A run by the compiled twin, where there is one: the same bits, as a property says."""
     if fast:
         return fast.simulate(model, scene, dt, steps, settings)
     return contact.run_model(model, scene, dt, steps, settings)
 
 
-class Motion:
+class Trajectory:
     """What a run did: S steps, N balls, C possible contacts, the floor's first.
 
     sides (C, N): 1 at the upper ball of a contact, -1 at the other. At the start of each step

@@ -339,12 +339,17 @@ def test_output_to_a_full_disk_is_one_line_and_no_output_at_all_is_no_error(tmp_
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
-def test_a_pipe_that_nobody_reads_ends_it_without_a_word(unbuffered, tmp_path):
+@pytest.mark.parametrize("words", [
+    "contact.py --steps 5 --no-rerun --out OUT", "-m curriculum.seeds 0:1 --steps 5 --out OUT",
+    "checks.py -k ex2", "exercises/ex1_predict_contact.py --hint 1",
+])  # fmt: skip
+def test_a_pipe_that_nobody_reads_ends_it_without_a_word(words, unbuffered, tmp_path):
     reader, writer = os.pipe()
     os.close(reader)
-    words = [sys.executable, ROOT / "contact.py", "--steps", "5", "--no-rerun", "--out", tmp_path]
+    words = [sys.executable, *words.replace("OUT", str(tmp_path)).split()]
+    pipes = {"stdout": writer, "stderr": subprocess.PIPE, "text": True}
     environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
-    run = subprocess.run(words, stdout=writer, stderr=subprocess.PIPE, text=True, env=environment)
+    run = subprocess.run(words, cwd=ROOT, env=environment, **pipes)
     os.close(writer)
     assert (run.returncode, run.stderr) == (141, "")
 

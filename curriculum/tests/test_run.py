@@ -246,7 +246,7 @@ def test_seeds_refuses_bad_input_in_one_line(words):
 
 
 def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
-    assert pool.spread(abs, range(-50, 0), "jobs", workers=2) == list(range(50, 0, -1))
+    assert pool.run_jobs(abs, range(-50, 0), "jobs", workers=2) == list(range(50, 0, -1))
 
 
 def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):
