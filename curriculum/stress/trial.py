@@ -56,8 +56,7 @@ class Trial:
     @cached_property
     def motions(self):
         """{model: Trajectory} of the stepped models."""
-        margins = {"penalty": 0.0, "lcp": contact.CONTACT_MARGIN, "soft": 0.0}
-        return {model: Trajectory(self, self.run(model), margins[model]) for model in STEPPED}
+        return {model: Trajectory(self, self.run(model), model) for model in STEPPED}
 
     @cached_property
     def exact(self):
@@ -117,7 +116,7 @@ class Trajectory:
     arithmetic rounds correctly, so they have one answer.
     """
 
-    def __init__(self, trial, run, margin=0.0):
+    def __init__(self, trial, run, model="exact"):
         near = (np.abs(np.concatenate((run.q, run.v), axis=1)) < ASTRAY).all((1, 2))
         states = max(1, int(np.append(near, False).argmin()))  # those before it goes astray
         self.dt, self.mass, self.unsettled = trial.dt, trial.mass, run.unsettled
@@ -126,7 +125,7 @@ class Trajectory:
         eye = np.eye(len(trial.mass))
         self.sides = np.concatenate((eye, eye[self.a] - eye[self.b]))
         self.measure(trial.scene.radius)
-        self.listed = self.depth > -margin
+        self.listed = self.depth > -looks(model, trial.spec, self.v[:-1])[:, None]
         self.inv_mass = np.abs(self.sides) @ inverse(self.mass)  # 1 / m_a + 1 / m_b of a contact
         self.listed &= self.inv_mass > 0.0
         self.before, self.after = (self.along(v) for v in (self.v[:-1], self.v[1:]))
@@ -179,6 +178,15 @@ class Trajectory:
         """Listed contacts whose moving balls have no other listed contact (S, C)."""
         moves = self.mass > 0.0
         return self.listed & (self.on_contacts(self.count[:, 0] * moves) <= self.on_contacts(moves))
+
+
+def looks(model, spec, v):
+    """How wide a gap [m] the model still calls a contact, in each state v (S, 2, N)."""
+    margin = np.full(len(v), contact.CONTACT_MARGIN if model == "lcp" else 0.0)
+    if model == "lcp" and spec["ahead"] and spec["restitution"] == 0.0:  # as far as a step goes
+        fastest = np.sqrt(v[:, 0] * v[:, 0] + v[:, 1] * v[:, 1]).max(1)
+        return np.maximum(margin, 2.0 * spec["dt"] * (fastest + spec["dt"] * G))
+    return margin
 
 
 def inverse(mass):
