@@ -20,12 +20,12 @@ sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 from kit import script  # noqa: E402
 from kit.progress import FILES, practise  # noqa: E402
 
-from curriculum.commands import missing, unread  # noqa: E402
+from curriculum.commands import to_install, unread  # noqa: E402
 
 try:
     import pytest
 except ModuleNotFoundError:
-    sys.exit(f"checks.py: {missing('pytest')}")
+    sys.exit(f"checks.py: {to_install('pytest')}")
 
 
 @pytest.mark.parametrize("name", FILES, ids=lambda name: Path(FILES[name]).stem)

@@ -206,7 +206,7 @@ class Motion:
             self.q = self.q + part.push(solve_lcp(part.delassus(), self.found[near]))
             self.found = self.gap = self.all.locate(self.q)
 
-    def bounce(self, touching):
+    def strike(self, touching):
         """Impulses: where a contact pushes, v_n becomes -e v_n, at all contacts at once.
 
         That is an LCP in s = v_n after - target with target = -e v_n, as in contact.py; the target
@@ -450,7 +450,7 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
     now, done = 0.0, 0
     for _ in range(MOST_IMPACTS):
         touching = motion.touch()
-        motion.bounce(touching)
+        motion.strike(touching)
         which, held, a = motion.support(touching)
         if cycle.repeats(motion):
             out[:, done:] = cycle.read(times[done:] - now)

@@ -64,7 +64,7 @@ def report(seeds, scheduler, args):
     """The same, of checked flags."""
     try:
         jobs = [(args, seed) for seed in seeds]
-        found = pool.spread(qualities, jobs, "seeds", scheduler=scheduler)
+        found = pool.run_jobs(qualities, jobs, "seeds", scheduler=scheduler)
     except (ImportError, OSError) as error:
         return contact.fail(f"argument --scheduler: {error}")
     rows = {}

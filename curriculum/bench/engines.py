@@ -114,7 +114,7 @@ class Ours(Session):
         if self.motion is None:
             from curriculum import fast
 
-            self.motion = fast.Motion(*self.given, self.settings)
+            self.motion = fast.Stepper(*self.given, self.settings)
             self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))
             self.settled = np.ones(BLOCK + 1, bool)
         for first in range(0, n, BLOCK):
@@ -292,10 +292,7 @@ class Box2d3(Session):
                 body = world.create_static_body(position=place)
             else:
                 body = world.create_dynamic_body(
-                    position=place,
-                    linear_velocity=velocity,
-                    fixed_rotation=True,
-                    enable_sleep=sleep,
+                    position=place, linear_velocity=velocity, fixed_rotation=True
                 )
             density = 1.0 if fixed else mass / (math.pi * radius * radius)
             body.create_shape(
@@ -439,7 +436,7 @@ class Setting(NamedTuple):
         """Why it does not run a scene, or does not run here, or None."""
         if self.engine not in ENGINES:
             return None
-        return missing(self.engine) or ENGINES[self.engine][-1].cannot(scene, self.options)
+        return not_installed(self.engine) or ENGINES[self.engine][-1].cannot(scene, self.options)
 
     def build(self, scene, dt, substeps=1, sleep=False):
         """A session that is looked at every dt [s], after so many steps."""
@@ -502,7 +499,7 @@ SETTINGS = (
 )
 
 
-def missing(engine) -> str | None:
+def not_installed(engine) -> str | None:
     """What to install for an engine that is not there, or None."""
     if engine in ENGINES and importlib.util.find_spec(ENGINES[engine][2]) is None:
         return f"not installed: pip install {ENGINES[engine][1]}"

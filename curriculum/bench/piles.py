@@ -100,7 +100,7 @@ def measured(count, chosen, states, quick):
     scene, phases = shaft(count), ("falling", "resting")
     jobs = [(count, k, states.get(k)) for k in chosen if not SETTINGS[k][0].refuses(scene)]
     print(f"pile of {count}: {len(jobs)} settings settle, then they are timed", flush=True)
-    settled = pool.spread(settle, jobs, f"{count} balls settle")
+    settled = pool.run_jobs(settle, jobs, f"{count} balls settle")
     states.update((k, found[:2]) for (_, k, _), found in zip(jobs, settled))
     work = [(count, k, states[k]) for _, k, _ in jobs]
     processes = 1 if quick else PROCESSES - (count == MANY)

@@ -44,7 +44,7 @@ def cases(quick):
 def same_bits(quick):
     """How many pairs of runs, with and without skips, and which of them differ in any bit."""
     jobs = list(cases(quick))
-    same = pool.spread(is_same, jobs, "same bits")
+    same = pool.run_jobs(is_same, jobs, "same bits")
     names = [" ".join(map(str, job)) for job, fine in zip(jobs, same) if not fine]
     return dict(runs=len(jobs), differing=names)
 
@@ -87,7 +87,7 @@ def over_bases(seconds, bases):
 def in_process(quick):
     """{scene: spread of lcp's CPU time over that of pymunk, 10 iterations and nothing read}."""
     found, rounds = {}, 3 if quick else 15
-    for name in () if engines.missing("pymunk") else SCENES:
+    for name in () if engines.not_installed("pymunk") else SCENES:
         runs = [partial(run, contact.build_scene(name)) for run in (by_lcp, by_pymunk)]
         tasks = {run.func: partial(timing.timed, run) for run in runs}
         seconds = timing.interleave(tasks, rounds + 1).values()  # the first imports and warms

@@ -233,7 +233,7 @@ def measure(quick=False):
     names = list(PROBLEMS)[: 1 if quick else None]
     jobs = [(row, name) for name in reversed(names) for row in SOLVERS]
     found = {row: {"words": s.words} for row, s in SOLVERS.items()}
-    for (row, name), about in zip(jobs, pool.spread(judged, jobs, "solvers")):
+    for (row, name), about in zip(jobs, pool.run_jobs(judged, jobs, "solvers")):
         found[row][name] = about
     return found
 

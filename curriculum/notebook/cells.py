@@ -11,9 +11,9 @@ contact.py's.
 #@title Run me first: the course's folder is unpacked beside the notebook, and contact.py is read
 import base64, importlib.util, io, math, os, subprocess, sys, zipfile
 
-missing = [name for name in ("numpy", "matplotlib") if importlib.util.find_spec(name) is None]
-if missing:
-    subprocess.check_call([sys.executable, "-m", "pip", "install", "--quiet", *missing])
+absent = [name for name in ("numpy", "matplotlib") if importlib.util.find_spec(name) is None]
+if absent:
+    subprocess.check_call([sys.executable, "-m", "pip", "install", "--quiet", *absent])
 COURSE = os.path.abspath("contact_chapter")
 zipfile.ZipFile(io.BytesIO(base64.b64decode(FOLDER))).extractall(COURSE)
 sys.path.insert(0, COURSE)

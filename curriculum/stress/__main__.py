@@ -16,9 +16,10 @@ import sys
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-from curriculum.commands import needs, number
+from curriculum.commands import needs
 
 with needs("dev"):
+    from contact import number
     from curriculum.run import pool
     from curriculum.stress import jobs
 
@@ -80,7 +81,7 @@ def everything(args):
         "mujoco": mujoco_match.match_jobs(args.quick),
     }
     found = {
-        name: pool.spread(jobs.run, todo, name, args.workers, args.scheduler)
+        name: pool.run_jobs(jobs.run, todo, name, args.workers, args.scheduler)
         for name, todo in sections.items()
     }
     return report.write(found, origins, report.QUICK if args.quick else report.RESULTS)

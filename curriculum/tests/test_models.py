@@ -96,7 +96,7 @@ def specs(draw):
         "iters": [20, 1, 100],
         "solref": [None, [0.02, 1.0]],
         "warm": [0.0, 0.8],
-        "ahead": [False],  # the properties judge what CONTACT_MARGIN lists
+        "ahead": [False, True],
     }
     return {
         "x": some(PLACES),

@@ -39,7 +39,7 @@ def test_without_its_packages_a_command_says_in_one_line_what_to_install(only, t
 def test_what_to_install_is_said_for_the_program_that_runs_here(tmp_path):
     (tmp_path / "pip").mkdir()
     (tmp_path / "pip/__init__.py").touch()
-    code = "from curriculum.commands import missing; print(missing('yaml', 'page'), end='')"
+    code = "from curriculum.commands import to_install; print(to_install('yaml', 'page'), end='')"
     words, nowhere = ("-S", "-c", code), str(tmp_path / "empty")
     uv = python(*words, UV="uv").stdout
     assert uv == "yaml is missing; install it: uv run --extra page python -c"
