@@ -10,6 +10,18 @@ from pathlib import Path
 import pytest
 
 os.environ.pop("UV", None)  # `uv run pytest` sets it; commands are printed as for any other Python
+FIRST = ("page", "text", "bench", "exercises", "command_line", "page_figures", "notebook", "exact")
+
+
+def pytest_configure(config):
+    """pytest-xdist keeps the order of the files; its own would have one core wait at the end."""
+    config.option.loadscopereorder = False
+
+
+def pytest_collection_modifyitems(items):
+    """The files that take longest come first."""
+    rank = {f"test_{name}": place for place, name in enumerate(FIRST)}
+    items.sort(key=lambda item: rank.get(item.path.stem, len(rank)))
 
 
 @pytest.hookimpl(wrapper=True)
