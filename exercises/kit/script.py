@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from curriculum.commands import command, unread
+from curriculum.commands import command, stoppable
 
 from . import FACTS, alone, knobs, predict
 from .progress import done, note, practise
@@ -22,7 +22,7 @@ def unquoted(kind, error, trace):
 sys.excepthook = unquoted  # PREDICTION = A
 
 
-@unread()
+@stoppable()
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
@@ -33,14 +33,10 @@ def main():
     numbers = range(1, len(hints) + 1)
     parser.add_argument("--hint", type=int, choices=numbers, metavar="N", help=most)
     hint = parser.parse_args().hint
-    try:
-        if hint:
-            print(f"hint {hint} of {len(hints)}: {hints[hint - 1]}")
-        else:
-            sys.exit(run(name, exercise))
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        sys.exit(130)
+    if hint:
+        print(f"hint {hint} of {len(hints)}: {hints[hint - 1]}")
+    else:
+        sys.exit(run(name, exercise))
 
 
 def run(name, exercise):
