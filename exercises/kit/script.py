@@ -14,7 +14,7 @@ BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the mo
 
 def unquoted(kind, error, trace):
     """A letter without quotes is an error of Python's; say it in one line."""
-    if kind is not NameError or not hasattr(sys.modules["__main__"], "script"):
+    if kind is not NameError or name_of(sys.modules["__main__"]) not in BETS:
         return sys.__excepthook__(kind, error, trace)
     print(alone.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
 
@@ -23,10 +23,15 @@ sys.excepthook = unquoted  # PREDICTION = A
 
 
 @stoppable()
+def name_of(exercise):
+    """What ORDER calls it: ex1 of exercises/ex1_predict_contact.py."""
+    return Path(getattr(exercise, "__file__", "")).stem.split("_")[0]
+
+
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
-    name = Path(exercise.__file__).stem.split("_")[0]
+    name = name_of(exercise)
     hints = FACTS[name]["hints"]
     parser = argparse.ArgumentParser(description=f"Exercise {name}.", allow_abbrev=False)
     most = f"print hint N, 1 to {len(hints)}, and do nothing else"
