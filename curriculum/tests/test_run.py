@@ -31,7 +31,9 @@ def rows_of(reader, store):
         batch = part.to_record_batch()
         names = [name for name in batch.schema.names if name not in dull]
         columns = [
-            batch.column(name).cast("int64") if name == "sim_time" else batch.column(name)
+            batch.column(name).cast("int64")
+            if name in ("sim_time", "landing")
+            else batch.column(name)
             for name in names
         ]
         for row in zip(*(column.to_pylist() for column in columns)):
@@ -133,13 +135,13 @@ def test_curves_are_the_runs_own_numbers_in_the_models_colour_with_their_peaks(s
         assert look["SeriesLines:aggregation_policy"] == [policy], "an average hides the peaks"
 
 
-def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots_from_t_0(stack):
+def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots(stack):
     recording = stack[0]
     facts = recording.blueprint
     origins = [origin.strip("/") for origin in sum(facts["ViewBlueprint:space_origin"], [])]
     worlds = [f"world/{model}" for model in contact.MODELS] * 2
     assert sorted(origins) == sorted((*worlds, *CURVES))
-    assert facts["TimePanelBlueprint:timeline"] == [["sim_time"]]
+    assert facts["TimePanelBlueprint:timeline"] == [["landing"]]
     assert sum(facts["PlotLegend:visible"], []).count(True) == 1
     views = [view[0] for view in facts["VisualBounds2D:range"]]
     large = max(views, key=lambda view: np.ptp(view["y_range"]))
@@ -151,14 +153,21 @@ def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots_from_t_0(s
     assert small["y_range"][0] < 0.0 < 3 * 0.000981 < small["y_range"][1] < 0.02
 
 
-def test_plots_end_where_the_last_ball_has_come_to_rest(tmp_path):
+def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(tmp_path):
     scene, runs = runs_of("drop", steps=2000)
     recording = recorded(tmp_path, scene, runs)
+    fall = np.sqrt(2.0 * (scene.q0[1, 0] - 0.1) / 9.81)  # s, of a ball that starts at rest
+    times = recording.series["/world/lcp/balls"]
+    first = times["landing"][0] / 1e9  # where a viewer's cursor starts
+    assert 0.09 < fall - first < 0.1 + DT
+    assert times["landing"] == [max(each, times["landing"][0]) for each in times["sim_time"]]
+    panel = {key[19:]: each for key, each in recording.blueprint.items() if "TimePanel" in key}
+    assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["landing"]])
     (ranges,) = {str(each) for each in recording.blueprint["VisibleTimeRanges:ranges"]}
-    end = max(int(number) for number in re.findall(r"\d{8,}", ranges)) / 1e9
+    start, end = (sorted({int(n) / 1e9 for n in re.findall(r"\d{8,}", ranges)})[k] for k in (0, -1))
     for run in runs.values():
         assert np.abs(run.v[run.t >= end]).max() < 0.01
-    assert 0.5 < end < 2.0, "of 4 s"
+    assert first < start < fall < 0.5 < end < 2.0, "of 4 s"
 
 
 def test_a_view_says_how_its_run_ended_and_an_explosion_does_not_widen_it(tmp_path):
