@@ -292,10 +292,7 @@ class Box2d3(Session):
                 body = world.create_static_body(position=place)
             else:
                 body = world.create_dynamic_body(
-                    position=place,
-                    linear_velocity=velocity,
-                    fixed_rotation=True,
-                    enable_sleep=sleep,
+                    position=place, linear_velocity=velocity, fixed_rotation=True
                 )
             density = 1.0 if fixed else mass / (math.pi * radius * radius)
             body.create_shape(
