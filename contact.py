@@ -508,7 +508,7 @@ def as_run(rows, settled, dt) -> Run:
     """The Run of rows, x y vx vy by state and ball; settled: whether each step's sweeps did."""
     rows += 0.0  # -0.0 becomes 0.0, and -nan nan: chance decides these signs
     rows[np.isnan(rows)] = math.nan
-    q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # 2 kinds of 2 axes
+    q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # kind, state, axis, ball
     return Run(np.arange(len(rows)) * dt, q, v, int((~settled).sum()))
 
 
@@ -739,24 +739,22 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     inside = depth.max() * radius > scene.radius.max()  # an overlap by a radius
     landing = first_contact(run, scene, dt)
     step = blow_up_step(total)
-    return (
-        height_errors(run, scene, dt, reference)
-        | {
-            "max_penetration_frac": float(depth.max()),
-            "rest_penetration_frac": float(depth[-1]),  # the overlap at the end
-            "rest_gap_frac": float(gap[-1]),
-            "rebound_frac": float(gap[landing:].max(initial=0.0)),
-            "rest_jitter": float(np.std(depth[3 * len(depth) // 4 :])),
-            "energy_excess": float((total - total[0]).max()) / scale,
-            "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
-            "blew_up": step is not None,
-            "blew_up_step": step,
-            "trembles": trembles(depth),
-            "rests": at_rest(run, scene),
-            "through": "the floor" if below else "a ball" if inside else None,
-            "unsettled_steps": run.unsettled,  # whose sweeps, of soft, did not settle
-        }
-    )
+    return {
+        **height_errors(run, scene, dt, reference),
+        "max_penetration_frac": float(depth.max()),
+        "rest_penetration_frac": float(depth[-1]),  # the overlap at the end
+        "rest_gap_frac": float(gap[-1]),
+        "rebound_frac": float(gap[landing:].max(initial=0.0)),
+        "rest_jitter": float(np.std(depth[3 * len(depth) // 4 :])),
+        "energy_excess": float((total - total[0]).max()) / scale,
+        "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
+        "blew_up": step is not None,
+        "blew_up_step": step,
+        "trembles": trembles(depth),
+        "rests": at_rest(run, scene),
+        "through": "the floor" if below else "a ball" if inside else None,
+        "unsettled_steps": run.unsettled,  # whose sweeps, of soft, did not settle
+    }
 
 
 def height_errors(run, scene, dt, reference):
