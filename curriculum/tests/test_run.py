@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum.regions import ROOT
+from curriculum import seeds
 from curriculum.run import curves, picture, pool
+from curriculum.tests.helpers import CONTACT, ROOT, python
 
 DT, STEPS = 0.002, 600
 CURVES = ("height", "penetration", "impulse", "energy", "rises")
@@ -216,23 +217,15 @@ def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(
         assert content.count(f"stroke: {color}".encode()) == len(CURVES) + 2  # legend, dark mode
 
 
-def command(*flags, program=("contact.py",)):
-    """contact.py, or another program, in a process of its own."""
-    words = [sys.executable, *program, *map(str, flags)]
-    return subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=120)
-
-
-def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path):
+def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path, capsys):
     """A cluster of two workers, as it would be on two machines."""
     distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
-    program = "-m", "curriculum.seeds", "0:5", "--contact", "lcp", "--steps", "300"
-    here = command("--out", tmp_path / "here", program=program)
-    assert here.returncode == 0, here.stderr
+    words = "0:5", "--contact", "lcp", "--steps", "300", "--out"
+    assert seeds.main([*words, str(tmp_path / "here")]) == 0
     cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with distributed.LocalCluster(**cluster) as two:
-        address = "--scheduler", two.scheduler_address
-        there = command(*address, "--out", tmp_path / "there", program=program)
-    assert there.returncode == 0, there.stderr
+        there = (*words, str(tmp_path / "there"), "--scheduler", two.scheduler_address)
+        assert seeds.main([*there]) == 0
     found = (tmp_path / "here/seeds.json").read_text("utf-8")
     assert found == (tmp_path / "there/seeds.json").read_text("utf-8")
     runs = [runs_of("drop", steps=300, models=("lcp",), seed=seed) for seed in range(5)]
@@ -248,10 +241,14 @@ def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path)
 @pytest.mark.parametrize(
     "words", [*"3 4:4 5:2 0:1.5 a:b 0:1000000".split(), "0:5 --seed 3", "0:5 --plot", "0:5 --dt 0"]
 )
-def test_seeds_refuses_bad_input_in_one_line(words):
-    run = command(*words.split(), program=("-m", "curriculum.seeds"))
-    assert (run.returncode, run.stdout, run.stderr.count("\n")) == (2, "", 1), run.stderr
-    assert "error: " in run.stderr and words.split()[min(1, words.count(" "))] in run.stderr
+def test_seeds_refuses_bad_input_in_one_line(words, capsys):
+    try:
+        status = seeds.main(words.split())
+    except SystemExit as end:
+        status = end.code
+    out, err = capsys.readouterr()
+    assert (status, out, err.count("\n")) == (2, "", 1), err
+    assert "error: " in err and words.split()[min(1, words.count(" "))] in err
 
 
 def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
@@ -261,7 +258,7 @@ def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
 def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):
     pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     folder = tmp_path / "a folder"
-    lines = command("--steps", 10, "--no-rerun", "--out", folder).stdout.splitlines()
+    lines = python(CONTACT, "--steps", 10, "--no-rerun", "--out", folder).stdout.splitlines()
     (see,) = [line for line in lines if line.startswith("next, see it: ")]
     subprocess.run(see.split(": ", 1)[1], shell=True, cwd=ROOT, check=True, capture_output=True)
     assert (folder / "contact.svg").exists()
