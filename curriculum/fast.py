@@ -25,14 +25,8 @@ if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]  # contact.py's own l
 MODELS = ("penalty", "lcp", "soft")
 PENALTY, LCP, SOFT = range(3)
 STATES = 200_000  # positions of balls that are filled in one go, before report() hears of it
-BALL = np.dtype(
-    [
-        (name, float)
-        for name in (  # listed: where it was when pairs were listed
-            "vx vy inv_mass radius x y listed_x listed_y fx fy mass"
-        ).split()
-    ]
-)
+STATE = "vx vy inv_mass radius x y listed_x listed_y fx fy mass"  # listed: when pairs were
+BALL = np.dtype([(name, float) for name in STATE.split()])
 CONTACT = np.dtype(
     [
         ("a", np.uint32),  # so that no index can be negative, and a row has 64 bytes

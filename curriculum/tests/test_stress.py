@@ -51,7 +51,7 @@ FAULTS = {
         ("1.0 * (pairs[0] == balls)", "(1.0 + 1e-7) * (pairs[0] == balls)",
         "renumbering_the_balls_renumbers_the_run", "exact, v [m/s]"),
     "the reaction is short by 1e-11":
-        ("b.vx -= impulse * self.bx", "b.vx -= (1.0 - 1e-11) * impulse * self.bx",
+        ("b.vx -= impulse * (b.inv", "b.vx -= (1.0 - 1e-11) * impulse * (b.inv",
         "momentum_along_x_is_kept", "a model"),
     "the reaction of exact.py is short by 1e-9":
         ("return (self.n * lam) @ self.sign.T", "return (self.n * lam) @ (self.sign + 1e-9).T",
