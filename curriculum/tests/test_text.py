@@ -408,10 +408,12 @@ def test_reference_that_cannot_be_made_says_what_is_known(numbers, reference, er
 
 
 def test_sentence_in_words_is_held_to_the_numbers(numbers):
-    assert numbers.holds("quality.soft.depth > 2 * quality.lcp.depth")
-    assert not numbers.holds("quality.soft.depth <= quality.lcp.depth")
+    assert numbers.broken("quality.soft.depth > 2 * quality.lcp.depth") == ""
+    assert numbers.broken("quality.soft.depth <= quality.lcp.depth") == "0.17 <= 0.0567"
     with pytest.raises(ValueError, match="is not 'FORMULA < FORMULA'"):
-        numbers.holds("quality.soft.depth")
+        numbers.broken("quality.soft.depth")
+    with pytest.raises(ValueError, match="'quality.lcp.state' is 'ok', no number"):
+        numbers.broken("quality.lcp.state > 0")
 
 
 def test_hash_of_a_region_is_that_of_the_text_between_its_markers():
