@@ -42,6 +42,10 @@ export function clipped(x, y, width, height, ...children) {
 export const whole = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, ",");
 export const plural = (count, word) => `${whole(count)} ${word}${count === 1 ? "" : "s"}`;
 
+// A power of ten.
+export const tenTo = (exponent) =>
+  `10${String(exponent).replace(/./g, (c) => RAISED["-0123456789".indexOf(c)])}`;
+
 // A number as a reader wants it: three digits, powers of ten only where they help.
 export function number(value, digits = 3) {
   if (Number.isNaN(value)) return "not a number";
@@ -50,8 +54,7 @@ export function number(value, digits = 3) {
   if (size < NOISE) return "0";
   if (size < 1e-3 || size >= 1e6) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
-    const raised = exponent.replace("+", "").replace(/./g, (c) => RAISED["-0123456789".indexOf(c)]);
-    return `${mantissa} × 10${raised}`.replace("-", "−");
+    return `${mantissa} × ${tenTo(Number(exponent))}`.replace("-", "−");
   }
   const long = size >= 10 ** (digits - 1);
   return (value < 0 ? "−" : "") + (long ? whole(Math.round(size)) : size.toPrecision(digits));

@@ -18,6 +18,34 @@ const struck = kept((speeds, repair) => {
 const energy = (speeds) => speeds.reduce((sum, v) => sum + 0.5 * v * v, 0);
 const list = (speeds) => speeds.map((v) => number(v, 2)).join(", ");
 
+// Where a drawing so wide has the balls, of so many px, their arrows, and the bars of the energy.
+function placesOf(width, most) {
+  const r = Math.min(26, width / 13);
+  const bars = width - Math.min(150, 0.25 * width);
+  return {
+    r,
+    bars,
+    px: Math.min(30, width / 20), // of an arrow for 1 m/s
+    unit: (width - bars - 8) / Math.max(most, 0.1),
+    at: (i) => (bars - 16) / 2 + 2 * r * (i - 1),
+    up: (i) => -r - 14 - 22 * i, // the arrows stand over one another
+  };
+}
+
+function row([title, speeds], k, { r, bars, px, unit, at, up }) {
+  return [
+    label(title, 0, ROWS[k] - r - (k ? 72 : 84), "start", "axis-name"),
+    ...speeds.map(
+      (v, i) =>
+        ball("lcp", at(i), ROWS[k], r, k ? "seen" : "ball plainly") +
+        arrow("weight", at(i), ROWS[k] + up(i), px * v, 0) +
+        label(number(v, 2), at(i), ROWS[k] + 5, "middle", k ? "tick strong" : "on-ball"),
+    ),
+    rect(bars, ROWS[k] - 10, energy(speeds) * unit, 20, "bar-fill m-lcp"),
+    label(`${number(energy(speeds), 4)} J`, bars, ROWS[k] + 30),
+  ];
+}
+
 function draw(view) {
   const speeds = ["v1", "v2", "v3"].map((name) => view.own[name]);
   const cases = [
@@ -26,23 +54,8 @@ function draw(view) {
     ["after, no target below 0", struck(speeds, true)],
   ];
   const [begun, moreau, repaired] = cases.map((each) => energy(each[1]));
-  const r = Math.min(26, view.width / 13);
-  const px = Math.min(30, view.width / 20); // of an arrow for 1 m/s
-  const bars = view.width - Math.min(150, 0.25 * view.width);
-  const unit = (view.width - bars - 8) / Math.max(begun, moreau, repaired, 0.1);
-  const at = (i) => (bars - 16) / 2 + 2 * r * (i - 1);
-  const up = (i) => -r - 14 - 22 * i; // the arrows stand over one another
-  const row = ([title, after], k) => [
-    label(title, 0, ROWS[k] - r - (k ? 72 : 84), "start", "axis-name"),
-    ...after.map(
-      (v, i) =>
-        ball("lcp", at(i), ROWS[k], r, k ? "seen" : "ball plainly") +
-        arrow("weight", at(i), ROWS[k] + up(i), px * v, 0) +
-        label(number(v, 2), at(i), ROWS[k] + 5, "middle", k ? "tick strong" : "on-ball"),
-    ),
-    rect(bars, ROWS[k] - 10, energy(after) * unit, 20, "bar-fill m-lcp"),
-    label(`${number(energy(after), 4)} J`, bars, ROWS[k] + 30),
-  ];
+  const places = placesOf(view.width, Math.max(begun, moreau, repaired));
+  const { r, bars, px, unit, at, up } = places;
   const mark = bars + begun * unit;
   const hold = (v, i) => {
     const range = { low: -MOST, high: MOST, step: 0.1, at: (x) => (x - at(i)) / px };
@@ -55,7 +68,7 @@ function draw(view) {
   const told = cases.map((each) => list(each[1]));
   return {
     svg: [
-      ...cases.flatMap(row),
+      ...cases.flatMap((each, k) => row(each, k, places)),
       label("energy", bars, ROWS[0] - 30, "start", "axis-name"),
       line(mark, ROWS[0] - 22, mark, ROWS[2] + 14),
     ].join(""),
