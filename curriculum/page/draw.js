@@ -139,11 +139,14 @@ function frame({ x, y }, { sx, sy, box }) {
     const at = sy(value);
     return line(left, at, right, at, "grid") + label(text, left - 6, at + 5, "end", "tick");
   });
+  let free = -Infinity; // from here on there is room for a tick's text
   const along = x.ticks.map(([value, text]) => {
-    const at = sx(value);
-    const [place, anchor] = at > right - 14 ? [right, "end"] : [at, "middle"];
-    const name = label(text, place, bottom + 20, anchor, "tick");
-    return line(at, bottom, at, bottom + 5, "axis") + name;
+    const [at, half] = [sx(value), 4.2 * text.length];
+    const place = Math.min(at, right + 4 - half);
+    const drawn = line(at, bottom, at, bottom + 5, "axis");
+    if (place - half < free) return drawn;
+    free = place + half + 6;
+    return drawn + label(text, place, bottom + 20, "middle", "tick");
   });
   if (y.label) across.push(label(y.label, box.edge, top - 12, "start", "axis-name"));
   if (x.label) along.push(label(x.label, right, low - 4, "end", "axis-name"));

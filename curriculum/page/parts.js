@@ -1,6 +1,6 @@
 /* What the explaining figures share: scenes of balls, results that are kept, a chart beside a
  * picture, a lens, and handles that set a number. */
-import { ball, circle, clipped, el, label, plot, table, tenTo, within } from "./draw.js";
+import { ball, circle, clipped, el, label, plot, round, table, tenTo, within } from "./draw.js";
 import { data } from "./data.js";
 import { GRAVITY } from "./engine.js";
 import { knobsOf, QUANTITIES } from "./store.js";
@@ -95,15 +95,16 @@ export function beside(view, options, picture, share = 0.4) {
 }
 
 // What is seen through a lens of `size` px around (x, y).
-export const through = (id, x, y, size, ...inside) =>
-  el("clipPath", { id }, circle(x, y, size, "")) +
-  el("g", { "clip-path": `url(#${id})` }, circle(x, y, size, "lens-ground"), ...inside) +
-  circle(x, y, size, "lens-rim");
+export function through(x, y, size, ...inside) {
+  const style = `clip-path: circle(${size}px at ${round(x)}px ${round(y)}px) view-box`;
+  const seen = el("g", { style }, circle(x, y, size, "lens-ground"), ...inside);
+  return seen + circle(x, y, size, "lens-rim");
+}
 
 /* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
  * `depth` deep [r], enlarged so that it can be seen, or `given` times; a radius is `r` px. Nothing
  * where that is seen without a lens. */
-export function lens(id, model, x, y, r, depth, size, given) {
+export function lens(model, x, y, r, depth, size, given) {
   const steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
   const times = given || steps.find((each) => each * depth * r >= 12) || 10000;
   if (!given && (times <= 2 || depth <= 0)) return "";
@@ -112,7 +113,7 @@ export function lens(id, model, x, y, r, depth, size, given) {
     ball(model, x, y + (depth - 1) * r * times, r * times, "magnified"),
   ];
   const enlarged = label(`× ${times}`, x, y + size + 16, "middle", "tick");
-  return through(id, x, y, size, ...inside) + enlarged;
+  return through(x, y, size, ...inside) + enlarged;
 }
 
 // How long an arrow for a force is, in weights: the root, since impacts are hundreds of weights.

@@ -10,7 +10,8 @@ export class Reader {
   // passages: [{node, section, look}] in the order of the page; look: what the live figure shows
   constructor(passages, sectionOf, lanes) {
     Object.assign(this, { passages, sectionOf, lanes, shown: null, called: null });
-    this.wide = [...document.querySelectorAll(".centred .fig, .centred .code, .centred .scroll")];
+    const wide = ".centred :is(.fig, .code, .scroll, .generated, .exercise > pre)";
+    this.wide = [...document.querySelectorAll(wide)];
     this.live = document.getElementById("figure");
     this.beside = window.matchMedia("(min-width: 75rem)");
     for (const span of document.querySelectorAll(".drag")) this.#number(span);

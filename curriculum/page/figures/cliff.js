@@ -7,7 +7,7 @@ const [LOW, HIGH] = [0.0005, 0.064]; // s
 const SECONDS = 4;
 const STEPS = 2000; // as many as contact.py takes
 const LEFT = [[0, "0"], 0.001, 1, 1000, [1e6, "10⁶"]]; // ticks
-const COURSE = 150; // px of the upper chart
+const COURSE = 170; // px of the upper chart
 const TOP = 1.5; // m, of a ball that stays
 
 const moves = (...knobs) => stillMoves(...knobs, STEPS, STEPS / 4 + 1); // in the last quarter
@@ -29,7 +29,7 @@ function course(view, { t, y }) {
   const top = seen.reduce((most, each) => (each > most ? each : most), TOP);
   return plot([0, 0, view.width, COURSE], {
     x: axis([0, SECONDS], "time (s)", 0, 1, 2, 3, 4),
-    y: axis([-top / 3, top], "height (m)", 0, top > TOP ? [top, number(top, 2)] : 1),
+    y: axis([-top / 6, top], "height (m)", 0, top > TOP ? [top, number(top, 2)] : 1),
     margin: 64,
     lines: [{ model: "penalty", xs: t, ys: y, to: end }],
     rules: [{ y: 0 }],
@@ -71,7 +71,7 @@ export const figure = {
   caption:
     "Drag the time step: past the critical one the dropped ball never rests, and a little " +
     "further it explodes.",
-  height: 400,
+  height: 420,
   knobs: ["stiffness", "damping"],
   draw,
 };

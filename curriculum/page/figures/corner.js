@@ -44,7 +44,7 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
       deepest === null ? "" : ball(model, x, floor - r - deepest * r, r, "ghost"),
       arrow(`push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
       hand > 0 ? line(x, y, x, 0, "hand") : arrow("weight", x, y - r - pull, 0, pull),
-      shown === NEAR ? lens("corner-lens", model, 40, 42, r, -gap, 38, 10) : "",
+      shown === NEAR ? lens(model, 40, 42, r, -gap, 38, 10) : "",
     ].join("");
   };
   const { svg, middle } = beside(view, chart, picture);

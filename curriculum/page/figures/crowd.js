@@ -4,7 +4,7 @@ import { makeRows, normalSpeed, solveContacts } from "../engine.js";
 import { grip, kept, wholly } from "../parts.js";
 
 const MOST = 3.5; // m/s
-const ROWS = [122, 262, 402]; // px
+const ROWS = [180, 320, 460]; // px
 
 // The speeds after the impact of three touching elastic balls; `repair`: no target below zero.
 const struck = kept((speeds, repair) => {
@@ -28,17 +28,18 @@ function placesOf(width, most) {
     px: Math.min(30, width / 20), // of an arrow for 1 m/s
     unit: (width - bars - 8) / Math.max(most, 0.1),
     at: (i) => (bars - 16) / 2 + 2 * r * (i - 1),
-    up: (i) => -r - 14 - 22 * i, // the arrows stand over one another
+    // the arrows stand over one another, and those that are dragged further apart
+    up: (i, k) => (k ? -r - 14 - 22 * i : -r - 20 - 44 * i),
   };
 }
 
 function row([title, speeds], k, { r, bars, px, unit, at, up }) {
   return [
-    label(title, 0, ROWS[k] - r - (k ? 72 : 84), "start", "axis-name"),
+    label(title, 0, ROWS[k] - r - (k ? 72 : 134), "start", "axis-name"),
     ...speeds.map(
       (v, i) =>
         ball("lcp", at(i), ROWS[k], r, k ? "seen" : "ball plainly") +
-        arrow("weight", at(i), ROWS[k] + up(i), px * v, 0) +
+        arrow("weight", at(i), ROWS[k] + up(i, k), px * v, 0) +
         label(number(v, 2), at(i), ROWS[k] + 5, "middle", k ? "tick strong" : "on-ball"),
     ),
     rect(bars, ROWS[k] - 10, energy(speeds) * unit, 20, "bar-fill m-lcp"),
@@ -60,7 +61,7 @@ function draw(view) {
   const hold = (v, i) => {
     const range = { low: -MOST, high: MOST, step: 0.1, at: (x) => (x - at(i)) / px };
     const [name, text] = [`the speed of ball ${i + 1}`, `${number(v, 2)} m/s`];
-    return grip(view, `v${i + 1}`, at(i) + px * v, ROWS[0] + up(i), name, text, range);
+    return grip(view, `v${i + 1}`, at(i) + px * v, ROWS[0] + up(i, 0), name, text, range);
   };
   const knobs = speeds.map(hold);
   const gain = repaired / begun - 1;
@@ -84,7 +85,7 @@ export const figure = {
   caption:
     "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair " +
     "that allows no target below zero adds some; drag the speeds.",
-  height: 446,
+  height: 504,
   start: () => ({ v1: -1, v2: 0, v3: -3 }),
   draw,
 };

@@ -32,7 +32,7 @@ const squeezed = kept((dt, stiffness, ...x) => {
 function lens(x, y, size, r, depth) {
   const [far, half] = [r * TIMES, 0.5 * depth * r * TIMES];
   const edge = (model, side) => ball(model, x + side * (far - half), y, far, "magnified");
-  const seen = through("gripper-lens", x, y, size, edge("fixed", -1), edge("penalty", 1));
+  const seen = through(x, y, size, edge("fixed", -1), edge("penalty", 1));
   return seen + label(`× ${TIMES}`, x + size + 6, y + 5, "start", "tick");
 }
 

@@ -24,7 +24,7 @@ function chartOf([d0, d1], at, depth) {
 const picture = (left, floor, r, deep, d, share) => [
   table(0, floor, left, GROUND),
   ball("soft", left / 2, floor + (deep - 1) * r, r),
-  lens("impedance-lens", "soft", 40, 42, r, deep, 38, TIMES),
+  lens("soft", 40, 42, r, deep, 38, TIMES),
   arrow("push m-soft weaker", left - 22, floor, 0, -HARD),
   arrow("push m-soft", left - 34, floor, 0, -HARD * d),
   label(share, left - 4, floor - HARD - 8, "end", "tick"),

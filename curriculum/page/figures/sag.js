@@ -44,12 +44,12 @@ function nearest(ways, wanted) {
 }
 
 // A contact through a lens: a ball in what is below it, both in px, and the law as a bracket.
-function lens(id, x, y, deep, law) {
+function lens(x, y, deep, law) {
   const [near, far] = [x + LENS + 3, x + LENS + 9];
   const below = rect(x - LENS, y, 2 * LENS, LENS, "body m-fixed");
   const above = rect(x - LENS, y - LENS, 2 * LENS, LENS + deep, "ball m-lcp");
   const bracket = path([[far, y], [near, y], [near, y + law], [far, y + law]], "rule");
-  return through(id, x, y, LENS, below, above) + bracket;
+  return through(x, y, LENS, below, above) + bracket;
 }
 
 // The column, a lens at each contact, and how deep it is; and the place of each ball.
@@ -62,10 +62,11 @@ function column(left, height, masses, depths, law) {
     const [x, y] = places[i];
     const heavy = mass === 1 ? "" : label(number(mass, 2), x, y + 5, "middle", "on-ball");
     const at = x + r + LENS + 12;
-    const told = left > 170 ? `${number(depths[i], 2)} r` : "";
+    const wide = `${number(depths[i], 2)} r`;
+    const told = left > 200 ? wide : left > 170 ? number(depths[i], 1) : "";
     return [
       ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
-      lens(`sag-${i}`, at, y + r, size * depths[i], size * law[i]),
+      lens(at, y + r, size * depths[i], size * law[i]),
       label(told, at + LENS + 16, y + r + (i ? 5 : -4), "start", "tick strong"),
     ].join("");
   });
@@ -100,7 +101,7 @@ function draw(view) {
   const { depths, rests, law } = all[now];
   let made;
   const picture = (left) => (made = column(left, view.height, masses, depths, law)).svg;
-  const { svg, sx, sy } = beside(view, chartOf(ways, all), picture, 0.44);
+  const { svg, sx, sy } = beside(view, chartOf(ways, all), picture, view.width < 480 ? 0.52 : 0.44);
   const hold = ([x, y], i) => {
     const get = () => Math.log10(own.masses[i]);
     const set = (to) => (own.masses[i] = Number((10 ** to).toPrecision(2)));

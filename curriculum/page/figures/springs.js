@@ -48,7 +48,7 @@ function picture(left, height, stiffness, depth, push) {
     ball("penalty", x, y, LARGE),
     arrow("weight", x - aside, y, 0, forceLength(1)),
     arrow("push m-penalty", x + aside, under, 0, -Math.min(150, forceLength(push))),
-    lens("sponge-lens", "penalty", left - 34, 36, LARGE, depth, 30),
+    lens("penalty", left - 34, 36, LARGE, depth, 30),
   ].join("");
 }
 
@@ -167,7 +167,7 @@ function drawStack(view) {
     ...heights.map((height) => ball("penalty", x, at(height), PX)),
     ...pushes,
     arrow("weight", x, at(heights[from] + R) - pressed, 0, pressed),
-    lens("stack-lens", "penalty", ...aside, PX, depths[0], 44),
+    lens("penalty", ...aside, PX, depths[0], 44),
   );
   const open = depths.findIndex((depth) => depth < 0);
   const carried = plural(open < 0 ? COUNT : open, "ball");
