@@ -1,4 +1,4 @@
-"""Checks of the exercises: `pytest checks.py`, or one of them, `pytest checks.py -k ex2`.
+"""Checks of the ten exercises: `pytest checks.py`, or one of them, `pytest checks.py -k ex1_`.
 
     python checks.py                # the same, and says what comes next
     python checks.py --watch        # again whenever an exercise is saved
@@ -17,21 +17,21 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent
 sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
-from kit import predict  # noqa: E402
+from kit import script  # noqa: E402
 from kit.progress import FILES, practise  # noqa: E402
 
-from curriculum.commands import missing  # noqa: E402
+from curriculum.commands import stoppable, to_install  # noqa: E402
 
 try:
     import pytest
 except ModuleNotFoundError:
-    sys.exit(f"checks.py: {missing('pytest')}")
+    sys.exit(f"checks.py: {to_install('pytest')}")
 
 
 @pytest.mark.parametrize("name", FILES, ids=lambda name: Path(FILES[name]).stem)
 def test_exercise(name):
     """Skip what is still to be done, and fail what is wrong. A bet is done once it was read."""
-    state, words = predict.checked(name, ROOT / FILES[name])
+    state, words = script.checked(name, ROOT / FILES[name])
     if state == "blank":
         pytest.skip(f"{name}: {words}")
     if state == "wrong":
@@ -50,23 +50,21 @@ def watch(argv):
         time.sleep(0.2)
 
 
+@stoppable()
 def main():
     """Run the checks once, or again and again. Returns the exit status."""
     parser = argparse.ArgumentParser(
         description="Check the exercises.",
         allow_abbrev=False,
-        epilog="All other flags are pytest's: -k ex2, --junit-xml.",
+        epilog="All other flags are pytest's: -k ex1_, --junit-xml.",
     )
     parser.add_argument("--watch", action="store_true", help="again whenever an exercise is saved")
     args, words = parser.parse_known_args()
-    try:
-        if args.watch:
-            watch(words)
-        status = pytest.main([str(ROOT / "checks.py"), "-q", "-rs", *words])
-        print(practise())
-        return status
-    except KeyboardInterrupt:
-        return 130
+    if args.watch:
+        watch(words)
+    status = pytest.main([str(ROOT / "checks.py"), "-q", "-rs", *words])
+    print(practise())
+    return status
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ import shlex
 import shutil
 import sys
 import sysconfig
-from argparse import ArgumentTypeError
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -31,7 +30,7 @@ def quoted(*words):
     return " ".join(f'"{word}"' if word[0] != '"' and "[" in word else word for word in line)
 
 
-def missing(package, extra=None):
+def to_install(package, extra=None):
     """One line that says how to install a package that is not there, or the extra that brings it.
 
     uv's environments have no pip: there it is the same run again, with the package. The system's
@@ -69,26 +68,26 @@ def needs(extra):
         package = (error.name or "").partition(".")[0]
         if not package or package in OURS:
             raise
-        print(missing(package, extra), file=sys.stderr)
+        print(to_install(package, extra), file=sys.stderr)
         sys.exit(2)
+
+
+@contextlib.contextmanager
+def stoppable():
+    """Within it, Ctrl-C and output that nobody reads on (`| head -1`) end the program."""
+    try:
+        try:
+            yield
+        finally:
+            print(end="", flush=True)  # an error at Python's end has no handler
+    except BrokenPipeError:
+        os._exit(141)
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        sys.exit(130)
 
 
 def near(word):
     """A path as one would type it here: relative below this folder; other words as they are."""
     below = os.path.isabs(word) and Path(word).is_relative_to(Path.cwd())
     return os.path.relpath(word) if below else word
-
-
-def number(kind, low, high):
-    """An argparse type: a number of that kind, int or float, from low to high."""
-
-    def read(text):
-        try:
-            value = kind(text)
-        except (ValueError, OverflowError):
-            value = None
-        if value is None or not low <= value <= high:
-            raise ArgumentTypeError(f"given {text[:40]!r}; allowed: {low:g} to {high:g}")
-        return value
-
-    return read

@@ -43,18 +43,23 @@ RATIO = 100.0  # of masses: above it, where 0 < e < 1, light balls rattle under 
 
 # --- region: slide-lcp ---
 def inverse(W):
-    """W^-1 of a Delassus matrix (K, K). Of many that fit, as under a slab, the least."""
+    """W^-1 of a Delassus matrix (K, K); and what keeps of -b the pushes with W lam = 0.
+
+    Such pushes are there where contacts depend on one another, as under a slab. W has no inverse
+    then, and of the many lam that fit, the first matrix gives the least.
+    """
     unit = 1.0 / np.sqrt(W.diagonal())
     unit = unit * unit[:, None]  # makes the diagonal 1, whatever the masses
     try:
         found = np.linalg.inv(W * unit)
         if np.abs(found.diagonal()).max(initial=0.0) < 1e10:  # no contact depends on others
-            return found * unit
+            return found * unit, np.zeros_like(W)
     except np.linalg.LinAlgError:
         pass
     size, axes = np.linalg.eigh(W * unit)
-    size = np.where(size > 1e-12 * size.max(initial=0.0), size, math.inf)
-    return axes / size @ axes.T * unit
+    moves = size > 1e-12 * size.max(initial=0.0)
+    size, idle = np.where(moves, size, math.inf), axes * ~moves
+    return axes / size @ axes.T * unit, idle @ idle.T * unit
 
 
 def solve_lcp(W, b):
@@ -65,30 +70,37 @@ def solve_lcp(W, b):
     towards trial until the first of them is at 0, and take it out of A. Else lam = trial, and if
     some s_k < 0, its gap still closes: the fastest one joins A. Each time that no contact pulls,
     lam'W lam / 2 + b'lam is lower than before, so no A comes twice (Lawson and Hanson 1974).
+
+    Where contacts of A depend on one another, there may be no such trial. Then some pushes change
+    no s, and lower that sum without end: go their way until the first contact is at 0.
     """
     if len(b) < 2:
         return np.maximum(-b / W.diagonal(), 0.0)
     unit = np.sqrt(W.diagonal())
-    least = -1e-13 * np.abs(b / unit).max(initial=0.0)
+    size = np.abs(b / unit).max(initial=0.0)
     lam, active = np.zeros(len(b)), np.ones(len(b), bool)
     for _ in range(50 + 10 * len(b)):
         trial, on = np.zeros(len(b)), np.flatnonzero(active)
-        trial[on] = inverse(W[np.ix_(on, on)]) @ -b[on]
-        pulls = np.flatnonzero(trial * unit < least)
+        solve, idle = inverse(W[np.ix_(on, on)])
+        trial[on] = idle @ -b[on]
+        endless = np.abs(trial * unit).max() > 1e-9 * size
+        if not endless:
+            trial[on] = solve @ -b[on]
+        pulls = np.flatnonzero(trial * unit < -1e-13 * size)
         if len(pulls):
-            share = lam[pulls] / (lam[pulls] - trial[pulls])
-            lam = np.where(active, lam + share.min() * (trial - lam), 0.0)
+            way = trial if endless else trial - lam
+            share = lam[pulls] / -way[pulls]
+            lam = np.where(active, lam + share.min() * way, 0.0)
             active[pulls[share.argmin()]] = False
             continue
+        if endless:
+            raise RuntimeError("exact: a ball is crushed between two that nothing moves")
         lam = np.maximum(trial, 0.0)
         s = np.where(active, 0.0, (W @ lam + b) / unit)
-        if s.min(initial=0.0) >= least:
+        if s.min(initial=0.0) >= -1e-13 * size:
             return lam
         active[s.argmin()] = True
-    rest = np.abs(W @ (inverse(W) @ b) - b).max()  # above rounding: no pushes make all s 0
-    crushed = "a ball is crushed between two that nothing moves"
-    reason = crushed if rest > 1e-9 * np.abs(b).max() else "their masses are too unequal"
-    raise RuntimeError(f"exact: no pushes of {len(b)} contacts at one moment part them: {reason}")
+    raise RuntimeError(f"exact: {len(b)} contacts at one moment: their masses are too unequal")
 
 
 # --- endregion ---
@@ -145,7 +157,7 @@ class Contacts:
     @cached_property
     def inverse(self):
         """W^-1, made once: while the contacts push, their normals turn by no more than rounding."""
-        return inverse(self.delassus())
+        return inverse(self.delassus())[0]
 
     def match(self, rows, target):
         """Rows changed by the pushes that make `along` the target; twice, for the last digits."""
@@ -194,7 +206,7 @@ class Motion:
             self.q = self.q + part.push(solve_lcp(part.delassus(), self.found[near]))
             self.found = self.gap = self.all.locate(self.q)
 
-    def bounce(self, touching):
+    def strike(self, touching):
         """Impulses: where a contact pushes, v_n becomes -e v_n, at all contacts at once.
 
         That is an LCP in s = v_n after - target with target = -e v_n, as in contact.py; the target
@@ -429,15 +441,16 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
     """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, from event to event.
 
     The scene has q0, v0 (2, N), mass (N,), inf for a ball that nothing moves, radius (N,) and
-    restitution; gravity [m/s^2] is along y, negative. report(k) is called after each event with
-    the samples done. Raises RuntimeError beyond the promise.
+    restitution; gravity [m/s^2] is along y, negative. At the moment of an event v is that after
+    all rounds of impacts of this moment. report(k) is called after each event with the samples
+    done. Raises RuntimeError beyond the promise.
     """
     refuse(scene)
     motion, cycle, out = Motion(scene, gravity), Cycle(), np.empty((2, len(times), *scene.q0.shape))
     now, done = 0.0, 0
     for _ in range(MOST_IMPACTS):
         touching = motion.touch()
-        motion.bounce(touching)
+        motion.strike(touching)
         which, held, a = motion.support(touching)
         if cycle.repeats(motion):
             out[:, done:] = cycle.read(times[done:] - now)
@@ -446,7 +459,7 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
         if held.across(motion.v).any() or held.across(a).any():
             Q, lam, horizon = motion.slide(held)
         span = motion.next_event(Q, which, lam, horizon)
-        last = max(done, int(np.searchsorted(times, now + span, "right")))
+        last = max(done, int(np.searchsorted(times, now + span)))
         if last > done:
             out[:, done:last] = sample(Q, times[done:last] - now)
         cycle.flights.append((span, Q))

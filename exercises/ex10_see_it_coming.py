@@ -13,7 +13,7 @@ that let it look as far as a step travels. What is around them, for e of the mat
     python checks.py -k ex10
 """
 
-from kit import predict
+from kit import script
 
 
 def how_far(fastest, dt):
@@ -38,4 +38,4 @@ def applies(restitution):
 
 
 if __name__ == "__main__":
-    predict.main()
+    script.main()

@@ -5,43 +5,28 @@ two runs differ in one thing, the answer to: what force does the table apply? In
 is a very stiff spring with a damper beside it. In lcp it gives the impulse after which ball and
 table no longer approach each other. Measured is how deep the ball is in the table at the worst
 moment and at the end, in ball radii r.
-Read CHOICES, write your PREDICTION and one sentence of WHY, and only then run
+
+A ball drops onto the table. What do the two contact models do differently?
+
+    A  Nothing that matters: both stop the ball at the surface. A contact is a contact.
+    B  The penalty ball never gets into the table but bounces for ever; the lcp ball gets in and
+       settles.
+    C  The penalty ball gets much deeper into the table on landing and also comes to rest inside it;
+       the lcp ball ends on the surface.
+
+One sentence: when the ball lies still, how does each model arrive at a push of m g?
+
+Write your letter as PREDICTION and this sentence as WHY, and only then run
 
     python exercises/ex1_predict_contact.py     # add --hint 1 (2, 3) for a question that helps
     python checks.py -k ex1_
 """
 
-from kit import predict
-from kit.predict import contact
-
-QUESTION = "A ball drops onto the table. What do the two contact models do differently?"
-CHOICES = {
-    "A": "Nothing that matters: both stop the ball at the surface. A contact is a contact.",
-    "B": "The penalty ball never gets into the table but bounces for ever; "
-    "the lcp ball gets in and settles.",
-    "C": "The penalty ball gets much deeper into the table on landing and also comes to rest "
-    "inside it; the lcp ball ends on the surface.",
-}
-WHY_PROMPT = "One sentence: when the ball lies still, how does each model arrive at a push of m g?"
+from kit import script
 
 PREDICTION = None  # "A", "B" or "C"
-WHY = ""  # your sentence, see WHY_PROMPT
-
-
-def measure():
-    """The drop at the length of --smoke, by both models: {name: a number}, lengths in r."""
-    numbers = predict.measured(
-        contact.build_scene("drop"),
-        dt=0.002,
-        steps=800,
-        deepest="max_penetration_frac",
-        at_rest="rest_penetration_frac",
-    )
-    return numbers | {"factor": numbers["penalty_deepest"] / numbers["lcp_deepest"]}
-
-
-TABLE = ("depth", ("penalty", "lcp"), {"deepest": "deepest", "at_rest": "at rest"}, "{:.5f} r")
+WHY = ""  # your sentence
 
 
 if __name__ == "__main__":
-    predict.main()
+    script.main()

@@ -11,7 +11,7 @@ signs are those of the table at the top of contact.py.
 Out of scope: friction, and several contacts at once (your second line is called for each in turn).
 """
 
-from kit import predict
+from kit import script
 
 
 def penalty_normal_force(depth, v_n, stiffness, damping):
@@ -35,4 +35,4 @@ def project_impulse(lam, dlam):
 
 
 if __name__ == "__main__":
-    predict.main()
+    script.main()

@@ -14,7 +14,7 @@ read it; now write it without looking. A contact c gives you
     python checks.py -k ex5                     # random stacks, against contact.py's answers
 """
 
-from kit import predict
+from kit import script
 
 
 def solve_contacts(contacts, iters):
@@ -28,4 +28,4 @@ def solve_contacts(contacts, iters):
 
 
 if __name__ == "__main__":
-    predict.main()
+    script.main()

@@ -15,7 +15,7 @@ velocity first, from force k depth - c v_n, and then the depth with the new velo
 """
 
 import numpy as np  # noqa: F401  np.linalg.eigvals(matrix) is what you need
-from kit import predict
+from kit import script
 
 
 def step_matrix(mass, stiffness, damping, dt):
@@ -35,4 +35,4 @@ def longest_step(mass, stiffness, damping):
 
 
 if __name__ == "__main__":
-    predict.main()
+    script.main()

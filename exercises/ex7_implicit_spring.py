@@ -14,7 +14,7 @@ where it pushes. Which softness and which target make that the equation above?
     python checks.py -k ex7
 """
 
-from kit import predict
+from kit import script
 
 
 def implicit_spring(depth, stiffness, damping, dt):
@@ -25,4 +25,4 @@ def implicit_spring(depth, stiffness, damping, dt):
 
 
 if __name__ == "__main__":
-    predict.main()
+    script.main()

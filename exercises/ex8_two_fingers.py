@@ -14,7 +14,7 @@ thing that hangs on it?
     python checks.py -k ex8
 """
 
-from kit import predict
+from kit import script
 
 MODEL = None  # "penalty" or "soft"
 DT = 0.004  # s
@@ -27,4 +27,4 @@ SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # of soft: the impedance, see contact.imp
 
 
 if __name__ == "__main__":
-    predict.main()
+    script.main()

@@ -19,7 +19,7 @@ the column rest gap/r of the second command:
     python checks.py -k ex9
 """
 
-from kit import predict
+from kit import script
 
 # fmt: off
 BETS = """
@@ -35,4 +35,4 @@ SAG = None  # r, from your paper
 
 
 if __name__ == "__main__":
-    predict.main()
+    script.main()

@@ -21,7 +21,7 @@ from curriculum.bench import engines, problems, timing
 from curriculum.run import pool
 
 ERRORS = ("error", "final_error", "energy_error", "depth")
-WAYS = ("awake", "user")
+WAYS = {"awake": False, "user": True}  # whether balls may sleep
 WORK, BUDGETS, BUDGET = 16, (1, 10, 100), 10  # substeps in 2 ms; us a ball in 2 ms
 PROCESSES = 3
 ENOUGH = 0.03  # s: once the runs of a point have taken so long, it is not timed again
@@ -40,7 +40,7 @@ def measure(quick=False):
     chosen = [p for p in problems.PROBLEMS if not quick or p.name in QUICK["names"]]
     jobs = list(cells(chosen, quick))
     print(f"accuracy: {len(jobs)} points, their errors first, then their times", flush=True)
-    errors = pool.spread(errors_of, jobs, "errors")
+    errors = pool.run_jobs(errors_of, jobs, "errors")
     processes = QUICK["processes"] if quick else PROCESSES
     slow = {job for job in jobs if BY_NAME[job[1]].slow}  # one process has to be enough
     times = timing.in_fresh_processes(times_of, jobs, processes, "run times", slow)
@@ -76,9 +76,10 @@ def cells(chosen, quick):
                     yield problem.name, c.name, dt, substeps, starts
 
 
-def sleeps(job):
-    """Whether a point is measured as a user gets it, too."""
-    return BY_NAME[job[1]].sleeps and job[2] == problems.REFERENCE_DT
+def ways(job):
+    """The WAYS in which a point is measured: as a user gets it only at the usual step."""
+    asleep = BY_NAME[job[1]].sleeps and job[2] == problems.REFERENCE_DT
+    return list(WAYS) if asleep else ["awake"]
 
 
 def errors_of(job):
@@ -87,36 +88,37 @@ def errors_of(job):
     problem, found = problems.BY_NAME[name], []
     for start in range(starts):
         scene = problem.build(start)
-        for sleep in (False, True) if sleeps(job) else (False,):
-            states = BY_NAME[contestant].build(scene, dt, substeps, sleep).states(problem.steps(dt))
+        quality = {}
+        for way in ways(job):
+            session = BY_NAME[contestant].build(scene, dt, substeps, WAYS[way])
+            states = session.states(problem.steps(dt))
             run = contact.Run(np.arange(len(states[0])) * dt, *states)
-            quality = problems.quality(problem, scene, run)
-            if sleep:
-                found[-1]["user_error"] = quality["error"]
-            else:
-                found.append(quality)
+            quality[way] = problems.quality(problem, scene, run)
+        asleep = {"user_error": quality["user"]["error"]} if "user" in quality else {}
+        found.append(quality["awake"] | asleep)
     return found
 
 
-def seconds_of(job, sleep, steps):
+def seconds_of(job, way, steps, timed=timing.timed):
     """CPU seconds that a point takes for these looks, without its preparation."""
     problem, name, dt, substeps, _ = job
-    session = BY_NAME[name].build(problems.BY_NAME[problem].build(0), dt, substeps, sleep)
-    seconds, heights = timing.timed(partial(session.trace, steps))
+    scene = problems.BY_NAME[problem].build(0)
+    session = BY_NAME[name].build(scene, dt, substeps, WAYS[way])
+    seconds, heights = timed(partial(session.trace, steps))
     if len(heights) != steps + 1:
         raise RuntimeError(f"{name} was looked at {len(heights)} times instead of {steps + 1}")
     return seconds
 
 
-def times_of(job):
+def times_of(job, timed=timing.timed):
     """{way: seconds} of a point: the median of up to three runs, after a short one as a warm-up."""
     steps = problems.BY_NAME[job[0]].steps(job[2])
-    seconds = {way: [] for way in (WAYS if sleeps(job) else WAYS[:1])}
+    seconds = {way: [] for way in ways(job)}
     for way in seconds:
-        seconds_of(job, way == "user", min(50, steps))
+        seconds_of(job, way, min(50, steps))
     for _ in range(3):
         for way in seconds:
-            seconds[way].append(seconds_of(job, way == "user", steps))
+            seconds[way].append(seconds_of(job, way, steps, timed))
         if sum(map(sum, seconds.values())) > ENOUGH:
             break
     return {way: statistics.median(values) for way, values in seconds.items()}

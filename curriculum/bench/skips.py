@@ -1,5 +1,7 @@
 """What skipping costs and saves: the same bits with and without, and the time of whole processes.
 
+The readable loops of lcp, skips and all, also race pymunk within this process.
+
 What it saves within a process stands in the section "accuracy": awake, and as a user gets it.
 """
 
@@ -10,7 +12,7 @@ import tempfile
 from functools import partial
 
 import contact
-from curriculum.bench import timing
+from curriculum.bench import engines, timing
 from curriculum.run import pool
 
 SCENES, STEPPED = ("drop", "bounce", "stack"), ("penalty", "lcp", "soft")
@@ -18,12 +20,15 @@ DT, STEPS = 0.002, 2000
 RECORDED = "drop, recorded"
 # to reach: whole processes, in times of importing numpy (RECORDED: rerun)
 RATIOS = {"ratio": "median", "least": "min"}
+IN_PROCESS = {"drop": 1.0, "bounce": 1.0, "stack": 1.2}  # lcp, in times of pymunk
 LIMITS = {"drop": 1.5, "bounce": 1.6, "stack": 2.2, RECORDED: 1.5}
 
 
 def measure(quick=False):
-    """same_bits: {runs, differing}; processes: {name: spread [s], base, ratio, least}."""
-    return dict(same_bits=same_bits(quick), processes=processes(quick))
+    """same_bits: {runs, differing}; processes: {name: spread [s], base, ratio, least},
+    in_process: {scene: spread of ratios}."""
+    parts = (same_bits, processes, in_process)
+    return {part.__name__: part(quick) for part in parts}
 
 
 def cases(quick):
@@ -39,7 +44,7 @@ def cases(quick):
 def same_bits(quick):
     """How many pairs of runs, with and without skips, and which of them differ in any bit."""
     jobs = list(cases(quick))
-    same = pool.spread(is_same, jobs, "same bits")
+    same = pool.run_jobs(is_same, jobs, "same bits")
     names = [" ".join(map(str, job)) for job, fine in zip(jobs, same) if not fine]
     return dict(runs=len(jobs), differing=names)
 
@@ -67,10 +72,32 @@ def processes(quick):
             commands[RECORDED], bases[RECORDED] = [*run, "--rerun", "--scene", "drop"], "rerun"
         commands |= {name: [python, "-c", f"import {name}"] for name in bases.values()}
         tasks = {name: partial(timing.whole_process, each, out) for name, each in commands.items()}
-        seconds = timing.interleave(tasks, rounds + 1)
-    # the first round warms the disk cache and the bytecode
+        return over_bases(timing.interleave(tasks, rounds + 1), bases)
+
+
+def over_bases(seconds, bases):
+    """The spreads of {name: seconds}, some as ratios to their base; the first warms the caches."""
     found = {name: timing.spread(values[1:]) for name, values in seconds.items()}
     for name, base in bases.items():
         ratios = {how: found[name][which] / found[base][which] for how, which in RATIOS.items()}
         found[name] |= dict(base=base, **ratios)
     return found
+
+
+def in_process(quick):
+    """{scene: spread of lcp's CPU time over that of pymunk, 10 iterations and nothing read}."""
+    found, rounds = {}, 3 if quick else 15
+    for name in () if engines.not_installed("pymunk") else SCENES:
+        runs = [partial(run, contact.build_scene(name)) for run in (by_lcp, by_pymunk)]
+        tasks = {run.func: partial(timing.timed, run) for run in runs}
+        seconds = timing.interleave(tasks, rounds + 1).values()  # the first imports and warms
+        found[name] = timing.spread([mine[0] / other[0] for mine, other in zip(*seconds)][1:])
+    return found
+
+
+def by_lcp(scene):
+    return contact.run_model("lcp", scene, DT, STEPS)
+
+
+def by_pymunk(scene):
+    return engines.Pymunk(scene, DT, iterations=10).go(STEPS)

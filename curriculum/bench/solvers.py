@@ -206,9 +206,9 @@ def push_positions(contacts, count):
         count[0] += 1
         if c.depth > 0.0:
             push = 0.2 * c.depth * c.m_eff
-            c.a.x, c.a.y = c.a.x + push * c.ax, c.a.y + push * c.ay
-            if c.b is not FLOOR:
-                c.b.x, c.b.y = c.b.x - push * c.bx, c.b.y - push * c.by
+            for ball, share in ((c.a, push * c.a.inv_mass), (c.b, -push * c.b.inv_mass)):
+                ball.x += share * c.nx  # 0 for the floor
+                ball.y += share * c.ny
 
 
 # what is measured
@@ -233,7 +233,7 @@ def measure(quick=False):
     names = list(PROBLEMS)[: 1 if quick else None]
     jobs = [(row, name) for name in reversed(names) for row in SOLVERS]
     found = {row: {"words": s.words} for row, s in SOLVERS.items()}
-    for (row, name), about in zip(jobs, pool.spread(judged, jobs, "solvers")):
+    for (row, name), about in zip(jobs, pool.run_jobs(judged, jobs, "solvers")):
         found[row][name] = about
     return found
 

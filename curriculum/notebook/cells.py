@@ -11,9 +11,9 @@ contact.py's.
 #@title Run me first: the course's folder is unpacked beside the notebook, and contact.py is read
 import base64, importlib.util, io, math, os, subprocess, sys, zipfile
 
-missing = [name for name in ("numpy", "matplotlib") if importlib.util.find_spec(name) is None]
-if missing:
-    subprocess.check_call([sys.executable, "-m", "pip", "install", "--quiet", *missing])
+absent = [name for name in ("numpy", "matplotlib") if importlib.util.find_spec(name) is None]
+if absent:
+    subprocess.check_call([sys.executable, "-m", "pip", "install", "--quiet", *absent])
 COURSE = os.path.abspath("contact_chapter")
 zipfile.ZipFile(io.BytesIO(base64.b64decode(FOLDER))).extractall(COURSE)
 sys.path.insert(0, COURSE)
@@ -28,6 +28,7 @@ import zlib
 
 import matplotlib.pyplot as plt
 from IPython.display import SVG, display
+from IPython.utils.capture import capture_output
 
 from curriculum.run.curves import COLORS
 
@@ -75,22 +76,34 @@ def film(runs, slow=1.0):
 
 
 def knobs(draw, **ranges):
-    """Draw, with a slider for each of the ranges {name: (low, value, high)}, where ipywidgets is
-    installed; else once, with the values. A range that begins above 0 is turned by powers."""
-    values = {name: value for name, (_, value, _) in ranges.items()}
+    """The pictures that `draw` shows, below a slider for each of the ranges {name: (low, value,
+    high)}; without ipywidgets once, with these values. A range that begins above 0 is turned by
+    powers. (`interact` would be shorter, but `jupyter nbconvert --execute` often hangs in it: it
+    answers an Output widget on the socket on which it waits; see jupyter/nbclient, issue 312.)"""
     try:
-        from ipywidgets import FloatLogSlider, FloatSlider, interact
+        from ipywidgets import FloatLogSlider, FloatSlider, Image, VBox
     except ImportError:
-        return draw(**values)
-    quiet = {"continuous_update": False, "readout_format": ".3g"}
-    sliders = {}
+        return draw(**{name: value for name, (_, value, _) in ranges.items()})
+    look = {"continuous_update": False, "readout_format": ".3g",
+            "style": {"description_width": "initial"}}
+    sliders, pictures = {}, VBox()
     for name, (low, value, high) in ranges.items():
         if low > 0.0:
-            low, high = math.log10(low), math.log10(high)
-            sliders[name] = FloatLogSlider(value, min=low, max=high, **quiet)
+            kind, look["min"], look["max"] = FloatLogSlider, math.log10(low), math.log10(high)
         else:
-            sliders[name] = FloatSlider(value, min=low, max=high, step=high / 50.0, **quiet)
-    interact(draw, **sliders)
+            kind, look["min"], look["max"] = FloatSlider, low, high
+        sliders[name] = kind(value, description=name, step=(look["max"] - look["min"]) / 50, **look)
+
+    def redraw(_=None):
+        with capture_output() as caught:
+            draw(**{name: slider.value for name, slider in sliders.items()})
+        pictures.children = [Image(value=base64.b64decode(each.data["image/png"]))
+                             for each in caught.outputs]
+
+    redraw()
+    for slider in sliders.values():
+        slider.observe(redraw, "value")
+    return VBox([*sliders.values(), pictures])
 
 
 def draw_gaps(runs, scene, **look):

@@ -28,6 +28,7 @@ ENGINE = (  # constants of contact.py that engine.js takes
     "GRAVITY CONTACT_MARGIN SOLREF SOLIMP HARD MOST_SWEEPS LAST_BITS EXPLODED "
     "TOUCH SLOW TOGETHER STILL MOST_IMPACTS"
 ).split()
+ABOUT = {"error": "Run time against error: ", "penalty": "Stability: "}  # pictures by first word
 SCALE = 1.6  # of the pictures of bench and stress: their text of 10 px shall be read beside ours
 # the public course that this chapter belongs to, and what stands around it there
 COURSE = {
@@ -90,7 +91,7 @@ def drawn_by(kind, name):
     what = title[1].strip() if title else name.replace("-", " ")
     return {
         "kind": kind,
-        "alt": ("Run time against error" if kind == "bench" else "Stability") + f": {what}",
+        "alt": ABOUT.get(path.name.partition("-")[0], "") + what,
         "src": svg_address(text),
         "width": round(SCALE * float(box[1])),
         "height": round(SCALE * float(box[2])),

@@ -72,7 +72,7 @@ END = "what-you-built-and-what-comes-next"  # from here on answers are named, an
 def formula(text, options):
     """A formula as MathML. Raises ValueError where the page's font lacks one of its characters."""
     shown = convert(text, display="block" if options["display_mode"] else "inline")
-    lacking = fonts.missing(unescape(re.sub(r"<[^>]+>", "", shown)))
+    lacking = fonts.lacking(unescape(re.sub(r"<[^>]+>", "", shown)))
     if lacking:
         raise ValueError(
             f"{CHAPTER}: the formula {text!r} has {' '.join(lacking)}, which the page's font "

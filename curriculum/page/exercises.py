@@ -41,8 +41,8 @@ def tried(blank):
 
 @functools.cache
 def measured(name):
-    """The numbers that a bet's own module measures."""
-    return module(name).measure()
+    """The numbers of a bet, by the name of its file."""
+    return module("kit.predict").measure(name.split("_")[0])
 
 
 def task_of(text):
@@ -67,15 +67,15 @@ def exercise(path, facts):
         "hints": [inline(hint) for hint in facts.get("hints", [])],
         "choices": [],
     }
-    if hasattr(source, "CHOICES"):
-        text = re.sub(r"\s*Read CHOICES.*?(?=\n\s*\n|$)", "", text, flags=re.DOTALL)
-        numbers = measured(path.stem)
-        table = module("kit.predict").table(source, numbers).splitlines()
+    predict = module("kit.predict")
+    if shown["id"] in predict.BETS:
+        bet, numbers = predict.asked(source), measured(path.stem)
+        text, table = bet.task, predict.table(shown["id"], numbers).splitlines()
         shown |= {
-            "choices": list(source.CHOICES.items()),
-            "question": source.QUESTION,
-            "why": source.WHY_PROMPT,
-            "answer": module("kit.predict").answer(shown["id"], numbers),
+            "choices": list(bet.choices.items()),
+            "question": bet.question,
+            "why": bet.why,
+            "answer": predict.answer(shown["id"], numbers),
             "reasons": {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()},
             "table": [re.split(r"\s{2,}", row) for row in table],
         }

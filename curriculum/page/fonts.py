@@ -29,6 +29,6 @@ GREEK = "ΓΔΘΛΞΠΣΦΨΩαβγδεζηθικλμνξοπρστυφχψωϑ�
 SIGNS = "0123456789+-−±×·/=≠<>≤≥≈∼→⇒∞∂∑√∥⊥∈…⋯⋅,.;:!|()[]{}'′″*∗%⟨⟩∇∫"
 
 
-def missing(text):
+def lacking(text):
     """The characters of a text that the font of the formulas does not have."""
     return sorted(set(text) - set(LATIN + GREEK + SIGNS + " \xa0"))

@@ -12,13 +12,15 @@ Exit status 0: no violation; 1: violations; 2: bad command line.
 import argparse
 import os
 import sys
+from functools import partial
 
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-from curriculum.commands import needs, number
+from curriculum.commands import needs
 
 with needs("dev"):
+    from contact import number
     from curriculum.run import pool
     from curriculum.stress import jobs
 
@@ -31,7 +33,7 @@ def parse(argv):
         usage=argparse.SUPPRESS,  # an error is one line then
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    flag, count = parser.add_argument, number(int, 1, 1e6)
+    flag, count = parser.add_argument, partial(number, int, 1, 1e6)
     flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
     flag("--draw", action="store_true", help="page and figure again, from the results alone")
     flag("--workers", type=count, metavar="N", help="processes (all cores)")
@@ -43,7 +45,7 @@ def parse(argv):
 
 def scene(text):
     """The job of one scene."""
-    chosen = number(int, 0, 1e9)(text.removeprefix("small:"))
+    chosen = number(int, 0, 1e9, text.removeprefix("small:"))
     return jobs.scene_jobs([chosen], small=text.startswith("small:"))
 
 
@@ -80,7 +82,7 @@ def everything(args):
         "mujoco": mujoco_match.match_jobs(args.quick),
     }
     found = {
-        name: pool.spread(jobs.run, todo, name, args.workers, args.scheduler)
+        name: pool.run_jobs(jobs.run, todo, name, args.workers, args.scheduler)
         for name, todo in sections.items()
     }
     return report.write(found, origins, report.QUICK if args.quick else report.RESULTS)

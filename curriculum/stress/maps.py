@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 import contact
-from curriculum.stress.trial import G, U, simulate
+from curriculum.stress.trial import G, U, run_twin
 
 SETTLES, RESTLESS, GAINS, EXPLODES = OUTCOMES = "srgx"
 WORDS = ("settles at m g / k", "keeps moving", "gains over 1 % energy", "explodes (gains over 10x)")
@@ -43,7 +43,7 @@ def map_jobs(quick):
 def run(model, scene, dt, seconds, **knobs):
     """A run of that many seconds, at least 50 steps."""
     steps = max(50, math.ceil(seconds / dt))
-    return simulate(model, scene, dt, steps, contact.Settings(**knobs))
+    return run_twin(model, scene, dt, steps, contact.Settings(**knobs))
 
 
 class PenaltyRow:
@@ -115,7 +115,7 @@ def lcp_sinks_as_deep_as_its_landing_step(dt):
         found, gap = run("lcp", scene, dt, SECONDS), float(scene.q0[1, 0]) - R
         deep = max(0.0, R - float(found.q[:, 1].min()))
         off = abs(deep - landing_depth(gap, dt))
-        yield f"seed {seed}, depth [m]", off, 6 * U * len(found.t) * (gap + R)
+        yield f"depth [m], seed {seed}", off, 6 * U * len(found.t) * (gap + R)
 
 
 def landing_depth(gap, dt):
@@ -139,4 +139,4 @@ def soft_rests_where_its_spring_bears_the_ball(given):
             rest = R - float(found.q[-1, 1, 0])
             d = contact.impedance(rest, contact.SOLIMP)
             spring = d * d * rest / (contact.SOLIMP[1] * T) ** 2
-            yield f"dt {dt:.4g} s [m/s^2]", abs(spring - (1 - d) * G), 1e-6 * (1 - d) * G
+            yield f"spring [m/s^2] at dt {dt:.4g} s", abs(spring - (1 - d) * G), 1e-6 * (1 - d) * G

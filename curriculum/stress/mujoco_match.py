@@ -54,7 +54,7 @@ def cases():
 
 def match_jobs(quick):
     """A job for every case; quick: every fourth. None where MuJoCo is not installed."""
-    for case in list(cases())[:: 4 if quick else 1] if not engines.missing("mujoco") else ():
+    for case in list(cases())[:: 4 if quick else 1] if not engines.not_installed("mujoco") else ():
         yield f"{case.what}, dt {case.dt:g}", case, [soft_is_mujoco]
 
 
@@ -70,7 +70,7 @@ def soft_is_mujoco(case):
         balls = contact.make_balls(scene._replace(q0=q[k], v0=v[k]))
         contact.soft_step(balls, dt, *knobs)
         ends = np.reshape(contact.state_of(balls), (-1, 4)).T
-        yield f"step {k} [m]", np.abs(ends[:2] - q[k + 1]), 1e-14
-        yield f"step {k} [m/s]", np.abs(ends[2:] - v[k + 1]), 1e-12
+        yield f"[m], step {k}", np.abs(ends[:2] - q[k + 1]), 1e-14
+        yield f"[m/s], step {k}", np.abs(ends[2:] - v[k + 1]), 1e-12
     run = contact.run_model("soft", scene, dt, steps, settings)
-    yield "run [m]", np.abs(run.q - q), 1e-11
+    yield "[m], run", np.abs(run.q - q), 1e-11

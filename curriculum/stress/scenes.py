@@ -107,5 +107,5 @@ def numbered_spec(number, small=False):
         "iters": int(pick(rng, 1, 5, 20, 100)),
         "solref": pick(rng, None, spring),
         "warm": pick(rng, 0.0, 0.0, 0.8, 1.0),
-        "ahead": False,
+        "ahead": pick(rng, False, True),
     }

@@ -42,7 +42,7 @@ class Trial:
         """
         key = model, way, repr(changes)
         if key not in self.made:
-            spec, take = self.spec | changes, simulate if way == "twin" else contact.run_model
+            spec, take = self.spec | changes, run_twin if way == "twin" else contact.run_model
             knobs = {name: spec[name] for name in scenes.KNOBS} | {"skip": way != "plain"}
             given = model, scenes.to_scene(spec), spec["dt"], spec["steps"]
             self.made[key] = take(*given, contact.Settings(**knobs))
@@ -55,13 +55,12 @@ class Trial:
 
     @cached_property
     def motions(self):
-        """{model: Motion} of the stepped models."""
-        margins = {"penalty": 0.0, "lcp": contact.CONTACT_MARGIN, "soft": 0.0}
-        return {model: Motion(self, self.run(model), margins[model]) for model in STEPPED}
+        """{model: Trajectory} of the stepped models."""
+        return {model: Trajectory(self, self.run(model), model) for model in STEPPED}
 
     @cached_property
     def exact(self):
-        """The Motion of exact as far as SECONDS go; None, and a note, where it promises nothing."""
+        """Its Trajectory, as far as SECONDS go; None, and a note, where it promises nothing."""
         if contact.smallest_gap(self.scene.q0[None], self.scene.radius)[0] < -TOUCHING:
             self.note("exact: starts in an overlap")
             return None
@@ -94,17 +93,19 @@ class Trial:
         return None
 
     def take_exact(self, steps, report=None):
-        return Motion(self, contact.run_model("exact", self.scene, self.dt, steps, report=report))
+        return Trajectory(
+            self, contact.run_model("exact", self.scene, self.dt, steps, report=report)
+        )
 
 
-def simulate(model, scene, dt, steps, settings):
+def run_twin(model, scene, dt, steps, settings):
     """A run by the compiled twin, where there is one: the same bits, as a property says."""
     if fast:
         return fast.simulate(model, scene, dt, steps, settings)
     return contact.run_model(model, scene, dt, steps, settings)
 
 
-class Motion:
+class Trajectory:
     """What a run did: S steps, N balls, C possible contacts, the floor's first.
 
     sides (C, N): 1 at the upper ball of a contact, -1 at the other. At the start of each step
@@ -115,7 +116,7 @@ class Motion:
     arithmetic rounds correctly, so they have one answer.
     """
 
-    def __init__(self, trial, run, margin=0.0):
+    def __init__(self, trial, run, model="exact"):
         near = (np.abs(np.concatenate((run.q, run.v), axis=1)) < ASTRAY).all((1, 2))
         states = max(1, int(np.append(near, False).argmin()))  # those before it goes astray
         self.dt, self.mass, self.unsettled = trial.dt, trial.mass, run.unsettled
@@ -124,7 +125,7 @@ class Motion:
         eye = np.eye(len(trial.mass))
         self.sides = np.concatenate((eye, eye[self.a] - eye[self.b]))
         self.measure(trial.scene.radius)
-        self.listed = self.depth > -margin
+        self.listed = self.depth > -looks(model, trial.spec, self.v[:-1])[:, None]
         self.inv_mass = np.abs(self.sides) @ inverse(self.mass)  # 1 / m_a + 1 / m_b of a contact
         self.listed &= self.inv_mass > 0.0
         self.before, self.after = (self.along(v) for v in (self.v[:-1], self.v[1:]))
@@ -177,6 +178,15 @@ class Motion:
         """Listed contacts whose moving balls have no other listed contact (S, C)."""
         moves = self.mass > 0.0
         return self.listed & (self.on_contacts(self.count[:, 0] * moves) <= self.on_contacts(moves))
+
+
+def looks(model, spec, v):
+    """How wide a gap [m] the model still calls a contact, in each state v (S, 2, N)."""
+    margin = np.full(len(v), contact.CONTACT_MARGIN if model == "lcp" else 0.0)
+    if model == "lcp" and spec["ahead"] and spec["restitution"] == 0.0:  # as far as a step goes
+        fastest = np.sqrt(v[:, 0] * v[:, 0] + v[:, 1] * v[:, 1]).max(1)
+        return np.maximum(margin, 2.0 * spec["dt"] * (fastest + spec["dt"] * G))
+    return margin
 
 
 def inverse(mass):

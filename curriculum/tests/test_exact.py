@@ -56,13 +56,15 @@ def every_answer(W, b):
             yield lam, s
 
 
+@pytest.mark.parametrize("turns", [0.0, 1.0])
 @pytest.mark.parametrize("contacts, rank, decades", [(1, 1, 0), (4, 4, 2), (6, 6, 6), (6, 3, 0)])
-def test_pivot_finds_the_answer_that_enumeration_finds(contacts, rank, decades):
+def test_pivot_finds_the_answer_that_enumeration_finds(contacts, rank, decades, turns):
+    """Also where contacts depend on one another, and no pushes hold all of them (turns)."""
     rng = np.random.default_rng(contacts + decades)
     for _ in range(20):
         J = rng.normal(size=(contacts, rank))
         w = 10.0 ** rng.uniform(-decades, 0.0, rank)
-        W, b = J * w @ J.T, J @ rng.normal(size=rank)
+        W, b = J * w @ J.T, J @ rng.normal(size=rank) + turns * rng.random(contacts)
         lam = solve_lcp(W, b)
         s, size = W @ lam + b, np.abs(b).max()
         either = np.minimum(lam / (lam.max() or 1.0), s / size)  # one of the two is 0
@@ -226,6 +228,12 @@ def test_a_ball_that_comes_down_beside_the_one_that_it_touched_grazes_it_without
     scene.v0[1, 1] = 1.9
     q, v = run(scene, np.linspace(0.0, 1.0, 51))
     assert np.abs(q[:, 0] - scene.q0[0]).max() < 1e-12 and not v[:, 0].any()
+
+
+def test_at_the_moment_of_an_impact_the_velocities_are_those_after_all_its_rounds():
+    """The floor throws a ball up into another one that leaves too slowly: they change speeds."""
+    pair = balls([0.0, 0.0], [R, 3.0 * R], e=1.0, vy=[-1.0, 0.5])
+    assert run(pair, [0.0])[1][0, 1] == pytest.approx([0.5, 1.0], abs=1e-15)
 
 
 def test_fixed_balls_alone_and_no_ball_in_reach_make_no_event():

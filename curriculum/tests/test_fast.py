@@ -159,10 +159,8 @@ def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls_and_under_a_lar
 def test_a_large_ball_adds_no_pairs_of_small_ones():
     alone = contact.build_scene("pile", 0, 2000)
     beside = add_ball(alone, 0.0, 30.0, 10.0, 1.0)
-    pairs = [
-        fast.Motion("lcp", scene, 0.002, contact.Settings()).pairs for scene in (alone, beside)
-    ]
-    assert np.array_equal(*pairs)
+    balls = [fast.Stepper("lcp", s, 0.002, contact.Settings()).balls for s in (alone, beside)]
+    assert np.array_equal(*(fast.list_pairs(each, 0.1) for each in balls))
 
 
 def test_a_pile_comes_to_rest_from_a_warm_start_and_lies_less_deep():
@@ -179,10 +177,10 @@ def test_a_pile_comes_to_rest_from_a_warm_start_and_lies_less_deep():
 def test_a_run_taken_on_in_parts_has_the_bytes_of_the_whole():
     scene, chosen = contact.build_scene("pile", 2, 30), contact.Settings(warm=0.8)
     whole = fast.simulate("lcp", scene, 0.002, 300, chosen)
-    motion = fast.Motion("lcp", scene, 0.002, chosen)
+    stepper = fast.Stepper("lcp", scene, 0.002, chosen)
     rows = np.empty((301, 4, 30))
     for first, last in ((0, 1), (1, 120), (120, 300)):
-        motion.take(rows[first : last + 1], np.ones(301, bool), False)
+        stepper.take(rows[first : last + 1], np.ones(301, bool), False)
     assert np.array_equal(rows[1:, :2], whole.q[1:])
     assert np.array_equal(rows[1:, 2:], whole.v[1:])
 

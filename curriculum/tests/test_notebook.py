@@ -28,6 +28,12 @@ found = {{"quality": rounded(qualities), "groove": float(abs(grooves["on the sum
 {SOFTER}
 fallen = run_model("penalty", build_scene("drop"), 0.002, 2000)
 found["fallen"] = contact_quality(fallen, build_scene("drop"), 0.002)["through"]
+box = knobs(try_soft, timeconst=(0.002, 0.02, 0.2), dt=(0.0005, 0.002, 0.064),
+            impedance_at_surface=(0.0, 0.9, 0.9999))
+slider, shown = box.children[0], [picture.value for picture in box.children[-1].children]
+slider.value = 0.1
+turned = [picture.value for picture in box.children[-1].children]
+found["pictures"] = [(a[:4] == b"\\x89PNG", a == b) for a, b in zip(shown, turned)]
 print(json.dumps(found))
 """
 BET = 'course("exercises/ex1_predict_contact.py")\n'
@@ -115,6 +121,8 @@ def test_it_runs_beside_no_project_and_finds_what_contact_finds(executed, tmp_pa
     assert found["quality"] == json.loads((tmp_path / "metrics.json").read_text())["quality"]
     assert found["groove"] < 1e-3 and found["thrown"] > 1.0
     assert found["fallen"] == "the floor", "a region changed in its cell is not felt below"
+    impedance, gaps = found["pictures"]  # a time constant changes the second
+    assert impedance == [True, True] and gaps == [True, False], "turning a knob draws anew"
 
 
 def test_a_bet_made_in_its_cell_is_judged_by_the_next(executed):

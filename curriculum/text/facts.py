@@ -173,6 +173,23 @@ def ahead():
     return found
 
 
+def xpbd():
+    """By how much [m] heights of XPBD, found in positions, differ from lcp's with one sweep."""
+    scene, dt, steps = contact.build_scene("stack", bodies=10), DT / 20, 5_000
+    knobs = contact.Settings(ahead=True, iters=1, baumgarte=1.0)
+    run = contact.run_model("lcp", scene, dt, steps, knobs)
+    y, v, r, worst = scene.q0[1].copy(), np.zeros(10), contact.RADIUS, 0.0
+    for k in range(steps):  # predict, push apart what overlaps, take the velocities from the places
+        before, y = y, y + dt * (v + dt * contact.GRAVITY)
+        y[0] = max(y[0], r)
+        for low, high in zip(range(9), range(1, 10)):
+            half = 0.5 * max(0.0, 2.0 * r - (y[high] - y[low]))
+            y[low], y[high] = y[low] - half, y[high] + half
+        v = (y - before) / dt
+        worst = max(worst, float(np.abs(run.q[k + 1, 1] - y).max()))
+    return {"difference": worst}
+
+
 def soft_heavy():
     """The quality of soft where the upper one of two balls is a hundred times as heavy."""
     return _quality("soft", contact.scene_of([0.0, 0.0], [0.1055, 0.3055], mass=[1.0, 100.0]))
@@ -224,5 +241,5 @@ def blocks():
 FACTS = {
     each.__name__: each
     for each in (implicit_spring, tower_sweeps, ratio_sweeps, soft_sweeps, no_margin, order)
-    + (air_push, jump, seeds, sag, ahead, soft_heavy, crowd, slide, blocks)
+    + (air_push, jump, seeds, sag, ahead, xpbd, soft_heavy, crowd, slide, blocks)
 }

@@ -1,16 +1,15 @@
 """Exercise 9: five troubles against five knobs, measured, and the sag of a tower."""
 
+import statistics
 import textwrap
 
-import numpy as np
-
+import contact
 from curriculum.commands import near
 
-from .predict import FACTS, columns, contact, note, practise
+from . import FACTS, columns
 
 USUAL = contact.Settings()
 KNOBS = {  # head: (what dt is divided by, settings)
-    "as it is": (1, USUAL),
     "k x 4": (1, USUAL._replace(stiffness=4 * USUAL.stiffness)),
     "dt / 4": (4, USUAL),
     "sweeps x 4": (1, USUAL._replace(iters=4 * USUAL.iters)),
@@ -34,15 +33,24 @@ def run(model, scene, dt, time, settings, key):
 
 
 def measure():
-    """{trouble: {knob: number}}."""
-    found = {}
+    """{trouble: what it is as it is}, and {trouble: [what each knob makes of it, as a share]}."""
+    usual, shares = {}, {}
     for trouble, (model, scene, bodies, dt, time, key, seeds) in TROUBLES.items():
         scenes = [contact.build_scene(scene, seed, bodies) for seed in range(seeds)]
-        found[trouble] = {
-            knob: float(np.mean([run(model, s, dt / by, time, settings, key) for s in scenes]))
-            for knob, (by, settings) in KNOBS.items()
-        }
-    return found
+        usual[trouble], *turned = (
+            statistics.fmean(run(model, each, dt / by, time, settings, key) for each in scenes)
+            for by, settings in ((1, USUAL), *KNOBS.values())
+        )
+        shares[trouble] = [number / usual[trouble] for number in turned]
+    return usual, shares
+
+
+def marks(shares):
+    """{trouble: [-, = or + of each knob]}: what became of a trouble, as a share of what it was."""
+    return {
+        trouble: ["-" if share <= 0.5 else "+" if share >= 2.0 else "=" for share in row]
+        for trouble, row in shares.items()
+    }
 
 
 def measure_sag():
@@ -52,27 +60,16 @@ def measure_sag():
     return run("lcp", tower, TOWER["dt"], 2.0, settings, "rest_penetration_frac")
 
 
-def numbers(found, shares):
+def numbers(usual, shares):
     """What the reasons quote."""
-    made = {trouble: values["as it is"] for trouble, values in found.items()}
-    for trouble, row in shares.items():
-        made |= {f"{trouble}_{knob.split()[0]}": share for knob, share in zip(list(KNOBS)[1:], row)}
-    step, damping = TROUBLES["trembling"][3], contact.build_scene("stack").damping
-    return made | {"step": step, "limit": contact.critical_dt(1.0, USUAL.stiffness, damping, 3)}
-
-
-def mark(share):
-    """-, = or +: what became of a trouble, as a share of what it was."""
-    return "-" if share <= 0.5 else "+" if share >= 2.0 else "="
-
-
-def marks(found):
-    """{trouble: [mark of each knob]}, and the shares that they stand for."""
-    shares = {
-        trouble: [values[knob] / values["as it is"] for knob in list(KNOBS)[1:]]
-        for trouble, values in found.items()
+    quoted = {
+        f"{trouble}_{knob.split()[0]}": share
+        for trouble, row in shares.items()
+        for knob, share in zip(KNOBS, row)
     }
-    return {trouble: list(map(mark, row)) for trouble, row in shares.items()}, shares
+    step, damping = TROUBLES["trembling"][3], contact.build_scene("stack").damping
+    limit = contact.critical_dt(1.0, USUAL.stiffness, damping, 3)
+    return usual | quoted | {"step": step, "limit": limit}
 
 
 def bets(exercise):
@@ -100,21 +97,21 @@ def state(exercise):
     sag = measure_sag()
     if abs(given - sag) <= 0.01 * sag:
         return "right", ""
-    for text, meaning in FACTS["ex9"]["slips"]["SAG"].items():
+    for text, meaning in FACTS["ex9"]["slips"].items():
         if abs(given - eval(text, {}, TOWER)) <= 0.01 * abs(given):
             return "wrong", f"SAG: given {given:g} r; likely: {meaning}"
     return "wrong", f"SAG: given {given:g} r, and the tower sags otherwise; --hint 5 asks how"
 
 
-def bet(exercise):
-    """Ask, or measure and explain. Exit status: 0 done, 1 the sag is wrong, 2 marks are missing."""
+def judged(name, exercise):
+    """The state of the exercise, and [what, state, words, shown]: all that was measured."""
     try:
         mine = bets(exercise)
     except ValueError as error:
-        print(exercise.__doc__.split("\n    python")[0], f"\n{error}", sep="\n")
-        return 2
-    found = measure()
-    right, shares = marks(found)
+        return "blank", [[name, "blank", str(error), ""]]
+    usual, shares = measure()
+    right, quoted = marks(shares), numbers(usual, shares)
+    hits = sum(right[trouble][k] == mine[trouble][k] for trouble in right for k in range(5))
     rows = {
         trouble: [
             f"{true} {share:.3g}" + ("" if true == guess else f" ({guess})")
@@ -122,16 +119,10 @@ def bet(exercise):
         ]
         for trouble in right
     }
-    print(columns("times as much", list(KNOBS)[1:], rows, "{}"))
-    hits = sum(a == b for trouble in right for a, b in zip(right[trouble], mine[trouble]))
-    print(f"Your bet holds in {hits} of 25; where it was another, it stands in brackets.")
-    for trouble, reason in FACTS["ex9"]["reasons"].items():
-        print(
-            "", textwrap.fill(f"{trouble}: {reason.format(**numbers(found, shares))}", 96), sep="\n"
-        )
+    bet = f"Your bet holds in {hits} of 25; where it was another, it stands in brackets."
+    shown = [columns("times as much", KNOBS, rows, "{}") + f"\n{bet}"]
+    for trouble, reason in FACTS[name]["reasons"].items():
+        shown.append(textwrap.fill(f"{trouble}: {reason.format(**quoted)}", 96))
     what, words = state(exercise)
-    print("", words or f"The tower sags by {measure_sag():.4g} r, as you worked out.", sep="\n")
-    note("ex9", "done" if what == "right" else None)
-    if what == "right":
-        print(f"\n{practise()}")
-    return ("right", "wrong", "blank").index(what)
+    words = words or f"The tower sags by {measure_sag():.4g} r, as you worked out."
+    return what, [[name, what, words, "\n\n".join((*shown, ""))]]

@@ -1,143 +1,95 @@
-"""What the exercises share: the command line, bets, and what is done. Nothing to fill in here."""
+"""Exercises 1, 3 and 4: a bet, what is measured, and a word on every choice."""
 
-import argparse
-import json
-import sys
+import re
 import textwrap
-from pathlib import Path
+from typing import NamedTuple
 
 import contact
-from curriculum.commands import command, near
-from curriculum.files import write_json
+from curriculum.commands import near
 
-from . import alone
-from .progress import DONE, done, practise
-
-FACTS = json.loads(Path(__file__).with_name("answers.json").read_text("utf-8"))
-BETS = [name for name, facts in FACTS.items() if "reasons" in facts]
+from . import FACTS, columns
 
 
-def unquoted(kind, error, trace):
-    """A letter without quotes is an error of Python's; say it in one line."""
-    if kind is not NameError or not hasattr(sys.modules["__main__"], "WHY_PROMPT"):
-        return sys.__excepthook__(kind, error, trace)
-    print(alone.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
+class Part(NamedTuple):
+    """A number of the drop by each model: the head of its column, if any, and how it comes."""
+
+    head: str
+    key: str  # of contact_quality
+    dt: float = 0.002  # s
+    steps: int = 2000
+    mass: float = 1.0  # kg
 
 
-sys.excepthook = unquoted  # PREDICTION = A
+# fmt: off
+BETS = {  # exercise: corner of its table, models, how a number is written, parts
+    "ex1": ("depth", ("penalty", "lcp"), "{:.5f} r", {
+        "deepest": Part("deepest", "max_penetration_frac", steps=800),
+        "at_rest": Part("at rest", "rest_penetration_frac", steps=800)}),
+    "ex3": ("energy gained", ("penalty", "lcp"), "{:.4g}", {
+        "usual": Part("dt = 0.002 s", "energy_excess", dt=0.002),
+        "long": Part("dt = 0.03 s", "energy_excess", dt=0.03),
+        "long_depth": Part("", "max_penetration_frac", dt=0.03)}),
+    "ex4": ("depth at rest", ("soft", "penalty"), "{:.5f} r", {
+        "light": Part("1 kg", "rest_penetration_frac", mass=1.0),
+        "heavy": Part("10 kg", "rest_penetration_frac", mass=10.0)}),
+}
+# fmt: on
 
 
-def main():
-    """The command line of the exercise that was started. Ends with its exit status."""
-    exercise = sys.modules["__main__"]
-    name = Path(exercise.__file__).stem.split("_")[0]
-    hints = FACTS[name]["hints"]
-    parser = argparse.ArgumentParser(description=f"Exercise {name}.", allow_abbrev=False)
-    most = f"print hint N, 1 to {len(hints)}, and do nothing else"
-    parser.add_argument(
-        "--hint", type=int, choices=range(1, len(hints) + 1), metavar="N", help=most
-    )
-    hint = parser.parse_args().hint
-    try:
-        if hint:
-            print(f"hint {hint} of {len(hints)}: {hints[hint - 1]}")
-        else:
-            sys.exit((bet if name in BETS else fill)(name, exercise))
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        sys.exit(130)
+def measure(name):
+    """The numbers of a bet, {MODEL_PART: number}, and what its reasons quote beside them."""
+    _, models, _, parts = BETS[name]
+    numbers, drop = {}, contact.build_scene("drop")
+    for label, part in parts.items():
+        scene = drop._replace(mass=part.mass * drop.mass)
+        for model in models:
+            run = contact.run_model(model, scene, part.dt, part.steps)
+            quality = contact.contact_quality(run, scene, part.dt)
+            numbers[f"{model}_{label}"] = quality[part.key]
+    also = FACTS[name].get("also", {}).items()
+    known = numbers | {"critical_dt": contact.critical_dt}
+    return numbers | {label: eval(formula, known.copy()) for label, formula in also}
 
 
-def note(name, value):
-    """Note an exercise as done, or as not done where value is None."""
-    noted = {key: found for key, found in (done() | {name: value}).items() if found}
-    try:
-        if noted != done():
-            write_json(DONE, noted)
-    except OSError as error:
-        print(f"cannot note that {name} is done: {error}", file=sys.stderr)
-
-
-def columns(corner, heads, rows, form):
-    """A small table as text. rows {name: values}; `form` writes a value, as "{:.3f} r" does."""
-    wide = max(16, *map(len, rows))
-    lines = [f"{corner:<{wide}}" + "".join(f"{head:>15}" for head in heads)]
-    for name, values in rows.items():
-        cells = ("-" if value is None else form.format(value) for value in values)
-        lines.append(f"{name:<{wide}}" + "".join(f"{cell:>15}" for cell in cells))
-    return "\n".join(lines)
-
-
-def checked(name, file):
-    """("blank", "wrong" or "right", why in words), as checks.py asks."""
-    if name not in BETS:
-        state, found = judged(name, file)
-        return state, "\n\n".join(words for _, each, words, _ in found if each == state)
-    try:
-        exercise = alone.load(file)
-    except Exception as error:
-        return "wrong", alone.unreadable(file, error)
-    if name == "ex9":
-        from . import knobs
-
-        state, words = knobs.state(exercise)
-    else:
-        words = missing(exercise)
-        state = "blank" if words else "right"
-    if state == "right" and name not in done():
-        return "blank", f"the bet is made; now read what happens: {command(file)}"
-    return state, words
-
-
-# Fills
-
-
-def judged(name, file):
-    """What alone.judged finds; notes whether the exercise is done."""
-    state, found = alone.judged(name, file)
-    note(name, "done" if state == "right" else None)
-    return state, found
-
-
-def fill(name, exercise):
-    """Judge what is filled and try it. Exit status: 0 right, 1 wrong, 2 not filled yet."""
-    state, found = judged(name, exercise.__file__)
-    task = (exercise.__doc__ or "").split("\n    python")[0].strip()
-    if state == "blank":
-        print(task, end="\n\n")
-    for what, _, words, shown in found:
-        print(*filter(None, (shown, words or f"{what} is right")), sep="\n", flush=True)
-    if state == "right":
-        print(f"\n{practise()}")
-    return ("right", "wrong", "blank").index(state)
-
-
-# Bets
-
-
-def measured(scene, dt, steps, models=("penalty", "lcp"), **parts):
-    """{MODEL_PART: number} of each model's run; parts {name: key of contact_quality}."""
-    numbers = {}
-    for model in models:
-        quality = contact.contact_quality(contact.run_model(model, scene, dt, steps), scene, dt)
-        numbers |= {f"{model}_{part}": quality[key] for part, key in parts.items()}
-    return numbers
+def table(name, numbers):
+    """The measurement of a bet as text."""
+    corner, models, form, parts = BETS[name]
+    shown = {label: part.head for label, part in parts.items() if part.head}
+    rows = {model: [numbers[f"{model}_{label}"] for label in shown] for model in models}
+    return columns(corner, shown.values(), rows, form)
 
 
 def answer(name, numbers):
     """The letter whose claim holds for what was measured; ValueError unless exactly one does."""
-    claims = FACTS[name]["holds"]
+    claims = FACTS[name]["key"]
     true = [letter for letter, claim in claims.items() if eval(claim, {"abs": abs}, numbers)]
     if len(true) != 1:
         raise ValueError(f"{name}: of its choices {true} hold, and not one, for {numbers}")
     return true[0]
 
 
-def table(exercise, numbers):
-    """The measurement of a bet as text: its rows are models, its columns parts of the names."""
-    corner, models, heads, form = exercise.TABLE
-    rows = {model: [numbers[f"{model}_{part}"] for part in heads] for model in models}
-    return columns(corner, heads.values(), rows, form)
+class Bet(NamedTuple):
+    """What the docstring of a bet says: what happens, and what is asked of it."""
+
+    task: str
+    question: str
+    choices: dict  # {letter: choice}
+    why: str  # what the sentence should say
+
+
+def asked(exercise):
+    """The Bet: the choices are its indented paragraph, question and reason stand around it."""
+    parts = exercise.__doc__.strip().split("\n\n")
+    place = next(k for k, part in enumerate(parts) if part.startswith("    A  "))
+    choices = re.findall(r"^    ([A-Z])  (.*(?:\n     .*)*)", parts[place], re.MULTILINE)
+    question, why = (line_of(part) for part in parts[place - 1 : place + 2 : 2])
+    found = {letter: line_of(text) for letter, text in choices}
+    return Bet("\n\n".join(parts[1 : place - 1]), question, found, why)
+
+
+def line_of(text):
+    """A paragraph as one line."""
+    return " ".join(text.split())
 
 
 def chosen(exercise):
@@ -145,32 +97,27 @@ def chosen(exercise):
     return str(exercise.PREDICTION).strip(" \t\n.)(").upper()
 
 
-def missing(exercise):
-    """What is still to be done before the run, or None."""
-    file, choices = near(exercise.__file__), ", ".join(map(repr, exercise.CHOICES))
+def state(exercise):
+    """("blank" or "right", what is still to be done before the run)."""
+    file, bet = near(exercise.__file__), asked(exercise)
+    letters, why = ", ".join(map(repr, bet.choices)), exercise.WHY
     if exercise.PREDICTION is None:
-        return f"no prediction yet: in {file} set PREDICTION to one of {choices} and say WHY"
-    if chosen(exercise) not in exercise.CHOICES:
-        return f"PREDICTION in {file}: given {exercise.PREDICTION!r}, allowed: {choices}"
-    if len(str(exercise.WHY).split()) < 4:
         return (
-            f"no reason yet: WHY in {file} is {exercise.WHY!r}; write a sentence of four words "
-            f"or more. {exercise.WHY_PROMPT}"
+            "blank",
+            f"no prediction yet: in {file} set PREDICTION to one of {letters} and say WHY",
         )
-    return None
-
-
-def asked(exercise):
-    """The question and the choices, as text."""
-    lines = [textwrap.fill(exercise.QUESTION, 96), ""]
-    for letter, choice in exercise.CHOICES.items():
-        lines.append(textwrap.fill(f"  {letter}  {choice}", 96, subsequent_indent="     "))
-    return "\n".join(lines)
+    if chosen(exercise) not in bet.choices:
+        given = f"given {exercise.PREDICTION!r}, allowed: {letters}"
+        return "blank", f"PREDICTION in {file}: {given}"
+    if len(str(why).split()) < 4:
+        wanted = f"write a sentence of four words or more. {bet.why}"
+        return "blank", f"no reason yet: WHY in {file} is {why!r}; {wanted}"
+    return "right", ""
 
 
 def verdict(name, exercise, numbers):
     """What the learner reads after the run: the bet first, then a word on every choice."""
-    right, mine, choices = answer(name, numbers), chosen(exercise), exercise.CHOICES
+    right, mine, choices = answer(name, numbers), chosen(exercise), asked(exercise).choices
     wrong = f"What happens is {right}: {choices[right]}"
     lines = [
         f"You predicted {mine}: {choices[mine]}",
@@ -184,19 +131,10 @@ def verdict(name, exercise, numbers):
     return "\n".join(textwrap.fill(line, 96) for line in lines)
 
 
-def bet(name, exercise):
-    """Ask; refuse before a choice; then measure, show, explain. Returns the exit status."""
-    if name == "ex9":
-        from . import knobs
-
-        return knobs.bet(exercise)
-    todo = missing(exercise)
-    if todo:
-        print(asked(exercise), flush=True)
-        print(f"\n{todo}", file=sys.stderr)
-        return 2
-    numbers = exercise.measure()
-    print(table(exercise, numbers), verdict(name, exercise, numbers), sep="\n\n")
-    note(name, chosen(exercise))
-    print(f"\n{practise()}")
-    return 0
+def judged(name, exercise):
+    """The state of a bet, and [what, state, words, shown]: what was measured, and the verdict."""
+    what, words = state(exercise)
+    if what == "blank":
+        return what, [[name, what, words, ""]]
+    numbers = measure(name)
+    return what, [[name, what, verdict(name, exercise, numbers), f"{table(name, numbers)}\n"]]

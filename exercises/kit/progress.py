@@ -1,39 +1,44 @@
 """Which exercises are done, and which comes next. It needs no numpy: any command can ask."""
 
 import json
-import os
+import sys
 
 from curriculum.commands import command
+from curriculum.files import write_json
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-DONE = os.path.join(ROOT, "outputs", "ch3.5-contact", "exercises.json")
+from . import ROOT
+
+DONE = ROOT / "outputs/ch3.5-contact/exercises.json"
 ORDER = ("ex1", "ex3", "ex6", "ex2", "ex5", "ex9", "ex10", "ex7", "ex4", "ex8")  # the chapter's
-FILES = {
-    name.split("_")[0]: f"exercises/{name}"
-    for name in os.listdir(os.path.join(ROOT, "exercises"))
-    if name[:2] == "ex" and name[2:3].isdigit()
+FILES = {  # "exercises/ex1_...py" by name
+    name: path.relative_to(ROOT).as_posix()
+    for name in ORDER
+    for path in ROOT.glob(f"exercises/{name}_*.py")
 }
-FILES = {name: FILES[name] for name in ORDER if name in FILES}  # "exercises/ex1_...py" by name
 
 
 def done():
-    """{exercise: its bet, or "done"}, as far as it was noted."""
+    """{exercise: "done"}, as far as it was noted."""
     try:
-        with open(DONE, encoding="utf-8") as file:
-            return json.load(file)
+        return json.loads(DONE.read_text("utf-8"))
     except (OSError, ValueError):
         return {}
 
 
-def next_exercise():
-    """The first exercise that is not done, "exercises/ex1_predict_contact.py"; None if all are."""
-    noted = done()
-    return next((file for name, file in FILES.items() if name not in noted), None)
+def note(name, right):
+    """Note whether an exercise is done."""
+    noted = {key: "done" for key in {*done(), name} if key != name or right}
+    try:
+        if noted != done():
+            write_json(DONE, noted)
+    except OSError as error:
+        print(f"cannot note that {name} is done: {error}", file=sys.stderr)
 
 
 def practise():
     """The line that names the next exercise that is not done, or what comes after them."""
-    file = next_exercise()
-    if file is None:
-        return "all exercises are done; next, the questions at the end of the chapter"
-    return f"next, an exercise: {command(os.path.join(ROOT, file))}"
+    noted = done()
+    for name, file in FILES.items():
+        if name not in noted:
+            return f"next, an exercise: {command(ROOT / file)}"
+    return "all exercises are done; next, the questions at the end of the chapter"

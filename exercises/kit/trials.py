@@ -7,22 +7,22 @@ import contextlib
 import io
 import math
 import sys
-from functools import partial
+from functools import cache, partial
 from unittest.mock import patch
 
 import numpy as np
 
+import contact
 from curriculum.commands import command, near
 
-from . import predict
-from .blanks import BLANKS, solver
-from .predict import contact
+from . import columns
+from .blanks import BLANKS, labels, run, solver
 
 
 def row(name, function, case):
     """What comes out, as a row of numbers; None of a blank. Raises ValueError, in words."""
     try:
-        got = BLANKS[name].run(function, case)
+        got = run(name, function, case)
     except (Exception, SystemExit) as error:
         raise ValueError(f"{name} raised {type(error).__name__}: {error}") from None
     if got is ... or (isinstance(got, tuple) and any(part is ... for part in got)):
@@ -77,17 +77,15 @@ def judge(exercise, name):
     smallest = min(wrong, key=lambda each: len(str(each[0])))
     with contextlib.redirect_stdout(io.StringIO()) as said:
         row(name, function, smallest[0])
-    many = f"wrong on {len(wrong)} of {len(found)} inputs, of which this is the smallest:"
-    hint = command(exercise.__file__, "--hint", blank.hint)
-    return "wrong", "\n".join(
-        [
-            f"{name} is {many}",
-            *failing(name, *smallest),
-            *(f"  printed   {line:.80}" for line in said.getvalue().splitlines()[:8]),
-            f"  likely: {slip(name, found)}",
-            f"  where to look: the signs at the top of contact.py, or {hint}",
-        ]
-    )
+    lines = [
+        f"{name} is wrong on {len(wrong)} of {len(found)} inputs, of which this is the smallest:",
+        *failing(name, *smallest),
+        *(f"  printed   {line:.80}" for line in said.getvalue().splitlines()[:8]),
+        f"  likely: {slip(name, found)}",
+        "  where to look: the signs at the top of contact.py, or "
+        + command(exercise.__file__, "--hint", blank.hint),
+    ]
+    return "wrong", "\n".join(lines)
 
 
 def failing(name, case, got, right):
@@ -98,7 +96,7 @@ def failing(name, case, got, right):
     if got.shape != right.shape:
         return [*lines, f"  got {got.size} numbers, expected {right.size}"]
     lines.append(f"  {'':<16}{'got':>12}{'expected':>14}")
-    for label, mine, other in zip(BLANKS[name].labels(case), got, right):
+    for label, mine, other in zip(labels(name, case), got, right):
         mark = "" if agree(np.array([mine]), np.array([other]), 1e-3) else "   <"
         lines.append(f"  {label:<16}{mine:>12.5g}{other:>14.5g}{mark}")
     return lines
@@ -154,7 +152,7 @@ def compare(exercise, name):
         with in_place(getattr(exercise, name), name):
             rows[trial.__doc__] = [trial()]
         rows[trial.__doc__].append(trial())
-    return predict.columns("lengths in ball radii", ("yours", "contact.py"), rows, "{:.3f}")
+    return columns("lengths in ball radii", ("yours", "contact.py"), rows, "{:.3f}")
 
 
 def cliffs(exercise, _):
@@ -163,9 +161,7 @@ def cliffs(exercise, _):
     for k, c in ((1e4, 5.0), (1e4, 80.0), (1e6, 80.0), (1e3, 80.0)):
         mine, formula = exercise.longest_step(1.0, k, c), contact.critical_dt(1.0, k, c)
         rows[f"k {k:g}, c {c:g}"] = mine, formula, 2.0 / math.sqrt(k)
-    table = predict.columns(
-        "longest step", ("yours", "critical_dt", "2 sqrt(m / k)"), rows, "{:.5f} s"
-    )
+    table = columns("longest step", ("yours", "critical_dt", "2 sqrt(m / k)"), rows, "{:.5f} s")
     return f"{table}\ncritical_dt solves k dt^2 + 2 c dt = 4 m: the damper brings the cliff nearer."
 
 
@@ -185,7 +181,7 @@ def drops(exercise, _):
         rest = [None if q["blew_up"] else q["rest_penetration_frac"] for q in (mine, other)]
         rows[f"dt {dt:.3f} s"] = mine["energy_excess"], other["energy_excess"], *rest
     heads = "gain, yours", "gain, penalty", "rests, yours", "rests, penalty"
-    return predict.columns("energy, depth", heads, rows, "{:.5g}")
+    return columns("energy, depth", heads, rows, "{:.5g}")
 
 
 def seeing(exercise, balls, dt, restitution=0.0, baumgarte=0.2, iters=20):
@@ -202,31 +198,37 @@ def seeing(exercise, balls, dt, restitution=0.0, baumgarte=0.2, iters=20):
     contact.move(balls, dt)
 
 
+@cache
+def published(name, dt=0.002):
+    """The scene of that name in which balls land, and what exact and lcp make of it."""
+    if name == "meeting":
+        of = contact.scene_of(0.0, [0.3, 1.504], vy=[4.0, -4.0])
+    else:
+        of = contact.build_scene(name, bodies={"pile": 8}.get(name))
+    return of, *(contact.run_model(model, of, dt, 250) for model in ("exact", "lcp"))
+
+
 def landings(exercise, dt=0.002):
     """{scene: (worst height error beside exact, deepest overlap; and both as published)}, in r."""
-    rows, scenes = {}, {"meeting": contact.scene_of(0.0, [0.3, 1.504], vy=[4.0, -4.0])}
-    for name, bodies in ("drop", 1), ("bounce", 1), ("stack", 3), ("pile", 8):
-        scenes[name] = contact.build_scene(name, bodies=bodies)
-    for name, of in scenes.items():
+    rows = {}
+    for name in ("meeting", *contact.SCENES):
+        of, exact, lcp = published(name)
         step = partial(seeing, exercise, dt=dt, restitution=of.restitution)
-        exact = contact.run_model("exact", of, dt, 250)
-        runs = contact.simulate(step, of, dt, 250), contact.run_model("lcp", of, dt, 250)
-        found = [contact.contact_quality(run, of, dt, exact) for run in runs]
+        run = contact.simulate(step, of, dt, 250)
+        found = [contact.contact_quality(each, of, dt, exact) for each in (run, lcp)]
         keys = "height_error_frac", "max_penetration_frac"
         rows[name] = [quality[key] for key in keys for quality in found]
     return rows
 
 
-def land(exercise, name):
-    """The table of landings, once all three lines are there."""
-    if name != "applies":
-        return ""
+def land(exercise, _):
+    """The table of landings."""
     heads = "error, yours", "error, lcp", "deepest, yours", "deepest, lcp"
-    return predict.columns("beside exact, in r", heads, landings(exercise), "{:.4g}")
+    return columns("beside exact, in r", heads, landings(exercise), "{:.4g}")
 
 
 SHOWN = {**dict.fromkeys(TRIALS, compare), "longest_step": cliffs, "implicit_spring": drops}
-SHOWN["applies"] = land
+SHOWN["applies"] = land  # the last of its three lines
 
 
 # Exercise 8
@@ -268,18 +270,18 @@ def judge_fingers(exercise):
     except Exception as error:
         return "wrong", f"the fingers cannot be run with {model!r}, {dt!r} s: {error}", ""
     shown = "overlap {deepest:.2g} r, trembling {trembling:.2g} r".format(**seen)
-    faults = [] if seen["held"] else ["the cup is gone: the fingers flew off or went through it"]
-    if seen["held"]:
-        faults += [] if seen["trembling"] < 1e-5 else ["it trembles"]
-        faults += [] if seen["deepest"] < 1e-3 else ["it overlaps too much"]
+    faults = [] if seen["trembling"] < 1e-5 else ["it trembles"]
+    faults += [] if seen["deepest"] < 1e-3 else ["it overlaps too much"]
+    if not seen["held"]:
+        faults = ["the cup is gone: the fingers flew off or went through it"]
+    if not faults:
+        return "right", "", shown
     advice = "a shorter time constant, of two steps or more, stiffens soft, and so does impedance"
     if model == "penalty":
         step = contact.critical_dt(0.1, k, exercise.DAMPING)
         advice = f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and a finger on it "
         advice += f"wants steps below {step:.1g} s"
-    return (
-        ("wrong", f"{', and '.join(faults)}; {advice}", shown) if faults else ("right", "", shown)
-    )
+    return "wrong", f"{', and '.join(faults)}; {advice}", shown
 
 
 # A whole exercise
@@ -287,28 +289,22 @@ def judge_fingers(exercise):
 
 def judged(name, exercise):
     """The state of an exercise, and [what, state, words, shown] of everything that it asks for."""
+    found, states = [], {"": "right"}
     if name == "ex8":
-        found = [["two_fingers", *judge_fingers(exercise)]]
-    else:
-        found, states = [], {"": "right"}
-        for blank in (each for each in BLANKS if BLANKS[each].exercise == name):
-            print(f"trying {blank}", file=sys.stderr, flush=True)
-            state, words = judge(exercise, blank)
-            after = BLANKS[blank].after
-            if state == "wrong" and states[after] != "right":
-                state, words = "blank", f"{blank} is tried once {after} is right"
-            states[blank] = state
-            seen = state, words, ""
-            if "blank" not in states.values():
-                seen = shown(exercise, blank, state, words)
-            found.append([blank, *seen])
+        found.append(["two_fingers", *judge_fingers(exercise)])
+    for blank in (each for each in BLANKS if BLANKS[each].exercise == name):
+        print(f"trying {blank}", file=sys.stderr, flush=True)
+        state, words = judge(exercise, blank)
+        after = BLANKS[blank].after
+        if state == "wrong" and states[after] != "right":
+            state, words = "blank", f"{blank} is tried once {after} is right"
+        states[blank], shown = state, ""
+        if "blank" not in states.values() and blank in SHOWN:
+            try:  # also a wrong one: to see is to know why
+                shown = SHOWN[blank](exercise, blank)
+            except (Exception, SystemExit) as error:
+                stopped = f"a trial of {blank} stopped: {type(error).__name__}: {error}"
+                state, words = "wrong", words or stopped
+        found.append([blank, state, words, shown])
     states = [state for _, state, *_ in found]
     return next((each for each in ("wrong", "blank") if each in states), "right"), found
-
-
-def shown(exercise, name, state, words):
-    """State, words, and what a fill does to balls, also a wrong one: to see is to know why."""
-    try:
-        return state, words, SHOWN[name](exercise, name) if name in SHOWN else ""
-    except (Exception, SystemExit) as error:
-        return "wrong", words or f"a trial of {name} stopped: {type(error).__name__}: {error}", ""

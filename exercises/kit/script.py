@@ -1,0 +1,76 @@
+"""An exercise's command line, and what checks.py asks of it. Nothing to fill in here."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from curriculum.commands import command, stoppable
+
+from . import FACTS, alone, knobs, predict
+from .progress import done, note, practise
+
+BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the module that runs it
+
+
+def unquoted(kind, error, trace):
+    """A letter without quotes is an error of Python's; say it in one line."""
+    if kind is not NameError or name_of(sys.modules["__main__"]) not in BETS:
+        return sys.__excepthook__(kind, error, trace)
+    print(alone.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
+
+
+sys.excepthook = unquoted  # PREDICTION = A
+
+
+@stoppable()
+def name_of(exercise):
+    """What ORDER calls it: ex1 of exercises/ex1_predict_contact.py."""
+    return Path(getattr(exercise, "__file__", "")).stem.split("_")[0]
+
+
+def main():
+    """The command line of the exercise that was started. Ends with its exit status."""
+    exercise = sys.modules["__main__"]
+    name = name_of(exercise)
+    hints = FACTS[name]["hints"]
+    parser = argparse.ArgumentParser(description=f"Exercise {name}.", allow_abbrev=False)
+    most = f"print hint N, 1 to {len(hints)}, and do nothing else"
+    numbers = range(1, len(hints) + 1)
+    parser.add_argument("--hint", type=int, choices=numbers, metavar="N", help=most)
+    hint = parser.parse_args().hint
+    if hint:
+        print(f"hint {hint} of {len(hints)}: {hints[hint - 1]}")
+    else:
+        sys.exit(run(name, exercise))
+
+
+def run(name, exercise):
+    """Judge what was written and show it at work. Exit status: 0 right, 1 wrong, 2 not done."""
+    if name in BETS:
+        state, found = BETS[name].judged(name, exercise)
+    else:
+        state, found = alone.judged(name, exercise.__file__)
+    note(name, state == "right")
+    if state == "blank":
+        print((exercise.__doc__ or "").split("\n    python")[0].strip(), end="\n\n")
+    for what, _, words, shown in found:
+        print(*filter(None, (shown, words or f"{what} is right")), sep="\n", flush=True)
+    if state == "right":
+        print(f"\n{practise()}")
+    return ("right", "wrong", "blank").index(state)
+
+
+def checked(name, file):
+    """("blank", "wrong" or "right", why in words), as checks.py asks."""
+    if name not in BETS:
+        state, found = alone.judged(name, file)
+        note(name, state == "right")
+        return state, "\n\n".join(words for _, each, words, _ in found if each == state)
+    try:
+        exercise = alone.load(file)
+    except Exception as error:
+        return "wrong", alone.unreadable(file, error)
+    state, words = BETS[name].state(exercise)
+    if state == "right" and name not in done():
+        return "blank", f"the bet is made; now read what happens: {command(file)}"
+    return state, words
