@@ -504,43 +504,34 @@ def exact_flies_and_bounces_in_closed_form(trial):
     q = motion.q[:-1] + dt / 2.0 * (motion.v[:-1] + motion.falling)
     size = np.abs(motion.q[1:]) + dt * fast[:, None]
     yield "flight, q [m]", np.abs(motion.q[1:] - q), NEAR * size, free
-    floor = meets[:, : len(moves)] & (motion.on_balls(meets)[:, 0] == 1) & moves
-    yield floor_bounces(trial, motion, fast, floor)
-    alone = meets & later & (motion.on_contacts(motion.on_balls(later)[:, 0]) == 2)
-    alone &= motion.on_contacts(1.0 * moves) == 2
-    yield from pair_bounces(trial, motion, fast, alone[:, len(moves) :])
+    table = meets[:, : len(moves)] & (motion.on_balls(meets)[:, 0] == 1) & moves
+    pair = meets & later & (motion.on_contacts(motion.on_balls(later)[:, 0]) == 2)
+    pair &= motion.on_contacts(1.0 * moves) == 2
+    alone = np.concatenate((table, pair[:, len(moves) :]), axis=1)
+    impulses, n = only_impacts(trial, fast, alone)
+    v = motion.falling + inverse(trial.mass) * ((impulses[:, None] * n) @ motion.sides)
+    size = motion.on_balls((impulses > 0.0) * motion.on_contacts(fast))
+    yield "impact [m/s]", np.abs(motion.v[1:] - v), NEAR / STEEP * size, (size > 0.0) & moves
 
 
-def floor_bounces(trial, motion, fast, floor):
-    """The claim on balls that bounce off the table alone, and once in a step."""
-    vx, vy = motion.v[:-1].swapaxes(0, 1)
-    height = -motion.depth[:, : len(trial.mass)]
-    speed = np.sqrt(vy * vy + 2.0 * G * np.maximum(height, 0.0))  # at the impact
-    s, back = (vy + speed) / G, trial.spec["restitution"] * speed
-    steep = within(s, trial.dt) & (speed > STEEP * fast)
-    once = floor & steep & (s + 2.0 * back / G > trial.dt)
-    off = np.abs(motion.v[1:] - np.stack((vx, back - G * (trial.dt - s)), axis=1))
-    return "bounce off the table [m/s]", off, NEAR / STEEP * fast[:, None], once[:, None]
+def only_impacts(trial, fast, alone):
+    """The impulses (S, C) [N s] of contacts that close alone, 0 of those that graze or that are not
+    clearly once in the step, and their normals (S, 2, C).
 
-
-def pair_bounces(trial, motion, fast, alone):
-    """The claims on either of two balls that strike each other alone."""
-    a, b, weight = motion.a, motion.b, inverse(trial.mass)
-    reach = trial.scene.radius[a] + trial.scene.radius[b]
-    d, u = (each[:-1, :, a] - each[:-1, :, b] for each in (motion.q, motion.v))
-    uu, du, dd = (u * u).sum(1), (d * u).sum(1), (d * d).sum(1) - reach**2
-    square = du * du - uu * dd
-    s = dd / (-du + np.sqrt(square))
-    steep = (du < 0.0) & (square > STEEP * STEEP * uu * reach**2) & within(s, trial.dt)
-    n = (d + s[:, None] * u) / reach
-    change = -(1 + trial.spec["restitution"]) * (u * n).sum(1) / (weight[a] + weight[b])
-    allowed = NEAR / STEEP * np.maximum(fast[:, a], fast[:, b])
-    for ball, side in ((a, 1.0), (b, -1.0)):
-        v = motion.falling[:, :, ball] + side * weight[ball] * change[:, None] * n
-        off = np.abs(motion.v[1:, :, ball] - v)
-        yield "impact of two [m/s]", off, allowed[:, None], (alone & steep)[:, None]
-
-
-def within(s, dt):
-    """Whether a moment s [s] is clearly inside of a step."""
-    return (1e-6 * dt < s) & (s < (1 - 1e-6) * dt)
+    A ball falls on the table; two balls fall alike, so one comes to the other on a straight line.
+    """
+    motion, dt, e = trial.exact, trial.dt, trial.spec["restitution"]
+    d, u = (each[:-1] @ motion.sides.T for each in (motion.q, motion.v))
+    uu, du = (u * u).sum(1), (d * u).sum(1)
+    gap = (d * d).sum(1) - motion.reach**2
+    closing = np.sqrt(du * du - uu * gap) / motion.reach
+    s = gap / (motion.reach * closing - du)
+    landing = np.sqrt(u[:, 1] ** 2 - 2.0 * G * np.minimum(motion.depth, 0.0))
+    table = np.arange(alone.shape[1]) < len(trial.mass)
+    closing, s = np.where(table, (landing, (u[:, 1] + landing) / G), (closing, s))
+    n = np.where(table, [[0.0], [1.0]], (d + s[:, None] * u) / motion.reach)
+    once = alone & (1e-6 * dt < s) & (s < (1 - 1e-6) * dt)
+    once &= ~table | (s + 2.0 * e * closing / G > dt)
+    once &= closing > STEEP * np.where(table, motion.on_contacts(fast), np.sqrt(uu))
+    pushes = (1 + e) * closing / motion.inv_mass
+    return np.where(once, pushes, 0.0), np.where(once[:, None], n, 0.0)
