@@ -243,13 +243,12 @@ class Motion:
             if stays.all():
                 break
             still[still] = stays
-        touching, contacts = touching[still], resting
-        self.rests[:] = False
-        self.rests[touching] = True
+        touching = touching[still]
+        self.rests = np.isin(np.arange(len(self.gap)), touching)
         if (np.abs(self.found[touching]) > self.bits).any():  # close what counts as closed
-            self.q = contacts.match(self.q, contacts.along(self.q) - self.found[touching])
-        pushes = lam * contacts.share > NOISE * self.g
-        held = contacts.pick(pushes)
+            self.q = resting.match(self.q, resting.along(self.q) - self.found[touching])
+        pushes = lam * resting.share > NOISE * self.g
+        held = resting.pick(pushes)
         if pushes.any():
             beside = held.sign.any(1)
             a, self.v = held.match(a, -turn[pushes]), held.match(self.v, 0.0)
@@ -310,10 +309,8 @@ class Motion:
         part, gap, rests = self.all.pick(near), np.maximum(self.gap[near], 0.0), self.rests[near]
         P = gap_series(part, gap, Q)
         wider = np.where(rests, 0.5 * self.small[near], np.minimum(4.0 * self.bits, 1e-9 * gap))
-        falls = np.zeros((len(P), len(near) + lam.shape[1]))
-        falls[:, : len(near)] = P
+        falls = np.hstack((P, np.pad(lam, ((0, len(P) - len(lam)), (0, 0)))))
         falls[0, : len(near)] += np.where(part.floor, wider, wider * (wider + 2.0 * part.reach))
-        falls[: len(lam), len(near) :] = lam
         span, first = first_fall(falls, horizon)
         value = evaluate(P, span)
         root = value / (part.reach + np.sqrt(part.reach**2 + value))
@@ -423,10 +420,9 @@ def refuse(scene):
     e, mass = scene.restitution, scene.mass[np.isfinite(scene.mass)]
     ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
     if 0.0 < e < 1.0 and ratio > RATIO:
-        raise RuntimeError(
-            f"exact: masses {ratio:.4g} : 1 at restitution {e:g}; at most {RATIO:g}"
-            " : 1 where 0 < e < 1. Take closer masses, or restitution 0 or 1"
-        )
+        given, allowed = f"masses {ratio:.4g} : 1 at restitution {e:g}", f"at most {RATIO:g} : 1"
+        advice = "Take closer masses, or restitution 0 or 1"
+        raise RuntimeError(f"exact: {given}; {allowed} where 0 < e < 1. {advice}")
 
 
 @np.errstate(all="ignore")

@@ -112,8 +112,8 @@ FAULTS = {
         ("held.match(a, -turn[pushes])", "held.match(a, 1e-3 - turn[pushes])",
         "exact_pushes_and_never_pulls", "acceleration [m/s^2]"),
     "exact.py leaves 1e-10 m of an overlap":
-        ("contacts.along(self.q) - self.found[touching])",
-        "contacts.along(self.q) - self.found[touching] - 1e-10)",
+        ("resting.along(self.q) - self.found[touching])",
+        "resting.along(self.q) - self.found[touching] - 1e-10)",
         "exact_never_overlaps", "overlap [m]"),
     "exact comes 1e-9 s late": ("span = min(roots)", "span = min(roots) + 1e-9",
         "exact_never_overlaps", "overlap [m]"),
