@@ -20,7 +20,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 from kit import script  # noqa: E402
 from kit.progress import FILES, practise  # noqa: E402
 
-from curriculum.commands import to_install, unread  # noqa: E402
+from curriculum.commands import stoppable, to_install  # noqa: E402
 
 try:
     import pytest
@@ -50,7 +50,7 @@ def watch(argv):
         time.sleep(0.2)
 
 
-@unread()
+@stoppable()
 def main():
     """Run the checks once, or again and again. Returns the exit status."""
     parser = argparse.ArgumentParser(
@@ -60,14 +60,11 @@ def main():
     )
     parser.add_argument("--watch", action="store_true", help="again whenever an exercise is saved")
     args, words = parser.parse_known_args()
-    try:
-        if args.watch:
-            watch(words)
-        status = pytest.main([str(ROOT / "checks.py"), "-q", "-rs", *words])
-        print(practise())
-        return status
-    except KeyboardInterrupt:
-        return 130
+    if args.watch:
+        watch(words)
+    status = pytest.main([str(ROOT / "checks.py"), "-q", "-rs", *words])
+    print(practise())
+    return status
 
 
 if __name__ == "__main__":

@@ -44,6 +44,7 @@ import math
 import os
 import re
 import sys
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -75,9 +76,7 @@ class Scene(NamedTuple):
     damping: float  # c of penalty [N s/m]
 
 
-def scene_of(
-    x, y, mass=1.0, radius=RADIUS, vx=0.0, vy=0.0, restitution=0.0, damping=80.0, name="own"
-) -> Scene:
+def scene_of(x, y, mass=1, radius=RADIUS, vx=0, vy=0, restitution=0.0, damping=80.0, name="own"):
     """The Scene of balls at x, y: a list of numbers each, or one number for all of them."""
     rows = np.array(np.broadcast_arrays(np.atleast_1d(x), y, vx, vy, mass, radius), float)
     return Scene(name, rows[:2], rows[2:4], rows[4], rows[5], restitution, damping)
@@ -135,14 +134,12 @@ def make_balls(scene: Scene) -> list[Ball]:
 class Contact:
     """Balls a and b, how deep they overlap [m], and the unit normal (nx, ny) from b to a."""
 
-    __slots__ = "a b nx ny depth ax ay bx by inv_mass m_eff target softness lam".split()
+    __slots__ = "a b nx ny depth inv_mass m_eff target softness lam".split()
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
         self.nx, self.ny = nx, ny
         self.depth = depth
-        self.ax, self.ay = a.inv_mass * nx, a.inv_mass * ny  # what 1 N s adds to a's velocity
-        self.bx, self.by = b.inv_mass * nx, b.inv_mass * ny  # and takes from b's
         self.inv_mass = a.inv_mass + b.inv_mass
         self.m_eff = 1.0 / self.inv_mass if self.inv_mass > 0.0 else 0.0  # effective mass [kg]
         self.target = 0.0  # m/s
@@ -157,11 +154,11 @@ class Contact:
     def push(self, impulse: float) -> None:
         """Give ball a this impulse [N s] along the normal, and ball b the opposite one."""
         a, b = self.a, self.b
-        a.vx += impulse * self.ax
-        a.vy += impulse * self.ay
+        a.vx += impulse * (a.inv_mass * self.nx)
+        a.vy += impulse * (a.inv_mass * self.ny)
         if b is not FLOOR:  # 0 times NaN is NaN, and even that must not move the floor
-            b.vx -= impulse * self.bx
-            b.vy -= impulse * self.by
+            b.vx -= impulse * (b.inv_mass * self.nx)
+            b.vy -= impulse * (b.inv_mass * self.ny)
 
 
 # --- region: contacts ---
@@ -234,9 +231,9 @@ def contact_target(c, restitution, baumgarte, dt, ahead=False):
     throw the balls apart, so only the share beta of it opens (Baumgarte 1972): that v_n is the
     bias. The same formula lets only that share of a gap close; with `ahead` all of it may.
 
-    With e > 0 balls bounce, at -e v_n, if they touch or would meet within this step. An overlap
-    takes the larger of bias and bounce. Balls that would not meet may close their gap, but their
-    target is never above -e v_n: so no impulse adds energy (Moreau 1988). Only a bias can.
+    With e > 0 balls that touch or would meet within this step bounce, at -e v_n; an overlap takes
+    the larger of bias and bounce. Others may close their gap, but no target is above -e v_n. Then
+    impulses that are solved for add no energy (Moreau 1988); a bias can, and unfinished sweeps.
     """
     closing = c.depth / dt  # this v_n ends the step with a gap of 0
     bias = baumgarte / dt * c.depth  # < 0 across a gap
@@ -333,13 +330,12 @@ def exact_run(scene: Scene, times, report=None):
     balls = make_balls(scene)
     pairs = detect_contacts(balls, margin=math.inf)  # all of them: who may ever touch
     touching = [c for c in pairs if -c.depth <= TOUCH]
-    gaps = [0.0 if -c.depth <= TOUCH else -c.depth for c in pairs]
     q, v = np.tile(scene.q0, (len(times), 1, 1)), np.tile(scene.v0, (len(times), 1, 1))
     now, done = 0.0, 0
     for _ in range(MOST_IMPACTS):
         strike(touching, scene.restitution)
         a, gap_a = accelerations(balls, touching, pairs)
-        span, gaps, touching = next_impact(pairs, gaps, gap_a)
+        span, touching = next_impact(pairs, gap_a)
         last = int(np.searchsorted(times, now + span, "right"))
         for k, ball in enumerate(balls):
             t = times[done:last] - now
@@ -368,6 +364,7 @@ def speed(t, v, a):
 def strike(touching, restitution):
     """All impacts of one moment: v_n becomes -e v_n where a contact pushes."""
     for c in touching:
+        c.depth = 0.0  # set: rounding never decides who touches
         back = -restitution * c.v_n()  # < 0: they part already, and need no push
         c.target = 0.0 if 0.0 <= back < SLOW else back
     settle(touching)
@@ -399,18 +396,16 @@ def settle(contacts):
 
 
 # --- region: exact-when ---
-def next_impact(pairs, gaps, gap_a):
-    """How long until the next gap closes [s]; all gaps [m] at that moment, and who touches then."""
-    speeds = [c.v_n() for c in pairs]
-    roots = list(map(time_to_impact, gaps, speeds, gap_a))
+def next_impact(pairs, gap_a):
+    """How long until the next gap closes [s], and who touches then; moves all depths on to it."""
+    roots = [time_to_impact(-c.depth, c.v_n(), a_n) for c, a_n in zip(pairs, gap_a)]
     span = min(roots)
-    after, touching = [], []
-    for c, root, gap, v_n, a_n in zip(pairs, roots, gaps, speeds, gap_a):
-        gap = 0.0 if a_n is None or root <= span * TOGETHER else place(span, gap, v_n, a_n)
-        after.append(max(0.0, gap))
-        if gap <= 0.0:
-            touching.append(c)
-    return span, after, touching
+    for c, root, a_n in zip(pairs, roots, gap_a):
+        if a_n is None or root <= span * TOGETHER:
+            c.depth = 0.0
+        else:
+            c.depth = -place(span, -c.depth, c.v_n(), a_n)
+    return span, [c for c in pairs if c.depth >= 0.0]
 
 
 def time_to_impact(gap, v_n, a_n):
@@ -474,8 +469,7 @@ def soft_step(balls, dt: float, solref: tuple, solimp: tuple) -> bool:
     for c in contacts:
         soften(c, dt, solref, solimp)
     accelerate(balls, dt)
-    speeds = [c.target for c in contacts]
-    speeds += [speed for ball in balls for speed in (ball.vx, ball.vy)]
+    speeds = [c.target for c in contacts] + [v for ball in balls for v in (ball.vx, ball.vy)]
     warm_start(contacts)  # with R > 0 there is one answer, wherever the sweeps begin
     settled = solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * max(map(abs, speeds)))
     remember(balls, contacts)
@@ -514,7 +508,7 @@ def as_run(rows, settled, dt) -> Run:
     """The Run of rows, x y vx vy by state and ball; settled: whether each step's sweeps did."""
     rows += 0.0  # -0.0 becomes 0.0, and -nan nan: chance decides these signs
     rows[np.isnan(rows)] = math.nan
-    q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # 2 kinds of 2 axes
+    q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # kind, state, axis, ball
     return Run(np.arange(len(rows)) * dt, q, v, int((~settled).sum()))
 
 
@@ -738,36 +732,29 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     """The measures of a run, in radii of the first ball and in start energies; see COLUMNS."""
     total = energy(run.q, run.v, scene.mass)
     scale = abs(float(total[0])) or 1.0  # J; 1 for a run that starts with none
-    gap = smallest_gap(run.q, scene.radius) / float(scene.radius[0])
+    radius = float(scene.radius[0])  # m
+    gap = smallest_gap(run.q, scene.radius) / radius
     depth = np.maximum(-gap, 0.0)
+    below = (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any()  # a centre, below the floor
+    inside = depth.max() * radius > scene.radius.max()  # an overlap by a radius
     landing = first_contact(run, scene, dt)
     step = blow_up_step(total)
-    return (
-        height_errors(run, scene, dt, reference)
-        | {
-            "max_penetration_frac": float(depth.max()),
-            "rest_penetration_frac": float(depth[-1]),  # the overlap at the end
-            "rest_gap_frac": float(gap[-1]),
-            "rebound_frac": float(gap[landing:].max(initial=0.0)),
-            "rest_jitter": float(np.std(depth[3 * len(depth) // 4 :])),
-            "energy_excess": float((total - total[0]).max()) / scale,
-            "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
-            "blew_up": step is not None,
-            "blew_up_step": step,
-            "trembles": trembles(depth),
-            "rests": at_rest(run, scene),
-            "through": fell_through(run, scene, depth),
-            "unsettled_steps": run.unsettled,  # whose sweeps, of soft, did not settle
-        }
-    )
-
-
-def fell_through(run, scene, depth):
-    """What a ball went through, in words, or None."""
-    if (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any():
-        return "the floor"  # a centre, below it
-    inside = depth.max() * scene.radius[0] > scene.radius.max()  # an overlap by a radius
-    return "a ball" if inside else None
+    return {
+        **height_errors(run, scene, dt, reference),
+        "max_penetration_frac": float(depth.max()),
+        "rest_penetration_frac": float(depth[-1]),  # the overlap at the end
+        "rest_gap_frac": float(gap[-1]),
+        "rebound_frac": float(gap[landing:].max(initial=0.0)),
+        "rest_jitter": float(np.std(depth[3 * len(depth) // 4 :])),
+        "energy_excess": float((total - total[0]).max()) / scale,
+        "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
+        "blew_up": step is not None,
+        "blew_up_step": step,
+        "trembles": trembles(depth),
+        "rests": at_rest(run, scene),
+        "through": "the floor" if below else "a ball" if inside else None,
+        "unsettled_steps": run.unsettled,  # whose sweeps, of soft, did not settle
+    }
 
 
 def height_errors(run, scene, dt, reference):
@@ -809,9 +796,8 @@ def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -
 DT_GRID = (1, 2, 4, 8, 16, 32)  # multiples of --dt that the stability lines try
 
 
-def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dict) -> dict:
-    """The largest step without an explosion, by model, and what happens there; see DT_GRID."""
-    # run(model, dt) makes a run; first: the runs {model: Run} at dt itself
+def measure_stability(run, scene: Scene, dt: float, stiffness: float) -> dict:
+    """By model, the largest step of DT_GRID at which run(model, step) does not explode, and how."""
     mass, damping, count = float(scene.mass[0]), scene.damping, len(scene.mass)
     grid: dict = {
         "dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
@@ -821,7 +807,7 @@ def measure_stability(run, scene: Scene, dt: float, stiffness: float, first: dic
     for model in ("penalty", "lcp"):  # soft's time constant grows with the step: it stays bounded
         largest, there = None, {}  # what stays if no run comes to a contact
         for step in (dt * factor for factor in reversed(DT_GRID)):  # the answer comes first
-            found = first[model] if step == dt else run(model, step)
+            found = run(model, step)
             quality = contact_quality(found, scene, step)
             if quality["blew_up"]:
                 largest = 0.0  # what stays if all others explode
@@ -850,20 +836,16 @@ NUMBERS = {  # flag: kind, lowest, highest, what it is when it is not given, mea
 }
 
 
-def number(kind, low, high):
-    """An argparse type: a number of that kind, from low to high; a whole one may be 1e3."""
-
-    def read(text):
-        try:
-            value = int(text) if text.isdecimal() else float(text)
-        except ValueError:
-            value = math.nan
-        if not low <= value <= high or (kind is int and value % 1 > 0):
-            allowed = f"{'a whole number' if kind is int else 'a number'} from {low:g} to {high:g}"
-            raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
-        return kind(value) + 0  # -0.0 becomes 0.0
-
-    return read
+def number(kind, low, high, text):
+    """The number of that kind, from low to high, that `text` is; a whole one may be 1e3."""
+    try:
+        value = int(text) if text.isdecimal() else float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high or (kind is int and value % 1 > 0):
+        allowed = f"{'a whole number' if kind is int else 'a number'} from {low:g} to {high:g}"
+        raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
+    return kind(value) + 0  # -0.0 becomes 0.0
 
 
 def add_flags(flag):
@@ -872,12 +854,12 @@ def add_flags(flag):
     flag("--contact", choices=("all", *MODELS), default="all", help="the model (all)")
     for name, (kind, low, high, usual, text) in NUMBERS.items():
         text += "" if usual is None else f" ({usual:g})"
-        flag(name, type=number(kind, low, high), default=usual, metavar="N", help=text)
-    real, switch = number(float, -1e12, 1e6), argparse.BooleanOptionalAction
+        flag(name, type=partial(number, kind, low, high), default=usual, metavar="N", help=text)
+    switch = argparse.BooleanOptionalAction
     spring = "of soft: time constant [s], damping ratio (0.02 1); or minus a stiffness, a damping"
-    flag("--solref", type=real, nargs=2, metavar="N", help=spring)
+    flag("--solref", type=partial(number, float, -1e12, 1e6), nargs=2, metavar="N", help=spring)
     curve = "of soft: d0 d1 width mid power (0.9 0.95 0.001 0.5 2)"
-    flag("--solimp", type=number(float, 0, 100), nargs=5, metavar="N", help=curve)
+    flag("--solimp", type=partial(number, float, 0, 100), nargs=5, metavar="N", help=curve)
     flag("--ahead", action="store_true", help="lcp, e = 0: look as far as a step travels")
     flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
     flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
@@ -972,9 +954,8 @@ def collect(args, scene):
     for model, run in runs.items():
         metrics["quality"][model] = contact_quality(run, scene, args.dt, runs.get("exact"))
     if args.contact == "all" and args.scene != "pile":
-        metrics["stability"] = measure_stability(
-            lambda *case: run_flags(args, scene, *case), scene, args.dt, args.stiffness, runs
-        )
+        again = partial(run_flags, args, scene)  # at another step
+        metrics["stability"] = measure_stability(again, scene, args.dt, args.stiffness)
     return runs, rounded(metrics)
 
 

@@ -22,6 +22,7 @@ SHELL = {k: v for k, v in os.environ.items() if k not in LEFT_OUT} | {
     "RERUN_STRICT": "1",
     "RERUN_ANALYTICS": "0",
     "MPLBACKEND": "Agg",
+    "PIP_NO_COMPILE": "1",  # Python compiles what is imported, a small part of what is installed
     "UV_PYTHON": sys.executable,
 }
 ASKS = 2  # the exit status of a bet that is not made yet
@@ -92,53 +93,53 @@ def pip_column():
 
 
 def uv_column():
-    """The same by uv, each time from no environment at all."""
-    check("README, uv: run", readme.set_up(TEXT)["uv"][0], "uv")
-    for what, _, command in readme.rows(TEXT):
+    """The same by uv, each time from no environment at all; of its tests, that they are found."""
+    first, test = readme.set_up(TEXT)["uv"]
+    check("README, uv: run", first, "uv")
+    tests = ("uv: test", "", f"{test} --collect-only -q")
+    for what, _, command in (*readme.rows(TEXT), tests):
         shutil.rmtree(WORK / "uv/.venv", ignore_errors=True)
         row("uv", what, command)
 
 
-def suite():
-    """The tests, by the README's own line; none may be skipped. uv's line collects them only."""
+def authors():
+    """What an author has, in the environment that the README's line makes; beside it, its tests."""
     fresh("dev")
-    printed = check("README, pip: test", readme.set_up(TEXT)["pip"][1], "dev")
+    line = readme.set_up(TEXT)["pip"][1]
+    install, _, tests = line.rpartition(" && ")
+    check("README, pip: test, set-up", install, "dev")
+    run.append(line)
+    side_by_side(lambda: suite(tests), checks)
+
+
+def suite(command):
+    """The tests, by the README's own line; none may be skipped."""
+    printed = check("README, pip: test", command, "dev")
     found = re.findall(r"(\d+) (passed|failed|errors?|skipped)\b", printed[-200:])
     passed = sum(int(number) for number, word in found if word == "passed")
     done.append((passed, sum(int(number) for number, _ in found) - passed))
     print(*re.findall(r"^(?:SKIPPED|FAILED|ERROR) .*", printed, re.M), sep="\n", flush=True)
-    check("README, uv: test", f"{readme.set_up(TEXT)['uv'][1]} --collect-only -q", "uv")
 
 
-def authors():
-    """What an author has beside the tests, in the environment that the README's line made."""
-    python = ".venv/bin/python"
-    check("the gate", f"{python} -m curriculum.text", "dev")
-    check("ruff check", ".venv/bin/ruff check .", "dev")
-    check("ruff format", ".venv/bin/ruff format --check .", "dev")
-    if "[tool.mypy]" in (readme.ROOT / "pyproject.toml").read_text("utf-8"):
-        check("types", f"{python} -m mypy", "dev")
-    check(
-        "CONTRIBUTING",
-        ".venv/bin/pre-commit install && .venv/bin/pre-commit validate-config",
-        "dev",
-    )
-    made = " ".join(str(path) for path in sorted(WORK.glob("*-contact.*")))
-    check("page and notebook, looked into", f"{python} .ci/look.py {made}", "dev")
-
-
-def measuring():
-    """The quick benchmark and the quick stress run."""
-    check("quick benchmark", ".venv/bin/python -m curriculum.bench --quick", "dev")
-    check("quick stress", ".venv/bin/python -m curriculum.stress --quick", "dev")
+def checks():
+    """What an author runs beside the tests, and the quick measurements."""
+    for name, command in {
+        "the gate": "python -m curriculum.text",
+        "ruff check": "ruff check .",
+        "ruff format": "ruff format --check .",
+        "types": "python -m mypy",
+        "CONTRIBUTING": "pre-commit install && .venv/bin/pre-commit validate-config",
+        "quick benchmark": "python -m curriculum.bench --quick",
+        "quick stress": "python -m curriculum.stress --quick",
+    }.items():
+        check(name, f".venv/bin/{command}", "dev")
 
 
 def alone():
     """contact.py in an empty folder with numpy alone; and with rerun and pytest, the tests."""
     shutil.copy(readme.ROOT / "contact.py", WORK / "alone")
-    for scene in ("drop", "bounce", "stack"):
-        line = f"uv run --no-project --with numpy python contact.py --scene {scene} --out {scene}"
-        check("contact.py alone, numpy alone", f"{line} && test -s {scene}/metrics.json", "alone")
+    line = "uv run contact.py --out out && test -s out/metrics.json"
+    check("contact.py alone in an empty folder", line, "alone")
     fresh("bare")
     check("numpy, rerun-sdk and pytest", ".ci/python", "bare", PYTHON=sys.executable)
 
@@ -158,9 +159,9 @@ def main():
     fresh("pip"), fresh("uv")
     if subprocess.run(["git", "status", "--short"], cwd=readme.ROOT, capture_output=True).stdout:
         print("note: the clones hold what is committed; the changes in this folder are not tested")
-    side_by_side(pip_column, uv_column)
-    side_by_side(suite)
-    side_by_side(authors, measuring, alone)
+    side_by_side(pip_column, uv_column, alone, authors)
+    made = " ".join(str(path) for path in sorted(WORK.glob("*-contact.*")))
+    check("page and notebook, looked into", f".venv/bin/python .ci/look.py {made}", "dev")
     for text, command, why in dict.fromkeys(readme.left_out(run)):
         print(f"not run | {text}: {command} ({why or 'FAILED: no reason is given'})")
         done.append((0, 0 if why else 1))

@@ -73,8 +73,8 @@ def needs(extra):
 
 
 @contextlib.contextmanager
-def unread():
-    """Within it, output that nobody reads on (`| head -1`) ends the program without a word."""
+def stoppable():
+    """Within it, Ctrl-C and output that nobody reads on (`| head -1`) end the program."""
     try:
         try:
             yield
@@ -82,6 +82,9 @@ def unread():
             print(end="", flush=True)  # an error at Python's end has no handler
     except BrokenPipeError:
         os._exit(141)
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        sys.exit(130)
 
 
 def near(word):

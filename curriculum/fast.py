@@ -25,18 +25,12 @@ if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]  # contact.py's own l
 MODELS = ("penalty", "lcp", "soft")
 PENALTY, LCP, SOFT = range(3)
 STATES = 200_000  # positions of balls that are filled in one go, before report() hears of it
-BALL = np.dtype(
-    [
-        (name, float)
-        for name in (  # listed: where it was when pairs were listed
-            "vx vy inv_mass radius x y listed_x listed_y fx fy mass"
-        ).split()
-    ]
-)
+STATE = "vx vy inv_mass radius x y listed_x listed_y fx fy mass"  # listed: when pairs were
+BALL = np.dtype([(name, float) for name in STATE.split()])
 CONTACT = np.dtype(
     [
-        ("a", int),
-        ("b", int),
+        ("a", np.uint32),  # so that no index can be negative, and a row has 64 bytes
+        ("b", np.uint32),
         *[(name, float) for name in ("nx ny depth m_eff target softness lam").split()],
     ]
 )
@@ -116,22 +110,39 @@ def list_pairs(balls, reach):
                     pairs = np.concatenate((pairs, pairs), axis=1)
                 pairs[0, size], pairs[1, size] = min(i, j), max(i, j)
                 size += 1
-    return sort_pairs(sort_pairs(pairs[:, :size], 1, len(balls)), 0, len(balls))
+    pairs = sort_pairs(pairs[:, :size], pairs[1, :size], len(balls))
+    return sort_pairs(pairs, pairs[0], len(balls))
 
 
 @compiled
-def sort_pairs(pairs, row, count):
-    """The pairs (2, M) in the order of that row, equal ones as they came: sorted by counting."""
+def sort_pairs(pairs, keys, count):
+    """The pairs (2, M) by their keys (M,) below count, equal ones as they came: by counting."""
     place = np.zeros(count + 1, np.int64)
-    for number in pairs[row]:
+    for number in keys:
         place[number + 1] += 1
     place = np.cumsum(place)
     ordered = np.empty((2, pairs.shape[1]), np.int64)
     for k in range(pairs.shape[1]):
-        number = pairs[row, k]
+        number = keys[k]
         ordered[0, place[number]], ordered[1, place[number]] = pairs[0, k], pairs[1, k]
         place[number] += 1
     return ordered
+
+
+@compiled
+def spread_out(pairs, count):
+    """The pairs (2, M) reordered so that neighbours share no ball: a processor overlaps their work.
+
+    Pairs that share a ball keep their order, and what others do to each other's balls is nothing,
+    so no bit changes.
+    """
+    rounds = np.empty(pairs.shape[1], np.int64)
+    next_round = np.zeros(count, np.int64)  # of each ball
+    for k in range(len(rounds)):
+        i, j = pairs[0, k], pairs[1, k]
+        rounds[k] = max(next_round[i], next_round[j])
+        next_round[i] = next_round[j] = rounds[k] + 1
+    return sort_pairs(pairs, rounds, len(rounds))
 
 
 @compiled
@@ -236,8 +247,8 @@ def step_reach(balls, knobs):
         return knobs.margin
     fastest = 0.0
     for ball in balls[:-1]:
-        fastest = larger(fastest, math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy))
-    return larger(knobs.margin, 2.0 * knobs.dt * (fastest - knobs.dt * knobs.gravity))
+        fastest = larger(fastest, ball.vx * ball.vx + ball.vy * ball.vy)
+    return larger(knobs.margin, 2.0 * knobs.dt * (math.sqrt(fastest) - knobs.dt * knobs.gravity))
 
 
 @compiled
@@ -407,6 +418,8 @@ def take_steps(rows, settled, balls, pairs, listed, last, cycles, knobs):
         if not farthest_move(balls) <= 0.499 * (listed - reach):  # two balls may have come so near
             listed = reach + knobs.skin
             pairs = list_pairs(balls, listed)
+            if knobs.warm == 0.0:  # a warm start needs them in order
+                pairs = spread_out(pairs, len(balls))
         if len(contacts) < len(balls) + pairs.shape[1]:
             contacts = np.empty(len(balls) + 2 * pairs.shape[1], CONTACT)
         found = detect_contacts(balls, pairs, reach, contacts)
@@ -456,8 +469,7 @@ class Stepper:
             tuple(map(float, solimp)),
         )
         self.balls = make_balls(scene.q0, scene.v0, scene.mass, scene.radius)
-        self.listed = step_reach(self.balls, self.knobs) + self.knobs.skin
-        self.pairs = list_pairs(self.balls, self.listed)
+        self.listed, self.pairs = -math.inf, np.empty((2, 0), int)
         self.last = np.empty(0, CONTACT)
 
     def take(self, rows, settled, cycles):

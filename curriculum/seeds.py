@@ -13,7 +13,7 @@ import statistics
 import sys
 
 import contact
-from curriculum.commands import unread
+from curriculum.commands import stoppable
 from curriculum.files import write_json
 from curriculum.run import pool
 
@@ -47,21 +47,13 @@ def parse(argv):
     return mine.seeds, mine.scheduler, contact.parse_flags(rest)
 
 
-@unread()
+@stoppable()
 def main(argv=None):
     """Run the models from every seed, print the table, write seeds.json. Returns the exit status.
 
     With a scheduler the machines of a dask cluster do the work.
     """
-    try:
-        return report(*parse(argv))
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        return 130
-
-
-def report(seeds, scheduler, args):
-    """The same, of checked flags."""
+    seeds, scheduler, args = parse(argv)
     try:
         jobs = [(args, seed) for seed in seeds]
         found = pool.run_jobs(qualities, jobs, "seeds", scheduler=scheduler)

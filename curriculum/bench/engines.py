@@ -93,7 +93,7 @@ class Ours(Session):
     It always records. exact has no steps.
     """
 
-    def __init__(self, model, scene, dt, sleep=False, python=False, **knobs):
+    def __init__(self, scene, dt, model, sleep=False, python=False, **knobs):
         self.given = model, scene, dt
         self.settings, self.python = contact.Settings(skip=sleep, **knobs), python
         self.motion = None
@@ -242,9 +242,8 @@ class Pymunk(Session):
             space.use_spatial_hash(2.0 * scene.radius.max(), 10 * len(scene.mass))
         self.bodies = []
         for place, velocity, mass, radius, fixed in balls_of(scene):
-            body = (
-                pymunk.Body(body_type=pymunk.Body.STATIC) if fixed else pymunk.Body(mass, math.inf)
-            )
+            kind = pymunk.Body.STATIC if fixed else pymunk.Body.DYNAMIC
+            body = pymunk.Body(mass, math.inf, kind)
             body.position, body.velocity = place, velocity
             ball = pymunk.Circle(body, radius)
             ball.elasticity, ball.friction = bounce, 0.0
@@ -292,10 +291,7 @@ class Box2d3(Session):
                 body = world.create_static_body(position=place)
             else:
                 body = world.create_dynamic_body(
-                    position=place,
-                    linear_velocity=velocity,
-                    fixed_rotation=True,
-                    enable_sleep=sleep,
+                    position=place, linear_velocity=velocity, fixed_rotation=True
                 )
             density = 1.0 if fixed else mass / (math.pi * radius * radius)
             body.create_shape(
@@ -435,17 +431,19 @@ class Setting(NamedTuple):
         """The words, with that many substeps for each look."""
         return self.words if substeps == 1 else f"{self.words}, {substeps} x"
 
+    @property
+    def session(self):
+        """The class of its sessions."""
+        return ENGINES[self.engine][-1] if self.engine in ENGINES else Ours
+
     def refuses(self, scene):
         """Why it does not run a scene, or does not run here, or None."""
-        if self.engine not in ENGINES:
-            return None
-        return not_installed(self.engine) or ENGINES[self.engine][-1].cannot(scene, self.options)
+        return not_installed(self.engine) or self.session.cannot(scene, self.options)
 
     def build(self, scene, dt, substeps=1, sleep=False):
         """A session that is looked at every dt [s], after so many steps."""
-        make = ENGINES[self.engine][-1] if self.engine in ENGINES else partial(Ours, self.engine)
         options = self.options | {"sleep": True} if sleep else self.options
-        session = make(scene, dt / substeps, **options)
+        session = self.session(scene, dt / substeps, **options)
         session.substeps = substeps
         return session
 
@@ -461,7 +459,7 @@ ENGINES = {  # label, package, module, session
     "box2d3": ("Box2D 3", "pyb2d3", "pyb2d3", Box2d3),
     "drake": ("Drake", "drake", "pydrake", Drake),
 }
-penalty, lcp, soft, exact = (partial(setting, model) for model in contact.MODELS)
+penalty, lcp, soft, exact = (partial(setting, model, model=model) for model in contact.MODELS)
 mujoco, pymunk, box2d3, drake = (partial(setting, engine) for engine in ENGINES)
 SHARED = ("stack", "pile", "heavy_100", "heavy_1000", "tower")  # where sweeps have to agree
 AHEAD, GAIN_1 = "{iters} sweeps, ahead, gain {baumgarte:g}", dict(baumgarte=1.0, ahead=True)
@@ -481,24 +479,21 @@ OURS = (
     exact("event to event"),
 )
 RIGID, PUSHED = partial(direct, 0.0, 0.9999), partial(direct, 0.2, 0.999)
-HARD, CENIC = "{inner} substeps, hardest", "CENIC, accuracy "
+HARD = "{inner} substeps, hardest"
 SETTINGS = (
     mujoco("as shipped", soften=shipped),
     mujoco("time constant 2 dt, ratio 5, d 0.9999", soften=partial(standard, 2.0, 5.0, 0.9999)),
     mujoco("direct, no push, d 0.9999", soften=RIGID),
     mujoco("direct, push 0.2, d 0.999", soften=PUSHED),
     mujoco("direct, no push, speculative", soften=RIGID, speculative=True),
-    pymunk("{iterations} iterations", iterations=10),
-    pymunk("{iterations} iterations", iterations=100),
+    *(pymunk("{iterations} iterations", iterations=n) for n in (10, 100)),
     pymunk("{iterations} iterations, push {push} a step", iterations=10, push=0.2),
     box2d3("{inner} substeps, as shipped", inner=4),
     box2d3("{inner} substep, hardest", inner=1, hertz=1e9),
-    box2d3(HARD, inner=4, hertz=1e9),
-    box2d3(HARD, inner=16, hertz=1e9),
-    box2d3(HARD, inner=64, hertz=1e9),
+    *(box2d3(HARD, inner=n, hertz=1e9) for n in (4, 16, 64)),
     box2d3("{inner} substeps, {hertz:.0f} Hz", inner=32, hertz=240.0),
     drake("discrete, k 1e8", stiffness=1e8),
-    *(drake(CENIC + a, scheme="cenic", accuracy=float(a)) for a in ("1e-3", "1e-5", "1e-7")),
+    *(drake(f"CENIC, accuracy 1e-{n}", scheme="cenic", accuracy=10.0**-n) for n in (3, 5, 7)),
 )
 
 

@@ -16,7 +16,7 @@ from curriculum.measured.results import table
 from curriculum.run import plotting
 
 TINY = 1e-10  # r, what exact has to stay within
-PILE_LIMIT = 0.2  # of the fastest peer's time
+SHARE = 0.2  # of the fastest peer's time
 LEAST = 1e-17  # r: an error of exactly zero is drawn here
 EQUAL = {  # the two contests: key of the section, words
     "headline": f"at equal work, at most {WORK} substeps in 2 ms",
@@ -24,13 +24,10 @@ EQUAL = {  # the two contests: key of the section, words
 }
 
 
-def ranged(about):
-    """A median with its spread: of a dict with median, min, max."""
-    return f"{number(about['median'])} ({number(about['min'])} to {number(about['max'])})"
-
-
-def timed(p, way):
-    return ranged({which: p[f"{way}_{which}"] for which in ("median", "min", "max")})
+def ranged(about, way=""):
+    """A median with its spread: of a dict with median, min, max, perhaps of one way of several."""
+    median, least, most = (number(about[way + which]) for which in ("median", "min", "max"))
+    return f"{median} ({least} to {most})"
 
 
 def called(row):
@@ -66,20 +63,16 @@ def accuracy_goals(section):
     for problem in section["problems"]:
         points = [p for p in points_of(section, problem) if not p["diverged"]]
         peers = [p for p in points if p["family"] not in MODELS]
+        fast = min(peers, key=lambda p: p["awake_median"], default=None)
         for p in points:
             if p["family"] == "exact" and p["error"] is not None:
                 wanted = f"exact: at most {TINY:g} r off"
                 yield wanted, problem, f"{number(p['error'])} r", p["error"] <= TINY
-            if p["family"] == "exact" and peers:
-                fast = min(peers, key=lambda p: p["awake_median"])
+            if p["family"] == "exact" and fast:
                 ratio = p["awake_median"] / fast["awake_median"]
                 wanted = "exact: no slower than the fastest other engine, awake, at any step"
-                yield (
-                    wanted,
-                    problem,
-                    f"{number(ratio)} times {LABELS[fast['family']]}",
-                    ratio <= 1.0,
-                )
+                found = f"{number(ratio)} times {LABELS[fast['family']]}"
+                yield wanted, problem, found, ratio <= 1.0
     for contest, words in EQUAL.items():
         for problem, found in section[contest].items():
             if (mine := found.get("lcp")) and (peer := best_peer(found)):
@@ -89,9 +82,7 @@ def accuracy_goals(section):
 
 
 def pile_goals(section):
-    wanted = (
-        f"lcp, compiled, piles at rest: at most {PILE_LIMIT} of the fastest other engine's time"
-    )
+    wanted = f"lcp, compiled, piles at rest: at most {SHARE} of the fastest other engine's time"
     for count, depths in sorted(section["best"].items(), key=lambda each: int(each[0])):
         for depth, found in depths.items():
             case = f"{int(count):,} balls, {depth} r"
@@ -99,7 +90,7 @@ def pile_goals(section):
                 absent = "no other engine" if "lcp" in found["engines"] else "lcp does not"
                 yield wanted, case, f"{absent} gets there at rest", "lcp" in found["engines"]
             else:
-                yield wanted, case, number(found["ratio"]), found["ratio"] <= PILE_LIMIT
+                yield wanted, case, number(found["ratio"]), found["ratio"] <= SHARE
 
 
 def skip_goals(section):
@@ -131,9 +122,8 @@ def readme(sections):
         about = section["measured"]
         modules = [engine[1] for engine in accuracy.engines.ENGINES.values()]
         versions = [f"{name} {about['versions'].get(name, '-')}" for name in modules]
-        whos = [
-            f"{who}, equal {what}" for what in ("work", "time") for who in ("lcp", "best other")
-        ]
+        whos = ["lcp, equal work", "best other, equal work"]
+        whos += ["lcp, equal time", "best other, equal time"]
         parts += [
             table(["", "exact", *whos], contest_rows(section)),
             "Worst error in radii, time awake (and as a user gets it, with sleep and skips). Equal "
@@ -174,11 +164,8 @@ def contest_rows(section):
             text += f" ({number(about['user_ms'])})"
         return f"**{text}**" if won else text
 
-    times = {
-        p["problem"]: p for p in accuracy.unpacked(section["points"]) if p["family"] == "exact"
-    }
     for problem in section["problems"]:
-        p = times.get(problem)
+        p = next((p for p in points_of(section, problem) if p["family"] == "exact"), None)
         row = [problem, cell(p and dict(error=p["error"], ms=p["awake_median"]))]
         for contest in EQUAL:
             found = section[contest].get(problem, {})
@@ -189,12 +176,11 @@ def contest_rows(section):
 
 def good_for(section):
     """One sentence on what lcp is still good for, from the numbers."""
-    parts = []
-    for contest, when in (("headline", "at equal work"), ("in_time", "in equal time")):
-        found = section[contest]
+    parts, ratios = [], []
+    for contest, words in EQUAL.items():
+        found, (when, _) = section[contest], words.split(", ")
         names = [name for name, f in found.items() if beats(f.get("lcp"), best_peer(f))]
         parts.append(f"{when} in {len(names)} of {len(found)} ({', '.join(names) or 'none'})")
-    ratios = []
     for problem in section["problems"]:
         step = [p for p in points_of(section, problem) if p["work"] == 1 and p["dt"] == 0.002]
         mine = [p["awake_median"] for p in step if p["family"] == "lcp"]
@@ -284,15 +270,14 @@ def rows_at(points):
     """One row a contestant and number of substeps, at 2 ms."""
     for p in points:
         if p["dt"] == problems.REFERENCE_DT:
-            error = ranged(dict(median=p["error"], min=p["least"], max=p["greatest"]))
-            itself = "reference" if p["error"] is None else error
+            error = dict(median=p["error"], min=p["least"], max=p["greatest"])
+            itself = "reference" if p["error"] is None else ranged(error)
             yield [
                 called(p),
                 f"diverged in {p['diverged']} starts" if p["diverged"] else itself,
                 number(p["user_error"]) if p["user_error"] != p["error"] else "same",
                 *(number(p[key]) for key in ("final_error", "energy_error", "depth")),
-                timed(p, "awake"),
-                timed(p, "user"),
+                *(ranged(p, f"{way}_") for way in accuracy.WAYS),
             ]
 
 
@@ -385,12 +370,9 @@ PARTS = {"accuracy": accuracy_part, "pile": pile_part, "solvers": solvers_part, 
 
 def figures(sections):
     """{file name: SVG text}."""
-    made = {}
-    if "accuracy" in sections:
-        made |= {
-            f"error-{name}.svg": error_figure(sections["accuracy"], name)
-            for name in sections["accuracy"]["problems"]
-        }
+    made, section = {}, sections.get("accuracy", {"problems": ()})
+    for name in section["problems"]:
+        made[f"error-{name}.svg"] = error_figure(section, name)
     if "pile" in sections:
         made["settled.svg"] = pile_figure(sections["pile"])
     if "solvers" in sections:
@@ -400,10 +382,9 @@ def figures(sections):
 
 def draw_front(axis, points, across, up, name, label):
     """A line through the points that no other beats in both at once."""
-    best, found = math.inf, []
+    found = []
     for point in sorted(points, key=lambda p: (p[across], p[up])):
-        if point[up] < best:
-            best = point[up]
+        if not found or point[up] < found[-1][up]:
             found.append(point)
     plotting.line(axis, [p[across] for p in found], [p[up] for p in found], name, label)
 
@@ -439,14 +420,8 @@ def error_figure(section, problem):
     axis.set(xlabel="worst position error [r]", xlim=(None, min(axis.get_xlim()[1], 30.0)))
     axis.tick_params(labelleft=False)
     handles = [h for panel in (left, axis) for h in zip(*panel.get_legend_handles_labels())]
-    figure.legend(
-        *zip(*handles),
-        loc="lower left",
-        handlelength=3.2,
-        borderaxespad=0,
-        bbox_to_anchor=(0.0, 0.22 / figure.get_figheight()),
-        fontsize=9,
-    )
+    below = dict(loc="lower left", bbox_to_anchor=(0.0, 0.22 / figure.get_figheight()))
+    figure.legend(*zip(*handles), **below, borderaxespad=0, handlelength=3.2, fontsize=9)
     return plotting.svg(figure, section)
 
 
@@ -505,15 +480,8 @@ def solvers_figure(section):
         upper.plot(x, range(len(order)), color=color, marker=marker, ls="", ms=5.5, label=label)
     upper.set(xscale="log", yticks=range(len(order)), xlabel="worst error [r]")
     upper.set_yticklabels([rows[row]["words"] for row in order], fontsize=8.5)
-    upper.legend(
-        loc="lower left",
-        bbox_to_anchor=(-0.02, 1.0),
-        ncols=4,
-        columnspacing=0.8,
-        handletextpad=0.1,
-        fontsize=8.5,
-        borderaxespad=0.2,
-    )
+    above = dict(loc="lower left", bbox_to_anchor=(-0.02, 1.0), borderaxespad=0.2)
+    upper.legend(**above, ncols=4, columnspacing=0.8, handletextpad=0.1, fontsize=8.5)
     for (color, marker), row in zip(HUES, LAWFUL):
         one = solvers.sag(solvers.SOLVERS[row], np.ones(2))  # as much on top as below
         found = [rows[row][name] for name in names]
@@ -529,6 +497,5 @@ def solvers_figure(section):
 
 def write(folder, sections):
     """README.md and the figures into the results folder. Raises ImportError without matplotlib."""
-    results.write_page(folder, "README.md", page(sections))
-    for name, text in figures(sections).items():
+    for name, text in {"README.md": page(sections), **figures(sections)}.items():
         results.write_page(folder, name, text)

@@ -206,9 +206,9 @@ def push_positions(contacts, count):
         count[0] += 1
         if c.depth > 0.0:
             push = 0.2 * c.depth * c.m_eff
-            c.a.x, c.a.y = c.a.x + push * c.ax, c.a.y + push * c.ay
-            if c.b is not FLOOR:
-                c.b.x, c.b.y = c.b.x - push * c.bx, c.b.y - push * c.by
+            for ball, share in ((c.a, push * c.a.inv_mass), (c.b, -push * c.b.inv_mass)):
+                ball.x += share * c.nx  # 0 for the floor
+                ball.y += share * c.ny
 
 
 # what is measured

@@ -50,7 +50,7 @@ def save(folder: Path, section: str, values: dict, origin: dict) -> dict:
     return sections[section]
 
 
-def rounded(value):
+def rounded(value) -> dict | list | float | None:
     """`value` as strict JSON: numpy unpacked, floats with six digits, None for not finite."""
     if isinstance(value, dict):
         return {str(key): rounded(each) for key, each in value.items()}
@@ -86,7 +86,7 @@ def sources(name: str) -> tuple:
     return f"{FOLDERS[name]}/{NAME}", f"curriculum/{name}/report.py", "curriculum/run/plotting.py"
 
 
-def write_page(folder: Path, file: str, text: str):
+def write_page(folder: Path, file: str, text: str) -> None:
     """Write a page or a figure of a results folder, sealed where it is kept."""
     for name, kept in FOLDERS.items():
         if folder == ROOT / kept:
@@ -94,7 +94,7 @@ def write_page(folder: Path, file: str, text: str):
     write_whole(folder / file, text)
 
 
-def write_block(name: str, markdown: str):
+def write_block(name: str, markdown: str) -> None:
     """Put the Markdown of "bench" or "stress" into the project's README, between its markers."""
     text = sealed(markdown.strip(), *sources(name))
     own = re.compile(BLOCK.pattern.replace(r"(\w+)", f"({name})"), re.DOTALL)

@@ -9,6 +9,7 @@ which are help and errors. A name is a file, or a file "without" some regions.
 import ast
 import hashlib
 import json
+from collections.abc import Iterator
 from functools import lru_cache
 
 from curriculum.regions import CODE, REGION, line_at, read_text
@@ -31,7 +32,7 @@ def made_by(*files) -> list:
     return sorted(found)
 
 
-def imported(file):
+def imported(file: str) -> Iterator[str]:
     """The files of this project that a file imports, at its top or within functions."""
     for node in ast.walk(ast.parse(read_text(file))):
         names = [alias.name for alias in getattr(node, "names", ()) if hasattr(alias, "name")]
@@ -62,7 +63,7 @@ def digits(name, text) -> str:
     return hashlib.sha256(json.dumps(plain(tree, set(words))).encode()).hexdigest()[:12]
 
 
-def plain(node, words):
+def plain(node, words: set) -> list | str:
     """A syntax tree as lists, without docstrings, and without sentences in these lines."""
     if isinstance(node, list):
         return [plain(each, words) for each in node]

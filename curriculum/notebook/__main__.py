@@ -3,14 +3,14 @@
 import argparse
 import sys
 
-from curriculum.commands import needs, unread
+from curriculum.commands import needs, stoppable
 
 with needs("notebook"):
     from curriculum.files import write_whole
     from curriculum.notebook.build import build
 
 
-@unread()
+@stoppable()
 def main():
     """Build and write. Returns the exit status: 0 written, 1 the notebook can't be built."""
     parser = argparse.ArgumentParser(

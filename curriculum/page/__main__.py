@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from curriculum.commands import needs, unread
+from curriculum.commands import needs, stoppable
 
 
 def parse(argv):
@@ -20,7 +20,7 @@ def parse(argv):
     return parser.parse_args(argv)
 
 
-@unread()
+@stoppable()
 def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 it can't be built, 2 bad usage."""
     args = parse(argv)

@@ -9,7 +9,7 @@ COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "soft": "#cc79a7", "exact": "#
 OTHERS = ("#e69f00", "#56b4e9", "#f0e442", "#999999")  # of runs with names of their own
 
 
-def colors(names):
+def colors(names) -> dict[str, str]:
     """{name: "#rrggbb"}: each model's own colour, and for other names the next that is free."""
     others = [name for name in names if name not in COLORS]
     free = {name: OTHERS[place % len(OTHERS)] for place, name in enumerate(others)}
@@ -17,7 +17,7 @@ def colors(names):
 
 
 @np.errstate(all="ignore")
-def contact_impulses(run, scene):
+def contact_impulses(run: contact.Run, scene: contact.Scene) -> np.ndarray:
     """The impulse [N s] that all contacts of a ball give it in each step, (S, 2, N).
 
     It is the change of momentum that gravity does not explain, so it is there for every model.
@@ -28,9 +28,9 @@ def contact_impulses(run, scene):
 
 
 @np.errstate(all="ignore")
-def curves(runs, scene):
+def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
     """What is plotted of runs {model: Run}, {title: {model: values (S,)}}."""
-    drawn = {}
+    drawn: dict = {}
     for model, run in runs.items():
         total = contact.energy(run.q, run.v, scene.mass)
         depth = np.maximum(-contact.smallest_gap(run.q, scene.radius), 0.0)
@@ -46,7 +46,7 @@ def curves(runs, scene):
     return drawn
 
 
-def ending(run, scene):
+def ending(run: contact.Run, scene: contact.Scene) -> str:
     """How the run ended, in contact.py's words, such as "ok" and "through the floor"."""
     dt = float(np.diff(run.t[:2]).sum())
     return contact.ending(contact.contact_quality(run, scene, dt))

@@ -3,7 +3,7 @@
 import os
 
 
-def too_much(steps, count):
+def too_much(steps: int, count: int) -> str | None:
     """One line on a run of `count` balls that this machine cannot hold; None if it can."""
     need = steps * (320 * count + 1500)  # bytes, measured: all four models and their recording
     have = 8e9  # bytes, chosen, where the machine does not say

@@ -8,7 +8,7 @@ from curriculum.regions import ROOT
 from exercises.kit.progress import practise
 
 
-def print_next(args, argv):
+def print_next(args, argv: list[str]) -> None:
     """Print the last lines of a run: how to see it, and the next exercise that is not done.
 
     args: the flags as contact.parse_flags gives them; argv: the words they were read from.
@@ -17,7 +17,7 @@ def print_next(args, argv):
     print(*filter(None, lines), sep="\n")
 
 
-def see(args, argv):
+def see(args, argv: list[str]) -> str | None:
     """The line that says how to see the run; None where it has drawn all that can be drawn here."""
     recording = os.path.join(args.out, "contact.rrd")
     if args.rerun and os.path.exists(recording):

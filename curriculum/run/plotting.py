@@ -13,11 +13,13 @@ import io
 import math
 import re
 import textwrap
+from pathlib import Path
+from types import ModuleType
 
 from curriculum import commands
 from curriculum.run.curves import COLORS
 
-INK, PALE, GRID = "#222222", "#666666", "#e2e2e2"
+INK, PALE, GRID = "#222222", "#666666", "#e2e2e2"  # INK and GRID as in figures.mplstyle
 WIDTH = 6.0  # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
 
 # colour, marker, dash: told apart without colour too
@@ -42,46 +44,23 @@ IN_THE_DARK = {
     "#009e73": "#2fc79a",
     "#cc79a7": "#e096bd",
 }
-SETTINGS = {
-    "svg.hashsalt": "contact",
-    "svg.fonttype": "none",
-    "font.size": 10,
-    "font.family": "DejaVu Sans",
-    "text.color": INK,
-    "axes.labelcolor": INK,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "axes.titlesize": 10.5,
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": INK,
-    "axes.grid": True,
-    "grid.color": GRID,
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    "legend.frameon": False,
-    "legend.fontsize": 9,
-    "lines.linewidth": 1.5,
-    "figure.facecolor": "none",
-    "axes.facecolor": "none",
-}
 
 
-def pyplot():
+def pyplot() -> ModuleType:
     """matplotlib.pyplot, set up for these figures; an ImportError that says how to install it."""
     try:
         import matplotlib
     except ImportError:
         raise ImportError(commands.to_install("matplotlib")) from None
     matplotlib.use("svg")
-    matplotlib.rcParams.update(SETTINGS)
     from matplotlib import pyplot as plt
+
+    plt.style.use(Path(__file__).with_name("figures.mplstyle"))
 
     return plt
 
 
-def figure(rows=1, title="", explained="", height=3.4, share=(1,), below=0.0):
+def figure(rows=1, title="", explained="", height=3.4, share=(1,), below=0.0) -> tuple:
     """A figure with its heading, and the list of its axes, row by row.
 
     height: inches of a row of panels. share: widths of the columns, as ratios. below: inches kept
@@ -119,12 +98,12 @@ def look(name: str) -> dict:
     return dict(color=color, marker=marker, ls=dash, markersize=size, markeredgewidth=0.8)
 
 
-def line(axis, x, y, name, label=None, **changes):
+def line(axis, x, y, name: str, label: str | None = None, **changes) -> None:
     """One method as a line with its own look."""
     axis.plot(x, y, label=label or name, **{**look(name), **changes})
 
 
-def legend_below(axis, columns, down):
+def legend_below(axis, columns: int, down: float) -> None:
     """The legend under a panel, where it covers nothing: `down` heights of the panel below it."""
     axis.legend(
         loc="upper left",
@@ -155,7 +134,7 @@ def svg(figure, section=None) -> str:
     return smaller(out.getvalue())
 
 
-def whole_decades(axis):
+def whole_decades(axis) -> None:
     """Words at powers of ten only on a logarithmic axis, and room for at least two of them."""
     from matplotlib.ticker import NullFormatter
 
@@ -167,7 +146,7 @@ def whole_decades(axis):
         axis.set_view_interval(10 ** math.floor(low), 10 ** math.ceil(high), ignore=True)
 
 
-def smaller(text):
+def smaller(text: str) -> str:
     """Two decimals are enough for a pixel; and a style for dark mode, at the front."""
 
     def shorter(match):

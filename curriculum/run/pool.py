@@ -2,6 +2,7 @@
 
 import os
 import signal
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import active_children, parent_process
@@ -9,7 +10,9 @@ from multiprocessing import active_children, parent_process
 from curriculum import commands
 
 
-def run_jobs(function, jobs, label, workers=None, scheduler=None):
+def run_jobs(
+    function: Callable, jobs: Iterable, label: str, workers: int | None = None, scheduler=None
+) -> list:
     """[function(job) for job in jobs], worked out in parallel, in the order of the jobs.
 
     function: one that another process can import. workers: how many processes, all cores if None;
@@ -28,16 +31,17 @@ def run_jobs(function, jobs, label, workers=None, scheduler=None):
         return gathered((future.result() for future in futures), len(jobs), label)
 
 
-def gathered(results, total, label):
+def gathered(results: Iterable, total: int, label: str) -> list:
     """The list of the results, as they come, with a bar."""
-    found, report = [], bar(total, label)
+    found: list = []
+    report = bar(total, label)
     for result in results:
         found.append(result)
         report(len(found))
     return found
 
 
-def bar(total, label):
+def bar(total: int, label: str) -> Callable[[int], None]:
     """report(done), to be called with how many of `total` are done; it draws a bar with tqdm.
 
     The bar comes after a second and is wiped at the end. report does nothing where stderr is no
@@ -72,7 +76,7 @@ def processes(count):
 
 
 @contextmanager
-def machines(scheduler):
+def machines(scheduler: str) -> Iterator:
     """The executor of a dask scheduler; see run_jobs."""
     try:
         from dask.distributed import Client

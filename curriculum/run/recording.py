@@ -25,42 +25,48 @@ PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"
 WIDTHS = (6.0, 3.6, 2.2, 1.2)  # of curves, in points: lines that coincide are seen beneath
 MOST_ARROWS = 24  # balls: more have no arrows
+SECONDS = ("sim_time", "landing")  # timelines, besides step
+LONGEST = 9e9  # s: 64 bits of nanoseconds
+BEFORE = 0.1  # s: how long before the first contact the recording opens
 FARTHEST = 150  # radii: how far out of the middle a ball is still kept in view
 MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sinks by 0.01
 
 
-def write(path, runs, scene):
+def write(path: str, runs: dict[str, contact.Run], scene: contact.Scene) -> None:
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
 
     A run that is no model's may have any name of [a-z0-9_.]. Whole columns are sent, in rerun's
-    strict mode. The timelines are step and sim_time (up to 9e9 s). The entities are
+    strict mode. The timelines are step, sim_time (up to 9e9 s), and landing, which it opens on:
+    sim_time, but all that is long before the first contact at its start. The entities are
     world/MODEL/{ground,table,balls,pushes} and CURVE/MODEL.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
-    drawn = curves(runs, scene)
+    drawn, seconds = curves(runs, scene), worth_seeing(runs, scene)
+    times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         temporary = Path(folder, os.path.basename(path))
-        recording.save(temporary, default_blueprint=layout(runs, scene, drawn))
+        recording.save(temporary, default_blueprint=layout(runs, scene, drawn, seconds))
         for model, run in runs.items():
             send_table(recording, model)
-            send_balls(recording, model, run, scene, colors(runs)[model])
-        send_curves(recording, runs, drawn)
+            send_balls(recording, model, run, scene, colors(runs)[model], times[model])
+        send_curves(recording, runs, drawn, times)
         recording.disconnect()
         write_whole(path, temporary.read_bytes())
 
 
-def rgba(color):
+def rgba(color: str) -> np.ndarray:
     """The colour "#rrggbb" as rerun stores it."""
     return np.array([int(color[1:] + "ff", 16)], np.uint32)
 
 
-def timelines(t):
-    """The columns of time: step, and sim_time where 64 bits of nanoseconds can hold it."""
+def timelines(t: np.ndarray, first: float) -> list:
+    """The columns of time; those in seconds where 64 bits of nanoseconds can hold them."""
     times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
-    if t[-1] < 9e9:
-        nanoseconds = np.round(t * 1e9).astype("timedelta64[ns]")  # whole: no stamp is off
-        times.append(rr.TimeColumn("sim_time", duration=nanoseconds))
+    if t[-1] < LONGEST:
+        for name, seconds in zip(SECONDS, (t, np.maximum(t, first))):
+            nanoseconds = np.round(seconds * 1e9).astype("timedelta64[ns]")  # no stamp is off
+            times.append(rr.TimeColumn(name, duration=nanoseconds))
     return times
 
 
@@ -80,10 +86,9 @@ def send_table(recording, model):
         recording.log(f"world/{model}/{name}", shown, static=True)
 
 
-def send_balls(recording, model, run, scene, color):
+def send_balls(recording, model, run, scene, color, times):
     """The balls, where the run had them, and the push on each as an arrow from its centre."""
-    count, times = len(scene.radius), timelines(run.t)
-    rows = [count] * len(run.t)
+    count, rows = len(scene.radius), [len(scene.radius)] * len(run.t)
     look = rr.Points2D.from_fields(
         radii=scene.radius, colors=np.repeat(rgba(color), count), draw_order=20.0
     )
@@ -98,20 +103,20 @@ def send_balls(recording, model, run, scene, color):
     send(recording, f"world/{model}/pushes", look, times, arrows.partition(rows))
 
 
-def send(recording, entity, look, times, columns):
+def send(recording, entity: str, look, times, columns) -> None:
     """An entity: its look, once, and what changes of it, a row a step."""
     recording.log(entity, look, static=True)
     recording.send_columns(entity, times, columns)
 
 
-def flat(rows):
+def flat(rows: np.ndarray) -> np.ndarray:
     """Vectors (S, 2, N) as a list (S N, 2) with y down, in 32 bits, which is what rerun keeps."""
     with np.errstate(over="ignore"):
         return np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2).astype(np.float32)
 
 
 @np.errstate(all="ignore")
-def arrow_vectors(run, scene):
+def arrow_vectors(run: contact.Run, scene: contact.Scene) -> np.ndarray:
     """Arrows (S, 2, N) along the pushes, r log2(1 + push / weight) long [m].
 
     So a ball at rest has an arrow as long as its radius, and an impact still fits in the view.
@@ -124,10 +129,9 @@ def arrow_vectors(run, scene):
     return np.where(drawn[:, None], pushes * (length / size)[:, None], 0.0)
 
 
-def send_curves(recording, runs, drawn):
+def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
     """The curves {title: {model: values}}, each at the title's first word / MODEL."""
     for width, model in zip(WIDTHS[-len(runs) :], sorted(runs)):
-        times = timelines(runs[model].t)
         look = rr.SeriesLines(
             colors=rgba(colors(runs)[model]),
             names=[model],
@@ -136,11 +140,11 @@ def send_curves(recording, runs, drawn):
         )
         for title, lines in drawn.items():
             columns = rr.Scalars.columns(scalars=lines[model])
-            send(recording, f"{title.split()[0]}/{model}", look, times, columns)
+            send(recording, f"{title.split()[0]}/{model}", look, times[model], columns)
 
 
-def layout(runs, scene, drawn):
-    """The blueprint that travels in the file: the balls, the table magnified, the plots, at t = 0.
+def layout(runs, scene: contact.Scene, drawn, seconds: tuple) -> rrb.Blueprint:
+    """The blueprint that travels in the file: the balls, the table magnified, the plots.
 
     Every run has views of its own, so balls that roll far never cross into another run's. Where
     they roll, the views are as wide as the screen, one below the other; where they stand above one
@@ -162,19 +166,19 @@ def layout(runs, scene, drawn):
         near = [middle - 1.2 * high, middle + 1.2 * high], [-0.4 * high, 0.6 * high]
         name = f"the table, magnified: {MAGNIFIED:g} r high"
         rows.append(rrb.Horizontal(*[view(model, name, *near) for model in runs]))
-    rows.append(rrb.Horizontal(*[plot(title, settled_at(runs)) for title in drawn]))
+    rows.append(rrb.Horizontal(*[plot(title, *seconds) for title in drawn]))
     shares = [5, 2, 3] if len(rows) == 3 else [5, 3]
     views = rrb.Vertical(*rows, row_shares=shares)
     return rrb.Blueprint(views, time_panel(), collapse_panels=True)
 
 
-def view(model, name, x_range, y_range):
+def view(model: str, name: str, x_range: list, y_range: list) -> rrb.Spatial2DView:
     """A view of what a model's balls do in these ranges of x and of -y [m]."""
     bounds = rrb.VisualBounds2D(x_range=x_range, y_range=y_range)
     return rrb.Spatial2DView(origin=f"world/{model}", name=name, visual_bounds=bounds)
 
 
-def frame(runs, x, large):
+def frame(runs: list, x: np.ndarray, large: float) -> tuple[list, list]:
     """The ranges of x and of -y [m] that hold all balls of the runs, from first to last.
 
     A ball that leaves by more than FARTHEST radii is let go, or the others would be dots.
@@ -185,36 +189,41 @@ def frame(runs, x, large):
     return [middle - half, middle + half], [-top, 0.12 * top]
 
 
-def reach(values, large):
+def reach(values: np.ndarray, large: float) -> float:
     """The largest of the values by size [m], at most FARTHEST radii, also if one is not finite."""
     return float(np.fmin(np.abs(values), FARTHEST * large).max())
 
 
-def settled_at(runs):
-    """When the last ball is slower than 1 cm/s for good [s], and a tenth more; at most the end."""
-    ends = [0.0]
+@np.errstate(all="ignore")
+def worth_seeing(runs: dict, scene: contact.Scene) -> tuple[float, float]:
+    """From when to when [s]: BEFORE the first contact, to when the last ball has come to rest.
+
+    It rests once it is slower than 1 cm/s for good; a tenth more is shown, at most to the end.
+    """
+    struck, rests = [], [0.0]
     for run in runs.values():
+        touched = contact.first_contact(run, scene, float(np.diff(run.t[:2]).sum()))
+        struck += run.t[touched : touched + 1].tolist()
         moving = np.flatnonzero(~(np.abs(run.v) < 0.01).all((1, 2)))
-        ends += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]
-    return float(max(ends))
+        rests += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]
+    return max(0.0, min(struck, default=0.0) - BEFORE), float(max(rests))
 
 
-def plot(title, end):
-    """A plot up to `end` [s]. One has the legend, which hides least where impulses are over."""
+def plot(title: str, first: float, last: float) -> rrb.TimeSeriesView:
+    """A plot of these seconds. One has the legend, which hides least where impulses are over."""
     name = title.split()[0]
     legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=name == "impulse")
     shown = None
-    if 0.0 < end < 9e9:
-        first, last = (rrb.TimeRangeBoundary.absolute(seconds=each) for each in (0.0, end))
-        shown = rrb.VisibleTimeRange("sim_time", start=first, end=last)
+    if first < last < LONGEST:  # all that was before stands on the first instant: left out
+        start, end = (rrb.TimeRangeBoundary.absolute(seconds=each) for each in (first + 1e-6, last))
+        shown = [rrb.VisibleTimeRange(line, start=start, end=end) for line in SECONDS]
     return rrb.TimeSeriesView(origin=name, name=title, plot_legend=legend, time_ranges=shown)
 
 
 def time_panel():
-    """Opens at t = 0, four times slowed down. rerun-sdk before 0.28 starts there at once."""
+    """Opens on the landing, four times slowed down. rerun-sdk before 0.28 plays it at once."""
     try:
-        return rrb.TimePanel(
-            timeline="sim_time", play_state="paused", playback_speed=0.25, state="collapsed"
-        )
+        slow = {"play_state": "paused", "playback_speed": 0.25}
+        return rrb.TimePanel(timeline="landing", state="collapsed", **slow)
     except TypeError:
-        return rrb.TimePanel(timeline="sim_time", state="collapsed", duration_cursor=0.0)
+        return rrb.TimePanel(timeline="landing", state="collapsed", duration_cursor=0.0)

@@ -1,5 +1,9 @@
 """What a run's table does not say: flags that change nothing, and when and how hard exact lands."""
 
+from collections.abc import Iterator
+
+import numpy as np
+
 import contact
 
 OWNERS = {  # of the knobs that some models do not have
@@ -12,7 +16,7 @@ OWNERS = {  # of the knobs that some models do not have
 APEXES = 5  # heights of bounces that are printed
 
 
-def print_remarks(args, runs, scene):
+def print_remarks(args, runs: dict[str, contact.Run], scene: contact.Scene) -> None:
     """Print a line on each flag that changes nothing here, and of exact alone what it did.
 
     args: the flags as contact.parse_flags gives them; runs {model: Run}.
@@ -28,7 +32,7 @@ def print_remarks(args, runs, scene):
         print(*landing(runs["exact"], scene), sep="\n")
 
 
-def landing(run, scene):
+def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
     """Lines on the lowest ball's landing and bounces, from the parabolas between two states."""
     k = int(scene.q0[1].argmin())
     gap, vy = run.q[:, 1, k] - scene.radius[k], run.v[:, 1, k]
@@ -49,6 +53,6 @@ def landing(run, scene):
         yield "exact: it does not bounce"
 
 
-def turns(vy, j):
+def turns(vy: np.ndarray, j: int) -> bool:
     """Whether a ball is at the top of a flight between two states."""
     return vy[j] > 0.0 >= vy[j + 1] and vy[j] - vy[j + 1] > 0.0

@@ -12,6 +12,7 @@ Exit status 0: no violation; 1: violations; 2: bad command line.
 import argparse
 import os
 import sys
+from functools import partial
 
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
@@ -32,7 +33,7 @@ def parse(argv):
         usage=argparse.SUPPRESS,  # an error is one line then
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    flag, count = parser.add_argument, number(int, 1, 1e6)
+    flag, count = parser.add_argument, partial(number, int, 1, 1e6)
     flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
     flag("--draw", action="store_true", help="page and figure again, from the results alone")
     flag("--workers", type=count, metavar="N", help="processes (all cores)")
@@ -44,8 +45,8 @@ def parse(argv):
 def chosen(text):
     """The jobs of one scene, or of a row of them."""
     first, _, last = text.removeprefix("small:").partition("-")
-    first = number(int, 0, 1e9)(first)
-    last = number(int, first, 1e9)(last) if last else first
+    first = number(int, 0, 1e9, first)
+    last = number(int, first, 1e9, last) if last else first
     return jobs.scene_jobs(range(first, last + 1), small=text.startswith("small:"))
 
 

@@ -1,12 +1,27 @@
 """A test file that needs a package which is not installed is skipped, by the package's name."""
 
+import functools
+import importlib.metadata
 import importlib.util
 import os
 import re
+from pathlib import Path
 
 import pytest
 
 os.environ.pop("UV", None)  # `uv run pytest` sets it; commands are printed as for any other Python
+FIRST = ("page", "text", "bench", "exercises", "command_line", "page_figures", "notebook", "exact")
+
+
+def pytest_configure(config):
+    """pytest-xdist keeps the order of the files; its own would have one core wait at the end."""
+    config.option.loadscopereorder = False
+
+
+def pytest_collection_modifyitems(items):
+    """The files that take longest come first."""
+    rank = {f"test_{name}": place for place, name in enumerate(FIRST)}
+    items.sort(key=lambda item: rank.get(item.path.stem, len(rank)))
 
 
 @pytest.hookimpl(wrapper=True)
@@ -19,3 +34,22 @@ def pytest_make_collect_report(collector):
         words = f"Skipped: {lacking[1]} is missing, which the extra `dev` brings"
         report.longrepr = (str(collector.path), None, words)
     return report
+
+
+@pytest.fixture(scope="session")
+def only(tmp_path_factory):
+    """A function: a folder of links to exactly these distributions and what they require."""
+
+    @functools.cache
+    def make(*names):
+        folder, wanted = tmp_path_factory.mktemp("only"), list(names)
+        for name in wanted:
+            found = importlib.metadata.distribution(name)
+            for part in {file.parts[0] for file in found.files} - {".."}:
+                if not (folder / part).exists() and not part.startswith("__"):
+                    (folder / part).symlink_to(Path(found.locate_file(part)))
+            needs = [each for each in found.requires or [] if ";" not in each]
+            wanted += [re.match(r"[\w.-]+", each)[0] for each in needs]
+        return str(folder)
+
+    return make

@@ -14,23 +14,9 @@ from pathlib import Path
 import pytest
 
 import contact
+from curriculum.tests.helpers import CONTACT, ROOT, python
 
-ROOT = Path(contact.__file__).resolve().parent
-FOLDER_ONLY = (
-    "recording:",
-    "next,",
-    "no recording:",
-    "exact: ",
-)  # lines that the folder beside it adds
-
-
-def command(*flags, script=ROOT / "contact.py", cwd=ROOT, python=(), **environment):
-    """The finished process of `python contact.py FLAGS`, with its output as text."""
-    words = [sys.executable, *python, script, *map(str, flags)]
-    environment = os.environ | environment
-    return subprocess.run(
-        words, cwd=cwd, env=environment, capture_output=True, text=True, timeout=120
-    )
+FOLDER_ONLY = ("recording:", "next,", "no recording:", "exact: ")  # lines that the folder adds
 
 
 def main(capsys, *flags):
@@ -131,61 +117,60 @@ ALONE = [
 
 
 @pytest.mark.parametrize("flags", ALONE)
-def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(flags, tmp_path):
+def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(
+    flags, only, tmp_path, monkeypatch, capsys
+):
     """With numpy and nothing else; but for the lines that the folder beside it adds."""
-    (tmp_path / "lone").mkdir()
     (tmp_path / "beside").mkdir()
-    lone = shutil.copy(ROOT / "contact.py", tmp_path / "lone")
-    runs = [
-        command(*flags.split(), script=script, cwd=cwd)
-        for script, cwd in ((lone, tmp_path / "lone"), (ROOT / "contact.py", tmp_path / "beside"))
+    monkeypatch.chdir(tmp_path / "beside")
+    status, out, err = main(capsys, *flags.split())
+    shutil.copy(CONTACT, tmp_path)
+    alone = python("-S", "contact.py", *flags.split(), cwd=tmp_path, PYTHONPATH=only("numpy"))
+    found = [
+        [line for line in text.splitlines() if not line.startswith(FOLDER_ONLY)]
+        for text in (alone.stdout, out)
     ]
-    outputs = [
-        [line for line in run.stdout.splitlines() if not line.startswith(FOLDER_ONLY)]
-        for run in runs
-    ]
-    assert outputs[0] == outputs[1] and runs[0].returncode == runs[1].returncode
-    assert runs[0].stderr == runs[1].stderr
-    written = [
-        sorted(cwd.rglob("metrics.json")) for cwd in (tmp_path / "lone", tmp_path / "beside")
-    ]
-    assert [path.read_bytes() for path in written[0]] == [path.read_bytes() for path in written[1]]
-    assert len(written[0]) == (runs[0].returncode == 0 and flags != "--help")
+    assert found[0] == found[1] and (alone.returncode, alone.stderr) == (status, err)
+    written = [path.read_bytes() for path in tmp_path.rglob("metrics.json")]
+    assert len(written) == 2 * (status == 0 and flags != "--help") and len({*written}) <= 1
 
 
 def test_what_needs_the_folder_says_so_in_one_line_when_it_is_not_there(tmp_path):
-    lone = shutil.copy(ROOT / "contact.py", tmp_path)
-    plot = command("--plot", "--steps", "5", script=lone, cwd=tmp_path)
+    lone = shutil.copy(CONTACT, tmp_path)
+    plot = python(lone, "--plot", "--steps", "5", cwd=tmp_path)
     assert (plot.returncode, plot.stderr) == (0, "")
     assert sum(line.startswith("no picture") for line in plot.stdout.splitlines()) == 1
 
 
 def test_without_numpy_it_is_one_line_that_says_how_to_install_it():
-    run = command(python=["-S"])
-    assert run.returncode == 2 and run.stdout == "" and run.stderr.count("\n") == 1
-    assert "pip install numpy" in run.stderr and sys.executable in run.stderr
+    bare = python("-S", CONTACT)
+    assert bare.returncode == 2 and bare.stdout == "" and bare.stderr.count("\n") == 1
+    assert "pip install numpy" in bare.stderr and sys.executable in bare.stderr
 
 
-@pytest.mark.parametrize("package, file", [("rerun", "recording"), ("matplotlib", "picture")])
+@pytest.mark.parametrize(
+    "package, file, flags",
+    [("rerun", "recording", ""), ("matplotlib", "picture", "--plot --no-rerun")],
+)
 def test_a_package_that_is_missing_costs_its_file_and_says_how_to_install_it(
-    package, file, tmp_path
+    package, file, flags, tmp_path
 ):
     (tmp_path / f"{package}.py").write_text("raise ImportError('not installed')")
-    flags = ("--steps", 5, "--plot", "--out", tmp_path)
-    run = command(*flags, PYTHONPATH=str(tmp_path))
-    assert run.returncode == 0 and run.stderr == ""
-    (line,) = [line for line in run.stdout.splitlines() if line.startswith(f"no {file}: ")]
+    words = (*flags.split(), "--steps", "5", "--out", tmp_path)
+    made = python(CONTACT, *words, PYTHONPATH=str(tmp_path))
+    assert made.returncode == 0 and made.stderr == ""
+    (line,) = [line for line in made.stdout.splitlines() if line.startswith(f"no {file}: ")]
     assert "install it: " in line and (tmp_path / "metrics.json").exists()
 
 
 def test_smoke_writes_the_same_bytes_whatever_hash_seed_folder_and_skips(tmp_path):
     made = []
-    for place, more in enumerate(([], ["--no-skip"])):
-        (tmp_path / str(place)).mkdir()
-        flags = ("--smoke", "--no-rerun", *more, "--out", tmp_path / f"out{place}")
-        run = command(*flags, cwd=tmp_path / str(place), PYTHONHASHSEED=str(place + 3))
-        assert run.returncode == 0 and run.stderr == ""
-        made.append((tmp_path / f"out{place}/metrics.json").read_bytes())
+    for place, skips in (("a", ()), ("b", ("--no-skip",))):
+        (tmp_path / place).mkdir()
+        flags = ("--smoke", "--no-rerun", *skips, "--out", tmp_path / f"out-{place}")
+        done = python(CONTACT, *flags, cwd=tmp_path / place, PYTHONHASHSEED=str(ord(place)))
+        assert done.returncode == 0 and done.stderr == ""
+        made.append((tmp_path / f"out-{place}/metrics.json").read_bytes())
     assert made[0] == made[1] and str(tmp_path).encode() not in made[0]
 
 
@@ -256,40 +241,53 @@ def test_the_stability_lines_say_also_what_has_no_largest_step(flags, line, tmp_
 
 
 @pytest.mark.parametrize("flags", [
-    ("--dt", "1000", "--stiffness", "1e15"), ("--dt", "1e-6", "--steps", "3"),
-    ("--mass", "1e9", "--iters", "1"), ("--solref", "-1e12", "-1e12"), ("--damping", "1e9"),
+    "--dt 1000 --stiffness 1e15", "--dt 1e-6 --steps 3", "--mass 1e9 --iters 1",
+    "--solref -1e12 -1e12", "--damping 1e9",
 ])  # fmt: skip
-def test_absurd_flags_give_no_warning_and_strict_json(flags, tmp_path):
-    run = command(*flags, "--no-rerun", "--out", tmp_path, python=["-W", "error"])
-    assert run.returncode == 0 and run.stderr == ""
+def test_absurd_flags_give_no_warning_and_strict_json(flags, tmp_path, capsys):
+    """A warning is an error in these tests."""
+    status, _, err = main(capsys, *flags.split(), "--no-rerun", "--out", tmp_path)
+    assert (status, err) == (0, "")
     strict_json(tmp_path / "metrics.json")
 
 
-@pytest.mark.parametrize("given", [True, False])
-def test_where_nothing_can_be_written_the_report_is_whole(given, tmp_path):
+@pytest.mark.parametrize("flags", [(), ("--out", "outputs/deeper")])
+def test_where_nothing_can_be_written_the_report_is_whole(flags, tmp_path, monkeypatch, capsys):
     """A file stands where the folder should be: the one asked for, or the default one."""
-    (tmp_path / "outputs").write_text("a file")
-    flags = ("--out", tmp_path / "outputs" / "deeper") if given else ()
-    run = command("--smoke", "--no-rerun", *flags, cwd=tmp_path)
-    assert run.returncode == 2 and run.stderr.count("\n") == 1
-    assert "cannot write" in run.stderr and "the report is whole" in run.stderr
-    assert "stability: penalty" in run.stdout
+    monkeypatch.chdir(tmp_path)
+    Path("outputs").write_text("a file")
+    status, out, err = main(capsys, "--smoke", "--no-rerun", *flags)
+    assert status == 2 and err.count("\n") == 1
+    assert "cannot write" in err and "the report is whole" in err
+    assert "stability: penalty" in out
     assert [path.name for path in tmp_path.iterdir()] == ["outputs"]
 
 
-@pytest.mark.parametrize(
-    "fault", ["import nmpy", "from curriculum.run import no_such_name", "1 / 0"]
-)
-def test_what_is_missing_is_none_and_what_is_broken_is_raised(fault, tmp_path):
-    shutil.copy(ROOT / "contact.py", tmp_path)
+BROKEN = """import sys
+sys.path.insert(0, sys.argv[1])
+import contact
+print(contact.beside("run.missing"))
+for name in sys.argv[2:]:
+    try:
+        print(contact.beside(f"run.{name}"))
+    except Exception as error:
+        print(type(error).__name__)
+"""
+
+
+def test_what_is_missing_is_none_and_what_is_broken_is_raised(tmp_path):
+    shutil.copy(CONTACT, tmp_path)
     (tmp_path / "curriculum/run").mkdir(parents=True)
-    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import contact; "
-    words = [sys.executable, "-c", code + "print(contact.beside('run.broken'))"]
-    missing = subprocess.run(words, cwd="/", capture_output=True, text=True)
-    assert (missing.stdout, missing.returncode) == ("None\n", 0), missing.stderr
-    (tmp_path / "curriculum/run/broken.py").write_text(fault)
-    broken = subprocess.run(words, cwd="/", capture_output=True, text=True)
-    assert broken.returncode == 1 and "Error" in broken.stderr.splitlines()[-1]
+    faults = "import nmpy", "from curriculum.run import no_such_name", "1 / 0"
+    for name, fault in zip("abc", faults):
+        (tmp_path / f"curriculum/run/{name}.py").write_text(fault)
+    done = python("-c", BROKEN, tmp_path, *"abc", cwd="/")
+    assert done.stdout.split() == [
+        "None",
+        "ModuleNotFoundError",
+        "ImportError",
+        "ZeroDivisionError",
+    ]
 
 
 def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
@@ -297,10 +295,8 @@ def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
         "import sys, contact; contact.main(['--no-rerun', '--out', sys.argv[1]]); "
         "print(sorted({'rerun', 'matplotlib', 'numba', 'tqdm', 'dask'} & set(sys.modules)))"
     )
-    run = subprocess.run(
-        [sys.executable, "-c", code, tmp_path], cwd=ROOT, capture_output=True, text=True
-    )
-    assert run.stdout.splitlines()[-1] == "[]", run.stderr
+    done = python("-c", code, tmp_path)
+    assert done.stdout.splitlines()[-1] == "[]", done.stderr
 
 
 @pytest.mark.parametrize(
@@ -316,15 +312,15 @@ def test_ctrl_c_ends_a_run_and_its_workers_with_one_word_and_leaves_no_file(
     )
     words = [sys.executable, "-c", code, *flags.split(), "--out", tmp_path / "out"]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as run:
-        assert run.stdout.readline() == "ready\n"
+    with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as process:
+        assert process.stdout.readline() == "ready\n"
         time.sleep(1.0)  # into the steps, or the workers' start
-        os.killpg(run.pid, signal.SIGINT)  # what a terminal does
-        out, err = run.communicate(timeout=30)
-    assert (run.returncode, out, err.strip()) == (130, "", "stopped")
+        os.killpg(process.pid, signal.SIGINT)  # what a terminal does
+        out, err = process.communicate(timeout=30)
+    assert (process.returncode, out, err.strip()) == (130, "", "stopped")
     assert not any(tmp_path.iterdir())
     with pytest.raises(ProcessLookupError):
-        os.killpg(run.pid, 0)  # no worker is left
+        os.killpg(process.pid, 0)  # no worker is left
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
@@ -338,10 +334,11 @@ def test_output_to_a_full_disk_is_one_line_and_no_output_at_all_is_no_error(tmp_
     assert (closed.returncode, closed.stderr) == (0, "")
 
 
-@pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize("words", [
-    "contact.py --steps 5 --no-rerun --out OUT", "-m curriculum.seeds 0:1 --steps 5 --out OUT",
-    "checks.py -k ex2", "exercises/ex1_predict_contact.py --hint 1",
+@pytest.mark.parametrize("words, unbuffered", [
+    ("contact.py --steps 5 --no-rerun --out OUT", ""), ("checks.py -k ex2", ""),
+    ("contact.py --steps 5 --no-rerun --out OUT", "1"), ("checks.py -k ex2", "1"),
+    ("-m curriculum.seeds 0:1 --steps 5 --out OUT", ""),
+    ("exercises/ex1_predict_contact.py --hint 1", ""),
 ])  # fmt: skip
 def test_a_pipe_that_nobody_reads_ends_it_without_a_word(words, unbuffered, tmp_path):
     reader, writer = os.pipe()
@@ -349,16 +346,15 @@ def test_a_pipe_that_nobody_reads_ends_it_without_a_word(words, unbuffered, tmp_
     words = [sys.executable, *words.replace("OUT", str(tmp_path)).split()]
     pipes = {"stdout": writer, "stderr": subprocess.PIPE, "text": True}
     environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
-    run = subprocess.run(words, cwd=ROOT, env=environment, **pipes)
+    done = subprocess.run(words, cwd=ROOT, env=environment, **pipes)
     os.close(writer)
-    assert (run.returncode, run.stderr) == (141, "")
+    assert (done.returncode, done.stderr) == (141, "")
 
 
-@pytest.mark.parametrize("flags", [["-O"], ["-OO"]])
-def test_it_runs_without_asserts_docstrings_and_in_an_ascii_locale(flags, tmp_path):
+def test_it_runs_without_asserts_docstrings_and_in_an_ascii_locale(tmp_path):
     ascii_only = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    run = command("--steps", "1e1", "--plot", "--out", tmp_path, python=flags, **ascii_only)
-    assert (run.returncode, run.stderr) == (0, "")
+    done = python("-OO", CONTACT, "--steps", "1e1", "--plot", "--out", tmp_path, **ascii_only)
+    assert (done.returncode, done.stderr) == (0, "")
     assert strict_json(tmp_path / "metrics.json")["steps"] == 10
 
 
@@ -404,9 +400,9 @@ def test_the_last_line_knows_when_all_exercises_are_done(tmp_path):
         for path in (ROOT / room).glob("*.py"):
             shutil.copy(path, tmp_path / room)
     flags = ("--steps", 5, "--no-rerun")
-    first = command(*flags, script=tmp_path / "contact.py", cwd=tmp_path).stdout
+    first = python("contact.py", *flags, cwd=tmp_path).stdout
     assert first.splitlines()[-1].endswith(" exercises/ex1_predict_contact.py")
     done = {path.stem.split("_")[0]: "done" for path in (tmp_path / "exercises").glob("ex*.py")}
     (tmp_path / "outputs/ch3.5-contact/exercises.json").write_text(json.dumps(done))
-    last = command(*flags, script=tmp_path / "contact.py", cwd=tmp_path).stdout
+    last = python("contact.py", *flags, cwd=tmp_path).stdout
     assert last.splitlines()[-1].startswith("all exercises are done")

@@ -424,7 +424,7 @@ def faults(name, facts, numbers):
     """What is wrong with the texts of a bet: its key, its formulas, its typed numbers."""
     found = []
     if name in BETS:
-        claims = facts["holds"].items()
+        claims = facts["key"].items()
         (key,) = (letter for letter, claim in claims if eval(claim, {"abs": abs}, numbers))
         choice = BETS[name].choices[key]
         found += [] if RIGHT_WORDS[name] in choice else [f"{name}: key {key} says {choice!r}"]
@@ -458,15 +458,15 @@ def test_keys_formulas_and_numbers_are_those_measured(name, numbers):
 
 
 @pytest.mark.parametrize("name, part, old, new, words", [
-    ("ex3", "holds", '"B"', '"D"', "ex3: key A says 'Both blow up"),
-    ("ex1", "holds", '"C"', '"D"', "ex1: key A says 'Nothing that"),
+    ("ex3", "key", '"B"', '"D"', "ex3: key A says 'Both blow up"),
+    ("ex1", "key", '"C"', '"D"', "ex1: key A says 'Nothing that"),
     ("ex4", "reasons", "d^2 K depth", "d K depth", "ex4 A: (1 - d) g = d K depth: "),
     ("ex9", "reasons", "k depth = m g", "k depth = m g / 2", "ex9 sink: k depth = m g / 2"),
     ("ex1", "reasons", "{penalty_deepest:.3f} r.", "0.351 r.", "ex1 B: the number 351 is typed"),
 ])  # fmt: skip
 def test_a_changed_key_or_reason_is_named(name, part, old, new, words, numbers):
     text = json.dumps(FACTS[name][part])
-    if part == "holds":  # another letter: its claim and A's change places
+    if part == "key":  # another letter: its claim and A's change places
         text = text.replace('"A"', '"X"').replace(old, '"A"').replace('"X"', old)
     else:
         assert old in text
@@ -476,7 +476,7 @@ def test_a_changed_key_or_reason_is_named(name, part, old, new, words, numbers):
 
 
 def test_a_choice_that_is_not_the_only_one_is_no_key(numbers, monkeypatch):
-    holds = FACTS["ex3"]["holds"]
+    holds = FACTS["ex3"]["key"]
     monkeypatch.setitem(holds, "A", holds["B"])
     with pytest.raises(ValueError, match="ex3: of its choices .'A', 'B'. hold"):
         predict.answer("ex3", numbers["ex3"])

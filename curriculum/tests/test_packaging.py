@@ -4,54 +4,16 @@ import ast
 import importlib.metadata
 import os
 import re
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+from curriculum.tests.helpers import CONTACT, ROOT, python
+
 README = (ROOT / "README.md").read_text("utf-8")
 FILES = ("*.py", "exercises/**/*.py", "curriculum/**/*.py")
 TEXTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 PROJECT = (ROOT / "pyproject.toml").read_text("utf-8")
 DECLARED = PROJECT.split("[tool.")[0]  # dependencies and extras
-
-
-def run(*words, cwd=ROOT, **environment):
-    """A finished process of this Python, its output as text."""
-    words = [sys.executable, *map(str, words)]
-    how = {"cwd": cwd, "env": {**os.environ, **environment}, "timeout": 120}
-    return subprocess.run(words, capture_output=True, text=True, **how)
-
-
-@pytest.fixture(scope="module")
-def only(tmp_path_factory):
-    """A function: a folder of links to exactly these distributions and what they require."""
-
-    def make(*names):
-        folder, wanted = tmp_path_factory.mktemp("only"), list(names)
-        for name in wanted:
-            found = importlib.metadata.distribution(name)
-            for part in {file.parts[0] for file in found.files} - {".."}:
-                if not (folder / part).exists() and not part.startswith("__"):
-                    (folder / part).symlink_to(Path(found.locate_file(part)))
-            needs = [each for each in found.requires or [] if ";" not in each]
-            wanted += [re.match(r"[\w.-]+", each)[0] for each in needs]
-        return str(folder)
-
-    return make
-
-
-@pytest.mark.parametrize("scene", ["drop", "bounce", "stack"])
-def test_contact_alone_in_an_empty_folder_needs_numpy_and_nothing_else(only, tmp_path, scene):
-    (tmp_path / "contact.py").write_bytes((ROOT / "contact.py").read_bytes())
-    done = run("-S", "contact.py", "--scene", scene, cwd=tmp_path, PYTHONPATH=only("numpy"))
-    assert done.returncode == 0, done.stderr
-    models = re.findall(r"^(penalty|lcp|soft|exact) ", done.stdout, re.M)
-    assert models == ["penalty", "lcp", "soft", "exact"]
-    (written,) = tmp_path.rglob("metrics.json")
-    assert '"exact"' in written.read_text("utf-8")
 
 
 COMMANDS = sorted(
@@ -68,7 +30,7 @@ def test_without_its_packages_a_command_says_in_one_line_what_to_install(only, t
     if module.rpartition(".")[2] in ("bench", "notebook", "page", "text"):
         runs.append((only("numpy"), ()))
     for packages, flags in runs:
-        done = run("-S", "-m", module, *flags, PYTHONPATH=packages)
+        done = python("-S", "-m", module, *flags, PYTHONPATH=packages)
         says = done.stderr.count("\n") == 1 and re.search("install it: |pip install", done.stderr)
         helped = (done.returncode == 0 and flags) or done.stderr.startswith("usage: ")
         assert says and done.returncode == 2 or helped, done.stderr
@@ -79,16 +41,16 @@ def test_what_to_install_is_said_for_the_program_that_runs_here(tmp_path):
     (tmp_path / "pip/__init__.py").touch()
     code = "from curriculum.commands import to_install; print(to_install('yaml', 'page'), end='')"
     words, nowhere = ("-S", "-c", code), str(tmp_path / "empty")
-    uv = run(*words, UV="uv").stdout
+    uv = python(*words, UV="uv").stdout
     assert uv == "yaml is missing; install it: uv run --extra page python -c"
-    pip = run(*words, PYTHONPATH=str(tmp_path), PATH=nowhere).stdout
+    pip = python(*words, PYTHONPATH=str(tmp_path), PATH=nowhere).stdout
     assert pip.endswith("-m pip install -e '.[page]'") or "venv .venv" in pip  # or it is refused
-    neither = run(*words, PATH=nowhere).stdout
+    neither = python(*words, PATH=nowhere).stdout
     assert neither.endswith("python3 -m venv .venv && .venv/bin/pip install -e '.[page]'")
     broken = (
         "from curriculum.commands import needs\nwith needs('page'):\n    import curriculum.pgae"
     )
-    assert "ModuleNotFoundError: No module named 'curriculum.pgae'" in run("-c", broken).stderr
+    assert "ModuleNotFoundError: No module named 'curriculum.pgae'" in python("-c", broken).stderr
 
 
 def test_tests_without_a_package_are_skipped_by_its_name(only, tmp_path):
@@ -96,7 +58,7 @@ def test_tests_without_a_package_are_skipped_by_its_name(only, tmp_path):
     (tmp_path / "test_a.py").write_text("import yaml\n")
     (tmp_path / "test_b.py").write_text("import curriculum.pgae\n")
     words = ("-S", "-m", "pytest", "-p", "no:cacheprovider", "-rs", "--rootdir", tmp_path, tmp_path)
-    printed = run(*words, PYTHONPATH=os.pathsep.join((only("pytest"), str(ROOT)))).stdout
+    printed = python(*words, PYTHONPATH=os.pathsep.join((only("pytest"), str(ROOT)))).stdout
     assert "test_a.py: yaml is missing" in printed and "1 skipped, 1 error" in printed
 
 
@@ -123,12 +85,12 @@ def test_commands_of_the_texts_exist_with_their_flags():
     modules = set(re.findall(r"python -m (curriculum[\w.]*)", text))
     assert modules <= {*COMMANDS, "curriculum.tests.test_golden"}
     for module in sorted(modules & set(COMMANDS)):
-        helped = run("-m", module, "--help")
+        helped = python("-m", module, "--help")
         if " is missing; install it: " not in helped.stderr:
             assert helped.returncode == 0, module
             for flags in re.findall(rf"python -m {module}((?: --[a-z]+)*)", text):
                 assert all(flag in helped.stdout for flag in flags.split()), (module, flags)
-    helped = run("contact.py", "--help").stdout
+    helped = python(CONTACT, "--help").stdout
     for flag in set(re.findall(r"contact\.py[^`\n]*?(--[a-z]+)", text)) - {"--help"}:
         assert flag in helped, flag
 

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum.regions import ROOT
+from curriculum import seeds
 from curriculum.run import curves, picture, pool
+from curriculum.tests.helpers import CONTACT, ROOT, python
 
 DT, STEPS = 0.002, 600
 CURVES = ("height", "penetration", "impulse", "energy", "rises")
@@ -31,7 +32,9 @@ def rows_of(reader, store):
         batch = part.to_record_batch()
         names = [name for name in batch.schema.names if name not in dull]
         columns = [
-            batch.column(name).cast("int64") if name == "sim_time" else batch.column(name)
+            batch.column(name).cast("int64")
+            if name in ("sim_time", "landing")
+            else batch.column(name)
             for name in names
         ]
         for row in zip(*(column.to_pylist() for column in columns)):
@@ -133,13 +136,13 @@ def test_curves_are_the_runs_own_numbers_in_the_models_colour_with_their_peaks(s
         assert look["SeriesLines:aggregation_policy"] == [policy], "an average hides the peaks"
 
 
-def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots_from_t_0(stack):
+def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots(stack):
     recording = stack[0]
     facts = recording.blueprint
     origins = [origin.strip("/") for origin in sum(facts["ViewBlueprint:space_origin"], [])]
     worlds = [f"world/{model}" for model in contact.MODELS] * 2
     assert sorted(origins) == sorted((*worlds, *CURVES))
-    assert facts["TimePanelBlueprint:timeline"] == [["sim_time"]]
+    assert facts["TimePanelBlueprint:timeline"] == [["landing"]]
     assert sum(facts["PlotLegend:visible"], []).count(True) == 1
     views = [view[0] for view in facts["VisualBounds2D:range"]]
     large = max(views, key=lambda view: np.ptp(view["y_range"]))
@@ -151,14 +154,21 @@ def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots_from_t_0(s
     assert small["y_range"][0] < 0.0 < 3 * 0.000981 < small["y_range"][1] < 0.02
 
 
-def test_plots_end_where_the_last_ball_has_come_to_rest(tmp_path):
+def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(tmp_path):
     scene, runs = runs_of("drop", steps=2000)
     recording = recorded(tmp_path, scene, runs)
+    fall = np.sqrt(2.0 * (scene.q0[1, 0] - 0.1) / 9.81)  # s, of a ball that starts at rest
+    times = recording.series["/world/lcp/balls"]
+    first = times["landing"][0] / 1e9  # where a viewer's cursor starts
+    assert 0.09 < fall - first < 0.1 + DT
+    assert times["landing"] == [max(each, times["landing"][0]) for each in times["sim_time"]]
+    panel = {key[19:]: each for key, each in recording.blueprint.items() if "TimePanel" in key}
+    assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["landing"]])
     (ranges,) = {str(each) for each in recording.blueprint["VisibleTimeRanges:ranges"]}
-    end = max(int(number) for number in re.findall(r"\d{8,}", ranges)) / 1e9
+    start, end = (sorted({int(n) / 1e9 for n in re.findall(r"\d{8,}", ranges)})[k] for k in (0, -1))
     for run in runs.values():
         assert np.abs(run.v[run.t >= end]).max() < 0.01
-    assert 0.5 < end < 2.0, "of 4 s"
+    assert first < start < fall < 0.5 < end < 2.0, "of 4 s"
 
 
 def test_a_view_says_how_its_run_ended_and_an_explosion_does_not_widen_it(tmp_path):
@@ -207,23 +217,15 @@ def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(
         assert content.count(f"stroke: {color}".encode()) == len(CURVES) + 2  # legend, dark mode
 
 
-def command(*flags, program=("contact.py",)):
-    """contact.py, or another program, in a process of its own."""
-    words = [sys.executable, *program, *map(str, flags)]
-    return subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=120)
-
-
-def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path):
+def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path, capsys):
     """A cluster of two workers, as it would be on two machines."""
     distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
-    program = "-m", "curriculum.seeds", "0:5", "--contact", "lcp", "--steps", "300"
-    here = command("--out", tmp_path / "here", program=program)
-    assert here.returncode == 0, here.stderr
+    words = "0:5", "--contact", "lcp", "--steps", "300", "--out"
+    assert seeds.main([*words, str(tmp_path / "here")]) == 0
     cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with distributed.LocalCluster(**cluster) as two:
-        address = "--scheduler", two.scheduler_address
-        there = command(*address, "--out", tmp_path / "there", program=program)
-    assert there.returncode == 0, there.stderr
+        there = (*words, str(tmp_path / "there"), "--scheduler", two.scheduler_address)
+        assert seeds.main([*there]) == 0
     found = (tmp_path / "here/seeds.json").read_text("utf-8")
     assert found == (tmp_path / "there/seeds.json").read_text("utf-8")
     runs = [runs_of("drop", steps=300, models=("lcp",), seed=seed) for seed in range(5)]
@@ -239,10 +241,14 @@ def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path)
 @pytest.mark.parametrize(
     "words", [*"3 4:4 5:2 0:1.5 a:b 0:1000000".split(), "0:5 --seed 3", "0:5 --plot", "0:5 --dt 0"]
 )
-def test_seeds_refuses_bad_input_in_one_line(words):
-    run = command(*words.split(), program=("-m", "curriculum.seeds"))
-    assert (run.returncode, run.stdout, run.stderr.count("\n")) == (2, "", 1), run.stderr
-    assert "error: " in run.stderr and words.split()[min(1, words.count(" "))] in run.stderr
+def test_seeds_refuses_bad_input_in_one_line(words, capsys):
+    try:
+        status = seeds.main(words.split())
+    except SystemExit as end:
+        status = end.code
+    out, err = capsys.readouterr()
+    assert (status, out, err.count("\n")) == (2, "", 1), err
+    assert "error: " in err and words.split()[min(1, words.count(" "))] in err
 
 
 def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
@@ -252,7 +258,7 @@ def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
 def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):
     pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     folder = tmp_path / "a folder"
-    lines = command("--steps", 10, "--no-rerun", "--out", folder).stdout.splitlines()
+    lines = python(CONTACT, "--steps", 10, "--no-rerun", "--out", folder).stdout.splitlines()
     (see,) = [line for line in lines if line.startswith("next, see it: ")]
     subprocess.run(see.split(": ", 1)[1], shell=True, cwd=ROOT, check=True, capture_output=True)
     assert (folder / "contact.svg").exists()

@@ -51,7 +51,7 @@ FAULTS = {
         ("1.0 * (pairs[0] == balls)", "(1.0 + 1e-7) * (pairs[0] == balls)",
         "renumbering_the_balls_renumbers_the_run", "exact, v [m/s]"),
     "the reaction is short by 1e-11":
-        ("b.vx -= impulse * self.bx", "b.vx -= (1.0 - 1e-11) * impulse * self.bx",
+        ("b.vx -= impulse * (b.inv", "b.vx -= (1.0 - 1e-11) * impulse * (b.inv",
         "momentum_along_x_is_kept", "a model"),
     "the reaction of exact.py is short by 1e-9":
         ("return (self.n * lam) @ self.sign.T", "return (self.n * lam) @ (self.sign + 1e-9).T",
@@ -78,7 +78,8 @@ FAULTS = {
     "a contact of lcp pulls a little": (SUM, SUM.replace("0.0", "-1e-7"),
         "lcp_never_pulls_and_enough_sweeps_solve_it", "pulled [N s], step #"),
     "a push is not along the normal":
-        ("a.vx += impulse * self.ax", "a.vx += impulse * (self.ax + 1e-9 * self.ay)",
+        ("a.vx += impulse * (a.inv_mass * self.nx)",
+        "a.vx += impulse * a.inv_mass * (self.nx + 1e-9 * self.ny)",
         "lcp_never_pulls_and_enough_sweeps_solve_it", "not explained [N s], step #"),
     "a push is never taken back": (SUM, SUM.replace("0.0", "c.lam"),
         "lcp_never_pulls_and_enough_sweeps_solve_it", "solved [m/s], step #"),

@@ -12,7 +12,7 @@ of the ledger are of today's code.
 import argparse
 import sys
 
-from curriculum.commands import needs, unread
+from curriculum.commands import needs, stoppable
 
 
 def main(argv=None) -> int:
@@ -26,7 +26,7 @@ def main(argv=None) -> int:
     parser.add_argument("--accept", metavar="SECTION", nargs="*", help="these have been read")
     args = parser.parse_args(argv)
     try:
-        with needs("dev"), unread():
+        with needs("dev"), stoppable():
             from curriculum.text import gate
 
             return gate.check() if args.accept is None else gate.accept(args.accept)

@@ -174,7 +174,7 @@ def ahead():
 
 
 def xpbd():
-    """By how much [m] XPBD's heights, found in positions, differ from those of lcp with one sweep."""
+    """By how much [m] heights of XPBD, found in positions, differ from lcp's with one sweep."""
     scene, dt, steps = contact.build_scene("stack", bodies=10), DT / 20, 5_000
     knobs = contact.Settings(ahead=True, iters=1, baumgarte=1.0)
     run = contact.run_model("lcp", scene, dt, steps, knobs)

@@ -114,12 +114,13 @@ class Gate:
         numbers, texts = Numbers(), {file: read_text(file) for file in TEXTS.values()}
         numbers.prepare("".join(texts.values()))
         for file, text in texts.items():
-            for pattern, call in ((REFERENCE, numbers.text), (HOLDS, numbers.holds)):
+            for pattern, call in ((REFERENCE, numbers.text), (HOLDS, numbers.broken)):
                 for match in pattern.finditer(text):
                     line = line_at(text, match.start())
                     try:
-                        if call(match[1]) is False:
-                            what = f"{match[1]!r} does not hold: {numbers.sides(match[1])}"
+                        found = call(match[1])
+                        if found and pattern is HOLDS:
+                            what = f"{match[1]!r} does not hold: {found}"
                             self.say(file, line, what, "correct the text")
                     except ValueError as error:
                         self.say(file, line, f"{match[1]!r}: {error}", "name what is known")

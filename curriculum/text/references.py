@@ -25,6 +25,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
+from operator import eq, ge, gt, le, lt
 from pathlib import Path
 
 import yaml
@@ -40,7 +41,9 @@ REFERENCE = re.compile(r"\{\{(.*?)\}\}")
 HOLDS = re.compile(r"<!--\s*holds:\s*(.*?)\s*-->", re.DOTALL)
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-FORMULA = re.compile(r"[\d.e+\-*/()<>=\s]+")  # of numbers and signs alone
+FORMULA = re.compile(r"[\d.e+\-*/()\s]+")  # of numbers and signs alone
+CLAIM = re.compile(r"([^<>=]+) (<|<=|>|>=|==) ([^<>=]+)")
+SIGNS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq}
 MEASURES = "curriculum/text/facts.py"
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
@@ -138,7 +141,7 @@ class Numbers:
 
         reckoned = OPERAND.sub(number, formula)
         if not FORMULA.fullmatch(reckoned):
-            raise ValueError(f"{formula!r} has other signs than + - * / ( ) and comparisons")
+            raise ValueError(f"{formula!r} has other signs than + - * / ( )")
         try:
             return eval(reckoned)
         except (NameError, SyntaxError, TypeError, ZeroDivisionError) as error:
@@ -160,19 +163,13 @@ class Numbers:
         shown = typeset(text) if is_number(value) else text
         return shown + " (stale)" * any(map(stale, OPERAND.findall(formula)))
 
-    def holds(self, claim) -> bool:
-        """Whether FORMULA < FORMULA (or <= > >= ==) is true."""
-        found = self.value(" ".join(claim.split()))
-        if not isinstance(found, bool):
+    def broken(self, claim) -> str:
+        """What the two sides of FORMULA < FORMULA (or <= > >= ==) are, where it is not true."""
+        parts = CLAIM.fullmatch(" ".join(claim.split()))
+        if not parts:
             raise ValueError(f"{claim!r} is not 'FORMULA < FORMULA'")
-        return found
-
-    def sides(self, claim) -> str:
-        """The claim with the values of its two sides."""
-        sides = re.split(r"\s+([<>=]=?)\s+", " ".join(claim.split()))
-        return " ".join(
-            side if k % 2 else f"{self.value(side):.6g}" for k, side in enumerate(sides)
-        )
+        left, right = (self.value(f"({side})") for side in parts.group(1, 3))  # numbers alone
+        return "" if SIGNS[parts[2]](left, right) else f"{left:.6g} {parts[2]} {right:.6g}"
 
     def fill(self, text) -> str:
         """The text with every reference replaced."""

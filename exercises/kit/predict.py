@@ -61,7 +61,7 @@ def table(name, numbers):
 
 def answer(name, numbers):
     """The letter whose claim holds for what was measured; ValueError unless exactly one does."""
-    claims = FACTS[name]["holds"]
+    claims = FACTS[name]["key"]
     true = [letter for letter, claim in claims.items() if eval(claim, {"abs": abs}, numbers)]
     if len(true) != 1:
         raise ValueError(f"{name}: of its choices {true} hold, and not one, for {numbers}")

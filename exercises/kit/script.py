@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from curriculum.commands import command, unread
+from curriculum.commands import command, stoppable
 
 from . import FACTS, alone, knobs, predict
 from .progress import done, note, practise
@@ -14,7 +14,7 @@ BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the mo
 
 def unquoted(kind, error, trace):
     """A letter without quotes is an error of Python's; say it in one line."""
-    if kind is not NameError or not hasattr(sys.modules["__main__"], "script"):
+    if kind is not NameError or name_of(sys.modules["__main__"]) not in BETS:
         return sys.__excepthook__(kind, error, trace)
     print(alone.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
 
@@ -22,25 +22,26 @@ def unquoted(kind, error, trace):
 sys.excepthook = unquoted  # PREDICTION = A
 
 
-@unread()
+@stoppable()
+def name_of(exercise):
+    """What ORDER calls it: ex1 of exercises/ex1_predict_contact.py."""
+    return Path(getattr(exercise, "__file__", "")).stem.split("_")[0]
+
+
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
-    name = Path(exercise.__file__).stem.split("_")[0]
+    name = name_of(exercise)
     hints = FACTS[name]["hints"]
     parser = argparse.ArgumentParser(description=f"Exercise {name}.", allow_abbrev=False)
     most = f"print hint N, 1 to {len(hints)}, and do nothing else"
     numbers = range(1, len(hints) + 1)
     parser.add_argument("--hint", type=int, choices=numbers, metavar="N", help=most)
     hint = parser.parse_args().hint
-    try:
-        if hint:
-            print(f"hint {hint} of {len(hints)}: {hints[hint - 1]}")
-        else:
-            sys.exit(run(name, exercise))
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        sys.exit(130)
+    if hint:
+        print(f"hint {hint} of {len(hints)}: {hints[hint - 1]}")
+    else:
+        sys.exit(run(name, exercise))
 
 
 def run(name, exercise):

@@ -1,0 +1,16 @@
+"""What several test files share."""
+
+import os
+import subprocess
+import sys
+
+from curriculum.regions import ROOT
+
+CONTACT = ROOT / "contact.py"
+
+
+def python(*words, cwd=ROOT, **environment):
+    """A finished process of this Python, its output as text."""
+    words = [sys.executable, *map(str, words)]
+    how = {"cwd": cwd, "env": os.environ | environment, "timeout": 120}
+    return subprocess.run(words, capture_output=True, text=True, **how)
