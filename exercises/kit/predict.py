@@ -78,7 +78,7 @@ class Bet(NamedTuple):
 
 
 def asked(text):
-    """The Bet of a docstring: question, choices (an indented paragraph), and what WHY should say."""
+    """The Bet of a docstring: question, choices (an indented paragraph), what WHY should say."""
     parts = text.strip().split("\n\n")
     place = next(k for k, part in enumerate(parts) if part.startswith("    A  "))
     choices = re.findall(r"^    ([A-Z])  (.*(?:\n     .*)*)", parts[place], re.MULTILINE)
