@@ -356,6 +356,8 @@ def test_it_runs_without_asserts_docstrings_and_in_an_ascii_locale(tmp_path):
     done = python("-OO", CONTACT, "--steps", "1e1", "--plot", "--out", tmp_path, **ascii_only)
     assert (done.returncode, done.stderr) == (0, "")
     assert strict_json(tmp_path / "metrics.json")["steps"] == 10
+    checks = python("-OO", "checks.py", "-k", "ex2", **ascii_only)
+    assert "ex2: " in checks.stdout and (checks.returncode, checks.stderr) == (0, "")
 
 
 def test_a_folder_without_a_name_is_refused(capsys):

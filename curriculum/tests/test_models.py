@@ -29,31 +29,28 @@ def quality(name, model, dt=DT, steps=2000, knobs=None, **scene):
 
 # --- the published figures -----------------------------------------------------------------------
 
-PUBLISHED = [  # scene, steps, dt, key, penalty, lcp: as they are printed
-    ("drop", 2000, DT, "max_penetration_frac", "0.251329183485", "0.056743325071"),
-    ("drop", 800, DT, "max_penetration_frac", "0.251329183485", "0.056743325071"),
-    ("drop", 2000, DT, "rest_penetration_frac", "0.00981", "0.0"),
-    ("drop", 2000, 0.03, "energy_excess", "1.409e+03", "0"),
-    ("bounce", 2000, DT, "energy_excess", "0.00576", "0"),
-    ("bounce", 2000, 0.005, "energy_excess", "0.148", "0"),
-    ("bounce", 2000, DT, "rest_jitter", "0.0557", None),
-    ("stack", 2000, DT, "max_penetration_frac", "0.059486", "5.0095e-06"),
-    ("stack", 2000, DT, "rest_penetration_frac", "0.02943", "4.1611e-06"),
+PUBLISHED = [  # scene, seed, steps, dt, key, penalty, lcp: as they are printed
+    ("drop", 0, 2000, DT, "max_penetration_frac", "0.251329183485", "0.056743325071"),
+    ("drop", 0, 800, DT, "max_penetration_frac", "0.251329183485", "0.056743325071"),
+    ("drop", 1, 2000, DT, "max_penetration_frac", None, "0.022433"),
+    ("drop", 2, 2000, DT, "max_penetration_frac", None, "0.038544"),
+    ("drop", 0, 2000, DT, "rest_penetration_frac", "0.00981", "0.0"),
+    ("drop", 0, 2000, 0.03, "energy_excess", "1.409e+03", "0"),
+    ("bounce", 0, 2000, DT, "energy_excess", "0.00576", "0"),
+    ("bounce", 0, 2000, 0.005, "energy_excess", "0.148", "0"),
+    ("bounce", 0, 2000, DT, "rest_jitter", "0.0557", None),
+    ("stack", 0, 2000, DT, "max_penetration_frac", "0.059486", "5.0095e-06"),
+    ("stack", 0, 2000, DT, "rest_penetration_frac", "0.02943", "4.1611e-06"),
 ]
 
 
-@pytest.mark.parametrize("name, steps, dt, key, penalty, lcp", PUBLISHED)
-def test_published_figures_come_out_to_all_their_digits(name, steps, dt, key, penalty, lcp):
+@pytest.mark.parametrize("name, seed, steps, dt, key, penalty, lcp", PUBLISHED)
+def test_published_figures_come_out_to_all_their_digits(name, seed, steps, dt, key, penalty, lcp):
     for model, printed in (("penalty", penalty), ("lcp", lcp)):
         if printed is not None:
             digits = len(printed.split("e")[0].replace("0.", "").lstrip("0").replace(".", ""))
-            got = quality(name, model, dt, steps)[key]
+            got = quality(name, model, dt, steps, seed=seed)[key]
             assert f"{got:.{digits or 1}g}" == f"{float(printed):.{digits or 1}g}", (model, got)
-
-
-@pytest.mark.parametrize("seed, depth", [(1, 0.022433), (2, 0.038544)])
-def test_published_depths_of_lcp_at_other_seeds(seed, depth):
-    assert round(quality("drop", "lcp", seed=seed)["max_penetration_frac"], 6) == depth
 
 
 @pytest.mark.parametrize("name, penalty", [("drop", 0.008), ("bounce", 0.016)])
@@ -107,12 +104,11 @@ def specs(draw):
     } | {name: draw(st.sampled_from(values)) for name, values in knobs.items()}
 
 
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
+
+
 @settings(
-    max_examples=150,
-    deadline=None,
-    derandomize=True,
-    database=None,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+    max_examples=100, deadline=None, derandomize=True, database=None, suppress_health_check=SLOW
 )
 @given(spec=specs())
 def test_every_property_holds_on_scenes_that_hypothesis_draws(spec):
@@ -169,19 +165,20 @@ def test_at_the_critical_dt_an_eigenvalue_of_the_step_leaves_the_unit_circle(
         assert (np.abs(np.linalg.eigvals(step)).max() < 1.0 + 1e-9) == stable
 
 
+@pytest.mark.parametrize("stiffness, damping, critical, digits", [
+    (1e4, 80.0, 0.01354, 4e-4), (1e4, 0.0, 0.02, 1e-14), (0.0, 80.0, 0.025, 1e-14),
+    (0.0, 0.0, math.inf, 0.0), (1e4, -1.0, 0.0, 0.0),
+])  # fmt: skip
+def test_critical_dt_also_without_a_spring_and_with_a_damper_that_feeds(
+    stiffness, damping, critical, digits
+):
+    assert contact.critical_dt(1.0, stiffness, damping) == pytest.approx(critical, rel=digits)
+
+
 def test_the_damped_drop_settles_just_below_its_critical_dt_and_never_above():
-    assert contact.critical_dt(1.0, 1e4, 80.0) == pytest.approx(0.01354, abs=5e-6)
-    assert contact.critical_dt(1.0, 1e4, 0.0) == pytest.approx(0.02, rel=1e-14)
     calm, restless = (quality("drop", "penalty", dt, 6000) for dt in (0.0135, 0.0140))
     assert calm["rest_penetration_frac"] == pytest.approx(0.00981, rel=1e-6)
     assert restless["rest_jitter"] > 1e-3
-
-
-def test_free_flight_lags_the_parabola_by_g_t_dt_over_2():
-    scene = build_scene("drop")
-    run = run_model("lcp", scene, DT, 200)
-    lag = scene.q0[1, 0] - 0.5 * G * run.t**2 - run.q[:, 1, 0]
-    assert lag == pytest.approx(0.5 * G * run.t * DT, abs=1e-12)
 
 
 def test_the_bounce_of_lcp_converges_at_first_order():
@@ -209,14 +206,6 @@ def test_a_bounce_of_lcp_ends_on_the_table_and_not_above_it(dt, baumgarte):
 # --- the faults of the published script, gone ----------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "v_n, bias, target", [(-2.0, 1.0, 1.4), (-1.0, 1.0, 1.0), (-2.0, 0.0, 1.4), (2.0, 1.0, 1.0)]
-)
-def test_of_bounce_and_push_the_larger_counts_and_never_their_sum(v_n, bias, target):
-    c = Contact(Ball(0.0, 0.09, 0.0, v_n, 1.0, R), contact.FLOOR, 0.0, 1.0, 0.01)
-    assert contact.contact_target(c, 0.7, bias * DT / 0.01, DT) == pytest.approx(target)
-
-
 def test_the_hop_that_baumgartes_push_makes_is_reported():
     """It leaves with L = beta depth / dt, which carries it L^2 / 2 g less the depth: 0.107 r."""
     row = quality("drop", "lcp")
@@ -231,11 +220,6 @@ def test_no_seed_starts_a_stack_or_pile_inside_the_floor():
     for seed in range(50):
         for scene in (build_scene("stack", seed), build_scene("pile", seed, 30)):
             assert contact.smallest_gap(scene.q0[None], scene.radius)[0] > -1e-15
-
-
-def test_the_damper_resists_closing_and_never_pulls():
-    force = contact.penalty_normal_force
-    assert [force(0.01, v_n, 1e4, 80.0) for v_n in (-1.0, 0.0, 1.0, 2.0)] == [180, 100, 20, 0]
 
 
 @pytest.mark.parametrize("model", STEPPED)
@@ -455,19 +439,11 @@ def test_a_ball_that_is_nowhere_does_not_let_another_fall_through_the_floor(mode
     assert fast.q[-1, 1, 0] > 0.09
 
 
-@pytest.mark.parametrize(
-    "field, value",
-    [
-        ("q0", np.array([[0.0], [math.inf]])),
-        ("v0", np.array([[math.nan], [0.0]])),
-        ("mass", np.array([0.0])),
-        ("mass", np.array([math.nan])),
-        ("radius", np.array([-0.1])),
-        ("restitution", -1.0),
-        ("restitution", 1.1),
-        ("damping", math.nan),
-    ],
-)
+@pytest.mark.parametrize("field, value", [
+    ("q0", np.array([[0.0], [math.inf]])), ("v0", np.array([[math.nan], [0.0]])),
+    ("mass", np.array([0.0])), ("mass", np.array([math.nan])), ("radius", np.array([-0.1])),
+    ("restitution", -1.0), ("restitution", 1.1), ("damping", math.nan),
+])  # fmt: skip
 def test_what_is_no_scene_is_refused_by_the_name_of_its_field(field, value):
     for model in contact.MODELS:
         with pytest.raises(ValueError, match=f"{field}: given .*; allowed: "):
@@ -475,12 +451,6 @@ def test_what_is_no_scene_is_refused_by_the_name_of_its_field(field, value):
     for dt in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(ValueError, match="dt: given .*; allowed: "):
             run_model("lcp", build_scene("drop"), dt, 5)
-
-
-def test_critical_dt_without_a_spring_and_with_a_damper_that_feeds():
-    assert contact.critical_dt(1.0, 0.0, 80.0) == pytest.approx(0.025, rel=1e-14)
-    assert contact.critical_dt(1.0, 0.0, 0.0) == math.inf
-    assert contact.critical_dt(1.0, 1e4, -1.0) == 0.0
 
 
 def test_penalty_trembles_past_its_critical_step_and_nothing_else_does():

@@ -22,12 +22,12 @@ def unquoted(kind, error, trace):
 sys.excepthook = unquoted  # PREDICTION = A
 
 
-@stoppable()
 def name_of(exercise):
     """What ORDER calls it: ex1 of exercises/ex1_predict_contact.py."""
     return Path(getattr(exercise, "__file__", "")).stem.split("_")[0]
 
 
+@stoppable()
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
