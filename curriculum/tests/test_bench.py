@@ -447,7 +447,10 @@ def test_unfinished_sweeps_leave_the_overlap_of_the_law_at_equal_work():
     for row, within in (("xpbd", 0.01), ("small_steps", 0.01), ("lcp", 0.15), ("ahead", 0.15)):
         about = solvers.judged((row, "heavy_100"))
         assert about["rest"] == pytest.approx(about["law"], rel=within)
-        assert about["solves"] <= 20.0 and about["energy"] <= 1e-9
+        assert about["solves"] == 20.0 and 0.0 <= about["energy"] <= 1e-9
+    about = solvers.judged(("direct", "stack_3"))  # lags by half a step, lands in the next, rests
+    assert about["error"] == pytest.approx(g * solvers.DT**2 / 2 / R, rel=1e-3)
+    assert (about["rest"], about["energy"]) == pytest.approx((0.0, 0.0), abs=1e-12)
     about = solvers.judged(("small_steps_warm", "heavy_10"))
     assert about["rest"] is None and about["energy"] > 0.1
 
