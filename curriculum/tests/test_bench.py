@@ -285,7 +285,7 @@ def test_a_shaft_starts_without_contact_between_walls_that_nothing_moves(count):
 
 
 def test_depths_are_those_of_the_contacts():
-    q = np.array(((0, 0, 0), (0.9, 2.7, 4.7005))) * R  # the last does not touch
+    q = np.array(((0, 0, 9), (0.9, 2.7, 1.0005))) * R  # the last hovers
     found = piles.depths(q, contact.build_scene("stack"))
     assert found["contacts"] == 2
     assert (found["mean_depth"], found["worst_depth"]) == pytest.approx((0.15, 0.2))
