@@ -57,8 +57,8 @@ except ModuleNotFoundError:
 
 GRAVITY = -9.81  # m/s^2, along y
 RADIUS = 0.1  # m, of every ball in the scenes; lengths are reported in units of it
-CONTACT_MARGIN = 1e-3  # m: lcp treats a smaller gap as contact, so it also pushes across it
-MOST_SWEEPS = 10_000  # exact and soft give up here, if their impulses have not settled
+CONTACT_MARGIN = 1e-3  # m: lcp also lists smaller gaps, so that they cannot close too fast
+MOST_SWEEPS = 10_000  # of a step: exact then gives up, soft goes on and counts it as unsettled
 LAST_BITS = 2.0**-42  # of the speeds, chosen: soft sweeps until no correction is above it
 SCENES = ("drop", "bounce", "stack", "pile")
 
@@ -117,7 +117,7 @@ class Ball:
         self.vx, self.vy = vx, vy
         self.fx, self.fy = 0.0, 0.0
         self.mass = mass
-        self.inv_mass = 1.0 / mass  # 0 for infinite mass: nothing moves that ball
+        self.inv_mass = 1.0 / mass  # 0 for infinite mass: no push changes its velocity
         self.radius = radius
         self.pushed = {}  # {other ball: impulse of the last step}; see warm_start
 
@@ -231,9 +231,9 @@ def contact_target(c, restitution, baumgarte, dt, ahead=False):
     throw the balls apart, so only the share beta of it opens (Baumgarte 1972): that v_n is the
     bias. The same formula lets only that share of a gap close; with `ahead` all of it may.
 
-    With e > 0 balls that touch or would meet within this step bounce, at -e v_n; an overlap takes
-    the larger of bias and bounce. Others may close their gap, but no target is above -e v_n. Then
-    impulses that are solved for add no energy (Moreau 1988); a bias can, and unfinished sweeps.
+    With e > 0 balls that touch or would meet within this step bounce, at -e v_n; an overlap with a
+    bias takes the larger of the two. Others may close their gap, but no target is above -e v_n.
+    So solved impulses add no energy (Moreau 1988); a bias can, and so can unfinished sweeps.
     """
     closing = c.depth / dt  # this v_n ends the step with a gap of 0
     bias = baumgarte / dt * c.depth  # < 0 across a gap
@@ -287,17 +287,13 @@ def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False) ->
 
 
 def step_reach(balls, dt: float) -> float:
-    """How far [m] a gap closes in a step if its balls meet head-on, as fast as the fastest gets."""
+    """How far [m] two balls come towards each other in a step, both as fast as the fastest gets."""
     fastest = max(0.0, *(math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy) for ball in balls))
     return max(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))
 
 
 def warm_start(contacts, share=1.0):
-    """Begin with a share of the impulses that the same balls gave each other in the last step.
-
-    Few sweeps leave an error. With a share of 1 every step hands it to the next, and it swings like
-    a spring without a damper; with less it dies out.
-    """
+    """Begin with a share of the impulses that the same balls gave each other in the last step."""
     for c in contacts:
         c.lam = share * c.a.pushed.get(c.b, 0.0)
         c.push(c.lam)
@@ -312,7 +308,7 @@ def remember(balls, contacts):
 
 
 # --- region: exact ---
-TOUCH = 1e-13  # m: balls that start with a smaller gap start in touch
+TOUCH = 1e-13  # m: balls that start no farther apart, or in one another, start in touch
 SLOW = 1e-7  # m/s: a slower bounce would be 5e-16 m high, and is left out
 TOGETHER = 1.0 + 1e-12  # times the shortest time to an impact: what comes by then comes with it
 STILL = 1e-12  # m/s, or m/s^2: less than this is rounding, so the contact rests, or stays closed
@@ -337,8 +333,8 @@ def exact_run(scene: Scene, times, report=None):
         a, gap_a = accelerations(balls, touching, pairs)
         span, touching = next_impact(pairs, gap_a)
         last = int(np.searchsorted(times, now + span, "right"))
+        t = times[done:last] - now
         for k, ball in enumerate(balls):
-            t = times[done:last] - now
             q[done:last, 1, k] = place(t, ball.y, ball.vy, a[k])
             v[done:last, 1, k] = speed(t, ball.vy, a[k])
             ball.y, ball.vy = place(span, ball.y, ball.vy, a[k]), speed(span, ball.vy, a[k])
@@ -373,7 +369,7 @@ def strike(touching, restitution):
 def accelerations(balls, touching, pairs):
     """The acceleration [m/s^2] of every ball, and of every gap: None of one that stays closed."""
     resting = [c for c in touching if abs(c.v_n()) < STILL]
-    speeds = [ball.vy for ball in balls]
+    before = [ball.vy for ball in balls]
     for ball in balls:  # the same sweep: from here to the end vy holds accelerations, lam forces
         ball.vy = GRAVITY if ball.inv_mass > 0.0 else 0.0
     for c in resting:
@@ -381,17 +377,17 @@ def accelerations(balls, touching, pairs):
     settle(resting)
     a = [ball.vy for ball in balls]
     gap_a = [None if c in resting and c.v_n() < STILL else c.v_n() for c in pairs]
-    for ball, vy in zip(balls, speeds):
+    for ball, vy in zip(balls, before):
         ball.vy = vy
     return a, gap_a
 
 
 def settle(contacts):
     """Sweep until only rounding is left. Raises ArithmeticError if the sweeps do not get there."""
-    speeds = [speed for c in contacts for speed in (c.a.vy, c.b.vy, c.target)]
+    sizes = [size for c in contacts for size in (c.a.vy, c.b.vy, c.target)]
     for c in contacts:
         c.lam = 0.0
-    if not solve_contacts(contacts, MOST_SWEEPS, ROUNDING * max(map(abs, speeds), default=0.0)):
+    if not solve_contacts(contacts, MOST_SWEEPS, ROUNDING * max(map(abs, sizes), default=0.0)):
         raise ArithmeticError("the masses are too unequal: the sweeps do not settle")
 
 
@@ -416,7 +412,8 @@ def time_to_impact(gap, v_n, a_n):
     if square < 0.0:
         return math.inf
     root = math.sqrt(square)
-    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n  # sums, which round well
+    # each form is a sum: a difference of near numbers would lose digits
+    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n
 
 
 # --- region: soft-impedance ---
@@ -506,7 +503,7 @@ def state_of(balls) -> list[tuple]:
 
 def as_run(rows, settled, dt) -> Run:
     """The Run of rows, x y vx vy by state and ball; settled: whether each step's sweeps did."""
-    rows += 0.0  # -0.0 becomes 0.0, and -nan nan: chance decides these signs
+    rows += 0.0  # one zero and one NaN: chance decides their signs
     rows[np.isnan(rows)] = math.nan
     q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # kind, state, axis, ball
     return Run(np.arange(len(rows)) * dt, q, v, int((~settled).sum()))
@@ -566,7 +563,7 @@ def fly(balls, dt, rows):
 
 # --- region: run ---
 MODELS = ("penalty", "lcp", "soft", "exact")
-MANY = 5e6  # steps times balls squared: from here on, compiled loops pay
+MANY = 5e6  # of about steps times balls squared: from here on, compiled loops pay
 MOST_BALLS = 300  # of exact, chosen: its memory grows as their cube, to 0.1 GB here
 SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default: d0, d1, width [m], mid, power
@@ -677,7 +674,7 @@ def beside(name: str):
 
 
 # --- region: measure ---
-EXPLODED = 10.0  # a run that gains more than this many times its start energy has exploded
+EXPLODED = 10.0  # a run that gains this many times its start energy, or more, has exploded
 RESTLESS = 1e-6  # r, chosen: an overlap that varies by less than this is at rest
 
 
@@ -731,7 +728,7 @@ def trembles(depth) -> bool:
 def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None) -> dict:
     """The measures of a run, in radii of the first ball and in start energies; see COLUMNS."""
     total = energy(run.q, run.v, scene.mass)
-    scale = abs(float(total[0])) or 1.0  # J; 1 for a run that starts with none
+    scale = abs(float(total[0])) or 1.0  # J; 1 J for a run that starts with none
     radius = float(scene.radius[0])  # m
     gap = smallest_gap(run.q, scene.radius) / radius
     depth = np.maximum(-gap, 0.0)
@@ -1091,5 +1088,5 @@ def report(args, argv):
 
 
 if __name__ == "__main__":
-    sys.modules["contact"] = sys.modules[__name__]  # the folder imports this, no second copy
+    sys.modules["contact"] = sys.modules[__name__]  # what the folder's "import contact" gets
     sys.exit(main())

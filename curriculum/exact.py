@@ -122,7 +122,7 @@ class Contacts:
         self.n = np.zeros((2, len(self.reach)))
 
     def pick(self, chosen):
-        """Some of them."""
+        """The chosen contacts, as a new Contacts."""
         part = object.__new__(Contacts)
         part.w = self.w
         for name in ("sign", "n", "reach", "floor", "radius", "share"):
@@ -182,8 +182,8 @@ class Motion:
     def touch(self):
         """Which contacts touch now.
 
-        A light ball between two others is struck faster and faster, while its gaps shrink below the
-        digits of q. So next_event follows each, and a small one touches only if it was wider.
+        A light ball between two others bounces until its gaps fall below the rounding of q. So
+        next_event tracks gaps, and a tiny one touches only if it was wider.
         """
         self.bits = np.spacing(np.abs(self.q).max())
         self.small = TOUCH * self.all.radius + 4.0 * self.bits
@@ -232,9 +232,8 @@ class Motion:
         self.gap[touching], self.since[touching], self.parting[touching] = 0.0, 0.0, np.abs(v_n)
         a = np.zeros_like(self.q)
         a[1] = np.where(self.w > 0.0, -self.g, 0.0)
-        needs = np.where(
-            np.abs(v_n) > NOISE * self.speed[touching], v_n**2 / (2.0 * LAST * contacts.radius), 0.0
-        )
+        rises = v_n**2 / (2.0 * LAST * contacts.radius)  # LAST radii under this acceleration
+        needs = np.where(np.abs(v_n) > NOISE * self.speed[touching], rises, 0.0)
         still = needs <= self.g
         while True:
             resting = contacts.pick(still)
@@ -244,13 +243,12 @@ class Motion:
             if stays.all():
                 break
             still[still] = stays
-        touching, contacts = touching[still], resting
-        self.rests[:] = False
-        self.rests[touching] = True
+        touching = touching[still]
+        self.rests = np.isin(np.arange(len(self.gap)), touching)
         if (np.abs(self.found[touching]) > self.bits).any():  # close what counts as closed
-            self.q = contacts.match(self.q, contacts.along(self.q) - self.found[touching])
-        pushes = lam * contacts.share > NOISE * self.g
-        held = contacts.pick(pushes)
+            self.q = resting.match(self.q, resting.along(self.q) - self.found[touching])
+        pushes = lam * resting.share > NOISE * self.g
+        held = resting.pick(pushes)
         if pushes.any():
             beside = held.sign.any(1)
             a, self.v = held.match(a, -turn[pushes]), held.match(self.v, 0.0)
@@ -311,10 +309,8 @@ class Motion:
         part, gap, rests = self.all.pick(near), np.maximum(self.gap[near], 0.0), self.rests[near]
         P = gap_series(part, gap, Q)
         wider = np.where(rests, 0.5 * self.small[near], np.minimum(4.0 * self.bits, 1e-9 * gap))
-        falls = np.zeros((len(P), len(near) + lam.shape[1]))
-        falls[:, : len(near)] = P
+        falls = np.hstack((P, np.pad(lam, ((0, len(P) - len(lam)), (0, 0)))))
         falls[0, : len(near)] += np.where(part.floor, wider, wider * (wider + 2.0 * part.reach))
-        falls[: len(lam), len(near) :] = lam
         span, first = first_fall(falls, horizon)
         value = evaluate(P, span)
         root = value / (part.reach + np.sqrt(part.reach**2 + value))
@@ -332,20 +328,14 @@ def evaluate(P, t):
     return total
 
 
-def rate(P):
-    """The series of the derivative."""
-    return np.arange(1.0, len(P)).reshape(-1, *[1] * (P.ndim - 1)) * P[1:]
-
-
 def gap_series(contacts, gap, Q):
     """Series (terms, K) with the signs of the gaps, from `gap` on: y - r, or d . d - reach^2."""
     d = Q @ contacts.sign
     P = np.zeros((max(len(d), 5), d.shape[2]))  # 5: a parabola's square is whole
     for k, row in enumerate(d):
         P[k : k + len(d)] += (row * d[: len(P) - k]).sum(1)
-    flat = np.zeros_like(P)
-    flat[: len(d)] = d[:, 1]
-    P = np.where(contacts.floor, flat, P)
+    P[:, contacts.floor] = 0.0
+    P[: len(d), contacts.floor] = d[:, 1, contacts.floor]
     P[0] = np.where(contacts.floor, gap, gap * (gap + 2.0 * contacts.reach))
     return P
 
@@ -420,9 +410,9 @@ class Cycle:
 
 
 def sample(Q, times):
-    """q, v (2, S, 2, N) at times (S,) of the series Q."""
-    times = times[:, None, None]
-    return np.array((evaluate(Q, times), evaluate(rate(Q), times)))
+    """q, v (2, S, 2, N) at times (S,) of the series Q; or (2, 2, N) at one time."""
+    times, k = np.asarray(times)[..., None, None], np.arange(1.0, len(Q))[:, None, None]
+    return np.array((evaluate(Q, times), evaluate(k * Q[1:], times)))
 
 
 def refuse(scene):
@@ -430,10 +420,9 @@ def refuse(scene):
     e, mass = scene.restitution, scene.mass[np.isfinite(scene.mass)]
     ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
     if 0.0 < e < 1.0 and ratio > RATIO:
-        raise RuntimeError(
-            f"exact: masses {ratio:.4g} : 1 at restitution {e:g}; at most {RATIO:g}"
-            " : 1 where 0 < e < 1. Take closer masses, or restitution 0 or 1"
-        )
+        given, allowed = f"masses {ratio:.4g} : 1 at restitution {e:g}", f"at most {RATIO:g} : 1"
+        advice = "Take closer masses, or restitution 0 or 1"
+        raise RuntimeError(f"exact: {given}; {allowed} where 0 < e < 1. {advice}")
 
 
 @np.errstate(all="ignore")
@@ -459,15 +448,14 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
         if held.across(motion.v).any() or held.across(a).any():
             Q, lam, horizon = motion.slide(held)
         span = motion.next_event(Q, which, lam, horizon)
-        last = max(done, int(np.searchsorted(times, now + span)))
-        if last > done:
-            out[:, done:last] = sample(Q, times[done:last] - now)
+        last = int(np.searchsorted(times, now + span))
+        out[:, done:last] = sample(Q, times[done:last] - now)
         cycle.flights.append((span, Q))
         done = last
         report(done)
         if done == len(times):
             return tuple(out)
-        motion.q, motion.v, now = evaluate(Q, span), evaluate(rate(Q), span), now + span
+        (motion.q, motion.v), now = sample(Q, span), now + span
     raise RuntimeError(
         f"exact: more than {MOST_IMPACTS:,} events by {now:.6g} s, balls rattle without end."
         " Take a shorter run, another restitution, or closer masses"

@@ -50,8 +50,8 @@ export class Bets {
     this.#hear();
   }
 
-  /* Open without a bet: what comes out from behind the veil stands where the bar was, whatever opens
-   * above it, and takes the focus. */
+  /* Open without a bet: what comes out from behind the veil stands where the bar was, whatever
+   * opens above it, and takes the focus. */
   #reveal(button) {
     const veil = button.closest(".veiled");
     const { top } = veil.getBoundingClientRect();

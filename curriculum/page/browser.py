@@ -59,17 +59,6 @@ STRETCH = """() => {
   }
   return [most / innerHeight, above];
 }"""
-# how much of the window is figures, and how much is code [px^2]; whether "Measure" is reached
-SEEN = """() => [".fig .drawing", ".source pre"].map((kind) => {
-  let area = 0;
-  for (const node of document.querySelectorAll(kind)) {
-    const { left, right, top, bottom } = node.getBoundingClientRect();
-    if (node.checkVisibility({ opacityProperty: true, visibilityProperty: true }))
-      area += Math.max(0, Math.min(right, innerWidth) - Math.max(left, 0)) *
-        Math.max(0, Math.min(bottom, innerHeight) - Math.max(top, 0));
-  }
-  return area;
-}).concat(document.getElementById("simulate-and-measure").getBoundingClientRect().top)"""
 
 
 @contextlib.contextmanager
@@ -120,7 +109,6 @@ def measure(page):
     with opened(page) as tab:
         paint, shift = tab.evaluate(PAINT)
         yield f"first paint {paint:.0f} ms (below 500), layout shift {shift:.3f} (below 0.1)"
-        yield balance(tab)
         yield pacing(tab)
         for scene, wanted in {"drop": 50, "bounce": 50, "stack": 100}.items():
             show(tab, page, f"?scene={scene}")
@@ -140,17 +128,3 @@ def pacing(tab):
     """The longest stretch without a picture before "Honest limits", in screens: a line."""
     screens, above = tab.evaluate(STRETCH)
     return f"longest stretch without a picture: {screens:.1f} screens, below {above} (at most 2)"
-
-
-def balance(tab):
-    """The three screens in a row, before "Measure", on which code takes the most: a line."""
-    areas, below = [], 1
-    while below > 0:
-        tab.evaluate("(screen) => scrollTo(0, screen * innerHeight)", len(areas))
-        tab.wait_for_timeout(600)
-        figures, code, below = tab.evaluate(SEEN)
-        areas.append((figures, code))
-    sums = [tuple(map(sum, zip(*areas[k : k + 3]))) for k in range(len(areas) - 2)]
-    least = min(range(len(sums)), key=lambda k: sums[k][0] - sums[k][1])
-    figures, code = (round(area / 1000) for area in sums[least])
-    return f"screens {least} to {least + 2}: code {code} thousand px² (below figures, {figures})"

@@ -222,7 +222,7 @@ def assemble(parts, fill, macros, bets):
     """(HTML, [(level, id, text)] of its headings). fill(kind, value) gives the HTML of a part;
     `bets` are the exercises whose answers are veiled."""
     contents, met, found, kinds = [], [], [], kinds_of(parts)
-    for ((kind, value), *rest), column in zip(segments_of(parts), kinds):
+    for ((kind, value), *rest), columns in zip(segments_of(parts), kinds):
         if kind == "heading":
             contents.append((*value[:2], Markup(re.sub(r"</?(code|a|math)[^>]*>", "", value[2]))))
         head = fill(kind, value)
@@ -236,7 +236,8 @@ def assemble(parts, fill, macros, bets):
         said = words(" ".join(inner))
         veils = [name for name in met if said and (name == last or TELLS[name].search(said))]
         head, inner = (
-            f'<div class="part {column}">{each}</div>' for each in (head, "\n".join(inner))
+            f'<div class="part {column}">{each}</div>'
+            for column, each in zip(columns, (head, "\n".join(inner)))
         )
         if kind == "slot" or value[0] <= 2:  # exercises, and what begins a part, are always seen
             found.append((head, "", ()))
@@ -256,16 +257,17 @@ def segments_of(parts):
 
 
 def kinds_of(parts):
-    """Of each segment whether the live figure stands beside its section somewhere."""
-    sections = []
+    """Of each segment whether the live figure stands beside its head, and beside the rest."""
+    found, shown = [], False
     for segment in segments_of(parts):
-        if segment[0][0] == "heading":
-            sections.append([])
-        sections[-1].append(segment)
-    for section in sections:
-        shows = [value for each in section for kind, value in each if kind == "show"]
-        column = "beside" if any(not value.startswith("none") for value in shows) else "centred"
-        yield from [column] * len(section)
+        marks = [not value.startswith("none") for kind, value in segment if kind == "show"]
+        heading = segment[0][0] == "heading"
+        rest = (shown and not heading) or any(marks)
+        found.append([rest if heading else shown, rest] if segment[1:] or not heading else None)
+        shown = marks[-1] if marks else rest
+    for k in reversed(range(len(found))):  # a heading alone stands where the next one does
+        found[k] = found[k] or found[k + 1]
+    return [["beside" if each else "centred" for each in both] for both in found]
 
 
 def veiled(segments, bets, macros):

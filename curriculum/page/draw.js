@@ -42,6 +42,10 @@ export function clipped(x, y, width, height, ...children) {
 export const whole = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, ",");
 export const plural = (count, word) => `${whole(count)} ${word}${count === 1 ? "" : "s"}`;
 
+// A power of ten.
+export const tenTo = (exponent) =>
+  `10${String(exponent).replace(/./g, (c) => RAISED["-0123456789".indexOf(c)])}`;
+
 // A number as a reader wants it: three digits, powers of ten only where they help.
 export function number(value, digits = 3) {
   if (Number.isNaN(value)) return "not a number";
@@ -50,8 +54,7 @@ export function number(value, digits = 3) {
   if (size < NOISE) return "0";
   if (size < 1e-3 || size >= 1e6) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
-    const raised = exponent.replace("+", "").replace(/./g, (c) => RAISED["-0123456789".indexOf(c)]);
-    return `${mantissa} × 10${raised}`.replace("-", "−");
+    return `${mantissa} × ${tenTo(Number(exponent))}`.replace("-", "−");
   }
   const long = size >= 10 ** (digits - 1);
   return (value < 0 ? "−" : "") + (long ? whole(Math.round(size)) : size.toPrecision(digits));
@@ -136,11 +139,14 @@ function frame({ x, y }, { sx, sy, box }) {
     const at = sy(value);
     return line(left, at, right, at, "grid") + label(text, left - 6, at + 5, "end", "tick");
   });
+  let free = -Infinity; // from here on there is room for a tick's text
   const along = x.ticks.map(([value, text]) => {
-    const at = sx(value);
-    const [place, anchor] = at > right - 14 ? [right, "end"] : [at, "middle"];
-    const name = label(text, place, bottom + 20, anchor, "tick");
-    return line(at, bottom, at, bottom + 5, "axis") + name;
+    const [at, half] = [sx(value), 4.2 * text.length];
+    const place = Math.min(at, right + 4 - half);
+    const drawn = line(at, bottom, at, bottom + 5, "axis");
+    if (place - half < free) return drawn;
+    free = place + half + 6;
+    return drawn + label(text, place, bottom + 20, "middle", "tick");
   });
   if (y.label) across.push(label(y.label, box.edge, top - 12, "start", "axis-name"));
   if (x.label) along.push(label(x.label, right, low - 4, "end", "axis-name"));

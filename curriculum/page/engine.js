@@ -103,8 +103,7 @@ export function makeRows(contacts, mass, targets = [], softness = []) {
 // The impulse after a correction: the sum may not become negative, a correction may.
 export const projectImpulse = (lam, dlam) => positive(lam + dlam);
 
-// Projected Gauss-Seidel. Changes vx, vy and the lam of the rows; returns whether it settled.
-// `project` stands in for the clamp.
+// Projected Gauss-Seidel: changes vx, vy and the rows' lam. `project` stands in for the clamp.
 export function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = projectImpulse }) {
   for (let sweep = 0; sweep < iters; sweep++) {
     let settled = true;
@@ -116,9 +115,8 @@ export function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = pr
       c.lam = lam;
       settled = settled && Math.abs(change) <= tolerance * c.effectiveMass;
     }
-    if (settled) return true;
+    if (settled) return;
   }
-  return false;
 }
 
 function push(c, impulse, vx, vy) {
@@ -142,12 +140,11 @@ function warmStart(rows, pushed = [], share, vx, vy) {
 function solveStep(state, { mass }, dt, rows, { warm, last = 0, ...options }) {
   const vx = state.vx.slice();
   const vy = fall(state.vy, mass, dt);
-  const targets = rows.length ? rows.map((c) => c.target) : [0];
-  const fastest = last && greatest([...targets, ...vx, ...vy].map(Math.abs));
+  const fastest = last && greatest([...rows.map((c) => c.target), ...vx, ...vy].map(Math.abs));
   if (warm) warmStart(rows, state.pushed, warm, vx, vy);
-  const settled = solveContacts(rows, vx, vy, { ...options, tolerance: last && last * fastest });
+  solveContacts(rows, vx, vy, { ...options, tolerance: last && last * fastest });
   const pushed = warm ? rows.map(({ i, j, lam }) => ({ i, j, lam })) : [];
-  return { ...move(state, dt, vx, vy), settled, pushed };
+  return { ...move(state, dt, vx, vy), pushed };
 }
 
 // The normal velocity with which a contact of lcp must leave at least.
@@ -180,7 +177,7 @@ function lcpStep(state, { mass, radius }, knobs) {
 
 // ---- soft, MuJoCo's contact
 
-// x to that power; a whole power by products, whose bits are the same in every language.
+// x to that power; a whole one by products, which are rounded here as in Python: `**` need not be.
 function raised(x, power) {
   if (power !== Math.trunc(power)) return x ** power;
   let product = 1;
@@ -246,7 +243,7 @@ const PARTS = ["x", "y", "vx", "vy"];
 // A recording: n balls, steps + 1 rows; x, y, vx, vy are flat, row by row.
 function blank(n, dt, steps) {
   const t = Float64Array.from({ length: steps + 1 }, (_, k) => dt * k);
-  const run = { n, dt, steps, unsettled: 0, t };
+  const run = { n, dt, steps, t };
   for (const key of PARTS) run[key] = new Float64Array((steps + 1) * n).fill(NaN);
   return run;
 }
@@ -278,7 +275,6 @@ export function runModel(model, scene, knobs, steps) {
     before.unshift(state);
     before.length = Math.min(before.length, LONGEST);
     state = STEP[model](state, scene, knobs);
-    if (state.settled === false) run.unsettled++;
     write(run, row, state);
     // a step depends on the state and its impulses alone: where they come back, all is known
     const period = 1 + before.findIndex((old) => same(old, state));

@@ -1,13 +1,12 @@
-"""The exercises as the page shows them: words of exercises/*.py, facts of answers.json."""
+"""The exercises as the page shows them: their docstrings, and the facts of answers.json."""
 
+import ast
 import functools
-import importlib
-import json
 import re
-import sys
 
 from curriculum.page.chapter import inline, markdown
 from curriculum.regions import ROOT
+from exercises.kit import FACTS, blanks, predict
 
 FOLDER = ROOT / "exercises"
 TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")
@@ -15,17 +14,10 @@ COMMAND = re.compile(r"^    ((?:python|pytest)\b.*?)(?:\s{2,}#.*)?$", re.MULTILI
 BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2, filled in the page
 
 
-def module(name):
-    """A module of the folder exercises/."""
-    if str(FOLDER) not in sys.path:
-        sys.path.insert(0, str(FOLDER))
-    return importlib.import_module(name)
-
-
 def blank_cases():
     """How checks.py tries the blanks of exercise 2: inputs, what is right on them, and the slips,
     each as what it gives, to five digits, and what it means."""
-    return {name: tried(module("kit.blanks").BLANKS[name]) for name in BLANKS}
+    return {name: tried(blanks.BLANKS[name]) for name in BLANKS}
 
 
 def tried(blank):
@@ -42,7 +34,7 @@ def tried(blank):
 @functools.cache
 def measured(name):
     """The numbers of a bet, by the name of its file."""
-    return module("kit.predict").measure(name.split("_")[0])
+    return predict.measure(name.split("_")[0])
 
 
 def task_of(text):
@@ -53,8 +45,8 @@ def task_of(text):
 
 def exercise(path, facts):
     """An exercise as the template wants it. Raises ValueError where its docstring has no title."""
-    source = module(path.stem)
-    title, _, text = source.__doc__.partition("\n")
+    words = ast.get_docstring(ast.parse(path.read_text("utf-8")), clean=False)
+    title, _, text = words.partition("\n")
     parts = TITLE.fullmatch(title.strip())
     if not parts:
         raise ValueError(f"{path.name}: it must begin 'Exercise N, KIND (M minutes): TITLE'")
@@ -64,12 +56,11 @@ def exercise(path, facts):
         "title": f"Exercise {number}: {told}",
         "minutes": minutes,
         "command": "\n".join(COMMAND.findall(text)),
-        "hints": [inline(hint) for hint in facts.get("hints", [])],
+        "hints": [inline(hint) for hint in facts["hints"]],
         "choices": [],
     }
-    predict = module("kit.predict")
     if shown["id"] in predict.BETS:
-        bet, numbers = predict.asked(source), measured(path.stem)
+        bet, numbers = predict.asked(words), measured(path.stem)
         text, table = bet.task, predict.table(shown["id"], numbers).splitlines()
         shown |= {
             "choices": list(bet.choices.items()),
@@ -84,6 +75,5 @@ def exercise(path, facts):
 
 def all_exercises():
     """{name: exercise} in order."""
-    facts = json.loads((FOLDER / "kit/answers.json").read_text("utf-8"))
     paths = {path.stem.split("_")[0]: path for path in sorted(FOLDER.glob("ex*_*.py"))}
-    return {name: exercise(path, facts.get(name, {})) for name, path in paths.items()}
+    return {name: exercise(path, FACTS[name]) for name, path in paths.items()}

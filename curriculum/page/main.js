@@ -30,6 +30,18 @@ function sectionIn(passages) {
 
 // ---- the address
 
+// What the address asks for: of a section and its passages, of a figure, or, without one, of all.
+function read(sections, sectionOf, stages) {
+  const wanted = asked(location.search);
+  const target = document.getElementById(location.hash.slice(1));
+  const one = target?.dataset.figure && sectionOf(target);
+  const heading = (each) => each.id.replace(/\.\d+$/, "");
+  for (const each of sections)
+    if (!target || each === one || each.id === target.id || heading(each) === target.id)
+      each.restore(wanted);
+  stages.find(({ box }) => box === target)?.take(location.search);
+}
+
 /* One entry of the history an act: a drag, or a run of arrow keys, is one. The address names the
  * section and what is changed there; the entry keeps that of all of them. */
 function bindAddress(sections, sectionOf, stages) {
@@ -45,7 +57,8 @@ function bindAddress(sections, sectionOf, stages) {
   const restore = (held) => sections.forEach((each) => each.restore(held[each.id] || {}));
   function acted(section, act) {
     if (!act) return;
-    const address = () => `${location.pathname}?${section.query()}#${section.id}`.replace("?#", "#");
+    const { pathname } = location;
+    const address = () => `${pathname}?${section.query()}#${section.id}`.replace("?#", "#");
     clearTimeout(timer);
     if (under) timer = setTimeout(() => write("replaceState", address()), 150);
     else write("pushState", address());
@@ -54,19 +67,8 @@ function bindAddress(sections, sectionOf, stages) {
   for (const each of sections) each.on(acted);
   for (const kind of ["pointerdown", "focusin", "click"])
     window.addEventListener(kind, () => (under = false), true);
-  // What the address asks for: of a section and its passages, of a figure, or, without one, of all.
-  function read() {
-    const wanted = asked(location.search);
-    const target = document.getElementById(location.hash.slice(1));
-    const one = target?.dataset.figure && sectionOf(target);
-    const heading = (each) => each.id.replace(/\.\d+$/, "");
-    for (const each of sections)
-      if (!target || each === one || each.id === target.id || heading(each) === target.id)
-        each.restore(wanted);
-    stages.find(({ box }) => box === target)?.take(location.search);
-  }
   if (history.state) restore(history.state);
-  else read();
+  else read(sections, sectionOf, stages);
   write("replaceState", location.href);
   window.addEventListener("popstate", (event) => {
     clearTimeout(timer);

@@ -1,6 +1,6 @@
 /* What the explaining figures share: scenes of balls, results that are kept, a chart beside a
  * picture, a lens, and handles that set a number. */
-import { ball, circle, clipped, el, label, plot, table, within } from "./draw.js";
+import { ball, circle, clipped, el, label, plot, round, table, tenTo, within } from "./draw.js";
 import { data } from "./data.js";
 import { GRAVITY } from "./engine.js";
 import { knobsOf, QUANTITIES } from "./store.js";
@@ -94,36 +94,35 @@ export function beside(view, options, picture, share = 0.4) {
   return { ...chart, svg: drawn + chart.svg, middle: left / 2 };
 }
 
+// What is seen through a lens of `size` px around (x, y).
+export function through(x, y, size, ...inside) {
+  const style = `clip-path: circle(${size}px at ${round(x)}px ${round(y)}px) view-box`;
+  const seen = el("g", { style }, circle(x, y, size, "lens-ground"), ...inside);
+  return seen + circle(x, y, size, "lens-rim");
+}
+
 /* A look at a contact through a lens around (x, y): the table's top, and the edge of a ball that is
  * `depth` deep [r], enlarged so that it can be seen, or `given` times; a radius is `r` px. Nothing
  * where that is seen without a lens. */
-export function lens(id, model, x, y, r, depth, size, given) {
+export function lens(model, x, y, r, depth, size, given) {
   const steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
   const times = given || steps.find((each) => each * depth * r >= 12) || 10000;
   if (!given && (times <= 2 || depth <= 0)) return "";
   const inside = [
-    circle(x, y, size, "lens-ground"),
     table(x - size, y, 2 * size, size),
     ball(model, x, y + (depth - 1) * r * times, r * times, "magnified"),
   ];
-  return [
-    el("clipPath", { id }, circle(x, y, size, "")),
-    el("g", { "clip-path": `url(#${id})` }, ...inside),
-    circle(x, y, size, "lens-rim"),
-    label(`× ${times}`, x, y + size + 16, "middle", "tick"),
-  ].join("");
+  const enlarged = label(`× ${times}`, x, y + size + 16, "middle", "tick");
+  return through(x, y, size, ...inside) + enlarged;
 }
 
 // How long an arrow for a force is, in weights: the root, since impacts are hundreds of weights.
 export const forceLength = (weights, unit = 26) => unit * Math.sqrt(Math.max(weights, 0));
 
 // An axis of powers of ten, from 10^low to 10^high.
-const RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 export function tens(low, high) {
-  const ticks = Array.from({ length: high - low + 1 }, (_, k) => {
-    const raised = String(low + k).replace(/./g, (c) => RAISED["-0123456789".indexOf(c)]);
-    return [10 ** (low + k), `10${raised}`];
-  });
+  const powers = Array.from({ length: high - low + 1 }, (_, k) => low + k);
+  const ticks = powers.map((power) => [10 ** power, tenTo(power)]);
   return { domain: [10 ** low, 10 ** high], ticks, log: true };
 }
 
@@ -153,8 +152,8 @@ export function grip(view, name, x, y, label, text, options) {
   return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release, put };
 }
 
-/* A handle for two numbers, [a, b]: at(x, y) gives those where it is dragged to, put(a, b) sets them,
- * and an arrow key to the right or up moves it by `px` on the screen. */
+/* A handle for two numbers: at(x, y) gives those where it is dragged to, put(a, b) sets them, and an
+ * arrow key to the right or up moves it by `px` on the screen. */
 export function pair(name, [x, y], label, text, { value, at, put, px = 4, r }) {
   const drag = (toX, toY) => put(...at(toX, toY));
   let [nowX, nowY] = [x, y];
@@ -162,7 +161,7 @@ export function pair(name, [x, y], label, text, { value, at, put, px = 4, r }) {
   return { name, x, y, r, label, text, value, drag, nudge };
 }
 
-// The same handle at another place, too: all of a ball, from where the hand goes on as at the first.
+// The same handle at another place, too: all of a ball. The hand goes on as from the first.
 export const wholly = (handle, name, x, y, r, box) =>
   ({ ...handle, name, x, y, r, box, hold: handle.hold || [handle.x, handle.y] });
 

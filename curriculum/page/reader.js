@@ -1,6 +1,6 @@
 /* Reading: numbers that can be dragged, links that set something, the live figure that takes the
  * section in sight, and on a small screen the dock in which it comes up. */
-import { plain } from "./draw.js";
+import { plain, within } from "./draw.js";
 import { asked, fromSlider, grouped, QUANTITIES, sliderRange, toSlider } from "./store.js";
 
 const KEYS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 20, PageDown: -20 };
@@ -10,7 +10,8 @@ export class Reader {
   // passages: [{node, section, look}] in the order of the page; look: what the live figure shows
   constructor(passages, sectionOf, lanes) {
     Object.assign(this, { passages, sectionOf, lanes, shown: null, called: null });
-    this.wide = [...document.querySelectorAll(".centred .fig, .centred .code, .centred .scroll")];
+    const wide = ".centred :is(.fig, .code, .scroll, .generated, .exercise > pre)";
+    this.wide = [...document.querySelectorAll(wide)];
     this.live = document.getElementById("figure");
     this.beside = window.matchMedia("(min-width: 75rem)");
     for (const span of document.querySelectorAll(".drag")) this.#number(span);
@@ -115,11 +116,12 @@ export class Reader {
     const section = this.sectionOf(span);
     const name = span.dataset.knob;
     const each = QUANTITIES[name];
-    const range = sliderRange(each);
+    const { min, max, step } = sliderRange(each);
     const about = { role: "slider", tabindex: 0, "aria-label": each.label };
     Object.assign(about, { "aria-valuemin": each.low, "aria-valuemax": each.high });
     for (const [key, value] of Object.entries(about)) span.setAttribute(key, value);
-    span.insertAdjacentHTML("afterend", `<button class="chip" data-take="${name}" hidden></button>`);
+    const held = `<button class="chip" data-take="${name}" hidden></button>`;
+    span.insertAdjacentHTML("afterend", held);
     const chip = span.nextElementSibling;
     const show = () => {
       const value = section.get(name);
@@ -129,31 +131,27 @@ export class Reader {
       chip.hidden = section.values[name] === section.home[name];
       chip.textContent = `text: ${grouped(section.home[name])}`;
     };
-    const turn = (from, by) => {
-      const position = Math.min(range.max, Math.max(range.min, from + by * range.step));
-      section.set({ [name]: fromSlider(each, position) });
-    };
-    this.#grab(span, section, () => toSlider(each, section.get(name)), turn);
+    const position = () => toSlider(each, section.get(name));
+    const turn = (from, by) =>
+      section.set({ [name]: fromSlider(each, within(min, from + by * step, max)) });
+    this.#grab(span, section, position, turn);
     section.on(show);
     show();
   }
 
   #grab(span, section, position, turn) {
-    let [startX, from] = [0, 0];
+    let [startX, start] = [0, 0]; // where it is grabbed
     span.addEventListener("pointerdown", (event) => {
       event.preventDefault();
       span.focus({ preventScroll: true });
       span.setPointerCapture(event.pointerId);
-      [startX, from] = [event.clientX, position()];
-      section.drag(true);
+      [startX, start] = [event.clientX, position()];
       this.#call(span, section);
     });
     span.addEventListener("pointermove", (event) => {
       if (span.hasPointerCapture(event.pointerId))
-        turn(from, Math.round((event.clientX - startX) / 2));
+        turn(start, Math.round((event.clientX - startX) / 2));
     });
-    for (const end of ["pointerup", "pointercancel"])
-      span.addEventListener(end, () => section.drag(false));
     span.addEventListener("keydown", (event) => {
       if (!KEYS[event.key]) return;
       event.preventDefault();

@@ -106,10 +106,9 @@ function mountKnob(box, name, stage) {
     if (document.activeElement !== field) field.value = plain(value);
     field.removeAttribute("aria-invalid");
   };
-  range.addEventListener("pointerdown", () => stage.section.drag(true));
-  for (const end of ["pointerup", "pointercancel", "blur"])
-    range.addEventListener(end, () => stage.section.drag(false));
-  range.addEventListener("input", () => stage.set({ [name]: fromSlider(each, Number(range.value)) }));
+  range.addEventListener("change", stage.redraw); // it is let go
+  const turn = () => stage.set({ [name]: fromSlider(each, Number(range.value)) });
+  range.addEventListener("input", turn);
   field.addEventListener("change", () => {
     const value = Number(field.value.replace(",", "."));
     const fits = field.value.trim() !== "" && value === fitting(each, value);
@@ -138,7 +137,6 @@ export class Stage {
   #handles = [];
   #pending = 0;
   #last = 0; // ms, of the last frame
-  #asked = ""; // what an address has asked for before it was drawn
   #trail = []; // of the pointer: [ms, x, y]
 
   constructor(box, name, figure, page, section) {
@@ -167,7 +165,7 @@ export class Stage {
   }
 
   get dragging() {
-    return this.section.dragging;
+    return this.grabbed !== null || this.box.querySelector("input:active") !== null;
   }
 
   get = (name) => this.section.get(this.uses.add(name) && name);
@@ -221,7 +219,6 @@ export class Stage {
     this.aside = [x - event.clientX, y - event.clientY]; // of the pointer
     this.#trail = [];
     if (this.figure.clock) this.stop();
-    this.section.drag(true);
     this.#drag(event);
   }
 
@@ -237,7 +234,6 @@ export class Stage {
     const handle = this.#handle(this.grabbed);
     this.grabbed = null;
     handle?.release?.();
-    this.section.drag(false);
     this.redraw();
   }
 
@@ -279,10 +275,6 @@ export class Stage {
     this.#showChips();
     if (made.lit) this.page.light(this.name, made.lit);
     if (words.textContent !== made.words) words.textContent = made.words;
-    if (!this.#asked) return;
-    const query = this.#asked;
-    this.#asked = "";
-    this.take(query);
   }
 
   // What differs from the text, each with a click that takes it back; and the figure's own address.
@@ -308,7 +300,8 @@ export class Stage {
 
   // Set its own numbers as its address asks; each is kept to where it could be dragged.
   take(query) {
-    if (!this.near) return void (this.#asked = query);
+    this.near = true; // its handles know what may be set, so it is drawn first
+    this.#resize();
     for (const [name, text] of new URLSearchParams(query)) {
       const number = text.trim() === "" ? NaN : Number(text);
       if (Number.isFinite(number) && name in this.own) this.#handle(name)?.put?.(number);

@@ -86,14 +86,13 @@ export function asked(query) {
 function changed(values, changes) {
   const { scene } = changes;
   const moved = SCENES.includes(scene) && scene !== values.scene ? own(scene) : {};
-  const fit = Object.entries(changes).filter(([name, value]) => known(name) && allowed(name, value));
-  return { ...values, ...moved, ...Object.fromEntries(fit) };
+  const fits = ([name, value]) => known(name) && allowed(name, value);
+  return { ...values, ...moved, ...Object.fromEntries(Object.entries(changes).filter(fits)) };
 }
 
 /* A section of the chapter: `home`, what its text speaks of, and `values`, what the reader has made
  * of it. hear(section) is told of every change. */
 export class Section {
-  dragging = false; // meanwhile figures draw coarsely
   #hear = [];
 
   constructor(id, changes) {
@@ -116,12 +115,6 @@ export class Section {
   // An address or the back button does.
   restore = (changes) => this.#put(changed(this.home, changes), false);
   reset = () => this.set({}, this.home);
-
-  drag(underWay) {
-    if (this.dragging === underWay) return;
-    this.dragging = underWay;
-    for (const hear of this.#hear) hear(this, false);
-  }
 
   get = (name) => shown(this.values, name);
 

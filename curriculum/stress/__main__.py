@@ -3,8 +3,8 @@
     python -m curriculum.stress                         everything; writes curriculum/stress/results
     python -m curriculum.stress --quick                 under a minute, into outputs/stress-quick
     python -m curriculum.stress --scheduler HOST:PORT   on the workers of a dask scheduler
-    python -m curriculum.stress --small 300             small scenes alone, to the first violation
-    python -m curriculum.stress --scene small:17        what every property says of one scene
+    python -m curriculum.stress --scene 17              what every property says of one scene
+    python -m curriculum.stress --scene small:0-299     of 300 small ones, to the first violation
 
 Exit status 0: no violation; 1: violations; 2: bad command line.
 """
@@ -38,15 +38,16 @@ def parse(argv):
     flag("--draw", action="store_true", help="page and figure again, from the results alone")
     flag("--workers", type=count, metavar="N", help="processes (all cores)")
     flag("--scheduler", metavar="HOST:PORT", help="run on the workers of this dask scheduler")
-    flag("--small", type=count, metavar="N", help="small scenes alone, to the first violation")
-    flag("--scene", type=scene, metavar="[small:]NUMBER", help="what all properties say of it")
+    flag("--scene", type=chosen, metavar="[small:]N[-N]", help="what all properties say of these")
     return parser.parse_args(argv)
 
 
-def scene(text):
-    """The job of one scene."""
-    chosen = number(int, 0, 1e9, text.removeprefix("small:"))
-    return jobs.scene_jobs([chosen], small=text.startswith("small:"))
+def chosen(text):
+    """The jobs of one scene, or of a row of them."""
+    first, _, last = text.removeprefix("small:").partition("-")
+    first = number(int, 0, 1e9, first)
+    last = number(int, first, 1e9, last) if last else first
+    return jobs.scene_jobs(range(first, last + 1), small=text.startswith("small:"))
 
 
 def some_scenes(todo):
@@ -54,7 +55,7 @@ def some_scenes(todo):
     found = []
     for job in todo:
         found.append(jobs.run(job))
-        if any(words for _, _, words in found[-1][1].values()):
+        if jobs.added_up(found[-1:])["violations"]:
             break
     added = jobs.added_up(found)
     for name, (_, count, share) in added["properties"].items():
@@ -96,10 +97,7 @@ def main(argv=None):
 
         report.draw(report.RESULTS, report.results.load("stress"))
         return 0
-    if args.scene or args.small:
-        violations = some_scenes(args.scene or jobs.scene_jobs(range(args.small), small=True))
-    else:
-        violations = everything(args)
+    violations = some_scenes(args.scene) if args.scene else everything(args)
     for violation in violations:
         print("VIOLATION:", ": ".join(violation))
     return 1 if violations else 0

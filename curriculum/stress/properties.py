@@ -11,19 +11,15 @@ import math
 import numpy as np
 
 import contact
-from curriculum.stress import scenes
+from curriculum.stress import laws, scenes
 from curriculum.stress.claims import stated, unlike
 from curriculum.stress.trial import STEPPED, G, Trial, U, inverse
 
 WAYS = "plain", "skips", "twin"  # of taking the same steps
-HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the impedance of soft where it bounces
-MUJOCO = (0.9, 0.95, 0.001, 0.5, 2.0), (0.02, 1.0)  # and where it does not, with its spring
 NOTABLE = 1e-9  # share of the energy; what unfinished sweeps add ends below it
 MOST = 2**17  # sweeps, by which it must have ended
 PROMISE = 1e-12  # of exact: of a radius, and of the energy at the start
 NEAR = 1e-9  # share of the sizes that a flight or an impact in closed form may be off
-STEEP = 0.05  # least share of the speed that goes into an impact which is judged: others graze
-SETTLED, SWEEPS = 2.0**-42, 10_000  # soft: what its last sweep may still change; sweeps at most
 TINY = 1e-6  # s: forces are read from what they do in so short a time
 LOOSE = 1e-5  # share of the accelerations that are read so
 SLOW = 1e-6  # of sqrt(g r): exact may take a slower bounce for the last one
@@ -125,14 +121,12 @@ def renumbering_the_balls_renumbers_the_run(trial):
     exact 1e-9 of the speeds, not derived.
     """
     turned = {name: trial.spec[name][::-1] for name in scenes.BODY}
-    penalty, soft = trial.motions["penalty"], trial.motions["soft"]
-    bounds = {"penalty": spring_force(trial, penalty)[1], "soft": soft_force(trial, soft)[1]}
-    for model, left in bounds.items():
+    for model, law in (("penalty", laws.spring_force), ("soft", laws.soft_force)):
         motion = trial.motions[model]
         if motion.listed[:1].any() and not motion.unsettled:
             other = trial.run(model, **turned, steps=1)
             off = np.abs(other.v[1][:, ::-1] - motion.v[1])
-            yield f"{model}, v [m/s]", off, 2.0 * left[0] * inverse(motion.mass)
+            yield f"{model}, v [m/s]", off, 2.0 * law(trial, motion)[1][0] * inverse(motion.mass)
     other = trial.exact and struck(trial.exact)[:1].any() and trial.brief(trial.dt, 1, **turned)
     if other:
         off = np.abs(other.v[1][:, ::-1] - trial.exact.v[1])
@@ -148,7 +142,7 @@ def momentum_along_x_is_kept(trial):
     """
     if trial.fixed.any() or len(trial.mass) == 1:
         return
-    sweeps = {"penalty": 1, "lcp": trial.spec["iters"], "soft": SWEEPS}
+    sweeps = {"penalty": 1, "lcp": trial.spec["iters"], "soft": laws.SWEEPS}
     for model, motion in trial.motions.items():
         pairs = motion.listed[:, len(trial.mass) :].sum(1)
         off = np.abs((motion.mass * np.diff(motion.v[:, 0], axis=0)).sum(1))
@@ -157,7 +151,7 @@ def momentum_along_x_is_kept(trial):
     if trial.exact:
         momentum = (trial.mass * trial.exact.v[:, 0]).sum(1)
         pushed = np.abs(np.diff(trial.exact.v[:, 0], axis=0)).max(1) > 0.0
-        size = np.sqrt(2.0 * trial.mass.sum() * start_energy(trial))
+        size = np.sqrt(2.0 * trial.mass.sum() * laws.start_energy(trial))
         yield "exact", np.abs(momentum[1:] - momentum[0]), PROMISE * size, pushed
 
 
@@ -179,17 +173,9 @@ def springs_push_as_hooke_and_the_damper_say(trial):
     Bound: 8 U of the lengths that make a depth, of the speeds that make a v_n, and of the sums.
     """
     motion = trial.motions["penalty"]
-    force, allowed = spring_force(trial, motion)
+    force, allowed = laws.spring_force(trial, motion)
     off = np.abs(motion.push - motion.total(motion.dt * force))
     yield "impulse [N s]", off, allowed, motion.pushed
-
-
-def spring_force(trial, motion):
-    """The force of every contact (S, C) [N]; what rounding leaves in momenta (S, 2, N) [kg m/s]."""
-    k, c = trial.spec["stiffness"], trial.spec["damping"]
-    force = np.where(motion.listed, np.maximum(0.0, k * motion.depth - c * motion.before), 0.0)
-    size = motion.listed * motion.dt * (k * motion.lengths + c * motion.speeds + 2 * force)
-    return force, 8 * U * (motion.on_balls(size) + (motion.count + 2) * motion.size)
 
 
 @stated
@@ -205,18 +191,6 @@ def other_units_give_the_same_run(trial):
         yield "penalty", *unlike(run, contact.Run(run.t, scaled.q / 4.0, scaled.v / 2.0))
 
 
-def lcp_target(motion, spec):
-    """The v_n that each contact may leave with at least: the chapter's rule, in its own words."""
-    e, beta, ahead = spec["restitution"], spec["baumgarte"], spec["ahead"]
-    close, bounce = motion.depth / motion.dt, -e * motion.before
-    bias = beta * close
-    if e == 0.0:
-        return np.where(ahead & (close < 0.0), close, bias)
-    arrives = motion.dt * motion.before <= motion.depth
-    across = np.where(arrives, bounce, np.minimum(bounce, close))
-    return np.where(bias > 0.0, np.maximum(bias, bounce), across)
-
-
 @stated
 def a_contact_alone_leaves_at_its_target(trial):
     """lcp: a contact with no neighbour leaves at max(v_n after gravity, target).
@@ -224,7 +198,7 @@ def a_contact_alone_leaves_at_its_target(trial):
     Bound: 8 U a sweep of the speeds, and of the lengths that make the target.
     """
     motion = trial.motions["lcp"]
-    target, predicted = lcp_target(motion, trial.spec), motion.along(motion.falling)
+    target, predicted = laws.lcp_target(motion, trial.spec), motion.along(motion.falling)
     off = np.abs(motion.after - np.maximum(predicted, target))
     lengths = motion.lengths / motion.dt
     speeds = (trial.spec["iters"] + 4) * motion.speeds + np.abs(target)
@@ -242,11 +216,11 @@ def lcp_never_pulls_and_enough_sweeps_solve_it(trial):
     a hundred times what the latter half of these sweeps still moves, which is not derived.
     """
     motion, sweeps = trial.motions["lcp"], trial.spec["iters"]
-    target = lcp_target(motion, trial.spec)
+    target = laws.lcp_target(motion, trial.spec)
     for k in sampled(motion):
         on, top = motion.listed[k], motion.top[k].max()
-        n = directions(motion, k, on)
-        if not far_from_singular(n, motion.mass):
+        n = laws.directions(motion, k, on)
+        if not laws.far_from_singular(n, motion.mass):
             continue
         lam, rest = np.linalg.lstsq(n, motion.push[k].ravel(), rcond=None)[:2]
         rounded = 8 * U * on.sum() * motion.size[k].sum() / np.linalg.svd(n)[1][-1]
@@ -258,36 +232,9 @@ def lcp_never_pulls_and_enough_sweeps_solve_it(trial):
         if moved > NOTABLE * top:
             trial.note("lcp: a step that 16,384 sweeps do not solve")
             continue
-        solved = nearest(n, target[k, on], motion.falling[k].ravel(), motion.mass)
+        solved = laws.nearest(n, target[k, on], motion.falling[k].ravel(), motion.mass)
         off = np.abs(more.ravel() - solved)
         yield f"solved [m/s], step {k}", off, moved + 1e-11 * top
-
-
-def nearest(n, least, v, mass):
-    """The velocities (2 N,) with n . v >= least (K,) that are nearest to v in the norm of the
-    masses: what impulses do, of which none pulls (Moreau 1988). By least squares, as Lawson and
-    Hanson's LDP: with A = M^(-1/2) n, the lam >= 0 that best brings A lam to 0 and missing . lam
-    to 1.
-    """
-    from scipy.optimize import nnls  # slow, so only where it is needed
-
-    weight = np.tile(np.sqrt(inverse(mass)), 2)
-    A, missing = n * weight[:, None], least - n.T @ v
-    unit = np.sqrt((A * A).sum(0))
-    most = (missing / unit).max(initial=0.0)
-    if most <= 0.0:
-        return v
-    rows, ends = np.vstack((A, missing / most)) / unit, np.append(0.0 * v, 1.0)
-    left = rows @ nnls(rows, ends)[0] - ends
-    return v - most * weight * left[:-1] / left[-1]
-
-
-def far_from_singular(n, mass):
-    """Whether W of these contacts, scaled to a diagonal of 1, has no eigenvalue below 1e-3."""
-    weighted = n * np.tile(np.sqrt(inverse(mass)), 2)[:, None]
-    W = weighted.T @ weighted
-    scale = np.sqrt(W.diagonal())
-    return np.linalg.eigvalsh(W / scale / scale[:, None])[0] > 1e-3
 
 
 def sampled(motion):
@@ -297,13 +244,6 @@ def sampled(motion):
         return []
     deepest = np.where(motion.listed, motion.depth, -np.inf).max(1).argmax()
     return sorted({int(deepest), int(touching[-1])})
-
-
-def directions(motion, k, on):
-    """What a push of 1 N s at each contact `on` adds to the momenta in step k (2 N, contacts)."""
-    given = motion.sides[on] * (motion.mass > 0.0)
-    each = motion.normal[k][:, on, None] * given
-    return each.transpose(0, 2, 1).reshape(2 * len(motion.mass), on.sum())
 
 
 @stated
@@ -317,44 +257,18 @@ def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
     """
     free = Trial(trial.spec | {"baumgarte": 0.0, "warm": 0.0})
     motion, e = free.motions["lcp"], trial.spec["restitution"]
-    rise, size = rises(motion, motion, e)
+    rise, size = laws.rises(motion, motion, e)
     if not motion.listed.any():
         return
     k = int((rise - NOTABLE * size).argmax())
     sweeps, left, start = trial.spec["iters"], rise[k], scenes.state(motion.q[k], motion.v[k])
     while left > NOTABLE * size[k] and sweeps < MOST:
         sweeps *= 2
-        left = rises(free.run("lcp", **start, steps=1, iters=sweeps), motion, e)[0][0]
+        left = laws.rises(free.run("lcp", **start, steps=1, iters=sweeps), motion, e)[0][0]
     if sweeps > trial.spec["iters"]:
         total = contact.energy(motion.q, motion.v, motion.mass)
         trial.note(UNFINISHED, sweeps=sweeps, start=total[0], most=total.max())
     yield f"rise [J] with {sweeps} sweeps", left, NOTABLE * size[k]
-
-
-def rises(run, motion, e):
-    """(rise of F beyond the law, the energies) of every step of a run, by the motion's masses."""
-    first, last, D = run.v[:-1], run.v[1:], np.diff(run.v, axis=0)
-    before, after, D2 = (0.5 * (motion.mass * v * v).sum((1, 2)) for v in (first, last, D))
-    lead = e / (1 + e) * motion.dt * -G * (motion.mass * D[:, 1]).sum(1)
-    moved = motion.dt * G * (motion.mass * last[:, 1]).sum(1)
-    rise = after - before + moved + lead + (1 - e) / (1 + e) * D2
-    size = before + (motion.mass * G * np.abs(run.q[:-1, 1])).sum(1)
-    return rise, np.maximum(size, after)
-
-
-def soft_law(motion, e, solref):
-    """(target [m/s], softness R [1/kg]) of every contact, by MuJoCo's formulas."""
-    bounces = e > 0.0 and solref is None
-    d0, d1, width, mid, power = HARD if bounces else MUJOCO[0]
-    T, damping = solref or MUJOCO[1]
-    x = np.clip(motion.depth / width, 0.0, 1.0)
-    low, high = x**power / mid ** (power - 1), 1 - (1 - x) ** power / (1 - mid) ** (power - 1)
-    y = np.where(x <= mid, low, high)
-    d = d0 + y * (d1 - d0)
-    T = max(T, 2 * motion.dt)
-    K, B = (0.0, (1 + e) / motion.dt / d1) if bounces else ((d1 * T * damping) ** -2, 2 / (d1 * T))
-    a_ref = K * d * motion.depth - B * motion.before
-    return motion.before + motion.dt * a_ref, (1 - d) / d * motion.inv_mass
 
 
 @stated
@@ -368,7 +282,7 @@ def soft_pushes_as_mujoco_says(trial):
     motion = trial.motions["soft"]
     if not motion.listed.any():
         return
-    lam, allowed = soft_force(trial, motion)
+    lam, allowed = laws.soft_force(trial, motion)
     off = np.abs(motion.push - motion.total(lam)) * (motion.mass > 0.0)
     if motion.unsettled:
         trial.note("soft: steps whose sweeps did not settle", steps=motion.unsettled)
@@ -376,18 +290,6 @@ def soft_pushes_as_mujoco_says(trial):
         yield "steps off beyond those unsettled", beyond, motion.unsettled
     else:
         yield "impulse [N s]", off, allowed, motion.pushed
-
-
-def soft_force(trial, motion):
-    """The impulse of every contact (S, C) [N s], and what settled sweeps and rounding may leave in
-    the momenta (S, 2, N) [kg m/s].
-    """
-    target, R = soft_law(motion, trial.spec["restitution"], trial.spec["solref"])
-    lam = np.where(motion.listed, np.maximum(0.0, (target - motion.after) / R), 0.0)
-    size = np.where(motion.listed, np.abs(target) + motion.speeds, 0.0).max(1, keepdims=True)
-    left = (SETTLED + 16 * U) * (motion.listed.sum(1, keepdims=True) + 1) * size
-    own = motion.on_balls(np.where(motion.listed, left / R, 0.0))
-    return lam, own + 8 * U * (motion.count * SWEEPS + 4) * motion.size
 
 
 @stated
@@ -430,26 +332,28 @@ def exact_pushes_and_never_pulls(trial):
     Both have one answer, also where impulses and forces do not. Judged where no bounce is so slow
     that exact may take it for the last, and no other impact follows at once.
     """
-    motion = trial.exact
+    motion, e = trial.exact, trial.spec["restitution"]
     on = motion and (np.abs(motion.depth[0]) < 1e-13) & (motion.inv_mass > 0.0)
     run = motion and on.any() and trial.brief(TINY, 4)
     if not run or np.abs(np.diff(run.v[1:], 3, axis=0)).max() > 1e-11:
         return
-    n, (v1, v2, v3) = directions(motion, 0, on), run.v[1:4]
-    v, a = 3 * v1 - 3 * v2 + v3, (8 * v2 - 5 * v1 - 3 * v3) / (2 * TINY)  # at the start, as they
-    bounced = trial.scene.v0.ravel()  # bend
-    while (n.T @ bounced < -1e-12).any():  # each round of impacts
-        bounced = nearest(n, -trial.spec["restitution"] * (n.T @ bounced), bounced, motion.mass)
-    parts = np.abs(n.T @ bounced)
-    rests = parts < 1e-12 * motion.top.max()
-    if (~rests & (parts < SLOW * math.sqrt(G * motion.reach[on].max()))).any():
+    n, (v1, v2, v3) = laws.directions(motion, 0, on), run.v[1:4]
+    v, a = 3 * v1 - 3 * v2 + v3, (8 * v2 - 5 * v1 - 3 * v3) / (2 * TINY)  # extrapolated to t = 0
+    bounced, still = trial.scene.v0.ravel(), 1e-12 * motion.top.max()
+    for _ in range(1000):  # rounds of impacts
+        v_n = n.T @ bounced
+        if (v_n >= -still).all():
+            break
+        bounced = laws.nearest(n, -e * v_n, bounced, motion.mass)
+    rests = np.abs(v_n) <= still
+    if (~rests & (v_n < SLOW * math.sqrt(G * motion.reach[on].max()))).any():
         return
     yield "velocity after the impacts [m/s]", np.abs(v.ravel() - bounced), NEAR * motion.top.max()
     across = np.array((-motion.normal[0, 1], motion.normal[0, 0]))
     turn = (v @ motion.sides.T * across).sum(0) ** 2 / motion.reach
     turn[: len(motion.mass)] = 0.0  # the floor's normal stays
     fall = np.outer((0.0, -G), ~trial.fixed).ravel()
-    found = nearest(n[:, rests], -turn[on][rests], fall, motion.mass)  # Gauss 1829
+    found = laws.nearest(n[:, rests], -turn[on][rests], fall, motion.mass)  # Gauss 1829
     yield "acceleration [m/s^2]", np.abs(a.ravel() - found), LOOSE * (G + turn[on].max())
 
 
@@ -471,17 +375,11 @@ def exact_keeps_its_energy(trial):
     """exact: no energy above 1e-12 of the start's is ever gained, and with e = 1 none is lost."""
     if trial.exact and not trial.fixed.all():
         total = contact.energy(trial.exact.q, trial.exact.v, trial.scene.mass)
-        size, on = PROMISE * start_energy(trial), struck(trial.exact)
+        size, on = PROMISE * laws.start_energy(trial), struck(trial.exact)
         yield "gained since the start [J]", np.maximum(total[1:] - total[0], 0.0), size, on
         yield "gained in a step [J]", np.maximum(np.diff(total), 0.0), size, on
         if trial.spec["restitution"] == 1.0:
             yield "lost with e = 1 [J]", np.abs(total[1:] - total[0]), size, on
-
-
-def start_energy(trial):
-    """The energy [J] of the start, and at least what lifts every ball by its radius."""
-    total = float(contact.energy(trial.exact.q[0], trial.exact.v[0], trial.scene.mass))
-    return max(total, float((trial.mass * G * trial.scene.radius).sum()))
 
 
 @stated
@@ -494,7 +392,7 @@ def exact_flies_and_bounces_in_closed_form(trial):
         return
     motion, dt, moves = trial.exact, trial.dt, ~trial.fixed
     fast = np.sqrt((motion.v[:-1] ** 2).sum(1)) + G * dt * moves  # while nothing strikes a ball
-    most = np.sqrt(2.0 * start_energy(trial) * inverse(trial.mass))  # with all the energy there is
+    most = np.sqrt(2.0 * laws.start_energy(trial) * inverse(trial.mass))  # with all the energy
     pairs = np.maximum(fast[:, motion.a] + most[motion.b], most[motion.a] + fast[:, motion.b])
     meets = -motion.depth <= dt * np.concatenate((fast, pairs), axis=1)
     later = -motion.depth <= dt * motion.on_contacts(most)  # when its balls have been struck
@@ -504,43 +402,11 @@ def exact_flies_and_bounces_in_closed_form(trial):
     q = motion.q[:-1] + dt / 2.0 * (motion.v[:-1] + motion.falling)
     size = np.abs(motion.q[1:]) + dt * fast[:, None]
     yield "flight, q [m]", np.abs(motion.q[1:] - q), NEAR * size, free
-    floor = meets[:, : len(moves)] & (motion.on_balls(meets)[:, 0] == 1) & moves
-    yield floor_bounces(trial, motion, fast, floor)
-    alone = meets & later & (motion.on_contacts(motion.on_balls(later)[:, 0]) == 2)
-    alone &= motion.on_contacts(1.0 * moves) == 2
-    yield from pair_bounces(trial, motion, fast, alone[:, len(moves) :])
-
-
-def floor_bounces(trial, motion, fast, floor):
-    """The claim on balls that bounce off the table alone, and once in a step."""
-    vx, vy = motion.v[:-1].swapaxes(0, 1)
-    height = -motion.depth[:, : len(trial.mass)]
-    speed = np.sqrt(vy * vy + 2.0 * G * np.maximum(height, 0.0))  # at the impact
-    s, back = (vy + speed) / G, trial.spec["restitution"] * speed
-    steep = within(s, trial.dt) & (speed > STEEP * fast)
-    once = floor & steep & (s + 2.0 * back / G > trial.dt)
-    off = np.abs(motion.v[1:] - np.stack((vx, back - G * (trial.dt - s)), axis=1))
-    return "bounce off the table [m/s]", off, NEAR / STEEP * fast[:, None], once[:, None]
-
-
-def pair_bounces(trial, motion, fast, alone):
-    """The claims on either of two balls that strike each other alone."""
-    a, b, weight = motion.a, motion.b, inverse(trial.mass)
-    reach = trial.scene.radius[a] + trial.scene.radius[b]
-    d, u = (each[:-1, :, a] - each[:-1, :, b] for each in (motion.q, motion.v))
-    uu, du, dd = (u * u).sum(1), (d * u).sum(1), (d * d).sum(1) - reach**2
-    square = du * du - uu * dd
-    s = dd / (-du + np.sqrt(square))
-    steep = (du < 0.0) & (square > STEEP * STEEP * uu * reach**2) & within(s, trial.dt)
-    n = (d + s[:, None] * u) / reach
-    change = -(1 + trial.spec["restitution"]) * (u * n).sum(1) / (weight[a] + weight[b])
-    allowed = NEAR / STEEP * np.maximum(fast[:, a], fast[:, b])
-    for ball, side in ((a, 1.0), (b, -1.0)):
-        v = motion.falling[:, :, ball] + side * weight[ball] * change[:, None] * n
-        off = np.abs(motion.v[1:, :, ball] - v)
-        yield "impact of two [m/s]", off, allowed[:, None], (alone & steep)[:, None]
-
-
-def within(s, dt):
-    """Whether a moment s [s] is clearly inside of a step."""
-    return (1e-6 * dt < s) & (s < (1 - 1e-6) * dt)
+    table = meets[:, : len(moves)] & (motion.on_balls(meets)[:, 0] == 1) & moves
+    pair = meets & later & (motion.on_contacts(motion.on_balls(later)[:, 0]) == 2)
+    pair &= motion.on_contacts(1.0 * moves) == 2
+    alone = np.concatenate((table, pair[:, len(moves) :]), axis=1)
+    impulses, n = laws.only_impacts(trial, fast, alone)
+    v = motion.falling + inverse(trial.mass) * ((impulses[:, None] * n) @ motion.sides)
+    size = motion.on_balls((impulses > 0.0) * motion.on_contacts(fast))
+    yield "impact [m/s]", np.abs(motion.v[1:] - v), NEAR / laws.STEEP * size, (size > 0.0) & moves

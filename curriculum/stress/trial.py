@@ -5,7 +5,6 @@ that contacts gave a ball is its change of momentum that gravity does not explai
 """
 
 import re
-import time
 from functools import cached_property
 
 import numpy as np
@@ -17,7 +16,7 @@ fast = contact.beside("fast")  # the compiled twin: the same bits, as a property
 G = 9.81  # m/s^2, what every model must have, so it is not asked of contact.py
 U = 2.0**-53  # the largest relative rounding error of one operation
 STEPPED = ("penalty", "lcp", "soft")
-SECONDS = 0.2  # of CPU time for a run of exact; the rest is not waited for
+EVENTS = 100  # of a run of exact; the rest is not waited for
 TOUCHING = 1e-12  # m: a deeper overlap at the start, and exact promises nothing
 ASTRAY = 1e6  # m, m/s: a run is judged until a ball is farther off, or faster
 
@@ -60,42 +59,39 @@ class Trial:
 
     @cached_property
     def exact(self):
-        """Its Trajectory, as far as SECONDS go; None, and a note, where it promises nothing."""
+        """Its Trajectory; None, and a note, where it promises nothing."""
         if contact.smallest_gap(self.scene.q0[None], self.scene.radius)[0] < -TOUCHING:
             self.note("exact: starts in an overlap")
             return None
-        end, done = time.process_time() + SECONDS, 0
+        run = self.run_exact(self.dt, self.spec["steps"])
+        return run and Trajectory(self, run)
+
+    def brief(self, dt, steps, **changes):
+        """A short run of exact; None where exact is not judged, or does not come to its end."""
+        run = self.exact and self.run_exact(dt, steps, **changes)
+        return run if run and len(run.t) > steps else None
+
+    def run_exact(self, dt, steps, **changes):
+        """A run of exact with entries of the spec changed, as far as EVENTS go; None, and a note,
+        where it refuses.
+        """
+        case, done = ("exact", scenes.to_scene(self.spec | changes), dt), []
 
         def report(samples):
-            nonlocal done
-            done = samples
-            if time.process_time() > end:
+            done.append(samples)
+            if len(done) > EVENTS:
                 raise TimeoutError
 
         try:
-            return self.take_exact(self.spec["steps"], report)
+            return contact.run_model(*case, steps, report=report)
         except TimeoutError:
-            self.note("exact: cut by time")  # what was done by then is made again, and judged
-            return self.take_exact(done - 1) if done > 1 else None
+            self.note(f"exact: cut after {EVENTS} events")
+            # what was done by then is made again, and judged
+            return contact.run_model(*case, done[-1] - 1) if done[-1] > 1 else None
         except RuntimeError as error:
             sentence = re.split("; |\\. ", str(error).removeprefix("exact: "))[0]
             self.note("exact refuses: " + re.sub(r"\d[\d.,]*", "…", sentence))
             return None
-
-    def brief(self, dt, steps, **changes):
-        """A short run of exact; None where the whole one does not end in time, or it refuses."""
-        if self.exact and "exact: cut by time" not in self.noted:
-            try:
-                scene = scenes.to_scene(self.spec | changes)
-                return contact.run_model("exact", scene, dt, steps)
-            except RuntimeError:
-                self.note("exact refuses a short run or a renumbered one")
-        return None
-
-    def take_exact(self, steps, report=None):
-        return Trajectory(
-            self, contact.run_model("exact", self.scene, self.dt, steps, report=report)
-        )
 
 
 def run_twin(model, scene, dt, steps, settings):

@@ -102,30 +102,93 @@ HITS = f"""(async () => {{
   }}
   return wrong;
 }})()"""
-# a handle of each figure, [figure, handle]; the middle of one, once it is in sight; what is said
-HANDLES = """(async () => {
-  const found = [];
-  for (const fig of document.querySelectorAll("article .fig, .hero .fig")) {
-    fig.scrollIntoView({ block: "center" });
-    for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
-    const handle = fig.querySelector(".handle");
-    if (handle) found.push([fig.id, handle.dataset.handle]);
-  }
+# a figure in the middle of the window, drawn: the live one beside the text that it belongs to
+SEE = """async (id) => {
+  const fig = document.getElementById(id);
+  const live = fig.closest("#figure");
+  const place = live ? document.querySelector(".show[data-show*=models]") : fig;
+  place.scrollIntoView({ block: live ? "start" : "center" });
+  for (let k = 0; k < (live ? 9 : 2) || (k < 99 && !fig.querySelector(".handle")); k++)
+    await new Promise(requestAnimationFrame);
+  return fig;
+}"""
+FIGURES = """() => [...document.querySelectorAll(".fig")].map(({ id }) => id)"""
+# the figures that one can see, and of each a handle: [figure, handle]
+HANDLES = f"""async () => {{
+  const [found, see] = [[], {SEE}];
+  for (const {{ id }} of document.querySelectorAll(".fig")) {{
+    const handle = (await see(id)).querySelector(".handle");
+    if (handle?.{SHOWS}) found.push([id, handle.dataset.handle]);
+  }}
   return found;
-})()"""
-MIDDLE = """(async ([id, name]) => {
-  const find = () => document.querySelector(`#${id} .handle[data-handle="${name}"]`);
-  document.getElementById(id).scrollIntoView({ block: "center" });
-  for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
-  find().scrollIntoView({ block: "center" });
+}}"""
+# the middle of a handle, once it is in sight; and whether that is what lies there
+MIDDLE = f"""async (id, name) => {{
+  const see = {SEE};
+  const handle = (await see(id)).querySelector(`.handle[data-handle="${{name}}"]`);
+  if (!handle.closest("#figure")) handle.scrollIntoView({{ block: "center" }});
   await new Promise(requestAnimationFrame);
-  const { x, y, width, height } = find().getBoundingClientRect();
-  return [x + width / 2, y + height / 2];
-})"""
-WORDS = """(async (id) => {
+  const {{ x, y, width, height }} = handle.getBoundingClientRect();
+  const middle = [x + width / 2, y + height / 2];
+  return [...middle, document.elementFromPoint(...middle) === handle];
+}}"""
+WORDS = """async (id) => {
   for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
   return document.querySelector(`#${id} .words`).textContent;
-})"""
+}"""
+MOVES = ((-12, 12), (24, -24), (70, -60), (-70, 60))  # px: to and fro, for what stands at an end
+
+
+def call(page, function, *given):
+    """What a JavaScript function gives, in either browser."""
+    return page.evaluate(f"({function})({', '.join(map(json.dumps, given))})")
+
+
+def middle(node):
+    """The middle of what a locator finds [px], in the middle of the window."""
+    node.evaluate("(node) => node.scrollIntoView({ block: 'center' })")
+    box = node.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def mouse(page, x, y, moves=MOVES):
+    """Press Chromium's mouse at a place, and draw it to and fro; a move at a time."""
+    page.mouse.move(x, y)
+    page.mouse.down()
+    try:
+        for dx, dy in moves:
+            page.mouse.move(x + dx, y + dy, steps=2)
+            yield
+    finally:
+        page.mouse.up()
+
+
+def mouse_of_firefox(page, x, y):
+    """The same in Firefox."""
+    page.pointer((x, y), "Down")
+    try:
+        for dx, dy in MOVES:
+            page.pointer((x + dx // 2, y + dy // 2), (x + dx, y + dy))
+            yield
+    finally:
+        page.pointer("Up")
+
+
+def finger(page, x, y, moves=MOVES[:3]):
+    """The same with a finger on a phone."""
+    touch = page.context.new_cdp_session(page)
+
+    def send(kind, *at):
+        touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": at})
+        page.wait_for_timeout(30)
+
+    send("Start", {"x": x, "y": y})
+    try:
+        for dx, dy in moves:
+            send("Move", {"x": x + dx, "y": y + dy})
+            yield
+    finally:
+        send("End")
 
 
 class Tab:
@@ -167,12 +230,15 @@ class Tab:
         assert answer["type"] != "exception", answer.get("exceptionDetails", {}).get("text")
         return json.loads(answer["result"]["value"]) if "value" in answer["result"] else None
 
-    def pointer(self, *places):
-        """Press the mouse at the first place [x, y], move it to the others, release it."""
-        move = [{"type": "pointerMove", "x": round(x), "y": round(y)} for x, y in places]
-        down, up = ({"type": f"pointer{way}", "button": 0} for way in ("Down", "Up"))
-        actions = [move[0], down, *move[1:], up]
-        source = {"type": "pointer", "id": "mouse", "actions": actions}
+    def pointer(self, *does):
+        """Move the mouse to places [x, y], press ("Down") and release it ("Up"), in this order."""
+
+        def action(each):
+            if isinstance(each, str):
+                return {"type": f"pointer{each}", "button": 0}
+            return {"type": "pointerMove", "x": round(each[0]), "y": round(each[1])}
+
+        source = {"type": "pointer", "id": "mouse", "actions": list(map(action, does))}
         self.call("input.performActions", context=self.context, actions=[source])
 
     def press(self, *keys):

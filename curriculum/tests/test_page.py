@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 
 import contact
+from curriculum.page.browser import SHOWN
 from curriculum.page.build import build, page_data
 from curriculum.page.bundle import bundle
 from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
-from curriculum.tests.page_browser import HANDLES, HITS, MIDDLE, WORDS, firefox, running, visiting
+from curriculum.tests import page_browser
+from curriculum.tests.page_browser import call, firefox, middle, mouse, running, visiting
 
 BETS = {  # their files, and a number of each that tells its answer, as the page writes it
     "ex1": ("ex1_predict_contact", "penalty_deepest", ".3f"),
@@ -191,10 +193,19 @@ def phone(browser, url):
 
 
 @pytest.fixture(scope="module")
-def fox(gecko, url):
-    """The same in Firefox."""
+def opened_in_firefox(gecko, url):
+    """The page in Firefox, for a reader who has asked to see the answers."""
+    gecko.visit(url)
+    gecko.evaluate(f"(() => {{ {SHOWN} }})()")
     gecko.visit(url)
     return gecko
+
+
+@pytest.fixture
+def fox(opened_in_firefox):
+    """The same, as large as a desktop."""
+    opened_in_firefox.resize(1280)
+    return opened_in_firefox
 
 
 def test_page_is_below_900_kb_and_the_same_bytes_twice(url):
@@ -390,10 +401,16 @@ def test_print_has_figures_and_answers_and_nothing_to_press(unread):
     unread.emulate_media(media="screen")
 
 
-def test_show_me_lifts_a_veil_without_a_bet_and_focus_stays_there(unread):
-    unread.locator("[data-show=ex1]").filter(visible=True).first.click()
+def test_show_me_lifts_a_veil_where_its_bar_was_and_focus_goes_there(unread):
+    """Of the last bar of a bet, above which all the others open, too; pressed by a mouse."""
+    button = unread.locator("[data-show=ex1]").filter(visible=True).last
+    at = middle(button)
+    veil = ".closest('.veiled').getBoundingClientRect().top"
+    top = call(unread, f"(x, y) => document.elementFromPoint(x, y){veil}", *at)
+    unread.mouse.click(*at)
     assert not unread.locator(".veiled-ex1 > .veil-bar").filter(visible=True).count()
     assert unread.evaluate("document.activeElement.className") == "answer"
+    assert unread.evaluate(f"document.activeElement{veil}") == pytest.approx(top, abs=2)
 
 
 def test_the_blank_names_a_slip_and_takes_the_right_lines(tab):
@@ -430,37 +447,31 @@ def test_at_the_middle_of_every_button_knob_handle_and_ball_is_that_thing(tab):
     for width in (*WIDTHS, 320):
         tab.set_viewport_size({"width": width, "height": 800})
         assert tab.evaluate(WIDER, width) == [], width
-        assert width == 320 or tab.evaluate(HITS) == [], width
+        assert width == 320 or tab.evaluate(page_browser.HITS) == [], width
 
 
 def test_so_it_is_in_firefox(fox):
     for width in WIDTHS:
         fox.resize(width)
-        assert fox.evaluate(HITS) == [], width
+        assert fox.evaluate(page_browser.HITS) == [], width
 
 
-def test_whatever_a_mouse_presses_and_moves_changes_the_words_of_its_figure(tab):
-    for name, handle in tab.evaluate(HANDLES):
-        (x, y), before = tab.evaluate(MIDDLE, [name, handle]), tab.evaluate(WORDS, name)
-        tab.mouse.move(x, y)
-        tab.mouse.down()
-        told = {before}
-        for dx, dy in ((70, -60), (-70, 60)):  # one of them, where it stands at an end
-            tab.mouse.move(x + dx, y + dy, steps=2)
-            told.add(tab.evaluate(WORDS, name))
-        tab.mouse.up()
-        assert len(told) > 1, (name, handle, before)
-
-
-def test_so_it_is_with_a_mouse_in_firefox(fox):
-    fox.resize(1280)
-    for name, handle in fox.evaluate(HANDLES):
-        x, y = fox.evaluate(f"{MIDDLE}({json.dumps([name, handle])})")
-        before = fox.evaluate(f"{WORDS}({json.dumps(name)})")
-        fox.pointer((x, y), (x - 12, y + 12), (x + 24, y - 24))
-        if fox.evaluate(f"{WORDS}({json.dumps(name)})") == before:
-            fox.pointer((x, y), (x - 30, y + 30))
-        assert fox.evaluate(f"{WORDS}({json.dumps(name)})") != before, (name, handle)
+@pytest.mark.parametrize(
+    "where, gesture",
+    [("tab", mouse), ("fox", page_browser.mouse_of_firefox), ("phone", page_browser.finger)],
+)
+def test_whatever_a_hand_presses_and_moves_changes_the_words_of_its_figure(where, gesture, request):
+    page = request.getfixturevalue(where)
+    found, every = call(page, page_browser.HANDLES), call(page, page_browser.FIGURES)
+    live = {"fig-lanes"} if where == "phone" else set()  # there it comes up only when it is called
+    assert {name for name, _ in found} == set(every) - live
+    for name, handle in found:
+        x, y, on_top = call(page, page_browser.MIDDLE, name, handle)
+        assert on_top, (name, handle)
+        before = call(page, page_browser.WORDS, name)
+        moves = gesture(page, x, y)
+        assert any(call(page, page_browser.WORDS, name) != before for _ in moves), (name, handle)
+        moves.close()
 
 
 HEIGHT = "Number(document.querySelector('#fig-grab .handle').getAttribute('aria-valuenow'))"
@@ -470,12 +481,8 @@ def test_the_first_ball_falls_when_dropped_and_when_thrown(visit):
     with visit(motion="no-preference") as page:
         grip = page.locator("#fig-grab .handle")
         assert grip.evaluate("(node) => getComputedStyle(node).touchAction") == "none"  # a finger
-        box = grip.bounding_box()
-        page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-        page.mouse.down()
-        page.mouse.move(box["x"] - 60, box["y"] - 40, steps=4)
-        lifted = float(grip.get_attribute("aria-valuenow"))
-        page.mouse.up()
+        for _ in mouse(page, *middle(grip), ((-40, -40), (-90, -70))):
+            lifted = float(grip.get_attribute("aria-valuenow"))
         page.wait_for_function(f"() => {HEIGHT} < {lifted - 0.1}")
 
 
@@ -529,46 +536,17 @@ def test_on_a_phone_a_link_opens_half_a_screen_that_closes_as_one_reads_on(visit
         page.wait_for_selector("#figure:not(.docked)", state="attached")
 
 
-def finger(page, node, along, up):
-    """Put a finger on a node and draw it by so many px; it stays on the screen."""
-    node.evaluate("(node) => node.scrollIntoView({ block: 'center' })")
-    box, touch = node.bounding_box(), page.context.new_cdp_session(page)
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    for k in range(6):
-        at = {"x": x + along * k / 5, "y": y - up * k / 5}
-        kind = "touchMove" if k else "touchStart"
-        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [at]})
-        page.wait_for_timeout(30)
-    return touch
-
-
 def test_a_finger_holds_the_ball_and_drags_a_number_and_the_page_does_not_scroll(phone):
-    touch = finger(phone, phone.locator("#fig-grab .handle"), 20, 60)
-    assert "A hand holds it 0.5" in phone.locator("#fig-grab .words").inner_text()
-    assert phone.evaluate("scrollY") == 0
-    touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-    number = phone.locator(".drag[data-knob=stiffness]").first
-    touch = finger(phone, number, 50, 70)
-    assert number.inner_text() == "17,800"
-    touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-
-
-def test_so_it_is_with_a_finger(phone):
-    touch = phone.context.new_cdp_session(phone)
-    for name, handle in phone.evaluate(HANDLES):
-        (x, y), before = phone.evaluate(MIDDLE, [name, handle]), phone.evaluate(WORDS, name)
-        told = {before}
-        for kind, by in (
-            ("Start", 0),
-            ("Move", -12),
-            ("Move", 24),
-            ("Move", -30),
-            ("End", None),
-        ):
-            at = [] if by is None else [{"x": x + by, "y": y - by}]
-            touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": at})
-            told.add(phone.evaluate(WORDS, name))
-        assert len(told) > 1, (name, handle, before)
+    ball, number = phone.locator("#fig-grab .handle"), phone.locator(".drag[data-knob=stiffness]")
+    seen = []
+    for node, told in ((ball, phone.locator("#fig-grab .words")), (number.first, number.first)):
+        x, y = middle(node)
+        before = phone.evaluate("scrollY")
+        for _ in page_browser.finger(phone, x, y, ((10, -12), (20, -24), (30, -40), (50, -60))):
+            seen.append(told.inner_text())
+        assert node is not ball or phone.evaluate("scrollY") == before
+    first, last = (float(re.search(r"A hand holds it ([\d.]+)", seen[k])[1]) for k in (0, 3))
+    assert last > first + 0.05 and seen[-1] == "17,800"
 
 
 def test_without_scripts_text_figures_and_exercises_are_there(visit):
@@ -582,8 +560,8 @@ def test_without_scripts_text_figures_and_exercises_are_there(visit):
 def test_firefox_runs_the_page_without_complaint_and_its_ball_falls(fox):
     ready = "document.documentElement.dataset.ready"
     assert fox.evaluate(ready) == "yes"
-    fox.evaluate(f"{MIDDLE}(['fig-grab', 'ball'])")
-    fox.evaluate("document.querySelector('#fig-grab .handle').focus()")
+    x, y, _ = call(fox, page_browser.MIDDLE, "fig-grab", "ball")
+    fox.pointer((x, y), "Down", (x, y - 20), "Up")
     fox.press("\ue013", "\ue007")  # arrow up, Enter
     words = "document.querySelector('#fig-grab .words').textContent"
     rests = f"new Promise((done) => setTimeout(() => done({words}), 400))"

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import contact
 from curriculum.commands import near
 
-from . import FACTS, columns
+from . import FACTS, columns, task_of
 
 
 class Part(NamedTuple):
@@ -77,9 +77,9 @@ class Bet(NamedTuple):
     why: str  # what the sentence should say
 
 
-def asked(exercise):
-    """The Bet: the choices are its indented paragraph, question and reason stand around it."""
-    parts = exercise.__doc__.strip().split("\n\n")
+def asked(text):
+    """The Bet of a docstring: question, choices (an indented paragraph), what WHY should say."""
+    parts = text.strip().split("\n\n")
     place = next(k for k, part in enumerate(parts) if part.startswith("    A  "))
     choices = re.findall(r"^    ([A-Z])  (.*(?:\n     .*)*)", parts[place], re.MULTILINE)
     question, why = (line_of(part) for part in parts[place - 1 : place + 2 : 2])
@@ -99,7 +99,7 @@ def chosen(exercise):
 
 def state(exercise):
     """("blank" or "right", what is still to be done before the run)."""
-    file, bet = near(exercise.__file__), asked(exercise)
+    file, bet = near(exercise.__file__), asked(task_of(exercise))
     letters, why = ", ".join(map(repr, bet.choices)), exercise.WHY
     if exercise.PREDICTION is None:
         return (
@@ -117,7 +117,7 @@ def state(exercise):
 
 def verdict(name, exercise, numbers):
     """What the learner reads after the run: the bet first, then a word on every choice."""
-    right, mine, choices = answer(name, numbers), chosen(exercise), asked(exercise).choices
+    right, mine, choices = answer(name, numbers), chosen(exercise), asked(task_of(exercise)).choices
     wrong = f"What happens is {right}: {choices[right]}"
     lines = [
         f"You predicted {mine}: {choices[mine]}",

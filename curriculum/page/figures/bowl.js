@@ -65,9 +65,10 @@ function draw(view) {
   const floor = view.height - GROUND;
   const at = [1, 2].map((k) => floor - (2 * k - 1) * PX);
   const picture = (left) => {
-    const speed = (v, k) => arrow("weight", 0.5 * left, at[k], 0, -UNIT * v);
-    const balls = at.map((y, k) => ball("lcp", 0.5 * left, y, PX, "ball plainly") + speed([v1, v2][k], k));
-    const name = heavy > 1 ? label(`${heavy} kg`, 0.5 * left, at[1] - PX - 8, "middle") : "";
+    const x = 0.5 * left;
+    const speed = (y, k) => arrow("weight", x, y, 0, -UNIT * [v1, v2][k]);
+    const balls = at.map((y, k) => ball("lcp", x, y, PX, "ball plainly") + speed(y, k));
+    const name = heavy > 1 ? label(`${heavy} kg`, x, at[1] - PX - 8, "middle") : "";
     return table(0, floor, left, GROUND) + balls.join("") + name;
   };
   const { svg, sx, sy, middle } = beside(view, chartOf({ seen, contour, most, end }), picture, 0.3);

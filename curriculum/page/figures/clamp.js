@@ -1,7 +1,7 @@
 /* The clamp is on the sum of the changes. In a groove one contact must take some push back. */
 import { arrow, ball, label, number, shift, within } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
-import { kept, wholly } from "../parts.js";
+import { kept, pair, wholly } from "../parts.js";
 
 const SIDES = [-1, 1];
 
@@ -41,20 +41,15 @@ function draw(view) {
   const [right, wrong] = both(vx, vy);
   const r = Math.min(52, view.width / 9.5);
   const [x, y, scale] = [view.width / 4, view.height - 3.2 * r, 1.7 * r];
-  const set = (toX, toY) => {
+  const put = (toX, toY) => {
     view.own.vx = Number(within(-1.2, toX, 1.2).toFixed(2));
     view.own.vy = Number(within(-1.6, toY, -0.1).toFixed(2));
   };
-  const came = {
-    name: "ball",
-    x: x - scale * vx,
-    y: y + scale * vy,
-    label: "where the ball comes from",
-    value: vx,
-    text: `comes with ${number(vx, 2)} m/s to the right and ${number(-vy, 2)} m/s down`,
-    drag: (toX, toY) => set((x - toX) / scale, (toY - y) / scale),
-    nudge: (dx, dy) => set(view.own.vx - 0.1 * dx, view.own.vy + 0.1 * dy),
-  };
+  const at = (toX, toY) => [(x - toX) / scale, (toY - y) / scale];
+  const from = [x - scale * vx, y + scale * vy];
+  const text = `comes with ${number(vx, 2)} m/s to the right and ${number(-vy, 2)} m/s down`;
+  const to = { value: vx, at, put, px: 0.1 * scale };
+  const came = pair("ball", from, "where the ball comes from", text, to);
   const [sum, each] = [right, wrong].map(({ speed }) => `at ${number(speed, 2)} m/s where`);
   return {
     svg:

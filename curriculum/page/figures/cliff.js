@@ -1,14 +1,14 @@
 /* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. */
 import { axis, number, plain, plot, within } from "../draw.js";
 import { criticalDt, quality, runModel } from "../engine.js";
-import { FARTHEST, grip, kept, scene, START, stillMoves, tens } from "../parts.js";
+import { FARTHEST, grip, kept, scene, START, stillMoves } from "../parts.js";
 
 const [LOW, HIGH] = [0.0005, 0.064]; // s
 const SECONDS = 4;
 const STEPS = 2000; // as many as contact.py takes
 const LEFT = [[0, "0"], 0.001, 1, 1000, [1e6, "10⁶"]]; // ticks
-const COURSE = 150; // px of the upper chart
-const [BOTTOM, TOP] = [-0.5, 1.5]; // m that it shows
+const COURSE = 170; // px of the upper chart
+const TOP = 1.5; // m, of a ball that stays
 
 const moves = (...knobs) => stillMoves(...knobs, STEPS, STEPS / 4 + 1); // in the last quarter
 const dropped = kept((dt, stiffness, damping) => {
@@ -22,20 +22,17 @@ const curve = kept((low, ...spring) => {
   return { xs, ys: xs.map((dt) => moves(dt, ...spring)) };
 });
 
-// The height over time; in powers of ten, where the ball flies away.
+// The height over time, all of it: where the ball flies away, its first metre is next to nothing.
 function course(view, { t, y }) {
   const end = Math.min(STEPS, t.findIndex((time) => time > SECONDS) >>> 0);
   const seen = y.subarray(0, end + 1);
-  const far = seen.reduce((most, each) => (each > most ? each : most), TOP);
-  const top = Math.min(12, Math.ceil(Math.log10(far)));
-  const heights = { ...tens(-1, top), zero: true, label: "height (m)" };
-  heights.ticks = heights.ticks.filter((_, k) => (k - 1) % Math.ceil(top / 2) === 0);
+  const top = seen.reduce((most, each) => (each > most ? each : most), TOP);
   return plot([0, 0, view.width, COURSE], {
     x: axis([0, SECONDS], "time (s)", 0, 1, 2, 3, 4),
-    y: far > TOP ? heights : axis([BOTTOM, TOP], "height (m)", 0, 1),
+    y: axis([-top / 6, top], "height (m)", 0, top > TOP ? [top, number(top, 2)] : 1),
     margin: 64,
     lines: [{ model: "penalty", xs: t, ys: y, to: end }],
-    rules: far > TOP ? [] : [{ y: 0 }],
+    rules: [{ y: 0 }],
   }).svg;
 }
 
@@ -74,7 +71,7 @@ export const figure = {
   caption:
     "Drag the time step: past the critical one the dropped ball never rests, and a little " +
     "further it explodes.",
-  height: 400,
+  height: 420,
   knobs: ["stiffness", "damping"],
   draw,
 };

@@ -8,7 +8,7 @@ import { loadAt, R, scene, softKnobs } from "../parts.js";
 const PX = 70; // a radius, and how far the hand goes down until it presses hardest
 // What a picture shows: gaps from low to high [r], the hardest press [m g], ticks, and the lens.
 const WIDE = { low: -0.4, high: 1, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
-const NEAR = { low: -0.03, high: 0.06, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12], times: 10 };
+const NEAR = { low: -0.03, high: 0.06, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12] };
 
 /* A figure of the corner with a model's law(view): {gap(load), curve, most}, the gap [r] under a
  * load [m g], the line that it allows as points, and the hardest press that fits into the picture.
@@ -44,7 +44,7 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
       deepest === null ? "" : ball(model, x, floor - r - deepest * r, r, "ghost"),
       arrow(`push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
       hand > 0 ? line(x, y, x, 0, "hand") : arrow("weight", x, y - r - pull, 0, pull),
-      shown.times ? lens("corner-lens", model, 40, 42, r, -gap, 38, shown.times) : "",
+      shown === NEAR ? lens(model, 40, 42, r, -gap, 38, 10) : "",
     ].join("");
   };
   const { svg, middle } = beside(view, chart, picture);

@@ -42,7 +42,8 @@ function draw(view) {
     line(first - r, top, first + 7 * r, top, "table-top"),
     ...angles(view.own, after).map((angle, i) => {
       const [x, y] = place(i, angle);
-      return line(first + 2 * r * i, top, x, y, "axis") + ball("exact", x, y, r, i ? "seen" : "ball");
+      const string = line(first + 2 * r * i, top, x, y, "axis");
+      return string + ball("exact", x, y, r, i ? "seen" : "ball");
     }),
   ];
   const speed = pulled * PACE * LENGTH; // of a small swing, at its lowest

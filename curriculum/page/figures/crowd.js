@@ -4,7 +4,7 @@ import { makeRows, normalSpeed, solveContacts } from "../engine.js";
 import { grip, kept, wholly } from "../parts.js";
 
 const MOST = 3.5; // m/s
-const ROWS = [122, 262, 402]; // px
+const ROWS = [180, 320, 460]; // px
 
 // The speeds after the impact of three touching elastic balls; `repair`: no target below zero.
 const struck = kept((speeds, repair) => {
@@ -18,6 +18,35 @@ const struck = kept((speeds, repair) => {
 const energy = (speeds) => speeds.reduce((sum, v) => sum + 0.5 * v * v, 0);
 const list = (speeds) => speeds.map((v) => number(v, 2)).join(", ");
 
+// Where a drawing so wide has the balls, of so many px, their arrows, and the bars of the energy.
+function placesOf(width, most) {
+  const r = Math.min(26, width / 13);
+  const bars = width - Math.min(150, 0.25 * width);
+  return {
+    r,
+    bars,
+    px: Math.min(30, width / 20), // of an arrow for 1 m/s
+    unit: (width - bars - 8) / Math.max(most, 0.1),
+    at: (i) => (bars - 16) / 2 + 2 * r * (i - 1),
+    // the arrows stand over one another, and those that are dragged further apart
+    up: (i, k) => (k ? -r - 14 - 22 * i : -r - 20 - 44 * i),
+  };
+}
+
+function row([title, speeds], k, { r, bars, px, unit, at, up }) {
+  return [
+    label(title, 0, ROWS[k] - r - (k ? 72 : 134), "start", "axis-name"),
+    ...speeds.map(
+      (v, i) =>
+        ball("lcp", at(i), ROWS[k], r, k ? "seen" : "ball plainly") +
+        arrow("weight", at(i), ROWS[k] + up(i, k), px * v, 0) +
+        label(number(v, 2), at(i), ROWS[k] + 5, "middle", k ? "tick strong" : "on-ball"),
+    ),
+    rect(bars, ROWS[k] - 10, energy(speeds) * unit, 20, "bar-fill m-lcp"),
+    label(`${number(energy(speeds), 4)} J`, bars, ROWS[k] + 30),
+  ];
+}
+
 function draw(view) {
   const speeds = ["v1", "v2", "v3"].map((name) => view.own[name]);
   const cases = [
@@ -26,28 +55,13 @@ function draw(view) {
     ["after, no target below 0", struck(speeds, true)],
   ];
   const [begun, moreau, repaired] = cases.map((each) => energy(each[1]));
-  const r = Math.min(26, view.width / 13);
-  const px = Math.min(30, view.width / 20); // of an arrow for 1 m/s
-  const bars = view.width - Math.min(150, 0.25 * view.width);
-  const unit = (view.width - bars - 8) / Math.max(begun, moreau, repaired, 0.1);
-  const at = (i) => (bars - 16) / 2 + 2 * r * (i - 1);
-  const up = (i) => -r - 14 - 22 * i; // the arrows stand over one another
-  const row = ([title, after], k) => [
-    label(title, 0, ROWS[k] - r - (k ? 72 : 84), "start", "axis-name"),
-    ...after.map(
-      (v, i) =>
-        ball("lcp", at(i), ROWS[k], r, k ? "seen" : "ball plainly") +
-        arrow("weight", at(i), ROWS[k] + up(i), px * v, 0) +
-        label(number(v, 2), at(i), ROWS[k] + 5, "middle", k ? "tick strong" : "on-ball"),
-    ),
-    rect(bars, ROWS[k] - 10, energy(after) * unit, 20, "bar-fill m-lcp"),
-    label(`${number(energy(after), 4)} J`, bars, ROWS[k] + 30),
-  ];
+  const places = placesOf(view.width, Math.max(begun, moreau, repaired));
+  const { r, bars, px, unit, at, up } = places;
   const mark = bars + begun * unit;
   const hold = (v, i) => {
     const range = { low: -MOST, high: MOST, step: 0.1, at: (x) => (x - at(i)) / px };
     const [name, text] = [`the speed of ball ${i + 1}`, `${number(v, 2)} m/s`];
-    return grip(view, `v${i + 1}`, at(i) + px * v, ROWS[0] + up(i), name, text, range);
+    return grip(view, `v${i + 1}`, at(i) + px * v, ROWS[0] + up(i, 0), name, text, range);
   };
   const knobs = speeds.map(hold);
   const gain = repaired / begun - 1;
@@ -55,7 +69,7 @@ function draw(view) {
   const told = cases.map((each) => list(each[1]));
   return {
     svg: [
-      ...cases.flatMap(row),
+      ...cases.flatMap((each, k) => row(each, k, places)),
       label("energy", bars, ROWS[0] - 30, "start", "axis-name"),
       line(mark, ROWS[0] - 22, mark, ROWS[2] + 14),
     ].join(""),
@@ -71,7 +85,7 @@ export const figure = {
   caption:
     "Two balls part while a third strikes: targets of −e v_n keep the energy, and the repair " +
     "that allows no target below zero adds some; drag the speeds.",
-  height: 446,
+  height: 504,
   start: () => ({ v1: -1, v2: 0, v3: -3 }),
   draw,
 };

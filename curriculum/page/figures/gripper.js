@@ -1,9 +1,9 @@
 /* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors. On
- * the first screen it plays by itself; later its time step and its stiffness can be dragged, too. */
+ * the first screen it plays by itself; later time step and stiffness can be dragged, too. */
 import { axis, ball, circle, clipped, el, label, line, number, path, plot, rect } from "../draw.js";
 import { table, within } from "../draw.js";
 import { criticalDt, runModel, series, stateAt } from "../engine.js";
-import { grip, kept, pair, R, scene, tens } from "../parts.js";
+import { grip, kept, pair, R, scene, tens, through } from "../parts.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
 const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s, s: what is judged comes after it
@@ -32,13 +32,8 @@ const squeezed = kept((dt, stiffness, ...x) => {
 function lens(x, y, size, r, depth) {
   const [far, half] = [r * TIMES, 0.5 * depth * r * TIMES];
   const edge = (model, side) => ball(model, x + side * (far - half), y, far, "magnified");
-  return [
-    el("clipPath", { id: "gripper-lens" }, circle(x, y, size, "")),
-    circle(x, y, size, "lens-ground"),
-    el("g", { "clip-path": "url(#gripper-lens)" }, edge("fixed", -1), edge("penalty", 1)),
-    circle(x, y, size, "lens-rim"),
-    label(`× ${TIMES}`, x + size + 6, y + 5, "start", "tick"),
-  ].join("");
+  const seen = through(x, y, size, edge("fixed", -1), edge("penalty", 1));
+  return seen + label(`× ${TIMES}`, x + size + 6, y + 5, "start", "tick");
 }
 
 // Fingers and cup over the table; from further away, with a scale, where they have flown apart.

@@ -36,6 +36,23 @@ function chartOf(unit, told, { gap, free, end }) {
   };
 }
 
+// Ball, gap and dt v_n: from y to the tip, `end` where the ball is after the step [px].
+function picture(left, { floor, r, y, end, tip, enlarged }) {
+  const x = 0.42 * left;
+  const [aside, far] = [x + r + 14, x - r - 12];
+  return [
+    table(0, floor, left, GROUND),
+    label(`gaps × ${number(enlarged, 2)}`, 4, 14, "start", "tick"),
+    ball("lcp", x, y - r, r),
+    ball("lcp", x, end - r, r, "ghost"),
+    line(x, y, aside, y, "grid"),
+    arrow("push m-fixed", far, floor, 0, y - floor),
+    label("gap", Math.max(14, far), floor + 18, "middle"),
+    arrow("weight", aside, y, 0, tip - y),
+    label("dt v_n", Math.min(aside + 8, left - 46), 0.5 * (y + tip) + 5, "start", "strong"),
+  ].join("");
+}
+
 function draw(view) {
   const { own } = view;
   const told = { ...knobs(view), ahead: own.ahead };
@@ -43,42 +60,26 @@ function draw(view) {
   const gap = own.gap * unit;
   const free = own.v + told.dt * GRAVITY; // m/s, once gravity has acted
   const end = stepped(gap, own.v, told);
-  const moves = unit * free; // r
+  const sum = gap + unit * free; // r
   const [floor, r] = [view.height - GROUND, Math.min(40, 0.08 * view.width)]; // px
-  const px = (far) => (far / unit) * PX;
-  const tip = Math.min(view.height - 14, floor - px(gap + moves));
-  const picture = (left) => {
-    const [x, y] = [0.42 * left, floor - px(gap)]; // of the ball's lowest point
-    const ghost = (to) => ball("lcp", x, floor - px(to) - r, r, "ghost");
-    const [aside, far] = [x + r + 14, x - r - 12];
-    return [
-      table(0, floor, left, GROUND),
-      label(`gaps × ${number(PX / unit / r, 2)}`, 4, 14, "start", "tick"),
-      ball("lcp", x, y - r, r),
-      ghost(end.gap),
-      line(x, y, aside, y, "grid"),
-      arrow("push m-fixed", far, floor, 0, -px(gap)),
-      label("gap", Math.max(14, far), floor + 18, "middle"),
-      arrow("weight", aside, y, 0, tip - y),
-      label("dt v_n", Math.min(aside + 8, left - 46), 0.5 * (y + tip) + 5, "start", "strong"),
-    ].join("");
-  };
-  const { svg, middle } = beside(view, chartOf(unit, told, { gap, free, end }), picture, 0.46);
-  const [x, y] = [0.84 * middle, floor - px(gap)];
-  const sum = gap + moves;
-  const text = `gap ${number(gap, 2)} r + dt v_n ${number(moves, 2)} r = ${number(sum, 2)} r`;
+  const at = (far) => floor - (far / unit) * PX;
+  const [y, tip] = [at(gap), Math.min(view.height - 14, at(sum))];
+  const places = { floor, r, y, end: at(end.gap), tip, enlarged: PX / unit / r };
+  const chart = chartOf(unit, told, { gap, free, end });
+  const { svg, middle } = beside(view, chart, (left) => picture(left, places), 0.46);
+  const x = 0.84 * middle;
+  const [tall, moves] = [gap, unit * free].map((each) => `${number(each, 2)} r`);
+  const adds = `gap ${tall} + dt v_n ${moves} = ${number(sum, 2)} r${sum < 0 ? ", inside" : ""}`;
   const pushed = end.v > free + 1e-9;
   const does = pushed ? `lcp pushes, and it ends at ${number(end.gap, 2)} r` : "lcp does not push";
   const lift = { r, low: -UP, high: -DOWN, step: 0.1, by: (dx, dy) => -dy / PX };
   const fly = { low: DOWN, high: UP, step: 0.1, at: (toX, to) => (y - to) / PX };
-  const speed = `${number(own.v, 2)} m/s`;
-  const [tall, fast] = ["the ball: its gap", "its speed"];
   return {
     svg,
-    words: `${text}${sum < 0 ? ", inside" : ""}; ${does}.`,
+    words: `${adds}; ${does}.`,
     handles: [
-      grip(view, "gap", x, y - r, tall, `${number(gap, 2)} r`, lift),
-      grip(view, "v", x + r + 14, tip, fast, speed, fly),
+      grip(view, "gap", x, y - r, "the ball: its gap", tall, lift),
+      grip(view, "v", x + r + 14, tip, "its speed", `${number(own.v, 2)} m/s`, fly),
     ],
     lit: pushed ? [["lcp-target", "bias = "]] : [],
   };

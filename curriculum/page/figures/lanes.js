@@ -7,7 +7,7 @@ import { grip, kept, R, START } from "../parts.js";
 import { knobsOf, sceneOf, startOf } from "../store.js";
 
 const LONGEST = 4; // s
-const [LEAST, HIGHEST] = [1.05 * R - START, 1.3]; // m: how far down the balls are held, and how high
+const [LEAST, HIGHEST] = [1.05 * R - START, 1.3]; // m: where the balls can be held
 const SECONDS = 5; // that a run through the window takes
 const [GROUND, BELOW] = [26, 72]; // px of table, and of all that is below its top
 // what a button shows next, of the scenes and of what the chart can show
@@ -105,7 +105,8 @@ const nowOf = ({ run, row }) => Array.from(run.y.subarray(row * run.n, (row + 1)
 function sightOf(shown, wide, floor, calm) {
   const far = Math.max(...shown.flatMap(nowOf).filter(Number.isFinite), 0);
   const high = Math.max(calm, 1.2 * far);
-  return { floor, high, wide, scale: Math.min((floor - 8) / high, (0.4 * wide) / R), far: high > calm };
+  const scale = Math.min((floor - 8) / high, (0.4 * wide) / R);
+  return { floor, high, wide, scale, far: high > calm };
 }
 
 function ruler({ floor, scale, high, far }) {

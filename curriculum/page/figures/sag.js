@@ -1,8 +1,8 @@
-/* What unfinished sweeps leave: a column at rest under lcp sags as on springs. Its law stands beside
- * it, and the sweeps of a step can be spent on substeps. */
-import { axis, ball, circle, el, label, number, path, plural, rect, table } from "../draw.js";
+/* What unfinished sweeps leave: a column at rest under lcp sags as on springs. Its law stands
+ * beside it, and the sweeps of a step can be spent on substeps. */
+import { axis, ball, label, number, path, plural, rect, table } from "../draw.js";
 import { runModel } from "../engine.js";
-import { beside, G, grip, kept, knobs, R, scene, tens } from "../parts.js";
+import { beside, G, grip, kept, knobs, R, scene, tens, through } from "../parts.js";
 
 const [FEWEST, MOST, HEAVIEST] = [2, 8, 100]; // balls, balls, kg
 const [LENS, GROUND, LARGEST] = [15, 30, 30]; // px: a lens, the table, a ball
@@ -44,20 +44,15 @@ function nearest(ways, wanted) {
 }
 
 // A contact through a lens: a ball in what is below it, both in px, and the law as a bracket.
-function lens(id, x, y, deep, law) {
+function lens(x, y, deep, law) {
   const [near, far] = [x + LENS + 3, x + LENS + 9];
-  return [
-    el("clipPath", { id }, circle(x, y, LENS, "")),
-    circle(x, y, LENS, "lens-ground"),
-    el("g", { "clip-path": `url(#${id})` },
-      rect(x - LENS, y, 2 * LENS, LENS, "body m-fixed"),
-      rect(x - LENS, y - LENS, 2 * LENS, LENS + deep, "ball m-lcp")),
-    circle(x, y, LENS, "lens-rim"),
-    path([[far, y], [near, y], [near, y + law], [far, y + law]], "rule"),
-  ].join("");
+  const below = rect(x - LENS, y, 2 * LENS, LENS, "body m-fixed");
+  const above = rect(x - LENS, y - LENS, 2 * LENS, LENS + deep, "ball m-lcp");
+  const bracket = path([[far, y], [near, y], [near, y + law], [far, y + law]], "rule");
+  return through(x, y, LENS, below, above) + bracket;
 }
 
-// The column, a lens at each contact, and how deep it is: what is drawn, and the place of each ball.
+// The column, a lens at each contact, and how deep it is; and the place of each ball.
 function column(left, height, masses, depths, law) {
   const r = Math.min(LARGEST, (height - GROUND - 14) / (2 * masses.length)); // px
   const floor = height - GROUND;
@@ -67,10 +62,11 @@ function column(left, height, masses, depths, law) {
     const [x, y] = places[i];
     const heavy = mass === 1 ? "" : label(number(mass, 2), x, y + 5, "middle", "on-ball");
     const at = x + r + LENS + 12;
-    const told = left > 170 ? `${number(depths[i], 2)} r` : "";
+    const wide = `${number(depths[i], 2)} r`;
+    const told = left > 200 ? wide : left > 170 ? number(depths[i], 1) : "";
     return [
       ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
-      lens(`sag-${i}`, at, y + r, size * depths[i], size * law[i]),
+      lens(at, y + r, size * depths[i], size * law[i]),
       label(told, at + LENS + 16, y + r + (i ? 5 : -4), "start", "tick strong"),
     ].join("");
   });
@@ -80,7 +76,8 @@ function column(left, height, masses, depths, law) {
 
 // The lowest overlap with each way to spend the sweeps, and the law as a line.
 function chartOf(ways, all) {
-  const [ys, laws] = [all.map(({ depths }) => Math.max(0, depths[0])), all.map(({ law }) => law[0])];
+  const ys = all.map(({ depths }) => Math.max(0, depths[0]));
+  const laws = all.map(({ law }) => law[0]);
   const xs = ways.map(({ parts }) => parts);
   const top = Math.ceil(Math.log10(Math.max(1e-9, ...ys, ...laws)) + 0.1);
   const most = ways[0].iters; // substeps of one sweep
@@ -104,7 +101,7 @@ function draw(view) {
   const { depths, rests, law } = all[now];
   let made;
   const picture = (left) => (made = column(left, view.height, masses, depths, law)).svg;
-  const { svg, sx, sy } = beside(view, chartOf(ways, all), picture, 0.44);
+  const { svg, sx, sy } = beside(view, chartOf(ways, all), picture, view.width < 480 ? 0.52 : 0.44);
   const hold = ([x, y], i) => {
     const get = () => Math.log10(own.masses[i]);
     const set = (to) => (own.masses[i] = Number((10 ** to).toPrecision(2)));
@@ -131,8 +128,8 @@ function draw(view) {
 export const figure = {
   title: "What unfinished sweeps leave",
   caption:
-    "Each lens shows how deep a ball lies in what is below it, and the bracket what the law says: " +
-    "drag a ball up to make it heavier, and spend the sweeps of a step on substeps.",
+    "Each lens shows how deep a ball lies in what is below it, and the bracket what the law " +
+    "says: drag a ball up to make it heavier, and spend the sweeps of a step on substeps.",
   height: 360,
   knobs: ["iters", "baumgarte", "dt", "warm"],
   start: () => ({ masses: Array(MOST).fill(1), count: MOST, parts: 1 }),

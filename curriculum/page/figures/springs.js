@@ -48,7 +48,7 @@ function picture(left, height, stiffness, depth, push) {
     ball("penalty", x, y, LARGE),
     arrow("weight", x - aside, y, 0, forceLength(1)),
     arrow("push m-penalty", x + aside, under, 0, -Math.min(150, forceLength(push))),
-    lens("sponge-lens", "penalty", left - 34, 36, LARGE, depth, 30),
+    lens("penalty", left - 34, 36, LARGE, depth, 30),
   ].join("");
 }
 
@@ -125,6 +125,28 @@ function heightsAtRest(k, from, hand) {
   return heights;
 }
 
+// Every ball as a handle: lifted, or pressed down with some weights.
+function holds(view, heights, at, x, k) {
+  const resting = heightsAtRest(k, COUNT, 0);
+  return heights.map((height, i) => {
+    const low = at(resting[i]);
+    const range = {
+      r: PX,
+      low: -HARDEST,
+      high: ABOVE,
+      step: 0.1,
+      at: (toX, y) => ((low - y) / PX) * (y > low ? PRESS : 1),
+      get: () => (i === view.own.from ? view.own.hand : 0),
+      set: (to) => Object.assign(view.own, { from: i, hand: Number(to.toFixed(3)), time: null }),
+      release: () => view.own.hand && view.play(),
+    };
+    const name = `ball ${i + 1} from below: lift it or press it`;
+    const by = range.get();
+    const text = by < 0 ? `pressed with ${number(-by, 2)} m g` : `lifted by ${number(by, 2)} r`;
+    return grip(view, `ball-${i}`, x, Math.min(at(height), view.height - 20), name, text, range);
+  });
+}
+
 function drawStack(view) {
   const k = view.get("stiffness");
   const [floor, x] = [view.height - 40, 0.36 * view.width];
@@ -145,34 +167,17 @@ function drawStack(view) {
     ...heights.map((height) => ball("penalty", x, at(height), PX)),
     ...pushes,
     arrow("weight", x, at(heights[from] + R) - pressed, 0, pressed),
-    lens("stack-lens", "penalty", ...aside, PX, depths[0], 44),
+    lens("penalty", ...aside, PX, depths[0], 44),
   );
   const open = depths.findIndex((depth) => depth < 0);
-  const one = number(G / k / R); // r, of a ball alone
   const carried = plural(open < 0 ? COUNT : open, "ball");
   const bottom = depths[0] < 0 ? "open" : `${number(depths[0])} r deep`;
   const more = pressed ? `, and a hand that presses with ${number(-hand, 2)} m g` : "";
-  const text = `the lowest contact is ${bottom}, ${number(forces[0], 2)} m g`;
-  const resting = heightsAtRest(k, COUNT, 0);
-  const hold = (height, i) => {
-    const low = at(resting[i]);
-    const range = {
-      r: PX,
-      low: -HARDEST,
-      high: ABOVE,
-      step: 0.1,
-      at: (toX, y) => ((low - y) / PX) * (y > low ? PRESS : 1),
-      get: () => (i === view.own.from ? view.own.hand : 0),
-      set: (to) => Object.assign(view.own, { from: i, hand: Number(to.toFixed(3)), time: null }),
-      release: () => view.own.hand && view.play(),
-    };
-    const name = `ball ${i + 1} from below: lift it or press it`;
-    return grip(view, `ball-${i}`, x, Math.min(at(height), view.height - 20), name, text, range);
-  };
+  const one = number(G / k / R); // r, of a ball alone
   return {
     svg,
     words: `The lowest contact carries ${carried}${more}, ${bottom}; m g / k is ${one} r.`,
-    handles: heights.map(hold),
+    handles: holds(view, heights, at, x, k),
   };
 }
 

@@ -6,6 +6,7 @@ import { beside, grip, kept, R, scene, wholly } from "../parts.js";
 const [COUNT, PX, SWEEPS] = [3, 34, 20];
 const LAST = COUNT * SWEEPS;
 const UNIT = 24; // px of an arrow for a speed of g dt
+const SPEEDS = ["low", "middle", "top"]; // of the figure's own numbers
 const names = ["ball 1 on the table", "ball 2 on ball 1", "ball 3 on ball 2"];
 
 /* What the sweeps do, contact by contact: [{contact, wanted, lam, vy}], impulses in m g dt, speeds
@@ -46,48 +47,56 @@ function saying({ contact, wanted, lam }, at) {
 
 const timeOf = (view) => Math.floor(view.own.time ?? 0); // contacts that have been mended
 
+// The balls over the table with their speeds, and the contact that was mended last.
+function picture(left, heightOf, { contact, vy }) {
+  const x = 0.4 * left;
+  const each = (v, i) =>
+    ball("lcp", x, heightOf(i) - PX, PX) +
+    arrow("weight", x + PX + 12, heightOf(i) - PX, 0, -UNIT * v);
+  const event = contact === null ? "" : circle(x, heightOf(contact), 8, "event m-lcp");
+  return table(0, heightOf(0), left, 42) + vy.map(each).join("") + event;
+}
+
+// The tips of the speeds before the sweeps, as what one drags.
+const tipsOf = (view, x, heightOf, vy) =>
+  SPEEDS.map((name, i) => {
+    const middle = heightOf(i) - PX;
+    const range = { low: -1, high: 3, step: 0.1, at: (toX, y) => 1 + (middle - y) / UNIT };
+    const told = `the speed of ball ${i + 1} before the sweeps`;
+    const fast = `${number(view.own[name] - 1, 2)} g dt`;
+    return grip(view, name, x + PX + 12, middle - UNIT * vy[i], told, fast, range);
+  });
+
 function draw(view) {
-  const speeds = ["low", "middle", "top"];
-  const [at, seen] = [timeOf(view), course(...speeds.map((name) => view.own[name]))];
-  const { contact, lam, vy } = seen[at];
+  const { own } = view;
+  const [at, seen] = [timeOf(view), course(...SPEEDS.map((name) => own[name]))];
+  const now = seen[at];
   const heightOf = (c) => view.height - 42 - 2 * c * PX; // of a contact
   const chart = {
     x: axis([0, 3.4], "impulse / m g dt", 0, 1, 2, 3),
     y: { domain: [0, 1], ticks: [] },
     rules: [{ x: 0 }],
-    under: ({ sx }) => names.map((_, c) => bar(seen[at], c, heightOf(c) - 12, sx)).join(""),
+    under: ({ sx }) => names.map((_, c) => bar(now, c, heightOf(c) - 12, sx)).join(""),
   };
-  const thrown = (x, v, i) => arrow("weight", x + PX + 12, heightOf(i) - PX, 0, -UNIT * v);
-  const picture = (left) => {
-    const x = 0.4 * left;
-    const balls = vy.map((v, i) => ball("lcp", x, heightOf(i) - PX, PX) + thrown(x, v, i));
-    const event = contact === null ? "" : circle(x, heightOf(contact), 8, "event m-lcp");
-    return table(0, heightOf(0), left, 42) + balls.join("") + event;
-  };
-  const { svg, sx, middle } = beside(view, chart, picture);
+  const { svg, sx, middle } = beside(view, chart, (left) => picture(left, heightOf, now));
   // to the first moment at which the lowest contact carries so much
   const carrying = (wanted) => seen.findIndex((each) => each.lam[0] >= wanted - 0.02);
   const until = (x) => (carrying(sx.back(x)) + LAST + 1) % (LAST + 1);
   const sweep = { low: 0, high: LAST, step: 1, at: until, get: () => timeOf(view) };
-  const bottom = [sx(lam[0]), heightOf(0) - 12];
-  const mended = `${plural(at, "contact")} mended`;
-  const tips = speeds.map((name, i) => {
-    const middleOf = heightOf(i) - PX;
-    const range = { low: -1, high: 3, step: 0.1, at: (x, y) => 1 + (middleOf - y) / UNIT };
-    const tip = [0.8 * middle + PX + 12, middleOf - UNIT * vy[i]];
-    const told = `the speed of ball ${i + 1} before the sweeps`;
-    return grip(view, name, ...tip, told, `${number(view.own[name] - 1, 2)} g dt`, range);
-  });
-  const whole = (tip, i) =>
-    wholly(tip, `ball-${i + 1}`, 0.8 * middle, heightOf(i) - PX, PX);
-  const thrownWith = speeds.map((name) => number(view.own[name] - 1, 2)).join(", ");
-  const carried = lam.map((each) => number(each)).join(", ");
+  const bottom = [sx(now.lam[0]), heightOf(0) - 12];
+  const x = 0.8 * middle;
+  const tips = tipsOf(view, x, heightOf, now.vy);
+  const balls = tips.map((tip, i) => wholly(tip, `ball-${i + 1}`, x, heightOf(i) - PX, PX));
+  const thrown = SPEEDS.map((name) => number(own[name] - 1, 2)).join(", ");
+  const carried = now.lam.map((each) => number(each)).join(", ");
   return {
     svg,
-    words: `Speeds at the start: ${thrownWith} g dt. ${saying(seen[at], at)}. The contacts carry ${carried} m g dt.`,
+    words:
+      `Speeds at the start: ${thrown} g dt. ${saying(now, at)}. ` +
+      `The contacts carry ${carried} m g dt.`,
     handles: [
-      grip(view, "time", ...bottom, "the sweeps", mended, sweep),
-      ...tips.map(whole),
+      grip(view, "time", ...bottom, "the sweeps", `${plural(at, "contact")} mended`, sweep),
+      ...balls,
       tips[2],
     ],
     lit: at ? [["sweep", "lam = max"]] : [],
