@@ -83,8 +83,7 @@ class Session:
 
     def states(self, n):
         """q and v at each of n looks, (n + 1, 2, N)."""
-        q, v = (np.array(part) for part in zip(*self.looks(self.state, n)))
-        return q, v
+        return tuple(map(np.array, zip(*self.looks(self.state, n))))
 
 
 class Ours(Session):
@@ -206,9 +205,8 @@ class Mujoco(Session):
         steps = n * self.substeps
         rows = self.rollout(self.model, self.data, self.start, nstep=steps)[0][0]
         y0 = self.scene.q0[1, self.moving]
-        return np.vstack(
-            [y0, y0 + rows[self.substeps - 1 :: self.substeps, 2 : 1 + 2 * len(y0) : 2]]
-        )
+        seen = rows[self.substeps - 1 :: self.substeps, 2 : 1 + 2 * len(y0) : 2]
+        return np.vstack((y0, y0 + seen))
 
     def state(self):
         q, v = self.scene.q0.copy(), self.scene.v0.copy()
@@ -287,12 +285,9 @@ class Box2d3(Session):
         floor.create_shape(pyb2d3.shape_def(material=material), pyb2d3.box(FLOOR * SCALE, 1.0))
         self.bodies = pyb2d3.Bodies()
         for place, velocity, mass, radius, fixed in balls_of(scene, SCALE):
-            if fixed:
-                body = world.create_static_body(position=place)
-            else:
-                body = world.create_dynamic_body(
-                    position=place, linear_velocity=velocity, fixed_rotation=True
-                )
+            make = world.create_static_body if fixed else world.create_dynamic_body
+            moves = {} if fixed else dict(linear_velocity=velocity, fixed_rotation=True)
+            body = make(position=place, **moves)
             density = 1.0 if fixed else mass / (math.pi * radius * radius)
             body.create_shape(
                 pyb2d3.shape_def(density=density, material=material), pyb2d3.circle(radius=radius)

@@ -15,6 +15,7 @@ from curriculum.measured import results
 from curriculum.measured.results import table
 from curriculum.run import plotting
 
+EVERYTHING = "Everything, with settings and spread: [results](curriculum/bench/results/README.md)."
 TINY = 1e-10  # r, what exact has to stay within
 SHARE = 0.2  # of the fastest peer's time
 LEAST = 1e-17  # r: an error of exactly zero is drawn here
@@ -134,11 +135,7 @@ def readme(sections):
     if "pile" in sections:
         head = ["1,000 balls at rest", "lcp, compiled", "fastest other engine", "ratio"]
         parts.append(table(head, rest_rows(sections["pile"])))
-    parts.append(missed(sections))
-    parts.append(
-        "Everything, with settings and spread: [results](curriculum/bench/results/README.md)."
-    )
-    return "\n\n".join(parts)
+    return "\n\n".join((*parts, missed(sections), EVERYTHING))
 
 
 def missed(sections):

@@ -47,7 +47,7 @@ def a_right_report_or_one_line_that_refuses(line):
     """
     argv = [*line.split(), "--no-rerun", *([] if "--steps" in line else ["--steps", "100"])]
     out, err = io.StringIO(), io.StringIO()
-    usual = np.errstate(all="warn", under="ignore")  # which judge has changed
+    usual = np.errstate(all="warn", under="ignore")  # which judge() silences
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings(), usual:
         warnings.simplefilter("error")
         try:

@@ -16,7 +16,7 @@ DTS = (0.0005, 0.002, 0.008, 0.016)
 GAP = 0.005  # m between the balls of a stack
 SPRINGS = (-5000.0, -100.0), (0.05, 0.5)
 CURVES = (0.0, 0.95, 0.001, 0.5, 2.0), (0.9, 0.95, 0.0, 0.5, 2.0), (0.2, 0.9, 0.005, 0.4, 2.5)
-STRIDE = 20  # every so manieth state is stepped from
+STRIDE = 20  # every 20th state is stepped from
 
 
 class Case(NamedTuple):

@@ -40,12 +40,9 @@ UNFINISHED = """Unfinished sweeps took {above_start:,} scenes above their start'
 def write(found, origins, folder):
     """Write what the jobs of each section found. Returns the violations [place, name, words]."""
     sections = {name: jobs.added_up(each) for name, each in found.items()}
-    unfinished = jobs.unfinished(sections["scenes"])
-    sections["scenes"] |= {"scenes": len(found["scenes"]), "unfinished": unfinished}
-    sections["scenes"] |= {
-        "ran": jobs.ran(sections["scenes"]),
-        "depths": jobs.depths(sections["scenes"]),
-    }
+    scenes = sections["scenes"]
+    scenes |= {"scenes": len(found["scenes"]), "unfinished": jobs.unfinished(scenes)}
+    scenes |= {"ran": jobs.ran(scenes), "depths": jobs.depths(scenes)}
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     error = max(abs(row["measured"] / row["theory"] - 1) for row in rows)
     sections["maps"] |= {"penalty": rows, "boundary_worst_error": error}

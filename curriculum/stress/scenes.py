@@ -17,9 +17,7 @@ KNOBS = ("stiffness", "baumgarte", "iters", "solref", "warm", "ahead")  # fields
 
 def to_scene(spec):
     """The contact.Scene of a spec."""
-    x, y, vx, vy, mass, radius = (np.array(spec[name], dtype=float) for name in BODY)
-    body = np.array([x, y]), np.array([vx, vy]), mass, radius
-    return contact.Scene("random", *body, spec["restitution"], spec["damping"])
+    return contact.scene_of(**{name: spec[name] for name in (*BODY, "restitution", "damping")})
 
 
 def state(q, v):

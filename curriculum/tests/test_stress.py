@@ -10,7 +10,7 @@ import pytest
 
 import contact
 from curriculum.stress import __main__ as command
-from curriculum.stress import extremes, jobs, maps, scenes
+from curriculum.stress import extremes, jobs, maps, properties, scenes
 from curriculum.stress.claims import PROPERTIES
 from curriculum.stress.trial import Trial
 
@@ -272,7 +272,12 @@ def test_a_wrong_word_and_a_traceback_would_be_seen(tmp_path):
 
 @pytest.mark.parametrize(
     "flags, words",
-    [(["--workers", "0"], "allowed"), (["--scene", "big:3"], "allowed"), (["--warp"], "--warp")],
+    [
+        (["--workers", "0"], "allowed"),
+        (["--scene", "big:3"], "allowed"),
+        (["--scene", "5-3"], "from 5"),
+        (["--warp"], "--warp"),
+    ],
 )
 def test_bad_flags_are_refused_in_one_line(flags, words, capsys):
     with pytest.raises(SystemExit) as stop:
@@ -281,8 +286,16 @@ def test_bad_flags_are_refused_in_one_line(flags, words, capsys):
     assert stop.value.code == 2 and said.count("\n") == 1 and words in said
 
 
-def test_one_scene_is_judged_and_said_again(capsys):
-    assert command.main(["--scene", "small:3"]) == 0
+def test_looking_ahead_must_be_a_hundred_times_better_in_the_median():
+    for ahead, wrong in ((1e-6, 0), (1e-4, 1)):
+        cases = {"a": {"ahead": ahead, "today": 1e-3}, "b": {"ahead": 0.0, "today": 0.0}}
+        section = {"notes": {properties.DEPTHS: cases | {"c": cases["a"]}}, "violations": []}
+        assert jobs.depths(section) == {"ahead": ahead, "today": 1e-3, "scenes": 3}
+        assert len(section["violations"]) == wrong
+
+
+def test_scenes_are_judged_and_said_again(capsys):
+    assert command.main(["--scene", "small:3-4"]) == 0
     said = capsys.readouterr().out
     assert all(f"{name}: " in said for name in PROPERTIES) and "comparisons" in said
 
