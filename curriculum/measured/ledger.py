@@ -8,8 +8,6 @@ guessed. config_hash is of the code that was timed, so a row is stale as soon as
 """
 
 import argparse
-import hashlib
-import json
 import re
 import statistics
 import subprocess
@@ -20,7 +18,7 @@ from pathlib import Path
 
 from curriculum.files import write_whole
 from curriculum.measured.machine import dirty, machine
-from curriculum.measured.stale import fingerprint
+from curriculum.measured.stale import digest, fingerprint
 from curriculum.regions import ROOT
 
 LEDGER = ROOT / "wallclock.csv"
@@ -29,7 +27,7 @@ COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", 
 FILLED = r"\d[\d.e-]*,[0-9a-f]{12},[0-9a-f]+\+?,\d{4}-\d\d-\d\d,MEASURED"
 ROW = re.compile(rf"[\w.-]+,[\w-]+,({FILLED}|,,,,PENDING)")
 COMMAND = "python -m curriculum.measured.ledger"
-TIMED = ("contact.py", "curriculum/run/recording.py", "curriculum/run/curves.py")  # a default run
+TIMED = ("contact.py", "curriculum/run/curves.py", "curriculum/run/recording.py")  # a default run
 
 
 def rows() -> list:
@@ -55,8 +53,7 @@ def show(row) -> str:
 
 def code_hash() -> str:
     """12 hexadecimal digits of the code that a default run runs."""
-    text = json.dumps(fingerprint(*TIMED), sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
+    return digest(fingerprint(*TIMED))
 
 
 def stale(row) -> bool:

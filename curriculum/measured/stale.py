@@ -48,6 +48,11 @@ def fingerprint(*names) -> dict:
     return {name: digits(name, read_text(name.split(" without ")[0])) for name in names}
 
 
+def digest(value) -> str:
+    """12 hexadecimal digits of anything that JSON can hold."""
+    return hashlib.sha256(json.dumps(value).encode()).hexdigest()[:12]
+
+
 @lru_cache
 def digits(name, text) -> str:
     """The fingerprint of a file's text under that name."""
@@ -60,7 +65,7 @@ def digits(name, text) -> str:
         words += lines if region[1] == "flags" else ()
     tree = ast.parse(text)
     tree.body = [node for node in tree.body if node.lineno not in left_out]
-    return hashlib.sha256(json.dumps(plain(tree, set(words))).encode()).hexdigest()[:12]
+    return digest(plain(tree, set(words)))
 
 
 def plain(node, words: set) -> list | str:

@@ -99,14 +99,14 @@ def copy(tmp_path):
     return folder, fill
 
 
-def run(folder, *command, lacks="yaml"):
+def run(folder, *command, lacks="yaml", options="-B"):
     """The command there, by a learner's Python, in which a package cannot be imported."""
     start = (
         f"import sys, runpy; sys.modules[{lacks!r}] = None; sys.argv = sys.argv[1:]; "
         "sys.path[0] = sys.argv[0].rpartition('/')[0] or '.'; "
         "runpy.run_path(sys.argv[0], run_name='__main__')"
     )
-    words = [sys.executable, "-B", "-c", start, *map(str, command)]
+    words = [sys.executable, options, "-c", start, *map(str, command)]
     return subprocess.run(words, cwd=folder, env=PLAIN, capture_output=True, text=True)
 
 
@@ -123,9 +123,11 @@ def test_untouched_an_exercise_waits_and_says_what_to_do(name):
     assert name != "ex9" or "row sink: given ? ? ? ? ?, allowed: five" in words
 
 
-def test_a_script_that_is_not_filled_in_prints_its_task_and_hints_anywhere(tmp_path):
+def test_a_script_that_is_not_filled_in_prints_its_task_and_hints_anywhere_and_without_docstrings(
+    tmp_path,
+):
     for name, *flags in (("ex1",), ("ex2",), ("ex2", "--hint", "1")):
-        result = run(tmp_path, ROOT / FILES[name], *flags)
+        result = run(tmp_path, ROOT / FILES[name], *flags, options="-BOO")
         task = GIVEN[name].__doc__.split("\n    python")[0]
         hint = f"hint 1 of {len(FACTS[name]['hints'])}: {FACTS[name]['hints'][0]}\n"
         assert result.stdout == hint if flags else result.stdout.startswith(task)

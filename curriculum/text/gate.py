@@ -14,6 +14,7 @@ from curriculum.text.sections import FENCE, TEXTS, blank, changes, files, line_a
 
 GATE = "python -m curriculum.text"
 CHAPTER = TEXTS["chapter"]
+INCLUDED = re.compile(rf"^```\n{INCLUDE.pattern}\n```$", re.MULTILINE)
 # Where numbers may be typed: code, comments, formulas, references, links, tags, numbers of headings
 # and lists, versions with two dots, and what follows some words.
 NOT_PROSE = re.compile(
@@ -23,7 +24,7 @@ NOT_PROSE = re.compile(
     |\$\$.+?\$\$|\$[^$\n]+\$
     |\{\{[^\n]*?\}\}
     |\[[^]]*\]\((?:try|drag):[^)]*\)|\]\([^)]*\)|https?://\S+|</?[a-z][^>]*>
-    |^\[[^]]*\]:[^\n]*
+    |^\[[^]]*\]:[^\n]*|\[\[\d+\]\](?=\(\#references\))
     |(`+)[^`]+\2
     |\b(?:chapters?|phase|version|tag|python|numpy)[ ]
         \d+(?:\.\d+)*(?:(?:,|,?[ ]and|[ ]to)[ ]\d+\.\d+)*
@@ -50,24 +51,21 @@ class Gate:
 
     def check_includes(self):
         """Every include exists and stands alone in its fence, every region is included once."""
-        shown, lines = Counter(), self.chapter.split("\n")
+        shown = Counter()
         known = {(region.file, region.name): region for region in self.regions.values()}
-        for at, text in enumerate(lines):
-            if "include-by-region" not in text:
-                continue
-            match = INCLUDE.fullmatch(text)
-            if not match or lines[at - 1] != "```" or lines[at + 1] != "```":
-                what = "an include that is not alone in its fence, or not well formed"
-                self.say(CHAPTER, at + 1, what, "write [include-by-region: FILE#NAME] in a fence")
-                continue
-            file, name = match.groups()
+        for match in INCLUDED.finditer(self.chapter):
+            line, (file, name) = line_at(self.chapter, match.end()) - 1, match.groups()
             shown[file, name] += 1
             if (file, name) not in known:
                 what = f"includes {name}, and {file} has no such region"
                 names = ", ".join(name for other, name in known if other == file)
-                self.say(CHAPTER, at + 1, what, f"name one of {names}")
+                self.say(CHAPTER, line, what, f"name one of {names}")
             elif shown[file, name] > 1:
-                self.say(CHAPTER, at + 1, f"includes {name} a second time", "delete one of the two")
+                self.say(CHAPTER, line, f"includes {name} a second time", "delete one of the two")
+        for match in re.finditer("include-by-region", blank(INCLUDED, self.chapter)):
+            what = "an include that is not alone in its fence, or not well formed"
+            line = line_at(self.chapter, match.start())
+            self.say(CHAPTER, line, what, "write [include-by-region: FILE#NAME] in a fence")
         for (file, name), region in known.items():
             if not shown[file, name]:
                 repair = f"put [include-by-region: {file}#{name}] into {CHAPTER}"

@@ -9,6 +9,7 @@ answers.json has hints, keys, reasons, inputs and slips. contact.py and curricul
 the folder of the exercises, from wherever one starts.
 """
 
+import ast
 import json
 import sys
 from pathlib import Path
@@ -17,6 +18,13 @@ ROOT = Path(__file__).resolve().parents[2]
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 FACTS = json.loads(Path(__file__).with_name("answers.json").read_text("utf-8"))
+
+
+def task_of(exercise):
+    """The docstring of an exercise, also where Python was told to leave it out (-OO)."""
+    if exercise.__doc__:
+        return exercise.__doc__
+    return ast.get_docstring(ast.parse(Path(exercise.__file__).read_text("utf-8")), clean=False)
 
 
 def columns(corner, heads, rows, form):

@@ -20,9 +20,9 @@ def judged(name, file):
     """The state of an exercise, and [what, state, words, shown] of all that it asks for."""
     kit = str(Path(__file__).resolve().parents[1])
     command = [sys.executable, "-B", "-c", START, kit, name, str(file)]
-    done = subprocess.run(
-        command, capture_output=True, encoding="utf-8", errors="replace", stdin=subprocess.DEVNULL
-    )
+    streams = {"capture_output": True, "encoding": "utf-8", "errors": "replace"}
+    plain = os.environ | {"PYTHONOPTIMIZE": ""}  # docstrings are shown
+    done = subprocess.run(command, env=plain, stdin=subprocess.DEVNULL, **streams)
     if done.returncode == 0 and done.stdout:
         return json.loads(done.stdout)
     what = (re.findall(r"^trying (\w+)$", done.stderr, re.MULTILINE) or [name])[-1]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import contact
 from curriculum.commands import near
 
-from . import FACTS, columns
+from . import FACTS, columns, task_of
 
 
 class Part(NamedTuple):
@@ -99,7 +99,7 @@ def chosen(exercise):
 
 def state(exercise):
     """("blank" or "right", what is still to be done before the run)."""
-    file, bet = near(exercise.__file__), asked(exercise.__doc__)
+    file, bet = near(exercise.__file__), asked(task_of(exercise))
     letters, why = ", ".join(map(repr, bet.choices)), exercise.WHY
     if exercise.PREDICTION is None:
         return (
@@ -117,7 +117,7 @@ def state(exercise):
 
 def verdict(name, exercise, numbers):
     """What the learner reads after the run: the bet first, then a word on every choice."""
-    right, mine, choices = answer(name, numbers), chosen(exercise), asked(exercise.__doc__).choices
+    right, mine, choices = answer(name, numbers), chosen(exercise), asked(task_of(exercise)).choices
     wrong = f"What happens is {right}: {choices[right]}"
     lines = [
         f"You predicted {mine}: {choices[mine]}",

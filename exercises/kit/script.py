@@ -6,7 +6,7 @@ from pathlib import Path
 
 from curriculum.commands import command, stoppable
 
-from . import FACTS, alone, knobs, predict
+from . import FACTS, alone, knobs, predict, task_of
 from .progress import done, note, practise
 
 BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the module that runs it
@@ -52,7 +52,7 @@ def run(name, exercise):
         state, found = alone.judged(name, exercise.__file__)
     note(name, state == "right")
     if state == "blank":
-        print((exercise.__doc__ or "").split("\n    python")[0].strip(), end="\n\n")
+        print(task_of(exercise).split("\n    python")[0].strip(), end="\n\n")
     for what, _, words, shown in found:
         print(*filter(None, (shown, words or f"{what} is right")), sep="\n", flush=True)
     if state == "right":
