@@ -43,10 +43,10 @@ RATIO = 100.0  # of masses: above it, where 0 < e < 1, light balls rattle under 
 
 # --- region: slide-lcp ---
 def inverse(W):
-    """W^-1 of a Delassus matrix (K, K); and what keeps of -b the pushes with W lam = 0.
+    """W^-1 of a Delassus matrix (K, K), and the projector on pushes with W lam = 0: no v_n changes.
 
-    Such pushes are there where contacts depend on one another, as under a slab. W has no inverse
-    then, and of the many lam that fit, the first matrix gives the least.
+    Contacts that depend on one another, as under a slab, have such pushes, and W has no inverse.
+    Of the many lam that fit, the first matrix then gives the least.
     """
     unit = 1.0 / np.sqrt(W.diagonal())
     unit = unit * unit[:, None]  # makes the diagonal 1, whatever the masses

@@ -2,8 +2,9 @@
 
 A function here that is named as one of contact.py does the same operations in the same order, so
 a run has the same bits. What is new is how near balls are found: by their shadows on one axis, and
-from a list that is good until some ball has moved. Balls and contacts are rows of a table; the
-last ball is the floor. Nothing may be rounded differently: no fast-math, no fused multiply-add.
+from a list that is good until some ball has moved, and in which neighbours share no ball. Balls and
+contacts are rows of a table; the last ball is the floor. Nothing may be rounded differently: no
+fast-math, no fused multiply-add.
 """
 
 import math

@@ -65,15 +65,17 @@ def cells(chosen, quick):
                 continue
             starts = 1 if c.slow or quick else problem.starts
             for dt, substeps in QUICK["steps"] if quick else STEPS:
-                if (
-                    c.adaptive
-                    and (dt, substeps) != STEPS[0]
-                    or "Python" in c.words
-                    and substeps > 1
-                ):
-                    continue
-                if substeps == 1 or substeps * c.inner <= WORK:
+                if takes(c, dt, substeps):
                     yield problem.name, c.name, dt, substeps, starts
+
+
+def takes(c, dt, substeps):
+    """Whether a contestant runs so: whoever is adaptive once, loops in Python without substeps."""
+    if c.adaptive:
+        return (dt, substeps) == STEPS[0]
+    if c.options.get("python"):
+        return substeps == 1
+    return substeps == 1 or substeps * c.inner <= WORK
 
 
 def ways(job):

@@ -105,7 +105,7 @@ class Filler:
         self.macros, self.figures, self.exercises = macros, figures, exercises
         self.regions = read_all()
         self.place, self.marks = "", 0  # the last heading, and the marks since
-        self.seen = Counter()  # how often each figure stands above
+        self.left = [name for name in figures if name not in ("grab", "lanes")]  # to be placed
 
     def __call__(self, kind, value):
         if kind == "heading":
@@ -146,9 +146,8 @@ class Filler:
                 known = [*self.exercises]
                 raise ValueError(f"{chapter.CHAPTER}: there is no {kind} {name}; known: {known}")
             return self.macros.exercise(self.exercises[name])
-        self.seen[name] += 1
-        again = f"-{self.seen[name]}" if self.seen[name] > 1 else ""
-        return self.macros.figure(name, self.figures[name + again], again)
+        place = self.left.pop(0)
+        return self.macros.figure(name, self.figures[place], place.removeprefix(name))
 
 
 def figures_in(parts, known):

@@ -73,13 +73,17 @@ def bundle(start, data):
 def evaluate(start, data, call):
     """What `call` of a module gives in an embedded V8: of the page's own code, without a page.
 
-    Raises ValueError at what it throws.
+    Raises ValueError at what it throws, with the module where it does.
     """
-    engine = MiniRacer()
+    engine, script = MiniRacer(), bundle(start, data)
     try:
-        engine.eval(f"const made = {bundle(start, data)};")
+        engine.eval(f"const made = {script};")
         return json.loads(engine.eval(f"JSON.stringify(made.{call})"))
     except JSEvalException as error:
-        raise ValueError(str(error).partition("\n")[0]) from None
+        told = str(error).partition("\n")[0]
+        place = re.match(r"<anonymous>:(\d+): |", told)
+        above = "\n".join(script.split("\n")[: int(place[1] or 0)])
+        path = ["", *re.findall(r'^modules\["(.*)"\] = ', above, re.MULTILINE)][-1]
+        raise ValueError(f"curriculum/page/{path}: {told.removeprefix(place[0])}") from None
     finally:
         engine.close()  # its thread would keep Python from ending

@@ -170,7 +170,6 @@ export class Stage {
 
   get = (name) => this.section.get(this.uses.add(name) && name);
   set = (changes) => this.section.set(changes);
-  reset = () => this.section.reset();
 
   #resize() {
     const { clientWidth, clientHeight } = this.svg.parentElement;

@@ -8,16 +8,18 @@ const WIDTH = 640;
 
 // What a figure shows first in a section: {svg, words, height, narrow, ...}.
 function still([id, [name, changes]]) {
-  const figure = figures[name];
-  const { title, caption = "", knobs = [] } = figure;
   try {
+    const figure = figures[name] ?? {};
+    const { title, caption = "", knobs = [] } = figure;
     const made = figure.draw(stillView(figure, new Section(id, changes).values, WIDTH));
+    for (const part of ["title", "height", "svg", "words"])
+      if (!(part in { ...figure, ...made })) throw new Error(`it has no ${part}`);
     const [height, narrow] = [heightOf(figure, WIDTH), heightOf(figure, 1)];
     const counts = { knobs: knobs.length, buttons: buttonsOf(figure).length };
-    const { svg, words = "" } = made;
+    const { svg, words } = made;
     return [id, { svg, words, title, caption, width: WIDTH, height, narrow, ...counts }];
   } catch (error) {
-    throw new Error(`curriculum/page/figures, ${name}: ${error}`);
+    throw new Error(`the figure ${name}: ${error}`);
   }
 }
 

@@ -114,7 +114,6 @@ export class Section {
   set = (changes, from = this.values) => this.#put(changed(from, changes), true);
   // An address or the back button does.
   restore = (changes) => this.#put(changed(this.home, changes), false);
-  reset = () => this.set({}, this.home);
 
   get = (name) => shown(this.values, name);
 

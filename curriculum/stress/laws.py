@@ -60,8 +60,8 @@ def nearest(n, least, v, mass):
     weight = np.tile(np.sqrt(inverse(mass)), 2)
     A, missing = n * weight[:, None], least - n.T @ v
     unit = np.sqrt((A * A).sum(0))
-    most = (missing / unit).max(initial=0.0)
-    if most <= 0.0:
+    most = np.abs(missing / unit).max(initial=0.0)
+    if (missing <= 0.0).all():
         return v
     rows, ends = np.vstack((A, missing / most)) / unit, np.append(0.0 * v, 1.0)
     left = rows @ nnls(rows, ends)[0] - ends

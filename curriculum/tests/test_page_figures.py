@@ -11,7 +11,7 @@ from curriculum.page.build import build, page_data
 from curriculum.page.bundle import evaluate
 from curriculum.page.chapter import CHAPTER
 from curriculum.regions import ROOT
-from curriculum.tests.page_browser import running, visiting
+from curriculum.tests.page_browser import middle, mouse, running, visiting
 from curriculum.text import facts
 from exercises.kit import trials
 
@@ -67,13 +67,8 @@ def handle(box, name):
 
 def drag(tab, grip, by):
     """Drag a handle by (x, y) px with the mouse."""
-    around = grip.bounding_box()
-    x, y = around["x"] + around["width"] / 2, around["y"] + around["height"] / 2
-    tab.mouse.move(x, y)
-    tab.mouse.down()
-    tab.mouse.move(x + by[0] / 2, y + by[1] / 2)
-    tab.mouse.move(x + by[0], y + by[1])
-    tab.mouse.up()
+    for _ in mouse(tab, *middle(grip), [by]):
+        settle(tab)
     settle(tab)
 
 
@@ -99,12 +94,11 @@ def test_every_handle_answers_to_arrow_keys_and_to_a_drag(tab, name):
         grip = handle(box, label)
         assert grip.get_attribute("aria-label")
         told = []
-        for key in ("ArrowDown", "ArrowUp"):
-            press(tab, grip, key, 3)
+        for key in ("ArrowUp", "ArrowDown"):
+            press(tab, grip, key, 2)
             told.append(grip.get_attribute("aria-valuetext"))
         assert told[0] != told[1], f"{label}: arrow keys change nothing"
         assert tab.evaluate("() => document.activeElement.dataset.handle") == label
-        press(tab, grip, "ArrowDown")
         before = box.locator(".drawing").inner_html()
         drag(tab, grip, (48, -24))
         assert box.locator(".drawing").inner_html() != before, f"{label}: a drag changes nothing"

@@ -247,7 +247,6 @@ const lanes = {
     ["More", (view) => view.box.classList.toggle("all")],
     [(view) => `A ${nextScene(view)} instead`, (view) => view.set({ scene: nextScene(view) })],
     [({ own }) => `Show ${NEXT[own.chart]}`, ({ own }) => (own.chart = NEXT[own.chart])],
-    ["The chapter’s values", (view) => view.reset()],
   ],
   // What the text asks to see: {models, chart, from, to} as an address has them.
   look(view, { models, chart, from, to }, anew) {
