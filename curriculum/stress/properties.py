@@ -62,7 +62,8 @@ def a_skip_changes_no_bit(trial):
     for (where, changes), (model, more) in itertools.product(scenes_of.items(), models):
         plain, *others = (trial.run(model, way, **changes | more) for way in WAYS)
         for way, other in zip(WAYS[1:], others):
-            yield f"{way}{where}: {model}{' ahead' * bool(more)}", *unlike(plain, other)
+            off = np.append(unlike(plain, other)[0], plain.unsettled != other.unsettled)
+            yield f"{way}{where}: {model}{' ahead' * bool(more)}", off, 0.0
 
 
 def afar(trial):
