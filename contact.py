@@ -332,7 +332,7 @@ def exact_run(scene: Scene, times, report=None):
         strike(touching, scene.restitution)
         a, gap_a = accelerations(balls, touching, pairs)
         span, touching = next_impact(pairs, gap_a)
-        last = int(np.searchsorted(times, now + span, "right"))
+        last = int(np.searchsorted(times, now + span))
         t = times[done:last] - now
         for k, ball in enumerate(balls):
             q[done:last, 1, k] = place(t, ball.y, ball.vy, a[k])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
+import contact
 from contact import GRAVITY, Scene, build_scene, exact_run, run_model
 from curriculum.bench.closed_form import bounce_motion, slide_motion
 from curriculum.exact import simulate_exact, solve_lcp
@@ -351,3 +352,11 @@ def test_the_reason_is_that_of_the_one_that_got_further():
 def test_balls_that_rattle_without_end_are_one_clear_error():
     with pytest.raises(RuntimeError, match="more than 20,000 events by .* rattle without end"):
         run(balls([0.0], [R + 1e-8], e=0.999999), [0.0, 4.0])
+
+
+def test_two_impacts_a_billionth_of_their_time_apart_are_two():
+    balls = [contact.Ball(0.0, y, 0.0, -1.0, 1.0, 0.1) for y in (1.1, 1.1 * (1.0 + 1e-9))]
+    pairs = [contact.Contact(ball, contact.FLOOR, 0.0, 1.0, 0.1 - ball.y) for ball in balls]
+    span, touching = contact.next_impact(pairs, [contact.GRAVITY] * 2)
+    assert span == contact.time_to_impact(1.0, -1.0, contact.GRAVITY)
+    assert touching == pairs[:1] and 0.0 < -pairs[1].depth < 1e-8

@@ -518,3 +518,12 @@ def test_the_smallest_gap_is_that_of_the_closest_pair_or_of_the_floor():
         balls = [Ball(*xy, 0.0, 0.0, 1.0, 0.1) for xy in state.T.tolist()]
         depths = [c.depth for c in contact.detect_contacts(balls, margin=9.0)]
         assert gap == pytest.approx(-max(depths), abs=1e-15)
+
+
+def test_a_normal_lies_along_the_centres_however_near_they_are():
+    balls = [contact.Ball(x, 5.0, 0.0, 0.0, 1.0, 0.1) for x in (1e-15, 0.0)]
+    (c,) = contact.detect_contacts(balls)
+    assert (c.nx, c.ny) == (1.0, 0.0)
+    balls[0].x = 0.0
+    (c,) = contact.detect_contacts(balls)
+    assert (c.nx, c.ny) == (0.0, 1.0), "centres in one place have no direction: up"
