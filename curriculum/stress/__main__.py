@@ -20,6 +20,8 @@ for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before nump
 from curriculum.commands import needs
 
 with needs("dev"):
+    import scipy  # noqa: F401  # laws.py loads it late
+
     from contact import number
     from curriculum.run import pool
     from curriculum.stress import jobs
