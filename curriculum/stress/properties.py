@@ -22,7 +22,7 @@ PROMISE = 1e-12  # of exact: of a radius, and of the energy at the start
 NEAR = 1e-9  # share of the sizes that a flight or an impact in closed form may be off
 TINY = 1e-6  # s: forces are read from what they do in so short a time
 LOOSE = 1e-5  # share of the accelerations that are read so
-SLOW = 1e-6  # of sqrt(g r): exact may take a slower bounce for the last one
+SLOW = 1e-6  # of sqrt(a r), a what brings it back: exact may take a slower bounce for the last
 AHEAD = {"ahead": True, "baumgarte": 1.0, "restitution": 0.0, "warm": 0.0}
 PUBLISHED = AHEAD | {"ahead": False, "baumgarte": 0.2}
 DEPTHS = "lcp: deepest overlap of balls that start apart"
@@ -214,7 +214,8 @@ def lcp_never_pulls_and_enough_sweeps_solve_it(trial):
 
     Judged where one set of impulses explains it, and W is far from singular: where contacts depend
     on one another, impulses may wander for long before a velocity shows it. Bound: 8 U a push, and
-    a hundred times what the latter half of these sweeps still moves, which is not derived.
+    a hundred times what the latter half of these sweeps still moves, which is not derived; 1e-10 of
+    the speeds, chosen, is for the rounding of both solvers, up to 2.4e-12 m/s in 11,000 scenes.
     """
     motion, sweeps = trial.motions["lcp"], trial.spec["iters"]
     target = laws.lcp_target(motion, trial.spec)
@@ -235,7 +236,7 @@ def lcp_never_pulls_and_enough_sweeps_solve_it(trial):
             continue
         solved = laws.nearest(n, target[k, on], motion.falling[k].ravel(), motion.mass)
         off = np.abs(more.ravel() - solved)
-        yield f"solved [m/s], step {k}", off, moved + 1e-11 * top
+        yield f"solved [m/s], step {k}", off, moved + 1e-10 * top
 
 
 def sampled(motion):
@@ -331,7 +332,8 @@ def exact_pushes_and_never_pulls(trial):
     then, are those of another solver. Bound: 1e-9 of the speeds, 1e-5 of the accelerations, chosen.
 
     Both have one answer, also where impulses and forces do not. Judged where no bounce is so slow
-    that exact may take it for the last, and no other impact follows at once.
+    that exact may take it for the last, since the forces bring it back at once, and no other impact
+    follows at once. For these forces the turns of all contacts are added up.
     """
     motion, e = trial.exact, trial.spec["restitution"]
     on = motion and (np.abs(motion.depth[0]) < 1e-13) & (motion.inv_mass > 0.0)
@@ -347,12 +349,13 @@ def exact_pushes_and_never_pulls(trial):
             break
         bounced = laws.nearest(n, -e * v_n, bounced, motion.mass)
     rests = np.abs(v_n) <= still
-    if (~rests & (v_n < SLOW * math.sqrt(G * motion.reach[on].max()))).any():
-        return
-    yield "velocity after the impacts [m/s]", np.abs(v.ravel() - bounced), NEAR * motion.top.max()
     across = np.array((-motion.normal[0, 1], motion.normal[0, 0]))
     turn = (v @ motion.sides.T * across).sum(0) ** 2 / motion.reach
     turn[: len(motion.mass)] = 0.0  # the floor's normal stays
+    pressed = on.sum() * G + turn[on].sum()  # about the largest acceleration
+    if (~rests & (v_n < SLOW * math.sqrt(pressed * motion.reach[on].max()))).any():
+        return
+    yield "velocity after the impacts [m/s]", np.abs(v.ravel() - bounced), NEAR * motion.top.max()
     fall = np.outer((0.0, -G), ~trial.fixed).ravel()
     found = laws.nearest(n[:, rests], -turn[on][rests], fall, motion.mass)  # Gauss 1829
     yield "acceleration [m/s^2]", np.abs(a.ravel() - found), LOOSE * (G + turn[on].max())
