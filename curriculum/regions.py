@@ -10,11 +10,11 @@ indentation that they share and blank lines at the end, each ended by one "\\n",
 
 import hashlib
 import re
-from pathlib import Path
 from textwrap import dedent
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[1]
+from curriculum.commands import ROOT
+
 CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")  # what a run runs
 LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/implicit.py")  # what has regions
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions

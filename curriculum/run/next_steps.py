@@ -3,8 +3,7 @@
 import os
 from importlib.util import find_spec
 
-from curriculum.commands import command
-from curriculum.regions import ROOT
+from curriculum.commands import ROOT, command
 from exercises.kit.progress import practise
 
 
