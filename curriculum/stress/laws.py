@@ -53,7 +53,7 @@ def nearest(n, least, v, mass):
     """The velocities (2 N,) with n . v >= least (K,) that are nearest to v in the norm of the
     masses: what impulses do, of which none pulls (Moreau 1988). By least squares, as Lawson and
     Hanson's LDP: with A = M^(-1/2) n, the lam >= 0 that best brings A lam to 0 and missing . lam
-    to 1.
+    to 1, tells who pushes. These reach their least by the smallest change, to the last digits.
     """
     from scipy.optimize import nnls  # slow, so only where it is needed
 
@@ -64,8 +64,8 @@ def nearest(n, least, v, mass):
     if (missing <= 0.0).all():
         return v
     rows, ends = np.vstack((A, missing / most)) / unit, np.append(0.0 * v, 1.0)
-    left = rows @ nnls(rows, ends)[0] - ends
-    return v - most * weight * left[:-1] / left[-1]
+    pushes = nnls(rows, ends)[0] > 0.0
+    return v + weight * np.linalg.lstsq(A[:, pushes].T, missing[pushes], rcond=None)[0]
 
 
 def rises(run, motion, e):
