@@ -564,7 +564,7 @@ def fly(balls, dt, rows):
 # --- region: run ---
 MODELS = ("penalty", "lcp", "soft", "exact")
 MANY = 5e6  # of about steps times balls squared: from here on, compiled loops pay
-MOST_BALLS = 300  # of exact, chosen: its memory grows as their cube, to 0.1 GB here
+MOST_BALLS = 300  # of exact, chosen: curriculum/exact.py needs memory as their cube, 0.1 GB here
 SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default: d0, d1, width [m], mid, power
 HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the hardest contact that MuJoCo allows
@@ -681,7 +681,7 @@ RESTLESS = 1e-6  # r, chosen: an overlap that varies by less than this is at res
 @np.errstate(all="ignore")
 def energy(q, v, mass):
     """Kinetic plus potential energy [J] of states (..., 2, N), zero at the floor."""
-    mass = np.where(np.isfinite(mass), mass, 0.0)  # a ball of infinite mass is held
+    mass = np.where(np.isfinite(mass), mass, 0.0)  # infinite: left out, since no push changes it
     return (0.5 * mass * (v * v).sum(-2) - mass * GRAVITY * q[..., 1, :]).sum(-1)
 
 
@@ -897,7 +897,7 @@ def fail(message):
 
 
 def main(argv=None):
-    """The command line. Returns the exit status: 2 for bad input, 130 after Ctrl-C."""
+    """The command line. Returns the exit status: 2 where nothing could be run, 130 after Ctrl-C."""
     argv = sys.argv[1:] if argv is None else argv
     try:
         status = report(parse_flags(argv), argv)
@@ -1003,9 +1003,9 @@ def shown(value, digits=3) -> str:
     """A number as a person reads it, "-" for None: an exponent only where zeros would hide it."""
     if value is None:
         return "-"
-    if value == 0.0 or 1e-4 <= abs(value) < 1e3:
+    if value == 0.0 or 1e-4 <= abs(value) < 999.5:
         return f"{value:.{digits}g}"
-    return f"{value:,.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.1e}"
+    return f"{value:,.0f}" if 999.5 <= abs(value) < 1e6 else f"{value:.1e}"
 
 
 def ending(row) -> str:

@@ -1,6 +1,6 @@
 """The benchmark's command line.
 
-    python -m curriculum.bench            everything below, one after the other (20 minutes)
+    python -m curriculum.bench            everything below, one after the other (15 minutes)
     python -m curriculum.bench accuracy   run time against error, on problems with a known answer
     python -m curriculum.bench pile       time a step of 12 to 10,000 balls, at equal depth
     python -m curriculum.bench solvers    twenty contact solves a step, spent in many ways
@@ -8,7 +8,7 @@
     python -m curriculum.bench draw       page and figures again, from the results alone
 
 Each part writes its section of results.json, and the page and figures, into
-curriculum/bench/results. With --quick it takes less than a minute, measures little, and writes to
+curriculum/bench/results. With --quick it takes one or two minutes, measures little, and writes to
 outputs/bench-quick, which nothing quotes.
 """
 
@@ -63,11 +63,11 @@ def main(argv=None):
             results.save(folder, name, PARTS[name](args.quick), origin)
             print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
         sections = json.loads((folder / results.NAME).read_text("utf-8"))
-        for wanted, case, found, met in report.goals(sections):
-            print(f"{'met   ' if met else 'MISSED'} {wanted}; {case}: {found}")
         report.write(folder, sections)
         if folder == FULL:
             results.write_block("bench", report.readme(sections))
+        for wanted, case, found, met in report.goals(sections):
+            print(f"{'met   ' if met else 'MISSED'} {wanted}; {case}: {found}")
     except KeyboardInterrupt:
         print("stopped; what was finished is kept", file=sys.stderr)
         return 130
