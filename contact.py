@@ -592,7 +592,7 @@ def run_model(
         return run_exact(scene, dt, steps, report)
     many = settings.skip and steps * len(scene.mass) ** 2 > MANY
     if many and (fast := beside("fast")):  # compiled loops, the same bits
-        return fast.simulate(model, scene, dt, steps, settings, report)
+        return fast.run_model(model, scene, dt, steps, settings, report)
     step = step_of(model, scene, dt, settings)
     if settings.skip:
         return simulate_faster(step, scene, dt, steps, report)
@@ -607,7 +607,7 @@ def check(model, scene, dt):
         ("dt", dt, 0.0 < dt < math.inf, "above 0 and finite"),
         ("q0", scene.q0, np.isfinite(scene.q0), "finite"),
         ("v0", scene.v0, np.isfinite(scene.v0), "finite"),
-        ("mass", mass, mass > 0.0, "above 0; infinite for a ball that nothing moves"),
+        ("mass", mass, mass > 0.0, "above 0; infinite for a ball that no push moves"),
         ("radius", radius, (radius > 0.0) & (radius < math.inf), "above 0 and finite"),
         ("restitution", e, 0.0 <= e <= 1.0, "from 0 to 1"),
         ("damping", scene.damping, math.isfinite(scene.damping), "finite"),

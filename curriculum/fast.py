@@ -481,7 +481,7 @@ class Stepper:
         return taken
 
 
-def simulate(model, scene, dt, steps, settings, report=None):
+def run_model(model, scene, dt, steps, settings, report=None):
     """The contact.Run by penalty, lcp or soft: what contact.run_model gives, bit for bit.
 
     `report(k)` is called with the steps done, now and then.

@@ -100,10 +100,10 @@ class Ours(Session):
     def states(self, n):
         model, scene, dt = self.given
         if self.python or model == "exact":
-            simulate = contact.run_model
+            run_model = contact.run_model
         else:
-            from curriculum.fast import simulate
-        run = simulate(model, scene, dt, n * self.substeps, self.settings)
+            from curriculum.fast import run_model
+        run = run_model(model, scene, dt, n * self.substeps, self.settings)
         return run.q[:: self.substeps], run.v[:: self.substeps]
 
     def trace(self, n):

@@ -97,7 +97,7 @@ class Trial:
 def run_twin(model, scene, dt, steps, settings):
     """A run by the compiled twin, where there is one: the same bits, as a property says."""
     if fast:
-        return fast.simulate(model, scene, dt, steps, settings)
+        return fast.run_model(model, scene, dt, steps, settings)
     return contact.run_model(model, scene, dt, steps, settings)
 
 

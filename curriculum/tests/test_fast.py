@@ -22,7 +22,7 @@ WILD = (math.nan, math.inf, -math.inf, 1e200, -1e308, 1e-200, -0.0)
 def check_same(model, scene, dt, steps, **knobs):
     """Both ways give the same bytes, or both stop at the same error. Returns what the twin gave."""
     chosen, found = contact.Settings(**knobs), []
-    for way in (plainly, fast.simulate):
+    for way in (plainly, fast.run_model):
         try:
             found.append(way(model, scene, dt, steps, chosen))
         except ArithmeticError as error:
@@ -167,7 +167,7 @@ def test_a_pile_comes_to_rest_from_a_warm_start_and_lies_less_deep():
     speed, depth = {}, {}
     scene = shaft(60, 8)
     for warm in (0.0, 0.8):
-        _, q, v, _ = fast.simulate("lcp", scene, 0.002, 6000, contact.Settings(warm=warm))
+        _, q, v, _ = fast.run_model("lcp", scene, 0.002, 6000, contact.Settings(warm=warm))
         speed[warm] = np.sqrt((v[-1] ** 2).sum(0)).max()
         depth[warm] = -fast.smallest_gap(q[-1:], scene.radius)[0]
     assert max(speed.values()) < 1e-3
@@ -176,7 +176,7 @@ def test_a_pile_comes_to_rest_from_a_warm_start_and_lies_less_deep():
 
 def test_a_run_taken_on_in_parts_has_the_bytes_of_the_whole():
     scene, chosen = contact.build_scene("pile", 2, 30), contact.Settings(warm=0.8)
-    whole = fast.simulate("lcp", scene, 0.002, 300, chosen)
+    whole = fast.run_model("lcp", scene, 0.002, 300, chosen)
     stepper = fast.Stepper("lcp", scene, 0.002, chosen)
     rows = np.empty((301, 4, 30))
     for first, last in ((0, 1), (1, 120), (120, 300)):
@@ -208,5 +208,5 @@ def test_where_nothing_is_compiled_contact_takes_its_plain_loops(prepare):
         text=True,
         check=True,
     )
-    whole = fast.simulate("lcp", contact.build_scene("pile", 0, 40), 0.002, 20, contact.Settings())
+    whole = fast.run_model("lcp", contact.build_scene("pile", 0, 40), 0.002, 20, contact.Settings())
     assert float(done.stdout) == whole.q.sum()
