@@ -20,7 +20,7 @@ import numpy as np
 
 import contact
 from curriculum.bench import engines, timing
-from curriculum.bench.engines import AHEAD, GAIN_1, HARD, box2d3, lcp, mujoco, pymunk
+from curriculum.bench.engines import AHEAD, GAIN_1, HARD, PUSHING, box2d3, lcp, mujoco, pymunk
 from curriculum.run import pool
 
 DT = 0.002  # s
@@ -72,7 +72,7 @@ SETTINGS = (  # and how many substeps they take for a step of 2 ms
     (box2d3("{inner} substep, hardest", inner=1, hertz=1e9), 4),
     (box2d3(f"{HARD}, {ASLEEP}", inner=4, hertz=1e9, sleep=True), 1),
     (pymunk("{iterations} iterations", iterations=10), 1),
-    (pymunk("{iterations} iterations, push {push} a step", iterations=10, push=0.2), 1),
+    (pymunk(PUSHING, iterations=10, push=0.2), 1),
     (pymunk("{iterations} iterations", iterations=30), 1),
     (pymunk("{iterations} iterations", iterations=10), 4),
     (pymunk(f"{{iterations}} iterations, {ASLEEP}", iterations=10, sleep=True), 1),
