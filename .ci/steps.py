@@ -140,8 +140,16 @@ def checks():
 def alone():
     """contact.py in an empty folder with numpy alone; and with rerun and pytest, the tests."""
     shutil.copy(readme.ROOT / "contact.py", WORK / "alone")
-    line = "uv run contact.py --out out && test -s out/metrics.json"
-    check("contact.py alone in an empty folder", line, "alone")
+    python = "uv run --no-project --with numpy python contact.py"
+    for scene in ("drop", "bounce", "stack"):
+        line = f"{python} --scene {scene} --out {scene} && test -s {scene}/metrics.json"
+        check("contact.py alone in an empty folder", line, "alone")
+    smoke = " && ".join(
+        f"PYTHONHASHSEED={n} {python} --smoke --out o >{n}.txt && cp o/metrics.json {n}.json"
+        for n in (1, 2)
+    )
+    same = "cmp 1.txt 2.txt && cmp 1.json 2.json"
+    check("--smoke twice, byte for byte", f"{smoke} && {same}", "alone")
     fresh("bare")
     check("numpy, rerun-sdk and pytest", ".ci/python", "bare", PYTHON=sys.executable)
 
