@@ -41,16 +41,12 @@ def section(text, heading):
 
 def set_up(text):
     """{"pip", "windows", "uv": the two lines each} of the block below "Run it"."""
-    block = section(text, "Run it").partition("```sh\n")[2].partition("```")[0]
-    found, lines = {}, []
-    for line in block.splitlines():
-        if line.startswith("#"):  # a heading of the block says for whom the next lines are
-            name = next(each for each in ("Windows", "uv", "Linux") if each in line)
-            lines = found.setdefault({"Linux": "pip"}.get(name, name.lower()), [])
-        else:
-            lines.append(line)
-    if {name: len(each) for name, each in found.items()} != {"pip": 2, "windows": 2, "uv": 2}:
-        raise SystemExit(f"README.md, Run it: two lines each for pip, Windows, uv; found {found}")
+    found = {}
+    for name, heading in {"pip": "Linux", "windows": "Windows", "uv": "anywhere with uv"}.items():
+        lines = re.search(rf"^# {heading}.*\n(.+)\n(.+)\n(?=#|```)", section(text, "Run it"), re.M)
+        if not lines:
+            raise SystemExit(f"README.md, Run it: two lines are expected below # {heading}")
+        found[name] = lines.groups()
     return found
 
 

@@ -5,7 +5,6 @@ import os
 import shlex
 import shutil
 import sys
-import sysconfig
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -37,6 +36,8 @@ def to_install(package, extra=None):
     own Python often refuses to be changed: there it is an environment of one's own.
     """
     wanted = ("-e", f"{near(str(ROOT))}[{extra}]") if extra else (package,)
+    import sysconfig  # slow, so only where it is needed
+
     system = sys.prefix == sys.base_prefix
     refused = system and Path(sysconfig.get_path("stdlib"), "EXTERNALLY-MANAGED").exists()
     pip = find_spec("pip") is not None and not refused

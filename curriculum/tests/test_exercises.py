@@ -27,7 +27,6 @@ from kit.progress import FILES  # noqa: E402
 
 import contact  # noqa: E402
 
-ALL_DONE = "all exercises are done"
 GIVEN = {name: alone.load(ROOT / file) for name, file in FILES.items()}  # as a learner gets them
 BETS = {name: predict.asked(GIVEN[name].__doc__) for name in predict.BETS}
 ASKED = "?        ?           ?            ?          ?"
@@ -73,8 +72,8 @@ FILLED = {      # name: [(a part of the file, what a learner writes there)]
 }  # fmt: skip
 
 
-def exercise(**functions):
-    return SimpleNamespace(__file__="exercises/exN.py", **functions)
+def exercise(name="ex2", **written):
+    return SimpleNamespace(__file__=str(ROOT / FILES[name]), **written)
 
 
 @pytest.fixture
@@ -83,9 +82,9 @@ def copy(tmp_path):
     folder = tmp_path / "my robot's course"
     leave = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "exercises", folder / "exercises", ignore=leave)
-    (folder / "curriculum").mkdir()
+    (folder / "curriculum/run").mkdir(parents=True)
     for name in ("contact.py", "checks.py", *(f"curriculum/{name}.py" for name in (
-            "commands", "files", "implicit", "exact"))):  # fmt: skip
+            "commands", "files", "implicit", "exact", "run/next_steps"))):  # fmt: skip
         shutil.copy(ROOT / name, folder / name)
 
     def fill(name, *changes):
@@ -146,7 +145,9 @@ def test_a_learners_way_through_all_ten(copy, tmp_path):
         assert following.get(name, "") in last and (name == "ex8") != (sys.executable in last)
     result = run(folder, "checks.py")
     assert result.returncode == 0 and "10 passed" in result.stdout
-    assert last.startswith(ALL_DONE) and ALL_DONE in result.stdout.splitlines()[-1]
+    asked = run(folder, "contact.py", "--steps", 5, "--no-rerun")
+    for text in (done.stdout, result.stdout, asked.stdout):
+        assert text.splitlines()[-1].startswith("all exercises are done")
 
 
 def test_what_is_wrong_broken_or_without_end_fails_its_own_check_and_says_why(copy):
@@ -383,7 +384,7 @@ def test_a_bet_waits_for_a_choice_and_a_reason(name):
         ("D", "so it has to be", "given 'D', allowed: 'A', 'B', 'C'"),
         ("A", "because", f"write a sentence of four words or more. {BETS[name].why}"),
     ):
-        made = exercise(PREDICTION=prediction, WHY=why, __doc__=GIVEN[name].__doc__)
+        made = exercise(name, PREDICTION=prediction, WHY=why)
         state, ((_, _, words, shown),) = predict.judged(name, made)
         assert state == "blank" and part in words and shown == ""
 
@@ -400,7 +401,7 @@ def test_a_bet_is_read_from_its_docstring_and_nothing_of_that_is_lost():
 def test_after_the_run_there_is_a_word_on_every_choice(name, numbers):
     right = predict.answer(name, numbers[name])
     for mine in "ABC":
-        made = exercise(PREDICTION=mine, WHY="so it is", __doc__=GIVEN[name].__doc__)
+        made = exercise(name, PREDICTION=mine, WHY="so it is")
         text = " ".join(predict.verdict(name, made, numbers[name]).split())
         assert ("That is what happens." in text) == (mine == right)
         assert all(f"Why {c}:" in text if c == right else f"Why not {c}:" in text for c in "ABC")

@@ -102,10 +102,8 @@ def state(exercise):
     file, bet = near(exercise.__file__), asked(task_of(exercise))
     letters, why = ", ".join(map(repr, bet.choices)), exercise.WHY
     if exercise.PREDICTION is None:
-        return (
-            "blank",
-            f"no prediction yet: in {file} set PREDICTION to one of {letters} and say WHY",
-        )
+        asks = f"set PREDICTION to one of {letters} and say WHY"
+        return "blank", f"no prediction yet: in {file} {asks}"
     if chosen(exercise) not in bet.choices:
         given = f"given {exercise.PREDICTION!r}, allowed: {letters}"
         return "blank", f"PREDICTION in {file}: {given}"
