@@ -1,5 +1,6 @@
 """Commands as one types them here: how to run a file, how to install what is missing."""
 
+import argparse
 import contextlib
 import os
 import shlex
@@ -10,6 +11,17 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 OURS = ("checks", "contact", "curriculum", "exercises")  # a slip in these is no missing package
+
+
+class Parser(argparse.ArgumentParser):
+    """A command's flags, which are written in full; what is wrong with them is said in one line."""
+
+    def __init__(self, **how):
+        raw = argparse.RawDescriptionHelpFormatter
+        super().__init__(allow_abbrev=False, formatter_class=raw, **how)
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: error: {message}\n")
 
 
 def command(*words):

@@ -122,6 +122,10 @@ def test_every_script_prints_the_hint_that_is_asked_for_and_no_other(name, capsy
         monkeypatch.setattr(sys, "argv", [FILES[name], "--hint", str(number)])
         runpy.run_path(str(ROOT / FILES[name]), run_name="__main__")
         assert capsys.readouterr().out == f"hint {number} of {len(hints)}: {hint}\n"
+    monkeypatch.setattr(sys, "argv", [FILES[name], "--hint", "0"])
+    with pytest.raises(SystemExit, match="2"):
+        runpy.run_path(str(ROOT / FILES[name]), run_name="__main__")
+    assert re.fullmatch(r"ex\w+\.py: error: argument --hint: .*\n", capsys.readouterr().err)
 
 
 def test_a_learners_way_through_all_ten(copy, tmp_path):
