@@ -1,5 +1,5 @@
 /* The clamp is on the sum of the changes. In a groove one contact must take some push back. */
-import { arrow, ball, label, number, shift, within } from "../draw.js";
+import { arrow, ball, label, number, shift } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
 import { kept, pair, wholly } from "../parts.js";
 
@@ -41,15 +41,12 @@ function draw(view) {
   const [right, wrong] = both(vx, vy);
   const r = Math.min(52, view.width / 9.5);
   const [x, y, scale] = [view.width / 4, view.height - 3.2 * r, 1.7 * r];
-  const put = (toX, toY) => {
-    view.own.vx = Number(within(-1.2, toX, 1.2).toFixed(2));
-    view.own.vy = Number(within(-1.6, toY, -0.1).toFixed(2));
-  };
+  const ranges = { vx: [-1.2, 1.2], vy: [-1.6, -0.1] };
   const at = (toX, toY) => [(x - toX) / scale, (toY - y) / scale];
   const from = [x - scale * vx, y + scale * vy];
   const text = `comes with ${number(vx, 2)} m/s to the right and ${number(-vy, 2)} m/s down`;
-  const to = { value: vx, at, put, px: 0.1 * scale };
-  const came = pair("ball", from, "where the ball comes from", text, to);
+  const to = { at, px: 0.1 * scale };
+  const came = pair(view, "ball", from, "where the ball comes from", text, ranges, to);
   const [sum, each] = [right, wrong].map(({ speed }) => `at ${number(speed, 2)} m/s where`);
   return {
     svg:
