@@ -5,12 +5,9 @@ import sys
 
 from curriculum.commands import needs, stoppable
 
-with needs("notebook"):
-    from curriculum.files import write_whole
-    from curriculum.notebook.build import build
-
 
 @stoppable()
+@needs("notebook")
 def main():
     """Build and write. Returns the exit status: 0 written, 1 the notebook can't be built."""
     parser = argparse.ArgumentParser(
@@ -21,8 +18,10 @@ def main():
     parser.add_argument("--out", default="outputs/contact.ipynb", metavar="FILE")
     args = parser.parse_args()
     try:
-        with needs("notebook"):
-            text = build()
+        from curriculum.files import write_whole
+        from curriculum.notebook.build import build
+
+        text = build()
         write_whole(args.out, text)
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)

@@ -12,7 +12,11 @@ import io
 import re
 import textwrap
 import zipfile
+from collections import Counter
 from pathlib import Path
+
+import nbformat
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
 import contact
 from curriculum.regions import ROOT, read_all
@@ -20,30 +24,19 @@ from curriculum.text.references import INCLUDE, Numbers
 
 CHAPTER = ROOT / "curriculum/prose/chapter.md"
 CELLS = ROOT / "curriculum/notebook/cells.py"
-CARRIED = (
-    "contact.py",
-    "checks.py",
-    "exercises/*.py",
-    "exercises/kit/*",
-    "curriculum/__init__.py",
-    "curriculum/run/__init__.py",
-    "curriculum/run/curves.py",
-    "curriculum/exact.py",
-    "curriculum/commands.py",
-    "curriculum/files.py",
-    "curriculum/implicit.py",
-)
+CARRIED = (  # with the pictures of reports that the chapter shows
+    "contact.py checks.py exercises/*.py exercises/kit/* curriculum/__init__.py "
+    "curriculum/run/__init__.py curriculum/run/curves.py curriculum/exact.py "
+    "curriculum/commands.py curriculum/files.py curriculum/implicit.py "
+    "curriculum/bench/results/error-bounce.svg curriculum/bench/results/solvers.svg "
+    "curriculum/stress/results/penalty-map.svg"
+).split()
 MARK = re.compile(
     rf"^```\w*\n{INCLUDE.pattern}\n```$|^(?=#{{1,3}} )"
     r"|^<!-- (?P<kind>figure|exercise|bench|stress): (?P<slot>[\w-]+) -->$",
     re.MULTILINE,
 )
 COMMENT = re.compile(r"<!--.*?-->\n*", re.DOTALL)
-STORED = {  # a picture of a report, by its slot in the chapter
-    "bounce": "curriculum/bench/results/error-bounce.svg",
-    "solvers": "curriculum/bench/results/solvers.svg",
-    "penalty-map": "curriculum/stress/results/penalty-map.svg",
-}
 SAID = (  # what only the page can do, and what to do here
     (r"Take it, lift it,\s+throw it\.", "Hold the mouse on it, and it stops."),
     (r"\bDrag the (\w+)", r"Run the cell above, turn its \1"),
@@ -51,6 +44,11 @@ SAID = (  # what only the page can do, and what to do here
 LIVE = re.compile(r"\[([^\]]*)\]\((?:try|drag):[^)]*\)")
 MAIN = re.compile(r'^if __name__ == "__main__":.*', re.DOTALL | re.MULTILINE)
 OPENING = "grab"  # the figure that the notebook opens on
+FOLDED = {"jupyter": {"source_hidden": True}, "cellView": "form"}
+METADATA = {
+    "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+    "language_info": {"name": "python"},
+}
 INTRODUCTION = """\
 *This is the chapter as a notebook. Its figures move, and some have knobs; on the page you can take
 hold of them. Run the cells from the top. The first one puts the whole of contact.py and the
@@ -62,7 +60,7 @@ def folder():
     """The files that the notebook carries, as a zip in base64, 76 characters a line."""
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as packed:
-        for pattern in (*CARRIED, *STORED.values()):
+        for pattern in CARRIED:
             for path in sorted(filter(Path.is_file, ROOT.glob(pattern))):
                 name = zipfile.ZipInfo(path.relative_to(ROOT).as_posix())  # dated 1980: same bytes
                 packed.writestr(name, path.read_bytes(), zipfile.ZIP_DEFLATED)
@@ -75,101 +73,91 @@ def own_cells():
     return {name: source.strip() for name, source in zip(parts[1::2], parts[2::2])}
 
 
+def prose(text):
+    """Markdown as a cell, if there is any; comments and live links are for the page."""
+    text = LIVE.sub(r"\1", COMMENT.sub("", text)).strip()
+    for page, here in SAID:
+        text = re.sub(page, here, text)
+    return [new_markdown_cell(text)] if text else []
+
+
 class Book:
-    """The cells, as they are added from the top of the chapter to its end."""
+    """What takes the places that the chapter marks: each method gives cells."""
 
     def __init__(self):
-        from nbformat import v4
+        self.own, self.regions = own_cells(), read_all()
 
-        self.v4, self.cells, self.own = v4, [], own_cells()
+    def start(self):
+        """What the notebook is, the cell that carries the folder, and what the pictures share."""
+        carry = f'FOLDER = """\n{folder()}"""\n{self.own["start"]}'
+        shared = (new_code_cell(each, metadata=FOLDED) for each in (carry, self.own["tools"]))
+        return [*prose(INTRODUCTION), *shared]
 
-    def add(self, kind, source, folded=False):
-        """A markdown or code cell. Its id comes from its content and its place among its equals."""
-        new = self.v4.new_markdown_cell if kind == "markdown" else self.v4.new_code_cell
-        same = sum(cell.source == source for cell in self.cells)
-        digest = hashlib.sha256(f"{kind} {same}\n{source}".encode()).hexdigest()[:16]
-        look = {"jupyter": {"source_hidden": True}, "cellView": "form"} if folded else {}
-        self.cells.append(new(source, id=digest, metadata=look))
-
-    def prose(self, text):
-        """Markdown; comments and live links are for the page."""
-        text = LIVE.sub(r"\1", COMMENT.sub("", text)).strip()
-        for page, here in SAID:
-            text = re.sub(page, here, text)
-        if text:
-            self.add("markdown", text)
-
-    def include(self, file, name):
+    def region(self, file, name):
         """A region. Those of contact.py run; others are shown, since their names are their own."""
-        regions = read_all()
-        if name not in regions:
-            raise ValueError(f"{CHAPTER.name}: no region {file}#{name}; known: {[*regions]}")
-        code = textwrap.dedent(MAIN.sub("", regions[name].code)).strip()
+        code = textwrap.dedent(MAIN.sub("", self.regions[name].code)).strip()
         if file == "contact.py":
-            self.add("code", f"# contact.py, region {name}\n{code}")
-        else:
-            self.add("markdown", f"{file}, region {name}:\n\n```python\n{code}\n```")
+            return [new_code_cell(f"# contact.py, region {name}\n{code}")]
+        return [new_markdown_cell(f"{file}, region {name}:\n\n```python\n{code}\n```")]
 
     def figure(self, name):
-        """The cell of this name; the page has figures that the notebook has not."""
-        if name in self.own and self.own[name] not in {cell.source for cell in self.cells}:
-            source = self.own[name]
-            self.add("code", source, folded=source.startswith("#@title"))
-        if name == OPENING:
-            self.cells[-1].outputs = [self.drawn(source)]
+        """The cell of this name, once; the page has figures that the notebook has not."""
+        source = self.own.pop(name, None)
+        if not source:
+            return []
+        outputs = [self.drawn(source)] if name == OPENING else []
+        folded = FOLDED if source.startswith("#@title") else {}
+        return [new_code_cell(source, metadata=folded, outputs=outputs)]
 
     def drawn(self, source):
         """What a cell shows that ends in a moving picture, so that it moves before it has run."""
         names = dict(vars(contact))
         exec(compile(f"{self.own['tools']}\n{source}", str(CELLS), "exec"), names)
         data = {"image/svg+xml": names["moving"].data, "text/plain": "<a ball falls>"}
-        return self.v4.new_output("display_data", data)
+        return new_output("display_data", data)
 
     def exercise(self, name):
         """The exercise's file as a cell that writes it, and one that runs it."""
-        for path in sorted((ROOT / "exercises").glob(f"{name}_*.py")):
-            file = path.relative_to(ROOT).as_posix()
-            source = path.read_text("utf-8").strip()
-            self.add("code", f"%%writefile contact_chapter/{file}\n{source}")
-            hint = f'course("{file}", "--hint", "1")'
-            self.add("code", f'course("{file}")\n# a question that helps: {hint}')
+        (path,) = (ROOT / "exercises").glob(f"{name}_*.py")
+        file, source = path.relative_to(ROOT).as_posix(), path.read_text("utf-8").strip()
+        hint = f'course("{file}", "--hint", "1")'
+        return [
+            new_code_cell(f"%%writefile contact_chapter/{file}\n{source}"),
+            new_code_cell(f'course("{file}")\n# a question that helps: {hint}'),
+        ]
 
     def bench(self, name):
-        """A picture of the benchmark."""
-        self.add("code", f'SVG(filename=os.path.join(COURSE, "{STORED[name]}"))')
+        """A picture of a report."""
+        (path,) = ROOT.glob(f"curriculum/*/results/*{name}.svg")
+        file = path.relative_to(ROOT).as_posix()
+        return [new_code_cell(f'SVG(filename=os.path.join(COURSE, "{file}"))')]
 
     stress = bench
 
-    def start(self):
-        """What the notebook is, the cell that carries the folder, and what the pictures share."""
-        self.prose(INTRODUCTION)
-        self.add("code", f'FOLDER = """\n{folder()}"""\n{self.own["start"]}', folded=True)
-        self.add("code", self.own["tools"], folded=True)
 
-    def chapter(self, text):
-        """All cells, in order."""
-        text, done = text.partition(f"\n{REST}")[0], 0
-        for found in MARK.finditer(text):
-            self.prose(text[done : found.start()])
-            if len(self.cells) == 1:
-                self.start()
-            done = found.end()
-            if found["name"]:
-                self.include(found["file"], found["name"])
-            elif found["kind"]:
-                getattr(self, found["kind"])(found["slot"])
-        self.prose(text[done:])
+def cells_of(text):
+    """The chapter's cells, in order. An id comes from the content and the place among equals."""
+    book, cells, done, same = Book(), [], 0, Counter()
+    for found in MARK.finditer(text):
+        cells += prose(text[done : found.start()])
+        if len(cells) == 1:
+            cells += book.start()
+        done = found.end()
+        if found["name"]:
+            cells += book.region(found["file"], found["name"])
+        elif found["kind"]:
+            cells += getattr(book, found["kind"])(found["slot"])
+    cells += prose(text[done:])
+    for cell in cells:
+        about = f"{cell.cell_type} {same[cell.source]}\n{cell.source}"
+        cell.id = hashlib.sha256(about.encode()).hexdigest()[:16]
+        same[cell.source] += 1
+    return cells
 
 
 def build():
     """The notebook as text. Raises ValueError where the chapter cannot be shown as it is."""
-    import nbformat
-
-    text, numbers = CHAPTER.read_text("utf-8"), Numbers()
-    book = Book()
-    book.chapter(numbers.fill(text))
-    kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    metadata = {"kernelspec": kernel, "language_info": {"name": "python"}}
-    made = book.v4.new_notebook(cells=book.cells, metadata=metadata)
+    text = Numbers().fill(CHAPTER.read_text("utf-8")).partition(f"\n{REST}")[0]
+    made = new_notebook(cells=cells_of(text), metadata=METADATA)
     nbformat.validate(made)
     return nbformat.writes(made) + "\n"

@@ -7,23 +7,17 @@ from pathlib import Path
 from curriculum.commands import needs, stoppable
 
 
-def parse(argv):
-    """The flags."""
-    parser = argparse.ArgumentParser(
-        prog="python -m curriculum.page", description="Write the chapter as one web page."
-    )
-    add = parser.add_argument
-    default = Path("outputs/contact.html")
-    add("--out", type=Path, default=default, metavar="FILE", help=f"the file to write ({default})")
-    add("--pictures", type=Path, metavar="FOLDER", help="and the README's picture of it")
-    add("--measure", action="store_true", help="and how quickly it answers in Chromium")
-    return parser.parse_args(argv)
-
-
 @stoppable()
 def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 it can't be built, 2 bad usage."""
-    args = parse(argv)
+    parser = argparse.ArgumentParser(
+        prog="python -m curriculum.page", description="Write the chapter as one web page."
+    )
+    add, default = parser.add_argument, Path("outputs/contact.html")
+    add("--out", type=Path, default=default, metavar="FILE", help=f"the file to write ({default})")
+    add("--pictures", type=Path, metavar="FOLDER", help="and the README's picture of it")
+    add("--measure", action="store_true", help="and how quickly it answers in Chromium")
+    args = parser.parse_args(argv)
     try:
         with needs("page"):
             from curriculum.files import write_whole

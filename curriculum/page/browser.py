@@ -2,63 +2,31 @@
 
 import contextlib
 import shutil
+import statistics
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 CHROMIUM = next(filter(None, map(shutil.which, NAMES)), None)
-FLAGS = (  # no request of its own
-    "--no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
-    "--disable-component-update --disable-sync"
-).split()
 SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
   localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
 PICTURE = "page-live.png"  # of the README
 # the live figure stands also where the text has no use for it, and no other one in its place
 STANDING = """.centred { visibility: hidden }
 .live { opacity: 1 !important; visibility: visible !important }"""
-# what a knob costs: set a quantity by its slider, and wait until the next frame is painted
-KNOB = """([name, figure]) => new Promise((done) => {
-  const box = document.getElementById(`fig-${figure}`);
-  const range = box.querySelector(`[data-knob="${name}"] input[type=range]`);
-  const times = [];
-  range.dispatchEvent(new Event("pointerdown")); // a drag: figures may draw coarsely
-  const once = () => {
-    const start = performance.now();
-    range.value = Number(range.value) + (times.length % 2 ? -20 : 20);
-    range.dispatchEvent(new Event("input", { bubbles: true }));
-    requestAnimationFrame(() => setTimeout(() => {
-      times.push(performance.now() - start);
-      if (times.length < 9) return setTimeout(once, 300);
-      range.dispatchEvent(new Event("pointerup"));
-      done(times.sort((a, b) => a - b)[4]);
-    }));
-  };
-  once();
+# what the browser itself notes of the page, `seen`; an event lasts until its frame is shown
+LEAST = 16  # ms, of an event that is noted
+OBSERVED = f"""globalThis.seen = {{ event: [], paint: [], "layout-shift": [] }};
+for (const type in seen)
+  new PerformanceObserver((list) => seen[type].push(...list.getEntries().map((e) => e.toJSON())))
+    .observe({{ type, buffered: true, durationThreshold: {LEAST} }});"""
+KNOBS = ".drag, .knob input[type=range]"
+PLACE = """(node) => `${node.closest(".fig")?.id ?? "text"}: ` +
+  node.closest("[data-knob]").dataset.knob"""
+# pictures, and passages beside which the live figure stands: [top, bottom, where]
+PICTURES = ".fig:not(#fig-lanes) .drawing, .generated img, .beside"
+BOXES = """(nodes) => nodes.map((node) => {
+  const { top, bottom } = node.getBoundingClientRect();
+  return [top, bottom, node.closest("[id]").id];
 })"""
-WHICH = "(node) => [node.dataset.knob, node.closest('.fig').dataset.figure]"
-PAINT = """() => new Promise((done) => {
-  let shift = 0;
-  new PerformanceObserver((list) => {
-    for (const each of list.getEntries()) if (!each.hadRecentInput) shift += each.value;
-  }).observe({ type: "layout-shift", buffered: true });
-  const [first] = performance.getEntriesByName("first-contentful-paint");
-  setTimeout(() => done([first ? first.startTime : NaN, shift]), 500);
-})"""
-
-# pictures, and passages beside which the live figure stands, from top to bottom
-STRETCH = """() => {
-  const end = document.getElementById("honest-limits-measured").getBoundingClientRect().top;
-  const kinds = ".fig .drawing, .generated img, .beside";
-  const places = [...document.querySelectorAll(kinds)].filter((node) => node.checkVisibility() &&
-    !(node.matches(".beside") && innerWidth < 1200) && !node.closest("#figure"));
-  let [bottom, most, last, above] = [0, 0, "the top", ""];
-  const boxes = places.map((node) => [node.getBoundingClientRect(), node.closest("[id]")?.id]);
-  for (const [box, id] of boxes.sort(([a], [b]) => a.top - b.top)) {
-    if (!box.height || box.top > end) continue;
-    if (box.top - bottom > most) [most, above] = [box.top - bottom, last];
-    if (box.bottom > bottom) [bottom, last] = [box.bottom, id];
-  }
-  return [most / innerHeight, above];
-}"""
 
 
 @contextlib.contextmanager
@@ -67,7 +35,7 @@ def running():
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--disable-gpu"])
         yield browser
         browser.close()
 
@@ -77,7 +45,7 @@ def opened(page, query="", **options):
     """A tab with the HTML file `page`, 1280 x 900, as for a reader who has made the bets."""
     with running() as browser:
         tab = browser.new_page(viewport={"width": 1280, "height": 900}, **options)
-        tab.add_init_script(SHOWN)
+        tab.add_init_script(SHOWN + OBSERVED)
         show(tab, page, query)
         yield tab
 
@@ -105,26 +73,33 @@ def photograph(page, folder):
 
 
 def measure(page):
-    """How quickly the page answers in Chromium: lines to print."""
-    with opened(page) as tab:
-        paint, shift = tab.evaluate(PAINT)
+    """How quickly the page answers in Chromium, with the largest scene: lines to print."""
+    with opened(page, query="?scene=stack") as tab:
+        tab.wait_for_timeout(500)
+        seen = tab.evaluate("seen")
+        paint = seen["paint"][-1]["startTime"]
+        shift = sum(each["value"] for each in seen["layout-shift"] if not each["hadRecentInput"])
         yield f"first paint {paint:.0f} ms (below 500), layout shift {shift:.3f} (below 0.1)"
-        yield pacing(tab)
-        for scene, wanted in {"drop": 50, "bounce": 50, "stack": 100}.items():
-            show(tab, page, f"?scene={scene}")
-            tab.locator("a.try").first.scroll_into_view_if_needed()
-            for name in ("dt", "stiffness", "baumgarte", "restitution"):
-                time = tab.evaluate(KNOB, [name, "lanes"])
-                yield f"lanes, {scene}: {name:<11} answers in {time:4.0f} ms (below {wanted})"
-        for knob in tab.locator(".fig:not(#fig-lanes) .knob").all():
-            knob.scroll_into_view_if_needed()
-            tab.wait_for_timeout(500)
-            name, figure = knob.evaluate(WHICH)
-            time = tab.evaluate(KNOB, [name, figure])
-            yield f"{figure}: {name} answers in {time:.0f} ms (below 100)"
+        screens, above = pacing(tab)
+        yield f"longest stretch without a picture: {screens:.1f} screens, below {above} (at most 2)"
+        for knob in tab.locator(KNOBS).all():
+            knob.focus()
+            tab.evaluate("seen.event.length = 0")
+            for _ in range(5):
+                tab.keyboard.press("ArrowRight")
+                tab.wait_for_timeout(100)
+            events = tab.evaluate("seen.event")
+            times = [each["duration"] for each in events if each["name"] == "keydown"]
+            answer = statistics.median(times or [LEAST])
+            yield f"{knob.evaluate(PLACE)} answers in {answer:.0f} ms (below 50)"
 
 
 def pacing(tab):
-    """The longest stretch without a picture before "Honest limits", in screens: a line."""
-    screens, above = tab.evaluate(STRETCH)
-    return f"longest stretch without a picture: {screens:.1f} screens, below {above} (at most 2)"
+    """The longest stretch without a picture before "Honest limits", in screens, and its start."""
+    boxes = tab.locator(PICTURES).filter(visible=True).evaluate_all(BOXES)
+    end = tab.locator("#honest-limits-measured").bounding_box()["y"]
+    last, longest = (0, "the top"), (0, "")
+    for top, bottom, place in sorted(box for box in boxes if box[0] < end):
+        longest = max(longest, ((top - last[0]) / 900, last[1]))
+        last = max(last, (bottom, place))
+    return longest

@@ -5,7 +5,6 @@ import hashlib
 import json
 import os
 import re
-from collections import Counter
 from pathlib import Path
 from urllib.parse import quote
 
@@ -90,80 +89,11 @@ def drawn_by(kind, name):
     title = re.search(r"<title[^>]*>(.*?)</title>", text, re.DOTALL)
     what = title[1].strip() if title else name.replace("-", " ")
     return {
-        "kind": kind,
         "alt": ABOUT.get(path.name.partition("-")[0], "") + what,
         "src": svg_address(text),
         "width": round(SCALE * float(box[1])),
         "height": round(SCALE * float(box[2])),
     }
-
-
-class Filler:
-    """Gives the HTML of each part of the chapter, in its order."""
-
-    def __init__(self, macros, figures, exercises):
-        self.macros, self.figures, self.exercises = macros, figures, exercises
-        self.regions = read_all()
-        self.place, self.marks = "", 0  # the last heading, and the marks since
-        self.left = [name for name in figures if name not in ("grab", "lanes")]  # to be placed
-
-    def __call__(self, kind, value):
-        if kind == "heading":
-            level, name, inner = value
-            self.place, self.marks = name, 1
-            return self.macros.heading(level, name, Markup(inner)) if level > 1 else ""
-        if kind == "show":
-            self.marks += 1
-            shown = value.replace("&", "&amp;")
-            return Markup(
-                f'<i class="show" id="{self.place}.{self.marks}" data-show="{shown}"></i>'
-            )
-        if kind == "include":
-            return self.panel(value)
-        return self.slot(*value.partition(":")[::2]) if kind == "slot" else Markup(value)
-
-    def panel(self, name):
-        """A region of the code."""
-        if name not in self.regions:
-            raise ValueError(f"{chapter.CHAPTER}: there is no region {name}")
-        region = self.regions[name]
-        return self.macros.panel(region, pieces(region))
-
-    def slot(self, kind, name):
-        """A figure, an exercise, a picture or the table of wall-clock times."""
-        if kind == "wallclock":
-            rows = [row for row in ledger.rows() if row["status"] == "MEASURED"]
-            times = {row["tier"]: ledger.show(row) for row in rows}
-            return self.macros.wallclock(rows, times)
-        if kind in ("bench", "stress"):
-            return self.macros.generated(drawn_by(kind, name))
-        if name == "lanes":
-            return self.macros.recall()
-        if name == "grab":
-            return ""  # it stands at the top of the page
-        if kind == "exercise":
-            if name not in self.exercises:
-                known = [*self.exercises]
-                raise ValueError(f"{chapter.CHAPTER}: there is no {kind} {name}; known: {known}")
-            return self.macros.exercise(self.exercises[name])
-        place = self.left.pop(0)
-        return self.macros.figure(name, self.figures[place], place.removeprefix(name))
-
-
-def figures_in(parts, known):
-    """The figures of the chapter, {id: [name, what its passage sets]}, for still.js."""
-    found, seen, changes = {name: [name, {}] for name in ("grab", "lanes")}, Counter(), {}
-    for kind, value in parts:
-        if kind in ("show", "heading"):
-            changes = chapter.changes_of(value) if kind == "show" else {}
-        name = value.removeprefix("figure:") if kind == "slot" else value
-        if kind != "slot" or name == value or name in ("grab", "lanes"):
-            continue
-        if name not in known:
-            raise ValueError(f"{chapter.CHAPTER}: there is no figure {name}; known: {known}")
-        seen[name] += 1
-        found[f"{name}-{seen[name]}" if seen[name] > 1 else name] = [name, changes]
-    return found
 
 
 # ---- the page
@@ -185,8 +115,8 @@ def stylesheet():
     return Markup(re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL)))
 
 
-def environment(veils):
-    """The templates' environment."""
+def environment(**held):
+    """The templates' environment; its macros know what is held."""
     made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE / "templates"),
         autoescape=True,
@@ -199,28 +129,41 @@ def environment(veils):
         (name, data_address(f"font/{kind}", (HERE / file).read_bytes()), *rest)
         for name, file, kind, *rest in fonts.FACES
     ]
-    made.globals.update(course=COURSE, colab=colab, faces=faces, colors=curves.COLORS, veils=veils)
-    made.globals.update(hides=chapter.HIDES)
+    made.globals.update(course=COURSE, colab=colab, faces=faces, colors=curves.COLORS)
+    made.globals.update(hides=chapter.HIDES, ledger=ledger, pieces=pieces, drawn_by=drawn_by)
+    made.globals.update(held)
     return made
+
+
+def placed(parts, **known):
+    """The figures of the page, {id: [name, what its passage sets]}, for still.js. Raises ValueError
+    where the chapter names a figure, an exercise or a region that is not known."""
+    found = {name: [name, {}] for name in ("grab", "lanes")}
+    for kind, values in parts:
+        if values and values[0] not in known.get(kind, values):
+            held = f"there is no {kind} {values[0]}; known: {[*known[kind]]}"
+            raise ValueError(f"{chapter.CHAPTER}: {held}")
+        if kind == "figure":
+            name, again, changes = values
+            found.setdefault(name + again, [name, changes])
+    return found
 
 
 def build(text=None):
     """The page of the chapter, or of `text` in its place. Raises ValueError (file:line: what)
     where it can't be shown as it is."""
     text = (ROOT / chapter.CHAPTER).read_text("utf-8") if text is None else text
-    exercises = all_exercises()
+    exercises, regions = all_exercises(), read_all()
     bets = [name for name, each in exercises.items() if each["choices"]]
     veils = [*bets, "puzzle"]
     data = page_data(veils)
-    text = Numbers().fill(text)
     settable = evaluate("still.js", data, "settable()")
-    parts = chapter.blocks(text, settable["ranges"], settable["starts"])
-    wanted = json.dumps(figures_in(parts, settable["names"]))
-    drawn = evaluate("still.js", data, f"stills({wanted})")
-    templates = environment(veils)
+    parts = chapter.blocks(Numbers().fill(text), settable["ranges"], settable["starts"])
+    figures = placed(parts, figure=settable["names"], exercise=exercises, region=regions)
+    drawn = evaluate("still.js", data, f"stills({json.dumps(figures)})")["figures"]
+    templates = environment(figures=drawn, exercises=exercises, regions=regions, veils=veils)
     macros = templates.get_template("parts.html.j2").module
-    fill = Filler(macros, drawn["figures"], exercises)
-    body, ((_, _, title), *contents) = chapter.assemble(parts, fill, macros, bets)
+    body, ((_, _, title), *contents) = chapter.assemble(parts, macros, bets)
     script, early = bundle("main.js", data), macros.early()
     return templates.get_template("page.html.j2").render(
         policy=policy(early, script),
@@ -228,9 +171,7 @@ def build(text=None):
         early=early,
         script=Markup(script),
         heading=Markup(re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title)),
-        figures=drawn["figures"],
         contents=contents,
         body=body,
         objectives=[chapter.inline(item) for item in load_meta()["objectives"]],
-        regions=list(fill.regions.values()),
     )

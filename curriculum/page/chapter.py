@@ -21,6 +21,7 @@ an answer is found by its words, in text, code and figures.
 
 import itertools
 import re
+from collections import Counter
 from html import escape, unescape
 from urllib.parse import parse_qsl
 
@@ -158,34 +159,42 @@ def inline(text):
 
 
 def blocks(text, ranges, starts=None):
-    """The chapter as a list of (kind, value): html, heading (level, id, html), show, slot, or
-    include (region). `ranges` are those of what the text may set, {name: (low, high)}; `starts`
-    all values of a section, by the scene that it shows."""
+    """The chapter as a list of (kind, values): what the macros of that name are given, and
+    ("figure", (name, which of this name, what its passage sets)). `ranges` are those of what the
+    text may set, {name: (low, high)}; `starts` all values of a section, by the scene it shows."""
     md, out, starts = parser(), [], starts or {"drop": {}}
-    home = starts["drop"]
+    changes, place, marks, seen = {}, "", 0, Counter()
     for node in SyntaxTreeNode(md.parse(text)).children:
+        home = starts[changes.get("scene", "drop")] | changes
         env = {"line": node.map[0] + 1, "ranges": ranges, "home": home}
         shown = COMMENT.sub("", md.renderer.render(node.to_tokens(), md.options, env))
         include = node.type == "fence" and INCLUDE.fullmatch(node.content.strip())
         if include:
-            out.append(("include", include["name"]))
+            out.append(("region", (include["name"],)))
         elif node.type == "fence":
             code = escape(node.content)
-            out.append(("html", f'<pre class="shell" tabindex="0"><code>{code}</code></pre>'))
+            code = f'<pre class="shell" tabindex="0"><code>{code}</code></pre>'
+            out.append(("html", (Markup(code),)))
         elif node.type == "heading":
-            home = starts["drop"]
+            changes, place, marks = {}, node.attrs["id"], 1
             inner = re.sub(r"^<h\d[^>]*>|</h\d>\s*$", "", shown)
-            out.append(("heading", (int(node.tag[1]), node.attrs["id"], inner)))
+            out.append(("heading", (int(node.tag[1]), place, Markup(inner))))
         elif node.type == "table":
             held = shown.replace("<th></th>", "<td></td>")
             around = '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
-            out.append(("html", f"{around}{held}</div>"))
+            out.append(("html", (Markup(f"{around}{held}</div>"),)))
         elif node.type == "html_block":
-            for part in slots(node.content, env["line"], ranges):
-                home = home_of(part[1], starts) if part[0] == "show" else home
-                out.append(part)
+            for kind, name in slots(node.content, env["line"], ranges):
+                values = (name,) if name else ()
+                if kind == "show":
+                    changes, marks = changes_of(name), marks + 1
+                    values = f"{place}.{marks}", name
+                if kind == "figure":
+                    seen[name] += 1
+                    values = name, f"-{seen[name]}" * (seen[name] > 1), changes
+                out.append((kind, values))
         else:
-            out.append(("html", shown))
+            out.append(("html", (Markup(shown),)))
     return out
 
 
@@ -195,14 +204,8 @@ def changes_of(show):
     return {name: float(v) if re.fullmatch(r"[\d.e+-]+", v) else v for name, v in pairs}
 
 
-def home_of(show, starts):
-    """The values of a passage that shows this."""
-    changes = changes_of(show)
-    return starts[changes.get("scene", "drop")] | changes
-
-
 def slots(text, line, ranges):
-    """The slots in a block of comments, as parts. Raises ValueError at other HTML."""
+    """The slots in a block of comments, (kind, name). Raises ValueError at other HTML."""
     if COMMENT.sub("", text).strip():
         raise ValueError(
             f"{CHAPTER}:{line}: raw HTML, {text.strip()[:50]!r}; allowed: Markdown, and slots"
@@ -210,36 +213,35 @@ def slots(text, line, ranges):
     for kind, name in SLOT.findall(text):
         if kind == "show":
             check([pair for pair in asked(name) if pair[0] != "none"], line, ranges)
-            yield "show", name
-        else:
-            yield "slot", f"{kind}:{name}" if name else kind
+        yield kind, name
 
 
 # ---- the whole
 
 
-def assemble(parts, fill, macros, bets):
-    """(HTML, [(level, id, text)] of its headings). fill(kind, value) gives the HTML of a part;
+def assemble(parts, macros, bets):
+    """(HTML, [(level, id, text)] of its headings). The macro of a part's kind gives its HTML;
     `bets` are the exercises whose answers are veiled."""
-    contents, met, found, kinds = [], [], [], kinds_of(parts)
-    for ((kind, value), *rest), columns in zip(segments_of(parts), kinds):
+    contents, met, found, segments = [], [], [], segments_of(parts)
+    for ((kind, values), *rest), columns in zip(segments, columns_of(segments)):
         if kind == "heading":
-            contents.append((*value[:2], Markup(re.sub(r"</?(code|a|math)[^>]*>", "", value[2]))))
-        head = fill(kind, value)
-        inner = [fill(*part) for part in rest]
-        if ("slot", "figure:puzzle") in rest:  # what follows it is its answer
-            at = rest.index(("slot", "figure:puzzle")) + 1
-            inner[at:] = [macros.veil("puzzle"), *inner[at:], "</div></div>"]
-        last = value.removeprefix("exercise:") if kind == "slot" else None
+            *where, title = values
+            contents.append((*where, Markup(re.sub(r"</?(code|a|math)[^>]*>", "", title))))
+        head = getattr(macros, kind)(*values)
+        inner = [getattr(macros, kind)(*values) for kind, values in rest]
+        for at, part in enumerate(rest, 1):
+            if "puzzle" in part[1]:  # what follows it is its answer
+                inner[at:] = [macros.veil("puzzle"), *inner[at:], "</div></div>"]
+        last = values[0] if kind == "exercise" else None
         met += [last] if last in bets else []
-        met = [] if kind == "heading" and value[1] == END else met
+        met = [] if END in values else met
         said = words(" ".join(inner))
         veils = [name for name in met if said and (name == last or TELLS[name].search(said))]
         head, inner = (
             f'<div class="part {column}">{each}</div>'
             for column, each in zip(columns, (head, "\n".join(inner)))
         )
-        if kind == "slot" or value[0] <= 2:  # exercises, and what begins a part, are always seen
+        if last or values[0] <= 2:  # exercises, and what begins a part, are always seen
             found.append((head, "", ()))
             head = ""
         found.append((head, inner, veils))
@@ -249,22 +251,22 @@ def assemble(parts, fill, macros, bets):
 def segments_of(parts):
     """The parts from each heading or exercise to the next."""
     found = []
-    for kind, value in parts:
-        if kind == "heading" or value.startswith("exercise:"):
+    for part in parts:
+        if part[0] in ("heading", "exercise"):
             found.append([])
-        found[-1].append((kind, value))
+        found[-1].append(part)
     return found
 
 
-def kinds_of(parts):
+def columns_of(segments):
     """Of each segment whether the live figure stands beside its head, and beside the rest."""
     found, shown = [], False
-    for segment in segments_of(parts):
-        marks = [not value.startswith("none") for kind, value in segment if kind == "show"]
-        heading = segment[0][0] == "heading"
-        rest = (shown and not heading) or any(marks)
-        found.append([rest if heading else shown, rest] if segment[1:] or not heading else None)
-        shown = marks[-1] if marks else rest
+    for (first, _), *rest in segments:
+        marks = [not values[1].startswith("none") for kind, values in rest if kind == "show"]
+        heading = first == "heading"
+        beside = (shown and not heading) or any(marks)
+        found.append([beside if heading else shown, beside] if rest or not heading else None)
+        shown = marks[-1] if marks else beside
     for k in reversed(range(len(found))):  # a heading alone stands where the next one does
         found[k] = found[k] or found[k + 1]
     return [["beside" if each else "centred" for each in both] for both in found]

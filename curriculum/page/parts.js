@@ -1,8 +1,9 @@
 /* What the explaining figures share: scenes of balls, results that are kept, a chart beside a
  * picture, a lens, and handles that set a number. */
-import { ball, circle, clipped, el, label, plot, round, table, tenTo, within } from "./draw.js";
+import { axis, ball, circle, clipped, el, label, plot, round, table } from "./draw.js";
+import { tenTo, within } from "./draw.js";
 import { data } from "./data.js";
-import { GRAVITY } from "./engine.js";
+import { GRAVITY, makeRows, projectImpulse, solveContacts } from "./engine.js";
 import { knobsOf, QUANTITIES } from "./store.js";
 
 export const R = data.radius; // m
@@ -39,6 +40,23 @@ export function stillMoves(dt, stiffness, damping, steps, rows) {
   return Number.isFinite(far) ? Math.min(FARTHEST, far) : FARTHEST;
 }
 
+/* What sweeps over a column of balls do, contact by contact from below: [{contact, wanted, lam, vy}],
+ * where `wanted` is the change before the clamp; first what they start with. */
+export function visits(masses, lam, vy, count) {
+  const contacts = masses.map((_, i) => ({ i, j: i - 1, nx: 0, ny: 1 }));
+  const rows = makeRows(contacts, masses).map((row, k) => ({ ...row, lam: lam[k] }));
+  const vx = masses.map(() => 0);
+  const seen = [{ contact: null, wanted: 0, lam, vy: vy.slice() }];
+  for (let at = 0; at < count; at++) {
+    const contact = at % rows.length;
+    let wanted = 0;
+    const project = (sum, change) => projectImpulse(sum, (wanted = change));
+    solveContacts([rows[contact]], vx, vy, { iters: 1, project });
+    seen.push({ contact, wanted, lam: rows.map((row) => row.lam), vy: vy.slice() });
+  }
+  return seen;
+}
+
 // A function that keeps its last results, by its arguments.
 export function kept(compute) {
   const held = new Map();
@@ -60,24 +78,9 @@ export const softKnobs = (view) => ({
   restitution: 0,
 });
 
-// What a contact of a ball of 1 kg carries [m g] where it is at rest, at a depth [r]: its
-// law(contact) says {target, softness}.
-const onFloor = (depth) => ({ i: 0, j: -1, nx: 0, ny: 1, depth: depth * R });
-export function loadAt(law, dt, depth) {
-  const { target, softness } = law(onFloor(depth));
-  return target / softness / (G * dt);
-}
-
-// Where it is at rest under a load, found by halving: {depth, target, softness}.
-export function atRest(law, dt, load = 1) {
-  let [less, depth] = [0, 2];
-  for (let k = 0; k < 50; k++) {
-    const middle = 0.5 * (less + depth);
-    if (loadAt(law, dt, middle) > load) depth = middle;
-    else less = middle;
-  }
-  return { depth, ...law(onFloor(depth)) };
-}
+// How deep each of balls of such heights [m] is in what is below it [r].
+export const depthsOf = (heights) =>
+  heights.map((y, i) => (i ? 2 - (y - heights[i - 1]) / R : 1 - y / R));
 
 // ---- pictures
 
@@ -126,6 +129,14 @@ export function tens(low, high) {
   return { domain: [10 ** low, 10 ** high], ticks, log: true };
 }
 
+// One up to the greatest value, with room for a zero; `first`: its lowest ticks.
+export function decades(most, name, ...first) {
+  const top = Math.min(1e12, 10 ** Math.ceil(Math.log10(most)));
+  const high = [3, 6, 9, 12].map((power) => [10 ** power, tenTo(power)]);
+  const ticks = [...first, ...high].filter((each) => (each[0] ?? each) <= top);
+  return { ...axis([0.1, top], name, ...ticks), log: true, zero: true };
+}
+
 // ---- handles
 
 /* A handle at (x, y) for one number: `name` in the figure's own state, or a quantity of the page.
@@ -137,32 +148,35 @@ export function tens(low, high) {
  * A number of its own that is set takes the figure's clock back to before its start. */
 export function grip(view, name, x, y, label, text, options) {
   const quantity = QUANTITIES[name];
-  const { low, high, at, by, step, times, get, set, ...more } = { ...quantity, ...options };
-  const { r, box, hold, release } = more;
+  const { at, by, step, times, get, r, box, hold, release } = { ...quantity, ...options };
   const value = get || (() => (quantity ? view.get(name) : view.own[name]));
-  const put = (wanted) => {
-    const held = within(low, wanted, high);
-    if (set) set(held);
-    else if (quantity) view.set({ [name]: Number(held.toPrecision(quantity.digits)) });
-    else Object.assign(view.own, "time" in view.own && { time: null }, { [name]: tidy(held) });
-  };
+  const put = (wanted) => putNumber(view, name, wanted, { ...quantity, ...options });
   const moved = (toX, toY) => view.from.value + by(toX - view.from.x, toY - view.from.y);
   const drag = (toX, toY) => put(by ? moved(toX, toY) : at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
   return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release, put };
 }
 
-/* A handle for two numbers: at(x, y) gives those where it is dragged to, put(a, b) sets them, and an
- * arrow key to the right or up moves it by `px` on the screen. */
-export function pair(name, [x, y], label, text, { value, at, put, px = 4, r }) {
-  const drag = (toX, toY) => put(...at(toX, toY));
+function putNumber(view, name, wanted, { low, high, digits, set }) {
+  const held = within(low, wanted, high);
+  const value = Number(digits ? held.toPrecision(digits) : held.toFixed(4));
+  if (set) set(value);
+  else if (!(name in view.own)) view.set({ [name]: value });
+  else Object.assign(view.own, "time" in view.own && { time: null }, { [name]: value });
+}
+
+/* A handle for two numbers, `ranges`: {name: [low, high]}. at(x, y) gives those where it is dragged
+ * to, and an arrow key moves it by `px`; they are kept with so many digits. */
+export function pair(view, name, [x, y], label, text, ranges, { at, px = 4, digits, r }) {
+  const drag = (toX, toY) =>
+    Object.entries(ranges).forEach(([each, [low, high]], k) =>
+      putNumber(view, each, at(toX, toY)[k], { low, high, digits }),
+    );
   let [nowX, nowY] = [x, y];
   const nudge = (dx, dy) => drag((nowX += px * dx), (nowY += px * dy));
-  return { name, x, y, r, label, text, value, drag, nudge };
+  return { name, x, y, r, label, text, value: at(x, y)[0], drag, nudge };
 }
 
 // The same handle at another place, too: all of a ball. The hand goes on as from the first.
 export const wholly = (handle, name, x, y, r, box) =>
   ({ ...handle, name, x, y, r, box, hold: handle.hold || [handle.x, handle.y] });
-
-const tidy = (value) => Number(value.toFixed(4));

@@ -10,8 +10,7 @@ export class Reader {
   // passages: [{node, section, look}] in the order of the page; look: what the live figure shows
   constructor(passages, sectionOf, lanes) {
     Object.assign(this, { passages, sectionOf, lanes, shown: null, called: null });
-    const wide = ".centred :is(.fig, .code, .scroll, .generated, .exercise > pre)";
-    this.wide = [...document.querySelectorAll(wide)];
+    this.figures = [...document.querySelectorAll(".part > .fig")];
     this.live = document.getElementById("figure");
     this.beside = window.matchMedia("(min-width: 75rem)");
     for (const span of document.querySelectorAll(".drag")) this.#number(span);
@@ -75,8 +74,9 @@ export class Reader {
     const line = this.beside.matches ? 0.7 : 1; // of the window; where no figure stands, at once
     const last = seen.findLast(({ node }) => place(node).top < line * innerHeight) || seen[0];
     if (!last) return;
-    const over = (box) => box.height > 0 && box.top < innerHeight && box.bottom > 0;
-    this.live.classList.toggle("back", !last.look || this.wide.some((each) => over(place(each))));
+    const over = (box) => box.top < innerHeight && box.bottom > 0;
+    const spread = (each) => over(place(each)) && getComputedStyle(each).display === "grid";
+    this.live.classList.toggle("back", !last.look || this.figures.some(spread));
     if (last === this.shown) return;
     this.shown = last;
     if (last.look) this.#look(last.section, last.look, true);

@@ -27,6 +27,7 @@ import { escape, plain } from "./draw.js";
 import { fitting, fromSlider, QUANTITIES, shown, sliderRange, toSlider } from "./store.js";
 
 const NARROW = 480; // px: from this width on a drawing is wide
+const LEAST = 358; // px: on a smaller screen than a phone's it is drawn so wide, and made smaller
 const NEAR = 600; // px beyond the window in which figures are drawn
 
 export const heightOf = (figure, width) => (width < NARROW && figure.narrow) || figure.height;
@@ -172,8 +173,9 @@ export class Stage {
   set = (changes) => this.section.set(changes);
 
   #resize() {
-    const { clientWidth, clientHeight } = this.svg.parentElement;
-    Object.assign(this, { width: clientWidth, height: clientHeight }); // the style says how high
+    const { clientWidth, clientHeight } = this.svg.parentElement; // the style says how high
+    this.scale = Math.max(1, LEAST / (clientWidth || LEAST)); // of the drawing to the screen
+    Object.assign(this, { width: this.scale * clientWidth, height: this.scale * clientHeight });
     this.draw(); // at once: the picture may not lag behind its frame
   }
 
@@ -215,7 +217,7 @@ export class Stage {
     this.grabbed = handle.name;
     this.from = handle;
     const [x, y] = handle.hold || [handle.x, handle.y];
-    this.aside = [x - event.clientX, y - event.clientY]; // of the pointer
+    this.aside = [x - this.scale * event.clientX, y - this.scale * event.clientY]; // of the pointer
     this.#trail = [];
     if (this.figure.clock) this.stop();
     this.#drag(event);
@@ -223,7 +225,7 @@ export class Stage {
 
   #drag(event) {
     if (this.grabbed === null) return;
-    const [x, y] = [event.clientX + this.aside[0], event.clientY + this.aside[1]];
+    const [x, y] = [event.clientX, event.clientY].map((at, k) => this.scale * at + this.aside[k]);
     this.#trail = [...this.#trail.slice(-4), [performance.now(), x, y]];
     this.#handle(this.grabbed)?.drag(x, y);
     this.redraw();

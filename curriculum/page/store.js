@@ -1,22 +1,23 @@
 /* The state of the page, a section at a time: within one every number in a sentence, every knob,
  * every figure and the address agree at every moment; the next begins with what its own text says.
  *
- * A quantity is {low, high, log, step, whole, digits, unit, label}, by the name of contact.py's
- * flag where it has one. Nothing here touches the document; main.js binds it to the address. */
+ * A quantity is {low, high, step, near, digits, whole, unit, label}, by the name of contact.py's
+ * flag where it has one; the steps of its slider are as long or get shorter towards `near`. Nothing
+ * here touches the document; main.js binds it to the address. */
 import { data } from "./data.js";
 import { plain } from "./draw.js";
 
 export const QUANTITIES = {
-  dt: { low: 0.0005, high: 0.064, log: true, digits: 3, unit: "s", label: "Time step dt" },
-  stiffness: { low: 100, high: 1e6, log: true, digits: 3, unit: "N/m", label: "Stiffness k" },
+  dt: { low: 0.0005, high: 0.064, near: 0, digits: 3, unit: "s", label: "Time step dt" },
+  stiffness: { low: 100, high: 1e6, near: 0, digits: 3, unit: "N/m", label: "Stiffness k" },
   damping: { low: 0, high: 300, step: 1, digits: 3, unit: "N s/m", label: "Damping c" },
   baumgarte: { low: 0, high: 1, step: 0.01, digits: 2, unit: "", label: "Baumgarte β" },
   iters: { low: 1, high: 100, step: 1, whole: true, digits: 3, unit: "", label: "Sweeps" },
   warm: { low: 0, high: 1, step: 0.05, digits: 2, unit: "", label: "Warm start" },
   restitution: { low: 0, high: 1, step: 0.01, digits: 2, unit: "", label: "Restitution e" },
-  impedance: { low: 0.5, high: 0.9999, near: 1, digits: 5, unit: "", label: "Impedance d" },
-  timeconst: { low: 0.002, high: 0.5, log: true, digits: 3, unit: "s", label: "Time constant" },
-  dampratio: { low: 0.1, high: 5, log: true, digits: 2, unit: "", label: "Damping ratio" },
+  impedance: { low: 0.5, high: 0.9999, near: 1, digits: 3, unit: "", label: "Impedance d" },
+  timeconst: { low: 0.002, high: 0.5, near: 0, digits: 3, unit: "s", label: "Time constant" },
+  dampratio: { low: 0.1, high: 5, near: 0, digits: 2, unit: "", label: "Damping ratio" },
 };
 const SCENES = Object.keys(data.scenes);
 const SLIDER = 400; // positions of a slider that is not plain
@@ -39,22 +40,20 @@ export function shown(values, name) {
 
 // ---- sliders
 
-export const sliderRange = ({ low, high, step, log, near }) =>
-  log || near ? { min: 0, max: SLIDER, step: 1 } : { min: low, max: high, step: step || 1 };
+export const sliderRange = ({ low, high, step }) =>
+  step ? { min: low, max: high, step } : { min: 0, max: SLIDER, step: 1 };
 
-export function toSlider({ low, high, log, near }, value) {
-  if (log) return Math.round((SLIDER * Math.log(value / low)) / Math.log(high / low));
-  if (!near) return value;
-  const whole = Math.log((near - low) / (near - high));
-  return Math.round((SLIDER * Math.log((near - low) / (near - value))) / whole);
+export function toSlider({ low, high, step, near }, value) {
+  if (step) return value;
+  const [first, last] = [low - near, high - near];
+  return Math.round((SLIDER * Math.log((value - near) / first)) / Math.log(last / first));
 }
 
-export function fromSlider({ low, high, log, near, digits }, position) {
-  const share = position / SLIDER;
-  if (log) return Number((low * (high / low) ** share).toPrecision(digits));
-  if (!near) return Number(position.toPrecision(6));
-  const left = (near - low) * ((near - high) / (near - low)) ** share;
-  return Number((near - Number(left.toPrecision(3))).toPrecision(7));
+export function fromSlider({ low, high, step, near, digits }, position) {
+  if (step) return Number(position.toPrecision(6));
+  const [first, last] = [low - near, high - near];
+  const away = Number((first * (last / first) ** (position / SLIDER)).toPrecision(digits));
+  return Number((near + away).toPrecision(7));
 }
 
 // The nearest value that a quantity may take.

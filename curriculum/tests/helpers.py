@@ -7,6 +7,7 @@ import sys
 from curriculum.regions import ROOT
 
 CONTACT = ROOT / "contact.py"
+NO_PLUGINS = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # as a learner has pytest
 
 
 def python(*words, cwd=ROOT, **environment):

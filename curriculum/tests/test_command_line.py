@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import contact
-from curriculum.tests.helpers import CONTACT, ROOT, python
+from curriculum.tests.helpers import CONTACT, NO_PLUGINS, ROOT, python
 
 FOLDER_ONLY = ("recording:", "next,", "no recording:", "exact: ")  # lines that the folder adds
 
@@ -320,19 +320,23 @@ def test_a_pipe_that_nobody_reads_ends_it_without_a_word(words, unbuffered, tmp_
     os.close(reader)
     words = [sys.executable, *words.replace("OUT", str(tmp_path)).split()]
     pipes = {"stdout": writer, "stderr": subprocess.PIPE, "text": True}
-    environment = os.environ | {"PYTHONUNBUFFERED": unbuffered}
+    environment = os.environ | NO_PLUGINS | {"PYTHONUNBUFFERED": unbuffered}
     done = subprocess.run(words, cwd=ROOT, env=environment, **pipes)
     os.close(writer)
     assert (done.returncode, done.stderr) == (141, "")
 
 
-def test_it_runs_without_asserts_docstrings_and_in_an_ascii_locale(tmp_path):
-    ascii_only = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    done = python("-OO", CONTACT, "--steps", "1e1", "--plot", "--out", tmp_path, **ascii_only)
+@pytest.mark.parametrize("option, files", [("-O", ["--no-rerun"]), ("-OO", ["--plot"])])
+def test_it_runs_without_asserts_docstrings_and_in_an_ascii_locale(option, files, tmp_path):
+    plain = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"} | NO_PLUGINS
+    done = python(option, CONTACT, "--steps", "1e1", *files, "--out", tmp_path, **plain)
     assert (done.returncode, done.stderr) == (0, "")
     assert strict_json(tmp_path / "metrics.json")["steps"] == 10
-    checks = python("-OO", "checks.py", "-k", "ex2", **ascii_only)
+    checks = python(option, "checks.py", "-k", "ex2", **plain)
     assert "ex2: " in checks.stdout and (checks.returncode, checks.stderr) == (0, "")
+    asked = python(option, "exercises/ex2_completion_contact.py", **plain)
+    assert "two lines that make a contact one-sided" in asked.stdout
+    assert (asked.returncode, asked.stderr) == (2, "")
 
 
 def test_a_folder_without_a_name_is_refused(capsys):
@@ -371,20 +375,3 @@ def test_a_knob_has_one_default():
     assert contact.Settings() == contact.Settings(
         *(getattr(args, k) for k in contact.Settings._fields)
     )
-
-
-def test_the_last_line_knows_when_all_exercises_are_done(tmp_path):
-    for name in ("contact.py", "checks.py"):
-        shutil.copy(ROOT / name, tmp_path)
-    shutil.copytree(ROOT / "exercises", tmp_path / "exercises")
-    for room in ("curriculum", "curriculum/run"):
-        (tmp_path / room).mkdir()
-        for path in (ROOT / room).glob("*.py"):
-            shutil.copy(path, tmp_path / room)
-    flags = ("--steps", 5, "--no-rerun")
-    first = python("contact.py", *flags, cwd=tmp_path).stdout
-    assert first.splitlines()[-1].endswith(" exercises/ex1_predict_contact.py")
-    done = {path.stem.split("_")[0]: "done" for path in (tmp_path / "exercises").glob("ex*.py")}
-    (tmp_path / "outputs/ch3.5-contact/exercises.json").write_text(json.dumps(done))
-    last = python("contact.py", *flags, cwd=tmp_path).stdout
-    assert last.splitlines()[-1].startswith("all exercises are done")

@@ -7,27 +7,26 @@ import json
 import math
 import os
 import re
+import runpy
 import shlex
 import shutil
 import subprocess
 import sys
 from functools import partial
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
+from curriculum.tests.helpers import NO_PLUGINS, ROOT, python
 
-from kit import FACTS, alone, blanks, knobs, predict, script, trials  # noqa: E402
+sys.path.insert(0, str(ROOT / "exercises"))
+
+from kit import FACTS, alone, blanks, knobs, predict, trials  # noqa: E402
 from kit.progress import FILES  # noqa: E402
 
 import contact  # noqa: E402
 
-PLAIN = os.environ | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # as a learner has pytest
-ALL_DONE = "all exercises are done"
 GIVEN = {name: alone.load(ROOT / file) for name, file in FILES.items()}  # as a learner gets them
 BETS = {name: predict.asked(GIVEN[name].__doc__) for name in predict.BETS}
 ASKED = "?        ?           ?            ?          ?"
@@ -73,8 +72,8 @@ FILLED = {      # name: [(a part of the file, what a learner writes there)]
 }  # fmt: skip
 
 
-def exercise(**functions):
-    return SimpleNamespace(__file__="exercises/exN.py", **functions)
+def exercise(name="ex2", **written):
+    return SimpleNamespace(__file__=str(ROOT / FILES[name]), **written)
 
 
 @pytest.fixture
@@ -83,9 +82,9 @@ def copy(tmp_path):
     folder = tmp_path / "my robot's course"
     leave = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "exercises", folder / "exercises", ignore=leave)
-    (folder / "curriculum").mkdir()
+    (folder / "curriculum/run").mkdir(parents=True)
     for name in ("contact.py", "checks.py", *(f"curriculum/{name}.py" for name in (
-            "commands", "files", "implicit", "exact"))):  # fmt: skip
+            "commands", "files", "implicit", "exact", "run/next_steps"))):  # fmt: skip
         shutil.copy(ROOT / name, folder / name)
 
     def fill(name, *changes):
@@ -106,32 +105,27 @@ def run(folder, *command, lacks="yaml", options="-B"):
         "sys.path[0] = sys.argv[0].rpartition('/')[0] or '.'; "
         "runpy.run_path(sys.argv[0], run_name='__main__')"
     )
-    words = [sys.executable, options, "-c", start, *map(str, command)]
-    return subprocess.run(words, cwd=folder, env=PLAIN, capture_output=True, text=True)
+    return python(options, "-c", start, *command, cwd=folder, **NO_PLUGINS)
+
+
+def test_a_script_that_is_not_filled_in_prints_its_task_anywhere_and_without_docstrings(tmp_path):
+    for name in ("ex1", "ex2"):
+        result = run(tmp_path, ROOT / FILES[name], options="-BOO")
+        assert result.stdout.startswith(GIVEN[name].__doc__.split("\n    python")[0])
+        assert (result.returncode, result.stderr) == (2, "")
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_untouched_an_exercise_waits_and_says_what_to_do(name):
-    given = GIVEN[name]
-    if name in script.BETS:
-        state, words = script.BETS[name].state(given)
-        assert (state, [[name, state, words, ""]]) == script.BETS[name].judged(name, given)
-    else:
-        state, ((_, first, words, shown), *_) = trials.judged(name, given)
-        assert first == "blank" and not shown
-    assert state == "blank" and FILES[name] in words
-    assert name != "ex9" or "row sink: given ? ? ? ? ?, allowed: five" in words
-
-
-def test_a_script_that_is_not_filled_in_prints_its_task_and_hints_anywhere_and_without_docstrings(
-    tmp_path,
-):
-    for name, *flags in (("ex1",), ("ex2",), ("ex2", "--hint", "1")):
-        result = run(tmp_path, ROOT / FILES[name], *flags, options="-BOO")
-        task = GIVEN[name].__doc__.split("\n    python")[0]
-        hint = f"hint 1 of {len(FACTS[name]['hints'])}: {FACTS[name]['hints'][0]}\n"
-        assert result.stdout == hint if flags else result.stdout.startswith(task)
-        assert (result.returncode, result.stderr) == (0 if flags else 2, "")
+def test_every_script_prints_the_hint_that_is_asked_for_and_no_other(name, capsys, monkeypatch):
+    hints = FACTS[name]["hints"]
+    for number, hint in enumerate(hints, 1):
+        monkeypatch.setattr(sys, "argv", [FILES[name], "--hint", str(number)])
+        runpy.run_path(str(ROOT / FILES[name]), run_name="__main__")
+        assert capsys.readouterr().out == f"hint {number} of {len(hints)}: {hint}\n"
+    monkeypatch.setattr(sys, "argv", [FILES[name], "--hint", "0"])
+    with pytest.raises(SystemExit, match="2"):
+        runpy.run_path(str(ROOT / FILES[name]), run_name="__main__")
+    assert re.fullmatch(r"ex\w+\.py: error: argument --hint: .*\n", capsys.readouterr().err)
 
 
 def test_a_learners_way_through_all_ten(copy, tmp_path):
@@ -140,21 +134,24 @@ def test_a_learners_way_through_all_ten(copy, tmp_path):
     following = dict(zip(FILES, [*FILES.values()][1:]))
     for name, file in FILES.items():
         fill(name)
-        command = [sys.executable, "-B", folder / file]
-        if name == "ex1":  # the command that is printed works as it is printed
-            printed = run(folder, "checks.py", "-k", "ex1_").stdout.split("now read what happens: ")
-            command = printed[1].splitlines()[0]
+        command = shlex.join([sys.executable, "-B", str(folder / file)])
+        if name == "ex1":  # untouched ones wait; the command that is printed works as it is printed
+            printed = run(folder, "checks.py").stdout
+            assert "10 skipped" in printed and all(f"{each}: " in printed for each in FILES)
+            assert all(FILES[each] in printed for each in FILES)
+            assert "row sink: given ? ? ? ? ?, allowed: five" in printed
+            command = printed.split("now read what happens: ")[1].splitlines()[0]
         where = tmp_path if name == "ex2" else folder
-        done = subprocess.run(
-            command, shell=name == "ex1", cwd=where, env=PLAIN, capture_output=True, text=True
-        )
+        done = subprocess.run(command, shell=True, cwd=where, capture_output=True, text=True)
         assert done.returncode == 0, done.stdout + done.stderr
         assert "a print left in" not in done.stdout
         last = done.stdout.splitlines()[-1]
         assert following.get(name, "") in last and (name == "ex8") != (sys.executable in last)
     result = run(folder, "checks.py")
     assert result.returncode == 0 and "10 passed" in result.stdout
-    assert last.startswith(ALL_DONE) and ALL_DONE in result.stdout.splitlines()[-1]
+    asked = run(folder, "contact.py", "--steps", 5, "--no-rerun")
+    for text in (done.stdout, result.stdout, asked.stdout):
+        assert text.splitlines()[-1].startswith("all exercises are done")
 
 
 def test_what_is_wrong_broken_or_without_end_fails_its_own_check_and_says_why(copy):
@@ -195,7 +192,7 @@ def test_watch_checks_again_when_an_exercise_is_saved(copy):
     folder, fill = copy
     command = [sys.executable, "-B", "checks.py", "--watch", "-k", "ex8"]
     with subprocess.Popen(
-        command, cwd=folder, env=PLAIN, stdout=subprocess.PIPE, text=True
+        command, cwd=folder, env=os.environ | NO_PLUGINS, stdout=subprocess.PIPE, text=True
     ) as process:
         seen = ""
         for line in process.stdout:
@@ -391,7 +388,7 @@ def test_a_bet_waits_for_a_choice_and_a_reason(name):
         ("D", "so it has to be", "given 'D', allowed: 'A', 'B', 'C'"),
         ("A", "because", f"write a sentence of four words or more. {BETS[name].why}"),
     ):
-        made = exercise(PREDICTION=prediction, WHY=why, __doc__=GIVEN[name].__doc__)
+        made = exercise(name, PREDICTION=prediction, WHY=why)
         state, ((_, _, words, shown),) = predict.judged(name, made)
         assert state == "blank" and part in words and shown == ""
 
@@ -408,7 +405,7 @@ def test_a_bet_is_read_from_its_docstring_and_nothing_of_that_is_lost():
 def test_after_the_run_there_is_a_word_on_every_choice(name, numbers):
     right = predict.answer(name, numbers[name])
     for mine in "ABC":
-        made = exercise(PREDICTION=mine, WHY="so it is", __doc__=GIVEN[name].__doc__)
+        made = exercise(name, PREDICTION=mine, WHY="so it is")
         text = " ".join(predict.verdict(name, made, numbers[name]).split())
         assert ("That is what happens." in text) == (mine == right)
         assert all(f"Why {c}:" in text if c == right else f"Why not {c}:" in text for c in "ABC")
@@ -484,22 +481,15 @@ def test_a_choice_that_is_not_the_only_one_is_no_key(numbers, monkeypatch):
         predict.answer("ex3", numbers["ex3"])
 
 
-def test_the_measurements_are_the_published_ones(numbers):
-    first, third, fourth, _ = numbers.values()
-    assert first["penalty_deepest"] == pytest.approx(0.251329183485, abs=1e-11)
-    assert first["lcp_deepest"] == pytest.approx(0.056743325071, abs=1e-11)
-    assert first["penalty_at_rest"] == pytest.approx(0.00981, abs=1e-9)
-    assert first["lcp_at_rest"] < 1e-9
-    assert third["penalty_long"] == pytest.approx(1409, abs=1) and third["lcp_long"] == 0.0
-    assert third["penalty_usual"] == 0.0 and third["limit"] < 0.03
-    assert fourth["soft_light"] == pytest.approx(fourth["soft_heavy"], rel=1e-9)
-    assert fourth["soft_light"] == pytest.approx(0.0036718, abs=1e-7)
-    assert fourth["penalty_heavy"] == pytest.approx(10 * fourth["penalty_light"], rel=2e-3)
-
-
 def test_the_captions_of_the_tables_are_what_was_run(numbers):
-    """Their steps and masses, run again, give the numbers below them."""
+    """Their times, steps and masses, run again, give the numbers below them."""
     drop = contact.build_scene("drop")
+    seconds = float(re.search(r"followed for ([\d.]+) s", GIVEN["ex1"].__doc__)[1])
+    for model in ("penalty", "lcp"):
+        run = contact.run_model(model, drop, 0.002, round(seconds / 0.002))
+        depth = np.maximum(0.1 - run.q[:, 1, 0], 0.0) / 0.1
+        assert numbers["ex1"][f"{model}_deepest"] == pytest.approx(depth.max(), rel=1e-9)
+        assert numbers["ex1"][f"{model}_at_rest"] == pytest.approx(depth[-1], abs=1e-9)
     for part in ("usual", "long"):
         dt = float(re.fullmatch(r"dt = ([\d.]+) s", predict.BETS["ex3"][3][part].head)[1])
         run = contact.run_model("penalty", drop, dt, 2000)

@@ -1,9 +1,8 @@
 /* The sweep as a walk: the impulses of two contacts are a plane, the cost a bowl over it, and each
  * visit to a contact goes to the lowest point along its own axis, but not below zero. */
 import { arrow, axis, ball, circle, clipped, label, number, path, plural, rect } from "../draw.js";
-import { steps, table, within } from "../draw.js";
-import { makeRows, solveContacts } from "../engine.js";
-import { beside, grip, kept, pair } from "../parts.js";
+import { steps, table } from "../draw.js";
+import { beside, grip, kept, pair, visits } from "../parts.js";
 
 const [PX, UNIT, GROUND] = [36, 22, 40]; // px: a radius, an arrow for g dt, the table
 const SWEEPS = 40;
@@ -13,16 +12,8 @@ const LEVELS = [0.02, 0.1, 0.3, 0.7, 1.4, 2.5, 4]; // of the contours, as shares
 /* From the impulses `begin` of table and lower ball, and of the two balls, [m g dt]: those after
  * every visit. Speeds in g dt; the upper ball is `heavy` times as heavy. */
 const walk = kept((speeds, begin, heavy) => {
-  const contacts = [0, 1].map((i) => ({ i, j: i - 1, nx: 0, ny: 1, depth: 0 }));
-  const rows = makeRows(contacts, [1, heavy]);
-  const [vx, vy] = [[0, 0], [speeds[0] + begin[0] - begin[1], speeds[1] + begin[1] / heavy]];
-  rows.forEach((row, k) => (row.lam = begin[k]));
-  const seen = [begin];
-  for (let at = 0; at < 2 * SWEEPS; at++) {
-    solveContacts([rows[at % 2]], vx, vy, { iters: 1 });
-    seen.push(rows.map(({ lam }) => lam));
-  }
-  return seen;
+  const vy = [speeds[0] + begin[0] - begin[1], speeds[1] + begin[1] / heavy];
+  return visits([1, heavy], begin, vy, 2 * SWEEPS).map(({ lam }) => lam);
 });
 
 // The contour of the bowl so high above its lowest point, where both balls are stopped.
@@ -58,7 +49,7 @@ function draw(view) {
   const { own } = view;
   const { v1, v2, heavy } = own;
   const most = 3.5 * heavy; // m g dt, that are seen
-  const begin = own.begin.map((each) => Math.min(each, most));
+  const begin = [own.begin1, own.begin2].map((each) => Math.min(each, most));
   const seen = walk([v1, v2], begin, heavy);
   const end = seen[2 * SWEEPS];
   const contour = contourOf([v1, v2], heavy);
@@ -78,19 +69,18 @@ function draw(view) {
     const name = `the ${["lower", "upper"][k]} ball’s speed before the sweeps`;
     return grip(view, `v${k + 1}`, middle, y, name, `${number(own[`v${k + 1}`], 2)} g dt`, range);
   };
-  const put = (x, y) =>
-    (own.begin = [x, y].map((each) => Number(within(0, each, most).toPrecision(3))));
   const list = (pair) => pair.map((each) => number(each, 3)).join(" and ");
   const told = ["where the sweeps start", `${list(begin)} m g dt`];
   const from = [sx(begin[0]), sy(begin[1])];
-  const to = { value: begin[0], at: (x, y) => [sx.back(x), sy.back(y)], put };
+  const ranges = { begin1: [0, most], begin2: [0, most] };
+  const to = { at: (x, y) => [sx.back(x), sy.back(y)] };
   const near = ([x, y]) => Math.hypot(x - end[0], y - end[1]) < 1e-3 * Math.hypot(...end, 1);
   const visits = seen.findIndex(near);
   return {
     svg,
     words: `From ${list(begin)} m g dt the sweeps come to ${list(end)}, within a thousandth ` +
       `after ${plural(Math.ceil(visits / 2), "sweep")}.`,
-    handles: [...at.map(hold), pair("start", from, ...told, to)],
+    handles: [...at.map(hold), pair(view, "start", from, ...told, ranges, to)],
     lit: [["sweep", "lam = max"]],
   };
 }
@@ -101,7 +91,7 @@ export const figure = {
     "Each visit goes to the lowest point along one axis and stops at the wall: drag where the " +
     "sweeps start, and the balls’ speeds, until one contact need not push.",
   height: 330,
-  start: () => ({ v1: -1, v2: -1, heavy: 1, begin: [0, 2.5] }),
+  start: () => ({ v1: -1, v2: -1, heavy: 1, begin1: 0, begin2: 2.5 }),
   buttons: [
     [
       ({ own }) => `The upper ball ${own.heavy > 1 ? "as" : "ten times as"} heavy`,

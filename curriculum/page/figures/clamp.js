@@ -1,5 +1,5 @@
 /* The clamp is on the sum of the changes. In a groove one contact must take some push back. */
-import { arrow, ball, label, number, shift, within } from "../draw.js";
+import { arrow, ball, label, number, shift } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
 import { kept, pair, wholly } from "../parts.js";
 
@@ -8,7 +8,7 @@ const SIDES = [-1, 1];
 // The ball's velocity after 20 sweeps in a groove of two held balls, reached with (vx, vy).
 function leaves(vx, vy, project) {
   const contacts = SIDES.map((side, k) => ({ i: 0, j: k + 1, nx: -0.6 * side, ny: 0.8, depth: 0 }));
-  const rows = makeRows(contacts, [1, Infinity, Infinity], [0, 0], [0, 0]);
+  const rows = makeRows(contacts, [1, Infinity, Infinity]);
   const [x, y] = [[vx, 0, 0], [vy, 0, 0]];
   solveContacts(rows, x, y, { iters: 20, project });
   return { vx: x[0], vy: y[0], speed: Math.hypot(x[0], y[0]), lam: rows.map((c) => c.lam) };
@@ -41,15 +41,12 @@ function draw(view) {
   const [right, wrong] = both(vx, vy);
   const r = Math.min(52, view.width / 9.5);
   const [x, y, scale] = [view.width / 4, view.height - 3.2 * r, 1.7 * r];
-  const put = (toX, toY) => {
-    view.own.vx = Number(within(-1.2, toX, 1.2).toFixed(2));
-    view.own.vy = Number(within(-1.6, toY, -0.1).toFixed(2));
-  };
+  const ranges = { vx: [-1.2, 1.2], vy: [-1.6, -0.1] };
   const at = (toX, toY) => [(x - toX) / scale, (toY - y) / scale];
   const from = [x - scale * vx, y + scale * vy];
   const text = `comes with ${number(vx, 2)} m/s to the right and ${number(-vy, 2)} m/s down`;
-  const to = { value: vx, at, put, px: 0.1 * scale };
-  const came = pair("ball", from, "where the ball comes from", text, to);
+  const to = { at, px: 0.1 * scale };
+  const came = pair(view, "ball", from, "where the ball comes from", text, ranges, to);
   const [sum, each] = [right, wrong].map(({ speed }) => `at ${number(speed, 2)} m/s where`);
   return {
     svg:

@@ -1,7 +1,7 @@
 /* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. */
 import { axis, number, plain, plot, within } from "../draw.js";
 import { criticalDt, quality, runModel } from "../engine.js";
-import { FARTHEST, grip, kept, scene, START, stillMoves } from "../parts.js";
+import { decades, FARTHEST, grip, kept, scene, START, stillMoves } from "../parts.js";
 
 const [LOW, HIGH] = [0.0005, 0.064]; // s
 const SECONDS = 4;
@@ -22,14 +22,14 @@ const curve = kept((low, ...spring) => {
   return { xs, ys: xs.map((dt) => moves(dt, ...spring)) };
 });
 
-// The height over time, all of it: where the ball flies away, its first metre is next to nothing.
+// The height over time, all of it: where the ball flies away, in powers of ten.
 function course(view, { t, y }) {
   const end = Math.min(STEPS, t.findIndex((time) => time > SECONDS) >>> 0);
-  const seen = y.subarray(0, end + 1);
-  const top = seen.reduce((most, each) => (each > most ? each : most), TOP);
+  const top = y.subarray(0, end + 1).reduce((most, each) => (each > most ? each : most), 0);
+  const calm = axis([-TOP / 6, TOP], "height (m)", 0, 1);
   return plot([0, 0, view.width, COURSE], {
     x: axis([0, SECONDS], "time (s)", 0, 1, 2, 3, 4),
-    y: axis([-top / 6, top], "height (m)", 0, top > TOP ? [top, number(top, 2)] : 1),
+    y: top > TOP ? decades(top, "height (m)", [0, "0"], 1, 10, 100) : calm,
     margin: 64,
     lines: [{ model: "penalty", xs: t, ys: y, to: end }],
     rules: [{ y: 0 }],

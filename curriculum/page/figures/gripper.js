@@ -1,7 +1,7 @@
 /* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors. On
  * the first screen it plays by itself; later time step and stiffness can be dragged, too. */
 import { axis, ball, circle, clipped, el, label, line, number, path, plot, rect } from "../draw.js";
-import { table, within } from "../draw.js";
+import { table } from "../draw.js";
 import { criticalDt, runModel, series, stateAt } from "../engine.js";
 import { grip, kept, pair, R, scene, tens, through } from "../parts.js";
 
@@ -86,13 +86,9 @@ function choices(view, does) {
     edge[does] ? circle(sx(dt), sy(k), 6, `${edge[does]} m-penalty`)
       : label("×", sx(dt), sy(k) + 6, "middle"));
   const beyond = label("critical step", sx(limits[limit]) + 8, sy(ks[limit]));
-  const put = (dt, k) => {
-    const [step, spring] = [within(DT[0], dt, DT[1]), within(K[0], k, K[1])];
-    Object.assign(own, { dt: +step.toPrecision(2), k: +spring.toPrecision(2), time: null });
-  };
   const told = ["time step and stiffness", tellsOf(own)];
-  const at = (x, y) => [sx.back(x), sy.back(y)];
-  const knob = pair("choice", [sx(own.dt), sy(own.k)], ...told, { value: own.dt, at, put, px: 8 });
+  const to = { at: (x, y) => [sx.back(x), sy.back(y)], px: 8, digits: 2 };
+  const knob = pair(view, "choice", [sx(own.dt), sy(own.k)], ...told, { dt: DT, k: K }, to);
   return { svg: svg + beyond + tried.join(""), knob };
 }
 

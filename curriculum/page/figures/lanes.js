@@ -3,7 +3,7 @@
  * own drop. A ball whose end would tell what a bet asks waits for it. */
 import { arrow, axis, ball, label, line, number, plot, steps, table, within } from "../draw.js";
 import { MODELS, criticalDt, runModel, series } from "../engine.js";
-import { grip, kept, R, START } from "../parts.js";
+import { decades, grip, kept, R, START } from "../parts.js";
 import { knobsOf, sceneOf, startOf } from "../store.js";
 
 const LONGEST = 4; // s
@@ -151,7 +151,7 @@ function handlesOf(view, shown, sight, [least, most]) {
       high: most - start[start.length - 1],
       step: 0.02,
       at: (toX, toY) => (floor - toY) / scale - start[i],
-      set: (lift) => Object.assign(view.own, { lift: Number(lift.toFixed(4)), from: 0, time: 0 }),
+      set: (lift) => Object.assign(view.own, { lift, from: 0, time: 0 }),
       release: view.play,
     };
     const [name, text] = [`${each.model}, ball ${i + 1}`, `${number(height - R, 2)} m above`];
@@ -165,14 +165,6 @@ function around(low, high, name) {
   const room = 0.08 * (high - low || 0.1);
   const domain = [low - room, high + room];
   return axis(domain, name, ...steps(...domain, 4));
-}
-
-// One in powers of ten up to the greatest value, with room for a zero; `first`: its lowest ticks.
-function decades(most, name, ...first) {
-  const top = Math.min(1e12, 10 ** Math.ceil(Math.log10(most)));
-  const tens = [[1e3, "10³"], [1e6, "10⁶"], [1e9, "10⁹"], [1e12, "10¹²"]];
-  const ticks = [...first, ...tens].filter((each) => (each[0] ?? each) <= top);
-  return { ...axis([0.1, top], name, ...ticks), log: true, zero: true };
 }
 
 const CHARTS = {
@@ -217,7 +209,9 @@ function draw(view) {
   const time = timeOf(view);
   const text = `${time.toFixed(3)} s`;
   const { from, to } = view.own;
-  const times = { low: from, high: to, step: view.get("dt"), at: sx.back, get: () => timeOf(view) };
+  const dt = view.get("dt");
+  const at = (to) => dt * Math.round(sx.back(to) / dt); // of a row
+  const times = { low: from, high: to, step: dt, at, get: () => timeOf(view) };
   const place = (each, until) => (each.waits ? until : placeWords(each));
   const waiting = (each) => `waits for your bet in ${each.waits}`;
   const told = shown.map((each) => `${each.model} ${place(each, waiting(each))}`);

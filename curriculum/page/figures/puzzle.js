@@ -1,5 +1,5 @@
 /* The puzzle: one spring, two wishes. Every try is a drop of 40 s. */
-import { axis, circle, number, within } from "../draw.js";
+import { axis, circle, number } from "../draw.js";
 import { charted, G, kept, pair, R, stillMoves, tens } from "../parts.js";
 import { QUANTITIES } from "../store.js";
 
@@ -24,19 +24,16 @@ function draw(view) {
   const same = (each) => each.stiffness === now.stiffness && each.damping === now.damping;
   if (!view.dragging && !own.tries.some(same)) own.tries.push(now);
   const dot = (each) => circle(sx(each.stiffness), sy(each.damping), 6, "look m-penalty");
-  const put = (k, c) => {
-    const stiffness = Number(within(K.low, k, K.high).toPrecision(3));
-    view.set({ stiffness, damping: within(C.low, Math.round(c), C.high) });
-  };
   const sinks = `It sinks ${number(G / now.stiffness / R, 2)} r; less than ${SINK} is wanted.`;
-  const at = (x, y) => [sx.back(x), sy.back(y)];
+  const to = { at: (x, y) => [sx.back(x), sy.back(y)], digits: 3 };
+  const ranges = { stiffness: [K.low, K.high], damping: [C.low, C.high] };
   const place = [sx(now.stiffness), sy(now.damping)];
   const text = `k ${number(now.stiffness)} N/m, c ${number(now.damping)} N s/m`;
   const told = ["the spring: stiffness and damping", text];
   return {
     svg: chart.svg + own.tries.map(dot).join(""),
     words: `${sinks} It ${rests(now) ? "comes" : "never comes"} to rest.`,
-    handles: [pair("spring", place, ...told, { value: now.stiffness, at, put })],
+    handles: [pair(view, "spring", place, ...told, ranges, to)],
   };
 }
 

@@ -1,8 +1,8 @@
 /* What unfinished sweeps leave: a column at rest under lcp sags as on springs. Its law stands
  * beside it, and the sweeps of a step can be spent on substeps. */
 import { axis, ball, label, number, path, plural, rect, table } from "../draw.js";
-import { runModel } from "../engine.js";
-import { beside, G, grip, kept, knobs, R, scene, tens, through } from "../parts.js";
+import { runModel, stateAt } from "../engine.js";
+import { beside, depthsOf, G, grip, kept, knobs, R, scene, tens, through } from "../parts.js";
 
 const [FEWEST, MOST, HEAVIEST] = [2, 8, 100]; // balls, balls, kg
 const [LENS, GROUND, LARGEST] = [15, 30, 30]; // px: a lens, the table, a ball
@@ -21,14 +21,9 @@ const sags = kept((masses, told) => {
   let top = 0;
   const heights = lawOf(masses, told).map((deep) => (top += (2 - deep) * R) - R);
   const run = runModel("lcp", scene(heights, { mass: masses }), { ...told, restitution: 0 }, ROWS);
-  const depths = (row) =>
-    masses.map((_, i) => {
-      const at = row * masses.length + i;
-      return i ? 2 - (run.y[at] - run.y[at - 1]) / R : 1 - run.y[at] / R;
-    });
-  const before = depths(ROWS - 9);
+  const [before, depths] = [ROWS - 9, ROWS].map((row) => depthsOf(stateAt(run, row).y));
   const rests = (deep, i) => Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9;
-  return { depths: depths(ROWS), rests: depths(ROWS).every(rests) };
+  return { depths, rests: depths.every(rests) };
 });
 
 // All ways to spend the sweeps of a step on equal substeps.

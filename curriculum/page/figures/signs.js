@@ -1,37 +1,31 @@
 /* The signs of a contact: normal, depth and v_n, of a ball with another ball and with the table. */
-import { arrow, ball, label, number, table, within } from "../draw.js";
+import { arrow, ball, label, number, table } from "../draw.js";
 import { detectContacts, normalSpeed } from "../engine.js";
 import { pair, R } from "../parts.js";
 
 const GROUND = 26; // px of table
 const ARROW = 0.1; // m in the picture for 1 m/s
-const [SIDE, TOP, FASTEST] = [0.45, 0.34, 1.5]; // m, m, m/s: how far one can drag
+const [SIDE, TOP, FAST] = [0.45, 0.34, [-1.5, 1.5]]; // m, m, m/s: how far one can drag
 
-const tidy = (value) => Number(value.toFixed(3));
 const wayOf = (speed) => (speed > 0 ? "separating" : speed < 0 ? "closing" : "neither");
 
 // Ball a and the tip of its velocity, as what one drags.
-function handlesOf({ own, width }, { scale, floor, place }, told) {
-  const { x, y, vx, vy } = own;
+function handlesOf(view, { scale, floor, place }, told) {
+  const { width } = view;
+  const { x, y, vx, vy } = view.own;
   const [ax, ay] = place(x, y);
   const tip = place(x + ARROW * vx, y + ARROW * vy);
-  const moveTo = (toX, toY) => {
-    own.x = tidy(within(-SIDE, toX, SIDE));
-    own.y = tidy(within(0, toY, TOP));
-  };
-  const speedTo = (toX, toY) => {
-    own.vx = tidy(within(-FASTEST, toX, FASTEST));
-    own.vy = tidy(within(-FASTEST, toY, FASTEST));
-  };
+  const [places, speeds] = [{ x: [-SIDE, SIDE], y: [0, TOP] }, { vx: FAST, vy: FAST }];
   const fast = `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told}`;
   return [
-    pair("ball", [ax, ay], "ball a", told, {
-      ...{ value: y, put: moveTo, px: 0.01 * scale, r: R * scale },
+    pair(view, "ball", [ax, ay], "ball a", told, places, {
       at: (toX, toY) => [(toX - width / 2) / scale, (floor - toY) / scale],
+      px: 0.01 * scale,
+      r: R * scale,
     }),
-    pair("velocity", tip, "the velocity of ball a", fast, {
-      ...{ value: vy, put: speedTo, px: 0.1 * ARROW * scale },
+    pair(view, "velocity", tip, "the velocity of ball a", fast, speeds, {
       at: (toX, toY) => [(toX - ax) / scale / ARROW, (ay - toY) / scale / ARROW],
+      px: 0.1 * ARROW * scale,
     }),
   ];
 }

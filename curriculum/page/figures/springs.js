@@ -3,7 +3,7 @@
 import { arrow, axis, ball, clipped, el, label, number, plural, round, table } from "../draw.js";
 import { within } from "../draw.js";
 import { runModel, stateAt } from "../engine.js";
-import { beside, forceLength, G, grip, kept, lens, R, scene } from "../parts.js";
+import { beside, depthsOf, forceLength, G, grip, kept, lens, R, scene } from "../parts.js";
 
 const [DT, SECONDS] = [0.0005, 1.2];
 const springs = {
@@ -137,7 +137,7 @@ function holds(view, heights, at, x, k) {
       step: 0.1,
       at: (toX, y) => ((low - y) / PX) * (y > low ? PRESS : 1),
       get: () => (i === view.own.from ? view.own.hand : 0),
-      set: (to) => Object.assign(view.own, { from: i, hand: Number(to.toFixed(3)), time: null }),
+      set: (to) => Object.assign(view.own, { from: i, hand: to, time: null }),
       release: () => view.own.hand && view.play(),
     };
     const name = `ball ${i + 1} from below: lift it or press it`;
@@ -153,7 +153,7 @@ function drawStack(view) {
   const { from, hand, time } = view.own;
   const heights = fallen(view, heightsAtRest(k, from, hand));
   const at = (height) => floor - (height / R) * PX;
-  const depths = heights.map((y, i) => (i ? 2 - (y - heights[i - 1]) / R : 1 - y / R));
+  const depths = depthsOf(heights);
   const forces = depths.map((depth) => Math.max(0, (k * depth * R) / G));
   const pushes = forces.map((force, i) => {
     const y = at(i ? heights[i - 1] + R : 0);
