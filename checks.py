@@ -8,7 +8,6 @@ What is not done yet is skipped by name. A bet is done once it was made and its 
 fill that is wrong fails with what went in, what came out, what was expected, and the likely slip.
 """
 
-import argparse
 import subprocess
 import sys
 import time
@@ -20,7 +19,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 from kit import script  # noqa: E402
 from kit.progress import FILES, practise  # noqa: E402
 
-from curriculum.commands import stoppable, to_install  # noqa: E402
+from curriculum.commands import Parser, stoppable, to_install  # noqa: E402
 
 try:
     import pytest
@@ -53,11 +52,8 @@ def watch(argv):
 @stoppable()
 def main():
     """Run the checks once, or again and again. Returns the exit status."""
-    parser = argparse.ArgumentParser(
-        description="Check the exercises.",
-        allow_abbrev=False,
-        epilog="All other flags are pytest's: -k ex1_, --junit-xml.",
-    )
+    others = "All other flags are pytest's: -k ex1_, --junit-xml."
+    parser = Parser(description="Check the exercises.", epilog=others)
     parser.add_argument("--watch", action="store_true", help="again whenever an exercise is saved")
     args, words = parser.parse_known_args()
     if args.watch:

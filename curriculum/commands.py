@@ -1,16 +1,27 @@
 """Commands as one types them here: how to run a file, how to install what is missing."""
 
+import argparse
 import contextlib
 import os
 import shlex
 import shutil
 import sys
-import sysconfig
 from importlib.util import find_spec
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 OURS = ("checks", "contact", "curriculum", "exercises")  # a slip in these is no missing package
+
+
+class Parser(argparse.ArgumentParser):
+    """A command's flags, which are written in full; what is wrong with them is said in one line."""
+
+    def __init__(self, **how):
+        raw = argparse.RawDescriptionHelpFormatter
+        super().__init__(allow_abbrev=False, formatter_class=raw, **how)
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: error: {message}\n")
 
 
 def command(*words):
@@ -37,6 +48,8 @@ def to_install(package, extra=None):
     own Python often refuses to be changed: there it is an environment of one's own.
     """
     wanted = ("-e", f"{near(str(ROOT))}[{extra}]") if extra else (package,)
+    import sysconfig  # slow, so only where it is needed
+
     system = sys.prefix == sys.base_prefix
     refused = system and Path(sysconfig.get_path("stdlib"), "EXTERNALLY-MANAGED").exists()
     pip = find_spec("pip") is not None and not refused

@@ -26,7 +26,6 @@ Masses are within a ratio of 100 where 0 < e < 1. Beyond that it stops with one 
     lam          impulse or force of a contact, >= 0                               N s or N
 """
 
-import itertools
 import math
 from functools import cached_property
 
@@ -113,8 +112,8 @@ class Contacts:
         """All that the balls of a scene can ever make; two that nothing moves make none."""
         count = len(scene.mass)
         w, radius = np.pad([1.0 / scene.mass, scene.radius], ((0, 0), (0, 1)))  # last: the floor
-        pairs = itertools.combinations(range(count + 1), 2)
-        pairs = np.array([(a, b) for a, b in pairs if w[a] + w[b] > 0.0], int).reshape(-1, 2).T
+        pairs = np.array(np.triu_indices(count + 1, 1))
+        pairs = pairs[:, w[pairs].sum(0) > 0.0]
         balls = np.arange(count)[:, None]
         self.w, self.sign = w[:-1], 1.0 * (pairs[0] == balls) - (pairs[1] == balls)
         self.reach, self.share = radius[pairs].sum(0), w[pairs].sum(0)  # r_a + r_b; 1 / m_eff
@@ -420,30 +419,31 @@ def refuse(scene):
     e, mass = scene.restitution, scene.mass[np.isfinite(scene.mass)]
     ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
     if 0.0 < e < 1.0 and ratio > RATIO:
-        given, allowed = f"masses {ratio:.4g} : 1 at restitution {e:g}", f"at most {RATIO:g} : 1"
-        advice = "Take closer masses, or restitution 0 or 1"
-        raise RuntimeError(f"exact: {given}; {allowed} where 0 < e < 1. {advice}")
+        given = (
+            f"masses {ratio:.4g} : 1 at restitution {e:g}; at most {RATIO:g} : 1 where 0 < e < 1"
+        )
+        raise RuntimeError(f"exact: {given}. Take closer masses, or restitution 0 or 1")
 
 
 @np.errstate(all="ignore")
-def simulate_exact(scene, times, gravity, report=lambda k: None):
-    """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, from event to event.
+def simulate_exact(scene, times, gravity, report=lambda k: None, most=MOST_IMPACTS) -> np.ndarray:
+    """q, v (2, S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, from event to event.
 
     The scene has q0, v0 (2, N), mass (N,), inf for a ball that nothing moves, radius (N,) and
     restitution; gravity [m/s^2] is along y, negative. At the moment of an event v is that after
     all rounds of impacts of this moment. report(k) is called after each event with the samples
-    done. Raises RuntimeError beyond the promise.
+    done. Raises RuntimeError beyond the promise, and after `most` events.
     """
     refuse(scene)
     motion, cycle, out = Motion(scene, gravity), Cycle(), np.empty((2, len(times), *scene.q0.shape))
     now, done = 0.0, 0
-    for _ in range(MOST_IMPACTS):
+    for _ in range(most):
         touching = motion.touch()
         motion.strike(touching)
         which, held, a = motion.support(touching)
         if cycle.repeats(motion):
             out[:, done:] = cycle.read(times[done:] - now)
-            return tuple(out)
+            return out
         Q, lam, horizon = np.array((motion.q, motion.v, 0.5 * a)), np.empty((0, 0)), math.inf
         if held.across(motion.v).any() or held.across(a).any():
             Q, lam, horizon = motion.slide(held)
@@ -454,9 +454,9 @@ def simulate_exact(scene, times, gravity, report=lambda k: None):
         done = last
         report(done)
         if done == len(times):
-            return tuple(out)
+            return out
         (motion.q, motion.v), now = sample(Q, span), now + span
     raise RuntimeError(
-        f"exact: more than {MOST_IMPACTS:,} events by {now:.6g} s, balls rattle without end."
+        f"exact: more than {most:,} events by {now:.6g} s, balls rattle without end."
         " Take a shorter run, another restitution, or closer masses"
     )

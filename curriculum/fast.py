@@ -381,7 +381,7 @@ def soft_step(balls, contacts, last, knobs):
     return settled
 
 
-def make_balls(q, v, mass, radius):
+def make_balls(q, v, mass, radius) -> np.ndarray:
     """The balls of a state: q, v (2, N), mass, radius (N,). The floor comes last."""
     balls = np.zeros(len(mass) + 1, BALL)
     for name, values in zip(("x", "y", "vx", "vy", "mass", "radius"), (*q, *v, mass, radius)):
@@ -473,16 +473,16 @@ class Stepper:
         self.listed, self.pairs = -math.inf, np.empty((2, 0), int)
         self.last = np.empty(0, CONTACT)
 
-    def take(self, rows, settled, cycles):
+    def take(self, rows, settled, cycles) -> tuple[int, int]:
         """Take len(rows) - 1 steps at most, as take_steps does; returns steps and period."""
-        self.pairs, self.listed, self.last, *taken = take_steps(
+        self.pairs, self.listed, self.last, steps, period = take_steps(
             rows, settled, self.balls, self.pairs, self.listed, self.last, cycles, self.knobs
         )
-        return taken
+        return steps, period
 
 
-def run_model(model, scene, dt, steps, settings, report=None):
-    """The contact.Run by penalty, lcp or soft: what contact.run_model gives, bit for bit.
+def run_model(model, scene, dt, steps, settings, report=None) -> contact.Run:
+    """The run by penalty, lcp or soft: what contact.run_model gives, bit for bit.
 
     `report(k)` is called with the steps done, now and then.
     """
@@ -505,7 +505,7 @@ def run_model(model, scene, dt, steps, settings, report=None):
     return contact.Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:], int((~settled).sum()))
 
 
-def smallest_gap(q, radius):
+def smallest_gap(q, radius) -> np.ndarray:
     """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
     balls = make_balls(q[0], np.zeros_like(q[0]), np.ones(len(radius)), radius)
     return find_gaps(np.array(q, float), balls, float(np.median(radius)))

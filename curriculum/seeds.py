@@ -11,9 +11,10 @@ import math
 import os
 import statistics
 import sys
+from functools import partial
 
 import contact
-from curriculum.commands import stoppable
+from curriculum.commands import Parser, stoppable
 from curriculum.files import write_json
 from curriculum.run import pool
 
@@ -31,13 +32,7 @@ def seed_range(text):
 
 def parse(argv):
     """The seeds, the scheduler or None, and the other flags as contact.parse_flags gives them."""
-    parser = argparse.ArgumentParser(
-        prog="python -m curriculum.seeds",
-        description=__doc__,
-        usage=argparse.SUPPRESS,  # an error is one line then
-        allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = Parser(prog="python -m curriculum.seeds", description=__doc__)
     parser.add_argument("seeds", type=seed_range, metavar="A:B", help="from A to B - 1")
     parser.add_argument("--scheduler", metavar="HOST:PORT", help="run them on a dask cluster")
     mine, rest = parser.parse_known_args(argv)
@@ -55,8 +50,7 @@ def main(argv=None):
     """
     seeds, scheduler, args = parse(argv)
     try:
-        jobs = [(args, seed) for seed in seeds]
-        found = pool.run_jobs(qualities, jobs, "seeds", scheduler=scheduler)
+        found = pool.run_jobs(partial(qualities, args), seeds, "seeds", scheduler=scheduler)
     except (ImportError, OSError) as error:
         return contact.fail(f"argument --scheduler: {error}")
     rows = {}
@@ -76,9 +70,8 @@ def main(argv=None):
     return 0
 
 
-def qualities(job):
+def qualities(args, seed):
     """{model: its contact_quality} from one seed; a process of its own may run it."""
-    args, seed = job
     scene = contact.chosen_scene(args, seed)
     runs = contact.run_all(args, scene)[0]
     return {

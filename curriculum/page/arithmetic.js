@@ -2,21 +2,11 @@
  * descent. A name may be short, as in the formulas of the text. */
 
 const TOKEN = /\d+\.?\d*(?:e[-+]?\d+)?|\.\d+|[a-z_]\w*|\S/gi;
-// what a value may begin with, beside a number, a name and a bracket
-const FIRST = {
-  __proto__: null,
-  "+": (atom) => atom(),
-  "-": (atom) => -atom(),
-  max: (atom, inBrackets) => Math.max(...inBrackets(Infinity)),
-  min: (atom, inBrackets) => Math.min(...inBrackets(Infinity)),
-};
 const SHORT = { k: "stiffness", c: "damping" };
-const SIGNS = {
-  "+": (a, b) => a + b,
-  "-": (a, b) => a - b,
-  "*": (a, b) => a * b,
-  "/": (a, b) => a / b,
-};
+const SIGNS = [
+  { "+": (a, b) => a + b, "-": (a, b) => a - b },
+  { "*": (a, b) => a * b, "/": (a, b) => a / b }, // which bind closer
+];
 
 /* The text as a function of an object of values. Throws Error, in a sentence, where it is none. */
 export function compile(text, names) {
@@ -33,33 +23,32 @@ function valueOf(rest, names, values) {
     if (!rest.length) throw new Error("Something is missing at the end.");
     throw new Error(`“${rest[0]}” does not fit here; known: ${known}.`);
   };
-  const take = (wanted) => (rest[0] === wanted ? rest.shift() : refuse());
-  const chain = (next, signs) => () => {
-    let left = next();
-    while (signs.includes(rest[0])) left = SIGNS[rest.shift()](left, next());
+  const take = (...wanted) => (wanted.includes(rest[0]) ? rest.shift() : refuse());
+  function chain(signs, ...closer) {
+    if (!signs) return atom();
+    let left = chain(...closer);
+    while (Object.hasOwn(signs, rest[0])) left = signs[rest.shift()](left, chain(...closer));
     return left;
-  };
-  const product = chain(atom, ["*", "/"]);
-  const sum = chain(product, ["+", "-"]);
+  }
   function inBrackets(most) {
     const given = [];
     do {
       take(given.length ? "," : "(");
-      given.push(sum());
+      given.push(chain(...SIGNS));
     } while (rest[0] === "," && given.length < most);
     take(")");
     return given;
   }
   function atom() {
-    const token = rest[0];
-    const name = names.includes(token) ? token : SHORT[token];
-    if (token === "(") return inBrackets(1)[0];
-    if (!names.includes(name) && !(token in FIRST) && !/^\.?\d/.test(token)) refuse();
-    rest.shift();
-    if (FIRST[token]) return FIRST[token](atom, inBrackets);
-    return names.includes(name) ? values[name] : Number(token);
+    if (rest[0] === "(") return inBrackets(1)[0];
+    if (/^\.?\d/.test(rest[0])) return Number(rest.shift());
+    const name = names.includes(rest[0]) ? rest[0] : SHORT[rest[0]];
+    const token = names.includes(name) ? rest.shift() : take("+", "-", "max", "min");
+    if (names.includes(name)) return values[name];
+    if (token === "+") return atom();
+    return token === "-" ? -atom() : Math[token](...inBrackets(Infinity));
   }
-  const found = sum();
+  const found = chain(...SIGNS);
   if (rest.length) refuse();
   return found;
 }

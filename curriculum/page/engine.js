@@ -79,17 +79,17 @@ function penaltyStep(state, { mass, radius, motor = [] }, knobs) {
 
 // ---- lcp and soft: one problem, one sweep
 
-// A contact with its target velocity and its softness (0 for lcp), ready for the sweeps: what an
-// impulse of 1 does to its two balls, and the effective mass.
-export function makeRows(contacts, mass, targets = [], softness = []) {
-  return contacts.map((c, k) => {
+// Contacts ready for the sweeps: what an impulse of 1 does to the two balls, and the effective mass.
+// One may have a target velocity and a softness, which lcp has not.
+export function makeRows(contacts, mass) {
+  return contacts.map(({ target = 0, softness = 0, ...c }) => {
     const wi = 1 / mass[c.i];
     const wj = c.j < 0 ? 0 : 1 / mass[c.j];
-    const whole = wi + wj + (softness[k] ?? 0);
+    const whole = wi + wj + softness;
     return {
       ...c,
-      target: targets[k] ?? 0,
-      softness: softness[k] ?? 0,
+      target,
+      softness,
       effectiveMass: whole > 0 ? 1 / whole : 0,
       ix: wi * c.nx,
       iy: wi * c.ny,
@@ -137,7 +137,8 @@ function warmStart(rows, pushed = [], share, vx, vy) {
 }
 
 // Gravity predicts the velocities, impulses correct them, the balls move.
-function solveStep(state, { mass }, dt, rows, { warm, last = 0, ...options }) {
+function solveStep(state, mass, dt, contacts, { warm, last = 0, ...options }) {
+  const rows = makeRows(contacts, mass);
   const vx = state.vx.slice();
   const vy = fall(state.vy, mass, dt);
   const fastest = last && greatest([...rows.map((c) => c.target), ...vx, ...vy].map(Math.abs));
@@ -170,9 +171,8 @@ function stepReach({ vx, vy }, { dt, restitution, ahead }) {
 function lcpStep(state, { mass, radius }, knobs) {
   const { dt, iters, warm, project } = knobs;
   const contacts = detectContacts(state.x, state.y, radius, stepReach(state, knobs));
-  const targets = contacts.map((c) => contactTarget(c, state, knobs));
-  const rows = makeRows(contacts, mass, targets);
-  return solveStep(state, { mass }, dt, rows, { iters, project, warm });
+  for (const c of contacts) c.target = contactTarget(c, state, knobs);
+  return solveStep(state, mass, dt, contacts, { iters, project, warm });
 }
 
 // ---- soft, MuJoCo's contact
@@ -229,10 +229,9 @@ export function soften(c, state, { mass }, knobs) {
 // One step of soft: lcp's step with another target, and softness.
 function softStep(state, { mass, radius }, knobs) {
   const contacts = detectContacts(state.x, state.y, radius, 0);
-  const soft = contacts.map((c) => soften(c, state, { mass }, knobs));
-  const [targets, softness] = ["target", "softness"].map((key) => soft.map((each) => each[key]));
+  for (const c of contacts) Object.assign(c, soften(c, state, { mass }, knobs));
   const options = { iters: MOST_SWEEPS, last: LAST_BITS, warm: 1 };
-  return solveStep(state, { mass }, knobs.dt, makeRows(contacts, mass, targets, softness), options);
+  return solveStep(state, mass, knobs.dt, contacts, options);
 }
 
 // ---- runs
@@ -374,14 +373,11 @@ function timeToImpact(gap, v, a) {
 
 // ---- measuring, as contact_quality and its neighbours do it
 
-function energyAt(run, { mass }, row) {
+function energyAt({ n, y, vx, vy }, { mass }, row) {
   let sum = 0;
-  for (let i = 0; i < run.n; i++) {
-    if (mass[i] === Infinity) continue;
-    const at = row * run.n + i;
-    const speed2 = run.vx[at] * run.vx[at] + run.vy[at] * run.vy[at];
-    sum += 0.5 * mass[i] * speed2 - mass[i] * GRAVITY * run.y[at];
-  }
+  for (let i = 0, at = row * n; i < n; i++, at++)
+    if (mass[i] < Infinity)
+      sum += 0.5 * mass[i] * (vx[at] * vx[at] + vy[at] * vy[at]) - mass[i] * GRAVITY * y[at];
   return sum;
 }
 
@@ -401,13 +397,10 @@ function smallestGap({ n, x, y }, { radius }, row) {
 
 // The push of the table [N] on all that stands on it, averaged over the step that ends in `row`:
 // what changed the momentum and was not gravity.
-export function pushOfTable(run, { mass }, row) {
+export function pushOfTable({ n, dt, vy }, { mass }, row) {
   let sum = 0;
-  for (let i = 0; i < run.n; i++) {
-    if (mass[i] === Infinity) continue;
-    const change = run.vy[row * run.n + i] - run.vy[(row - 1) * run.n + i];
-    sum += mass[i] * (change / run.dt - GRAVITY);
-  }
+  for (let i = 0, at = row * n; i < n; i++, at++)
+    if (mass[i] < Infinity) sum += mass[i] * ((vy[at] - vy[at - n]) / dt - GRAVITY);
   return Math.abs(sum) < 1e-9 * Math.abs(GRAVITY) ? 0 : sum;
 }
 

@@ -3,7 +3,7 @@
 import { axis, ball, circle, clipped, el, label, plot, round, table } from "./draw.js";
 import { tenTo, within } from "./draw.js";
 import { data } from "./data.js";
-import { GRAVITY } from "./engine.js";
+import { GRAVITY, makeRows, projectImpulse, solveContacts } from "./engine.js";
 import { knobsOf, QUANTITIES } from "./store.js";
 
 export const R = data.radius; // m
@@ -40,6 +40,23 @@ export function stillMoves(dt, stiffness, damping, steps, rows) {
   return Number.isFinite(far) ? Math.min(FARTHEST, far) : FARTHEST;
 }
 
+/* What sweeps over a column of balls do, contact by contact from below: [{contact, wanted, lam, vy}],
+ * where `wanted` is the change before the clamp; first what they start with. */
+export function visits(masses, lam, vy, count) {
+  const contacts = masses.map((_, i) => ({ i, j: i - 1, nx: 0, ny: 1 }));
+  const rows = makeRows(contacts, masses).map((row, k) => ({ ...row, lam: lam[k] }));
+  const vx = masses.map(() => 0);
+  const seen = [{ contact: null, wanted: 0, lam, vy: vy.slice() }];
+  for (let at = 0; at < count; at++) {
+    const contact = at % rows.length;
+    let wanted = 0;
+    const project = (sum, change) => projectImpulse(sum, (wanted = change));
+    solveContacts([rows[contact]], vx, vy, { iters: 1, project });
+    seen.push({ contact, wanted, lam: rows.map((row) => row.lam), vy: vy.slice() });
+  }
+  return seen;
+}
+
 // A function that keeps its last results, by its arguments.
 export function kept(compute) {
   const held = new Map();
@@ -60,25 +77,6 @@ export const softKnobs = (view) => ({
   ...knobsOf({ ...view.values, impedance: view.get("impedance") }),
   restitution: 0,
 });
-
-// What a contact of a ball of 1 kg carries [m g] where it is at rest, at a depth [r]: its
-// law(contact) says {target, softness}.
-const onFloor = (depth) => ({ i: 0, j: -1, nx: 0, ny: 1, depth: depth * R });
-export function loadAt(law, dt, depth) {
-  const { target, softness } = law(onFloor(depth));
-  return target / softness / (G * dt);
-}
-
-// Where it is at rest under a load, found by halving: {depth, target, softness}.
-export function atRest(law, dt, load = 1) {
-  let [less, depth] = [0, 2];
-  for (let k = 0; k < 50; k++) {
-    const middle = 0.5 * (less + depth);
-    if (loadAt(law, dt, middle) > load) depth = middle;
-    else less = middle;
-  }
-  return { depth, ...law(onFloor(depth)) };
-}
 
 // How deep each of balls of such heights [m] is in what is below it [r].
 export const depthsOf = (heights) =>

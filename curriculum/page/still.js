@@ -23,10 +23,8 @@ function still([id, [name, changes]]) {
   }
 }
 
-const everyOne = () => Object.fromEntries(Object.keys(figures).map((name) => [name, [name, {}]]));
-
-// Of figures {id: [name, what its section sets]}; without any, of each one by its name.
-export const stills = (wanted = everyOne()) => ({
+// Of figures {id: [name, what its section sets]}.
+export const stills = (wanted) => ({
   figures: Object.fromEntries(Object.entries(wanted).map(still)),
 });
 

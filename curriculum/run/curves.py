@@ -6,14 +6,6 @@ import contact
 
 # safe for colour-blind readers (Okabe and Ito)
 COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "soft": "#cc79a7", "exact": "#009e73"}
-OTHERS = ("#e69f00", "#56b4e9", "#f0e442", "#999999")  # of runs with names of their own
-
-
-def colors(names) -> dict[str, str]:
-    """{name: "#rrggbb"}: each model's own colour, and for other names the next that is free."""
-    others = [name for name in names if name not in COLORS]
-    free = {name: OTHERS[place % len(OTHERS)] for place, name in enumerate(others)}
-    return {name: COLORS.get(name) or free[name] for name in names}
 
 
 @np.errstate(all="ignore")

@@ -13,7 +13,7 @@ import numpy as np
 import contact
 from curriculum import commands
 from curriculum.files import write_whole
-from curriculum.run.curves import colors, contact_impulses, curves, ending
+from curriculum.run.curves import COLORS, contact_impulses, curves, ending
 
 try:
     import rerun as rr
@@ -35,10 +35,9 @@ MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sin
 def write(path: str, runs: dict[str, contact.Run], scene: contact.Scene) -> None:
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
 
-    A run that is no model's may have any name of [a-z0-9_.]. Whole columns are sent, in rerun's
-    strict mode. The timelines are step, sim_time (up to 9e9 s), and landing, which it opens on:
-    sim_time, but all that is long before the first contact at its start. The entities are
-    world/MODEL/{ground,table,balls,pushes} and CURVE/MODEL.
+    Whole columns are sent, in rerun's strict mode. The timelines are step, sim_time (up to 9e9 s),
+    and landing, which it opens on: sim_time, but all that is long before the first contact at its
+    start. The entities are world/MODEL/{ground,table,balls,pushes} and CURVE/MODEL.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
     drawn, seconds = curves(runs, scene), worth_seeing(runs, scene)
@@ -49,7 +48,7 @@ def write(path: str, runs: dict[str, contact.Run], scene: contact.Scene) -> None
         recording.save(temporary, default_blueprint=layout(runs, scene, drawn, seconds))
         for model, run in runs.items():
             send_table(recording, model)
-            send_balls(recording, model, run, scene, colors(runs)[model], times[model])
+            send_balls(recording, model, run, scene, times[model])
         send_curves(recording, runs, drawn, times)
         recording.disconnect()
         write_whole(path, temporary.read_bytes())
@@ -86,19 +85,17 @@ def send_table(recording, model):
         recording.log(f"world/{model}/{name}", shown, static=True)
 
 
-def send_balls(recording, model, run, scene, color, times):
+def send_balls(recording, model, run, scene, times):
     """The balls, where the run had them, and the push on each as an arrow from its centre."""
     count, rows = len(scene.radius), [len(scene.radius)] * len(run.t)
-    look = rr.Points2D.from_fields(
-        radii=scene.radius, colors=np.repeat(rgba(color), count), draw_order=20.0
-    )
+    color = np.repeat(rgba(COLORS[model]), count)
+    look = rr.Points2D.from_fields(radii=scene.radius, colors=color, draw_order=20.0)
     columns = rr.Points2D.columns(positions=flat(run.q)).partition(rows)
     send(recording, f"world/{model}/balls", look, times, columns)
     if count > MOST_ARROWS:
         return
-    look = rr.Arrows2D.from_fields(
-        radii=0.06 * scene.radius, colors=np.repeat(rgba(PUSH), count), draw_order=30.0
-    )
+    color = np.repeat(rgba(PUSH), count)
+    look = rr.Arrows2D.from_fields(radii=0.06 * scene.radius, colors=color, draw_order=30.0)
     arrows = rr.Arrows2D.columns(origins=flat(run.q), vectors=flat(arrow_vectors(run, scene)))
     send(recording, f"world/{model}/pushes", look, times, arrows.partition(rows))
 
@@ -133,7 +130,7 @@ def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
     """The curves {title: {model: values}}, each at the title's first word / MODEL."""
     for width, model in zip(WIDTHS[-len(runs) :], sorted(runs)):
         look = rr.SeriesLines(
-            colors=rgba(colors(runs)[model]),
+            colors=rgba(COLORS[model]),
             names=[model],
             widths=width,
             aggregation_policy="MinMax",  # an average hides the peaks

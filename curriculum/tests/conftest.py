@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from curriculum.tests.page_browser import browser, gecko  # noqa: F401
+
 os.environ.pop("UV", None)  # `uv run pytest` sets it; commands are printed as for any other Python
 FIRST = ("page", "text", "bench", "exercises", "command_line", "page_figures", "notebook", "exact")
 

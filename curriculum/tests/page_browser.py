@@ -33,13 +33,13 @@ def lack(what, package):
     )
 
 
-@contextlib.contextmanager
-def running():
-    """A Chromium, closed at the end."""
+@pytest.fixture(scope="session")
+def browser():
+    """A Chromium."""
     if not real.CHROMIUM:
         lack("Chromium", "chromium")
-    with real.running() as browser:
-        yield browser
+    with real.running() as found:
+        yield found
 
 
 @contextlib.contextmanager
@@ -79,19 +79,27 @@ def visiting(
 
 
 SHOWS = "checkVisibility({ opacityProperty: true, visibilityProperty: true })"
+# a figure in the middle of the window, drawn: the live one beside the text that it belongs to
+SEE = """async (id) => {
+  const fig = document.getElementById(id);
+  const live = fig.closest("#figure");
+  const place = live ? document.querySelector(".show[data-show*=models]") : fig;
+  place.scrollIntoView({ block: live ? "start" : "center" });
+  for (let k = 0; k < (live ? 9 : 4) || (k < 99 && !fig.querySelector(".handle")); k++)
+    await new Promise(requestAnimationFrame);
+  return fig;
+}"""
 # in every figure: what lies at the middle of each button, knob, handle, link and ball, if not that
 HITS = f"""(async () => {{
-  const [wrong, parts] = [[], ".handle, button, input, a, circle.ball"];
-  const frames = async (n) => {{ while (n--) await new Promise(requestAnimationFrame); }};
-  for (const fig of document.querySelectorAll(".fig")) {{
-    fig.scrollIntoView({{ block: "center" }});
-    await frames(4);
+  const [wrong, parts, see] = [[], ".handle, button, input, a, circle.ball", {SEE}];
+  for (const {{ id }} of document.querySelectorAll(".fig")) {{
+    const fig = await see(id);
     const all = () => [...fig.querySelectorAll(parts)].filter((node) => node.{SHOWS});
     for (let k = 0; k < all().length; k++) {{
       const place = () => all()[k].getBoundingClientRect();
       if (place().top < 0 || place().bottom > innerHeight) {{
         all()[k].scrollIntoView({{ block: "center" }});
-        await frames(2);
+        await new Promise(requestAnimationFrame);
       }}
       const [node, box] = [all()[k], place()];
       const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
@@ -102,30 +110,13 @@ HITS = f"""(async () => {{
   }}
   return wrong;
 }})()"""
-# a figure in the middle of the window, drawn: the live one beside the text that it belongs to
-SEE = """async (id) => {
-  const fig = document.getElementById(id);
-  const live = fig.closest("#figure");
-  const place = live ? document.querySelector(".show[data-show*=models]") : fig;
-  place.scrollIntoView({ block: live ? "start" : "center" });
-  for (let k = 0; k < (live ? 9 : 2) || (k < 99 && !fig.querySelector(".handle")); k++)
-    await new Promise(requestAnimationFrame);
-  return fig;
-}"""
-FIGURES = """() => [...document.querySelectorAll(".fig")].map(({ id }) => id)"""
-# the figures that one can see, and of each a handle: [figure, handle]
-HANDLES = f"""async () => {{
-  const [found, see] = [[], {SEE}];
-  for (const {{ id }} of document.querySelectorAll(".fig")) {{
-    const handle = (await see(id)).querySelector(".handle");
-    if (handle?.{SHOWS}) found.push([id, handle.dataset.handle]);
-  }}
-  return found;
-}}"""
-# the middle of a handle, once it is in sight; and whether that is what lies there
-MIDDLE = f"""async (id, name) => {{
+# the figures that one can see; the live one, on a phone, comes up only when it is called
+FIGURES = """() => [...document.querySelectorAll(".fig")].filter((fig) => fig.checkVisibility())
+  .map(({ id }) => id)"""
+# the middle of a figure's first handle, once it is in sight; and whether that is what lies there
+MIDDLE = f"""async (id) => {{
   const see = {SEE};
-  const handle = (await see(id)).querySelector(`.handle[data-handle="${{name}}"]`);
+  const handle = (await see(id)).querySelector(".handle");
   if (!handle.closest("#figure")) handle.scrollIntoView({{ block: "center" }});
   await new Promise(requestAnimationFrame);
   const {{ x, y, width, height }} = handle.getBoundingClientRect();
@@ -248,8 +239,16 @@ class Tab:
         self.call("input.performActions", context=self.context, actions=[source])
 
 
-@contextlib.contextmanager
-def firefox():
+def resize(page, width):
+    """Make the window of either browser so wide."""
+    if isinstance(page, Tab):
+        page.resize(width)
+    else:
+        page.set_viewport_size({"width": width, "height": 800})
+
+
+@pytest.fixture(scope="session")
+def gecko():
     """A tab of a Firefox with a fresh profile."""
     from websockets.sync.client import connect
 

@@ -375,20 +375,3 @@ def test_a_knob_has_one_default():
     assert contact.Settings() == contact.Settings(
         *(getattr(args, k) for k in contact.Settings._fields)
     )
-
-
-def test_the_last_line_knows_when_all_exercises_are_done(tmp_path):
-    for name in ("contact.py", "checks.py"):
-        shutil.copy(ROOT / name, tmp_path)
-    shutil.copytree(ROOT / "exercises", tmp_path / "exercises")
-    for room in ("curriculum", "curriculum/run"):
-        (tmp_path / room).mkdir()
-        for path in (ROOT / room).glob("*.py"):
-            shutil.copy(path, tmp_path / room)
-    flags = ("--steps", 5, "--no-rerun")
-    first = python("contact.py", *flags, cwd=tmp_path).stdout
-    assert first.splitlines()[-1].endswith(" exercises/ex1_predict_contact.py")
-    done = {path.stem.split("_")[0]: "done" for path in (tmp_path / "exercises").glob("ex*.py")}
-    (tmp_path / "outputs/ch3.5-contact/exercises.json").write_text(json.dumps(done))
-    last = python("contact.py", *flags, cwd=tmp_path).stdout
-    assert last.splitlines()[-1].startswith("all exercises are done")

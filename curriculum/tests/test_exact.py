@@ -1,5 +1,6 @@
 """exact, held to its promise: closed forms, enumeration, another integrator, golden numbers."""
 
+import inspect
 import itertools
 import json
 from pathlib import Path
@@ -350,8 +351,10 @@ def test_the_reason_is_that_of_the_one_that_got_further():
 
 
 def test_balls_that_rattle_without_end_are_one_clear_error():
-    with pytest.raises(RuntimeError, match="more than 20,000 events by .* rattle without end"):
-        run(balls([0.0], [R + 1e-8], e=0.999999), [0.0, 4.0])
+    rattling = balls([0.0], [R + 1e-8], e=0.999999), np.array((0.0, 4.0)), GRAVITY
+    with pytest.raises(RuntimeError, match="more than 300 events by .* rattle without end"):
+        simulate_exact(*rattling, most=300)
+    assert inspect.signature(simulate_exact).parameters["most"].default == 20_000
 
 
 def test_two_impacts_a_billionth_of_their_time_apart_are_two():

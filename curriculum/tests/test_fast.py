@@ -1,5 +1,6 @@
 """The compiled twin of contact.py gives the bytes of the plain loops, whatever it is given."""
 
+import itertools
 import math
 import os
 import subprocess
@@ -115,9 +116,25 @@ def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_balls_rest(model):
 
 
 def test_the_twin_counts_the_steps_that_do_not_settle_also_where_a_cycle_is_copied():
-    scene = contact.build_scene("stack", 0, 2, restitution=0.5)
-    scene = scene._replace(mass=np.array((1.0, 1e3)))
-    assert 0 < check_same("soft", scene, 0.002, 600).unsettled <= 600
+    """In a step of the smallest number above 0 all is rounding: every other step settles."""
+    scene = contact.scene_of(0.0, [0.09, 0.28], [7.8, 8.2])
+    assert check_same("soft", scene, 5e-324, 13, solref=(-120.0, -5.0)).unsettled == 7
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_twin_sees_two_balls_meet_that_were_as_far_apart_as_its_list_looks(model):
+    """From the end of the list and just beyond, so slowly that it lasts as long as it may."""
+    reach = contact.CONTACT_MARGIN if model == "lcp" else 0.0  # the list looks a radius farther
+    for gap, ahead in itertools.product((0.0985 + reach, 0.10001 + reach), (False, True)):
+        slow = contact.scene_of([0.0, 0.2 + gap], 0.1, vx=[0.025, -0.025])
+        run = check_same(model, slow, 0.002, 1040, ahead=ahead)
+        assert run.v[-1, 0, 0] < 0.02, "they met"
+
+
+def test_the_smallest_gap_is_that_of_two_balls_that_were_as_far_apart_as_its_list_looks():
+    q = np.array([[(-x, x), (0.1, 0.1)] for x in np.linspace(0.1501, 0.09, 1000)])
+    gaps = [way(q, np.array((0.1, 0.1))) for way in (fast.smallest_gap, contact.smallest_gap)]
+    np.testing.assert_array_equal(*gaps)
 
 
 # Walls, and balls of unequal size

@@ -108,7 +108,7 @@ SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 
 @settings(
-    max_examples=100, deadline=None, derandomize=True, database=None, suppress_health_check=SLOW
+    max_examples=150, deadline=None, derandomize=True, database=None, suppress_health_check=SLOW
 )
 @given(spec=specs())
 def test_every_property_holds_on_scenes_that_hypothesis_draws(spec):

@@ -11,7 +11,7 @@ from curriculum.page.build import build
 from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
 from curriculum.tests import page_browser
-from curriculum.tests.page_browser import call, firefox, middle, mouse, running, visiting
+from curriculum.tests.page_browser import call, middle, mouse, visiting
 
 BETS = {  # their files, and a number of each that tells its answer, as the page writes it
     "ex1": ("ex1_predict_contact", "penalty_deepest", ".3f"),
@@ -19,18 +19,6 @@ BETS = {  # their files, and a number of each that tells its answer, as the page
     "ex4": ("ex4_predict_soft", "penalty_heavy", ".5f"),
 }
 MOST = 900_000  # bytes of the page
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with running() as found:
-        yield found
-
-
-@pytest.fixture(scope="module")
-def gecko():
-    with firefox() as found:
-        yield found
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +70,8 @@ def opened_in_firefox(gecko, url):
     gecko.visit(url)
     gecko.evaluate(f"(() => {{ {SHOWN} }})()")
     gecko.visit(url)
-    return gecko
+    yield gecko
+    assert gecko.trouble == []
 
 
 @pytest.fixture
@@ -129,35 +118,45 @@ SEEN = """() => ({
   asked: location.href.split(".html")[1], entries: history.length})"""
 
 
-def keyed(page, selector, *keys):
-    """Keys on what a selector finds, which scrolls into sight; what is seen after it."""
-    page.locator(selector).first.focus()
-    for key in keys:
-        page.keyboard.press(key)
-    page.wait_for_timeout(400)  # the address of a run of keys is written in its pauses
-    return page.evaluate(SEEN)
+def keys(page, node):
+    """Turn a number by a run of keys."""
+    node.focus()
+    for _ in range(15):
+        page.keyboard.press("ArrowRight")
+
+
+def drawn(page, node):
+    """The same by the mouse."""
+    for _ in mouse(page, *middle(node), ((12, 0), (30, 0))):
+        pass
 
 
 def test_a_section_keeps_its_own_values_and_one_act_is_one_entry_of_the_history(visit):
     with visit() as page:
         number = ".drag[data-knob=stiffness]"
         page.locator("#fig-sponge").scroll_into_view_if_needed()
-        page.locator("#fig-stack").scroll_into_view_if_needed()
-        page.wait_for_timeout(300)
-        before = page.evaluate(SEEN)
-        assert before["number"] == "10,000" and before["chips"] == before["asked"] == ""
-        now = keyed(page, number, *["ArrowRight"] * 15)
-        assert now["entries"] == before["entries"] + 1  # a run of keys is one
-        value = now["number"].replace(",", "")
-        assert float(value) > 10000 and now["field"] == value and now["elsewhere"] == "10000"
-        assert now["chips"] == f"Stiffness k = {now['number']}, text: 10,000"
-        assert re.fullmatch(rf"\?stiffness={value}#the-bill[.\d]*", now["asked"])
-        page.reload()
-        page.wait_for_selector("[data-ready]", state="attached")
-        assert page.locator(number).first.inner_text() == now["number"]
-        chip = page.locator(f"{number} + .chip").first
-        chip.click()
-        assert page.locator(number).first.inner_text() == "10,000" and not chip.is_visible()
+        slider = page.locator("#fig-stack [data-knob=stiffness] [type=range]")
+        written, chip = (page.locator(each).first for each in (number, f"{number} + .chip"))
+        for hand, node in ((drawn, slider), (keys, written), (drawn, written)):
+            node.scroll_into_view_if_needed()
+            page.wait_for_timeout(300)
+            before = page.evaluate(SEEN)
+            assert before["number"] == "10,000" and before["chips"] == ""
+            assert re.fullmatch("(#the-bill[.\\d]*)?", before["asked"])
+            hand(page, node)
+            page.wait_for_timeout(400)  # the address of an act is written in its pauses
+            now = page.evaluate(SEEN)
+            assert now["entries"] == before["entries"] + 1
+            value = now["number"].replace(",", "")
+            assert float(value) > 10000 and now["field"] == value and now["elsewhere"] == "10000"
+            assert now["chips"] == f"Stiffness k = {now['number']}, text: 10,000"
+            assert re.fullmatch(rf"\?stiffness={value}#the-bill[.\d]*", now["asked"])
+            if hand is keys:
+                page.reload()
+                page.wait_for_selector("[data-ready]", state="attached")
+                assert written.inner_text() == now["number"]
+            chip.click()
+            assert written.inner_text() == "10,000" and not chip.is_visible()
         page.go_back()
         page.wait_for_function(
             f"(text) => document.querySelector({number!r}).textContent === text", arg=now["number"]
@@ -210,17 +209,24 @@ def test_the_live_figure_shows_the_gaps_of_contact_py(tab):
     gaps = {name: run.q[:, 1, 0] / contact.RADIUS - 1 for name, run in runs.items()}
     deepest = int(gaps["penalty"].argmin())
     time = tab.locator("#fig-lanes .handle[data-handle=time]")
-    time.focus()
-    for row in (deepest + 100, deepest):
-        away = round(float(time.get_attribute("aria-valuenow")) / 0.002) - row
-        for key in ["Shift+ArrowLeft"] * (away // 10) + ["ArrowLeft"] * (away % 10):
-            tab.keyboard.press(key)
-        tab.wait_for_selector(f"#fig-lanes .words:text('{0.002 * row:.3f} s')")
-        told = tab.locator("#fig-lanes .words").inner_text()
-        for name, size, way in re.findall(r"(\w+) ([\d.]+) r (in|up)", told):
-            shown = float(size) * {"in": -1, "up": 1}[way]
-            assert shown == pytest.approx(gaps[name][row], rel=0.05), (name, told)
-        assert all(abs(gaps[name][row]) < 1e-9 for name in re.findall(r"(\w+) touching", told))
+    box = time.bounding_box()
+    for _ in mouse(tab, box["x"] + box["width"] / 2, box["y"] + 9, ((-99, 0), (-180, 0))):
+        judge_gaps(tab, gaps)
+    away = deepest - round(float(time.get_attribute("aria-valuenow")) / 0.002)
+    for _ in range(abs(away)):
+        tab.keyboard.press("ArrowRight" if away > 0 else "ArrowLeft")
+    assert judge_gaps(tab, gaps) == deepest
+
+
+def judge_gaps(tab, gaps):
+    """The live figure tells the gaps of one row; which."""
+    told = call(tab, page_browser.WORDS, "fig-lanes")
+    row = round(float(told.partition(" s:")[0]) / 0.002)
+    for name, size, way in re.findall(r"(\w+) ([\d.]+) r (in|up)", told):
+        shown = float(size) * {"in": -1, "up": 1}[way]
+        assert shown == pytest.approx(gaps[name][row], rel=0.05), (name, told)
+    assert all(abs(gaps[name][row]) < 1e-9 for name in re.findall(r"(\w+) touching", told))
+    return row
 
 
 def test_an_explosion_is_drawn_with_a_scale_of_heights(visit):
@@ -319,25 +325,20 @@ def test_the_blank_names_a_slip_and_takes_the_right_lines(tab):
 # ---- grabbing, keyboard, screens
 
 
-WIDTHS = (1280, 1024, 390)
 WIDER = """(width) => document.documentElement.scrollWidth <= width ? [] :
   [...document.querySelectorAll("article *")].filter((each) =>
     each.getBoundingClientRect().right > width && !each.closest(".scroll, .math, svg"))
     .map((each) => each.outerHTML.slice(0, 120))"""
 
 
-def test_at_the_middle_of_every_button_knob_handle_and_ball_is_that_thing(tab):
-    """In all widths, and nothing is wider than the screen."""
-    for width in (*WIDTHS, 320):
-        tab.set_viewport_size({"width": width, "height": 800})
-        assert tab.evaluate(WIDER, width) == [], width
-        assert width == 320 or tab.evaluate(page_browser.HITS) == [], width
-
-
-def test_so_it_is_in_firefox(fox):
-    for width in WIDTHS:
-        fox.resize(width)
-        assert fox.evaluate(page_browser.HITS) == [], width
+@pytest.mark.parametrize("where", ["tab", "fox"])
+@pytest.mark.parametrize("width", [1280, 1024, 390, 320])
+def test_at_the_middle_of_every_button_knob_handle_and_ball_is_that_thing(where, width, request):
+    """And nothing is wider than the screen."""
+    page = request.getfixturevalue(where)
+    page_browser.resize(page, width)
+    assert call(page, WIDER, width) == []
+    assert page.evaluate(page_browser.HITS) == []
 
 
 @pytest.mark.parametrize(
@@ -346,15 +347,12 @@ def test_so_it_is_in_firefox(fox):
 )
 def test_whatever_a_hand_presses_and_moves_changes_the_words_of_its_figure(where, gesture, request):
     page = request.getfixturevalue(where)
-    found, every = call(page, page_browser.HANDLES), call(page, page_browser.FIGURES)
-    live = {"fig-lanes"} if where == "phone" else set()  # there it comes up only when it is called
-    assert {name for name, _ in found} == set(every) - live
-    for name, handle in found:
-        x, y, on_top = call(page, page_browser.MIDDLE, name, handle)
-        assert on_top, (name, handle)
+    for name in call(page, page_browser.FIGURES):
+        x, y, on_top = call(page, page_browser.MIDDLE, name)
+        assert on_top, name
         before = call(page, page_browser.WORDS, name)
         moves = gesture(page, x, y)
-        assert any(call(page, page_browser.WORDS, name) != before for _ in moves), (name, handle)
+        assert any(call(page, page_browser.WORDS, name) != before for _ in moves), name
         moves.close()
 
 
@@ -441,13 +439,10 @@ def test_without_scripts_text_figures_and_exercises_are_there(visit):
         assert page.locator("#ex1 .no-js-only").is_visible()
 
 
-def test_firefox_runs_the_page_without_complaint_and_its_ball_falls(fox):
-    ready = "document.documentElement.dataset.ready"
-    assert fox.evaluate(ready) == "yes"
+def test_in_firefox_a_key_drops_the_ball(fox):
     x, y, _ = call(fox, page_browser.MIDDLE, "fig-grab", "ball")
     fox.pointer((x, y), "Down", (x, y - 20), "Up")
     fox.press("\ue013", "\ue007")  # arrow up, Enter
     words = "document.querySelector('#fig-grab .words').textContent"
     rests = f"new Promise((done) => setTimeout(() => done({words}), 400))"
     assert "rests" in fox.evaluate(rests)
-    assert fox.trouble == []

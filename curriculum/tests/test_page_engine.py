@@ -10,7 +10,6 @@ import pytest
 import contact
 from curriculum.page.build import page_data
 from curriculum.page.bundle import bundle
-from curriculum.tests.page_browser import firefox, running
 
 TO_LAST_BIT = ("penalty", "lcp", "soft")
 
@@ -92,35 +91,26 @@ def judge(found):
 
 
 @pytest.fixture(scope="module")
-def blank():
-    """An empty tab of Chromium."""
-    with running() as browser:
-        yield browser.new_page()
+def tabs(browser, gecko):
+    """An empty tab of Chromium, and one of Firefox."""
+    gecko.visit("about:blank")
+    return browser.new_page(), gecko
 
 
-@pytest.fixture(scope="module")
-def blank_in_firefox():
-    with firefox() as tab:
-        tab.visit("about:blank")
-        yield tab
-
-
-@pytest.mark.parametrize("where", ("blank", "blank_in_firefox"))
-def test_a_browser_computes_penalty_lcp_and_soft_to_the_last_bit_and_exact_to_1e_10_r(
-    where, request
-):
-    judge(runs_in(request.getfixturevalue(where).evaluate))
+@pytest.mark.parametrize("which", (0, 1), ids=("chromium", "firefox"))
+def test_a_browser_computes_penalty_lcp_and_soft_to_the_last_bit_and_exact_to_1e_10_r(which, tabs):
+    judge(runs_in(tabs[which].evaluate))
 
 
 @pytest.mark.parametrize("lean", (0.1, 0.35, 0.9))
-def test_ball_slides_off_a_held_ball_as_exact_has_it_within_1e_10_r(blank, blank_in_firefox, lean):
+def test_ball_slides_off_a_held_ball_as_exact_has_it_within_1e_10_r(tabs, lean):
     r, dt, steps = contact.RADIUS, 2e-4, 3000
     q0 = np.array([[0.0, 2 * r * np.sin(lean)], [5.0, 5.0 + 2 * r * np.cos(lean)]])
     mass = np.array([np.inf, 1.0])
     scene = contact.Scene("slide", q0, 0 * q0, mass, np.full(2, r), 0.0, 0.0)
     run = contact.run_model("exact", scene, dt, steps)
     call = f".slideOff({lean}, {2 * r}, {-contact.GRAVITY}, {dt}, {steps})"
-    for real in (blank, blank_in_firefox):
+    for real in tabs:
         found = real.evaluate(bundle("sliding.js", {}) + call)
         assert np.abs(found["path"] - (run.q[:, :, 1] - q0[:, 0])).max() < 1e-10 * r
         assert np.cos(found["leaves"]) == pytest.approx(2 / 3 * np.cos(lean), rel=1e-12)

@@ -11,7 +11,7 @@ from curriculum.page.build import build, page_data
 from curriculum.page.bundle import evaluate
 from curriculum.page.chapter import CHAPTER
 from curriculum.regions import ROOT
-from curriculum.tests.page_browser import middle, mouse, running, visiting
+from curriculum.tests.page_browser import middle, mouse, visiting
 from curriculum.text import facts
 from exercises.kit import trials
 
@@ -25,17 +25,17 @@ DT, RADIUS, WEIGHT = 0.002, contact.RADIUS, -contact.GRAVITY
 
 
 def test_every_figure_has_a_slot_in_the_chapter_and_every_slot_a_figure():
-    assert sorted(evaluate("still.js", page_data([]), "stills()")["figures"]) == SLOTS
+    assert sorted(evaluate("still.js", page_data([]), "settable()")["names"]) == SLOTS
 
 
 @pytest.fixture(scope="module")
-def tab(tmp_path_factory):
+def tab(tmp_path_factory, browser):
     """A browser tab on a page whose first section holds every explaining figure."""
     file = tmp_path_factory.mktemp("figures") / "figures.html"
     slots = "\n\n".join(f"The {name}.\n\n<!-- figure: {name} -->" for name in SHOWN)
     apart = "## Apart\n\n<!-- figure: sponge -->"
     file.write_text(build(f"# Figures\n\n## All\n\n{slots}\n\n{apart}\n"), encoding="utf-8")
-    with running() as browser, visiting(browser, file.as_uri()) as page:
+    with visiting(browser, file.as_uri()) as page:
         yield page
 
 
@@ -155,7 +155,7 @@ def test_signs_are_those_of_contact_py(tab):
 def pressed(tab, name):
     """Gap [r] and force [m g] in a figure of the corner, its ball pressed as hard as it goes."""
     box = figure(tab, name)
-    press(tab, handle(box, "hand"), "Shift+ArrowDown", 4)
+    drag(tab, handle(box, "hand"), (0, 200))
     text = said(box)
     return float(re.search(r"gap (\S+) r", text)[1]), float(re.search(r"force (\S+) m g", text)[1])
 

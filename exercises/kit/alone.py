@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+import traceback
 from pathlib import Path
 
 from curriculum.commands import near
@@ -62,9 +63,8 @@ def load(file):
 def unreadable(file, error):
     """One line on a file that is no Python."""
     hint = f"; {error.name} needs quotes around it" if type(error) is NameError else ""
-    trace, line = error.__traceback__, getattr(error, "lineno", None)
-    while trace and not line:
-        line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == str(file) else None
-        trace = trace.tb_next
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if frame.filename == str(file)]
+    line = getattr(error, "lineno", None) or next(iter(lines), None)
     place = f"{near(str(file))}{f', line {line}' if line else ''}"
     return f"{place}, cannot be read: {type(error).__name__}: {error}{hint}"

@@ -19,13 +19,13 @@ class Blank(NamedTuple):
     """A function that a learner writes."""
 
     exercise: str
-    hint: int  # the first that helps
     inputs: list  # [{argument: value}]
     right: Callable
     slips: list  # [(a function that makes it, what it means)]
-    within: float  # what counts as equal, as a share of the size of what is right
-    after: str  # the blank that this one is built on
-    labels: list  # of the numbers that come out
+    hint: int  # the first that helps
+    within: float = 1e-9  # what counts as equal, as a share of the size of what is right
+    after: str = ""  # the blank that this one is built on
+    labels: list = []  # of the numbers that come out
 
 
 def drawn(ranges, first=(), most=60):
@@ -138,15 +138,12 @@ def labels(name, case):
     return [*lam, *(f"{v} of {ball}" for ball in range(len(case["masses"])) for v in ("vx", "vy"))]
 
 
-def blank(
-    exercise, hint, right, slips, inputs=None, arguments="", within=1e-9, after="", labels=()
-):
+def blank(exercise, right, slips, inputs=None, arguments="", **more):
     """A Blank from what answers.json says of it, where functions are expressions."""
     head = f"lambda {arguments}: " if arguments else ""
     right, *wrong = (eval(head + text, globals()) for text in (right, *slips))  # our own text
     cases = drawn(**inputs) if inputs else stacks()
-    meanings = list(zip(wrong, slips.values()))
-    return Blank(exercise, hint, cases, right, meanings, within, after, labels)
+    return Blank(exercise, cases, right, list(zip(wrong, slips.values())), **more)
 
 
 BLANKS = {

@@ -7,6 +7,7 @@ import contact
 from curriculum.commands import near
 
 from . import FACTS, columns
+from .predict import quality
 
 USUAL = contact.Settings()
 KNOBS = {  # head: (what dt is divided by, settings)
@@ -16,30 +17,24 @@ KNOBS = {  # head: (what dt is divided by, settings)
     "beta x 4": (1, USUAL._replace(baumgarte=4 * USUAL.baumgarte)),
     "ahead": (1, USUAL._replace(ahead=True)),
 }
-TROUBLES = {  # model, scene, balls, dt [s], time [s], measure, seeds
-    "sink": ("penalty", "drop", 1, 0.002, 4.0, "rest_penetration_frac", 1),
-    "dive": ("lcp", "drop", 1, 0.002, 1.2, "max_penetration_frac", 9),
-    "hop": ("lcp", "drop", 1, 0.002, 1.2, "rebound_frac", 9),
-    "sag": ("lcp", "stack", 10, 0.002, 2.0, "rest_penetration_frac", 1),
-    "trembling": ("penalty", "stack", 3, 0.006, 12.0, "rest_jitter", 1),
+TROUBLES = {  # model, scene, balls, dt [s], steps, measure, seeds
+    "sink": ("penalty", "drop", 1, 0.002, 2000, "rest_penetration_frac", 1),
+    "dive": ("lcp", "drop", 1, 0.002, 600, "max_penetration_frac", 9),
+    "hop": ("lcp", "drop", 1, 0.002, 600, "rebound_frac", 9),
+    "sag": ("lcp", "stack", 10, 0.002, 1000, "rest_penetration_frac", 1),
+    "trembling": ("penalty", "stack", 3, 0.006, 2000, "rest_jitter", 1),
 }
 TOWER = {"bodies": 7, "dt": 0.001, "beta": 0.5, "r": 0.1}  # one sweep a step
-
-
-def run(model, scene, dt, time, settings, key):
-    """One number of a run's quality."""
-    made = contact.run_model(model, scene, dt, round(time / dt), settings)
-    return contact.contact_quality(made, scene, dt)[key]
 
 
 def measure():
     """{trouble: what it is as it is}, and {trouble: [what each knob makes of it, as a share]}."""
     usual, shares = {}, {}
-    for trouble, (model, scene, bodies, dt, time, key, seeds) in TROUBLES.items():
+    for trouble, (model, scene, bodies, dt, steps, key, seeds) in TROUBLES.items():
         scenes = [contact.build_scene(scene, seed, bodies) for seed in range(seeds)]
         usual[trouble], *turned = (
-            statistics.fmean(run(model, each, dt / by, time, settings, key) for each in scenes)
-            for by, settings in ((1, USUAL), *KNOBS.values())
+            statistics.fmean(quality(model, of, dt / by, by * steps, knobs)[key] for of in scenes)
+            for by, knobs in ((1, USUAL), *KNOBS.values())
         )
         shares[trouble] = [number / usual[trouble] for number in turned]
     return usual, shares
@@ -57,7 +52,7 @@ def measure_sag():
     """The sag of the tower [r]."""
     tower = contact.build_scene("stack", 0, TOWER["bodies"])
     settings = USUAL._replace(iters=1, baumgarte=TOWER["beta"])
-    return run("lcp", tower, TOWER["dt"], 2.0, settings, "rest_penetration_frac")
+    return quality("lcp", tower, TOWER["dt"], 2000, settings)["rest_penetration_frac"]
 
 
 def numbers(usual, shares):

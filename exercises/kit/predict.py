@@ -36,6 +36,12 @@ BETS = {  # exercise: corner of its table, models, how a number is written, part
 # fmt: on
 
 
+def quality(model, scene, dt, steps, settings=contact.Settings()):
+    """The measures of a run."""
+    run = contact.run_model(model, scene, dt, steps, settings)
+    return contact.contact_quality(run, scene, dt)
+
+
 def measure(name):
     """The numbers of a bet, {MODEL_PART: number}, and what its reasons quote beside them."""
     _, models, _, parts = BETS[name]
@@ -43,9 +49,8 @@ def measure(name):
     for label, part in parts.items():
         scene = drop._replace(mass=part.mass * drop.mass)
         for model in models:
-            run = contact.run_model(model, scene, part.dt, part.steps)
-            quality = contact.contact_quality(run, scene, part.dt)
-            numbers[f"{model}_{label}"] = quality[part.key]
+            measured = quality(model, scene, part.dt, part.steps)
+            numbers[f"{model}_{label}"] = measured[part.key]
     also = FACTS[name].get("also", {}).items()
     known = numbers | {"critical_dt": contact.critical_dt}
     return numbers | {label: eval(formula, known.copy()) for label, formula in also}
@@ -79,12 +84,10 @@ class Bet(NamedTuple):
 
 def asked(text):
     """The Bet of a docstring: question, choices (an indented paragraph), what WHY should say."""
-    parts = text.strip().split("\n\n")
-    place = next(k for k, part in enumerate(parts) if part.startswith("    A  "))
-    choices = re.findall(r"^    ([A-Z])  (.*(?:\n     .*)*)", parts[place], re.MULTILINE)
-    question, why = (line_of(part) for part in parts[place - 1 : place + 2 : 2])
-    found = {letter: line_of(text) for letter, text in choices}
-    return Bet("\n\n".join(parts[1 : place - 1]), question, found, why)
+    _title, *task, question, choices, why, _then, _commands = text.strip().split("\n\n")
+    found = re.findall(r"^    ([A-Z])  (.*(?:\n     .*)*)", choices, re.MULTILINE)
+    choices = {letter: line_of(words) for letter, words in found}
+    return Bet("\n\n".join(task), line_of(question), choices, line_of(why))
 
 
 def line_of(text):
@@ -102,10 +105,8 @@ def state(exercise):
     file, bet = near(exercise.__file__), asked(task_of(exercise))
     letters, why = ", ".join(map(repr, bet.choices)), exercise.WHY
     if exercise.PREDICTION is None:
-        return (
-            "blank",
-            f"no prediction yet: in {file} set PREDICTION to one of {letters} and say WHY",
-        )
+        asks = f"set PREDICTION to one of {letters} and say WHY"
+        return "blank", f"no prediction yet: in {file} {asks}"
     if chosen(exercise) not in bet.choices:
         given = f"given {exercise.PREDICTION!r}, allowed: {letters}"
         return "blank", f"PREDICTION in {file}: {given}"

@@ -1,10 +1,9 @@
 """An exercise's command line, and what checks.py asks of it. Nothing to fill in here."""
 
-import argparse
 import sys
 from pathlib import Path
 
-from curriculum.commands import command, stoppable
+from curriculum.commands import Parser, command, stoppable
 
 from . import FACTS, alone, knobs, predict, task_of
 from .progress import done, note, practise
@@ -33,7 +32,7 @@ def main():
     exercise = sys.modules["__main__"]
     name = name_of(exercise)
     hints = FACTS[name]["hints"]
-    parser = argparse.ArgumentParser(description=f"Exercise {name}.", allow_abbrev=False)
+    parser = Parser(description=f"Exercise {name}.")
     most = f"print hint N, 1 to {len(hints)}, and do nothing else"
     numbers = range(1, len(hints) + 1)
     parser.add_argument("--hint", type=int, choices=numbers, metavar="N", help=most)

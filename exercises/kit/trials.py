@@ -184,15 +184,14 @@ def drops(exercise, _):
     return columns("energy, depth", heads, rows, "{:.5g}")
 
 
-def seeing(exercise, balls, dt, restitution=0.0, baumgarte=0.2, iters=20):
+def seeing(exercise, balls, dt, restitution, baumgarte=0.2, iters=20):
     """lcp_step with the three lines of exercise 10."""
-    applies, margin = exercise.applies(restitution), contact.CONTACT_MARGIN
+    if not exercise.applies(restitution):
+        return contact.lcp_step(balls, dt, restitution, baumgarte, iters)
     fastest = max(math.hypot(ball.vx, ball.vy) for ball in balls)
-    contacts = contact.detect_contacts(balls, exercise.how_far(fastest, dt) if applies else margin)
+    contacts = contact.detect_contacts(balls, exercise.how_far(fastest, dt))
     for c in contacts:
-        c.target = contact.contact_target(c, restitution, baumgarte, dt)
-        if applies:
-            c.target = exercise.least_speed(c.depth, baumgarte, dt)
+        c.target = exercise.least_speed(c.depth, baumgarte, dt)
     contact.accelerate(balls, dt)
     contact.solve_contacts(contacts, iters)
     contact.move(balls, dt)

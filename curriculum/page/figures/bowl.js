@@ -2,8 +2,7 @@
  * visit to a contact goes to the lowest point along its own axis, but not below zero. */
 import { arrow, axis, ball, circle, clipped, label, number, path, plural, rect } from "../draw.js";
 import { steps, table } from "../draw.js";
-import { makeRows, solveContacts } from "../engine.js";
-import { beside, grip, kept, pair } from "../parts.js";
+import { beside, grip, kept, pair, visits } from "../parts.js";
 
 const [PX, UNIT, GROUND] = [36, 22, 40]; // px: a radius, an arrow for g dt, the table
 const SWEEPS = 40;
@@ -13,16 +12,8 @@ const LEVELS = [0.02, 0.1, 0.3, 0.7, 1.4, 2.5, 4]; // of the contours, as shares
 /* From the impulses `begin` of table and lower ball, and of the two balls, [m g dt]: those after
  * every visit. Speeds in g dt; the upper ball is `heavy` times as heavy. */
 const walk = kept((speeds, begin, heavy) => {
-  const contacts = [0, 1].map((i) => ({ i, j: i - 1, nx: 0, ny: 1, depth: 0 }));
-  const rows = makeRows(contacts, [1, heavy]);
-  const [vx, vy] = [[0, 0], [speeds[0] + begin[0] - begin[1], speeds[1] + begin[1] / heavy]];
-  rows.forEach((row, k) => (row.lam = begin[k]));
-  const seen = [begin];
-  for (let at = 0; at < 2 * SWEEPS; at++) {
-    solveContacts([rows[at % 2]], vx, vy, { iters: 1 });
-    seen.push(rows.map(({ lam }) => lam));
-  }
-  return seen;
+  const vy = [speeds[0] + begin[0] - begin[1], speeds[1] + begin[1] / heavy];
+  return visits([1, heavy], begin, vy, 2 * SWEEPS).map(({ lam }) => lam);
 });
 
 // The contour of the bowl so high above its lowest point, where both balls are stopped.

@@ -8,7 +8,7 @@ const SIDES = [-1, 1];
 // The ball's velocity after 20 sweeps in a groove of two held balls, reached with (vx, vy).
 function leaves(vx, vy, project) {
   const contacts = SIDES.map((side, k) => ({ i: 0, j: k + 1, nx: -0.6 * side, ny: 0.8, depth: 0 }));
-  const rows = makeRows(contacts, [1, Infinity, Infinity], [0, 0], [0, 0]);
+  const rows = makeRows(contacts, [1, Infinity, Infinity]);
   const [x, y] = [[vx, 0, 0], [vy, 0, 0]];
   solveContacts(rows, x, y, { iters: 20, project });
   return { vx: x[0], vy: y[0], speed: Math.hypot(x[0], y[0]), lam: rows.map((c) => c.lam) };

@@ -2,8 +2,8 @@
  * state that runs along it while the reader lifts the ball or presses it into the table. */
 import { arrow, axis, ball, circle, label, line, number, path, table } from "../draw.js";
 import { pushOfTable, runModel, soften } from "../engine.js";
-import { atRest, beside, forceLength, G, grip, kept, knobs, lens } from "../parts.js";
-import { loadAt, R, scene, softKnobs } from "../parts.js";
+import { beside, forceLength, G, grip, kept, knobs, lens, R, scene } from "../parts.js";
+import { softKnobs } from "../parts.js";
 
 const PX = 70; // a radius, and how far the hand goes down until it presses hardest
 // What a picture shows: gaps from low to high [r], the hardest press [m g], ticks, and the lens.
@@ -105,15 +105,23 @@ function looksOf(view, load) {
   };
 }
 
-// soft: at rest the solver asks for no velocity where lam = target / R.
+// soft: at rest the solver asks for no velocity where lam = target / R; how deep that is for a load
+// is found by halving.
 function rounded(view) {
-  const told = softKnobs(view);
-  const one = scene([R]);
-  const law = (contact) => soften(contact, one, one, told);
-  const load = (depth) => loadAt(law, told.dt, depth);
+  const [told, one] = [softKnobs(view), scene([R])];
+  const load = (deep) => {
+    const contact = { i: 0, j: -1, nx: 0, ny: 1, depth: deep * R };
+    const { target, softness } = soften(contact, one, one, told);
+    return target / softness / (G * told.dt);
+  };
+  const gap = (wanted, less = 0, more = 2) => {
+    const middle = 0.5 * (less + more);
+    if (middle === less || middle === more) return -more;
+    return load(middle) > wanted ? gap(wanted, less, middle) : gap(wanted, middle, more);
+  };
   const depths = Array.from({ length: 60 }, (_, k) => (-1.2 * NEAR.low * (k + 1)) / 60);
   return {
-    gap: (wanted) => -atRest(law, told.dt, wanted).depth,
+    gap,
     curve: [[NEAR.high, 0], [0, 0], ...depths.map((each) => [-each, load(each)])],
     most: load(-NEAR.low),
   };

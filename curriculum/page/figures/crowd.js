@@ -1,6 +1,6 @@
 /* No target above -e v_n: two elastic balls are just parting when a third strikes one of them. */
 import { arrow, ball, label, line, number, rect } from "../draw.js";
-import { makeRows, normalSpeed, solveContacts } from "../engine.js";
+import { makeRows, solveContacts } from "../engine.js";
 import { grip, kept, wholly } from "../parts.js";
 
 const MOST = 3.5; // m/s
@@ -9,10 +9,11 @@ const ROWS = [180, 320, 460]; // px
 // The speeds after the impact of three touching elastic balls; `repair`: no target below zero.
 const struck = kept((speeds, repair) => {
   const [vx, vy] = [speeds.slice(), [0, 0, 0]];
-  const contacts = [0, 1].map((i) => ({ i: i + 1, j: i, nx: 1, ny: 0, depth: 0 }));
-  const wanted = contacts.map((c) => -normalSpeed(c, vx, vy));
-  const targets = repair ? wanted.map((v) => Math.max(0, v)) : wanted;
-  solveContacts(makeRows(contacts, [1, 1, 1], targets, [0, 0]), vx, vy, { iters: 1000 });
+  const contacts = [0, 1].map((i) => {
+    const wanted = speeds[i] - speeds[i + 1];
+    return { i: i + 1, j: i, nx: 1, ny: 0, target: repair ? Math.max(0, wanted) : wanted };
+  });
+  solveContacts(makeRows(contacts, [1, 1, 1]), vx, vy, { iters: 1000 });
   return vx;
 });
 const energy = (speeds) => speeds.reduce((sum, v) => sum + 0.5 * v * v, 0);

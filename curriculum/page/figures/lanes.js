@@ -209,7 +209,9 @@ function draw(view) {
   const time = timeOf(view);
   const text = `${time.toFixed(3)} s`;
   const { from, to } = view.own;
-  const times = { low: from, high: to, step: view.get("dt"), at: sx.back, get: () => timeOf(view) };
+  const dt = view.get("dt");
+  const at = (to) => dt * Math.round(sx.back(to) / dt); // of a row
+  const times = { low: from, high: to, step: dt, at, get: () => timeOf(view) };
   const place = (each, until) => (each.waits ? until : placeWords(each));
   const waiting = (each) => `waits for your bet in ${each.waits}`;
   const told = shown.map((each) => `${each.model} ${place(each, waiting(each))}`);

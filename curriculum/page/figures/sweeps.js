@@ -1,7 +1,6 @@
 /* The sweeps, contact after contact: a stack of three, its impulses as bars, the clamp at zero. */
 import { arrow, axis, ball, circle, label, number, plural, rect, table } from "../draw.js";
-import { makeRows, projectImpulse, solveContacts } from "../engine.js";
-import { beside, grip, kept, R, scene, wholly } from "../parts.js";
+import { beside, grip, kept, visits, wholly } from "../parts.js";
 
 const [COUNT, PX, SWEEPS] = [3, 34, 20];
 const LAST = COUNT * SWEEPS;
@@ -9,22 +8,10 @@ const UNIT = 24; // px of an arrow for a speed of g dt
 const SPEEDS = ["low", "middle", "top"]; // of the figure's own numbers
 const names = ["ball 1 on the table", "ball 2 on ball 1", "ball 3 on ball 2"];
 
-/* What the sweeps do, contact by contact: [{contact, wanted, lam, vy}], impulses in m g dt, speeds
- * in g dt. All balls have fallen for one step, and each has a speed besides. */
-const course = kept((...besides) => {
-  const balls = scene([R, 3 * R, 5 * R]);
-  const contacts = names.map((_, i) => ({ i, j: i - 1, nx: 0, ny: 1, depth: 0 }));
-  const rows = makeRows(contacts, balls.mass, [0, 0, 0], [0, 0, 0]);
-  const [vx, vy] = [[0, 0, 0], besides.map((v) => v - 1)];
-  const seen = [{ contact: null, wanted: 0, lam: [0, 0, 0], vy: vy.slice() }];
-  for (let at = 0; at < LAST; at++) {
-    let wanted = 0;
-    const project = (lam, change) => projectImpulse(lam, (wanted = change));
-    solveContacts([rows[at % COUNT]], vx, vy, { iters: 1, project });
-    seen.push({ contact: at % COUNT, wanted, lam: rows.map((c) => c.lam), vy: vy.slice() });
-  }
-  return seen;
-});
+// Impulses in m g dt, speeds in g dt: all balls have fallen for one step, each has a speed besides.
+const course = kept((...besides) =>
+  visits([1, 1, 1], [0, 0, 0], besides.map((v) => v - 1), LAST),
+);
 
 // A contact's impulse as a bar, and what the last change asked for.
 function bar({ contact, wanted, lam }, c, y, sx) {
