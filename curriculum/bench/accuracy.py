@@ -60,7 +60,7 @@ def cells(chosen, quick):
     """(problem, contestant, dt, substeps, starts) of every point, by names."""
     for problem in chosen:
         for c in CONTESTANTS:
-            kept_out = c.only and problem.name not in c.only or quick and c.engine == "drake"
+            kept_out = not c.is_for(problem.name) or quick and c.engine == "drake"
             if kept_out or c.refuses(problem.build(0)):
                 continue
             starts = 1 if c.slow or quick else problem.starts

@@ -16,12 +16,14 @@ begins the next one in every engine as shipped. What had to be chosen:
               case e = 1). A stiffness of beta / dt^2 beside it pushes overlaps out, as Baumgarte
               does. A ball is two slide joints. Many balls: CG and a sparse Jacobian, since the
               sparse Newton of version 4.0.0 fails on piles (its makers say it is mended in 4.0.1).
-    pymunk    iterations; bias, the share of an overlap that is left after a second. Its slop is
-              1e-5 r instead of 0.1, which was made for pixels.
+    pymunk    iterations; bias, the share of an overlap that is left after a second, which here is
+              named by what it takes out in 2 ms. Its slop is 1e-5 r instead of 0.1, which was made
+              for pixels.
     box2d3    substeps, and the frequency [Hz] of its soft contacts (30 as shipped; it never gets
               stiffer than a quarter of the substep rate). The world is 10 times as large, so that
               its slop of 5 mm shrinks against r. float32. Its forerunner 2.3 is left out.
-    drake     point contact. "discrete": its convex solver at a fixed step; "CENIC": the same under
+    drake     point contact, of stiffness k [N/m]. "discrete": its convex solver at a fixed step;
+              "cenic": the same under error control; "runge_kutta3": an explicit integrator under
               error control. It has no coefficient of restitution, so it runs where e is 0 (strong
               dissipation) or 1 (none), and says so elsewhere.
 """
@@ -84,6 +86,13 @@ class Session:
     def states(self, n):
         """q and v at each of n looks, (n + 1, 2, N)."""
         return tuple(map(np.array, zip(*self.looks(self.state, n))))
+
+    def with_the_fixed(self, q, v):
+        """q and v of every ball, from flat lists that begin with x, y for each one that moves."""
+        found = self.scene.q0.copy(), self.scene.v0.copy()
+        for whole, part in zip(found, (q, v)):
+            whole[:, self.moving] = part.reshape(len(self.moving), -1)[:, :2].T
+        return found
 
 
 class Ours(Session):
@@ -167,7 +176,7 @@ class Mujoco(Session):
         options = {"solver": "CG", "jacobian": "sparse"} | options if many else options
         flags = ' sleep="enable"' * sleep + ' speculative="enable"' * speculative
         chosen = " ".join(f'{name}="{value}"' for name, value in options.items())
-        self.moving = [k for k, ball in enumerate(balls) if not ball[-1]]
+        self.moving = np.flatnonzero(np.isfinite(scene.mass))
         self.model = mujoco.MjModel.from_xml_string(
             f'<mujoco><size memory="{"4G" if many else "-1"}"/>'
             f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" {chosen}>'
@@ -178,6 +187,7 @@ class Mujoco(Session):
         )
         self.data = mujoco.MjData(self.model)
         self.step = partial(mujoco.mj_step, self.model, self.data)
+        self.data.qpos[:] = scene.q0[:, self.moving].T.ravel()
         self.data.qvel[:] = scene.v0[:, self.moving].T.ravel()
         self.full = mujoco.mjtState.mjSTATE_FULLPHYSICS
         self.start = np.empty(mujoco.mj_stateSize(self.model, self.full))
@@ -191,10 +201,9 @@ class Mujoco(Session):
     def body(ball):
         (x, y), _, mass, radius, fixed = ball
         joints = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
-        return (
-            f'<body pos="{x!r} 0 {y!r}">{"" if fixed else joints}'
-            f'<geom type="sphere" size="{radius!r}" mass="{1.0 if fixed else mass!r}"/></body>'
-        )
+        body = f'<body pos="{x!r} 0 {y!r}">' if fixed else f"<body>{joints}"
+        mass = 1.0 if fixed else mass
+        return f'{body}<geom type="sphere" size="{radius!r}" mass="{mass!r}"/></body>'
 
     def advance(self, n):
         self.mujoco.mj_step(self.model, self.data, nstep=n)
@@ -204,15 +213,11 @@ class Mujoco(Session):
         self.mujoco.mj_getState(self.model, self.data, self.start, self.full)
         steps = n * self.substeps
         rows = self.rollout(self.model, self.data, self.start, nstep=steps)[0][0]
-        y0 = self.scene.q0[1, self.moving]
-        seen = rows[self.substeps - 1 :: self.substeps, 2 : 1 + 2 * len(y0) : 2]
-        return np.vstack((y0, y0 + seen))
+        rows = np.vstack((self.start, rows[self.substeps - 1 :: self.substeps]))
+        return rows[:, 2 : 1 + self.model.nq : 2]
 
     def state(self):
-        q, v = self.scene.q0.copy(), self.scene.v0.copy()
-        q[:, self.moving] += self.data.qpos.reshape(-1, 2).T
-        v[:, self.moving] = self.data.qvel.reshape(-1, 2).T
-        return q, v
+        return self.with_the_fixed(self.data.qpos, self.data.qvel)
 
 
 # pymunk
@@ -228,8 +233,8 @@ class Pymunk(Session):
         self.batch, self.buffer = pymunk.batch, pymunk.batch.Buffer()
         self.space = space = pymunk.Space()
         space.gravity, space.iterations, space.collision_slop = (0, -GRAVITY), iterations, 1e-6
-        if push is not None:  # a share of an overlap in each step; as shipped, in each second
-            space.collision_bias = (1.0 - push) ** (1.0 / dt)
+        if push is not None:  # a share of an overlap in 2 ms; the engine keeps what a second leaves
+            space.collision_bias = (1.0 - push) ** 500
         if sleep:
             space.sleep_time_threshold = 0.5
         bounce = math.sqrt(scene.restitution)  # the engine multiplies the two bodies' values
@@ -316,7 +321,7 @@ class Drake(Session):
 
         from pydrake.geometry import HalfSpace, Sphere
         from pydrake.math import RigidTransform
-        from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+        from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, ContactModel
         from pydrake.multibody.tree import PlanarJoint, SpatialInertia
         from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
         from pydrake.systems.framework import DiagramBuilder
@@ -328,21 +333,22 @@ class Drake(Session):
         skin = self.skin(scene, stiffness, dt)
         up = RigidTransform(HalfSpace.MakePose([0.0, 1.0, 0.0], [0.0, 0.0, 0.0]))
         plant.RegisterCollisionGeometry(plant.world_body(), up, HalfSpace(), "floor", skin)
-        self.scene, self.dt, self.joints, self.time = scene, dt, [], 0
-        for k, (place, velocity, mass, radius, fixed) in enumerate(balls_of(scene)):
+        self.scene, self.dt, self.plant, self.time = scene, dt, plant, 0
+        self.moving = np.flatnonzero(np.isfinite(scene.mass))
+        for k, (place, _, mass, radius, fixed) in enumerate(balls_of(scene)):
             body, pose = plant.world_body(), RigidTransform([*place, 0.0])
             if not fixed:
                 inertia = SpatialInertia.SolidSphereWithMass(mass, radius)
                 body, pose = plant.AddRigidBody(f"ball {k}", inertia), RigidTransform()
-                joint = PlanarJoint(f"joint {k}", plant.world_frame(), body.body_frame())
-                self.joints.append((k, plant.AddJoint(joint), place, velocity))
+                frames = plant.world_frame(), body.body_frame()
+                plant.AddJoint(PlanarJoint(f"joint {k}", *frames))
             plant.RegisterCollisionGeometry(body, pose, Sphere(radius), f"ball {k}", skin)
+        plant.set_contact_model(ContactModel.kPoint)
         plant.Finalize()
         self.simulator = Simulator(builder.Build())
         self.context = plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
-        for _, joint, place, velocity in self.joints:
-            joint.set_translation(self.context, place)
-            joint.set_translational_velocity(self.context, velocity)
+        for put, given in ((plant.SetPositions, scene.q0), (plant.SetVelocities, scene.v0)):
+            put(self.context, np.pad(given[:, self.moving].T, ((0, 0), (0, 1))).ravel())  # x, y, 0
         if scheme:
             ResetIntegratorFromFlags(self.simulator, scheme, 0.1)
             self.simulator.get_mutable_integrator().set_target_accuracy(accuracy)
@@ -377,14 +383,13 @@ class Drake(Session):
         self.advance(1)
 
     def heights(self):
-        return [joint.get_translation(self.context)[1] for _, joint, _, _ in self.joints]
+        return self.plant.GetPositions(self.context)[1::3]
 
     def state(self):
-        q, v = self.scene.q0.copy(), self.scene.v0.copy()
-        for k, joint, _, _ in self.joints:
-            q[:, k] = joint.get_translation(self.context)
-            v[:, k] = joint.get_translational_velocity(self.context)
-        return q, v
+        context = self.context
+        return self.with_the_fixed(
+            self.plant.GetPositions(context), self.plant.GetVelocities(context)
+        )
 
 
 # what is measured
@@ -421,6 +426,9 @@ class Setting(NamedTuple):
     def slow(self):
         """Whether one start and one process have to be enough."""
         return self.engine == "drake" and not self.adaptive
+
+    def is_for(self, problem):
+        return not self.only or problem in self.only
 
     def cut(self, substeps):
         """The words, with that many substeps for each look."""
@@ -475,6 +483,16 @@ OURS = (
 )
 RIGID, PUSHED = partial(direct, 0.0, 0.9999), partial(direct, 0.2, 0.999)
 HARD = "{inner} substeps, hardest"
+PUSHING = "{iterations} iterations, push {push:g} in 2 ms"
+RESTING = ("drop", "slide", "stack", "heavy_100", "heavy_1000", "tower")  # e = 0, and no lottery
+
+
+def adaptive(scheme, digits, k, only=()):
+    """Drake under error control: accuracy and stiffness by their exponents."""
+    how = dict(scheme=scheme, accuracy=10.0**-digits, stiffness=10.0**k)
+    return drake(f"{scheme}, accuracy 1e-{digits}, k 1e{k}", only, **how)
+
+
 SETTINGS = (
     mujoco("as shipped", soften=shipped),
     mujoco("time constant 2 dt, ratio 5, d 0.9999", soften=partial(standard, 2.0, 5.0, 0.9999)),
@@ -482,13 +500,17 @@ SETTINGS = (
     mujoco("direct, push 0.2, d 0.999", soften=PUSHED),
     mujoco("direct, no push, speculative", soften=RIGID, speculative=True),
     *(pymunk("{iterations} iterations", iterations=n) for n in (10, 100)),
-    pymunk("{iterations} iterations, push {push} a step", iterations=10, push=0.2),
+    *(pymunk(PUSHING, iterations=n, push=push) for n, push in ((10, 0.2), (10, 1.0), (30, 1.0))),
     box2d3("{inner} substeps, as shipped", inner=4),
     box2d3("{inner} substep, hardest", inner=1, hertz=1e9),
     *(box2d3(HARD, inner=n, hertz=1e9) for n in (4, 16, 64)),
-    box2d3("{inner} substeps, {hertz:.0f} Hz", inner=32, hertz=240.0),
+    box2d3("{inner} substep, {hertz:.0f} Hz", inner=1, hertz=480.0),
+    *(box2d3("{inner} substeps, {hertz:.0f} Hz", inner=n, hertz=240.0) for n in (4, 32)),
     drake("discrete, k 1e8", stiffness=1e8),
-    *(drake(f"CENIC, accuracy 1e-{n}", scheme="cenic", accuracy=10.0**-n) for n in (3, 5, 7)),
+    *(adaptive("cenic", digits, 8) for digits in (3, 5, 7)),
+    *(adaptive("cenic", digits, 10, RESTING) for digits in (7, 9)),
+    adaptive("runge_kutta3", 5, 8, ("drop", "slide")),
+    adaptive("runge_kutta3", 5, 10, ("elastic",)),
 )
 
 

@@ -20,7 +20,7 @@ import numpy as np
 
 import contact
 from curriculum.bench import engines, timing
-from curriculum.bench.engines import AHEAD, GAIN_1, HARD, box2d3, lcp, mujoco, pymunk
+from curriculum.bench.engines import AHEAD, GAIN_1, HARD, PUSHING, box2d3, lcp, mujoco, pymunk
 from curriculum.run import pool
 
 DT = 0.002  # s
@@ -50,9 +50,9 @@ def shaft(count):
 
 
 def side_by_side(scene):
-    """So many copies of a shaft, each with its own walls."""
-    apart = np.ptp(scene.q0[0]) + 3.0 * contact.RADIUS
-    x = np.concatenate([scene.q0[0] + k * apart for k in range(COPIES)])
+    """So many copies of a shaft, each with its own walls; centred, for engines in float32."""
+    places = (np.arange(COPIES) - 0.5 * (COPIES - 1)) * (np.ptp(scene.q0[0]) + 3.0 * contact.RADIUS)
+    x = np.add.outer(places, scene.q0[0]).ravel()
     y, mass = np.tile(scene.q0[1], COPIES), np.tile(scene.mass, COPIES)
     return contact.scene_of(x, y, mass, name="shafts")
 
@@ -72,7 +72,7 @@ SETTINGS = (  # and how many substeps they take for a step of 2 ms
     (box2d3("{inner} substep, hardest", inner=1, hertz=1e9), 4),
     (box2d3(f"{HARD}, {ASLEEP}", inner=4, hertz=1e9, sleep=True), 1),
     (pymunk("{iterations} iterations", iterations=10), 1),
-    (pymunk("{iterations} iterations, push {push} a step", iterations=10, push=0.2), 1),
+    (pymunk(PUSHING, iterations=10, push=0.2), 1),
     (pymunk("{iterations} iterations", iterations=30), 1),
     (pymunk("{iterations} iterations", iterations=10), 4),
     (pymunk(f"{{iterations}} iterations, {ASLEEP}", iterations=10, sleep=True), 1),
@@ -190,7 +190,7 @@ def fastest(rows, engine, count, depth):
 
 def winners(rows):
     """The numbers of the settings that are worth running with 10,000 balls."""
-    found = (fastest(rows, engine, 1000, 0.8 * d) for engine in LABELS for d in DEPTHS)
+    found = (fastest(rows, engine, 1000, depth) for engine in LABELS for depth in DEPTHS)
     chosen = {(row["engine"], row["words"]) for row in found if row}
     return [k for k, (s, _) in enumerate(SETTINGS) if (s.engine, words(k)) in chosen]
 

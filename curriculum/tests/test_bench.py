@@ -32,7 +32,8 @@ R, g = contact.RADIUS, 9.81
 ALL = [s for s in accuracy.CONTESTANTS if not engines.not_installed(s.engine)]
 HERE = [s for s in ALL if s in engines.SETTINGS]
 LONG = {"drop": 4, "bounce": 4, "stack": 4, "slide": 0.7, "pile": 1, "elastic": 20}  # s
-each_setting = pytest.mark.parametrize("setting", HERE, ids=lambda s: s.name)
+RESTING = [s for s in HERE if s.is_for("drop")]
+each_setting = pytest.mark.parametrize("setting", RESTING, ids=lambda s: s.name)
 
 
 # references
@@ -92,7 +93,7 @@ def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setti
 def test_an_engine_comes_to_rest_on_the_floor_awake_and_asleep(setting):
     for sleep in (False, True)[: 1 + setting.sleeps]:
         session = setting.build(contact.scene_of(0.0, 1.0, vx=1e-5), 0.002, 1, sleep)
-        session.go(1500)
+        session.go(1000)
         q, v = session.state()
         slow = setting.engine == "drake" or "no push" in setting.words  # to push an overlap out
         assert abs(q[1, 0] - R) < (0.2 if slow else 0.02) * R
@@ -138,7 +139,12 @@ def test_an_engine_holds_the_fixed_ball_and_lets_the_other_slide_off(setting):
 
 
 BOUNCING = [s for s in HERE if s.engine in ("pymunk", "box2d3") or "no push, d" in s.words]
-BOUNCING = [(s, 0.7, 0.15) for s in BOUNCING] + [(s, 1.0, 4.0) for s in HERE if s.engine == "drake"]
+BOUNCING = [(s, 0.7, 0.15) for s in BOUNCING]
+BOUNCING += [
+    (s, 1.0, 0.03 if s.only else 4.0)  # Drake's convex solver gains or loses much
+    for s in HERE
+    if s.engine == "drake" and s.is_for("elastic")
+]
 
 
 @pytest.mark.parametrize("setting, e, within", BOUNCING, ids=lambda s: getattr(s, "name", s))
@@ -187,6 +193,9 @@ def test_times_are_medians_of_runs_that_sleep_only_as_a_user_gets_them():
     times = accuracy.times_of(("drop", LANDS, 0.002, 1, 5), clock)
     assert asleep == [False, True] * 3 and set(times) == {"awake", "user"}
     assert list(times.values()) == [2e-3, 2e-3]
+    start = time.process_time()
+    times = accuracy.times_of(("slide", LANDS, 0.002, 1, 1))  # by the real clock
+    assert 0.0 < min(times.values()) and sum(times.values()) < time.process_time() - start
 
 
 @pytest.mark.skipif(bool(engines.not_installed("mujoco")), reason="mujoco is missing")
