@@ -4,6 +4,7 @@ import argparse
 import json
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -84,19 +85,16 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
     assert takes - {"--skip", "--rerun"} == {*BAD, "--out"}
 
 
-@pytest.mark.parametrize("flags", [
-    "--smoke --steps 100",
-    "--scene drop --bodies 2", "--scene bounce --bodies 1", "--solref 0.02 0", "--solref -1 1",
-    "--solref 0.02 1e-162", "--stiff 3", "--no-such-flag",
+@pytest.mark.parametrize("flags, part", [
+    ("--smoke --steps 100", "--steps"), ("--scene drop --bodies 2", "--bodies"),
+    ("--scene bounce --bodies 1", "--bodies"), ("--solref 0.02 0", "--solref"),
+    ("--solref -1 1", "--solref"), ("--solref 0.02 1e-162", "--solref"), ("--stiff 3", "--stiff"),
+    ("--no-such-flag", "--no-such-flag"), ("--out ''", "--out: given ''; allowed: "),
+    ("--scene pile --steps 1000000 --bodies 10000",
+     "--steps 1000000 of 10000 balls need 3202 GB of memory; allowed: "),
 ])  # fmt: skip
-def test_flags_that_contradict_one_another_are_refused(flags, capsys):
-    err = refused(main(capsys, *flags.split()))
-    assert any(word in err for word in flags.split() if word.startswith("--"))
-
-
-def test_what_no_machine_can_hold_is_refused_before_it_runs(capsys):
-    err = refused(main(capsys, "--scene", "pile", "--steps", "1000000", "--bodies", "10000"))
-    assert "--steps 1000000 of 10000 balls need 3202 GB of memory; allowed: " in err
+def test_flags_that_contradict_one_another_or_ask_too_much_are_refused(flags, part, capsys):
+    assert part in refused(main(capsys, *shlex.split(flags)))
 
 
 def test_the_scenes_own_restitution_and_damping_can_be_asked_for_as_published(tmp_path, capsys):
@@ -238,11 +236,8 @@ def test_where_nothing_can_be_written_the_report_is_whole(flags, tmp_path, monke
     assert [path.name for path in tmp_path.iterdir()] == ["outputs"]
 
 
-BROKEN = """import sys
-sys.path.insert(0, sys.argv[1])
-import contact
-print(contact.beside("run.missing"))
-for name in sys.argv[2:]:
+BROKEN = """import contact
+for name in ("missing", "a", "b", "c"):
     try:
         print(contact.beside(f"run.{name}"))
     except Exception as error:
@@ -256,13 +251,9 @@ def test_what_is_missing_is_none_and_what_is_broken_is_raised(tmp_path):
     faults = "import nmpy", "from curriculum.run import no_such_name", "1 / 0"
     for name, fault in zip("abc", faults):
         (tmp_path / f"curriculum/run/{name}.py").write_text(fault)
-    done = python("-c", BROKEN, tmp_path, *"abc", cwd="/")
-    assert done.stdout.split() == [
-        "None",
-        "ModuleNotFoundError",
-        "ImportError",
-        "ZeroDivisionError",
-    ]
+    done = python("-c", BROKEN, cwd="/", PYTHONPATH=str(tmp_path))
+    expected = "None ModuleNotFoundError ImportError ZeroDivisionError"
+    assert done.stdout.split() == expected.split()
 
 
 def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
@@ -337,10 +328,6 @@ def test_it_runs_without_asserts_docstrings_and_in_an_ascii_locale(option, files
     asked = python(option, "exercises/ex2_completion_contact.py", **plain)
     assert "two lines that make a contact one-sided" in asked.stdout
     assert (asked.returncode, asked.stderr) == (2, "")
-
-
-def test_a_folder_without_a_name_is_refused(capsys):
-    assert "--out: given ''; allowed: " in refused(main(capsys, "--out", ""))
 
 
 # fmt: off
