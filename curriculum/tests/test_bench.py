@@ -118,7 +118,9 @@ def test_sweeps_have_the_number_in_the_words_and_begin_as_the_engine_ships_them(
     for setting in HERE + [s for s, _ in piles.SETTINGS]:
         wanted = setting.options.get("iterations")
         if setting.engine == "pymunk" and not engines.not_installed("pymunk"):
-            space = setting.build(contact.build_scene("drop"), 0.002).space
+            space = setting.build(contact.build_scene("drop"), 0.002, 16).space
+            push = setting.options.get("push", 1.0 - space.collision_bias**0.002)
+            assert 1.0 - space.collision_bias**0.002 == pytest.approx(push), "at any step"
             assert space.iterations == wanted and f"{wanted} iterations" in setting.words
             assert space.collision_persistence == type(space)().collision_persistence
         if setting.engine == "mujoco" and not engines.not_installed("mujoco"):
@@ -291,6 +293,7 @@ def test_a_shaft_starts_without_contact_between_walls_that_nothing_moves(count):
     (x, y), (wall_x, wall_y) = scene.q0[:, ~walls], scene.q0[:, walls]
     assert len(x) == count and wall_y.max() > y.max()
     assert wall_x.min() < x.min() - R and wall_x.max() > x.max() + R
+    assert wall_x.min() + wall_x.max() == pytest.approx(0.0), "as near to 0 as float32 wants it"
 
 
 def test_depths_are_those_of_the_contacts():
@@ -352,6 +355,11 @@ def test_only_what_rests_awake_within_the_depth_is_compared():
     assert found["0.001"]["engines"]["lcp"]["us"] == 5.0
     assert (found["0.001"]["ratio"], found["0.0001"]["ratio"]) == (5.0 / 40.0, 30.0 / 40.0)
     assert [met for *_, met in report.pile_goals({"best": {"12": found}})] == [True, False]
+
+
+def test_what_wins_with_a_thousand_balls_runs_with_ten_thousand():
+    row = pile_row("box2d3", 9.0, 0.99e-3, piles.words(15)) | {"bodies": 1000}
+    assert piles.winners([row]) == [15]
 
 
 # skips, pages
