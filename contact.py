@@ -541,8 +541,9 @@ def simulate_faster(step, scene: Scene, dt: float, steps: int, report=None) -> R
 # --- region: flight ---
 def fly(balls, dt, rows):
     """Take steps, up to one that may see a contact; rows[0] is the state now. Returns how many."""
-    reach = step_reach(balls, dt)  # no model looks farther
-    if any(ball.y - ball.radius < reach for ball in balls) or detect_contacts(balls, reach):
+    if any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls):
+        return 0
+    if detect_contacts(balls, step_reach(balls, dt)):  # no model looks farther
         return 0
     q, v = rows[..., :2], rows[..., 2:]  # views of the rows
     v[1:, :, 1] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
@@ -869,7 +870,7 @@ def add_flags(flag):
 def parse_flags(argv=None):
     """The checked command line. Bad input ends with one line on stderr and exit status 2."""
     parser = argparse.ArgumentParser("contact.py", argparse.SUPPRESS, __doc__, allow_abbrev=False)
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.formatter_class = partial(argparse.RawDescriptionHelpFormatter, width=78)
     parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")  # -1e4 is a value
     add_flags(parser.add_argument)
     args = parser.parse_args(argv)

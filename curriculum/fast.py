@@ -73,61 +73,35 @@ def larger(first, second):
 
 
 @compiled
-def cast_shadows(balls, reach):
-    """The balls by the lower end of their shadow: order, lower ends, upper ends, each (M,).
-
-    The shadow falls on the axis of the wider spread. It is as long as its own ball is wide, so one
-    large ball costs no more than itself; above is room for `reach` [m] and for rounding. A ball
-    that is nowhere has no shadow: it touches nothing for ever.
-    """
-    x, y = balls["x"][:-1], balls["y"][:-1]
-    known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
-    place, other, radius = x[known], y[known], balls["radius"][known]
-    if len(known) > 0 and np.ptp(other) > np.ptp(place):
-        place = other
-    low = place - radius
-    high = place + (1.0 + 1e-9) * (radius + reach) + 1e-15 * np.abs(place)
-    order = np.argsort(low)
-    return known[order], low[order], high[order]
-
-
-@compiled
 def list_pairs(balls, reach):
-    """The pairs (2, M) of balls whose gap is at most `reach` [m] now: first < second, in order."""
+    """The pairs (2, M) of balls whose gap is at most `reach` [m] now: first < second, in order.
+
+    Near balls are found by their shadows on the axis of the wider spread. A shadow is as long as
+    its own ball is wide, so one large ball costs no more than itself; above is room for `reach` and
+    for rounding. A ball that is nowhere is in no pair: it touches nothing for ever.
+    """
     for ball in balls:
         ball.listed_x, ball.listed_y = ball.x, ball.y
-    order, low, high = cast_shadows(balls, reach)
-    pairs = np.empty((2, 4 * len(balls)), np.int64)
-    size = 0
+    x, y, radius = balls["x"][:-1], balls["y"][:-1], balls["radius"][:-1]
+    place = y if np.ptp(y) > np.ptp(x) else x
+    low = place - radius
+    high = place + (1.0 + 1e-9) * (radius + reach) + 1e-15 * np.abs(place)
+    order, count, size = np.argsort(low), len(balls), 0
+    keys = np.empty(4 * count, np.int64)  # a number for each pair, which grows as pairs do
     for k in range(len(order)):
-        for other in range(k + 1, len(order)):
-            if low[other] > high[k]:
+        i = order[k]
+        for j in order[k + 1 :]:
+            if low[j] > high[i]:
                 break
-            i, j = order[k], order[other]
             dx, dy = balls[i].x - balls[j].x, balls[i].y - balls[j].y
             limit = (balls[i].radius + balls[j].radius + reach) * (1.0 + 1e-9)
             if dx * dx + dy * dy <= limit * limit:
-                if size == pairs.shape[1]:
-                    pairs = np.concatenate((pairs, pairs), axis=1)
-                pairs[0, size], pairs[1, size] = min(i, j), max(i, j)
+                if size == len(keys):
+                    keys = np.concatenate((keys, keys))
+                keys[size] = min(i, j) * count + max(i, j)
                 size += 1
-    pairs = sort_pairs(pairs[:, :size], pairs[1, :size], len(balls))
-    return sort_pairs(pairs, pairs[0], len(balls))
-
-
-@compiled
-def sort_pairs(pairs, keys, count):
-    """The pairs (2, M) by their keys (M,) below count, equal ones as they came: by counting."""
-    place = np.zeros(count + 1, np.int64)
-    for number in keys:
-        place[number + 1] += 1
-    place = np.cumsum(place)
-    ordered = np.empty((2, pairs.shape[1]), np.int64)
-    for k in range(pairs.shape[1]):
-        number = keys[k]
-        ordered[0, place[number]], ordered[1, place[number]] = pairs[0, k], pairs[1, k]
-        place[number] += 1
-    return ordered
+    keys = np.sort(keys[:size])
+    return np.stack((keys // count, keys % count))
 
 
 @compiled
@@ -137,13 +111,14 @@ def spread_out(pairs, count):
     Pairs that share a ball keep their order, and what others do to each other's balls is nothing,
     so no bit changes.
     """
-    rounds = np.empty(pairs.shape[1], np.int64)
+    size = pairs.shape[1]
+    rounds = np.empty(size, np.int64)
     next_round = np.zeros(count, np.int64)  # of each ball
-    for k in range(len(rounds)):
+    for k in range(size):
         i, j = pairs[0, k], pairs[1, k]
         rounds[k] = max(next_round[i], next_round[j])
         next_round[i] = next_round[j] = rounds[k] + 1
-    return sort_pairs(pairs, rounds, len(rounds))
+    return pairs[:, np.sort(rounds * size + np.arange(size)) % size]
 
 
 @compiled

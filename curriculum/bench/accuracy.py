@@ -20,7 +20,7 @@ import contact
 from curriculum.bench import engines, problems, timing
 from curriculum.run import pool
 
-ERRORS = ("error", "final_error", "energy_error", "depth")
+ERRORS = ("error", "user_error", "final_error", "energy_error", "depth")
 WAYS = {"awake": False, "user": True}  # whether balls may sleep
 WORK, BUDGETS, BUDGET = 16, (1, 10, 100), 10  # substeps in 2 ms; us a ball in 2 ms
 PROCESSES = 3
@@ -89,15 +89,14 @@ def errors_of(job):
     name, contestant, dt, substeps, starts = job
     problem, found = problems.BY_NAME[name], []
     for start in range(starts):
-        scene = problem.build(start)
-        quality = {}
+        scene, quality = problem.build(start), {}
         for way in ways(job):
             session = BY_NAME[contestant].build(scene, dt, substeps, WAYS[way])
             states = session.states(problem.steps(dt))
             run = contact.Run(np.arange(len(states[0])) * dt, *states)
             quality[way] = problems.quality(problem, scene, run)
-        asleep = {"user_error": quality["user"]["error"]} if "user" in quality else {}
-        found.append(quality["awake"] | asleep)
+        user = quality.get("user", quality["awake"])
+        found.append(quality["awake"] | {"user_error": user["error"]})
     return found
 
 
@@ -145,8 +144,6 @@ def point(job, errors, times):
         found[key] = None if itself else statistics.median(e[key] for e in errors)
     found["least"] = min(e["error"] for e in errors)
     found["greatest"] = max(e["error"] for e in errors)
-    asleep = [e["user_error"] for e in errors if "user_error" in e]
-    found["user_error"] = statistics.median(asleep) if asleep else found["error"]
     for way in WAYS:
         about = timing.spread([1e3 * each.get(way, each["awake"]) for each in times])
         found |= {f"{way}_{which}": value for which, value in about.items()}

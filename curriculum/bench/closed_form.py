@@ -22,35 +22,18 @@ g = 9.81  # m/s^2, the magnitude of gravity
 FLIGHTS = 10_000  # after so many a bounce is over in the last bit, or the run
 
 
-def first_impact_time(gap):
-    """Time [s] until a ball released at rest `gap` [m] above the floor touches it."""
-    return np.sqrt(2.0 * gap / g)
-
-
-def impact_time(gap, restitution, k):
-    """Time [s] of impact number k (0 is the first): the partial sum of the geometric series."""
-    e = restitution  # 1 - e^k is taken as -expm1(k log e), which keeps its digits near e = 1
-    series = k if e == 1.0 else -e * np.expm1(k * np.log(e)) / (1.0 - e)
-    return first_impact_time(gap) * (1.0 + 2.0 * series)
-
-
-def rest_time(gap, restitution):
-    """Time [s] after which the ball lies still: t1 (1 + e) / (1 - e); infinite for e = 1."""
-    if restitution == 1.0:
-        return np.inf
-    return first_impact_time(gap) * (1.0 + restitution) / (1.0 - restitution)
-
-
-def bounce_motion(gap, restitution, t):
+def bounce_motion(gap, e, t):
     """Gap [m] and vertical speed [m/s], like t [s], of a ball released `gap` [m] over the floor."""
-    t, e = np.asarray(t, dtype=float), restitution
-    t1 = first_impact_time(gap)
+    t, t1 = np.asarray(t, dtype=float), math.sqrt(2.0 * gap / g)
     falling = t < t1
     still, speed = np.zeros_like(t), np.zeros_like(t)
     if e > 0.0:
-        flying = (t >= t1) & (t < rest_time(gap, e))
+        rest = t1 * (1.0 + e) / (1.0 - e) if e < 1.0 else math.inf
+        flying = (t >= t1) & (t < rest)
         after = np.where(flying, t, t1)  # any harmless time where the answer is not a flight
-        impacts = impact_time(gap, e, np.arange(FLIGHTS))
+        k = np.arange(FLIGHTS)  # -expm1(k log e) is 1 - e^k, and keeps its digits near e = 1
+        series = -e * np.expm1(k * math.log(e)) / (1.0 - e) if e < 1.0 else k
+        impacts = t1 * (1.0 + 2.0 * series)
         k = np.searchsorted(impacts, after, side="right") - 1
         leaving = g * t1 * e ** (k + 1)
         s = after - impacts[k]

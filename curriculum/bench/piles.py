@@ -108,8 +108,8 @@ def measured(count, chosen, states, quick):
     rows = []
     for (_, k, _), state, found in zip(jobs, settled, times):
         spreads = {phase: timing.spread([each[phase] for each in found]) for phase in phases}
-        rows.append(dict(bodies=count, engine=SETTINGS[k][0].engine, words=words(k)))
-        rows[-1] |= state[2] | spreads
+        about = dict(bodies=count, engine=SETTINGS[k][0].engine, words=words(k))
+        rows.append(about | state[2] | spreads)
     return rows
 
 

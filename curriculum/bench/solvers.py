@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 import contact
-from contact import FLOOR, GRAVITY, Contact, accelerate, move, remember
+from contact import FLOOR, GRAVITY, accelerate, move, remember
 from curriculum.bench import problems
 from curriculum.run import pool
 
@@ -103,14 +103,8 @@ def look(balls, dt, ahead):
 
 def renewed(c):
     """Contact c where its balls are now, with the impulse it has."""
-    a, b = c.a, c.b
-    if b is FLOOR:
-        new = Contact(a, b, 0.0, 1.0, a.radius - a.y)
-    else:
-        dx, dy = a.x - b.x, a.y - b.y
-        d = math.sqrt(dx * dx + dy * dy)
-        normal = (dx / d, dy / d) if d > 0.0 else (0.0, 1.0)
-        new = Contact(a, b, *normal, a.radius + b.radius - d)
+    balls = (c.a,) if c.b is FLOOR else (c.a, c.b)
+    new = contact.detect_contacts(balls, math.inf)[-1]  # after those with the floor
     new.lam = c.lam
     return new
 

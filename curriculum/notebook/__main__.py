@@ -1,20 +1,15 @@
 """python -m curriculum.notebook [--out FILE]"""
 
-import argparse
 import sys
 
-from curriculum.commands import needs, stoppable
+from curriculum.commands import Parser, needs, stoppable
 
 
 @stoppable()
 @needs("notebook")
 def main():
     """Build and write. Returns the exit status: 0 written, 1 the notebook can't be built."""
-    parser = argparse.ArgumentParser(
-        prog="python -m curriculum.notebook",
-        description="The chapter as a notebook.",
-        allow_abbrev=False,
-    )
+    parser = Parser(prog="python -m curriculum.notebook", description="The chapter as a notebook.")
     parser.add_argument("--out", default="outputs/contact.ipynb", metavar="FILE")
     args = parser.parse_args()
     try:

@@ -1,16 +1,16 @@
 """python -m curriculum.page [--out FILE] [--pictures FOLDER] [--measure]"""
 
-import argparse
 import sys
 from pathlib import Path
 
-from curriculum.commands import needs, stoppable
+from curriculum.commands import Parser, needs, stoppable
 
 
 @stoppable()
+@needs("page")
 def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 it can't be built, 2 bad usage."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m curriculum.page", description="Write the chapter as one web page."
     )
     add, default = parser.add_argument, Path("outputs/contact.html")
@@ -19,11 +19,10 @@ def main(argv=None):
     add("--measure", action="store_true", help="and how quickly it answers in Chromium")
     args = parser.parse_args(argv)
     try:
-        with needs("page"):
-            from curriculum.files import write_whole
-            from curriculum.page.build import build
+        from curriculum.files import write_whole
+        from curriculum.page.build import build
 
-            page = build()
+        page = build()
         write_whole(args.out, page)
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)

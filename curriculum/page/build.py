@@ -29,16 +29,6 @@ ENGINE = (  # constants of contact.py that engine.js takes
 ).split()
 ABOUT = {"error": "Run time against error: ", "penalty": "Stability: "}  # pictures by first word
 SCALE = 1.6  # of the pictures of bench and stress: their text of 10 px shall be read beside ours
-# the public course that this chapter belongs to, and what stands around it there
-COURSE = {
-    "site": "https://zero2robot.com",
-    "source": "https://github.com/kaushikb11/zero2robot",
-    "neighbours": [
-        ("3.3", "a physics engine", "https://zero2robot.com/ch3.3-engine/"),
-        ("3.4", "joints", "https://zero2robot.com/ch3.4-constraints/"),
-        ("3.6", "the engine put to use", "https://zero2robot.com/ch3.6-compare/"),
-    ],
-}
 COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb"
 
 
@@ -129,9 +119,8 @@ def environment(**held):
         (name, data_address(f"font/{kind}", (HERE / file).read_bytes()), *rest)
         for name, file, kind, *rest in fonts.FACES
     ]
-    made.globals.update(course=COURSE, colab=colab, faces=faces, colors=curves.COLORS)
-    made.globals.update(hides=chapter.HIDES, ledger=ledger, pieces=pieces, drawn_by=drawn_by)
-    made.globals.update(held)
+    made.globals.update(colab=colab, faces=faces, colors=curves.COLORS, hides=chapter.HIDES)
+    made.globals.update(ledger=ledger, pieces=pieces, drawn_by=drawn_by, **held)
     return made
 
 

@@ -17,18 +17,15 @@ BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2, filled in
 def blank_cases():
     """How checks.py tries the blanks of exercise 2: inputs, what is right on them, and the slips,
     each as what it gives, to five digits, and what it means."""
-    return {name: tried(blanks.BLANKS[name]) for name in BLANKS}
-
-
-def tried(blank):
-    """One of them."""
-    right, *slips = (
-        [function(*case.values()) for case in blank.inputs]
-        for function in (blank.right, *(slip for slip, _ in blank.slips))
-    )
-    rough = [[float(f"{value:.5g}") for value in values] for values in slips]
-    words = [meaning.replace("`", "") for _, meaning in blank.slips]
-    return {"inputs": blank.inputs, "right": right, "slips": list(zip(rough, words))}
+    found = {}
+    for name in BLANKS:
+        blank, slips = blanks.BLANKS[name], []
+        for function, meaning in blank.slips:
+            rough = [float(f"{function(*case.values()):.5g}") for case in blank.inputs]
+            slips.append((rough, meaning.replace("`", "")))
+        right = [blank.right(*case.values()) for case in blank.inputs]
+        found[name] = {"inputs": blank.inputs, "right": right, "slips": slips}
+    return found
 
 
 @functools.cache
@@ -51,26 +48,21 @@ def exercise(path, facts):
     if not parts:
         raise ValueError(f"{path.name}: it must begin 'Exercise N, KIND (M minutes): TITLE'")
     number, minutes, told = parts.groups()
-    shown = {
-        "id": f"ex{number}",
+    name, task, bet = f"ex{number}", text, {"choices": {}}
+    if name in predict.BETS:
+        numbers, bet = measured(path.stem), predict.asked(words)._asdict()
+        task = bet["task"]
+        bet["answer"] = predict.answer(name, numbers)
+        bet["reasons"] = {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()}
+        bet["table"] = [re.split(r"\s{2,}", x) for x in predict.table(name, numbers).splitlines()]
+    return bet | {
+        "id": name,
         "title": f"Exercise {number}: {told}",
         "minutes": minutes,
         "command": "\n".join(COMMAND.findall(text)),
         "hints": [inline(hint) for hint in facts["hints"]],
-        "choices": [],
+        "task": task_of(task),
     }
-    if shown["id"] in predict.BETS:
-        bet, numbers = predict.asked(words), measured(path.stem)
-        text, table = bet.task, predict.table(shown["id"], numbers).splitlines()
-        shown |= {
-            "choices": list(bet.choices.items()),
-            "question": bet.question,
-            "why": bet.why,
-            "answer": predict.answer(shown["id"], numbers),
-            "reasons": {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()},
-            "table": [re.split(r"\s{2,}", row) for row in table],
-        }
-    return shown | {"task": task_of(text)}
 
 
 def all_exercises():

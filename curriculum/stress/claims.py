@@ -1,30 +1,22 @@
-"""What a property is, how its claims are held against a Trial, and what is counted."""
+"""How the claims of a property are held against what it is stated of, and what is counted.
+
+A property is a generator of claims (words, off, allowed, where). off, allowed: arrays of what was
+found to be off, and of what rounding explains; where: which of them are judged, all if it is left
+out. It claims nothing where nothing could fail.
+"""
 
 import numpy as np
-
-PROPERTIES = {}  # of random scenes
-
-
-def stated(function):
-    """Register a property of random scenes under its name.
-
-    A property is a generator of claims (words, off, allowed, where). off, allowed: arrays of what
-    was found to be off, and of what rounding explains; where: which of them are judged, all if it
-    is left out. It claims nothing where nothing could fail.
-    """
-    PROPERTIES[function.__name__] = function
-    return function
 
 
 def judge(subject, *properties):
     """{property: [comparisons, off as a share of what is allowed at worst, words or None]}.
 
-    subject: a Trial, or what the properties named are stated of. comparisons: how many numbers
-    could have failed; 0 where the property says nothing of the subject. words: the first claim that
-    does not hold. An error of the code under test is a violation too.
+    comparisons: how many numbers could have failed; 0 where the property says nothing of the
+    subject. words: the first claim that does not hold. An error of the code under test is a
+    violation too.
     """
     found = {}
-    for function in properties or PROPERTIES.values():
+    for function in properties:
         found[function.__name__] = row = [0, 0.0, None]
         try:
             with np.errstate(all="ignore"):

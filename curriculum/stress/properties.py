@@ -5,6 +5,7 @@ Bounds are U times the number of operations times the size of what is added; whe
 derived so, it says so. Those of exact are its promises, and it is judged where it gives any.
 """
 
+import inspect
 import itertools
 import math
 
@@ -12,7 +13,7 @@ import numpy as np
 
 import contact
 from curriculum.stress import laws, scenes
-from curriculum.stress.claims import stated, unlike
+from curriculum.stress.claims import unlike
 from curriculum.stress.trial import STEPPED, G, Trial, U, inverse
 
 WAYS = "plain", "skips", "twin"  # of taking the same steps
@@ -24,8 +25,6 @@ TINY = 1e-6  # s: forces are read from what they do in so short a time
 LOOSE = 1e-5  # share of the accelerations that are read so
 SLOW = 1e-6  # of sqrt(a r), a what brings it back: exact may take a slower bounce for the last
 AHEAD = {"ahead": True, "baumgarte": 1.0, "restitution": 0.0, "warm": 0.0}
-PUBLISHED = AHEAD | {"ahead": False, "baumgarte": 0.2}
-DEPTHS = "lcp: deepest overlap of balls that start apart"
 UNFINISHED = "lcp: unfinished sweeps add energy, without any push of Baumgarte's"
 
 
@@ -35,7 +34,6 @@ def beside_one_that_overflows(trial):
     return {name: [*trial.spec[name], value] for name, value in odd.items()}
 
 
-@stated
 def finite_or_said_to_have_exploded(trial):
     """Every number of a run is finite, or contact_quality says that it blew up, and when."""
     odd = [beside_one_that_overflows(trial)] if len(trial.mass) <= 2 else []
@@ -50,7 +48,6 @@ def finite_or_said_to_have_exploded(trial):
         yield "exact is not finite", trial.exact.astray, 0.0
 
 
-@stated
 def a_skip_changes_no_bit(trial):
     """The compiled twin and the skips of contact.py give the bits of its plain steps; also beside a
     ball that is NaN, and where two balls that start far from each other meet.
@@ -74,7 +71,6 @@ def afar(trial):
     return pair | {"mass": [1.0, 1.0], "radius": [r, r], "steps": 90}
 
 
-@stated
 def a_mirrored_scene_runs_mirrored(trial):
     """x -> -x gives the mirrored run, the same bits: no operation depends on the sign of x."""
     flipped = {name: [-value for value in trial.spec[name]] for name in ("x", "vx")}
@@ -85,7 +81,6 @@ def a_mirrored_scene_runs_mirrored(trial):
             yield model, *unlike(run, other._replace(q=other.q * mirror, v=other.v * mirror))
 
 
-@stated
 def a_run_can_be_taken_up_anywhere(trial):
     """A step of penalty, and of lcp cold, depends on the state alone: again the same bits."""
     half = trial.spec["steps"] // 2
@@ -97,7 +92,6 @@ def a_run_can_be_taken_up_anywhere(trial):
             yield model, *unlike(contact.Run(again.t, run.q[half:], run.v[half:]), again)
 
 
-@stated
 def a_far_ball_changes_nothing(trial):
     """One more ball, at rest on the table a kilometre away, leaves the bits of the others alone.
 
@@ -114,7 +108,6 @@ def a_far_ball_changes_nothing(trial):
             yield model, *unlike(trial.run(model), other)
 
 
-@stated
 def renumbering_the_balls_renumbers_the_run(trial):
     """Balls in the opposite order do the same in a step of penalty, soft and exact.
 
@@ -134,7 +127,6 @@ def renumbering_the_balls_renumbers_the_run(trial):
         yield "exact, v [m/s]", off, NEAR * trial.exact.top[0]
 
 
-@stated
 def momentum_along_x_is_kept(trial):
     """The floor pushes up only, so sum m v_x stays where nothing is fixed. Bound: 8 U a push; for
     exact 1e-12 of what the energy allows.
@@ -156,7 +148,6 @@ def momentum_along_x_is_kept(trial):
         yield "exact", np.abs(momentum[1:] - momentum[0]), PROMISE * size, pushed
 
 
-@stated
 def what_nothing_touches_falls(trial):
     """Stepped models: v + dt g without a contact, q + dt v always. Bound: 4 U of what is added."""
     for model, motion in trial.motions.items():
@@ -167,7 +158,6 @@ def what_nothing_touches_falls(trial):
         yield f"{model}, move", moved, 4 * U * (np.abs(motion.q[1:]) + np.abs(motion.q[:-1]))
 
 
-@stated
 def springs_push_as_hooke_and_the_damper_say(trial):
     """Penalty: each contact gives max(0, k depth - c v_n) dt, at equal and opposite, and no more.
 
@@ -179,7 +169,6 @@ def springs_push_as_hooke_and_the_damper_say(trial):
     yield "impulse [N s]", off, allowed, motion.pushed
 
 
-@stated
 def other_units_give_the_same_run(trial):
     """Penalty: lengths x 4, times x 2, masses x 8 (gravity stays) scale the run, the same bits."""
     factors = {"x": 4.0, "y": 4.0, "radius": 4.0, "vx": 2.0, "vy": 2.0, "mass": 8.0}
@@ -192,7 +181,6 @@ def other_units_give_the_same_run(trial):
         yield "penalty", *unlike(run, contact.Run(run.t, scaled.q / 4.0, scaled.v / 2.0))
 
 
-@stated
 def a_contact_alone_leaves_at_its_target(trial):
     """lcp: a contact with no neighbour leaves at max(v_n after gravity, target).
 
@@ -207,7 +195,6 @@ def a_contact_alone_leaves_at_its_target(trial):
     yield "v_n [m/s]", off, 8 * U * (speeds + lengths), clear
 
 
-@stated
 def lcp_never_pulls_and_enough_sweeps_solve_it(trial):
     """lcp: the impulses that explain what was done are >= 0, whatever the sweeps; and 2^14 of them
     lead to the velocities of another solver.
@@ -248,7 +235,6 @@ def sampled(motion):
     return sorted({int(deepest), int(touching[-1])})
 
 
-@stated
 def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
     """lcp without gain, cold: F = E + e/(1+e) dt sum m g v_y rises by what the sweeps leave undone.
 
@@ -273,7 +259,6 @@ def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
     yield f"rise [J] with {sweeps} sweeps", left, NOTABLE * size[k]
 
 
-@stated
 def soft_pushes_as_mujoco_says(trial):
     """soft: lam = max(0, (target - v_n') / R) at each contact, and these give the whole push.
 
@@ -294,7 +279,6 @@ def soft_pushes_as_mujoco_says(trial):
         yield "impulse [N s]", off, allowed, motion.pushed
 
 
-@stated
 def an_impact_alone_returns_e_of_the_speed(trial):
     """lcp, and soft where it bounces: alone and closing, v_n' is -e v_n, and gravity adds nothing.
 
@@ -313,20 +297,16 @@ def an_impact_alone_returns_e_of_the_speed(trial):
             yield f"{model}, v_n [m/s]", np.abs(motion.after - back), share * size, fair
 
 
-@stated
 def looking_ahead_adds_no_energy_where_balls_start_apart(trial):
     """lcp ahead, gain 1, e = 0: balls that start apart never have more energy than at the start."""
     if contact.smallest_gap(trial.scene.q0[None], trial.scene.radius)[0] < 0.0:
         return
-    ahead, today = (trial.run("lcp", **knobs, steps=300) for knobs in (AHEAD, PUBLISHED))
-    total = contact.energy(ahead.q, ahead.v, trial.scene.mass)
+    run = trial.run("lcp", **AHEAD, steps=300)
+    total = contact.energy(run.q, run.v, trial.scene.mass)
     size = np.maximum(total[0], (trial.mass * G * trial.scene.radius).sum())
     yield "gained since the start [J]", np.maximum(total - total[0], 0.0), NOTABLE * size
-    gaps = (contact.smallest_gap(run.q, trial.scene.radius).min() for run in (ahead, today))
-    trial.note(DEPTHS, **{name: max(0.0, -gap) for name, gap in zip(("ahead", "today"), gaps)})
 
 
-@stated
 def exact_pushes_and_never_pulls(trial):
     """exact, where balls start in touch: the velocities after the impacts, and the accelerations
     then, are those of another solver. Bound: 1e-9 of the speeds, 1e-5 of the accelerations, chosen.
@@ -361,7 +341,6 @@ def exact_pushes_and_never_pulls(trial):
     yield "acceleration [m/s^2]", np.abs(a.ravel() - found), LOOSE * (G + turn[on].max())
 
 
-@stated
 def exact_never_overlaps(trial):
     """exact: no overlap at any sample above 1e-12 of the largest radius."""
     if trial.exact and struck(trial.exact).any():
@@ -374,7 +353,6 @@ def struck(motion):
     return (np.abs(motion.v[1:] - motion.falling) > 1e-9).any((1, 2))
 
 
-@stated
 def exact_keeps_its_energy(trial):
     """exact: no energy above 1e-12 of the start's is ever gained, and with e = 1 none is lost."""
     if trial.exact and not trial.fixed.all():
@@ -386,7 +364,6 @@ def exact_keeps_its_energy(trial):
             yield "lost with e = 1 [J]", np.abs(total[1:] - total[0]), size, on
 
 
-@stated
 def exact_flies_and_bounces_in_closed_form(trial):
     """exact: a ball that nothing reaches within a step flies its parabola; one that only the table,
     or only one other ball, can reach bounces once, with e, at its own time. Impacts that graze, and
@@ -414,3 +391,7 @@ def exact_flies_and_bounces_in_closed_form(trial):
     v = motion.falling + inverse(trial.mass) * ((impulses[:, None] * n) @ motion.sides)
     size = motion.on_balls((impulses > 0.0) * motion.on_contacts(fast))
     yield "impact [m/s]", np.abs(motion.v[1:] - v), NEAR / laws.STEEP * size, (size > 0.0) & moves
+
+
+# every generator of this file
+PROPERTIES = {name: each for name, each in vars().items() if inspect.isgeneratorfunction(each)}

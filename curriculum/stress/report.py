@@ -2,8 +2,7 @@
 
 from curriculum.measured import results
 from curriculum.run import plotting
-from curriculum.stress import extremes, jobs, maps, mujoco_match
-from curriculum.stress.claims import PROPERTIES
+from curriculum.stress import extremes, jobs, maps, mujoco_match, properties
 
 FOLDER = results.FOLDERS["stress"]
 RESULTS, QUICK = results.ROOT / FOLDER, results.ROOT / "outputs" / "stress-quick"
@@ -13,17 +12,10 @@ TITLES = {
     "extremes": "Every flag of contact.py at its ends",
     "mujoco": "soft against MuJoCo: single steps and whole runs",
 }
-OTHERS = (
-    maps.penalty_leaves_above_its_critical_dt,
-    maps.lcp_sinks_as_deep_as_its_landing_step,
-    maps.soft_rests_where_its_spring_bears_the_ball,
-    extremes.a_right_report_or_one_line_that_refuses,
-    mujoco_match.soft_is_mujoco,
-)
 COLOURS = ("#fde9c9", "#ec9c5a", "#9c4058", "#2b1741")  # light to dark, as an outcome gets worse
 LINE = "#111111"  # over coloured cells, which stay as they are in the dark
 MARKS = (0.3, 1, 3, 10, 30, 100, 300)  # ms
-STATED = PROPERTIES | {function.__name__: function for function in OTHERS}
+STATED = vars(properties) | vars(maps) | vars(extremes) | vars(mujoco_match)  # by their names
 HEAD = """# Stress: what must hold on any scene, and where each model breaks
 
 {}
@@ -31,8 +23,6 @@ HEAD = """# Stress: what must hold on any scene, and where each model breaks
 A judgement is one property on one scene, row of a map, command line or match, counted only where \
 it could have failed: without a contact nothing is said of contacts. What was done is read from \
 the states before and after each step, and held against the chapter's formulas."""
-DEPTHS = """Where balls start apart ({scenes:,} scenes), the median of lcp's deepest overlap is \
-{today:.3g} m, and {ahead:.3g} m looking ahead with the gain 1."""
 UNFINISHED = """Unfinished sweeps took {above_start:,} scenes above their start's energy, at worst \
 {place}, from {start:.4g} J to {most:.4g} J; {sweeps_most:,.0f} sweeps a step ended every rise."""
 
@@ -41,8 +31,8 @@ def write(found, origins, folder):
     """Write what the jobs of each section found. Returns the violations [place, name, words]."""
     sections = {name: jobs.added_up(each) for name, each in found.items()}
     scenes = sections["scenes"]
-    scenes |= {"scenes": len(found["scenes"]), "unfinished": jobs.unfinished(scenes)}
-    scenes |= {"ran": jobs.ran(scenes), "depths": jobs.depths(scenes)}
+    scenes |= {"unfinished": jobs.unfinished(scenes), "ran": jobs.ran(scenes)}
+    scenes["scenes"] = len(found["scenes"])
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     error = max(abs(row["measured"] / row["theory"] - 1) for row in rows)
     sections["maps"] |= {"penalty": rows, "boundary_worst_error": error}
@@ -90,7 +80,6 @@ def page(sections):
     parts, unfinished = [HEAD.format(summary(sections))], sections["scenes"]["unfinished"]
     if unfinished["rises"]:
         parts.append(UNFINISHED.format(**unfinished, **unfinished["worst"]))
-    parts.append(DEPTHS.format(**sections["scenes"]["depths"]))
     for name, section in sections.items():
         head = ["property", "judged", "comparisons", "off, as a share of the bound"]
         parts += [f"## {TITLES[name]}", results.table(head, rows_of(section["properties"]))]
@@ -102,9 +91,9 @@ def page(sections):
     return "\n\n".join(parts) + "\n"
 
 
-def rows_of(properties):
+def rows_of(judgements):
     """What each property says, and how much of it was judged."""
-    for name, (judged, count, share) in properties.items():
+    for name, (judged, count, share) in judgements.items():
         words = " ".join(STATED[name].__doc__.split("\n\n")[0].split())
         yield [words, f"{judged:,}", f"{count:,}", f"{share or 0:.1g}"]
 

@@ -25,21 +25,21 @@ def loaded(old="", new=""):
         file.write_text(text.replace(old, new) if old else text, "utf-8")
     for name in [name for name in sys.modules if name.split(".")[0] in ("contact", "curriculum")]:
         del sys.modules[name]
-    names = "claims", "jobs", "maps", "mujoco_match"
+    names = "claims", "properties", "jobs", "maps", "mujoco_match"
     return [importlib.import_module(f"curriculum.stress.{name}") for name in names]
 
 
 def judged(modules, count, wanted):
     """(property, subject) of so many small scenes, of maps and matches; `wanted` alone, if any."""
-    claims, jobs, maps, match = modules
+    _, properties, jobs, maps, match = modules
     others = itertools.chain(maps.map_jobs(True), match.match_jobs(True))
     scenes = jobs.scene_jobs(range(count), small=True)
     for _, subject, stated in itertools.chain(
-        scenes, () if wanted in claims.PROPERTIES else others
+        scenes, () if wanted in properties.PROPERTIES else others
     ):
         if not stated:
             subject = jobs.Trial(jobs.scenes.numbered_spec(*subject))
-        for each in stated or claims.PROPERTIES.values():
+        for each in stated or properties.PROPERTIES.values():
             if wanted in (None, each.__name__):
                 yield each, subject
 
@@ -65,7 +65,7 @@ def unnamed(old, new, wanted, *kinds):
     except LookupError as error:
         return [str(error)]
     missing = {f"{wanted}: {kind}" for kind in kinds}
-    for kind, holds in claimed(modules, 300 if wanted in modules[0].PROPERTIES else 0, wanted):
+    for kind, holds in claimed(modules, 300 if wanted in modules[1].PROPERTIES else 0, wanted):
         missing -= {kind} if not holds else set()
         if not missing:
             break

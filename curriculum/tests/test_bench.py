@@ -1,5 +1,6 @@
 """The benchmark judges rightly: references, engines, cells worked out by hand, invented rows."""
 
+import functools
 import gc
 import math
 import re
@@ -118,7 +119,9 @@ def test_sweeps_have_the_number_in_the_words_and_begin_as_the_engine_ships_them(
     for setting in HERE + [s for s, _ in piles.SETTINGS]:
         wanted = setting.options.get("iterations")
         if setting.engine == "pymunk" and not engines.not_installed("pymunk"):
-            space = setting.build(contact.build_scene("drop"), 0.002).space
+            space = setting.build(contact.build_scene("drop"), 0.002, 16).space
+            push = setting.options.get("push", 1.0 - space.collision_bias**0.002)
+            assert 1.0 - space.collision_bias**0.002 == pytest.approx(push), "at any step"
             assert space.iterations == wanted and f"{wanted} iterations" in setting.words
             assert space.collision_persistence == type(space)().collision_persistence
         if setting.engine == "mujoco" and not engines.not_installed("mujoco"):
@@ -214,6 +217,14 @@ def test_substeps_and_sleep_reach_ours_and_skips_change_no_bit():
         assert c.build(scene, 0.002, 4, sleep).settings.skip is sleep
 
 
+@pytest.mark.skipif(bool(engines.not_installed("pymunk")), reason="pymunk is missing")
+def test_the_engine_of_pymunk_alone_goes_where_a_users_step_goes():
+    setting, scene = accuracy.BY_NAME["pymunk: 10 iterations"], problems.BY_NAME["pile"].build(0)
+    bare, users = (setting.build(scene, 0.002) for _ in range(2))
+    users.step = functools.partial(users.space.step, 0.002)
+    assert np.array_equal(bare.states(400), users.states(400))
+
+
 def test_all_engines_get_the_same_substeps_and_one_budget_of_work():
     found = {}
     for _, name, dt, substeps, _ in accuracy.cells([problems.BY_NAME["slide"]], False):
@@ -291,6 +302,7 @@ def test_a_shaft_starts_without_contact_between_walls_that_nothing_moves(count):
     (x, y), (wall_x, wall_y) = scene.q0[:, ~walls], scene.q0[:, walls]
     assert len(x) == count and wall_y.max() > y.max()
     assert wall_x.min() < x.min() - R and wall_x.max() > x.max() + R
+    assert wall_x.min() + wall_x.max() == pytest.approx(0.0), "as near to 0 as float32 wants it"
 
 
 def test_depths_are_those_of_the_contacts():
@@ -352,6 +364,11 @@ def test_only_what_rests_awake_within_the_depth_is_compared():
     assert found["0.001"]["engines"]["lcp"]["us"] == 5.0
     assert (found["0.001"]["ratio"], found["0.0001"]["ratio"]) == (5.0 / 40.0, 30.0 / 40.0)
     assert [met for *_, met in report.pile_goals({"best": {"12": found}})] == [True, False]
+
+
+def test_what_wins_with_a_thousand_balls_runs_with_ten_thousand():
+    row = pile_row("box2d3", 9.0, 0.99e-3, piles.words(15)) | {"bodies": 1000}
+    assert piles.winners([row]) == [15]
 
 
 # skips, pages

@@ -10,19 +10,12 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 import contact
-from contact import GRAVITY, Scene, build_scene, exact_run, run_model
+from contact import GRAVITY, build_scene, exact_run, run_model, scene_of
 from curriculum.bench.closed_form import bounce_motion, slide_motion
 from curriculum.exact import simulate_exact, solve_lcp
 
 G, R = -GRAVITY, 0.1
 GOLDEN = json.loads((Path(__file__).parent / "golden_exact.json").read_text("utf-8"))
-
-
-def balls(x, y, mass=1.0, radius=R, e=0.0, vx=0.0, vy=0.0):
-    """A Scene of len(x) balls; one number stands for all of them."""
-    ones = np.ones(len(x))
-    q0, v0 = np.array((x, y), float), np.array((vx * ones, vy * ones))
-    return Scene("test", q0, v0, mass * ones, radius * ones, e, 0.0)
 
 
 def run(scene, times):
@@ -35,11 +28,6 @@ def gaps(q, radius):
     x, y = np.moveaxis(q, -2, 0)
     pairs = np.hypot(x[..., a] - x[..., b], y[..., a] - y[..., b]) - radius[a] - radius[b]
     return np.concatenate((y - radius, pairs), axis=-1)
-
-
-def energy(q, v, mass):
-    """Total energy [J] (S,) of balls that can all move."""
-    return (mass * (0.5 * (v**2).sum(1) + G * q[:, 1])).sum(1)
 
 
 # Complementarity
@@ -93,7 +81,7 @@ def test_a_dropped_ball_follows_its_parabolas(e):
     """In contact.py, too, whose own exact is for balls over one another."""
     t = np.linspace(0.0, 4.0, 801)
     for h in (0.9, 0.13):
-        scene = balls([0.0], [R + h], 0.7, e=e)
+        scene = scene_of([0.0], [R + h], 0.7, restitution=e)
         for q in (run(scene, t)[0], exact_run(scene, t)[0]):
             assert np.abs(q[:, 1, 0] - R - bounce_motion(h, e, t)[0]).max() < 2e-13
 
@@ -103,7 +91,7 @@ def test_balls_over_one_another_run_as_in_contact_py(seed):
     """Two programs that share nothing: thrown up and down, of unequal mass, at any e."""
     rng, t = np.random.default_rng(seed), np.linspace(0.0, 1.0, 101)
     y = R + np.cumsum(rng.uniform(0.25, 0.5, 3)) - 0.2
-    scene = balls([0.0] * 3, y, rng.uniform(0.5, 2.0, 3), e=(0.0, 0.5, 1.0)[seed % 3])
+    scene = scene_of([0.0] * 3, y, rng.uniform(0.5, 2.0, 3), restitution=(0.0, 0.5, 1.0)[seed % 3])
     scene.v0[1] = rng.uniform(-2.0, 1.0, 3)
     for here, there in zip(run(scene, t), exact_run(scene, t)):
         assert here == pytest.approx(there, abs=1e-10)
@@ -112,7 +100,7 @@ def test_balls_over_one_another_run_as_in_contact_py(seed):
 def test_a_touching_stack_falls_as_one_and_stays():
     t, lift = np.linspace(0.0, 1.0, 101), 0.017
     rest = R * (1.0 + 2.0 * np.arange(12))
-    q, _ = run(balls(np.zeros(12), rest + lift), t)
+    q, _ = run(scene_of(0.0, rest + lift), t)
     expected = rest + np.maximum(lift - 0.5 * G * t**2, 0.0)[:, None]
     assert np.abs(q[:, 1] - expected).max() < 1e-10 * R
 
@@ -120,7 +108,7 @@ def test_a_touching_stack_falls_as_one_and_stays():
 def test_an_elastic_ball_a_hair_above_the_floor_is_a_cycle():
     """More than a million bounces in 4 s: only a copy can be done."""
     hair, t = 1e-10 * R, np.linspace(0.0, 4.0, 2001)
-    scene = balls([0.0], [R + hair], 0.3, e=1.0)
+    scene = scene_of([0.0], [R + hair], 0.3, restitution=1.0)
     q, v = run(scene, t)
     assert q[:, 1].min() >= R - 1e-12 * R and q[:, 1].max() <= R + 1.001 * hair
     assert np.abs(v[:, 1]).max() == pytest.approx(np.sqrt(2.0 * G * hair), rel=0.01)
@@ -130,7 +118,7 @@ def test_an_elastic_ball_a_hair_above_the_floor_is_a_cycle():
 def test_balls_that_cycle_together_are_copied_to_the_flight():
     """Two elastic balls, one four times as high: its period is twice as long."""
     t = np.linspace(0.0, 40.0, 801)
-    q, _ = run(balls([0.0, 1.0], [R + 0.0625, R + 0.25], e=1.0), t)
+    q, _ = run(scene_of([0.0, 1.0], [R + 0.0625, R + 0.25], restitution=1.0), t)
     for k, h in enumerate((0.0625, 0.25)):
         assert np.abs(q[:, 1, k] - R - bounce_motion(h, 1.0, t)[0]).max() < 1e-10 * R
 
@@ -147,7 +135,7 @@ def test_a_ball_that_slides_off_another_leaves_it_at_two_thirds():
     time = quad(lambda u: 2.0 * u / rate(start + u * u), 0.0, np.sqrt(end - start), epsabs=1e-13)[0]
     x, y = [0.0, reach * np.sin(start)], [floor, floor + reach * np.cos(start)]
     t = time + np.array((-0.001 * time, 0.05, 0.2))
-    q, _ = run(balls(x, y, np.array((np.inf, 1.0))), np.append(0.0, t))
+    q, _ = run(scene_of(x, y, np.array((np.inf, 1.0))), np.append(0.0, t))
     s, speed = t[1:] - time, reach * rate(end)
     x = reach * np.sin(end) + s * speed * np.cos(end)
     y = floor + reach * np.cos(end) - s * speed * np.sin(end) - 0.5 * G * s * s
@@ -169,7 +157,7 @@ def test_a_pyramid_of_three_slides_apart_releases_and_lands_as_its_energy_says()
     fall, aside = 2.0 * R * rate(end), 2.0 * R * end / np.sqrt(1.0 - end * end) * rate(end)
     lands = (np.sqrt(fall**2 + 4.0 * G * R * end) - fall) / G
     t = time + np.array((0.0, 0.3 * lands, 0.999 * lands, lands + 0.1))
-    q, _ = run(balls([-R, R, 0.0], [R, R, R + 2.0 * R * s0]), np.append(0.0, t))
+    q, _ = run(scene_of([-R, R, 0.0], [R, R, R + 2.0 * R * s0]), np.append(0.0, t))
     s = np.minimum(t - time, lands)
     top = R + 2.0 * R * end - fall * s - 0.5 * G * s * s
     right = 2.0 * R * np.sqrt(1.0 - end * end) + aside * (t - time)
@@ -186,7 +174,7 @@ def test_blocks_count_the_digits_of_pi(digits, hits):
     2 arctan(1 / 10^digits), with a mirror for each impact: that is where both speeds end.
     """
     root, seen = 10.0**digits, []
-    scene = balls([0.0, 0.5, 1.0], [R] * 3, np.array((np.inf, 1.0, root**2)), e=1.0)
+    scene = scene_of([0.0, 0.5, 1.0], [R] * 3, np.array((np.inf, 1.0, root**2)), restitution=1.0)
     scene.v0[0, 2] = -1.0
     _, v = simulate_exact(scene, np.array((0.0, 4.0)), GRAVITY, seen.append)
     assert len(seen) == hits + 1  # an event for each, and the start
@@ -202,7 +190,7 @@ def test_blocks_count_the_digits_of_pi(digits, hits):
 def test_a_pile_neither_overlaps_nor_gains_energy_nor_loses_any_at_e_1(bodies, e):
     scene = build_scene("pile", 3, bodies, e)
     q, v = run(scene, np.linspace(0.0, 0.9, 301))
-    total = energy(q, v, scene.mass)
+    total = contact.energy(q, v, scene.mass)
     assert gaps(q, scene.radius).min() >= -1e-12 * R
     assert np.diff(total).max() <= 1e-12 * total[0]
     assert e < 1.0 or total.min() >= (1.0 - 1e-12) * total[0]
@@ -226,7 +214,7 @@ def test_a_mirrored_pile_gives_the_mirrored_answer():
 
 def test_a_ball_that_comes_down_beside_the_one_that_it_touched_grazes_it_without_a_blow():
     """At e = 0 it is at rest along the normal; rounding of the last digit would strike at 1e-8."""
-    scene = balls([0.0, 2.0 * R], [R, R])
+    scene = scene_of([0.0, 2.0 * R], [R, R])
     scene.v0[1, 1] = 1.9
     q, v = run(scene, np.linspace(0.0, 1.0, 51))
     assert np.abs(q[:, 0] - scene.q0[0]).max() < 1e-12 and not v[:, 0].any()
@@ -234,12 +222,12 @@ def test_a_ball_that_comes_down_beside_the_one_that_it_touched_grazes_it_without
 
 def test_at_the_moment_of_an_impact_the_velocities_are_those_after_all_its_rounds():
     """The floor throws a ball up into another one that leaves too slowly: they change speeds."""
-    pair = balls([0.0, 0.0], [R, 3.0 * R], e=1.0, vy=[-1.0, 0.5])
+    pair = scene_of([0.0, 0.0], [R, 3.0 * R], restitution=1.0, vy=[-1.0, 0.5])
     assert run(pair, [0.0])[1][0, 1] == pytest.approx([0.5, 1.0], abs=1e-15)
 
 
 def test_fixed_balls_alone_and_no_ball_in_reach_make_no_event():
-    q, v = run(balls([0.0, 0.1], [R, R], np.inf), [0.0, 1.0])
+    q, v = run(scene_of([0.0, 0.1], [R, R], np.inf), [0.0, 1.0])
     assert np.array_equal(q[0], q[1]) and not v.any()
 
 
@@ -301,7 +289,7 @@ def test_a_heap_that_falls_and_slides_is_that_of_another_integrator(end):
     """Five unequal balls, two of which fall between and onto three, and press them apart."""
     x, y = [0.0, 0.27, 0.6, 0.12, 0.45], [0.1, 0.08, 0.12, 0.30, 0.33]
     mass, radius = np.array((1.0, 0.7, 1.5, 0.8, 1.2)), np.array((0.1, 0.08, 0.12, 0.09, 0.1))
-    scene = balls(x, y, mass, radius)
+    scene = scene_of(x, y, mass, radius)
     q, _ = run(scene, [0.0, end])
     assert np.abs(q[1] - integrated(scene, end)).max() < 1e-8 * R
     assert np.abs(q[1, 0, :3] - scene.q0[0, :3]).min() > 1e-3  # all three have been moved
@@ -315,7 +303,7 @@ def test_the_numbers_of_the_second_edition_stand(scene):
     """From curriculum/exact.py of commit c932a98, which was held to arithmetic in 80 bits. Each
     scene at times until which a start shifted by 1e-15 m stays within 1e-9 r."""
     names = ("x", "y", "mass", "radius", "restitution", "vx", "vy")
-    q, _ = run(balls(*(np.array(scene[name]) for name in names)), [0.0, *scene["times"]])
+    q, _ = run(scene_of(**{name: scene[name] for name in names}), [0.0, *scene["times"]])
     assert np.abs(q[1:] - scene["q"]).max() < 1e-8 * min(scene["radius"])
 
 
@@ -323,7 +311,7 @@ def test_the_numbers_of_the_second_edition_stand(scene):
 
 
 def test_a_mass_ratio_above_100_is_refused_where_balls_would_rattle():
-    heavy = balls([0.0, 0.0], [R, 0.5], np.array((1.0, 101.0)), e=0.5)
+    heavy = scene_of([0.0, 0.0], [R, 0.5], np.array((1.0, 101.0)), restitution=0.5)
     with pytest.raises(RuntimeError, match="101 : 1 at restitution 0.5; at most 100 : 1"):
         run(heavy, [0.0, 1.0])
     for e in (0.0, 1.0):
@@ -339,7 +327,7 @@ def test_more_balls_than_can_be_held_are_refused_before_anything_is_allocated():
 
 
 def test_a_ball_that_is_crushed_is_called_so():
-    press = balls([0.0, 0.0], [R, 0.5], np.array((1.0, np.inf)), vy=[0.0, -1.0])
+    press = scene_of([0.0, 0.0], [R, 0.5], np.array((1.0, np.inf)), vy=[0.0, -1.0])
     with pytest.raises(RuntimeError, match="a ball is crushed between two that nothing moves"):
         run(press, [0.0, 1.0])
 
@@ -351,7 +339,7 @@ def test_the_reason_is_that_of_the_one_that_got_further():
 
 
 def test_balls_that_rattle_without_end_are_one_clear_error():
-    rattling = balls([0.0], [R + 1e-8], e=0.999999), np.array((0.0, 4.0)), GRAVITY
+    rattling = scene_of([0.0], [R + 1e-8], restitution=0.999999), np.array((0.0, 4.0)), GRAVITY
     with pytest.raises(RuntimeError, match="more than 300 events by .* rattle without end"):
         simulate_exact(*rattling, most=300)
     assert inspect.signature(simulate_exact).parameters["most"].default == 20_000

@@ -1,5 +1,6 @@
 """The gate on a small project of its own: the real contact.py, a short chapter and README."""
 
+import compileall
 import hashlib
 import json
 import re
@@ -108,6 +109,7 @@ def accepted(tmp_path_factory):
         run = run_gate(project, *flags)
         assert run.returncode == 0, run.stdout + run.stderr
     commit(project)
+    compileall.compile_dir(project, quiet=1)  # once for all its copies
     return project
 
 
@@ -279,6 +281,9 @@ def test_a_change_of_the_command_line_is_one_of_the_whole_file_alone():
     assert stale.digits("contact.py", text) != stale.digits("contact.py", other)
     assert stale.digits(stale.LESSON, text) == stale.digits(stale.LESSON, other)
     assert set(stale.COMMAND_LINE) <= set(regions.read_all())
+    with pytest.raises(SyntaxError) as error:
+        stale.digits(stale.LESSON, "impor ast\n")
+    assert error.value.filename == "contact.py"
 
 
 def test_ledger_has_its_header_and_each_row_is_whole_or_pending(project):

@@ -9,27 +9,22 @@ changed; numbers are quoted by reference, and `holds:` comments are true; measur
 of the ledger are of today's code.
 """
 
-import argparse
 import sys
 
-from curriculum.commands import needs, stoppable
+from curriculum.commands import Parser, needs, stoppable
 
 
+@stoppable()
+@needs("dev")
 def main(argv=None) -> int:
     """Check or accept. Returns the exit status: 0 in order, 1 not, 2 could not be done."""
-    parser = argparse.ArgumentParser(
-        prog="python -m curriculum.text",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
+    parser = Parser(prog="python -m curriculum.text", description=__doc__)
     parser.add_argument("--accept", metavar="SECTION", nargs="*", help="these have been read")
     args = parser.parse_args(argv)
     try:
-        with needs("dev"), stoppable():
-            from curriculum.text import gate
+        from curriculum.text import gate
 
-            return gate.check() if args.accept is None else gate.accept(args.accept)
+        return gate.check() if args.accept is None else gate.accept(args.accept)
     except SyntaxError as error:
         wrong = f"{error.filename}:{error.lineno}: not Python: {error.msg}"
     except (OSError, ValueError) as error:

@@ -4,7 +4,7 @@ import { makeRows, solveContacts } from "../engine.js";
 import { grip, kept, wholly } from "../parts.js";
 
 const MOST = 3.5; // m/s
-const ROWS = [180, 320, 460]; // px
+const [ROWS, PX] = [[180, 320, 460], 26]; // px: where the balls are, a radius
 
 // The speeds after the impact of three touching elastic balls; `repair`: no target below zero.
 const struck = kept((speeds, repair) => {
@@ -21,25 +21,23 @@ const list = (speeds) => speeds.map((v) => number(v, 2)).join(", ");
 
 // Where a drawing so wide has the balls, of so many px, their arrows, and the bars of the energy.
 function placesOf(width, most) {
-  const r = Math.min(26, width / 13);
   const bars = width - Math.min(150, 0.25 * width);
   return {
-    r,
     bars,
     px: Math.min(30, width / 20), // of an arrow for 1 m/s
     unit: (width - bars - 8) / Math.max(most, 0.1),
-    at: (i) => (bars - 16) / 2 + 2 * r * (i - 1),
+    at: (i) => (bars - 16) / 2 + 2 * PX * (i - 1),
     // the arrows stand over one another, and those that are dragged further apart
-    up: (i, k) => (k ? -r - 14 - 22 * i : -r - 20 - 44 * i),
+    up: (i, k) => (k ? -PX - 14 - 22 * i : -PX - 20 - 44 * i),
   };
 }
 
-function row([title, speeds], k, { r, bars, px, unit, at, up }) {
+function row([title, speeds], k, { bars, px, unit, at, up }) {
   return [
-    label(title, 0, ROWS[k] - r - (k ? 72 : 134), "start", "axis-name"),
+    label(title, 0, ROWS[k] - PX - (k ? 72 : 134), "start", "axis-name"),
     ...speeds.map(
       (v, i) =>
-        ball("lcp", at(i), ROWS[k], r, k ? "seen" : "ball plainly") +
+        ball("lcp", at(i), ROWS[k], PX, k ? "seen" : "ball plainly") +
         arrow("weight", at(i), ROWS[k] + up(i, k), px * v, 0) +
         label(number(v, 2), at(i), ROWS[k] + 5, "middle", k ? "tick strong" : "on-ball"),
     ),
@@ -57,7 +55,7 @@ function draw(view) {
   ];
   const [begun, moreau, repaired] = cases.map((each) => energy(each[1]));
   const places = placesOf(view.width, Math.max(begun, moreau, repaired));
-  const { r, bars, px, unit, at, up } = places;
+  const { bars, px, unit, at, up } = places;
   const mark = bars + begun * unit;
   const hold = (v, i) => {
     const range = { low: -MOST, high: MOST, step: 0.1, at: (x) => (x - at(i)) / px };
@@ -77,7 +75,7 @@ function draw(view) {
     words:
       `Before: ${told[0]} m/s. With −e v_n: ${told[1]} m/s and the same energy. ` +
       `With no target below 0: ${told[2]} m/s and ${more}.`,
-    handles: [...knobs.map((each, i) => wholly(each, `ball-${i}`, at(i), ROWS[0], r)), ...knobs],
+    handles: [...knobs.map((each, i) => wholly(each, `ball-${i}`, at(i), ROWS[0], PX)), ...knobs],
   };
 }
 

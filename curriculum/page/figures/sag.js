@@ -57,8 +57,7 @@ function column(left, height, masses, depths, law) {
     const [x, y] = places[i];
     const heavy = mass === 1 ? "" : label(number(mass, 2), x, y + 5, "middle", "on-ball");
     const at = x + r + LENS + 12;
-    const wide = `${number(depths[i], 2)} r`;
-    const told = left > 200 ? wide : left > 170 ? number(depths[i], 1) : "";
+    const told = left > 200 ? `${number(depths[i], 2)} r` : number(depths[i], 1);
     return [
       ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
       lens(at, y + r, size * depths[i], size * law[i]),

@@ -1,6 +1,6 @@
 /* Balls on springs. One rests where the spring pushes with its weight, m g / k deep; in a stack the
  * lowest contact carries all. What the hand holds falls when it is let go. */
-import { arrow, axis, ball, clipped, el, label, number, plural, round, table } from "../draw.js";
+import { arrow, axis, ball, clipped, el, label, number, path, plural, table } from "../draw.js";
 import { within } from "../draw.js";
 import { runModel, stateAt } from "../engine.js";
 import { beside, depthsOf, forceLength, G, grip, kept, lens, R, scene } from "../parts.js";
@@ -31,11 +31,9 @@ const depthOf = (view, rest) => 1 - fallen(view, [(1 - (view.own.press ?? rest))
 
 // A coil from (x, top) down to (x, bottom), the thicker the stiffer.
 function coil(x, top, bottom, stiffness) {
-  const step = (bottom - top) / 12;
-  const turn = (_, k) => `L${x + (k % 2 ? -16 : 16)} ${round(top + (k + 0.5) * step)}`;
-  const turns = Array.from({ length: 12 }, turn).join("");
-  const d = `M${x} ${round(top)}${turns}L${x} ${round(bottom)}`;
-  return el("path", { d, class: "coil", "stroke-width": Math.log10(stiffness) - 0.5 });
+  const turn = (_, k) => [x + (k % 2 ? -16 : 16), top + ((k + 0.5) * (bottom - top)) / 12];
+  const wire = path([[x, top], ...Array.from({ length: 12 }, turn), [x, bottom]], "coil");
+  return el("g", { "stroke-width": Math.log10(stiffness) - 0.5 }, wire);
 }
 
 function picture(left, height, stiffness, depth, push) {
