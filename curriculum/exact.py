@@ -169,7 +169,8 @@ class Motion:
     """Where all balls are at an event, and what each of the K contacts they can make did so far."""
 
     def __init__(self, scene, gravity):
-        self.q, self.v, self.w = scene.q0.copy(), scene.v0.copy(), 1.0 / scene.mass
+        self.q, self.v = np.array((scene.q0, scene.v0), float)
+        self.w = 1.0 / scene.mass
         self.radius, self.e, self.g = scene.radius, scene.restitution, -gravity
         self.all = Contacts(scene)
         self.gap = self.all.locate(self.q)  # [m]

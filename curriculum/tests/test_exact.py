@@ -204,6 +204,13 @@ def test_the_answer_does_not_depend_on_when_it_is_sampled():
     assert np.array_equal(fine[0][-1], last[0][-1]) and np.array_equal(fine[1][-1], last[1][-1])
 
 
+def test_whole_numbers_and_short_floats_are_places_as_good_as_any():
+    scene, t = scene_of([0.0, 1.0], [1.0, 3.0], restitution=0.5), np.linspace(0.0, 1.0, 11)
+    for kind in (int, np.float32):
+        same = scene._replace(q0=scene.q0.astype(kind), v0=scene.v0.astype(kind))
+        assert np.array_equal(run(same, t), run(scene, t))
+
+
 def test_a_mirrored_pile_gives_the_mirrored_answer():
     scene, t = build_scene("pile", 2, 6, 0.4), np.linspace(0.0, 1.0, 101)
     mirror = np.array((-1.0, 1.0))[:, None]
