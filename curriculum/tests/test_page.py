@@ -356,6 +356,17 @@ def test_whatever_a_hand_presses_and_moves_changes_the_words_of_its_figure(where
         moves.close()
 
 
+def test_a_ball_stays_under_the_mouse_where_a_figure_is_drawn_smaller_than_on_a_phone(tab):
+    page_browser.resize(tab, 320)
+    ball = tab.locator("#fig-grab .handle")
+    x, y = middle(ball)
+    for _ in mouse(tab, x, y, ((-40, -30),)):
+        call(tab, page_browser.WORDS, "fig-grab")  # once it is drawn
+        box = ball.bounding_box()
+        place = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        assert place == pytest.approx((x - 40, y - 30), abs=2)
+
+
 HEIGHT = "Number(document.querySelector('#fig-grab .handle').getAttribute('aria-valuenow'))"
 
 
