@@ -100,4 +100,6 @@ def by_lcp(scene):
 
 
 def by_pymunk(scene):
-    return engines.Pymunk(scene, DT, iterations=10).go(STEPS)
+    session = engines.Pymunk(scene, DT, iterations=10)
+    session.step = partial(session.space.step, DT)  # Python beside Python
+    return session.go(STEPS)

@@ -56,14 +56,14 @@ def digest(value) -> str:
 @lru_cache
 def digits(name, text) -> str:
     """The fingerprint of a file's text under that name."""
-    _, _, without = name.partition(" without ")
+    file, _, without = name.partition(" without ")
     left_out: list = []
     words: list = []
     for region in REGION.finditer(text):
         lines = range(line_at(text, region.start()), line_at(text, region.end()) + 1)
         left_out += lines if region[1] in without.split() else ()
         words += lines if region[1] == "flags" else ()
-    tree = ast.parse(text)
+    tree = ast.parse(text, file)
     tree.body = [node for node in tree.body if node.lineno not in left_out]
     return digest(plain(tree, set(words)))
 

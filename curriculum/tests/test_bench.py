@@ -1,5 +1,6 @@
 """The benchmark judges rightly: references, engines, cells worked out by hand, invented rows."""
 
+import functools
 import gc
 import math
 import re
@@ -214,6 +215,14 @@ def test_substeps_and_sleep_reach_ours_and_skips_change_no_bit():
         q, v = c.build(scene, 0.002, 4, sleep).states(200)
         assert q.tobytes() == run.q[::4].tobytes() and v.tobytes() == run.v[::4].tobytes()
         assert c.build(scene, 0.002, 4, sleep).settings.skip is sleep
+
+
+@pytest.mark.skipif(bool(engines.not_installed("pymunk")), reason="pymunk is missing")
+def test_the_engine_of_pymunk_alone_goes_where_a_users_step_goes():
+    setting, scene = accuracy.BY_NAME["pymunk: 10 iterations"], problems.BY_NAME["pile"].build(0)
+    bare, users = (setting.build(scene, 0.002) for _ in range(2))
+    users.step = functools.partial(users.space.step, 0.002)
+    assert np.array_equal(bare.states(400), users.states(400))
 
 
 def test_all_engines_get_the_same_substeps_and_one_budget_of_work():

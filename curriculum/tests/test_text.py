@@ -281,6 +281,9 @@ def test_a_change_of_the_command_line_is_one_of_the_whole_file_alone():
     assert stale.digits("contact.py", text) != stale.digits("contact.py", other)
     assert stale.digits(stale.LESSON, text) == stale.digits(stale.LESSON, other)
     assert set(stale.COMMAND_LINE) <= set(regions.read_all())
+    with pytest.raises(SyntaxError) as error:
+        stale.digits(stale.LESSON, "impor ast\n")
+    assert error.value.filename == "contact.py"
 
 
 def test_ledger_has_its_header_and_each_row_is_whole_or_pending(project):
