@@ -222,7 +222,9 @@ def slots(text, line, ranges):
 def assemble(parts, macros, bets):
     """(HTML, [(level, id, text)] of its headings). The macro of a part's kind gives its HTML;
     `bets` are the exercises whose answers are veiled."""
-    contents, met, found, segments = [], [], [], segments_of(parts)
+    contents, met, found = [], [], []
+    cuts = [k for k, (kind, _) in enumerate(parts) if k and kind in ("heading", "exercise")]
+    segments = [parts[a:b] for a, b in zip([0, *cuts], [*cuts, len(parts)])]
     for ((kind, values), *rest), columns in zip(segments, columns_of(segments)):
         if kind == "heading":
             *where, title = values
@@ -246,16 +248,6 @@ def assemble(parts, macros, bets):
             head = ""
         found.append((head, inner, veils))
     return Markup("\n".join(veiled(found, bets, macros))), contents
-
-
-def segments_of(parts):
-    """The parts from each heading or exercise to the next."""
-    found = []
-    for part in parts:
-        if part[0] in ("heading", "exercise"):
-            found.append([])
-        found[-1].append(part)
-    return found
 
 
 def columns_of(segments):

@@ -12,7 +12,7 @@ import numpy as np
 import contact
 from curriculum.stress import scenes
 
-fast = contact.beside("fast")  # the compiled twin: the same bits, as a property says
+run_twin = (contact.beside("fast") or contact).run_model  # the same bits, as a property says
 G = 9.81  # m/s^2, what every model must have, so it is not asked of contact.py
 U = 2.0**-53  # the largest relative rounding error of one operation
 STEPPED = ("penalty", "lcp", "soft")
@@ -92,13 +92,6 @@ class Trial:
             sentence = re.split("; |\\. ", str(error).removeprefix("exact: "))[0]
             self.note("exact refuses: " + re.sub(r"\d[\d.,]*", "…", sentence))
             return None
-
-
-def run_twin(model, scene, dt, steps, settings):
-    """A run by the compiled twin, where there is one: the same bits, as a property says."""
-    if fast:
-        return fast.run_model(model, scene, dt, steps, settings)
-    return contact.run_model(model, scene, dt, steps, settings)
 
 
 class Trajectory:

@@ -1,7 +1,7 @@
 """Plant faults into the copy of the code in this folder, and see which claims name them.
 
 Standard input: {fault: [old, new, property, claims that must name it]}, as JSON. Prints a line of
-JSON each: first ["kinds", all claims that are made], then [fault, the claims that did not name it].
+JSON each: [fault, the claims that did not name it].
 """
 
 import importlib
@@ -11,18 +11,15 @@ import re
 import sys
 from pathlib import Path
 
-FOLDER = Path.cwd()
-FILES = FOLDER / "contact.py", FOLDER / "curriculum" / "exact.py"
-TEXTS = {file: file.read_text("utf-8") for file in FILES}
 OWN_CODE = "an_impact_alone_returns_e_of_the_speed"  # judges lcp and soft by lines of their own
 
 
-def loaded(old="", new=""):
-    """The modules of the stress test, over code in which `new` stands in place of `old`."""
-    if old and sum(text.count(old) for text in TEXTS.values()) != 1:
+def loaded(texts, old, new):
+    """The modules of the stress test, over {file: text} in which `new` stands in place of `old`."""
+    if sum(text.count(old) for text in texts.values()) != 1:
         raise LookupError(f"not once in the code: {old!r}")
-    for file, text in TEXTS.items():
-        file.write_text(text.replace(old, new) if old else text, "utf-8")
+    for file, text in texts.items():
+        file.write_text(text.replace(old, new), "utf-8")
     for name in [name for name in sys.modules if name.split(".")[0] in ("contact", "curriculum")]:
         del sys.modules[name]
     names = "claims", "properties", "jobs", "maps", "mujoco_match"
@@ -58,10 +55,10 @@ def claimed(modules, count, wanted=None):
                 yield f"{each.__name__}: {kind}", row[2] is None
 
 
-def unnamed(old, new, wanted, *kinds):
+def unnamed(texts, old, new, wanted, *kinds):
     """Those of the kinds of claims that do not name the fault."""
     try:
-        modules = loaded(old, new)
+        modules = loaded(texts, old, new)
     except LookupError as error:
         return [str(error)]
     missing = {f"{wanted}: {kind}" for kind in kinds}
@@ -73,7 +70,8 @@ def unnamed(old, new, wanted, *kinds):
 
 
 if __name__ == "__main__":
-    sys.path[0] = str(FOLDER)
-    print(json.dumps(["kinds", sorted({kind for kind, _ in claimed(loaded(), 60)})]))
+    sys.path[0] = str(Path.cwd())
+    files = Path("contact.py").resolve(), Path("curriculum/exact.py").resolve()
+    sound = {file: file.read_text("utf-8") for file in files}
     for fault, planted in json.load(sys.stdin).items():
-        print(json.dumps([fault, unnamed(*planted)]), flush=True)
+        print(json.dumps([fault, unnamed(sound, *planted)]), flush=True)

@@ -98,19 +98,19 @@ def copy(tmp_path):
     return folder, fill
 
 
-def run(folder, *command, lacks="yaml", options="-B"):
+def run(folder, *command, lacks="yaml", options=()):
     """The command there, by a learner's Python, in which a package cannot be imported."""
     start = (
         f"import sys, runpy; sys.modules[{lacks!r}] = None; sys.argv = sys.argv[1:]; "
         "sys.path[0] = sys.argv[0].rpartition('/')[0] or '.'; "
         "runpy.run_path(sys.argv[0], run_name='__main__')"
     )
-    return python(options, "-c", start, *command, cwd=folder, **NO_PLUGINS)
+    return python(*options, "-c", start, *command, cwd=folder, **NO_PLUGINS)
 
 
 def test_a_script_that_is_not_filled_in_prints_its_task_anywhere_and_without_docstrings(tmp_path):
     for name in ("ex1", "ex2"):
-        result = run(tmp_path, ROOT / FILES[name], options="-BOO")
+        result = run(tmp_path, ROOT / FILES[name], options=["-OO"])
         assert result.stdout.startswith(GIVEN[name].__doc__.split("\n    python")[0])
         assert (result.returncode, result.stderr) == (2, "")
 
@@ -134,7 +134,7 @@ def test_a_learners_way_through_all_ten(copy, tmp_path):
     following = dict(zip(FILES, [*FILES.values()][1:]))
     for name, file in FILES.items():
         fill(name)
-        command = shlex.join([sys.executable, "-B", str(folder / file)])
+        command = shlex.join([sys.executable, str(folder / file)])
         if name == "ex1":  # untouched ones wait; the command that is printed works as it is printed
             printed = run(folder, "checks.py").stdout
             assert "10 skipped" in printed and all(f"{each}: " in printed for each in FILES)
@@ -175,7 +175,7 @@ def test_what_is_wrong_broken_or_without_end_fails_its_own_check_and_says_why(co
     ):  # fmt: skip
         assert words in result.stdout, words
     assert "Traceback" not in result.stdout
-    words = [sys.executable, "-B", folder / FILES["ex1"]]
+    words = [sys.executable, folder / FILES["ex1"]]
     done = subprocess.run(words, capture_output=True, text=True)
     assert done.returncode and done.stderr.count("\n") == 1 and "needs quotes" in done.stderr
 
@@ -190,7 +190,7 @@ def test_without_pytest_or_numpy_one_line_says_how_to_get_it(copy):
 
 def test_watch_checks_again_when_an_exercise_is_saved(copy):
     folder, fill = copy
-    command = [sys.executable, "-B", "checks.py", "--watch", "-k", "ex8"]
+    command = [sys.executable, "checks.py", "--watch", "-k", "ex8"]
     with subprocess.Popen(
         command, cwd=folder, env=os.environ | NO_PLUGINS, stdout=subprocess.PIPE, text=True
     ) as process:

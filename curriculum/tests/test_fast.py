@@ -2,10 +2,6 @@
 
 import itertools
 import math
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,9 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import contact
+from curriculum.tests.helpers import python
 
 fast = pytest.importorskip("curriculum.fast", reason="numba is missing", exc_type=ImportError)
-ROOT = Path(__file__).resolve().parents[2]
 MODELS = ("penalty", "lcp", "soft")
 WILD = (math.nan, math.inf, -math.inf, 1e200, -1e308, 1e-200, -0.0)
 
@@ -149,25 +145,19 @@ def shaft(count, width, wall=0.1):
     heights = np.arange(wall, y.max(), 2.05 * wall)
     side = 0.125 * width + wall
     x = np.concatenate((x, np.repeat((-side, side), len(heights))))
-    q0 = np.array((x, np.concatenate((y, heights, heights))))
-    mass = np.repeat((1.0, math.inf), (count, 2 * len(heights)))
-    radius = np.repeat((0.1, wall), (count, 2 * len(heights)))
-    return contact.Scene("shaft", q0, np.zeros_like(q0), mass, radius, 0.0, 80.0)
+    mass, radius = np.repeat(((1.0, math.inf), (0.1, wall)), (count, 2 * len(heights)), axis=1)
+    return contact.scene_of(x, np.concatenate((y, heights, heights)), mass, radius)
 
 
-def add_ball(scene, x, y, radius, mass):
+def add_ball(scene, **ball):
     """The scene with one ball more."""
-    return scene._replace(
-        q0=np.append(scene.q0, [[x], [y]], axis=1),
-        v0=np.append(scene.v0, [[0.0], [0.0]], axis=1),
-        mass=np.append(scene.mass, mass),
-        radius=np.append(scene.radius, radius),
-    )
+    rows = zip(("x", "y", "mass", "radius"), (*scene.q0, scene.mass, scene.radius))
+    return contact.scene_of(**{name: np.append(row, ball[name]) for name, row in rows})
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls_and_under_a_large_ball(model):
-    crushed = add_ball(shaft(16, 4), 0.3, 12.0, 10.0, 1000.0)
+    crushed = add_ball(shaft(16, 4), x=0.3, y=12.0, radius=10.0, mass=1000.0)
     crushed.v0[1, -1] = -5.0
     for scene in (shaft(20, 4), shaft(20, 4, wall=1.0), crushed):
         check_same(model, scene, 0.004, 120)
@@ -175,7 +165,7 @@ def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls_and_under_a_lar
 
 def test_a_large_ball_adds_no_pairs_of_small_ones():
     alone = contact.build_scene("pile", 0, 2000)
-    beside = add_ball(alone, 0.0, 30.0, 10.0, 1.0)
+    beside = add_ball(alone, x=0.0, y=30.0, radius=10.0, mass=1.0)
     balls = [fast.Stepper("lcp", s, 0.002, contact.Settings()).balls for s in (alone, beside)]
     assert np.array_equal(*(fast.list_pairs(each, 0.1) for each in balls))
 
@@ -216,14 +206,6 @@ def test_where_nothing_is_compiled_contact_takes_its_plain_loops(prepare):
         "scene = contact.build_scene('pile', 0, 40); "
         "print(contact.run_model('lcp', scene, 0.002, 20).q.sum())"
     )
-    environment = dict(os.environ, NUMBA_DISABLE_JIT="0" if prepare else "1")
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=ROOT,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    done = python("-c", code, NUMBA_DISABLE_JIT="0" if prepare else "1")
     whole = fast.run_model("lcp", contact.build_scene("pile", 0, 40), 0.002, 20, contact.Settings())
-    assert float(done.stdout) == whole.q.sum()
+    assert done.stdout == f"{whole.q.sum()}\n", done.stderr
