@@ -326,7 +326,8 @@ def exact_run(scene: Scene, times, report=None):
     balls = make_balls(scene)
     pairs = detect_contacts(balls, margin=math.inf)  # all of them: who may ever touch
     touching = [c for c in pairs if -c.depth <= TOUCH]
-    q, v = np.tile(scene.q0, (len(times), 1, 1)), np.tile(scene.v0, (len(times), 1, 1))
+    start = np.array((scene.q0, scene.v0), float)
+    q, v = np.tile(start[:, None], (1, len(times), 1, 1))
     now, done = 0.0, 0
     for _ in range(MOST_IMPACTS):
         strike(touching, scene.restitution)
@@ -588,7 +589,7 @@ def run_model(
     model: str, scene: Scene, dt: float, steps: int, settings: Settings = Settings(), report=None
 ) -> Run:
     """The run of a scene by one of MODELS; RuntimeError where exact cannot be exact."""
-    check(model, scene, dt)
+    check(model, scene, dt, steps)
     if model == "exact":
         return run_exact(scene, dt, steps, report)
     many = settings.skip and steps * len(scene.mass) ** 2 > MANY
@@ -600,12 +601,13 @@ def run_model(
     return simulate(step, scene, dt, steps)
 
 
-def check(model, scene, dt):
+def check(model, scene, dt, steps):
     """Raise ValueError, with the name of the field, for what no model can run."""
     mass, radius, e = scene.mass, scene.radius, scene.restitution
     for field, given, fine, allowed in (
         ("model", model, model in MODELS, ", ".join(MODELS)),
         ("dt", dt, 0.0 < dt < math.inf, "above 0 and finite"),
+        ("steps", steps, steps >= 0, "0 or more"),
         ("q0", scene.q0, np.isfinite(scene.q0), "finite"),
         ("v0", scene.v0, np.isfinite(scene.v0), "finite"),
         ("mass", mass, mass > 0.0, "above 0; infinite for a ball that no push moves"),

@@ -232,11 +232,11 @@ def accuracy_part(section):
         "say Python; compiling is not counted (see the piles). Pymunk, Box2D and Drake have no "
         "loop of their own and are called from Python: pymunk awake by its engine's function, and "
         "as a user gets it by its own step, 0.7 µs more. Drake under error control takes as many "
-        "steps as it needs, also at equal work; of its discrete solver, which is slow, there is "
-        "one start and one process. Engines in float32 are right to about 1e-6 r, the closed forms "
-        "to 1e-12 r; of the pile `exact` is the reference. Left out: PyBullet, whose restitution "
-        "depends on the step; Box2D 2.3, which version 3 replaces; Siconos and Rapier, which have "
-        "no package here. A better setting? Add a line to SETTINGS "
+        "steps as it needs, whose mean counts at equal work; of its discrete solver, which is "
+        "slow, there is one start and one process. Engines in float32 are right to about 1e-6 r, "
+        "the closed forms to 1e-12 r; of the pile `exact` is the reference. Left out: "
+        "PyBullet, whose restitution depends on the step; Box2D 2.3, which version 3 replaces; "
+        "Siconos and Rapier, which have no package here. A better setting? Add a line to SETTINGS "
         "in [engines.py](../engines.py) and send it."
     )
     yield from (f"Not everywhere: {label}, {why}." for label, why in section["left_out"].items())

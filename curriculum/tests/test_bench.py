@@ -236,7 +236,7 @@ def test_all_engines_get_the_same_substeps_and_one_budget_of_work():
 
 def point(family, error, ms, dt=0.002, work=16, problem="drop", **more):
     about = dict(problem=problem, family=family, words=f"{family} {error}", dt=dt, work=work)
-    about |= dict(adaptive=family == "exact", balls=1, diverged=0, error=error, user_error=error)
+    about |= dict(balls=1, diverged=0, error=error, user_error=error)
     about |= {key: 0.0 for key in ("final_error", "energy_error", "depth", "least", "greatest")}
     about |= {f"{way}_{which}": ms for way in accuracy.WAYS for which in ("median", "min", "max")}
     return about | more
@@ -244,7 +244,9 @@ def point(family, error, ms, dt=0.002, work=16, problem="drop", **more):
 
 def test_a_point_has_medians_over_starts_and_over_processes():
     errors = [
-        dict(error=e, final_error=e, energy_error=e, depth=e, diverged=None, user_error=e + 1)
+        dict(
+            error=e, final_error=e, energy_error=e, depth=e, diverged=None, user_error=e + 1, work=4
+        )
         for e in (9.0, 1.0, 2.0)
     ]
     errors[0]["diverged"] = 7
@@ -269,6 +271,14 @@ def test_the_best_is_the_most_accurate_that_may_compete():
     assert accuracy.headline(points, 10)["drop"]["lcp"]["error"] == 0.001  # 20 ms, any work
     assert accuracy.headline(points[:3], 10)["drop"]["lcp"]["error"] == 0.03
     assert accuracy.headline(points, work=1) == {}
+
+
+@pytest.mark.skipif(bool(engines.not_installed("drake")), reason="needs Drake")
+@pytest.mark.parametrize("accuracy_, least, most", [(1e-3, 1, 1.1), (1e-7, 4, 16), (1e-9, 30, 99)])
+def test_the_steps_of_an_engine_that_chooses_them_are_counted(accuracy_, least, most):
+    names = [c.name for c in ALL if c.options.get("accuracy") == accuracy_ and "CENIC" in c.words]
+    (found,) = accuracy.errors_of(("slide", names[-1], 0.002, 1, 1))
+    assert least <= found["work"] <= most
 
 
 def section_of(points):

@@ -448,6 +448,19 @@ def test_what_is_no_scene_is_refused_by_the_name_of_its_field(field, value):
     for dt in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(ValueError, match="dt: given .*; allowed: "):
             run_model("lcp", build_scene("drop"), dt, 5)
+    with pytest.raises(ValueError, match="steps: given -1; allowed: 0 or more"):
+        run_model("lcp", build_scene("drop"), DT, -1)
+
+
+@pytest.mark.parametrize("model", contact.MODELS)
+def test_whole_numbers_are_places_and_velocities_too(model):
+    whole = contact.Scene("own", *np.array([[[0], [1]], [[0], [-2]]]), [1], [0.1], 0.5, 0.0)
+    whole = whole._replace(mass=np.array([1]), radius=np.array([0.1]))
+    one, other = (
+        run_model(model, scene, DT, 300)
+        for scene in (whole, scene_of(0, 1, vy=-2, restitution=0.5, damping=0.0))
+    )
+    assert one.q.tobytes() == other.q.tobytes() and one.v.tobytes() == other.v.tobytes()
 
 
 def test_penalty_trembles_past_its_critical_step_and_nothing_else_does():
