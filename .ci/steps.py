@@ -16,7 +16,8 @@ import readme
 
 WORK = Path(sys.argv[1])
 TEXT = (readme.ROOT / "README.md").read_text("utf-8")
-LEFT_OUT = ("UV", "VIRTUAL_ENV", "PYTHONPATH", "CONDA_PREFIX")  # a newcomer's shell has none
+# what a newcomer's shell has not
+LEFT_OUT = "UV VIRTUAL_ENV PYTHONPATH CONDA_PREFIX PYTHONDONTWRITEBYTECODE".split()
 SHELL = {k: v for k, v in os.environ.items() if k not in LEFT_OUT} | {
     "CI": "true",
     "RERUN_STRICT": "1",

@@ -12,7 +12,6 @@ curriculum/bench/results. With --quick it takes one or two minutes, measures lit
 outputs/bench-quick, which nothing quotes.
 """
 
-import argparse
 import json
 import os
 import sys
@@ -22,7 +21,7 @@ from pathlib import Path
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
-from curriculum.commands import needs
+from curriculum.commands import Parser, needs
 
 with needs("bench"):
     from curriculum.bench import accuracy, piles, report, skips, solvers
@@ -46,11 +45,7 @@ QUICK = results.ROOT / "outputs" / "bench-quick"
 
 def main(argv=None):
     """Returns the exit status: 1 where figures could not be drawn, 130 after Ctrl-C."""
-    parser = argparse.ArgumentParser(
-        prog="python -m curriculum.bench",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = Parser(prog="python -m curriculum.bench", description=__doc__)
     parser.add_argument("part", nargs="?", default="all", choices=("all", *PARTS, "draw"))
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
     parser.add_argument("--out", type=Path, help="a folder of your own, which nothing quotes")

@@ -7,7 +7,6 @@ median of several. A row is MEASURED with every column filled, or PENDING with n
 guessed. config_hash is of the code that was timed, so a row is stale as soon as that changes.
 """
 
-import argparse
 import re
 import statistics
 import subprocess
@@ -16,6 +15,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from curriculum.commands import Parser
 from curriculum.files import write_whole
 from curriculum.measured.machine import dirty, machine
 from curriculum.measured.stale import digest, fingerprint
@@ -80,7 +80,7 @@ def measure(runs: int) -> float:
 
 def main(argv=None) -> int:
     """Measure a tier's row, write and show it. Returns the exit status."""
-    parser = argparse.ArgumentParser(prog=COMMAND, description=__doc__.split("\n")[0])
+    parser = Parser(prog=COMMAND, description=__doc__.split("\n")[0])
     parser.add_argument("tier", help="what the ledger calls this machine, such as cpu-laptop")
     parser.add_argument("--runs", type=int, default=9, help="counted runs (9)")
     args = parser.parse_args(argv)

@@ -9,7 +9,6 @@
 Exit status 0: no violation; 1: violations; 2: bad command line.
 """
 
-import argparse
 import os
 import sys
 from functools import partial
@@ -17,7 +16,7 @@ from functools import partial
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-from curriculum.commands import needs
+from curriculum.commands import Parser, needs
 
 with needs("dev"):
     import scipy  # noqa: F401  # laws.py loads it late
@@ -29,12 +28,7 @@ with needs("dev"):
 
 def parse(argv):
     """The checked command line."""
-    parser = argparse.ArgumentParser(
-        prog="python -m curriculum.stress",
-        description=__doc__,
-        usage=argparse.SUPPRESS,  # an error is one line then
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = Parser(prog="python -m curriculum.stress", description=__doc__)
     flag, count = parser.add_argument, partial(number, int, 1, 1e6)
     flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
     flag("--draw", action="store_true", help="page and figure again, from the results alone")

@@ -481,6 +481,19 @@ def test_a_choice_that_is_not_the_only_one_is_no_key(numbers, monkeypatch):
         predict.answer("ex3", numbers["ex3"])
 
 
+def test_the_measurements_are_the_published_ones(numbers):
+    first, third, fourth, _ = numbers.values()
+    assert first["penalty_deepest"] == pytest.approx(0.251329183485, abs=1e-11)
+    assert first["lcp_deepest"] == pytest.approx(0.056743325071, abs=1e-11)
+    assert first["penalty_at_rest"] == pytest.approx(0.00981, abs=1e-9)
+    assert first["lcp_at_rest"] < 1e-9
+    assert third["penalty_long"] == pytest.approx(1409, abs=1) and third["lcp_long"] == 0.0
+    assert third["penalty_usual"] == 0.0 and third["limit"] < 0.03
+    assert fourth["soft_light"] == pytest.approx(fourth["soft_heavy"], rel=1e-9)
+    assert fourth["soft_light"] == pytest.approx(0.0036718, abs=1e-7)
+    assert fourth["penalty_heavy"] == pytest.approx(10 * fourth["penalty_light"], rel=2e-3)
+
+
 def test_the_captions_of_the_tables_are_what_was_run(numbers):
     """Their times, steps and masses, run again, give the numbers below them."""
     drop = contact.build_scene("drop")

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import contact
+from curriculum.commands import Parser
 
 PINNED = Path(__file__).with_name("golden.json")
 COMMANDS = (
@@ -84,6 +85,7 @@ def test_trajectory_is_the_pinned_one(pinned, case):
 
 
 if __name__ == "__main__":
+    Parser(prog="python -m curriculum.tests.test_golden", description=__doc__).parse_args()
     found = {
         "commands": {flags: run_command(flags) for flags in COMMANDS},
         "trajectories": {case: run_trajectory(case) for case in CASES},
