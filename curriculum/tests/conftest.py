@@ -20,6 +20,12 @@ def pytest_configure(config):
     config.option.loadscopereorder = False
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers():
+    """What `-n auto` starts: one more than there are cores, since tests of the page often wait."""
+    return (os.cpu_count() or 1) + 1
+
+
 def pytest_collection_modifyitems(items):
     """The files that take longest come first."""
     rank = {f"test_{name}": place for place, name in enumerate(FIRST)}
