@@ -40,12 +40,16 @@ export class Bets {
       });
     const why = box.querySelector("textarea");
     why.value = (this.#made.get(id) || {}).why || "";
-    why.addEventListener("change", () => this.make(id, { ...this.#made.get(id), why: why.value }));
+    why.addEventListener("input", () => this.#keep(id, { ...this.#made.get(id), why: why.value }));
+  }
+
+  #keep(id, bet) {
+    this.#made.set(id, bet);
+    stored((held) => held.setItem(KEY + id, JSON.stringify(bet)));
   }
 
   make(id, bet) {
-    this.#made.set(id, bet);
-    stored((held) => held.setItem(KEY + id, JSON.stringify(bet)));
+    this.#keep(id, bet);
     this.#show(id);
     this.#hear();
   }
