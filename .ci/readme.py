@@ -9,17 +9,22 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 STARTS = r"(?:python3?|py|pip|uv|pytest|ruff|mypy|mutmut|pre-commit|\.venv/bin/\w+|\.ci/\w+) "
-NOT_RUN = {  # a part of a command: why CI does not run it
+NOT_RUN = {  # how it starts: why CI does not run it
     "py -m venv": "for Windows, where the workflow ci.yml runs the first of the two",
-    "rerun outputs/": "opens a window; CI reads the recording with `rerun rrd verify`",
+    ".venv/bin/rerun ": "opens a window; CI reads the recording with `rerun rrd verify`",
+    "uv run rerun ": "opens a window; CI reads the recording with `rerun rrd verify`",
+    "uv run python contact.py --scene drop && uv run rerun": "its second half opens a window",
     "python -m curriculum.text --accept": "says that a person has read a section",
     "python -m curriculum.bench": "long; CI runs it with --quick",
     "python -m curriculum.stress": "long; CI runs it with --quick",
     "python -m curriculum.measured.ledger": "measures this machine, and writes into the tree",
     "python -m curriculum.page --pictures": "writes the README's picture into the tree",
     "python -m curriculum.tests.test_golden": "pins anew what the tests compare with",
-    " && .venv/bin/pre-commit": "CI runs its first half by the README's line, and then its second",
-    " ...": "a form of commands",
+    "python3 -m venv .venv && .venv/bin/pip install -e '.[dev]' && .venv/bin/pre-commit": (
+        "CI runs its first half by the README's line, and then its second"
+    ),
+    ".venv/bin/python -m ...": "a form of commands",
+    "uv run --extra dev ...": "a form of commands",
     "python contact.py --scene NAME": "NAME is yours",
     "python contact.py --help": "test_packaging runs it",
     "pytest checks.py -k exN_": "N is yours",
@@ -57,7 +62,7 @@ def rows(text):
 
 def why_not(command):
     """Why CI does not run a command; None where it does."""
-    return next((why for part, why in NOT_RUN.items() if part in command), None)
+    return next((why for start, why in NOT_RUN.items() if command.startswith(start)), None)
 
 
 def others(text):

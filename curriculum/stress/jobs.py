@@ -3,6 +3,8 @@
 A job: (place, subject, properties). A place is how its violations are said, such as "scene 17".
 """
 
+import statistics
+
 import contact
 from curriculum.stress import properties, scenes
 from curriculum.stress.claims import judge
@@ -56,6 +58,19 @@ def ran(section):
     """{model: in how many scenes it ran}."""
     cases = section["notes"].pop("ran").values()
     return {model: sum(model in case for case in cases) for model in contact.MODELS}
+
+
+def depths(section):
+    """The median deepest overlap [m] of lcp, looking ahead and today, where balls start apart; and
+    a violation where looking ahead is not a hundred times better.
+    """
+    cases = section["notes"].get(properties.DEPTHS, {}).values()
+    found = {name: [case[name] for case in cases] for name in ("ahead", "today")}
+    found = {name: statistics.median(each or [0.0]) for name, each in found.items()}
+    if found["ahead"] > found["today"] / 100:
+        words = f"median {found['ahead']:.3g} m, today {found['today']:.3g} m"
+        section["violations"].append(["all scenes", "deepest overlap ahead", words])
+    return found | {"scenes": len(cases)}
 
 
 def unfinished(section):

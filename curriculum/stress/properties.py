@@ -25,6 +25,8 @@ TINY = 1e-6  # s: forces are read from what they do in so short a time
 LOOSE = 1e-5  # share of the accelerations that are read so
 SLOW = 1e-6  # of sqrt(a r), a what brings it back: exact may take a slower bounce for the last
 AHEAD = {"ahead": True, "baumgarte": 1.0, "restitution": 0.0, "warm": 0.0}
+PUBLISHED = AHEAD | {"ahead": False, "baumgarte": 0.2}
+DEPTHS = "lcp: deepest overlap of balls that start apart"
 UNFINISHED = "lcp: unfinished sweeps add energy, without any push of Baumgarte's"
 
 
@@ -301,10 +303,12 @@ def looking_ahead_adds_no_energy_where_balls_start_apart(trial):
     """lcp ahead, gain 1, e = 0: balls that start apart never have more energy than at the start."""
     if contact.smallest_gap(trial.scene.q0[None], trial.scene.radius)[0] < 0.0:
         return
-    run = trial.run("lcp", **AHEAD, steps=300)
-    total = contact.energy(run.q, run.v, trial.scene.mass)
+    ahead, today = (trial.run("lcp", **knobs, steps=300) for knobs in (AHEAD, PUBLISHED))
+    total = contact.energy(ahead.q, ahead.v, trial.scene.mass)
     size = np.maximum(total[0], (trial.mass * G * trial.scene.radius).sum())
     yield "gained since the start [J]", np.maximum(total - total[0], 0.0), NOTABLE * size
+    gaps = (contact.smallest_gap(run.q, trial.scene.radius).min() for run in (ahead, today))
+    trial.note(DEPTHS, **{name: max(0.0, -gap) for name, gap in zip(("ahead", "today"), gaps)})
 
 
 def exact_pushes_and_never_pulls(trial):

@@ -23,6 +23,8 @@ HEAD = """# Stress: what must hold on any scene, and where each model breaks
 A judgement is one property on one scene, row of a map, command line or match, counted only where \
 it could have failed: without a contact nothing is said of contacts. What was done is read from \
 the states before and after each step, and held against the chapter's formulas."""
+DEPTHS = """Where balls start apart ({scenes:,} scenes), the median of lcp's deepest overlap is \
+{today:.3g} m, and {ahead:.3g} m looking ahead with the gain 1."""
 UNFINISHED = """Unfinished sweeps took {above_start:,} scenes above their start's energy, at worst \
 {place}, from {start:.4g} J to {most:.4g} J; {sweeps_most:,.0f} sweeps a step ended every rise."""
 
@@ -31,8 +33,8 @@ def write(found, origins, folder):
     """Write what the jobs of each section found. Returns the violations [place, name, words]."""
     sections = {name: jobs.added_up(each) for name, each in found.items()}
     scenes = sections["scenes"]
-    scenes |= {"unfinished": jobs.unfinished(scenes), "ran": jobs.ran(scenes)}
-    scenes["scenes"] = len(found["scenes"])
+    scenes |= {"scenes": len(found["scenes"]), "unfinished": jobs.unfinished(scenes)}
+    scenes |= {"ran": jobs.ran(scenes), "depths": jobs.depths(scenes)}
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     error = max(abs(row["measured"] / row["theory"] - 1) for row in rows)
     sections["maps"] |= {"penalty": rows, "boundary_worst_error": error}
@@ -80,6 +82,7 @@ def page(sections):
     parts, unfinished = [HEAD.format(summary(sections))], sections["scenes"]["unfinished"]
     if unfinished["rises"]:
         parts.append(UNFINISHED.format(**unfinished, **unfinished["worst"]))
+    parts.append(DEPTHS.format(**sections["scenes"]["depths"]))
     for name, section in sections.items():
         head = ["property", "judged", "comparisons", "off, as a share of the bound"]
         parts += [f"## {TITLES[name]}", results.table(head, rows_of(section["properties"]))]

@@ -180,6 +180,12 @@ def test_critical_dt_also_without_a_spring_and_with_a_damper_that_feeds(
     assert contact.critical_dt(1.0, stiffness, damping) == pytest.approx(critical, rel=digits)
 
 
+def test_the_damped_drop_settles_just_below_its_critical_dt_and_never_above():
+    calm, restless = (quality("drop", "penalty", dt, 6000) for dt in (0.0135, 0.0140))
+    assert calm["rest_penetration_frac"] == pytest.approx(0.00981, rel=1e-6)
+    assert restless["rest_jitter"] > 1e-3
+
+
 def test_the_bounce_of_lcp_converges_at_first_order():
     """Median over heights of the worst error in 4 s: half the step, about half the error."""
     medians = []

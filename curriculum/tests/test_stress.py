@@ -291,6 +291,14 @@ def test_bad_flags_are_refused_in_one_line(flags, words, capsys):
     assert stop.value.code == 2 and said.count("\n") == 1 and words in said
 
 
+def test_looking_ahead_must_be_a_hundred_times_better_in_the_median():
+    for ahead, wrong in ((1e-6, 0), (1e-4, 1)):
+        cases = {"a": {"ahead": ahead, "today": 1e-3}, "b": {"ahead": 0.0, "today": 0.0}}
+        section = {"notes": {properties.DEPTHS: cases | {"c": cases["a"]}}, "violations": []}
+        assert jobs.depths(section) == {"ahead": ahead, "today": 1e-3, "scenes": 3}
+        assert len(section["violations"]) == wrong
+
+
 def test_scenes_are_judged_and_said_again(capsys):
     assert command.main(["--scene", "small:3-4"]) == 0
     said = capsys.readouterr().out
