@@ -18,7 +18,7 @@ BOOKKEEPING = set(  # regions, and definitions of others, that are no idea of th
     "warm_start remember raised inverse make_balls state_of".split()
 )
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
-STYLED = {"k", "kn", "kc", "kd", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
+STYLED = {"k", "kn", "kc", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
 
 
 def code_lines(text):

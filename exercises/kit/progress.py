@@ -11,7 +11,8 @@ from . import ROOT
 
 DONE = ROOT / "outputs/ch3.5-contact/exercises.json"
 ORDER = ("ex1", "ex3", "ex6", "ex2", "ex5", "ex9", "ex10", "ex7", "ex4", "ex8")  # the chapter's
-NAMES = {file.partition("_")[0]: file for file in os.listdir(ROOT / "exercises")}
+OURS = [file for file in os.listdir(ROOT / "exercises") if file.endswith(".py")]
+NAMES = {file.partition("_")[0]: file for file in OURS}
 FILES = {name: f"exercises/{NAMES[name]}" for name in ORDER if name in NAMES}
 
 
