@@ -79,16 +79,24 @@ def visiting(
 
 
 SHOWS = "checkVisibility({ opacityProperty: true, visibilityProperty: true })"
+# wait until a figure is drawn for the frame that it has: one far from the window was not
+DRAWN = """async (fig, frames = 4) => {
+  const frame = fig?.querySelector(".drawing");
+  const fits = ({ width, height } = frame?.querySelector("svg").viewBox.baseVal ?? {}) =>
+    !frame?.clientHeight || (fig.querySelector(".handle") &&
+      Math.abs(width * frame.clientHeight - height * frame.clientWidth) < height);
+  for (let k = 0; k < frames || (k < 600 && !fits()); k++)
+    await new Promise(requestAnimationFrame);
+}"""
 # a figure in the middle of the window, drawn: the live one beside the text that it belongs to
-SEE = """async (id) => {
+SEE = f"""async (id) => {{
   const fig = document.getElementById(id);
   const live = fig.closest("#figure");
   const place = live ? document.querySelector(".show[data-show*=models]") : fig;
-  place.scrollIntoView({ block: live ? "start" : "center" });
-  for (let k = 0; k < (live ? 9 : 4) || (k < 99 && !fig.querySelector(".handle")); k++)
-    await new Promise(requestAnimationFrame);
+  place.scrollIntoView({{ block: live ? "start" : "center" }});
+  await ({DRAWN})(fig, live ? 9 : 4);
   return fig;
-}"""
+}}"""
 # in every figure: what lies at the middle of each button, knob, handle, link and ball, if not that
 HITS = f"""(async () => {{
   const [wrong, parts, see] = [[], ".handle, button, input, a, circle.ball", {SEE}];
@@ -136,8 +144,11 @@ def call(page, function, *given):
 
 
 def middle(node):
-    """The middle of what a locator finds [px], in the middle of the window."""
-    node.evaluate("(node) => node.scrollIntoView({ block: 'center' })")
+    """The middle of what a locator finds [px], in the middle of the window, drawn."""
+    node.evaluate(f"""async (node) => {{
+      node.scrollIntoView({{ block: "center" }});
+      await ({DRAWN})(node.closest(".fig"));
+    }}""")
     box = node.bounding_box()
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 

@@ -124,6 +124,10 @@ SEEN = """() => ({
   asked: location.href.split(".html")[1], entries: history.length})"""
 
 
+WRITTEN = """() => location.search.slice(11) ===
+  document.querySelector(".drag[data-knob=stiffness]").textContent.replace(",", "")"""
+
+
 def keys(page, node):
     """Turn a number by a run of keys."""
     node.focus()
@@ -145,12 +149,12 @@ def test_a_section_keeps_its_own_values_and_one_act_is_one_entry_of_the_history(
         written, chip = (page.locator(each).first for each in (number, f"{number} + .chip"))
         for hand, node in ((drawn, slider), (keys, written), (drawn, written)):
             node.scroll_into_view_if_needed()
-            page.wait_for_timeout(300)
+            page.wait_for_function("location.search === ''")  # no act is still to be written
             before = page.evaluate(SEEN)
             assert before["number"] == "10,000" and before["chips"] == ""
             assert re.fullmatch("(#the-bill[.\\d]*)?", before["asked"])
             hand(page, node)
-            page.wait_for_timeout(400)  # the address of an act is written in its pauses
+            page.wait_for_function(WRITTEN)  # the address of an act is written in its pauses
             now = page.evaluate(SEEN)
             assert now["entries"] == before["entries"] + 1
             value = now["number"].replace(",", "")
