@@ -6,12 +6,11 @@ from pathlib import Path
 import pytest
 
 import contact
-from curriculum.page.browser import SHOWN
 from curriculum.page.build import build
 from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
 from curriculum.tests import page_browser
-from curriculum.tests.page_browser import call, middle, mouse, visiting
+from curriculum.tests.page_browser import SHOWN, call, middle, mouse, visiting
 
 BETS = {  # their files, and a number of each that tells its answer, as the page writes it
     "ex1": ("ex1_predict_contact", "penalty_deepest", ".3f"),
