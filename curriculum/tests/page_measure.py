@@ -1,4 +1,4 @@
-"""In a browser for `python -m curriculum.page`: the README's picture, and how quickly it answers."""
+"""What `python -m curriculum.page` does in a browser: the README's picture, and measuring."""
 
 import statistics
 
