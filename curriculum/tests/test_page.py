@@ -339,6 +339,25 @@ WIDER = """(width) => document.documentElement.scrollWidth <= width ? [] :
     .map((each) => each.outerHTML.slice(0, 120))"""
 
 
+# where text, code and drawings begin, and how far the text is from the middle of the window [px]
+EDGES = """() => {
+  const parts = "h1, .part > :is(p, ul, ol, h2, h3, .code, .shell, .exercise, .generated, .scroll)";
+  const seen = [...document.querySelectorAll(`${parts}, .part > .fig:not(#fig-promise) > .drawing`)]
+    .filter((node) => node.checkVisibility() && !node.closest("#figure"));
+  const column = document.querySelector(".part > p").getBoundingClientRect();
+  const off = column.left + column.right - document.documentElement.clientWidth;
+  return [seen.map((node) => Math.round(node.getBoundingClientRect().left)), off / 2];
+}"""
+
+
+@pytest.mark.parametrize("width", [1920, 1280, 1024])
+def test_all_begins_at_one_edge_and_the_text_is_in_the_middle(tab, width):
+    page_browser.resize(tab, width)
+    lefts, off = call(tab, EDGES)
+    assert len(lefts) > 250 and len(set(lefts)) == 1
+    assert abs(off) < 10  # half a scroll bar
+
+
 @pytest.mark.parametrize("where", ["tab", "fox"])
 @pytest.mark.parametrize("width", [1280, 1024, 390, 320])
 def test_at_the_middle_of_every_button_knob_handle_and_ball_is_that_thing(where, width, request):
