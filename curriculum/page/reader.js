@@ -12,7 +12,7 @@ export class Reader {
     Object.assign(this, { passages, sectionOf, lanes, shown: null, called: null });
     this.figures = [...document.querySelectorAll(".part > .fig")];
     this.live = document.getElementById("figure");
-    this.beside = window.matchMedia("(min-width: 75rem)");
+    this.beside = window.matchMedia("(min-width: 78rem)");
     for (const span of document.querySelectorAll(".drag")) this.#number(span);
     for (const link of document.querySelectorAll("a.try")) link.hash = sectionOf(link).id;
     document.addEventListener("click", (event) => this.#clicked(event));
