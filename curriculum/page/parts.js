@@ -36,7 +36,7 @@ export function drops(dt, stiffness, damping, steps) {
 export const FARTHEST = 1e9;
 export function stillMoves(dt, stiffness, damping, steps, rows) {
   const late = drops(dt, stiffness, damping, steps).subarray(-rows);
-  const far = (Math.max(...late) - Math.min(...late)) / R;
+  const far = (late.reduce((a, b) => Math.max(a, b)) - late.reduce((a, b) => Math.min(a, b))) / R;
   return Number.isFinite(far) ? Math.min(FARTHEST, far) : FARTHEST;
 }
 
