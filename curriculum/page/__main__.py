@@ -30,10 +30,10 @@ def main(argv=None):
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
     with needs("dev"):
         if args.pictures or args.measure:
-            from curriculum.page import browser
+            from curriculum.tests import page_measure
         if args.pictures:
-            print(browser.photograph(args.out, args.pictures))
-        for line in browser.measure(args.out) if args.measure else []:
+            print(page_measure.photograph(args.out, args.pictures))
+        for line in page_measure.measure(args.out) if args.measure else []:
             print(line, flush=True)
     return 0
 

@@ -5,7 +5,6 @@ import hashlib
 import json
 import os
 import re
-from pathlib import Path
 from urllib.parse import quote
 
 import jinja2
@@ -14,14 +13,13 @@ from markupsafe import Markup
 import contact
 from curriculum.measured import ledger
 from curriculum.page import chapter, fonts
-from curriculum.page.bundle import bundle, evaluate
+from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises, blank_cases
 from curriculum.page.panels import pieces
 from curriculum.regions import ROOT, read_all
 from curriculum.run import curves
 from curriculum.text.references import Numbers, load_meta
 
-HERE = Path(__file__).resolve().parent
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
 ENGINE = (  # constants of contact.py that engine.js takes
     "GRAVITY CONTACT_MARGIN SOLREF SOLIMP HARD MOST_SWEEPS LAST_BITS EXPLODED "

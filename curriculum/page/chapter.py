@@ -22,7 +22,7 @@ an answer is found by its words, in text, code and figures.
 import itertools
 import re
 from collections import Counter
-from html import escape, unescape
+from html import escape
 from urllib.parse import parse_qsl
 
 from latex2mathml.converter import convert
@@ -47,21 +47,12 @@ SETTINGS = {  # beside the quantities: what each may be
     "from": r"[\d.]+",
     "to": r"[\d.]+",
 }
-# what would tell the answer of a bet, in the words of the text, the code and the figures
+# what would tell the answer of a bet, in words (small letters) of text, code and figures
 TELLS = {
-    "ex1": re.compile(
-        r"\bsinks\b|\bdives\b|m g ?/ ?k|inside the table|gap at rest|at rest / r|rest depth",
-        re.IGNORECASE,
-    ),
-    "ex3": re.compile(
-        r"\bexplodes\b|blows up|stays? bounded|\bgains .{0,40}times (its|the) energy"
-        r"|the largest step",
-        re.IGNORECASE,
-    ),
-    "ex4": re.compile(
-        r"mass cancels|no mass in|\(1 . d\) \\?,? ?g\b|equally deep|per unit of mass",
-        re.IGNORECASE,
-    ),
+    "ex1": r"\bsinks\b|\bdives\b|m g ?/ ?k|inside the table|gap at rest|at rest / r|rest depth",
+    "ex3": r"\bexplodes\b|blows up|stays? bounded|\bgains .{0,40}times (its|the) energy"
+    r"|the largest step",
+    "ex4": r"mass cancels|no mass in|\(1 . d\) \\?,? ?g\b|equally deep|per unit of mass",
 }
 HIDES = {"ex1": "How they land", "ex3": "What happens then", "ex4": "Where it rests"}
 END = "what-you-built-and-what-comes-next"  # from here on answers are named, and none is told
@@ -73,7 +64,7 @@ END = "what-you-built-and-what-comes-next"  # from here on answers are named, an
 def formula(text, options):
     """A formula as MathML. Raises ValueError where the page's font lacks one of its characters."""
     shown = convert(text, display="block" if options["display_mode"] else "inline")
-    lacking = fonts.lacking(unescape(re.sub(r"<[^>]+>", "", shown)))
+    lacking = fonts.lacking(Markup(shown).striptags())
     if lacking:
         raise ValueError(
             f"{CHAPTER}: the formula {text!r} has {' '.join(lacking)}, which the page's font "
@@ -99,12 +90,11 @@ def link_open(self, tokens, index, options, env):
     token = tokens[index]
     scheme, _, rest = token.attrGet("href").partition(":")
     if scheme == "try":
-        check(asked(rest), env["line"], env["ranges"])
+        asked(rest, env)
         token.attrs = {"class": "try", "href": f"?{rest}"}
     elif scheme == "drag":
         held = tokens[index + 1].content
-        check([(rest, held)], env["line"], env["ranges"], others={})
-        if float(held.replace(",", "")) != env["home"].get(rest, float("nan")):
+        if asked(f"{rest}={held}", env, others={})[rest] != env["home"].get(rest):
             raise ValueError(
                 f"{CHAPTER}:{env['line']}: {held} is to be dragged, and here {rest} is "
                 f"{env['home'].get(rest)}; set it before: <!-- show: none&{rest}={held} -->"
@@ -113,21 +103,22 @@ def link_open(self, tokens, index, options, env):
     return self.renderToken(tokens, index, options, env)
 
 
-def asked(query):
-    """The (name, value) pairs of a query, also those without a value; at least one."""
-    return parse_qsl(query, keep_blank_values=True) or [(query, "")]
-
-
-def check(pairs, line, ranges, others=SETTINGS):
-    """Raise ValueError at the first (name, value) that cannot be set."""
-    for name, value in pairs:
+def asked(query, env, others=SETTINGS):
+    """What a query sets, {name: value}. Raises ValueError at the first that cannot be set."""
+    found, ranges = {}, env["ranges"]
+    for name, value in parse_qsl(query, keep_blank_values=True) or [(query, "")]:
         low, high = ranges.get(name, (1.0, 0.0))
         number = re.fullmatch(r"[\d.]+(e[+-]?\d+)?", value.replace(",", ""))
-        fits = number and low <= float(number[0]) <= high
-        if not fits and not re.fullmatch(others.get(name, r"\b\B"), value):
+        if number and low <= float(number[0]) <= high:
+            found[name] = float(number[0])
+        elif re.fullmatch(others.get(name, r"\b\B"), value):
+            found[name] = value
+        else:
             known = others.get(name, f"the names {', '.join((*others, *ranges))}")
             allowed = f"{low:g} to {high:g}" if name in ranges else known
-            raise ValueError(f"{CHAPTER}:{line}: {name}={value} sets nothing; allowed: {allowed}")
+            what = f"{name}={value} sets nothing; allowed: {allowed}"
+            raise ValueError(f"{CHAPTER}:{env['line']}: {what}")
+    return found
 
 
 def slug(title):
@@ -158,12 +149,12 @@ def inline(text):
 # ---- the parts of the chapter
 
 
-def blocks(text, ranges, starts=None):
+def blocks(text, ranges, starts):
     """The chapter as a list of (kind, values): what the macros of that name are given, and
     ("figure", (name, which of this name, what its passage sets)). `ranges` are those of what the
     text may set, {name: (low, high)}; `starts` all values of a section, by the scene it shows."""
-    md, out, starts = parser(), [], starts or {"drop": {}}
-    changes, place, marks, seen = {}, "", 0, Counter()
+    md, out, seen = parser(), [], Counter()
+    changes, place, marks = {}, "", 0
     for node in SyntaxTreeNode(md.parse(text)).children:
         home = starts[changes.get("scene", "drop")] | changes
         env = {"line": node.map[0] + 1, "ranges": ranges, "home": home}
@@ -172,8 +163,7 @@ def blocks(text, ranges, starts=None):
         if include:
             out.append(("region", (include["name"],)))
         elif node.type == "fence":
-            code = escape(node.content)
-            code = f'<pre class="shell" tabindex="0"><code>{code}</code></pre>'
+            code = f'<pre class="shell" tabindex="0"><code>{escape(node.content)}</code></pre>'
             out.append(("html", (Markup(code),)))
         elif node.type == "heading":
             changes, place, marks = {}, node.attrs["id"], 1
@@ -184,10 +174,14 @@ def blocks(text, ranges, starts=None):
             around = '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
             out.append(("html", (Markup(f"{around}{held}</div>"),)))
         elif node.type == "html_block":
-            for kind, name in slots(node.content, env["line"], ranges):
+            if shown.strip():
+                what = f"raw HTML, {node.content.strip()[:50]!r}; allowed: Markdown, and slots"
+                raise ValueError(f"{CHAPTER}:{env['line']}: {what}")
+            for kind, name in SLOT.findall(node.content):
                 values = (name,) if name else ()
                 if kind == "show":
-                    changes, marks = changes_of(name), marks + 1
+                    changes = {} if name == "none" else asked(name.removeprefix("none&"), env)
+                    marks += 1
                     values = f"{place}.{marks}", name
                 if kind == "figure":
                     seen[name] += 1
@@ -196,24 +190,6 @@ def blocks(text, ranges, starts=None):
         else:
             out.append(("html", (Markup(shown),)))
     return out
-
-
-def changes_of(show):
-    """What a mark of what the text shows sets, {name: value}."""
-    pairs = parse_qsl(show)
-    return {name: float(v) if re.fullmatch(r"[\d.e+-]+", v) else v for name, v in pairs}
-
-
-def slots(text, line, ranges):
-    """The slots in a block of comments, (kind, name). Raises ValueError at other HTML."""
-    if COMMENT.sub("", text).strip():
-        raise ValueError(
-            f"{CHAPTER}:{line}: raw HTML, {text.strip()[:50]!r}; allowed: Markdown, and slots"
-        )
-    for kind, name in SLOT.findall(text):
-        if kind == "show":
-            check([pair for pair in asked(name) if pair[0] != "none"], line, ranges)
-        yield kind, name
 
 
 # ---- the whole
@@ -237,8 +213,8 @@ def assemble(parts, macros, bets):
         last = values[0] if kind == "exercise" else None
         met += [last] if last in bets else []
         met = [] if END in values else met
-        said = words(" ".join(inner))
-        veils = [name for name in met if said and (name == last or TELLS[name].search(said))]
+        said = words(" ".join(inner)).lower()
+        veils = [name for name in met if said and (name == last or re.search(TELLS[name], said))]
         head, inner = (
             f'<div class="part {column}">{each}</div>'
             for column, each in zip(columns, (head, "\n".join(inner)))
@@ -282,4 +258,4 @@ def veiled(segments, bets, macros):
 def words(html):
     """What HTML says, in words: text, and the names of pictures."""
     named = re.sub(r'<[^>]*\b(?:alt|aria-label)="([^"]*)"[^>]*>', r" \1 ", html)
-    return " ".join(re.sub(r"<[^>]+>", "", named).split())
+    return Markup(named).striptags()

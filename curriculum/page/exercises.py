@@ -11,6 +11,7 @@ from exercises.kit import FACTS, blanks, predict
 FOLDER = ROOT / "exercises"
 TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")
 COMMAND = re.compile(r"^    ((?:python|pytest)\b.*?)(?:\s{2,}#.*)?$", re.MULTILINE)
+measured = functools.cache(predict.measure)  # the numbers of a bet
 BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2, filled in the page
 
 
@@ -28,19 +29,13 @@ def blank_cases():
     return found
 
 
-@functools.cache
-def measured(name):
-    """The numbers of a bet, by the name of its file."""
-    return predict.measure(name.split("_")[0])
-
-
 def task_of(text):
     """A docstring without its commands, as HTML: indented lines stay as they are."""
     prose = [block for block in re.split(r"\n\s*\n", text.strip()) if not COMMAND.match(block)]
     return markdown("\n\n".join(re.sub(r"(?m)(^[^ ].*\n)(?=    )", r"\1\n", b) for b in prose))
 
 
-def exercise(path, facts):
+def exercise(path):
     """An exercise as the template wants it. Raises ValueError where its docstring has no title."""
     words = ast.get_docstring(ast.parse(path.read_text("utf-8")), clean=False)
     title, _, text = words.partition("\n")
@@ -49,8 +44,9 @@ def exercise(path, facts):
         raise ValueError(f"{path.name}: it must begin 'Exercise N, KIND (M minutes): TITLE'")
     number, minutes, told = parts.groups()
     name, task, bet = f"ex{number}", text, {"choices": {}}
+    facts = FACTS[name]
     if name in predict.BETS:
-        numbers, bet = measured(path.stem), predict.asked(words)._asdict()
+        numbers, bet = measured(name), predict.asked(words)._asdict()
         task = bet["task"]
         bet["answer"] = predict.answer(name, numbers)
         bet["reasons"] = {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()}
@@ -67,5 +63,5 @@ def exercise(path, facts):
 
 def all_exercises():
     """{name: exercise} in order."""
-    paths = {path.stem.split("_")[0]: path for path in sorted(FOLDER.glob("ex*_*.py"))}
-    return {name: exercise(path, FACTS[name]) for name, path in paths.items()}
+    found = map(exercise, sorted(FOLDER.glob("ex*_*.py")))
+    return {each["id"]: each for each in found}

@@ -15,9 +15,6 @@ kern and liga; no hinting and no tables of Graphite; as woff2 (with the package 
 Chapter Text, since its license (the same, text.LICENSE) reserves the original's names, too.
 """
 
-from pathlib import Path
-
-HERE = Path(__file__).parent
 FACES = (  # name, file, kind, style, weight
     ("Chapter Maths", "maths.woff", "woff", "normal", 400),
     ("Chapter Text", "text-regular.woff2", "woff2", "normal", 400),

@@ -1,4 +1,4 @@
-"""Real browsers for the page's tests: Debian's Chromium and Firefox."""
+"""Real browsers for the page: Debian's Chromium and Firefox."""
 
 import contextlib
 import json
@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from curriculum.page import browser as real
-
+SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
+  localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
 QUIET = {  # of Firefox: no request of its own
     "remote.active-protocols": 1,
     "datareporting.policy.dataSubmissionEnabled": False,
@@ -26,6 +26,14 @@ QUIET = {  # of Firefox: no request of its own
 WAIT = 60  # s: longer than a busy machine needs for any command
 
 
+def program(*names):
+    """The path of the first program of these names that is installed, or None."""
+    return next(filter(None, map(shutil.which, names)), None)
+
+
+CHROMIUM = program("chromium", "chromium-browser", "google-chrome")
+
+
 def lack(what, package):
     """What a missing browser is: a fault where everything shall be tested, else a test less."""
     (pytest.fail if os.environ.get("CI") else pytest.skip)(
@@ -33,12 +41,23 @@ def lack(what, package):
     )
 
 
+@contextlib.contextmanager
+def running():
+    """A Chromium, driven by Playwright, closed at the end."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--disable-gpu"])
+        yield browser
+        browser.close()
+
+
 @pytest.fixture(scope="session")
 def browser():
     """A Chromium."""
-    if not real.CHROMIUM:
+    if not CHROMIUM:
         lack("Chromium", "chromium")
-    with real.running() as found:
+    with running() as found:
         yield found
 
 
@@ -57,7 +76,7 @@ def visiting(
         **options,
     )
     if shown:
-        once = f"if (!sessionStorage.seen) {{ sessionStorage.seen = 1; {real.SHOWN} }}"
+        once = f"if (!sessionStorage.seen) {{ sessionStorage.seen = 1; {SHOWN} }}"
         context.add_init_script(once)
     page = context.new_page()
     page.set_default_timeout(20_000)
@@ -76,6 +95,14 @@ def visiting(
     yield page
     context.close()
     assert not trouble, trouble
+
+
+@contextlib.contextmanager
+def opened(file, query="", **options):
+    """An HTML file in a Chromium of its own, for those who are no tests."""
+    with running() as chromium:
+        with visiting(chromium, file.resolve().as_uri() + query, **options) as page:
+            yield page
 
 
 SHOWS = "checkVisibility({ opacityProperty: true, visibilityProperty: true })"
@@ -263,13 +290,13 @@ def gecko():
     """A tab of a Firefox with a fresh profile."""
     from websockets.sync.client import connect
 
-    program = next((path for path in map(shutil.which, ("firefox-esr", "firefox")) if path), None)
-    if not program:
+    firefox = program("firefox-esr", "firefox")
+    if not firefox:
         lack("Firefox", "firefox-esr")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         lines = [f"user_pref({json.dumps(k)}, {json.dumps(v)});" for k, v in QUIET.items()]
         Path(profile, "user.js").write_text("\n".join(lines), encoding="utf-8")
-        command = [program, "--headless", "--no-remote", "--profile", profile]
+        command = [firefox, "--headless", "--no-remote", "--profile", profile]
         command += ["--remote-debugging-port", "0"]
         pipes = {"stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL, "text": True}
         process = subprocess.Popen(command, **pipes)

@@ -6,17 +6,16 @@ from pathlib import Path
 import pytest
 
 import contact
-from curriculum.page.browser import SHOWN
 from curriculum.page.build import build
 from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
 from curriculum.tests import page_browser
-from curriculum.tests.page_browser import call, middle, mouse, visiting
+from curriculum.tests.page_browser import SHOWN, call, middle, mouse, visiting
 
-BETS = {  # their files, and a number of each that tells its answer, as the page writes it
-    "ex1": ("ex1_predict_contact", "penalty_deepest", ".3f"),
-    "ex3": ("ex3_dt_stability", "limit", ".4f"),
-    "ex4": ("ex4_predict_soft", "penalty_heavy", ".5f"),
+BETS = {  # a number of each that tells its answer, as the page writes it
+    "ex1": ("penalty_deepest", ".3f"),
+    "ex3": ("limit", ".4f"),
+    "ex4": ("penalty_heavy", ".5f"),
 }
 MOST = 900_000  # bytes of the page
 HALF = "Invalid markup: Incorrect number of children"
@@ -107,7 +106,7 @@ def test_page_is_below_900_kb_and_the_same_bytes_twice(url):
 )
 def test_what_the_page_cannot_show_is_refused_in_one_line(text, named):
     with pytest.raises(ValueError, match=named):
-        blocks(text, {"dt": (0.0005, 0.064)})
+        blocks(text, {"dt": (0.0005, 0.064)}, {"drop": {}})
 
 
 def test_a_chapter_with_a_figure_that_does_not_exist_is_refused():
@@ -264,8 +263,8 @@ def test_a_line_of_code_is_lit_while_it_runs(tab):
 
 def answers(name):
     """The number that tells the answer of a bet."""
-    file, key, form = BETS[name]
-    return format(measured(file)[key], form)
+    key, form = BETS[name]
+    return format(measured(name)[key], form)
 
 
 def test_no_answer_of_a_bet_is_seen_before_one_click_and_then_it_stays_open(visit):

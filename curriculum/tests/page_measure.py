@@ -1,13 +1,9 @@
-"""A real browser for picture, measuring and tests: Debian's Chromium, driven by Playwright."""
+"""What `python -m curriculum.page` does in a browser: the README's picture, and measuring."""
 
-import contextlib
-import shutil
 import statistics
 
-NAMES = ("chromium", "chromium-browser", "google-chrome")
-CHROMIUM = next(filter(None, map(shutil.which, NAMES)), None)
-SHOWN = """for (const id of ["ex1", "ex3", "ex4"])
-  localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
+from curriculum.tests.page_browser import opened
+
 PICTURE = "page-live.png"  # of the README
 # the live figure stands also where the text has no use for it, and no other one in its place
 STANDING = """.centred { visibility: hidden }
@@ -29,36 +25,9 @@ BOXES = """(nodes) => nodes.map((node) => {
 })"""
 
 
-@contextlib.contextmanager
-def running():
-    """A Chromium, closed at the end."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--disable-gpu"])
-        yield browser
-        browser.close()
-
-
-@contextlib.contextmanager
-def opened(page, query="", **options):
-    """A tab with the HTML file `page`, 1280 x 900, as for a reader who has made the bets."""
-    with running() as browser:
-        tab = browser.new_page(viewport={"width": 1280, "height": 900}, **options)
-        tab.add_init_script(SHOWN + OBSERVED)
-        show(tab, page, query)
-        yield tab
-
-
-def show(tab, page, query=""):
-    """Go to the page and wait until it is ready."""
-    tab.goto(page.resolve().as_uri() + query)
-    tab.wait_for_selector("[data-ready]", state="attached")
-
-
 def photograph(page, folder):
     """Save PICTURE in a folder, the four balls just after the landing; its path."""
-    with opened(page, query="?scene=drop", reduced_motion="reduce", device_scale_factor=2) as tab:
+    with opened(page, "?scene=drop", device_scale_factor=2) as tab:
         tab.add_style_tag(content=STANDING)
         tab.locator("#figure").scroll_into_view_if_needed()
         tab.locator("#fig-lanes .handle[data-handle=time]").focus()
@@ -74,7 +43,8 @@ def photograph(page, folder):
 
 def measure(page):
     """How quickly the page answers in Chromium, with the largest scene: lines to print."""
-    with opened(page, query="?scene=stack") as tab:
+    with opened(page, "?scene=stack", motion="no-preference") as tab:
+        tab.evaluate(OBSERVED)
         tab.wait_for_timeout(500)
         seen = tab.evaluate("seen")
         paint = seen["paint"][-1]["startTime"]
