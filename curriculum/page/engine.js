@@ -82,19 +82,22 @@ function penaltyStep(state, { mass, radius, motor = [] }, knobs) {
 // Contacts ready for the sweeps: what an impulse of 1 does to the two balls, and the effective mass.
 // One may have a target velocity and a softness, which lcp has not.
 export function makeRows(contacts, mass) {
-  return contacts.map(({ target = 0, softness = 0, ...c }) => {
-    const wi = 1 / mass[c.i];
-    const wj = c.j < 0 ? 0 : 1 / mass[c.j];
+  return contacts.map(({ i, j, nx, ny, target = 0, softness = 0 }) => {
+    const wi = 1 / mass[i];
+    const wj = j < 0 ? 0 : 1 / mass[j];
     const whole = wi + wj + softness;
     return {
-      ...c,
+      i,
+      j,
+      nx,
+      ny,
       target,
       softness,
       effectiveMass: whole > 0 ? 1 / whole : 0,
-      ix: wi * c.nx,
-      iy: wi * c.ny,
-      jx: wj * c.nx,
-      jy: wj * c.ny,
+      ix: wi * nx,
+      iy: wi * ny,
+      jx: wj * nx,
+      jy: wj * ny,
       lam: 0,
     };
   });
@@ -262,22 +265,19 @@ const alike = ({ pushed: a = [] }, { pushed: b = [] }) =>
   a.every((c, k) => c.i === b[k].i && c.j === b[k].j && c.lam === b[k].lam);
 const same = (a, b) =>
   PARTS.every((key) => a[key].every((v, i) => v === b[key][i])) && alike(a, b);
-const LONGEST = 4; // periods of rest that are noticed: penalty and lcp have 1 and 2, soft up to 4
+const SAVED = 64; // rows from one state that is kept to the next: the longest rest that is noticed
 
 export function runModel(model, scene, knobs, steps) {
   if (model === "exact") return runExact(scene, knobs, steps);
   const run = blank(scene.y.length, knobs.dt, steps);
-  let state = scene;
-  const before = []; // the last states, the newest first
+  let [state, saved] = [scene, scene];
   write(run, 0, state);
   for (let row = 1; row <= steps; row++) {
-    before.unshift(state);
-    before.length = Math.min(before.length, LONGEST);
     state = STEP[model](state, scene, knobs);
     write(run, row, state);
     // a step depends on the state and its impulses alone: where they come back, all is known
-    const period = 1 + before.findIndex((old) => same(old, state));
-    if (period > 0) return repeat(run, row, period);
+    if (same(saved, state)) return repeat(run, row, ((row - 1) % SAVED) + 1);
+    if (row % SAVED === 0) saved = state;
   }
   return run;
 }
