@@ -36,8 +36,8 @@ function lane(view, model, { run, times }, k) {
   const [floor, big] = [(k + 1) * high - 14, LIGHT + 16 * n];
   const row = Math.min(run.steps, Math.round((time ?? 0) / run.dt));
   const gap = (i) => unit * (run.x[3 * row + i] - run.x[3 * row + i - 1] - 2 * R);
-  const near = wall + gap(1);
-  const far = near + LIGHT + gap(2);
+  const far = Math.min(wall + gap(1) + LIGHT + gap(2), view.width - 14); // none is lost
+  const near = Math.min(wall + gap(1), far - LIGHT);
   const block = (at, size, mass) =>
     rect(at, floor - size, size, size, `ball m-${model}`) +
     label(mass, at + size / 2, floor - size / 2 + 5, "middle", "on-ball");
