@@ -10,7 +10,8 @@ const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s, s: what is judged c
 const [GROUND, TOP, TIMES] = [24, 190, 60]; // px of table, px of the picture; of the lens
 const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be set
 const NAMES = ["the left finger", "the cup", "the right finger"];
-const start = () => ({ step: 0.004, k: 1e4, x0: AT[0], x1: AT[1], x2: AT[2], time: null, tries: [] });
+const PLACES = { x0: AT[0], x1: AT[1], x2: AT[2] };
+const start = () => ({ step: 0.004, k: 1e4, ...PLACES, time: null, tries: [] });
 
 const tellsOf = ({ step, k }) => `dt = ${number(1000 * step, 2)} ms, k = ${number(k, 2)} N/m`;
 
@@ -43,7 +44,7 @@ function picture({ own, width }, { run, depths }) {
   const row = Math.min(run.steps, Math.round(time / run.dt));
   const seen = (all) => Array.from(all.subarray(0, 3 * row + 3), (each) => (each < 1e9 ? each : 0));
   const [xs, ys] = [seen(run.x), seen(run.y)]; // until now
-  const [far, high] = [xs, ys].map((all) => all.reduce((most, v) => Math.max(most, Math.abs(v)), 0.3));
+  const [far, high] = [xs, ys].map((all) => Math.max(0.3, ...all.map(Math.abs)));
   const floor = TOP - 14 - GROUND;
   const scale = Math.min(360, (width / 2 - 8) / (far + R), (floor - 8) / (high + R)); // px for 1 m
   const r = Math.max(3, R * scale);
