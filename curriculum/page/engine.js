@@ -82,22 +82,19 @@ function penaltyStep(state, { mass, radius, motor = [] }, knobs) {
 // Contacts ready for the sweeps: what an impulse of 1 does to the two balls, and the effective mass.
 // One may have a target velocity and a softness, which lcp has not.
 export function makeRows(contacts, mass) {
-  return contacts.map(({ i, j, nx, ny, target = 0, softness = 0 }) => {
-    const wi = 1 / mass[i];
-    const wj = j < 0 ? 0 : 1 / mass[j];
+  return contacts.map(({ target = 0, softness = 0, ...c }) => {
+    const wi = 1 / mass[c.i];
+    const wj = c.j < 0 ? 0 : 1 / mass[c.j];
     const whole = wi + wj + softness;
     return {
-      i,
-      j,
-      nx,
-      ny,
+      ...c,
       target,
       softness,
       effectiveMass: whole > 0 ? 1 / whole : 0,
-      ix: wi * nx,
-      iy: wi * ny,
-      jx: wj * nx,
-      jy: wj * ny,
+      ix: wi * c.nx,
+      iy: wi * c.ny,
+      jx: wj * c.nx,
+      jy: wj * c.ny,
       lam: 0,
     };
   });

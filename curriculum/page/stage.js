@@ -294,9 +294,10 @@ export class Stage {
   // Of its own numbers those that are not as at the start, as an address has them.
   #ownParts() {
     const start = this.figure.start ? this.figure.start() : {};
-    const moved = this.#handles.filter(({ name, put }) => put && name in start &&
+    const names = new Set(this.#handles.flatMap(({ puts = {} }) => Object.keys(puts)));
+    const moved = [...names].filter((name) => name in start &&
       start[name] !== this.own[name] && Number.isFinite(this.own[name]));
-    return moved.map(({ name }) => `${name}=${plain(this.own[name])}`);
+    return moved.map((name) => `${name}=${plain(this.own[name])}`);
   }
 
   // Set its own numbers as its address asks; each is kept to where it could be dragged.
@@ -305,7 +306,8 @@ export class Stage {
     this.#resize();
     for (const [name, text] of new URLSearchParams(query)) {
       const number = text.trim() === "" ? NaN : Number(text);
-      if (Number.isFinite(number) && name in this.own) this.#handle(name)?.put?.(number);
+      const handle = name in this.own && this.#handles.find(({ puts }) => puts?.[name]);
+      if (handle && Number.isFinite(number)) handle.puts[name](number);
     }
     this.redraw();
   }

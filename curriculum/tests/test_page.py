@@ -184,6 +184,11 @@ def test_an_address_opens_a_section_and_a_figure_as_they_stand_and_scrolling_nev
         page.wait_for_selector("#fig-blocks .words:text('31 impacts, lcp at dt = 10 ms')")
         link = page.locator("#fig-blocks .own-link").get_attribute("href")
         assert link == "?dt=0.01&n=1#fig-blocks"
+    asked = "?step=0.0036&k=22000&x0=-0.23#fig-gripper"
+    with visit(asked) as page:
+        page.wait_for_selector("#fig-gripper .words:text('dt = 3.6 ms, k = 22,000 N/m')")
+        link = page.locator("#fig-gripper .own-link").get_attribute("href")
+        assert sorted(link[1:-12].split("&")) == sorted(asked[1:-12].split("&"))
 
 
 def test_a_link_of_the_text_sets_its_section_and_the_live_figure_follows_the_text(visit):

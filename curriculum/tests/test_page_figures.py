@@ -232,6 +232,18 @@ def test_crowd_and_blocks_show_the_chapters_numbers(tab):
         assert f"exact counts {impacts} impacts" in said(blocks)
         counted = int(re.search(r"lcp at dt = 2 ms counts (\d+)", said(blocks))[1])
         assert n < 3 or counted < impacts  # they come faster than its steps
+    blocks.locator("button:text('Play')").click()
+    kept_in_sight(tab, blocks)
+
+
+def kept_in_sight(tab, box):
+    """Whatever can be grabbed has its middle within the drawing."""
+    settle(tab)
+    frame = box.locator(".drawing").bounding_box()
+    for grip in box.locator(".handle").all():
+        place = grip.bounding_box()
+        middle = place["x"] + place["width"] / 2
+        assert frame["x"] <= middle <= frame["x"] + frame["width"], grip
 
 
 def test_slide_leaves_at_two_thirds_and_bounces_end_when_they_should(tab):
@@ -283,6 +295,11 @@ def test_gripper_trembles_as_exercise_8_has_it_holds_at_half_the_step_and_is_gon
         told = [4, 1e4, seen["deepest"], seen["trembling"]]
         assert numbers(box)[: len(told)] == pytest.approx(told, rel=0.03)
     width = box.locator(".drawing").bounding_box()["width"]
+    drag(tab, handle(box, "x0"), (-width, 0))
+    kept_in_sight(tab, box)
+    handle(box, "x0").focus()
+    for _ in range(14):  # back by a few millimetres a key, to where it began
+        tab.keyboard.press("ArrowRight")
     drag(tab, handle(box, "choice"), (-0.25 * width, 0))  # half the step
     assert "holds still" in said(box) and numbers(box)[0] == pytest.approx(2, abs=0.3)
     drag(tab, handle(box, "choice"), (0.33 * width, 0))

@@ -1,5 +1,5 @@
 /* Colliding blocks count the digits of pi (Galperin 2003): a wall, a block of mass 1, of 100^n. */
-import { clipped, label, line, plain, plural, rect, table, whole } from "../draw.js";
+import { clipped, label, line, plain, plural, rect, table, whole, within } from "../draw.js";
 import { runExact, runModel } from "../engine.js";
 import { grip, kept, knobs, R, scene } from "../parts.js";
 
@@ -36,8 +36,8 @@ function lane(view, model, { run, times }, k) {
   const [floor, big] = [(k + 1) * high - 14, LIGHT + 16 * n];
   const row = Math.min(run.steps, Math.round((time ?? 0) / run.dt));
   const gap = (i) => unit * (run.x[3 * row + i] - run.x[3 * row + i - 1] - 2 * R);
-  const near = wall + gap(1);
-  const far = near + LIGHT + gap(2);
+  const far = within(LIGHT, wall + gap(1) + LIGHT + gap(2), view.width - 14); // none is lost, and
+  const near = within(0, wall + gap(1), far - LIGHT); // what went through the wall is seen in it
   const block = (at, size, mass) =>
     rect(at, floor - size, size, size, `ball m-${model}`) +
     label(mass, at + size / 2, floor - size / 2 + 5, "middle", "on-ball");

@@ -10,9 +10,10 @@ const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s, s: what is judged c
 const [GROUND, TOP, TIMES] = [24, 190, 60]; // px of table, px of the picture; of the lens
 const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be set
 const NAMES = ["the left finger", "the cup", "the right finger"];
-const start = () => ({ dt: 0.004, k: 1e4, x0: AT[0], x1: AT[1], x2: AT[2], time: null, tries: [] });
+const PLACES = { x0: AT[0], x1: AT[1], x2: AT[2] };
+const start = () => ({ step: 0.004, k: 1e4, ...PLACES, time: null, tries: [] });
 
-const tellsOf = ({ dt, k }) => `dt = ${number(1000 * dt, 2)} ms, k = ${number(k, 2)} N/m`;
+const tellsOf = ({ step, k }) => `dt = ${number(1000 * step, 2)} ms, k = ${number(k, 2)} N/m`;
 
 // The run, its deepest overlap row by row [r], and what happens in the last quarter.
 const squeezed = kept((dt, stiffness, ...x) => {
@@ -43,7 +44,7 @@ function picture({ own, width }, { run, depths }) {
   const row = Math.min(run.steps, Math.round(time / run.dt));
   const seen = (all) => Array.from(all.subarray(0, 3 * row + 3), (each) => (each < 1e9 ? each : 0));
   const [xs, ys] = [seen(run.x), seen(run.y)]; // until now
-  const [far, high] = [xs, ys].map((all) => all.reduce((most, v) => Math.max(most, v), 0.3));
+  const [far, high] = [xs, ys].map((all) => Math.max(0.3, ...all.map(Math.abs)));
   const floor = TOP - 14 - GROUND;
   const scale = Math.min(360, (width / 2 - 8) / (far + R), (floor - 8) / (high + R)); // px for 1 m
   const r = Math.max(3, R * scale);
@@ -79,23 +80,23 @@ function choices(view, does) {
     y: { ...tens(4, 6), domain: K, label: "stiffness k (N/m)" },
     lines: [{ model: "fixed", xs: limits, ys: ks, kind: "plainly" }],
   });
-  const now = own.tries.find(({ dt, k }) => dt === own.dt && k === own.k);
-  if (!view.dragging && !now) own.tries.push({ dt: own.dt, k: own.k, does });
+  const now = own.tries.find(({ step, k }) => step === own.step && k === own.k);
+  if (!view.dragging && !now) own.tries.push({ step: own.step, k: own.k, does });
   const [limit, edge] = [ks.findIndex((k) => k > 2e5), { "holds still": "dot", trembles: "look" }];
-  const tried = own.tries.map(({ dt, k, does }) =>
-    edge[does] ? circle(sx(dt), sy(k), 6, `${edge[does]} m-penalty`)
-      : label("×", sx(dt), sy(k) + 6, "middle"));
+  const tried = own.tries.map(({ step, k, does }) =>
+    edge[does] ? circle(sx(step), sy(k), 6, `${edge[does]} m-penalty`)
+      : label("×", sx(step), sy(k) + 6, "middle"));
   const beyond = label("critical step", sx(limits[limit]) + 8, sy(ks[limit]));
   const told = ["time step and stiffness", tellsOf(own)];
   const to = { at: (x, y) => [sx.back(x), sy.back(y)], px: 8, digits: 2 };
-  const knob = pair(view, "choice", [sx(own.dt), sy(own.k)], ...told, { dt: DT, k: K }, to);
+  const knob = pair(view, "choice", [sx(own.step), sy(own.k)], ...told, { step: DT, k: K }, to);
   return { svg: svg + beyond + tried.join(""), knob };
 }
 
 // `small`: without what can be chosen, and it plays by itself where things may move.
 function drawn(view, small) {
   const { own } = view;
-  const found = squeezed(own.dt, own.k, own.x0, own.x1, own.x2);
+  const found = squeezed(own.step, own.k, own.x0, own.x1, own.x2);
   const { does, deepest, trembling } = found;
   const { svg, at, r, scale } = picture(view, found);
   const { svg: map, knob } = small ? { svg: "" } : choices(view, does);

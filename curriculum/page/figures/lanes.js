@@ -238,7 +238,10 @@ const lanes = {
     return { from, end: to, rate: (to - from) / SECONDS, name: `Play, ${slower} × slower` };
   },
   buttons: [
-    ["More", (view) => view.box.classList.toggle("all")],
+    [
+      ({ box }) => (box.classList.contains("all") ? "Less" : "More"),
+      ({ box }) => box.classList.toggle("all"),
+    ],
     [(view) => `A ${nextScene(view)} instead`, (view) => view.set({ scene: nextScene(view) })],
     [({ own }) => `Show ${NEXT[own.chart]}`, ({ own }) => (own.chart = NEXT[own.chart])],
   ],

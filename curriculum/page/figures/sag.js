@@ -4,7 +4,7 @@ import { axis, ball, label, number, path, plural, rect, table } from "../draw.js
 import { runModel, stateAt } from "../engine.js";
 import { beside, depthsOf, G, grip, kept, knobs, R, scene, tens, through } from "../parts.js";
 
-const [FEWEST, MOST, HEAVIEST] = [2, 8, 100]; // balls, balls, kg
+const [FEWEST, FIRST, MOST, HEAVIEST] = [2, 8, 10, 100]; // balls, balls, balls, kg
 const [LENS, GROUND, LARGEST] = [15, 30, 30]; // px: a lens, the table, a ball
 const ROWS = 500; // steps until all is at rest: the run starts where the law has it
 
@@ -126,7 +126,7 @@ export const figure = {
     "says: drag a ball up to make it heavier, and spend the sweeps of a step on substeps.",
   height: 360,
   knobs: ["iters", "baumgarte", "dt", "warm"],
-  start: () => ({ masses: Array(MOST).fill(1), count: MOST, parts: 1 }),
+  start: () => ({ masses: Array(MOST).fill(1), count: FIRST, parts: 1 }),
   buttons: [
     ["A ball more", ({ own }) => (own.count = Math.min(MOST, own.count + 1))],
     ["A ball less", ({ own }) => (own.count = Math.max(FEWEST, own.count - 1))],
