@@ -298,7 +298,7 @@ def test_gripper_trembles_as_exercise_8_has_it_holds_at_half_the_step_and_is_gon
     drag(tab, handle(box, "x0"), (-width, 0))
     kept_in_sight(tab, box)
     handle(box, "x0").focus()
-    for _ in range(14):  # back by a few millimetres a key, to where it began
+    for _ in range(15):  # back from the end of its way, two millimetres a key
         tab.keyboard.press("ArrowRight")
     drag(tab, handle(box, "choice"), (-0.25 * width, 0))  # half the step
     assert "holds still" in said(box) and numbers(box)[0] == pytest.approx(2, abs=0.3)
