@@ -2,12 +2,13 @@
 # requires-python = ">=3.10"
 # dependencies = ["numpy>=2.0"]
 # ///
-"""Contact between bodies, built four times and measured honestly (robotics course, chapter 3.5).
+"""Contact between bodies, built five times and measured honestly (robotics course, chapter 3.5).
 
-A table keeps a ball from falling through it: it pushes up, and it never pulls down. Four models:
+A table keeps a ball from falling through it: it pushes up, and it never pulls down. Five models:
     penalty   a stiff spring and a damper: one more force, and no other change
     lcp       impulses, found by sweeps: each contact pushes, or its bodies part (a linear
               complementarity problem, solved by projected Gauss-Seidel)
+    leapfrog  the same sweeps twice a step: for the way, then for the speed
     exact     from one impact to the next, each at its own time: no time step
     soft      the contact of MuJoCo, a simulator of robots: lcp's sweeps, but each contact gives way
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
@@ -134,7 +135,9 @@ def make_balls(scene: Scene) -> list[Ball]:
 class Contact:
     """Balls a and b, how deep they overlap [m], and the unit normal (nx, ny) from b to a."""
 
-    __slots__ = "a b nx ny depth inv_mass m_eff target softness lam".split()
+    __slots__ = (
+        "a b nx ny depth inv_mass m_eff target softness lam before start impact after".split()
+    )
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
@@ -181,6 +184,22 @@ def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
     return contacts
 
 
+# --- region: integrator ---
+def accelerate(balls, dt: float) -> None:
+    """The first half of semi-implicit Euler: gravity and forces change the velocities."""
+    for ball in balls:
+        if ball.inv_mass > 0.0:
+            ball.vx += dt * (ball.fx / ball.mass)
+            ball.vy += dt * (GRAVITY + ball.fy / ball.mass)
+
+
+def move(balls, dt: float) -> None:
+    """The second half: the new velocities, not the old ones, move the balls."""
+    for ball in balls:
+        ball.x += dt * ball.vx
+        ball.y += dt * ball.vy
+
+
 # --- region: penalty ---
 def penalty_normal_force(depth, v_n, stiffness, damping):
     """f_n [N] of a spring and a damper at `depth` > 0 [m]: max(0, ...), since it never pulls."""
@@ -206,30 +225,14 @@ def penalty_step(balls, dt: float, stiffness: float, damping: float) -> None:
     move(balls, dt)
 
 
-# --- region: integrator ---
-def accelerate(balls, dt: float) -> None:
-    """The first half of semi-implicit Euler: gravity and forces change the velocities."""
-    for ball in balls:
-        if ball.inv_mass > 0.0:
-            ball.vx += dt * (ball.fx / ball.mass)
-            ball.vy += dt * (GRAVITY + ball.fy / ball.mass)
-
-
-def move(balls, dt: float) -> None:
-    """The second half: the new velocities, not the old ones, move the balls."""
-    for ball in balls:
-        ball.x += dt * ball.vx
-        ball.y += dt * ball.vy
-
-
 # --- region: lcp-target ---
-def contact_target(c, restitution, baumgarte, dt, ahead=False):
+def contact_target(c, restitution, baumgarte, dt):
     """The least normal velocity [m/s] that contact c may have after the step.
 
     The step ends with gap + dt v_n, which must not be negative. So v_n has to be at least
     -gap / dt = depth / dt: a gap may close, and an overlap must open. To open it in one step would
     throw the balls apart, so only the share beta of it opens (Baumgarte 1972): that v_n is the
-    bias. The same formula lets only that share of a gap close; with `ahead` all of it may.
+    bias. The same formula lets only that share of a gap close.
 
     With e > 0 balls that touch or would meet within this step bounce, at -e v_n; an overlap with a
     bias takes the larger of the two. Others may close their gap, but no target is above -e v_n.
@@ -238,7 +241,7 @@ def contact_target(c, restitution, baumgarte, dt, ahead=False):
     closing = c.depth / dt  # this v_n ends the step with a gap of 0
     bias = baumgarte / dt * c.depth  # < 0 across a gap
     if restitution == 0.0:
-        return closing if ahead and c.depth < 0.0 else bias
+        return bias
     v_n = c.v_n()
     bounce = -restitution * v_n
     if bias > 0.0:
@@ -248,15 +251,16 @@ def contact_target(c, restitution, baumgarte, dt, ahead=False):
 
 
 # --- region: sweep ---
-def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
+def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> int:
     """Find impulses with lam >= 0, w >= 0 and lam w = 0, where w = v_n + R lam - target.
 
     Projected Gauss-Seidel: each sweep mends one contact after the other, by the impulse that
-    brings it to its target, and disturbs its neighbours; the next sweep mends those. Returns True
-    after a sweep in which no correction changed a velocity by more than `tolerance` [m/s]. The
-    problem is Moreau's (1988), Stewart and Trinkle's (1996), and Anitescu and Potra's (1997).
+    brings it to its target, and disturbs its neighbours; the next sweep mends those. Returns the
+    number of the sweep in which no correction changed a velocity by more than `tolerance` [m/s],
+    0 if each did. The problem is Moreau's (1988), Stewart and Trinkle's (1996), and Anitescu and
+    Potra's (1997).
     """
-    for _ in range(iters):
+    for sweep in range(1, iters + 1):
         settled = True
         for c in contacts:
             missing = c.target - c.v_n() - c.softness * c.lam  # -w, the velocity that is missing
@@ -266,17 +270,16 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> bool:
             c.lam = lam
             settled = settled and abs(change) <= tolerance * c.m_eff  # NaN never settles
         if settled:  # with a tolerance of 0 no further sweep would change a bit
-            return True
-    return False
+            return sweep
+    return 0
 
 
 # --- region: lcp ---
-def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0, ahead=False) -> None:
+def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0) -> None:
     """One step [s]: gravity predicts the velocities, impulses correct them, the balls move."""
-    far = ahead and restitution == 0.0
-    contacts = detect_contacts(balls, step_reach(balls, dt)) if far else detect_contacts(balls)
+    contacts = detect_contacts(balls)
     for c in contacts:  # before gravity: else e would also return the g dt just added
-        c.target = contact_target(c, restitution, baumgarte, dt, ahead)
+        c.target = contact_target(c, restitution, baumgarte, dt)
     accelerate(balls, dt)
     if warm > 0.0:
         warm_start(contacts, warm)
@@ -307,6 +310,105 @@ def remember(balls, contacts):
         c.a.pushed[c.b] = c.lam  # a pair always comes in this order, so a's side is enough
 
 
+# --- region: momentum ---
+def solve_with_momentum(contacts, iters: int, tolerance: float = 0.0) -> int:
+    """What solve_contacts finds, in fewer sweeps: each is carried on by a share of its change.
+
+    The share grows from 0 towards 1 (Nesterov 1983) until a sweep turns back; then it begins anew
+    (O'Donoghue and Candes 2015). Returns as solve_contacts does.
+    """
+    t = 1.0
+    for c in contacts:
+        c.start = c.before = c.lam
+    for sweep in range(1, iters + 1):
+        if solve_contacts(contacts, 1, tolerance):
+            return sweep
+        onward = 0.0  # below 0: on the whole, the sweep went back on what had been carried on
+        for c in contacts:
+            onward += (c.lam - c.start) * (c.lam - c.before)
+        if onward < 0.0:
+            t = 1.0
+        longer = 0.5 * (1.0 + math.sqrt(1.0 + 4.0 * t * t))
+        share, t = (t - 1.0) / longer, longer
+        for c in contacts:
+            c.start = max(0.0, c.lam + share * (c.lam - c.before))
+            c.before = c.lam
+            c.push(c.start - c.lam)
+            c.lam = c.start
+    return 0
+
+
+# --- region: leapfrog-ask ---
+OPENS = 0.05  # of the two radii, chosen: the most that leapfrog opens an overlap in a step
+
+
+def ask(c, restitution, dt):
+    """What leapfrog asks of contact c: of the way (target), and then of the speed (after) [m/s]."""
+    face(c, dt)
+    gap, v_n = -c.depth, c.v_n()
+    a_n = GRAVITY * c.ny * ((c.a.inv_mass > 0.0) - (c.b.inv_mass > 0.0))  # 0 where both fall
+    c.target = min(-gap, OPENS * (c.a.radius + c.b.radius)) / dt
+    back = -restitution * (v_n + dt * a_n)  # no speed above it: solved impulses then add no energy
+    c.after = min(0.0, back)
+    when = time_to_impact(gap, v_n, a_n) if gap > 0.0 else 0.0
+    arrives = v_n + when * a_n if when < dt else 0.0
+    c.impact = arrives < dt * GRAVITY  # slower is this step's gravity alone: it stays
+    left = dt - when
+    end = left * (-restitution * arrives + 0.5 * left * a_n)  # the gap to which it has bounced
+    if c.impact and end > 0.0:
+        c.target = max(c.target, (end - max(gap, 0.0)) / dt)
+        c.after = min(-restitution * arrives + left * a_n, back)
+
+
+def face(c, dt):
+    """Take the normal of when the balls of c meet in free flight, or are nearest, within dt [s]."""
+    a, b = c.a, c.b
+    dx, dy, vx, vy = a.x - b.x, a.y - b.y, a.vx - b.vx, a.vy - b.vy
+    reach = a.radius + b.radius
+    along = dx * vx + dy * vy  # < 0: they come nearer
+    fast = vx * vx + vy * vy
+    apart = dx * dx + dy * dy - reach * reach
+    t = 0.0
+    if apart > 0.0 > along:
+        square = max(0.0, along * along - fast * apart)
+        t = min(dt, (-along - math.sqrt(square)) / fast)
+    x, y = dx + t * vx, dy + t * vy
+    distance = math.sqrt(x * x + y * y)
+    if b is not FLOOR and distance > 0.0:
+        c.nx, c.ny = x / distance, y / distance
+        c.depth = reach - (c.nx * dx + c.ny * dy)  # of now, along the normal of then
+
+
+def time_to_impact(gap, v_n, a_n):
+    """When a gap closes [s]: the first root of gap + v_n t + a_n t^2 / 2; inf if it does not."""
+    if a_n is None or (v_n >= 0.0 and a_n >= 0.0):
+        return math.inf
+    square = v_n * v_n - 2.0 * gap * a_n
+    if square < 0.0:
+        return math.inf
+    root = math.sqrt(square)
+    # each form is a sum: a difference of near numbers would lose digits
+    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n
+
+
+# --- region: leapfrog ---
+def leapfrog_step(balls, dt, restitution, iters) -> None:
+    """One step [s]: half a kick, ask for the way, move, half a kick, ask for the speed."""
+    contacts = detect_contacts(balls, step_reach(balls, dt))
+    for c in contacts:
+        ask(c, restitution, dt)
+    accelerate(balls, 0.5 * dt)
+    solve_with_momentum(contacts, iters)  # the way: gap + dt v_n >= 0
+    move(balls, dt)
+    accelerate(balls, 0.5 * dt)
+    closed = [c for c in contacts if c.lam > 0.0]
+    for c in closed:
+        if not c.impact:
+            face(c, 0.0)  # the normal of now; an impact keeps that of its moment
+        c.target = c.after
+    solve_with_momentum(closed, iters)  # the speed; lam stays, so a push can be taken back
+
+
 # --- region: exact ---
 TOUCH = 1e-13  # m: balls that start no farther apart, or in one another, start in touch
 SLOW = 1e-7  # m/s: a slower bounce would be 5e-16 m high, and is left out
@@ -316,7 +418,7 @@ ROUNDING = 2.0**-50  # of the speeds: exact sweeps until no correction is above 
 MOST_IMPACTS = 20_000  # a run with more is given up
 
 
-def exact_run(scene: Scene, times, report=None):
+def exact_run(scene: Scene, times, progress=None):
     """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, of balls over one another.
 
     Between two impacts every acceleration stays the same, so a gap is a parabola in time, and the
@@ -342,8 +444,8 @@ def exact_run(scene: Scene, times, report=None):
         now, done = now + span, last
         if done == len(times):
             return q, v
-        if report:
-            report(done)
+        if progress:
+            progress(done)
     raise RuntimeError(f"more than {MOST_IMPACTS:,} impacts by {now:.6g} s: the balls rattle")
 
 
@@ -388,7 +490,7 @@ def settle(contacts):
     sizes = [size for c in contacts for size in (c.a.vy, c.b.vy, c.target)]
     for c in contacts:
         c.lam = 0.0
-    if not solve_contacts(contacts, MOST_SWEEPS, ROUNDING * max(map(abs, sizes), default=0.0)):
+    if not solve_with_momentum(contacts, MOST_SWEEPS, ROUNDING * max(map(abs, sizes), default=0.0)):
         raise ArithmeticError("the masses are too unequal: the sweeps do not settle")
 
 
@@ -403,18 +505,6 @@ def next_impact(pairs, gap_a):
         else:
             c.depth = -place(span, -c.depth, c.v_n(), a_n)
     return span, [c for c in pairs if c.depth >= 0.0]
-
-
-def time_to_impact(gap, v_n, a_n):
-    """When a gap closes [s]: the first root of gap + v_n t + a_n t^2 / 2; inf if it does not."""
-    if a_n is None or (v_n >= 0.0 and a_n >= 0.0):
-        return math.inf
-    square = v_n * v_n - 2.0 * gap * a_n
-    if square < 0.0:
-        return math.inf
-    root = math.sqrt(square)
-    # each form is a sum: a difference of near numbers would lose digits
-    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n
 
 
 # --- region: soft-impedance ---
@@ -472,7 +562,7 @@ def soft_step(balls, dt: float, solref: tuple, solimp: tuple) -> bool:
     settled = solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * max(map(abs, speeds)))
     remember(balls, contacts)
     move(balls, dt)
-    return settled
+    return settled > 0
 
 
 # --- region: simulate ---
@@ -512,11 +602,14 @@ def as_run(rows, settled, dt) -> Run:
 
 # --- region: skips ---
 @np.errstate(all="ignore")
-def simulate_faster(step, scene: Scene, dt: float, steps: int, report=None) -> Run:
+def simulate_faster(
+    step, scene: Scene, dt: float, steps: int, progress=None, kicks: int = 1
+) -> Run:
     """What simulate gives, bit for bit, without the steps whose result is known.
 
-    Up to 250 steps of flight are one sum. And a step depends on nothing but the state and the
-    impulses of the last step: when both come back (rest, or any cycle), the rest is a copy.
+    Up to 250 steps of flight are one sum; kicks says in how many parts a step takes gravity's. And
+    a step depends on nothing but the state and the impulses of the last step: when both come back
+    (rest, or any cycle), the rest is a copy.
     """
     balls = make_balls(scene)
     rows, settled = np.zeros((steps + 1, len(balls), 4)), np.ones(steps + 1, bool)
@@ -529,27 +622,29 @@ def simulate_faster(step, scene: Scene, dt: float, steps: int, report=None) -> R
             again = first + 1 + np.arange(steps - k) % (k - first)
             rows[k + 1 :], settled[k + 1 :] = rows[again], settled[again]
             break
-        flown = fly(balls, dt, rows[k : k + 251])
+        flown = fly(balls, dt, rows[k : k + 251], kicks)
         if flown == 0:
             settled[k + 1] = step(balls) is not False
             rows[k + 1] = state_of(balls)
         k += flown or 1
-        if report:
-            report(k)
+        if progress:
+            progress(k)
     return as_run(rows, settled, dt)
 
 
 # --- region: flight ---
-def fly(balls, dt, rows):
+def fly(balls, dt, rows, kicks):
     """Take steps, up to one that may see a contact; rows[0] is the state now. Returns how many."""
-    if any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls):
-        return 0
     if detect_contacts(balls, step_reach(balls, dt)):  # no model looks farther
         return 0
     q, v = rows[..., :2], rows[..., 2:]  # views of the rows
-    v[1:, :, 1] = [dt * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
-    np.add.accumulate(v, out=v)  # v, v + dt g, v + dt g + dt g, ...
-    q[1:] = dt * v[1:]
+    kick = [dt / kicks * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
+    fine = np.zeros((kicks * (len(rows) - 1) + 1, len(balls), 2))  # velocities after each kick
+    fine[0] = v[0]
+    fine[1:, :, 1] = kick
+    np.add.accumulate(fine, out=fine)  # v, v + dt g, v + dt g + dt g, ...
+    v[:] = fine[::kicks]
+    q[1:] = dt * fine[1::kicks]  # the first kick of a step comes before its move
     np.add.accumulate(q, out=q)  # in the order of the steps: the same bits
     gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
     fastest = np.sqrt(v[..., 0] * v[..., 0] + v[..., 1] * v[..., 1]).max(-1)
@@ -564,7 +659,14 @@ def fly(balls, dt, rows):
 
 
 # --- region: run ---
-MODELS = ("penalty", "lcp", "soft", "exact")
+MODELS = {  # in the order of the table: the knobs that change its runs
+    "penalty": ("stiffness", "damping"),
+    "lcp": ("restitution", "baumgarte", "iters", "warm"),
+    "leapfrog": ("restitution", "iters"),
+    "soft": ("restitution", "solref", "solimp"),
+    "exact": ("restitution",),
+}
+STEPPED = [model for model in MODELS if model != "exact"]
 MANY = 5e6  # of about steps times balls squared: from here on, compiled loops pay
 MOST_BALLS = 300  # of exact, chosen: curriculum/exact.py needs memory as their cube, 0.1 GB here
 SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
@@ -581,23 +683,23 @@ class Settings(NamedTuple):
     warm: float = 0.0  # of lcp: the share of a step's impulses that the next begins with
     solref: tuple | None = None  # of soft: time constant [s], damping ratio; see soft_defaults
     solimp: tuple | None = None  # of soft: how hard, at which depth; see impedance
-    ahead: bool = False  # of lcp: look as far as a step travels, and let a gap close wholly
     skip: bool = True  # leave out steps whose result is known; no bit changes
 
 
 def run_model(
-    model: str, scene: Scene, dt: float, steps: int, settings: Settings = Settings(), report=None
+    model: str, scene: Scene, dt: float, steps: int, settings: Settings = Settings(), progress=None
 ) -> Run:
     """The run of a scene by one of MODELS; RuntimeError where exact cannot be exact."""
     check(model, scene, dt, steps)
     if model == "exact":
-        return run_exact(scene, dt, steps, report)
+        return run_exact(scene, dt, steps, progress)
     many = settings.skip and steps * len(scene.mass) ** 2 > MANY
-    if many and (fast := beside("fast")):  # compiled loops, the same bits
-        return fast.run_model(model, scene, dt, steps, settings, report)
+    if many and (fast := beside("fast")) and model in fast.MODELS:  # compiled, the same bits
+        return fast.run_model(model, scene, dt, steps, settings, progress)
     step = step_of(model, scene, dt, settings)
     if settings.skip:
-        return simulate_faster(step, scene, dt, steps, report)
+        kicks = 2 if model == "leapfrog" else 1
+        return simulate_faster(step, scene, dt, steps, progress, kicks)
     return simulate(step, scene, dt, steps)
 
 
@@ -626,7 +728,8 @@ def step_of(model: str, scene: Scene, dt: float, settings: Settings):
     soft = soft_defaults(e, dt, s.solref, s.solimp)
     return {
         "penalty": lambda balls: penalty_step(balls, dt, s.stiffness, scene.damping),
-        "lcp": lambda balls: lcp_step(balls, dt, e, s.baumgarte, s.iters, s.warm, s.ahead),
+        "lcp": lambda balls: lcp_step(balls, dt, e, s.baumgarte, s.iters, s.warm),
+        "leapfrog": lambda balls: leapfrog_step(balls, dt, e, s.iters),
         "soft": lambda balls: soft_step(balls, dt, *soft),
     }[model]
 
@@ -646,7 +749,7 @@ def soft_defaults(restitution, dt, solref=None, solimp=None) -> tuple[tuple, tup
 
 
 @np.errstate(over="ignore")
-def run_exact(scene, dt, steps, report=None):
+def run_exact(scene, dt, steps, progress=None):
     """The Run of balls over one another by exact_run, of others by curriculum/exact.py."""
     if len(scene.mass) > MOST_BALLS:
         raise RuntimeError(f"given {len(scene.mass):,} balls; allowed: {MOST_BALLS} at most")
@@ -655,12 +758,12 @@ def run_exact(scene, dt, steps, report=None):
     apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
     if apart and (scene.q0[0] == scene.q0[0, 0]).all() and not scene.v0[0].any():
         try:
-            return Run(times, *exact_run(scene, times, report))
+            return Run(times, *exact_run(scene, times, progress))
         except ArithmeticError as error:
             reason = str(error)
     if not (exact := beside("exact")):
         raise RuntimeError(reason)
-    return Run(times, *exact.simulate_exact(scene, times, GRAVITY, report or (lambda k: None)))
+    return Run(times, *exact.simulate_exact(scene, times, GRAVITY, progress or (lambda k: None)))
 
 
 def beside(name: str):
@@ -832,7 +935,7 @@ NUMBERS = {  # flag: kind, lowest, highest, what it is when it is not given, mea
     "--restitution": (float, -1, 1, -1.0, "e of the others; below 0: the scene's, 0 or 0.7"),
     "--baumgarte": (float, 0, 1, USUAL.baumgarte, "beta of lcp: share of an overlap to remove"),
     "--warm": (float, 0, 1, USUAL.warm, "of lcp: share of the last impulses to begin with"),
-    "--iters": (int, 1, MOST_SWEEPS, USUAL.iters, "of lcp: sweeps a step, at most"),
+    "--iters": (int, 1, MOST_SWEEPS, USUAL.iters, "of lcp and leapfrog: sweeps, at most"),
 }
 
 
@@ -860,7 +963,6 @@ def add_flags(flag):
     flag("--solref", type=partial(number, float, -1e12, 1e6), nargs=2, metavar="N", help=spring)
     curve = "of soft: d0 d1 width mid power (0.9 0.95 0.001 0.5 2)"
     flag("--solimp", type=partial(number, float, 0, 100), nargs=5, metavar="N", help=curve)
-    flag("--ahead", action="store_true", help="lcp, e = 0: look as far as a step travels")
     flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
     flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
     flag("--skip", action=switch, default=True, help="leave out work that changes no bit (yes)")

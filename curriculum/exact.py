@@ -427,12 +427,12 @@ def refuse(scene):
 
 
 @np.errstate(all="ignore")
-def simulate_exact(scene, times, gravity, report=lambda k: None, most=MOST_IMPACTS) -> np.ndarray:
+def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MOST_IMPACTS) -> np.ndarray:
     """q, v (2, S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, from event to event.
 
     The scene has q0, v0 (2, N), mass (N,), inf for a ball that nothing moves, radius (N,) and
     restitution; gravity [m/s^2] is along y, negative. At the moment of an event v is that after
-    all rounds of impacts of this moment. report(k) is called after each event with the samples
+    all rounds of impacts of this moment. progress(k) is called after each event with the samples
     done. Raises RuntimeError beyond the promise, and after `most` events.
     """
     refuse(scene)
@@ -453,7 +453,7 @@ def simulate_exact(scene, times, gravity, report=lambda k: None, most=MOST_IMPAC
         out[:, done:last] = sample(Q, times[done:last] - now)
         cycle.flights.append((span, Q))
         done = last
-        report(done)
+        progress(done)
         if done == len(times):
             return out
         (motion.q, motion.v), now = sample(Q, span), now + span

@@ -431,7 +431,7 @@ class Stepper:
             float(dt),
             contact.GRAVITY,
             contact.CONTACT_MARGIN if model == "lcp" else 0.0,
-            bool(settings.ahead and model == "lcp" and scene.restitution == 0.0),
+            False,
             float(np.median(scene.radius)),
             float(settings.stiffness),
             float(scene.damping),
@@ -456,10 +456,10 @@ class Stepper:
         return steps, period
 
 
-def run_model(model, scene, dt, steps, settings, report=None) -> contact.Run:
+def run_model(model, scene, dt, steps, settings, progress=None) -> contact.Run:
     """The run by penalty, lcp or soft: what contact.run_model gives, bit for bit.
 
-    `report(k)` is called with the steps done, now and then.
+    `progress(k)` is called with the steps done, now and then.
     """
     stepper = Stepper(model, scene, dt, settings)
     rows = np.empty((steps + 1, 4, len(scene.mass)))
@@ -470,8 +470,8 @@ def run_model(model, scene, dt, steps, settings, report=None) -> contact.Run:
         end = min(k + 1 + STATES // len(scene.mass), steps)
         taken, period = stepper.take(rows[k : end + 1], settled[k : end + 1], settings.skip)
         k += taken
-        if report:
-            report(k)
+        if progress:
+            progress(k)
     for past in range(k - period + 1, k + 1):  # what comes again and again
         rows[past + period :: period] = rows[past]
         settled[past + period :: period] = settled[past]

@@ -5,7 +5,7 @@ import numpy as np
 import contact
 
 # safe for colour-blind readers (Okabe and Ito)
-COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "soft": "#cc79a7", "exact": "#009e73"}
+COLORS = {"penalty": "#d55e00", "lcp": "#0072b2", "leapfrog": "#e69f00", "soft": "#cc79a7", "exact": "#009e73"}
 
 
 @np.errstate(all="ignore")

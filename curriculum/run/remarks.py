@@ -10,7 +10,7 @@ OWNERS = {  # of the knobs that some models do not have
     "stiffness": ["penalty"],
     "damping": ["penalty"],
     "restitution": ["lcp", "soft", "exact"],
-    **dict.fromkeys(("baumgarte", "iters", "warm", "ahead"), ["lcp"]),
+    **dict.fromkeys(("baumgarte", "iters", "warm"), ["lcp"]),
     **dict.fromkeys(("solref", "solimp"), ["soft"]),
 }
 APEXES = 5  # heights of bounces that are printed
@@ -26,8 +26,6 @@ def print_remarks(args, runs: dict[str, contact.Run], scene: contact.Scene) -> N
         given = getattr(args, knob) != getattr(usual, knob)
         if given and args.contact not in ("all", *owners):
             print(f"--{knob} is for {' and '.join(owners)}, and changes nothing here")
-    if args.ahead and scene.restitution > 0.0 and args.contact in ("all", "lcp"):
-        print("--ahead is for restitution 0, and changes nothing here")
     if list(runs) == ["exact"]:
         print(*landing(runs["exact"], scene), sep="\n")
 

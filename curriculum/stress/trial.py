@@ -83,7 +83,7 @@ class Trial:
                 raise TimeoutError
 
         try:
-            return contact.run_model(*case, steps, report=report)
+            return contact.run_model(*case, steps, progress=report)
         except TimeoutError:
             self.note(f"exact: cut after {EVENTS} events")
             # what was done by then is made again, and judged

@@ -194,7 +194,7 @@ def test_a_run_taken_on_in_parts_has_the_bytes_of_the_whole():
 
 def test_run_model_gives_many_balls_to_the_twin_and_says_how_far_it_is():
     scene, heard = contact.build_scene("pile", 0, 200), []
-    run = contact.run_model("lcp", scene, 0.002, 130, report=heard.append)
+    run = contact.run_model("lcp", scene, 0.002, 130, progress=heard.append)
     assert heard == [130], "the plain loops report every step"
     assert run.q.tobytes() == plainly("lcp", scene, 0.002, 130, contact.Settings()).q.tobytes()
 
