@@ -978,7 +978,7 @@ def parse_flags(argv=None):
     parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")  # -1e4 is a value
     add_flags(parser.add_argument)
     args = parser.parse_args(argv)
-    memory, solref = beside("run.memory"), args.solref or (0.0, 0.0)
+    memory, solref = beside("run.remarks"), args.solref or (0.0, 0.0)
     if args.smoke and args.steps is not None:
         parser.error("--smoke has 800 steps: leave out --steps")
     args.steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
@@ -1029,7 +1029,7 @@ def chosen_scene(args, seed):
 def run_flags(args, scene, model, dt):
     """The run that the flags ask for, at that dt; a terminal shows how far it is."""
     settings = Settings(*(getattr(args, knob) for knob in Settings._fields))
-    pool = beside("run.pool") if sys.stderr and sys.stderr.isatty() else None
+    pool = beside("parallel") if sys.stderr and sys.stderr.isatty() else None
     bar = pool.bar(args.steps, f"{model}, dt = {dt:g} s") if pool else None
     return run_model(model, scene, dt, args.steps, settings, bar)
 
@@ -1081,7 +1081,9 @@ def write_files(args, metrics, runs, scene):
     for asked, name, file, *more in (recording, (args.plot, "picture", "contact.svg", title)):
         if asked and runs:
             try:
-                maker = importlib.import_module(f"curriculum.run.{name}")
+                maker = importlib.import_module(
+                    f"curriculum.run.{name.replace('picture', 'plotting')}"
+                )
                 maker.write(str(out / file), runs, scene, *more)
                 yield f"{name}: {out / file}"
             except ImportError as error:
@@ -1187,7 +1189,7 @@ def report(args, argv):
         lost = f"cannot write to {args.out}: {error.strerror}"
         return fail(f"{lost}; the report is whole, give another --out to keep its files")
     print(*lines, sep="\n")
-    if hints := beside("run.next_steps"):
+    if hints := beside("run.remarks"):
         hints.print_next(args, argv)
     return 0 if runs else 2
 

@@ -1,7 +1,8 @@
-"""Commands as one types them here: how to run a file, how to install what is missing."""
+"""Commands as one types them here, what they lack, and files that are written whole."""
 
 import argparse
 import contextlib
+import json
 import os
 import shlex
 import shutil
@@ -104,3 +105,20 @@ def near(word):
     """A path as one would type it here: relative below this folder; other words as they are."""
     below = os.path.isabs(word) and Path(word).is_relative_to(Path.cwd())
     return os.path.relpath(word) if below else word
+
+
+def write_whole(path, content):
+    """Replace the file at `path` by str or bytes, whole or not at all. Makes missing folders."""
+    path = Path(os.path.realpath(path))
+    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        temporary.write_bytes(content.encode() if isinstance(content, str) else content)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_json(path, data):
+    """Write strict JSON, whole or not at all. Raises ValueError on NaN and infinity."""
+    write_whole(path, json.dumps(data, indent=2, sort_keys=True, allow_nan=False) + "\n")

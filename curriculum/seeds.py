@@ -14,9 +14,8 @@ import sys
 from functools import partial
 
 import contact
-from curriculum.commands import Parser, stoppable
-from curriculum.files import write_json
-from curriculum.run import pool
+from curriculum import parallel
+from curriculum.commands import Parser, stoppable, write_json
 
 
 def seed_range(text):
@@ -50,7 +49,7 @@ def main(argv=None):
     """
     seeds, scheduler, args = parse(argv)
     try:
-        found = pool.run_jobs(partial(qualities, args), seeds, "seeds", scheduler=scheduler)
+        found = parallel.run_jobs(partial(qualities, args), seeds, "seeds", scheduler=scheduler)
     except (ImportError, OSError) as error:
         return contact.fail(f"argument --scheduler: {error}")
     rows = {}

@@ -18,8 +18,8 @@ from functools import partial
 import numpy as np
 
 import contact
+from curriculum import parallel
 from curriculum.bench import engines, problems, timing
-from curriculum.run import pool
 
 ERRORS = ("error", "user_error", "final_error", "energy_error", "depth")
 WAYS = {"awake": False, "user": True}  # whether balls may sleep
@@ -41,7 +41,7 @@ def measure(quick=False):
     chosen = [p for p in problems.PROBLEMS if not quick or p.name in QUICK["names"]]
     jobs = list(cells(chosen, quick))
     print(f"accuracy: {len(jobs)} points, their errors first, then their times", flush=True)
-    errors = pool.run_jobs(errors_of, jobs, "errors")
+    errors = parallel.run_jobs(errors_of, jobs, "errors")
     processes = QUICK["processes"] if quick else PROCESSES
     slow = {job for job in jobs if BY_NAME[job[1]].slow}  # one process has to be enough
     times = timing.in_fresh_processes(times_of, jobs, processes, "run times", slow)

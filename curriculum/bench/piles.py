@@ -19,9 +19,9 @@ from functools import partial
 import numpy as np
 
 import contact
+from curriculum import parallel
 from curriculum.bench import engines, timing
 from curriculum.bench.engines import AHEAD, GAIN_1, HARD, PUSHING, box2d3, lcp, mujoco, pymunk
-from curriculum.run import pool
 
 DT = 0.002  # s
 WATCHED, TURN, TURNS = 250, 50, 3  # steps at the end; timed steps in one go; how many goes
@@ -100,7 +100,7 @@ def measured(count, chosen, states, quick):
     scene, phases = shaft(count), ("falling", "resting")
     jobs = [(count, k, states.get(k)) for k in chosen if not SETTINGS[k][0].refuses(scene)]
     print(f"pile of {count}: {len(jobs)} settings settle, then they are timed", flush=True)
-    settled = pool.run_jobs(settle, jobs, f"{count} balls settle")
+    settled = parallel.run_jobs(settle, jobs, f"{count} balls settle")
     states.update((k, found[:2]) for (_, k, _), found in zip(jobs, settled))
     work = [(count, k, states[k]) for _, k, _ in jobs]
     processes = 1 if quick else PROCESSES - (count == MANY)

@@ -12,8 +12,8 @@ import tempfile
 from functools import partial
 
 import contact
+from curriculum import parallel
 from curriculum.bench import engines, timing
-from curriculum.run import pool
 
 SCENES, STEPPED = ("drop", "bounce", "stack"), ("penalty", "lcp", "soft")
 DT, STEPS = 0.002, 2000
@@ -44,7 +44,7 @@ def cases(quick):
 def same_bits(quick):
     """How many pairs of runs, with and without skips, and which of them differ in any bit."""
     jobs = list(cases(quick))
-    same = pool.run_jobs(is_same, jobs, "same bits")
+    same = parallel.run_jobs(is_same, jobs, "same bits")
     names = [" ".join(map(str, job)) for job, fine in zip(jobs, same) if not fine]
     return dict(runs=len(jobs), differing=names)
 

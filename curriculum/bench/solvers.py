@@ -29,8 +29,8 @@ import numpy as np
 
 import contact
 from contact import FLOOR, GRAVITY, accelerate, move, remember
+from curriculum import parallel
 from curriculum.bench import problems
-from curriculum.run import pool
 
 DT = 1.0 / 64.0  # s
 
@@ -227,7 +227,7 @@ def measure(quick=False):
     names = list(PROBLEMS)[: 1 if quick else None]
     jobs = [(row, name) for name in reversed(names) for row in SOLVERS]
     found = {row: {"words": s.words} for row, s in SOLVERS.items()}
-    for (row, name), about in zip(jobs, pool.run_jobs(judged, jobs, "solvers")):
+    for (row, name), about in zip(jobs, parallel.run_jobs(judged, jobs, "solvers")):
         found[row][name] = about
     return found
 

@@ -17,8 +17,8 @@ import subprocess
 import time
 from concurrent.futures import ProcessPoolExecutor
 
-from curriculum.measured.machine import ROOT
-from curriculum.run.pool import bar
+from curriculum.commands import ROOT
+from curriculum.parallel import bar
 
 
 def timed(call) -> tuple:

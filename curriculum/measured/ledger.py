@@ -15,9 +15,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from curriculum.commands import Parser
-from curriculum.files import write_whole
-from curriculum.measured.machine import dirty, machine
+from curriculum.commands import Parser, write_whole
+from curriculum.measured.results import dirty, machine
 from curriculum.measured.stale import digest, fingerprint
 from curriculum.regions import ROOT
 
@@ -27,7 +26,7 @@ COLUMNS = ("chapter", "tier", "wallclock_min", "config_hash", "commit", "date", 
 FILLED = r"\d[\d.e-]*,[0-9a-f]{12},[0-9a-f]+\+?,\d{4}-\d\d-\d\d,MEASURED"
 ROW = re.compile(rf"[\w.-]+,[\w-]+,({FILLED}|,,,,PENDING)")
 COMMAND = "python -m curriculum.measured.ledger"
-TIMED = ("contact.py", "curriculum/run/curves.py", "curriculum/run/recording.py")  # a default run
+TIMED = ("contact.py", "curriculum/run/plotting.py", "curriculum/run/recording.py")  # a default run
 
 
 def rows() -> list:

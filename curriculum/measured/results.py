@@ -1,8 +1,8 @@
 """Measured results: kept with the machine and the code that they were measured on.
 
 The benchmark and the stress report each keep one file results.json, with a section per command. A
-section says under "measured" how it came to be: the command that measures it again, the machine
-(machine.py), and the fingerprints of the code that made it, by which it is stale or not (stale.py):
+section says under "measured" how it came to be: the command that measures it again, the machine,
+and the fingerprints of the code that made it, by which it is stale or not (stale.py):
 
     origin = results.origin("python -m curriculum.bench skip", "curriculum/bench/skips.py")
     results.save(folder, "skip", skips.measure(), origin)
@@ -10,18 +10,24 @@ section says under "measured" how it came to be: the command that measures it ag
 
 import json
 import math
+import os
+import platform
 import re
+import subprocess
+from datetime import date
+from importlib import metadata
 from pathlib import Path
 
-from curriculum.files import write_json, write_whole
+from curriculum.commands import write_json, write_whole
 from curriculum.measured import stale
-from curriculum.measured.machine import dirty, machine
-from curriculum.measured.seal import BLOCK, sealed
+from curriculum.measured.stale import BLOCK, sealed
 from curriculum.regions import ROOT, read_text
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 NAME = "results.json"
 DIGITS = 6  # significant digits that a results file keeps
+PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
+COMMIT = "describe --always --abbrev=10 --exclude=*".split()
 
 
 def load(name: str) -> dict:
@@ -100,3 +106,44 @@ def write_block(name: str, markdown: str) -> None:
     own = re.compile(BLOCK.pattern.replace(r"(\w+)", f"({name})"), re.DOTALL)
     readme = own.sub(lambda match: f"{match[1]}\n{text}", read_text("README.md"))
     write_whole(ROOT / "README.md", readme)
+
+
+def machine() -> dict:
+    """Date, commit, processor, system and versions: texts, but for versions, {package: text}.
+
+    Packages that are not installed are left out. The commit ends in "+" where Python files differ
+    from it, and is "unknown" without git.
+    """
+    return {
+        "date": date.today().isoformat(),
+        "commit": (git(*COMMIT).strip() or "unknown") + "+" * bool(dirty()),
+        "cpu": processor(),
+        "cores": str(os.cpu_count()),
+        "os": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        "versions": {
+            name: found.version for name in PACKAGES for found in metadata.distributions(name=name)
+        },
+    }
+
+
+def dirty() -> str:
+    """The Python files that differ from the commit, as git shows them; "" without git."""
+    return git("status", "--porcelain", "--", "*.py").strip()
+
+
+def git(*words) -> str:
+    """What a git command prints; nothing where it fails or there is no git."""
+    try:
+        return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout
+    except OSError:
+        return ""
+
+
+def processor() -> str:
+    """The name of the processor, as the system gives it."""
+    try:
+        info = Path("/proc/cpuinfo").read_text("utf-8")
+        return info.split("model name")[1].split(":", 1)[1].split("\n")[0].strip()
+    except (OSError, IndexError):
+        return platform.processor() or "unknown processor"

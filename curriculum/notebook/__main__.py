@@ -13,7 +13,7 @@ def main():
     parser.add_argument("--out", default="outputs/contact.ipynb", metavar="FILE")
     args = parser.parse_args()
     try:
-        from curriculum.files import write_whole
+        from curriculum.commands import write_whole
         from curriculum.notebook.build import build
 
         text = build()

@@ -26,8 +26,8 @@ CHAPTER = ROOT / "curriculum/prose/chapter.md"
 CELLS = ROOT / "curriculum/notebook/cells.py"
 CARRIED = (  # with the pictures of reports that the chapter shows
     "contact.py checks.py exercises/*.py exercises/kit/* curriculum/__init__.py "
-    "curriculum/run/__init__.py curriculum/run/curves.py curriculum/exact.py "
-    "curriculum/commands.py curriculum/files.py curriculum/implicit.py "
+    "curriculum/run/__init__.py curriculum/run/plotting.py curriculum/exact.py "
+    "curriculum/commands.py curriculum/implicit.py "
     "curriculum/bench/results/error-bounce.svg curriculum/bench/results/solvers.svg "
     "curriculum/stress/results/penalty-map.svg"
 ).split()

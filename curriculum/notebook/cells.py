@@ -30,7 +30,7 @@ import matplotlib.pyplot as plt
 from IPython.display import SVG, display
 from IPython.utils.capture import capture_output
 
-from curriculum.run.curves import COLORS
+from curriculum.run.plotting import COLORS
 
 
 def course(*words):

@@ -19,7 +19,7 @@ def main(argv=None):
     add("--measure", action="store_true", help="and how quickly it answers in Chromium")
     args = parser.parse_args(argv)
     try:
-        from curriculum.files import write_whole
+        from curriculum.commands import write_whole
         from curriculum.page.build import build
 
         page = build()

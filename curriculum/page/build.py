@@ -17,7 +17,7 @@ from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises, blank_cases
 from curriculum.page.panels import pieces
 from curriculum.regions import ROOT, read_all
-from curriculum.run import curves
+from curriculum.run import plotting
 from curriculum.text.references import Numbers, load_meta
 
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
@@ -117,7 +117,7 @@ def environment(**held):
         (name, data_address(f"font/{kind}", (HERE / file).read_bytes()), *rest)
         for name, file, kind, *rest in fonts.FACES
     ]
-    made.globals.update(colab=colab, faces=faces, colors=curves.COLORS, hides=chapter.HIDES)
+    made.globals.update(colab=colab, faces=faces, colors=plotting.COLORS, hides=chapter.HIDES)
     made.globals.update(ledger=ledger, pieces=pieces, drawn_by=drawn_by, **held)
     return made
 

@@ -1,4 +1,4 @@
-"""How every measured figure is drawn: by matplotlib, as small SVG files whose text is text.
+"""How every measured figure and the curves of a run are drawn: as small SVG files, text as text.
 
     figure, axes = plotting.figure(rows=2, title="...", explained="...")
     plotting.line(axes[0], x, y, "lcp", label="lcp, 20 sweeps")
@@ -16,8 +16,26 @@ import textwrap
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
+
+import contact
 from curriculum import commands
-from curriculum.run.curves import COLORS
+
+# safe for colour-blind readers (Okabe and Ito)
+COLORS = {
+    "penalty": "#d55e00",
+    "lcp": "#0072b2",
+    "leapfrog": "#e69f00",
+    "soft": "#cc79a7",
+    "exact": "#009e73",
+}
+DASHES = (
+    "-",
+    (0, (6, 2)),
+    (0, (4, 1, 1, 1)),
+    (0, (2, 1)),
+    (0, (1, 2)),
+)  # lines that coincide are seen beneath
 
 INK, PALE, GRID = "#222222", "#666666", "#e2e2e2"  # INK and GRID as in figures.mplstyle
 WIDTH = 6.0  # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
@@ -26,6 +44,7 @@ WIDTH = 6.0  # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
 LOOKS = {
     "penalty": (COLORS["penalty"], "v", (0, (1, 1))),
     "lcp": (COLORS["lcp"], "o", "-"),
+    "leapfrog": (COLORS["leapfrog"], "P", (0, (7, 1, 1, 1))),
     "soft": (COLORS["soft"], "d", (0, (5, 1))),
     "exact": (COLORS["exact"], "*", "-"),
     "mujoco": ("#222222", "s", "-"),
@@ -43,6 +62,7 @@ IN_THE_DARK = {
     "#d55e00": "#ef7a2a",
     "#009e73": "#2fc79a",
     "#cc79a7": "#e096bd",
+    "#e69f00": "#f5b83d",
 }
 
 
@@ -161,3 +181,60 @@ def smaller(text: str) -> str:
     dark = f"@media (prefers-color-scheme: dark) {{svg{{background:#14161b}}{rules}}}"
     text = re.sub(r"(<svg\b[^>]*>)", rf"\1\n<style>{dark}</style>", text, count=1)
     return "\n".join(words.rstrip() for words in text.splitlines()) + "\n"
+
+
+@np.errstate(all="ignore")
+def contact_impulses(run: contact.Run, scene: contact.Scene) -> np.ndarray:
+    """The impulse [N s] that all contacts of a ball give it in each step, (S, 2, N).
+
+    It is the change of momentum that gravity does not explain, so it is there for every model.
+    """
+    gained = np.diff(run.t[:2]).sum() * np.array([[0.0], [contact.GRAVITY]])
+    mass = np.where(np.isfinite(scene.mass), scene.mass, 0.0)
+    return np.concatenate((np.zeros_like(run.v[:1]), mass * (np.diff(run.v, axis=0) - gained)))
+
+
+@np.errstate(all="ignore")
+def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
+    """What is plotted of runs {model: Run}, {title: {model: values (S,)}}."""
+    drawn: dict = {}
+    for model, run in runs.items():
+        total = contact.energy(run.q, run.v, scene.mass)
+        depth = np.maximum(-contact.smallest_gap(run.q, scene.radius), 0.0)
+        lines = {
+            "height [m], mean": run.q[:, 1].mean(-1),
+            "penetration [r]": depth / scene.radius[0],
+            "impulse of floor [N s]": contact_impulses(run, scene)[:, 1].sum(-1),
+            "energy above start [J]": total - total[0],
+            "rises of energy [J]": np.maximum(np.diff(total, prepend=total[0]), 0.0).cumsum(),
+        }
+        for title, line in lines.items():
+            drawn.setdefault(title, {})[model] = line
+    return drawn
+
+
+def ending(run: contact.Run, scene: contact.Scene) -> str:
+    """How the run ended, in contact.py's words, such as "ok" and "through the floor"."""
+    dt = float(np.diff(run.t[:2]).sum())
+    return contact.ending(contact.contact_quality(run, scene, dt))
+
+
+def write(path: str, runs: dict[str, contact.Run], scene: contact.Scene, title: str) -> None:
+    """Draw the curves of runs {model: Run} over time, a panel each, as SVG, whole or not at all.
+
+    Raises ImportError where matplotlib is missing.
+    """
+    drawn = curves(runs, scene)
+    picture, axes = figure(len(drawn), title, height=1.5, below=0.3)
+    for axis, (name, lines) in zip(axes, drawn.items()):
+        axis.set_title(name)
+        axis.tick_params(labelbottom=axis is axes[-1])
+        for place, (model, values) in enumerate(lines.items()):
+            seen = np.where(np.abs(values) < 1e30, values, np.nan)  # more cannot be drawn
+            width = 2.6 - 0.5 * place  # thick beneath thin
+            dash = DASHES[place % len(DASHES)]
+            t = runs[model].t
+            line(axis, t, seen, model, marker="", ls=dash, linewidth=width)
+    axes[-1].set_xlabel("time [s]")
+    legend_below(axes[-1], columns=len(runs), down=0.4)
+    commands.write_whole(path, svg(picture))

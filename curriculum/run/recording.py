@@ -12,8 +12,8 @@ import numpy as np
 
 import contact
 from curriculum import commands
-from curriculum.files import write_whole
-from curriculum.run.curves import COLORS, contact_impulses, curves, ending
+from curriculum.commands import write_whole
+from curriculum.run.plotting import COLORS, contact_impulses, curves, ending
 
 try:
     import rerun as rr
@@ -23,7 +23,7 @@ except ImportError:
 
 PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"
-WIDTHS = (6.0, 3.6, 2.2, 1.2)  # of curves, in points: lines that coincide are seen beneath
+WIDTHS = (7.0, 5.0, 3.4, 2.2, 1.2)  # of curves, in points: lines that coincide are seen beneath
 MOST_ARROWS = 24  # balls: more have no arrows
 SECONDS = ("sim_time", "landing")  # timelines, besides step
 LONGEST = 9e9  # s: 64 bits of nanoseconds

@@ -1,10 +1,13 @@
-"""What a run's table does not say: flags that change nothing, and when and how hard exact lands."""
+"""What a run's table does not say: flags that change nothing, what exact did, what to do next."""
 
+import os
 from collections.abc import Iterator
+from importlib.util import find_spec
 
 import numpy as np
 
 import contact
+from curriculum.commands import ROOT, command
 
 OWNERS = {  # of the knobs that some models do not have
     "stiffness": ["penalty"],
@@ -54,3 +57,38 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
 def turns(vy: np.ndarray, j: int) -> bool:
     """Whether a ball is at the top of a flight between two states."""
     return vy[j] > 0.0 >= vy[j + 1] and vy[j] - vy[j + 1] > 0.0
+
+
+def too_much(steps: int, count: int) -> str | None:
+    """One line on a run of `count` balls that this machine cannot hold; None if it can."""
+    need = steps * (320 * count + 1500)  # bytes, measured: all four models and their recording
+    have = 8e9  # bytes, chosen, where the machine does not say
+    if hasattr(os, "sysconf"):
+        have = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if need <= have:
+        return None
+    return (
+        f"--steps {steps} of {count} balls need {need / 1e9:.0f} GB of memory; "
+        f"allowed: {have / 1e9:.0f} GB, what there is"
+    )
+
+
+def print_next(args, argv: list[str]) -> None:
+    """Print the last lines of a run: how to see it, and the next exercise that is not done.
+
+    args: the flags as contact.parse_flags gives them; argv: the words they were read from.
+    """
+    from exercises.kit.progress import practise
+
+    lines = [see(args, argv), practise()]
+    print(*filter(None, lines), sep="\n")
+
+
+def see(args, argv: list[str]) -> str | None:
+    """The line that says how to see the run; None where it has drawn all that can be drawn here."""
+    recording = os.path.join(args.out, "contact.rrd")
+    if args.rerun and os.path.exists(recording):
+        return f"next, watch it: {command('-m', 'rerun', recording)}"
+    if args.plot or find_spec("matplotlib") is None:
+        return None
+    return f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}"

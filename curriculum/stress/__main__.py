@@ -22,7 +22,7 @@ with needs("dev"):
     import scipy  # noqa: F401  # laws.py loads it late
 
     from contact import number
-    from curriculum.run import pool
+    from curriculum import parallel
     from curriculum.stress import jobs
 
 
@@ -79,7 +79,7 @@ def everything(args):
         "mujoco": mujoco_match.match_jobs(args.quick),
     }
     found = {
-        name: pool.run_jobs(jobs.run, todo, name, args.workers, args.scheduler)
+        name: parallel.run_jobs(jobs.run, todo, name, args.workers, args.scheduler)
         for name, todo in sections.items()
     }
     return report.write(found, origins, report.QUICK if args.quick else report.RESULTS)

@@ -84,7 +84,7 @@ def copy(tmp_path):
     shutil.copytree(ROOT / "exercises", folder / "exercises", ignore=leave)
     (folder / "curriculum/run").mkdir(parents=True)
     for name in ("contact.py", "checks.py", *(f"curriculum/{name}.py" for name in (
-            "commands", "files", "implicit", "exact", "run/next_steps"))):  # fmt: skip
+            "commands", "implicit", "exact", "run/remarks"))):  # fmt: skip
         shutil.copy(ROOT / name, folder / name)
 
     def fill(name, *changes):

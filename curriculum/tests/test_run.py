@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum import seeds
-from curriculum.run import curves, picture, pool
+from curriculum import parallel, seeds
+from curriculum.run import plotting
 from curriculum.tests.helpers import CONTACT, ROOT, python
 
 DT, STEPS = 0.002, 600
@@ -128,7 +128,7 @@ def test_curves_are_the_runs_own_numbers_in_the_models_colour_with_their_peaks(s
         for curve, values in expected.items():
             logged = recording.series[f"/{curve}/{model}"]["Scalars:scalars"]
             assert np.array_equal(np.array(logged)[:, 0], values), f"{curve} of {model}"
-        rgba = int(curves.COLORS[model][1:] + "ff", 16)
+        rgba = int(plotting.COLORS[model][1:] + "ff", 16)
         assert set(recording.static[f"/world/{model}/balls"]["Points2D:colors"]) == {rgba}
         look = recording.static[f"/height/{model}"]
         assert (look["SeriesLines:colors"], look["SeriesLines:names"]) == ([rgba], [model])
@@ -200,12 +200,12 @@ def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(
     pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     scene, runs = runs_of("bounce")
     for name in ("a.svg", "b.svg"):
-        picture.write(str(tmp_path / name), runs, scene, "a title")
+        plotting.write(str(tmp_path / name), runs, scene, "a title")
     content = (tmp_path / "a.svg").read_bytes()
     assert content == (tmp_path / "b.svg").read_bytes()
     texts = {each.text for each in ElementTree.fromstring(content).iter() if each.text}
-    assert {"a title", *contact.MODELS, *curves.curves(runs, scene)} <= texts
-    for color in curves.COLORS.values():
+    assert {"a title", *contact.MODELS, *plotting.curves(runs, scene)} <= texts
+    for color in plotting.COLORS.values():
         assert content.count(f"stroke: {color}".encode()) == len(CURVES) + 2  # legend, dark mode
 
 
@@ -244,7 +244,7 @@ def test_seeds_refuses_bad_input_in_one_line(words, capsys):
 
 
 def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
-    assert pool.run_jobs(abs, range(-50, 0), "jobs", workers=2) == list(range(50, 0, -1))
+    assert parallel.run_jobs(abs, range(-50, 0), "jobs", workers=2) == list(range(50, 0, -1))
 
 
 def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):

@@ -81,7 +81,7 @@ def accepted(tmp_path_factory):
     project = tmp_path_factory.mktemp("project")
     for room in ("curriculum/text", "curriculum/measured"):
         shutil.copytree(ROOT / room, project / room)
-    for name in ("__init__", "commands", "files", "regions", "implicit"):
+    for name in ("__init__", "commands", "regions", "implicit"):
         shutil.copy(ROOT / f"curriculum/{name}.py", project / "curriculum")
     for file in (".gitignore", "contact.py"):
         shutil.copy(ROOT / file, project)

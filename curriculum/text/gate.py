@@ -4,10 +4,9 @@ import json
 import re
 from collections import Counter
 
-from curriculum.files import write_whole
-from curriculum.measured import ledger, results, seal
-from curriculum.measured.seal import BLOCK
-from curriculum.measured.stale import changed
+from curriculum.commands import write_whole
+from curriculum.measured import ledger, results, stale
+from curriculum.measured.stale import BLOCK, changed
 from curriculum.regions import ROOT, read_text, split_all
 from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, load_meta
 from curriculum.text.sections import FENCE, TEXTS, blank, changes, files, line_at, sections
@@ -132,7 +131,7 @@ class Gate:
             for file in files(f"{folder}/*.md", f"{folder}/*.svg"):
                 written.append((file, read_text(file), again.get(name, "write it again")))
         for file, text, command in written:
-            if not seal.holds(text):
+            if not stale.holds(text):
                 self.say(file, 1, "is not what was written of today's results", command)
 
     def check_measured(self):

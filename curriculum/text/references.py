@@ -31,7 +31,7 @@ from pathlib import Path
 import yaml
 
 import contact
-from curriculum.files import write_whole
+from curriculum.commands import write_whole
 from curriculum.measured import ledger, results
 from curriculum.measured.stale import changed, fingerprint
 from curriculum.regions import CODE, NAME, ROOT

@@ -5,7 +5,7 @@ section: of its text, and of the code of every region that the section includes 
 `code span` that the region defines). When either side changes, somebody reads the section again.
 So it is with the opening words of contact.py and exact.py (the signs, the promise), the exercises,
 the captions of figures, and what meta.yaml promises, reads and runs; these have no regions. What a
-command writes into the README needs no reader: it has a seal (measured/seal.py).
+command writes into the README needs no reader: it has a seal (measured/stale.py).
 """
 
 import hashlib
@@ -16,8 +16,8 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from curriculum.measured.machine import git
-from curriculum.measured.seal import BLOCK
+from curriculum.measured.results import git
+from curriculum.measured.stale import BLOCK
 from curriculum.regions import ROOT, blank, line_at, read_text, split_all
 from curriculum.text.references import INCLUDE
 

@@ -4,8 +4,7 @@ import json
 import os
 import sys
 
-from curriculum.commands import command
-from curriculum.files import write_json
+from curriculum.commands import command, write_json
 
 from . import ROOT
 
