@@ -772,17 +772,23 @@ def run_exact(scene, dt, steps, progress=None):
     return Run(times, *wider.simulate_exact(scene, times, GRAVITY, progress or (lambda k: None)))
 
 
-def beside(name: str):
-    """A module of curriculum/ beside this file; None if it, or what it needs, is not there."""
+def beside(name: str, needed=False):
+    """A module of curriculum/ beside this file. None if it, or what it needs, is not there.
+
+    Raises ImportError, in words, in place of None if it is `needed`.
+    """
     if (home := str(Path(__file__).resolve().parent)) not in sys.path:
         sys.path.append(home)
     try:
         return importlib.import_module(f"curriculum.{name}")
     except ImportError as error:
         absent = f"curriculum.{name}.".startswith(f"{error.name}.")  # this module or its folder
-        if error.name is None or (isinstance(error, ModuleNotFoundError) and absent):
-            return None  # no name: the module says so itself
-        raise  # a fault in the module
+        if error.name and not (isinstance(error, ModuleNotFoundError) and absent):
+            raise  # a fault in the module
+        if needed:  # a module without a name has said itself what it lacks
+            why = "it needs the folder curriculum beside contact.py"
+            raise ImportError(why if error.name else error) from None
+        return None
 
 
 # --- region: measure ---
@@ -1088,16 +1094,18 @@ def write_files(args, metrics, runs, scene):
     text = json.dumps(metrics, indent=2, sort_keys=True, allow_nan=False)
     (out / "metrics.json").write_bytes(f"{text}\n".encode())
     yield f"metrics: {out / 'metrics.json'}"
-    files = {"recording": (args.rerun, "contact.rrd"), "plotting": (args.plot, "contact.svg")}
-    for module, (asked, file) in files.items():
+    recording = args.rerun, "recording", "run.recording", "contact.rrd"
+    picture = args.plot, "picture", "run.plotting", "contact.svg"
+    for asked, name, module, file in (recording, picture):
         if asked and runs:
             try:
-                if not (maker := beside(f"run.{module}")):
-                    raise ImportError("it needs the folder curriculum beside contact.py")
+                maker = beside(module, needed=True)
                 maker.write(str(out / file), runs, scene, metrics["quality"], title)
-                yield f"{maker.KIND}: {out / file}"
+                yield f"{name}: {out / file}"
             except ImportError as error:
-                yield f"no {file}: {error}"
+                if error.name:
+                    raise  # a fault in the module
+                yield f"no {name}: {error}"
 
 
 # --- region: report ---

@@ -213,16 +213,10 @@ def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
     return drawn
 
 
-def ending(run: contact.Run, scene: contact.Scene) -> str:
-    """How the run ended, in contact.py's words, such as "ok" and "through the floor"."""
-    dt = float(np.diff(run.t[:2]).sum())
-    return contact.ending(contact.contact_quality(run, scene, dt))
-
-
-def write(path: str, runs: dict[str, contact.Run], scene: contact.Scene, title: str) -> None:
+def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str) -> None:
     """Draw the curves of runs {model: Run} over time, a panel each, as SVG, whole or not at all.
 
-    Raises ImportError where matplotlib is missing.
+    Takes what recording.write takes. Raises ImportError where matplotlib is missing.
     """
     drawn = curves(runs, scene)
     picture, axes = figure(len(drawn), title, height=1.5, below=0.3)

@@ -13,7 +13,7 @@ import numpy as np
 import contact
 from curriculum import commands
 from curriculum.commands import write_whole
-from curriculum.run.plotting import COLORS, contact_impulses, curves, ending
+from curriculum.run.plotting import COLORS, contact_impulses, curves
 
 try:
     import rerun as rr
@@ -32,20 +32,22 @@ FARTHEST = 150  # radii: how far out of the middle a ball is still kept in view
 MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sinks by 0.01
 
 
-def write(path: str, runs: dict[str, contact.Run], scene: contact.Scene) -> None:
+def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str) -> None:
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
+
+    quality: {model: contact_quality} of the runs; the title has no place in a recording.
 
     Whole columns are sent, in rerun's strict mode. The timelines are step, sim_time (up to 9e9 s),
     and landing, which it opens on: sim_time, but all that is long before the first contact at its
     start. The entities are world/MODEL/{ground,table,balls,pushes} and CURVE/MODEL.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
-    drawn, seconds = curves(runs, scene), worth_seeing(runs, scene)
+    drawn, seconds = curves(runs, scene), worth_seeing(runs, quality)
     times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         temporary = Path(folder, os.path.basename(path))
-        recording.save(temporary, default_blueprint=layout(runs, scene, drawn, seconds))
+        recording.save(temporary, default_blueprint=layout(runs, scene, drawn, seconds, quality))
         for model, run in runs.items():
             send_table(recording, model)
             send_balls(recording, model, run, scene, times[model])
@@ -140,7 +142,7 @@ def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
             send(recording, f"{title.split()[0]}/{model}", look, times[model], columns)
 
 
-def layout(runs, scene: contact.Scene, drawn, seconds: tuple) -> rrb.Blueprint:
+def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     """The blueprint that travels in the file: the balls, the table magnified, the plots.
 
     Every run has views of its own, so balls that roll far never cross into another run's. Where
@@ -149,7 +151,7 @@ def layout(runs, scene: contact.Scene, drawn, seconds: tuple) -> rrb.Blueprint:
     all do.
     """
     large, x = float(scene.radius.max()), scene.q0[0]
-    ends = {model: ending(run, scene) for model, run in runs.items()}
+    ends = {model: contact.ending(row) for model, row in quality.items()}
     calm = [run for model, run in runs.items() if "EXPLODED" not in ends[model]]
     shown = frame(calm or list(runs.values())[:1], x, large)
     lanes = [
@@ -192,14 +194,14 @@ def reach(values: np.ndarray, large: float) -> float:
 
 
 @np.errstate(all="ignore")
-def worth_seeing(runs: dict, scene: contact.Scene) -> tuple[float, float]:
+def worth_seeing(runs: dict, quality: dict) -> tuple[float, float]:
     """From when to when [s]: BEFORE the first contact, to when the last ball has come to rest.
 
     It rests once it is slower than 1 cm/s for good; a tenth more is shown, at most to the end.
     """
     struck, rests = [], [0.0]
-    for run in runs.values():
-        touched = contact.first_contact(run, scene, float(np.diff(run.t[:2]).sum()))
+    for model, run in runs.items():
+        touched = quality[model]["first_contact_step"]
         struck += run.t[touched : touched + 1].tolist()
         moving = np.flatnonzero(~(np.abs(run.v) < 0.01).all((1, 2)))
         rests += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]

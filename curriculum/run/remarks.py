@@ -9,13 +9,6 @@ import numpy as np
 import contact
 from curriculum.commands import ROOT, command
 
-OWNERS = {  # of the knobs that some models do not have
-    "stiffness": ["penalty"],
-    "damping": ["penalty"],
-    "restitution": ["lcp", "soft", "exact"],
-    **dict.fromkeys(("baumgarte", "iters", "warm"), ["lcp"]),
-    **dict.fromkeys(("solref", "solimp"), ["soft"]),
-}
 APEXES = 5  # heights of bounces that are printed
 
 
@@ -24,10 +17,10 @@ def print_remarks(args, runs: dict[str, contact.Run], scene: contact.Scene) -> N
 
     args: the flags as contact.parse_flags gives them; runs {model: Run}.
     """
-    usual = contact.parse_flags([])
-    for knob, owners in OWNERS.items():
-        given = getattr(args, knob) != getattr(usual, knob)
-        if given and args.contact not in ("all", *owners):
+    usual = contact.Settings()._asdict() | dict.fromkeys(("damping", "restitution"), -1.0)
+    for knob in usual:
+        owners = [model for model, knobs in contact.MODELS.items() if knob in knobs]
+        if owners and getattr(args, knob) != usual[knob] and args.contact not in ("all", *owners):
             print(f"--{knob} is for {' and '.join(owners)}, and changes nothing here")
     if list(runs) == ["exact"]:
         print(*landing(runs["exact"], scene), sep="\n")
@@ -44,7 +37,7 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
         yield f"exact: {who} does not land within these steps"
         return
     after = contact.time_to_impact(float(gap[struck[0]]), float(vy[struck[0]]), g)
-    speed = -contact.speed(after, vy[struck[0]], g)
+    speed = -(vy[struck[0]] + after * g)
     yield f"exact: {who} lands after {run.t[struck[0]] + after:.6g} s, at {speed:.6g} m/s"
     tops = [gap[j] - vy[j] ** 2 / (2 * g) for j in range(struck[0], len(gap) - 1) if turns(vy, j)]
     if tops:
