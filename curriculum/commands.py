@@ -5,7 +5,6 @@ import contextlib
 import json
 import os
 import shlex
-import shutil
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -25,6 +24,12 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: error: {message}\n")
 
 
+def near(word):
+    """A path as one would type it here: relative below this folder; other words as they are."""
+    below = os.path.isabs(word) and Path(word).is_relative_to(Path.cwd())
+    return os.path.relpath(word) if below else word
+
+
 def command(*words):
     """A command for the Python that is running, quoted for this system's shell."""
     python = ("uv", "run", "python") if "UV" in os.environ else (sys.executable,)  # uv run sets it
@@ -38,37 +43,27 @@ def quoted(*words):
         return shlex.join(words)
     import subprocess  # slow, so only where it is needed
 
-    line = [subprocess.list2cmdline([word]) for word in words]
-    return " ".join(f'"{word}"' if word[0] != '"' and "[" in word else word for word in line)
+    return subprocess.list2cmdline(words)
 
 
 def to_install(package, extra=None):
     """One line that says how to install a package that is not there, or the extra that brings it.
 
-    uv's environments have no pip: there it is the same run again, with the package. The system's
-    own Python often refuses to be changed: there it is an environment of one's own.
+    With uv it is the same run again, with the package. A system's own Python may lack pip, or
+    refuse to be changed: there it is an environment of one's own.
     """
-    wanted = ("-e", f"{near(str(ROOT))}[{extra}]") if extra else (package,)
     import sysconfig  # slow, so only where it is needed
 
-    system = sys.prefix == sys.base_prefix
-    refused = system and Path(sysconfig.get_path("stdlib"), "EXTERNALLY-MANAGED").exists()
-    pip = find_spec("pip") is not None and not refused
-    if "UV" in os.environ or not pip and shutil.which("uv"):
+    wanted = ("-e", f"{near(str(ROOT))}[{extra}]") if extra else (package,)
+    refused = Path(sysconfig.get_path("stdlib"), "EXTERNALLY-MANAGED").exists()
+    if "UV" in os.environ:
         more = ("--extra", extra) if extra else ("--with", package)
-        line = quoted("uv", "run", *more, "python", *this_run())
-    elif pip:
-        line = quoted(sys.executable, "-m", "pip", "install", *wanted)
+        line = quoted("uv", "run", *more, "python", *sys.orig_argv[1:])
+    elif find_spec("pip") and (sys.prefix != sys.base_prefix or not refused):
+        line = command("-m", "pip", "install", *wanted)
     else:
         line = f"python3 -m venv .venv && {quoted('.venv/bin/pip', 'install', *wanted)}"
     return f"{package} is missing; install it: {line}"
-
-
-def this_run():
-    """What one typed after `python` to start this program."""
-    spec = sys.modules["__main__"].__spec__
-    start = ("-m", spec.name.removesuffix(".__main__")) if spec else (sys.argv[0],)
-    return *start, *sys.argv[1:]
 
 
 @contextlib.contextmanager
@@ -101,19 +96,20 @@ def stoppable():
         sys.exit(130)
 
 
-def near(word):
-    """A path as one would type it here: relative below this folder; other words as they are."""
-    below = os.path.isabs(word) and Path(word).is_relative_to(Path.cwd())
-    return os.path.relpath(word) if below else word
-
-
 def write_whole(path, content):
-    """Replace the file at `path` by str or bytes, whole or not at all. Makes missing folders."""
+    """Replace the file at `path` by str or bytes, whole or not at all. Makes missing folders.
+
+    What stands there and is no regular file (/dev/null, a pipe) is written into, not replaced.
+    """
+    path, data = Path(path), content.encode() if isinstance(content, str) else content
+    if path.exists() and not path.is_file():
+        path.write_bytes(data)
+        return
     path = Path(os.path.realpath(path))
     temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        temporary.write_bytes(content.encode() if isinstance(content, str) else content)
+        temporary.write_bytes(data)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)

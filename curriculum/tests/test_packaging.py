@@ -4,9 +4,12 @@ import ast
 import importlib.metadata
 import os
 import re
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 
+from curriculum.commands import write_whole
 from curriculum.tests.helpers import CONTACT, ROOT, python
 
 README = (ROOT / "README.md").read_text("utf-8")
@@ -42,7 +45,7 @@ def test_what_to_install_is_said_for_the_program_that_runs_here(tmp_path):
     code = "from curriculum.commands import to_install; print(to_install('yaml', 'page'), end='')"
     words, nowhere = ("-S", "-c", code), str(tmp_path / "empty")
     uv = python(*words, UV="uv").stdout
-    assert uv == "yaml is missing; install it: uv run --extra page python -c"
+    assert uv.startswith("yaml is missing; install it: uv run --extra page python -S -c ")
     pip = python(*words, PYTHONPATH=str(tmp_path), PATH=nowhere).stdout
     assert pip.endswith("-m pip install -e '.[page]'") or "venv .venv" in pip  # or it is refused
     neither = python(*words, PATH=nowhere).stdout
@@ -51,6 +54,20 @@ def test_what_to_install_is_said_for_the_program_that_runs_here(tmp_path):
         "from curriculum.commands import needs\nwith needs('page'):\n    import curriculum.pgae"
     )
     assert "ModuleNotFoundError: No module named 'curriculum.pgae'" in python("-c", broken).stderr
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with a name")
+def test_what_is_no_file_is_written_into_and_stays_what_it_is(tmp_path):
+    path = tmp_path / "pipe"
+    os.mkfifo(path)
+    with ThreadPoolExecutor() as reader:
+        text = reader.submit(path.read_text)
+        write_whole(path, "some words")
+        assert text.result() == "some words" and path.is_fifo()
+    write_whole(os.devnull, "some words")
+    assert Path(os.devnull).is_char_device() and [path.name for path in tmp_path.iterdir()] == [
+        "pipe"
+    ]
 
 
 def test_tests_without_a_package_are_skipped_by_its_name(only, tmp_path):
