@@ -447,7 +447,9 @@ ENGINES = {  # label, package, module, session
     "box2d3": ("Box2D 3", "pyb2d3", "pyb2d3", Box2d3),
     "drake": ("Drake", "drake", "pydrake", Drake),
 }
-penalty, lcp, soft, exact = (partial(setting, model, model=model) for model in contact.MODELS)
+penalty, lcp, leapfrog, soft, exact = (
+    partial(setting, model, model=model) for model in contact.MODELS
+)
 mujoco, pymunk, box2d3, drake = (partial(setting, engine) for engine in ENGINES)
 SHARED = ("stack", "pile", "heavy_100", "heavy_1000", "tower")  # where sweeps have to agree
 AHEAD, GAIN_1 = "{iters} sweeps, ahead, gain {baumgarte:g}", dict(baumgarte=1.0, ahead=True)

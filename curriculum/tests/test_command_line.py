@@ -66,15 +66,16 @@ WORDS = {"--solref": 2, "--solimp": 5}
 
 
 @pytest.mark.parametrize(
-    "flag, value", [(flag, each) for flag in BAD for each in BAD[flag].split()]
+    "flag, value", [(flag, each) for flag in BAD for each in ("--", *BAD[flag].split())]
 )
 def test_bad_input_is_one_line_that_says_what_was_given_and_what_is_allowed(
     flag, value, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
-    words = [flag, *[value] * WORDS[flag]] if flag in WORDS else [f"{flag}={value}"]
+    several = flag in WORDS and value != "--"
+    words = [flag, *[value] * WORDS[flag]] if several else [f"{flag}={value}"]
     err = refused(main(capsys, "--scene", "stack", *words))
-    assert flag in err and value[:40] in err and re.search("allowed|choose from", err)
+    assert flag in err and value[:40] in err and re.search("allowed|choose from|no value", err)
     assert not any(tmp_path.iterdir())
 
 
@@ -90,6 +91,7 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
     ("--scene bounce --bodies 1", "--bodies"), ("--solref 0.02 0", "--solref"),
     ("--solref -1 1", "--solref"), ("--solref 0.02 1e-162", "--solref"), ("--stiff 3", "--stiff"),
     ("--no-such-flag", "--no-such-flag"), ("--out ''", "--out: given ''; allowed: "),
+    ("drop", "--scene drop"), ("--out=--", "--out"), ("drop bounce", "given drop bounce"),
     ("--scene pile --steps 1000000 --bodies 10000",
      "--steps 1000000 of 10000 balls need 3202 GB of memory; allowed: "),
 ])  # fmt: skip
@@ -185,15 +187,28 @@ def test_no_step_one_step_and_two_steps_of_every_scene_work(scene, steps, tmp_pa
 def test_figures_stand_under_their_headings_and_every_heading_is_explained(tmp_path, capsys):
     _, out, _ = main(capsys, "--dt", "0.03", "--no-rerun", "--out", tmp_path)
     lines = out.splitlines()
-    rows = [line.split(maxsplit=9) for line in lines if line.split()[0] in contact.MODELS]
-    assert [row[0] for row in rows] == list(contact.MODELS)
+    above, below, *rows = lines[1 : 3 + len(contact.MODELS)]
+    titles = {title.split()[-1]: title for title in contact.COLUMNS}  # what stands below is unique
+    titles |= {"in": "energy in", "gap/r": "rest gap/r"}
+    ends = [match.end() for match in re.finditer(r"\S+", below)][1:]
+    zero = next(line for line in lines if line.startswith("  0 or unknown"))
+    assert len(ends) + len(zero.split(", ")) == len(contact.COLUMNS)
     metrics = strict_json(tmp_path / "metrics.json")["quality"]
-    for row in rows:
-        for text, (key, _) in zip(row[1:9], contact.COLUMNS.values()):
-            assert float(text.replace(",", "")) == pytest.approx(metrics[row[0]][key], rel=0.06)
-    assert re.fullmatch(r"EXPLODED at step \d+.*", rows[0][9]) and rows[3][9] == "ok"
-    for title, (_, meaning) in contact.COLUMNS.items():
-        assert any(line.split() == [*title.split(), *meaning.split()] for line in lines)
+    for row, model in zip(rows, contact.MODELS):
+        assert row.split()[0] == model and len(row) <= 80
+        for word, end, text in zip(below.split()[1:], ends, row.split()[1:]):
+            title = (
+                f"{above[:end].split()[-1]} {word}" if word in ("err/r", "pen/r") else titles[word]
+            )
+            value = metrics[model][contact.COLUMNS[title][0]]
+            assert float(text.replace(",", "")) == pytest.approx(value, rel=0.06)
+            assert row[:end].split()[-1] == text
+            assert any(
+                line.split() == [*title.split(), *contact.COLUMNS[title][1].split()]
+                for line in lines
+            )
+    assert "state: penalty EXPLODED at step 98" in lines
+    assert "state: lcp, leapfrog, soft, exact ok" in lines
 
 
 def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
@@ -201,8 +216,7 @@ def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
     knobs = "--stiffness 5e3 --baumgarte 0.4 --iters 3 --warm 0.5 --solref 0.03 0.8"
     words = f"{flags} --steps 150 {knobs} --solimp 0.5 0.9 0.002 0.4 3 --no-rerun".split()
     assert main(capsys, *words, "--out", tmp_path)[0] == 0
-    scene = contact.build_scene("stack", 5, 4, 0.5, 20.0)
-    scene = scene._replace(mass=2.0 * scene.mass)
+    scene = contact.build_scene("stack", 5, 4, 0.5, 20.0, 2.0)
     settings = contact.Settings(5e3, 0.4, 3, 0.5, (0.03, 0.8), (0.5, 0.9, 0.002, 0.4, 3.0))
     runs = {
         model: contact.run_model(model, scene, 0.004, 150, settings) for model in contact.MODELS
@@ -335,18 +349,20 @@ LINES = [
     ("--contact exact", r"exact: the ball lands after 0\.429\d+ s, at 4\.21\d+ m/s"),
     ("--contact exact --scene bounce", r"exact: its bounces rise to 0\.4437, 0\.2174, .* m \.\.\."),
     ("--contact lcp --stiffness 5", "--stiffness is for penalty, and changes nothing here"),
-    ("--scene bounce --ahead", "--ahead is for restitution 0, and changes nothing here"),
-    ("--scene stack --dt 0.006 --steps 4000", "penalty .*  trembles"),
-    ("--scene stack --dt 0.003", "stability: penalty .* 0.006 s, .* r deep, and trembles"),
+    ("--contact soft --iters 5", "--iters is for lcp and leapfrog, and changes nothing here"),
+    ("--scene stack --dt 0.006 --steps 4000", "state: penalty trembles"),
+    ("--scene stack --dt 0.003", "stability: penalty 0.006 s, there .* r deep, and trembles"),
     ("--scene bounce", "verdict: depth at rest: soft > lcp .*"),
     ("--scene bounce", "verdict: not at rest at the end: penalty"),
-    ("--smoke --scene bounce", "verdict: not at rest at the end: penalty, lcp, soft, exact"),
-    ("--dt 0.064", "lcp .* through the floor"),
+    ("--smoke --scene bounce",
+     "verdict: not at rest at the end: penalty, lcp, leapfrog, soft, exact"),
+    ("--dt 0.03", r"verdict: off by, at most: leapfrog 0 r, .*, penalty flies to pieces"),
+    ("--contact exact", "  0 or unknown   max pen/r, .*"),
+    ("--dt 0.064", "state: lcp through the floor"),
     ("--dt 0.064", "stability: lcp .*, through the floor"),
-    ("--scene stack --contact soft --dt 0.1", "soft .* through a ball"),
-    ("--stiffness 1e15 --steps 300",
-     "stability: penalty explodes at every dt tried that comes to a contact"),
-    ("--dt 1e-6 --steps 3", "stability: lcp comes to no contact within these steps"),
+    ("--scene stack --contact soft --dt 0.1", "state: soft through a ball"),
+    ("--stiffness 1e15 --steps 300", "stability: penalty none, wherever it touches"),
+    ("--dt 1e-6 --steps 3", "stability: lcp comes to no contact"),
 ]
 # fmt: on
 
@@ -355,6 +371,26 @@ LINES = [
 def test_the_report_says_what_a_reader_would_ask(flags, line, tmp_path, capsys):
     _, out, _ = main(capsys, *flags.split(), "--no-rerun", "--out", tmp_path)
     assert any(re.fullmatch(line, each) for each in out.splitlines()), out
+
+
+def test_a_name_that_stdout_cannot_encode_is_spelled_out(tmp_path):
+    words = "contact.py", "--steps", "5", "--no-rerun", "--out", tmp_path / "é"
+    done = python(*words, cwd=ROOT, PYTHONIOENCODING="ascii")
+    assert (done.returncode, done.stderr) == (0, "") and "xe9" in done.stdout
+
+
+def test_a_disk_that_fills_up_costs_a_file_and_names_those_that_were_written(tmp_path):
+    (tmp_path / "contact.rrd").mkdir()  # in the way of the recording
+    done = python("contact.py", "--steps", "5", "--out", tmp_path, cwd=ROOT)
+    assert done.returncode == 2 and f"metrics: {tmp_path}" in done.stdout
+    assert "cannot write" in done.stderr and done.stderr.count("\n") == 1
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
+def test_ctrl_c_while_modules_load_is_one_word_too(tmp_path):
+    (tmp_path / "numpy.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
+    done = python(CONTACT, PYTHONPATH=str(tmp_path))
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "stopped\n")
 
 
 def test_a_knob_has_one_default():
