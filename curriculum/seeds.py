@@ -52,13 +52,12 @@ def main(argv=None):
         found = parallel.run_jobs(partial(qualities, args), seeds, "seeds", scheduler=scheduler)
     except (ImportError, OSError) as error:
         return contact.fail(f"argument --scheduler: {error}")
-    rows = {}
-    for model in contact.MODELS:
-        if mine := [each[model] for each in found if model in each]:
-            rows |= summary(model, mine)
-    rows, span = contact.rounded(rows), f"seeds {seeds[0]} to {seeds[-1]}"
+    runs = {model: [each[model] for each in found if model in each] for model in contact.MODELS}
+    rows = contact.rounded({model: summary(mine) for model, mine in runs.items() if mine})
+    span = f"seeds {seeds[0]} to {seeds[-1]}"
     print(f"scene {args.scene}, {span}: {args.steps} steps of {args.dt:g} s")
-    contact.print_table(rows, lambda row: ending(row, len(seeds)))
+    table = {f"{model} {way}": row for model, ways in rows.items() for way, row in ways.items()}
+    contact.print_table(table, lambda row: ending(row, len(seeds)))
     path = os.path.join(args.out, "seeds.json")
     kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps}
     try:
@@ -75,8 +74,8 @@ def qualities(args, seed):
     return contact.run_all(args, scene)[2]
 
 
-def summary(model, found):
-    """{"model median": row, "model lowest": row, "model highest": row} of many qualities, by key.
+def summary(found):
+    """{"median": row, "lowest": row, "highest": row} of many qualities of a model, by key.
 
     A row also counts the runs, those that exploded, and others that went through something.
     """
@@ -88,7 +87,7 @@ def summary(model, found):
     keys = [key for key, _ in contact.COLUMNS.values()]
     ways = {"median": statistics.median, "lowest": min, "highest": max}
     return {
-        f"{model} {name}": counts | {key: chosen(way, [row[key] for row in found]) for key in keys}
+        name: counts | {key: chosen(way, [row[key] for row in found]) for key in keys}
         for name, way in ways.items()
     }
 

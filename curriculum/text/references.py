@@ -75,14 +75,16 @@ def cached(name: str, inputs, make, code=CODE):
 
 
 def run_contact(flags) -> dict:
-    """metrics.json of `python contact.py FLAGS`, in a folder of its own."""
+    """What `python contact.py FLAGS` measures, or many seeds where the first flag is A:B."""
+    words = [str(flag) for flag in flags]
+    many = ":" in "".join(words[:1])
+    start, file = (["-m", "curriculum.seeds"], "seeds") if many else (["contact.py"], "metrics")
     with tempfile.TemporaryDirectory() as out:
-        command = [sys.executable, "-B", "contact.py", "--no-rerun", "--out", out, *map(str, flags)]
+        command = [sys.executable, "-B", *start, *words, "--no-rerun", "--out", out]
         run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
         if run.returncode:
-            words = " ".join(map(str, flags))
-            raise ValueError(f"contact.py {words} fails: {run.stderr.strip()[-300:]}")
-        return json.loads((Path(out) / "metrics.json").read_text("utf-8"))
+            raise ValueError(f"{' '.join(start + words)} fails: {run.stderr.strip()[-300:]}")
+        return json.loads((Path(out) / f"{file}.json").read_text("utf-8"))
 
 
 class Numbers:
