@@ -147,8 +147,7 @@ class Contact:
         self.nx, self.ny, self.depth = nx, ny, depth
         self.inv_mass = a.inv_mass + b.inv_mass
         self.m_eff = 1.0 / self.inv_mass if self.inv_mass > 0.0 else 0.0  # effective mass [kg]
-        self.target = 0.0  # m/s
-        self.softness = 0.0  # R [1/kg] of soft, which then sets m_eff, too
+        self.target = self.softness = 0.0  # m/s; R [1/kg] of soft, which then sets m_eff, too
         self.lam = 0.0  # the impulse [N s] of this step so far
         # set by those that use them: start, before (solve_with_momentum), after, hits (leapfrog)
 
@@ -632,6 +631,8 @@ def state_of(balls) -> list[tuple]:
 # --- region: flight ---
 def fly(balls, dt, rows, kicks):
     """Take steps, up to one that may see a contact; rows[0] is the state now. Returns how many."""
+    if any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls):  # mostly the cheapest to see
+        return 0
     if detect_contacts(balls, step_reach(balls, dt)):  # no model looks farther
         return 0
     q, v = rows[..., :2], rows[..., 2:]  # views of the rows
@@ -703,9 +704,9 @@ def run_model(
 
 def check(model, scene, dt, steps, settings):
     """Raise ValueError, with the name of the field, for what no model can run."""
-    mass, radius, s = scene.mass, scene.radius, settings
-    solref, solimp = s.solref or SOLREF, s.solimp or SOLIMP
-    spring = min(solref) > 0.0 or max(solref) <= 0.0
+    mass, radius, e, s = scene.mass, scene.radius, scene.restitution, settings
+    solref, solimp = np.array(s.solref or SOLREF), np.array(s.solimp or SOLIMP)
+    spring = (solref > 0.0).all() or (solref <= 0.0).all()
     for field, given, fine, allowed in (
         ("model", model, model in MODELS, ", ".join(MODELS)),
         ("dt", dt, 0.0 < dt < math.inf, "above 0 and finite"),
@@ -714,14 +715,14 @@ def check(model, scene, dt, steps, settings):
         ("v0", scene.v0, np.isfinite(scene.v0), "finite"),
         ("mass", mass, mass > 0.0, "above 0; infinite for a ball that no push moves"),
         ("radius", radius, (radius > 0.0) & (radius < math.inf), "above 0 and finite"),
-        ("restitution", scene.restitution, 0.0 <= scene.restitution <= 1.0, "from 0 to 1"),
+        ("restitution", e, 0.0 <= e <= 1.0, "from 0 to 1"),
         ("damping", scene.damping, math.isfinite(scene.damping), "finite"),
         ("stiffness", s.stiffness, 0.0 <= s.stiffness < math.inf, "0 or more, and finite"),
         ("baumgarte", s.baumgarte, 0.0 <= s.baumgarte <= 1.0, "from 0 to 1"),
         ("iters", s.iters, s.iters >= 1, "1 or more"),
         ("warm", s.warm, 0.0 <= s.warm <= 1.0, "from 0 to 1"),
-        ("solref", solref, spring and np.isfinite(solref).all(), "two above 0, or two up to 0"),
-        ("solimp", solimp, np.isfinite(solimp) & (np.array(solimp) >= 0.0), "0 or more, finite"),
+        ("solref", solref, np.isfinite(solref).all() and spring, "two above 0, or two up to 0"),
+        ("solimp", solimp, (solimp >= 0.0) & (solimp < math.inf), "0 or more, and finite"),
     ):
         if not np.all(fine):
             wrong = np.asarray(given)[~np.asarray(fine)].tolist()[0]
@@ -773,22 +774,23 @@ def run_exact(scene, dt, steps, progress=None):
 
 
 def beside(name: str, needed=False):
-    """A module of curriculum/ beside this file. None if it, or what it needs, is not there.
+    """A module of curriculum/ beside this file; None if it, or what it needs, is not there.
 
-    Raises ImportError, in words, in place of None if it is `needed`.
+    ImportError, in words, instead of None if it is `needed`.
     """
     if (home := str(Path(__file__).resolve().parent)) not in sys.path:
         sys.path.append(home)
+    why = "it needs the folder curriculum beside contact.py"
     try:
         return importlib.import_module(f"curriculum.{name}")
     except ImportError as error:
-        absent = f"curriculum.{name}.".startswith(f"{error.name}.")  # this module or its folder
-        if error.name and not (isinstance(error, ModuleNotFoundError) and absent):
+        if error.name is None:
+            why = str(error)  # the module says itself what it needs
+        elif not f"curriculum.{name}.".startswith(f"{error.name}."):
             raise  # a fault in the module
-        if needed:  # a module without a name has said itself what it lacks
-            why = "it needs the folder curriculum beside contact.py"
-            raise ImportError(why if error.name else error) from None
-        return None
+    if needed:
+        raise ImportError(why)
+    return None
 
 
 # --- region: measure ---
@@ -930,9 +932,9 @@ GRID_MODELS = ("penalty", "lcp", "leapfrog")  # soft's time constant grows with 
 
 
 def measure_stability(run, scene: Scene, dt, steps, stiffness, known: dict) -> dict:
-    """By model, the largest step of DT_GRID at which run(model, step) does not explode, and how.
+    """By model, the largest step of DT_GRID at which run(model, dt) does not explode.
 
-    known: {model: quality} at dt itself. Smaller steps than the largest are not tried.
+    known: {model: quality} at dt itself. Steps smaller than the largest are not tried.
     """
     mass, damping, count = float(scene.mass[0]), scene.damping, len(scene.mass)
     grid: dict = {
