@@ -410,7 +410,7 @@ def turn(c, dt):
     t = 0.0  # balls that overlap or part: now
     if apart > 0.0 > along:
         root = math.sqrt(max(0.0, along * along - fast * apart))  # 0 if they miss
-        t = min(dt, (-along - root) / fast)
+        t = min(dt, (-along - root) / fast) if fast > 0.0 else dt  # 0: too slow for a square
     x, y = dx + t * vx, dy + t * vy
     distance = math.sqrt(x * x + y * y)
     if b is not FLOOR and distance > 0.0:
@@ -421,7 +421,7 @@ def turn(c, dt):
 # --- region: impact-time ---
 def time_to_impact(gap, v_n, a_n):
     """When a gap closes [s]: the first root of gap + v_n t + a_n t^2 / 2; inf if it does not."""
-    if a_n is None or (v_n >= 0.0 and a_n >= 0.0):  # None: it stays closed
+    if a_n is None or not (v_n < 0.0 or a_n < 0.0):  # None: it stays closed
         return math.inf
     square = v_n * v_n - 2.0 * gap * a_n
     if square < 0.0:

@@ -23,9 +23,9 @@ except ModuleNotFoundError:
 if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]  # contact.py's own loops are faster
     raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
 
-MODELS = ("penalty", "lcp", "soft")
-PENALTY, LCP, SOFT = range(3)
-STATES = 200_000  # positions of balls that are filled in one go, before report() hears of it
+MODELS = ["penalty", "lcp", "leapfrog", "soft"]
+PENALTY, LCP, LEAPFROG, SOFT = range(4)
+STATES = 200_000  # positions of balls that are filled in one go, before progress() hears of it
 STATE = "vx vy inv_mass radius x y listed_x listed_y fx fy mass"  # listed: when pairs were
 BALL = np.dtype([(name, float) for name in STATE.split()])
 CONTACT = np.dtype(
@@ -43,8 +43,8 @@ class Knobs(NamedTuple):
     model: int  # of MODELS
     dt: float
     gravity: float
-    margin: float  # of lcp
-    ahead: bool  # of lcp: look as far as a step travels
+    margin: float  # of lcp and leapfrog
+    far: bool  # of leapfrog: looks as far as a step travels
     skin: float  # m: how much farther the list of pairs looks than it must
     stiffness: float
     damping: float
@@ -195,17 +195,17 @@ def penalty_step(balls, contacts, knobs):
         a.fy += f_n * c.ny
         b.fx -= f_n * c.nx
         b.fy -= f_n * c.ny
-    accelerate(balls, knobs)
+    accelerate(balls, knobs.dt, knobs.gravity)
     move(balls, knobs.dt)
 
 
 @compiled
-def accelerate(balls, knobs):
+def accelerate(balls, dt, gravity):
     """The velocity that gravity and the forces add to every ball that can move."""
     for ball in balls[:-1]:
         if ball.inv_mass > 0.0:
-            ball.vx += knobs.dt * (ball.fx / ball.mass)
-            ball.vy += knobs.dt * (knobs.gravity + ball.fy / ball.mass)
+            ball.vx += dt * (ball.fx / ball.mass)
+            ball.vy += dt * (gravity + ball.fy / ball.mass)
 
 
 @compiled
@@ -219,7 +219,7 @@ def move(balls, dt):
 @compiled
 def step_reach(balls, knobs):
     """How far [m] a step looks: by a margin, or as far as two of the fastest balls travel in it."""
-    if not knobs.ahead:
+    if not knobs.far:
         return knobs.margin
     fastest = 0.0
     for ball in balls[:-1]:
@@ -228,16 +228,16 @@ def step_reach(balls, knobs):
 
 
 @compiled
-def contact_target(c, balls, restitution, baumgarte, dt, ahead):
+def contact_target(c, balls, restitution, baumgarte, dt):
     """The normal velocity [m/s] with which contact c must leave at least."""
-    close = c.depth / dt
     bias = baumgarte / dt * c.depth
     if restitution == 0.0:
-        return close if ahead and c.depth < 0.0 else bias
+        return bias
     v_n = normal_velocity(c, balls)
     bounce = -restitution * v_n
     if bias > 0.0:
         return larger(bias, bounce)
+    close = c.depth / dt
     return bounce if dt * v_n <= c.depth or not close < bounce else close
 
 
@@ -280,14 +280,114 @@ def solve_contacts(balls, contacts, iters, tolerance):
 def lcp_step(balls, contacts, last, knobs):
     """One step: gravity predicts the velocities, impulses correct them, the balls move."""
     for c in contacts:
-        c.target = contact_target(
-            c, balls, knobs.restitution, knobs.baumgarte, knobs.dt, knobs.ahead
-        )
-    accelerate(balls, knobs)
+        c.target = contact_target(c, balls, knobs.restitution, knobs.baumgarte, knobs.dt)
+    accelerate(balls, knobs.dt, knobs.gravity)
     if knobs.warm > 0.0:
         warm_start(balls, contacts, last, knobs.warm)
     solve_contacts(balls, contacts, knobs.iters, 0.0)
     move(balls, knobs.dt)
+
+
+@compiled
+def solve_with_momentum(balls, contacts, iters):
+    """The sweeps, each carried on by a share of its change, until nothing changes."""
+    t = 1.0
+    start, before = contacts["lam"].copy(), contacts["lam"].copy()
+    for _ in range(iters):
+        if solve_contacts(balls, contacts, 1, 0.0):
+            return
+        onward = 0.0
+        for k, c in enumerate(contacts):
+            onward += (c.lam - start[k]) * (c.lam - before[k])
+        if onward < 0.0:
+            t = 1.0
+        longer = 0.5 * (1.0 + math.sqrt(1.0 + 4.0 * t * t))
+        share, t = (t - 1.0) / longer, longer
+        for k, c in enumerate(contacts):
+            start[k] = larger(0.0, c.lam + share * (c.lam - before[k]))
+            before[k] = c.lam
+            push(c, balls, start[k] - c.lam)
+            c.lam = start[k]
+
+
+@compiled
+def leapfrog_step(balls, contacts, knobs):
+    """One step: half of gravity, ask for the way, move, half of gravity, ask for the speed."""
+    half = 0.5 * knobs.dt
+    after, hits = np.empty(len(contacts)), np.empty(len(contacts), np.bool_)
+    for k, c in enumerate(contacts):
+        after[k], hits[k] = ask(c, balls, knobs.restitution, knobs.dt, knobs.gravity)
+    accelerate(balls, half, knobs.gravity)
+    solve_with_momentum(balls, contacts, knobs.iters)
+    move(balls, knobs.dt)
+    accelerate(balls, half, knobs.gravity)
+    closed = 0  # those that pushed become the first rows
+    for k, c in enumerate(contacts):
+        if c.lam > 0.0:
+            if not hits[k]:
+                turn(c, balls, 0.0)
+            c.target = after[k]
+            contacts[closed] = c
+            closed += 1
+    solve_with_momentum(balls, contacts[:closed], knobs.iters)
+
+
+@compiled
+def ask(c, balls, restitution, dt, gravity):
+    """Set what leapfrog asks of the way of c; returns what of the speed, and whether c hits."""
+    turn(c, balls, dt)
+    a, b = balls[c.a], balls[c.b]
+    gap, v_n = -c.depth, normal_velocity(c, balls)
+    a_n = gravity * c.ny * ((a.inv_mass > 0.0) - (b.inv_mass > 0.0))
+    when = time_to_impact(gap, v_n, a_n) if gap > 0.0 else 0.0
+    hit = v_n + when * a_n if when < dt else 0.0
+    hits = hit < dt * gravity
+    back = -restitution * (v_n + dt * a_n)
+    opens = contact.OPENS * (a.radius + b.radius)
+    c.target = (opens if opens < -gap else -gap) / dt
+    after = back if back < 0.0 else 0.0
+    left = dt - when
+    end = left * (-restitution * hit + 0.5 * left * a_n)
+    if hits and end > 0.0:
+        c.target = larger(c.target, (end - larger(gap, 0.0)) / dt)
+        bounce = -restitution * hit + left * a_n
+        after = back if back < bounce else bounce
+    return after, hits
+
+
+@compiled
+def turn(c, balls, dt):
+    """Turn the normal of c to when its balls meet in free flight, or are nearest, within dt [s]."""
+    a, b = balls[c.a], balls[c.b]
+    dx, dy = a.x - b.x, a.y - b.y
+    vx, vy = a.vx - b.vx, a.vy - b.vy
+    reach = a.radius + b.radius
+    along = dx * vx + dy * vy
+    fast = vx * vx + vy * vy
+    apart = dx * dx + dy * dy - reach * reach
+    t = 0.0
+    if apart > 0.0 and along < 0.0:
+        t = dt
+        if fast > 0.0:
+            t = (-along - math.sqrt(larger(0.0, along * along - fast * apart))) / fast
+            t = t if t < dt else dt
+    x, y = dx + t * vx, dy + t * vy
+    distance = math.sqrt(x * x + y * y)
+    if c.b < len(balls) - 1 and distance > 0.0:
+        c.nx, c.ny = x / distance, y / distance
+        c.depth = reach - (c.nx * dx + c.ny * dy)
+
+
+@compiled
+def time_to_impact(gap, v_n, a_n):
+    """When a gap closes [s]; inf if it does not."""
+    if not (v_n < 0.0 or a_n < 0.0):
+        return math.inf
+    square = v_n * v_n - 2.0 * gap * a_n
+    if square < 0.0:
+        return math.inf
+    root = math.sqrt(square)
+    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n
 
 
 @compiled
@@ -344,7 +444,7 @@ def soft_step(balls, contacts, last, knobs):
     """
     for c in contacts:
         soften(c, balls, knobs.dt, knobs.solref, knobs.solimp)
-    accelerate(balls, knobs)
+    accelerate(balls, knobs.dt, knobs.gravity)
     fastest = abs(contacts[0].target) if len(contacts) > 0 else 0.0  # NaN if that is NaN
     for c in contacts:
         fastest = larger(fastest, abs(c.target))
@@ -394,7 +494,7 @@ def take_steps(rows, settled, balls, pairs, listed, last, cycles, knobs):
         if not farthest_move(balls) <= 0.499 * (listed - reach):  # two balls may have come so near
             listed = reach + knobs.skin
             pairs = list_pairs(balls, listed)
-            if knobs.warm == 0.0:  # a warm start needs them in order
+            if knobs.warm == 0.0 and knobs.model != LEAPFROG:  # these need them in order
                 pairs = spread_out(pairs, len(balls))
         if len(contacts) < len(balls) + pairs.shape[1]:
             contacts = np.empty(len(balls) + 2 * pairs.shape[1], CONTACT)
@@ -403,6 +503,8 @@ def take_steps(rows, settled, balls, pairs, listed, last, cycles, knobs):
             penalty_step(balls, found, knobs)
         elif knobs.model == LCP:
             lcp_step(balls, found, last, knobs)
+        elif knobs.model == LEAPFROG:
+            leapfrog_step(balls, found, knobs)
         else:
             settled[k] = soft_step(balls, found, last, knobs)
         for i in range(rows.shape[2]):
@@ -419,19 +521,19 @@ def take_steps(rows, settled, balls, pairs, listed, last, cycles, knobs):
 
 
 class Stepper:
-    """A run by penalty, lcp or soft that can be taken on by some steps at a time."""
+    """A run by a model that steps, which can be taken on by some steps at a time."""
 
     def __init__(self, model, scene, dt, settings):
         solref, solimp = contact.soft_defaults(
             scene.restitution, dt, settings.solref, settings.solimp
         )
-        warm = {"penalty": 0.0, "lcp": float(settings.warm), "soft": 1.0}[model]
+        warm = {"lcp": float(settings.warm), "soft": 1.0}.get(model, 0.0)
         self.knobs = Knobs(
             MODELS.index(model),
             float(dt),
             contact.GRAVITY,
-            contact.CONTACT_MARGIN if model == "lcp" else 0.0,
-            False,
+            contact.CONTACT_MARGIN if model in ("lcp", "leapfrog") else 0.0,
+            model == "leapfrog",
             float(np.median(scene.radius)),
             float(settings.stiffness),
             float(scene.damping),
@@ -457,7 +559,7 @@ class Stepper:
 
 
 def run_model(model, scene, dt, steps, settings, progress=None) -> contact.Run:
-    """The run by penalty, lcp or soft: what contact.run_model gives, bit for bit.
+    """The run by a model that steps: what contact.run_model gives, bit for bit.
 
     `progress(k)` is called with the steps done, now and then.
     """
