@@ -373,7 +373,7 @@ def step_reach(balls, dt: float) -> float:
 
 
 # --- region: leapfrog-ask ---
-OPENS = 0.05  # of the two radii, chosen: the most of an overlap that opens in a step
+OPENS = 0.03  # of the two radii, chosen: the most of an overlap that opens in a step
 
 
 def ask(c, restitution, dt):

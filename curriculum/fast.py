@@ -45,6 +45,7 @@ class Knobs(NamedTuple):
     gravity: float
     margin: float  # of lcp and leapfrog
     far: bool  # of leapfrog: looks as far as a step travels
+    opens: float  # of leapfrog: contact.OPENS
     skin: float  # m: how much farther the list of pairs looks than it must
     stiffness: float
     damping: float
@@ -316,7 +317,7 @@ def leapfrog_step(balls, contacts, knobs):
     half = 0.5 * knobs.dt
     after, hits = np.empty(len(contacts)), np.empty(len(contacts), np.bool_)
     for k, c in enumerate(contacts):
-        after[k], hits[k] = ask(c, balls, knobs.restitution, knobs.dt, knobs.gravity)
+        after[k], hits[k] = ask(c, balls, knobs)
     accelerate(balls, half, knobs.gravity)
     solve_with_momentum(balls, contacts, knobs.iters)
     move(balls, knobs.dt)
@@ -333,8 +334,9 @@ def leapfrog_step(balls, contacts, knobs):
 
 
 @compiled
-def ask(c, balls, restitution, dt, gravity):
+def ask(c, balls, knobs):
     """Set what leapfrog asks of the way of c; returns what of the speed, and whether c hits."""
+    restitution, dt, gravity = knobs.restitution, knobs.dt, knobs.gravity
     turn(c, balls, dt)
     a, b = balls[c.a], balls[c.b]
     gap, v_n = -c.depth, normal_velocity(c, balls)
@@ -343,7 +345,7 @@ def ask(c, balls, restitution, dt, gravity):
     hit = v_n + when * a_n if when < dt else 0.0
     hits = hit < dt * gravity
     back = -restitution * (v_n + dt * a_n)
-    opens = contact.OPENS * (a.radius + b.radius)
+    opens = knobs.opens * (a.radius + b.radius)
     c.target = (opens if opens < -gap else -gap) / dt
     after = back if back < 0.0 else 0.0
     left = dt - when
@@ -534,6 +536,7 @@ class Stepper:
             contact.GRAVITY,
             contact.CONTACT_MARGIN if model in ("lcp", "leapfrog") else 0.0,
             model == "leapfrog",
+            contact.OPENS,
             float(np.median(scene.radius)),
             float(settings.stiffness),
             float(scene.damping),
