@@ -10,7 +10,7 @@ penalty, lcp and soft bit for bit as contact.py does.
                   still.js draws every figure's first picture, for readers without scripts
     fonts.py      the fonts; the README's picture and measuring: curriculum/tests/page_measure.py
     main.js       the start; store.js the one state; stage.js what can be grabbed; draw.js SVG
-    engine.js sliding.js    the models
-    figures/NAME.js         a figure each, for the slot <!-- figure: NAME -->; parts.js
+    engine.js               the models
+    figures/NAME.js         a figure each, for the slot <!-- figure: NAME -->; kit.js
     bets.js blank.js arithmetic.js reader.js    exercises, and what the text sets
 """

@@ -23,7 +23,7 @@ from curriculum.text.references import Numbers, load_meta
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
 ENGINE = (  # constants of contact.py that engine.js takes
     "GRAVITY CONTACT_MARGIN SOLREF SOLIMP HARD MOST_SWEEPS LAST_BITS EXPLODED "
-    "TOUCH SLOW TOGETHER STILL MOST_IMPACTS"
+    "OPENS TOUCH SLOW TOGETHER STILL MOST_IMPACTS"
 ).split()
 ABOUT = {"error": "Run time against error: ", "penalty": "Stability: "}  # pictures by first word
 SCALE = 1.6  # of the pictures of bench and stress: their text of 10 px shall be read beside ours
@@ -35,7 +35,8 @@ def page_data(veils):
     settings, scenes = contact.Settings(), {name: contact.build_scene(name) for name in SCENES}
     knobs = {name: getattr(settings, name) for name in "stiffness iters baumgarte warm".split()}
     return {
-        "models": contact.MODELS,
+        "models": list(contact.MODELS),
+        "uses": contact.MODELS,
         "scenes": {
             name: {
                 "start": scene.q0[1].tolist(),
@@ -103,6 +104,17 @@ def stylesheet():
     return Markup(re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL)))
 
 
+def looks():
+    """[(model, colour, colour in the dark, dash in px or "")] as all pictures have them."""
+    found = []
+    for model in contact.MODELS:
+        color, _, dash = plotting.LOOKS[model]
+        parts = () if dash == "-" else dash[1]  # in widths of a line, which is 2 px here
+        dashes = " ".join(str(2 * part) for part in parts)
+        found.append((model, color, plotting.IN_THE_DARK[color], dashes))
+    return found
+
+
 def environment(**held):
     """The templates' environment; its macros know what is held."""
     made = jinja2.Environment(
@@ -117,9 +129,19 @@ def environment(**held):
         (name, data_address(f"font/{kind}", (HERE / file).read_bytes()), *rest)
         for name, file, kind, *rest in fonts.FACES
     ]
-    made.globals.update(colab=colab, faces=faces, colors=plotting.COLORS, hides=chapter.HIDES)
+    made.globals.update(colab=colab, faces=faces, looks=looks(), hides=chapter.HIDES)
     made.globals.update(ledger=ledger, pieces=pieces, drawn_by=drawn_by, **held)
     return made
+
+
+def check_lines(lines, regions):
+    """Raises ValueError where a line that figures light is not exactly one of its region."""
+    for name, (region, text) in lines.items():
+        code = regions[region].code if region in regions else ""
+        count = sum(text in line for line in code.splitlines())
+        if count != 1:
+            held = f"{text!r} stands in {count} lines of {region}; allowed: in one"
+            raise ValueError(f"curriculum/page/lines.js: {name}: {held}")
 
 
 def placed(parts, **known):
@@ -145,6 +167,7 @@ def build(text=None):
     veils = [*bets, "puzzle"]
     data = page_data(veils)
     settable = evaluate("still.js", data, "settable()")
+    check_lines(settable["lines"], regions)
     parts = chapter.blocks(Numbers().fill(text), settable["ranges"], settable["starts"])
     figures = placed(parts, figure=settable["names"], exercise=exercises, region=regions)
     drawn = evaluate("still.js", data, f"stills({json.dumps(figures)})")["figures"]

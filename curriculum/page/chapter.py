@@ -7,7 +7,7 @@ Beside plain Markdown the chapter may hold
 - slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
   <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. Other comments vanish;
 - <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
-  from there on, by the store's quantities and `models`, `chart` (gap, push, energy), `from`, `to`;
+  from there on, by the store's quantities and `models`, `from`, `to`;
   <!-- show: none --> lets it step back, and may set quantities, too: <!-- show: none&dt=0.014 -->.
   A passage goes from a heading or such a mark to the next. Its quantities are those that its mark
   sets, and else contact.py's own; what the reader changes in one stays there;
@@ -43,7 +43,6 @@ COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 SETTINGS = {  # beside the quantities: what each may be
     "scene": "drop|bounce|stack",
     "models": "({0})(,({0}))*".format("|".join(contact.MODELS)),
-    "chart": "gap|push|energy",
     "from": r"[\d.]+",
     "to": r"[\d.]+",
 }

@@ -65,7 +65,7 @@ export const plain = (value) => String(Number(value.toPrecision(12)));
 
 // ---- models
 
-// The marker of a model around (x, y): triangle, disc, square, star.
+// The marker of a model around (x, y): triangle, disc, cross, square, star.
 function markerPath(model, x, y, r) {
   const ring = (count, size, first = 0) =>
     Array.from({ length: count }, (_, k) => {
@@ -75,6 +75,11 @@ function markerPath(model, x, y, r) {
     });
   const half = (way) => `a${r} ${r} 0 1 0 ${2 * way * r} 0`;
   if (model === "lcp") return `M${round(x - r)} ${round(y)}${half(1)}${half(-1)}Z`;
+  if (model === "leapfrog") {
+    const [a, b] = [0.45 * r, 0.85 * r]; // half of an arm's width, its length
+    const sides = `h${2 * a}v${b}h${b}v${2 * a}h${-b}v${b}h${-2 * a}v${-b}h${-b}v${-2 * a}h${b}`;
+    return `M${round(x - a)} ${round(y - a - b)}${sides}Z`;
+  }
   const corners = { penalty: [3, 1.35, 1 / 6], soft: [4, 1.3, 1 / 8], exact: [10, [1.5, 0.62]] };
   return `M${ring(...corners[model]).join("L")}Z`;
 }

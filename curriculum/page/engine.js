@@ -1,22 +1,24 @@
 /* The contact models of contact.py in plain JavaScript.
  *
  * JavaScript's numbers are the doubles that Python uses, and + - * / and sqrt are rounded the same
- * way in both. Written in the same order of operations, penalty, lcp and soft give the same
+ * way in both. Written in the same order of operations, all models that step give the same
  * trajectories bit for bit; exact agrees to 1e-10 r. Tests hold both claims.
  *
  * Names and signs are those of contact.py; the floor is j = -1. A scene is {x, y, vx, vy, mass,
  * radius, restitution, damping}, arrays with one number a ball; a state is {x, y, vx, vy}, and of
- * soft, pushed. The knobs are {dt, stiffness, damping, restitution, iters, baumgarte, warm, ahead,
- * solref, solimp}. */
+ * soft, pushed. The knobs are {dt, stiffness, damping, restitution, iters, baumgarte, warm, solref,
+ * solimp}. */
 import { data } from "./data.js";
 
 const { CONTACT_MARGIN, SOLREF, SOLIMP, HARD, MOST_SWEEPS, LAST_BITS, EXPLODED } = data.engine;
 const { TOUCH, SLOW, TOGETHER, STILL, MOST_IMPACTS } = data.engine; // of exact
+const { OPENS } = data.engine; // of leapfrog
 export const GRAVITY = data.engine.GRAVITY;
 export const MODELS = data.models;
 
-// max as Python computes it: what is not greater, NaN included, does not count.
+// max and min as Python computes them: what is not greater or less, NaN included, does not count.
 const greatest = (numbers) => numbers.reduce((most, v) => (v > most ? v : most));
+const least = (a, b) => (b < a ? b : a);
 const positive = (a) => (a > 0 ? a : 0);
 
 // Floor contacts by body, then pairs i < j: the order is part of the result.
@@ -52,6 +54,10 @@ function move({ x, y }, dt, vx, vy) {
   return { x: x.map((a, i) => a + dt * vx[i]), y: y.map((a, i) => a + dt * vy[i]), vx, vy };
 }
 
+// Motors push balls sideways [N].
+const drive = (vx, mass, dt, motor = []) =>
+  vx.map((v, i) => (mass[i] < Infinity ? v + dt * ((motor[i] ?? 0) / mass[i]) : v));
+
 // ---- penalty
 
 const penaltyNormalForce = (depth, speed, stiffness, damping) =>
@@ -61,7 +67,7 @@ const penaltyNormalForce = (depth, speed, stiffness, damping) =>
 function penaltyStep(state, { mass, radius, motor = [] }, knobs) {
   const { x, y, vx, vy } = state;
   const { dt, stiffness, damping, clampForce = penaltyNormalForce } = knobs;
-  const fx = y.map((_, i) => motor[i] ?? 0); // N, sideways
+  const fx = y.map((_, i) => motor[i] ?? 0);
   const fy = y.map(() => 0);
   for (const c of detectContacts(x, y, radius, 0)) {
     const f = clampForce(c.depth, normalSpeed(c, vx, vy), stiffness, damping);
@@ -77,6 +83,16 @@ function penaltyStep(state, { mass, radius, motor = [] }, knobs) {
   return move(state, dt, nextX, nextY);
 }
 
+// The same with the force from the end of the step: lcp's sweep with a softness.
+function implicitStep(state, { mass, radius, motor }, { dt, stiffness, damping }) {
+  const softness = 1 / (stiffness * dt * dt + damping * dt);
+  const contacts = detectContacts(state.x, state.y, radius, 0);
+  for (const c of contacts)
+    Object.assign(c, { softness, target: dt * stiffness * c.depth * softness });
+  const driven = { ...state, vx: drive(state.vx, mass, dt, motor) };
+  return solveStep(driven, mass, dt, contacts, { iters: 100 });
+}
+
 // ---- lcp and soft: one problem, one sweep
 
 // Contacts ready for the sweeps: what an impulse of 1 does to the two balls, and the effective mass.
@@ -86,26 +102,22 @@ export function makeRows(contacts, mass) {
     const wi = 1 / mass[c.i];
     const wj = c.j < 0 ? 0 : 1 / mass[c.j];
     const whole = wi + wj + softness;
-    return {
-      ...c,
-      target,
-      softness,
-      effectiveMass: whole > 0 ? 1 / whole : 0,
-      ix: wi * c.nx,
-      iy: wi * c.ny,
-      jx: wj * c.nx,
-      jy: wj * c.ny,
-      lam: 0,
-    };
+    const effectiveMass = whole > 0 ? 1 / whole : 0;
+    return turned({ ...c, target, softness, effectiveMass, wi, wj, lam: 0 }, c.nx, c.ny);
   });
 }
+
+// The row with this normal, along which a push acts.
+const turned = (c, nx, ny) =>
+  Object.assign(c, { nx, ny, ix: c.wi * nx, iy: c.wi * ny, jx: c.wj * nx, jy: c.wj * ny });
 
 // The impulse after a correction: the sum may not become negative, a correction may.
 export const projectImpulse = (lam, dlam) => positive(lam + dlam);
 
-// Projected Gauss-Seidel: changes vx, vy and the rows' lam. `project` stands in for the clamp.
+/* Projected Gauss-Seidel: changes vx, vy and the rows' lam. Returns the number of the sweep that
+ * settled, 0 if none did. `project` stands in for the clamp. */
 export function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = projectImpulse }) {
-  for (let sweep = 0; sweep < iters; sweep++) {
+  for (let sweep = 1; sweep <= iters; sweep++) {
     let settled = true;
     for (const c of rows) {
       const missing = c.target - normalSpeed(c, vx, vy) - c.softness * c.lam;
@@ -115,8 +127,31 @@ export function solveContacts(rows, vx, vy, { iters, tolerance = 0, project = pr
       c.lam = lam;
       settled = settled && Math.abs(change) <= tolerance * c.effectiveMass;
     }
-    if (settled) return;
+    if (settled) return sweep;
   }
+  return 0;
+}
+
+// The same in fewer sweeps: each is carried on by a share of its change, until one turns back.
+export function solveWithMomentum(rows, vx, vy, { iters, tolerance = 0 }) {
+  let t = 1;
+  for (const c of rows) c.start = c.before = c.lam;
+  for (let sweep = 1; sweep <= iters; sweep++) {
+    if (solveContacts(rows, vx, vy, { iters: 1, tolerance })) return sweep;
+    let onward = 0;
+    for (const c of rows) onward += (c.lam - c.start) * (c.lam - c.before);
+    if (onward < 0) t = 1;
+    const longer = 0.5 * (1 + Math.sqrt(1 + 4 * t * t));
+    const share = (t - 1) / longer;
+    t = longer;
+    for (const c of rows) {
+      c.start = positive(c.lam + share * (c.lam - c.before));
+      c.before = c.lam;
+      push(c, c.start - c.lam, vx, vy);
+      c.lam = c.start;
+    }
+  }
+  return 0;
 }
 
 function push(c, impulse, vx, vy) {
@@ -149,30 +184,90 @@ function solveStep(state, mass, dt, contacts, { warm, last = 0, ...options }) {
 }
 
 // The normal velocity with which a contact of lcp must leave at least.
-function contactTarget(c, state, { dt, restitution, baumgarte, ahead }) {
-  const close = c.depth / dt; // gap + dt v_n = 0 at the end of the step
+function contactTarget(c, state, { dt, restitution, baumgarte }) {
+  const closing = c.depth / dt; // gap + dt v_n = 0 at the end of the step
   const bias = (baumgarte / dt) * c.depth;
-  if (restitution === 0) return ahead && c.depth < 0 ? close : bias;
+  if (restitution === 0) return bias;
   const speed = normalSpeed(c, state.vx, state.vy);
   const bounce = -restitution * speed;
   if (bias > 0) return greatest([bias, bounce]);
-  const meets = dt * speed <= c.depth;
-  return meets || !(close < bounce) ? bounce : close;
-}
-
-// How far a step looks: by the margin, or with `ahead` as far as two of the fastest balls travel.
-function stepReach({ vx, vy }, { dt, restitution, ahead }) {
-  if (!ahead || restitution !== 0) return CONTACT_MARGIN;
-  const fastest = greatest([0, ...vx.map((v, i) => Math.sqrt(v * v + vy[i] * vy[i]))]);
-  return greatest([CONTACT_MARGIN, 2 * dt * (fastest - dt * GRAVITY)]);
+  return -dt * speed >= -c.depth ? bounce : least(bounce, closing);
 }
 
 // One step of lcp. knobs.project stands in for the clamp.
 function lcpStep(state, { mass, radius }, knobs) {
   const { dt, iters, warm, project } = knobs;
-  const contacts = detectContacts(state.x, state.y, radius, stepReach(state, knobs));
+  const contacts = detectContacts(state.x, state.y, radius, CONTACT_MARGIN);
   for (const c of contacts) c.target = contactTarget(c, state, knobs);
   return solveStep(state, mass, dt, contacts, { iters, project, warm });
+}
+
+// ---- leapfrog: the sweep twice a step, for the way and for the speed
+
+// How far two balls come towards each other in a step, both as fast as the fastest gets.
+function stepReach({ vx, vy }, dt) {
+  const fastest = greatest([0, ...vx.map((v, i) => Math.sqrt(v * v + vy[i] * vy[i]))]);
+  return greatest([CONTACT_MARGIN, 2 * dt * (fastest - dt * GRAVITY)]);
+}
+
+// The normal of when two balls meet in free flight, or are nearest, within dt; and the depth of now.
+function turn(c, { x, y, vx, vy }, radius, dt) {
+  if (c.j < 0) return;
+  const [dx, dy] = [x[c.i] - x[c.j], y[c.i] - y[c.j]];
+  const [sx, sy] = [vx[c.i] - vx[c.j], vy[c.i] - vy[c.j]];
+  const reach = radius[c.i] + radius[c.j];
+  const along = dx * sx + dy * sy;
+  const fast = sx * sx + sy * sy;
+  const apart = dx * dx + dy * dy - reach * reach;
+  const meet = () => (-along - Math.sqrt(positive(along * along - fast * apart))) / fast;
+  const comes = apart > 0 && 0 > along;
+  const t = comes ? (fast > 0 ? least(dt, meet()) : dt) : 0;
+  const [toX, toY] = [dx + t * sx, dy + t * sy];
+  const distance = Math.sqrt(toX * toX + toY * toY);
+  if (!(distance > 0)) return;
+  turned(c, toX / distance, toY / distance);
+  c.depth = reach - (c.nx * dx + c.ny * dy);
+}
+
+// What leapfrog asks of a contact: `target` of the way, `after` of the speed; whether it `hits`.
+function ask(c, state, radius, { dt, restitution }) {
+  turn(c, state, radius, dt);
+  const [gap, speed] = [-c.depth, normalSpeed(c, state.vx, state.vy)];
+  const a = GRAVITY * c.ny * ((c.wi > 0) - (c.wj > 0));
+  const when = gap > 0 ? timeToImpact(gap, speed, a) : 0;
+  const hit = when < dt ? speed + when * a : 0;
+  const back = -restitution * (speed + dt * a);
+  const left = dt - when;
+  const end = left * (-restitution * hit + 0.5 * left * a);
+  c.hits = hit < dt * GRAVITY;
+  c.target = least(-gap, OPENS * (radius[c.i] + (c.j < 0 ? 0 : radius[c.j]))) / dt;
+  c.after = least(0, back);
+  if (!c.hits || !(end > 0)) return;
+  c.target = greatest([c.target, (end - greatest([gap, 0])) / dt]);
+  c.after = least(-restitution * hit + left * a, back);
+}
+
+// One step of leapfrog. knobs.see is shown the state after each of its parts.
+function leapfrogStep(state, { mass, radius }, knobs) {
+  const { dt, iters, see = () => {} } = knobs;
+  const rows = makeRows(detectContacts(state.x, state.y, radius, stepReach(state, dt)), mass);
+  for (const c of rows) ask(c, state, radius, knobs);
+  const [vx, vy] = [state.vx.slice(), fall(state.vy, mass, 0.5 * dt)];
+  see({ ...state, vx: vx.slice(), vy: vy.slice() });
+  solveWithMomentum(rows, vx, vy, { iters });
+  see({ ...state, vx, vy });
+  const moved = move(state, dt, vx, vy);
+  see(moved);
+  const next = { ...moved, vx: vx.slice(), vy: fall(vy, mass, 0.5 * dt) };
+  see({ ...next, vx: next.vx.slice(), vy: next.vy.slice() });
+  const closed = rows.filter((c) => c.lam > 0);
+  for (const c of closed) {
+    if (!c.hits) turn(c, next, radius, 0);
+    c.target = c.after;
+  }
+  solveWithMomentum(closed, next.vx, next.vy, { iters });
+  see(next);
+  return next;
 }
 
 // ---- soft, MuJoCo's contact
@@ -236,7 +331,9 @@ function softStep(state, { mass, radius }, knobs) {
 
 // ---- runs
 
-export const STEP = { penalty: penaltyStep, lcp: lcpStep, soft: softStep };
+export const STEP = {
+  penalty: penaltyStep, lcp: lcpStep, leapfrog: leapfrogStep, soft: softStep, implicit: implicitStep,
+};
 const PARTS = ["x", "y", "vx", "vy"];
 
 // A recording: n balls, steps + 1 rows; x, y, vx, vy are flat, row by row.
@@ -249,7 +346,10 @@ function blank(n, dt, steps) {
 
 function write(run, row, state) {
   for (const key of PARTS)
-    for (let i = 0; i < run.n; i++) run[key][row * run.n + i] = state[key][i] + 0; // no -0
+    for (let i = 0; i < run.n; i++) {
+      const value = state[key][i];
+      run[key][row * run.n + i] = value === value ? value + 0 : NaN; // one zero and one NaN
+    }
 }
 
 export function stateAt(run, row) {
@@ -299,7 +399,7 @@ export function runExact(scene, { dt }, steps, gravity = -GRAVITY) {
   let [now, row] = [0, 0];
   for (let impact = 0; impact < MOST_IMPACTS && row <= steps; impact++) {
     const touching = pairs.filter((_, k) => gaps[k] === 0);
-    const struck = bounce(touching, state, restitution);
+    const struck = strike(touching, state, restitution);
     run.events.push(...struck.map(({ i, j }) => ({ t: now, i, j })));
     const a = accelerations(touching, state, mass, gravity);
     const { span, after } = nextImpact(pairs, gaps, state, a);
@@ -319,7 +419,7 @@ function fly({ x, y, vx, vy }, { ax, ay }, t) {
 }
 
 // All impacts of one moment: v_n becomes -e v_n where a contact pushes. Returns who struck.
-function bounce(touching, { vx, vy }, restitution) {
+function strike(touching, { vx, vy }, restitution) {
   const before = touching.map((c) => normalSpeed(c, vx, vy));
   touching.forEach((c, k) => {
     const back = -restitution * before[k];
@@ -344,7 +444,7 @@ function settle(rows, vx, vy) {
   const speeds = rows.flatMap((c) => [vx[c.i], vy[c.i], vx[c.j] || 0, vy[c.j] || 0, c.target]);
   for (const c of rows) c.lam = 0;
   const tolerance = 2 ** -50 * Math.max(0, ...speeds.map(Math.abs));
-  solveContacts(rows, vx, vy, { iters: MOST_SWEEPS, tolerance });
+  solveWithMomentum(rows, vx, vy, { iters: MOST_SWEEPS, tolerance });
 }
 
 // How long until the next gap closes; and all gaps at that moment, 0 in touch.
@@ -362,7 +462,7 @@ function nextImpact(pairs, gaps, { vx, vy }, { ax, ay, rests }) {
 
 // The first root of gap + v t + a t^2 / 2; Infinity if the gap does not close.
 function timeToImpact(gap, v, a) {
-  if (v >= 0 && a >= 0) return Infinity;
+  if (!(v < 0 || a < 0)) return Infinity;
   const square = v * v - 2 * gap * a;
   if (square < 0) return Infinity;
   return v < 0 ? (2 * gap) / (Math.sqrt(square) - v) : -(v + Math.sqrt(square)) / a;

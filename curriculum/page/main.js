@@ -3,6 +3,7 @@ import { Bets } from "./bets.js";
 import { startBlank } from "./blank.js";
 import { data } from "./data.js";
 import { figures } from "./figures.js";
+import { LINES } from "./lines.js";
 import { Reader } from "./reader.js";
 import { Stage } from "./stage.js";
 import { asked, Section } from "./store.js";
@@ -30,21 +31,18 @@ function sectionIn(passages) {
 
 // ---- the address
 
-// What the address asks for: of a section and its passages, of a figure, or, without one, of all.
-function read(sections, sectionOf, stages) {
+// What the address asks for: of a section and its passages, or, without one, of all.
+function read(sections) {
   const wanted = asked(location.search);
   const target = document.getElementById(location.hash.slice(1));
-  const one = target?.dataset.figure && sectionOf(target);
   const heading = (each) => each.id.replace(/\.\d+$/, "");
   for (const each of sections)
-    if (!target || each === one || each.id === target.id || heading(each) === target.id)
-      each.restore(wanted);
-  stages.find(({ box }) => box === target)?.take(location.search);
+    if (!target || each.id === target.id || heading(each) === target.id) each.restore(wanted);
 }
 
 /* One entry of the history an act: a drag, or a run of arrow keys, is one. The address names the
  * section and what is changed there; the entry keeps that of all of them. */
-function bindAddress(sections, sectionOf, stages) {
+function bindAddress(sections) {
   let [under, timer] = [false, 0]; // whether the newest entry is that of the act under way
   const state = () => Object.fromEntries(sections.map((each) => [each.id, each.changes()]));
   const write = (how, address) => {
@@ -68,7 +66,7 @@ function bindAddress(sections, sectionOf, stages) {
   for (const kind of ["pointerdown", "focusin", "click"])
     window.addEventListener(kind, () => (under = false), true);
   if (history.state) restore(history.state);
-  else read(sections, sectionOf, stages);
+  else read(sections);
   write("replaceState", location.href);
   window.addEventListener("popstate", (event) => {
     clearTimeout(timer);
@@ -82,10 +80,11 @@ function bindAddress(sections, sectionOf, stages) {
 
 const lit = new Map();
 
-// Light some lines, [[region, text]]: those of the last call from `by` go out.
-function light(by, lines) {
+// Light some of LINES, by name: those of the last call from `by` go out.
+function light(by, names) {
   for (const line of lit.get(by) || []) line.classList.remove("lit");
-  const found = lines.flatMap(([region, text]) => {
+  const found = names.flatMap((name) => {
+    const [region, text] = LINES[name];
     const all = [...document.querySelectorAll(`#code-${region} .ln`)];
     return all.filter((line) => line.textContent.includes(text));
   });
@@ -111,7 +110,7 @@ const sections = passages.map(({ section }) => section);
 for (const each of sections)
   each.on(() => stages.forEach((stage) => stage.section === each && stage.redraw()));
 bets.onOpen(() => stages.forEach((stage) => stage.redraw()));
-bindAddress(sections, sectionOf, stages);
+bindAddress(sections);
 if (document.getElementById("blank")) startBlank(document.getElementById("blank"), data.blank);
 new Reader(passages, sectionOf, stages.find(({ name }) => name === "lanes"));
 document.documentElement.dataset.ready = "yes";

@@ -4,7 +4,7 @@ import { plain, within } from "./draw.js";
 import { asked, fromSlider, grouped, QUANTITIES, sliderRange, toSlider } from "./store.js";
 
 const KEYS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 20, PageDown: -20 };
-const VIEW = ["models", "chart", "from", "to"]; // of what the text shows, what is no quantity
+const VIEW = ["models", "from", "to"]; // of what the text shows, what is no quantity
 
 export class Reader {
   // passages: [{node, section, look}] in the order of the page; look: what the live figure shows
@@ -28,10 +28,6 @@ export class Reader {
     if (touched.matches("a.try")) {
       event.preventDefault();
       this.#try(touched);
-    } else if (touched.matches(".own-link")) {
-      event.preventDefault();
-      history.pushState(history.state, "", touched.href);
-      this.#copy(touched.href);
     } else if (touched.matches("[data-copy]")) this.#copy(codeOf(touched.closest(".code")));
     else if (take) {
       const section = touched.closest("#figure") ? this.lanes.section : this.sectionOf(touched);

@@ -9,14 +9,14 @@
  *   knobs            names of the quantities that stand as sliders below it
  *   start()          its own state, a plain object: view.own
  *   draw(view)       {svg, words, handles, lit}; svg is text, words what is seen, in one sentence;
- *                    lit: [[region, text of a line]], the lines of code that run now
+ *                    lit: names of LINES (lines.js), the lines of code that run now
  *   clock(view)      {from, end, rate, name}: own.time (null: not begun) runs from `from` to `end`,
  *                    `rate` s in a second, once the button of that name is pressed
  *   tick(view, s)    in place of a clock: so many real seconds passed; false ends it
  *   buttons          [[label, press(view)]]; the label may be a function of the view
  *
  * A handle is {name, x, y, label, value, text, drag(x, y), nudge(dx, dy), release()}: what can be
- * grabbed, mostly made by `grip` in parts.js. dx and dy are those of an arrow key, ten times as
+ * grabbed, mostly made by `grip` in kit.js. dx and dy are those of an arrow key, ten times as
  * much with shift; release() is called when it is let go, and at Enter.
  *   r      of a ball: all of it is grabbed; without r (or box) it is a point, and gets a knob
  *   box    [x, y, width, height] in place of a circle: a block, or what is seen of a large ball
@@ -278,38 +278,14 @@ export class Stage {
     if (words.textContent !== made.words) words.textContent = made.words;
   }
 
-  // What differs from the text, each with a click that takes it back; and the figure's own address.
+  // What differs from the text, each with a click that takes it back.
   #showChips() {
-    const told = this.section.told().filter(([name]) => name === "scene" || this.uses.has(name));
-    const html = told.map(([name, words]) =>
+    const shown = ([name]) => name === "scene" || this.uses.has(name);
+    const html = this.section.inWords().filter(shown).map(([name, words]) =>
       `<button type="button" class="chip" data-take="${name}" title="Take it back">` +
       `${escape(words)}</button>`).join("");
     const chips = this.box.querySelector(".chips");
     if (chips.innerHTML !== html) chips.innerHTML = html;
-    const link = this.box.querySelector(".own-link");
-    const parts = [this.section.query(), ...this.#ownParts()].filter(Boolean);
-    if (link) link.href = `?${parts.join("&")}#${this.box.id}`;
-  }
-
-  // Of its own numbers those that are not as at the start, as an address has them.
-  #ownParts() {
-    const start = this.figure.start ? this.figure.start() : {};
-    const names = new Set(this.#handles.flatMap(({ puts = {} }) => Object.keys(puts)));
-    const moved = [...names].filter((name) => name in start &&
-      start[name] !== this.own[name] && Number.isFinite(this.own[name]));
-    return moved.map((name) => `${name}=${plain(this.own[name])}`);
-  }
-
-  // Set its own numbers as its address asks; each is kept to where it could be dragged.
-  take(query) {
-    this.near = true; // its handles know what may be set, so it is drawn first
-    this.#resize();
-    for (const [name, text] of new URLSearchParams(query)) {
-      const number = text.trim() === "" ? NaN : Number(text);
-      const handle = name in this.own && this.#handles.find(({ puts }) => puts?.[name]);
-      if (handle && Number.isFinite(number)) handle.puts[name](number);
-    }
-    this.redraw();
   }
 
   // ---- time

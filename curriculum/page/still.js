@@ -1,5 +1,6 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
 import { figures } from "./figures.js";
+import { LINES } from "./lines.js";
 import { buttonsOf, heightOf, stillView } from "./stage.js";
 import { data } from "./data.js";
 import { QUANTITIES, Section, startOf } from "./store.js";
@@ -31,6 +32,7 @@ export const stills = (wanted) => ({
 // What the text may set: {quantity: [low, high]}, and every value as a scene has it at first.
 export const settable = () => ({
   names: Object.keys(figures),
+  lines: LINES,
   starts: Object.fromEntries(Object.keys(data.scenes).map((scene) => [scene, startOf(scene)])),
   ranges: Object.fromEntries(
     Object.entries(QUANTITIES).map(([name, { low, high }]) => [name, [low, high]]),

@@ -129,7 +129,7 @@ export class Section {
   }
 
   // That in words: [name, "Stiffness k = 2,000, text: 10,000"].
-  told() {
+  inWords() {
     return Object.keys(this.changes()).map((name) => {
       const say = (values) =>
         name === "scene" ? values[name] : grouped(shown(values, name));

@@ -12,13 +12,12 @@ from curriculum.page.bundle import evaluate
 from curriculum.page.chapter import CHAPTER
 from curriculum.regions import ROOT
 from curriculum.tests.page_browser import middle, mouse, visiting
-from curriculum.text import facts
 from exercises.kit import trials
 
 SLOT = re.compile(r"<!-- figure: ([\w-]+) -->")
 SLOTS = sorted(set(SLOT.findall((ROOT / CHAPTER).read_text("utf-8"))))
 # the other figures of the page are tested with the page itself
-OTHERS = {"grab", "two", "lanes", "sandbox"}
+OTHERS = {"grab", "two", "lanes"}
 # what follows the puzzle stands behind a veil
 SHOWN = [*sorted(set(SLOTS) - OTHERS - {"puzzle"}), "puzzle"]
 PLAIN = str.maketrans("−⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "--0123456789")  # how print sets minus and powers
@@ -99,7 +98,7 @@ def test_a_figure_is_told_in_words_and_every_handle_answers_to_arrow_keys_and_to
     told = box.locator(".drawing > svg").get_attribute("aria-label")
     assert box.locator(".words").inner_text() in told
     caption = re.sub(r"\d\.\d", "", box.locator("figcaption").inner_text())
-    assert caption.count(".") == (2 if name == "puzzle" else 1) and caption[-1] == ".", caption
+    assert caption.count(".") == 1 and caption[-1] == ".", caption
     names = [grip.get_attribute("data-handle") for grip in box.locator(".handle").all()]
     assert names
     for label in names:
@@ -166,7 +165,7 @@ def pressed(tab, name):
 def test_each_model_keeps_to_its_own_law_on_the_corner(tab):
     """Pressed: no gap with a wall; on a ramp F / k; in soft K d^2 depth = (1 - d) F."""
     figure(tab, "corner", "?stiffness=20000")
-    for name in ("corner", "corner-exact", "corner-lcp"):
+    for name in ("corner", "corner-lcp"):
         gap, force = pressed(tab, name)
         assert gap == 0 and force == 30
     gap, force = pressed(tab, "corner-penalty")
@@ -179,16 +178,16 @@ def test_each_model_keeps_to_its_own_law_on_the_corner(tab):
 
 
 def test_puzzle_tells_how_deep_a_spring_sinks_and_whether_it_comes_to_rest(tab):
-    for k, told in ((1e4, "comes"), (1e6, "never comes")):
-        puzzle = figure(tab, "puzzle", f"?stiffness={k:.0f}&damping=80")
-        assert numbers(puzzle)[0] == pytest.approx(WEIGHT / k / RADIUS, rel=5e-3)
+    for k, told in ((1e4, "comes to rest"), (1e6, "explodes")):
+        puzzle = figure(tab, "puzzle", f"?stiffness={k:.0f}&damping=80&dt=0.01")
+        assert numbers(puzzle)[-1] == pytest.approx(WEIGHT / k / RADIUS, rel=5e-3)
         late = depths("penalty", dt=0.01, stiffness=k)[-200:]
-        assert f"It {told} to rest" in said(puzzle) and (np.ptp(late) < 1e-3) == (told == "comes")
+        assert told in said(puzzle) and (np.ptp(late) < 1e-3) == (told == "comes to rest")
 
 
 def test_drops_that_a_figure_looks_at_in_one_loop_have_the_bits_of_contact_py():
     for dt, k, c in ((0.002, 1e4, 80.0), (0.0141, 1e4, 80.0), (0.01, 300.0, 0.0)):
-        shown = evaluate("parts.js", page_data([]), f"drops({dt}, {k}, {c}, 2000).join()")
+        shown = evaluate("kit.js", page_data([]), f"drops({dt}, {k}, {c}, 2000).join()")
         scene = contact.build_scene("drop", damping=c)
         run = contact.run_model("penalty", scene, dt, 2000, contact.Settings(stiffness=k))
         assert [float(each) for each in shown.split(",")] == run.q[:, 1, 0].tolist()
@@ -222,10 +221,8 @@ def test_sweeps_carry_what_contact_py_finds_contact_by_contact(tab):
     assert "clamped at 0" in said(box) and numbers(box)[-1] == 0
 
 
-def test_crowd_and_blocks_show_the_chapters_numbers(tab):
-    crowd, shown = facts.crowd(), numbers(figure(tab, "crowd", ""))
-    assert shown[3:6] == pytest.approx([crowd["moreau"][k] for k in ("0", "1", "2")], abs=0.05)
-    blocks = figure(tab, "blocks")
+def test_blocks_count_the_digits_of_pi_and_lcp_loses_count(tab):
+    blocks = figure(tab, "blocks", "")
     for n, impacts in enumerate((3, 31, 314, 3141)):
         press(tab, handle(blocks, "n"), "ArrowDown", 4)
         press(tab, handle(blocks, "n"), "ArrowUp", n)
@@ -244,15 +241,6 @@ def kept_in_sight(tab, box):
         place = grip.bounding_box()
         middle = place["x"] + place["width"] / 2
         assert frame["x"] <= middle <= frame["x"] + frame["width"], grip
-
-
-def test_slide_leaves_at_two_thirds_and_bounces_end_when_they_should(tab):
-    start, left, expected = numbers(figure(tab, "slide", "?restitution=0.7"))[:3]
-    assert left == pytest.approx(expected, abs=0.11)
-    release = np.arccos(2 / 3 * np.cos(np.radians(start)))
-    assert expected == pytest.approx(np.degrees(release), abs=0.1)
-    first = np.sqrt(2 * (contact.build_scene("drop").q0[1, 0] - RADIUS) / WEIGHT)
-    assert numbers(figure(tab, "bounces"))[-1] == pytest.approx(first * 1.7 / 0.3, rel=5e-3)
 
 
 def test_the_sum_of_bounce_and_bias_throws_the_ball_higher_than_the_larger_of_them(tab):
@@ -307,19 +295,13 @@ def test_gripper_trembles_as_exercise_8_has_it_holds_at_half_the_step_and_is_gon
     assert not trials.fingers(SimpleNamespace(DT=numbers(box)[0] / 1000, **chosen))["held"]
 
 
-def test_inequality_ends_where_a_step_of_contact_py_ends_with_and_without_looking_ahead(tab):
+def test_inequality_ends_where_a_step_of_contact_py_ends(tab):
     box = figure(tab, "inequality", "")
     gap, moves, end = numbers(box)
-    after = {}
-    for ahead in (False, True):
-        ball = contact.Ball(0.0, (1 + gap) * RADIUS, 0.0, -4.0, 1.0, RADIUS)
-        contact.lcp_step([ball], DT, 0.0, 0.2, 20, ahead=ahead)
-        after[ahead] = ball.y / RADIUS - 1
-    assert [gap + moves, end] == pytest.approx(2 * [after[False]], abs=2e-3)
+    ball = contact.Ball(0.0, (1 + gap) * RADIUS, 0.0, -4.0, 1.0, RADIUS)
+    contact.lcp_step([ball], DT, 0.0, 0.2, 20)
+    assert [gap + moves, end] == pytest.approx(2 * [ball.y / RADIUS - 1], abs=2e-3)
     assert "does not push" in said(box) and end < 0
-    box.locator("button:text('Look as far')").click()
-    settle(tab)
-    assert "it ends at 0 r" in said(box) and abs(after[True]) < 1e-12
 
 
 def test_bowl_ends_at_the_direct_solution_inside_the_quadrant_and_on_its_wall(tab):

@@ -1,7 +1,7 @@
 /* Colliding blocks count the digits of pi (Galperin 2003): a wall, a block of mass 1, of 100^n. */
 import { clipped, label, line, plain, plural, rect, table, whole, within } from "../draw.js";
 import { runExact, runModel } from "../engine.js";
-import { grip, kept, knobs, R, scene } from "../parts.js";
+import { grip, kept, knobs, R, scene } from "../kit.js";
 
 const SECONDS = 4;
 const MOST = 3; // n: 100^3 and 3,141 impacts

@@ -2,7 +2,7 @@
  * visit to a contact goes to the lowest point along its own axis, but not below zero. */
 import { arrow, axis, ball, circle, clipped, label, number, path, plural, rect } from "../draw.js";
 import { steps, table } from "../draw.js";
-import { beside, grip, kept, pair, visits } from "../parts.js";
+import { beside, grip, kept, pair, visits } from "../kit.js";
 
 const [PX, UNIT, GROUND] = [36, 22, 40]; // px: a radius, an arrow for g dt, the table
 const SWEEPS = 40;
@@ -81,7 +81,7 @@ function draw(view) {
     words: `From ${list(begin)} m g dt the sweeps come to ${list(end)}, within a thousandth ` +
       `after ${plural(Math.ceil(visits / 2), "sweep")}.`,
     handles: [...at.map(hold), pair(view, "start", from, ...told, ranges, to)],
-    lit: [["sweep", "lam = max"]],
+    lit: ["sweep"],
   };
 }
 

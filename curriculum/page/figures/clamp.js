@@ -1,7 +1,7 @@
 /* The clamp is on the sum of the changes. In a groove one contact must take some push back. */
 import { arrow, ball, label, number, shift } from "../draw.js";
 import { makeRows, projectImpulse, solveContacts } from "../engine.js";
-import { kept, pair, wholly } from "../parts.js";
+import { kept, pair, wholly } from "../kit.js";
 
 const SIDES = [-1, 1];
 

@@ -1,7 +1,8 @@
-/* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. */
+/* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. The
+ * puzzle is the same at one step: a spring on which the ball hardly sinks, and yet comes to rest. */
 import { axis, number, plain, plot, within } from "../draw.js";
 import { criticalDt, quality, runModel } from "../engine.js";
-import { decades, FARTHEST, grip, kept, scene, START, stillMoves } from "../parts.js";
+import { decades, FARTHEST, G, grip, kept, R, scene, START, stillMoves } from "../kit.js";
 
 const [LOW, HIGH] = [0.0005, 0.064]; // s
 const SECONDS = 4;
@@ -57,21 +58,30 @@ function draw(view) {
   });
   const gains = gained > 1e-9 ? `${number(gained, 4)} times its energy` : "no energy";
   const ends = explodes ? "explodes" : far < 1e-6 ? "comes to rest" : "never rests";
+  const sinks = `It sinks ${number(G / k / R, 2)} r where it rests`;
   const text = `dt = ${number(1000 * dt)} ms: the ball gains ${gains} and ${ends}`;
   const range = { times: 1.03, at: chart.sx.back };
   return {
     svg: course(view, run) + chart.svg,
-    words: `${text}.`,
+    words: `${text}. ${sinks}.`,
     handles: [grip(view, "dt", chart.sx(shown), chart.sy(far), "the time step", text, range)],
   };
 }
 
-export const figure = {
-  title: "The cliff",
-  caption:
-    "Drag the time step: past the critical one the dropped ball never rests, and a little " +
-    "further it explodes.",
-  height: 420,
-  knobs: ["stiffness", "damping"],
-  draw,
+const form = { height: 420, knobs: ["stiffness", "damping"], draw };
+export const figures = {
+  cliff: {
+    title: "The cliff",
+    caption:
+      "Drag the time step: past the critical one the dropped ball never rests, and a little " +
+      "further it explodes.",
+    ...form,
+  },
+  puzzle: {
+    title: "A puzzle: one spring, two wishes",
+    caption:
+      "Turn stiffness and damping until the ball sinks less than a thousandth of its radius and " +
+      "still comes to rest at this time step.",
+    ...form,
+  },
 };

@@ -1,9 +1,9 @@
-/* The corner, five times: gap to the right, force upwards, what a model allows as a line, and the
+/* The corner, four times: gap to the right, force upwards, what a model allows as a line, and the
  * state that runs along it while the reader lifts the ball or presses it into the table. */
 import { arrow, axis, ball, circle, label, line, number, path, table } from "../draw.js";
 import { pushOfTable, runModel, soften } from "../engine.js";
-import { beside, forceLength, G, grip, kept, knobs, lens, R, scene } from "../parts.js";
-import { softKnobs } from "../parts.js";
+import { beside, forceLength, G, grip, kept, knobs, lens, R, scene } from "../kit.js";
+import { softKnobs } from "../kit.js";
 
 const PX = 70; // a radius, and how far the hand goes down until it presses hardest
 // What a picture shows: gaps from low to high [r], the hardest press [m g], ticks, and the lens.
@@ -59,15 +59,6 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
 }
 
 const wall = { gap: () => 0, curve: [[WIDE.high, 0], [0, 0], [0, 1.07 * WIDE.most]] };
-
-// The two events at which exact changes from one side of the corner to the other.
-const events = (view, load) => ({
-  under: ({ sx, sy, box }) =>
-    circle(sx(0), sy(0), 12, "event") +
-    label("gap → 0", sx(0.98), sy(0) - 12, "end") +
-    label("force → 0", sx(0) + 10, box.top + 14),
-  words: load > 0 ? " It rests until the force falls to 0." : " It flies until the gap falls to 0.",
-});
 
 function ramp(view) {
   const steep = (view.get("stiffness") * R) / G; // weights a radius
@@ -132,12 +123,6 @@ export const figures = {
     title: "The corner: gap to the right, force upwards",
     caption:
       "Lift the ball and the gap grows with no force; press it and the force grows with no gap.",
-  }),
-  "corner-exact": corner("exact", () => wall, {
-    title: "exact on the corner",
-    caption:
-      "exact keeps to the corner and asks only when the ball turns from one side into the other.",
-    extra: events,
   }),
   "corner-penalty": corner("penalty", ramp, {
     title: "penalty’s ramp beside the corner",

@@ -1,7 +1,7 @@
 /* Newton's cradle: the same ball, all impacts at one moment or one shortly after another. */
 import { ball, label, line, number, shift } from "../draw.js";
 import { runExact } from "../engine.js";
-import { G, grip, kept, R, scene, wholly } from "../parts.js";
+import { G, grip, kept, R, scene, wholly } from "../kit.js";
 
 const [COUNT, LENGTH] = [4, 0.5]; // balls; m of a string
 const APART = 1e-3; // r: the gap where the impacts come one after another

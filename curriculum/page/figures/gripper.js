@@ -3,7 +3,7 @@
 import { axis, ball, circle, clipped, el, label, line, number, path, plot, rect } from "../draw.js";
 import { table } from "../draw.js";
 import { criticalDt, runModel, series, stateAt } from "../engine.js";
-import { grip, kept, pair, R, scene, tens, through } from "../parts.js";
+import { grip, kept, pair, R, scene, tens, through } from "../kit.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
 const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s, s: what is judged comes after it

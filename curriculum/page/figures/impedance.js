@@ -1,7 +1,7 @@
 /* MuJoCo's impedance: how firmly a soft contact asks, by its depth. */
 import { arrow, axis, ball, label, number, table } from "../draw.js";
 import { impedance, softDefaults } from "../engine.js";
-import { beside, grip, lens, R, softKnobs } from "../parts.js";
+import { beside, grip, lens, R, softKnobs } from "../kit.js";
 
 const [GROUND, HARD, TIMES] = [60, 120, 40]; // px of the table, of an arrow for d = 1; of the lens
 const MOST = 1.5; // widths
@@ -45,7 +45,7 @@ function draw(view) {
   const range = { low: 0, high: MOST, step: 0.05, at: sx.back };
   const press = { ...range, r, step: -0.05, by: (dx, dy) => dy / 60 };
   const whole = grip(view, "depth", centre, floor - r, "the ball: press it", text, press);
-  const rise = depth <= middle ? "rise = raised" : "rise = 1.0";
+  const rise = depth <= middle ? "rising" : "levelling";
   return {
     svg,
     words:
@@ -55,7 +55,7 @@ function draw(view) {
       { ...whole, name: "ball" },
       grip(view, "depth", sx(depth), sy(d), "the depth", text, range),
     ],
-    lit: [["soft-impedance", depth >= 1 ? "return d1" : rise]],
+    lit: [depth >= 1 ? "hardest" : rise],
   };
 }
 

@@ -1,8 +1,8 @@
 /* One inequality: at the end of a step the gap, gap + dt v_n, must not be negative. What lcp asks
- * for in its place is a choice: how much of an overlap to open, and how far ahead to look. */
+ * for in its place is a choice: which share of a gap or an overlap to close or to open, and how far ahead to look. */
 import { arrow, axis, ball, circle, el, label, line, number, table } from "../draw.js";
 import { GRAVITY, runModel } from "../engine.js";
-import { beside, grip, kept, knobs, R, scene } from "../parts.js";
+import { beside, grip, kept, knobs, R, scene } from "../kit.js";
 
 const [DOWN, UP] = [-5, 2]; // m/s; a gap is counted in what 1 m/s closes in a step
 const [PX, GROUND] = [26, 92]; // px: what 1 m/s does in a step, the table
@@ -55,7 +55,7 @@ function picture(left, { floor, r, y, end, tip, enlarged }) {
 
 function draw(view) {
   const { own } = view;
-  const told = { ...knobs(view), ahead: own.ahead };
+  const told = knobs(view);
   const unit = told.dt / R; // r that 1 m/s does in a step
   const gap = own.gap * unit;
   const free = own.v + told.dt * GRAVITY; // m/s, once gravity has acted
@@ -81,7 +81,7 @@ function draw(view) {
       grip(view, "gap", x, y - r, "the ball: its gap", tall, lift),
       grip(view, "v", x + r + 14, tip, "its speed", `${number(own.v, 2)} m/s`, fly),
     ],
-    lit: pushed ? [["lcp-target", "bias = "]] : [],
+    lit: pushed ? ["bias"] : [],
   };
 }
 
@@ -92,12 +92,6 @@ export const figure = {
     "which speeds lcp asks for in place of that, from how far away, and where the step ends.",
   height: 350,
   knobs: ["baumgarte"],
-  start: () => ({ gap: 3, v: -4, ahead: false }),
-  buttons: [
-    [
-      ({ own }) => (own.ahead ? "Look one millimetre ahead" : "Look as far as a step goes"),
-      ({ own }) => (own.ahead = !own.ahead),
-    ],
-  ],
+  start: () => ({ gap: 3, v: -4 }),
   draw,
 };

@@ -2,7 +2,7 @@
  * push makes it hop. Where it bounces, too, the target is the larger of both, not the sum. */
 import { arrow, axis, ball, label, number, steps, table } from "../draw.js";
 import { runModel } from "../engine.js";
-import { ARRIVES, beside, grip, kept, knobs, R, scene } from "../parts.js";
+import { ARRIVES, beside, grip, kept, knobs, R, scene } from "../kit.js";
 
 const [FALL, GROUND] = [70, 96]; // px: the fall of one step, the table
 const [ARROW, SHORT, LONG] = [22, 0.3, 0.9]; // px for 1 m/s; s, of a hop and of a bounce
@@ -79,7 +79,7 @@ function draw(view) {
     svg,
     words: `It lands ${text} and is found ${number(depth, 2)} r deep${bounces ? wishes : hops}.`,
     handles: [grip(view, "share", ...place, range)],
-    lit: [["lcp-target", bounces ? "return max(bias" : "return close if"]],
+    lit: [bounces ? "larger" : "bias"],
   };
 }
 

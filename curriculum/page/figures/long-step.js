@@ -2,7 +2,7 @@
  * whether the next steps grow. */
 import { axis, circle, label, line, mark, number, plot, within } from "../draw.js";
 import { criticalDt, runModel } from "../engine.js";
-import { grip, kept, R, scene } from "../parts.js";
+import { grip, kept, R, scene } from "../kit.js";
 
 const DEPTH = 0.2; // r: how deep the ball is pressed in
 const LONGEST = 0.032; // s

@@ -2,7 +2,7 @@
  * beside it, and the sweeps of a step can be spent on substeps. */
 import { axis, ball, label, number, path, plural, rect, table } from "../draw.js";
 import { runModel, stateAt } from "../engine.js";
-import { beside, depthsOf, G, grip, kept, knobs, R, scene, tens, through } from "../parts.js";
+import { beside, depthsOf, G, grip, kept, knobs, R, scene, tens, through } from "../kit.js";
 
 const [FEWEST, FIRST, MOST, HEAVIEST] = [2, 8, 10, 100]; // balls, balls, balls, kg
 const [LENS, GROUND, LARGEST] = [15, 30, 30]; // px: a lens, the table, a ball

@@ -1,7 +1,7 @@
 /* The signs of a contact: normal, depth and v_n, of a ball with another ball and with the table. */
 import { arrow, ball, label, number, table } from "../draw.js";
 import { detectContacts, normalSpeed } from "../engine.js";
-import { pair, R } from "../parts.js";
+import { pair, R } from "../kit.js";
 
 const GROUND = 26; // px of table
 const ARROW = 0.1; // m in the picture for 1 m/s

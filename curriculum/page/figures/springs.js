@@ -3,7 +3,7 @@
 import { arrow, axis, ball, clipped, el, label, number, path, plural, table } from "../draw.js";
 import { within } from "../draw.js";
 import { runModel, stateAt } from "../engine.js";
-import { beside, depthsOf, forceLength, G, grip, kept, lens, R, scene } from "../parts.js";
+import { beside, depthsOf, forceLength, G, grip, kept, lens, R, scene } from "../kit.js";
 
 const [DT, SECONDS] = [0.0005, 1.2];
 const springs = {
@@ -87,7 +87,7 @@ function drawSponge(view) {
       grip(view, "press", middle, y, "the ball: press it or lift it", text, hold),
       grip(view, "stiffness", sx(end), sy(end / rest), "the stiffness k", steep, turn),
     ],
-    lit: depth > 0 ? [["penalty", "return max(0.0"]] : [],
+    lit: depth > 0 ? ["spring"] : [],
   };
 }
 

@@ -1,6 +1,6 @@
 /* The sweeps, contact after contact: a stack of three, its impulses as bars, the clamp at zero. */
 import { arrow, axis, ball, circle, label, number, plural, rect, table } from "../draw.js";
-import { beside, grip, kept, visits, wholly } from "../parts.js";
+import { beside, grip, kept, visits, wholly } from "../kit.js";
 
 const [COUNT, PX, SWEEPS] = [3, 34, 20];
 const LAST = COUNT * SWEEPS;
@@ -86,7 +86,7 @@ function draw(view) {
       ...balls,
       tips[2],
     ],
-    lit: at ? [["sweep", "lam = max"]] : [],
+    lit: at ? ["sweep"] : [],
   };
 }
 

@@ -154,8 +154,7 @@ export function grip(view, name, x, y, label, text, options) {
   const moved = (toX, toY) => view.from.value + by(toX - view.from.x, toY - view.from.y);
   const drag = (toX, toY) => put(by ? moved(toX, toY) : at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
-  const puts = { [name]: put };
-  return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release, puts };
+  return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release };
 }
 
 function putNumber(view, name, wanted, { low, high, digits, set }) {
@@ -169,13 +168,12 @@ function putNumber(view, name, wanted, { low, high, digits, set }) {
 /* A handle for two numbers, `ranges`: {name: [low, high]}. at(x, y) gives those where it is dragged
  * to, and an arrow key moves it by `px`; they are kept with so many digits. */
 export function pair(view, name, [x, y], label, text, ranges, { at, px = 4, digits, r }) {
-  const put = ([each, [low, high]]) =>
-    [each, (wanted) => putNumber(view, each, wanted, { low, high, digits })];
-  const puts = Object.fromEntries(Object.entries(ranges).map(put));
-  const drag = (toX, toY) => Object.values(puts).forEach((put, k) => put(at(toX, toY)[k]));
+  const drag = (toX, toY) =>
+    Object.entries(ranges).forEach(([each, [low, high]], k) =>
+      putNumber(view, each, at(toX, toY)[k], { low, high, digits }));
   let [nowX, nowY] = [x, y];
   const nudge = (dx, dy) => drag((nowX += px * dx), (nowY += px * dy));
-  return { name, x, y, r, label, text, value: at(x, y)[0], drag, nudge, puts };
+  return { name, x, y, r, label, text, value: at(x, y)[0], drag, nudge };
 }
 
 // The same handle at another place, too: all of a ball. The hand goes on as from the first.
