@@ -14,7 +14,7 @@ NOT_RUN = {  # how it starts: why CI does not run it
     ".venv/bin/rerun ": "opens a window; CI reads the recording with `rerun rrd verify`",
     "uv run rerun ": "opens a window; CI reads the recording with `rerun rrd verify`",
     "uv run python contact.py --scene drop && uv run rerun": "its second half opens a window",
-    "python -m curriculum.text --accept": "says that a person has read a section",
+    "python -m curriculum.text --accept": "says that a person has read what changed",
     "python -m curriculum.bench": "long; CI runs it with --quick",
     "python -m curriculum.stress": "long; CI runs it with --quick",
     "python -m curriculum.measured.ledger": "measures this machine, and writes into the tree",

@@ -45,9 +45,9 @@ def show(row) -> str:
     """A row's time as text, with two digits: in seconds below a minute."""
     if row["status"] == "PENDING":
         return "not yet measured"
-    minutes = float(row["wallclock_min"])
-    time = f"{minutes:.2g} min" if minutes >= 1 else f"{60 * minutes:.2g} s"
-    return time + " (stale)" * stale(row)
+    taken = float(row["wallclock_min"])
+    text = f"{taken:.2g} min" if taken >= 1 else f"{60 * taken:.2g} s"
+    return text + " (stale)" * stale(row)
 
 
 def code_hash() -> str:
@@ -60,8 +60,8 @@ def stale(row) -> bool:
     return row["config_hash"] not in ("", code_hash())
 
 
-def measure(runs: int) -> float:
-    """Minutes of `python contact.py` as a whole process, the median after one that warms caches.
+def measure(runs: int) -> list:
+    """Seconds of `python contact.py` as a whole process; the first of them also warms caches.
 
     Raises RuntimeError when a run fails or makes no recording: without rerun it is not the default.
     """
@@ -74,6 +74,11 @@ def measure(runs: int) -> float:
             seconds.append(time.perf_counter() - start)
             if run.returncode or not list(Path(out).glob("*.rrd")):
                 raise RuntimeError(run.stderr.strip() or "no recording: pip install rerun-sdk")
+    return seconds
+
+
+def minutes(seconds: list) -> float:
+    """What the ledger holds of these times: the median in minutes, without the first."""
     return statistics.median(seconds[1:]) / 60
 
 
@@ -87,8 +92,8 @@ def main(argv=None) -> int:
         table = {row["tier"]: row for row in rows()}
         if dirty():
             raise ValueError(f"a row is kept with its commit; commit these first: {dirty()}")
-        about, minutes = machine(), measure(args.runs)
-        facts = f"{minutes:.3g}", code_hash(), about["commit"], about["date"], "MEASURED"
+        about, seconds = machine(), measure(args.runs)
+        facts = f"{minutes(seconds):.3g}", code_hash(), about["commit"], about["date"], "MEASURED"
         table[args.tier] = dict(zip(COLUMNS, (CHAPTER, args.tier, *facts)))
         lines = [COLUMNS, *(row.values() for row in table.values())]
         write_whole(LEDGER, "".join(",".join(line) + "\n" for line in lines))

@@ -5,8 +5,8 @@ stress/ that its own modules import. A fingerprint is taken of the syntax tree: 
 docstrings and formatting do not count, and neither do the words of contact.py's region `flags`,
 which are help and errors. A name is a file, or a file "without" some regions.
 
-A seal is the last line of a page, a figure, or a block of the README that a command wrote. It
-is a comment: the files it was made of, and a hash of these and of the text. Who edits the text, or
+A seal is the last line of a page, a figure, or a block of the README that a command wrote: a
+comment with the files it was made of, and a hash of these and of the text. Who edits the text, or
 changes what made it and does not write it again, breaks the seal.
 """
 
@@ -14,40 +14,32 @@ import ast
 import hashlib
 import json
 import re
-from collections.abc import Iterator
 from functools import lru_cache
 
-from curriculum.regions import CODE, REGION, line_at, read_text
+from curriculum.regions import CODE, REGION, ROOT, read_text
 
 COMMAND_LINE = ("flags", "report", "files", "main")  # regions that no step or measure stands in
 LESSON = f"contact.py without {' '.join(COMMAND_LINE)}"
 STEPS = (LESSON, *CODE[1:])
-ROOMS = ("curriculum/bench/", "curriculum/stress/")  # of the modules that measure
+STRING = re.compile(r'"[^"\n]*"')
+OF_PYTHON = re.compile(r"\w+=\[\], |(, )?\w+=\[\]|, (ctx=\w+\(\)|kind='u')")  # which one dumps it
 SEAL = re.compile(r"<!-- sealed ([0-9a-f]{12}) from (.*) -->\n\Z")
 BLOCK = re.compile(r"(<!-- generated: (\w+) by (.*?) -->)\n(.*?)(?=<!-- end -->)", re.DOTALL)
-UNSEEN = ("ctx", "kind", "type_comment", "type_params")  # of a node; these differ between Pythons
 
 
 def made_by(*files) -> list:
-    """The names to fingerprint of a result: STEPS, these files, and what they import of ROOMS."""
+    """The names to fingerprint: STEPS, these files, and what they import of bench/ and stress/."""
     found, waiting = set(STEPS), list(files)
     while waiting:
-        file = waiting.pop()
-        if file not in found:
+        if (file := waiting.pop()) not in found:
             found.add(file)
-            waiting += [each for each in imported(file) if each.startswith(ROOMS)]
+            for room, names in re.findall(r"from curriculum\.(bench|stress)(.*)", read_text(file)):
+                known = ROOT.glob(f"curriculum/{room}/*.py")
+                named = set(re.findall(r"\w+", names))
+                waiting += [
+                    f"curriculum/{room}/{path.name}" for path in known if path.stem in named
+                ]
     return sorted(found)
-
-
-def imported(file: str) -> Iterator[str]:
-    """The files of this project that a file imports, at its top or within functions."""
-    for node in ast.walk(ast.parse(read_text(file))):
-        names = [alias.name for alias in getattr(node, "names", ()) if hasattr(alias, "name")]
-        if isinstance(node, ast.ImportFrom):
-            names = [node.module, *(f"{node.module}.{name}" for name in names)]
-        if isinstance(node, (ast.Import, ast.ImportFrom)):
-            paths = [name.replace(".", "/") + ".py" for name in names]
-            yield from (path for path in paths if read_text(path))
 
 
 def fingerprint(*names) -> dict:
@@ -64,30 +56,18 @@ def digest(value) -> str:
 def digits(name, text) -> str:
     """The fingerprint of a file's text under that name."""
     file, _, without = name.partition(" without ")
-    left_out: list = []
-    words: list = []
-    for region in REGION.finditer(text):
-        lines = range(line_at(text, region.start()), line_at(text, region.end()) + 1)
-        left_out += lines if region[1] in without.split() else ()
-        words += lines if region[1] == "flags" else ()
-    tree = ast.parse(text, file)
-    tree.body = [node for node in tree.body if node.lineno not in left_out]
-    return digest(plain(tree, set(words)))
 
+    def counted(region):
+        if region[1] in without.split():
+            return ""
+        code, words = region[0], region[1] == "flags"
+        return STRING.sub(lambda s: '""' if " " in s[0] else s[0], code) if words else code
 
-def plain(node, words: set) -> list | str:
-    """A syntax tree as lists, without docstrings, and without sentences in these lines."""
-    if isinstance(node, list):
-        return [plain(each, words) for each in node]
-    if not isinstance(node, ast.AST):
-        return repr(node)
-    if isinstance(node, ast.Constant) and node.lineno in words and " " in str(node.value):
-        return "words"
-    fields = {name: each for name, each in ast.iter_fields(node) if name not in UNSEEN}
-    if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node):
-        fields["body"] = node.body[1:]
-    kept = {name: plain(each, words) for name, each in fields.items() if each not in (None, [])}
-    return [type(node).__name__, kept]
+    tree = ast.parse(REGION.sub(counted, text), file)
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            node.body = node.body[ast.get_docstring(node) is not None :]
+    return digest(OF_PYTHON.sub("", ast.dump(tree)))
 
 
 def changed(code: dict) -> list:

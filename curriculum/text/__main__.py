@@ -1,12 +1,14 @@
 """The gate: what chapter and README say, against what the code is and does.
 
-    python -m curriculum.text                   # check, write nothing; exit 1 and a line a problem
-    python -m curriculum.text --accept SECTION  # these sections have been read as they are now
+    python -m curriculum.text                 # check, write nothing; exit 1 and a line a problem
+    python -m curriculum.text --accept NAME   # what speaks of this region has been read; and all
+                                              # sentences whose numbers moved
 
-It holds together: regions are well formed, and each is included once by the chapter; a section of
-chapter or README was read again after its text, or the code of a region that it includes or names,
-changed; numbers are quoted by reference, and `holds:` comments are true; measured results and rows
-of the ledger are of today's code.
+It holds together: regions are well formed, and the chapter includes each once; slots, flags and
+names in `code` are of what is there; numbers are quoted by reference, and `holds:` comments are
+true; measured results and rows of the ledger are of today's code. When the code of a region, the
+opening words of contact.py or exact.py, a figure's captions or a quoted number change, it names the
+passages to read again.
 """
 
 import sys
@@ -19,15 +21,16 @@ from curriculum.commands import Parser, needs, stoppable
 def main(argv=None) -> int:
     """Check or accept. Returns the exit status: 0 in order, 1 not, 2 could not be done."""
     parser = Parser(prog="python -m curriculum.text", description=__doc__)
-    parser.add_argument("--accept", metavar="SECTION", nargs="*", help="these have been read")
+    parser.add_argument("--accept", metavar="NAME", nargs="*", help="what was read")
     args = parser.parse_args(argv)
-    try:
-        from curriculum.text import gate
+    from curriculum.text import gate
+    from curriculum.text.references import TextError
 
+    try:
         return gate.check() if args.accept is None else gate.accept(args.accept)
     except SyntaxError as error:
         wrong = f"{error.filename}:{error.lineno}: not Python: {error.msg}"
-    except (OSError, ValueError) as error:
+    except (OSError, TextError) as error:
         wrong = error
     print(wrong, file=sys.stderr)
     return 2

@@ -52,7 +52,7 @@ def ratio_sweeps():
 
 
 def soft_sweeps():
-    """Sweeps until a step of soft's stack of three settles: from nothing, and from its last step."""
+    """Sweeps until a step of soft's stack of three at rest settles, from nothing and warm."""
     scene, found = contact.build_scene("stack"), {}
     run = contact.run_model("soft", scene, DT, 1000)
     solref, solimp = contact.soft_defaults(0.0, DT)

@@ -1,19 +1,36 @@
-"""The gate's checks: each adds problems, `file:line: what is wrong; repair: what to do`."""
+"""The gate's checks: each adds problems, `file:line: what is wrong; repair: what to do`.
+
+Whether a sentence is true of the code only a reader can say, and he is asked when the code changes.
+meta.yaml holds a hash of every region, of the opening words of contact.py and exact.py (the signs,
+the promise) and of each figure's captions; and every number as the texts last quoted it. Where one
+of them is another today, the gate names the passages that show or name the region, or the sentence
+that quotes the number. What a command writes needs no reader: it has a seal (measured/stale.py).
+"""
 
 import json
 import re
 from collections import Counter
+from typing import NamedTuple
 
 from curriculum.commands import write_whole
 from curriculum.measured import ledger, results, stale
-from curriculum.measured.stale import BLOCK, changed
-from curriculum.regions import ROOT, read_text, split_all
-from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, load_meta
-from curriculum.text.sections import FENCE, TEXTS, blank, changes, files, line_at, sections
+from curriculum.measured.stale import BLOCK
+from curriculum.regions import ROOT, Region, blank, line_at, read_text, split_all
+from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, TextError, load_meta
 
 GATE = "python -m curriculum.text"
-CHAPTER = TEXTS["chapter"]
-INCLUDED = re.compile(rf"^```\n{INCLUDE.pattern}\n```$", re.MULTILINE)
+CHAPTER, README = TEXTS = ("curriculum/prose/chapter.md", "README.md")
+FIGURES = "curriculum/page/figures/"
+FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)
+HEADING = re.compile(r"^#{1,6} +.*$", re.MULTILINE)
+OPENING = re.compile(r'\A(?:#[^\n]*\n|\s)*""".*?"""', re.DOTALL)  # of a Python file
+CAPTION = re.compile(
+    r"""\b(?:title|caption):\s*(?:("|`)(?:(?!\1)[^\\]|\\.)*\1[\s+]*)+""", re.DOTALL
+)
+SLOT = r"<!-- (?P<kind>figure|exercise|bench|stress): (?P<slot>\S+) -->"
+MARK = re.compile(rf"^```\n{INCLUDE.pattern}\n```$|{SLOT}", re.MULTILINE)
+LIKE_A_MARK = re.compile(r"include-by-region|<!--\s*(?:figure|exercise|bench|stress)\b")
+SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 # Where numbers may be typed: code, comments, formulas, references, links, tags, numbers of headings
 # and lists, versions with two dots, and what follows some words.
 NOT_PROSE = re.compile(
@@ -35,97 +52,142 @@ NOT_PROSE = re.compile(
 TYPED = re.compile(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*")  # a token that begins with a digit
 
 
+class Passage(NamedTuple):
+    """What a reader reads in one go: a heading with its text, an exercise, a figure's captions."""
+
+    file: str
+    line: int
+    text: str
+
+    def speaks_of(self, region: Region) -> bool:
+        """Whether it includes the region, or has a name in `code` that the region defines."""
+        included = {match["name"] for match in INCLUDE.finditer(self.text)}
+        words = {word for span in SPAN.findall(self.text) for word in re.findall(r"\w+", span)}
+        return region.name in included or bool(region.defines & words)
+
+
 class Gate:
-    """One pass over the project: `problems` are lines, `unread` the sections that changed."""
+    """One pass over the project: `problems` are lines, `changed` what waits for a reader."""
 
     def __init__(self):
-        self.chapter, self.meta, self.sections = read_text(CHAPTER), load_meta(), sections()
+        self.chapter, self.meta, self.quoted = read_text(CHAPTER), load_meta(), {}
         self.regions, self.problems = split_all()
-        recorded = self.meta["section_hashes"]
-        self.unread = [s for s in self.sections.values() if recorded.get(s.name) != s.sha]
+        self.passages = list(passages())
+        self.read = self.regions | {each.name: each for each in openings_and_captions()}
+        recorded = self.meta["region_hashes"]
+        self.changed = [each for each in self.read.values() if recorded.get(each.name) != each.sha]
 
     def say(self, file, line, what, repair):
         """Note a problem."""
         self.problems.append(f"{file}:{line}: {what}; repair: {repair}")
 
-    def check_includes(self):
-        """Every include exists and stands alone in its fence, every region is included once."""
-        shown = Counter()
-        known = {(region.file, region.name): region for region in self.regions.values()}
-        for match in INCLUDED.finditer(self.chapter):
-            line, (file, name) = line_at(self.chapter, match.end()) - 1, match.groups()
-            shown[file, name] += 1
-            if (file, name) not in known:
-                what = f"includes {name}, and {file} has no such region"
-                names = ", ".join(name for other, name in known if other == file)
-                self.say(CHAPTER, line, what, f"name one of {names}")
-            elif shown[file, name] > 1:
-                self.say(CHAPTER, line, f"includes {name} a second time", "delete one of the two")
-        for match in re.finditer("include-by-region", blank(INCLUDED, self.chapter)):
-            what = "an include that is not alone in its fence, or not well formed"
-            line = line_at(self.chapter, match.start())
-            self.say(CHAPTER, line, what, "write [include-by-region: FILE#NAME] in a fence")
-        for (file, name), region in known.items():
-            if not shown[file, name]:
-                repair = f"put [include-by-region: {file}#{name}] into {CHAPTER}"
-                self.say(file, region.line - 1, f"region {name} is never shown", repair)
+    def check_marks(self):
+        """What the chapter includes, and its slots name, is there, and nothing lacks a place."""
+        known, shown = self.known(), Counter()
+        for match in MARK.finditer(self.chapter):
+            kind, name = (
+                match["kind"] or "region",
+                match["slot"] or f"{match['file']}#{match['name']}",
+            )
+            line = line_at(self.chapter, match.end()) - (kind == "region")
+            shown[kind, name] += 1
+            if name not in known[kind]:
+                self.say(
+                    CHAPTER,
+                    line,
+                    f"there is no {kind} {name}",
+                    f"name one of {', '.join(known[kind])}",
+                )
+            elif shown[kind, name] > 1 and kind != "figure":
+                self.say(CHAPTER, line, f"{kind} {name} stands here again", "delete one of the two")
+        for match in LIKE_A_MARK.finditer(blank(MARK, self.chapter)):
+            what = "an include that is not alone in its fence, or a slot that is not well formed"
+            repair = "write [include-by-region: FILE#NAME] in a fence, or <!-- figure: NAME -->"
+            self.say(CHAPTER, line_at(self.chapter, match.start()), what, repair)
+        for kind in ("region", "figure", "exercise"):
+            for name, place in known[kind].items():
+                if not shown[kind, name]:
+                    self.say(*place, f"{kind} {name} has no place in {CHAPTER}", "give it one")
 
-    def check_sections(self):
-        """Section and region hashes of meta.yaml are those of today."""
-        was = self.meta["region_hashes"]
-        for section in self.unread:
-            changed = [each.name for each in section.regions if was.get(each.name) != each.sha]
-            why = f"speaks of {', '.join(changed)}, which changed" if changed else "changed"
-            if section.name not in self.meta["section_hashes"]:
-                why = "was never read"
-            repair = f"read it, then {GATE} --accept {section.name}"
-            self.say(section.file, section.line, f"section {section.name} {why}", repair)
-        for key, hashes in self.hashes().items():
-            wrong = hashes.items() ^ self.meta[key].items()
-            if wrong and not self.unread:
-                what = f"{key} that are not those of today: {', '.join(sorted(dict(wrong)))}"
-                self.say("meta.yaml", 1, what, f"{GATE} --accept, with no name")
-
-    def hashes(self, accepted=()) -> dict:
-        """What meta.yaml holds once these sections have been read; those that are gone are not.
-
-        A region's hash moves when all sections that speak of the region have been read.
-        """
-        read = self.meta["section_hashes"] | {name: self.sections[name].sha for name in accepted}
-        regions = {name: region.sha for name, region in self.regions.items()}
-        for section in self.unread:
-            if section.name not in accepted:
-                waiting = {region.name for region in section.regions}
-                regions |= {n: self.meta["region_hashes"].get(n, "") for n in waiting}
-        return {
-            "region_hashes": regions,
-            "section_hashes": {name: read[name] for name in self.sections if name in read},
+    def known(self) -> dict:
+        """{kind: {name: (file, line)}} of all that a mark of the chapter may name."""
+        found = {
+            "region": {f"{r.file}#{r.name}": (r.file, r.line - 1) for r in self.regions.values()}
         }
+        found["exercise"] = {
+            file.split("/")[1].split("_")[0]: (file, 1) for file in files("exercises/ex*.py")
+        }
+        found["figure"] = {}
+        for file in files(f"{FIGURES}*.js"):
+            _, several, text = read_text(file).partition("export const figures = {")
+            names = re.findall(
+                r"^  \"?([\w-]+)\"?:", text, re.MULTILINE
+            )  # a line each, or all in one
+            names = names or re.findall(r"[\w-]+", text.partition("}")[0])
+            names = names if several else [file.removeprefix(FIGURES)[:-3]]
+            found["figure"] |= dict.fromkeys(names, (file, 1))
+        for kind, folder in results.FOLDERS.items():
+            found[kind] = {
+                re.sub(r".*/(error-)?|\.svg", "", f): (f, 1) for f in files(f"{folder}/*.svg")
+            }
+        return found
+
+    def check_read(self):
+        """What readers have read is what it was, and nothing is kept of what is gone."""
+        for each in self.changed:
+            speak = [f"{p.file}:{p.line}" for p in self.passages if p.speaks_of(each)]
+            what = f"{each.name} changed" + f", of which {', '.join(speak)} speak" * bool(speak)
+            self.say(each.file, each.line, what, f"read these, then {GATE} --accept {each.name}")
+        if gone := ", ".join(self.meta["region_hashes"].keys() - self.read):
+            self.say("meta.yaml", 1, f"hashes of what is gone: {gone}", f"{GATE} --accept")
+
+    def check_names(self):
+        """Names in `code` and flags, of chapter and captions, are in some code or in meta.yaml."""
+        code = files("*.py", "exercises/**/*.py", "curriculum/*.py", "curriculum/[!t]*/*.py")
+        known = set(re.findall(r"--[a-z]\w*|\w+", "".join(map(read_text, [*code, "meta.yaml"]))))
+        for file, first, text in self.passages:
+            for match in SPAN.finditer(text) if file.startswith("curriculum") else ():
+                for name in {*re.findall(r"^[A-Za-z_]\w+$|--[a-z]\w*", match[1])} - known:
+                    line = first + line_at(text, match.start()) - 1
+                    self.say(file, line, f"`{name}` is in no code", "name what is there")
 
     def check_numbers(self):
-        """None is typed into the chapter's prose, every reference can be made, `holds:` is true."""
+        """None is typed into the chapter's prose, every reference can be made and gives what it
+        gave, `holds:` is true, and each run and fact is quoted."""
         for token in TYPED.finditer(blank(NOT_PROSE, self.chapter)):
             line, number = line_at(self.chapter, token.start()), token[0].rstrip(".,")
             repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
             self.say(CHAPTER, line, f"a typed number, {number}", repair)
-        numbers, texts = Numbers(), {file: read_text(file) for file in TEXTS.values()}
+        numbers, texts = Numbers(), {file: read_text(file) for file in TEXTS}
         numbers.prepare("".join(texts.values()))
         for file, text in texts.items():
             for pattern, call in ((REFERENCE, numbers.text), (HOLDS, numbers.broken)):
                 for match in pattern.finditer(text):
                     line = line_at(text, match.start())
                     try:
-                        found = call(match[1])
-                        if found and pattern is HOLDS:
-                            what = f"{match[1]!r} does not hold: {found}"
-                            self.say(file, line, what, "correct the text")
-                    except ValueError as error:
+                        self.check_number(file, line, match[1], call(match[1]), pattern is HOLDS)
+                    except TextError as error:
                         self.say(file, line, f"{match[1]!r}: {error}", "name what is known")
+        for name in [*self.meta["runs"]][1:]:
+            if not any(f"{name}:" in text for text in texts.values()):
+                self.say("meta.yaml", 1, f"run {name} is quoted nowhere", "take it out")
+
+    def check_number(self, file, line, asked, found, claim):
+        """One reference as a reader sees it, or what is false of a claim."""
+        if claim:
+            if found:
+                self.say(file, line, f"{asked!r} does not hold: {found}", "correct the text")
+        elif not asked.startswith("="):
+            self.quoted[asked] = now = found.removesuffix(" (stale)")
+            was = self.meta["numbers"].get(asked, now)
+            if was != now:
+                repair = f"read its sentence, then {GATE} --accept"
+                self.say(file, line, f"{asked} was {was} and is {now}", repair)
 
     def check_written(self):
         """Pages, figures and blocks that a command wrote are as it wrote them."""
-        blocks = list(BLOCK.finditer(read_text("README.md")))
-        written = [("README.md", block[4], block[3]) for block in blocks]
+        blocks = list(BLOCK.finditer(read_text(README)))
+        written = [(README, block[4], block[3]) for block in blocks]
         again = {block[2]: block[3] for block in blocks}
         for name, folder in results.FOLDERS.items():
             for file in files(f"{folder}/*.md", f"{folder}/*.svg"):
@@ -138,7 +200,7 @@ class Gate:
         """Results and rows of the ledger are of today's code, and the rows well formed."""
         for name, folder in results.FOLDERS.items():
             for section, found in results.load(name).items():
-                if names := changed(found["measured"]["code"]):
+                if names := stale.changed(found["measured"]["code"]):
                     what = f"section {section} was measured on other code ({', '.join(names)})"
                     self.say(f"{folder}/{results.NAME}", 1, what, found["measured"]["command"])
         try:
@@ -150,33 +212,65 @@ class Gate:
             self.problems.append(f"{error}; repair: correct the row")
 
 
+def passages():
+    """The sections of chapter and README, the exercises, and the captions of figures."""
+    for file in TEXTS:
+        text = blank(BLOCK, read_text(file))
+        starts = [match.start() for match in HEADING.finditer(blank(FENCE, text))]
+        for first, last in zip(starts, [*starts[1:], len(text)]):
+            yield Passage(file, line_at(text, first), text[first:last])
+    for file in files("exercises/ex*.py"):
+        yield Passage(file, 1, read_text(file))
+    for each in openings_and_captions():
+        if each.file.startswith(FIGURES):
+            yield Passage(each.file, each.line, each.code)
+
+
+def openings_and_captions():
+    """What is read like a region and is none, as Regions: contact.py, exact.py, figures/NAME."""
+    for file in ("contact.py", "curriculum/exact.py"):
+        if opening := OPENING.match(read_text(file)):
+            yield Region(file.split("/")[-1], opening[0], 1, file)
+    for file in files(f"{FIGURES}*.js"):
+        if captions := "\n".join(found[0] for found in CAPTION.finditer(read_text(file))):
+            yield Region(f"figures/{file.removeprefix(FIGURES)[:-3]}", captions, 1, file)
+
+
+def files(*patterns):
+    """The project's files of these patterns, as they are named in git."""
+    found = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
+    return [path.relative_to(ROOT).as_posix() for path in found]
+
+
 def check() -> int:
-    """Print every problem, and what changed in the sections that wait for a reader."""
+    """Print every problem, and the command that accepts what was read."""
     gate = Gate()
-    checks = gate.check_includes, gate.check_sections, gate.check_numbers
+    checks = gate.check_marks, gate.check_read, gate.check_names, gate.check_numbers
     for each in (*checks, gate.check_measured, gate.check_written):
         each()
-    recorded = gate.meta["section_hashes"]
-    print(changes([s for s in gate.unread if s.name in recorded], recorded), end="")
     print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")
-    if len(gate.unread) > 1:
-        names = " ".join(section.name for section in gate.unread)
+    if len(gate.changed) > 1:
+        names = " ".join(each.name for each in gate.changed)
         print(f"\nwhen all of them are read: {GATE} --accept {names}")
     return 1 if gate.problems else 0
 
 
 def accept(names) -> int:
-    """Show what changed in these sections, and record that they were read as they are now."""
+    """Record these as they are now, and all numbers as they are quoted now."""
     gate = Gate()
-    unknown = [name for name in names if name not in gate.sections]
+    unknown = [name for name in names if name not in gate.read]
     if gate.problems or unknown:
-        wrong = f"given {', '.join(unknown)}, allowed: {', '.join(gate.sections)}"
-        raise ValueError("\n".join(gate.problems) or wrong)
-    print(changes([gate.sections[name] for name in names], gate.meta["section_hashes"]), end="")
-    old = r"^(region|section)_hashes:.*\n(?: .*\n)*"
+        wrong = f"given {', '.join(unknown)}, allowed: {', '.join(gate.read)}"
+        raise TextError("\n".join(gate.problems) or wrong)
+    gate.check_numbers()
+    was = gate.meta["region_hashes"]
+    now = {n: each.sha if n in names else was.get(n) for n, each in gate.read.items()}
+    kept = {"region_hashes": {n: sha for n, sha in now.items() if sha}, "numbers": gate.quoted}
+    old = r"^(region_hashes|section_hashes|numbers):.*\n(?: .*\n)*"
     text = re.sub(old, "", read_text("meta.yaml"), flags=re.MULTILINE).rstrip("\n")
-    for key, hashes in gate.hashes(names).items():
-        text += f"\n\n{key}:\n" + "\n".join(f"  {n}: {json.dumps(v)}" for n, v in hashes.items())
+    for key, values in kept.items():
+        lines = (f"  {json.dumps(n)}: {json.dumps(v)}" for n, v in values.items())
+        text += f"\n\n{key}:\n" + "\n".join(lines)
     write_whole(ROOT / "meta.yaml", text + "\n")
-    print(f"recorded in meta.yaml: {', '.join(names) or 'what is no longer there is taken out'}")
+    print(f"recorded in meta.yaml: all numbers, and {', '.join(names) or 'nothing else'}")
     return 0

@@ -11,7 +11,7 @@
 
 FORMAT is Python's; a fraction needs one. Results that were measured on other code are followed by
 "(stale)". A sentence is held to the numbers by a comment that compares two formulas:
-<!-- holds: quality.lcp.energy_excess < 1e-9 -->. What cannot be made raises ValueError, which says
+<!-- holds: quality.lcp.energy_excess < 1e-9 -->. What cannot be made raises TextError, which says
 in one line what is known instead.
 """
 
@@ -48,14 +48,18 @@ MEASURES = "curriculum/text/facts.py"
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
 
+class TextError(ValueError):
+    """What somebody wrote and can mend, in one line. Any other error is our own."""
+
+
 @cache
 def load_meta() -> dict:
-    """meta.yaml. Raises ValueError, which says where, when it is not YAML."""
+    """meta.yaml. Raises TextError, which says where, when it is not YAML."""
     try:
         with open(ROOT / "meta.yaml", encoding="utf-8") as file:
-            return {"region_hashes": {}, "section_hashes": {}} | yaml.safe_load(file)
+            return {"region_hashes": {}, "numbers": {}} | yaml.safe_load(file)
     except yaml.YAMLError as error:
-        raise ValueError(f"meta.yaml is not YAML: {' '.join(str(error).split())}") from None
+        raise TextError(f"meta.yaml is not YAML: {' '.join(str(error).split())}") from None
 
 
 def cached(name: str, inputs, make, code=CODE):
@@ -83,7 +87,7 @@ def run_contact(flags) -> dict:
         command = [sys.executable, "-B", *start, *words, "--no-rerun", "--out", out]
         run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
         if run.returncode:
-            raise ValueError(f"{' '.join(start + words)} fails: {run.stderr.strip()[-300:]}")
+            raise TextError(f"{' '.join(start + words)} fails: {run.stderr.strip()[-300:]}")
         return json.loads((Path(out) / f"{file}.json").read_text("utf-8"))
 
 
@@ -99,7 +103,7 @@ class Numbers:
         if name not in self.runs:
             runs = load_meta()["runs"]
             if name not in runs:
-                raise ValueError(f"no run {name!r} in meta.yaml; known there: {known(runs)}")
+                raise TextError(f"no run {name!r} in meta.yaml; known there: {known(runs)}")
             self.runs[name] = cached(f"run-{name}", runs[name], lambda: run_contact(runs[name]))
         return self.runs[name]
 
@@ -138,30 +142,33 @@ class Numbers:
         def number(match):
             found = self.operand(match[0])
             if not is_number(found):
-                raise ValueError(f"{match[0]!r} is {str(found)[:40]!r}, no number")
+                raise TextError(f"{match[0]!r} is {str(found)[:40]!r}, no number")
             return f"({found!r})"
 
         reckoned = OPERAND.sub(number, formula)
         if not FORMULA.fullmatch(reckoned):
-            raise ValueError(f"{formula!r} has other signs than + - * / ( )")
+            raise TextError(f"{formula!r} has other signs than + - * / ( )")
         try:
             return eval(reckoned)
         except (NameError, SyntaxError, TypeError, ZeroDivisionError) as error:
-            raise ValueError(f"{formula!r} cannot be reckoned: {error}") from None
+            raise TextError(f"{formula!r} cannot be reckoned: {error}") from None
 
     def text(self, reference) -> str:
         """What a reader sees in place of {{reference}}."""
         formula, _, form = (part.strip() for part in reference.partition("|"))
         if formula.startswith("="):
             if not form:
-                raise ValueError("a typed number needs a reason: {{= NUMBER | REASON}}")
+                raise TextError("a typed number needs a reason: {{= NUMBER | REASON}}")
             return formula[1:].strip()
         value = self.value(formula)
         if not (is_number(value) or isinstance(value, str)):
-            raise ValueError(f"{formula!r} is no number; known there: {known(value)}")
+            raise TextError(f"{formula!r} is no number; known there: {known(value)}")
         if isinstance(value, float) and not form:
-            raise ValueError(f"{formula!r} is a fraction and needs a format, such as |.3f")
-        text = format(value, form)
+            raise TextError(f"{formula!r} is a fraction and needs a format, such as |.3f")
+        try:
+            text = format(value, form)
+        except ValueError as error:
+            raise TextError(f"{form!r} is no format of {formula!r}: {error}") from None
         shown = typeset(text) if is_number(value) else text
         return shown + " (stale)" * any(map(stale, OPERAND.findall(formula)))
 
@@ -169,7 +176,7 @@ class Numbers:
         """What the two sides of FORMULA < FORMULA (or <= > >= ==) are, where it is not true."""
         parts = CLAIM.fullmatch(" ".join(claim.split()))
         if not parts:
-            raise ValueError(f"{claim!r} is not 'FORMULA < FORMULA'")
+            raise TextError(f"{claim!r} is not 'FORMULA < FORMULA'")
         left, right = (self.value(f"({side})") for side in parts.group(1, 3))  # numbers alone
         return "" if SIGNS[parts[2]](left, right) else f"{left:.6g} {parts[2]} {right:.6g}"
 
@@ -217,4 +224,4 @@ def dig(tree, key: str, whole: str):
     for name, value in inside(tree).items():
         if f"{key}.".startswith(f"{name}."):
             return dig(value, key[len(name) + 1 :], whole)
-    raise ValueError(f"{whole!r} is not there: no {key!r}; known there: {known(tree)}")
+    raise TextError(f"{whole!r} is not there: no {key!r}; known there: {known(tree)}")
