@@ -1,10 +1,11 @@
 """What contact.py reaches for: the recording, the picture, many seeds, what to do next."""
 
 import json
+import math
 import re
 import subprocess
 import sys
-from collections import namedtuple
+from collections import defaultdict, namedtuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,30 +16,28 @@ from curriculum import parallel, seeds
 from curriculum.run import plotting
 from curriculum.tests.helpers import CONTACT, ROOT, python
 
-DT, STEPS = 0.002, 600
+DT, STEPS = 0.004, 300
+MASS, RADIUS = np.array([2.0, 1.3, 0.5]), np.array([0.12, 0.09, 0.08])  # from the lowest ball up
 CURVES = ("height", "penetration", "impulse", "energy", "rises")
+DULL = ("rerun.controls.RowId", "log_time", "log_tick", "blueprint")
 Recording = namedtuple("Recording", "series static blueprint application")
 
 
-def runs_of(name, steps=STEPS, dt=DT, models=contact.MODELS, **given):
-    scene = contact.build_scene(name, **given)
-    return scene, {model: contact.run_model(model, scene, dt, steps) for model in models}
+def runs_of(scene, steps=STEPS, dt=DT, models=contact.MODELS):
+    """The scene, its runs {model: Run} and their qualities {model: {key: value}}."""
+    runs = {model: contact.run_model(model, scene, dt, steps) for model in models}
+    return scene, runs, {m: contact.contact_quality(run, scene, dt) for m, run in runs.items()}
 
 
 def rows_of(reader, store):
     """(entity, {column: value}) of every row, without row ids and times of logging."""
-    dull = ("rerun.controls.RowId", "log_time", "log_tick", "blueprint")
     for part in reader.stream(store=store):
         batch = part.to_record_batch()
-        names = [name for name in batch.schema.names if name not in dull]
-        columns = [
-            batch.column(name).cast("int64")
-            if name in ("sim_time", "landing")
-            else batch.column(name)
-            for name in names
-        ]
-        for row in zip(*(column.to_pylist() for column in columns)):
-            yield part.entity_path, dict(zip(names, row))
+        columns = {name: batch.column(name) for name in batch.schema.names if name not in DULL}
+        for name in {"sim_time", "landing"} & columns.keys():
+            columns[name] = columns[name].cast("int64")
+        for row in zip(*(column.to_pylist() for column in columns.values())):
+            yield part.entity_path, dict(zip(columns, row))
 
 
 def opened(path):
@@ -47,32 +46,31 @@ def opened(path):
     chunk = pytest.importorskip("rerun.chunk", reason="this rerun cannot read recordings")
     reader = chunk.RrdReader(str(path))
     (store,) = reader.recordings()
-    series, static, blueprint = {}, {}, {}
-    rows = [row for row in rows_of(reader, store) if not row[0].startswith("/__properties")]
-    for entity, row in sorted(rows, key=lambda each: each[1].get("step", -1)):
-        if "step" not in row:
-            static.setdefault(entity, {}).update(row)
+    series, static = defaultdict(lambda: defaultdict(list)), defaultdict(dict)
+    blueprint = defaultdict(list)
+    for entity, row in sorted(rows_of(reader, store), key=lambda each: each[1].get("step", -1)):
+        if "step" not in row and not entity.startswith("/__properties"):
+            static[entity].update(row)
         for column, value in row.items() if "step" in row else ():
-            series.setdefault(entity, {}).setdefault(column, []).append(value)
+            series[entity][column].append(value)
     for each in reader.blueprints():
-        for _, row in rows_of(reader, each):
-            for column, value in row.items():
-                blueprint.setdefault(column, []).append(value)
+        for column, value in (pair for _, row in rows_of(reader, each) for pair in row.items()):
+            blueprint[column].append(value)
     return Recording(series, static, blueprint, store.application_id)
 
 
-def recorded(folder, scene, runs):
+def recorded(folder, scene, runs, quality):
     recording = pytest.importorskip("curriculum.run.recording", reason="rerun is not installed")
-    recording.write(str(folder / "contact.rrd"), runs, scene)
+    recording.write(str(folder / "contact.rrd"), runs, scene, quality, "a title")
     assert [path.name for path in folder.iterdir()] == ["contact.rrd"], "nothing else is left"
     return opened(folder / "contact.rrd")
 
 
 @pytest.fixture(scope="module")
 def stack(tmp_path_factory):
-    """The recording of a stack of three, with its scene and runs."""
-    scene, runs = runs_of("stack")
-    return recorded(tmp_path_factory.mktemp("stack"), scene, runs), scene, runs
+    """The recording of a stack of three unequal balls, with its scene and runs."""
+    scene, runs, quality = runs_of(contact.scene_of([0.0] * 3, [0.13, 0.36, 0.55], MASS, RADIUS))
+    return recorded(tmp_path_factory.mktemp("stack"), scene, runs, quality), scene, runs
 
 
 def positions(recording, model):
@@ -90,49 +88,49 @@ def test_a_recording_has_every_models_balls_pushes_table_and_curves_one_row_a_st
     assert re.fullmatch("[a-z0-9_]+", recording.application)  # others are renamed with a warning
     for columns in recording.series.values():
         assert columns["step"] == list(range(STEPS + 1))
-        assert columns["sim_time"] == [2_000_000 * k for k in range(STEPS + 1)]  # whole ns
+        assert columns["sim_time"] == [4_000_000 * k for k in range(STEPS + 1)]  # whole ns
 
 
-def test_balls_are_where_the_run_had_them_and_up_is_up(stack):
+def test_balls_are_where_the_run_had_them_up_is_up_and_an_arrow_is_a_radius_long_at_rest(stack):
     """rerun's 2-D views have y down, so a height y above the table is logged as -y."""
     recording, scene, runs = stack
     for model, run in runs.items():
-        shown = positions(recording, model)
+        shown, balls = positions(recording, model), recording.static[f"/world/{model}/balls"]
         assert np.array_equal(shown[..., 0], run.q[:, 0].astype(np.float32))
         assert np.array_equal(shown[..., 1], (-run.q[:, 1]).astype(np.float32))
-        assert np.allclose(recording.static[f"/world/{model}/balls"]["Points2D:radii"], 0.1)
-
-
-def test_an_arrow_points_along_the_push_and_is_a_radius_long_at_rest(stack):
-    recording, scene, runs = stack
-    for model, run in runs.items():
+        assert np.allclose(balls["Points2D:radii"], RADIUS)
+        body = np.array(recording.static[f"/world/{model}/ground"]["LineStrips2D:strips"])
+        assert (body[..., 1] > 0.0).all(), "the table's body is under the balls"
         rows = recording.series[f"/world/{model}/pushes"]
-        vectors = np.array(rows["Arrows2D:vectors"])
-        assert np.array_equal(np.array(rows["Arrows2D:origins"]), positions(recording, model))
-        force = np.diff(run.v[:, 1], axis=0) / DT + 9.81
-        length = 0.1 * np.log2(1.0 + np.abs(force) / 9.81) * np.sign(force)
-        assert np.abs(-vectors[1:, :, 1] - length).max() < 1e-5
-        assert np.abs(-vectors[-1, :, 1] - 0.1).max() < 0.02
+        vectors = -np.array(rows["Arrows2D:vectors"])[..., 1]
+        assert np.array_equal(np.array(rows["Arrows2D:origins"]), shown)
+        weights = np.diff(run.v[:, 1], axis=0) / DT / 9.81 + 1.0  # a push, in weights of its ball
+        length = RADIUS * np.log2(1.0 + np.abs(weights)) * np.sign(weights)
+        assert np.abs(vectors[1:] - length).max() < 1e-5
+        if model != "penalty":  # which still moves
+            assert np.abs(vectors[-1] - RADIUS).max() < 0.02
 
 
 def test_curves_are_the_runs_own_numbers_in_the_models_colour_with_their_peaks(stack):
     recording, scene, runs = stack
+    policy = pytest.importorskip("rerun").components.AggregationPolicy.MinMax.value
     for model, run in runs.items():
-        total = contact.energy(run.q, run.v, scene.mass)
+        total = (MASS * (0.5 * (run.v**2).sum(1) + 9.81 * run.q[:, 1])).sum(-1)
+        gained = MASS * (np.diff(run.v[:, 1], axis=0) + 9.81 * DT)  # by contacts, upwards [N s]
         expected = {
             "height": run.q[:, 1].mean(-1),
-            "penetration": np.maximum(-contact.smallest_gap(run.q, scene.radius), 0.0) / 0.1,
+            "penetration": np.maximum(-contact.smallest_gap(run.q, RADIUS), 0.0) / RADIUS[0],
+            "impulse": np.append(0.0, gained.sum(1)),  # pushes between balls cancel: the floor's
             "energy": total - total[0],
             "rises": np.cumsum([0.0, *np.maximum(0.0, np.diff(total))]),
         }
         for curve, values in expected.items():
-            logged = recording.series[f"/{curve}/{model}"]["Scalars:scalars"]
-            assert np.array_equal(np.array(logged)[:, 0], values), f"{curve} of {model}"
+            logged = np.array(recording.series[f"/{curve}/{model}"]["Scalars:scalars"])[:, 0]
+            assert logged == pytest.approx(values, rel=1e-9, abs=1e-9), f"{curve} of {model}"
         rgba = int(plotting.COLORS[model][1:] + "ff", 16)
         assert set(recording.static[f"/world/{model}/balls"]["Points2D:colors"]) == {rgba}
         look = recording.static[f"/height/{model}"]
         assert (look["SeriesLines:colors"], look["SeriesLines:names"]) == ([rgba], [model])
-        policy = pytest.importorskip("rerun").components.AggregationPolicy.MinMax.value
         assert look["SeriesLines:aggregation_policy"] == [policy], "an average hides the peaks"
 
 
@@ -149,14 +147,15 @@ def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots(stack):
     small = min(views, key=lambda view: np.ptp(view["y_range"]))
     for model in contact.MODELS:
         x, y = np.moveaxis(positions(recording, model), -1, 0)
-        assert large["x_range"][0] < x.min() - 0.1 and x.max() + 0.1 < large["x_range"][1]
-        assert large["y_range"][0] < y.min() - 0.1 and y.max() < large["y_range"][1]
-    assert small["y_range"][0] < 0.0 < 3 * 0.000981 < small["y_range"][1] < 0.02
+        assert large["x_range"][0] < x.min() - 0.12 and x.max() + 0.12 < large["x_range"][1]
+        assert large["y_range"][0] < y.min() - 0.08 and y.max() < large["y_range"][1]
+    sink = MASS.sum() * 9.81 / 1e4  # m, of penalty
+    assert small["y_range"][0] < 0.0 < sink < small["y_range"][1] < 0.02
 
 
 def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(tmp_path):
-    scene, runs = runs_of("drop", steps=2000)
-    recording = recorded(tmp_path, scene, runs)
+    scene, runs, quality = runs_of(contact.build_scene("drop"), steps=1000)
+    recording = recorded(tmp_path, scene, runs, quality)
     fall = np.sqrt(2.0 * (scene.q0[1, 0] - 0.1) / 9.81)  # s, of a ball that starts at rest
     times = recording.series["/world/lcp/balls"]
     first = times["landing"][0] / 1e9  # where a viewer's cursor starts
@@ -172,9 +171,8 @@ def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(tmp_pa
 
 
 def test_a_view_says_how_its_run_ended_and_an_explosion_does_not_widen_it(tmp_path):
-    scene, runs = runs_of("drop", steps=200, dt=0.064, models=("penalty", "lcp", "exact"))
-    recording = recorded(tmp_path, scene, runs)
-    step = contact.contact_quality(runs["penalty"], scene, 0.064)["blew_up_step"]
+    told = runs_of(contact.build_scene("drop"), 200, 0.064, ("penalty", "lcp", "exact"))
+    recording, step = recorded(tmp_path, *told), told[2]["penalty"]["blew_up_step"]
     names = sum(recording.blueprint["ViewBlueprint:display_name"], [])
     assert {f"penalty: EXPLODED at step {step}", "lcp: through the floor", "exact"} < set(names)
     views = [view[0]["y_range"] for view in recording.blueprint["VisualBounds2D:range"]]
@@ -182,7 +180,8 @@ def test_a_view_says_how_its_run_ended_and_an_explosion_does_not_widen_it(tmp_pa
 
 
 def test_of_many_balls_the_arrows_are_left_out_since_they_are_a_thicket(tmp_path):
-    recording = recorded(tmp_path, *runs_of("pile", steps=20, models=("lcp",), bodies=40))
+    pile = contact.build_scene("pile", bodies=40)
+    recording = recorded(tmp_path, *runs_of(pile, steps=20, models=("lcp",)))
     assert "/world/lcp/balls" in recording.static and "/world/lcp/pushes" not in recording.static
 
 
@@ -192,21 +191,25 @@ def test_a_run_that_overflows_or_outlasts_64_bit_nanoseconds_is_recorded(
 ):
     scene = contact.build_scene("drop")
     run = contact.run_model(model, scene, dt, 300, contact.Settings(stiffness=stiffness))
-    recording = recorded(tmp_path, scene, {model: run})
+    quality = {model: contact.contact_quality(run, scene, dt)}
+    recording = recorded(tmp_path, scene, {model: run}, quality)
     assert recording.series[f"/height/{model}"]["step"] == list(range(301))
 
 
 def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(tmp_path):
     pytest.importorskip("matplotlib", reason="matplotlib is not installed")
-    scene, runs = runs_of("bounce")
+    scene, runs, quality = runs_of(contact.build_scene("bounce"))
     for name in ("a.svg", "b.svg"):
-        plotting.write(str(tmp_path / name), runs, scene, "a title")
-    content = (tmp_path / "a.svg").read_bytes()
-    assert content == (tmp_path / "b.svg").read_bytes()
+        plotting.write(str(tmp_path / name), runs, scene, quality, "a title")
+    content = (tmp_path / "a.svg").read_text("utf-8")
+    assert content == (tmp_path / "b.svg").read_text("utf-8")
     texts = {each.text for each in ElementTree.fromstring(content).iter() if each.text}
     assert {"a title", *contact.MODELS, *plotting.curves(runs, scene)} <= texts
-    for color in plotting.COLORS.values():
-        assert content.count(f"stroke: {color}".encode()) == len(CURVES) + 2  # legend, dark mode
+    looks = [re.findall(rf'd="M[^"]+"[^>]*style="([^"]*stroke: {plotting.COLORS[model]}[^"]*)"',
+                        content) for model in contact.MODELS]  # fmt: skip
+    assert [len(each) for each in looks] == [len(CURVES) + 1] * len(looks), "and in the legend"
+    grey = {re.sub("#[0-9a-f]+|stroke-width: [^;]+", "", each[0]) for each in looks}
+    assert len(grey) == len(looks), "without colour they are told apart by their dashes"
 
 
 def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path, capsys):
@@ -220,14 +223,28 @@ def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path,
         assert seeds.main([*there]) == 0
     found = (tmp_path / "here/seeds.json").read_text("utf-8")
     assert found == (tmp_path / "there/seeds.json").read_text("utf-8")
-    runs = [runs_of("drop", steps=300, models=("lcp",), seed=seed) for seed in range(5)]
-    deepest = sorted(
-        contact.contact_quality(each["lcp"], scene, DT)["max_penetration_frac"]
-        for scene, each in runs
+    each = [
+        runs_of(contact.build_scene("drop", seed), dt=0.002, models=["lcp"]) for seed in range(5)
+    ]
+    depths = sorted(quality["lcp"]["max_penetration_frac"] for _, _, quality in each)
+    rows = json.loads(found)["rows"]["lcp"]
+    for name, depth in (("lowest", depths[0]), ("median", depths[2]), ("highest", depths[-1])):
+        assert abs(rows[name]["max_penetration_frac"] - depth) < 1e-12
+
+
+def test_seeds_count_what_exploded_went_through_or_could_not_be_run():
+    usual = dict.fromkeys((key for key, _ in contact.COLUMNS.values()), 1.0)
+    ends = (  # of three of four runs
+        {"blew_up": True, "through": "a ball", "rest_jitter": math.inf},
+        {"blew_up": False, "through": "a ball"},
+        {"blew_up": False, "through": None, "rebound_frac": None},
     )
-    rows = json.loads(found)["rows"]
-    for name, depth in (("lowest", deepest[0]), ("median", deepest[2]), ("highest", deepest[-1])):
-        assert abs(rows[f"lcp {name}"]["max_penetration_frac"] - depth) < 1e-12
+    rows = seeds.summary([usual | end for end in ends])
+    words = "1 of 4 EXPLODED, 1 of 4 went through, 1 of 4 could not be run"
+    assert {seeds.ending(row, 4) for row in rows.values()} == {words}
+    jitter = {name: row["rest_jitter"] for name, row in rows.items()}
+    assert jitter == {"median": 1.0, "lowest": 1.0, "highest": math.inf}
+    assert {row["rebound_frac"] for row in rows.values()} == {None}, "not of all runs, so of none"
 
 
 @pytest.mark.parametrize(
