@@ -99,8 +99,10 @@ def test_balls_are_where_the_run_had_them_up_is_up_and_an_arrow_is_a_radius_long
         assert np.array_equal(shown[..., 0], run.q[:, 0].astype(np.float32))
         assert np.array_equal(shown[..., 1], (-run.q[:, 1]).astype(np.float32))
         assert np.allclose(balls["Points2D:radii"], RADIUS)
-        body = np.array(recording.static[f"/world/{model}/ground"]["LineStrips2D:strips"])
-        assert (body[..., 1] > 0.0).all(), "the table's body is under the balls"
+        below, above = (recording.static[f"/world/{model}/{kind}"] for kind in ("ground", "table"))
+        orders = [each[name] for each in (below, balls, above) for name in each if "order" in name]
+        assert orders == sorted(orders) and len(set(map(str, orders))) == 3
+        assert (np.array(below["LineStrips2D:strips"])[..., 1] > 0.0).all(), "under the balls"
         rows = recording.series[f"/world/{model}/pushes"]
         vectors = -np.array(rows["Arrows2D:vectors"])[..., 1]
         assert np.array_equal(np.array(rows["Arrows2D:origins"]), shown)
@@ -165,9 +167,8 @@ def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(tmp_pa
     assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["landing"]])
     (ranges,) = {str(each) for each in recording.blueprint["VisibleTimeRanges:ranges"]}
     start, end = (sorted({int(n) / 1e9 for n in re.findall(r"\d{8,}", ranges)})[k] for k in (0, -1))
-    for run in runs.values():
-        assert np.abs(run.v[run.t >= end]).max() < 0.01
-    assert first < start < fall < 0.5 < end < 2.0, "of 4 s"
+    moves = max(run.t[(np.abs(run.v) >= 0.01).any((1, 2))].max() for run in runs.values())
+    assert first < start < fall < moves and abs(end - 1.1 * moves) < 2 * DT
 
 
 def test_a_view_says_how_its_run_ended_and_an_explosion_does_not_widen_it(tmp_path):
