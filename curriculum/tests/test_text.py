@@ -166,7 +166,7 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
     ("contact.py", "CONTACT_MARGIN = 1e-3", "CONTACT_MARGIN = 2e-3",
      ["{}:#: setup changed", f"{CHAPTER}:6: contact.CONTACT_MARGIN * 1000|.0f was 1 and is 2"]),
     ("meta.yaml", "  drop: []", "  drop: []\n  long: [--steps, 3]", ["{}:1: run long is quoted "]),
-    ("meta.yaml", '  "sweep":', '  "swept":',
+    ("meta.yaml", '\n  sweep:', '\n  swept:',
      ["{}:1: hashes of what is gone: swept", "contact.py:#: sweep changed, of which "]),
     ("wallclock.csv", PENDING, PENDING
      + "ch3.5-contact,cpu,0.01,0123456789ab,1234567,2026-01-02,MEASURED\n",

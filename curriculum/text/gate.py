@@ -7,10 +7,12 @@ of them is another today, the gate names the passages that show or name the regi
 that quotes the number. What a command writes needs no reader: it has a seal (measured/stale.py).
 """
 
-import json
 import re
 from collections import Counter
+from pathlib import Path
 from typing import NamedTuple
+
+import yaml
 
 from curriculum.commands import write_whole
 from curriculum.measured import ledger, results, stale
@@ -20,9 +22,10 @@ from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, TextE
 
 GATE = "python -m curriculum.text"
 CHAPTER, README = TEXTS = ("curriculum/prose/chapter.md", "README.md")
-FIGURES = "curriculum/page/figures/"
+FIGURES = "curriculum/page/figures/*.js"
 FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)
 HEADING = re.compile(r"^#{1,6} +.*$", re.MULTILINE)
+KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line each
 OPENING = re.compile(r'\A(?:#[^\n]*\n|\s)*""".*?"""', re.DOTALL)  # of a Python file
 CAPTION = re.compile(
     r"""\b(?:title|caption):\s*(?:("|`)(?:(?!\1)[^\\]|\\.)*\1[\s+]*)+""", re.DOTALL
@@ -85,19 +88,13 @@ class Gate:
         """What the chapter includes, and its slots name, is there, and nothing lacks a place."""
         known, shown = self.known(), Counter()
         for match in MARK.finditer(self.chapter):
-            kind, name = (
-                match["kind"] or "region",
-                match["slot"] or f"{match['file']}#{match['name']}",
-            )
+            file, region, kind, name = match.groups()
+            kind, name = kind or "region", name or f"{file}#{region}"
             line = line_at(self.chapter, match.end()) - (kind == "region")
             shown[kind, name] += 1
             if name not in known[kind]:
-                self.say(
-                    CHAPTER,
-                    line,
-                    f"there is no {kind} {name}",
-                    f"name one of {', '.join(known[kind])}",
-                )
+                names = ", ".join(known[kind])
+                self.say(CHAPTER, line, f"there is no {kind} {name}", f"name one of {names}")
             elif shown[kind, name] > 1 and kind != "figure":
                 self.say(CHAPTER, line, f"{kind} {name} stands here again", "delete one of the two")
         for match in LIKE_A_MARK.finditer(blank(MARK, self.chapter)):
@@ -111,25 +108,17 @@ class Gate:
 
     def known(self) -> dict:
         """{kind: {name: (file, line)}} of all that a mark of the chapter may name."""
-        found = {
-            "region": {f"{r.file}#{r.name}": (r.file, r.line - 1) for r in self.regions.values()}
-        }
-        found["exercise"] = {
-            file.split("/")[1].split("_")[0]: (file, 1) for file in files("exercises/ex*.py")
-        }
-        found["figure"] = {}
-        for file in files(f"{FIGURES}*.js"):
-            _, several, text = read_text(file).partition("export const figures = {")
-            names = re.findall(
-                r"^  \"?([\w-]+)\"?:", text, re.MULTILINE
-            )  # a line each, or all in one
-            names = names or re.findall(r"[\w-]+", text.partition("}")[0])
-            names = names if several else [file.removeprefix(FIGURES)[:-3]]
-            found["figure"] |= dict.fromkeys(names, (file, 1))
+        regions = {f"{r.file}#{r.name}": (r.file, r.line - 1) for r in self.regions.values()}
+        exercises = {Path(f).name.split("_")[0]: (f, 1) for f in files("exercises/ex*.py")}
+        figures: dict = {}
+        for file in files(FIGURES):
+            several = read_text(file).partition("export const figures = {")[2]
+            names = KEY.findall(several) or re.findall(r"[\w-]+", several.partition("}")[0])
+            figures |= dict.fromkeys(names or [Path(file).stem], (file, 1))
+        found = {"region": regions, "exercise": exercises, "figure": figures}
         for kind, folder in results.FOLDERS.items():
-            found[kind] = {
-                re.sub(r".*/(error-)?|\.svg", "", f): (f, 1) for f in files(f"{folder}/*.svg")
-            }
+            drawn = files(f"{folder}/*.svg")
+            found[kind] = {Path(f).stem.removeprefix("error-"): (f, 1) for f in drawn}
         return found
 
     def check_read(self):
@@ -153,7 +142,7 @@ class Gate:
 
     def check_numbers(self):
         """None is typed into the chapter's prose, every reference can be made and gives what it
-        gave, `holds:` is true, and each run and fact is quoted."""
+        gave, `holds:` is true, and each run is quoted."""
         for token in TYPED.finditer(blank(NOT_PROSE, self.chapter)):
             line, number = line_at(self.chapter, token.start()), token[0].rstrip(".,")
             repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
@@ -161,28 +150,29 @@ class Gate:
         numbers, texts = Numbers(), {file: read_text(file) for file in TEXTS}
         numbers.prepare("".join(texts.values()))
         for file, text in texts.items():
-            for pattern, call in ((REFERENCE, numbers.text), (HOLDS, numbers.broken)):
-                for match in pattern.finditer(text):
-                    line = line_at(text, match.start())
-                    try:
-                        self.check_number(file, line, match[1], call(match[1]), pattern is HOLDS)
-                    except TextError as error:
-                        self.say(file, line, f"{match[1]!r}: {error}", "name what is known")
+            for match in re.finditer(f"{REFERENCE.pattern}|(?s:{HOLDS.pattern})", text):
+                (asked, claim), line = match.groups(), line_at(text, match.start())
+                try:
+                    shown = numbers.text(asked) if asked else ""
+                    if claim and (false := numbers.broken(claim)):
+                        self.say(
+                            file, line, f"{claim!r} does not hold: {false}", "correct the text"
+                        )
+                    elif asked and not asked.startswith("="):
+                        self.check_number(file, line, asked, shown)
+                except TextError as error:
+                    self.say(file, line, f"{asked or claim!r}: {error}", "name what is known")
         for name in [*self.meta["runs"]][1:]:
             if not any(f"{name}:" in text for text in texts.values()):
                 self.say("meta.yaml", 1, f"run {name} is quoted nowhere", "take it out")
 
-    def check_number(self, file, line, asked, found, claim):
-        """One reference as a reader sees it, or what is false of a claim."""
-        if claim:
-            if found:
-                self.say(file, line, f"{asked!r} does not hold: {found}", "correct the text")
-        elif not asked.startswith("="):
-            self.quoted[asked] = now = found.removesuffix(" (stale)")
-            was = self.meta["numbers"].get(asked, now)
-            if was != now:
-                repair = f"read its sentence, then {GATE} --accept"
-                self.say(file, line, f"{asked} was {was} and is {now}", repair)
+    def check_number(self, file, line, asked, shown):
+        """A reference gives what it gave when its sentence was read."""
+        self.quoted[asked] = now = shown.removesuffix(" (stale)")
+        was = self.meta["numbers"].get(asked, now)
+        if was != now:
+            repair = f"read its sentence, then {GATE} --accept"
+            self.say(file, line, f"{asked} was {was} and is {now}", repair)
 
     def check_written(self):
         """Pages, figures and blocks that a command wrote are as it wrote them."""
@@ -222,7 +212,7 @@ def passages():
     for file in files("exercises/ex*.py"):
         yield Passage(file, 1, read_text(file))
     for each in openings_and_captions():
-        if each.file.startswith(FIGURES):
+        if each.name.startswith("figures/"):
             yield Passage(each.file, each.line, each.code)
 
 
@@ -231,9 +221,9 @@ def openings_and_captions():
     for file in ("contact.py", "curriculum/exact.py"):
         if opening := OPENING.match(read_text(file)):
             yield Region(file.split("/")[-1], opening[0], 1, file)
-    for file in files(f"{FIGURES}*.js"):
+    for file in files(FIGURES):
         if captions := "\n".join(found[0] for found in CAPTION.finditer(read_text(file))):
-            yield Region(f"figures/{file.removeprefix(FIGURES)[:-3]}", captions, 1, file)
+            yield Region(f"figures/{Path(file).stem}", captions, 1, file)
 
 
 def files(*patterns):
@@ -263,14 +253,11 @@ def accept(names) -> int:
         wrong = f"given {', '.join(unknown)}, allowed: {', '.join(gate.read)}"
         raise TextError("\n".join(gate.problems) or wrong)
     gate.check_numbers()
-    was = gate.meta["region_hashes"]
-    now = {n: each.sha if n in names else was.get(n) for n, each in gate.read.items()}
-    kept = {"region_hashes": {n: sha for n, sha in now.items() if sha}, "numbers": gate.quoted}
-    old = r"^(region_hashes|section_hashes|numbers):.*\n(?: .*\n)*"
-    text = re.sub(old, "", read_text("meta.yaml"), flags=re.MULTILINE).rstrip("\n")
-    for key, values in kept.items():
-        lines = (f"  {json.dumps(n)}: {json.dumps(v)}" for n, v in values.items())
-        text += f"\n\n{key}:\n" + "\n".join(lines)
-    write_whole(ROOT / "meta.yaml", text + "\n")
+    hashes = gate.meta["region_hashes"] | {name: gate.read[name].sha for name in names}
+    hashes = {name: hashes[name] for name in gate.read if name in hashes}
+    head = re.split("^region_hashes:", read_text("meta.yaml"), maxsplit=1, flags=re.MULTILINE)[0]
+    kept = {"region_hashes": hashes, "numbers": gate.quoted}
+    tail = yaml.safe_dump(kept, sort_keys=False, allow_unicode=True, width=1000)
+    write_whole(ROOT / "meta.yaml", f"{head.rstrip()}\n\n{tail}")
     print(f"recorded in meta.yaml: all numbers, and {', '.join(names) or 'nothing else'}")
     return 0

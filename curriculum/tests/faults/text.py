@@ -23,7 +23,7 @@ FAULTS = [
     (GATE, "if not stale.holds(text):", "if False:", ERRORS),
     (GATE, "if ledger.stale(row):", "if False:", ERRORS),
     (GATE, "or bool(region.defines & words)", "", READ),
-    (GATE, "each.sha if n in names else was.get(n)", "each.sha", READ),
+    (GATE, "for name in names}\n    hashes", "for name in gate.read}\n    hashes", READ),
     (GATE, 'for file in files("exercises/ex*.py"):\n', "for file in ():\n", READ),
     (REFERENCES, '" (stale)" * any(map(stale, OPERAND.findall(formula)))', '""', KEPT),
     (REFERENCES, "(*CODE, MEASURES)", "CODE", KEPT),
