@@ -91,12 +91,12 @@ def read_text(file):
     return path.read_text("utf-8") if path.is_file() else ""
 
 
-def split_all(read=read_text) -> tuple:
-    """({name: Region}, problems) over all literate files; `read(file)` gives a file's text."""
+def split_all() -> tuple:
+    """({name: Region}, problems) over all literate files."""
     found: dict = {}
     problems = []
     for file in LITERATE:
-        regions, wrong = split(read(file), file)
+        regions, wrong = split(read_text(file), file)
         problems += wrong
         for region in regions:
             other = found.setdefault(region.name, region)

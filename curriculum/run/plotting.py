@@ -74,21 +74,9 @@ def figure(rows=1, title="", explained="", height=3.4, share=(1,), below=0.0) ->
     lines = textwrap.wrap(explained, 84)
     top, bottom = 0.7 + 0.17 * len(lines), 0.62 + below
     tall = top + bottom + rows * height
-    made, axes = pyplot().subplots(
-        rows,
-        len(share),
-        figsize=(WIDTH, tall),
-        squeeze=False,
-        gridspec_kw=dict(
-            width_ratios=share,
-            left=0.125,
-            right=0.98,
-            top=1 - top / tall,
-            bottom=bottom / tall,
-            hspace=0.42,
-            wspace=0.08,
-        ),
-    )
+    edges = dict(width_ratios=share, top=1 - top / tall, bottom=bottom / tall)
+    size = dict(figsize=(WIDTH, tall), squeeze=False, gridspec_kw=edges)
+    made, axes = pyplot().subplots(rows, len(share), **size)
     made.text(0.01, 1 - 0.26 / tall, title, fontsize=12, fontweight="bold")
     for k, words in enumerate(lines):
         made.text(0.01, 1 - (0.46 + 0.17 * k) / tall, words, fontsize=9, color=PALE)
@@ -100,7 +88,7 @@ def look(name: str) -> dict:
     """How a method is drawn, as keywords of axes.plot."""
     color, marker, dash = LOOKS[name]
     size = {"*": 9.0, "d": 6.5}.get(marker, 5.5)
-    return dict(color=color, marker=marker, ls=dash, markersize=size, markeredgewidth=0.8)
+    return dict(color=color, marker=marker, ls=dash, markersize=size)
 
 
 def line(axis, x, y, name: str, label: str | None = None, **changes) -> None:
@@ -110,14 +98,7 @@ def line(axis, x, y, name: str, label: str | None = None, **changes) -> None:
 
 def legend_below(axis, columns: int, down: float) -> None:
     """The legend under a panel, where it covers nothing: `down` heights of the panel below it."""
-    axis.legend(
-        loc="upper left",
-        ncols=columns,
-        bbox_to_anchor=(-0.1, -down),
-        borderaxespad=0,
-        columnspacing=1.0,
-        fontsize=8.5,
-    )
+    axis.legend(loc="upper left", ncols=columns, bbox_to_anchor=(-0.1, -down))
 
 
 def svg(figure, section=None) -> str:
@@ -130,11 +111,8 @@ def svg(figure, section=None) -> str:
         whole_decades(axis.xaxis)
         whole_decades(axis.yaxis)
     out, (title, explained) = io.StringIO(), figure.words
-    figure.savefig(
-        out,
-        format="svg",
-        metadata={"Date": None, "Creator": None, "Title": title, "Description": explained},
-    )
+    about = {"Date": None, "Creator": None, "Title": title, "Description": explained}
+    figure.savefig(out, format="svg", metadata=about)
     pyplot().close(figure)
     return smaller(out.getvalue())
 

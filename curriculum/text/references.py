@@ -44,7 +44,7 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FORMULA = re.compile(r"[\d.e+\-*/()\s]+")  # of numbers and signs alone
 CLAIM = re.compile(r"([^<>=]+) (<|<=|>|>=|==) ([^<>=]+)")
 SIGNS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq}
-MEASURES = "curriculum/text/facts.py"
+MADE_BY = (*CODE, *(f"curriculum/{name}.py" for name in ("implicit", "seeds", "text/facts")))
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
 
@@ -62,9 +62,9 @@ def load_meta() -> dict:
         raise TextError(f"meta.yaml is not YAML: {' '.join(str(error).split())}") from None
 
 
-def cached(name: str, inputs, make, code=CODE):
+def cached(name: str, inputs, make):
     """make()'s result (JSON), made anew where `inputs` or the code changed since the last time."""
-    about = [inputs, fingerprint(*code), version("numpy"), sys.version]
+    about = [inputs, fingerprint(*MADE_BY), version("numpy"), sys.version]
     path = KEPT / f"{name}.json"
     try:
         kept = json.loads(path.read_text("utf-8"))
@@ -110,7 +110,7 @@ class Numbers:
     def prepare(self, text):
         """Make the runs that a text names, on all cores."""
         wanted = [name for name in load_meta()["runs"] if f"{name}:" in text]
-        fingerprint(*CODE)  # and kept: Python 3.11 cannot parse in two threads at once
+        fingerprint(*MADE_BY)  # and kept: Python 3.11 cannot parse in two threads at once
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(self.run, wanted))
 
@@ -129,7 +129,7 @@ class Numbers:
 
             fact, _, key = key.partition(".")
             measure = dig(FACTS, fact, f"fact:{fact}")
-            return dig(cached(f"fact-{fact}", None, measure, (*CODE, MEASURES)), key, text)
+            return dig(cached(f"fact-{fact}", None, measure), key, text)
         if name in results.FOLDERS:
             return dig(results.load(name), key, text)
         return dig(self.run(name or next(iter(load_meta()["runs"]))), key, text)
