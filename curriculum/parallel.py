@@ -34,17 +34,17 @@ def run_jobs(
 def gathered(results: Iterable, total: int, label: str) -> list:
     """The list of the results, as they come, with a bar."""
     found: list = []
-    report = bar(total, label)
+    progress = bar(total, label)
     for result in results:
         found.append(result)
-        report(len(found))
+        progress(len(found))
     return found
 
 
 def bar(total: int, label: str) -> Callable[[int], None]:
-    """report(done), to be called with how many of `total` are done; it draws a bar with tqdm.
+    """progress(done), to be called with how many of `total` are done; it draws a bar with tqdm.
 
-    The bar comes after a second and is wiped at the end. report does nothing where stderr is no
+    The bar comes after a second and is wiped at the end. There is none where stderr is no
     terminal, where tqdm is not installed, and in a process of the pool, since bars would mix.
     """
     try:
@@ -54,12 +54,12 @@ def bar(total: int, label: str) -> Callable[[int], None]:
     unseen = parent_process() is not None or None  # None: where stderr is no terminal
     shown = tqdm(total=total, desc=label, leave=False, delay=1.0, disable=unseen)
 
-    def report(done):
+    def progress(done):
         shown.update(done - shown.n)
         if done >= total:
             shown.close()
 
-    return report
+    return progress
 
 
 @contextmanager

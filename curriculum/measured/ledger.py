@@ -31,13 +31,12 @@ TIMED = ("contact.py", "curriculum/run/plotting.py", "curriculum/run/recording.p
 
 def rows() -> list:
     """The rows, dicts of str. Raises ValueError `file:line: what`."""
-    header, *lines = LEDGER.read_text("utf-8").splitlines()
-    if header != ",".join(COLUMNS):
+    head, *lines = LEDGER.read_text("utf-8").splitlines()
+    if head != ",".join(COLUMNS):
         raise ValueError(f"wallclock.csv:1: the header must be {','.join(COLUMNS)}")
-    for number, line in enumerate(lines, 2):
+    for k, line in enumerate(lines, 2):
         if not ROW.fullmatch(line):
-            what = "neither a whole MEASURED row nor a PENDING one"
-            raise ValueError(f"wallclock.csv:{number}: {what}")
+            raise ValueError(f"wallclock.csv:{k}: neither a whole MEASURED row nor a PENDING one")
     return [dict(zip(COLUMNS, line.split(","))) for line in lines]
 
 
@@ -92,11 +91,11 @@ def main(argv=None) -> int:
         table = {row["tier"]: row for row in rows()}
         if dirty():
             raise ValueError(f"a row is kept with its commit; commit these first: {dirty()}")
-        about, seconds = machine(), measure(args.runs)
-        facts = f"{minutes(seconds):.3g}", code_hash(), about["commit"], about["date"], "MEASURED"
+        about, taken = machine(), minutes(measure(args.runs))
+        facts = f"{taken:.3g}", code_hash(), about["commit"], about["date"], "MEASURED"
         table[args.tier] = dict(zip(COLUMNS, (CHAPTER, args.tier, *facts)))
-        lines = [COLUMNS, *(row.values() for row in table.values())]
-        write_whole(LEDGER, "".join(",".join(line) + "\n" for line in lines))
+        lines = [",".join(row.values()) for row in table.values()]
+        write_whole(LEDGER, "\n".join([",".join(COLUMNS), *lines, ""]))
     except (OSError, RuntimeError, ValueError) as error:
         print(f"nothing written: {error}", file=sys.stderr)
         return 1

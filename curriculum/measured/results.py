@@ -9,7 +9,6 @@ and the fingerprints of the code that made it, by which it is stale or not (stal
 """
 
 import json
-import math
 import os
 import platform
 import re
@@ -56,17 +55,13 @@ def save(folder: Path, section: str, values: dict, origin: dict) -> dict:
     return sections[section]
 
 
-def rounded(value) -> dict | list | float | None:
+def rounded(value: dict) -> dict:
     """`value` as strict JSON: numpy unpacked, floats with six digits, None for not finite."""
-    if isinstance(value, dict):
-        return {str(key): rounded(each) for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [rounded(each) for each in value]
-    if hasattr(value, "tolist"):
-        return rounded(value.tolist())
-    if isinstance(value, float):
-        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
-    return value
+    return json.loads(
+        json.dumps(value, default=lambda array: array.tolist()),
+        parse_float=lambda text: float(f"{float(text):.{DIGITS}g}"),
+        parse_constant=lambda name: None,
+    )
 
 
 def table(head, rows) -> str:
@@ -109,11 +104,9 @@ def write_block(name: str, markdown: str) -> None:
 
 
 def machine() -> dict:
-    """Date, commit, processor, system and versions: texts, but for versions, {package: text}.
-
-    Packages that are not installed are left out. The commit ends in "+" where Python files differ
-    from it, and is "unknown" without git.
-    """
+    """Date, commit ("unknown" without git; with "+" where Python files differ from it), processor
+    and system; and the versions of packages that are installed, {package: text}."""
+    found = {name: each.version for name in PACKAGES for each in metadata.distributions(name=name)}
     return {
         "date": date.today().isoformat(),
         "commit": (git(*COMMIT).strip() or "unknown") + "+" * bool(dirty()),
@@ -121,9 +114,7 @@ def machine() -> dict:
         "cores": str(os.cpu_count()),
         "os": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
-        "versions": {
-            name: found.version for name in PACKAGES for found in metadata.distributions(name=name)
-        },
+        "versions": found,
     }
 
 
@@ -142,8 +133,6 @@ def git(*words) -> str:
 
 def processor() -> str:
     """The name of the processor, as the system gives it."""
-    try:
-        info = Path("/proc/cpuinfo").read_text("utf-8")
-        return info.split("model name")[1].split(":", 1)[1].split("\n")[0].strip()
-    except (OSError, IndexError):
-        return platform.processor() or "unknown processor"
+    info = Path("/proc/cpuinfo")
+    name = re.search(r"model name\s*: (.+)", info.read_text("utf-8") if info.exists() else "")
+    return name[1] if name else platform.processor() or "unknown processor"
