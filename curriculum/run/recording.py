@@ -6,13 +6,13 @@ Raises ImportError on import where rerun is missing.
 
 import os
 import tempfile
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import contact
 from curriculum import commands
-from curriculum.commands import write_whole
 from curriculum.run.plotting import COLORS, contact_impulses, curves
 
 try:
@@ -35,11 +35,10 @@ MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sin
 def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str) -> None:
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
 
-    quality: {model: contact_quality} of the runs; the title has no place in a recording.
-
-    Whole columns are sent, in rerun's strict mode. The timelines are step, sim_time (up to 9e9 s),
-    and landing, which it opens on: sim_time, but all that is long before the first contact at its
-    start. The entities are world/MODEL/{ground,table,balls,pushes} and CURVE/MODEL.
+    quality: {model: contact_quality} of the runs. A recording shows no title. Whole columns are
+    sent, in rerun's strict mode. The timelines are step, sim_time (up to 9e9 s), and landing, which
+    it opens on: sim_time, but all that is long before the first contact at its start. The entities
+    are world/MODEL/{ground,table,balls,pushes} and CURVE/MODEL.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
     drawn, seconds = curves(runs, scene), worth_seeing(runs, quality)
@@ -53,7 +52,7 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
             send_balls(recording, model, run, scene, times[model])
         send_curves(recording, runs, drawn, times)
         recording.disconnect()
-        write_whole(path, temporary.read_bytes())
+        commands.write_whole(path, temporary.read_bytes())
 
 
 def rgba(color: str) -> np.ndarray:
@@ -131,12 +130,8 @@ def arrow_vectors(run: contact.Run, scene: contact.Scene) -> np.ndarray:
 def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
     """The curves {title: {model: values}}, each at the title's first word / MODEL."""
     for width, model in zip(WIDTHS[-len(runs) :], sorted(runs)):
-        look = rr.SeriesLines(
-            colors=rgba(COLORS[model]),
-            names=[model],
-            widths=width,
-            aggregation_policy="MinMax",  # an average hides the peaks
-        )
+        color, peaks = rgba(COLORS[model]), "MinMax"  # which an average would hide
+        look = rr.SeriesLines(colors=color, names=model, widths=width, aggregation_policy=peaks)
         for title, lines in drawn.items():
             columns = rr.Scalars.columns(scalars=lines[model])
             send(recording, f"{title.split()[0]}/{model}", look, times[model], columns)
@@ -154,10 +149,8 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     ends = {model: contact.ending(row) for model, row in quality.items()}
     calm = [run for model, run in runs.items() if "EXPLODED" not in ends[model]]
     shown = frame(calm or list(runs.values())[:1], x, large)
-    lanes = [
-        view(model, model if end == "ok" else f"{model}: {end}", *shown)
-        for model, end in ends.items()
-    ]
+    titles = {model: model if end == "ok" else f"{model}: {end}" for model, end in ends.items()}
+    lanes = [view(model, title, *shown) for model, title in titles.items()]
     wide = np.ptp(shown[0]) > 1.2 * np.ptp(shown[1])
     rows = [rrb.Vertical(*lanes) if wide else rrb.Horizontal(*lanes)]
     if np.ptp(x) < large and not wide:
@@ -221,8 +214,8 @@ def plot(title: str, first: float, last: float) -> rrb.TimeSeriesView:
 
 def time_panel():
     """Opens on the landing, four times slowed down. rerun-sdk before 0.28 plays it at once."""
+    panel = partial(rrb.TimePanel, timeline="landing", state="collapsed")
     try:
-        slow = {"play_state": "paused", "playback_speed": 0.25}
-        return rrb.TimePanel(timeline="landing", state="collapsed", **slow)
+        return panel(play_state="paused", playback_speed=0.25)
     except TypeError:
-        return rrb.TimePanel(timeline="landing", state="collapsed", duration_cursor=0.0)
+        return panel(duration_cursor=0.0)

@@ -39,31 +39,23 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
     after = contact.time_to_impact(float(gap[struck[0]]), float(vy[struck[0]]), g)
     speed = -(vy[struck[0]] + after * g)
     yield f"exact: {who} lands after {run.t[struck[0]] + after:.6g} s, at {speed:.6g} m/s"
-    tops = [gap[j] - vy[j] ** 2 / (2 * g) for j in range(struck[0], len(gap) - 1) if turns(vy, j)]
-    if tops:
+    turns = struck[0] + np.flatnonzero((vy[struck[0] : -1] > 0.0) & (vy[struck[0] + 1 :] <= 0.0))
+    tops = gap[turns] - vy[turns] ** 2 / (2 * g)  # of the flights, between two states
+    if len(tops):
         heights = ", ".join(f"{top:.4g}" for top in tops[:APEXES])
         yield f"exact: its bounces rise to {heights} m" + (" ..." if len(tops) > APEXES else "")
     else:
         yield "exact: it does not bounce"
 
 
-def turns(vy: np.ndarray, j: int) -> bool:
-    """Whether a ball is at the top of a flight between two states."""
-    return vy[j] > 0.0 >= vy[j + 1] and vy[j] - vy[j + 1] > 0.0
-
-
 def too_much(steps: int, count: int) -> str | None:
     """One line on a run of `count` balls that this machine cannot hold; None if it can."""
-    need = steps * (320 * count + 1500)  # bytes, measured: all four models and their recording
+    need = len(contact.MODELS) * steps * (80 * count + 375)  # bytes, measured, with the recording
     have = 8e9  # bytes, chosen, where the machine does not say
     if hasattr(os, "sysconf"):
         have = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    if need <= have:
-        return None
-    return (
-        f"--steps {steps} of {count} balls need {need / 1e9:.0f} GB of memory; "
-        f"allowed: {have / 1e9:.0f} GB, what there is"
-    )
+    text = f"--steps {steps} of {count} balls need {need / 1e9:.0f} GB of memory; allowed: "
+    return None if need <= have else f"{text}{have / 1e9:.0f} GB, what there is"
 
 
 def print_next(args, argv: list[str]) -> None:
@@ -73,15 +65,9 @@ def print_next(args, argv: list[str]) -> None:
     """
     from exercises.kit.progress import practise
 
-    lines = [see(args, argv), practise()]
-    print(*filter(None, lines), sep="\n")
-
-
-def see(args, argv: list[str]) -> str | None:
-    """The line that says how to see the run; None where it has drawn all that can be drawn here."""
     recording = os.path.join(args.out, "contact.rrd")
     if args.rerun and os.path.exists(recording):
-        return f"next, watch it: {command('-m', 'rerun', recording)}"
-    if args.plot or find_spec("matplotlib") is None:
-        return None
-    return f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}"
+        print(f"next, watch it: {command('-m', 'rerun', recording)}")
+    elif not args.plot and find_spec("matplotlib"):
+        print(f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}")
+    print(practise())

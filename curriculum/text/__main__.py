@@ -29,10 +29,9 @@ def main(argv=None) -> int:
     try:
         return gate.check() if args.accept is None else gate.accept(args.accept)
     except SyntaxError as error:
-        wrong = f"{error.filename}:{error.lineno}: not Python: {error.msg}"
+        print(f"{error.filename}:{error.lineno}: not Python: {error.msg}", file=sys.stderr)
     except (OSError, TextError) as error:
-        wrong = error
-    print(wrong, file=sys.stderr)
+        print(error, file=sys.stderr)
     return 2
 
 

@@ -35,6 +35,7 @@ from curriculum.commands import write_whole
 from curriculum.measured import ledger, results
 from curriculum.measured.stale import changed, fingerprint
 from curriculum.regions import CODE, NAME, ROOT
+from curriculum.text.facts import FACTS
 
 INCLUDE = re.compile(rf"\[include-by-region: (?P<file>[\w./-]+\.py)#(?P<name>{NAME})\]")
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")
@@ -66,15 +67,13 @@ def cached(name: str, inputs, make):
     """make()'s result (JSON), made anew where `inputs` or the code changed since the last time."""
     about = [inputs, fingerprint(*MADE_BY), version("numpy"), sys.version]
     path = KEPT / f"{name}.json"
-    try:
-        kept = json.loads(path.read_text("utf-8"))
-        if kept["about"] == about:
-            return kept["made"]
-    except (OSError, ValueError):
-        pass
+    with suppress(OSError, ValueError):
+        known, made = json.loads(path.read_text("utf-8"))
+        if known == about:
+            return made
     made = make()
     with suppress(OSError):  # a folder that cannot be written costs time, and no number
-        write_whole(path, json.dumps({"about": about, "made": made}))
+        write_whole(path, json.dumps([about, made]))
     return made
 
 
@@ -120,19 +119,18 @@ class Numbers:
         if not colon and text.startswith(("contact.", "wallclock.")):
             name, _, key = text.partition(".")
         if name == "contact":
-            constants = {name: value for name, value in vars(contact).items() if name.isupper()}
-            return dig(constants | {"Settings": contact.Settings()._asdict()}, key, text)
-        if name == "wallclock":
-            return dig({row["tier"]: ledger.show(row) for row in ledger.rows()}, key, text)
-        if name == "fact":
-            from curriculum.text.facts import FACTS  # slow, so only where it is needed
-
+            tree = {name: value for name, value in vars(contact).items() if name.isupper()}
+            tree["Settings"] = contact.Settings()._asdict()
+        elif name == "wallclock":
+            tree = {row["tier"]: ledger.show(row) for row in ledger.rows()}
+        elif name == "fact":
             fact, _, key = key.partition(".")
-            measure = dig(FACTS, fact, f"fact:{fact}")
-            return dig(cached(f"fact-{fact}", None, measure), key, text)
-        if name in results.FOLDERS:
-            return dig(results.load(name), key, text)
-        return dig(self.run(name or next(iter(load_meta()["runs"]))), key, text)
+            tree = cached(f"fact-{fact}", None, dig(FACTS, fact, f"fact:{fact}"))
+        elif name in results.FOLDERS:
+            tree = results.load(name)
+        else:
+            tree = self.run(name or next(iter(load_meta()["runs"])))
+        return dig(tree, key, text)
 
     def value(self, formula):
         """The value of one name, or of a formula of names and numbers, as Python reckons."""
