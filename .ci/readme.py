@@ -17,7 +17,6 @@ NOT_RUN = {  # how it starts: why CI does not run it
     "python -m curriculum.text --accept": "says that a person has read what changed",
     "python -m curriculum.bench": "long; CI runs it with --quick",
     "python -m curriculum.stress": "long; CI runs it with --quick",
-    "python -m curriculum.measured.ledger": "measures this machine, and writes into the tree",
     "python -m curriculum.page --pictures": "writes the README's picture into the tree",
     "python -m curriculum.tests.test_golden": "pins anew what the tests compare with",
     "python3 -m venv .venv && .venv/bin/pip install -e '.[dev]' && .venv/bin/pre-commit": (

@@ -249,7 +249,9 @@ def test_seeds_count_what_exploded_went_through_or_could_not_be_run():
 
 
 @pytest.mark.parametrize(
-    "words", [*"3 4:4 5:2 0:1.5 a:b 0:1000000".split(), "0:5 --seed 3", "0:5 --plot", "0:5 --dt 0"]
+    "words",
+    [*"3 4:4 5:2 0:1.5 a:b 0:1000000".split()]
+    + ["0:5 --seed 3", "0:5 --plot", "0:5 --dt 0", "0:5 --mass=--", "0:5 --scheduler=--"],
 )
 def test_seeds_refuses_bad_input_in_one_line(words, capsys):
     try:
@@ -258,7 +260,7 @@ def test_seeds_refuses_bad_input_in_one_line(words, capsys):
         status = end.code
     out, err = capsys.readouterr()
     assert (status, out, err.count("\n")) == (2, "", 1), err
-    assert "error: " in err and words.split()[min(1, words.count(" "))] in err
+    assert "error: " in err and re.split("[ =]", words)[min(1, words.count(" "))] in err
 
 
 def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
