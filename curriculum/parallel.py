@@ -33,12 +33,12 @@ def run_jobs(
 
 def gathered(results: Iterable, total: int, label: str) -> list:
     """The list of the results, as they come, with a bar."""
-    found: list = []
+    done: list = []
     progress = bar(total, label)
     for result in results:
-        found.append(result)
-        progress(len(found))
-    return found
+        done.append(result)
+        progress(len(done))
+    return done
 
 
 def bar(total: int, label: str) -> Callable[[int], None]:

@@ -64,25 +64,22 @@ def line_at(text, index) -> int:
 
 def split(text: str, file: str) -> tuple:
     """([Region] in reading order, problems) of one file's text; each problem is one line."""
-    found, wrong, outside = [], [], blank(REGION, text)
+    regions, wrong, markers = [], [], set()
     for match in REGION.finditer(text):
         name, code, end = match.groups()
         code = dedent(code).rstrip("\n") + "\n"
-        found.append(Region(name, code, line_at(text, match.start(2)), file))
+        regions.append(Region(name, code, line_at(text, match.start(2)), file))
+        markers |= {match.start(), match.start(3)}
         if not end and file not in WHOLE:
             wrong.append((match.start(), f"region {name} is never closed"))
-        for marker in MARKER.finditer(code):
-            what = f"{marker[0].strip()!r} inside region {name}, where it does not belong"
-            wrong.append((match.start(2) + marker.start(), what))
-    for marker in MARKER.finditer(outside):
-        what = f"{marker[0].strip()!r} outside any region, where it does not belong"
-        wrong.append((marker.start(), what))
-    opening = DOCSTRING.match(text) if file in WHOLE else None
-    head = opening.end() if opening else len(text)
-    for line in CODE_LINE.finditer(outside, head):
+    for marker in MARKER.finditer(text):
+        if marker.start() not in markers:
+            wrong.append((marker.start(), f"{marker[0].strip()!r} does not belong there"))
+    opening = DOCSTRING.match(text).end() if file in WHOLE else len(text)
+    for line in CODE_LINE.finditer(blank(REGION, text), opening):
         wrong.append((line.start(), f"code outside any region: {line[0][:60]!r}"))
     repair = "edit the markers of the region"
-    return found, [f"{file}:{line_at(text, k)}: {what}; repair: {repair}" for k, what in wrong]
+    return regions, [f"{file}:{line_at(text, k)}: {what}; repair: {repair}" for k, what in wrong]
 
 
 def read_text(file):
@@ -93,22 +90,22 @@ def read_text(file):
 
 def split_all() -> tuple:
     """({name: Region}, problems) over all literate files."""
-    found: dict = {}
+    by_name: dict = {}
     problems = []
     for file in LITERATE:
         regions, wrong = split(read_text(file), file)
         problems += wrong
         for region in regions:
-            other = found.setdefault(region.name, region)
+            other = by_name.setdefault(region.name, region)
             if other is not region:
                 what = f"a second region {region.name}, the other is in {other.file}"
                 problems.append(f"{file}:{region.line - 1}: {what}; repair: rename one")
-    return found, problems
+    return by_name, problems
 
 
 def read_all() -> dict:
     """{name: Region} of all literate files. Raises ValueError, one problem a line."""
-    found, problems = split_all()
+    by_name, problems = split_all()
     if problems:
         raise ValueError("\n".join(problems))
-    return found
+    return by_name

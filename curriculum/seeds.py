@@ -49,10 +49,10 @@ def main(argv=None):
     """
     seeds, scheduler, args = parse(argv)
     try:
-        found = parallel.run_jobs(partial(qualities, args), seeds, "seeds", scheduler=scheduler)
+        measured = parallel.run_jobs(partial(qualities, args), seeds, "seeds", scheduler=scheduler)
     except (ImportError, OSError) as error:
         return contact.fail(f"argument --scheduler: {error}")
-    runs = {model: [each[model] for each in found if model in each] for model in contact.MODELS}
+    runs = {model: [each[model] for each in measured if model in each] for model in contact.MODELS}
     rows = contact.rounded({model: summary(mine) for model, mine in runs.items() if mine})
     span = f"seeds {seeds[0]} to {seeds[-1]}"
     print(f"scene {args.scene}, {span}: {args.steps} steps of {args.dt:g} s")
@@ -74,20 +74,20 @@ def qualities(args, seed):
     return contact.run_all(args, scene)[2]
 
 
-def summary(found):
+def summary(qualities):
     """{"median": row, "lowest": row, "highest": row} of many qualities of a model, by key.
 
     A row also counts the runs, those that exploded, and others that went through something.
     """
     counts = {
-        "runs": len(found),
-        "blew_up": sum(row["blew_up"] for row in found),
-        "through": sum(row["through"] is not None and not row["blew_up"] for row in found),
+        "runs": len(qualities),
+        "blew_up": sum(row["blew_up"] for row in qualities),
+        "through": sum(row["through"] is not None and not row["blew_up"] for row in qualities),
     }
     keys = [key for key, _ in contact.COLUMNS.values()]
     ways = {"median": statistics.median, "lowest": min, "highest": max}
     return {
-        name: counts | {key: chosen(way, [row[key] for row in found]) for key in keys}
+        name: counts | {key: chosen(way, [row[key] for row in qualities]) for key in keys}
         for name, way in ways.items()
     }
 

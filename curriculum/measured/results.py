@@ -106,7 +106,9 @@ def write_block(name: str, markdown: str) -> None:
 def machine() -> dict:
     """Date, commit ("unknown" without git; with "+" where Python files differ from it), processor
     and system; and the versions of packages that are installed, {package: text}."""
-    found = {name: each.version for name in PACKAGES for each in metadata.distributions(name=name)}
+    versions = {
+        name: each.version for name in PACKAGES for each in metadata.distributions(name=name)
+    }
     return {
         "date": date.today().isoformat(),
         "commit": (git(*COMMIT).strip() or "unknown") + "+" * bool(dirty()),
@@ -114,7 +116,7 @@ def machine() -> dict:
         "cores": str(os.cpu_count()),
         "os": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
-        "versions": found,
+        "versions": versions,
     }
 
 

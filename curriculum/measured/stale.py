@@ -16,7 +16,7 @@ import json
 import re
 from functools import lru_cache
 
-from curriculum.regions import CODE, REGION, ROOT, read_text
+from curriculum.regions import CODE, REGION, read_text
 
 COMMAND_LINE = ("flags", "report", "files", "main")  # regions that no step or measure stands in
 LESSON = f"contact.py without {' '.join(COMMAND_LINE)}"
@@ -29,17 +29,14 @@ BLOCK = re.compile(r"(<!-- generated: (\w+) by (.*?) -->)\n(.*?)(?=<!-- end -->)
 
 def made_by(*files) -> list:
     """The names to fingerprint: STEPS, these files, and what they import of bench/ and stress/."""
-    found, waiting = set(STEPS), list(files)
+    names, waiting = set(STEPS), list(files)
     while waiting:
-        if (file := waiting.pop()) not in found:
-            found.add(file)
-            for room, names in re.findall(r"from curriculum\.(bench|stress)(.*)", read_text(file)):
-                known = ROOT.glob(f"curriculum/{room}/*.py")
-                named = set(re.findall(r"\w+", names))
-                waiting += [
-                    f"curriculum/{room}/{path.name}" for path in known if path.stem in named
-                ]
-    return sorted(found)
+        if (file := waiting.pop()) not in names:
+            names.add(file)
+            for room, words in re.findall(r"from curriculum\.(bench|stress)(.*)", read_text(file)):
+                paths = (f"curriculum/{room}/{word}.py" for word in re.findall(r"\w+", words))
+                waiting += [path for path in paths if read_text(path)]
+    return sorted(names)
 
 
 def fingerprint(*names) -> dict:

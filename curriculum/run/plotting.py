@@ -24,7 +24,7 @@ from curriculum import commands
 INK, PALE, GRID = "#222222", "#666666", "#e2e2e2"  # INK and GRID as in figures.mplstyle
 WIDTH = 6.0  # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
 
-# colour, marker, dash: told apart without colour too; the models' colours are Okabe and Ito's
+# colour, marker, dash: to be told apart without colour too; the models' colours are Okabe and Ito's
 LOOKS = {
     "penalty": ("#d55e00", "v", (0, (1, 1))),
     "lcp": ("#0072b2", "o", "-"),

@@ -172,8 +172,8 @@ def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(tmp_pa
 
 
 def test_a_view_says_how_its_run_ended_and_an_explosion_does_not_widen_it(tmp_path):
-    told = runs_of(contact.build_scene("drop"), 200, 0.064, ("penalty", "lcp", "exact"))
-    recording, step = recorded(tmp_path, *told), told[2]["penalty"]["blew_up_step"]
+    drop = runs_of(contact.build_scene("drop"), 200, 0.064, ("penalty", "lcp", "exact"))
+    recording, step = recorded(tmp_path, *drop), drop[2]["penalty"]["blew_up_step"]
     names = sum(recording.blueprint["ViewBlueprint:display_name"], [])
     assert {f"penalty: EXPLODED at step {step}", "lcp: through the floor", "exact"} < set(names)
     views = [view[0]["y_range"] for view in recording.blueprint["VisualBounds2D:range"]]
@@ -210,7 +210,7 @@ def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(
                         content) for model in contact.MODELS]  # fmt: skip
     assert [len(each) for each in looks] == [len(CURVES) + 1] * len(looks), "and in the legend"
     grey = {re.sub("#[0-9a-f]+|stroke-width: [^;]+", "", each[0]) for each in looks}
-    assert len(grey) == len(looks), "without colour they are told apart by their dashes"
+    assert len(grey) == len(looks), "without colour the dashes differ"
 
 
 def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path, capsys):

@@ -198,7 +198,7 @@ def test_markers_that_are_wrong_and_code_outside_of_regions_are_named(project):
     edit(script, "# --- region: setup ---", "lost = 1\n# --- region: setup ---")
     printed = run_gate(project).stdout
     line = line_of(script, "# --- region flight ---")
-    wrong = "'# --- region flight ---' inside region simulate, where it does not belong"
+    wrong = "'# --- region flight ---' does not belong there"
     assert f"contact.py:{line}: {wrong}" in printed
     line = line_of(script, "lost = 1")
     assert f"contact.py:{line}: code outside any region: 'lost = 1'" in printed

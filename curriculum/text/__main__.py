@@ -4,11 +4,8 @@
     python -m curriculum.text --accept NAME   # what speaks of this region has been read; and all
                                               # sentences whose numbers moved
 
-It holds together: regions are well formed, and the chapter includes each once; slots, flags and
-names in `code` are of what is there; numbers are quoted by reference, and `holds:` comments are
-true; measured results and rows of the ledger are of today's code. When the code of a region, the
-opening words of contact.py or exact.py, a figure's captions or a quoted number change, it names the
-passages to read again.
+Slots, flags and names in `code` are of what is there, numbers are quoted by reference, `holds:`
+comments are true, and results are of today's code; gate.py says what a reader has to read again.
 """
 
 import sys

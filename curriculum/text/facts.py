@@ -16,8 +16,8 @@ DT = 0.002
 
 def implicit_spring():
     """The quality of the drop under the implicit spring, c = 80, by stiffness and step."""
-    found, scene = {"10000": {}, "1e+06": {}}, contact.build_scene("drop")
-    for stiffness, dt in itertools.product(found, (0.002, 0.004, 0.008, 0.016, 0.032, 0.064)):
+    values, scene = {"10000": {}, "1e+06": {}}, contact.build_scene("drop")
+    for stiffness, dt in itertools.product(values, (0.002, 0.004, 0.008, 0.016, 0.032, 0.064)):
         k = float(stiffness)
         softness = 1.0 / (k * dt * dt + 80.0 * dt)
 
@@ -25,8 +25,8 @@ def implicit_spring():
             implicit_step(balls, dt, lambda depth: (softness, dt * k * depth * softness))
 
         run = contact.simulate(step, scene, dt, int(16.0 / dt), skip=True)
-        found[stiffness][f"{dt:g}"] = contact.contact_quality(run, scene, dt)
-    return found
+        values[stiffness][f"{dt:g}"] = contact.contact_quality(run, scene, dt)
+    return values
 
 
 def _sweeps(masses):
@@ -53,7 +53,7 @@ def ratio_sweeps():
 
 def soft_sweeps():
     """Sweeps until a step of soft's stack of three at rest settles, from nothing and warm."""
-    scene, found = contact.build_scene("stack"), {}
+    scene, values = contact.build_scene("stack"), {}
     run = contact.run_model("soft", scene, DT, 1000)
     solref, solimp = contact.soft_defaults(0.0, DT)
     for name, share in (("cold", 0.0), ("warm", 1.0)):
@@ -65,19 +65,19 @@ def soft_sweeps():
         contact.accelerate(balls, DT)
         contact.warm_start(contacts, share)
         enough = contact.LAST_BITS * -contact.GRAVITY * DT
-        found[name] = contact.solve_contacts(contacts, contact.MOST_SWEEPS, enough)
-    return found
+        values[name] = contact.solve_contacts(contacts, contact.MOST_SWEEPS, enough)
+    return values
 
 
 def jump():
     """What soft adds to v_n = -1 m/s in one step, a picometre before the touch and after it."""
-    found = {}
+    values = {}
     solref, solimp = contact.soft_defaults(0.0, DT)
     for name, height in (("before", 0.1 + 1e-12), ("after", 0.1 - 1e-12)):
         ball = contact.Ball(0.0, height, 0.0, -1.0, 1.0, 0.1)
         contact.soft_step([ball], DT, solref, solimp)
-        found[name] = ball.vy + 1.0
-    return found
+        values[name] = ball.vy + 1.0
+    return values
 
 
 def xpbd():
@@ -113,22 +113,22 @@ def soft_heavy():
 
 def crowd():
     """Three balls in a row, e = 1, speeds -1, 0, -3 m/s: what they leave with, by the target."""
-    found = {}
+    values = {}
     for name, least in (("moreau", -math.inf), ("zero", 0.0)):
         balls = [contact.Ball(0.2 * k, 1.0, v, 0.0, 1.0, 0.1) for k, v in enumerate((-1, 0, -3))]
         contacts = [contact.Contact(balls[k + 1], balls[k], 1.0, 0.0, 0.0) for k in (0, 1)]
         for c in contacts:
             c.target = max(least, -c.v_n())
         contact.solve_contacts(contacts, 200)
-        found[name] = {"energy": sum(0.5 * ball.vx**2 for ball in balls)} | {
+        values[name] = {"energy": sum(0.5 * ball.vx**2 for ball in balls)} | {
             str(k): ball.vx for k, ball in enumerate(balls)
         }
-    return found
+    return values
 
 
 def slide():
     """cos of the angle at which a ball leaves a fixed one, over cos at the start, by model."""
-    found, start, dt = {}, math.radians(20.0), 1e-4
+    values, start, dt = {}, math.radians(20.0), 1e-4
     x, y = 0.2 * math.sin(start), 0.2 * math.cos(start)
     scene = contact.scene_of([0.0, x], [1.0, 1.0 + y], mass=[math.inf, 1.0])
     for model in ("penalty", "exact"):
@@ -136,8 +136,8 @@ def slide():
         gained = np.diff(run.v[:, :, 1], axis=0) - [0.0, dt * contact.GRAVITY]
         last = np.flatnonzero((np.hypot(*gained.T) > 1e-9) & (run.q[:-1, 1, 1] > 0.5))[-1]
         away = run.q[last, :, 1] - run.q[last, :, 0]
-        found[model] = float(away[1] / np.hypot(*away) / math.cos(start))
-    return found
+        values[model] = float(away[1] / np.hypot(*away) / math.cos(start))
+    return values
 
 
 def blocks():
@@ -145,13 +145,13 @@ def blocks():
 
     Samples are 0.02 ms apart, so that no two impacts fall between them.
     """
-    found = {}
+    values = {}
     for n in (0, 1, 2):
         x, vx, mass = [0.0, 1.0, 2.0], [0.0, 0.0, -1.0], [math.inf, 1.0, 100.0**n]
         scene = contact.scene_of(x, [0.1] * 3, mass, vx=vx, restitution=1.0)
         run = contact.run_model("exact", scene, 2e-5, 350_000)
-        found[f"exact_{100**n}"] = int((np.abs(np.diff(run.v[:, 0, 1])) > 1e-9).sum())
-    return found
+        values[f"exact_{100**n}"] = int((np.abs(np.diff(run.v[:, 0, 1])) > 1e-9).sum())
+    return values
 
 
 FACTS = {

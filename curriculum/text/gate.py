@@ -115,11 +115,11 @@ class Gate:
             several = read_text(file).partition("export const figures = {")[2]
             names = KEY.findall(several) or re.findall(r"[\w-]+", several.partition("}")[0])
             figures |= dict.fromkeys(names or [Path(file).stem], (file, 1))
-        found = {"region": regions, "exercise": exercises, "figure": figures}
+        known = {"region": regions, "exercise": exercises, "figure": figures}
         for kind, folder in results.FOLDERS.items():
             drawn = files(f"{folder}/*.svg")
-            found[kind] = {Path(f).stem.removeprefix("error-"): (f, 1) for f in drawn}
-        return found
+            known[kind] = {Path(f).stem.removeprefix("error-"): (f, 1) for f in drawn}
+        return known
 
     def check_read(self):
         """What readers have read is what it was, and nothing is kept of what is gone."""
@@ -189,10 +189,10 @@ class Gate:
     def check_measured(self):
         """Results and rows of the ledger are of today's code, and the rows well formed."""
         for name, folder in results.FOLDERS.items():
-            for section, found in results.load(name).items():
-                if names := stale.changed(found["measured"]["code"]):
+            for section, content in results.load(name).items():
+                if names := stale.changed(content["measured"]["code"]):
                     what = f"section {section} was measured on other code ({', '.join(names)})"
-                    self.say(f"{folder}/{results.NAME}", 1, what, found["measured"]["command"])
+                    self.say(f"{folder}/{results.NAME}", 1, what, content["measured"]["command"])
         try:
             for line, row in enumerate(ledger.rows(), 2):
                 if ledger.stale(row):
@@ -222,14 +222,14 @@ def openings_and_captions():
         if opening := OPENING.match(read_text(file)):
             yield Region(file.split("/")[-1], opening[0], 1, file)
     for file in files(FIGURES):
-        if captions := "\n".join(found[0] for found in CAPTION.finditer(read_text(file))):
+        if captions := "\n".join(caption[0] for caption in CAPTION.finditer(read_text(file))):
             yield Region(f"figures/{Path(file).stem}", captions, 1, file)
 
 
 def files(*patterns):
     """The project's files of these patterns, as they are named in git."""
-    found = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
-    return [path.relative_to(ROOT).as_posix() for path in found]
+    paths = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
+    return [path.relative_to(ROOT).as_posix() for path in paths]
 
 
 def check() -> int:

@@ -138,10 +138,10 @@ class Numbers:
             return self.operand(formula)
 
         def number(match):
-            found = self.operand(match[0])
-            if not is_number(found):
-                raise TextError(f"{match[0]!r} is {str(found)[:40]!r}, no number")
-            return f"({found!r})"
+            value = self.operand(match[0])
+            if not is_number(value):
+                raise TextError(f"{match[0]!r} is {str(value)[:40]!r}, no number")
+            return f"({value!r})"
 
         reckoned = OPERAND.sub(number, formula)
         if not FORMULA.fullmatch(reckoned):
@@ -187,8 +187,8 @@ class Numbers:
 def stale(operand: str) -> bool:
     """Whether it quotes a result of other code than today's."""
     name, _, key = operand.partition(":")
-    found = name in results.FOLDERS and results.load(name)[key.split(".")[0]]
-    return bool(found and changed(found["measured"]["code"]))
+    section = name in results.FOLDERS and results.load(name)[key.split(".")[0]]
+    return bool(section and changed(section["measured"]["code"]))
 
 
 def typeset(number: str) -> str:
