@@ -359,9 +359,11 @@ def leapfrog_step(balls, dt, restitution, iters) -> None:
     move(balls, dt)
     accelerate(balls, 0.5 * dt)
     closed = [c for c in contacts if c.lam > 0.0]
+    bounces = [c for c in closed if c.hits and restitution > 0.0]
+    struck = {ball for c in bounces for ball in (c.a, c.b)} - {FLOOR}
     for c in closed:
-        if not c.hits:
-            turn(c, 0.0)  # to the normal of now; an impact keeps that of its moment
+        if not (c.hits or c.a in struck or c.b in struck):
+            turn(c, 0.0)  # to the normal of now; an impact, and what it pushes on, keeps its own
         c.target = c.after
     solve_with_momentum(closed, iters)  # the speed
 
@@ -494,7 +496,7 @@ def accelerations(balls, touching, pairs):
     for c in resting:
         c.target = 0.0  # it may open and may not close
     settle(resting)
-    a = [ball.vy for ball in balls]
+    a = [ball.vy if abs(ball.vy) > STILL else 0.0 for ball in balls]
     gap_a = [None if c in resting and c.v_n() < STILL else c.v_n() for c in pairs]
     for ball, vy in zip(balls, before):
         ball.vy = vy

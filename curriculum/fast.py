@@ -322,10 +322,15 @@ def leapfrog_step(balls, contacts, knobs):
     solve_with_momentum(balls, contacts, knobs.iters)
     move(balls, knobs.dt)
     accelerate(balls, half, knobs.gravity)
+    struck = np.zeros(len(balls), np.bool_)
+    for k, c in enumerate(contacts):
+        if c.lam > 0.0 and hits[k] and knobs.restitution > 0.0:
+            struck[c.a] = struck[c.b] = True
+    struck[-1] = False  # the floor
     closed = 0  # those that pushed become the first rows
     for k, c in enumerate(contacts):
         if c.lam > 0.0:
-            if not hits[k]:
+            if not (hits[k] or struck[c.a] or struck[c.b]):
                 turn(c, balls, 0.0)
             c.target = after[k]
             contacts[closed] = c

@@ -3,11 +3,9 @@
 A job: (place, subject, properties). A place is how its violations are said, such as "scene 17".
 """
 
-import statistics
-
 import contact
 from curriculum.stress import properties, scenes
-from curriculum.stress.claims import judge
+from curriculum.stress.properties import judge
 from curriculum.stress.trial import Trial
 
 FULL, QUICK = (10_000, 1_000), (60, 100)  # random scenes of up to 30 balls, and of up to four
@@ -60,17 +58,12 @@ def ran(section):
     return {model: sum(model in case for case in cases) for model in contact.MODELS}
 
 
-def depths(section):
-    """The median deepest overlap [m] of lcp, looking ahead and today, where balls start apart; and
-    a violation where looking ahead is not a hundred times better.
+def idle(section):
+    """A violation [place, name, words] for each model that ran in no scene, and each property that
+    judged none: what looks at nothing finds nothing.
     """
-    cases = section["notes"].get(properties.DEPTHS, {}).values()
-    found = {name: [case[name] for case in cases] for name in ("ahead", "today")}
-    found = {name: statistics.median(each or [0.0]) for name, each in found.items()}
-    if found["ahead"] > found["today"] / 100:
-        words = f"median {found['ahead']:.3g} m, today {found['today']:.3g} m"
-        section["violations"].append(["all scenes", "deepest overlap ahead", words])
-    return found | {"scenes": len(cases)}
+    counts = section["ran"] | {name: row[0] for name, row in section["properties"].items()}
+    return [["all scenes", name, "judged 0 times"] for name, count in counts.items() if not count]
 
 
 def unfinished(section):

@@ -8,10 +8,7 @@ import numpy as np
 import contact
 from curriculum.stress.trial import G, U, inverse
 
-HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the impedance of soft where it bounces
-MUJOCO = (0.9, 0.95, 0.001, 0.5, 2.0), (0.02, 1.0)  # and where it does not, with its spring
-STEEP = 0.05  # least share of the speed that goes into an impact which is judged: others graze
-SETTLED, SWEEPS = 2.0**-42, 10_000  # soft: what its last sweep may still change; sweeps at most
+SWEEPS = 10_000  # of soft, at most
 
 
 def spring_force(trial, motion):
@@ -24,11 +21,11 @@ def spring_force(trial, motion):
 
 def lcp_target(motion, spec):
     """The v_n that each contact may leave with at least: the chapter's rule, in its own words."""
-    e, beta, ahead = spec["restitution"], spec["baumgarte"], spec["ahead"]
+    e, beta = spec["restitution"], spec["baumgarte"]
     close, bounce = motion.depth / motion.dt, -e * motion.before
     bias = beta * close
     if e == 0.0:
-        return np.where(ahead & (close < 0.0), close, bias)
+        return bias
     arrives = motion.dt * motion.before <= motion.depth
     across = np.where(arrives, bounce, np.minimum(bounce, close))
     return np.where(bias > 0.0, np.maximum(bias, bounce), across)
@@ -79,57 +76,7 @@ def rises(run, motion, e):
     return rise, np.maximum(size, after)
 
 
-def soft_law(motion, e, solref):
-    """(target [m/s], softness R [1/kg]) of every contact, by MuJoCo's formulas."""
-    bounces = e > 0.0 and solref is None
-    d0, d1, width, mid, power = HARD if bounces else MUJOCO[0]
-    T, damping = solref or MUJOCO[1]
-    x = np.clip(motion.depth / width, 0.0, 1.0)
-    low, high = x**power / mid ** (power - 1), 1 - (1 - x) ** power / (1 - mid) ** (power - 1)
-    y = np.where(x <= mid, low, high)
-    d = d0 + y * (d1 - d0)
-    T = max(T, 2 * motion.dt)
-    K, B = (0.0, (1 + e) / motion.dt / d1) if bounces else ((d1 * T * damping) ** -2, 2 / (d1 * T))
-    a_ref = K * d * motion.depth - B * motion.before
-    return motion.before + motion.dt * a_ref, (1 - d) / d * motion.inv_mass
-
-
-def soft_force(trial, motion):
-    """The impulse of every contact (S, C) [N s], and what settled sweeps and rounding may leave in
-    the momenta (S, 2, N) [kg m/s].
-    """
-    target, R = soft_law(motion, trial.spec["restitution"], trial.spec["solref"])
-    lam = np.where(motion.listed, np.maximum(0.0, (target - motion.after) / R), 0.0)
-    size = np.where(motion.listed, np.abs(target) + motion.speeds, 0.0).max(1, keepdims=True)
-    left = (SETTLED + 16 * U) * (motion.listed.sum(1, keepdims=True) + 1) * size
-    own = motion.on_balls(np.where(motion.listed, left / R, 0.0))
-    return lam, own + 8 * U * (motion.count * SWEEPS + 4) * motion.size
-
-
 def start_energy(trial):
     """The energy [J] of the start, and at least what lifts every ball by its radius."""
     total = float(contact.energy(trial.exact.q[0], trial.exact.v[0], trial.scene.mass))
     return max(total, float((trial.mass * G * trial.scene.radius).sum()))
-
-
-def only_impacts(trial, fast, alone):
-    """The impulses (S, C) [N s] of contacts that close alone, 0 of those that graze or that are not
-    clearly once in the step, and their normals (S, 2, C).
-
-    A ball falls on the table; two balls fall alike, so one comes to the other on a straight line.
-    """
-    motion, dt, e = trial.exact, trial.dt, trial.spec["restitution"]
-    d, u = (each[:-1] @ motion.sides.T for each in (motion.q, motion.v))
-    uu, du = (u * u).sum(1), (d * u).sum(1)
-    gap = (d * d).sum(1) - motion.reach**2
-    closing = np.sqrt(du * du - uu * gap) / motion.reach
-    s = gap / (motion.reach * closing - du)
-    landing = np.sqrt(u[:, 1] ** 2 - 2.0 * G * np.minimum(motion.depth, 0.0))
-    table = np.arange(alone.shape[1]) < len(trial.mass)
-    closing, s = np.where(table, (landing, (u[:, 1] + landing) / G), (closing, s))
-    n = np.where(table, [[0.0], [1.0]], (d + s[:, None] * u) / motion.reach)
-    once = alone & (1e-6 * dt < s) & (s < (1 - 1e-6) * dt)
-    once &= ~table | (s + 2.0 * e * closing / G > dt)
-    once &= closing > STEEP * np.where(table, motion.on_contacts(fast), np.sqrt(uu))
-    pushes = (1 + e) * closing / motion.inv_mass
-    return np.where(once, pushes, 0.0), np.where(once[:, None], n, 0.0)

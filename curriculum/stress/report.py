@@ -23,8 +23,6 @@ HEAD = """# Stress: what must hold on any scene, and where each model breaks
 A judgement is one property on one scene, row of a map, command line or match, counted only where \
 it could have failed: without a contact nothing is said of contacts. What was done is read from \
 the states before and after each step, and held against the chapter's formulas."""
-DEPTHS = """Where balls start apart ({scenes:,} scenes), the median of lcp's deepest overlap is \
-{today:.3g} m, and {ahead:.3g} m looking ahead with the gain 1."""
 UNFINISHED = """Unfinished sweeps took {above_start:,} scenes above their start's energy, at worst \
 {place}, from {start:.4g} J to {most:.4g} J; {sweeps_most:,.0f} sweeps a step ended every rise."""
 
@@ -34,7 +32,8 @@ def write(found, origins, folder):
     sections = {name: jobs.added_up(each) for name, each in found.items()}
     scenes = sections["scenes"]
     scenes |= {"scenes": len(found["scenes"]), "unfinished": jobs.unfinished(scenes)}
-    scenes |= {"ran": jobs.ran(scenes), "depths": jobs.depths(scenes)}
+    scenes |= {"ran": jobs.ran(scenes)}
+    scenes["violations"] += jobs.idle(scenes)
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     error = max(abs(row["measured"] / row["theory"] - 1) for row in rows)
     sections["maps"] |= {"penalty": rows, "boundary_worst_error": error}
@@ -82,7 +81,6 @@ def page(sections):
     parts, unfinished = [HEAD.format(summary(sections))], sections["scenes"]["unfinished"]
     if unfinished["rises"]:
         parts.append(UNFINISHED.format(**unfinished, **unfinished["worst"]))
-    parts.append(DEPTHS.format(**sections["scenes"]["depths"]))
     for name, section in sections.items():
         head = ["property", "judged", "comparisons", "off, as a share of the bound"]
         parts += [f"## {TITLES[name]}", results.table(head, rows_of(section["properties"]))]

@@ -12,7 +12,7 @@ import numpy as np
 import contact
 
 BODY = ("x", "y", "vx", "vy", "mass", "radius")
-KNOBS = ("stiffness", "baumgarte", "iters", "solref", "warm", "ahead")  # fields of contact.Settings
+KNOBS = ("stiffness", "baumgarte", "iters", "solref", "warm")  # fields of contact.Settings
 
 
 def to_scene(spec):
@@ -105,5 +105,4 @@ def numbered_spec(number, small=False):
         "iters": int(pick(rng, 1, 5, 20, 100)),
         "solref": pick(rng, None, spring),
         "warm": pick(rng, 0.0, 0.0, 0.8, 1.0),
-        "ahead": pick(rng, False, True),
     }

@@ -15,7 +15,7 @@ from curriculum.stress import scenes
 run_twin = (contact.beside("fast") or contact).run_model  # the same bits, as a property says
 G = 9.81  # m/s^2, what every model must have, so it is not asked of contact.py
 U = 2.0**-53  # the largest relative rounding error of one operation
-STEPPED = ("penalty", "lcp", "soft")
+STEPPED = contact.STEPPED
 EVENTS = 100  # of a run of exact; the rest is not waited for
 TOUCHING = 1e-12  # m: a deeper overlap at the start, and exact promises nothing
 ASTRAY = 1e6  # m, m/s: a run is judged until a ball is farther off, or faster
@@ -120,7 +120,8 @@ class Trajectory:
         self.before, self.after = (self.along(v) for v in (self.v[:-1], self.v[1:]))
         self.falling = self.v[:-1] + trial.dt * np.outer((0.0, -G), ~trial.fixed)
         self.push = self.mass * (self.v[1:] - self.falling)
-        self.top = self.fastest()
+        opens = 2.0 * contact.OPENS * trial.scene.radius.max() / trial.dt  # leapfrog takes it back
+        self.top = self.fastest(opens if model == "leapfrog" else 0.0)
         self.count = self.on_balls(self.listed)  # of contacts of a ball (S, 1, N)
         self.pushed = self.count * self.mass > 0.0  # what contacts may move
         self.lengths = 2 * self.reach + np.abs(self.depth)  # that make a depth (S, C)
@@ -143,10 +144,12 @@ class Trajectory:
         """The normal velocity [m/s] of every contact (S, C)."""
         return ((v @ self.sides.T) * self.normal).sum(1)
 
-    def fastest(self):
-        """A solver comes nearer to its answer with every push, so energies bound the speeds."""
+    def fastest(self, opens):
+        """A solver comes nearer to its answer with every push, so energies bound the speeds; opens:
+        the speed [m/s] that it may ask for on the way.
+        """
         norms = np.sqrt((self.mass * self.v * self.v).sum((1, 2)))
-        norms = norms[:-1] + 2.0 * norms[1:] + self.dt * G * np.sqrt(self.mass.sum())
+        norms = norms[:-1] + 2.0 * norms[1:] + (self.dt * G + opens) * np.sqrt(self.mass.sum())
         own = np.abs(self.v).max(1)
         return np.maximum(norms[:, None] * np.sqrt(inverse(self.mass)), own[:-1] + own[1:])
 
@@ -171,8 +174,8 @@ class Trajectory:
 
 def looks(model, spec, v):
     """How wide a gap [m] the model still calls a contact, in each state v (S, 2, N)."""
-    margin = np.full(len(v), contact.CONTACT_MARGIN if model == "lcp" else 0.0)
-    if model == "lcp" and spec["ahead"] and spec["restitution"] == 0.0:  # as far as a step goes
+    margin = np.full(len(v), contact.CONTACT_MARGIN if model in ("lcp", "leapfrog") else 0.0)
+    if model == "leapfrog":  # as far as a step goes
         fastest = np.sqrt(v[:, 0] * v[:, 0] + v[:, 1] * v[:, 1]).max(1)
         return np.maximum(margin, 2.0 * spec["dt"] * (fastest + spec["dt"] * G))
     return margin

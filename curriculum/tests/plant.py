@@ -22,13 +22,13 @@ def loaded(texts, old, new):
         file.write_text(text.replace(old, new), "utf-8")
     for name in [name for name in sys.modules if name.split(".")[0] in ("contact", "curriculum")]:
         del sys.modules[name]
-    names = "claims", "properties", "jobs", "maps", "mujoco_match"
+    names = "properties", "jobs", "maps", "mujoco_match"
     return [importlib.import_module(f"curriculum.stress.{name}") for name in names]
 
 
 def judged(modules, count, wanted):
     """(property, subject) of so many small scenes, of maps and matches; `wanted` alone, if any."""
-    _, properties, jobs, maps, match = modules
+    properties, jobs, maps, match = modules
     others = itertools.chain(maps.map_jobs(True), match.match_jobs(True))
     scenes = jobs.scene_jobs(range(count), small=True)
     for _, subject, stated in itertools.chain(
@@ -43,15 +43,15 @@ def judged(modules, count, wanted):
 
 def claimed(modules, count, wanted=None):
     """(claim without its numbers, whether it holds)."""
-    claims = modules[0]
+    properties = modules[0]
     for each, subject in judged(modules, count, wanted):
-        with claims.np.errstate(all="ignore"):
+        with properties.np.errstate(all="ignore"):
             for words, *claim in each(subject):
                 kind = re.sub(r"(?<= )[0-9]\S*", "#", words)
                 if each.__name__ != OWN_CODE:
-                    kind = re.sub("penalty|lcp ahead|lcp|soft", "a model", kind)
+                    kind = re.sub("penalty|lcp|leapfrog|soft", "a model", kind)
                 row = [0, 0.0, None]
-                claims.compare(row, "", *claim)
+                properties.compare(row, "", *claim)
                 yield f"{each.__name__}: {kind}", row[2] is None
 
 
@@ -62,7 +62,7 @@ def unnamed(texts, old, new, wanted, *kinds):
     except LookupError as error:
         return [str(error)]
     missing = {f"{wanted}: {kind}" for kind in kinds}
-    for kind, holds in claimed(modules, 300 if wanted in modules[1].PROPERTIES else 0, wanted):
+    for kind, holds in claimed(modules, 300 if wanted in modules[0].PROPERTIES else 0, wanted):
         missing -= {kind} if not holds else set()
         if not missing:
             break

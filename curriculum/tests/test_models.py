@@ -17,8 +17,7 @@ from contact import STEPPED, Ball, Contact, Settings, build_scene, contact_quali
 from curriculum.bench import problems
 from curriculum.exact import simulate_exact
 from curriculum.stress import mujoco_match
-from curriculum.stress.claims import judge
-from curriculum.stress.properties import PROPERTIES
+from curriculum.stress.properties import PROPERTIES, judge
 from curriculum.stress.trial import Trial
 
 R, G, DT = contact.RADIUS, 9.81, 0.002

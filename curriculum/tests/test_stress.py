@@ -11,7 +11,7 @@ import scipy  # noqa: F401  # which the stress test loads late: skip by its name
 
 import contact
 from curriculum.stress import __main__ as command
-from curriculum.stress import claims, extremes, jobs, maps, mujoco_match, properties, scenes
+from curriculum.stress import extremes, jobs, maps, mujoco_match, properties, scenes
 from curriculum.stress.properties import PROPERTIES
 from curriculum.stress.trial import Trial
 from curriculum.tests import plant
@@ -33,7 +33,7 @@ FAULTS = {
     "exact is no number after a short flight": ("array((evaluate(Q, times),",
         "array((evaluate(Q, times) / (times < 1e-2),",
         "finite_or_said_to_have_exploded", "exact is not finite"),
-    "a flight moves with the old velocity": ("q[1:] = dt * v[1:]", "q[1:] = dt * v[:-1]",
+    "a flight moves with the old velocity": ("q[1:] = dt * fine[1::", "q[1:] = dt * fine[:-1:",
         "a_skip_changes_no_bit", "skips: a model"),
     "a flight goes on beside a NaN": ("~(gap >= reach)", "gap < reach",
         "a_skip_changes_no_bit", "skips beside NaN: a model"),
@@ -78,8 +78,6 @@ FAULTS = {
     "the Baumgarte gain of pairs is halved":
         ("bias = baumgarte / dt", f"bias = {HALF} * baumgarte / dt",
         "a_contact_alone_leaves_at_its_target", "v_n [m/s]"),
-    "ahead looks no farther": ("if far else detect_contacts", "if 0 else detect_contacts",
-        "a_contact_alone_leaves_at_its_target", "v_n [m/s]"),
     "a contact of lcp pulls a little": (SUM, SUM.replace("0.0", "-1e-7"),
         "lcp_never_pulls_and_enough_sweeps_solve_it", "pulled [N s], step #"),
     "a push is not along the normal":
@@ -106,8 +104,6 @@ FAULTS = {
     "few sweeps of soft, and three contacts are said to be settled":
         (SOFT, f"3, {SOFT[13:]} or len(contacts) > 2",
         "soft_pushes_as_mujoco_says", "steps off beyond those unsettled"),
-    "ahead leaves a gap that closes twice": ("return closing if ahead", "return -closing if ahead",
-        "looking_ahead_adds_no_energy_where_balls_start_apart", "gained since the start [J]"),
     "exact bounces with e less 1e-8 at the start":
         (TARGET, TARGET.replace("-self.e", "(1e-8 - self.e)"),
         "exact_pushes_and_never_pulls", "velocity after the impacts [m/s]"),
@@ -124,7 +120,7 @@ FAULTS = {
     "exact comes 1e-9 s late": ("span = min(roots)", "span = min(roots) + 1e-9",
         "exact_never_overlaps", "overlap [m]"),
     "exact loses 1e-9 of v at an event":
-        ("a[k]), speed(span, ball.vy, a[k])", "a[k]), (1 - 1e-9) * speed(span, ball.vy, a[k])",
+        ("ball.vy += span * a[k]", "ball.vy += span * a[k] - 1e-9 * ball.vy",
         "exact_keeps_its_energy", "lost with e = # [J]"),
     "exact.py gains 1e-9 of v at an event":
         ("sample(Q, span), now", "sample(Q, span) * [[[1.0]], [[1 + 1e-9]]], now",
@@ -144,8 +140,8 @@ FAULTS = {
         "penalty_leaves_above_its_critical_dt", "critical dt [s]"),
     "the critical step is four times too long": (DAMPED, f"4 * {DAMPED}",
         "penalty_leaves_above_its_critical_dt", "critical dt [s]"),
-    "lcp looks twice as far": ("else detect_contacts(balls)\n",
-        "else detect_contacts(balls, 2e-3)\n",
+    "lcp looks twice as far": ("contacts = detect_contacts(balls)\n",
+        "contacts = detect_contacts(balls, 2e-3)\n",
         "lcp_sinks_as_deep_as_its_landing_step", "depth [m], seed #"),
     "the spring of soft is 1e-5 weaker":
         (SPRING, SPRING.replace("K", "dampratio *= 1.00001\n        K"),
@@ -194,7 +190,7 @@ def test_the_claim_that_must_see_it_names_the_fault_that(fault, planted):
 @pytest.fixture(scope="module")
 def claimed():
     """[(claim, whether it holds)] of the code as it stands, on some of the same subjects."""
-    return list(plant.claimed((claims, properties, jobs, maps, mujoco_match), 100))
+    return list(plant.claimed((properties, jobs, maps, mujoco_match), 100))
 
 
 def test_no_claim_is_violated_by_the_code_as_it_stands(claimed):
@@ -289,14 +285,6 @@ def test_bad_flags_are_refused_in_one_line(flags, words, capsys):
         command.main(flags)
     said = capsys.readouterr().err
     assert stop.value.code == 2 and said.count("\n") == 1 and words in said
-
-
-def test_looking_ahead_must_be_a_hundred_times_better_in_the_median():
-    for ahead, wrong in ((1e-6, 0), (1e-4, 1)):
-        cases = {"a": {"ahead": ahead, "today": 1e-3}, "b": {"ahead": 0.0, "today": 0.0}}
-        section = {"notes": {properties.DEPTHS: cases | {"c": cases["a"]}}, "violations": []}
-        assert jobs.depths(section) == {"ahead": ahead, "today": 1e-3, "scenes": 3}
-        assert len(section["violations"]) == wrong
 
 
 def test_scenes_are_judged_and_said_again(capsys):
