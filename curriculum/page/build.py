@@ -155,6 +155,8 @@ def placed(parts, **known):
         if kind == "figure":
             name, again, changes = values
             found.setdefault(name + again, [name, changes])
+            if name == "lanes":  # beside the text, and as a picture of its own
+                found[f"{name}{again}-still"] = [name, changes]
     return found
 
 

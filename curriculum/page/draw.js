@@ -19,8 +19,18 @@ export function el(tag, attributes, ...children) {
   return `<${tag}${written.join("")}>${children.join("")}</${tag}>`;
 }
 
-export const label = (text, x, y, anchor = "start", kind = "tick strong") =>
-  el("text", { x, y, class: kind, "text-anchor": anchor }, escape(text));
+// v_n and m g as formulas have them, in text that is escaped; `low` and `up` lead to the n and back.
+const typeset = (text, italic, low, up) =>
+  escape(text)
+    .replace(/\bv_n\b/g, `${italic("v")}${low}n${up}`)
+    .replace(/\bm g\b/g, italic("mg"));
+const slanted = (text) => `<tspan font-style="italic">${text}</tspan>`;
+export const inSentence = (text) => typeset(text, (a) => `<i>${a}</i>`, "<sub>", "</sub>");
+
+export const label = (text, x, y, anchor = "start", kind = "tick strong") => {
+  const set = typeset(text, slanted, '<tspan dy="4" font-size="75%">', '</tspan><tspan dy="-4">\u200b</tspan>');
+  return el("text", { x, y, class: kind, "text-anchor": anchor }, set);
+};
 export const line = (x1, y1, x2, y2, kind = "rule dashed") =>
   el("line", { x1, y1, x2, y2, class: kind });
 export const circle = (cx, cy, r, kind) => el("circle", { cx, cy, r, class: kind });
@@ -219,17 +229,10 @@ export function ball(model, x, y, r, kind = "ball") {
   return disc + el("path", { d, class: "ball-mark" });
 }
 
-// The table: its top is the line, what lies below is hatched.
-export function table(x, y, width, height) {
-  const strokes = [];
-  for (let at = x - height; at < x + width; at += 9)
-    strokes.push(`M${round(at)} ${round(y + height)}l${round(height)} ${round(-height)}`);
-  const hatch = el("path", { d: strokes.join(""), class: "hatch-line" });
-  return (
-    clipped(x, y, width, height, rect(x, y, width, height, "ground"), hatch) +
-    line(x, y, x + width, y, "table-top")
-  );
-}
+// The table: its top is the line, what lies below is hatched, by a pattern of the page.
+export const table = (x, y, width, height) =>
+  rect(x, y, width, height, "ground") + rect(x, y, width, height, "hatch") +
+  line(x, y, x + width, y, "table-top");
 
 // An arrow from (x, y) by (dx, dy).
 export function arrow(kind, x, y, dx, dy) {

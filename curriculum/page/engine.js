@@ -172,15 +172,19 @@ function warmStart(rows, pushed = [], share, vx, vy) {
 }
 
 // Gravity predicts the velocities, impulses correct them, the balls move.
-function solveStep(state, mass, dt, contacts, { warm, last = 0, ...options }) {
+function solveStep(state, mass, dt, contacts, { warm, last = 0, see = () => {}, ...options }) {
   const rows = makeRows(contacts, mass);
   const vx = state.vx.slice();
   const vy = fall(state.vy, mass, dt);
   const fastest = last && greatest([...rows.map((c) => c.target), ...vx, ...vy].map(Math.abs));
+  see({ ...state, vx: vx.slice(), vy: vy.slice() });
   if (warm) warmStart(rows, state.pushed, warm, vx, vy);
   solveContacts(rows, vx, vy, { ...options, tolerance: last && last * fastest });
+  see({ ...state, vx, vy });
   const pushed = warm ? rows.map(({ i, j, lam }) => ({ i, j, lam })) : [];
-  return { ...move(state, dt, vx, vy), pushed };
+  const moved = { ...move(state, dt, vx, vy), pushed };
+  see(moved);
+  return moved;
 }
 
 // The normal velocity with which a contact of lcp must leave at least.
@@ -194,12 +198,12 @@ function contactTarget(c, state, { dt, restitution, baumgarte }) {
   return -dt * speed >= -c.depth ? bounce : least(bounce, closing);
 }
 
-// One step of lcp. knobs.project stands in for the clamp.
+// One step of lcp. knobs.project stands in for the clamp; knobs.see as for leapfrog.
 function lcpStep(state, { mass, radius }, knobs) {
-  const { dt, iters, warm, project } = knobs;
+  const { dt, iters, warm, project, see } = knobs;
   const contacts = detectContacts(state.x, state.y, radius, CONTACT_MARGIN);
   for (const c of contacts) c.target = contactTarget(c, state, knobs);
-  return solveStep(state, mass, dt, contacts, { iters, project, warm });
+  return solveStep(state, mass, dt, contacts, { iters, project, warm, see });
 }
 
 // ---- leapfrog: the sweep twice a step, for the way and for the speed

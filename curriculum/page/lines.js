@@ -4,6 +4,8 @@ export const LINES = {
   spring: ["penalty", "return max(0.0"],
   sweep: ["sweep", "lam = max("],
   way: ["leapfrog", "solve_with_momentum(contacts"],
+  speed: ["leapfrog", "solve_with_momentum(closed"],
+  softness: ["implicit-spring", "c.softness, c.target"],
   acceleration: ["soft", "c.target = v_n"],
   strike: ["exact", "strike(touching"],
   bias: ["lcp-target", "return bias"],

@@ -23,7 +23,7 @@
  *   hold   [x, y]: where drag(x, y) starts from, if that is not the middle
  * Whatever is drawn as `ball` must have a handle over it; what cannot be grabbed is drawn as
  * "seen", "body" or "ghost". The view is the stage. */
-import { escape, plain } from "./draw.js";
+import { escape, inSentence, plain } from "./draw.js";
 import { fitting, fromSlider, QUANTITIES, shown, sliderRange, toSlider } from "./store.js";
 
 const NARROW = 480; // px: from this width on a drawing is wide
@@ -275,7 +275,8 @@ export class Stage {
     for (const show of [...this.buttons, ...this.knobs]) show();
     this.#showChips();
     if (made.lit) this.page.light(this.name, made.lit);
-    if (words.textContent !== made.words) words.textContent = made.words;
+    if (this.said !== made.words) words.innerHTML = inSentence(made.words);
+    this.said = made.words;
   }
 
   // What differs from the text, each with a click that takes it back.

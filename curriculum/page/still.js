@@ -1,4 +1,5 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
+import { inSentence } from "./draw.js";
 import { figures } from "./figures.js";
 import { LINES } from "./lines.js";
 import { buttonsOf, heightOf, stillView } from "./stage.js";
@@ -7,18 +8,30 @@ import { QUANTITIES, Section, startOf } from "./store.js";
 
 const WIDTH = 640;
 
+// The live figure as a passage shows it, a fifth of the way through and with all answers: what it
+// is without a script and on paper.
+function seenLater(figure, view, changes) {
+  figure.look(view, changes, true);
+  const { from, to } = view.own;
+  view.own.time = from + 0.2 * (to - from);
+  view.open = () => true;
+}
+
 // What a figure shows first in a section: {svg, words, height, narrow, ...}.
 function still([id, [name, changes]]) {
   try {
     const figure = figures[name] ?? {};
     const { title, caption = "", knobs = [] } = figure;
-    const made = figure.draw(stillView(figure, new Section(id, changes).values, WIDTH));
+    const view = stillView(figure, new Section(id, changes).values, WIDTH);
+    if (id.endsWith("-still")) seenLater(figure, view, changes);
+    const made = figure.draw(view);
     for (const part of ["title", "height", "svg", "words"])
       if (!(part in { ...figure, ...made })) throw new Error(`it has no ${part}`);
     const [height, narrow] = [heightOf(figure, WIDTH), heightOf(figure, 1)];
     const counts = { knobs: knobs.length, buttons: buttonsOf(figure).length };
     const { svg, words } = made;
-    return [id, { svg, words, title, caption, width: WIDTH, height, narrow, ...counts }];
+    const texts = { words, sentence: inSentence(words), title, caption: inSentence(caption) };
+    return [id, { svg, ...texts, width: WIDTH, height, narrow, ...counts }];
   } catch (error) {
     throw new Error(`the figure ${name}: ${error}`);
   }

@@ -1,6 +1,6 @@
 /* The corner, four times: gap to the right, force upwards, what a model allows as a line, and the
  * state that runs along it while the reader lifts the ball or presses it into the table. */
-import { arrow, axis, ball, circle, label, line, number, path, table } from "../draw.js";
+import { arrow, axis, ball, circle, line, number, path, table } from "../draw.js";
 import { pushOfTable, runModel, soften } from "../engine.js";
 import { beside, forceLength, G, grip, kept, knobs, lens, R, scene } from "../kit.js";
 import { softKnobs } from "../kit.js";

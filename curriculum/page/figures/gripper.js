@@ -1,7 +1,8 @@
 /* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors. On
- * the first screen it plays by itself; later time step and stiffness can be dragged, too. */
+ * the first screen it plays by itself; later time step and stiffness can be dragged, too, and the
+ * spring's force can be taken from the end of the step. */
 import { axis, ball, circle, clipped, el, label, line, number, path, plot, rect } from "../draw.js";
-import { table } from "../draw.js";
+import { table, within } from "../draw.js";
 import { criticalDt, runModel, series, stateAt } from "../engine.js";
 import { grip, kept, pair, R, scene, tens, through } from "../kit.js";
 
@@ -11,19 +12,22 @@ const [GROUND, TOP, TIMES] = [24, 190, 60]; // px of table, px of the picture; o
 const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be set
 const NAMES = ["the left finger", "the cup", "the right finger"];
 const PLACES = { x0: AT[0], x1: AT[1], x2: AT[2] };
-const start = () => ({ step: 0.004, k: 1e4, ...PLACES, time: null, tries: [] });
+const start = () => ({ ...PLACES, time: null, tries: [], late: false });
 
-const tellsOf = ({ step, k }) => `dt = ${number(1000 * step, 2)} ms, k = ${number(k, 2)} N/m`;
+const tellsOf = (dt, k, late) =>
+  `dt = ${number(1000 * dt, 2)} ms, k = ${number(k, 2)} N/m${late ? ", force from the end" : ""}`;
 
-// The run, its deepest overlap row by row [r], and what happens in the last quarter.
-const squeezed = kept((dt, stiffness, ...x) => {
+// The run, its deepest overlap row by row [r], and what happens in the last quarter; `late`: with
+// the force from the end of the step.
+const squeezed = kept((dt, stiffness, late, ...x) => {
   const all = scene([R, R, R], { x, mass: MASS, motor: MOTOR });
   const steps = Math.ceil(SECONDS / dt - 1e-9);
-  const run = runModel("penalty", all, { dt, stiffness, damping: DAMPING }, steps);
+  const model = late ? "implicit" : "penalty";
+  const run = runModel(model, all, { dt, stiffness, damping: DAMPING }, steps);
   const depths = series(run, all).gap.map((gap) => Math.max(0, -gap));
-  const late = depths.subarray(Math.floor(LATE * (steps + 1)));
-  const deepest = Math.max(...late);
-  const trembling = deepest - Math.min(...late);
+  const last = depths.subarray(Math.floor(LATE * (steps + 1)));
+  const deepest = Math.max(...last);
+  const trembling = deepest - Math.min(...last);
   const held = stateAt(run, steps).x.every((each) => Math.abs(each) < 0.3);
   const does = held ? (trembling < 1e-5 ? "holds still" : "trembles") : "is gone";
   return { run, depths, deepest, trembling, does };
@@ -70,36 +74,40 @@ function picture({ own, width }, { run, depths }) {
 }
 
 // Time step and stiffness: what can be set, what was tried, and from where on a finger trembles.
-function choices(view, does) {
+function choices(view, dt, k, does) {
   const { own, width, height } = view;
+  const { late } = own;
   const ticks = [0.5, 1, 2, 4, 8].map((ms) => [ms / 1000, String(ms)]);
   const ks = Array.from({ length: 25 }, (_, i) => K[0] * (K[1] / K[0]) ** (i / 24));
   const limits = ks.map((k) => criticalDt(MASS[0], k, DAMPING).damped);
   const { svg, sx, sy } = plot([0, TOP, width, height - TOP], {
     x: { ...axis(DT, "time step dt (ms)", ...ticks), log: true },
     y: { ...tens(4, 6), domain: K, label: "stiffness k (N/m)" },
-    lines: [{ model: "fixed", xs: limits, ys: ks, kind: "plainly" }],
+    lines: late ? [] : [{ model: "fixed", xs: limits, ys: ks, kind: "plainly" }],
   });
-  const now = own.tries.find(({ step, k }) => step === own.step && k === own.k);
-  if (!view.dragging && !now) own.tries.push({ step: own.step, k: own.k, does });
+  const same = (each) => each.dt === dt && each.k === k && each.late === late;
+  if (!view.dragging && !own.tries.some(same)) own.tries.push({ dt, k, late, does });
   const [limit, edge] = [ks.findIndex((k) => k > 2e5), { "holds still": "dot", trembles: "look" }];
-  const tried = own.tries.map(({ step, k, does }) =>
-    edge[does] ? circle(sx(step), sy(k), 6, `${edge[does]} m-penalty`)
-      : label("×", sx(step), sy(k) + 6, "middle"));
-  const beyond = label("critical step", sx(limits[limit]) + 8, sy(ks[limit]));
-  const told = ["time step and stiffness", tellsOf(own)];
+  const at = (step, stiff) => [sx(within(DT[0], step, DT[1])), sy(within(K[0], stiff, K[1]))];
+  const tried = own.tries.filter((each) => each.late === late).map(({ dt, k, does }) => {
+    const [x, y] = at(dt, k);
+    return edge[does] ? circle(x, y, 6, `${edge[does]} m-penalty`) : label("×", x, y + 6, "middle");
+  });
+  const beyond = late ? "" : label("critical step", sx(limits[limit]) + 8, sy(ks[limit]));
+  const named = ["time step and stiffness", tellsOf(dt, k, late)];
   const to = { at: (x, y) => [sx.back(x), sy.back(y)], px: 8, digits: 2 };
-  const knob = pair(view, "choice", [sx(own.step), sy(own.k)], ...told, { step: DT, k: K }, to);
+  const knob = pair(view, "choice", at(dt, k), ...named, { dt: DT, stiffness: K }, to);
   return { svg: svg + beyond + tried.join(""), knob };
 }
 
 // `small`: without what can be chosen, and it plays by itself where things may move.
 function drawn(view, small) {
   const { own } = view;
-  const found = squeezed(own.step, own.k, own.x0, own.x1, own.x2);
-  const { does, deepest, trembling } = found;
-  const { svg, at, r, scale } = picture(view, found);
-  const { svg: map, knob } = small ? { svg: "" } : choices(view, does);
+  const [dt, k] = [view.get("dt"), view.get("stiffness")];
+  const run = squeezed(dt, k, own.late, own.x0, own.x1, own.x2);
+  const { does, deepest, trembling } = run;
+  const { svg, at, r, scale } = picture(view, run);
+  const { svg: map, knob } = small ? { svg: "" } : choices(view, dt, k, does);
   if (small && own.time === null && view.near && !view.still) view.play();
   const hold = ([x, y], i) => {
     const range = { r, low: AT[i] - 0.03, high: AT[i] + 0.03, step: 0.002, release: view.play };
@@ -112,9 +120,10 @@ function drawn(view, small) {
   return {
     svg: svg + map,
     words:
-      `${tellsOf(own)}: ${does === "is gone" ? "fingers and cup fly apart" : holds}. ` +
+      `${tellsOf(dt, k, own.late)}: ${does === "is gone" ? "fingers and cup fly apart" : holds}. ` +
       `The gaps at the start are ${began.join(" and ")} mm.`,
     handles: at.map(hold).concat(knob ?? []),
+    lit: own.late ? ["softness"] : [],
   };
 }
 
@@ -130,11 +139,17 @@ const promise = {
 const gripper = {
   title: "A gripper",
   caption:
-    "It holds still, trembles or flies apart: drag time step and stiffness, and push the fingers " +
-    "or the cup.",
+    "It holds still, trembles or flies apart: drag time step and stiffness, push the fingers or " +
+    "the cup, and take the springs’ force from the end of the step.",
   height: 440,
   start,
   clock: () => ({ end: SECONDS, rate: 0.1, name: "Squeeze" }),
+  buttons: [
+    [
+      ({ own }) => `Force from the ${own.late ? "beginning" : "end"} of the step`,
+      ({ own }) => (own.late = !own.late),
+    ],
+  ],
   draw: (view) => drawn(view, false),
 };
 

@@ -1,6 +1,6 @@
 /* What unfinished sweeps leave: a column at rest under lcp sags as on springs. Its law stands
  * beside it, and the sweeps of a step can be spent on substeps. */
-import { axis, ball, label, number, path, plural, rect, table } from "../draw.js";
+import { axis, ball, label, number, path, plural, rect, table, tenTo } from "../draw.js";
 import { runModel, stateAt } from "../engine.js";
 import { beside, depthsOf, G, grip, kept, knobs, R, scene, tens, through } from "../kit.js";
 
@@ -13,7 +13,7 @@ const lawOf = (masses, { dt, iters, baumgarte, warm }) =>
   masses.map((own, i) => {
     const above = masses.slice(i + 1).reduce((sum, mass) => sum + mass, 0);
     const deep = ((1 - warm) / (baumgarte * iters)) * (above / own) * ((G * dt * dt) / R);
-    return above ? Math.min(1, deep) : 0;
+    return above && deep ? Math.min(1, deep) : 0; // no number where nothing is asked to open
   });
 
 // The same of a run of lcp; and whether it is at rest.
@@ -52,19 +52,20 @@ function column(left, height, masses, depths, law) {
   const r = Math.min(LARGEST, (height - GROUND - 14) / (2 * masses.length)); // px
   const floor = height - GROUND;
   const size = (0.85 * LENS) / Math.max(1e-9, ...depths, ...law); // px for an overlap of 1 r
+  const ten = 10 ** Math.floor(Math.log10(Math.max(1e-9, ...depths))); // r: in it they are told
   const places = masses.map((_, i) => [r + 6, floor - (2 * i + 1) * r]);
   const drawn = masses.map((mass, i) => {
     const [x, y] = places[i];
     const heavy = mass === 1 ? "" : label(number(mass, 2), x, y + 5, "middle", "on-ball");
     const at = x + r + LENS + 12;
-    const told = left > 200 ? `${number(depths[i], 2)} r` : number(depths[i], 1);
     return [
       ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
       lens(at, y + r, size * depths[i], size * law[i]),
-      label(told, at + LENS + 16, y + r + (i ? 5 : -4), "start", "tick strong"),
+      label((depths[i] / ten).toFixed(2), at + LENS + 16, y + r + (i ? 5 : -4)),
     ].join("");
   });
-  const enlarged = label(`× ${number(size / r, 2)}`, left - 4, 14, "end", "tick");
+  const power = Math.log10(ten);
+  const enlarged = label(power ? `in ${tenTo(power)} r` : "in r", left - 4, 14, "end", "tick");
   return { svg: table(0, floor, left, GROUND) + drawn.join("") + enlarged, places, r };
 }
 

@@ -1,5 +1,5 @@
 /* The signs of a contact: normal, depth and v_n, of a ball with another ball and with the table. */
-import { arrow, ball, label, number, table } from "../draw.js";
+import { arrow, ball, label, number, table, within } from "../draw.js";
 import { detectContacts, normalSpeed } from "../engine.js";
 import { pair, R } from "../kit.js";
 
@@ -14,7 +14,8 @@ function handlesOf(view, { scale, floor, place }, told) {
   const { width } = view;
   const { x, y, vx, vy } = view.own;
   const [ax, ay] = place(x, y);
-  const tip = place(x + ARROW * vx, y + ARROW * vy);
+  const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);
+  const tip = [within(8, tipX, width - 8), within(8, tipY, view.height - 8)]; // none is lost
   const [places, speeds] = [{ x: [-SIDE, SIDE], y: [0, TOP] }, { vx: FAST, vy: FAST }];
   const fast = `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told}`;
   return [

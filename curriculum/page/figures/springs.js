@@ -38,7 +38,7 @@ function coil(x, top, bottom, stiffness) {
 
 function picture(left, height, stiffness, depth, push) {
   const [x, floor, aside] = [left / 2, height - GROUND, Math.min(LARGE + 12, left / 2 - 10)];
-  const y = floor + (depth - 1) * LARGE;
+  const y = Math.min(height - 8, floor + (depth - 1) * LARGE);
   const under = Math.max(y + LARGE, floor);
   return [
     table(0, floor, left, GROUND),
@@ -53,10 +53,12 @@ function picture(left, height, stiffness, depth, push) {
 function drawSponge(view) {
   const k = view.get("stiffness");
   const rest = G / k / R; // r
+  const deepest = Math.min(DEEPEST, Math.sqrt(2 * HIGHEST * rest)); // from there it stays in sight
+  view.own.press &&= Math.min(view.own.press, deepest);
   const depth = depthOf(view, rest);
   const push = Math.max(0, depth / rest); // weights
   const [floor, end] = [view.height - GROUND, Math.min(DEEPEST, MOST * rest)];
-  const y = floor + (depth - 1) * LARGE;
+  const y = Math.min(view.height - 8, floor + (depth - 1) * LARGE);
   const chart = {
     x: axis([0, DEEPEST], "depth / r", 0, 0.5, 1),
     y: axis([0, 3], "force / m g", 0, 1, 2, 3),
@@ -72,7 +74,7 @@ function drawSponge(view) {
   const hold = {
     r: LARGE,
     low: -1,
-    high: Math.min(DEEPEST, Math.sqrt(2 * HIGHEST * rest)), // it stays in the picture
+    high: deepest,
     step: -Math.max(0.1 * rest, 0.001),
     at: (x, to) => (to - floor) / LARGE + 1,
     get: () => depthOf(view, rest),
@@ -124,7 +126,7 @@ function heightsAtRest(k, from, hand) {
 }
 
 // Every ball as a handle: lifted, or pressed down with some weights.
-function holds(view, heights, at, x, k) {
+function holds(view, heights, { at, seen }, x, k) {
   const resting = heightsAtRest(k, COUNT, 0);
   return heights.map((height, i) => {
     const low = at(resting[i]);
@@ -141,7 +143,7 @@ function holds(view, heights, at, x, k) {
     const name = `ball ${i + 1} from below: lift it or press it`;
     const by = range.get();
     const text = by < 0 ? `pressed with ${number(-by, 2)} m g` : `lifted by ${number(by, 2)} r`;
-    return grip(view, `ball-${i}`, x, Math.min(at(height), view.height - 20), name, text, range);
+    return grip(view, `ball-${i}`, x, seen(at(height)), name, text, range);
   });
 }
 
@@ -151,6 +153,7 @@ function drawStack(view) {
   const { from, hand, time } = view.own;
   const heights = fallen(view, heightsAtRest(k, from, hand));
   const at = (height) => floor - (height / R) * PX;
+  const seen = (y) => within(12, y, view.height - 12); // none is lost on the softest spring
   const depths = depthsOf(heights);
   const forces = depths.map((depth) => Math.max(0, (k * depth * R) / G));
   const pushes = forces.map((force, i) => {
@@ -162,7 +165,7 @@ function drawStack(view) {
   const aside = [Math.min(view.width - 50, x + 230), view.width < 480 ? 60 : floor - 90];
   const svg = clipped(0, 0, view.width, view.height,
     table(0, floor, view.width, 40),
-    ...heights.map((height) => ball("penalty", x, at(height), PX)),
+    ...heights.map((height) => ball("penalty", x, seen(at(height)), PX)),
     ...pushes,
     arrow("weight", x, at(heights[from] + R) - pressed, 0, pressed),
     lens("penalty", ...aside, PX, depths[0], 44),
@@ -175,7 +178,7 @@ function drawStack(view) {
   return {
     svg,
     words: `The lowest contact carries ${carried}${more}, ${bottom}; m g / k is ${one} r.`,
-    handles: holds(view, heights, at, x, k),
+    handles: holds(view, heights, { at, seen }, x, k),
   };
 }
 
