@@ -61,7 +61,7 @@ function column(left, height, masses, depths, law) {
     return [
       ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
       lens(at, y + r, size * depths[i], size * law[i]),
-      label((depths[i] / ten).toFixed(2), at + LENS + 16, y + r + (i ? 5 : -4)),
+      label((Math.round((100 * depths[i]) / ten) / 100 + 0).toFixed(2), at + LENS + 16, y + r + (i ? 5 : -4)),
     ].join("");
   });
   const power = Math.log10(ten);

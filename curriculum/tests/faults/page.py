@@ -1,0 +1,82 @@
+"""Faults for the page's figures, its engine and what builds it: (file, what stands there, what is
+planted, the tests that must name it)."""
+
+FIGURES, ENGINE = "curriculum/page/figures/", "curriculum/page/engine.js"
+FALLS, KIT = "curriculum/page/falls.js", "curriculum/page/kit.js"
+LOST = "test_page_figures.py -k test_nothing_that_can_be_held"
+BITS = "test_page_engine.py -k chromium"
+
+
+def reads(words):
+    """The test of test_page_figures.py with these words in its name."""
+    return f"test_page_figures.py -k {words}"
+
+
+FAULTS = [
+    # figures: the drawn number
+    (FIGURES + "clamp.js", "iters: 20, project", "iters: 2, project", reads("groove")),
+    (FIGURES + "clamp.js", "nx: -0.6 * side", "nx: -0.5 * side", reads("groove")),
+    (FIGURES + "cradle.js", "v / PACE / LENGTH", "v / PACE / LENGTH / 2", reads("cradle")),
+    (FIGURES + "cradle.js", "(2 + (apart ? APART : 0)) * R", "2 * R", reads("cradle")),
+    (FIGURES + "impedance.js", "(1 − d) / d = ${number((1 - d) / d)}",
+     "(1 − d) / d = ${number(d / (1 - d))}", reads("impedance")),
+    (FIGURES + "landing.js", "-Math.min(0, ...larger.ys.slice(0, 4))",
+     "-0.5 * Math.min(0, ...larger.ys.slice(0, 4))", reads("landing")),
+    (FIGURES + "landing.js", "(baumgarte / dt) * depth * R", "(baumgarte / dt) * depth",
+     reads("landing")),
+    (FIGURES + "inequality.js", "{ gap: run.y[1] / R - 1,", "{ gap: run.y[0] / R - 1,",
+     reads("inequality")),
+    (FIGURES + "bowl.js", "speeds[0] + begin[0] - begin[1]", "speeds[0] + begin[0]",
+     reads("bowl")),
+    (FIGURES + "sweeps.js", "v - 1), LAST", "v), LAST", reads("sweeps")),
+    (FIGURES + "sag.js", "above ? Math.min(1, deep)", "above ? Math.min(1, 2 * deep)",
+     reads("sag")),
+    (FIGURES + "sag.js", "dt: told.dt / parts", "dt: told.dt", reads("sag")),
+    (FIGURES + "springs.js", "Math.max(0, (k * depth * R) / G)", "Math.max(0, (depth * R) / G)",
+     reads("springs")),
+    (FIGURES + "springs.js", "view.own.press &&=", "false &&", LOST),
+    (FIGURES + "springs.js", "Math.min(view.height - 8, floor", "Math.min(9999, floor", LOST),
+    (FIGURES + "signs.js", "0.7 * R * scale * nx, -0.7", "0.7 * R * scale * nx, 0.7",
+     reads("normals")),
+    (FIGURES + "corner.js", "(load * pushOfTable(run, one, row)) / G", "load",
+     reads("looks_of_lcp")),
+    (FIGURES + "corner.js", "(view.get(\"stiffness\") * R) / G", "view.get(\"stiffness\") * R",
+     reads("corner")),
+    (FIGURES + "cliff.js", "STEPS / 4 + 1", "STEPS / 40", reads("cliff")),
+    (FIGURES + "long-step.js", "-dt * (1 - c * dt)", "dt * (1 - c * dt)", reads("eigenvalues")),
+    (FIGURES + "gripper.js", 'late ? "implicit" : "penalty"', '"penalty"', reads("gripper")),
+    (FIGURES + "gripper.js", "Math.floor(LATE * (steps + 1))", "0", reads("gripper")),
+    (FIGURES + "blocks.js", "run.vx[3 * row - 2]) > 1e-9", "run.vx[3 * row - 2]) > 1e-2",
+     reads("blocks")),
+    (FIGURES + "twice.js", "[0.5, 1e-4, 5]", "[0.4, 1e-4, 5]", reads("twice")),
+    (FIGURES + "twice.js", "one, one, {", "one, { ...one, restitution: 1 }, {", reads("twice")),
+    (FIGURES + "grab.js", "const BOUNCE = 0.6", "const BOUNCE = 0.5", reads("first_ball")),
+    (FIGURES + "lanes.js", "own.lift = 0;", "own.lift = 0.1;", "test_page.py -k live_figure_shows"),
+    (FALLS, "height + lift)", "height + lift + 0.01)", reads("live_figure")),
+    (FALLS, "gap[row] < 0 ? below", "gap[row] > 0 ? below", reads("live_figure")),
+    (KIT, "Math.max(0, stiffness * depth - damping * speed)", "stiffness * depth - damping * speed",
+     reads("one_loop")),
+    # the engine
+    (ENGINE, "/ dt - GRAVITY)", "/ dt + GRAVITY)", reads("looks_of_lcp")),
+    (ENGINE, "(4 * mass) / (root + damping)", "(2 * mass) / (root + damping)", reads("cliff")),
+    (ENGINE, "excess < EXPLODED", "excess < 9 * EXPLODED", reads("cliff")),
+    (ENGINE, "landing = row;", "landing = row + 3;", reads("landing_of_a_series")),
+    (ENGINE, "c.after = least(0, back);", "c.after = 0;", BITS),
+    (ENGINE, "if (!c.hits) turn(c, next, radius, 0);", "turn(c, next, radius, 0);", BITS),
+    (ENGINE, "fall(vy, mass, 0.5 * dt) };", "fall(vy, mass, dt) };", BITS),
+    (ENGINE, "if (onward < 0) t = 1;", "", BITS),
+    (ENGINE, "value === value ? value + 0 : NaN", "value", BITS),
+    (ENGINE, "dt * stiffness * c.depth * softness", "dt * stiffness * c.depth", BITS),
+    (ENGINE, "2 ** -50 * Math.max", "2 ** -30 * Math.max", BITS),
+    # what builds and holds the page
+    ("curriculum/page/build.py", "if count != 1:", "if count > 1:",
+     "test_page.py -k lit_line"),
+    ("curriculum/page/lines.js", '"return bias"', '"return close"', "test_page.py -k same_bytes"),
+    ("curriculum/page/store.js", "this.#put(changed(from, changes), true)",
+     "this.#put(changed(this.home, changes), true)", "test_page.py -k section_keeps"),
+    ("curriculum/page/style.css", ".js .printed { display: block", ".js .lost { display: block",
+     "test_page.py -k print_has"),
+    ("curriculum/page/style.css", '  .math.block:has(mtable, mspace[width="2em"]) math { font-size: 1rem; }',
+     '  .math.block:has(mtable, mspace[width="2em"]) math { font-size: 3.7vw; }',
+     "test_page.py -k formula"),
+]  # fmt: skip
