@@ -19,8 +19,12 @@ const drawn = (view) => {
 const lost = (name, width) => {
   const found = new Set(), view = viewOf(name, {}, {}, width);
   const look = (after) => {
-    for (const { name, x, y } of view.figure.draw(view).handles)
-      if (!(x >= 0 && x <= width && y >= 0 && y <= view.height)) found.add(`${name} ${after}`);
+    const times = view.own.time > 0 ? [1, 2, 3, 5, 8].map((k) => 0.2 * k * view.own.time) : [0];
+    for (const time of times) {
+      if (time) view.own.time = time;
+      for (const { name, x, y } of view.figure.draw(view).handles)
+        if (!(x >= 0 && x <= width && y >= 0 && y <= view.height)) found.add(`${name} ${after}`);
+    }
   };
   const hold = (handle, x, y) => {
     view.from = view.figure.draw(view).handles.find((each) => each.name === handle);

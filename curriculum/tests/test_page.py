@@ -291,7 +291,8 @@ def test_no_answer_of_a_bet_is_seen_before_one_click_and_then_it_stays_open(visi
 def test_print_has_figures_and_answers_and_nothing_to_press(unread):
     unread.emulate_media(media="print", reduced_motion="reduce")
     assert not unread.locator("button, input, .live").filter(visible=True).count()
-    assert unread.locator("#fig-corner .plot").is_visible()
+    for drawn in ("#fig-corner .plot", ".printed .line.m-penalty"):
+        assert unread.locator(drawn).first.is_visible()
     assert answers("ex1") in unread.locator("article").inner_text()
     unread.emulate_media(media="screen")
 
@@ -380,6 +381,12 @@ def test_whatever_a_hand_presses_and_moves_changes_the_words_of_its_figure(where
         moves.close()
 
 
+def test_no_formula_is_smaller_than_16_px_on_a_phone(phone):
+    sizes = """() => [...document.querySelectorAll("math")].map((node) =>
+      [parseFloat(getComputedStyle(node).fontSize), node.textContent])"""
+    assert [each for each in phone.evaluate(sizes) if each[0] < 16] == []
+
+
 def test_a_ball_stays_under_the_mouse_where_a_figure_is_drawn_smaller_than_on_a_phone(tab):
     page_browser.resize(tab, 320)
     ball = tab.locator("#fig-grab .handle")
@@ -464,7 +471,8 @@ def test_a_finger_holds_the_ball_and_drags_a_number_and_the_page_does_not_scroll
 def test_without_scripts_text_figures_and_exercises_are_there(visit):
     with visit(javascript=False, shown=False) as page:
         assert not page.locator(".needs-js").filter(visible=True).count()
-        assert page.locator("#fig-grab svg .ball").is_visible()
+        for drawn in ("#fig-grab svg .ball", ".printed .line.m-penalty"):
+            assert page.locator(drawn).first.is_visible()
         assert answers("ex1") in page.locator("article").inner_text()  # no veil without a script
         assert page.locator("#ex1 .no-js-only").is_visible()
 
