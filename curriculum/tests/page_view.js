@@ -19,9 +19,9 @@ const drawn = (view) => {
 const lost = (name, width) => {
   const found = new Set(), view = viewOf(name, {}, {}, width);
   const look = (after) => {
-    const times = view.own.time > 0 ? [1, 2, 3, 5, 8].map((k) => 0.2 * k * view.own.time) : [0];
-    for (const time of times) {
-      if (time) view.own.time = time;
+    const { from = 0, end } = view.own.time > 0 ? view.figure.clock(view) : {};
+    for (const share of end ? [0.1, 0.2, 0.4, 0.7, 1] : [0]) {
+      if (end) view.own.time = from + share * (Math.min(end, 9e3) - from);
       for (const { name, x, y } of view.figure.draw(view).handles)
         if (!(x >= 0 && x <= width && y >= 0 && y <= view.height)) found.add(`${name} ${after}`);
     }

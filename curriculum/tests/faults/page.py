@@ -46,7 +46,7 @@ FAULTS = [
     (FIGURES + "long-step.js", "-dt * (1 - c * dt)", "dt * (1 - c * dt)", reads("eigenvalues")),
     (FIGURES + "gripper.js", 'late ? "implicit" : "penalty"', '"penalty"', reads("gripper")),
     (FIGURES + "gripper.js", "Math.floor(LATE * (steps + 1))", "0", reads("gripper")),
-    (FIGURES + "blocks.js", "run.vx[3 * row - 2]) > 1e-9", "run.vx[3 * row - 2]) > 1",
+    (FIGURES + "blocks.js", "run.vx[3 * row - 2]) > 1e-9", "run.vx[3 * row - 2]) > 9",
      reads("blocks")),
     (FIGURES + "twice.js", "[0.5, 1e-4, 5]", "[0.4, 1e-4, 5]", reads("twice")),
     (FIGURES + "twice.js", "{ vy: [v] }", "{ vy: [v / 2] }", reads("twice")),
