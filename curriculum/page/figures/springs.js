@@ -38,7 +38,7 @@ function coil(x, top, bottom, stiffness) {
 
 function picture(left, height, stiffness, depth, push) {
   const [x, floor, aside] = [left / 2, height - GROUND, Math.min(LARGE + 12, left / 2 - 10)];
-  const y = Math.min(height - 8, floor + (depth - 1) * LARGE);
+  const y = floor + (depth - 1) * LARGE;
   const under = Math.max(y + LARGE, floor);
   return [
     table(0, floor, left, GROUND),
@@ -58,7 +58,7 @@ function drawSponge(view) {
   const depth = depthOf(view, rest);
   const push = Math.max(0, depth / rest); // weights
   const [floor, end] = [view.height - GROUND, Math.min(DEEPEST, MOST * rest)];
-  const y = Math.min(view.height - 8, floor + (depth - 1) * LARGE);
+  const y = floor + (depth - 1) * LARGE;
   const chart = {
     x: axis([0, DEEPEST], "depth / r", 0, 0.5, 1),
     y: axis([0, 3], "force / m g", 0, 1, 2, 3),

@@ -35,7 +35,7 @@ FAULTS = [
     (FIGURES + "springs.js", "Math.max(0, (k * depth * R) / G)", "Math.max(0, (depth * R) / G)",
      reads("springs")),
     (FIGURES + "springs.js", "view.own.press &&=", "false &&", LOST),
-    (FIGURES + "springs.js", "Math.min(view.height - 8, floor", "Math.min(9999, floor", LOST),
+    (FIGURES + "springs.js", "within(12, y, view.height - 12)", "y", LOST),
     (FIGURES + "signs.js", "0.7 * R * scale * nx, -0.7", "0.7 * R * scale * nx, 0.7",
      reads("normals")),
     (FIGURES + "corner.js", "(load * pushOfTable(run, one, row)) / G", "load",
