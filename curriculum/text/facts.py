@@ -29,16 +29,26 @@ def implicit_spring():
     return values
 
 
-def _sweeps(masses):
-    """How many sweeps bring a column at rest to a millionth of what gravity adds in a step."""
+def _column(masses):
+    """The contacts of a column at rest, after gravity has acted for a step."""
     balls = [contact.Ball(0.0, 0.1 + 0.2 * k, 0.0, 0.0, m, 0.1) for k, m in enumerate(masses)]
     contacts = contact.detect_contacts(balls, margin=1e-6)
     contact.accelerate(balls, DT)
-    count, enough = 0, -1e-6 * contact.GRAVITY * DT
-    while max(abs(c.v_n()) for c in contacts) > enough:
+    return contacts
+
+
+def _sweeps(masses):
+    """How many sweeps, plain and with momentum, bring it to a millionth of what gravity added."""
+    enough, values = -1e-6 * contact.GRAVITY * DT, {}
+    contacts = _column(masses)
+    for values["plain"] in itertools.count(1):
         contact.solve_contacts(contacts, 1)
-        count += 1
-    return count
+        if max(abs(c.v_n()) for c in contacts) <= enough:
+            break
+    for values["momentum"] in itertools.count(1):  # from the start each time: it keeps its own pace
+        contact.solve_with_momentum(contacts := _column(masses), values["momentum"])
+        if max(abs(c.v_n()) for c in contacts) <= enough:
+            return values
 
 
 def tower_sweeps():
@@ -51,21 +61,71 @@ def ratio_sweeps():
     return {str(ratio): _sweeps([1.0, ratio]) for ratio in (1, 10, 100, 1000)}
 
 
-def soft_sweeps():
-    """Sweeps until a step of soft's stack of three at rest settles, from nothing and warm."""
-    scene, values = contact.build_scene("stack"), {}
-    run = contact.run_model("soft", scene, DT, 1000)
-    solref, solimp = contact.soft_defaults(0.0, DT)
-    for name, share in (("cold", 0.0), ("warm", 1.0)):
-        balls = contact.make_balls(scene._replace(q0=run.q[-1], v0=run.v[-1]))
-        contact.soft_step(balls, DT, solref, solimp)  # whose impulses are kept
-        contacts = contact.detect_contacts(balls, margin=0.0)
-        for c in contacts:
-            contact.soften(c, DT, solref, solimp)
-        contact.accelerate(balls, DT)
-        contact.warm_start(contacts, share)
-        enough = contact.LAST_BITS * -contact.GRAVITY * DT
-        values[name] = contact.solve_contacts(contacts, contact.MOST_SWEEPS, enough)
+def landing():
+    """lcp's landing in the drop: gap, way, depths [mm], and speeds [m/s] upwards."""
+    run = contact.run_model("lcp", contact.build_scene("drop"), DT, 400)
+    gap = 1000.0 * (run.q[:, 1, 0] - contact.RADIUS)
+    k = int((gap < 0.0).argmax())
+    share = contact.Settings().baumgarte / (1000.0 * DT)
+    return {
+        "gap": gap[k - 1],
+        "fall": gap[k - 1] - gap[k],
+        "depth": -gap[k],
+        "asked": -gap[k] * share,
+        "rise": gap[k + 1] - gap[k],
+        "left": -gap[k + 1],
+        "next": -gap[k + 1] * share,
+        "has": run.v[k + 1, 1, 0] + DT * contact.GRAVITY,
+    }
+
+
+def _on_a_ball():
+    """A ball that is about to slide off a fixed one, 20 degrees from its top."""
+    lean = math.radians(20.0)
+    x, y = [0.0, 0.2 * math.sin(lean)], [1.0, 1.0 + 0.2 * math.cos(lean)]
+    return contact.scene_of(x, y, mass=[math.inf, 1.0])
+
+
+def slide():
+    """cos of the angle at which exact's ball leaves the fixed one, over cos at the start.
+
+    It leaves where v^2 = g 2 r cos, and keeps its vx = v cos: so cos^3 = vx^2 / (g 2 r).
+    """
+    vx = contact.run_model("exact", _on_a_ball(), 0.01, 60).v[-1, 0, 1]
+    leaves = (vx * vx / (-contact.GRAVITY * 0.2)) ** (1 / 3)
+    return {"exact": float(leaves / math.cos(math.radians(20.0)))}
+
+
+def order():
+    """The worst error [r] of that ball's place over 0.48 s, by model and step [s]."""
+    values, scene = {"lcp": {}, "leapfrog": {}}, _on_a_ball()
+    for model, dt in itertools.product(values, (0.008, 0.004, 0.002, 0.001)):
+        right, run = (contact.run_model(m, scene, dt, round(0.48 / dt)) for m in ("exact", model))
+        values[model][f"{dt:g}"] = float(np.hypot(*(run.q - right.q)[:, :, 1].T).max()) / 0.1
+    return values
+
+
+def friction():
+    """What one rubbing contact of a rod may do in a step, and what is left of it in a convex law.
+
+    A rod of 1 kg and 2 m, its lower end ahead, mu = 2. Without the contact the end would rise at
+    0.4 m/s and slide at 4 m/s. Coulomb's law has three answers [N s along n and t]; in the convex
+    law impulses are sums of the cone's edges, and the sweep finds the same one from each.
+    """
+    mu, x, y = 2.0, math.sqrt(0.2), -math.sqrt(0.8)  # the end, seen from the middle [m]
+    W = np.eye(2) + 3.0 * np.array([[x * x, -x * y], [-x * y, y * y]])  # inertia 1/3 kg m^2
+    free, edges = np.array([0.4, 4.0]), np.array([[1.0, 1.0], [mu, -mu]])
+    slides = free[0] / (mu * W[0, 1] - W[0, 0]) * np.array([1.0, -mu])
+    ways = {"leaves": np.zeros(2), "slides": slides, "sticks": np.linalg.solve(W, -free)}
+    values, bowl = {}, edges.T @ W @ edges
+    for name, lam in ways.items():
+        v, pushes = free + W @ lam, np.linalg.solve(edges, lam)
+        for k in [0, 1] * 200:  # projected Gauss-Seidel
+            missing = -(edges.T @ free + bowl @ pushes)[k]
+            pushes[k] = max(0.0, pushes[k] + missing / bowl[k, k])
+        values[name] = {"push": lam[0], "rub": lam[1], "v_n": v[0], "v_t": v[1]}
+        values[name]["convex"] = float((edges @ pushes)[0])
+    values["half"] = {"push": slides[0] / 2.0, "v_n": float((free + W @ slides / 2.0)[0])}
     return values
 
 
@@ -80,64 +140,10 @@ def jump():
     return values
 
 
-def xpbd():
-    """By how much [m] heights of XPBD, found in positions, differ from one sweep for depth / dt."""
-    scene, dt, steps = contact.build_scene("stack", bodies=10), DT / 20, 5_000
-
-    def step(balls):
-        contacts = contact.detect_contacts(balls, margin=contact.RADIUS)
-        for c in contacts:
-            c.target = c.depth / dt
-        contact.accelerate(balls, dt)
-        contact.solve_contacts(contacts, 1)
-        contact.move(balls, dt)
-
-    run = contact.simulate(step, scene, dt, steps, skip=True)
-    y, v, r, worst = scene.q0[1].copy(), np.zeros(10), contact.RADIUS, 0.0
-    for k in range(steps):  # predict, push apart what overlaps, take the velocities from the places
-        before, y = y, y + dt * (v + dt * contact.GRAVITY)
-        y[0] = max(y[0], r)
-        for low, high in zip(range(9), range(1, 10)):
-            half = 0.5 * max(0.0, 2.0 * r - (y[high] - y[low]))
-            y[low], y[high] = y[low] - half, y[high] + half
-        v = (y - before) / dt
-        worst = max(worst, float(np.abs(run.q[k + 1, 1] - y).max()))
-    return {"difference": worst}
-
-
 def soft_heavy():
     """The quality of soft where the upper one of two balls is a hundred times as heavy."""
     scene = contact.scene_of([0.0, 0.0], [0.1055, 0.3055], mass=[1.0, 100.0])
     return contact.contact_quality(contact.run_model("soft", scene, DT, 2000), scene, DT)
-
-
-def crowd():
-    """Three balls in a row, e = 1, speeds -1, 0, -3 m/s: what they leave with, by the target."""
-    values = {}
-    for name, least in (("moreau", -math.inf), ("zero", 0.0)):
-        balls = [contact.Ball(0.2 * k, 1.0, v, 0.0, 1.0, 0.1) for k, v in enumerate((-1, 0, -3))]
-        contacts = [contact.Contact(balls[k + 1], balls[k], 1.0, 0.0, 0.0) for k in (0, 1)]
-        for c in contacts:
-            c.target = max(least, -c.v_n())
-        contact.solve_contacts(contacts, 200)
-        values[name] = {"energy": sum(0.5 * ball.vx**2 for ball in balls)} | {
-            str(k): ball.vx for k, ball in enumerate(balls)
-        }
-    return values
-
-
-def slide():
-    """cos of the angle at which a ball leaves a fixed one, over cos at the start, by model."""
-    values, start, dt = {}, math.radians(20.0), 1e-4
-    x, y = 0.2 * math.sin(start), 0.2 * math.cos(start)
-    scene = contact.scene_of([0.0, x], [1.0, 1.0 + y], mass=[math.inf, 1.0])
-    for model in ("penalty", "exact"):
-        run = contact.run_model(model, scene, dt, 7000)
-        gained = np.diff(run.v[:, :, 1], axis=0) - [0.0, dt * contact.GRAVITY]
-        last = np.flatnonzero((np.hypot(*gained.T) > 1e-9) & (run.q[:-1, 1, 1] > 0.5))[-1]
-        away = run.q[last, :, 1] - run.q[last, :, 0]
-        values[model] = float(away[1] / np.hypot(*away) / math.cos(start))
-    return values
 
 
 def blocks():
@@ -156,6 +162,6 @@ def blocks():
 
 FACTS = {
     each.__name__: each
-    for each in (implicit_spring, tower_sweeps, ratio_sweeps, soft_sweeps, jump, xpbd)
-    + (soft_heavy, crowd, slide, blocks)
+    for each in (implicit_spring, tower_sweeps, ratio_sweeps, landing, jump, soft_heavy)
+    + (slide, order, friction, blocks)
 }
