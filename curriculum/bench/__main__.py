@@ -3,8 +3,7 @@
     python -m curriculum.bench            everything below, one after the other (15 minutes)
     python -m curriculum.bench accuracy   run time against error, on problems with a known answer
     python -m curriculum.bench pile       time a step of 12 to 10,000 balls, at equal depth
-    python -m curriculum.bench solvers    twenty contact solves a step, spent in many ways
-    python -m curriculum.bench skip       same bits with and without skips; what skipping saves
+    python -m curriculum.bench skip       what whole processes take, and lcp's loops beside pymunk's
     python -m curriculum.bench draw       page and figures again, from the results alone
 
 Each part writes its section of results.json, and the page and figures, into
@@ -24,19 +23,17 @@ for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before nump
 from curriculum.commands import Parser, needs
 
 with needs("bench"):
-    from curriculum.bench import accuracy, piles, report, skips, solvers
+    from curriculum.bench import accuracy, piles, report, skips
     from curriculum.measured import results
 
 PARTS = {
     "accuracy": accuracy.measure,
     "pile": piles.measure,
-    "solvers": solvers.measure,
     "skip": skips.measure,
 }
 MADE_BY = {  # the modules of each section; what they import of bench/ is found
     "accuracy": ["curriculum/bench/accuracy.py"],
     "pile": ["curriculum/bench/piles.py"],
-    "solvers": ["curriculum/bench/solvers.py"],
     "skip": ["curriculum/bench/skips.py", "contact.py"],  # which it times as whole processes
 }
 FULL = results.ROOT / results.FOLDERS["bench"]

@@ -147,7 +147,8 @@ def point(job, errors, times):
         balls=int(np.isfinite(problems.BY_NAME[problem].build(0).mass).sum()),
         diverged=sum(e["diverged"] is not None for e in errors),
     )
-    itself = (problem, c.engine) == ("pile", "exact")  # the reference has no error of its own
+    judge = problems.BY_NAME[problem].truth is problems.judged
+    itself = judge and c.engine == "exact"  # the reference has no error of its own
     for key in ERRORS:
         found[key] = None if itself else statistics.median(e[key] for e in errors)
     found["least"] = min(e["error"] for e in errors)

@@ -19,12 +19,15 @@ begins the next one in every engine as shipped. What had to be chosen:
     pymunk    iterations; bias, here named by the share of an overlap that it takes out in 2 ms. Its
               slop is 1e-5 r instead of 0.1, which was made for pixels.
     box2d3    substeps, and the frequency [Hz] of its soft contacts (30 as shipped; it never gets
-              stiffer than a quarter of the substep rate). The world is 10 times as large, so that
-              its slop of 5 mm shrinks against r. float32. Its forerunner 2.3 is left out.
+              stiffer than an eighth of the substep rate). The world is `scale` times as large, so
+              that its slop of 5 mm and its margin shrink against r. float32. Its forerunner 2.3 is
+              left out.
     drake     point contact, of stiffness k [N/m]. "discrete": its convex solver at a fixed step;
               "CENIC": the same under error control; "RK3": an explicit integrator under error
-              control. It has no coefficient of restitution, so it runs where e is 0 (strong
-              dissipation) or 1 (none), and says so elsewhere.
+              control. These two are read by their own dense output, in one go; "cut" ends their
+              steps at each look, as for a user who looks while it runs. It has no coefficient of
+              restitution, so it runs where e is 0 (strong dissipation) or 1 (none), and says so
+              elsewhere.
 """
 
 import importlib.util
@@ -38,7 +41,6 @@ import contact
 
 BLOCK = 200  # steps that a twin takes in one go
 GRAVITY = 9.81  # m/s^2, downwards
-SCALE = 10.0  # Box2D sees a world this much larger
 FLOOR = 1000.0  # m, half the length of the floor, where an engine wants an end to it
 MANY = 60  # balls: from here on MuJoCo gets CG and a sparse Jacobian
 
@@ -269,20 +271,22 @@ class Pymunk(Session):
 class Box2d3(Session):
     """Box2D 3: soft contacts solved over small substeps, then relaxed."""
 
-    def __init__(self, scene, dt, inner, hertz=None, sleep=False):
+    def __init__(self, scene, dt, inner, hertz=None, scale=10.0, sleep=False):
         import pyb2d3
 
+        self.scale = scale
+
         self.world = world = pyb2d3.World(
-            gravity=(0, -GRAVITY * SCALE), restitution_threshold=0.0, maximum_linear_speed=1e6
+            gravity=(0, -GRAVITY * scale), restitution_threshold=0.0, maximum_linear_speed=1e6
         )
         world.sleeping_enabled = sleep
         if hertz is not None:  # frequency [Hz], damping ratio, push-out speed
             world.set_contact_tuning(hertz, 10.0, 1e9)
         material = pyb2d3.surface_material(friction=0.0, restitution=scene.restitution)
         floor = world.create_static_body(position=(0, -1.0))  # a segment would tilt by rounding
-        floor.create_shape(pyb2d3.shape_def(material=material), pyb2d3.box(FLOOR * SCALE, 1.0))
+        floor.create_shape(pyb2d3.shape_def(material=material), pyb2d3.box(FLOOR * scale, 1.0))
         self.bodies = pyb2d3.Bodies()
-        for place, velocity, mass, radius, fixed in balls_of(scene, SCALE):
+        for place, velocity, mass, radius, fixed in balls_of(scene, scale):
             make = world.create_static_body if fixed else world.create_dynamic_body
             moves = {} if fixed else dict(linear_velocity=velocity, fixed_rotation=True)
             body = make(position=place, **moves)
@@ -293,20 +297,22 @@ class Box2d3(Session):
             self.bodies.append(body)
         self.step = partial(world.step, dt, inner)
         if len(scene.mass) == 1:
-            self.heights = lambda: (body.position[1] / SCALE,)
+            self.heights = lambda: (body.position[1] / scale,)
 
     def heights(self):
-        return self.bodies.get_positions()[:, 1] / SCALE
+        return self.bodies.get_positions()[:, 1] / self.scale
 
     def state(self):
-        q = self.bodies.get_positions().astype(float).T / SCALE
-        return q, self.bodies.get_linear_velocities().astype(float).T / SCALE
+        q = self.bodies.get_positions().astype(float).T / self.scale
+        return q, self.bodies.get_linear_velocities().astype(float).T / self.scale
 
 
 class Drake(Session):
     """Compliant points: its discrete solver, or with `scheme` an integrator of that accuracy."""
 
-    def __init__(self, scene, dt, scheme=None, accuracy=1e-5, stiffness=1e8):
+    def __init__(
+        self, scene, dt, scheme=None, accuracy=1e-5, stiffness=1e8, dissipation=1e3, cut=False
+    ):
         import logging
 
         from pydrake.geometry import HalfSpace, Sphere
@@ -320,10 +326,11 @@ class Drake(Session):
         builder = DiagramBuilder()
         plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=0.0 if scheme else dt)
         plant.mutable_gravity_field().set_gravity_vector([0.0, -GRAVITY, 0.0])
-        skin = self.skin(scene, stiffness, dt)
+        skin = self.skin(scene, stiffness, dissipation, dt)
         up = RigidTransform(HalfSpace.MakePose([0.0, 1.0, 0.0], [0.0, 0.0, 0.0]))
         plant.RegisterCollisionGeometry(plant.world_body(), up, HalfSpace(), "floor", skin)
         self.scene, self.dt, self.plant, self.time = scene, dt, plant, 0
+        self.dense = scheme and not cut
         self.moving = np.flatnonzero(np.isfinite(scene.mass))
         for k, (place, _, mass, radius, fixed) in enumerate(balls_of(scene)):
             body, pose = plant.world_body(), RigidTransform([*place, 0.0])
@@ -350,14 +357,14 @@ class Drake(Session):
         return "has no coefficient of restitution, only a dissipation" if some else None
 
     @staticmethod
-    def skin(scene, stiffness, dt):
+    def skin(scene, stiffness, dissipation, dt):
         """Stiffness and dissipation of every surface: none for e = 1, strong for e = 0."""
         from pydrake.geometry import AddContactMaterial, ProximityProperties
         from pydrake.multibody.plant import CoulombFriction
 
         skin, elastic = ProximityProperties(), scene.restitution == 1.0
         AddContactMaterial(
-            dissipation=0.0 if elastic else 1e3,
+            dissipation=0.0 if elastic else dissipation,
             point_stiffness=2.0 * stiffness,  # two surfaces in series: half of it
             friction=CoulombFriction(0.0, 0.0),
             properties=skin,
@@ -374,6 +381,26 @@ class Drake(Session):
 
     def heights(self):
         return self.plant.GetPositions(self.context)[1::3]
+
+    def whole(self, n):
+        """Positions and velocities at n + 1 looks (n + 1, 6 N), by the engine's dense output."""
+        integrator, look = self.simulator.get_mutable_integrator(), self.dt * self.substeps
+        integrator.StartDenseIntegration()
+        self.simulator.AdvanceTo(n * look)
+        found = integrator.StopDenseIntegration()
+        times = np.clip(np.arange(n + 1) * look, found.start_time(), found.end_time())
+        return found.vector_values(times).T
+
+    def trace(self, n):
+        if not self.dense:
+            return super().trace(n)
+        return self.whole(n)[:, 1 : 3 * len(self.moving) : 3]
+
+    def states(self, n):
+        if not self.dense:
+            return super().states(n)
+        rows = [self.with_the_fixed(*np.split(row, 2)) for row in self.whole(n)]
+        return tuple(map(np.array, zip(*rows)))
 
     def state(self):
         plant, context = self.plant, self.context
@@ -451,8 +478,8 @@ penalty, lcp, leapfrog, soft, exact = (
     partial(setting, model, model=model) for model in contact.MODELS
 )
 mujoco, pymunk, box2d3, drake = (partial(setting, engine) for engine in ENGINES)
-SHARED = ("stack", "pile", "heavy_100", "heavy_1000", "tower")  # where sweeps have to agree
-AHEAD, GAIN_1 = "{iters} sweeps, ahead, gain {baumgarte:g}", dict(baumgarte=1.0, ahead=True)
+SHARED = ("stack", "pile", "heavy_100", "heavy_1000", "tower", "spread", "pile_bounce", "cradle")
+GAIN = "{iters} sweeps, gain {baumgarte:g}"
 STIFF = dict(solref=(1e-9, 5.0), solimp=contact.HARD)
 OURS = (
     penalty("k 1e4", stiffness=1e4),
@@ -461,9 +488,9 @@ OURS = (
     lcp("{iters} sweeps", SHARED, iters=100),
     lcp("{iters} sweeps, warm", SHARED, iters=5, warm=0.8),
     lcp("{iters} sweeps, warm", SHARED, iters=20, warm=0.8),
-    lcp(AHEAD, iters=20, **GAIN_1),
-    lcp(AHEAD, SHARED, iters=5, **GAIN_1),
-    lcp(AHEAD, SHARED, iters=100, **GAIN_1),
+    lcp(GAIN, iters=20, baumgarte=1.0),
+    leapfrog("{iters} sweeps", iters=20),
+    leapfrog("solved, at most {iters} sweeps", SHARED, iters=1000),
     soft("as MuJoCo ships it, or direct where e > 0"),
     soft("time constant 2 dt, ratio 5, d 0.9999", ("drop", "slide", *SHARED), **STIFF),
     exact("event to event"),
@@ -471,7 +498,8 @@ OURS = (
 RIGID, PUSHED = partial(direct, 0.0, 0.9999), partial(direct, 0.2, 0.999)
 HARD = "{inner} substeps, hardest"
 PUSHING = "{iterations} iterations, push {push:g} in 2 ms"
-RESTING = ("drop", "slide", "stack", "heavy_100", "heavy_1000", "tower")  # e = 0, and no lottery
+# e = 0, and no lottery
+RESTING = ("drop", "slide", "stack", "heavy_100", "heavy_1000", "tower", "spread", "glance")
 CENIC, RK3 = (f"{name}, accuracy {{accuracy:g}}, k {{stiffness:g}}" for name in ("CENIC", "RK3"))
 SETTINGS = (
     mujoco("as shipped", soften=shipped),
@@ -484,11 +512,33 @@ SETTINGS = (
     box2d3("{inner} substeps, as shipped", inner=4),
     box2d3("{inner} substep, hardest", inner=1, hertz=1e9),
     *(box2d3(HARD, inner=n, hertz=1e9) for n in (4, 16, 64)),
+    *(
+        box2d3("{inner} substeps, hardest, scale {scale:g}", inner=4, hertz=1e9, scale=x)
+        for x in (1.0, 100.0, 1000.0)
+    ),
     box2d3("{inner} substep, {hertz:.0f} Hz", inner=1, hertz=480.0),
     *(box2d3("{inner} substeps, {hertz:.0f} Hz", inner=n, hertz=240.0) for n in (4, 32)),
     drake("discrete, k 1e8", stiffness=1e8),
     *(drake(CENIC, scheme="cenic", accuracy=a, stiffness=1e8) for a in (1e-3, 1e-5, 1e-7)),
-    *(drake(CENIC, RESTING, scheme="cenic", accuracy=a, stiffness=1e10) for a in (1e-7, 1e-9)),
+    *(
+        drake(CENIC, RESTING, scheme="cenic", accuracy=a, stiffness=1e10)
+        for a in (1e-3, 1e-5, 1e-7, 1e-9)
+    ),
+    *(
+        drake(
+            f"{CENIC}, dissipation {{dissipation:g}}",
+            RESTING,
+            scheme="cenic",
+            accuracy=a,
+            stiffness=1e10,
+            dissipation=100.0,
+        )
+        for a in (1e-7, 1e-9)
+    ),
+    *(
+        drake(f"{CENIC}, cut", RESTING, scheme="cenic", accuracy=a, stiffness=1e10, cut=True)
+        for a in (1e-7, 1e-9)
+    ),
     drake(RK3, ("drop", "slide"), scheme="runge_kutta3", accuracy=1e-5, stiffness=1e8),
     drake(RK3, ("elastic",), scheme="runge_kutta3", accuracy=1e-5, stiffness=1e10),
 )

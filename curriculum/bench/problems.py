@@ -1,4 +1,14 @@
-"""The problems: a scene for every start, how long it runs, and the right answer at any time."""
+"""The problems: a scene for every start, how long it runs, and the right answer at any time.
+
+The closed forms are of paper and pencil, and take nothing from contact.py. A ball that starts at
+rest with a gap h0 under it first lands after t1 = sqrt(2 h0 / g). Each impact multiplies its speed
+by -e, so flight k lasts 2 e^k t1, and impact k = 0, 1, 2, ... is at
+t1 (1 + 2 e (1 - e^k) / (1 - e)). For e < 1 that has a limit, t1 (1 + e) / (1 - e): infinitely many
+impacts, then rest. A ball that slides off a fixed one moves along one angle, and its energy gives
+its speed; it leaves where cos(theta) = 2/3 cos(theta0), theta from the vertical. Equal balls in a
+row that strike one another with e = 1 hand on their speeds: the row moves as if each flew on
+through the others. Metres, seconds.
+"""
 
 import math
 from collections.abc import Callable
@@ -6,14 +16,82 @@ from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 import contact
-from curriculum.bench import closed_form
 
 REFERENCE_DT = 0.002  # s, the step of contact.py's own default run
 SUBSTEPS = (1, 4, 16)  # at that step; coarser ones are taken whole
 COARSER = (0.004, 0.008, 0.016)  # s
 R = contact.RADIUS
+g = 9.81  # m/s^2, the magnitude of gravity
+FLIGHTS = 10_000  # after so many a bounce is over in the last bit, or the run
+
+
+def bounce_motion(gap, e, t):
+    """Gap [m] and vertical speed [m/s], like t [s], of a ball released `gap` [m] over the floor."""
+    t, t1 = np.asarray(t, dtype=float), math.sqrt(2.0 * gap / g)
+    falling = t < t1
+    still, speed = np.zeros_like(t), np.zeros_like(t)
+    if e > 0.0:
+        rest = t1 * (1.0 + e) / (1.0 - e) if e < 1.0 else math.inf
+        flying = (t >= t1) & (t < rest)
+        after = np.where(flying, t, t1)  # any harmless time where the answer is not a flight
+        k = np.arange(FLIGHTS)  # -expm1(k log e) is 1 - e^k, and keeps its digits near e = 1
+        series = -e * np.expm1(k * math.log(e)) / (1.0 - e) if e < 1.0 else k
+        impacts = t1 * (1.0 + 2.0 * series)
+        k = np.searchsorted(impacts, after, side="right") - 1
+        leaving = g * t1 * e ** (k + 1)
+        s = after - impacts[k]
+        flight = np.maximum(leaving * s - 0.5 * g * s * s, 0.0)  # s may round to just outside
+        still = np.where(flying, flight, 0.0)
+        speed = np.where(flying, leaving - g * s, 0.0)
+    return np.where(falling, gap - 0.5 * g * t * t, still), np.where(falling, -g * t, speed)
+
+
+def slide_motion(theta0, length, radius, height, t):
+    """q, v, (len(t), 2), of a ball that starts at rest on a fixed one and slides off it.
+
+    theta0: its angle from the vertical at the start; length: distance of the centres while they
+    touch; height: of the fixed centre, which stands at x = 0. On the floor it loses its vertical
+    speed and slides on. Sliding is a pendulum upside down, theta'' = g / length sin(theta), by an
+    integrator of order 8 that keeps twelve digits.
+    """
+
+    def slope(t, state):
+        return state[1], g / length * math.sin(state[0])
+
+    def leaves(t, state):
+        return math.cos(state[0]) - 2.0 / 3.0 * math.cos(theta0)
+
+    leaves.terminal = True
+    found = solve_ivp(
+        slope,
+        (0.0, 1e3),
+        (theta0, 0.0),
+        "DOP853",
+        dense_output=True,
+        events=leaves,
+        rtol=3e-14,
+        atol=1e-16,
+    )
+    release = found.t_events[0][0]
+    theta, speed = found.sol(np.minimum(t, release))
+    sine, cosine = np.sin(theta), np.cos(theta)
+    q = np.stack([length * sine, height + length * cosine], axis=1)
+    v = np.stack([length * cosine * speed, -length * sine * speed], axis=1)
+    return thrown(q, v, np.maximum(t - release, 0.0), radius)
+
+
+def thrown(q, v, free, radius):
+    """q, v of a ball that has flown for the time `free` [s], lands without rebound, slides on."""
+    fall = q[:, 1] - radius  # constant once it is free, as q and v are held
+    land = (v[:, 1] + np.sqrt(np.maximum(v[:, 1] ** 2 + 2.0 * g * fall, 0.0))) / g
+    down = free >= land
+    x = q[:, 0] + v[:, 0] * free
+    y = np.where(down, radius, q[:, 1] + v[:, 1] * free - 0.5 * g * free * free)
+    speed = np.where(down, 0.0, v[:, 1] - g * free)
+    return np.stack([x, y], axis=1), np.stack([v[:, 0], speed], axis=1)
 
 
 class Problem(NamedTuple):
@@ -34,7 +112,7 @@ class Problem(NamedTuple):
 def column(scene, t):
     """The motion of balls over one another, e = 0, or of one ball with any e."""
     height = scene.q0[1]
-    gap, speed = closed_form.bounce_motion(float(height[0]) - R, scene.restitution, t)
+    gap, speed = bounce_motion(float(height[0]) - R, scene.restitution, t)
     y = R * (2.0 * np.arange(len(height)) + 1.0) + gap[:, None]
     vy = np.repeat(speed[:, None], len(height), axis=1)
     return np.stack([0.0 * y, y], axis=1), np.stack([0.0 * y, vy], axis=1)
@@ -50,22 +128,49 @@ def slide_scene(start):
 def slide(scene, t):
     """The motion of a ball off a fixed one."""
     x, y = scene.q0[:, 1]
-    q, v = closed_form.slide_motion(math.atan2(x, y - R), 2.0 * R, R, R, t)
+    q, v = slide_motion(math.atan2(x, y - R), 2.0 * R, R, R, t)
     held = np.broadcast_to(scene.q0[:, 0], q.shape)
     return np.stack([held, q], axis=2), np.stack([0.0 * v, v], axis=2)
 
 
-def pile(scene, t):
-    """The motion of a pile, by contact.py's own exact: no closed form is known."""
-    return pile_at(scene.q0.tobytes(), len(scene.mass), len(t), float(t[1]))
+def judged(scene, t):
+    """The motion by contact.py's own exact: no closed form is known."""
+    return judged_at(scene.q0.tobytes(), scene.mass.tobytes(), scene.restitution, len(t), t[1])
 
 
-@lru_cache(maxsize=16)
-def pile_at(places, count, steps, dt):
-    scene = contact.build_scene("pile", 0, count)
-    scene = scene._replace(q0=np.frombuffer(places).reshape(2, count))
+@lru_cache(maxsize=64)
+def judged_at(places, mass, restitution, steps, dt):
+    x, y = np.frombuffer(places).reshape(2, -1)
+    scene = contact.scene_of(x, y, np.frombuffer(mass), restitution=restitution)
     run = contact.run_model("exact", scene, dt, steps - 1)
     return run.q, run.v
+
+
+def spread_scene(start):
+    """A ball at rest on two that lie on the table, a little apart, and give way."""
+    half = R + 0.004 + 0.003 * start
+    return contact.scene_of([-half, half, 0.0], [R, R, R + math.sqrt(4 * R * R - half * half)])
+
+
+def glance_scene(start):
+    """A ball that falls on the side of a fixed one, at an angle that the start chooses."""
+    return contact.scene_of([0.0, 0.05 + 0.007 * start], [R, 0.6], [math.inf, 1.0])
+
+
+def cradle_scene(start):
+    """Five balls in a row on the table, e = 1; the first is thrown at the others."""
+    gaps = np.random.default_rng(start).uniform(0.001, 0.01, 4)
+    x = np.concatenate(([0.0], np.cumsum(2 * R + gaps)))
+    return contact.scene_of(x, R, vx=[2.0, 0.0, 0.0, 0.0, 0.0], restitution=1.0, damping=0.0)
+
+
+def cradle(scene, t):
+    """The motion of equal balls in a row, e = 1: each flies on through the others."""
+    free = scene.q0[0] - 2 * R * np.arange(len(scene.mass)) + np.outer(t, scene.v0[0])
+    order = np.argsort(free, axis=1, kind="stable")
+    x = np.take_along_axis(free, order, 1) + 2 * R * np.arange(len(scene.mass))
+    vx = scene.v0[0][order]
+    return np.stack([x, 0 * x + R], axis=1), np.stack([vx, 0 * vx], axis=1)
 
 
 def heavy(ratio, start):
@@ -88,8 +193,8 @@ PROBLEMS = (
     Problem("slide", "Slide: a ball off a fixed ball, 0.7 s", 0.7, slide_scene, slide,
             "a contact that turns while it pushes, and must let go at cos = 2/3 of its start"),
     Problem("pile", "Pile: eight balls fall beside and over one another, 1 s", 1.0,
-            built("pile", 8), pile,
-            "impacts that decide where everything goes next: small errors grow", 3),
+            built("pile", 8), judged,
+            "impacts that decide where everything goes next: small errors grow", 10),
     Problem("elastic", "Elastic bounce: one ball, restitution 1, 20 s", 20.0,
             built("bounce", restitution=1.0), column,
             "two dozen impacts that may neither take nor give energy, and whose times add up", 3),
@@ -100,6 +205,15 @@ PROBLEMS = (
             partial(heavy, 1000.0), column, "the same, ten times as hard", 3),
     Problem("tower", "Tower: twenty balls, no rebound, 2 s", 2.0, built("stack", 20), column,
             "twenty contacts in a row, each of which carries all that is above it", 3),
+    Problem("spread", "Spread: a ball pushes two apart, 0.3 s", 0.3, spread_scene, judged,
+            "three balls that slide over one another at once, and two on the table"),
+    Problem("glance", "Glance: a ball falls on the side of a fixed one, 0.6 s", 0.6, glance_scene,
+            judged, "an impact at an angle, and a ball that slides on from there"),
+    Problem("cradle", "Cradle: five balls in a row, restitution 1, 1 s", 1.0, cradle_scene, cradle,
+            "impacts that hand on a speed, along balls that lie on the table"),
+    Problem("pile_bounce", "Bouncing pile: eight balls, restitution 0.5, 0.5 s", 0.5,
+            built("pile", 8, 0.5), judged,
+            "impacts at all angles that give back: small errors grow faster", 10),
 )
 # fmt: on
 BY_NAME = {problem.name: problem for problem in PROBLEMS}

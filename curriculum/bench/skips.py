@@ -1,21 +1,17 @@
-"""What skipping costs and saves: the same bits with and without, and the time of whole processes.
+"""What whole processes take, skips and all; and the readable loops of lcp beside pymunk.
 
-The readable loops of lcp, skips and all, also race pymunk within this process.
-
-What it saves within a process stands in the section "accuracy": awake, and as a user gets it.
+What skipping saves within a process stands in the section "accuracy": awake, and as a user gets it.
 """
 
 import importlib.util
-import itertools
 import sys
 import tempfile
 from functools import partial
 
 import contact
-from curriculum import parallel
 from curriculum.bench import engines, timing
 
-SCENES, STEPPED = ("drop", "bounce", "stack"), ("penalty", "lcp", "soft")
+SCENES = "drop", "bounce", "stack"
 DT, STEPS = 0.002, 2000
 RECORDED = "drop, recorded"
 # to reach: whole processes, in times of importing numpy (RECORDED: rerun)
@@ -25,40 +21,8 @@ LIMITS = {"drop": 1.5, "bounce": 1.6, "stack": 2.2, RECORDED: 1.3}
 
 
 def measure(quick=False):
-    """same_bits: {runs, differing}; processes: {name: spread [s], base, ratio, least},
-    in_process: {scene: spread of ratios}."""
-    parts = (same_bits, processes, in_process)
-    return {part.__name__: part(quick) for part in parts}
-
-
-def cases(quick):
-    """(scene, seed, balls, model, dt, steps) of every pair of runs to compare."""
-    seeds, grid = (1, (1, 8)) if quick else (5, contact.DT_GRID)
-    steps = 800 if quick else STEPS
-    for scene, seed, model, factor in itertools.product(SCENES, range(seeds), STEPPED, grid):
-        yield scene, seed, None, model, factor * DT, steps
-    for balls, model in itertools.product((24,) if quick else (24, 60), STEPPED):
-        yield "pile", 0, balls, model, DT, 100 if quick else 1500
-
-
-def same_bits(quick):
-    """How many pairs of runs, with and without skips, and which of them differ in any bit."""
-    jobs = list(cases(quick))
-    same = parallel.run_jobs(is_same, jobs, "same bits")
-    names = [" ".join(map(str, job)) for job, fine in zip(jobs, same) if not fine]
-    return dict(runs=len(jobs), differing=names)
-
-
-def is_same(case, run=contact.run_model):
-    """Whether a run has the same bits with and without skips: every state, and what unsettled.
-
-    Of larger piles by the compiled twin and by the plain loops.
-    """
-    scene, seed, balls, model, dt, steps = case
-    given = model, contact.build_scene(scene, seed, balls), dt, steps
-    one, other = (run(*given, contact.Settings(skip=skip)) for skip in (True, False))
-    same = all(a.tobytes() == b.tobytes() for a, b in zip(one[:3], other[:3]))
-    return same and one.unsettled == other.unsettled
+    """processes: {name: spread [s], base, ratio, least}; in_process: {scene: spread of ratios}."""
+    return {part.__name__: part(quick) for part in (processes, in_process)}
 
 
 def processes(quick):

@@ -15,24 +15,17 @@ import contact
 pytest.importorskip("scipy", reason="scipy is missing: the extra `bench`")
 fast = pytest.importorskip("curriculum.fast", reason="numba is missing", exc_type=ImportError)
 
+from scipy.integrate import solve_ivp  # noqa: E402
+
 from curriculum.bench import __main__ as bench  # noqa: E402
-from curriculum.bench import (  # noqa: E402  # noqa: E402
-    accuracy,
-    closed_form,
-    engines,
-    piles,
-    problems,
-    report,
-    skips,
-    solvers,
-    timing,
-)
+from curriculum.bench import accuracy, engines, piles, problems, report, skips, timing  # noqa: E402
 from curriculum.measured import results  # noqa: E402
 
 R, g = contact.RADIUS, 9.81
 ALL = [s for s in accuracy.CONTESTANTS if not engines.not_installed(s.engine)]
 HERE = [s for s in ALL if s in engines.SETTINGS]
-LONG = {"drop": 4, "bounce": 4, "stack": 4, "slide": 0.7, "pile": 1, "elastic": 20}  # s
+LONG = {"drop": 4, "bounce": 4, "stack": 4, "slide": 0.7, "pile": 1, "elastic": 20, "cradle": 1}
+LONG |= {"spread": 0.3, "glance": 0.6, "pile_bounce": 0.5}  # s
 RESTING = [s for s in HERE if s.is_for("drop")]
 each_setting = pytest.mark.parametrize("setting", RESTING, ids=lambda s: s.name)
 
@@ -41,7 +34,7 @@ each_setting = pytest.mark.parametrize("setting", RESTING, ids=lambda s: s.name)
 
 
 def test_closed_forms_are_what_paper_and_pencil_give():
-    height, speed = closed_form.bounce_motion(g / 2, 0.5, [0.5, 1.5, 3.5])  # falls for 1 s
+    height, speed = problems.bounce_motion(g / 2, 0.5, [0.5, 1.5, 3.5])  # falls for 1 s
     assert height == pytest.approx([g * 3 / 8, g / 8, 0.0])
     assert speed == pytest.approx([-g / 2, 0.0, 0.0], abs=1e-12)
 
@@ -86,8 +79,10 @@ def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setti
     assert heights.shape == (201, 1)
     lag = heights[-1, 0] - (scene.q0[1, 0] - g * t * t / 2)
     late = 1.0 if setting.engine == "pymunk" else -1.0  # it moves first, then accelerates
-    known = 0.0 if setting.adaptive else late * g * t * dt / (substeps * setting.inner) / 2
-    assert lag == pytest.approx(known, rel=0.01, abs=2.5e-3 if setting.adaptive else 2e-5)
+    exact = setting.adaptive or setting.engine == "leapfrog"
+    known = 0.0 if exact else late * g * t * dt / (substeps * setting.inner) / 2
+    within = 20.0 * setting.options.get("accuracy", 1e-6)  # CENIC's own steps are of first order
+    assert lag == pytest.approx(known, rel=0.01, abs=max(2e-5, min(within, 0.02)))
 
 
 @each_setting
@@ -171,15 +166,15 @@ def test_stiffer_knobs_of_an_engine_sink_less():
 
 # cells
 
-LANDS = "lcp: 20 sweeps, ahead, gain 1"  # without a dive or a hop, so all of its error is flight
+LANDS = "lcp: 20 sweeps"
 
 
 def test_the_cell_of_the_drop_is_what_one_works_out_by_hand():
     drop, job = problems.BY_NAME["drop"], ("drop", LANDS, 0.002, 4, 5)
     falls = [math.sqrt(2 * (drop.build(k).q0[1, 0] - R) / g) for k in range(5)]
     found = accuracy.errors_of(job)
-    for fall, about in zip(falls, found):  # most just before it lands, by half a substep
-        assert about["error"] == pytest.approx(g * 0.0005 * fall / 2 / R, rel=0.02)
+    for fall, about in zip(falls, found):  # by half a substep at the landing, then by a dive
+        assert g * 0.0005 * fall / 2 <= about["error"] * R <= g * 0.0005 * fall * 1.5
         assert about["user_error"] == about["error"] and about["diverged"] is None
     assert len({about["error"] for about in found}) == 5, "every start has a scene of its own"
     (about,) = accuracy.errors_of(("bounce", "lcp: 20 sweeps", 0.002, 1, 1))
@@ -292,13 +287,68 @@ def section_of(points):
     return made
 
 
-@pytest.mark.parametrize("exact, exact_ms, lcp, rival", [(1e-12, 1, 0.1, 0.2), (1e-9, 9, 0.2, 0.1)])
-def test_goals_are_met_and_missed_as_the_numbers_say(exact, exact_ms, lcp, rival):
-    rows = [point("exact", exact, exact_ms), point("lcp", lcp, 5.0), point("pymunk", rival, 5.0)]
-    met = [met for *_, met in report.accuracy_goals(section_of(rows))]
-    assert met == [exact < 1e-10] * 4
-    cells = list(report.contest_rows(section_of(rows)))[0][2:]
-    assert [cell.startswith("**") for cell in cells] == [lcp < rival, rival < lcp] * 2
+@pytest.mark.parametrize("exact, mine, rival", [(1e-12, 0.1, 0.2), (1e-9, 0.2, 0.1)])
+def test_goals_are_met_and_missed_as_the_numbers_say(exact, mine, rival):
+    rows = [point("exact", exact, 1.0), point("leapfrog", mine, 5.0), point("pymunk", rival, 5.0)]
+    section = section_of(rows)
+    assert [met for *_, met in report.accuracy_goals(section)] == [exact < 1e-10] * 3
+    cells = list(report.contest_rows(section))[0][2:]
+    assert [cell.startswith("**") for cell in cells] == [False, mine < rival, rival < mine] * 2
+    assert ("is never beaten" in report.losses(section)) == (mine < rival)
+
+
+def test_the_readme_says_what_to_take_with_the_worst_of_its_problems():
+    rows = [
+        point("leapfrog", e, 5.0, problem=name) for name, e in (("drop", 1e-3), ("bounce", 0.2))
+    ]
+    rows += [point("pymunk", 0.7, 3.0, problem="bounce")]
+    rows = [row | {"words": "20 sweeps"} for row in rows[:2]] + rows[2:]
+    (row,) = report.choices(section_of(rows))
+    assert row[1:] == ["leapfrog, 20 sweeps", "0.2 r, 5 ms (bounce)", "pymunk 0.7 r, 3 ms"]
+
+
+# references, by another's integrator
+
+
+@pytest.mark.parametrize("name", ["spread", "glance"])
+def test_what_judges_is_ten_times_nearer_to_another_integrator_than_what_it_judges(name):
+    """By scipy's DOP853, in one angle. Spread: as the upper ball sinks, energy gives the speeds."""
+    problem, t = problems.BY_NAME[name], np.linspace(0.0, 0.15 if name == "spread" else 0.6, 61)
+    scene = problem.build(2)
+    q, _ = problem.truth(scene, t)
+    if name == "glance":  # it falls, loses its speed along the normal, and slides on
+        x, high = scene.q0[:, 1]
+        theta = math.asin(x / (2 * R))
+        gap = high - R - 2 * R * math.cos(theta)
+        t1 = math.sqrt(2 * gap / g)
+        start = theta, g * t1 * math.sin(theta) / (2 * R)
+
+        def slope(t, y):
+            return y[1], g / (2 * R) * math.sin(y[0])
+
+        def push(t, y):  # the force on the ball, of its weight
+            return math.cos(y[0]) - 2 * R / g * y[1] ** 2
+    else:  # both lower balls go aside by x = 2 R sin(theta): T = m (x'^2 + z'^2 / 2), V = m g z
+        theta, t1 = math.asin(scene.q0[0, 1] / (2 * R)), 0.0
+        start = theta, 0.0
+
+        def slope(t, y):
+            s, c = math.sin(y[0]), math.cos(y[0])
+            mass = c * c + s * s / 2
+            return y[1], (g / (4 * R) * s + y[1] ** 2 * s * c / 2) / mass
+
+        def push(t, y):
+            return 1.0
+
+    push.terminal = True
+    found = solve_ivp(slope, (0.0, t[-1] - t1), start, "DOP853", dense_output=True, events=push,
+                      rtol=1e-13, atol=1e-15)  # fmt: skip
+    on = (t >= t1) & (t - t1 < found.t[-1])
+    angle = found.sol(t[on] - t1)[0]
+    x = 2 * R * np.sin(angle)
+    off = np.abs(q[on, 0, 1] - x).max() / R
+    judged = {"spread": 5.9e-7, "glance": 1.1e-6}[name]  # r: leapfrog's, with sixteen substeps
+    assert on.sum() > 9 and off < judged / 10
 
 
 # piles
@@ -384,26 +434,13 @@ def test_what_wins_with_a_thousand_balls_runs_with_ten_thousand():
 # skips, pages
 
 SKIPS = dict(
-    same_bits=dict(runs=2, differing=["a"]),
     processes={"drop": dict(timing.spread([3.0]), base="numpy", ratio=3.0, least=3.0)},
     in_process={"stack": timing.spread([1.1]), "bounce": timing.spread([1.1])},
 )
 
 
-def test_skips_change_no_bit_and_a_run_that_differs_is_seen():
-    cases = list(skips.cases(True))[::5]
-    assert all(map(skips.is_same, cases))
-
-    def nudged(model, scene, dt, steps, settings):
-        run = contact.run_model(model, scene, dt, steps, settings)
-        return run._replace(v=run.v + 1e-15) if settings.skip else run
-
-    def unsettled(*given):
-        return contact.run_model(*given)._replace(unsettled=given[-1].skip)
-
-    assert not skips.is_same(cases[0], nudged) and not skips.is_same(cases[0], unsettled)
-    goals = report.skip_goals(SKIPS)
-    assert [met for *_, met in goals] == [False, False, True, False]
+def test_what_a_process_may_take_is_a_goal_and_lcp_races_pymunk():
+    assert [met for *_, met in report.skip_goals(SKIPS)] == [False, True, False]
     raced = skips.in_process(True)
     assert set(raced) == set(skips.SCENES) and all(0 < each["min"] for each in raced.values())
 
@@ -431,11 +468,10 @@ def test_time_is_that_of_the_processor_and_a_process_that_fails_is_not_timed(tmp
 
 
 def test_the_pages_show_every_point_and_what_is_missed(tmp_path):
-    rows = [point("exact", 1e-9, 1.0), point("lcp", 0.2, 5.0), point("pymunk", 0.1, 5.0)]
+    rows = [point("exact", 1e-9, 1.0), point("leapfrog", 0.2, 5.0), point("pymunk", 0.1, 5.0)]
     made = {
         "accuracy": section_of(rows),
         "pile": dict(rows=ROWS, best=piles.best(ROWS), compile={}),
-        "solvers": solvers.measure(quick=True),
         "skip": SKIPS,
     }
     saved = {}
@@ -444,13 +480,12 @@ def test_the_pages_show_every_point_and_what_is_missed(tmp_path):
         saved[name] = results.save(tmp_path, name, section, origin)
     report.write(tmp_path, saved)
     page = (tmp_path / "README.md").read_text("utf-8")
-    assert page.count("| pymunk: pymunk 0.1 |") == 1 and page.count("**missed**") == 7
-    assert "| lcp, looking ahead, gain 1 |" in page
+    assert page.count("| pymunk: pymunk 0.1 |") == 1 and page.count("**missed**") == 6
     readme = report.readme(saved)
-    assert "**pymunk 0.1 r, 5 ms**" in readme and "in drop (1.0e-09 r)" in readme
+    assert "drop (0.2 r, pymunk 0.1 r)" in readme and readme.count("\n") < 30
     figure = (tmp_path / "error-drop.svg").read_text("utf-8")
-    assert "worst position error [r]" in figure and "lcp: lcp 0.2" in figure
-    assert (tmp_path / "settled.svg").exists() and (tmp_path / "solvers.svg").exists()
+    assert "worst position error [r]" in figure and "leapfrog: leapfrog 0.2" in figure
+    assert (tmp_path / "settled.svg").exists()
 
 
 def test_a_part_that_does_not_exist_is_refused_in_one_line(capsys):
