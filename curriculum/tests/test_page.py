@@ -178,6 +178,7 @@ def test_an_address_opens_a_section_as_it_stands_and_scrolling_never_writes_it(v
         page.wait_for_selector("#fig-cliff .words:text('dt = 20.0 ms')", state="attached")
         assert page.locator("#fig-cliff .chips").inner_text() == "Time step dt = 0.02, text: 0.03"
         asked = page.evaluate("location.href")
+        assert "dt = 4.0 ms" in page.locator("#fig-gripper .words").inner_text()  # its section's
         page.mouse.wheel(0, 3000)
         page.wait_for_timeout(500)
         assert page.evaluate("location.href") == asked

@@ -339,6 +339,8 @@ def test_each_sag_is_that_of_contact_py_and_its_law_holds_for_one_sweep(draw):
     unit = power(figure.labels(r"^in 10")[0].split()[1])
     told = np.array([numbers(text)[0] * unit for text in figure.labels(r"^\d\.\d\d$")])
     assert told == pytest.approx(at_rest(masses, 0.003, iters=4), abs=0.006 * unit)
+    small = draw("sag", width=358).labels(r"^\d\.\d\d$")  # on a phone they still differ
+    assert len(small) == len(set(small)) == 8
     figure = draw("sag", {"dt": 0.002, "iters": 6}, {"count": 5, "parts": 6})
     deep, law = numbers(figure.words)[-2:]
     assert law == pytest.approx(4 * G * (0.002 / 6) ** 2 / 0.2 / R, rel=0.01)
@@ -417,3 +419,15 @@ def test_the_landing_of_a_series_is_the_first_contact_of_contact_py(v8):
         call = f"ENGINE.runModel('{model}', scene, {json.dumps(knobs)}, 200)"
         call = f"((scene) => ENGINE.series({call}, scene).landing)({json.dumps(given)})"
         assert v8(call) == landing < 200
+
+
+def test_a_section_keeps_what_is_set_and_says_what_differs_from_its_text(v8):
+    acts = "s.set({ stiffness: 3000 }); s.set({ damping: 9, dt: 7 }); s.set({ scene: 'bounce' });"
+    section = f"((s) => {{ {acts} return s; }})(new STORE.Section('any', {{ dt: 0.01 }}))"
+    e = contact.build_scene("bounce").restitution
+    changed = {"stiffness": 3000, "damping": 0, "scene": "bounce", "restitution": e}
+    assert (
+        v8(f"{section}.changes()") == changed
+    )  # dt = 7 s is not allowed; a scene has its own c, e
+    assert ["stiffness", "Stiffness k = 3,000, text: 10,000"] in v8(f"{section}.inWords()")
+    assert sorted(v8(f"{section}.query()").split("&"))[-1] == "stiffness=3000"

@@ -21,12 +21,12 @@ const byExact = kept((n) => {
 });
 
 // lcp has a floor and a weight; an impact is a step that changes the light block's speed along it.
-const byLcp = kept((n, told) => {
-  const steps = Math.ceil(SECONDS / told.dt);
-  const run = runModel("lcp", scene([R, R, R], lineUp(n)), told, steps);
+const byLcp = kept((n, settings) => {
+  const steps = Math.ceil(SECONDS / settings.dt);
+  const run = runModel("lcp", scene([R, R, R], lineUp(n)), settings, steps);
   const times = [];
   for (let row = 1; row <= steps; row++)
-    if (Math.abs(run.vx[3 * row + 1] - run.vx[3 * row - 2]) > 1e-9) times.push(row * told.dt);
+    if (Math.abs(run.vx[3 * row + 1] - run.vx[3 * row - 2]) > 1e-9) times.push(row * settings.dt);
   return { run, times };
 });
 
@@ -58,11 +58,11 @@ function lane(view, model, { run, times }, k) {
 
 function draw(view) {
   const { n } = view.own;
-  const told = { ...knobs(view), dt: view.get("dt"), restitution: 1 };
-  const [exact, lcp] = [byExact(n), byLcp(n, told)];
+  const settings = { ...knobs(view), dt: view.get("dt"), restitution: 1 };
+  const [exact, lcp] = [byExact(n), byLcp(n, settings)];
   const above = lane(view, "exact", exact, 0);
   const counted = `exact counts ${plural(exact.times.length, "impact")}`;
-  const missed = `lcp at dt = ${plain(1000 * told.dt)} ms counts ${whole(lcp.times.length)}`;
+  const missed = `lcp at dt = ${plain(1000 * settings.dt)} ms counts ${whole(lcp.times.length)}`;
   const text = `100 to the power of ${n}`;
   const at = (x, y) => Math.round((above.floor - y - LIGHT) / 16);
   const range = { box: above.box, hold: above.corner, low: 0, high: MOST, step: 1, at };

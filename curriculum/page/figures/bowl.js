@@ -70,7 +70,7 @@ function draw(view) {
     return grip(view, `v${k + 1}`, middle, y, name, `${number(own[`v${k + 1}`], 2)} g dt`, range);
   };
   const list = (pair) => pair.map((each) => number(each, 3)).join(" and ");
-  const told = ["where the sweeps start", `${list(begin)} m g dt`];
+  const named = ["where the sweeps start", `${list(begin)} m g dt`];
   const from = [sx(begin[0]), sy(begin[1])];
   const ranges = { begin1: [0, most], begin2: [0, most] };
   const to = { at: (x, y) => [sx.back(x), sy.back(y)] };
@@ -80,7 +80,7 @@ function draw(view) {
     svg,
     words: `From ${list(begin)} m g dt the sweeps come to ${list(end)}, within a thousandth ` +
       `after ${plural(Math.ceil(visits / 2), "sweep")}.`,
-    handles: [...at.map(hold), pair(view, "start", from, ...told, ranges, to)],
+    handles: [...at.map(hold), pair(view, "start", from, ...named, ranges, to)],
     lit: ["sweep"],
   };
 }

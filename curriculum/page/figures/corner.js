@@ -48,12 +48,12 @@ function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, ext
     ].join("");
   };
   const { svg, middle } = beside(view, chart, picture);
-  const told = load > 0 ? `Pressed with ${number(load, 2)} m g` : "Held by the hand";
+  const holds = load > 0 ? `Pressed with ${number(load, 2)} m g` : "Held by the hand";
   const text = `gap ${number(gap, 2)} r, force ${number(load, 2)} m g`;
   const range = { r, low: -1, high: 1, step: 0.05, by: (dx, dy) => -dy / r };
   return {
     svg,
-    words: `${told}: ${text}.${words}`,
+    words: `${holds}: ${text}.${words}`,
     handles: [grip(view, "hand", middle, centre, "the ball: lift it or press it", text, range)],
   };
 }
@@ -70,9 +70,9 @@ function ramp(view) {
 /* lcp: the ball comes from FROM radii above, drawn down by the load, and lcp looks once a step. A
  * load of L weights is a gravity of L g: our own gravity where the clock runs sqrt(L) as fast. */
 const FROM = 0.8;
-const arrival = kept((load, told) => {
+const arrival = kept((load, settings) => {
   const one = scene([(1 + FROM) * R]);
-  const run = runModel("lcp", one, { ...told, dt: told.dt * Math.sqrt(load), restitution: 0 }, 400);
+  const run = runModel("lcp", one, { ...settings, dt: settings.dt * Math.sqrt(load), restitution: 0 }, 400);
   const looks = Array.from(run.y, (y, row) => {
     const force = row ? (load * pushOfTable(run, one, row)) / G : 0;
     return { gap: y / R - 1, force };
@@ -99,11 +99,11 @@ function looksOf(view, load) {
 // soft: at rest the solver asks for no velocity where lam = target / R; how deep that is for a load
 // is found by halving.
 function rounded(view) {
-  const [told, one] = [softKnobs(view), scene([R])];
+  const [settings, one] = [softKnobs(view), scene([R])];
   const load = (deep) => {
     const contact = { i: 0, j: -1, nx: 0, ny: 1, depth: deep * R };
-    const { target, softness } = soften(contact, one, one, told);
-    return target / softness / (G * told.dt);
+    const { target, softness } = soften(contact, one, one, settings);
+    return target / softness / (G * settings.dt);
   };
   const gap = (wanted, less = 0, more = 2) => {
     const middle = 0.5 * (less + more);

@@ -8,16 +8,16 @@ const [DOWN, UP] = [-5, 2]; // m/s; a gap is counted in what 1 m/s closes in a s
 const [PX, GROUND] = [26, 92]; // px: what 1 m/s does in a step, the table
 
 // One step of lcp from a gap [r] with a speed [m/s]: gap and speed at its end.
-const stepped = kept((gap, v, told) => {
+const stepped = kept((gap, v, settings) => {
   const start = scene([(1 + gap) * R], { vy: [v] });
-  const run = runModel("lcp", start, { ...told, restitution: 0 }, 1);
+  const run = runModel("lcp", start, { ...settings, restitution: 0 }, 1);
   return { gap: run.y[1] / R - 1, v: run.vy[1] };
 });
 
 // The plane of gap and speed: where a step ends inside, and the speeds that lcp asks for.
-function chartOf(unit, told, { gap, free, end }) {
+function chartOf(unit, settings, { gap, free, end }) {
   const speeds = Array.from({ length: 141 }, (_, k) => -UP + ((UP - DOWN) * k) / 140);
-  const asked = speeds.map((k) => stepped(k * unit, -90, told).v); // of a ball that comes fast
+  const asked = speeds.map((k) => stepped(k * unit, -90, settings).v); // of a ball that comes fast
   return {
     x: axis([-UP * unit, -DOWN * unit], "gap / r", 0, +(2 * unit).toPrecision(2)),
     y: axis([DOWN, UP], "v_n (m/s)", DOWN, 0, UP),
@@ -55,17 +55,17 @@ function picture(left, { floor, r, y, end, tip, enlarged }) {
 
 function draw(view) {
   const { own } = view;
-  const told = knobs(view);
-  const unit = told.dt / R; // r that 1 m/s does in a step
+  const settings = knobs(view);
+  const unit = settings.dt / R; // r that 1 m/s does in a step
   const gap = own.gap * unit;
-  const free = own.v + told.dt * GRAVITY; // m/s, once gravity has acted
-  const end = stepped(gap, own.v, told);
+  const free = own.v + settings.dt * GRAVITY; // m/s, once gravity has acted
+  const end = stepped(gap, own.v, settings);
   const sum = gap + unit * free; // r
   const [floor, r] = [view.height - GROUND, Math.min(40, 0.08 * view.width)]; // px
   const at = (far) => floor - (far / unit) * PX;
   const [y, tip] = [at(gap), Math.min(view.height - 14, at(sum))];
   const places = { floor, r, y, end: at(end.gap), tip, enlarged: PX / unit / r };
-  const chart = chartOf(unit, told, { gap, free, end });
+  const chart = chartOf(unit, settings, { gap, free, end });
   const { svg, middle } = beside(view, chart, (left) => picture(left, places), 0.46);
   const x = 0.84 * middle;
   const [tall, moves] = [gap, unit * free].map((each) => `${number(each, 2)} r`);

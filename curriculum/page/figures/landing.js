@@ -8,24 +8,24 @@ const [FALL, GROUND] = [70, 96]; // px: the fall of one step, the table
 const [ARROW, SHORT, LONG] = [22, 0.3, 0.9]; // px for 1 m/s; s, of a hop and of a bounce
 
 // A flight that begins at a gap [r] with a speed: times, gaps and the highest gap [r].
-function flight(gap, v, told, seconds) {
+function flight(gap, v, settings, seconds) {
   const found = scene([(1 + gap) * R], { vy: [v] });
-  const run = runModel("lcp", found, told, Math.max(5, Math.ceil(seconds / told.dt)));
+  const run = runModel("lcp", found, settings, Math.max(5, Math.ceil(seconds / settings.dt)));
   const ys = Array.from(run.y, (y) => y / R - 1);
   return { xs: run.t, ys, high: Math.max(0, ...ys.slice(1)) };
 }
 
 /* A landing so late in a step: what the ball falls in one, its gap at the last look before it, its
  * depth at the first look after it [r], what bounce and bias ask for [m/s], and both flights. */
-const landing = kept((share, told) => {
-  const { dt, baumgarte, restitution: e } = told;
+const landing = kept((share, settings) => {
+  const { dt, baumgarte, restitution: e } = settings;
   const seconds = e > 0 ? LONG : SHORT;
   const fall = (ARRIVES * dt) / R;
   const before = share * fall;
-  const larger = flight(before, -ARRIVES, told, seconds);
+  const larger = flight(before, -ARRIVES, settings, seconds);
   const depth = -Math.min(0, ...larger.ys.slice(0, 4));
   const [bounce, bias] = [e * ARRIVES, (baumgarte / dt) * depth * R];
-  const sum = flight(-depth, bounce + bias, { ...told, restitution: 0 }, seconds);
+  const sum = flight(-depth, bounce + bias, { ...settings, restitution: 0 }, seconds);
   return { bounces: e > 0, seconds, fall, before, depth, bounce, bias, larger, sum };
 });
 

@@ -17,20 +17,20 @@ const lawOf = (masses, { dt, iters, baumgarte, warm }) =>
   });
 
 // The same of a run of lcp; and whether it is at rest.
-const sags = kept((masses, told) => {
+const sags = kept((masses, settings) => {
   let top = 0;
-  const heights = lawOf(masses, told).map((deep) => (top += (2 - deep) * R) - R);
-  const run = runModel("lcp", scene(heights, { mass: masses }), { ...told, restitution: 0 }, ROWS);
+  const heights = lawOf(masses, settings).map((deep) => (top += (2 - deep) * R) - R);
+  const run = runModel("lcp", scene(heights, { mass: masses }), { ...settings, restitution: 0 }, ROWS);
   const [before, depths] = [ROWS - 9, ROWS].map((row) => depthsOf(stateAt(run, row).y));
   const rests = (deep, i) => Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9;
   return { depths, rests: depths.every(rests) };
 });
 
 // All ways to spend the sweeps of a step on equal substeps.
-const waysOf = (told) =>
-  Array.from({ length: told.iters }, (_, k) => k + 1)
-    .filter((parts) => told.iters % parts === 0)
-    .map((parts) => ({ ...told, parts, dt: told.dt / parts, iters: told.iters / parts }));
+const waysOf = (settings) =>
+  Array.from({ length: settings.iters }, (_, k) => k + 1)
+    .filter((parts) => settings.iters % parts === 0)
+    .map((parts) => ({ ...settings, parts, dt: settings.dt / parts, iters: settings.iters / parts }));
 
 // Which of them has about so many substeps.
 function nearest(ways, wanted) {
@@ -52,7 +52,7 @@ function column(left, height, masses, depths, law) {
   const r = Math.min(LARGEST, (height - GROUND - 14) / (2 * masses.length)); // px
   const floor = height - GROUND;
   const size = (0.85 * LENS) / Math.max(1e-9, ...depths, ...law); // px for an overlap of 1 r
-  const ten = 10 ** Math.floor(Math.log10(Math.max(1e-9, ...depths))); // r: in it they are told
+  const ten = 10 ** Math.floor(Math.log10(Math.max(1e-9, ...depths))); // r: in it they are settings
   const places = masses.map((_, i) => [r + 6, floor - (2 * i + 1) * r]);
   const drawn = masses.map((mass, i) => {
     const [x, y] = places[i];
@@ -110,12 +110,12 @@ function draw(view) {
   const lawful = number(law[0], 2);
   const way = { low: 1, high: ways[0].iters, at: sx.back, get: () => parts };
   const next = (by) => (own.parts = ways[nearest(ways, own.parts) + by]?.parts ?? own.parts);
-  const told = `K = ${iters}, β = ${baumgarte}, dt = ${number(1000 * dt)} ms`;
+  const given = `K = ${iters}, β = ${baumgarte}, dt = ${number(1000 * dt)} ms`;
   const deep = `${number(depths[0], 2)} r deep${rests ? "" : ", and still moves"}`;
   const knob = grip(view, "parts", sx(parts), sy(Math.max(0, depths[0])), "substeps", spent, way);
   return {
     svg,
-    words: `${told}: the lowest of ${own.count} balls is ${deep}; the law says ${lawful} r.`,
+    words: `${given}: the lowest of ${own.count} balls is ${deep}; the law says ${lawful} r.`,
     handles: [...made.places.map(hold), { ...knob, nudge: (dx, dy) => next(Math.sign(dx - dy)) }],
   };
 }

@@ -10,16 +10,16 @@ const [SIDE, TOP, FAST] = [0.45, 0.34, [-1.5, 1.5]]; // m, m, m/s: how far one c
 const wayOf = (speed) => (speed > 0 ? "separating" : speed < 0 ? "closing" : "neither");
 
 // Ball a and the tip of its velocity, as what one drags.
-function handlesOf(view, { scale, floor, place }, told) {
+function handlesOf(view, { scale, floor, place }, texts) {
   const { width } = view;
   const { x, y, vx, vy } = view.own;
   const [ax, ay] = place(x, y);
   const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);
   const tip = [within(8, tipX, width - 8), within(8, tipY, view.height - 8)]; // none is lost
   const [places, speeds] = [{ x: [-SIDE, SIDE], y: [0, TOP] }, { vx: FAST, vy: FAST }];
-  const fast = `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told}`;
+  const fast = `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${texts}`;
   return [
-    pair(view, "ball", [ax, ay], "ball a", told, places, {
+    pair(view, "ball", [ax, ay], "ball a", texts, places, {
       at: (toX, toY) => [(toX - width / 2) / scale, (floor - toY) / scale],
       px: 0.01 * scale,
       r: R * scale,
@@ -37,7 +37,7 @@ function draw(view) {
   const floor = view.height - GROUND;
   const place = (toX, toY) => [view.width / 2 + toX * scale, floor - toY * scale];
   const contacts = detectContacts([x, 0], [y, R], [R, R], Infinity).filter((c) => c.i === 0);
-  const told = contacts.map((c) => {
+  const texts = contacts.map((c) => {
     const speed = normalSpeed(c, [vx, 0], [vy, 0]);
     const [depth, v] = [number(c.depth / R), number(speed)];
     return `a and ${c.j < 0 ? "table" : "b"}: depth ${depth} r, v_n ${v} m/s, ${wayOf(speed)}`;
@@ -60,8 +60,8 @@ function draw(view) {
       ...normals,
       arrow("weight", ax, ay, ARROW * vx * scale, -ARROW * vy * scale),
     ].join(""),
-    words: told.map((each) => `Contact of ${each}.`).join(" "),
-    handles: handlesOf(view, { scale, floor, place }, told.join("; ")),
+    words: texts.map((each) => `Contact of ${each}.`).join(" "),
+    handles: handlesOf(view, { scale, floor, place }, texts.join("; ")),
   };
 }
 

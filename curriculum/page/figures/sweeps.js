@@ -49,9 +49,9 @@ const tipsOf = (view, x, heightOf, vy) =>
   SPEEDS.map((name, i) => {
     const middle = heightOf(i) - PX;
     const range = { low: -1, high: 3, step: 0.1, at: (toX, y) => 1 + (middle - y) / UNIT };
-    const told = `the speed of ball ${i + 1} before the sweeps`;
+    const named = `the speed of ball ${i + 1} before the sweeps`;
     const fast = `${number(view.own[name] - 1, 2)} g dt`;
-    return grip(view, name, x + PX + 12, middle - UNIT * vy[i], told, fast, range);
+    return grip(view, name, x + PX + 12, middle - UNIT * vy[i], named, fast, range);
   });
 
 function draw(view) {
