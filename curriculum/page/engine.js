@@ -253,7 +253,7 @@ function ask(c, state, radius, { dt, restitution }) {
 
 // One step of leapfrog. knobs.see is shown the state after each of its parts.
 function leapfrogStep(state, { mass, radius }, knobs) {
-  const { dt, iters, see = () => {} } = knobs;
+  const { dt, iters, restitution, see = () => {} } = knobs;
   const rows = makeRows(detectContacts(state.x, state.y, radius, stepReach(state, dt)), mass);
   for (const c of rows) ask(c, state, radius, knobs);
   const [vx, vy] = [state.vx.slice(), fall(state.vy, mass, 0.5 * dt)];
@@ -265,8 +265,10 @@ function leapfrogStep(state, { mass, radius }, knobs) {
   const next = { ...moved, vx: vx.slice(), vy: fall(vy, mass, 0.5 * dt) };
   see({ ...next, vx: next.vx.slice(), vy: next.vy.slice() });
   const closed = rows.filter((c) => c.lam > 0);
+  const bounces = closed.filter((c) => c.hits && restitution > 0);
+  const struck = new Set(bounces.flatMap(({ i, j }) => (j < 0 ? [i] : [i, j])));
   for (const c of closed) {
-    if (!c.hits) turn(c, next, radius, 0);
+    if (!(c.hits || struck.has(c.i) || struck.has(c.j))) turn(c, next, radius, 0);
     c.target = c.after;
   }
   solveWithMomentum(closed, next.vx, next.vy, { iters });
@@ -440,7 +442,7 @@ function accelerations(touching, { vx, vy }, mass, gravity) {
   for (const c of resting) c.target = 0;
   settle(resting, ax, ay);
   const rests = (c) => resting.includes(c) && normalSpeed(c, ax, ay) < STILL;
-  return { ax, ay, rests };
+  return { ax, ay: ay.map((a) => (Math.abs(a) > STILL ? a : 0)), rests };
 }
 
 // Sweep until only rounding is left.

@@ -62,7 +62,7 @@ FAULTS = [
     (ENGINE, "excess < EXPLODED", "excess < 9 * EXPLODED", reads("cliff")),
     (ENGINE, "landing = row;", "landing = row + 3;", reads("landing_of_a_series")),
     (ENGINE, "c.after = least(0, back);", "c.after = 0;", BITS),
-    (ENGINE, "if (!c.hits) turn(c, next, radius, 0);", "turn(c, next, radius, 0);", BITS),
+    (ENGINE, "if (!(c.hits || struck", "if ((c.hits || struck", BITS),
     (ENGINE, "fall(vy, mass, 0.5 * dt) };", "fall(vy, mass, dt) };", BITS),
     (ENGINE, "if (onward < 0) t = 1;", "", BITS),
     (ENGINE, "value === value ? value + 0 : NaN", "value", BITS),
