@@ -190,13 +190,15 @@ def reach(values: np.ndarray, large: float) -> float:
 def worth_seeing(runs: dict, quality: dict) -> tuple[float, float]:
     """From when to when [s]: BEFORE the first contact, to when the last ball has come to rest.
 
-    It rests once it is slower than 1 cm/s for good; a tenth more is shown, at most to the end.
+    It rests once it goes slower than 1 cm/s for good, judged by its way, since speeds at the end of
+    leapfrog's steps may be larger; a tenth more is shown, at most to the end.
     """
     struck, rests = [], [0.0]
     for model, run in runs.items():
         touched = quality[model]["first_contact_step"]
         struck += run.t[touched : touched + 1].tolist()
-        moving = np.flatnonzero(~(np.abs(run.v) < 0.01).all((1, 2)))
+        slow = np.abs(np.diff(run.q, axis=0)) < 0.01 * np.diff(run.t)[:, None, None]
+        moving = np.flatnonzero(~slow.all((1, 2)))
         rests += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]
     return max(0.0, min(struck, default=0.0) - BEFORE), float(max(rests))
 

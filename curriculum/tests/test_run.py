@@ -167,7 +167,8 @@ def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(tmp_pa
     assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["landing"]])
     (ranges,) = {str(each) for each in recording.blueprint["VisibleTimeRanges:ranges"]}
     start, end = (sorted({int(n) / 1e9 for n in re.findall(r"\d{8,}", ranges)})[k] for k in (0, -1))
-    moves = max(run.t[(np.abs(run.v) >= 0.01).any((1, 2))].max() for run in runs.values())
+    ways = {model: np.abs(np.diff(run.q, axis=0)).max((1, 2)) for model, run in runs.items()}
+    moves = DT * max(np.flatnonzero(way >= 0.01 * DT)[-1] for way in ways.values())
     assert first < start < fall < moves and abs(end - 1.1 * moves) < 2 * DT
 
 
