@@ -19,7 +19,6 @@ from curriculum.tests.helpers import CONTACT, ROOT, python
 DT, STEPS = 0.004, 300
 MASS, RADIUS = np.array([2.0, 1.3, 0.5]), np.array([0.12, 0.09, 0.08])  # from the lowest ball up
 CURVES = ("height", "penetration", "impulse", "energy", "rises")
-DULL = ("rerun.controls.RowId", "log_time", "log_tick", "blueprint")
 Recording = namedtuple("Recording", "series static blueprint application")
 
 
@@ -30,33 +29,33 @@ def runs_of(scene, steps=STEPS, dt=DT, models=contact.MODELS):
 
 
 def rows_of(reader, store):
-    """(entity, {column: value}) of every row, without row ids and times of logging."""
+    """(entity, {column: value}) of every row, in the order of the steps."""
+    rows = []
     for part in reader.stream(store=store):
         batch = part.to_record_batch()
-        columns = {name: batch.column(name) for name in batch.schema.names if name not in DULL}
-        for name in {"sim_time", "landing"} & columns.keys():
+        columns = {name: batch.column(name) for name in batch.schema.names}
+        for name in {"sim_time", "landing", "log_time"} & columns.keys():
             columns[name] = columns[name].cast("int64")
-        for row in zip(*(column.to_pylist() for column in columns.values())):
-            yield part.entity_path, dict(zip(columns, row))
+        values = zip(*(column.to_pylist() for column in columns.values()))
+        rows += [(part.entity_path, dict(zip(columns, row))) for row in values]
+    return sorted(rows, key=lambda each: each[1].get("step", -1))
 
 
 def opened(path):
-    """series {entity: {column: [value, ...]}} by step; static the same, without steps; and the
-    blueprint {column: [value, ...]}."""
+    """What a recording holds, {entity: {column: [value, ...]}}: in series what has steps, in static
+    what has none; in blueprint {column: [value, ...]}."""
     chunk = pytest.importorskip("rerun.chunk", reason="this rerun cannot read recordings")
     reader = chunk.RrdReader(str(path))
-    (store,) = reader.recordings()
-    series, static = defaultdict(lambda: defaultdict(list)), defaultdict(dict)
+    (recording,) = reader.recordings()
+    series, static = (defaultdict(lambda: defaultdict(list)) for _ in range(2))
     blueprint = defaultdict(list)
-    for entity, row in sorted(rows_of(reader, store), key=lambda each: each[1].get("step", -1)):
-        if "step" not in row and not entity.startswith("/__properties"):
-            static[entity].update(row)
-        for column, value in row.items() if "step" in row else ():
-            series[entity][column].append(value)
-    for each in reader.blueprints():
-        for column, value in (pair for _, row in rows_of(reader, each) for pair in row.items()):
+    for entity, row in rows_of(reader, recording):
+        for column, value in row.items() if not entity.startswith("/__") else ():
+            (series if "step" in row else static)[entity][column].append(value)
+    for _, row in (each for store in reader.blueprints() for each in rows_of(reader, store)):
+        for column, value in row.items():
             blueprint[column].append(value)
-    return Recording(series, static, blueprint, store.application_id)
+    return Recording(series, static, blueprint, recording.application_id)
 
 
 def recorded(folder, scene, runs, quality):
@@ -130,10 +129,10 @@ def test_curves_are_the_runs_own_numbers_in_the_models_colour_with_their_peaks(s
             logged = np.array(recording.series[f"/{curve}/{model}"]["Scalars:scalars"])[:, 0]
             assert logged == pytest.approx(values, rel=1e-9, abs=1e-9), f"{curve} of {model}"
         rgba = int(plotting.COLORS[model][1:] + "ff", 16)
-        assert set(recording.static[f"/world/{model}/balls"]["Points2D:colors"]) == {rgba}
+        assert set(recording.static[f"/world/{model}/balls"]["Points2D:colors"][0]) == {rgba}
         look = recording.static[f"/height/{model}"]
-        assert (look["SeriesLines:colors"], look["SeriesLines:names"]) == ([rgba], [model])
-        assert look["SeriesLines:aggregation_policy"] == [policy], "an average hides the peaks"
+        assert (look["SeriesLines:colors"], look["SeriesLines:names"]) == ([[rgba]], [[model]])
+        assert look["SeriesLines:aggregation_policy"] == [[policy]], "an average hides the peaks"
 
 
 def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots(stack):

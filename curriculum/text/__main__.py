@@ -4,27 +4,282 @@
     python -m curriculum.text --accept NAME   # what speaks of this region has been read; and all
                                               # sentences whose numbers moved
 
-Slots, flags and names in `code` are of what is there, numbers are quoted by reference, `holds:`
-comments are true, and results are of today's code; gate.py says what a reader has to read again.
+Regions are included once; slots, flags and names in `code` are of what is there; numbers are quoted
+by reference, `holds:` comments are true, and results are of today's code. Whether a sentence is
+true of the code only a reader can say, and he is asked when the code changes. meta.yaml holds a
+hash of every region, of the opening words of contact.py and exact.py (the signs, the promise) and
+of each figure's captions; and every number as the texts last quoted it. Where one of them is
+another today, the gate names the passages that show or name the region, or the sentence that quotes
+the number. What a command writes needs no reader: it has a seal (measured/stale.py).
 """
 
+import re
 import sys
+from collections import Counter
+from pathlib import Path
+from typing import NamedTuple
 
-from curriculum.commands import Parser, needs, stoppable
+from curriculum.commands import Parser, needs, stoppable, write_whole
+
+with needs("dev"):
+    import yaml
+
+    from curriculum.measured import ledger, results, stale
+    from curriculum.measured.stale import BLOCK
+    from curriculum.regions import ROOT, Region, blank, line_at, read_text, split_all
+    from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, TextError, load_meta
+
+GATE = "python -m curriculum.text"
+CHAPTER, README = TEXTS = ("curriculum/prose/chapter.md", "README.md")
+FIGURES = "curriculum/page/figures/*.js"
+FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)
+HEADING = re.compile(r"^#{1,6} +.*$", re.MULTILINE)
+KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line each
+OPENING = re.compile(r'\A(?:#[^\n]*\n|\s)*""".*?"""', re.DOTALL)  # of a Python file
+CAPTION = re.compile(
+    r"""\b(?:title|caption):\s*(?:("|`)(?:(?!\1)[^\\]|\\.)*\1[\s+]*)+""", re.DOTALL
+)
+SLOT = r"<!-- (?P<kind>figure|exercise|bench|stress): (?P<slot>\S+) -->"
+MARK = re.compile(rf"^```\n{INCLUDE.pattern}\n```$|{SLOT}", re.MULTILINE)
+LIKE_A_MARK = re.compile(r"include-by-region|<!--\s*(?:figure|exercise|bench|stress)\b")
+SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
+# Where numbers may be typed: code, comments, formulas, references, links, tags, numbers of headings
+# and lists, versions with two dots, and what follows some words.
+NOT_PROSE = re.compile(
+    FENCE.pattern
+    + r"""
+    |<!--.*?-->
+    |\$\$.+?\$\$|\$[^$\n]+\$
+    |\{\{[^\n]*?\}\}
+    |\[[^]]*\]\((?:try|drag):[^)]*\)|\]\([^)]*\)|https?://\S+|</?[a-z][^>]*>
+    |^\[[^]]*\]:[^\n]*|\[\[\d+\]\](?=\(\#references\))
+    |(`+)[^`]+\2
+    |\b(?:chapters?|phase|version|tag|python|numpy)[ ]
+        \d+(?:\.\d+)*(?:(?:,|,?[ ]and|[ ]to)[ ]\d+\.\d+)*
+    |(?<![\w.])\d+(?:\.\d+){2,}
+    |^\#+[ ]+\d[\d.]*|^[ >]*\d+[.)][ ]
+    """,
+    re.DOTALL | re.MULTILINE | re.IGNORECASE | re.VERBOSE,
+)
+TYPED = re.compile(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*")  # a token that begins with a digit
+
+
+class Passage(NamedTuple):
+    """What a reader reads in one go: a heading with its text, an exercise, a figure's captions."""
+
+    file: str
+    line: int
+    text: str
+
+    def speaks_of(self, region: Region) -> bool:
+        """Whether it includes the region, or has a name in `code` that the region defines."""
+        included = {match["name"] for match in INCLUDE.finditer(self.text)}
+        words = {word for span in SPAN.findall(self.text) for word in re.findall(r"\w+", span)}
+        return region.name in included or bool(region.defines & words)
+
+
+class Gate:
+    """One pass over the project: `problems` are lines, `changed` what waits for a reader."""
+
+    def __init__(self):
+        self.chapter, self.meta, self.quoted = read_text(CHAPTER), load_meta(), {}
+        self.regions, self.problems = split_all()
+        self.passages = list(passages())
+        self.read = self.regions | {each.name: each for each in openings_and_captions()}
+        recorded = self.meta["region_hashes"]
+        self.changed = [each for each in self.read.values() if recorded.get(each.name) != each.sha]
+
+    def say(self, file, line, what, repair):
+        """Note a problem."""
+        self.problems.append(f"{file}:{line}: {what}; repair: {repair}")
+
+    def check_marks(self):
+        """What the chapter includes, and its slots name, is there, and nothing lacks a place."""
+        known, shown = self.known(), Counter()
+        for match in MARK.finditer(self.chapter):
+            file, region, kind, name = match.groups()
+            kind, name = kind or "region", name or f"{file}#{region}"
+            line = line_at(self.chapter, match.end()) - (kind == "region")
+            shown[kind, name] += 1
+            if name not in known[kind]:
+                names = ", ".join(known[kind])
+                self.say(CHAPTER, line, f"there is no {kind} {name}", f"name one of {names}")
+            elif shown[kind, name] > 1 and kind != "figure":
+                self.say(CHAPTER, line, f"{kind} {name} stands here again", "delete one of the two")
+        for match in LIKE_A_MARK.finditer(blank(MARK, self.chapter)):
+            what = "an include that is not alone in its fence, or a slot that is not well formed"
+            repair = "write [include-by-region: FILE#NAME] in a fence, or <!-- figure: NAME -->"
+            self.say(CHAPTER, line_at(self.chapter, match.start()), what, repair)
+        for kind in ("region", "figure", "exercise"):
+            for name, place in known[kind].items():
+                if not shown[kind, name]:
+                    self.say(*place, f"{kind} {name} has no place in {CHAPTER}", "give it one")
+
+    def known(self) -> dict:
+        """{kind: {name: (file, line)}} of all that a mark of the chapter may name."""
+        regions = {f"{r.file}#{r.name}": (r.file, r.line - 1) for r in self.regions.values()}
+        exercises = {Path(f).name.split("_")[0]: (f, 1) for f in files("exercises/ex*.py")}
+        figures: dict = {}
+        for file in files(FIGURES):
+            several = read_text(file).partition("export const figures = {")[2]
+            names = KEY.findall(several) or re.findall(r"[\w-]+", several.partition("}")[0])
+            figures |= dict.fromkeys(names or [Path(file).stem], (file, 1))
+        known = {"region": regions, "exercise": exercises, "figure": figures}
+        for kind, folder in results.FOLDERS.items():
+            drawn = files(f"{folder}/*.svg")
+            known[kind] = {Path(f).stem.removeprefix("error-"): (f, 1) for f in drawn}
+        return known
+
+    def check_read(self):
+        """What readers have read is what it was, and nothing is kept of what is gone."""
+        for each in self.changed:
+            speak = [f"{p.file}:{p.line}" for p in self.passages if p.speaks_of(each)]
+            what = f"{each.name} changed" + f", of which {', '.join(speak)} speak" * bool(speak)
+            self.say(each.file, each.line, what, f"read these, then {GATE} --accept {each.name}")
+        if gone := ", ".join(self.meta["region_hashes"].keys() - self.read):
+            self.say("meta.yaml", 1, f"hashes of what is gone: {gone}", f"{GATE} --accept")
+
+    def check_names(self):
+        """Names in `code` and flags, of chapter and captions, are in some code or in meta.yaml."""
+        code = files("*.py", "exercises/**/*.py", "curriculum/*.py", "curriculum/[!t]*/*.py")
+        known = set(re.findall(r"--[a-z]\w*|\w+", "".join(map(read_text, [*code, "meta.yaml"]))))
+        for file, first, text in self.passages:
+            for match in SPAN.finditer(text) if file.startswith("curriculum") else ():
+                for name in {*re.findall(r"^[A-Za-z_]\w+$|--[a-z]\w*", match[1])} - known:
+                    line = first + line_at(text, match.start()) - 1
+                    self.say(file, line, f"`{name}` is in no code", "name what is there")
+
+    def check_numbers(self):
+        """None is typed into the chapter's prose, every reference can be made and gives what it
+        gave, `holds:` is true, and each run is quoted."""
+        for token in TYPED.finditer(blank(NOT_PROSE, self.chapter)):
+            line, number = line_at(self.chapter, token.start()), token[0].rstrip(".,")
+            repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
+            self.say(CHAPTER, line, f"a typed number, {number}", repair)
+        numbers, texts = Numbers(), {file: read_text(file) for file in TEXTS}
+        numbers.prepare("".join(texts.values()))
+        for file, text in texts.items():
+            for match in re.finditer(f"{REFERENCE.pattern}|(?s:{HOLDS.pattern})", text):
+                (asked, claim), line = match.groups(), line_at(text, match.start())
+                try:
+                    shown = numbers.text(asked) if asked else ""
+                    if claim and (false := numbers.broken(claim)):
+                        self.say(
+                            file, line, f"{claim!r} does not hold: {false}", "correct the text"
+                        )
+                    elif asked and not asked.startswith("="):
+                        self.check_number(file, line, asked, shown)
+                except TextError as error:
+                    self.say(file, line, f"{asked or claim!r}: {error}", "name what is known")
+        for name in [*self.meta["runs"]][1:]:
+            if not any(f"{name}:" in text for text in texts.values()):
+                self.say("meta.yaml", 1, f"run {name} is quoted nowhere", "take it out")
+
+    def check_number(self, file, line, asked, shown):
+        """A reference gives what it gave when its sentence was read."""
+        self.quoted[asked] = now = shown.removesuffix(" (stale)")
+        was = self.meta["numbers"].get(asked, now)
+        if was != now:
+            repair = f"read its sentence, then {GATE} --accept"
+            self.say(file, line, f"{asked} was {was} and is {now}", repair)
+
+    def check_written(self):
+        """Pages, figures and blocks that a command wrote are as it wrote them."""
+        blocks = list(BLOCK.finditer(read_text(README)))
+        written = [(README, block[4], block[3]) for block in blocks]
+        again = {block[2]: block[3] for block in blocks}
+        for name, folder in results.FOLDERS.items():
+            for file in files(f"{folder}/*.md", f"{folder}/*.svg"):
+                written.append((file, read_text(file), again.get(name, "write it again")))
+        for file, text, command in written:
+            if not stale.holds(text):
+                self.say(file, 1, "is not what was written of today's results", command)
+
+    def check_measured(self):
+        """Results and rows of the ledger are of today's code, and the rows well formed."""
+        for name, folder in results.FOLDERS.items():
+            for section, content in results.load(name).items():
+                if names := stale.changed(content["measured"]["code"]):
+                    what = f"section {section} was measured on other code ({', '.join(names)})"
+                    self.say(f"{folder}/{results.NAME}", 1, what, content["measured"]["command"])
+        try:
+            for line, row in enumerate(ledger.rows(), 2):
+                if ledger.stale(row):
+                    what = f"{row['tier']} was measured on other code"
+                    self.say("wallclock.csv", line, what, f"{ledger.COMMAND} {row['tier']}")
+        except ValueError as error:
+            self.problems.append(f"{error}; repair: correct the row")
+
+
+def passages():
+    """The sections of chapter and README, the exercises, and the captions of figures."""
+    for file in TEXTS:
+        text = blank(BLOCK, read_text(file))
+        starts = [match.start() for match in HEADING.finditer(blank(FENCE, text))]
+        for first, last in zip(starts, [*starts[1:], len(text)]):
+            yield Passage(file, line_at(text, first), text[first:last])
+    for file in files("exercises/ex*.py"):
+        yield Passage(file, 1, read_text(file))
+    for each in openings_and_captions():
+        if each.name.startswith("figures/"):
+            yield Passage(each.file, each.line, each.code)
+
+
+def openings_and_captions():
+    """What is read like a region and is none, as Regions: contact.py, exact.py, figures/NAME."""
+    for file in ("contact.py", "curriculum/exact.py"):
+        if opening := OPENING.match(read_text(file)):
+            yield Region(file.split("/")[-1], opening[0], 1, file)
+    for file in files(FIGURES):
+        if captions := "\n".join(caption[0] for caption in CAPTION.finditer(read_text(file))):
+            yield Region(f"figures/{Path(file).stem}", captions, 1, file)
+
+
+def files(*patterns):
+    """The project's files of these patterns, as they are named in git."""
+    paths = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
+    return [path.relative_to(ROOT).as_posix() for path in paths]
+
+
+def check() -> int:
+    """Print every problem, and the command that accepts what was read."""
+    gate = Gate()
+    checks = gate.check_marks, gate.check_read, gate.check_names, gate.check_numbers
+    for each in (*checks, gate.check_measured, gate.check_written):
+        each()
+    print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")
+    if len(gate.changed) > 1:
+        names = " ".join(each.name for each in gate.changed)
+        print(f"\nwhen all of them are read: {GATE} --accept {names}")
+    return 1 if gate.problems else 0
+
+
+def accept(names) -> int:
+    """Record these as they are now, and all numbers as they are quoted now."""
+    gate = Gate()
+    unknown = [name for name in names if name not in gate.read]
+    if gate.problems or unknown:
+        wrong = f"given {', '.join(unknown)}, allowed: {', '.join(gate.read)}"
+        raise TextError("\n".join(gate.problems) or wrong)
+    gate.check_numbers()
+    hashes = gate.meta["region_hashes"] | {name: gate.read[name].sha for name in names}
+    hashes = {name: hashes[name] for name in gate.read if name in hashes}
+    head = re.split("^region_hashes:", read_text("meta.yaml"), maxsplit=1, flags=re.MULTILINE)[0]
+    kept = {"region_hashes": hashes, "numbers": gate.quoted}
+    tail = yaml.safe_dump(kept, sort_keys=False, allow_unicode=True, width=1000)
+    write_whole(ROOT / "meta.yaml", f"{head.rstrip()}\n\n{tail}")
+    print(f"recorded in meta.yaml: all numbers, and {', '.join(names) or 'nothing else'}")
+    return 0
 
 
 @stoppable()
-@needs("dev")
 def main(argv=None) -> int:
     """Check or accept. Returns the exit status: 0 in order, 1 not, 2 could not be done."""
-    parser = Parser(prog="python -m curriculum.text", description=__doc__)
+    parser = Parser(prog=GATE, description=__doc__)
     parser.add_argument("--accept", metavar="NAME", nargs="*", help="what was read")
-    args = parser.parse_args(argv)
-    from curriculum.text import gate
-    from curriculum.text.references import TextError
-
+    names = parser.parse_args(argv).accept
     try:
-        return gate.check() if args.accept is None else gate.accept(args.accept)
+        return check() if names is None else accept(names)
     except SyntaxError as error:
         print(f"{error.filename}:{error.lineno}: not Python: {error.msg}", file=sys.stderr)
     except (OSError, TextError) as error:

@@ -1,7 +1,7 @@
 """Faults for curriculum/text/, measured/ and regions.py: (file, what stands there, what is planted,
 the tests that must name it)."""
 
-GATE, REFERENCES = "curriculum/text/gate.py", "curriculum/text/references.py"
+GATE, REFERENCES = "curriculum/text/__main__.py", "curriculum/text/references.py"
 LEDGER, STALE = "curriculum/measured/ledger.py", "curriculum/measured/stale.py"
 ERRORS = "test_text.py -k test_each_error_of_a_text"
 READ = "test_text.py -k test_a_changed_region"
