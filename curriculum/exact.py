@@ -33,7 +33,7 @@ import numpy as np
 
 from contact import MOST_IMPACTS  # of events, the limit of contact.py's own exact_run
 
-ORDER = 14  # of the series of balls that slide; a longer one lasts longer and costs more
+ORDER = 20  # of the series of balls that slide; a longer one lasts longer and costs more
 TOUCH = 1e-12  # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
 LAST = 1e-13  # of a radius: a bounce that would rise less is the last of its series
 NOISE = 1e-12  # of g, of sqrt(g r): a smaller push or speed is rounding, which leaves 1e-15

@@ -11,7 +11,7 @@ from scipy.integrate import quad, solve_ivp
 
 import contact
 from contact import GRAVITY, build_scene, exact_run, run_model, scene_of
-from curriculum.bench.closed_form import bounce_motion, slide_motion
+from curriculum.bench.problems import bounce_motion, slide_motion
 from curriculum.exact import simulate_exact, solve_lcp
 
 G, R = -GRAVITY, 0.1
