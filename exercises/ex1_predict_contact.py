@@ -1,3 +1,7 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Exercise 1, predict then run (10 minutes): where does the ball end up?
 
 A ball falls about a metre onto a table and is followed for 1.6 s, twice, from the same height. The

@@ -1,3 +1,7 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Exercise 2, fill in (20 minutes): the two lines that make a contact one-sided.
 
 Each contact model has one line in which the table is told that it may push and never pull.

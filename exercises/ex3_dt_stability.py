@@ -1,3 +1,7 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Exercise 3, predict then run (10 minutes): what does a longer step do?
 
 The drop again, same ball, same spring, with the time step raised from 0.002 s to 0.03 s: somebody

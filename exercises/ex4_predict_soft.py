@@ -1,3 +1,7 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Exercise 4, predict then run (10 minutes): where does a ball rest in MuJoCo's contact?
 
 Two balls of one size drop onto the table and come to rest, one of them ten times as heavy as the

@@ -1,3 +1,7 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Exercise 5, write it (30 minutes): solve_contacts, from its docstring.
 
 The heart of lcp, of soft and of half the engines in the world is a loop of a few lines. You have

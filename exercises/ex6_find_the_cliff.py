@@ -1,3 +1,7 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Exercise 6, find out (25 minutes): where is the cliff?
 
 A ball deep in the table of penalty, away from its balance by `depth` [m] and moving with `v_n`

@@ -1,3 +1,7 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Exercise 7, find out (25 minutes): the spring that knows where it is going.
 
 penalty takes the force that belongs to the depth *before* the step. Take the one that belongs to

@@ -1,3 +1,7 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Exercise 8, choose (30 minutes): a gripper that holds still.
 
 A cup, here a ball of 1 kg, stands on a table. Two fingers of 0.2 kg close on it from left and right

@@ -1,6 +1,10 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0"]
+# ///
 """Exercise 9, predict then run (30 minutes): which knob cures it?
 
-Five troubles that you have met, and five knobs. Each knob is turned alone, from its usual value:
+Five troubles that you have met, and four knobs. Each knob is turned alone, from its usual value:
 
     sink        penalty's drop: how deep the ball lies at rest
     dive        lcp's drop: how deep it is at the worst moment, the mean of nine seeds
@@ -23,12 +27,12 @@ from kit import script
 
 # fmt: off
 BETS = """
-              k x 4    dt / 4    sweeps x 4    beta x 4    ahead
-    sink        ?        ?           ?            ?          ?
-    dive        ?        ?           ?            ?          ?
-    hop         ?        ?           ?            ?          ?
-    sag         ?        ?           ?            ?          ?
-    trembling   ?        ?           ?            ?          ?
+              k x 4    dt / 4    sweeps x 4    beta x 4
+    sink        ?        ?           ?            ?
+    dive        ?        ?           ?            ?
+    hop         ?        ?           ?            ?
+    sag         ?        ?           ?            ?
+    trembling   ?        ?           ?            ?
 """
 # fmt: on
 SAG = None  # r, from your paper

@@ -2,7 +2,7 @@
 
     script.py     an exercise's command line, and what checks.py asks
     predict.py    exercises 1, 3, 4: bets          knobs.py     exercise 9: five knobs
-    alone.py      tries a fill in its own process  trials.py    judges it, and shows it at work
+    time_limit.py      tries a fill in its own process  trials.py    judges it, and shows it at work
     blanks.py     what belongs in a blank          progress.py  which exercises are done
 
 answers.json has hints, keys, reasons, inputs and slips. contact.py and curriculum/ are found above

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from curriculum.commands import Parser, command, stoppable
 
-from . import FACTS, alone, knobs, predict, task_of
+from . import FACTS, time_limit, knobs, predict, task_of
 from .progress import done, note, practise
 
 BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the module that runs it
@@ -15,7 +15,7 @@ def unquoted(kind, error, trace):
     """A letter without quotes is an error of Python's; say it in one line."""
     if kind is not NameError or name_of(sys.modules["__main__"]) not in BETS:
         return sys.__excepthook__(kind, error, trace)
-    print(alone.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
+    print(time_limit.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
 
 
 sys.excepthook = unquoted  # PREDICTION = A
@@ -48,10 +48,11 @@ def run(name, exercise):
     if name in BETS:
         state, found = BETS[name].judged(name, exercise)
     else:
-        state, found = alone.judged(name, exercise.__file__)
+        state, found = time_limit.judged(name, exercise.__file__)
     note(name, state == "right")
-    if state == "blank":
-        print(task_of(exercise).split("\n    python")[0].strip(), end="\n\n")
+    if state == "blank":  # a bet is asked whole; of a task, its title
+        task = task_of(exercise).strip()
+        print(task if name in BETS else task.split("\n")[0], end="\n\n")
     for what, _, words, shown in found:
         print(*filter(None, (shown, words or f"{what} is right")), sep="\n", flush=True)
     if state == "right":
@@ -62,13 +63,13 @@ def run(name, exercise):
 def checked(name, file):
     """("blank", "wrong" or "right", why in words), as checks.py asks."""
     if name not in BETS:
-        state, found = alone.judged(name, file)
+        state, found = time_limit.judged(name, file)
         note(name, state == "right")
         return state, "\n\n".join(words for _, each, words, _ in found if each == state)
     try:
-        exercise = alone.load(file)
+        exercise = time_limit.load(file)
     except Exception as error:
-        return "wrong", alone.unreadable(file, error)
+        return "wrong", time_limit.unreadable(file, error)
     state, words = BETS[name].state(exercise)
     if state == "right" and name not in done():
         return "blank", f"the bet is made; now read what happens: {command(file)}"

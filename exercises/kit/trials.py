@@ -7,8 +7,9 @@ import contextlib
 import io
 import math
 import sys
-from functools import cache, partial
-from unittest.mock import patch
+import traceback
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
@@ -21,10 +22,13 @@ from .blanks import BLANKS, labels, run, solver
 
 def row(name, function, case):
     """What comes out, as a row of numbers; None of a blank. Raises ValueError, in words."""
+    said = io.StringIO()
     try:
-        got = run(name, function, case)
+        with contextlib.redirect_stdout(said):
+            got = run(name, function, case)
     except (Exception, SystemExit) as error:
-        raise ValueError(f"{name} raised {type(error).__name__}: {error}") from None
+        words = f"{name} raised {type(error).__name__}: {error}{where(error, function)}"
+        raise ValueError("\n".join((words, *printed(said)))) from None
     if got is ... or (isinstance(got, tuple) and any(part is ... for part in got)):
         return None
     try:
@@ -33,6 +37,19 @@ def row(name, function, case):
         return np.asarray(got, float).ravel()
     except (TypeError, ValueError):
         raise ValueError(f"{name} returned {got!r:.60}, and not numbers") from None
+
+
+def where(error, function):
+    """The line of the learner's own code that an error came from, with its text."""
+    frames = traceback.extract_tb(error.__traceback__)
+    file = function.__code__.co_filename if hasattr(function, "__code__") else None
+    lines = [f"\n  line {each.lineno}: {each.line}" for each in frames if each.filename == file]
+    return "".join(lines[-1:])
+
+
+def printed(said):
+    """What a learner's code printed, as lines of a report."""
+    return [f"  printed   {line:.80}" for line in said.getvalue().splitlines()[:8]]
 
 
 def agree(got, right, within):
@@ -53,6 +70,14 @@ def slip(name, found):
     return "a slip that this list does not know"
 
 
+def blank_line(file, name):
+    """The number of the first line of that function that waits to be written."""
+    lines = Path(file).read_text("utf-8").splitlines()
+    start = next(k for k, line in enumerate(lines) if line.startswith(f"def {name}("))
+    waits = (k for k in range(start, len(lines)) if "= ..." in lines[k] or "return ..." in lines[k])
+    return 1 + next(waits, start)
+
+
 @np.errstate(all="ignore")
 def judge(exercise, name):
     """("blank", "wrong" or "right", why in words): a learner's function on all inputs."""
@@ -64,9 +89,10 @@ def judge(exercise, name):
     except ValueError as error:
         return "wrong", str(error)
     if any(got is None for got in found):
+        line = blank_line(exercise.__file__, name)
         return "blank", (
-            f"{name} is still a blank: fill it in {near(exercise.__file__)}; "
-            f"--hint {blank.hint} asks a question that helps"
+            f"{name} is still a blank: {near(exercise.__file__)}, line {line}. "
+            f"The task stands at the top of that file; --hint {blank.hint} asks a question"
         )
     expected = [row(name, blank.right, case) for case in blank.inputs]
     wrong = [
@@ -76,14 +102,13 @@ def judge(exercise, name):
         return "right", ""
     smallest = min(wrong, key=lambda each: len(str(each[0])))
     with contextlib.redirect_stdout(io.StringIO()) as said:
-        row(name, function, smallest[0])
+        run(name, function, smallest[0])
     lines = [
         f"{name} is wrong on {len(wrong)} of {len(found)} inputs, of which this is the smallest:",
         *failing(name, *smallest),
-        *(f"  printed   {line:.80}" for line in said.getvalue().splitlines()[:8]),
+        *printed(said),
         f"  likely: {slip(name, found)}",
-        "  where to look: the signs at the top of contact.py, or "
-        + command(exercise.__file__, "--hint", blank.hint),
+        f"  where to look: {command(exercise.__file__, '--hint', blank.hint)}",
     ]
     return "wrong", "\n".join(lines)
 
@@ -113,15 +138,15 @@ def pressed():
 
 
 def thrown():
-    """A ball is thrown up from the table: how high it comes."""
+    """A ball is thrown up from the table: how high it lies at the end."""
     of = contact.scene_of(0.0, 0.1, vy=2.0)
-    return contact.run_model("lcp", of, 0.002, 600).q[:, 1].max() / 0.1 - 1.0
+    return contact.run_model("lcp", of, 0.002, 600).q[-1, 1, 0] / 0.1 - 1.0
 
 
 def groove():
-    """A ball drops into the groove of two balls that are held: how far off it ends."""
+    """A ball drops into the groove of two that are held: how high it lies at the end."""
     of = contact.scene_of([0.0, -0.105, 0.105], [0.8, 0.1, 0.1], [1.0, math.inf, math.inf])
-    return abs(contact.run_model("lcp", of, 0.002, 600).q[-1, 0, 0]) / 0.1
+    return contact.run_model("lcp", of, 0.002, 600).q[-1, 1, 0] / 0.1 - 1.0
 
 
 TRIALS = {
@@ -131,18 +156,24 @@ TRIALS = {
 }
 
 
+@contextlib.contextmanager
 def in_place(function, name):
     """contact.py with the learner's function in place of its own, while the context lasts."""
 
     def number(*values):  # also where it is an array that holds a single one
         return float(np.squeeze(function(*values)))
 
+    where, mine = name, number
     if name == "solve_contacts":
-        return patch.object(contact, name, function)
+        mine = function
     if name == "project_impulse":  # which contact.py writes out in its sweep
-        sweep = solver(total="project(c.lam, add)", project=number)
-        return patch.object(contact, "solve_contacts", sweep)
-    return patch.object(contact, name, number)
+        where, mine = "solve_contacts", solver(total="project(c.lam, add)", project=number)
+    own = getattr(contact, where)
+    setattr(contact, where, mine)
+    try:
+        yield
+    finally:
+        setattr(contact, where, own)
 
 
 def compare(exercise, name):
@@ -184,50 +215,66 @@ def drops(exercise, _):
     return columns("energy, depth", heads, rows, "{:.5g}")
 
 
-def seeing(exercise, balls, dt, restitution, baumgarte=0.2, iters=20):
-    """lcp_step with the three lines of exercise 10."""
-    if not exercise.applies(restitution):
-        return contact.lcp_step(balls, dt, restitution, baumgarte, iters)
-    fastest = max(math.hypot(ball.vx, ball.vy) for ball in balls)
-    contacts = contact.detect_contacts(balls, exercise.how_far(fastest, dt))
+def asking_twice(exercise, balls, dt, iters=20):
+    """leapfrog's step for e = 0, by the two functions of exercise 10."""
+    kick, _ = exercise.before_the_move(0.0, dt)
+    contacts = contact.detect_contacts(balls, contact.step_reach(balls, dt))
     for c in contacts:
-        c.target = exercise.least_speed(c.depth, baumgarte, dt)
-    contact.accelerate(balls, dt)
+        c.target = exercise.before_the_move(-c.depth, dt)[1]
+    contact.accelerate(balls, kick * dt)
     contact.solve_contacts(contacts, iters)
     contact.move(balls, dt)
+    contact.accelerate(balls, (1.0 - kick) * dt)
+    closed = []
+    for c in contacts:
+        x, y = (0.0, 1.0) if c.b is contact.FLOOR else (c.a.x - c.b.x, c.a.y - c.b.y)
+        then, now = math.atan2(c.nx, c.ny), math.atan2(x, y)
+        asked, c.target, c.lam, angle = exercise.after_the_move(c.lam, then, now)
+        c.nx, c.ny = (0.0, 1.0) if c.b is contact.FLOOR else (math.sin(angle), math.cos(angle))
+        closed += [c] if asked else []
+    contact.solve_contacts(closed, iters)
 
 
-@cache
-def published(name, dt=0.002):
-    """The scene of that name in which balls land, and what exact and lcp make of it."""
-    if name == "meeting":
-        of = contact.scene_of(0.0, [0.3, 1.504], vy=[4.0, -4.0])
-    else:
-        of = contact.build_scene(name, bodies={"pile": 8}.get(name))
-    return of, *(contact.run_model(model, of, dt, 250) for model in ("exact", "lcp"))
+GROOVE = contact.scene_of([0.0, 0.06], [0.1, 0.1 + math.sqrt(0.04 - 0.0036)], [math.inf, 1.0])
+SCENES = {  # name: (scene, seconds)
+    "drop": (contact.build_scene("drop"), 1.0),
+    "stack": (contact.build_scene("stack"), 1.0),
+    "slide": (GROOVE, 0.4),
+}
+INSIDE = contact.scene_of([0.0, 0.0], [0.1, 0.25])  # half a radius in one another
 
 
-def landings(exercise, dt=0.002):
-    """{scene: (worst height error beside exact, deepest overlap; and both as published)}, in r."""
-    rows = {}
-    for name in ("meeting", *contact.SCENES):
-        of, exact, lcp = published(name)
-        step = partial(seeing, exercise, dt=dt, restitution=of.restitution)
-        run = contact.simulate(step, of, dt, 250)
-        found = [contact.contact_quality(each, of, dt, exact) for each in (run, lcp)]
-        keys = "height_error_frac", "max_penetration_frac"
-        rows[name] = [quality[key] for key in keys for quality in found]
-    return rows
+def worst(step, of, seconds, dt):
+    """The worst distance of a ball from where exact has it [r]."""
+    steps = round(seconds / dt)
+    runs = contact.simulate(step, of, dt, steps), contact.run_model("exact", of, dt, steps)
+    return float(np.hypot(*(runs[0].q - runs[1].q).swapaxes(0, 1)).max()) / contact.RADIUS
 
 
-def land(exercise, _):
-    """The table of landings."""
-    heads = "error, yours", "error, lcp", "deepest, yours", "deepest, lcp"
-    return columns("beside exact, in r", heads, landings(exercise), "{:.4g}")
+def ask_twice(exercise, _):
+    """Errors beside exact, how high a ball comes that begins in another, the order of the slide."""
+
+    def ways(dt):
+        return partial(asking_twice, exercise, dt=dt), partial(
+            contact.lcp_step, dt=dt, restitution=0.0, baumgarte=0.2, iters=20
+        )
+
+    dt, rows = 0.002, {}
+    for name, (of, seconds) in SCENES.items():
+        rows[f"{name}, error"] = [worst(step, of, seconds, dt) for step in ways(dt)]
+    high = (contact.simulate(step, INSIDE, dt, 300).q[:, 1].max() for step in ways(dt))
+    rows["inside, height"] = [y / contact.RADIUS for y in high]
+    of, seconds = SCENES["slide"]
+    fine = (worst(step, of, seconds, dt / 4) for step in ways(dt / 4))
+    rows["slide, dt / 4"] = list(fine)
+    pairs = zip(rows["slide, error"], rows["slide, dt / 4"])
+    orders = [math.log(max(a, 1e-16) / max(b, 1e-16), 4) for a, b in pairs]
+    table = columns("in r, beside exact", ("yours", "lcp"), rows, "{:.3g}")
+    return f"{table}\nThe order of your slide is {orders[0]:.1f}, lcp's is {orders[1]:.1f}."
 
 
 SHOWN = {**dict.fromkeys(TRIALS, compare), "longest_step": cliffs, "implicit_spring": drops}
-SHOWN["applies"] = land  # the last of its three lines
+SHOWN["after_the_move"] = ask_twice  # the second of two
 
 
 # Exercise 8

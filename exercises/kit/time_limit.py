@@ -14,7 +14,9 @@ from pathlib import Path
 from curriculum.commands import near
 
 LIMIT = 20  # s, chosen: right answers take about one
-START = "import sys; sys.path.insert(0, sys.argv[1]); from kit import alone; alone.child()"
+START = (
+    "import sys; sys.path.insert(0, sys.argv[1]); from kit import time_limit; time_limit.child()"
+)
 
 
 def judged(name, file):
