@@ -61,24 +61,13 @@ def fresh(folder):
     (WORK / folder / ".cache").symlink_to(WORK / "numbers")
 
 
-def linked(source, target):
-    """The same folder once more, by hard links: pip replaces files and never writes into them."""
-    shutil.rmtree(target, ignore_errors=True)
-    shutil.copytree(source, target, symlinks=True, copy_function=os.link)
-
-
-def kept(folder):
-    """Keep page and notebook of a row for a look into them; forget what else it made."""
-    for path in (WORK / folder / "outputs").glob("contact.*"):
-        path.rename(WORK / f"{folder}-{path.name}")
-
-
 def row(folder, what, command):
-    """One row of "What to do next", with its expected exit status."""
+    """One row of "What to do next", with its expected exit status; page and notebook are kept."""
     for start in readme.OPENS_A_WINDOW:
         command = command.replace(start, f"{start}rrd verify ")
     check(what, command, folder, ASKS if "/ex1_" in command else 0)
-    kept(folder)
+    for path in (WORK / folder / "outputs").glob("contact.*"):
+        path.rename(WORK / f"{folder}-{path.name}")
 
 
 def pip_column():
@@ -88,7 +77,8 @@ def pip_column():
     assert list(folder.glob("outputs/*/contact.rrd")), "the main job made no recording"
     (folder / ".venv").rename(WORK / "first")
     for what, command, _ in readme.rows(TEXT):
-        linked(WORK / "first", folder / ".venv")
+        shutil.rmtree(folder / ".venv", ignore_errors=True)  # pip replaces files: links will do
+        shutil.copytree(WORK / "first", folder / ".venv", symlinks=True, copy_function=os.link)
         row("pip", what, command)
 
 
