@@ -75,7 +75,7 @@ def split(text: str, file: str) -> tuple:
     for marker in MARKER.finditer(text):
         if marker.start() not in markers:
             wrong.append((marker.start(), f"{marker[0].strip()!r} does not belong there"))
-    opening = DOCSTRING.match(text).end() if file in WHOLE else len(text)
+    opening = next(DOCSTRING.finditer(text)).end() if file in WHOLE else len(text)
     for line in CODE_LINE.finditer(blank(REGION, text), opening):
         wrong.append((line.start(), f"code outside any region: {line[0][:60]!r}"))
     repair = "edit the markers of the region"

@@ -130,8 +130,8 @@ def arrow_vectors(run: contact.Run, scene: contact.Scene) -> np.ndarray:
 def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
     """The curves {title: {model: values}}, each at the title's first word / MODEL."""
     for width, model in zip(WIDTHS[-len(runs) :], sorted(runs)):
-        color, peaks = rgba(COLORS[model]), "MinMax"  # which an average would hide
-        look = rr.SeriesLines(colors=color, names=model, widths=width, aggregation_policy=peaks)
+        line = {"colors": rgba(COLORS[model]), "names": model, "widths": width}
+        look = rr.SeriesLines(**line, aggregation_policy="MinMax")  # an average hides the peaks
         for title, lines in drawn.items():
             columns = rr.Scalars.columns(scalars=lines[model])
             send(recording, f"{title.split()[0]}/{model}", look, times[model], columns)
