@@ -119,9 +119,12 @@ DRAWN = """async (fig, frames = 4) => {
 SEE = f"""async (id) => {{
   const fig = document.getElementById(id);
   const live = fig.closest("#figure");
-  const place = live ? document.querySelector(".show[data-show*=models]") : fig;
-  place.scrollIntoView({{ block: live ? "start" : "center" }});
-  await ({DRAWN})(fig, live ? 9 : 4);
+  const places = live ? document.querySelectorAll(".show[data-show*=models]") : [fig];
+  for (const place of places) {{
+    place.scrollIntoView({{ block: live ? "start" : "center" }});
+    await ({DRAWN})(fig, live ? 9 : 4);
+    if (!live?.matches(".back")) break; // it steps back where a wide figure needs its room
+  }}
   return fig;
 }}"""
 # in every figure: what lies at the middle of each button, knob, handle, link and ball, if not that
