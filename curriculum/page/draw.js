@@ -19,7 +19,7 @@ export function el(tag, attributes, ...children) {
   return `<${tag}${written.join("")}>${children.join("")}</${tag}>`;
 }
 
-// v_n and m g as formulas have them, in text that is escaped; `low` and `up` lead to the n and back.
+// v_n and m g as formulas have them, in escaped text; `low` and `up` lead to the n and back.
 const typeset = (text, italic, low, up) =>
   escape(text)
     .replace(/\bv_n\b/g, `${italic("v")}${low}n${up}`)
@@ -28,7 +28,8 @@ const slanted = (text) => `<tspan font-style="italic">${text}</tspan>`;
 export const inSentence = (text) => typeset(text, (a) => `<i>${a}</i>`, "<sub>", "</sub>");
 
 export const label = (text, x, y, anchor = "start", kind = "tick strong") => {
-  const set = typeset(text, slanted, '<tspan dy="4" font-size="75%">', '</tspan><tspan dy="-4">\u200b</tspan>');
+  const low = '<tspan dy="4" font-size="75%">';
+  const set = typeset(text, slanted, low, '</tspan><tspan dy="-4">\u200b</tspan>');
   return el("text", { x, y, class: kind, "text-anchor": anchor }, set);
 };
 export const line = (x1, y1, x2, y2, kind = "rule dashed") =>

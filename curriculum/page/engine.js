@@ -95,7 +95,7 @@ function implicitStep(state, { mass, radius, motor }, { dt, stiffness, damping }
 
 // ---- lcp and soft: one problem, one sweep
 
-// Contacts ready for the sweeps: what an impulse of 1 does to the two balls, and the effective mass.
+// Contacts ready for the sweeps: what an impulse of 1 does to two balls, and the effective mass.
 // One may have a target velocity and a softness, which lcp has not.
 export function makeRows(contacts, mass) {
   return contacts.map(({ target = 0, softness = 0, ...c }) => {
@@ -214,7 +214,7 @@ function stepReach({ vx, vy }, dt) {
   return greatest([CONTACT_MARGIN, 2 * dt * (fastest - dt * GRAVITY)]);
 }
 
-// The normal of when two balls meet in free flight, or are nearest, within dt; and the depth of now.
+// The normal of when two balls meet in free flight, or are nearest, within dt; the depth of now.
 function turn(c, { x, y, vx, vy }, radius, dt) {
   if (c.j < 0) return;
   const [dx, dy] = [x[c.i] - x[c.j], y[c.i] - y[c.j]];
@@ -338,7 +338,8 @@ function softStep(state, { mass, radius }, knobs) {
 // ---- runs
 
 export const STEP = {
-  penalty: penaltyStep, lcp: lcpStep, leapfrog: leapfrogStep, soft: softStep, implicit: implicitStep,
+  penalty: penaltyStep, implicit: implicitStep,
+  lcp: lcpStep, leapfrog: leapfrogStep, soft: softStep,
 };
 const PARTS = ["x", "y", "vx", "vy"];
 

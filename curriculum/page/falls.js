@@ -90,8 +90,8 @@ export function lane(each, k, text, sight) {
 }
 
 /* Every ball is a handle, held from `least` m below its scene's place to `most` m over the table.
- * Where one is held all models begin anew, each with its balls so high, and let them fall when it is
- * let go. */
+ * Where one is held all models begin anew, each with its balls so high, and let them fall when it
+ * is let go. */
 export function handlesOf(view, shown, sight, [least, most]) {
   const { floor, scale, wide } = sight;
   const start = sceneOf(startOf(view.values.scene || "drop")).y;

@@ -40,7 +40,7 @@ export function stillMoves(dt, stiffness, damping, steps, rows) {
   return Number.isFinite(far) ? Math.min(FARTHEST, far) : FARTHEST;
 }
 
-/* What sweeps over a column of balls do, contact by contact from below: [{contact, wanted, lam, vy}],
+/* What sweeps over a column do, contact by contact from below: [{contact, wanted, lam, vy}],
  * where `wanted` is the change before the clamp; first what they start with. */
 export function visits(masses, lam, vy, count) {
   const contacts = masses.map((_, i) => ({ i, j: i - 1, nx: 0, ny: 1 }));

@@ -1,5 +1,5 @@
 /* The figures without a page, for tests: STORE, ENGINE and FIGURES are the bundled modules. */
-// A view as stage.js gives it, of a figure in a section with these values and this state of its own.
+// A view as stage.js gives it, of a figure in a section with these values and its own state.
 const Section = STORE.Section, figures = FIGURES.figures;
 const viewOf = (name, changes, own, width) => {
   const figure = figures[name], section = new Section("any", changes);

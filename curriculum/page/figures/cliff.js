@@ -1,5 +1,5 @@
 /* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. The
- * puzzle is the same at one step: a spring on which the ball hardly sinks, and yet comes to rest. */
+ * puzzle is the same at one step: a spring on which the ball hardly sinks, yet comes to rest. */
 import { axis, number, plain, plot, within } from "../draw.js";
 import { criticalDt, quality, runModel } from "../engine.js";
 import { decades, FARTHEST, G, grip, kept, R, scene, START, stillMoves } from "../kit.js";

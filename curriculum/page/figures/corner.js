@@ -72,7 +72,8 @@ function ramp(view) {
 const FROM = 0.8;
 const arrival = kept((load, settings) => {
   const one = scene([(1 + FROM) * R]);
-  const run = runModel("lcp", one, { ...settings, dt: settings.dt * Math.sqrt(load), restitution: 0 }, 400);
+  const dt = settings.dt * Math.sqrt(load);
+  const run = runModel("lcp", one, { ...settings, dt, restitution: 0 }, 400);
   const looks = Array.from(run.y, (y, row) => {
     const force = row ? (load * pushOfTable(run, one, row)) / G : 0;
     return { gap: y / R - 1, force };

@@ -1,5 +1,6 @@
 /* One inequality: at the end of a step the gap, gap + dt v_n, must not be negative. What lcp asks
- * for in its place is a choice: which share of a gap or an overlap to close or to open, and how far ahead to look. */
+ * for in its place is a choice: which share of a gap to close or of an overlap to open, and how far
+ * ahead to look. */
 import { arrow, axis, ball, circle, el, label, line, number, table } from "../draw.js";
 import { GRAVITY, runModel } from "../engine.js";
 import { beside, grip, kept, knobs, R, scene } from "../kit.js";

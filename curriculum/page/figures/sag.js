@@ -20,17 +20,18 @@ const lawOf = (masses, { dt, iters, baumgarte, warm }) =>
 const sags = kept((masses, settings) => {
   let top = 0;
   const heights = lawOf(masses, settings).map((deep) => (top += (2 - deep) * R) - R);
-  const run = runModel("lcp", scene(heights, { mass: masses }), { ...settings, restitution: 0 }, ROWS);
+  const balls = scene(heights, { mass: masses });
+  const run = runModel("lcp", balls, { ...settings, restitution: 0 }, ROWS);
   const [before, depths] = [ROWS - 9, ROWS].map((row) => depthsOf(stateAt(run, row).y));
   const rests = (deep, i) => Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9;
   return { depths, rests: depths.every(rests) };
 });
 
 // All ways to spend the sweeps of a step on equal substeps.
-const waysOf = (settings) =>
-  Array.from({ length: settings.iters }, (_, k) => k + 1)
-    .filter((parts) => settings.iters % parts === 0)
-    .map((parts) => ({ ...settings, parts, dt: settings.dt / parts, iters: settings.iters / parts }));
+const waysOf = ({ dt, iters, ...others }) =>
+  Array.from({ length: iters }, (_, k) => k + 1)
+    .filter((parts) => iters % parts === 0)
+    .map((parts) => ({ ...others, parts, dt: dt / parts, iters: iters / parts }));
 
 // Which of them has about so many substeps.
 function nearest(ways, wanted) {
@@ -58,10 +59,11 @@ function column(left, height, masses, depths, law) {
     const [x, y] = places[i];
     const heavy = mass === 1 ? "" : label(number(mass, 2), x, y + 5, "middle", "on-ball");
     const at = x + r + LENS + 12;
+    const shown = Math.round((100 * depths[i]) / ten) / 100 + 0; // no -0
     return [
       ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
       lens(at, y + r, size * depths[i], size * law[i]),
-      label((Math.round((100 * depths[i]) / ten) / 100 + 0).toFixed(2), at + LENS + 16, y + r + (i ? 5 : -4)),
+      label(shown.toFixed(2), at + LENS + 16, y + r + (i ? 5 : -4)),
     ].join("");
   });
   const power = Math.log10(ten);

@@ -1,6 +1,6 @@
 /* leapfrog beside lcp: one step in its parts, a ball that slides off a held one, and how the error
  * of that falls with the step. */
-import { arrow, axis, ball, label, line, number, path, plot, shift, table } from "../draw.js";
+import { arrow, axis, ball, label, number, path, plot, shift, table } from "../draw.js";
 import { runModel, STEP } from "../engine.js";
 import { grip, kept, knobs, R, scene, tens, wholly } from "../kit.js";
 
@@ -9,40 +9,38 @@ const PARTS = {
   lcp: ["before", "kick", "push", "move"],
   leapfrog: ["before", "½ kick", "way?", "move", "½ kick", "speed?"],
 };
-const [STRIP, GROUND, PX, BALL] = [132, 44, 12, 13]; // px: a strip, its table, 1 m/s in a step, a ball
-const [DOWN, UP] = [-5, 1]; // m/s; a gap is counted in what 1 m/s closes in a step
 
 // ---- one step, part by part
 
-// Gap [what 1 m/s closes in a step] and speed [m/s] before a step and after each of its parts.
+const [STRIP, GROUND, BALL] = [132, 44, 13]; // px: a model's strip, its table, a radius
+const FLOOR = STRIP - GROUND;
+const PX = 12; // what 1 m/s does in a step; gaps are counted in it
+const [DOWN, UP] = [-5, 1]; // m/s
+
+// Gap and speed [m/s] before a step, and after each of its parts.
 const stagesOf = kept((model, gap, v, settings) => {
-  const unit = settings.dt / R; // r
-  const one = scene([(1 + gap * unit) * R], { vy: [v] });
+  const one = scene([R + gap * settings.dt], { vy: [v] });
   const seen = [one];
   STEP[model](one, one, { ...settings, see: (state) => seen.push(state) });
-  return seen.map(({ y, vy }) => ({ gap: (y[0] / R - 1) / unit, v: vy[0] }));
+  return seen.map(({ y, vy }) => ({ gap: (y[0] - R) / settings.dt, v: vy[0] }));
 });
 
-// The middle of a column, the table's top in a strip.
-const columnOf = (view, k) => (k + 0.5) * (view.width / 6);
-const FLOOR = STRIP - GROUND;
+const columnOf = ({ width }, k) => ((k + 0.5) * width) / PARTS.leapfrog.length; // its middle
 
-// A strip: the ball after each part, and how far its speed would carry it in one step.
-const strip = (view, model, stages) => [
-  table(0, FLOOR, view.width, GROUND),
-  label(model, view.width - 4, 14, "end", "tick strong"),
-  ...stages.map(({ gap, v }, k) => {
+// The ball after each part, and how far its speed would carry it in one step.
+function strip(view, model, stages) {
+  const each = ({ gap, v }, k) => {
     const [x, y] = [columnOf(view, k), FLOOR - gap * PX];
     const kind = k && k < stages.length - 1 ? "seen" : "ball plainly";
-    return [
-      ball(model, x, y - BALL, BALL, kind),
-      arrow(`push m-${model}`, x, y, 0, -v * PX),
-      label(PARTS[model][k], x, STRIP - 6, "middle", "tick strong"),
-    ].join("");
-  }),
-].join("");
+    const speed = arrow(`push m-${model}`, x, y, 0, -v * PX);
+    return ball(model, x, y - BALL, BALL, kind) + speed +
+      label(PARTS[model][k], x, STRIP - 6, "middle");
+  };
+  const drawn = stages.map(each).join("");
+  return table(0, FLOOR, view.width, GROUND) + label(model, view.width - 4, 14, "end") + drawn;
+}
 
-// ---- a ball that slides off a held one
+// ---- a ball that slides off a held one, from `lean` off its top
 
 const [SECONDS, FINE, HEIGHT] = [0.5, 1e-4, 5]; // s, s, m: so high that it meets no table
 const slid = kept((model, lean, settings) => {
@@ -50,112 +48,118 @@ const slid = kept((model, lean, settings) => {
   const all = scene([HEIGHT, HEIGHT + y], { x: [0, x], mass: [Infinity, 1] });
   return runModel(model, all, settings, Math.round(SECONDS / settings.dt));
 });
+const placesOf = ({ x, y, t }) =>
+  Array.from(t, (_, k) => [x[2 * k + 1] / R, (y[2 * k + 1] - HEIGHT) / R]);
 
-// Where the upper ball is at a time [r]: between two rows by their speeds, a cubic.
+// Where the upper ball is at a time [r]: between two rows a cubic, by their speeds.
 function placeAt({ x, y, vx, vy, dt, steps }, time) {
   const row = Math.min(steps - 1, Math.floor(time / dt));
   const [a, b, s] = [2 * row + 1, 2 * row + 3, time / dt - row];
-  const blend = (q, v) =>
-    q[a] + s * (dt * v[a] + s * (3 * (q[b] - q[a]) - dt * (2 * v[a] + v[b]) +
-      s * (2 * (q[a] - q[b]) + dt * (v[a] + v[b]))));
-  return [blend(x, vx) / R, (blend(y, vy) - HEIGHT) / R];
+  const between = (q, v) => {
+    const [rise, first, last] = [q[b] - q[a], dt * v[a], dt * v[b]];
+    return q[a] + s * (first + s * (3 * rise - 2 * first - last + s * (first + last - 2 * rise)));
+  };
+  return [between(x, vx) / R, (between(y, vy) - HEIGHT) / R];
 }
 
 // The worst place of a model's run [r], beside leapfrog with the finest steps.
 const errorOf = kept((model, lean, settings) => {
-  const [run, fine] = [slid(model, lean, settings), slid("leapfrog", lean, { ...settings, dt: FINE })];
-  const off = (time, row) => {
-    const [x, y] = placeAt(fine, time);
-    return Math.hypot(run.x[2 * row + 1] / R - x, (run.y[2 * row + 1] - HEIGHT) / R - y);
+  const fine = slid("leapfrog", lean, { ...settings, dt: FINE });
+  const run = slid(model, lean, settings);
+  const off = ([x, y], row) => {
+    const [trueX, trueY] = placeAt(fine, run.t[row]);
+    return Math.hypot(x - trueX, y - trueY);
   };
-  return Math.max(...Array.from(run.t.subarray(1), (time, k) => off(time, k + 1)));
+  return Math.max(...placesOf(run).map(off));
 });
 
 const STEPS = Array.from({ length: 7 }, (_, k) => 0.0005 * 2 ** k); // s
-const curve = kept((model, lean, settings) =>
-  STEPS.map((dt) => errorOf(model, lean, { ...settings, dt })),
-);
 
-// The order: error over step, beside lines of slope one and two.
+// Error over step, beside lines of slope one and two; `now`: the reader's own.
 function order(view, settings, left, top) {
   const { lean } = view.own;
-  const { dt, ...others } = settings;
-  const all = MODELS.map((model) => curve(model, lean, others));
-  const now = MODELS.map((model) => errorOf(model, lean, settings));
-  const slope = (power, [first]) => STEPS.map((each) => 0.5 * first * (each / STEPS[0]) ** power);
+  const at = (model) => (dt) => errorOf(model, lean, { ...settings, dt });
+  const all = MODELS.map((model) => STEPS.map(at(model)));
+  const now = MODELS.map((model) => at(model)(settings.dt));
+  const slopes = all.map(([first], k) =>
+    STEPS.map((dt) => 0.5 * first * (dt / STEPS[0]) ** (k + 1)));
   const ticks = [0.5, 2, 8, 32].map((ms) => [ms / 1000, String(ms)]);
+  const drawn = (ys, model, kind) => ({ model, xs: STEPS, ys, kind });
   const chart = plot([left, top, view.width - left, view.height - top], {
-    x: { ...axis([0.0005, 0.064], "time step dt (ms)", ...ticks), log: true },
+    x: { ...axis([STEPS[0], 0.064], "time step dt (ms)", ...ticks), log: true },
     y: { ...tens(-6, 1), label: "sliding: error / r" },
     lines: [
-      ...all.map((ys, k) => ({ model: "fixed", xs: STEPS, ys: slope(k + 1, ys), kind: "thin dotted" })),
-      ...all.map((ys, k) => ({ model: MODELS[k], xs: STEPS, ys })),
+      ...slopes.map((ys) => drawn(ys, "fixed", "thin dotted")),
+      ...all.map((ys, k) => drawn(ys, MODELS[k])),
     ],
-    points: now.map((y, k) => ({ model: MODELS[k], x: dt, y, size: 7 })),
+    points: now.map((y, k) => ({ model: MODELS[k], x: settings.dt, y, size: 7 })),
   });
-  const named = all.map((ys, k) =>
-    label(`slope ${k + 1}`, chart.sx(STEPS[3]), chart.sy(slope(k + 1, ys)[3]) + 18));
+  const named = slopes.map((ys, k) =>
+    label(`slope ${k + 1}`, chart.sx(STEPS[3]), chart.sy(ys[3]) + 18));
   return { ...chart, svg: chart.svg + named.join(""), now };
 }
 
-// The held ball and both ways around it, to the end of the run.
+// The held ball, and both ways around it.
 function slide(view, settings, wide, top) {
   const { lean } = view.own;
   const scale = Math.min(46, wide / 7); // px for 1 r
   const [x, y] = [1.2 * scale, top + 3.4 * scale];
   const place = ([px, py]) => [x + px * scale, y - py * scale];
   const drawn = MODELS.map((model) => {
-    const run = slid(model, lean, settings);
-    const points = Array.from(run.t, (_, k) => [run.x[2 * k + 1] / R, (run.y[2 * k + 1] - HEIGHT) / R]);
-    const seen = points.filter(([, py]) => y - py * scale < view.height - scale);
-    const end = place(seen[seen.length - 1]);
-    return path(seen.map(place), `line m-${model}`) + ball(model, ...end, scale, "ghost");
+    const ways = placesOf(slid(model, lean, settings)).map(place);
+    const seen = ways.filter(([, down]) => down < view.height - scale);
+    return path(seen, `line m-${model}`) + ball(model, ...seen[seen.length - 1], scale, "ghost");
   });
   const at = place([2 * Math.sin(lean), 2 * Math.cos(lean)]);
-  return { svg: ball("fixed", x, y, scale, "body") + drawn.join("") +
-    ball("leapfrog", ...at, scale, "ball plainly"), at, x, y, scale };
+  const both = ball("fixed", x, y, scale, "body") + drawn.join("");
+  return { svg: both + ball("leapfrog", ...at, scale, "ball plainly"), at, x, y, scale };
+}
+
+// ---- the whole
+
+function handlesOf(view, { dt }, held, { sx, sy, now }) {
+  const { gap, v, lean } = view.own;
+  const [x, y] = [columnOf(view, 0), FLOOR - gap * PX];
+  const lift = { r: BALL, low: 0, high: -DOWN, step: 0.1, by: (dx, dy) => -dy / PX };
+  const fly = { low: DOWN, high: UP, step: 0.1, at: (toX, to) => (y - to) / PX };
+  const at = (toX, toY) => Math.atan2(toX - held.x, Math.max(1, held.y - toY));
+  const roll = { r: held.scale, low: 0.05, high: 0.8, step: 0.02, at };
+  const tall = `${number((gap * dt) / R, 2)} r`;
+  const top = grip(view, "gap", x, y - BALL, "the ball: its gap before the step", tall, lift);
+  const fast = ["its speed before the step", `${number(v, 2)} m/s`, fly];
+  const angle = `${number((lean * 180) / Math.PI, 2)}°`;
+  const turn = { times: 1.1, at: sx.back };
+  return [
+    top,
+    wholly(top, "other", x, STRIP + y - BALL, BALL),
+    grip(view, "v", x, y - v * PX, ...fast),
+    grip(view, "lean", ...held.at, "the sliding ball: where it starts", angle, roll),
+    grip(view, "dt", sx(dt), sy(now[1]), "the time step", `${number(1000 * dt)} ms`, turn),
+  ];
 }
 
 function draw(view) {
   const { gap, v } = view.own;
-  const settings = knobs(view);
-  const [first, second] = MODELS.map((model) => stagesOf(model, gap, v, settings));
-  const top = 2 * STRIP + 14;
-  const wide = Math.round(0.38 * view.width);
-  const sliding = { dt: view.get("dt"), baumgarte: settings.baumgarte, iters: settings.iters };
-  const whole = { ...sliding, restitution: 0 };
-  const held = slide(view, whole, wide, top);
-  const { svg, sx, sy, now } = order(view, whole, wide, top);
-  const x = columnOf(view, 0);
-  const y = FLOOR - gap * PX;
-  const lift = { r: BALL, low: UP - 1, high: -DOWN, step: 0.1, by: (dx, dy) => -dy / PX };
-  const fly = { low: DOWN, high: UP, step: 0.1, at: (toX, to) => (y - to) / PX };
-  const tall = `${number(gap * settings.dt / R, 2)} r`;
-  const ball1 = grip(view, "gap", x, y - BALL, "the ball: its gap before the step", tall, lift);
-  const tip = grip(view, "v", x, y - v * PX, "its speed before the step", `${number(v, 2)} m/s`, fly);
-  const at = (toX, toY) => Math.atan2(toX - held.x, Math.max(1, held.y - toY));
-  const lean = { r: held.scale, low: 0.05, high: 0.8, step: 0.02, at };
-  const leans = `${number((view.own.lean * 180) / Math.PI, 2)}° off the top`;
-  const turn = { at: sx.back, times: 1.1 };
-  const ends = [first, second].map((all, k) => {
-    const { gap: end, v: speed } = all[all.length - 1];
-    return `${MODELS[k]} ends at ${number(end * settings.dt / R, 2)} r with ${number(speed, 2)} m/s`;
+  const settings = { ...knobs(view), dt: view.get("dt") };
+  const all = MODELS.map((model) => stagesOf(model, gap, v, settings));
+  const [top, wide] = [2 * STRIP + 14, Math.round(0.38 * view.width)];
+  const sliding = { dt: settings.dt, baumgarte: settings.baumgarte, iters: settings.iters };
+  const held = slide(view, { ...sliding, restitution: 0 }, wide, top);
+  const chart = order(view, { ...sliding, restitution: 0 }, wide, top);
+  const strips = all.map((stages, k) => shift(0, k * STRIP, strip(view, MODELS[k], stages)));
+  const inRadii = (gap) => `${number((gap * settings.dt) / R, 2)} r`;
+  const ends = all.map((stages, k) => {
+    const { gap: end, v: speed } = stages[stages.length - 1];
+    return `${MODELS[k]} ends at ${inRadii(end)} with ${number(speed, 2)} m/s`;
   });
-  const [late, near] = now.map((each) => `${number(each, 2)} r`);
+  const [lcp, leapfrog] = chart.now.map((each) => `${number(each, 2)} r`);
   return {
-    svg:
-      strip(view, "lcp", first) + shift(0, STRIP, strip(view, "leapfrog", second)) +
-      held.svg + svg,
+    svg: strips.join("") + held.svg + chart.svg,
     words:
-      `From a gap of ${tall} with ${number(v, 2)} m/s ${ends.join(", ")}. Where a ball slides, ` +
-      `${number(1000 * settings.dt)} ms leave ${late} with lcp and ${near} with leapfrog.`,
-    handles: [
-      ball1,
-      wholly(ball1, "other", x, STRIP + y - BALL, BALL),
-      tip,
-      grip(view, "lean", ...held.at, "the sliding ball: where it starts", leans, lean),
-      grip(view, "dt", sx(settings.dt), sy(now[1]), "the time step", `${settings.dt} s`, turn),
-    ],
+      `From a gap of ${inRadii(gap)} with ${number(v, 2)} m/s ${ends.join(", ")}. Where a ball ` +
+      `slides, steps of ${number(1000 * settings.dt)} ms leave ${lcp} with lcp and ${leapfrog} ` +
+      "with leapfrog.",
+    handles: handlesOf(view, settings, held, chart),
     lit: ["way", "speed"],
   };
 }
@@ -163,8 +167,8 @@ function draw(view) {
 export const figure = {
   title: "One step, asked once and asked twice",
   caption:
-    "lcp asks one question in a step, leapfrog two: drag the ball and its speed, the sliding ball " +
-    "and the time step, and see what each step leaves.",
+    "lcp asks one question in a step, leapfrog two: drag the ball and its speed, the sliding " +
+    "ball and the time step, and see what each step leaves.",
   height: 520,
   knobs: ["dt"],
   start: () => ({ gap: 3, v: -4, lean: 0.1 }),

@@ -31,7 +31,7 @@ FAULTS = [
     (FIGURES + "sweeps.js", "v - 1), LAST", "v), LAST", reads("sweeps")),
     (FIGURES + "sag.js", "? Math.min(1, deep)", "? Math.min(1, 2 * deep)",
      reads("sag")),
-    (FIGURES + "sag.js", "dt: settings.dt / parts", "dt: settings.dt", reads("sag")),
+    (FIGURES + "sag.js", "dt: dt / parts", "dt: dt", reads("sag")),
     (FIGURES + "springs.js", "Math.max(0, (k * depth * R) / G)", "Math.max(0, (depth * R) / G)",
      reads("springs")),
     (FIGURES + "springs.js", "view.own.press &&=", "false &&", LOST),
