@@ -167,7 +167,7 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
      ["{}:#: setup changed", f"{CHAPTER}:6: contact.CONTACT_MARGIN * 1000|.0f was 1 and is 2"]),
     ("meta.yaml", "  drop: []", "  drop: []\n  long: [--steps, 3]", ["{}:1: run long is quoted "]),
     ("meta.yaml", '\n  sweep:', '\n  swept:',
-     ["{}:1: hashes of what is gone: swept", "contact.py:#: sweep changed, of which "]),
+     ["{}:1: hashes of what is gone: swept", "contact.py:#: sweep changed, and "]),
     ("wallclock.csv", PENDING, PENDING
      + "ch3.5-contact,cpu,0.01,0123456789ab,1234567,2026-01-02,MEASURED\n",
      ["{}:3: cpu was measured on other code"]),
@@ -214,7 +214,7 @@ def test_a_changed_region_names_who_speaks_of_it_and_is_accepted_by_name(project
     line = line_of(project / "contact.py", "# --- region: sweep ---") + 1
     speak = f"{CHAPTER}:{project_at}, {CHAPTER}:{code_at}, {EXERCISE}:1"
     assert failed.stdout == (
-        f"contact.py:{line}: sweep changed, of which {speak} speak; "
+        f"contact.py:{line}: sweep changed, and {speak} speak of it; "
         "repair: read these, then python -m curriculum.text --accept sweep\n"
     )
     refused = run_gate(project, "--accept", "nowhere")

@@ -1,8 +1,8 @@
 """The gate: what chapter and README say, against what the code is and does.
 
     python -m curriculum.text                 # check, write nothing; exit 1 and a line a problem
-    python -m curriculum.text --accept NAME   # what speaks of this region has been read; and all
-                                              # sentences whose numbers moved
+    python -m curriculum.text --accept NAME   # what speaks of this region has been read, and every
+                                              # sentence whose number moved (without a name: these)
 
 Regions are included once; slots, flags and names in `code` are of what is there; numbers are quoted
 by reference, `holds:` comments are true, and results are of today's code. Whether a sentence is
@@ -134,7 +134,7 @@ class Gate:
         """What readers have read is what it was, and nothing is kept of what is gone."""
         for each in self.changed:
             speak = [f"{p.file}:{p.line}" for p in self.passages if p.speaks_of(each)]
-            what = f"{each.name} changed" + f", of which {', '.join(speak)} speak" * bool(speak)
+            what = f"{each.name} changed" + f", and {', '.join(speak)} speak of it" * bool(speak)
             self.say(each.file, each.line, what, f"read these, then {GATE} --accept {each.name}")
         if gone := ", ".join(self.meta["region_hashes"].keys() - self.read):
             self.say("meta.yaml", 1, f"hashes of what is gone: {gone}", f"{GATE} --accept")
