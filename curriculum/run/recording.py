@@ -23,7 +23,6 @@ except ImportError:
 
 PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"
-WIDTHS = (7.0, 5.0, 3.4, 2.2, 1.2)  # of curves, in points: lines that coincide are seen beneath
 MOST_ARROWS = 24  # balls: more have no arrows
 SECONDS = ("sim_time", "landing")  # timelines, besides step
 LONGEST = 9e9  # s: 64 bits of nanoseconds
@@ -129,7 +128,8 @@ def arrow_vectors(run: contact.Run, scene: contact.Scene) -> np.ndarray:
 
 def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
     """The curves {title: {model: values}}, each at the title's first word / MODEL."""
-    for width, model in zip(WIDTHS[-len(runs) :], sorted(runs)):
+    for place, model in enumerate(sorted(runs, reverse=True)):
+        width = 1.2 * 1.5**place  # points: lines that coincide are seen beneath
         line = {"colors": rgba(COLORS[model]), "names": model, "widths": width}
         look = rr.SeriesLines(**line, aggregation_policy="MinMax")  # an average hides the peaks
         for title, lines in drawn.items():
