@@ -26,7 +26,7 @@ BOXES = """(nodes) => nodes.map((node) => {
 
 
 def photograph(page, folder):
-    """Save PICTURE in a folder, the four balls just after the landing; its path."""
+    """Save PICTURE in a folder, the balls just after the landing; its path."""
     with opened(page, "?scene=drop", device_scale_factor=2) as tab:
         tab.add_style_tag(content=STANDING)
         tab.locator("#figure").scroll_into_view_if_needed()
@@ -36,7 +36,7 @@ def photograph(page, folder):
         tab.wait_for_timeout(300)
         box = tab.locator("#fig-lanes .drawing").bounding_box()
         # without the air above the balls, and the chart, which tells the answer of a bet
-        box |= {"y": box["y"] + 0.35 * box["height"], "height": 0.33 * box["height"]}
+        box |= {"y": box["y"] + 0.46 * box["height"], "height": 0.22 * box["height"]}
         tab.screenshot(path=folder / PICTURE, clip=box)
     return folder / PICTURE
 
