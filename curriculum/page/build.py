@@ -104,17 +104,6 @@ def stylesheet():
     return Markup(re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL)))
 
 
-def looks():
-    """[(model, colour, colour in the dark, dash in px or "")] as all pictures have them."""
-    found = []
-    for model in contact.MODELS:
-        color, _, dash = plotting.LOOKS[model]
-        parts = () if dash == "-" else dash[1]  # in widths of a line, which is 2 px here
-        dashes = " ".join(str(2 * part) for part in parts)
-        found.append((model, color, plotting.IN_THE_DARK[color], dashes))
-    return found
-
-
 def environment(**held):
     """The templates' environment; its macros know what is held."""
     made = jinja2.Environment(
@@ -129,8 +118,8 @@ def environment(**held):
         (name, data_address(f"font/{kind}", (HERE / file).read_bytes()), *rest)
         for name, file, kind, *rest in fonts.FACES
     ]
-    made.globals.update(colab=colab, faces=faces, looks=looks(), hides=chapter.HIDES)
-    made.globals.update(ledger=ledger, pieces=pieces, drawn_by=drawn_by, **held)
+    made.globals.update(colab=colab, faces=faces, models=[*contact.MODELS], hides=chapter.HIDES)
+    made.globals.update(ledger=ledger, pieces=pieces, plotting=plotting, drawn_by=drawn_by, **held)
     return made
 
 

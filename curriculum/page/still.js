@@ -14,6 +14,7 @@ function seenLater(figure, view, changes) {
   figure.look(view, changes, true);
   const { from, to } = view.own;
   view.own.time = from + 0.2 * (to - from);
+  view.height = 380;
   view.open = () => true;
 }
 
@@ -27,7 +28,7 @@ function still([id, [name, changes]]) {
     const made = figure.draw(view);
     for (const part of ["title", "height", "svg", "words"])
       if (!(part in { ...figure, ...made })) throw new Error(`it has no ${part}`);
-    const [height, narrow] = [heightOf(figure, WIDTH), heightOf(figure, 1)];
+    const [height, narrow] = [view.height, heightOf(figure, 1)];
     const counts = { knobs: knobs.length, buttons: buttonsOf(figure).length };
     const { svg, words } = made;
     const texts = { words, sentence: inSentence(words), title, caption: inSentence(caption) };

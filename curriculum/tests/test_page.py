@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import pytest
 
-import contact
 from curriculum.page.build import build, check_lines
 from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
@@ -204,36 +203,6 @@ def test_a_link_of_the_text_sets_its_section_and_the_live_figure_follows_the_tex
             "(node) => node.scrollIntoView({ block: 'center' })"
         )
         page.wait_for_selector("#figure.back", state="attached")
-
-
-def test_the_live_figure_shows_the_gaps_of_contact_py(tab):
-    """Of the models at any time, and how deep the spring is pressed in at most."""
-    every = tab.locator("[data-show*='soft,exact&']").first
-    every.evaluate("(node) => node.scrollIntoView({ block: 'center' })")
-    tab.wait_for_selector("#fig-lanes svg:has(.line.m-exact):has(.line.m-soft)")
-    scene = contact.build_scene("drop")
-    runs = {name: contact.run_model(name, scene, 0.002, 700) for name in contact.MODELS}
-    gaps = {name: run.q[:, 1, 0] / contact.RADIUS - 1 for name, run in runs.items()}
-    deepest = int(gaps["penalty"].argmin())
-    time = tab.locator("#fig-lanes .handle[data-handle=time]")
-    box = time.bounding_box()
-    for _ in mouse(tab, box["x"] + box["width"] / 2, box["y"] + 9, ((-99, 0), (-180, 0))):
-        judge_gaps(tab, gaps)
-    away = deepest - round(float(time.get_attribute("aria-valuenow")) / 0.002)
-    for _ in range(abs(away)):
-        tab.keyboard.press("ArrowRight" if away > 0 else "ArrowLeft")
-    assert judge_gaps(tab, gaps) == deepest
-
-
-def judge_gaps(tab, gaps):
-    """The live figure tells the gaps of one row; which."""
-    told = call(tab, page_browser.WORDS, "fig-lanes")
-    row = round(float(told.partition(" s:")[0]) / 0.002)
-    for name, size, way in re.findall(r"(\w+) ([\d.]+) r (in|up)", told):
-        shown = float(size) * {"in": -1, "up": 1}[way]
-        assert shown == pytest.approx(gaps[name][row], rel=0.05), (name, told)
-    assert all(abs(gaps[name][row]) < 1e-9 for name in re.findall(r"(\w+) touching", told))
-    return row
 
 
 def test_an_explosion_is_drawn_with_a_scale_of_heights(visit):

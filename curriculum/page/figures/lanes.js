@@ -92,7 +92,9 @@ function draw(view) {
   const waiting = (each) => `waits for your bet in ${each.waits}`;
   const places = shown.map((each) => `${each.model} ${place(each, waiting(each))}`);
   const touching = shown.filter((each) => view.running && each.push[each.row] > 0);
-  const drawn = shown.map((each, k) => lane(each, k, place(each, "bet first"), sight));
+  const brief = ({ gap, row }) => wide < 84 && Number.isFinite(gap[row]) && number(gap[row], 2);
+  const below = (each) => (!each.waits && brief(each)) || place(each, "bet first");
+  const drawn = shown.map((each, k) => lane(each, k, below(each), sight));
   return {
     svg: table(0, floor, view.width, GROUND) + drawn.join("") + ruler(sight) + svg,
     words: `${text}: ${places.join(", ")}.`,
