@@ -16,7 +16,7 @@ import contact
 from contact import STEPPED, Ball, Contact, Settings, build_scene, contact_quality, run_model
 from curriculum.bench import problems
 from curriculum.exact import simulate_exact
-from curriculum.stress import mujoco_match
+from curriculum.stress import mujoco_match, scenes
 from curriculum.stress.properties import PROPERTIES, judge
 from curriculum.stress.trial import Trial
 
@@ -310,6 +310,27 @@ def test_leapfrog_bounces_two_free_balls_at_any_angle_as_the_law_of_impact_does(
     assert v_n < 0.0 and np.abs(run.q[-1].T - q).max() < 1e-13
 
 
+def test_what_a_bounce_pushes_on_keeps_its_normals():
+    """A heap of the stress run, e = 0.91, in which one ball strikes through others in a step."""
+    spec = scenes.numbered_spec(2181)
+    run = run_model("leapfrog", scenes.to_scene(spec), DT, 5, Settings(iters=1000))
+    total = contact.energy(run.q, run.v, np.array(spec["mass"]))
+    assert total.max() <= total[0] * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("vx", [1e-170, -1e-170, 0.0])
+def test_leapfrog_takes_a_ball_that_is_too_slow_for_a_square(vx):
+    scene = contact.scene_of([0.0, 0.25], 0.7, [1.0, 2.0], vx=[vx, 0.0])
+    assert np.isfinite(run_model("leapfrog", scene, 0.003, 50, Settings(skip=False)).q).all()
+
+
+def test_exact_settles_unequal_columns_in_more_than_a_thousand_sweeps():
+    heavy = build_scene("stack", 2, 4)._replace(mass=np.array([0.02, 9.0, 0.03, 8.0]))
+    times = np.arange(300) * 0.003
+    q, _ = contact.exact_run(heavy, times)
+    assert np.abs(q - simulate_exact(heavy, times, contact.GRAVITY)[0]).max() < 1e-12
+
+
 def test_momentum_finds_what_plain_sweeps_find_in_a_tenth_of_them():
     """A tower at rest asks: how hard does each ball press on the one below?"""
     counts = []
@@ -550,6 +571,39 @@ def test_measures_of_recordings_made_by_hand():
     rises = contact_quality(recording([1.0, 0.4, 0.5, 0.3, 0.35]), scene, 0.01)
     assert rises["contact_energy"] == pytest.approx(0.15) and rises["energy_excess"] == 0.0
     assert contact_quality(recording([1.0, -0.01]), scene, 0.01)["through"] == "the floor"
+
+
+def test_a_swing_of_many_steps_does_not_tremble_and_one_of_few_does():
+    """Undamped, in contact for ever: whether it swings in about six steps or in fifty."""
+    for dt, trembling in ((0.0105, True), (0.0012, False)):
+        scene = contact.scene_of(0.0, 0.098, 1.3, damping=0.0)
+        run = run_model("penalty", scene, dt, 4000, Settings(stiffness=1e4))
+        assert contact_quality(run, scene, dt)["trembles"] == trembling
+
+
+def test_measures_are_in_radii_of_the_first_ball():
+    scene = contact.scene_of([0.0, 2.0], [0.05, 0.5], radius=[0.06, 0.2])
+    run = contact.Run(np.arange(3) * 0.01, *np.array([[scene.q0] * 3, [scene.v0] * 3]))
+    row = contact_quality(run, scene, 0.01)
+    assert row["rest_penetration_frac"] == pytest.approx(0.01 / 0.06)
+
+
+def test_the_first_contact_is_seen_in_a_velocity_that_changes_by_a_millionth():
+    t = 0.01 * np.arange(5)
+    q, v = np.full((5, 2, 1), 3.0), np.zeros((5, 2, 1))
+    v[:, 1, 0] = 2.0 - G * t + [0.0, 0.0, 2e-6, 2e-6, 2e-6]
+    scene = contact.scene_of(3.0, 3.0)
+    assert contact_quality(contact.Run(t, q, v), scene, 0.01)["first_contact_step"] == 2
+
+
+def test_a_ball_at_the_top_of_its_flight_is_not_at_rest_and_one_that_creeps_is():
+    dt = 0.004
+    flies = recording([1.0 - 0.5 * G * (k * dt - 3 * dt) ** 2 for k in range(5)], 5)._replace(
+        t=dt * np.arange(5)
+    )
+    lies = recording([R, R + 1e-7, R + 2e-7])._replace(t=dt * np.arange(3))
+    scene = build_scene("drop")
+    assert not contact.at_rest(flies, scene) and contact.at_rest(lies, scene)
 
 
 def test_the_height_error_is_split_at_the_first_contact_of_either_run():

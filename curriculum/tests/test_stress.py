@@ -14,7 +14,7 @@ from curriculum.stress import __main__ as command
 from curriculum.stress import extremes, jobs, maps, mujoco_match, properties, scenes
 from curriculum.stress.properties import PROPERTIES
 from curriculum.stress.trial import Trial
-from curriculum.tests import plant
+from curriculum.tests import stress_claims
 
 ROOT = Path(__file__).resolve().parents[2]
 HALF = "(1.0 if c.b is FLOOR else 0.5)"  # of pairs of balls
@@ -190,7 +190,7 @@ def planted(tmp_path_factory):
         if path.name != "fast.py":
             shutil.copy(path, folder / path.relative_to(ROOT))
     done = subprocess.run(
-        [sys.executable, "-B", ROOT / "curriculum" / "tests" / "plant.py"],
+        [sys.executable, "-B", ROOT / "curriculum" / "tests" / "stress_claims.py"],
         input=json.dumps(FAULTS), cwd=folder, capture_output=True, text=True, timeout=300,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -207,7 +207,7 @@ def test_the_claim_that_must_see_it_names_the_fault_that(fault, planted):
 @pytest.fixture(scope="module")
 def claimed():
     """[(claim, whether it holds)] of the code as it stands, on some of the same subjects."""
-    return list(plant.claimed((properties, jobs, maps, mujoco_match), 100))
+    return list(stress_claims.claimed((properties, jobs, maps, mujoco_match), 100))
 
 
 def test_no_claim_is_violated_by_the_code_as_it_stands(claimed):
