@@ -1,4 +1,4 @@
-"""Faults for contact.py: (file, what stands there, what is planted, the tests that must name it)."""
+"""Faults for contact.py: (file, what stands there, what is planted, the tests that name it)."""
 
 MODELS, LINE = "test_models.py -k ", "test_command_line.py -k "
 SLIDE, BOUNCES = MODELS + "second_order", MODELS + "any_angle"
@@ -8,8 +8,8 @@ FAULTS = [
     (C, "        c.target = c.after\n", "        c.target = c.after\n        c.lam = 0.0\n",
      MODELS + "throws_nobody"),
     (C, "            turn(c, 0.0)  # to", "            pass  # to", SLIDE),
-    (C, "    accelerate(balls, 0.5 * dt)\n    solve_with", "    accelerate(balls, dt)\n    solve_with",
-     MODELS + "with_one_step"),
+    (C, "    accelerate(balls, 0.5 * dt)\n    solve_with",
+     "    accelerate(balls, dt)\n    solve_with", MODELS + "with_one_step"),
     (C, "        c.target = max(c.target, (end - max(gap, 0.0)) / dt)\n", "", BOUNCES),
     (C, "    turn(c, dt)\n", "", MODELS + "pass_one_another"),
     (C, "        if onward < 0.0:\n            t = 1.0\n", "", MODELS + "momentum"),
