@@ -117,6 +117,8 @@ def checks():
         "ruff format": "ruff format --check .",
         "types": "python -m mypy",
         "CONTRIBUTING": "pre-commit install && .venv/bin/pre-commit validate-config",
+        "workflows": "zizmor --offline --quiet --min-severity medium .github/workflows",
+        "ten planted faults": "python -m curriculum.tests.plant --most 10",
         "quick benchmark": "python -m curriculum.bench --quick",
         "quick stress": "python -m curriculum.stress --quick",
     }.items():
