@@ -278,12 +278,12 @@ def lowest_gap(figure, kind):
     return (floor - ball["cy"] - ball["r"]) / ball["r"] / times
 
 
-def column(masses, speeds, sweeps):
+def column(masses, speeds, sweeps, solve=contact.solve_contacts):
     """Impulses [m g dt] of touching balls over one another after sweeps; speeds in g dt."""
     heights = (2 * np.arange(len(masses)) + 1) * R
     balls = contact.make_balls(contact.scene_of(0 * heights, heights, masses, vy=speeds))
     contacts = sorted(contact.detect_contacts(balls, margin=1e-9), key=lambda c: c.a.y + c.b.y)
-    contact.solve_contacts(contacts, sweeps)
+    solve(contacts, sweeps)
     return [c.lam for c in contacts]
 
 
@@ -300,7 +300,13 @@ def test_sweeps_are_bars_as_long_as_the_impulses_of_contact_py(draw):
 
 def test_the_walk_down_the_bowl_is_that_of_the_sweeps_and_ends_at_its_lowest_point(draw):
     figure = draw("bowl", own={"v1": -0.6, "v2": -1.3, "heavy": 10, "begin1": 0, "begin2": 0})
-    assert point(figure, "lcp") == pytest.approx(column([1, 10], [-0.6, -1.3], 40), rel=0.01)
+    assert point(figure, "lcp") == pytest.approx(column([1, 10], [-0.6, -1.3], 100), rel=0.01)
+    quick = draw("momentum", own={"v1": -0.6, "v2": -1.3, "begin2": 0})
+    assert point(quick, "lcp") == pytest.approx(column([1, 10], [-0.6, -1.3], 100), rel=0.01)
+    rings = [place(ring) for ring in quick.shapes("look m-leapfrog")]
+    x, y = quick.axes()
+    third = column([1, 10], [-0.6, -1.3], 3, contact.solve_with_momentum)
+    assert (x(rings[2][0]), y(rings[2][1])) == pytest.approx(third, rel=0.01)
     figure = draw("bowl", own={"v1": -0.6, "v2": -1.3})
     inside = np.linalg.solve([[1, -1], [-1, 2]], [0.6, 0.7])
     assert point(figure, "lcp") == pytest.approx(inside, abs=0.02)

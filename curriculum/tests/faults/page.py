@@ -28,6 +28,8 @@ FAULTS = [
      reads("inequality")),
     (FIGURES + "bowl.js", "speeds[0] + begin[0] - begin[1]", "speeds[0] + begin[0]",
      reads("bowl")),
+    (FIGURES + "bowl.js", "solveWithMomentum(rows, [0, 0], vy, { iters })",
+     "solveWithMomentum(rows, [0, 0], vy, { iters: 2 * iters })", reads("bowl")),
     (FIGURES + "sweeps.js", "v - 1), LAST", "v), LAST", reads("sweeps")),
     (FIGURES + "sag.js", "? Math.min(1, deep)", "? Math.min(1, 2 * deep)",
      reads("sag")),
