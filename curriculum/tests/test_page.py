@@ -1,4 +1,4 @@
-"""The page in real browsers: its numbers against contact.py, and what a reader sees and does."""
+"""The page in real browsers: what a reader sees and does."""
 
 import re
 from pathlib import Path

@@ -80,8 +80,7 @@ function draw(view) {
   };
   const { svg, sx, sy, middle } = beside(view, chartOf({ seen, rolled, contour, most, end }), picture, 0.3);
   const hold = (y, k) => {
-    const by = (dx, dy) => -dy / UNIT;
-    const range = { r: PX, low: SLOW, high: FAST, step: 0.1, by };
+    const range = { r: PX, low: SLOW, high: FAST, step: 0.1, by: (dx, dy) => -dy / UNIT };
     const name = `the ${["lower", "upper"][k]} ball’s speed before the sweeps`;
     return grip(view, `v${k + 1}`, middle, y, name, `${number(own[`v${k + 1}`], 2)} g dt`, range);
   };

@@ -72,10 +72,7 @@ function drawSponge(view) {
   const text = `${place}, push ${number(push)} m g`;
   const settled = Math.abs(depth - rest) < 1e-3 * rest ? "It rests" : "At rest it would be";
   const hold = {
-    r: LARGE,
-    low: -1,
-    high: deepest,
-    step: -Math.max(0.1 * rest, 0.001),
+    r: LARGE, low: -1, high: deepest, step: -Math.max(0.1 * rest, 0.001),
     at: (x, to) => (to - floor) / LARGE + 1,
     get: () => depthOf(view, rest),
     release: view.play,
