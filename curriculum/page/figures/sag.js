@@ -6,7 +6,7 @@ import { beside, depthsOf, G, grip, kept, knobs, R, scene, tens, through } from 
 
 const [FEWEST, FIRST, MOST, HEAVIEST] = [2, 8, 10, 100]; // balls, balls, balls, kg
 const [LENS, GROUND, LARGEST] = [15, 30, 30]; // px: a lens, the table, a ball
-const ROWS = 500; // steps until all is at rest: the run starts where the law has it
+const ROWS = 300; // steps until all is at rest: the run starts where the law has it
 
 // The law: how deep each ball is pressed into what is below it [r]; `masses` from below.
 const lawOf = (masses, { dt, iters, baumgarte, warm }) =>
