@@ -85,7 +85,7 @@ export const depthsOf = (heights) =>
 // ---- pictures
 
 // A chart as large as the drawing, or from `left` on.
-export const charted = (view, options, left = 0) =>
+const charted = (view, options, left = 0) =>
   plot([left, 0, view.width - left, view.height], options);
 
 /* A picture at the left and a chart at the right: the chart, with the svg of both and the picture's

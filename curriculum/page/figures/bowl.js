@@ -129,8 +129,8 @@ export const figures = {
   momentum: {
     title: "Sweeps with momentum in a long valley",
     caption:
-      "Two contacts push so hard: plain sweeps take short steps along the valley, those with " +
-      "momentum longer and longer ones; drag where they start, and the balls’ speeds.",
+      "To the right one contact’s push, upwards the other’s: plain sweeps take short steps along " +
+      "the valley, those with momentum longer ones; drag where they start.",
     start: () => ({ ...start(), heavy: 10, begin2: 30, rolls: true }),
     ...form,
   },
