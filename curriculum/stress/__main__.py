@@ -64,19 +64,20 @@ def some_scenes(todo):
 def everything(args):
     """A full or quick run, and its report. Returns the violations."""
     from curriculum.measured import results
-    from curriculum.stress import extremes, maps, mujoco_match, report
+    from curriculum.stress import extremes, heaps, maps, mujoco_match, report
 
     command = "python -m curriculum.stress" + " --quick" * args.quick
     origins = {
         name: results.origin(command, *files, kept=not args.quick)
         for name, files in jobs.MADE_BY.items()
     }
-    large, small = jobs.QUICK if args.quick else jobs.FULL
+    large, small, many = jobs.QUICK if args.quick else jobs.FULL
     sections = {
         "scenes": jobs.scene_jobs(range(large)) + jobs.scene_jobs(range(small), small=True),
         "maps": maps.map_jobs(args.quick),
         "extremes": extremes.extreme_jobs(args.quick),
         "mujoco": mujoco_match.match_jobs(args.quick),
+        "heaps": heaps.heap_jobs(many),
     }
     found = {
         name: parallel.run_jobs(jobs.run, todo, name, args.workers, args.scheduler)

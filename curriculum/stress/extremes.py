@@ -6,6 +6,7 @@ The command line runs in this process, with warnings as errors, in a folder of i
 import contextlib
 import io
 import json
+import re
 import tempfile
 import warnings
 from pathlib import Path
@@ -70,7 +71,8 @@ def complaint(status, said, refused, path):
     every = "exact" in metrics["quality"]  # else there is nothing to take errors against
     known = [key for key, _ in contact.COLUMNS.values() if every or not key.endswith("error_frac")]
     for model, quality in metrics["quality"].items():
-        (line,) = [line for line in said.splitlines() if line.split()[:1] == [model]][:1]
+        states = [line for line in said.splitlines() if line.startswith("state: ")]
+        (line,) = [line for line in states if re.search(rf"[ ,]{model}[ ,]", line)]
         unknown = None in map(quality.get, known)  # as metrics.json has what is not finite
         if line.endswith(" ok") and (quality["blew_up"] or quality["through"] or unknown):
             return f"{model} is called ok: {line}"

@@ -8,12 +8,14 @@ from curriculum.stress import properties, scenes
 from curriculum.stress.properties import judge
 from curriculum.stress.trial import Trial
 
-FULL, QUICK = (10_000, 1_000), (60, 100)  # random scenes of up to 30 balls, and of up to four
+# random scenes of up to 30 balls, and of up to four; heaps
+FULL, QUICK = (10_000, 1_000, 10_000), (60, 100, 20)
 MADE_BY = {  # the modules of each section; stale.py finds what they import
     "scenes": ["curriculum/stress/jobs.py"],
     "maps": ["curriculum/stress/jobs.py", "curriculum/stress/maps.py"],
     "extremes": ["curriculum/stress/jobs.py", "curriculum/stress/extremes.py", "contact.py"],
     "mujoco": ["curriculum/stress/jobs.py", "curriculum/stress/mujoco_match.py"],
+    "heaps": ["curriculum/stress/jobs.py", "curriculum/stress/heaps.py"],
 }
 
 

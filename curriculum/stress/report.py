@@ -2,7 +2,7 @@
 
 from curriculum.measured import results
 from curriculum.run import plotting
-from curriculum.stress import extremes, jobs, maps, mujoco_match, properties
+from curriculum.stress import extremes, heaps, jobs, maps, mujoco_match, properties
 
 FOLDER = results.FOLDERS["stress"]
 RESULTS, QUICK = results.ROOT / FOLDER, results.ROOT / "outputs" / "stress-quick"
@@ -11,11 +11,13 @@ TITLES = {
     "maps": "Maps: one ball dropped a metre",
     "extremes": "Every flag of contact.py at its ends",
     "mujoco": "soft against MuJoCo: single steps and whole runs",
+    "heaps": "Energy in heaps whose sweeps are done: leapfrog beside lcp",
 }
 COLOURS = ("#fde9c9", "#ec9c5a", "#9c4058", "#2b1741")  # light to dark, as an outcome gets worse
 LINE = "#111111"  # over coloured cells, which stay as they are in the dark
 MARKS = (0.3, 1, 3, 10, 30, 100, 300)  # ms
-STATED = vars(properties) | vars(maps) | vars(extremes) | vars(mujoco_match)  # by their names
+STATED = vars(properties) | vars(maps) | vars(extremes)  # by their names
+STATED |= vars(mujoco_match) | vars(heaps)
 HEAD = """# Stress: what must hold on any scene, and where each model breaks
 
 {}
@@ -37,6 +39,8 @@ def write(found, origins, folder):
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     error = max(abs(row["measured"] / row["theory"] - 1) for row in rows)
     sections["maps"] |= {"penalty": rows, "boundary_worst_error": error}
+    gains = sections["heaps"]["notes"].pop("gains").values()
+    sections["heaps"]["gains"] = heaps.table_of(gains)
     for name, section in sections.items():
         section["notes"] = {what: len(places) for what, places in sorted(section["notes"].items())}
         sections[name] = results.save(folder, name, section, origins[name])
@@ -86,6 +90,9 @@ def page(sections):
         parts += [f"## {TITLES[name]}", results.table(head, rows_of(section["properties"]))]
         parts += [f"- **{': '.join(words)}**" for words in section["violations"]]
         notes = [f"- {what}: {count:,}" for what, count in section["notes"].items()]
+        if name == "heaps":
+            head = ["dt", "restitution", "model", "gained energy", "most, as a share"]
+            parts += [heaps.LIMITS, results.table(head, section["gains"])]
         if notes:
             parts += ["Not judged, or limits that were met, in scenes:", "\n".join(notes)]
     parts += ["![](penalty-map.svg)", results.footer(sections["scenes"])]

@@ -11,7 +11,7 @@ import scipy  # noqa: F401  # which the stress test loads late: skip by its name
 
 import contact
 from curriculum.stress import __main__ as command
-from curriculum.stress import extremes, jobs, maps, mujoco_match, properties, scenes
+from curriculum.stress import extremes, heaps, jobs, maps, mujoco_match, properties, scenes
 from curriculum.stress.properties import PROPERTIES
 from curriculum.stress.trial import Trial
 from curriculum.tests import stress_claims
@@ -279,11 +279,11 @@ def test_a_wrong_word_and_a_traceback_would_be_seen(tmp_path):
     right |= {"blew_up": False, "through": None, "contact_error_frac": None}
     for wrong in ({}, {"through": "the floor"}, {"blew_up": True}, {"rest_jitter": None}):
         path.write_text(json.dumps({"quality": {"lcp": right | wrong}}), "utf-8")
-        trouble = extremes.complaint(0, "lcp  0.1 ok\n", "", path)
+        trouble = extremes.complaint(0, "state: soft, lcp ok\n", "", path)
         assert "called ok" in trouble if wrong else trouble is None
     path.write_text('{"quality": {"lcp": {"depth": Infinity}}}', "utf-8")
     with pytest.raises(ValueError, match="Infinity"):
-        extremes.complaint(0, "lcp ok\n", "", path)
+        extremes.complaint(0, "state: lcp ok\n", "", path)
     assert "refuses" in extremes.complaint(2, "", "Traceback\nValueError: dt\n", path)
     assert extremes.complaint(2, "", "contact.py: error: given 0; allowed: more\n", path) is None
 
@@ -320,6 +320,7 @@ def test_a_run_writes_its_report_and_says_what_was_judged(tmp_path):
         "maps": maps.map_jobs(quick=True),
         "extremes": list(extremes.extreme_jobs(quick=True))[:1],
         "mujoco": [],
+        "heaps": heaps.heap_jobs(2),
     }
     found = {name: [jobs.run(job) for job in todo] for name, todo in sections.items()}
     origins = dict.fromkeys(found, results.origin("stress", kept=False))
