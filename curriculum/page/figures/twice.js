@@ -46,7 +46,7 @@ const [SECONDS, FINE, HEIGHT] = [0.5, 1e-4, 5]; // s, s, m: so high that it meet
 const slid = kept((model, lean, settings) => {
   const [x, y] = [2 * R * Math.sin(lean), 2 * R * Math.cos(lean)];
   const all = scene([HEIGHT, HEIGHT + y], { x: [0, x], mass: [Infinity, 1] });
-  return runModel(model, all, settings, Math.round(SECONDS / settings.dt));
+  return runModel(model, all, settings, Math.floor(SECONDS / settings.dt + 1e-9));
 });
 const placesOf = ({ x, y, t }) =>
   Array.from(t, (_, k) => [x[2 * k + 1] / R, (y[2 * k + 1] - HEIGHT) / R]);
