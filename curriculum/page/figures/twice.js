@@ -107,7 +107,7 @@ function slide(view, settings, wide, top) {
   const place = ([px, py]) => [x + px * scale, y - py * scale];
   const drawn = MODELS.map((model) => {
     const ways = placesOf(slid(model, lean, settings)).map(place);
-    const seen = ways.filter(([, down]) => down < view.height - scale);
+    const seen = ways.filter(([to, down]) => to < wide - scale && down < view.height - scale);
     return path(seen, `line m-${model}`) + ball(model, ...seen[seen.length - 1], scale, "ghost");
   });
   const at = place([2 * Math.sin(lean), 2 * Math.cos(lean)]);
