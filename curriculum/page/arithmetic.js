@@ -48,7 +48,7 @@ function valueOf(rest, names, values) {
     if (token === "+") return atom();
     return token === "-" ? -atom() : Math[token](...inBrackets(Infinity));
   }
-  const found = chain(...SIGNS);
+  const value = chain(...SIGNS);
   if (rest.length) refuse();
-  return found;
+  return value;
 }

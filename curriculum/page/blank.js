@@ -9,13 +9,13 @@ const close = (a, b, within) => Math.abs(a - b) <= within * Math.max(1, Math.abs
 
 // What to say of a formula: {right, words}. A slip is known by what it gives.
 function judge(formula, { inputs, right, slips }) {
-  const found = inputs.map(formula);
-  const at = found.findIndex((value, k) => !close(value, right[k], 1e-9));
+  const results = inputs.map(formula);
+  const at = results.findIndex((value, k) => !close(value, right[k], 1e-9));
   if (at < 0) return { right: true, words: `Right, on all ${inputs.length} inputs.` };
-  const same = ([values]) => values.every((value, k) => close(found[k], value, 1e-3));
+  const same = ([values]) => values.every((value, k) => close(results[k], value, 1e-3));
   const [, meaning = "a slip that this page does not know"] = slips.find(same) || [];
   const given = Object.entries(inputs[at]).map(([name, value]) => `${name} = ${plain(value)}`);
-  const wrong = `it gives ${number(found[at])}, and ${number(right[at])} is right`;
+  const wrong = `it gives ${number(results[at])}, and ${number(right[at])} is right`;
   return { right: false, words: `For ${given.join(", ")} ${wrong}: ${meaning}.` };
 }
 

@@ -136,17 +136,17 @@ def check_lines(lines, regions):
 def placed(parts, **known):
     """The figures of the page, {id: [name, what its passage sets]}, for still.js. Raises ValueError
     where the chapter names a figure, an exercise or a region that is not known."""
-    found = {name: [name, {}] for name in ("grab", "lanes")}
+    figures = {name: [name, {}] for name in ("grab", "lanes")}
     for kind, values in parts:
         if values and values[0] not in known.get(kind, values):
             held = f"there is no {kind} {values[0]}; known: {[*known[kind]]}"
             raise ValueError(f"{chapter.CHAPTER}: {held}")
         if kind == "figure":
             name, again, changes = values
-            found.setdefault(name + again, [name, changes])
+            figures.setdefault(name + again, [name, changes])
             if name == "lanes":  # beside the text, and as a picture of its own
-                found[f"{name}{again}-still"] = [name, changes]
-    return found
+                figures[f"{name}{again}-still"] = [name, changes]
+    return figures
 
 
 def build(text=None):

@@ -56,12 +56,12 @@ def module(path, text):
 
 def bundle(start, data):
     """One script: `start` and all that it imports, each module before those that need it."""
-    texts, needs, found = {}, {}, [start]
-    for path in found:
+    texts, needs, paths = {}, {}, [start]
+    for path in paths:
         if path not in texts:
             texts[path] = source(path, data)
             needs[path] = [target(path, address) for _, address in IMPORT.findall(texts[path])]
-            found += needs[path]
+            paths += needs[path]
     order = TopologicalSorter(needs).static_order()
     joined = "".join(module(path, texts[path]) for path in order)
     if "</script" in joined.lower():

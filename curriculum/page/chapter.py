@@ -104,20 +104,20 @@ def link_open(self, tokens, index, options, env):
 
 def asked(query, env, others=SETTINGS):
     """What a query sets, {name: value}. Raises ValueError at the first that cannot be set."""
-    found, ranges = {}, env["ranges"]
+    values, ranges = {}, env["ranges"]
     for name, value in parse_qsl(query, keep_blank_values=True) or [(query, "")]:
         low, high = ranges.get(name, (1.0, 0.0))
         number = re.fullmatch(r"[\d.]+(e[+-]?\d+)?", value.replace(",", ""))
         if number and low <= float(number[0]) <= high:
-            found[name] = float(number[0])
+            values[name] = float(number[0])
         elif re.fullmatch(others.get(name, r"\b\B"), value):
-            found[name] = value
+            values[name] = value
         else:
             known = others.get(name, f"the names {', '.join((*others, *ranges))}")
             allowed = f"{low:g} to {high:g}" if name in ranges else known
             what = f"{name}={value} sets nothing; allowed: {allowed}"
             raise ValueError(f"{CHAPTER}:{env['line']}: {what}")
-    return found
+    return values
 
 
 def slug(title):
@@ -197,7 +197,7 @@ def blocks(text, ranges, starts):
 def assemble(parts, macros, bets):
     """(HTML, [(level, id, text)] of its headings). The macro of a part's kind gives its HTML;
     `bets` are the exercises whose answers are veiled."""
-    contents, met, found = [], [], []
+    contents, met, pieces = [], [], []
     cuts = [k for k, (kind, _) in enumerate(parts) if k and kind in ("heading", "exercise")]
     segments = [parts[a:b] for a, b in zip([0, *cuts], [*cuts, len(parts)])]
     for ((kind, values), *rest), columns in zip(segments, columns_of(segments)):
@@ -219,24 +219,24 @@ def assemble(parts, macros, bets):
             for column, each in zip(columns, (head, "\n".join(inner)))
         )
         if last or values[0] <= 2:  # exercises, and what begins a part, are always seen
-            found.append((head, "", ()))
+            pieces.append((head, "", ()))
             head = ""
-        found.append((head, inner, veils))
-    return Markup("\n".join(veiled(found, bets, macros))), contents
+        pieces.append((head, inner, veils))
+    return Markup("\n".join(veiled(pieces, bets, macros))), contents
 
 
 def columns_of(segments):
     """Of each segment whether the live figure stands beside its head, and beside the rest."""
-    found, shown = [], False
+    columns, shown = [], False
     for (first, _), *rest in segments:
         marks = [not values[1].startswith("none") for kind, values in rest if kind == "show"]
         heading = first == "heading"
         beside = (shown and not heading) or any(marks)
-        found.append([beside if heading else shown, beside] if rest or not heading else None)
+        columns.append([beside if heading else shown, beside] if rest or not heading else None)
         shown = marks[-1] if marks else beside
-    for k in reversed(range(len(found))):  # a heading alone stands where the next one does
-        found[k] = found[k] or found[k + 1]
-    return [["beside" if each else "centred" for each in both] for both in found]
+    for k in reversed(range(len(columns))):  # a heading alone stands where the next one does
+        columns[k] = columns[k] or columns[k + 1]
+    return [["beside" if each else "centred" for each in both] for both in columns]
 
 
 def veiled(segments, bets, macros):

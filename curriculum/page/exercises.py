@@ -18,15 +18,15 @@ BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2, filled in
 def blank_cases():
     """How checks.py tries the blanks of exercise 2: inputs, what is right on them, and the slips,
     each as what it gives, to five digits, and what it means."""
-    found = {}
+    cases = {}
     for name in BLANKS:
         blank, slips = blanks.BLANKS[name], []
         for function, meaning in blank.slips:
             rough = [float(f"{function(*case.values()):.5g}") for case in blank.inputs]
             slips.append((rough, meaning.replace("`", "")))
         right = [blank.right(*case.values()) for case in blank.inputs]
-        found[name] = {"inputs": blank.inputs, "right": right, "slips": slips}
-    return found
+        cases[name] = {"inputs": blank.inputs, "right": right, "slips": slips}
+    return cases
 
 
 def task_of(text):
@@ -63,5 +63,4 @@ def exercise(path):
 
 def all_exercises():
     """{name: exercise} in order."""
-    found = map(exercise, sorted(FOLDER.glob("ex*_*.py")))
-    return {each["id"]: each for each in found}
+    return {each["id"]: each for each in map(exercise, sorted(FOLDER.glob("ex*_*.py")))}

@@ -13,14 +13,14 @@ import { asked, Section } from "./store.js";
 /* The passages of the page: [{node, section, look}]. Each heading begins one, and so does each mark
  * of what the text shows (`none`: the live figure steps back). */
 function findPassages() {
-  const found = [];
+  const passages = [];
   let last = ""; // a section beside which the live figure stands goes on with what it showed
   for (const node of document.querySelectorAll("article :is(h2, h3)[id]:not(.exercise *), .show")) {
     const query = node.dataset.show || "none";
     if (node.dataset.show || !node.closest(".beside")) last = /^none/.test(query) ? "" : query;
-    found.push({ node, section: new Section(node.id, asked(query)), look: last });
+    passages.push({ node, section: new Section(node.id, asked(query)), look: last });
   }
-  return found;
+  return passages;
 }
 
 // The section in which something stands: of the last passage that begins above it.
@@ -83,13 +83,13 @@ const lit = new Map();
 // Light some of LINES, by name: those of the last call from `by` go out.
 function light(by, names) {
   for (const line of lit.get(by) || []) line.classList.remove("lit");
-  const found = names.flatMap((name) => {
+  const lines = names.flatMap((name) => {
     const [region, text] = LINES[name];
     const all = [...document.querySelectorAll(`#code-${region} .ln`)];
     return all.filter((line) => line.textContent.includes(text));
   });
-  for (const line of found) line.classList.add("lit");
-  lit.set(by, found);
+  for (const line of lines) line.classList.add("lit");
+  lit.set(by, lines);
 }
 
 // ---- the page

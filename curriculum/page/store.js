@@ -73,12 +73,12 @@ function allowed(name, value) {
 
 // What a query asks for; what is not allowed is left out.
 export function asked(query) {
-  const found = {};
+  const values = {};
   for (const [name, text] of new URLSearchParams(query)) {
     const value = name === "scene" ? text : Number(text);
-    if (known(name) && text.trim() !== "" && allowed(name, value)) found[name] = value;
+    if (known(name) && text.trim() !== "" && allowed(name, value)) values[name] = value;
   }
-  return found;
+  return values;
 }
 
 // These values, with some changed: another scene brings along its own.

@@ -9,8 +9,8 @@ const [ARROW, SHORT, LONG] = [22, 0.3, 0.9]; // px for 1 m/s; s, of a hop and of
 
 // A flight that begins at a gap [r] with a speed: times, gaps and the highest gap [r].
 function flight(gap, v, settings, seconds) {
-  const found = scene([(1 + gap) * R], { vy: [v] });
-  const run = runModel("lcp", found, settings, Math.max(5, Math.ceil(seconds / settings.dt)));
+  const start = scene([(1 + gap) * R], { vy: [v] });
+  const run = runModel("lcp", start, settings, Math.max(5, Math.ceil(seconds / settings.dt)));
   const ys = Array.from(run.y, (y) => y / R - 1);
   return { xs: run.t, ys, high: Math.max(0, ...ys.slice(1)) };
 }
@@ -62,12 +62,12 @@ function picture(left, floor, r, px, { before, depth, bounce, bias }) {
 
 function draw(view) {
   const { share } = view.own;
-  const found = landing(share, knobs(view));
-  const { bounces, fall, depth, bounce, bias, larger, sum } = found;
+  const now = landing(share, knobs(view));
+  const { bounces, fall, depth, bounce, bias, larger, sum } = now;
   const floor = view.height - GROUND;
   const [px, r] = [FALL / fall, Math.min(44, 0.08 * view.width)]; // of a gap of 1 r, of a radius
-  const drawn = (left) => picture(left, floor, r, px, found);
-  const { svg, middle } = beside(view, chartOf(found), drawn);
+  const drawn = (left) => picture(left, floor, r, px, now);
+  const { svg, middle } = beside(view, chartOf(now), drawn);
   const text = `${number(100 * share, 2)} % of a step after a look`;
   const range = { r, low: 0, high: 0.99, step: 0.05, at: (x, y) => 1 - (y + r - floor) / FALL };
   const place = [middle, floor + depth * px - r, "the ball: how deep it is found", text];
