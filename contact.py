@@ -786,9 +786,10 @@ def beside(name: str, needed=False):
     try:
         return importlib.import_module(f"curriculum.{name}")
     except ImportError as error:
+        absent = f"curriculum.{name}.".startswith(f"{error.name}.")  # this module or its folder
         if error.name is None:
             why = str(error)  # the module says itself what it needs
-        elif not f"curriculum.{name}.".startswith(f"{error.name}."):
+        elif not (isinstance(error, ModuleNotFoundError) and absent):
             raise  # a fault in the module
     if needed:
         raise ImportError(why)

@@ -93,7 +93,7 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
     ("--no-such-flag", "--no-such-flag"), ("--out ''", "--out: given ''; allowed: "),
     ("drop", "--scene drop"), ("--out=--", "--out"), ("drop bounce", "given drop bounce"),
     ("--scene pile --steps 1000000 --bodies 10000",
-     "--steps 1000000 of 10000 balls need 3202 GB of memory; allowed: "),
+     "--steps 1000000 of 10000 balls need 4002 GB of memory; allowed: "),
 ])  # fmt: skip
 def test_flags_that_contradict_one_another_or_ask_too_much_are_refused(flags, part, capsys):
     assert part in refused(main(capsys, *shlex.split(flags)))
