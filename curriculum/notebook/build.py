@@ -1,9 +1,9 @@
 """The chapter as a notebook that runs from top to bottom, wherever it is.
 
 Prose with its numbers; the regions of contact.py as cells, so that a change is felt in every cell
-below; knobs and pictures (curriculum/notebook/cells.py) where the chapter has its figures; the
-exercises as files to write and run. Its first cell carries the course's folder with it and needs
-numpy and matplotlib, which it installs where they are missing. Same inputs, same bytes.
+below; runs with their curves (curriculum/notebook/cells.py) where the chapter has its figures; the
+exercises as cells to edit. Its first cell carries the course's folder with it and needs numpy and
+matplotlib, which it installs where they are missing. Same inputs, same bytes.
 """
 
 import base64
@@ -16,9 +16,8 @@ from collections import Counter
 from pathlib import Path
 
 import nbformat
-from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-import contact
 from curriculum.regions import ROOT, read_all
 from curriculum.text.references import INCLUDE, Numbers
 
@@ -26,9 +25,10 @@ CHAPTER = ROOT / "curriculum/prose/chapter.md"
 CELLS = ROOT / "curriculum/notebook/cells.py"
 CARRIED = (  # with the pictures of reports that the chapter shows
     "contact.py checks.py exercises/*.py exercises/kit/* curriculum/__init__.py "
-    "curriculum/run/__init__.py curriculum/run/plotting.py curriculum/exact.py "
+    "curriculum/run/__init__.py curriculum/run/plotting.py curriculum/run/figures.mplstyle "
+    "curriculum/exact.py "
     "curriculum/commands.py curriculum/implicit.py "
-    "curriculum/bench/results/error-bounce.svg curriculum/bench/results/solvers.svg "
+    "curriculum/bench/results/error-slide.svg "
     "curriculum/stress/results/penalty-map.svg"
 ).split()
 MARK = re.compile(
@@ -38,21 +38,20 @@ MARK = re.compile(
 )
 COMMENT = re.compile(r"<!--.*?-->\n*", re.DOTALL)
 SAID = (  # what only the page can do, and what to do here
-    (r"Take it, lift it,\s+throw it\.", "Hold the mouse on it, and it stops."),
-    (r"\bDrag the (\w+)", r"Run the cell above, turn its \1"),
+    (r"Take it, lift it,\s+throw it\.", "Run the cell below."),
+    (r"\b[Dd]rag the (\w+)", r"change the \1 in a cell"),
 )
 LIVE = re.compile(r"\[([^\]]*)\]\((?:try|drag):[^)]*\)")
-MAIN = re.compile(r'^if __name__ == "__main__":.*', re.DOTALL | re.MULTILINE)
-OPENING = "grab"  # the figure that the notebook opens on
+MAIN = re.compile(r'^if __name__ == "__main__":.*\n(?: +.*\n?)+\n*', re.MULTILINE)
 FOLDED = {"jupyter": {"source_hidden": True}, "cellView": "form"}
 METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
     "language_info": {"name": "python"},
 }
 INTRODUCTION = """\
-*This is the chapter as a notebook. Its figures move, and some have knobs; on the page you can take
-hold of them. Run the cells from the top. The first one puts the whole of contact.py and the
-exercises into the folder `contact_chapter` beside this notebook.*"""
+*This is the chapter as a notebook. Run the cells from the top. The first one puts contact.py and
+the exercises into the folder `contact_chapter` beside this notebook. What you change in a cell of
+contact.py is felt in every cell below it; an exercise is a cell to edit and one that tries it.*"""
 REST = "## The rest of the file"  # of the chapter: the notebook's first cell has it
 
 
@@ -88,10 +87,9 @@ class Book:
         self.own, self.regions = own_cells(), read_all()
 
     def start(self):
-        """What the notebook is, the cell that carries the folder, and what the pictures share."""
+        """What the notebook is, and the cell that carries the folder."""
         carry = f'FOLDER = """\n{folder()}"""\n{self.own["start"]}'
-        shared = (new_code_cell(each, metadata=FOLDED) for each in (carry, self.own["tools"]))
-        return [*prose(INTRODUCTION), *shared]
+        return [*prose(INTRODUCTION), new_code_cell(carry, metadata=FOLDED)]
 
     def region(self, file, name):
         """A region. Those of contact.py run; others are shown, since their names are their own."""
@@ -103,27 +101,21 @@ class Book:
     def figure(self, name):
         """The cell of this name, once; the page has figures that the notebook has not."""
         source = self.own.pop(name, None)
-        if not source:
-            return []
-        outputs = [self.drawn(source)] if name == OPENING else []
-        folded = FOLDED if source.startswith("#@title") else {}
-        return [new_code_cell(source, metadata=folded, outputs=outputs)]
-
-    def drawn(self, source):
-        """What a cell shows that ends in a moving picture, so that it moves before it has run."""
-        names = dict(vars(contact))
-        exec(compile(f"{self.own['tools']}\n{source}", str(CELLS), "exec"), names)
-        data = {"image/svg+xml": names["moving"].data, "text/plain": "<a ball falls>"}
-        return new_output("display_data", data)
+        return [new_code_cell(source)] if source else []
 
     def exercise(self, name):
         """The exercise's file as a cell that writes it, and one that runs it."""
         (path,) = (ROOT / "exercises").glob(f"{name}_*.py")
         file, source = path.relative_to(ROOT).as_posix(), path.read_text("utf-8").strip()
-        hint = f'course("{file}", "--hint", "1")'
+        source = source.split("# ///\n")[-1]  # what the file needs, the first cell installed
+        source = re.sub(
+            r"^    python .*\n", "", source, flags=re.MULTILINE
+        )  # the next cell does it
+        hint = f'exercise("{file}", "--hint", "1")'
         return [
+            new_markdown_cell("Edit the next cell and run it; the one after it tries it."),
             new_code_cell(f"%%writefile contact_chapter/{file}\n{source}"),
-            new_code_cell(f'course("{file}")\n# a question that helps: {hint}'),
+            new_code_cell(f'exercise("{file}")\n# a question that helps: {hint}'),
         ]
 
     def bench(self, name):
