@@ -108,9 +108,7 @@ class Book:
         (path,) = (ROOT / "exercises").glob(f"{name}_*.py")
         file, source = path.relative_to(ROOT).as_posix(), path.read_text("utf-8").strip()
         source = source.split("# ///\n")[-1]  # what the file needs, the first cell installed
-        source = re.sub(
-            r"^    python .*\n", "", source, flags=re.MULTILINE
-        )  # the next cell does it
+        source = re.sub(r"^(    python .*\n)+", "    the next cell\n", source, flags=re.MULTILINE)
         hint = f'exercise("{file}", "--hint", "1")'
         return [
             new_markdown_cell("Edit the next cell and run it; the one after it tries it."),
