@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import io
 import json
+import re
 import tempfile
 from pathlib import Path
 
@@ -15,6 +16,8 @@ import pytest
 
 import contact
 from curriculum.commands import Parser
+from curriculum.regions import ROOT
+from curriculum.run import plotting
 
 PINNED = Path(__file__).with_name("golden.json")
 COMMANDS = (
@@ -64,6 +67,24 @@ NEW = [model for model in contact.MODELS if f"{model} drop 0" not in PINS["traje
 
 def test_every_model_is_pinned():
     assert not NEW, f"not pinned: {NEW}; python -m curriculum.tests.test_golden, and CHANGELOG.md"
+
+
+@pytest.mark.parametrize("model", contact.MODELS)
+def test_whatever_knows_models_knows_this_one(model):
+    """Looks, the compiled twin, the page's engine and style, the benchmark, the stress run."""
+    style, engine = (
+        (ROOT / f"curriculum/page/{name}").read_text("utf-8") for name in ("style.css", "engine.js")
+    )
+    assert model in plotting.LOOKS and f"--{model}:" in style and f".m-{model} {{" in style
+    if model in contact.STEPPED:
+        steps = re.search(r"export const STEP = \{(.*?)\}", engine, re.S)[1]
+        assert f"{model}:" in steps
+    ran = json.loads((ROOT / "curriculum/stress/results/results.json").read_text("utf-8"))
+    assert ran["scenes"]["ran"][model] > 0, "judged in no scene"
+    fast = pytest.importorskip("curriculum.fast", reason="numba is missing", exc_type=ImportError)
+    assert fast.MODELS == contact.STEPPED
+    engines = pytest.importorskip("curriculum.bench.engines")
+    assert model in {setting.engine for setting in engines.OURS}
 
 
 @pytest.mark.parametrize("flags", COMMANDS)

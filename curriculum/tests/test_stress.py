@@ -260,6 +260,11 @@ def test_a_number_that_is_off_is_a_violation_and_a_flight_says_nothing_of_spring
     )
 
 
+def test_what_judges_nothing_is_a_violation():
+    section = {"ran": {"lcp": 3, "leapfrog": 0}, "properties": {"a": [1, 9, 0.0], "b": [0, 0, 0.0]}}
+    assert [words[1] for words in jobs.idle(section)] == ["leapfrog", "b"]
+
+
 def test_at_the_critical_dt_the_map_turns_from_settling_to_not():
     row = maps.PenaltyRow(80.0, 1e4, maps.grid(1e-3, 0.1, 20))
     settles = [dt for dt in row.dts if row.outcome(dt) == maps.SETTLES]
