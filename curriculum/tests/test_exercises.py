@@ -22,7 +22,7 @@ from curriculum.tests.helpers import NO_PLUGINS, ROOT, python
 
 sys.path.insert(0, str(ROOT / "exercises"))
 
-from kit import FACTS, time_limit, blanks, knobs, predict, trials  # noqa: E402
+from kit import FACTS, blanks, knobs, predict, time_limit, trials  # noqa: E402
 from kit.progress import FILES  # noqa: E402
 
 import contact  # noqa: E402
