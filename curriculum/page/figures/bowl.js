@@ -11,11 +11,13 @@ const SWEEPS = 100;
 const [SLOW, FAST] = [-2, 3]; // g dt, of a ball before the sweeps
 const LEVELS = [0.02, 0.1, 0.3, 0.7, 1.4, 2.5, 4]; // of the contours, as shares of the picture
 
+// The balls' speeds once the impulses `begin` have acted.
+const pushed = ([v1, v2], [table, upper], heavy) => [v1 + table - upper, v2 + upper / heavy];
+
 /* From the impulses `begin` of table and lower ball, and of the two balls, [m g dt]: those after
  * every visit. Speeds in g dt; the upper ball is `heavy` times as heavy. */
 const walk = kept((speeds, begin, heavy) => {
-  const vy = [speeds[0] + begin[0] - begin[1], speeds[1] + begin[1] / heavy];
-  return visits([1, heavy], begin, vy, 2 * SWEEPS).map(({ lam }) => lam);
+  return visits([1, heavy], begin, pushed(speeds, begin, heavy), 2 * SWEEPS).map(({ lam }) => lam);
 });
 
 // Those after every sweep with momentum.
@@ -23,7 +25,7 @@ const roll = kept((speeds, begin, heavy) =>
   Array.from({ length: SWEEPS + 1 }, (_, iters) => {
     const contacts = [0, 1].map((i) => ({ i, j: i - 1, nx: 0, ny: 1 }));
     const rows = makeRows(contacts, [1, heavy]).map((row, k) => ({ ...row, lam: begin[k] }));
-    const vy = [speeds[0] + begin[0] - begin[1], speeds[1] + begin[1] / heavy];
+    const vy = pushed(speeds, begin, heavy);
     solveWithMomentum(rows, [0, 0], vy, { iters });
     return rows.map(({ lam }) => lam);
   }),

@@ -26,7 +26,7 @@ FAULTS = [
      reads("landing")),
     (FIGURES + "inequality.js", "{ gap: run.y[1] / R - 1,", "{ gap: run.y[0] / R - 1,",
      reads("inequality")),
-    (FIGURES + "bowl.js", "speeds[0] + begin[0] - begin[1]", "speeds[0] + begin[0]",
+    (FIGURES + "bowl.js", "[v1 + table - upper,", "[v1 + table,",
      reads("bowl")),
     (FIGURES + "bowl.js", "solveWithMomentum(rows, [0, 0], vy, { iters })",
      "solveWithMomentum(rows, [0, 0], vy, { iters: 2 * iters })", reads("bowl")),
