@@ -16,9 +16,8 @@ const pushed = ([v1, v2], [table, upper], heavy) => [v1 + table - upper, v2 + up
 
 /* From the impulses `begin` of table and lower ball, and of the two balls, [m g dt]: those after
  * every visit. Speeds in g dt; the upper ball is `heavy` times as heavy. */
-const walk = kept((speeds, begin, heavy) => {
-  return visits([1, heavy], begin, pushed(speeds, begin, heavy), 2 * SWEEPS).map(({ lam }) => lam);
-});
+const walk = kept((speeds, begin, heavy) =>
+  visits([1, heavy], begin, pushed(speeds, begin, heavy), 2 * SWEEPS).map(({ lam }) => lam));
 
 // Those after every sweep with momentum.
 const roll = kept((speeds, begin, heavy) =>
