@@ -22,7 +22,7 @@ FAULTS = [
      MODELS + "keeps_its_normals"),
     (C, "if fast > 0.0 else dt  # 0", "if fast >= 0.0 else dt  # 0", MODELS + "too_slow_for"),
     (C, "if a_n is None or not (v_n < 0.0 or a_n < 0.0):",
-     "if a_n is None or v_n >= 0.0 and a_n >= 0.0:", MODELS + "is_nowhere"),
+     "if a_n is None or v_n >= 0.0 and a_n >= 0.0:", MODELS + "no_number_stops"),
     # the other models
     (C, "if bias > 0.0:  # an overlap", "if bias >= 0.0:  # an overlap", "test_golden.py -k lcp"),
     (C, "return bounce if meets else min(bounce, closing)", "return bounce if meets else closing",
