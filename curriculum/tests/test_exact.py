@@ -332,10 +332,12 @@ def test_a_mass_ratio_above_100_is_refused_where_balls_would_rattle():
     run(heavy._replace(mass=np.array((np.inf, 1.0))), [0.0, 0.3])
 
 
-def test_more_balls_than_can_be_held_are_refused_before_anything_is_allocated():
-    for count in (301, 10_000):
-        with pytest.raises(RuntimeError, match=f"given {count:,} balls; allowed: 300 at most"):
-            run_model("exact", build_scene("pile", 0, count), 0.002, 10)
+def test_more_balls_than_memory_holds_are_refused_in_one_line(tmp_path, capsys):
+    words = "--scene pile --bodies 10000 --contact exact --steps 10 --no-rerun --out"
+    assert contact.main([*words.split(), str(tmp_path)]) == 2
+    assert capsys.readouterr().err.endswith(
+        "not enough memory; allowed: fewer --steps or --bodies\n"
+    )
 
 
 def test_a_ball_that_is_crushed_is_called_so():
