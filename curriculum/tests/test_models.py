@@ -182,6 +182,10 @@ def test_critical_dt_also_without_a_spring_and_with_a_damper_that_feeds(
     assert contact.critical_dt(1.0, stiffness, damping) == pytest.approx(critical, rel=digits)
 
 
+def test_critical_dt_also_of_a_ball_that_nothing_moves():
+    assert contact.critical_dt(math.inf, 1e4, 80.0) == math.inf
+
+
 def test_the_damped_drop_settles_just_below_its_critical_dt_and_never_above():
     calm, restless = (quality("drop", "penalty", dt, 6000) for dt in (0.0135, 0.0140))
     assert calm["rest_penetration_frac"] == pytest.approx(0.00981, rel=1e-6)
@@ -320,7 +324,7 @@ def test_what_a_bounce_pushes_on_keeps_its_normals():
 
 @pytest.mark.parametrize("vx", [1e-170, -1e-170, 0.0])
 def test_leapfrog_takes_a_ball_that_is_too_slow_for_a_square(vx):
-    scene = contact.scene_of([0.0, 0.25], 0.7, [1.0, 2.0], vx=[vx, 0.0])
+    scene = contact.scene_of([0.0, 0.2004], 0.7, [1.0, 2.0], vx=[vx, 0.0])
     assert np.isfinite(run_model("leapfrog", scene, 0.003, 50, Settings(skip=False)).q).all()
 
 
@@ -423,6 +427,7 @@ def test_soft_takes_mujocos_bounds_and_the_direct_form_where_it_bounces():
     assert contact.soft_defaults(0.7, DT) == ((0.0, -1.7 / DT), contact.HARD)
     clamped = contact.soft_defaults(0.0, DT, None, (0.0, 1.0, 0.01, 0.0, 2.0))[1]
     assert clamped == (0.0001, 0.9999, 0.01, 0.0001, 2.0)
+    assert contact.soft_defaults(0.0, DT, None, (0.9, 0.95, 0.001, 0.5, 0.3))[1][4] == 1.0
 
 
 def test_soft_becomes_lcp_as_d_goes_to_one():
@@ -496,7 +501,7 @@ def test_a_ball_that_is_nowhere_does_not_let_another_fall_through_the_floor(mode
 
 @pytest.mark.parametrize("model", STEPPED)
 def test_a_velocity_that_is_no_number_stops_no_run(model):
-    scene = contact.scene_of([0.0, 0.25], 0.7)
+    scene = contact.scene_of([0.0, 0.2004], 0.7)
     scene = scene._replace(v0=np.array([[math.nan, 0.0], [0.0, 0.0]]))
     run = contact.simulate(contact.step_of(model, scene, 0.003, Settings()), scene, 0.003, 9)
     assert np.isnan(run.q[-1, 0, 0]) and len(run.q) == 10
