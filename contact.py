@@ -348,8 +348,9 @@ def leapfrog_step(balls, dt, restitution, iters) -> None:
     overlap is taken back then, and throws nobody.
 
     Not mended: sweeps that do not finish let a stack sag, half as deep as lcp's; several impacts
-    of one ball within a step are one (a row of balls parts in another order); a long step can drive
-    a heavy ball through light ones; the two solves cost twice one.
+    of one ball within a step are one (a row of balls parts in another order, and with e > 0 a ball
+    in a narrow gap between two fixed ones can be thrown); a long step can drive a heavy ball
+    through light ones; the two solves cost twice one.
     """
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
