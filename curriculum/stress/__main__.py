@@ -67,10 +67,13 @@ def everything(args):
     from curriculum.stress import extremes, heaps, maps, mujoco_match, report
 
     command = "python -m curriculum.stress" + " --quick" * args.quick
-    origins = {
-        name: results.origin(command, *files, kept=not args.quick)
-        for name, files in jobs.MADE_BY.items()
-    }
+    try:
+        origins = {
+            name: results.origin(command, *files, kept=not args.quick)
+            for name, files in jobs.MADE_BY.items()
+        }
+    except ValueError as error:  # a tree that is not committed
+        sys.exit(f"python -m curriculum.stress: {error}")
     large, small, many = jobs.QUICK if args.quick else jobs.FULL
     sections = {
         "scenes": jobs.scene_jobs(range(large)) + jobs.scene_jobs(range(small), small=True),
@@ -104,5 +107,5 @@ if __name__ == "__main__":
     try:
         with needs("dev"):
             sys.exit(main())
-    except (ImportError, OSError, ValueError) as error:  # no answer, a tree not committed
+    except (ImportError, OSError) as error:  # no answer from a scheduler, no room for results
         sys.exit(f"python -m curriculum.stress: {error}")
