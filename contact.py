@@ -140,7 +140,9 @@ def make_balls(scene: Scene) -> list[Ball]:
 class Contact:
     """Balls a and b, how deep they overlap [m], and the unit normal (nx, ny) from b to a."""
 
-    __slots__ = "a b nx ny depth inv_mass m_eff target softness lam start before after hits".split()
+    __slots__ = "a b nx ny depth inv_mass m_eff target softness lam".split()
+    __slots__ += "start before".split()  # of solve_with_momentum
+    __slots__ += "stays after hits".split()  # of leapfrog
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
@@ -149,7 +151,6 @@ class Contact:
         self.m_eff = 1.0 / self.inv_mass if self.inv_mass > 0.0 else 0.0  # effective mass [kg]
         self.target = self.softness = 0.0  # m/s; R [1/kg] of soft, which then sets m_eff, too
         self.lam = 0.0  # the impulse [N s] of this step so far
-        # set by those that use them: start, before (solve_with_momentum), after, hits (leapfrog)
 
     def v_n(self) -> float:
         """Normal velocity [m/s], positive when the balls separate."""
@@ -348,13 +349,14 @@ def leapfrog_step(balls, dt, restitution, iters) -> None:
     overlap is taken back then, and throws nobody.
 
     Not mended: sweeps that do not finish let a stack sag, half as deep as lcp's; several impacts
-    of one ball within a step are one (a row of balls parts in another order, and with e > 0 a ball
-    in a narrow gap between two fixed ones can be thrown); a long step can drive a heavy ball
-    through light ones; the two solves cost twice one.
+    of one ball within a step are one (a row of balls parts in another order); a long step can drive
+    a heavy ball through light ones; the two solves cost twice one.
     """
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
         ask(c, restitution, dt)
+    if restitution > 0.0:
+        stay_between(contacts, restitution, dt)
     accelerate(balls, 0.5 * dt)
     solve_with_momentum(contacts, iters)  # the way
     move(balls, dt)
@@ -389,13 +391,30 @@ def ask(c, restitution, dt):
     hit = v_n + when * a_n if when < dt else 0.0  # v_n of the impact, if it comes in this step
     c.hits = hit < dt * GRAVITY  # slower is what gravity adds in a step: such a contact stays
     back = -restitution * (v_n + dt * a_n)  # no target above it: solved impulses add no energy
-    c.target = min(-gap, OPENS * (c.a.radius + c.b.radius)) / dt  # gap + dt v_n >= 0
+    c.stays = min(-gap, OPENS * (c.a.radius + c.b.radius)) / dt  # gap + dt v_n >= 0
+    c.target = c.stays
     c.after = min(0.0, back)
     left = dt - when
     end = left * (-restitution * hit + 0.5 * left * a_n)  # the gap to which it bounces till then
     if c.hits and end > 0.0:
         c.target = max(c.target, (end - max(gap, 0.0)) / dt)
         c.after = min(-restitution * hit + left * a_n, back)
+
+
+def stay_between(contacts, restitution, dt):
+    """Ask no way of a bounce that would throw a ball back into one that it just leaves."""
+    left = set()
+    for c in contacts:
+        v_n = c.v_n()
+        if not c.hits and v_n > -dt * GRAVITY and c.target > -restitution * v_n:
+            left |= {c.a, c.b}  # as fast the other way, they meet again within the step
+    for c in contacts:
+        for ball, other in ((c.a, c.b), (c.b, c.a)):
+            back = (
+                restitution * ball.inv_mass > other.inv_mass
+            )  # the other is too heavy to give way
+            if c.hits and back and ball in left:
+                c.target = c.stays
 
 
 def turn(c, dt):

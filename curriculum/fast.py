@@ -318,6 +318,8 @@ def leapfrog_step(balls, contacts, knobs):
     after, hits = np.empty(len(contacts)), np.empty(len(contacts), np.bool_)
     for k, c in enumerate(contacts):
         after[k], hits[k] = ask(c, balls, knobs)
+    if knobs.restitution > 0.0:
+        stay_between(balls, contacts, hits, knobs)
     accelerate(balls, half, knobs.gravity)
     solve_with_momentum(balls, contacts, knobs.iters)
     move(balls, knobs.dt)
@@ -360,6 +362,22 @@ def ask(c, balls, knobs):
         bounce = -restitution * hit + left * a_n
         after = back if back < bounce else bounce
     return after, hits
+
+
+@compiled
+def stay_between(balls, contacts, hits, knobs):
+    """Ask no way of a bounce that would throw a ball back into one that it just leaves."""
+    left = np.zeros(len(balls), np.bool_)
+    for k, c in enumerate(contacts):
+        v_n = normal_velocity(c, balls)
+        if not hits[k] and v_n > -knobs.dt * knobs.gravity and c.target > -knobs.restitution * v_n:
+            left[c.a] = left[c.b] = True
+    for k, c in enumerate(contacts):
+        for ball, other in ((c.a, c.b), (c.b, c.a)):
+            turned = knobs.restitution * balls[ball].inv_mass > balls[other].inv_mass
+            if hits[k] and turned and left[ball]:
+                opens = knobs.opens * (balls[c.a].radius + balls[c.b].radius)
+                c.target = (opens if opens < c.depth else c.depth) / knobs.dt
 
 
 @compiled

@@ -244,11 +244,27 @@ function ask(c, state, radius, { dt, restitution }) {
   const left = dt - when;
   const end = left * (-restitution * hit + 0.5 * left * a);
   c.hits = hit < dt * GRAVITY;
-  c.target = least(-gap, OPENS * (radius[c.i] + (c.j < 0 ? 0 : radius[c.j]))) / dt;
+  c.stays = least(-gap, OPENS * (radius[c.i] + (c.j < 0 ? 0 : radius[c.j]))) / dt;
+  c.target = c.stays;
   c.after = least(0, back);
   if (!c.hits || !(end > 0)) return;
   c.target = greatest([c.target, (end - greatest([gap, 0])) / dt]);
   c.after = least(-restitution * hit + left * a, back);
+}
+
+// Asks no way of a bounce that would throw a ball back into one that it just leaves.
+function stayBetween(rows, { vx, vy }, { dt, restitution }) {
+  const left = new Set();
+  for (const c of rows) {
+    const speed = normalSpeed(c, vx, vy);
+    if (c.hits || !(speed > -dt * GRAVITY) || !(c.target > -restitution * speed)) continue;
+    left.add(c.i).add(c.j);
+  }
+  for (const c of rows) {
+    const back =
+      (left.has(c.i) && restitution * c.wi > c.wj) || (left.has(c.j) && restitution * c.wj > c.wi);
+    if (c.hits && back) c.target = c.stays;
+  }
 }
 
 // One step of leapfrog. knobs.see is shown the state after each of its parts.
@@ -256,6 +272,7 @@ function leapfrogStep(state, { mass, radius }, knobs) {
   const { dt, iters, restitution, see = () => {} } = knobs;
   const rows = makeRows(detectContacts(state.x, state.y, radius, stepReach(state, dt)), mass);
   for (const c of rows) ask(c, state, radius, knobs);
+  if (restitution > 0) stayBetween(rows, state, knobs);
   const [vx, vy] = [state.vx.slice(), fall(state.vy, mass, 0.5 * dt)];
   see({ ...state, vx: vx.slice(), vy: vy.slice() });
   solveWithMomentum(rows, vx, vy, { iters });

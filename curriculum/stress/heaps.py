@@ -1,6 +1,8 @@
 """Energy in random heaps whose sweeps are done: leapfrog beside lcp, by step and restitution.
 
-A job is a numbered heap that starts apart, 2 to 12 balls, masses up to 100 : 1, radii up to 4 : 1.
+A job is a numbered heap that starts apart, 2 to 12 balls, masses up to 100 : 1, radii up to 4 : 1;
+or a ball that flies to and fro in a narrow gap between two that are fixed, or up to 1e6 times as
+heavy.
 """
 
 import itertools
@@ -11,7 +13,7 @@ import contact
 from curriculum.stress.trial import run_twin
 
 STEPS = {0.002: 750, 0.016: 94, 0.05: 30}  # dt [s]: how many, 1.5 s in all
-KINDS = "e = 0", "e drawn from 0 to 1", "e = 1"
+KINDS = "e = 0", "e drawn from 0 to 1", "e = 1", "in a gap"
 MODELS = "leapfrog", "lcp"
 GAINED = 1e-9  # share of the start's energy, chosen
 LIMITS = """What leapfrog does not mend, measured here or in the tests:
@@ -40,13 +42,15 @@ class Heap:
         """The heap, with the restitution of that kind."""
         rng = np.random.default_rng([20261123, self.number])
         drawn = float(rng.uniform(0.0, 1.0))
+        if kind == "in a gap":
+            return in_a_gap(rng, drawn)
         while True:
             count = int(rng.integers(2, 13))
             radius, mass = 0.05 * 4.0 ** rng.random(count), 100.0 ** rng.random(count)
             wide, fast = rng.uniform(0.5, 2.0), rng.choice([0.0, 1.0, 3.0])
             x, y = rng.uniform(-wide, wide, count), rng.uniform(0.2, 3.0 * wide, count)
             vx, vy = fast * rng.standard_normal((2, count))
-            e = (0.0, drawn, 1.0)[KINDS.index(kind)]
+            e = dict(zip(KINDS, (0.0, drawn, 1.0)))[kind]
             scene = contact.scene_of(x, y, mass, radius, vx, vy, e)
             if contact.smallest_gap(scene.q0[None], radius)[0] > 0.0:
                 return scene
@@ -57,6 +61,18 @@ class Heap:
         run = run_twin(model, scene, dt, STEPS[dt], contact.Settings(iters=1000))
         total = contact.energy(run.q, run.v, scene.mass)
         return float((total.max() - total[0]) / total[0])
+
+
+def in_a_gap(rng, restitution):
+    """A ball of 1.3 kg that flies between two far heavier ones, which stand in any direction."""
+    radius, gap = rng.uniform(0.05, 0.3, 3), rng.uniform(0.001, 0.1)
+    angle, pace = rng.uniform(0.0, np.pi), rng.uniform(-10.0, 10.0)
+    along = np.array([np.cos(angle), np.sin(angle)])
+    ends = -radius[0], 2.0 * radius[2] + gap + radius[1], radius[2] + gap * rng.random()
+    x, y = np.outer(along, ends) + [[0.0], [2.0]]
+    mass = [*rng.choice([np.inf, *10.0 ** rng.uniform(0.0, 6.0, 2)], 2), 1.3]
+    vx, vy = np.outer(along, [0.0, 0.0, pace]) + rng.normal(0.0, 0.3, (2, 3)) * [0.0, 0.0, 1.0]
+    return contact.scene_of(x, y, mass, radius, vx, vy, restitution)
 
 
 def leapfrog_gains_nothing_at_2_ms(heap):

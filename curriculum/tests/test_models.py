@@ -322,6 +322,15 @@ def test_what_a_bounce_pushes_on_keeps_its_normals():
     assert total.max() <= total[0] * (1.0 + 1e-12)
 
 
+@pytest.mark.parametrize("dt", [0.0021, 0.016])
+def test_a_bounce_in_a_narrow_gap_between_two_fixed_balls_gains_nothing(dt):
+    x, y, mass = [-0.3, 0.3, 0.0, 0.01], [0.5, 0.5, 0.51, 0.8], [math.inf, math.inf, 0.7, 2.0]
+    scene = contact.scene_of(x, y, mass, [0.17, 0.17, 0.13, 0.15], [0, 0, 9, 0], restitution=0.9)
+    run = run_model("leapfrog", scene, dt, int(0.7 / dt), Settings(iters=1000))
+    total = contact.energy(run.q, run.v, scene.mass)
+    assert total.max() <= total[0] * (1.0 + 1e-12)
+
+
 @pytest.mark.parametrize("vx", [1e-170, -1e-170, 0.0])
 def test_leapfrog_takes_a_ball_that_is_too_slow_for_a_square(vx):
     scene = contact.scene_of([0.0, 0.2004], 0.7, [1.0, 2.0], vx=[vx, 0.0])

@@ -82,6 +82,11 @@ def cases():
         for model in contact.STEPPED:
             run = contact.run_model(model, fast, 0.03, STEPS)
             found.append((as_told(fast, 0.03, contact.Settings(), STEPS, model), run))
+    settings = contact.Settings(iters=50)
+    x, y, r = [-0.3, 0.3, 0.0], [0.5, 0.5, 0.51], [0.17, 0.17, 0.13]
+    gap = contact.scene_of(x, y, [np.inf, np.inf, 0.7], r, [0, 0, 9], restitution=0.9)
+    run = contact.run_model("leapfrog", gap, 0.003, STEPS, settings)
+    found.append((as_told(gap, 0.003, settings, STEPS, "leapfrog"), run))
     named = [(name, e) for name in ("drop", "bounce", "stack") for e in (0.0, 0.7)]
     for scene in (contact.build_scene(name, 3, restitution=e) for name, e in named):
         run = contact.run_model("exact", scene, 0.002, 600)

@@ -23,6 +23,8 @@ FAULTS = [
     (C, "if fast > 0.0 else dt  # 0", "if fast >= 0.0 else dt  # 0", MODELS + "too_slow_for"),
     (C, "if a_n is None or not (v_n < 0.0 or a_n < 0.0):",
      "if a_n is None or v_n >= 0.0 and a_n >= 0.0:", MODELS + "no_number_stops"),
+    (C, "        stay_between(contacts, restitution, dt)\n", "        pass\n",
+     MODELS + "narrow_gap"),
     # the other models
     (C, "if bias > 0.0:  # an overlap", "if bias >= 0.0:  # an overlap", MODELS + "on_the_table"),
     (C, "max(0.0, stiffness * depth - damping * v_n)", "abs(stiffness * depth - damping * v_n)",
