@@ -687,7 +687,7 @@ MODELS = {  # in the order of the table: the knobs that change its runs
     "exact": ("restitution",),
 }
 STEPPED = [model for model in MODELS if model != "exact"]
-MANY = 5e6  # of about steps times balls squared: from here on, compiled loops pay
+MANY = 1e6  # of about steps times balls squared: from here on, compiled loops pay
 FEW = 8  # balls, chosen: a column of more is faster by curriculum/exact.py
 SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default: d0, d1, width [m], mid, power
@@ -831,7 +831,7 @@ def energy(q, v, mass):
 @np.errstate(all="ignore")
 def smallest_gap(q, radius):
     """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
-    if q.size * len(radius) > MANY and (fast := beside("fast")):
+    if q.size * len(radius) > 2.0 * MANY and (fast := beside("fast")):
         return fast.smallest_gap(q, radius)
     gap = (q[:, 1] - radius).min(-1)
     for lag in range(1, len(radius)):  # ball i and ball i + lag, for all i, all states at once
