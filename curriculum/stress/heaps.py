@@ -1,8 +1,9 @@
-"""Energy in random heaps whose sweeps are done: leapfrog beside lcp, by step and restitution.
+"""Random heaps whose sweeps are done: leapfrog's energy beside lcp's, and its order beside exact.
 
 A job is a numbered heap that starts apart, 2 to 12 balls, masses up to 100 : 1, radii up to 4 : 1;
 or a ball that flies to and fro in a narrow gap between two that are fixed, or up to 1e6 times as
-heavy.
+heavy. Every tenth has two scenes besides that begin in contact: a ball slides off a fixed one, and
+a ball spreads two.
 """
 
 import itertools
@@ -16,6 +17,7 @@ STEPS = {0.002: 750, 0.016: 94, 0.05: 30}  # dt [s]: how many, 1.5 s in all
 KINDS = "e = 0", "e drawn from 0 to 1", "e = 1", "in a gap"
 MODELS = "leapfrog", "lcp"
 GAINED = 1e-9  # share of the start's energy, chosen
+EIGHTH = 8.0**-1.8  # of the error, chosen: what an eighth of the step may leave; second order 1/64
 LIMITS = """What leapfrog does not mend, measured here or in the tests:
 
 - sweeps that do not finish leave a sag, half as deep as lcp's; 1e6 kg on 1 kg sink in;
@@ -29,7 +31,8 @@ nothing moves: so rest is judged by ways;
 
 def heap_jobs(count):
     """So many heaps."""
-    return [(f"heap {k}", Heap(k), [leapfrog_gains_nothing_at_2_ms]) for k in range(count)]
+    often, seldom = [leapfrog_gains_nothing_at_2_ms], [leapfrog_is_of_second_order]
+    return [(f"heap {k}", Heap(k), often + seldom * (k % 10 == 0)) for k in range(count)]
 
 
 class Heap:
@@ -83,6 +86,37 @@ def leapfrog_gains_nothing_at_2_ms(heap):
         if (model, dt) == ("leapfrog", 0.002) and kind != "e = 1":
             yield f"gained with {kind}", gain, GAINED
     heap.noted["gains"] = found
+
+
+def leapfrog_is_of_second_order(heap):
+    """leapfrog, its sweeps done: an eighth of the step leaves a 64th of the error beside exact."""
+    rng = np.random.default_rng([20261124, heap.number])
+    dt = rng.uniform(0.002, 0.004)
+    for name, (scene, duration) in (("slide", sliding(rng)), ("spread", spreading(rng))):
+        steps = int(duration / dt)
+        truth = contact.run_model("exact", scene, dt, steps).q
+        errors = []
+        for cut in (1, 8):
+            run = run_twin("leapfrog", scene, dt / cut, steps * cut, contact.Settings(iters=1000))
+            errors.append(np.abs(run.q[::cut] - truth).max())
+        yield f"{name}, an eighth of the step", errors[1], EIGHTH * errors[0]
+
+
+def sliding(rng):
+    """A ball at rest on a fixed one, off its top, and some time [s]."""
+    radius, angle = rng.uniform(0.05, 0.2, 2), rng.uniform(0.05, 0.6)
+    x, y = radius.sum() * np.sin(angle), 0.4 + radius.sum() * np.cos(angle)
+    return contact.scene_of([0.0, x], [0.4, y], [np.inf, rng.uniform(0.2, 5.0)], radius), 0.25
+
+
+def spreading(rng):
+    """A ball at rest on two that lie on the table, and most of the time [s] until it can land."""
+    low, top = rng.uniform(0.05, 0.2, 2)
+    half = low + top * rng.uniform(0.02, 0.3)
+    y = low + np.sqrt((low + top) ** 2 - half**2)
+    mass = 5.0 ** rng.uniform(-1.0, 1.0, 3)
+    scene = contact.scene_of([-half, half, 0.0], [low, low, y], mass, [low, low, top])
+    return scene, 0.8 * np.sqrt(2.0 * (y - top) / -contact.GRAVITY)
 
 
 def table_of(cases):

@@ -11,7 +11,7 @@ TITLES = {
     "maps": "Maps: one ball dropped a metre",
     "extremes": "Every flag of contact.py at its ends",
     "mujoco": "soft against MuJoCo: single steps and whole runs",
-    "heaps": "Energy in heaps whose sweeps are done: leapfrog beside lcp",
+    "heaps": "Heaps whose sweeps are done: the energy and the order of leapfrog",
 }
 COLOURS = ("#fde9c9", "#ec9c5a", "#9c4058", "#2b1741")  # light to dark, as an outcome gets worse
 LINE = "#111111"  # over coloured cells, which stay as they are in the dark
