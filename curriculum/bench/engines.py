@@ -421,8 +421,8 @@ class Setting(NamedTuple):
 
     @property
     def inner(self):
-        """Substeps that the engine takes by itself in each step."""
-        return self.options.get("inner", 1)
+        """Substeps that the engine takes by itself in each step; stages of a Runge-Kutta step."""
+        return self.options.get("inner", 4 if self.options.get("integrator") == "RK4" else 1)
 
     @property
     def adaptive(self):
@@ -507,8 +507,10 @@ SETTINGS = (
     mujoco("direct, no push, d 0.9999", soften=RIGID),
     mujoco("direct, push 0.2, d 0.999", soften=PUSHED),
     mujoco("direct, no push, speculative", soften=RIGID, speculative=True),
+    mujoco("direct, no push, {integrator}", ("spread",), soften=RIGID, integrator="RK4"),
     *(pymunk("{iterations} iterations", iterations=n) for n in (10, 100)),
-    *(pymunk(PUSHING, iterations=n, push=push) for n, push in ((10, 0.2), (10, 1.0), (30, 1.0))),
+    *(pymunk(PUSHING, iterations=n, push=0.2) for n in (10, 100)),
+    *(pymunk(PUSHING, iterations=n, push=1.0) for n in (10, 30, 100)),
     box2d3("{inner} substeps, as shipped", inner=4),
     box2d3("{inner} substep, hardest", inner=1, hertz=1e9),
     *(box2d3(HARD, inner=n, hertz=1e9) for n in (4, 16, 64)),
@@ -516,7 +518,10 @@ SETTINGS = (
         box2d3("{inner} substeps, hardest, scale {scale:g}", inner=4, hertz=1e9, scale=x)
         for x in (1.0, 100.0, 1000.0)
     ),
-    box2d3("{inner} substep, {hertz:.0f} Hz", inner=1, hertz=480.0),
+    *(
+        box2d3("{inner} substep, {hertz:.0f} Hz, scale {scale:g}", inner=1, hertz=hertz, scale=x)
+        for hertz, x in ((120.0, 1000.0), (240.0, 1.0), (480.0, 10.0))
+    ),
     *(box2d3("{inner} substeps, {hertz:.0f} Hz", inner=n, hertz=240.0) for n in (4, 32)),
     drake("discrete, k 1e8", stiffness=1e8),
     *(drake(CENIC, scheme="cenic", accuracy=a, stiffness=1e8) for a in (1e-3, 1e-5, 1e-7)),
@@ -541,6 +546,10 @@ SETTINGS = (
     ),
     drake(RK3, ("drop", "slide"), scheme="runge_kutta3", accuracy=1e-5, stiffness=1e8),
     drake(RK3, ("elastic",), scheme="runge_kutta3", accuracy=1e-5, stiffness=1e10),
+    *(
+        drake(f"{RK3}, cut", (name,), scheme="runge_kutta3", accuracy=1e-5, stiffness=k, cut=True)
+        for name, k in (("elastic", 1e10), ("cradle", 1e8))
+    ),
 )
 
 
