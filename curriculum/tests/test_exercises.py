@@ -265,7 +265,12 @@ def test_a_wrong_fill_fails_and_is_named_from_its_values(blank, number):
 def test_the_stacks_are_solved_contact_by_contact(case):
     """lam >= 0, v_n >= target, and one of the two holds as an equation; pushes keep momentum."""
     count, mass = len(case["contacts"]), np.array(case["masses"])
-    found = blanks.run_stack(blanks.BLANKS["solve_contacts"].right, **case)
+    for solve in (
+        blanks.BLANKS["solve_contacts"].right,
+        lambda contacts, iters: contact.solve_contacts(contacts[::-1], iters),
+    ):
+        *found, soon = blanks.run_stack(solve, **case)
+        assert soon == 0.0, "four contacts want more than a sweep, in either order"
     lam, v = np.array(found[:count]), np.reshape(found[count:], (-1, 2))
     gained, rest = np.zeros_like(v), np.append(v, [[0.0, 0.0]], axis=0)
     for push, (a, b, angle, target) in zip(lam, case["contacts"]):
@@ -361,7 +366,9 @@ FINGERS = {"MODEL": "soft", "DT": 0.004, "STIFFNESS": 1e4, "DAMPING": 80.0,
     ({"MODEL": "penalty", "DT": 0.001, "STIFFNESS": 3e5, "DAMPING": 400.0}, "the cup is gone"),
     ({"MODEL": "penalty", "DT": 0.002, "STIFFNESS": 1e6}, "the cup is gone"),
     ({"MODEL": "penalty", "DT": 0.0001, "STIFFNESS": 1e6}, "0.0005 s (2,000 steps)"),
-    ({"MODEL": "hard"}, "allowed: MODEL 'penalty' or 'soft'"),
+    ({"MODEL": "implicit", "STIFFNESS": 3e5}, None),
+    ({"MODEL": "implicit", "STIFFNESS": 3e4}, "overlaps too much; 20 N press a spring"),
+    ({"MODEL": "hard"}, "allowed: MODEL 'penalty', 'implicit' or 'soft'"),
     ({"DT": 0.0}, "DT from 0.0005 s"),
     ({"DT": "fast"}, "cannot be run with 'soft', 'fast' s"),
 ])  # fmt: skip

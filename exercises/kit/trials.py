@@ -21,7 +21,7 @@ from .blanks import BLANKS, labels, run, solver
 
 
 def row(name, function, case):
-    """What comes out, as a row of numbers; None of a blank. Raises ValueError, in words."""
+    """What comes out, as numbers in their rows; None of a blank. Raises ValueError, in words."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said):
@@ -34,7 +34,7 @@ def row(name, function, case):
     try:
         if got is None or isinstance(got, str):  # which numpy would take for a number
             raise TypeError
-        return np.asarray(got, float).ravel()
+        return np.atleast_1d(np.asarray(got, float).squeeze())
     except (TypeError, ValueError):
         raise ValueError(f"{name} returned {got!r:.60}, and not numbers") from None
 
@@ -119,9 +119,10 @@ def failing(name, case, got, right):
     if name == "solve_contacts":
         lines.append("  (a contact: upper ball, lower ball, angle of its normal, target)")
     if got.shape != right.shape:
-        return [*lines, f"  got {got.size} numbers, expected {right.size}"]
+        there, due = (" rows of ".join(map(str, each.shape)) for each in (got, right))
+        return [*lines, f"  got {there} numbers, expected {due} numbers"]
     lines.append(f"  {'':<16}{'got':>12}{'expected':>14}")
-    for label, mine, other in zip(labels(name, case), got, right):
+    for label, mine, other in zip(labels(name, case), got.ravel(), right.ravel()):
         mark = "" if agree(np.array([mine]), np.array([other]), 1e-3) else "   <"
         lines.append(f"  {label:<16}{mine:>12.5g}{other:>14.5g}{mark}")
     return lines
@@ -282,16 +283,22 @@ SHOWN["after_the_move"] = ask_twice  # the second of two
 
 def fingers(exercise):
     """What the choice of exercise 8 does to the cup: {name: number}, lengths in r."""
+    from curriculum.implicit import implicit_step
+
     dt, of = exercise.DT, contact.scene_of([-0.205, 0.0, 0.205], 0.1, [0.2, 1.0, 0.2])
     solref, solimp = contact.soft_defaults(0.0, dt, exercise.SOLREF, exercise.SOLIMP)
+
+    k, c = exercise.STIFFNESS, exercise.DAMPING
+    softness = 1.0 / (k * dt * dt + c * dt)
 
     def step(balls):
         for ball, force in zip(balls, (20.0, 0.0, -20.0)):  # the motors [N]
             ball.fx, ball.fy = force, 0.0
         if exercise.MODEL == "soft":
             return contact.soft_step(balls, dt, solref, solimp)
-        contacts = contact.detect_contacts(balls, margin=0.0)
-        contact.penalty_force(contacts, exercise.STIFFNESS, exercise.DAMPING)
+        if exercise.MODEL == "implicit":
+            return implicit_step(balls, dt, lambda depth: (softness, dt * k * depth * softness))
+        contact.penalty_force(contact.detect_contacts(balls, margin=0.0), k, c)
         contact.accelerate(balls, dt)
         contact.move(balls, dt)
 
@@ -309,8 +316,10 @@ def judge_fingers(exercise):
     if model is None:
         return "blank", f"no choice yet: set MODEL in {near(exercise.__file__)}", ""
     try:
-        if model not in ("penalty", "soft") or not 0.0005 <= dt <= 0.1 or not k > 0.0:
-            allowed = "MODEL 'penalty' or 'soft', DT from 0.0005 s (2,000 steps) to 0.1 s"
+        if model not in ("penalty", "implicit", "soft") or not 0.0005 <= dt <= 0.1 or not k > 0.0:
+            allowed = (
+                "MODEL 'penalty', 'implicit' or 'soft', DT from 0.0005 s (2,000 steps) to 0.1 s"
+            )
             raise ValueError(f"allowed: {allowed}, STIFFNESS above 0")
         seen = fingers(exercise)
     except Exception as error:
@@ -327,6 +336,8 @@ def judge_fingers(exercise):
         step = contact.critical_dt(0.1, k, exercise.DAMPING)
         advice = f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and a finger on it "
         advice += f"wants steps below {step:.1g} s"
+    elif model == "implicit":
+        advice = f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r"
     return "wrong", f"{', and '.join(faults)}; {advice}", shown
 
 
