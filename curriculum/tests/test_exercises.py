@@ -177,6 +177,7 @@ def test_what_is_wrong_broken_or_without_end_fails_its_own_check_and_says_why(co
     ):  # fmt: skip
         assert words in result.stdout, words
     assert "Traceback" not in result.stdout
+    assert not (folder / "outputs/ch3.5-contact/exercises.json").exists(), "none is done"
     words = [sys.executable, folder / FILES["ex1"]]
     done = subprocess.run(words, capture_output=True, text=True)
     assert done.returncode and done.stderr.count("\n") == 1 and "needs quotes" in done.stderr
@@ -333,6 +334,26 @@ def test_each_slip_of_the_clamp_is_seen_in_a_trial():
         assert trials.thrown() < -9.0 and trials.groove() < -9.0
 
 
+def test_yours_stands_beside_what_it_is_compared_with():
+    """A clamp that never pushes, a limit of 7 ms, a spring that is none, a bet with one off."""
+    shown = trials.compare(exercise(project_impulse=lambda lam, dlam: 0.0), "project_impulse")
+    heads, _, row = shown.splitlines()
+    assert heads.split()[-2:] == ["yours", "contact.py"]
+    assert row.split()[-1] == f"{trials.groove():.3f}" and float(row.split()[-2]) < -9.0
+    shown = trials.cliffs(exercise(longest_step=lambda mass, stiffness, damping: 0.007), None)
+    assert shown.splitlines()[2].split()[4:] == ["0.00700", "s", "0.01354", "s", "0.02000", "s"]
+    none = exercise(implicit_spring=lambda depth, stiffness, damping, dt: (1e300, 0.0))
+    row = trials.drops(none, None).splitlines()[3].split()
+    exploded = contact.build_scene("drop")
+    run = contact.run_model("penalty", exploded, 0.016, 500)
+    gained = contact.contact_quality(run, exploded, 0.016)["energy_excess"]
+    assert row[:5] == ["dt", "0.016", "s", "0", f"{gained:.5g}"]
+    lines = [f"{trouble} {' '.join(marks)}" for trouble, marks in MARKS.items()]
+    for off, count in ((lines[0], 20), (lines[0].replace("=", "-", 1), 19)):
+        _, ((*_, shown),) = knobs.judged("ex9", exercise(BETS="\n".join([off, *lines[1:]]), SAG=1))
+        assert f"holds in {count} of 20;" in shown
+
+
 def test_asking_twice_is_leapfrogs_step_and_each_slip_of_it_is_seen_beside_exact():
     """The second solve in plain sweeps, e = 0; an error, or a height, of a slip is larger."""
 
@@ -364,10 +385,13 @@ FINGERS = {"MODEL": "soft", "DT": 0.004, "STIFFNESS": 1e4, "DAMPING": 80.0,
     ({"MODEL": "penalty", "DT": 0.002}, "overlaps too much"),
     ({"MODEL": "penalty", "DT": 0.001, "STIFFNESS": 3e5, "DAMPING": 0.0}, "trembles"),
     ({"MODEL": "penalty", "DT": 0.001, "STIFFNESS": 3e5, "DAMPING": 400.0}, "the cup is gone"),
-    ({"MODEL": "penalty", "DT": 0.002, "STIFFNESS": 1e6}, "the cup is gone"),
+    ({"MODEL": "penalty", "DT": 0.002, "STIFFNESS": 1e6}, "wants steps below 0.0006 s"),
     ({"MODEL": "penalty", "DT": 0.0001, "STIFFNESS": 1e6}, "0.0005 s (2,000 steps)"),
     ({"MODEL": "implicit", "STIFFNESS": 3e5}, None),
     ({"MODEL": "implicit", "STIFFNESS": 3e4}, "overlaps too much; 20 N press a spring"),
+    ({"SOLREF": (0.02, 0.05), "SOLIMP": (0.9999, 0.9999, 0.001, 0.5, 2.0), "DT": 0.001},
+     "it trembles;"),
+    ({"MODEL": "penalty", "DT": 0.0006, "STIFFNESS": 1e6}, None),
     ({"MODEL": "hard"}, "allowed: MODEL 'penalty', 'implicit' or 'soft'"),
     ({"DT": 0.0}, "DT from 0.0005 s"),
     ({"DT": "fast"}, "cannot be run with 'soft', 'fast' s"),
@@ -414,6 +438,7 @@ def test_after_the_run_there_is_a_word_on_every_choice(name, numbers):
         made = exercise(name, PREDICTION=mine, WHY="so it is")
         text = " ".join(predict.verdict(name, made, numbers[name]).split())
         assert ("That is what happens." in text) == (mine == right)
+        assert text.index(f"Why {right}:") < text.index("Why not"), "the right one first"
         assert all(f"Why {c}:" in text if c == right else f"Why not {c}:" in text for c in "ABC")
         assert "{" not in text and BETS[name].choices[right] in text
 

@@ -1,0 +1,30 @@
+"""Faults for the exercises: (file, what stands there, what is planted, the tests that name it)."""
+
+TRIALS, KNOBS, BETS = (f"exercises/kit/{name}.py" for name in ("trials", "knobs", "predict"))
+T = "test_exercises.py -k "
+FAULTS = [
+    # what is judged
+    (TRIALS, "allowed = within * np", "allowed = 1e7 * within * np", T + "wrong_fill"),
+    (TRIALS, ".squeeze())", ".ravel())", T + "step_matrix"),
+    ("exercises/kit/blanks.py", "len(found) > 3 and np", "False and np", T + "wrong_fill"),
+    (TRIALS, 'seen["trembling"] < 1e-5', 'seen["trembling"] < 1e-3', T + "gripper"),
+    (TRIALS, 'seen["deepest"] < 1e-3', 'seen["deepest"] < 1e-2', T + "gripper"),
+    (TRIALS, 'if not seen["held"]:', "if False:", T + "gripper"),
+    (TRIALS, 'if state == "wrong" and states[after] != "right":', "if False:", T + "blame"),
+    (TRIALS, 'state, words = "wrong", words or stopped', "pass", T + "stops_in_a_trial"),
+    # what is shown
+    (TRIALS, '("yours", "contact.py"), rows', '("contact.py", "yours"), rows', T + "beside"),
+    (TRIALS, 'mine["energy_excess"], other["energy_excess"]',
+     'other["energy_excess"], other["energy_excess"]', T + "beside"),
+    (TRIALS, "2.0 / math.sqrt(k)\n", "4.0 / math.sqrt(k)\n", T + "beside"),
+    (TRIALS, "contact.critical_dt(0.1, k, exercise", "contact.critical_dt(0.2, k, exercise",
+     T + "gripper"),
+    (KNOBS, "sum(true == guess", "sum(true != guess", T + "beside"),
+    (KNOBS, "<= 0.02 * sag", "<= 0.2 * sag", T + "sag_is"),
+    (BETS, "key=lambda choice: choice != right", "key=lambda choice: choice == right",
+     T + "word_on_every"),
+    (BETS, "if choice == right else", "if choice != right else", T + "word_on_every"),
+    # what waits, what is noted
+    ("exercises/kit/progress.py", "if key != name or right}", "}", T + "wrong_broken"),
+    ("exercises/kit/time_limit.py", "exit=True)", "exit=False)", T + "without_end"),
+]  # fmt: skip
