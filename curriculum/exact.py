@@ -36,7 +36,7 @@ from contact import MOST_IMPACTS  # of events, the limit of contact.py's own exa
 ORDER = 20  # of the series of balls that slide; a longer one lasts longer and costs more
 TOUCH = 1e-12  # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
 LAST = 1e-13  # of a radius: a bounce that would rise less is the last of its series
-NOISE = 1e-12  # of g, of sqrt(g r): a smaller push or speed is rounding, which leaves 1e-15
+NOISE = 1e-12  # of g, of sqrt(g r), of the largest: less is rounding, which leaves 1e-15
 RATIO = 100.0  # of masses: above it, where 0 < e < 1, light balls rattle under heavy ones
 
 
@@ -56,7 +56,7 @@ def inverse(W):
     except np.linalg.LinAlgError:
         pass
     size, axes = np.linalg.eigh(W * unit)
-    moves = size > 1e-12 * size.max(initial=0.0)
+    moves = size > NOISE * size.max(initial=0.0)
     size, idle = np.where(moves, size, math.inf), axes * ~moves
     return axes / size @ axes.T * unit, idle @ idle.T * unit
 
@@ -82,10 +82,10 @@ def solve_lcp(W, b):
         trial, on = np.zeros(len(b)), np.flatnonzero(active)
         solve, idle = inverse(W[np.ix_(on, on)])
         trial[on] = idle @ -b[on]
-        endless = np.abs(trial * unit).max() > 1e-9 * size
+        endless = np.abs(trial * unit).max() > NOISE * size
         if not endless:
             trial[on] = solve @ -b[on]
-        pulls = np.flatnonzero(trial * unit < -1e-13 * size)
+        pulls = np.flatnonzero(trial * unit < -NOISE * size)
         if len(pulls):
             way = trial if endless else trial - lam
             share = lam[pulls] / -way[pulls]
@@ -96,7 +96,7 @@ def solve_lcp(W, b):
             raise RuntimeError("exact: a ball is crushed between two that nothing moves")
         lam = np.maximum(trial, 0.0)
         s = np.where(active, 0.0, (W @ lam + b) / unit)
-        if s.min(initial=0.0) >= -1e-13 * size:
+        if s.min(initial=0.0) >= -NOISE * size:
             return lam
         active[s.argmin()] = True
     raise RuntimeError(f"exact: {len(b)} contacts at one moment: their masses are too unequal")
