@@ -49,11 +49,6 @@ def matrix(m, k, c, dt):
     return [[1.0 - dt * dt * k / m, -dt * slowed], [dt * k / m, slowed]]
 
 
-def dt_grid(m, k, c):
-    """The longest step as a coarse search finds it: the last half millisecond that is stable."""
-    return 5e-4 * math.floor(contact.critical_dt(m, k, c) / 5e-4)
-
-
 def solver(
     missing="c.target - c.v_n()",
     total="max(0.0, c.lam + add)",
@@ -83,6 +78,16 @@ def jacobi(contacts, iters):
         for c, lam in zip(contacts, wanted):
             c.push(lam - c.lam)
             c.lam = lam
+
+
+def first_alone(contacts, iters):
+    """A solve_contacts that returns from within its loop."""
+    solver()(contacts[:1], 1)
+
+
+def last_alone(contacts, iters):
+    """A solve_contacts whose push stands behind the loop over the contacts, and so out of it."""
+    solver()(contacts[-1:], iters)
 
 
 def stacks():
@@ -131,7 +136,14 @@ def run_stack(function, **case):
     return [*found, *(speed for ball in balls for speed in (ball.vx, ball.vy)), float(soon)]
 
 
-RUN = {"solve_contacts": run_stack}  # the others are called as they are
+def run_after(function, **case):
+    """What after_the_move gives; whether a contact is asked is what Python takes for a yes."""
+    got = function(*case.values())
+    return (bool(got[0]), *got[1:]) if isinstance(got, (tuple, list)) else got
+
+
+# the others are called as they are
+RUN = {"solve_contacts": run_stack, "after_the_move": run_after}
 
 
 def run(name, function, case):

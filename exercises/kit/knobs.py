@@ -68,9 +68,10 @@ def numbers(usual, shares):
 
 def bets(exercise):
     """{trouble: [the learner's marks]}. Raises ValueError, in words, where some are missing."""
-    rows = {words[0]: words[1:] for line in exercise.BETS.splitlines() if (words := line.split())}
+    lines = exercise.BETS.replace("\N{MINUS SIGN}", "-").splitlines()
+    rows = {words[0]: words[1:] for line in lines if (words := line.split())}
     for trouble in TROUBLES:
-        given = rows.get(trouble, [])
+        given = rows.get(trouble, ["nothing"])
         if len(given) != len(KNOBS) or set(given) - set("-=+"):
             raise ValueError(
                 f"BETS in {near(exercise.__file__)}, row {trouble}: given {' '.join(given)}, "
@@ -92,7 +93,7 @@ def state(exercise):
     if abs(abs(given) - sag) <= 0.02 * sag:  # the column rest gap/r says it with a minus
         return "right", ""
     for text, meaning in FACTS["ex9"]["slips"].items():
-        if abs(given - eval(text, {}, TOWER)) <= 0.01 * abs(given):
+        if abs(abs(given) - eval(text, {}, TOWER)) <= 0.01 * abs(given):
             return "wrong", f"SAG: given {given:g} r; likely: {meaning}"
     return "wrong", f"SAG: given {given:g} r, and the tower sags otherwise; --hint 5 asks how"
 

@@ -13,8 +13,8 @@ BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the mo
 
 
 def unquoted(kind, error, trace):
-    """A letter without quotes is an error of Python's; say it in one line."""
-    if kind is not NameError or name_of(sys.modules["__main__"]) not in BETS:
+    """A letter without quotes, a name that is gone: an error of Python's; say it in one line."""
+    if kind not in (NameError, AttributeError) or name_of(sys.modules["__main__"]) not in BETS:
         return sys.__excepthook__(kind, error, trace)
     print(time_limit.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
 
@@ -68,10 +68,9 @@ def checked(name, file):
         note(name, state == "right")
         return state, "\n\n".join(words for _, each, words, _ in found if each == state)
     try:
-        exercise = time_limit.load(file)
+        state, words = BETS[name].state(time_limit.load(file))
     except Exception as error:
         return "wrong", time_limit.unreadable(file, error)
-    state, words = BETS[name].state(exercise)
     if state == "right" and name not in done():
         return "blank", f"the bet is made; now read what happens: {command(file)}"
     return state, words

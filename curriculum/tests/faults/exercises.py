@@ -26,5 +26,11 @@ FAULTS = [
     (BETS, "if choice == right else", "if choice != right else", T + "word_on_every"),
     # what waits, what is noted
     ("exercises/kit/progress.py", "if key != name or right}", "}", T + "wrong_broken"),
-    ("exercises/kit/time_limit.py", "exit=True)", "exit=False)", T + "without_end"),
+    ("exercises/kit/time_limit.py", "Timeout (", "Timed out", T + "without_end"),
+    # what names a slip
+    (TRIALS, "agree(got, found[0], 0.0)", "False", T + "learner_types"),
+    (TRIALS, "0.45 < got / right", "1 < got / right", T + "learner_types"),
+    (TRIALS, "{known}", "{ask}", T + "learner_types"),
+    (TRIALS, 'if said.getvalue() else ""', 'if not said.getvalue() else ""', T + "way_through"),
+    ("exercises/kit/blanks.py", "(bool(got[0])", "(got[0]", T + "right_fill"),
 ]  # fmt: skip
