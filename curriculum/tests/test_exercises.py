@@ -279,6 +279,7 @@ TYPED = [  # what a learner writes in a blank, and what he is told
     ("penalty_normal_force", "return max(0, stiffness * depth) - damping * v_n", "goes round both"),
     ("penalty_normal_force", "return stiffness * depth + max(0, -damping * v_n)", "way in only"),
     ("penalty_normal_force", "return stiffness + damping", "where to look: "),
+    ("penalty_normal_force", "return float('nan')", "where to look: "),
     ("project_impulse", "return max(0, lam) + dlam", "nothing keeps the table from pulling"),
     ("project_impulse", "return max(0, lam + dlam) - lam", "asked for is the new sum"),
     ("solve_contacts", SWEEP.replace("(lam -", "(add +").replace("add + c.lam", "add"), "before"),
@@ -461,7 +462,10 @@ FINGERS = {"MODEL": "soft", "DT": 0.004, "STIFFNESS": 1e4, "DAMPING": 80.0,
     ({"MODEL": "penalty", "DT": 0.0006, "STIFFNESS": 1e6}, None),
     ({"MODEL": "hard"}, "allowed: MODEL 'penalty', 'implicit' or 'soft'"),
     ({"DT": 0.0}, "DT from 0.0005 s"),
-    ({"DT": "fast"}, "cannot be run with 'soft', 'fast' s"),
+    ({"DT": "fast"}, "cannot be run: given 'soft', 'fast' s"),
+    ({"SOLREF": 0.005}, "SOLREF two numbers"),
+    ({"MODEL": "implicit", "STIFFNESS": 3e5, "DT": 0.05}, "motor carries a finger 2.5 r"),
+    ({"MODEL": "implicit", "DAMPING": 8e3}, "it settles in about c / k = 0.8 s"),
 ])  # fmt: skip
 def test_the_gripper_is_judged_by_what_it_does(choice, part):
     state, words, _ = trials.judge_fingers(exercise(**FINGERS | choice))

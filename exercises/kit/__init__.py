@@ -1,7 +1,7 @@
 """What the exercises stand on: bets, blanks and how they are judged. Nothing to fill in here.
 
     script.py     an exercise's command line, and what checks.py asks
-    predict.py    exercises 1, 3, 4: bets          knobs.py     exercise 9: five knobs
+    predict.py    exercises 1, 3, 4: bets          knobs.py     exercise 9: four knobs
     time_limit.py      tries a fill in its own process  trials.py    judges it, and shows it at work
     blanks.py     what belongs in a blank          progress.py  which exercises are done
 

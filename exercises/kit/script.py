@@ -14,7 +14,10 @@ BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the mo
 
 def unquoted(kind, error, trace):
     """A letter without quotes, a name that is gone: an error of Python's; say it in one line."""
-    if kind not in (NameError, AttributeError) or name_of(sys.modules["__main__"]) not in BETS:
+    if kind not in (NameError, AttributeError) or name_of(sys.modules["__main__"]) not in (
+        *BETS,
+        "ex8",
+    ):
         return sys.__excepthook__(kind, error, trace)
     print(time_limit.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
 

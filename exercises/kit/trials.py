@@ -36,7 +36,8 @@ def row(name, function, case):
             raise TypeError
         return np.atleast_1d(np.asarray(got, float).squeeze())
     except (TypeError, ValueError):
-        raise ValueError(f"{name} returned {got!r:.60}, and not numbers") from None
+        end = "; does it end with `return`?" if got is None else ""
+        raise ValueError(f"{name} returned {got!r:.60}, and not numbers{end}") from None
 
 
 def where(error, function):
@@ -71,7 +72,8 @@ def slip(name, found, expected):
     """What probably went wrong, from the wrong values on all inputs; "" where nobody knows."""
     for values, meaning in slips(name):
         if all(
-            agree(np.nan_to_num(got), np.nan_to_num(value), 1e-3)
+            np.array_equal(np.isnan(got), np.isnan(value))
+            and agree(np.nan_to_num(got), np.nan_to_num(value), 1e-3)
             for got, value in zip(found, values)
         ):
             return meaning
@@ -142,7 +144,7 @@ def failing(name, case, got, right):
     lines.append(f"  {'':<16}{'got':>12}{'expected':>14}")
     for label, mine, other in zip(labels(name, case), got.ravel(), right.ravel()):
         mark = "" if agree(np.array([mine]), np.array([other]), 1e-3) else "   <"
-        lines.append(f"  {label:<16}{mine:>12.5g}{other:>14.5g}{mark}")
+        lines.append(f"  {label:<16}{mine + 0.0:>12.5g}{other + 0.0:>14.5g}{mark}")
     return lines
 
 
@@ -200,8 +202,8 @@ def compare(exercise, name):
     rows = {}
     for trial in TRIALS[name]:
         with in_place(getattr(exercise, name), name):
-            rows[trial.__doc__] = [trial()]
-        rows[trial.__doc__].append(trial())
+            mine = trial()
+        rows[trial.__doc__] = [round(each, 3) + 0.0 for each in (mine, trial())]  # and no -0.000
     return columns("lengths in ball radii", ("yours", "contact.py"), rows, "{:.3f}")
 
 
@@ -330,18 +332,20 @@ def fingers(exercise):
 
 def judge_fingers(exercise):
     """("blank", "wrong" or "right", why in words, what was seen): the choice of exercise 8."""
-    model, k, dt = exercise.MODEL, exercise.STIFFNESS, exercise.DT
+    model, dt, k, c = exercise.MODEL, exercise.DT, exercise.STIFFNESS, exercise.DAMPING
     if model is None:
         return "blank", f"no choice yet: set MODEL in {near(exercise.__file__)}", ""
     try:
-        if model not in ("penalty", "implicit", "soft") or not 0.0005 <= dt <= 0.1 or not k > 0.0:
-            allowed = (
-                "MODEL 'penalty', 'implicit' or 'soft', DT from 0.0005 s (2,000 steps) to 0.1 s"
-            )
-            raise ValueError(f"allowed: {allowed}, STIFFNESS above 0")
+        if model not in ("penalty", "implicit", "soft") or not 0.0005 <= dt <= 0.1:
+            raise ValueError
+        if not k > 0.0 <= c or (len(exercise.SOLREF), len(exercise.SOLIMP)) != (2, 5):
+            raise ValueError
         seen = fingers(exercise)
-    except Exception as error:
-        return "wrong", f"the fingers cannot be run with {model!r}, {dt!r} s: {error}", ""
+    except (TypeError, ValueError, ArithmeticError):
+        given = f"{model!r}, {dt!r} s, {k!r}, {c!r}, {exercise.SOLREF!r}, {exercise.SOLIMP!r}"
+        allowed = "MODEL 'penalty', 'implicit' or 'soft', DT from 0.0005 s (2,000 steps) to 0.1 s, "
+        allowed += "STIFFNESS above 0, DAMPING 0 or more, SOLREF two numbers, SOLIMP five"
+        return "wrong", f"the fingers cannot be run: given {given}; allowed: {allowed}", ""
     shown = "overlap {deepest:.2g} r, trembling {trembling:.2g} r".format(**seen)
     faults = [] if seen["trembling"] < 1e-5 else ["it trembles"]
     faults += [] if seen["deepest"] < 1e-3 else ["it overlaps too much"]
@@ -350,12 +354,14 @@ def judge_fingers(exercise):
     if not faults:
         return "right", "", shown
     advice = "a shorter time constant, of two steps or more, stiffens soft, and so does impedance"
-    if model == "penalty":
-        step = contact.critical_dt(0.1, k, exercise.DAMPING)
-        advice = f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and a finger on it "
-        advice += f"wants steps below {step:.1g} s"
+    pressed_in = f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and "
+    if not seen["held"] and 1e3 * dt * dt > 0.5:  # 20 N on 0.2 kg, in r
+        advice = f"in one step of {dt:g} s its motor carries a finger {1e3 * dt * dt:.2g} r"
+    elif model == "penalty":
+        step = contact.critical_dt(0.1, k, c)
+        advice = f"{pressed_in}a finger on it wants steps below {step:.1g} s"
     elif model == "implicit":
-        advice = f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r"
+        advice = f"{pressed_in}it settles in about c / k = {c / k:.1g} s"
     return "wrong", f"{', and '.join(faults)}; {advice}", shown
 
 

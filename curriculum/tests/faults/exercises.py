@@ -17,7 +17,7 @@ FAULTS = [
     (TRIALS, 'mine["energy_excess"], other["energy_excess"]',
      'other["energy_excess"], other["energy_excess"]', T + "beside"),
     (TRIALS, "2.0 / math.sqrt(k)\n", "4.0 / math.sqrt(k)\n", T + "beside"),
-    (TRIALS, "contact.critical_dt(0.1, k, exercise", "contact.critical_dt(0.2, k, exercise",
+    (TRIALS, "contact.critical_dt(0.1, k, c)", "contact.critical_dt(0.2, k, c)",
      T + "gripper"),
     (KNOBS, "sum(true == guess", "sum(true != guess", T + "beside"),
     (KNOBS, "<= 0.02 * sag", "<= 0.2 * sag", T + "sag_is"),
