@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +13,10 @@ import pytest
 
 from curriculum import regions
 from curriculum.measured import ledger, stale
+from curriculum.tests.helpers import ROOT, python
 from curriculum.text import references
 
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
-ROOT = Path(__file__).resolve().parents[2]
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
 EXERCISE, SVG = "exercises/ex1_bet.py", "curriculum/bench/results/a.svg"
 PENDING = (
@@ -62,15 +61,9 @@ results.write_page(folder, 'README.md', '# Page')
 """
 
 
-def in_project(project, *words):
-    """A finished process of this Python in a project."""
-    command = [sys.executable, "-B", *words]
-    return subprocess.run(command, cwd=project, capture_output=True, text=True, timeout=120)
-
-
 def run_gate(project, *flags):
     """`python -m curriculum.text FLAGS` in a project."""
-    return in_project(project, "-m", "curriculum.text", *flags)
+    return python("-B", "-m", "curriculum.text", *flags, cwd=project)
 
 
 def edit(path, old, new):
@@ -109,7 +102,7 @@ def accepted(tmp_path_factory):
     for file, text in FILES.items():
         (project / file).parent.mkdir(parents=True, exist_ok=True)
         (project / file).write_text(text + shown * (file == CHAPTER), "utf-8")
-    assert in_project(project, "-c", WRITE).returncode == 0
+    assert python("-B", "-c", WRITE, cwd=project).returncode == 0
     first = run_gate(project)
     names = first.stdout.splitlines()[-1].split(" --accept ")[1].split()
     assert {"sweep", "implicit-spring", "contact.py", "figures/clamp"} < set(names)
@@ -127,7 +120,7 @@ def project(accepted, tmp_path):
 def test_project_that_was_read_passes_and_nothing_is_written(project):
     edit(project / CLAMP, "x = 1", "x = 2")  # which no reader sees
     newer = WRITE.replace("| 1 |", "| 2 |")  # which a command wrote, so it needs no reader
-    assert in_project(project, "-c", newer).returncode == 0
+    assert python("-B", "-c", newer, cwd=project).returncode == 0
     before = {path: path.read_bytes() for path in project.rglob("*") if path.is_file()}
     done = run_gate(project)
     assert (done.returncode, done.stdout) == (0, "text, code, numbers and results agree\n")
@@ -234,7 +227,7 @@ def test_what_is_quoted_is_kept_until_its_code_changes_and_marked_where_it_is_st
     shown = "from curriculum.text.references import Numbers; print(Numbers().text('{}'), end='')"
 
     def quoted(reference):
-        return in_project(project, "-c", shown.format(reference)).stdout
+        return python("-B", "-c", shown.format(reference), cwd=project).stdout
 
     first = quoted("fact:jump.before|.4f")
     assert first == "−0.0196"
@@ -320,11 +313,11 @@ def test_measuring_writes_a_whole_row_of_todays_code(project):
             copied = project / path.relative_to(ROOT)
             copied.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, copied)
-    command = "-m", "curriculum.measured.ledger", "cpu", "--runs", "1"
-    run = in_project(project, *command)
+    command = "-B", "-m", "curriculum.measured.ledger", "cpu", "--runs", "1"
+    run = python(*command, cwd=project)
     assert run.returncode == 1 and "commit these first: ?? checks.py" in run.stderr
     commit(project)
-    run = in_project(project, *command)
+    run = python(*command, cwd=project)
     assert run.returncode == 0 and re.search(r": [\d.]+ (s|min)$", run.stdout.strip()), run.stderr
     header, pending, row = (project / "wallclock.csv").read_text("utf-8").splitlines()
     assert f"{header}\n{pending}\n" == PENDING
