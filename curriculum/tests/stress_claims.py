@@ -22,14 +22,15 @@ def loaded(texts, old, new):
         file.write_text(text.replace(old, new), "utf-8")
     for name in [name for name in sys.modules if name.split(".")[0] in ("contact", "curriculum")]:
         del sys.modules[name]
-    names = "properties", "jobs", "maps", "mujoco_match"
+    names = "properties", "jobs", "maps", "mujoco_match", "heaps"
     return [importlib.import_module(f"curriculum.stress.{name}") for name in names]
 
 
 def judged(modules, count, wanted):
-    """(property, subject) of so many small scenes, of maps and matches; `wanted` alone, if any."""
-    properties, jobs, maps, match = modules
-    others = itertools.chain(maps.map_jobs(True), match.match_jobs(True))
+    """(property, subject) of small scenes, maps, matches and a heap; `wanted` alone, if any."""
+    properties, jobs, maps, match, heaps = modules
+    order = ("heap 0", heaps.Heap(0), [heaps.leapfrog_is_of_second_order])
+    others = itertools.chain(maps.map_jobs(True), match.match_jobs(True), [order])
     scenes = jobs.scene_jobs(range(count), small=True)
     for _, subject, stated in itertools.chain(
         scenes, () if wanted in properties.PROPERTIES else others
