@@ -80,16 +80,6 @@ def jacobi(contacts, iters):
             c.lam = lam
 
 
-def first_alone(contacts, iters):
-    """A solve_contacts that returns from within its loop."""
-    solver()(contacts[:1], 1)
-
-
-def last_alone(contacts, iters):
-    """A solve_contacts whose push stands behind the loop over the contacts, and so out of it."""
-    solver()(contacts[-1:], iters)
-
-
 def stacks():
     """Inputs of exercise 5: stacks of 1 to 5 balls, the lowest in a groove or on a floor.
 

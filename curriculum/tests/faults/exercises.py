@@ -1,7 +1,7 @@
 """Faults for the exercises: (file, what stands there, what is planted, the tests that name it)."""
 
 TRIALS, KNOBS, BETS = (f"exercises/kit/{name}.py" for name in ("trials", "knobs", "predict"))
-T = "test_exercises.py -k "
+ANSWERS, T = "exercises/kit/answers.json", "test_exercises.py -k "
 FAULTS = [
     # what is judged
     (TRIALS, "allowed = within * np", "allowed = 1e7 * within * np", T + "wrong_fill"),
@@ -24,6 +24,13 @@ FAULTS = [
     (BETS, "key=lambda choice: choice != right", "key=lambda choice: choice == right",
      T + "word_on_every"),
     (BETS, "if choice == right else", "if choice != right else", T + "word_on_every"),
+    # what is said of a bet
+    (ANSWERS, "lcp_long > 10", "lcp_long < 10", T + "word_on_every"),
+    (ANSWERS, "penalty_long > 10 and lcp_long < 1", "lcp_long < 0", T + "those_measured"),
+    (ANSWERS, "d^2 K depth", "d K depth", T + "those_measured"),
+    (ANSWERS, "`k depth = m g`, {sink", "`k depth = m g / 2`, {sink", T + "those_measured"),
+    (ANSWERS, "{penalty_deepest:.3f} r. Nor", "0.351 r. Nor", T + "those_measured"),
+    (BETS, "dt = 0.03 s", "dt = 0.02 s", T + "captions"),
     # what waits, what is noted
     ("exercises/kit/progress.py", "if key != name or right}", "}", T + "wrong_broken"),
     ("exercises/kit/time_limit.py", "Timeout (", "Timed out", T + "without_end"),
