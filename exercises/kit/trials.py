@@ -276,18 +276,16 @@ def ask_twice(exercise, _):
     """Errors beside exact, how high a ball comes that begins in another, the order of the slide."""
 
     def ways(dt):
-        return partial(asking_twice, exercise, dt=dt), partial(
-            contact.lcp_step, dt=dt, restitution=0.0, baumgarte=0.2, iters=20
-        )
+        lcp = partial(contact.lcp_step, dt=dt, restitution=0.0, baumgarte=0.2, iters=20)
+        return partial(asking_twice, exercise, dt=dt), lcp
 
-    dt, rows = 0.002, {}
-    for name, (of, seconds) in SCENES.items():
-        rows[f"{name}, error"] = [worst(step, of, seconds, dt) for step in ways(dt)]
-    high = (contact.simulate(step, INSIDE, dt, 300).q[:, 1].max() for step in ways(dt))
+    def errors(name, dt):
+        return [worst(step, *SCENES[name], dt) for step in ways(dt)]
+
+    rows = {f"{name}, error": errors(name, 0.002) for name in SCENES}
+    high = (contact.simulate(step, INSIDE, 0.002, 300).q[:, 1].max() for step in ways(0.002))
     rows["inside, height"] = [y / contact.RADIUS for y in high]
-    of, seconds = SCENES["slide"]
-    fine = (worst(step, of, seconds, dt / 4) for step in ways(dt / 4))
-    rows["slide, dt / 4"] = list(fine)
+    rows["slide, dt / 4"] = errors("slide", 0.0005)
     pairs = zip(rows["slide, error"], rows["slide, dt / 4"])
     orders = [math.log(max(a, 1e-16) / max(b, 1e-16), 4) for a, b in pairs]
     table = columns("in r, beside exact", ("yours", "lcp"), rows, "{:.3g}")
