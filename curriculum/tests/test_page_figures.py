@@ -394,14 +394,12 @@ def test_impedance_and_softness_are_those_of_contact_py(draw):
 def test_twice_ends_its_steps_as_contact_py_does_and_draws_both_orders(draw):
     dt, gap, v = 0.0065, 2.5, -3.2
     figure = draw("twice", {"dt": dt}, {"gap": gap, "v": v, "lean": 0.3})
-    for model, shape, floor in zip(
-        ("lcp", "leapfrog"), ("ball m-lcp", "ball m-leapfrog"), (88, 88)
-    ):
-        last = place(figure.shapes(shape)[1])
+    for model in ("lcp", "leapfrog"):
+        before, after = (place(each)[1] for each in figure.shapes(f"ball m-{model}")[:2])
+        foot = figure.shapes("table-top")[0]["y1"] - 13  # px, of a ball that touches
         run = contact.run_model(model, contact.scene_of(0, R + gap * dt, vy=v), dt, 1)
-        assert (floor - 13 - last[1]) / 12 * dt / R == pytest.approx(
-            run.q[1, 1, 0] / R - 1, abs=2e-3
-        )
+        ends = (foot - after) / (foot - before) * gap * dt / R
+        assert ends == pytest.approx(run.q[1, 1, 0] / R - 1, abs=2e-3)
     x, y = 2 * R * np.sin(0.3), 2 * R * np.cos(0.3)
     scene = contact.scene_of([0, x], [5, 5 + y], [np.inf, 1])
     truth = contact.run_model("exact", scene, dt, 76).q

@@ -51,7 +51,7 @@ function picture({ own, width }, { run, depths }) {
   const [far, high] = [xs, ys].map((all) => Math.max(0.3, ...all.map(Math.abs)));
   const floor = TOP - 14 - GROUND;
   const scale = Math.min(360, (width / 2 - 8) / (far + R), (floor - 8) / (high + R)); // px for 1 m
-  const r = Math.max(3, R * scale);
+  const r = Math.max(9, R * scale); // what has flown far is still seen
   const place = (_, k) => [width / 2 + xs[k] * scale, floor - Math.max(R, ys[k]) * scale];
   const places = xs.map(place);
   const at = places.slice(-3);
@@ -65,7 +65,7 @@ function picture({ own, width }, { run, depths }) {
   const rim = { cx: cupX, cy: cupY - 0.72 * r, rx: 0.62 * r, ry: 0.15 * r, class: "cup" };
   const drawn = [
     table(0, floor, width, GROUND),
-    far > 0.3 ? ruler + trail(0) + trail(2) : arms,
+    far > 0.3 ? ruler + [0, 1, 2].map(trail).join("") : arms,
     ...at.map(([x, y], i) => ball(i === 1 ? "penalty" : "fixed", x, y, r, "ball plainly")),
     el("ellipse", rim),
     far > 0.3 ? "" : line(touch, cupY, 52, 50, "hand") + lens(52, 50, 44, r, depths[row]),

@@ -5,7 +5,7 @@ import { runModel, stateAt } from "../engine.js";
 import { beside, depthsOf, G, grip, kept, knobs, R, scene, tens, through } from "../kit.js";
 
 const [FEWEST, FIRST, MOST, HEAVIEST] = [2, 8, 10, 100]; // balls, balls, balls, kg
-const [LENS, GROUND, LARGEST] = [15, 30, 30]; // px: a lens, the table, a ball
+const [LENS, GROUND, LARGEST] = [15, 38, 30]; // px: a lens, the table, a ball
 const ROWS = 300; // steps until all is at rest: the run starts where the law has it
 
 // The law: how deep each ball is pressed into what is below it [r]; `masses` from below.
@@ -67,7 +67,7 @@ function column(left, height, masses, depths, law) {
     ].join("");
   });
   const power = Math.log10(ten);
-  const enlarged = label(power ? `in ${tenTo(power)} r` : "in r", left - 4, 14, "end", "tick");
+  const enlarged = label(power ? `in ${tenTo(power)} r` : "in r", left - 4, height - 5, "end");
   return { svg: table(0, floor, left, GROUND) + drawn.join("") + enlarged, places, r };
 }
 
@@ -98,7 +98,7 @@ function draw(view) {
   const { depths, rests, law } = all[now];
   let made;
   const picture = (left) => (made = column(left, view.height, masses, depths, law)).svg;
-  const { svg, sx, sy } = beside(view, chartOf(ways, all), picture, view.width < 480 ? 0.52 : 0.44);
+  const { svg, sx, sy } = beside(view, chartOf(ways, all), picture, 0.42);
   const hold = ([x, y], i) => {
     const get = () => Math.log10(own.masses[i]);
     const set = (to) => (own.masses[i] = Number((10 ** to).toPrecision(2)));

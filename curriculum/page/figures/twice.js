@@ -12,9 +12,10 @@ const PARTS = {
 
 // ---- one step, part by part
 
-const [STRIP, GROUND, BALL] = [132, 44, 13]; // px: a model's strip, its table, a radius
+// px: a model's strip, its table, so deep that no arrow hides a name below it, a radius
+const [STRIP, GROUND, BALL] = [140, 66, 13];
 const FLOOR = STRIP - GROUND;
-const PX = 12; // what 1 m/s does in a step; gaps are counted in it
+const PX = 9; // what 1 m/s does in a step; gaps are counted in it
 const [DOWN, UP] = [-5, 1]; // m/s
 
 // Gap and speed [m/s] before a step, and after each of its parts.
@@ -159,7 +160,7 @@ export const figure = {
   caption:
     "lcp asks one question in a step, leapfrog two: drag the ball and its speed, the sliding " +
     "ball and the time step, and see what each step leaves.",
-  height: 520,
+  height: 536,
   knobs: ["dt"],
   start: () => ({ gap: 3, v: -4, lean: 0.1 }),
   draw,
