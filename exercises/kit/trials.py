@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import contact
-from curriculum.commands import command, near
+from curriculum.commands import near
 
 from . import columns
 from .blanks import BLANKS, labels, run, solver
@@ -123,7 +123,7 @@ def judge(exercise, name):
         words = f"{name} is right; on the first of its inputs it"
         return "right", "\n".join((words, *printed(said))) if said.getvalue() else ""
     known = slip(name, found, expected)
-    ask = f"  where to look: {command(exercise.__file__, '--hint', blank.hint)}"
+    ask = f"  where to look: {near(exercise.__file__)} --hint {blank.hint} asks a question"
     lines = [
         f"{name} is wrong on {len(wrong)} of {len(found)} inputs, of which this is the smallest:",
         *failing(name, *shown),
