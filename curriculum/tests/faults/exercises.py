@@ -20,6 +20,7 @@ FAULTS = [
     (TRIALS, "contact.critical_dt(0.1, k, c)", "contact.critical_dt(0.2, k, c)",
      T + "gripper"),
     (KNOBS, "sum(true == guess", "sum(true != guess", T + "beside"),
+    (KNOBS, 'replace("\\N{MINUS SIGN}", "-")', 'replace("~", "-")', T + "sag_is"),
     (KNOBS, "<= 0.02 * sag", "<= 0.2 * sag", T + "sag_is"),
     (BETS, "key=lambda choice: choice != right", "key=lambda choice: choice == right",
      T + "word_on_every"),
