@@ -138,6 +138,7 @@ export class Reader {
   #grab(span, section, position, turn) {
     let [startX, start] = [0, 0]; // where it is grabbed
     span.addEventListener("pointerdown", (event) => {
+      if (event.button > 0) return;
       event.preventDefault();
       span.focus({ preventScroll: true });
       span.setPointerCapture(event.pointerId);

@@ -138,6 +138,7 @@ export class Stage {
   #handles = [];
   #pending = 0;
   #last = 0; // ms, of the last frame
+  #pointer = null; // that holds a handle: another finger moves nothing
   #trail = []; // of the pointer: [ms, x, y]
 
   constructor(box, name, figure, page, section) {
@@ -201,8 +202,8 @@ export class Stage {
     const stay = (event) => this.#handle(event.target.dataset.handle) && event.preventDefault();
     svg.addEventListener("touchstart", stay, { passive: false });
     svg.addEventListener("pointermove", (event) => this.#drag(event));
-    svg.addEventListener("pointerup", () => this.#letGo());
-    svg.addEventListener("pointercancel", () => this.#letGo());
+    for (const end of ["pointerup", "pointercancel"])
+      svg.addEventListener(end, (event) => event.pointerId === this.#pointer && this.#letGo());
     svg.addEventListener("keydown", (event) => this.#key(event));
   }
 
@@ -210,10 +211,11 @@ export class Stage {
 
   #grab(event) {
     const handle = this.#handle(event.target.dataset.handle);
-    if (!handle || event.button > 0) return;
+    if (!handle || event.button > 0 || this.grabbed !== null) return;
     event.preventDefault();
     event.target.focus({ preventScroll: true });
-    this.svg.setPointerCapture(event.pointerId);
+    this.#pointer = event.pointerId;
+    this.svg.setPointerCapture(this.#pointer);
     this.grabbed = handle.name;
     this.from = handle;
     const [x, y] = handle.hold || [handle.x, handle.y];
@@ -224,7 +226,7 @@ export class Stage {
   }
 
   #drag(event) {
-    if (this.grabbed === null) return;
+    if (event.pointerId !== this.#pointer) return;
     const [x, y] = [event.clientX, event.clientY].map((at, k) => this.scale * at + this.aside[k]);
     this.#trail = [...this.#trail.slice(-4), [performance.now(), x, y]];
     this.#handle(this.grabbed)?.drag(x, y);
@@ -233,7 +235,7 @@ export class Stage {
 
   #letGo() {
     const handle = this.#handle(this.grabbed);
-    this.grabbed = null;
+    this.grabbed = this.#pointer = null;
     handle?.release?.();
     this.redraw();
   }

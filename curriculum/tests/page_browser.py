@@ -183,16 +183,16 @@ def middle(node):
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
-def mouse(page, x, y, moves=MOVES):
+def mouse(page, x, y, moves=MOVES, button="left"):
     """Press Chromium's mouse at a place, and draw it to and fro; a move at a time."""
     page.mouse.move(x, y)
-    page.mouse.down()
+    page.mouse.down(button=button)
     try:
         for dx, dy in moves:
             page.mouse.move(x + dx, y + dy, steps=2)
             yield
     finally:
-        page.mouse.up()
+        page.mouse.up(button=button)
 
 
 def mouse_of_firefox(page, x, y):
@@ -206,8 +206,8 @@ def mouse_of_firefox(page, x, y):
         page.pointer("Up")
 
 
-def finger(page, x, y, moves=MOVES[:3]):
-    """The same with a finger on a phone."""
+def finger(page, x, y, moves=MOVES[:3], others=()):
+    """The same with a finger on a phone; then put `others` down beside it, at places [x, y]."""
     touch = page.context.new_cdp_session(page)
 
     def send(kind, *at):
@@ -218,6 +218,11 @@ def finger(page, x, y, moves=MOVES[:3]):
     try:
         for dx, dy in moves:
             send("Move", {"x": x + dx, "y": y + dy})
+            yield
+        held = {"x": x + dx, "y": y + dy, "id": 0}
+        for x, y in others:
+            send("Start", held, {"x": x, "y": y, "id": 1})
+            send("Move", held, {"x": x + 30, "y": y + 20, "id": 1})
             yield
     finally:
         send("End")

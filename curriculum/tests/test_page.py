@@ -372,6 +372,15 @@ def test_a_ball_stays_under_the_mouse_where_a_figure_is_drawn_smaller_than_on_a_
         assert place == pytest.approx((x + dx, y + dy), abs=2)
 
 
+@pytest.mark.parametrize("held", ["#fig-grab .handle", ".drag[data-knob=stiffness]"])
+def test_the_right_button_moves_nothing(tab, held):
+    node = tab.locator(held).first
+    before = node.get_attribute("aria-valuetext")
+    for _ in mouse(tab, *middle(node), ((40, -30),), button="right"):
+        call(tab, page_browser.WORDS, "fig-grab")
+    assert before and node.get_attribute("aria-valuetext") == before
+
+
 HEIGHT = "Number(document.querySelector('#fig-grab .handle').getAttribute('aria-valuenow'))"
 
 
@@ -436,6 +445,19 @@ def test_a_finger_holds_the_ball_and_drags_a_number_and_the_page_does_not_scroll
         assert node is not ball or phone.evaluate("scrollY") == before
     first, last = (float(re.search(r"A hand holds it ([\d.]+)", seen[k])[1]) for k in (0, 3))
     assert last > first + 0.05 and seen[-1] == "17,800"
+
+
+def test_a_second_finger_neither_moves_the_ball_that_the_first_holds_nor_lets_it_go(phone):
+    ball, told = phone.locator("#fig-grab .handle"), phone.locator("#fig-grab .words")
+    frame = phone.locator("#fig-grab .drawing")
+    x, y = middle(ball)
+    box = frame.bounding_box()
+    corner = box["x"] + 20, box["y"] + 20
+    seen = []
+    for _ in page_browser.finger(phone, x, y, ((9, -30),), (corner,)):
+        call(phone, page_browser.WORDS, "fig-grab")
+        seen.append((told.inner_text(), ball.bounding_box()))
+    assert "A hand holds it" in seen[0][0] and seen[1] == seen[0]
 
 
 def test_without_scripts_text_figures_and_exercises_are_there(visit):

@@ -72,6 +72,12 @@ FAULTS = [
     (ENGINE, "value === value ? value + 0 : NaN", "value", BITS),
     (ENGINE, "dt * stiffness * c.depth * softness", "dt * stiffness * c.depth", BITS),
     (ENGINE, "2 ** -50 * Math.max", "2 ** -30 * Math.max", BITS),
+    # hands
+    ("curriculum/page/stage.js", "if (event.pointerId !== this.#pointer) return;",
+     "if (this.grabbed === null) return;", "test_page.py -k second_finger"),
+    ("curriculum/page/stage.js", "|| event.button > 0", "", "test_page.py -k right_button"),
+    ("curriculum/page/reader.js", "if (event.button > 0) return;", "",
+     "test_page.py -k right_button"),
     # what builds and holds the page
     ("curriculum/page/build.py", "if count != 1:", "if count > 1:",
      "test_page.py -k lit_line"),
