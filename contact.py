@@ -78,7 +78,7 @@ class Scene(NamedTuple):
     v0: np.ndarray
     mass: np.ndarray  # nothing changes the velocity of a ball of infinite mass
     radius: np.ndarray
-    restitution: float  # e, of lcp, soft and exact; penalty has no such knob
+    restitution: float  # e; penalty has no such knob
     damping: float  # c of penalty [N s/m]
 
 

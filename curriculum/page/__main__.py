@@ -18,6 +18,9 @@ def main(argv=None):
     add("--pictures", type=Path, metavar="FOLDER", help="and the README's picture of it")
     add("--measure", action="store_true", help="and how quickly it answers in Chromium")
     args = parser.parse_args(argv)
+    if args.out.is_dir():
+        parser.error(f"--out: given the folder {args.out}; allowed: a file")
+    print("building: runs, figures, formulas; up to a minute on a slow machine", file=sys.stderr)
     try:
         from curriculum.commands import write_whole
         from curriculum.page.build import build
@@ -27,7 +30,8 @@ def main(argv=None):
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1
-    print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file")
+    print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file; open it in a browser:")
+    print(args.out.resolve().as_uri())
     with needs("dev"):
         if args.pictures or args.measure:
             from curriculum.tests import page_measure

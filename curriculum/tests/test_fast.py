@@ -157,7 +157,9 @@ def add_ball(scene, **ball):
 def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls_and_under_a_large_ball(model):
     crushed = add_ball(shaft(16, 4), x=0.3, y=12.0, radius=10.0, mass=1000.0)
     crushed.v0[1, -1] = -5.0
-    for scene in (shaft(20, 4), shaft(20, 4, wall=1.0), crushed):
+    mass, radius = [math.inf, math.inf, 0.7], [0.17, 0.17, 0.13]
+    gap = contact.scene_of([-0.3, 0.3, 0], [0.5, 0.5, 0.51], mass, radius, [0, 0, 9], 0, 0.9)
+    for scene in (shaft(20, 4), shaft(20, 4, wall=1.0), crushed, gap):
         check_same(model, scene, 0.004, 120)
 
 
