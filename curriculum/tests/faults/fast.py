@@ -11,7 +11,7 @@ FAULTS = [
     (F, "gaps[k] < 0.999 * reach - 2.0 * farthest", "gaps[k] < 0.999 * reach - farthest",
      T + "list_looks"),
     (F, "or c.lam != d.lam:", "or False:", T + "impulses"),
-    (F, "            mark, marked = k, last.copy()", "            mark, marked = k, last[:0]", REST),
+    (F, "mark, marked = k, last.copy()", "mark, marked = k, last[:0]", REST),
     (F, "rows[np.isnan(rows)] = math.nan", "pass", PLAIN),
     (F, "rows += 0.0  #", "#", PLAIN),
     (F, "settled = settled and abs(change)", "settled = abs(change)", PLAIN),
