@@ -142,7 +142,7 @@ class Contact:
 
     __slots__ = "a b nx ny depth inv_mass m_eff target softness lam".split()
     __slots__ += "start before".split()  # of solve_with_momentum
-    __slots__ += "stays after hits".split()  # of leapfrog
+    __slots__ += "stays after hit hits".split()  # of leapfrog
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
@@ -356,7 +356,7 @@ def leapfrog_step(balls, dt, restitution, iters) -> None:
     for c in contacts:
         ask(c, restitution, dt)
     if restitution > 0.0:
-        stay_between(contacts, restitution, dt)
+        stay_between(balls, contacts, restitution, dt)
     accelerate(balls, 0.5 * dt)
     solve_with_momentum(contacts, iters)  # the way
     move(balls, dt)
@@ -388,7 +388,7 @@ def ask(c, restitution, dt):
     # of the gap: 0 where both balls fall
     a_n = GRAVITY * c.ny * ((c.a.inv_mass > 0.0) - (c.b.inv_mass > 0.0))
     when = time_to_impact(gap, v_n, a_n) if gap > 0.0 else 0.0
-    hit = v_n + when * a_n if when < dt else 0.0  # v_n of the impact, if it comes in this step
+    c.hit = hit = v_n + when * a_n if when < dt else 0.0  # v_n of the impact, if it comes now
     c.hits = hit < dt * GRAVITY  # slower is what gravity adds in a step: such a contact stays
     back = -restitution * (v_n + dt * a_n)  # no target above it: solved impulses add no energy
     c.stays = min(-gap, OPENS * (c.a.radius + c.b.radius)) / dt  # gap + dt v_n >= 0
@@ -401,20 +401,23 @@ def ask(c, restitution, dt):
         c.after = min(-restitution * hit + left * a_n, back)
 
 
-def stay_between(contacts, restitution, dt):
-    """Ask no way of a bounce that would throw a ball back into one that it just leaves."""
-    left = set()
+def stay_between(balls, contacts, restitution, dt):
+    """Ask no way of a bounce that would drive its ball into one that it would not meet else.
+
+    Else both ask for room that is not there, and the sweeps push all that is around them.
+    """
+    before = [(ball.vx, ball.vy) for ball in balls]
+    free = [c for c in contacts if not c.hits and c.target < c.v_n() + dt * GRAVITY]
     for c in contacts:
-        v_n = c.v_n()
-        if not c.hits and v_n > -dt * GRAVITY and c.target > -restitution * v_n:
-            left |= {c.a, c.b}  # as fast the other way, they meet again within the step
+        if c.hits:
+            c.push(-(1.0 + restitution) * c.hit * c.m_eff)  # try every bounce as if it came alone
+    blocked = [c for c in free if c.target > c.v_n() - dt * GRAVITY]
+    for ball, (vx, vy) in zip(balls, before):
+        ball.vx, ball.vy = vx, vy
+    meet = {ball for c in blocked for ball in (c.a, c.b) if ball.inv_mass > 0.0}
     for c in contacts:
-        for ball, other in ((c.a, c.b), (c.b, c.a)):
-            back = (
-                restitution * ball.inv_mass > other.inv_mass
-            )  # the other is too heavy to give way
-            if c.hits and back and ball in left:
-                c.target = c.stays
+        if c.hits and (c.a in meet or c.b in meet):
+            c.target = c.stays
 
 
 def turn(c, dt):

@@ -315,11 +315,12 @@ def solve_with_momentum(balls, contacts, iters):
 def leapfrog_step(balls, contacts, knobs):
     """One step: half of gravity, ask for the way, move, half of gravity, ask for the speed."""
     half = 0.5 * knobs.dt
-    after, hits = np.empty(len(contacts)), np.empty(len(contacts), np.bool_)
+    after, hit = np.empty(len(contacts)), np.empty(len(contacts))
     for k, c in enumerate(contacts):
-        after[k], hits[k] = ask(c, balls, knobs)
+        after[k], hit[k] = ask(c, balls, knobs)
     if knobs.restitution > 0.0:
-        stay_between(balls, contacts, hits, knobs)
+        stay_between(balls, contacts, hit, knobs)
+    hits = hit < knobs.dt * knobs.gravity
     accelerate(balls, half, knobs.gravity)
     solve_with_momentum(balls, contacts, knobs.iters)
     move(balls, knobs.dt)
@@ -342,7 +343,7 @@ def leapfrog_step(balls, contacts, knobs):
 
 @compiled
 def ask(c, balls, knobs):
-    """Set what leapfrog asks of the way of c; returns what of the speed, and whether c hits."""
+    """Set what leapfrog asks of the way of c; returns what of the speed, and v_n of an impact."""
     restitution, dt, gravity = knobs.restitution, knobs.dt, knobs.gravity
     turn(c, balls, dt)
     a, b = balls[c.a], balls[c.b]
@@ -350,34 +351,41 @@ def ask(c, balls, knobs):
     a_n = gravity * c.ny * ((a.inv_mass > 0.0) - (b.inv_mass > 0.0))
     when = time_to_impact(gap, v_n, a_n) if gap > 0.0 else 0.0
     hit = v_n + when * a_n if when < dt else 0.0
-    hits = hit < dt * gravity
     back = -restitution * (v_n + dt * a_n)
     opens = knobs.opens * (a.radius + b.radius)
     c.target = (opens if opens < -gap else -gap) / dt
     after = back if back < 0.0 else 0.0
     left = dt - when
     end = left * (-restitution * hit + 0.5 * left * a_n)
-    if hits and end > 0.0:
+    if hit < dt * gravity and end > 0.0:
         c.target = larger(c.target, (end - larger(gap, 0.0)) / dt)
         bounce = -restitution * hit + left * a_n
         after = back if back < bounce else bounce
-    return after, hits
+    return after, hit
 
 
 @compiled
-def stay_between(balls, contacts, hits, knobs):
-    """Ask no way of a bounce that would throw a ball back into one that it just leaves."""
-    left = np.zeros(len(balls), np.bool_)
+def stay_between(balls, contacts, hit, knobs):
+    """Ask no way of a bounce that would drive its ball into one that it would not meet else."""
+    least = knobs.dt * knobs.gravity
+    vx, vy = balls["vx"].copy(), balls["vy"].copy()
+    free = np.zeros(len(contacts), np.bool_)
     for k, c in enumerate(contacts):
-        v_n = normal_velocity(c, balls)
-        if not hits[k] and v_n > -knobs.dt * knobs.gravity and c.target > -knobs.restitution * v_n:
-            left[c.a] = left[c.b] = True
+        free[k] = not hit[k] < least and c.target < normal_velocity(c, balls) + least
     for k, c in enumerate(contacts):
-        for ball, other in ((c.a, c.b), (c.b, c.a)):
-            turned = knobs.restitution * balls[ball].inv_mass > balls[other].inv_mass
-            if hits[k] and turned and left[ball]:
-                opens = knobs.opens * (balls[c.a].radius + balls[c.b].radius)
-                c.target = (opens if opens < c.depth else c.depth) / knobs.dt
+        if hit[k] < least:
+            push(c, balls, -(1.0 + knobs.restitution) * hit[k] * c.m_eff)
+    meet = np.zeros(len(balls), np.bool_)
+    for k, c in enumerate(contacts):
+        if free[k] and c.target > normal_velocity(c, balls) - least:
+            meet[c.a] = meet[c.b] = True
+    for k in range(len(balls)):
+        balls[k].vx, balls[k].vy = vx[k], vy[k]
+        meet[k] = meet[k] and balls[k].inv_mass > 0.0
+    for k, c in enumerate(contacts):
+        if hit[k] < least and (meet[c.a] or meet[c.b]):
+            opens = knobs.opens * (balls[c.a].radius + balls[c.b].radius)
+            c.target = (opens if opens < c.depth else c.depth) / knobs.dt
 
 
 @compiled

@@ -239,7 +239,7 @@ function ask(c, state, radius, { dt, restitution }) {
   const [gap, speed] = [-c.depth, normalSpeed(c, state.vx, state.vy)];
   const a = GRAVITY * c.ny * ((c.wi > 0) - (c.wj > 0));
   const when = gap > 0 ? timeToImpact(gap, speed, a) : 0;
-  const hit = when < dt ? speed + when * a : 0;
+  const hit = (c.hit = when < dt ? speed + when * a : 0);
   const back = -restitution * (speed + dt * a);
   const left = dt - when;
   const end = left * (-restitution * hit + 0.5 * left * a);
@@ -252,19 +252,16 @@ function ask(c, state, radius, { dt, restitution }) {
   c.after = least(-restitution * hit + left * a, back);
 }
 
-// Asks no way of a bounce that would throw a ball back into one that it just leaves.
+// Asks no way of a bounce that would drive its ball into one that it would not meet else.
 function stayBetween(rows, { vx, vy }, { dt, restitution }) {
-  const left = new Set();
-  for (const c of rows) {
-    const speed = normalSpeed(c, vx, vy);
-    if (c.hits || !(speed > -dt * GRAVITY) || !(c.target > -restitution * speed)) continue;
-    left.add(c.i).add(c.j);
-  }
-  for (const c of rows) {
-    const back =
-      (left.has(c.i) && restitution * c.wi > c.wj) || (left.has(c.j) && restitution * c.wj > c.wi);
-    if (c.hits && back) c.target = c.stays;
-  }
+  const least = dt * GRAVITY;
+  const [ux, uy] = [vx.slice(), vy.slice()]; // with every bounce as if it came alone
+  const free = rows.filter((c) => !c.hits && c.target < normalSpeed(c, vx, vy) + least);
+  for (const c of rows) if (c.hits) push(c, -(1 + restitution) * c.hit * c.effectiveMass, ux, uy);
+  const blocked = free.filter((c) => c.target > normalSpeed(c, ux, uy) - least);
+  const meet = new Set(blocked.flatMap((c) => [c.wi > 0 ? c.i : -1, c.wj > 0 ? c.j : -1]));
+  meet.delete(-1);
+  for (const c of rows) if (c.hits && (meet.has(c.i) || meet.has(c.j))) c.target = c.stays;
 }
 
 // One step of leapfrog. knobs.see is shown the state after each of its parts.

@@ -109,6 +109,15 @@ def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_balls_rest(model):
     check_same(model, contact.build_scene("pile", 1, 24, restitution=0.4), 0.004, 150)
 
 
+@pytest.mark.parametrize("model, mass, y, dt, iters, baumgarte, warm", [
+    ("lcp", [6.2, 3.6, 0.3], [0.1, 0.299, 0.498], 0.002, 5, 1.0, 0.5),
+    ("lcp", [0.7, 0.2], [0.1, 0.299], 0.01, 4, 0.2, 0.5),
+    ("soft", [4.3, 0.5, 0.1], [0.1, 0.29, 0.48], 0.004, 1, 1.0, 1.0),
+])  # fmt: skip
+def test_balls_that_stand_still_go_on_while_their_impulses_change(model, mass, y, dt, **knobs):
+    check_same(model, contact.scene_of(0.0, y, mass), dt, 400, **knobs)
+
+
 def test_the_twin_counts_the_steps_that_do_not_settle_also_where_a_cycle_is_copied():
     """In a step of the smallest number above 0 all is rounding: every other step settles."""
     scene = contact.scene_of(0.0, [0.09, 0.28], [7.8, 8.2])

@@ -6,12 +6,10 @@ PLAIN, WALLS, REST = T + "plain_loops", T + "between_walls", T + "until_all_ball
 FAULTS = [
     (F, "    return c.a if c.b == count - 1 else (c.a + 1) * count + c.b",
      "    return (c.a + 1) * count + c.b", PLAIN),
-    (F, "if knobs.warm == 0.0 and knobs.model != LEAPFROG:", "if knobs.warm == 0.0:", PLAIN),
     (F, "0.499 * (listed - reach)", "0.6 * (listed - reach)", T + "list_looks"),
     (F, "gaps[k] < 0.999 * reach - 2.0 * farthest", "gaps[k] < 0.999 * reach - farthest",
      T + "list_looks"),
-    (F, "or c.lam != d.lam:", "or False:", T + "impulses"),
-    (F, "mark, marked = k, last.copy()", "mark, marked = k, last[:0]", REST),
+    (F, "or c.lam != d.lam:", "or False:", T + "stand_still"),
     (F, "rows[np.isnan(rows)] = math.nan", "pass", PLAIN),
     (F, "rows += 0.0  #", "#", PLAIN),
     (F, "settled = settled and abs(change)", "settled = abs(change)", PLAIN),
@@ -20,7 +18,7 @@ FAULTS = [
     (F, "struck[-1] = False  # the floor", "pass", PLAIN),
     (F, "                turn(c, balls, 0.0)", "                pass", PLAIN),
     (F, "        if onward < 0.0:\n            t = 1.0\n", "", PLAIN),
-    (F, "        stay_between(balls, contacts, hits, knobs)", "        pass", WALLS),
-    (F, "if not hits[k] and v_n", "if v_n", WALLS),
+    (F, "        stay_between(balls, contacts, hit, knobs)", "        pass", WALLS),
+    (F, "balls[k].vx, balls[k].vy = vx[k], vy[k]", "pass", WALLS),
     (F, "after = back if back < bounce else bounce", "after = bounce", PLAIN),
 ]  # fmt: skip
