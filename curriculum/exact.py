@@ -82,7 +82,7 @@ def solve_lcp(W, b):
         trial, on = np.zeros(len(b)), np.flatnonzero(active)
         solve, idle = inverse(W[np.ix_(on, on)])
         trial[on] = idle @ -b[on]
-        endless = np.abs(trial * unit).max() > NOISE * size
+        endless = np.abs(trial * unit).max() > 1e3 * NOISE * size
         if not endless:
             trial[on] = solve @ -b[on]
         pulls = np.flatnonzero(trial * unit < -NOISE * size)

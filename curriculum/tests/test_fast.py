@@ -114,7 +114,10 @@ def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_balls_rest(model):
     ("lcp", [0.7, 0.2], [0.1, 0.299], 0.01, 4, 0.2, 0.5),
     ("soft", [4.3, 0.5, 0.1], [0.1, 0.29, 0.48], 0.004, 1, 1.0, 1.0),
 ])  # fmt: skip
-def test_balls_that_stand_still_go_on_while_their_impulses_change(model, mass, y, dt, **knobs):
+def test_balls_that_stand_still_go_on_while_their_impulses_change(
+    model, mass, y, dt, iters, baumgarte, warm
+):
+    knobs = dict(iters=iters, baumgarte=baumgarte, warm=warm)
     check_same(model, contact.scene_of(0.0, y, mass), dt, 400, **knobs)
 
 
