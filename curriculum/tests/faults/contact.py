@@ -28,6 +28,7 @@ FAULTS = [
     (C, "            c.push(-(1.0 + restitution) * c.hit * c.m_eff)", "            pass",
      MODELS + "drives_into_others"),
     # the other models
+    (C, "(rows[k].tobytes(), *pushed)", "(rows[k].tobytes(),)", "test_fast.py -k stand_still"),
     (C, "if bias > 0.0:  # an overlap", "if bias >= 0.0:  # an overlap", MODELS + "on_the_table"),
     (C, "max(0.0, stiffness * depth - damping * v_n)", "abs(stiffness * depth - damping * v_n)",
      "test_golden.py -k penalty"),

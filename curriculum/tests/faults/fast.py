@@ -9,7 +9,6 @@ FAULTS = [
     (F, "0.499 * (listed - reach)", "0.6 * (listed - reach)", T + "list_looks"),
     (F, "gaps[k] < 0.999 * reach - 2.0 * farthest", "gaps[k] < 0.999 * reach - farthest",
      T + "list_looks"),
-    (F, "or c.lam != d.lam:", "or False:", T + "stand_still"),
     (F, "rows[np.isnan(rows)] = math.nan", "pass", PLAIN),
     (F, "rows += 0.0  #", "#", PLAIN),
     (F, "settled = settled and abs(change)", "settled = abs(change)", PLAIN),
