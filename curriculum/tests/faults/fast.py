@@ -14,7 +14,6 @@ FAULTS = [
     (F, "settled = settled and abs(change)", "settled = abs(change)", PLAIN),
     (F, "fastest = larger(fastest, abs(c.target))", "pass", PLAIN),
     # leapfrog
-    (F, "struck[-1] = False  # the floor", "pass", PLAIN),
     (F, "                turn(c, balls, 0.0)", "                pass", PLAIN),
     (F, "        if onward < 0.0:\n            t = 1.0\n", "", PLAIN),
     (F, "        stay_between(balls, contacts, hit, knobs)", "        pass", WALLS),
