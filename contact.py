@@ -142,7 +142,7 @@ class Contact:
 
     __slots__ = "a b nx ny depth inv_mass m_eff target softness lam".split()
     __slots__ += "start before".split()  # of solve_with_momentum
-    __slots__ += "stays after hit hits".split()  # of leapfrog
+    __slots__ += "stays after hits free".split()  # of leapfrog
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
@@ -355,15 +355,20 @@ def leapfrog_step(balls, dt, restitution, iters) -> None:
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
         ask(c, restitution, dt)
-    if restitution > 0.0:
-        stay_between(balls, contacts, restitution, dt)
     accelerate(balls, 0.5 * dt)
+    before = [(ball.vx, ball.vy) for ball in balls]
     solve_with_momentum(contacts, iters)  # the way
+    if no_room(contacts):
+        for ball, (vx, vy) in zip(balls, before):
+            ball.vx, ball.vy = vx, vy
+        for c in contacts:
+            c.lam = 0.0
+        solve_with_momentum(contacts, iters)
     move(balls, dt)
     accelerate(balls, 0.5 * dt)
     closed = [c for c in contacts if c.lam > 0.0]
     bounces = [c for c in closed if c.hits and restitution > 0.0]
-    struck = {ball for c in bounces for ball in (c.a, c.b)} - {FLOOR}
+    struck = {ball for c in bounces for ball in (c.a, c.b)}
     for c in closed:
         if not (c.hits or c.a in struck or c.b in struck):
             turn(c, 0.0)  # to the normal of now; an impact, and what it pushes on, keeps its own
@@ -388,10 +393,11 @@ def ask(c, restitution, dt):
     # of the gap: 0 where both balls fall
     a_n = GRAVITY * c.ny * ((c.a.inv_mass > 0.0) - (c.b.inv_mass > 0.0))
     when = time_to_impact(gap, v_n, a_n) if gap > 0.0 else 0.0
-    c.hit = hit = v_n + when * a_n if when < dt else 0.0  # v_n of the impact, if it comes now
+    hit = v_n + when * a_n if when < dt else 0.0  # v_n of the impact, if it comes now
     c.hits = hit < dt * GRAVITY  # slower is what gravity adds in a step: such a contact stays
     back = -restitution * (v_n + dt * a_n)  # no target above it: solved impulses add no energy
     c.stays = min(-gap, OPENS * (c.a.radius + c.b.radius)) / dt  # gap + dt v_n >= 0
+    c.free = not c.hits and c.stays < v_n + dt * GRAVITY  # would stay open, were it alone
     c.target = c.stays
     c.after = min(0.0, back)
     left = dt - when
@@ -401,23 +407,17 @@ def ask(c, restitution, dt):
         c.after = min(-restitution * hit + left * a_n, back)
 
 
-def stay_between(balls, contacts, restitution, dt):
-    """Ask no way of a bounce that would drive its ball into one that it would not meet else.
+def no_room(contacts):
+    """Ask no way of a bounce that drove its ball into one that it would not meet else.
 
-    Else both ask for room that is not there, and the sweeps push all that is around them.
+    Else the sweeps push all that is around to make the room. Returns whether there was such a one.
     """
-    before = [(ball.vx, ball.vy) for ball in balls]
-    free = [c for c in contacts if not c.hits and c.target < c.v_n() + dt * GRAVITY]
-    for c in contacts:
-        if c.hits:
-            c.push(-(1.0 + restitution) * c.hit * c.m_eff)  # try every bounce as if it came alone
-    blocked = [c for c in free if c.target > c.v_n() - dt * GRAVITY]
-    for ball, (vx, vy) in zip(balls, before):
-        ball.vx, ball.vy = vx, vy
-    meet = {ball for c in blocked for ball in (c.a, c.b) if ball.inv_mass > 0.0}
-    for c in contacts:
-        if c.hits and (c.a in meet or c.b in meet):
-            c.target = c.stays
+    driven = {ball for c in contacts if c.free and c.lam > 0.0 for ball in (c.a, c.b)}
+    driven = {ball for ball in driven if ball.inv_mass > 0.0}
+    bounces = [c for c in contacts if c.target > c.stays and (c.a in driven or c.b in driven)]
+    for c in bounces:
+        c.target = c.stays
+    return len(bounces) > 0
 
 
 def turn(c, dt):

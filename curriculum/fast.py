@@ -315,21 +315,23 @@ def solve_with_momentum(balls, contacts, iters):
 def leapfrog_step(balls, contacts, knobs):
     """One step: half of gravity, ask for the way, move, half of gravity, ask for the speed."""
     half = 0.5 * knobs.dt
-    after, hit = np.empty(len(contacts)), np.empty(len(contacts))
+    after, stays = np.empty(len(contacts)), np.empty(len(contacts))
+    hits, free = np.empty(len(contacts), np.bool_), np.empty(len(contacts), np.bool_)
     for k, c in enumerate(contacts):
-        after[k], hit[k] = ask(c, balls, knobs)
-    if knobs.restitution > 0.0:
-        stay_between(balls, contacts, hit, knobs)
-    hits = hit < knobs.dt * knobs.gravity
+        after[k], stays[k], hits[k], free[k] = ask(c, balls, knobs)
     accelerate(balls, half, knobs.gravity)
+    vx, vy = balls["vx"].copy(), balls["vy"].copy()
     solve_with_momentum(balls, contacts, knobs.iters)
+    if no_room(balls, contacts, stays, free):
+        balls["vx"][:], balls["vy"][:] = vx, vy
+        contacts["lam"][:] = 0.0
+        solve_with_momentum(balls, contacts, knobs.iters)
     move(balls, knobs.dt)
     accelerate(balls, half, knobs.gravity)
     struck = np.zeros(len(balls), np.bool_)
     for k, c in enumerate(contacts):
         if c.lam > 0.0 and hits[k] and knobs.restitution > 0.0:
             struck[c.a] = struck[c.b] = True
-    struck[-1] = False  # the floor
     closed = 0  # those that pushed become the first rows
     for k, c in enumerate(contacts):
         if c.lam > 0.0:
@@ -343,7 +345,7 @@ def leapfrog_step(balls, contacts, knobs):
 
 @compiled
 def ask(c, balls, knobs):
-    """Set what leapfrog asks of the way of c; returns what of the speed, and v_n of an impact."""
+    """Set what leapfrog asks of the way of c; returns c.after, c.stays, c.hits and c.free."""
     restitution, dt, gravity = knobs.restitution, knobs.dt, knobs.gravity
     turn(c, balls, dt)
     a, b = balls[c.a], balls[c.b]
@@ -353,39 +355,31 @@ def ask(c, balls, knobs):
     hit = v_n + when * a_n if when < dt else 0.0
     back = -restitution * (v_n + dt * a_n)
     opens = knobs.opens * (a.radius + b.radius)
-    c.target = (opens if opens < -gap else -gap) / dt
+    stays = (opens if opens < -gap else -gap) / dt
+    hits = hit < dt * gravity
+    c.target = stays
     after = back if back < 0.0 else 0.0
     left = dt - when
     end = left * (-restitution * hit + 0.5 * left * a_n)
-    if hit < dt * gravity and end > 0.0:
+    if hits and end > 0.0:
         c.target = larger(c.target, (end - larger(gap, 0.0)) / dt)
         bounce = -restitution * hit + left * a_n
         after = back if back < bounce else bounce
-    return after, hit
+    return after, stays, hits, not hits and stays < v_n + dt * gravity
 
 
 @compiled
-def stay_between(balls, contacts, hit, knobs):
-    """Ask no way of a bounce that would drive its ball into one that it would not meet else."""
-    least = knobs.dt * knobs.gravity
-    vx, vy = balls["vx"].copy(), balls["vy"].copy()
-    free = np.zeros(len(contacts), np.bool_)
+def no_room(balls, contacts, stays, free):
+    """Ask no way of a bounce that drove its ball into one that it would not meet else."""
+    driven, found = np.zeros(len(balls), np.bool_), False
     for k, c in enumerate(contacts):
-        free[k] = not hit[k] < least and c.target < normal_velocity(c, balls) + least
+        if free[k] and c.lam > 0.0:
+            driven[c.a], driven[c.b] = balls[c.a].inv_mass > 0.0, balls[c.b].inv_mass > 0.0
     for k, c in enumerate(contacts):
-        if hit[k] < least:
-            push(c, balls, -(1.0 + knobs.restitution) * hit[k] * c.m_eff)
-    meet = np.zeros(len(balls), np.bool_)
-    for k, c in enumerate(contacts):
-        if free[k] and c.target > normal_velocity(c, balls) - least:
-            meet[c.a] = meet[c.b] = True
-    for k in range(len(balls)):
-        balls[k].vx, balls[k].vy = vx[k], vy[k]
-        meet[k] = meet[k] and balls[k].inv_mass > 0.0
-    for k, c in enumerate(contacts):
-        if hit[k] < least and (meet[c.a] or meet[c.b]):
-            opens = knobs.opens * (balls[c.a].radius + balls[c.b].radius)
-            c.target = (opens if opens < c.depth else c.depth) / knobs.dt
+        if c.target > stays[k] and (driven[c.a] or driven[c.b]):
+            c.target = stays[k]
+            found = True
+    return found
 
 
 @compiled

@@ -239,12 +239,13 @@ function ask(c, state, radius, { dt, restitution }) {
   const [gap, speed] = [-c.depth, normalSpeed(c, state.vx, state.vy)];
   const a = GRAVITY * c.ny * ((c.wi > 0) - (c.wj > 0));
   const when = gap > 0 ? timeToImpact(gap, speed, a) : 0;
-  const hit = (c.hit = when < dt ? speed + when * a : 0);
+  const hit = when < dt ? speed + when * a : 0;
   const back = -restitution * (speed + dt * a);
   const left = dt - when;
   const end = left * (-restitution * hit + 0.5 * left * a);
   c.hits = hit < dt * GRAVITY;
   c.stays = least(-gap, OPENS * (radius[c.i] + (c.j < 0 ? 0 : radius[c.j]))) / dt;
+  c.free = !c.hits && c.stays < speed + dt * GRAVITY; // would stay open, were it alone
   c.target = c.stays;
   c.after = least(0, back);
   if (!c.hits || !(end > 0)) return;
@@ -252,16 +253,14 @@ function ask(c, state, radius, { dt, restitution }) {
   c.after = least(-restitution * hit + left * a, back);
 }
 
-// Asks no way of a bounce that would drive its ball into one that it would not meet else.
-function stayBetween(rows, { vx, vy }, { dt, restitution }) {
-  const least = dt * GRAVITY;
-  const [ux, uy] = [vx.slice(), vy.slice()]; // with every bounce as if it came alone
-  const free = rows.filter((c) => !c.hits && c.target < normalSpeed(c, vx, vy) + least);
-  for (const c of rows) if (c.hits) push(c, -(1 + restitution) * c.hit * c.effectiveMass, ux, uy);
-  const blocked = free.filter((c) => c.target > normalSpeed(c, ux, uy) - least);
-  const meet = new Set(blocked.flatMap((c) => [c.wi > 0 ? c.i : -1, c.wj > 0 ? c.j : -1]));
-  meet.delete(-1);
-  for (const c of rows) if (c.hits && (meet.has(c.i) || meet.has(c.j))) c.target = c.stays;
+// Asks no way of a bounce that drove its ball into one that it would not meet else; true if one did.
+function noRoom(rows) {
+  const moved = ({ i, j, wi, wj }) => [wi > 0 ? i : -1, wj > 0 ? j : -1];
+  const driven = new Set(rows.filter((c) => c.free && c.lam > 0).flatMap(moved));
+  driven.delete(-1);
+  const bounces = rows.filter((c) => c.target > c.stays && (driven.has(c.i) || driven.has(c.j)));
+  for (const c of bounces) c.target = c.stays;
+  return bounces.length > 0;
 }
 
 // One step of leapfrog. knobs.see is shown the state after each of its parts.
@@ -269,10 +268,15 @@ function leapfrogStep(state, { mass, radius }, knobs) {
   const { dt, iters, restitution, see = () => {} } = knobs;
   const rows = makeRows(detectContacts(state.x, state.y, radius, stepReach(state, dt)), mass);
   for (const c of rows) ask(c, state, radius, knobs);
-  if (restitution > 0) stayBetween(rows, state, knobs);
-  const [vx, vy] = [state.vx.slice(), fall(state.vy, mass, 0.5 * dt)];
+  let [vx, vy] = [state.vx.slice(), fall(state.vy, mass, 0.5 * dt)];
+  const before = { vx: vx.slice(), vy: vy.slice() };
   see({ ...state, vx: vx.slice(), vy: vy.slice() });
   solveWithMomentum(rows, vx, vy, { iters });
+  if (noRoom(rows)) {
+    ({ vx, vy } = before);
+    for (const c of rows) c.lam = 0;
+    solveWithMomentum(rows, vx, vy, { iters });
+  }
   see({ ...state, vx, vy });
   const moved = move(state, dt, vx, vy);
   see(moved);
@@ -280,7 +284,7 @@ function leapfrogStep(state, { mass, radius }, knobs) {
   see({ ...next, vx: next.vx.slice(), vy: next.vy.slice() });
   const closed = rows.filter((c) => c.lam > 0);
   const bounces = closed.filter((c) => c.hits && restitution > 0);
-  const struck = new Set(bounces.flatMap(({ i, j }) => (j < 0 ? [i] : [i, j])));
+  const struck = new Set(bounces.flatMap(({ i, j }) => [i, j]));
   for (const c of closed) {
     if (!(c.hits || struck.has(c.i) || struck.has(c.j))) turn(c, next, radius, 0);
     c.target = c.after;

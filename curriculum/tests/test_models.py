@@ -16,7 +16,7 @@ import contact
 from contact import STEPPED, Ball, Contact, Settings, build_scene, contact_quality, run_model
 from curriculum.bench import problems
 from curriculum.exact import simulate_exact
-from curriculum.stress import mujoco_match, scenes
+from curriculum.stress import heaps, mujoco_match, scenes
 from curriculum.stress.properties import PROPERTIES, judge
 from curriculum.stress.trial import Trial
 
@@ -331,6 +331,26 @@ def test_a_bounce_in_a_narrow_gap_between_two_fixed_balls_gains_nothing(dt):
     run = run_model("leapfrog", scene, dt, int(0.7 / dt), Settings(iters=1000))
     total = contact.energy(run.q, run.v, scene.mass)
     assert total.max() <= total[0] * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("number", [206, 1757])
+def test_what_two_far_heavier_balls_drive_onto_the_floor_gains_nothing(number):
+    """Heaps of the stress run, 1.3 kg below or between tons."""
+    scene = heaps.Heap(number).scene("in a gap")
+    run = run_model("leapfrog", scene, DT, 320, Settings(iters=1000))
+    total = contact.energy(run.q, run.v, scene.mass)
+    assert total.max() <= total[0] * (1.0 + 1e-12)
+
+
+def test_a_ball_without_room_changes_no_bounce_elsewhere():
+    """One rattles between the floor and a fixed ball, eight others land in the same steps."""
+    x, y, vy = np.arange(8.0) / 2.0, 0.12 + 0.0027 * np.arange(1.0, 9.0), [-1.1] * 8
+    alone = contact.scene_of(x, y, 0.7, 0.12, vy=vy, restitution=0.93)
+    mass, radius = [0.7] * 8 + [math.inf, 0.7], [0.12] * 8 + [0.15, 0.13]
+    y, vy = [*y, 0.413, 0.136], [*vy, 0.0, 9.0]
+    beside = contact.scene_of([*x, -1.0, -1.0], y, mass, radius, vy=vy, restitution=0.93)
+    one, other = (run_model("leapfrog", scene, 0.0021, 200).q for scene in (alone, beside))
+    assert np.abs(one - other[:, :, :8]).max() < 1e-12
 
 
 @pytest.mark.parametrize("vx", [1e-170, -1e-170, 0.0])

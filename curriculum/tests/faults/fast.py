@@ -16,7 +16,7 @@ FAULTS = [
     # leapfrog
     (F, "                turn(c, balls, 0.0)", "                pass", PLAIN),
     (F, "        if onward < 0.0:\n            t = 1.0\n", "", PLAIN),
-    (F, "        stay_between(balls, contacts, hit, knobs)", "        pass", WALLS),
-    (F, "balls[k].vx, balls[k].vy = vx[k], vy[k]", "pass", WALLS),
+    (F, "if no_room(balls, contacts, stays, free):", "if False:", WALLS),
+    (F, "        balls[\"vx\"][:], balls[\"vy\"][:] = vx, vy\n", "", WALLS),
     (F, "after = back if back < bounce else bounce", "after = bounce", PLAIN),
 ]  # fmt: skip
