@@ -237,10 +237,10 @@ def contact_target(c, restitution, baumgarte, dt):
     throw the balls apart, so only the share beta of it opens (Baumgarte 1972): that v_n is the
     bias. The same formula lets only that share of a gap close.
 
-    With e > 0 balls that touch or would meet within this step bounce, at -e v_n; an overlap with a
-    bias takes the larger of the two. Others may close their gap, but no target is above -e v_n:
-    solved impulses then add no energy on the floor (Moreau 1988). A bias, unfinished sweeps, and
-    the move that follows a bounce can.
+    With e > 0, balls that touch or would meet within this step bounce: the target is -e v_n, or
+    the bias of an overlap if that is larger. Balls that would not meet may close their gap, but
+    their target is at most -e v_n. So the impulses add no energy on the floor (Moreau 1988); a
+    bias, unfinished sweeps, and the move after a bounce can.
     """
     # A landing of drop: at a gap of 3 mm and v_n = -4.37 m/s no contact is listed, and the ball
     # moves by dt v_n = -8.7 mm, to a depth of 5.7 mm. The bias is 0.2 / 0.002 s * 5.7 mm = 0.57
@@ -261,11 +261,10 @@ def contact_target(c, restitution, baumgarte, dt):
 def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> int:
     """Find impulses with lam >= 0, w >= 0 and lam w = 0, where w = v_n + R lam - target.
 
-    Projected Gauss-Seidel: each sweep mends one contact after the other, by the impulse that
-    brings it to its target, and disturbs its neighbours; the next sweep mends those. Returns the
-    number of the sweep in which no correction changed a velocity by more than `tolerance` [m/s],
-    0 if each did. The problem is Moreau's (1988), Stewart and Trinkle's (1996), and Anitescu and
-    Potra's (1997).
+    Projected Gauss-Seidel: a sweep brings one contact after the other to its target, and each
+    disturbs its neighbours; the next sweep mends those. Returns the number of the first sweep in
+    which no correction changed a v_n by more than `tolerance` [m/s]; 0 if there was none. The
+    problem is Moreau's (1988), Stewart and Trinkle's (1996), and Anitescu and Potra's (1997).
     """
     for sweep in range(1, iters + 1):
         settled = True
@@ -313,10 +312,10 @@ def remember(balls, contacts):
 
 # --- region: momentum ---
 def solve_with_momentum(contacts, iters: int, tolerance: float = 0.0) -> int:
-    """What solve_contacts finds, in fewer sweeps: each is carried on by a share of its change.
+    """What solve_contacts finds and returns, in fewer sweeps: after each, lam goes on a little.
 
-    The share grows from 0 towards 1 (Nesterov 1983) until a sweep turns back; then it begins anew
-    (O'Donoghue and Candes 2015). Returns what solve_contacts returns.
+    It goes on by a share of its last change. The share grows from 0 towards 1 (Nesterov 1983), and
+    starts again at 0 when a sweep turns back (O'Donoghue and Candes 2015).
     """
     t = 1.0
     for c in contacts:
@@ -348,9 +347,8 @@ def leapfrog_step(balls, dt, restitution, iters) -> None:
     the speed, after the move: v_n >= 0 of those that pushed. lam stays in between: what opened an
     overlap is taken back then, and throws nobody.
 
-    Not mended: sweeps that do not finish let a stack sag, half as deep as lcp's; several impacts
-    of one ball within a step are one (a row of balls parts in another order); a long step can drive
-    a heavy ball through light ones; the two solves cost twice one.
+    Not mended: sweeps that do not finish let a stack sag, but less than lcp's; several impacts of
+    one ball within a step count as one; a long step can drive a heavy ball through light ones.
     """
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
@@ -884,10 +882,10 @@ def at_rest(run: Run, scene: Scene) -> bool:
 
 # --- region: quality ---
 @np.errstate(all="ignore")
-def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None, landed=None):
+def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None):
     """The measures of a run {key: value}, in radii of the first ball and in start energies.
 
-    Errors of height are against `reference`; landed: its first contact, where that is known.
+    Errors of height are against `reference`.
     """
     total = energy(run.q, run.v, scene.mass)
     scale = abs(float(total[0])) or 1.0  # J; 1 J for a run that starts with none
@@ -897,7 +895,7 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     depth = np.maximum(-gap, 0.0)
     step = blow_up_step(total)
     return {
-        **height_errors(run, scene, dt, landing, reference, landed),
+        **height_errors(run, scene, dt, landing, reference),
         "first_contact_step": landing,  # the number of states where there is none
         "max_penetration_frac": float(depth.max()),
         "rest_penetration_frac": float(depth[-1]),  # the overlap at the end
@@ -915,12 +913,11 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     }
 
 
-def height_errors(run, scene, dt, landing, reference, landed):
+def height_errors(run, scene, dt, landing, reference):
     """The worst error of height [r], the worst before any contact, and how much worse it gets."""
     worst = flight = later = None
     if reference is not None:
-        if landed is None:
-            landed = first_contact(reference, scene, dt, smallest_gap(reference.q, scene.radius))
+        landed = first_contact(reference, scene, dt, smallest_gap(reference.q, scene.radius))
         error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius[0])
         worst, flight = float(error.max()), float(error[: min(landing, landed)].max(initial=0.0))
         later = worst - flight
@@ -1085,11 +1082,9 @@ def run_all(args, scene):
             runs[model] = run_flags(args, scene, model, args.dt)
         except RuntimeError as error:
             without[model] = str(error)
-    judge, landed = runs.get("exact"), None
-    for model in reversed(runs):  # exact, the last one, first
-        quality[model] = contact_quality(runs[model], scene, args.dt, judge, landed)
-        landed = quality["exact"]["first_contact_step"] if judge else None
-    return runs, without, {model: quality[model] for model in runs}
+    for model, run in runs.items():
+        quality[model] = contact_quality(run, scene, args.dt, runs.get("exact"))
+    return runs, without, quality
 
 
 def collect(args, scene):
@@ -1099,10 +1094,9 @@ def collect(args, scene):
     metrics = {key: getattr(args, key) for key in keys} | {"restitution": scene.restitution}
     metrics |= {"quality": quality, "stability": {}, "without": without}
     if args.contact == "all" and args.scene != "pile":
-        again = partial(run_flags, args, scene)  # at another step
-        metrics["stability"] = measure_stability(
-            again, scene, args.dt, args.steps, args.stiffness, quality
-        )
+        run = partial(run_flags, args, scene)
+        grid = measure_stability(run, scene, args.dt, args.steps, args.stiffness, quality)
+        metrics["stability"] = grid
     return runs, rounded(metrics)
 
 
@@ -1226,10 +1220,9 @@ def print_stability(grid, count):
             text = "comes to no contact" if grid[model] is None else "none, wherever it touches"
         print(f"stability: {model} {text}")
     stack = f"a stack of {count}: {shown(grid['dt_crit_stack'], 4)} s; " if count > 1 else ""
-    print(
-        f"critical dt of penalty, one ball: {shown(grid['dt_crit_damped'], 4)} s; {stack}", end=""
-    )
-    print(f"without the damper, 2 sqrt(m/k): {shown(grid['dt_crit_penalty'], 4)} s")
+    one, undamped = shown(grid["dt_crit_damped"], 4), shown(grid["dt_crit_penalty"], 4)
+    print(f"critical dt of penalty, one ball: {one} s; {stack}", end="")
+    print(f"without the damper, 2 sqrt(m/k): {undamped} s")
 
 
 def report(args, argv):
@@ -1269,7 +1262,7 @@ def fail(message):
 
 
 def main(argv=None):
-    """The command line. Returns the exit status: 2 where nothing could be run, 130 after Ctrl-C."""
+    """The command line. Returns the exit status: 0, 2 if something failed, 130 after Ctrl-C."""
     argv = sys.argv[1:] if argv is None else argv
     for stream in filter(None, (sys.stdout, sys.stderr)):
         if hasattr(stream, "reconfigure"):

@@ -24,8 +24,8 @@ FAULTS = [
     (C, "if a_n is None or not (v_n < 0.0 or a_n < 0.0):",
      "if a_n is None or v_n >= 0.0 and a_n >= 0.0:", MODELS + "no_number_stops"),
     (C, "if no_room(contacts):", "if False:", MODELS + "narrow_gap"),
-    (C, "            ball.vx, ball.vy = vx, vy\n        for c in", "            pass\n        for c in",
-     MODELS + "far_heavier"),
+    (C, "            ball.vx, ball.vy = vx, vy\n        for c in",
+     "            pass\n        for c in", MODELS + "far_heavier"),
     (C, "        for c in contacts:\n            c.lam = 0.0\n", "", MODELS + "far_heavier"),
     (C, "{ball for ball in driven if ball.inv_mass > 0.0}", "set(driven)", MODELS + "no_bounce"),
     # the other models
