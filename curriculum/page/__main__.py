@@ -20,11 +20,11 @@ def main(argv=None):
     args = parser.parse_args(argv)
     if args.out.is_dir():
         parser.error(f"--out: given the folder {args.out}; allowed: a file")
-    print("building: runs, figures, formulas; up to a minute on a slow machine", file=sys.stderr)
     try:
         from curriculum.commands import write_whole
         from curriculum.page.build import build
 
+        print("building: runs, figures, formulas; up to a minute", file=sys.stderr)
         page = build()
         write_whole(args.out, page)
     except (OSError, ValueError) as error:
