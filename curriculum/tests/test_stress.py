@@ -131,7 +131,7 @@ FAULTS = {
         ("min(-gap, OPENS * (c.a.radius + c.b.radius))", "-gap",
         "leapfrog_throws_nobody_out_of_another", "speed [m/s]"),
     "leapfrog's first half of gravity is whole":
-        ("accelerate(balls, 0.5 * dt)\n    solve", "accelerate(balls, dt)\n    solve",
+        ("accelerate(balls, 0.5 * dt)\n    before", "accelerate(balls, dt)\n    before",
         "what_nothing_touches_falls", "a model, fall", "a model, move"),
     "a bounce of leapfrog begins at the end of its step":
         ("c.target = max(c.target, (end - max(gap, 0.0)) / dt)", "pass",
