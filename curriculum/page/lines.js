@@ -3,7 +3,7 @@
 export const LINES = {
   spring: ["penalty", "return max(0.0"],
   sweep: ["sweep", "lam = max("],
-  way: ["leapfrog", "solve_with_momentum(contacts"],
+  way: ["leapfrog", "iters)  # the way"],
   speed: ["leapfrog", "solve_with_momentum(closed"],
   softness: ["implicit-spring", "c.softness, c.target"],
   acceleration: ["soft", "c.target = v_n"],

@@ -3,6 +3,7 @@ import { Bets } from "./bets.js";
 import { startBlank } from "./blank.js";
 import { data } from "./data.js";
 import { figures } from "./figures.js";
+import { Glance } from "./glance.js";
 import { LINES } from "./lines.js";
 import { Reader } from "./reader.js";
 import { Stage } from "./stage.js";
@@ -106,10 +107,14 @@ const stages = [...document.querySelectorAll("[data-figure]")].map((box) => {
   const name = box.dataset.figure;
   return new Stage(box, name, figures[name], page, sectionOf(box));
 });
+const glances = passages
+  .filter(({ node, look }) => look && node.matches(".show"))
+  .map((passage) => new Glance(passage, page.open));
+const drawn = [...stages, ...glances];
 const sections = passages.map(({ section }) => section);
 for (const each of sections)
-  each.on(() => stages.forEach((stage) => stage.section === each && stage.redraw()));
-bets.onOpen(() => stages.forEach((stage) => stage.redraw()));
+  each.on(() => drawn.forEach((one) => one.section === each && one.redraw()));
+bets.onOpen(() => drawn.forEach((one) => one.redraw()));
 bindAddress(sections);
 if (document.getElementById("blank")) startBlank(document.getElementById("blank"), data.blank);
 new Reader(passages, sectionOf, stages.find(({ name }) => name === "lanes"));

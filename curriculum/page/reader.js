@@ -33,7 +33,7 @@ export class Reader {
       const section = touched.closest("#figure") ? this.lanes.section : this.sectionOf(touched);
       section.set({ [take]: section.home[take] });
     } else if (touched.id === "undock") this.undock();
-    else if (touched.matches("[data-dock]")) this.dock(touched);
+    else if (touched.matches("[data-dock]")) this.#glanced(touched);
     else if (touched.matches('a[href^="#"]')) showVeil(touched.hash);
   }
 
@@ -45,6 +45,13 @@ export class Reader {
     section.set(asked(link.search), section.home);
     this.#look(section, link.search, false);
     this.dock(link);
+  }
+
+  // A glance calls up what it shows.
+  #glanced(button) {
+    const { section, look } = this.passages.find(({ node }) => node.contains(button));
+    this.#look(section, look, true);
+    this.dock(button);
   }
 
   // The live figure shows a section, and of it what a query says.

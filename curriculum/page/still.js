@@ -1,6 +1,7 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
 import { inSentence } from "./draw.js";
 import { figures } from "./figures.js";
+import { seenLater } from "./glance.js";
 import { LINES } from "./lines.js";
 import { buttonsOf, heightOf, stillView } from "./stage.js";
 import { data } from "./data.js";
@@ -8,23 +9,17 @@ import { QUANTITIES, Section, startOf } from "./store.js";
 
 const WIDTH = 640;
 
-// The live figure as a passage shows it, a fifth of the way through and with all answers: what it
-// is without a script and on paper.
-function seenLater(figure, view, changes) {
-  figure.look(view, changes, true);
-  const { from, to } = view.own;
-  view.own.time = from + 0.2 * (to - from);
-  view.height = 380;
-  view.open = () => true;
-}
-
 // What a figure shows first in a section: {svg, words, height, narrow, ...}.
 function still([id, [name, changes]]) {
   try {
     const figure = figures[name] ?? {};
     const { title, caption = "", knobs = [] } = figure;
     const view = stillView(figure, new Section(id, changes).values, WIDTH);
-    if (id.endsWith("-still")) seenLater(figure, view, changes);
+    if (id.endsWith("-still")) {
+      // the live figure without a script and on paper: with all answers
+      Object.assign(view, { height: 380, open: () => true });
+      seenLater(figure, view, changes);
+    }
     const made = figure.draw(view);
     for (const part of ["title", "height", "svg", "words"])
       if (!(part in { ...figure, ...made })) throw new Error(`it has no ${part}`);

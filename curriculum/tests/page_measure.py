@@ -18,7 +18,8 @@ KNOBS = ".drag, .knob input[type=range]"
 PLACE = """(node) => `${node.closest(".fig")?.id ?? "text"}: ` +
   node.closest("[data-knob]").dataset.knob"""
 # pictures, and passages beside which the live figure stands: [top, bottom, where]
-PICTURES = ".fig:not(#fig-lanes) .drawing, .generated img, .beside"
+PICTURES = ".fig:not(#fig-lanes) .drawing, .generated img, .show svg"
+BESIDE = ", .beside"  # in a window that has room for it
 BOXES = """(nodes) => nodes.map((node) => {
   const { top, bottom } = node.getBoundingClientRect();
   return [top, bottom, node.closest("[id]").id];
@@ -70,10 +71,12 @@ def measure(page):
 
 def pacing(tab):
     """The longest stretch without a picture before "Honest limits", in screens, and its start."""
-    boxes = tab.locator(PICTURES).filter(visible=True).evaluate_all(BOXES)
+    width, height = tab.viewport_size.values()
+    pictures = PICTURES + BESIDE * (width >= 1248)
+    boxes = tab.locator(pictures).filter(visible=True).evaluate_all(BOXES)
     end = tab.locator("#honest-limits-measured").bounding_box()["y"]
     last, longest = (0, "the top"), (0, "")
     for top, bottom, place in sorted(box for box in boxes if box[0] < end):
-        longest = max(longest, ((top - last[0]) / 900, last[1]))
+        longest = max(longest, ((top - last[0]) / height, last[1]))
         last = max(last, (bottom, place))
     return longest

@@ -9,7 +9,7 @@ import pytest
 from curriculum.page.build import build, check_lines
 from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
-from curriculum.tests import page_browser
+from curriculum.tests import page_browser, page_measure
 from curriculum.tests.page_browser import SHOWN, call, middle, mouse, visiting
 
 BETS = {  # a number of each that tells its answer, as the page writes it
@@ -432,6 +432,26 @@ def test_on_a_phone_a_link_opens_half_a_screen_that_closes_as_one_reads_on(visit
         assert link.bounding_box()["y"] < dock["y"]
         page.evaluate("window.scrollBy(0, 500)")
         page.wait_for_selector("#figure:not(.docked)", state="attached")
+
+
+@pytest.mark.parametrize(("width", "height", "most"), [(390, 844, 2.6), (1280, 900, 2.0)])
+def test_no_long_stretch_is_without_a_picture(visit, width, height, most):
+    """In screens; the one above two on a phone is the whole first exercise."""
+    with visit(width=width, height=height) as page:
+        screens, above = page_measure.pacing(page)
+        assert 1.0 < screens < most, above
+
+
+def test_on_a_phone_a_passage_shows_what_the_live_figure_would_and_calls_it_up(visit):
+    with visit(width=390, height=844, has_touch=True) as page:
+        glance = page.locator("#asked-twice\\.2 button")
+        glance.scroll_into_view_if_needed()
+        page.wait_for_function("(node) => node.querySelector('.ball')", arg=glance.element_handle())
+        drawn = glance.locator("text").all_text_contents()
+        assert {"lcp", "leapfrog"} <= set(drawn) and "penalty" not in drawn
+        glance.tap()
+        page.wait_for_selector("#figure.docked #fig-lanes .handle")
+        assert re.search("lcp .*leapfrog", page.locator("#fig-lanes .words").inner_text())
 
 
 def test_a_finger_holds_the_ball_and_drags_a_number_and_the_page_does_not_scroll(phone):
