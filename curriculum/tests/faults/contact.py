@@ -1,7 +1,7 @@
 """Faults for contact.py: (file, what stands there, what is planted, the tests that name it)."""
 
 MODELS, LINE = "test_models.py -k ", "test_command_line.py -k "
-SLIDE, BOUNCES = MODELS + "second_order", MODELS + "any_angle"
+SLIDE, BOUNCES = MODELS + "second_order", MODELS + "every_property"
 C = "contact.py"
 FAULTS = [
     # leapfrog's rules
@@ -11,7 +11,7 @@ FAULTS = [
     (C, "    accelerate(balls, 0.5 * dt)\n    before",
      "    accelerate(balls, dt)\n    before", MODELS + "with_one_step"),
     (C, "        c.target = max(c.target, (end - max(gap, 0.0)) / dt)\n", "", BOUNCES),
-    (C, "    turn(c, dt)\n", "", MODELS + "pass_one_another"),
+    (C, "    turn(c, dt)\n", "", MODELS + "every_property"),
     (C, "        if onward < 0.0:\n            t = 1.0\n", "", MODELS + "momentum"),
     (C, "hit < dt * GRAVITY", "hit < 0.0", SLIDE),
     (C, "min(-gap, OPENS * (c.a.radius + c.b.radius))", "-gap", MODELS + "throws_nobody"),
@@ -23,10 +23,10 @@ FAULTS = [
     (C, "if fast > 0.0 else dt  # 0", "if fast >= 0.0 else dt  # 0", MODELS + "too_slow_for"),
     (C, "if a_n is None or not (v_n < 0.0 or a_n < 0.0):",
      "if a_n is None or v_n >= 0.0 and a_n >= 0.0:", MODELS + "no_number_stops"),
-    (C, "if no_room(contacts):", "if False:", MODELS + "narrow_gap"),
+    (C, "if no_room(contacts):", "if False:", MODELS + "drives_into_others"),
     (C, "            ball.vx, ball.vy = vx, vy\n        for c in",
-     "            pass\n        for c in", MODELS + "far_heavier"),
-    (C, "        for c in contacts:\n            c.lam = 0.0\n", "", MODELS + "far_heavier"),
+     "            pass\n        for c in", MODELS + "drives_into_others"),
+    (C, "        for c in contacts:\n            c.lam = 0.0\n", "", MODELS + "drives_into_others"),
     (C, "{ball for ball in driven if ball.inv_mass > 0.0}", "set(driven)", MODELS + "no_bounce"),
     # the other models
     (C, "(rows[k].tobytes(), *pushed)", "(rows[k].tobytes(),)", "test_fast.py -k stand_still"),
