@@ -443,12 +443,19 @@ def test_no_long_stretch_is_without_a_picture(visit, width, height, most):
 
 
 def test_on_a_phone_a_passage_shows_what_the_live_figure_would_and_calls_it_up(visit):
-    with visit(width=390, height=844, has_touch=True) as page:
-        glance = page.locator("#asked-twice\\.2 button")
-        glance.scroll_into_view_if_needed()
-        page.wait_for_function("(node) => node.querySelector('.ball')", arg=glance.element_handle())
-        drawn = glance.locator("text").all_text_contents()
-        assert {"lcp", "leapfrog"} <= set(drawn) and "penalty" not in drawn
+    with visit(width=390, height=844, has_touch=True, shown=False) as page:
+
+        def drawn(section):
+            glance = page.locator(f"#{section} button")
+            glance.scroll_into_view_if_needed()
+            done = "(node) => node.querySelector('.table, text')"
+            page.wait_for_function(done, arg=glance.element_handle())
+            return glance, set(glance.locator("text").all_text_contents())
+
+        _, words = drawn("in-a-hurry\\.2")
+        assert "bet first" in words, "it tells no answer"
+        glance, words = drawn("asked-twice\\.2")
+        assert {"lcp", "leapfrog"} <= words and "penalty" not in words
         glance.tap()
         page.wait_for_selector("#figure.docked #fig-lanes .handle")
         assert re.search("lcp .*leapfrog", page.locator("#fig-lanes .words").inner_text())

@@ -86,7 +86,7 @@ function order(view, settings, left, top) {
     points: now.map((y, k) => ({ model: MODELS[k], x: settings.dt, y, size: 7 })),
   });
   const named = slopes.map((ys, k) =>
-    label(`slope ${k + 1}`, chart.sx(STEPS[3]), chart.sy(ys[3]) + 18));
+    label(`slope ${k + 1}`, chart.sx(STEPS[1 + 2 * k]), chart.sy(ys[1 + 2 * k]) + 18));
   return { ...chart, svg: chart.svg + named.join(""), now };
 }
 

@@ -3,6 +3,7 @@ planted, the tests that must name it)."""
 
 FIGURES, ENGINE = "curriculum/page/figures/", "curriculum/page/engine.js"
 FALLS, KIT = "curriculum/page/falls.js", "curriculum/page/kit.js"
+GLANCE, SHOWS = "curriculum/page/glance.js", "test_page.py -k passage_shows"
 LOST = "test_page_figures.py -k test_nothing_that_can_be_held"
 BITS = "test_page_engine.py -k chromium"
 
@@ -78,6 +79,12 @@ FAULTS = [
     ("curriculum/page/stage.js", "|| event.button > 0", "", "test_page.py -k right_button"),
     ("curriculum/page/reader.js", "if (event.button > 0) return;", "",
      "test_page.py -k right_button"),
+    # what a phone shows in place of the live figure
+    (GLANCE, "svg.innerHTML = figures", "figures", SHOWS),
+    (GLANCE, "URLSearchParams(this.look)", "URLSearchParams()", SHOWS),
+    (GLANCE, "width), { open });", "width), { open: () => true });", SHOWS),
+    ("curriculum/page/style.css", ".show button { display: block;", ".show button { color: red;",
+     "test_page.py -k long_stretch"),
     # what builds and holds the page
     ("curriculum/page/build.py", "if count != 1:", "if count > 1:",
      "test_page.py -k lit_line"),
