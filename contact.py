@@ -406,13 +406,20 @@ def ask(c, restitution, dt):
 
 
 def no_room(contacts):
-    """Ask no way of a bounce that drove its ball into one that it would not meet else.
+    """Take back the way of each bounce that drove a ball into one that it would not have met.
 
-    Else the sweeps push all that is around to make the room. Returns whether there was such a one.
+    Else the sweeps push whatever is around to make room for it, and the balls gain energy. Balls
+    that push one another count as one crowd. Returns whether there was such a bounce.
     """
-    driven = {ball for c in contacts if c.free and c.lam > 0.0 for ball in (c.a, c.b)}
-    driven = {ball for ball in driven if ball.inv_mass > 0.0}
-    bounces = [c for c in contacts if c.target > c.stays and (c.a in driven or c.b in driven)]
+    pushing = [c for c in contacts if c.lam > 0.0]
+    crowd = {ball for c in pushing if c.free for ball in (c.a, c.b) if ball.inv_mass > 0.0}
+    known = 0
+    while known < len(crowd):  # and all whom these push, until nobody comes new
+        known = len(crowd)
+        for c in pushing:
+            if c.a in crowd or c.b in crowd:
+                crowd.update(ball for ball in (c.a, c.b) if ball.inv_mass > 0.0)
+    bounces = [c for c in contacts if c.target > c.stays and (c.a in crowd or c.b in crowd)]
     for c in bounces:
         c.target = c.stays
     return len(bounces) > 0

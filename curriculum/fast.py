@@ -370,13 +370,22 @@ def ask(c, balls, knobs):
 
 @compiled
 def no_room(balls, contacts, stays, free):
-    """Ask no way of a bounce that drove its ball into one that it would not meet else."""
-    driven, found = np.zeros(len(balls), np.bool_), False
+    """Take back the way of each bounce that drove a ball into one that it would not have met."""
+    crowd = np.zeros(len(balls), np.bool_)
     for k, c in enumerate(contacts):
         if free[k] and c.lam > 0.0:
-            driven[c.a], driven[c.b] = balls[c.a].inv_mass > 0.0, balls[c.b].inv_mass > 0.0
+            crowd[c.a], crowd[c.b] = balls[c.a].inv_mass > 0.0, balls[c.b].inv_mass > 0.0
+    grows = crowd.any()
+    while grows:
+        grows = False
+        for c in contacts:
+            if c.lam > 0.0 and crowd[c.a] != crowd[c.b]:
+                other = c.b if crowd[c.a] else c.a
+                if balls[other].inv_mass > 0.0:
+                    crowd[other] = grows = True
+    found = False
     for k, c in enumerate(contacts):
-        if c.target > stays[k] and (driven[c.a] or driven[c.b]):
+        if c.target > stays[k] and (crowd[c.a] or crowd[c.b]):
             c.target = stays[k]
             found = True
     return found

@@ -253,12 +253,20 @@ function ask(c, state, radius, { dt, restitution }) {
   c.after = least(-restitution * hit + left * a, back);
 }
 
-// Asks no way of a bounce that drove its ball into one that it would not meet else; true if one did.
+// Takes back the way of each bounce that drove a ball into one it would not have met.
 function noRoom(rows) {
-  const moved = ({ i, j, wi, wj }) => [wi > 0 ? i : -1, wj > 0 ? j : -1];
-  const driven = new Set(rows.filter((c) => c.free && c.lam > 0).flatMap(moved));
-  driven.delete(-1);
-  const bounces = rows.filter((c) => c.target > c.stays && (driven.has(c.i) || driven.has(c.j)));
+  const pushing = rows.filter((c) => c.lam > 0);
+  const crowd = new Set();
+  const join = (c) => {
+    if (c.wi > 0) crowd.add(c.i);
+    if (c.wj > 0) crowd.add(c.j);
+  };
+  pushing.filter((c) => c.free).forEach(join);
+  for (let known = 0; known < crowd.size; ) {
+    known = crowd.size;
+    pushing.filter((c) => crowd.has(c.i) || crowd.has(c.j)).forEach(join);
+  }
+  const bounces = rows.filter((c) => c.target > c.stays && (crowd.has(c.i) || crowd.has(c.j)));
   for (const c of bounces) c.target = c.stays;
   return bounces.length > 0;
 }

@@ -2,8 +2,8 @@
 
 A job is a numbered heap that starts apart, 2 to 12 balls, masses up to 100 : 1, radii up to 4 : 1;
 or a ball that flies to and fro in a narrow gap between two that are fixed, or up to 1e6 times as
-heavy. Every tenth has two scenes besides that begin in contact: a ball slides off a fixed one, and
-a ball spreads two.
+heavy; or a column, masses up to 1e5 : 1, that flies apart under a fixed ball. Every tenth has two
+scenes besides that begin in contact: a ball slides off a fixed one, and a ball spreads two.
 """
 
 import itertools
@@ -14,7 +14,7 @@ import contact
 from curriculum.stress.trial import run_twin
 
 STEPS = {0.002: 750, 0.016: 94, 0.05: 30}  # dt [s]: how many, 1.5 s in all
-KINDS = "e = 0", "e drawn from 0 to 1", "e = 1", "in a gap"
+KINDS = "e = 0", "e drawn from 0 to 1", "e = 1", "in a gap", "under a ceiling"
 MODELS = "leapfrog", "lcp"
 GAINED = 1e-9  # share of the start's energy, chosen
 EIGHTH = 8.0**-1.8  # of the error, chosen: what an eighth of the step may leave; second order 1/64
@@ -22,7 +22,8 @@ LIMITS = """What leapfrog does not mend, measured here or in the tests:
 
 - sweeps that do not finish leave a sag, half as deep as lcp's; 1e6 kg on 1 kg sink in;
 - several impacts of a ball within a step are one: a row of balls that are struck at once parts in \
-another order, piles that bounce need not converge, and with e = 1 heaps gain energy (below);
+another order, piles that bounce need not converge, and with e = 1 heaps gain energy (below), as \
+can with e > 0.99 a column under a ceiling (0.06 % of the start's, in one of 4,000);
 - a chain of very unequal masses that is driven at a fixed ball passes through it at long steps;
 - its speeds at the end of a step may be g dt / 2 too large where sweeps do not finish, while \
 nothing moves: so rest is judged by ways;
@@ -47,6 +48,8 @@ class Heap:
         drawn = float(rng.uniform(0.0, 1.0))
         if kind == "in a gap":
             return in_a_gap(rng, drawn)
+        if kind == "under a ceiling":
+            return under_a_ceiling(rng, 0.99 * drawn)
         while True:
             count = int(rng.integers(2, 13))
             radius, mass = 0.05 * 4.0 ** rng.random(count), 100.0 ** rng.random(count)
@@ -76,6 +79,16 @@ def in_a_gap(rng, restitution):
     mass = [*rng.choice([np.inf, *10.0 ** rng.uniform(0.0, 6.0, 2)], 2), 1.3]
     vx, vy = np.outer(along, [0.0, 0.0, pace]) + rng.normal(0.0, 0.3, (2, 3)) * [0.0, 0.0, 1.0]
     return contact.scene_of(x, y, mass, radius, vx, vy, restitution)
+
+
+def under_a_ceiling(rng, restitution):
+    """A column of 1 to 4 balls, all at up to 20 m/s, between the floor and a fixed ball."""
+    count = int(rng.integers(2, 6))
+    radius, gap = rng.uniform(0.05, 0.12, count), 10.0 ** rng.uniform(-6.0, -2.0, count)
+    y = np.cumsum(2.0 * radius + gap) - radius
+    mass = [*10.0 ** rng.uniform(-2.0, 3.0, count - 1), np.inf]
+    vy = [*rng.uniform(-20.0, 20.0, count - 1), 0.0]
+    return contact.scene_of(rng.normal(0.0, 1e-3, count), y, mass, radius, 0.0, vy, restitution)
 
 
 def leapfrog_gains_nothing_at_2_ms(heap):

@@ -276,6 +276,7 @@ NARROW = contact.scene_of(X, Y, MASS, [0.17, 0.17, 0.13, 0.15], [0, 0, 9, 0], re
 CROWDED = {  # scene, dt, steps; those with a number are of the stress run
     "strikes through others": (scenes.to_scene(scenes.numbered_spec(2181)), DT, 5),
     "between heavy and blocked": (scenes.to_scene(scenes.numbered_spec(9358)), DT, 120),
+    "under a ceiling": (heaps.Heap(1945).scene("under a ceiling"), DT, 400),
     "narrow gap": (NARROW, 0.0021, 333),
     "narrow gap, long steps": (NARROW, 0.016, 43),
     "far heavier 206": (heaps.Heap(206).scene("in a gap"), DT, 320),

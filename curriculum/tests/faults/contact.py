@@ -27,7 +27,9 @@ FAULTS = [
     (C, "            ball.vx, ball.vy = vx, vy\n        for c in",
      "            pass\n        for c in", MODELS + "drives_into_others"),
     (C, "        for c in contacts:\n            c.lam = 0.0\n", "", MODELS + "drives_into_others"),
-    (C, "{ball for ball in driven if ball.inv_mass > 0.0}", "set(driven)", MODELS + "no_bounce"),
+    (C, "(c.a, c.b) if ball.inv_mass > 0.0}", "(c.a, c.b)}", MODELS + "no_bounce"),
+    (C, "(c.a, c.b) if ball.inv_mass > 0.0)", "(c.a, c.b))", MODELS + "no_bounce"),
+    (C, "while known < len(crowd):", "while False:", MODELS + "drives_into_others"),
     # the other models
     (C, "(rows[k].tobytes(), *pushed)", "(rows[k].tobytes(),)", "test_fast.py -k stand_still"),
     (C, "if bias > 0.0:  # an overlap", "if bias >= 0.0:  # an overlap", MODELS + "on_the_table"),

@@ -17,6 +17,8 @@ FAULTS = [
     (F, "                turn(c, balls, 0.0)", "                pass", PLAIN),
     (F, "        if onward < 0.0:\n            t = 1.0\n", "", PLAIN),
     (F, "if no_room(balls, contacts, stays, free):", "if False:", WALLS),
+    (F, "grows = crowd.any()", "grows = False", WALLS),
+    (F, "if balls[other].inv_mass > 0.0:", "if True:", WALLS),
     (F, "        balls[\"vx\"][:], balls[\"vy\"][:] = vx, vy\n", "", WALLS),
     (F, "after = back if back < bounce else bounce", "after = bounce", PLAIN),
 ]  # fmt: skip
