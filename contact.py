@@ -41,7 +41,7 @@ import os
 import signal
 import sys
 
-if __name__ == "__main__":  # Ctrl-C while modules load; main() handles it from then on
+if __name__ == "__main__":  # Ctrl-C at any time, also while modules load
     signal.signal(signal.SIGINT, lambda *_: (os.write(2, b"stopped\n"), os._exit(130)))
 
 import argparse
@@ -625,15 +625,17 @@ def simulate(step, scene, dt, steps, skip=False, progress=None, kicks=1) -> Run:
     """Take that many steps, `step(balls)` each, and record every state.
 
     With `skip` it leaves out steps whose result is known, and no bit changes. Up to 250 steps of
-    flight are one sum; kicks says in how many parts a step takes gravity's. And a step depends on
-    nothing but the state and the impulses of the last step: when both come back (rest, or any
-    cycle), the rest is a copy.
+    flight are one sum, in which gravity acts `kicks` times a step. And a step depends on nothing
+    but the state and the impulses of the last step: when both come back (rest, or any cycle), what
+    follows is a copy.
     """
     balls = make_balls(scene)
     rows, settled = np.zeros((steps + 1, len(balls), 4)), np.ones(steps + 1, bool)
-    rows[0] = state_of(balls)
     k, seen = 0, dict[tuple, int]()  # seen: at which step a state came first
-    while k < steps:
+    while True:
+        rows[k] = [(ball.x, ball.y, ball.vx, ball.vy) for ball in balls]
+        if k == steps:
+            break
         pushed = [(a, b, lam) for a in balls for b, lam in a.pushed.items()]
         first = seen.setdefault((rows[k].tobytes(), *pushed), k) if skip else k
         if first < k:  # what came then comes again and again
@@ -643,7 +645,6 @@ def simulate(step, scene, dt, steps, skip=False, progress=None, kicks=1) -> Run:
         flown = fly(balls, dt, rows[k : k + 251], kicks) if skip else 0
         if flown == 0:
             settled[k + 1] = step(balls) is not False  # False: sweeps of soft that did not settle
-            rows[k + 1] = state_of(balls)
         k += flown or 1
         if progress:
             progress(k)
@@ -651,11 +652,6 @@ def simulate(step, scene, dt, steps, skip=False, progress=None, kicks=1) -> Run:
     rows[np.isnan(rows)] = math.nan
     q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # kind, state, axis, ball
     return Run(np.arange(len(rows)) * dt, q, v, int((~settled).sum()))
-
-
-def state_of(balls) -> list[tuple]:
-    """A row of simulate."""
-    return [(ball.x, ball.y, ball.vx, ball.vy) for ball in balls]
 
 
 # --- region: flight ---
@@ -679,7 +675,6 @@ def fly(balls, dt, rows, kicks):
     reach = np.maximum(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))  # as step_reach has it
     near = np.flatnonzero(~(gap >= reach))  # and not gap < reach: NaN is not far away
     flown = int(near[0]) if len(near) > 0 else len(rows) - 1
-    rows[flown + 1 :] = 0.0
     for ball, values in zip(balls, rows[flown].tolist()):
         ball.x, ball.y, ball.vx, ball.vy = values
         ball.pushed = ball.pushed if flown == 0 else {}
@@ -789,16 +784,15 @@ def soft_defaults(restitution, dt, solref=None, solimp=None) -> tuple[tuple, tup
 def run_exact(scene, dt, steps, progress=None):
     """The Run of a few balls over one another by exact_run, of others by curriculum/exact.py."""
     times = np.arange(steps + 1) * dt
-    reason = "balls that lie beside one another need curriculum/exact.py"
     apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
     column = apart and (scene.q0[0] == scene.q0[0, 0]).all() and not scene.v0[0].any()
-    wider = beside("exact") if not column or len(scene.mass) > FEW else None
-    if column and not wider:
+    reason = "balls that lie beside one another need curriculum/exact.py"
+    if column and (len(scene.mass) <= FEW or not beside("exact")):
         try:
             return Run(times, *exact_run(scene, times, progress))
         except ArithmeticError as error:
-            reason, wider = str(error), beside("exact")
-    if not wider:
+            reason = str(error)
+    if not (wider := beside("exact")):
         raise RuntimeError(reason)
     return Run(times, *wider.simulate_exact(scene, times, GRAVITY, progress or (lambda k: None)))
 
@@ -810,18 +804,16 @@ def beside(name: str, needed=False):
     """
     if (home := str(Path(__file__).resolve().parent)) not in sys.path:
         sys.path.append(home)
-    why = "it needs the folder curriculum beside contact.py"
     try:
         return importlib.import_module(f"curriculum.{name}")
     except ImportError as error:
         absent = f"curriculum.{name}.".startswith(f"{error.name}.")  # this module or its folder
-        if error.name is None:
-            why = str(error)  # the module says itself what it needs
-        elif not (isinstance(error, ModuleNotFoundError) and absent):
+        if error.name and not (absent and isinstance(error, ModuleNotFoundError)):
             raise  # a fault in the module
-    if needed:
-        raise ImportError(why)
-    return None
+        if needed:  # without a name, the module says itself what it needs
+            words = "it needs the folder curriculum beside contact.py"
+            raise ImportError(words if error.name else str(error)) from None
+        return None
 
 
 # --- region: measure ---
@@ -898,6 +890,8 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     scale = abs(float(total[0])) or 1.0  # J; 1 J for a run that starts with none
     gap = smallest_gap(run.q, scene.radius)
     landing = first_contact(run, scene, dt, gap)
+    below = (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any()  # a centre below the floor
+    inside = gap.min() < -scene.radius.max()  # an overlap by a radius
     gap = gap / float(scene.radius[0])
     depth = np.maximum(-gap, 0.0)
     step = blow_up_step(total)
@@ -915,7 +909,7 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
         "blew_up_step": step,
         "trembles": trembles(depth),
         "rests": step is None and at_rest(run, scene),
-        "through": passed_through(run, scene, depth.max()),
+        "through": "the floor" if below else "a ball" if inside else None,
         "unsettled_steps": run.unsettled,  # whose sweeps, of soft, did not settle
     }
 
@@ -929,13 +923,6 @@ def height_errors(run, scene, dt, landing, reference):
         worst, flight = float(error.max()), float(error[: min(landing, landed)].max(initial=0.0))
         later = worst - flight
     return dict(height_error_frac=worst, flight_error_frac=flight, contact_error_frac=later)
-
-
-def passed_through(run, scene, deepest):
-    """What a ball went through, judged by its centre or by the deepest overlap [r]; or None."""
-    if (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any():
-        return "the floor"
-    return "a ball" if deepest * scene.radius[0] > scene.radius.max() else None
 
 
 # --- region: critical-dt ---
@@ -1038,8 +1025,10 @@ def add_flags(flag):
 
 def parse_flags(argv):
     """The checked command line. Bad input ends with one line on stderr and exit status 2."""
-    parser = argparse.ArgumentParser("contact.py", argparse.SUPPRESS, __doc__, allow_abbrev=False)
-    parser.formatter_class = partial(argparse.RawDescriptionHelpFormatter, width=78)
+    form = partial(argparse.RawDescriptionHelpFormatter, width=78)
+    parser = argparse.ArgumentParser(
+        "contact.py", argparse.SUPPRESS, __doc__, formatter_class=form, allow_abbrev=False
+    )
     parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")  # -1e4 is a value
     add_flags(parser.add_argument)
     for word in argv:
@@ -1269,7 +1258,7 @@ def fail(message):
 
 
 def main(argv=None):
-    """The command line. Returns the exit status: 0, 2 if something failed, 130 after Ctrl-C."""
+    """The command line. Returns the exit status: 0, or 2 if something failed."""
     argv = sys.argv[1:] if argv is None else argv
     for stream in filter(None, (sys.stdout, sys.stderr)):
         if hasattr(stream, "reconfigure"):
@@ -1278,9 +1267,6 @@ def main(argv=None):
         status = report(parse_flags(argv), argv)
         print(end="", flush=True)  # an error at Python's end has no handler
         return status
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        return 130
     except MemoryError:
         return fail("not enough memory; allowed: fewer --steps or --bodies")
     except OSError as error:  # nobody reads on, or the disk is full: Python's own flush would fail
@@ -1290,5 +1276,4 @@ def main(argv=None):
 
 if __name__ == "__main__":
     sys.modules["contact"] = sys.modules[__name__]  # what the folder's "import contact" gets
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.exit(main())

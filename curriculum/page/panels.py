@@ -15,7 +15,7 @@ from pygments.lexers import PythonLexer
 LONG = 20  # lines of code
 BOOKKEEPING = set(  # regions, and definitions of others, that are no idea of the chapter
     "setup scenes ball flight run measure flags report files main quality stability "
-    "warm_start remember raised inverse make_balls state_of".split()
+    "warm_start remember raised inverse make_balls".split()
 )
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
