@@ -391,10 +391,3 @@ def test_ctrl_c_while_modules_load_is_one_word_too(tmp_path):
     (tmp_path / "numpy.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
     done = python(CONTACT, PYTHONPATH=str(tmp_path))
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "stopped\n")
-
-
-def test_a_knob_has_one_default():
-    args = contact.parse_flags([])
-    assert contact.Settings() == contact.Settings(
-        *(getattr(args, k) for k in contact.Settings._fields)
-    )

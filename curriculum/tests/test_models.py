@@ -328,7 +328,7 @@ def test_momentum_finds_what_plain_sweeps_find_in_a_tenth_of_them():
     assert 0 < 10 * counts[1] < counts[0]
 
 
-# --- the sweep, and bodies that turn -------------------------------------------------------------
+# --- the sweep -----------------------------------------------------------------------------------
 
 
 def test_sweeps_end_where_corrections_are_below_the_tolerance():
@@ -345,39 +345,6 @@ def test_sweeps_end_where_corrections_are_below_the_tolerance():
         assert solved(sweeps, 0.0) == (0, 2.0 * share, share)
         assert solved(1000, 2.0 ** (1 - sweeps)) == (sweeps, 2.0 * share, share)
     assert 50 < solved(1000, 0.0)[0] < 60 and solved(1000, 0.0)[1:] == (2.0, 1.0)
-
-
-class Block(Ball):
-    """A body that turns, as the next chapters build it: `inertia` [kg m^2], `spin` [1/s]."""
-
-    def __init__(self, vx, vy, mass, inertia):
-        super().__init__(0.0, 0.1, vx, vy, mass, 0.0)
-        self.inertia, self.spin = inertia, 0.0
-
-
-class Corner(Contact):
-    """A block's corner on the floor, at (rx, ry) from the block's centre."""
-
-    def __init__(self, block, rx, ry):
-        super().__init__(block, contact.FLOOR, 0.0, 1.0, 0.0)
-        self.lever = rx * self.ny - ry * self.nx
-        self.m_eff = 1.0 / (block.inv_mass + self.lever * self.lever / block.inertia)
-
-    def v_n(self):
-        return super().v_n() + self.a.spin * self.lever
-
-    def push(self, impulse):
-        super().push(impulse)
-        self.a.spin += impulse * self.lever / self.a.inertia
-
-
-def test_a_block_at_rest_shares_its_weight_between_its_corners_by_the_lever_rule():
-    block, a, b = Block(0.0, 0.0, 2.0, 0.03), 0.1, 0.3
-    corners = [Corner(block, -a, -0.1), Corner(block, b, -0.1)]
-    contact.accelerate([block], DT)
-    contact.solve_contacts(corners, 500)
-    shares = [2.0 * G * DT * arm / (a + b) for arm in (b, a)]
-    assert [c.lam for c in corners] == pytest.approx(shares, rel=1e-9)
 
 
 # --- soft ----------------------------------------------------------------------------------------
