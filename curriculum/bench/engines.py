@@ -1,14 +1,12 @@
-"""Other engines, each as its own experts would set it up, on the scenes of contact.py's models.
+"""Other engines, and our models, as sessions that step the scenes of contact.py.
 
-**To send a better setting, add one line to SETTINGS below**: the benchmark runs every line, draws
-the front of all settings of an engine, and names the best. Nothing else has to change.
-
-Every engine is optional (`pip install -e '.[bench]'`); one that is missing is said to be. The same
-for all: balls that cannot rotate, no friction, no threads, the scene's masses, radii and
-restitution, gravity 9.81 m/s^2, and a floor along y = 0. A ball of infinite mass is one that
-nothing moves. The same means for all: a session takes so many substeps for each step that is looked
-at, and no ball sleeps, or all may that can. What is left of the last step, impulses or forces,
-begins the next one in every engine as shipped. What had to be chosen:
+Which settings of them compete stands in settings.py. Every engine is optional
+(`pip install -e '.[bench]'`); one that is missing is said to be. The same for all: balls that
+cannot rotate, no friction, no threads, the scene's masses, radii and restitution, gravity 9.81
+m/s^2, and a floor along y = 0. A ball of infinite mass is one that nothing moves. The same means
+for all: a session takes so many substeps for each step that is looked at, and no ball sleeps but
+where the setting says so. What is left of the last step, impulses or forces, begins the next one in
+every engine as shipped. What had to be chosen:
 
     mujoco    solref: a time constant and a damping ratio, or, both negative, a stiffness and a
               damping given directly. "0 -(1+e)/dt" with solimp near 1 is Newton's impact law:
@@ -33,7 +31,6 @@ begins the next one in every engine as shipped. What had to be chosen:
 import importlib.util
 import math
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -54,8 +51,8 @@ class Session:
     substeps = 1
 
     @staticmethod
-    def cannot(scene, options):
-        """Why the engine does not run a scene with these options, or None."""
+    def cannot(scene):
+        """Why the engine does not run a scene, or None."""
 
     def advance(self, n):
         """Take n steps and read nothing: the bare cost of stepping."""
@@ -170,7 +167,7 @@ class Mujoco(Session):
         self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
         mujoco.set_mju_user_warning(lambda text: None)  # its default writes a log file
         solref, solimp = soften(scene, dt)
-        balls, many = balls_of(scene), len(scene.mass) >= MANY and "solver" not in options
+        balls, many = balls_of(scene), len(scene.mass) >= MANY
         options = {"solver": "CG", "jacobian": "sparse"} | options if many else options
         flags = ' sleep="enable"' * sleep + ' speculative="enable"' * speculative
         chosen = " ".join(f'{name}="{value}"' for name, value in options.items())
@@ -189,11 +186,6 @@ class Mujoco(Session):
         self.data.qvel[:] = scene.v0[:, self.moving].T.ravel()
         self.full = mujoco.mjtState.mjSTATE_FULLPHYSICS
         self.start = np.empty(mujoco.mj_stateSize(self.model, self.full))
-
-    @staticmethod
-    def cannot(scene, options):
-        fails = options.get("solver") == "Newton" and len(scene.mass) > 300
-        return "the sparse Newton of MuJoCo 4.0.0 fails on piles" if fails else None
 
     @staticmethod
     def body(ball):
@@ -275,7 +267,6 @@ class Box2d3(Session):
         import pyb2d3
 
         self.scale = scale
-
         self.world = world = pyb2d3.World(
             gravity=(0, -GRAVITY * scale), restitution_threshold=0.0, maximum_linear_speed=1e6
         )
@@ -352,7 +343,7 @@ class Drake(Session):
         self.simulator.Initialize()
 
     @staticmethod
-    def cannot(scene, options):
+    def cannot(scene):
         some = 0.0 < scene.restitution < 1.0
         return "has no coefficient of restitution, only a dissipation" if some else None
 
@@ -407,150 +398,18 @@ class Drake(Session):
         return self.with_the_fixed(plant.GetPositions(context), plant.GetVelocities(context))
 
 
-class Setting(NamedTuple):
-    """One engine, or one of our models, with one set of choices."""
-
-    engine: str  # a key of ENGINES, or a model
-    words: str  # the setting, for a reader
-    options: dict  # of its session
-    only: tuple = ()  # the problems it is for; none means all
-
-    @property
-    def name(self):
-        return f"{self.engine}: {self.words}"
-
-    @property
-    def inner(self):
-        """Substeps that the engine takes by itself in each step; stages of a Runge-Kutta step."""
-        return self.options.get("inner", 4 if self.options.get("integrator") == "RK4" else 1)
-
-    @property
-    def adaptive(self):
-        """Whether it chooses its own steps: dt is only how often it is looked at."""
-        return self.engine == "exact" or "scheme" in self.options
-
-    @property
-    def sleeps(self):
-        """Whether it can leave out steps."""
-        return self.engine not in ("exact", "drake")
-
-    @property
-    def slow(self):
-        """Whether one start and one process have to be enough."""
-        return self.engine == "drake" and not self.adaptive
-
-    def is_for(self, problem):
-        return not self.only or problem in self.only
-
-    def cut(self, substeps):
-        """The words, with that many substeps for each look."""
-        return self.words if substeps == 1 else f"{self.words}, {substeps} x"
-
-    @property
-    def session(self):
-        """The class of its sessions."""
-        return ENGINES[self.engine][-1] if self.engine in ENGINES else Ours
-
-    def refuses(self, scene):
-        """Why it does not run a scene, or does not run here, or None."""
-        return not_installed(self.engine) or self.session.cannot(scene, self.options)
-
-    def build(self, scene, dt, substeps=1, sleep=False):
-        """A session that is looked at every dt [s], after so many steps."""
-        options = self.options | {"sleep": True} if sleep else self.options
-        session = self.session(scene, dt / substeps, **options)
-        session.substeps = substeps
-        return session
-
-
-def setting(engine, words, only=(), **options):
-    """A setting whose words name these options: what is said is what is run."""
-    return Setting(engine, words.format(**options), options, only)
-
-
 ENGINES = {  # label, package, module, session
     "mujoco": ("MuJoCo", "mujoco", "mujoco", Mujoco),
     "pymunk": ("pymunk", "pymunk", "pymunk", Pymunk),
     "box2d3": ("Box2D 3", "pyb2d3", "pyb2d3", Box2d3),
     "drake": ("Drake", "drake", "pydrake", Drake),
 }
-penalty, lcp, leapfrog, soft, exact = (
-    partial(setting, model, model=model) for model in contact.MODELS
-)
-mujoco, pymunk, box2d3, drake = (partial(setting, engine) for engine in ENGINES)
-SHARED = ("stack", "pile", "heavy_100", "heavy_1000", "tower", "spread", "pile_bounce", "cradle")
-GAIN = "{iters} sweeps, gain {baumgarte:g}"
-STIFF = dict(solref=(1e-9, 5.0), solimp=contact.HARD)
-OURS = (
-    penalty("k 1e4", stiffness=1e4),
-    lcp("{iters} sweeps", iters=20),
-    lcp("{iters} sweeps, in Python", iters=20, python=True),
-    lcp("{iters} sweeps", SHARED, iters=100),
-    lcp("{iters} sweeps, warm", SHARED, iters=5, warm=0.8),
-    lcp("{iters} sweeps, warm", SHARED, iters=20, warm=0.8),
-    lcp(GAIN, iters=20, baumgarte=1.0),
-    leapfrog("{iters} sweeps", iters=20),
-    leapfrog("solved, at most {iters} sweeps", SHARED, iters=1000),
-    soft("as MuJoCo ships it, or direct where e > 0"),
-    soft("time constant 2 dt, ratio 5, d 0.9999", ("drop", "slide", *SHARED), **STIFF),
-    exact("event to event"),
-)
-RIGID, PUSHED = partial(direct, 0.0, 0.9999), partial(direct, 0.2, 0.999)
-HARD = "{inner} substeps, hardest"
-PUSHING = "{iterations} iterations, push {push:g} in 2 ms"
-# e = 0, and no lottery
-RESTING = ("drop", "slide", "stack", "heavy_100", "heavy_1000", "tower", "spread", "glance")
-CENIC, RK3 = (f"{name}, accuracy {{accuracy:g}}, k {{stiffness:g}}" for name in ("CENIC", "RK3"))
-SETTINGS = (
-    mujoco("as shipped", soften=shipped),
-    mujoco("time constant 2 dt, ratio 5, d 0.9999", soften=partial(standard, 2.0, 5.0, 0.9999)),
-    mujoco("direct, no push, d 0.9999", soften=RIGID),
-    mujoco("direct, push 0.2, d 0.999", soften=PUSHED),
-    mujoco("direct, no push, speculative", soften=RIGID, speculative=True),
-    mujoco("direct, no push, {integrator}", ("spread",), soften=RIGID, integrator="RK4"),
-    *(pymunk("{iterations} iterations", iterations=n) for n in (10, 100)),
-    *(pymunk(PUSHING, iterations=n, push=0.2) for n in (10, 100)),
-    *(pymunk(PUSHING, iterations=n, push=1.0) for n in (10, 30, 100)),
-    box2d3("{inner} substeps, as shipped", inner=4),
-    box2d3("{inner} substep, hardest", inner=1, hertz=1e9),
-    *(box2d3(HARD, inner=n, hertz=1e9) for n in (4, 16, 64)),
-    *(
-        box2d3("{inner} substeps, hardest, scale {scale:g}", inner=4, hertz=1e9, scale=x)
-        for x in (1.0, 100.0, 1000.0)
-    ),
-    *(
-        box2d3("{inner} substep, {hertz:.0f} Hz, scale {scale:g}", inner=1, hertz=hertz, scale=x)
-        for hertz, x in ((120.0, 1000.0), (240.0, 1.0), (480.0, 10.0))
-    ),
-    *(box2d3("{inner} substeps, {hertz:.0f} Hz", inner=n, hertz=240.0) for n in (4, 32)),
-    drake("discrete, k 1e8", stiffness=1e8),
-    *(drake(CENIC, scheme="cenic", accuracy=a, stiffness=1e8) for a in (1e-3, 1e-5, 1e-7)),
-    *(
-        drake(CENIC, RESTING, scheme="cenic", accuracy=a, stiffness=1e10)
-        for a in (1e-3, 1e-5, 1e-7, 1e-9)
-    ),
-    *(
-        drake(
-            f"{CENIC}, dissipation {{dissipation:g}}",
-            RESTING,
-            scheme="cenic",
-            accuracy=a,
-            stiffness=1e10,
-            dissipation=100.0,
-        )
-        for a in (1e-7, 1e-9)
-    ),
-    *(
-        drake(f"{CENIC}, cut", RESTING, scheme="cenic", accuracy=a, stiffness=1e10, cut=True)
-        for a in (1e-7, 1e-9)
-    ),
-    drake(RK3, ("drop", "slide"), scheme="runge_kutta3", accuracy=1e-5, stiffness=1e8),
-    drake(RK3, ("elastic",), scheme="runge_kutta3", accuracy=1e-5, stiffness=1e10),
-    *(
-        drake(f"{RK3}, cut", (name,), scheme="runge_kutta3", accuracy=1e-5, stiffness=k, cut=True)
-        for name, k in (("elastic", 1e10), ("cradle", 1e8))
-    ),
-)
+LABELS = {name: name for name in contact.MODELS} | {name: row[0] for name, row in ENGINES.items()}
+
+
+def session(engine):
+    """The class of the sessions of an engine, or of a model."""
+    return ENGINES[engine][-1] if engine in ENGINES else Ours
 
 
 def not_installed(engine) -> str | None:

@@ -10,7 +10,6 @@ the overlapping contacts is at most a limit. 10,000 balls are ten shafts of 1,00
 each of them begins as the one had settled; only the settings run that won with 1,000.
 """
 
-import itertools
 import math
 import statistics
 import sys
@@ -21,24 +20,23 @@ import numpy as np
 
 import contact
 from curriculum import parallel
-from curriculum.bench import engines, timing
-from curriculum.bench.engines import GAIN, HARD, PUSHING, box2d3, lcp, leapfrog, mujoco, pymunk
+from curriculum.bench import accuracy, timing
+from curriculum.bench.settings import ASLEEP, PILES
 
 DT = 0.002  # s
 WATCHED, TURN, TURNS = 250, 50, 3  # steps at the end; timed steps in one go; how many goes
 AT_REST = 1e-3  # m/s
 DEPTHS = (1e-3, 1e-4)  # r
-SIZES = {12: (4, 6000), 100: (10, 6000), 1000: (25, 6000)}  # balls: side by side, steps to settle
+SIZES, SETTLE = {12: 4, 100: 10, 1000: 25}, 6000  # balls: side by side; steps to settle
 MANY, COPIES, AGAIN = 10_000, 10, 1500  # made of settled copies; steps to settle again
 PROCESSES, QUICK_SIZES = 3, (12,)
-ASLEEP = "may sleep"  # in the words of a setting that is shown and not compared
 
 
 def shaft(count):
     """Balls on a lattice between two walls of fixed balls, and the floor. The seed is fixed."""
     if count == MANY:
         return side_by_side(shaft(MANY // COPIES))
-    wide, r, rng = SIZES[count][0], contact.RADIUS, np.random.default_rng(0)
+    wide, r, rng = SIZES[count], contact.RADIUS, np.random.default_rng(0)
     place = rng.permutation(count)
     nudge = rng.uniform(-0.1 * r, 0.1 * r, (2, count))
     x = 2.5 * r * (place % wide - 0.5 * (wide - 1)) + nudge[0]
@@ -58,55 +56,19 @@ def side_by_side(scene):
     return contact.scene_of(x, y, mass, name="shafts")
 
 
-SPRING = partial(engines.standard, 2.0, 1.0, 0.99)
-MUJOCO = "direct, push 0.2, d 0.999, CG"
-# fmt: off
-SETTINGS = (  # and how many substeps they take for a step of 2 ms
-    (lcp("{iters} sweeps", iters=20), 1),
-    (lcp("{iters} sweeps, warm", iters=8, warm=0.8), 1),
-    (lcp("{iters} sweeps, warm", iters=6, warm=0.8), 4),
-    *((lcp(GAIN, iters=n, baumgarte=1.0), substeps)
-      for n, substeps in ((2, 1), (4, 1), (6, 1), (7, 1), (12, 1), (4, 2), (2, 4), (4, 4), (2, 6))),
-    (lcp(f"{GAIN}, half warm", iters=6, baumgarte=1.0, warm=0.5), 1),
-    *((leapfrog("{iters} sweeps", iters=n), 1) for n in (2, 4, 8, 20)),
-    (box2d3("{inner} substeps, as shipped", inner=4), 1),
-    *((box2d3(HARD, inner=n, hertz=1e9), 1) for n in (4, 8, 12, 16)),
-    (box2d3("{inner} substep, hardest", inner=1, hertz=1e9), 4),
-    (box2d3(f"{HARD}, {ASLEEP}", inner=4, hertz=1e9, sleep=True), 1),
-    (pymunk("{iterations} iterations", iterations=10), 1),
-    (pymunk(PUSHING, iterations=10, push=0.2), 1),
-    (pymunk("{iterations} iterations", iterations=30), 1),
-    (pymunk("{iterations} iterations", iterations=10), 4),
-    (pymunk(f"{{iterations}} iterations, {ASLEEP}", iterations=10, sleep=True), 1),
-    (mujoco("as shipped, CG", soften=engines.shipped), 1),
-    (mujoco("2 dt, ratio 1, d 0.99, CG", soften=SPRING), 1),
-    (mujoco(MUJOCO, soften=engines.PUSHED), 1),
-    (mujoco(MUJOCO + ", {iterations} iterations", soften=engines.PUSHED, iterations=10), 1),
-    (mujoco("2 dt, ratio 1, d 0.99, {solver}", soften=SPRING, solver="Newton"), 1),
-)
-# fmt: on
-LABELS = {
-    "lcp": "lcp, compiled",
-    "leapfrog": "leapfrog, compiled",
-    "mujoco": "MuJoCo",
-    "pymunk": "pymunk",
-    "box2d3": "Box2D 3",
-}
-
-
 def measure(quick=False):
-    """rows, one per setting and size; the winners at each depth; what compiling takes."""
+    """rows, one per setting and size; what compiling takes."""
     rows, states = [], {}
     for count in QUICK_SIZES if quick else (*SIZES, MANY):
-        chosen = winners(rows) if count == MANY else range(0, len(SETTINGS), 4 if quick else 1)
+        chosen = winners(rows) if count == MANY else range(0, len(PILES), 4 if quick else 1)
         rows += measured(count, chosen, states, quick)
-    return dict(rows=rows, best=best(rows), compile={} if quick else compiling())
+    return dict(rows=rows, compile={} if quick else compiling())
 
 
 def measured(count, chosen, states, quick):
     """The rows of one size: settle all settings, then time them. states[k]: the last settled."""
     scene, phases = shaft(count), ("falling", "resting")
-    jobs = [(count, k, states.get(k)) for k in chosen if not SETTINGS[k][0].refuses(scene)]
+    jobs = [(count, k, states.get(k)) for k in chosen if not PILES[k][0].refuses(scene)]
     print(f"pile of {count}: {len(jobs)} settings settle, then they are timed", flush=True)
     settled = parallel.run_jobs(settle, jobs, f"{count} balls settle")
     states.update((k, found[:2]) for (_, k, _), found in zip(jobs, settled))
@@ -116,30 +78,28 @@ def measured(count, chosen, states, quick):
     rows = []
     for (_, k, _), state, found in zip(jobs, settled, times):
         spreads = {phase: timing.spread([each[phase] for each in found]) for phase in phases}
-        about = dict(bodies=count, engine=SETTINGS[k][0].engine, words=words(k))
+        about = dict(bodies=count, family=PILES[k][0].engine, words=words(k))
         rows.append(about | state[2] | spreads)
     return rows
 
 
 def words(k):
-    setting, substeps = SETTINGS[k]
+    setting, substeps = PILES[k]
     return setting.cut(substeps)
 
 
 def build(k, scene):
-    setting, substeps = SETTINGS[k]
+    setting, substeps = PILES[k]
     return setting.build(scene, DT, substeps)
 
 
 def settle(job):
     """q, v of the settled pile, and the row's depths and speed; the speed is watched to the end."""
     count, k, start = job
-    scene, steps = shaft(count), AGAIN
+    scene, steps = shaft(count), SETTLE
     if count == MANY:
-        one = shaft(MANY // COPIES)
+        one, steps = shaft(MANY // COPIES), AGAIN
         scene = side_by_side(one._replace(q0=np.array(start[0]), v0=np.array(start[1])))
-    else:
-        steps = SIZES[count][1]
     session = build(k, scene)
     session.go(steps - WATCHED)
     speeds, (before, _) = [], session.state()
@@ -185,40 +145,24 @@ def time_of(job, timed=timing.timed):
     return found
 
 
-def fastest(rows, engine, count, depth):
-    """The fastest row of an engine that rests within that depth, or None."""
-    found = [
-        row
-        for row in rows
-        if (row["engine"], row["bodies"], row["at_rest"]) == (engine, count, True)
-        and row["mean_depth"] <= depth
-        and ASLEEP not in row["words"]
-    ]
-    return min(found, key=lambda row: row["resting"]["median"], default=None)
+def fastest(rows, depth):
+    """{balls: {engine: its fastest row}} of what rests within a mean depth [r], awake."""
+    may = (
+        r for r in rows if r["at_rest"] and r["mean_depth"] <= depth and ASLEEP not in r["words"]
+    )
+    return accuracy.best(may, "bodies", time_at_rest)
+
+
+def time_at_rest(row):
+    """Microseconds a step."""
+    return row["resting"]["median"]
 
 
 def winners(rows):
     """The numbers of the settings that are worth running with 10,000 balls."""
-    found = (fastest(rows, engine, 1000, depth) for engine in LABELS for depth in DEPTHS)
-    chosen = {(row["engine"], row["words"]) for row in found if row}
-    return [k for k, (s, _) in enumerate(SETTINGS) if (s.engine, words(k)) in chosen]
-
-
-def best(rows):
-    """{balls: {depth: {engines: {engine: {words, us, depth}}, ratio: ours to fastest peer}}}."""
-    found = {}
-    for count, depth in itertools.product(dict.fromkeys(r["bodies"] for r in rows), DEPTHS):
-        table = {}
-        for engine in LABELS:
-            if row := fastest(rows, engine, count, depth):
-                table[engine] = dict(
-                    words=row["words"], us=row["resting"]["median"], depth=row["mean_depth"]
-                )
-        ours = [about["us"] for engine, about in table.items() if engine in contact.MODELS]
-        peers = [about["us"] for engine, about in table.items() if engine not in contact.MODELS]
-        ratio = min(ours) / min(peers) if ours and peers else None
-        found.setdefault(str(count), {})[f"{depth:g}"] = dict(engines=table, ratio=ratio)
-    return found
+    found = [row for depth in DEPTHS for row in fastest(rows, depth).get(1000, {}).values()]
+    chosen = {(row["family"], row["words"]) for row in found}
+    return [k for k, (s, _) in enumerate(PILES) if (s.engine, words(k)) in chosen]
 
 
 def compiling():

@@ -21,8 +21,7 @@ from scipy.integrate import solve_ivp
 import contact
 
 REFERENCE_DT = 0.002  # s, the step of contact.py's own default run
-SUBSTEPS = (1, 4, 16)  # at that step; coarser ones are taken whole
-COARSER = (0.004, 0.008, 0.016)  # s
+COARSER = (0.004, 0.008, 0.016)  # s, taken whole
 R = contact.RADIUS
 g = 9.81  # m/s^2, the magnitude of gravity
 FLIGHTS = 10_000  # after so many a bounce is over in the last bit, or the run

@@ -1,11 +1,9 @@
 """Timing: several fresh processes, each in an order of its own; and whole processes.
 
-One process can be lucky with its memory layout, and one order can favour whoever runs after a
-pause. So everything is timed in several fresh processes, one after the other, each of which
-shuffles the work anew; a figure is the median over the processes, its spread reaches from the
-least to the greatest. Calls are timed by the CPU time of the process: all run on one thread, so on
-a quiet machine that is the time that passes, and on a busy one it is still the work that was done.
-Whole processes are timed by the clock on the wall.
+One process can be lucky with its memory, and one order can favour whoever runs after a pause. So
+several fresh processes shuffle the work anew; a figure is the median over them, its spread reaches
+from the least to the greatest. Calls are timed by CPU time: all run on one thread, so on a quiet
+machine that is the time that passes. Whole processes are timed by the clock on the wall.
 """
 
 import gc
@@ -54,15 +52,6 @@ def in_fresh_processes(work, jobs, processes, label, rare=()) -> list:
                 found[k].append(result)
                 report(number * len(jobs) + done + 1)
     return found
-
-
-def interleave(tasks, rounds) -> dict:
-    """{key: [seconds, one a round]} of tasks {key: call that gives seconds}, in changing order."""
-    seconds = {key: [] for key in tasks}
-    for number in range(rounds):
-        for key in random.Random(number).sample(list(tasks), len(tasks)):
-            seconds[key].append(tasks[key]())
-    return seconds
 
 
 def whole_process(command, folder) -> float:

@@ -81,8 +81,8 @@ def test_whatever_knows_models_knows_this_one(model):
     assert ran["scenes"]["ran"][model] > 0, "judged in no scene"
     fast = pytest.importorskip("curriculum.fast", reason="numba is missing", exc_type=ImportError)
     assert fast.MODELS == contact.STEPPED
-    engines = pytest.importorskip("curriculum.bench.engines")
-    assert model in {setting.engine for setting in engines.OURS}
+    settings = pytest.importorskip("curriculum.bench.settings")
+    assert model in {setting.engine for setting in settings.OURS}
 
 
 @pytest.mark.parametrize("flags", COMMANDS)
