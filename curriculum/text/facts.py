@@ -1,6 +1,6 @@
 """Facts that the chapter quotes and no run of contact.py prints: each a function, no arguments.
 
-Each returns {name: number}; the text quotes one as {{fact:tower_sweeps.20}}.
+Each returns {name: number}; the text quotes one as {{fact:jump.before}}.
 """
 
 import itertools
@@ -32,9 +32,8 @@ def implicit_spring():
 def _column(masses):
     """The contacts of a column at rest, after gravity has acted for a step."""
     balls = [contact.Ball(0.0, 0.1 + 0.2 * k, 0.0, 0.0, m, 0.1) for k, m in enumerate(masses)]
-    contacts = contact.detect_contacts(balls, margin=1e-6)
     contact.accelerate(balls, DT)
-    return contacts
+    return contact.detect_contacts(balls, margin=1e-6)
 
 
 def _sweeps(masses):
@@ -51,28 +50,22 @@ def _sweeps(masses):
             return values
 
 
-def tower_sweeps():
-    """Sweeps to a millionth, by the height of a tower of equal balls."""
-    return {str(count): _sweeps([1.0] * count) for count in (2, 5, 10, 20, 40)}
-
-
-def ratio_sweeps():
-    """Sweeps to a millionth of two balls, by how much heavier the upper one is."""
-    return {str(ratio): _sweeps([1.0, ratio]) for ratio in (1, 10, 100, 1000)}
+def sweeps():
+    """Sweeps to a millionth: of towers of equal balls, and with one 1,000 times as heavy on one."""
+    columns = {"tower_20": [1.0] * 20, "tower_40": [1.0] * 40, "heavy": [1.0, 1000.0]}
+    return {name: _sweeps(masses) for name, masses in columns.items()}
 
 
 def landing():
-    """lcp's landing in the drop: gap, way, depths [mm], and speeds [m/s] upwards."""
+    """lcp's landing in the drop: gap and depths [mm], and speeds [m/s] upwards."""
     run = contact.run_model("lcp", contact.build_scene("drop"), DT, 400)
     gap = 1000.0 * (run.q[:, 1, 0] - contact.RADIUS)
     k = int((gap < 0.0).argmax())
     share = contact.Settings().baumgarte / (1000.0 * DT)
     return {
         "gap": gap[k - 1],
-        "fall": gap[k - 1] - gap[k],
         "depth": -gap[k],
         "asked": -gap[k] * share,
-        "rise": gap[k + 1] - gap[k],
         "left": -gap[k + 1],
         "next": -gap[k + 1] * share,
         "has": run.v[k + 1, 1, 0] + DT * contact.GRAVITY,
@@ -162,6 +155,6 @@ def blocks():
 
 FACTS = {
     each.__name__: each
-    for each in (implicit_spring, tower_sweeps, ratio_sweeps, landing, jump, soft_heavy)
+    for each in (implicit_spring, sweeps, landing, jump, soft_heavy)
     + (slide, order, friction, blocks)
 }

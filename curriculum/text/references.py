@@ -4,7 +4,7 @@
     {{drop-dt-0.03:quality.lcp.energy_excess|.2g}}  of another run that meta.yaml names
     {{contact.CONTACT_MARGIN}}  {{contact.Settings.iters}}    a constant, a default
     {{bench:skip.cases}}  {{stress:maps.cells}}     results of the benchmark, of the stress report
-    {{fact:tower_sweeps.20}}                        a small measured fact, curriculum/text/facts.py
+    {{fact:jump.before}}                            a small measured fact, curriculum/text/facts.py
     {{wallclock.cpu-laptop}}                        the ledger: minutes, or "not yet measured"
     {{(a.b - c.d) / e.f|.1f}}                       + - * / and brackets, with blanks around signs
     {{= 1972 | year of the paper}}                  a typed number, with the reason why
