@@ -32,14 +32,6 @@ export function drops(dt, stiffness, damping, steps) {
   return heights;
 }
 
-// How far such a ball still moves in the last rows [r]; FARTHEST if it is nowhere.
-export const FARTHEST = 1e9;
-export function stillMoves(dt, stiffness, damping, steps, rows) {
-  const late = drops(dt, stiffness, damping, steps).subarray(-rows);
-  const far = (late.reduce((a, b) => Math.max(a, b)) - late.reduce((a, b) => Math.min(a, b))) / R;
-  return Number.isFinite(far) ? Math.min(FARTHEST, far) : FARTHEST;
-}
-
 /* What sweeps over a column do, contact by contact from below: [{contact, wanted, lam, vy}],
  * where `wanted` is the change before the clamp; first what they start with. */
 export function visits(masses, lam, vy, count) {
@@ -129,14 +121,6 @@ export function tens(low, high) {
   return { domain: [10 ** low, 10 ** high], ticks, log: true };
 }
 
-// One up to the greatest value, with room for a zero; `first`: its lowest ticks.
-export function decades(most, name, ...first) {
-  const top = Math.min(1e12, 10 ** Math.ceil(Math.log10(most)));
-  const high = [3, 6, 9, 12].map((power) => [10 ** power, tenTo(power)]);
-  const ticks = [...first, ...high].filter((each) => (each[0] ?? each) <= top);
-  return { ...axis([0.1, top], name, ...ticks), log: true, zero: true };
-}
-
 // ---- handles
 
 /* A handle at (x, y) for one number: `name` in the figure's own state, or a quantity of the page.
@@ -144,17 +128,17 @@ export function decades(most, name, ...first) {
  *   at(x, y)      the number where the handle is dragged to; kept from `low` to `high`
  *   by(dx, dy)    in place of it: what a drag by so many px adds
  *   step, times   what an arrow key to the right or up adds, or multiplies by
- *   get(), set(v) in place of the state; r, box, hold, release() as in stage.js
+ *   get(), set(v) in place of the state; r, hold, release() as in stage.js
  * A number of its own that is set takes the figure's clock back to before its start. */
 export function grip(view, name, x, y, label, text, options) {
   const quantity = QUANTITIES[name];
-  const { at, by, step, times, get, r, box, hold, release } = { ...quantity, ...options };
+  const { at, by, step, times, get, r, hold, release } = { ...quantity, ...options };
   const value = get || (() => (quantity ? view.get(name) : view.own[name]));
   const put = (wanted) => putNumber(view, name, wanted, { ...quantity, ...options });
   const moved = (toX, toY) => view.from.value + by(toX - view.from.x, toY - view.from.y);
   const drag = (toX, toY) => put(by ? moved(toX, toY) : at(toX, toY));
   const nudge = (dx, dy) => put(times ? value() * times ** (dx - dy) : value() + step * (dx - dy));
-  return { name, x, y, r, box, hold, label, text, value: value(), drag, nudge, release };
+  return { name, x, y, r, hold, label, text, value: value(), drag, nudge, release };
 }
 
 function putNumber(view, name, wanted, { low, high, digits, set }) {
@@ -177,5 +161,5 @@ export function pair(view, name, [x, y], label, text, ranges, { at, px = 4, digi
 }
 
 // The same handle at another place, too: all of a ball. The hand goes on as from the first.
-export const wholly = (handle, name, x, y, r, box) =>
-  ({ ...handle, name, x, y, r, box, hold: handle.hold || [handle.x, handle.y] });
+export const wholly = (handle, name, x, y, r) =>
+  ({ ...handle, name, x, y, r, hold: handle.hold || [handle.x, handle.y] });

@@ -22,14 +22,13 @@ export class Reader {
   }
 
   #clicked(event) {
-    const touched = event.target.closest("a, [data-dock], #undock, [data-copy], [data-take]");
+    const touched = event.target.closest("a, [data-dock], #undock, [data-take]");
     if (!touched) return;
     const { take } = touched.dataset;
     if (touched.matches("a.try")) {
       event.preventDefault();
       this.#try(touched);
-    } else if (touched.matches("[data-copy]")) this.#copy(codeOf(touched.closest(".code")));
-    else if (take) {
+    } else if (take) {
       const section = touched.closest("#figure") ? this.lanes.section : this.sectionOf(touched);
       section.set({ [take]: section.home[take] });
     } else if (touched.id === "undock") this.undock();
@@ -78,7 +77,7 @@ export class Reader {
     const last = seen.findLast(({ node }) => place(node).top < line * innerHeight) || seen[0];
     if (!last) return;
     const over = (box) => box.top < innerHeight && box.bottom > 0;
-    const spread = (each) => over(place(each)) && getComputedStyle(each).display === "grid";
+    const spread = (each) => over(place(each)) && getComputedStyle(each).marginLeft[0] === "-";
     this.live.classList.toggle("back", !last.look || this.figures.some(spread));
     if (last === this.shown) return;
     this.shown = last;
@@ -172,19 +171,7 @@ export class Reader {
     }
     this.dock(span);
   }
-
-  #copy(text) {
-    const said = document.getElementById("said");
-    navigator.clipboard.writeText(text).then(
-      () => (said.textContent = "Copied."),
-      () => (said.textContent = "The browser does not let the page copy."),
-    );
-  }
 }
-
-// The code as it stands in the file.
-const codeOf = (code) =>
-  [...code.querySelectorAll("pre")].map((pre) => pre.textContent).join("\n\n");
 
 // Where what a link leads to waits behind a veil, its bar comes into sight.
 function showVeil(hash) {

@@ -18,8 +18,7 @@
  * A handle is {name, x, y, label, value, text, drag(x, y), nudge(dx, dy), release()}: what can be
  * grabbed, mostly made by `grip` in kit.js. dx and dy are those of an arrow key, ten times as
  * much with shift; release() is called when it is let go, and at Enter.
- *   r      of a ball: all of it is grabbed; without r (or box) it is a point, and gets a knob
- *   box    [x, y, width, height] in place of a circle: a block, or what is seen of a large ball
+ *   r      of a ball: all of it is grabbed; without r it is a point, and gets a knob
  *   hold   [x, y]: where drag(x, y) starts from, if that is not the middle
  * Whatever is drawn as `ball` must have a handle over it; what cannot be grabbed is drawn as
  * "seen", "body" or "ghost". The view is the stage. */
@@ -55,22 +54,18 @@ const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], Arrow
 const SVG = "http://www.w3.org/2000/svg";
 const KNOB = 8; // px, of a point; the style gives it a halo of 22 px
 
-// What a handle looks like: all of a ball, a box, or a knob on a point.
-function shapeOf({ x, y, r, box }) {
-  if (!box) return { class: r ? "handle" : "handle point", cx: x, cy: y, r: r || KNOB };
-  return { class: "handle", x: box[0], y: box[1], width: box[2], height: box[3] };
-}
-
 // The handles of a drawing: shapes above it that stay when it is drawn anew, so that focus stays.
 function showHandles(layer, handles) {
   const held = new Map([...layer.children].map((node) => [node.dataset.handle, node]));
   for (const handle of handles) {
-    const { name, label, value, text } = handle;
-    const make = () => document.createElementNS(SVG, handle.box ? "rect" : "circle");
-    const node = held.get(name) || layer.appendChild(make());
+    const { name, x, y, r, label, value, text } = handle;
+    const node = held.get(name) || layer.appendChild(document.createElementNS(SVG, "circle"));
     held.delete(name);
     const about = {
-      ...shapeOf(handle),
+      class: r ? "handle" : "handle point",
+      cx: x,
+      cy: y,
+      r: r || KNOB,
       role: "slider",
       tabindex: 0,
       "aria-label": label,

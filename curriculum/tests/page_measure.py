@@ -70,13 +70,13 @@ def measure(page):
 
 
 def pacing(tab):
-    """The longest stretch without a picture before "Honest limits", in screens, and its start."""
+    """The longest stretch without a picture before "Read the real thing", in screens, and its start."""
     width, height = tab.viewport_size.values()
     pictures = PICTURES + BESIDE * (width >= 1248)
     boxes = tab.locator(pictures).filter(visible=True).evaluate_all(BOXES)
-    end = tab.locator("#honest-limits-measured").bounding_box()["y"]
+    end = tab.locator("#read-the-real-thing").bounding_box()["y"]
     last, longest = (0, "the top"), (0, "")
-    for top, bottom, place in sorted(box for box in boxes if box[0] < end):
+    for top, bottom, place in sorted(box for box in [*boxes, [end, end, ""]] if box[0] <= end):
         longest = max(longest, ((top - last[0]) / height, last[1]))
         last = max(last, (bottom, place))
     return longest

@@ -116,15 +116,15 @@ def test_a_chapter_with_a_figure_that_does_not_exist_is_refused():
 
 # what a reader sees of a section: its numbers in sentences and fields, its chips, the address
 SEEN = """() => ({
-  number: document.querySelector(".drag[data-knob=stiffness]").textContent,
-  field: document.querySelector("#fig-stack [data-knob=stiffness] [inputmode]").value,
-  elsewhere: document.querySelector("#fig-sponge [data-knob=stiffness] [inputmode]").value,
-  chips: document.querySelector("#fig-stack .chips").textContent,
+  number: document.querySelector(".drag[data-knob=dt]").textContent,
+  field: document.querySelector("#fig-cliff [data-knob=dt] [inputmode]").value,
+  elsewhere: document.querySelector("#fig-twice [data-knob=dt] [inputmode]").value,
+  chips: document.querySelector("#fig-cliff .chips").textContent,
   asked: location.href.split(".html")[1], entries: history.length})"""
 
 
-WRITTEN = """() => location.search.slice(11) ===
-  document.querySelector(".drag[data-knob=stiffness]").textContent.replace(",", "")"""
+WRITTEN = """() => location.search.slice(4) ===
+  document.querySelector(".drag[data-knob=dt]").textContent"""
 
 
 def keys(page, node):
@@ -142,30 +142,30 @@ def drawn(page, node):
 
 def test_a_section_keeps_its_own_values_and_one_act_is_one_entry_of_the_history(visit):
     with visit() as page:
-        number = ".drag[data-knob=stiffness]"
-        page.locator("#fig-sponge").scroll_into_view_if_needed()
-        slider = page.locator("#fig-stack [data-knob=stiffness] [type=range]")
+        number = ".drag[data-knob=dt]"
+        page.locator("#fig-cliff").scroll_into_view_if_needed()
+        slider = page.locator("#fig-cliff [data-knob=dt] [type=range]")
         written, chip = (page.locator(each).first for each in (number, f"{number} + .chip"))
         for hand, node in ((drawn, slider), (keys, written), (drawn, written)):
             node.scroll_into_view_if_needed()
             page.wait_for_function("location.search === ''")  # no act is still to be written
             before = page.evaluate(SEEN)
-            assert before["number"] == "10,000" and before["chips"] == ""
-            assert re.fullmatch("(#the-bill[.\\d]*)?", before["asked"])
+            assert before["number"] == "0.03" and before["chips"] == ""
+            assert re.fullmatch("(#in-a-hurry[.\\d]*)?", before["asked"])
             hand(page, node)
             page.wait_for_function(WRITTEN)  # the address of an act is written in its pauses
             now = page.evaluate(SEEN)
             assert now["entries"] == before["entries"] + 1
-            value = now["number"].replace(",", "")
-            assert float(value) > 10000 and now["field"] == value and now["elsewhere"] == "10000"
-            assert now["chips"] == f"Stiffness k = {now['number']}, text: 10,000"
-            assert re.fullmatch(rf"\?stiffness={value}#the-bill[.\d]*", now["asked"])
+            value = now["number"]
+            assert float(value) > 0.03 and now["field"] == value and now["elsewhere"] == "0.002"
+            assert now["chips"] == f"Time step dt = {value}, text: 0.03"
+            assert re.fullmatch(rf"\?dt={value}#in-a-hurry[.\d]*", now["asked"])
             if hand is keys:
                 page.reload()
                 page.wait_for_selector("[data-ready]", state="attached")
                 assert written.inner_text() == now["number"]
             chip.click()
-            assert written.inner_text() == "10,000" and not chip.is_visible()
+            assert written.inner_text() == "0.03" and not chip.is_visible()
         page.go_back()
         page.wait_for_function(
             f"(text) => document.querySelector({number!r}).textContent === text", arg=now["number"]
@@ -217,7 +217,7 @@ def test_an_explosion_is_drawn_with_a_scale_of_heights(visit):
 
 def test_a_line_of_code_is_lit_while_it_runs(tab):
     tab.locator("#fig-sponge").scroll_into_view_if_needed()
-    sponge = tab.locator("#fig-sponge .handle[data-handle=press]")
+    sponge = tab.locator("#fig-sponge .handle[data-handle=hand]")
     sponge.press("ArrowDown")
     tab.wait_for_selector("#code-penalty .ln.lit:text('return max(0.0')", state="attached")
     for _ in range(2):
@@ -322,7 +322,7 @@ EDGES = """() => {
 def test_all_begins_at_one_edge_and_the_text_is_in_the_middle(tab, width):
     page_browser.resize(tab, width)
     lefts, off = call(tab, EDGES)
-    assert len(lefts) > 250 and len(set(lefts)) == 1
+    assert len(lefts) > 240 and len(set(lefts)) == 1
     assert abs(off) < 10  # half a scroll bar
 
 
@@ -434,9 +434,8 @@ def test_on_a_phone_a_link_opens_half_a_screen_that_closes_as_one_reads_on(visit
         page.wait_for_selector("#figure:not(.docked)", state="attached")
 
 
-@pytest.mark.parametrize(("width", "height", "most"), [(390, 844, 2.6), (1280, 900, 2.0)])
+@pytest.mark.parametrize(("width", "height", "most"), [(390, 844, 2.0), (1280, 900, 2.0)])
 def test_no_long_stretch_is_without_a_picture(visit, width, height, most):
-    """In screens; the one above two on a phone is the whole first exercise."""
     with visit(width=width, height=height) as page:
         screens, above = page_measure.pacing(page)
         assert 1.0 < screens < most, above

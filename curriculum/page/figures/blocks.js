@@ -51,9 +51,8 @@ function lane(view, model, { run, times }, k) {
     block(far, big, ["1", "100", "100²", "100³"][n]),
     label(count, view.width - 4, floor - high + 32, "end"),
   ].join("");
-  const corner = [Math.min(far + big, view.width - 14), floor - big];
-  const box = [far, floor - big, Math.min(big, view.width - far), big];
-  return { svg: clipped(0, floor - high + 14, view.width, high, svg), corner, box, floor };
+  const middle = [Math.min(far + big / 2, view.width - 14), floor - big / 2];
+  return { svg: clipped(0, floor - high + 14, view.width, high, svg), middle, r: big / 2 };
 }
 
 function draw(view) {
@@ -64,12 +63,11 @@ function draw(view) {
   const counted = `exact counts ${plural(exact.times.length, "impact")}`;
   const missed = `lcp at dt = ${plain(1000 * settings.dt)} ms counts ${whole(lcp.times.length)}`;
   const text = `100 to the power of ${n}`;
-  const at = (x, y) => Math.round((above.floor - y - LIGHT) / 16);
-  const range = { box: above.box, hold: above.corner, low: 0, high: MOST, step: 1, at };
+  const range = { r: above.r, low: 0, high: MOST, step: 1, by: (dx, dy) => Math.round(-dy / 16) };
   return {
     svg: above.svg + lane(view, "lcp", lcp, 1).svg,
     words: `Mass 1 and ${whole(100 ** n)}: ${counted}, ${missed}.`,
-    handles: [grip(view, "n", ...above.corner, "the heavy block’s mass", text, range)],
+    handles: [grip(view, "n", ...above.middle, "the heavy block’s mass", text, range)],
   };
 }
 

@@ -1,104 +1,106 @@
-/* The corner, four times: gap to the right, force upwards, what a model allows as a line, and the
+/* The corner, three times: gap to the right, force upwards, what a model allows as a line, and the
  * state that runs along it while the reader lifts the ball or presses it into the table. */
-import { arrow, axis, ball, circle, line, number, path, table } from "../draw.js";
-import { pushOfTable, runModel, soften } from "../engine.js";
-import { beside, forceLength, G, grip, kept, knobs, lens, R, scene } from "../kit.js";
-import { softKnobs } from "../kit.js";
+import { arrow, axis, ball, el, line, number, path, table, within } from "../draw.js";
+import { runModel, soften } from "../engine.js";
+import { beside, forceLength, G, grip, kept, lens, R, scene, softKnobs } from "../kit.js";
 
-const PX = 70; // a radius, and how far the hand goes down until it presses hardest
+const [PX, GROUND] = [70, 74]; // px: a radius, and what the hand goes down; the table
 // What a picture shows: gaps from low to high [r], the hardest press [m g], ticks, and the lens.
 const WIDE = { low: -0.4, high: 1, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
-const NEAR = { low: -0.03, high: 0.06, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12] };
+const NEAR = {
+  low: -0.03, high: 0.06, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12], lens: 10,
+};
 
 /* A figure of the corner with a model's law(view): {gap(load), curve, most}, the gap [r] under a
  * load [m g], the line that it allows as points, and the hardest press that fits into the picture.
- * extra(view, load): what else is seen, {under(chart), deepest [r], words}. */
-function corner(model, law, { extra = () => ({}), hand = 0.5, shown = WIDE, ...about }) {
-  const draw = (view) => drawn(view, { model, shown, ...law(view) }, extra);
-  return { height: 300, start: () => ({ hand }), draw, ...about };
+ * With a clock the ball falls once it is let go: free(gap) is [gap, load] then; below(x, top) is
+ * what stands under it, and `words` go on about it. */
+function corner(model, law, { hand = 0.5, shown = WIDE, ...about }) {
+  const draw = (view) => drawn(view, { model, shown, most: shown.most, ...law(view) });
+  return { height: 300, start: () => ({ hand, time: null }), draw, ...about };
 }
 
-function drawn(view, { model, shown, gap: gapOf, curve, most = shown.most }, extra) {
-  const { hand } = view.own; // 1: lifted as high as the picture shows; -1: pressed as hard
-  const load = Math.max(0, -hand) * Math.min(shown.most, most);
-  const gap = load > 0 ? gapOf(load) : hand * shown.high;
-  const { under = () => "", deepest = null, words = "" } = extra(view, load);
+function drawn(view, { model, shown, gap: gapOf, curve, most, free, below, words = "" }) {
+  const { hand, time } = view.own; // 1: lifted as high as the picture shows; -1: pressed as hard
+  const pressed = Math.max(0, -hand) * Math.min(shown.most, most); // m g
+  const start = pressed > 0 ? gapOf(pressed) : hand * shown.high;
+  const held = time === null;
+  const [gap, load] = held ? [start, pressed] : free(start);
   const axes = ({ box, sx, sy }) => [[box.right, sy(0)], [sx(0), sy(0)], [sx(0), box.top]];
+  const [x, y] = [within(shown.low, gap, shown.high), Math.min(1.05 * shown.most, load)];
   const chart = {
     x: axis([shown.low, shown.high], "gap / r", ...shown.xs),
     y: axis([-0.035 * shown.most, 1.07 * shown.most], "force / m g", ...shown.ys),
-    points: [{ model, x: gap, y: Math.min(1.05 * shown.most, load), size: 7 }],
+    points: [{ model, x, y, size: 7 }],
     lines: [{ model, xs: curve.map(([x]) => x), ys: curve.map(([, y]) => y), kind: "law plainly" }],
-    under: (each) => path(axes(each), "allowed") + under(each),
+    under: (each) => path(axes(each), "allowed"),
   };
   const small = Math.min(1, view.width / 430);
-  const [floor, r] = [view.height - 74, PX * small]; // px
-  const centre = floor - r - gap * r;
+  const [floor, r] = [view.height - GROUND, PX * small]; // px
+  const centre = Math.min(floor - r - gap * r, view.height - 12); // none is lost
   const picture = (left) => {
-    const [x, y] = [left / 2, centre];
-    const pull = Math.min(forceLength(load, 14), y - r - 2);
+    const middle = left / 2;
+    const pull = Math.min(forceLength(held ? load : 1, 14), centre - r - 2);
     const push = forceLength(load, 100 / Math.sqrt(shown.most));
     return [
-      table(0, floor, left, 74),
-      ball(model, x, y, r),
-      deepest === null ? "" : ball(model, x, floor - r - deepest * r, r, "ghost"),
-      arrow(`push m-${model}`, x + Math.min(r, left / 2 - 26) + 12, floor, 0, -push),
-      hand > 0 ? line(x, y, x, 0, "hand") : arrow("weight", x, y - r - pull, 0, pull),
-      shown === NEAR ? lens(model, 40, 42, r, -gap, 38, 10) : "",
+      table(0, floor, left, GROUND),
+      below ? below(middle, Math.max(centre + r, floor)) : "",
+      ball(model, middle, centre, r),
+      arrow(`push m-${model}`, middle + Math.min(r, middle - 26) + 12, floor, 0, -push),
+      held && hand > 0
+        ? line(middle, centre, middle, 0, "hand")
+        : arrow("weight", middle, centre - r - pull, 0, pull),
+      lens(model, 40, 42, r, -gap, 38, shown.lens),
     ].join("");
   };
   const { svg, middle } = beside(view, chart, picture);
-  const holds = load > 0 ? `Pressed with ${number(load, 2)} m g` : "Held by the hand";
+  const hands = pressed > 0 ? `Pressed with ${number(pressed, 2)} m g` : "Held by the hand";
   const text = `gap ${number(gap, 2)} r, force ${number(load, 2)} m g`;
-  const range = { r, low: -1, high: 1, step: 0.05, by: (dx, dy) => -dy / r };
+  const by = (dx, dy) => -dy / r;
+  const range = { r, low: -1, high: 1, step: 0.05, by, release: free && view.play };
   return {
     svg,
-    words: `${holds}: ${text}.${words}`,
+    words: `${held ? hands : "Let go"}: ${text}.${words}`,
     handles: [grip(view, "hand", middle, centre, "the ball: lift it or press it", text, range)],
+    lit: model === "penalty" && gap < 0 ? ["spring"] : [],
   };
 }
 
 const wall = { gap: () => 0, curve: [[WIDE.high, 0], [0, 0], [0, 1.07 * WIDE.most]] };
 
-function ramp(view) {
-  const steep = (view.get("stiffness") * R) / G; // weights a radius
-  const top = 1.07 * WIDE.most;
-  const curve = [[WIDE.high, 0], [0, 0], [-top / steep, top]];
-  return { gap: (load) => -load / steep, curve, most: -WIDE.low * steep };
+// ---- penalty: a ramp, and the ball once it is let go
+
+const [DT, SECONDS] = [0.0005, 1.2];
+const fall = kept((gap, stiffness, damping) =>
+  runModel("penalty", scene([(1 + gap) * R]), { dt: DT, stiffness, damping }, SECONDS / DT),
+);
+
+// A coil from (x, top) down to (x, bottom), the thicker the stiffer.
+function coil(x, top, bottom, stiffness) {
+  const turn = (_, k) => [x + (k % 2 ? -16 : 16), top + ((k + 0.5) * (bottom - top)) / 12];
+  const wire = path([[x, top], ...Array.from({ length: 12 }, turn), [x, bottom]], "coil");
+  return el("g", { "stroke-width": Math.log10(stiffness) - 0.5 }, wire);
 }
 
-/* lcp: the ball comes from FROM radii above, drawn down by the load, and lcp looks once a step. A
- * load of L weights is a gravity of L g: our own gravity where the clock runs sqrt(L) as fast. */
-const FROM = 0.8;
-const arrival = kept((load, settings) => {
-  const one = scene([(1 + FROM) * R]);
-  const dt = settings.dt * Math.sqrt(load);
-  const run = runModel("lcp", one, { ...settings, dt, restitution: 0 }, 400);
-  const looks = Array.from(run.y, (y, row) => {
-    const force = row ? (load * pushOfTable(run, one, row)) / G : 0;
-    return { gap: y / R - 1, force };
-  });
-  const stays = ({ gap }, row) => row > 1 && Math.abs(gap - looks[row - 1].gap) < 1e-6;
-  const still = looks.findIndex((look, row) => look.force > 0 && stays(look, row));
-  return still < 0 ? looks : looks.slice(0, still + 1);
-});
-
-function looksOf(view, load) {
-  if (load < 1) return {};
-  const looks = arrival(load, knobs(view));
-  const deepest = Math.min(0, ...looks.map(({ gap }) => gap));
-  const ring = ({ sx, sy }, { gap, force }) =>
-    circle(sx(gap), sy(Math.min(1.05 * WIDE.most, force)), 4, "look m-lcp");
-  const deep = `the step before the first push ended ${number(-deepest, 2)} r deep`;
+function ramp({ own, get, height }) {
+  const [stiffness, damping] = [get("stiffness"), get("damping")];
+  const [steep, top] = [(stiffness * R) / G, 1.07 * WIDE.most]; // weights a radius, weights
   return {
-    deepest,
-    under: (chart) => looks.map((look) => (look.gap < WIDE.low ? "" : ring(chart, look))).join(""),
-    words: ` It came in ${looks.length} steps; ${deep}.`,
+    gap: (load) => -load / steep,
+    curve: [[WIDE.high, 0], [0, 0], [-top / steep, top]],
+    most: -WIDE.low * steep,
+    free(start) {
+      const gap = fall(start, stiffness, damping).y[Math.round(own.time / DT)] / R - 1;
+      return [gap, Math.max(0, -gap * steep)];
+    },
+    below: (x, under) => coil(x, under, height - 4, stiffness),
+    words: ` At rest it is m g / k = ${number(1 / steep)} r deep.`,
   };
 }
 
-// soft: at rest the solver asks for no velocity where lam = target / R; how deep that is for a load
-// is found by halving.
+// ---- soft: at rest the solver asks for no velocity where lam = target / R; how deep that is for a
+// load is found by halving
+
 function rounded(view) {
   const [settings, one] = [softKnobs(view), scene([R])];
   const load = (deep) => {
@@ -125,17 +127,13 @@ export const figures = {
     caption:
       "Lift the ball and the gap grows with no force; press it and the force grows with no gap.",
   }),
-  "corner-penalty": corner("penalty", ramp, {
-    title: "penalty’s ramp beside the corner",
-    caption: "penalty has a ramp beside the wall: the ball must get in before the table pushes.",
-    hand: -0.5, knobs: ["stiffness"],
-  }),
-  "corner-lcp": corner("lcp", () => wall, {
-    title: "lcp meets the corner once a step",
+  sponge: corner("penalty", ramp, {
+    title: "A ball on a spring",
     caption:
-      "Press, and the ball comes down step by step: each ring is one look, the last of the fall " +
-      "is past the wall, and the next looks bring it back.",
-    extra: looksOf, hand: -0.6, knobs: ["dt"],
+      "penalty has a ramp beside the wall: press the ball, and it must get in before the table " +
+      "pushes; let go, and it rests where the spring pushes with its weight.",
+    hand: -0.5, knobs: ["stiffness"],
+    clock: () => ({ end: SECONDS, rate: 0.25, name: "Let go" }),
   }),
   "corner-soft": corner("soft", rounded, {
     title: "soft rounds the corner off",
