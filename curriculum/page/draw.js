@@ -3,7 +3,6 @@
  * draws in a reader's browser and, when the page is built, the still pictures that need no script.
  * A model is told apart three ways: colour and dash (CSS class m-NAME), and marker (here). */
 
-const ZERO_DECADES = 1; // room that a zero gets below the smallest decade of a log axis
 const RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 const NOISE = 5e-13; // contact.py prints twelve decimals; less is rounding
 
@@ -25,7 +24,8 @@ const typeset = (text, italic, low, up) =>
     .replace(/\bv_n\b/g, `${italic("v")}${low}n${up}`)
     .replace(/\bm g\b/g, italic("mg"));
 const slanted = (text) => `<tspan font-style="italic">${text}</tspan>`;
-export const inSentence = (text) => typeset(text, (a) => `<i>${a}</i>`, "<sub>", "</sub>");
+export const inSentence = (text) =>
+  typeset(text.replace(/ × /g, "\u00a0×\u00a0"), (a) => `<i>${a}</i>`, "<sub>", "</sub>");
 
 export const label = (text, x, y, anchor = "start", kind = "tick strong") => {
   const low = '<tspan dy="4" font-size="75%">';
@@ -101,9 +101,8 @@ export const mark = (model, x, y, r = 4.5) =>
 // ---- scales
 
 // From the domain of an axis to px; `back` leads from px to the domain.
-function scaleOf({ domain: [low, high], log, zero }, from, to) {
-  const first = log ? Math.log10(low) - (zero ? ZERO_DECADES : 0) : low;
-  const last = log ? Math.log10(high) : high;
+function scaleOf({ domain, log }, from, to) {
+  const [first, last] = log ? domain.map(Math.log10) : domain;
   const straight = (v) => (log ? (v > 0 ? Math.max(first, Math.log10(v)) : first) : v);
   const scale = (v) => from + ((straight(v) - first) / (last - first)) * (to - from);
   scale.back = (px) => {
@@ -183,7 +182,7 @@ function ruleOf({ x, y, text = "", kind = "", side = "start", row = 0 }, { sx, s
 }
 
 /* A plot within the rectangle [left, top, width, height] of the drawing: {svg, sx, sy, box}.
- * x and y: {domain: [low, high], log, zero, ticks: [[value, text]...], label};
+ * x and y: {domain: [low, high], log, ticks: [[value, text]...], label};
  * lines: {model, xs, ys, markers, from, to, kind}; rules: {x or y, text, kind, side, row};
  * points: {model, x, y, size}; margin: px left of it; under(chart): what is drawn beneath. */
 export function plot([edge, above, width, height], options) {

@@ -1,11 +1,10 @@
 /* Glances: where no live figure stands beside the text, a passage begins with a picture of what it
  * would show there, and a press calls it up. */
 import { figures } from "./figures.js";
-import { stillView } from "./stage.js";
+import { LEAST, stillView } from "./stage.js";
 
 const HEIGHT = 300; // px of a picture, as the style has it
 const NEAR = "600px"; // beyond the window: there pictures are drawn
-const LEAST = 358; // px: on a smaller screen one is drawn so wide, and made smaller
 
 // A fifth of the way through what a passage shows in the live figure.
 export function seenLater(figure, view, changes) {

@@ -76,15 +76,11 @@ export const depthsOf = (heights) =>
 
 // ---- pictures
 
-// A chart as large as the drawing, or from `left` on.
-const charted = (view, options, left = 0) =>
-  plot([left, 0, view.width - left, view.height], options);
-
 /* A picture at the left and a chart at the right: the chart, with the svg of both and the picture's
  * `middle`. picture(width, chart) is drawn within its part, a `share` of the width. */
 export function beside(view, options, picture, share = 0.4) {
   const left = Math.round(Math.min(share * view.width, 300));
-  const chart = charted(view, options, left + 16);
+  const chart = plot([left + 16, 0, view.width - left - 16, view.height], options);
   const drawn = clipped(0, 0, left, view.height, picture(left, chart));
   return { ...chart, svg: drawn + chart.svg, middle: left / 2 };
 }

@@ -26,7 +26,7 @@ import { escape, inSentence, plain } from "./draw.js";
 import { fitting, fromSlider, QUANTITIES, shown, sliderRange, toSlider } from "./store.js";
 
 const NARROW = 480; // px: from this width on a drawing is wide
-const LEAST = 358; // px: on a smaller screen than a phone's it is drawn so wide, and made smaller
+export const LEAST = 358; // px: on a screen smaller than a phone's it is drawn so, and made smaller
 const NEAR = 600; // px beyond the window in which figures are drawn
 
 export const heightOf = (figure, width) => (width < NARROW && figure.narrow) || figure.height;

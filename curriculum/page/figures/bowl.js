@@ -79,7 +79,8 @@ function draw(view) {
     const name = heavy > 1 ? label(`${heavy} kg`, x, at[1] - PX - 8, "middle") : "";
     return table(0, floor, left, GROUND) + balls.join("") + name;
   };
-  const { svg, sx, sy, middle } = beside(view, chartOf({ seen, rolled, contour, most, end }), picture, 0.3);
+  const chart = chartOf({ seen, rolled, contour, most, end });
+  const { svg, sx, sy, middle } = beside(view, chart, picture, 0.3);
   const hold = (y, k) => {
     const range = { r: PX, low: SLOW, high: FAST, step: 0.1, by: (dx, dy) => -dy / UNIT };
     const name = `the ${["lower", "upper"][k]} ball’s speed before the sweeps`;

@@ -6,7 +6,8 @@ import { drops, G, grip, kept, R, scene, START } from "../kit.js";
 
 const [LOW, HIGH] = [0.0005, 0.064]; // s
 const STEPS = 2000; // as many as contact.py takes
-const LEFT = [[0, "0"], 0.001, 1, 1000, [1e6, "10⁶"]]; // ticks
+const NONE = 1e-6; // r: less is drawn as zero
+const LEFT = [[NONE, "0"], 0.001, 1, 1000, [1e6, "10⁶"]]; // ticks
 
 const FARTHEST = 1e9; // r, of a ball that is nowhere
 
@@ -40,13 +41,13 @@ function draw(view) {
   const ticks = [1, 2, 4, 8, 16].map((times) => [times * low, plain(1000 * times * low)]);
   const chart = plot([0, 0, view.width, view.height], {
     x: { ...axis([low, 16 * low], "time step dt (ms)", ...ticks), log: true },
-    y: { ...axis([1e-5, FARTHEST], "still moving at the end / r", ...LEFT), log: true, zero: true },
+    y: { ...axis([NONE, FARTHEST], "still moving at the end / r", ...LEFT), log: true },
     lines: [{ model: "penalty", ...curve(low, k, c), kind: "plainly" }],
     rules: view.width < 480 ? [critical] : [critical, free],
     points: [{ model: "penalty", x: shown, y: far, size: 8 }],
   });
   const gains = gained > 1e-9 ? `${number(gained, 4)} times its energy` : "no energy";
-  const ends = explodes ? "explodes" : far < 1e-6 ? "comes to rest" : "never rests";
+  const ends = explodes ? "explodes" : far < NONE ? "comes to rest" : "never rests";
   const sinks = `It sinks ${number(G / k / R, 2)} r where it rests`;
   const text = `dt = ${number(1000 * dt)} ms: the ball gains ${gains} and ${ends}`;
   const range = { times: 1.03, at: chart.sx.back };

@@ -10,6 +10,7 @@ const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // 
 const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s, s: what is judged comes after it
 const [GROUND, TOP, TIMES] = [24, 190, 60]; // px of table, px of the picture; of the lens
 const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be set
+const APART = 1; // m: what has flown so far is seen there before it is played
 const NAMES = ["the left finger", "the cup", "the right finger"];
 const PLACES = { x0: AT[0], x1: AT[1], x2: AT[2] };
 const start = () => ({ ...PLACES, time: null, tries: [], late: false });
@@ -29,8 +30,10 @@ const squeezed = kept((dt, stiffness, late, ...x) => {
   const deepest = Math.max(...last);
   const trembling = deepest - Math.min(...last);
   const held = stateAt(run, steps).x.every((each) => Math.abs(each) < 0.3);
+  const gone = run.x.findIndex((each) => Math.abs(each) > APART); // ball by ball
+  const until = gone < 0 ? SECONDS : dt * Math.floor(gone / 3);
   const does = held ? (trembling < 1e-5 ? "holds still" : "trembles") : "is gone";
-  return { run, depths, deepest, trembling, does };
+  return { run, depths, deepest, trembling, does, until };
 });
 
 // Where finger and cup meet, enlarged: how far they overlap.
@@ -42,9 +45,9 @@ function lens(x, y, size, r, depth) {
 }
 
 // Fingers and cup over the table; from further away, with a scale, where they have flown apart.
-function picture({ own, width }, { run, depths }) {
-  const late = LATE + (((own.time ?? SECONDS) - LATE) % (SECONDS - LATE)); // over and over
-  const time = own.time <= SECONDS ? (own.time ?? SECONDS) : late;
+function picture({ own, width }, { run, depths, until }) {
+  const late = LATE + ((own.time - LATE) % (SECONDS - LATE)); // over and over
+  const time = own.time <= SECONDS ? (own.time ?? until) : late;
   const row = Math.min(run.steps, Math.round(time / run.dt));
   const seen = (all) => Array.from(all.subarray(0, 3 * row + 3), (each) => (each < 1e9 ? each : 0));
   const [xs, ys] = [seen(run.x), seen(run.y)]; // until now

@@ -127,7 +127,8 @@ export const figure = {
   caption:
     "Each lens shows how deep a ball lies in what is below it, and the bracket what the law " +
     "says: drag a ball up to make it heavier, and spend the sweeps of a step on substeps.",
-  height: 360,
+  height: 480,
+  narrow: 360,
   knobs: ["iters", "baumgarte", "dt", "warm"],
   start: () => ({ masses: Array(MOST).fill(1), count: FIRST, parts: 1 }),
   buttons: [

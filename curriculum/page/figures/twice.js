@@ -1,6 +1,6 @@
 /* leapfrog beside lcp: one step in its parts, a ball that slides off a held one, and how the error
  * of that falls with the step. */
-import { arrow, axis, ball, label, number, path, plot, shift, table } from "../draw.js";
+import { arrow, axis, ball, label, line, number, path, plot, shift, table } from "../draw.js";
 import { runModel, STEP } from "../engine.js";
 import { grip, kept, knobs, R, scene, tens, wholly } from "../kit.js";
 
@@ -17,6 +17,7 @@ const [STRIP, GROUND, BALL] = [140, 66, 13];
 const FLOOR = STRIP - GROUND;
 const PX = 9; // what 1 m/s does in a step; gaps are counted in it
 const [DOWN, UP] = [-5, 1]; // m/s
+const ASIDE = 28; // px from the tip of the first arrow to what one drags it by
 
 // Gap and speed [m/s] before a step, and after each of its parts.
 const stagesOf = kept((model, gap, v, settings) => {
@@ -123,7 +124,7 @@ function handlesOf(view, { dt }, held, { sx, sy, now }) {
   return [
     top,
     wholly(top, "other", x, STRIP + y - BALL, BALL),
-    grip(view, "v", x, y - v * PX, ...fast),
+    grip(view, "v", x + ASIDE, y - v * PX, ...fast),
     grip(view, "lean", ...held.at, "the sliding ball: where it starts", angle, roll),
     grip(view, "dt", sx(dt), sy(now[1]), "the time step", `${number(1000 * dt)} ms`, turn),
   ];
@@ -138,6 +139,7 @@ function draw(view) {
   const held = slide(view, { ...sliding, restitution: 0 }, wide, top);
   const chart = order(view, { ...sliding, restitution: 0 }, wide, top);
   const strips = all.map((stages, k) => shift(0, k * STRIP, strip(view, MODELS[k], stages)));
+  const [x, tip] = [columnOf(view, 0), FLOOR - (gap + v) * PX];
   const inRadii = (gap) => `${number((gap * settings.dt) / R, 2)} r`;
   const ends = all.map((stages, k) => {
     const { gap: end, v: speed } = stages[stages.length - 1];
@@ -145,7 +147,7 @@ function draw(view) {
   });
   const [lcp, leapfrog] = chart.now.map((each) => `${number(each, 2)} r`);
   return {
-    svg: strips.join("") + held.svg + chart.svg,
+    svg: strips.join("") + line(x + 8, tip, x + ASIDE, tip, "rule") + held.svg + chart.svg,
     words:
       `From a gap of ${inRadii(gap)} with ${number(v, 2)} m/s ${ends.join(", ")}. Where a ball ` +
       `slides, steps of ${number(1000 * settings.dt)} ms leave ${lcp} with lcp and ${leapfrog} ` +
