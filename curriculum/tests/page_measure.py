@@ -70,7 +70,7 @@ def measure(page):
 
 
 def pacing(tab):
-    """The longest stretch without a picture before "Read the real thing", in screens, and its start."""
+    """The longest stretch without a picture before "Read the real thing": screens, its start."""
     width, height = tab.viewport_size.values()
     pictures = PICTURES + BESIDE * (width >= 1248)
     boxes = tab.locator(pictures).filter(visible=True).evaluate_all(BOXES)
