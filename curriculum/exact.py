@@ -80,7 +80,7 @@ def solve_lcp(W, b):
     lam, active = np.zeros(len(b)), np.ones(len(b), bool)
     for _ in range(50 + 10 * len(b)):
         trial, on = np.zeros(len(b)), np.flatnonzero(active)
-        solve, idle = inverse(W[np.ix_(on, on)])
+        solve, idle = inverse(W[on[:, None], on])
         trial[on] = idle @ -b[on]
         endless = np.abs(trial * unit).max() > 1e3 * NOISE * size
         if not endless:
@@ -150,8 +150,7 @@ class Contacts:
 
     def delassus(self):
         """W = J M^-1 J' (K, K): column k is what a unit push at contact k adds to all v_n."""
-        J = np.concatenate(self.n[:, None] * self.sign)
-        return J.T * np.tile(self.w, 2) @ J
+        return self.sign.T * self.w @ self.sign * (self.n.T @ self.n)
 
     @cached_property
     def inverse(self):
@@ -244,7 +243,7 @@ class Motion:
                 break
             still[still] = stays
         touching = touching[still]
-        self.rests = np.isin(np.arange(len(self.gap)), touching)
+        self.rests = np.bincount(touching, minlength=len(self.gap)) > 0
         if (np.abs(self.found[touching]) > self.bits).any():  # close what counts as closed
             self.q = resting.match(self.q, resting.along(self.q) - self.found[touching])
         pushes = lam * resting.share > NOISE * self.g
@@ -260,7 +259,7 @@ class Motion:
     # --- region: slide-series ---
     def slide(self, held):
         """While the held contacts push: q as a series Q (ORDER + 1, 2, N) in time, their forces
-        lam (ORDER - 1, K), and how long [s] both last.
+        lam (ORDER + 1, K), the last two 0, and how long [s] both last.
 
         Q_k, n_k, lam_k are the factors of t^k. While a contact is closed its normal is
         (q_a - q_b) / reach, so n_k = (Q_k,a - Q_k,b) / reach. Newton's law at order k is
@@ -276,18 +275,22 @@ class Motion:
         self.q = held.match(self.q, held.along(self.q) - held.locate(self.q))
         held.locate(self.q)
         self.v = held.match(self.v, 0.0)
-        Q, lam = np.zeros((ORDER + 1, *self.q.shape)), np.zeros((ORDER - 1, len(held.reach)))
+        Q, lam = np.zeros((ORDER + 1, *self.q.shape)), np.zeros((ORDER + 1, len(held.reach)))
         n = np.zeros((ORDER + 1, *held.n.shape))
         Q[0], Q[1], n[0] = self.q, self.v, held.n
+        turns, pushes = held.sign / held.reach * ~held.floor, held.sign.T * held.w
+        a = np.array((0.0, -self.g))[:, None] * (held.w > 0.0)
+        W, solve, half = held.delassus(), -held.inverse, 0.5 * held.reach
         for k in range(ORDER - 1):
-            n[k + 1] = Q[k + 1] @ held.sign / held.reach * ~held.floor
-            a = (lam[:k, None] * n[k:0:-1]).sum(0) @ held.sign.T * held.w
-            a[1] -= self.g * (held.w > 0.0) * (k == 0)
+            n[k + 1] = Q[k + 1] @ turns
+            if k > 0:
+                a = np.einsum("mk,mxk->xk", lam[:k], n[k:0:-1]) @ pushes
             factor = (k + 1) * (k + 2)
-            turn = 0.5 * factor * held.reach * (n[1 : k + 2] * n[k + 1 : 0 : -1]).sum((0, 1))
-            for _ in range(2):  # once more, for the last digits
-                lam[k] -= held.inverse @ (held.along(a + held.push(lam[k])) + turn)
-            Q[k + 2] = (a + held.push(lam[k])) / factor
+            turn = factor * half * np.einsum("mxk,mxk->k", n[1 : k + 2], n[k + 1 : 0 : -1])
+            misses = held.along(a) + turn
+            force = solve @ misses
+            force += solve @ (W @ force + misses)  # once more, for the last digits
+            lam[k], Q[k + 2] = force, (a + held.n * force @ pushes) / factor
         lam[0] = np.maximum(lam[0], 0.0) + NOISE * self.g / held.share
         size = np.abs(Q[-2:] / self.radius).max((1, 2))  # the last two terms stay below 1e-16 r
         return Q, lam, min((1e-16 / size) ** (1.0 / np.array((ORDER - 1, ORDER))))
@@ -309,7 +312,7 @@ class Motion:
         part, gap, rests = self.all.pick(near), np.maximum(self.gap[near], 0.0), self.rests[near]
         P = gap_series(part, gap, Q)
         wider = np.where(rests, 0.5 * self.small[near], np.minimum(4.0 * self.bits, 1e-9 * gap))
-        falls = np.hstack((P, np.pad(lam, ((0, len(P) - len(lam)), (0, 0)))))
+        falls = np.hstack((P, lam))
         falls[0, : len(near)] += np.where(part.floor, wider, wider * (wider + 2.0 * part.reach))
         span, first = first_fall(falls, horizon)
         value = evaluate(P, span)
@@ -345,16 +348,15 @@ def first_fall(P, horizon):
     and which column; horizon and K if none does.
 
     Newton's method with the least curvature on the way to `end`, so that no step passes a root.
-    The end is not the horizon at once but twice as far each time: a short way curves less.
+    It is the horizon at first, then nearer, and twice as far each time: a short way curves less.
     """
-    first, column, power = horizon, P.shape[1], np.arange(len(P))[:, None]
-    slopes = power[1:] * P[1:]
-    bends, live, t = 0.5 * power[1:-1] * slopes[1:], np.arange(column), np.zeros(column)
+    first, column, k = horizon, P.shape[1], np.arange(len(P))[:, None]
+    slopes = k[1:] * P[1:]
+    bends, live = 0.5 * k[1:-1] * slopes[1:], np.arange(column)
+    t, end = np.zeros(column), np.full(column, horizon)
     for _ in range(200):
-        end = np.minimum(np.maximum(2.0 * t, horizon / 16.0), horizon)
-        bend, powers = least(bends[:, live], t, end), t**power
-        value = np.maximum((P[:, live] * powers).sum(0), 0.0)
-        slope = (slopes[:, live] * powers[:-1]).sum(0)
+        bend, power = least(bends, t, end), np.vander(t, len(P), True).T
+        value, slope = np.maximum((P * power).sum(0), 0.0), (slopes * power[:-1]).sum(0)
         root = np.sqrt(slope * slope - 4.0 * value * bend)  # NaN: it never falls
         step = np.where(slope < 0.0, 2.0 * value / (root - slope), (slope + root) / (-2.0 * bend))
         step = np.where((step >= 0.0) & ((slope < 0.0) | (bend < 0.0)), step, math.inf)
@@ -366,17 +368,19 @@ def first_fall(P, horizon):
         live, t = live[on], np.where(far, end, t + step)[on]
         if not len(live):
             return first, column
-    k = t.argmin()  # next to no curvature: it is as good as there
-    return (t[k], live[k]) if t[k] <= first else (first, column)
+        P, slopes, bends = P[:, on], slopes[:, on], bends[:, on]
+        end = np.minimum(np.maximum(2.0 * t, horizon / 8.0), horizon)
+    near = t.argmin()  # next to no curvature: it is as good as there
+    return (t[near], live[near]) if t[near] <= first else (first, column)
 
 
 def least(P, t, end):
     """No sum P[k] s^k is less for s in [t, end]; exact for parabolas, whose end may be inf."""
     c, b, a = P[:3]
     vertex = np.where(a > 0.0, np.minimum(np.maximum(-0.5 * b / a, t), end), t)
-    values = [c + s * (b + s * a) for s in (t, vertex, end)]
-    rest = [np.abs(row) * end**k for k, row in enumerate(P[3:], 3)]
-    return np.fmin(np.fmin(*values[:2]), values[2]) - sum(rest)
+    s = np.array((t, vertex, end))
+    rest = np.abs(P[3:]) * np.vander(end, len(P), True).T[3:]
+    return np.fmin.reduce(c + s * (b + s * a)) - rest.sum(0)
 
 
 class Cycle:
@@ -410,9 +414,11 @@ class Cycle:
 
 
 def sample(Q, times):
-    """q, v (2, S, 2, N) at times (S,) of the series Q; or (2, 2, N) at one time."""
-    times, k = np.asarray(times)[..., None, None], np.arange(1.0, len(Q))[:, None, None]
-    return np.array((evaluate(Q, times), evaluate(k * Q[1:], times)))
+    """q, v (2, S, 2, N) at times (S,) of the series Q."""
+    both = np.zeros((len(Q), 2, 1, *Q.shape[1:]))
+    both[:, 0, 0] = Q
+    both[:-1, 1, 0] = np.arange(1.0, len(Q))[:, None, None] * Q[1:]
+    return evaluate(both, times[:, None, None])
 
 
 def refuse(scene):
@@ -445,18 +451,19 @@ def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MOST_IMP
         if cycle.repeats(motion):
             out[:, done:] = cycle.read(times[done:] - now)
             return out
-        Q, lam, horizon = np.array((motion.q, motion.v, 0.5 * a)), np.empty((0, 0)), math.inf
+        Q, lam, horizon = np.array((motion.q, motion.v, 0.5 * a)), np.empty((5, 0)), math.inf
         if held.across(motion.v).any() or held.across(a).any():
             Q, lam, horizon = motion.slide(held)
         span = motion.next_event(Q, which, lam, horizon)
         last = int(np.searchsorted(times, now + span))
-        out[:, done:last] = sample(Q, times[done:last] - now)
+        states = sample(Q, np.append(times[done:last] - now, span))
+        out[:, done:last] = states[:, :-1]
         cycle.flights.append((span, Q))
         done = last
         progress(done)
         if done == len(times):
             return out
-        (motion.q, motion.v), now = sample(Q, span), now + span
+        (motion.q, motion.v), now = states[:, -1], now + span
     raise RuntimeError(
         f"exact: more than {most:,} events by {now:.6g} s, balls rattle without end."
         " Take a shorter run, another restitution, or closer masses"
