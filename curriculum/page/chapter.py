@@ -5,7 +5,8 @@ Beside plain Markdown the chapter may hold
 - references to numbers in double braces, filled before (curriculum/text/references.py);
 - formulas between dollar signs: become MathML;
 - slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
-  <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->. Other comments vanish;
+  <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->, and <!-- puzzle -->, behind
+  which the rest of a section is its answer. Other comments vanish;
 - <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
   from there on, by the store's quantities and `models`, `from`, `to`;
   <!-- show: none --> lets it step back, and may set quantities, too: <!-- show: none&dt=0.014 -->.
@@ -37,7 +38,8 @@ from curriculum.page import fonts
 from curriculum.text.references import INCLUDE
 
 CHAPTER = "curriculum/prose/chapter.md"
-SLOT = re.compile(r"<!--\s*(figure|exercise|bench|stress|wallclock|show)(?:\s*:\s*(\S+))?\s*-->")
+KINDS = "figure|exercise|bench|stress|wallclock|puzzle|show"
+SLOT = re.compile(rf"<!--\s*({KINDS})(?:\s*:\s*(\S+))?\s*-->")
 UNIT = re.compile(r"(\d|^) (?=(?:r|s|m|mm|kg|J|N|N/m|m/s)\b)")  # the blank between number and unit
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 SETTINGS = {  # beside the quantities: what each may be
@@ -207,7 +209,7 @@ def assemble(parts, macros, bets):
         head = getattr(macros, kind)(*values)
         inner = [getattr(macros, kind)(*values) for kind, values in rest]
         for at, part in enumerate(rest, 1):
-            if "puzzle" in part[1]:  # what follows it is its answer
+            if part[0] == "puzzle":  # what follows it is its answer
                 inner[at:] = [macros.veil("puzzle"), *inner[at:], "</div></div>"]
         last = values[0] if kind == "exercise" else None
         met += [last] if last in bets else []

@@ -63,14 +63,14 @@ const drive = (vx, mass, dt, motor = []) =>
 const penaltyNormalForce = (depth, speed, stiffness, damping) =>
   positive(stiffness * depth - damping * speed);
 
-// One step of penalty. knobs.clampForce stands in for the clamped force.
+// One step of penalty.
 function penaltyStep(state, { mass, radius, motor = [] }, knobs) {
   const { x, y, vx, vy } = state;
-  const { dt, stiffness, damping, clampForce = penaltyNormalForce } = knobs;
+  const { dt, stiffness, damping } = knobs;
   const fx = y.map((_, i) => motor[i] ?? 0);
   const fy = y.map(() => 0);
   for (const c of detectContacts(x, y, radius, 0)) {
-    const f = clampForce(c.depth, normalSpeed(c, vx, vy), stiffness, damping);
+    const f = penaltyNormalForce(c.depth, normalSpeed(c, vx, vy), stiffness, damping);
     fx[c.i] += f * c.nx;
     fy[c.i] += f * c.ny;
     if (c.j < 0) continue;
@@ -198,12 +198,12 @@ function contactTarget(c, state, { dt, restitution, baumgarte }) {
   return -dt * speed >= -c.depth ? bounce : least(bounce, closing);
 }
 
-// One step of lcp. knobs.project stands in for the clamp; knobs.see as for leapfrog.
+// One step of lcp; knobs.see as for leapfrog.
 function lcpStep(state, { mass, radius }, knobs) {
-  const { dt, iters, warm, project, see } = knobs;
+  const { dt, iters, warm, see } = knobs;
   const contacts = detectContacts(state.x, state.y, radius, CONTACT_MARGIN);
   for (const c of contacts) c.target = contactTarget(c, state, knobs);
-  return solveStep(state, mass, dt, contacts, { iters, project, warm, see });
+  return solveStep(state, mass, dt, contacts, { iters, warm, see });
 }
 
 // ---- leapfrog: the sweep twice a step, for the way and for the speed

@@ -1,5 +1,4 @@
-/* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. The
- * puzzle is the same at one step: a spring on which the ball hardly sinks, yet comes to rest. */
+/* The cliff: with a step longer than the critical one the ball never rests, and soon explodes. */
 import { axis, number, plain, plot, within } from "../draw.js";
 import { criticalDt, quality, runModel } from "../engine.js";
 import { drops, G, grip, kept, R, scene, START } from "../kit.js";
@@ -58,20 +57,12 @@ function draw(view) {
   };
 }
 
-const form = { height: 270, knobs: ["dt", "stiffness", "damping"], draw };
-export const figures = {
-  cliff: {
-    title: "The cliff",
-    caption:
-      "Drag the time step: past the critical one the dropped ball never rests, and a little " +
-      "further it explodes.",
-    ...form,
-  },
-  puzzle: {
-    title: "A puzzle: one spring, two wishes",
-    caption:
-      "Turn stiffness and damping until the ball sinks less than a thousandth of its radius and " +
-      "still comes to rest at this time step.",
-    ...form,
-  },
+export const figure = {
+  title: "The cliff",
+  caption:
+    "Drag the time step: past the critical one the dropped ball never rests, and a little " +
+    "further it explodes.",
+  height: 270,
+  knobs: ["dt", "stiffness", "damping"],
+  draw,
 };

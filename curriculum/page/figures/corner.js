@@ -48,7 +48,7 @@ function drawn(view, { model, shown, gap: gapOf, curve, most, free, below, words
       ball(model, middle, centre, r),
       arrow(`push m-${model}`, middle + Math.min(r, middle - 26) + 12, floor, 0, -push),
       held && hand > 0
-        ? line(middle, centre, middle, 0, "hand")
+        ? line(middle, centre, middle, 0)
         : arrow("weight", middle, centre - r - pull, 0, pull),
       lens(model, 40, 42, r, -gap, 38, shown.lens),
     ].join("");

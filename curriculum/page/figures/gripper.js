@@ -61,7 +61,7 @@ function picture({ own, width }, { run, depths, until }) {
   const trail = (i) => path(places.filter((_, k) => k % 3 === i), "line m-fixed thin");
   const arm = ([tip, up], side) => rect(side < 0 ? -9 : tip, up - 0.3 * r, width, 0.6 * r, "arm");
   const ten = 10 ** Math.floor(Math.log10((0.3 * width) / scale)); // m
-  const ruler = label(`${number(ten, 1)} m`, 8, 20) + line(8, 28, 8 + ten * scale, 28, "scale");
+  const ruler = label(`${number(ten, 1)} m`, 8, 20) + line(8, 28, 8 + ten * scale, 28, "rule");
   const arms = clipped(0, 0, at[0][0], TOP, arm(at[0], -1)) + arm(at[2], 1);
   const [cupX, cupY] = at[1];
   const touch = (at[0][0] + cupX) / 2;
@@ -71,7 +71,7 @@ function picture({ own, width }, { run, depths, until }) {
     far > 0.3 ? ruler + [0, 1, 2].map(trail).join("") : arms,
     ...at.map(([x, y], i) => ball(i === 1 ? "penalty" : "fixed", x, y, r, "ball plainly")),
     el("ellipse", rim),
-    far > 0.3 ? "" : line(touch, cupY, 52, 50, "hand") + lens(52, 50, 44, r, depths[row]),
+    far > 0.3 ? "" : line(touch, cupY, 52, 50) + lens(52, 50, 44, r, depths[row]),
   ];
   return { svg: clipped(0, 0, width, TOP - 14, ...drawn), at, r, scale };
 }

@@ -69,7 +69,7 @@ function chartOf(view, shown, height) {
     x: axis([from, to], "time (s)", ...steps(from, to, view.width < 420 ? 4 : 6)),
     y: gapAxis(shown),
     lines,
-    rules: [{ x: timeOf(view), kind: "cursor" }, { y: 0 }],
+    rules: [{ x: timeOf(view) }, { y: 0 }],
   });
 }
 

@@ -5,13 +5,10 @@ import { beside, grip, kept, visits, wholly } from "../kit.js";
 const [COUNT, PX, SWEEPS] = [3, 34, 20];
 const LAST = COUNT * SWEEPS;
 const UNIT = 24; // px of an arrow for a speed of g dt
-const SPEEDS = ["low", "middle", "top"]; // of the figure's own numbers
 const names = ["ball 1 on the table", "ball 2 on ball 1", "ball 3 on ball 2"];
 
-// Impulses in m g dt, speeds in g dt: all balls have fallen for one step, each has a speed besides.
-const course = kept((...besides) =>
-  visits([1, 1, 1], [0, 0, 0], besides.map((v) => v - 1), LAST),
-);
+// In m g dt and g dt: all balls have fallen for one step, the uppermost has a speed besides.
+const course = kept((top) => visits([1, 1, 1], [0, 0, 0], [-1, -1, top - 1], LAST));
 
 // A contact's impulse as a bar, and what the last change asked for.
 function bar({ contact, wanted, lam }, c, y, sx) {
@@ -38,25 +35,15 @@ const timeOf = (view) => Math.floor(view.own.time ?? 0); // contacts that have b
 function picture(left, heightOf, { contact, vy }) {
   const x = 0.4 * left;
   const each = (v, i) =>
-    ball("lcp", x, heightOf(i) - PX, PX) +
+    ball("lcp", x, heightOf(i) - PX, PX, i === COUNT - 1 ? "ball" : "body") +
     arrow("weight", x + PX + 12, heightOf(i) - PX, 0, -UNIT * v);
   const event = contact === null ? "" : circle(x, heightOf(contact), 8, "event m-lcp");
   return table(0, heightOf(0), left, 42) + vy.map(each).join("") + event;
 }
 
-// The tips of the speeds before the sweeps, as what one drags.
-const tipsOf = (view, x, heightOf, vy) =>
-  SPEEDS.map((name, i) => {
-    const middle = heightOf(i) - PX;
-    const range = { low: -1, high: 3, step: 0.1, at: (toX, y) => 1 + (middle - y) / UNIT };
-    const named = `the speed of ball ${i + 1} before the sweeps`;
-    const fast = `${number(view.own[name] - 1, 2)} g dt`;
-    return grip(view, name, x + PX + 12, middle - UNIT * vy[i], named, fast, range);
-  });
-
 function draw(view) {
   const { own } = view;
-  const [at, seen] = [timeOf(view), course(...SPEEDS.map((name) => own[name]))];
+  const [at, seen] = [timeOf(view), course(own.top)];
   const now = seen[at];
   const heightOf = (c) => view.height - 42 - 2 * c * PX; // of a contact
   const chart = {
@@ -71,20 +58,21 @@ function draw(view) {
   const until = (x) => (carrying(sx.back(x)) + LAST + 1) % (LAST + 1);
   const sweep = { low: 0, high: LAST, step: 1, at: until, get: () => timeOf(view) };
   const bottom = [sx(now.lam[0]), heightOf(0) - 12];
-  const x = 0.8 * middle;
-  const tips = tipsOf(view, x, heightOf, now.vy);
-  const balls = tips.map((tip, i) => wholly(tip, `ball-${i + 1}`, x, heightOf(i) - PX, PX));
-  const thrown = SPEEDS.map((name) => number(own[name] - 1, 2)).join(", ");
+  const [x, y] = [0.8 * middle, heightOf(COUNT - 1) - PX];
+  const fast = `${number(own.top - 1, 2)} g dt`;
+  const lift = { low: -1, high: 3, step: 0.1, at: (toX, to) => 1 + (y - to) / UNIT };
+  const named = ["the uppermost ball’s speed before the sweeps", fast, lift];
+  const top = grip(view, "top", x + PX + 12, y - UNIT * now.vy[COUNT - 1], ...named);
   const carried = now.lam.map((each) => number(each)).join(", ");
   return {
     svg,
     words:
-      `Speeds at the start: ${thrown} g dt. ${saying(now, at)}. ` +
+      `The uppermost ball begins with ${fast}. ${saying(now, at)}. ` +
       `The contacts carry ${carried} m g dt.`,
     handles: [
       grip(view, "time", ...bottom, "the sweeps", `${plural(at, "contact")} mended`, sweep),
-      ...balls,
-      tips[2],
+      wholly(top, "ball", x, y, PX),
+      top,
     ],
     lit: at ? ["sweep"] : [],
   };
@@ -96,7 +84,7 @@ export const figure = {
     "Each contact mends itself and disturbs its neighbours; drag the uppermost ball’s speed " +
     "upwards, play, and the clamp stops its contact from pulling.",
   height: 260,
-  start: () => ({ time: COUNT, low: 0, middle: 0, top: 0 }),
+  start: () => ({ time: COUNT, top: 0 }),
   clock: () => ({ end: LAST, rate: 2, name: "Play" }),
   buttons: [["One contact on", (view) => (view.own.time = (timeOf(view) + 1) % (LAST + 1))]],
   draw,

@@ -4,15 +4,14 @@ import { BELOW, GROUND, handlesOf, lane, nowOf, placeWords, shownOf } from "../f
 import { R, START } from "../kit.js";
 import { startOf } from "../store.js";
 
-const ASKED = { models: ["penalty", "lcp"], to: 1.6 }; // s
-const FROM = ({ lift }) => (lift ? 0 : 0.3); // s
+const ASKED = { models: ["penalty", "lcp"], from: 0, to: 1.6 }; // s
 const FIRST = 0.39; // s, of the still
 const SLOW = 6; // times slower than it happens
 
 // Both runs are the chapter's own drop, whatever is set elsewhere: the bet is about them.
 const timeOf = ({ own }) => own.time ?? (own.lift ? 0 : FIRST);
 function askedOf({ own, open }) {
-  const asked = { ...ASKED, from: FROM(own), time: timeOf({ own }), lift: own.lift };
+  const asked = { ...ASKED, time: timeOf({ own }), lift: own.lift };
   return shownOf({ own: asked, values: startOf("drop"), open });
 }
 
@@ -50,7 +49,7 @@ export const figure = {
   clock(view) {
     const [{ landing, run }] = askedOf(view);
     const end = view.open("ex1") ? ASKED.to : (landing + 2) * run.dt;
-    return { from: FROM(view.own), end, rate: 1 / SLOW, name: "Drop both" };
+    return { from: view.own.lift ? 0 : 0.3, end, rate: 1 / SLOW, name: "Drop both" };
   },
   draw,
 };

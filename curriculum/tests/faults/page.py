@@ -31,7 +31,7 @@ FAULTS = [
      reads("bowl")),
     (FIGURES + "bowl.js", "solveWithMomentum(rows, [0, 0], vy, { iters })",
      "solveWithMomentum(rows, [0, 0], vy, { iters: 2 * iters })", reads("bowl")),
-    (FIGURES + "sweeps.js", "v - 1), LAST", "v), LAST", reads("sweeps")),
+    (FIGURES + "sweeps.js", "top - 1], LAST", "top], LAST", reads("sweeps")),
     (FIGURES + "sag.js", "? Math.min(1, deep)", "? Math.min(1, 2 * deep)",
      reads("sag")),
     (FIGURES + "sag.js", "dt: dt / parts", "dt: dt", reads("sag")),
