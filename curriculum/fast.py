@@ -28,12 +28,9 @@ PENALTY, LCP, LEAPFROG, SOFT = range(4)
 STATES = 200_000  # positions of balls that are filled in one go, before progress() hears of it
 STATE = "vx vy inv_mass radius x y listed_x listed_y fx fy mass"  # listed: when pairs were
 BALL = np.dtype([(name, float) for name in STATE.split()])
-CONTACT = np.dtype(
-    [
-        ("a", np.uint32),  # so that no index can be negative, and a row has 64 bytes
-        ("b", np.uint32),
-        *[(name, float) for name in ("nx ny depth m_eff target softness lam").split()],
-    ]
+PAIR = "nx ny depth m_eff target softness lam".split()
+CONTACT = np.dtype(  # uint32: no index can be negative, and a row has 64 bytes
+    [(name, np.uint32) for name in "ab"] + [(name, float) for name in PAIR]
 )
 
 
@@ -41,22 +38,21 @@ class Knobs(NamedTuple):
     """What a step needs to know, in numbers: contact.Settings, and what contact.py fixes."""
 
     model: int  # of MODELS
+    iters: int
+    most_sweeps: int  # of soft
+    solref: tuple
+    solimp: tuple
     dt: float
     gravity: float
     margin: float  # of lcp and leapfrog
-    far: bool  # of leapfrog: looks as far as a step travels
     opens: float  # of leapfrog: contact.OPENS
     skin: float  # m: how much farther the list of pairs looks than it must
     stiffness: float
     damping: float
     restitution: float
     baumgarte: float
-    iters: int
     warm: float  # share of the last step's impulses that the sweeps start from
-    most_sweeps: int  # of soft
     last_bits: float
-    solref: tuple
-    solimp: tuple
 
 
 def compiled(function):
@@ -220,7 +216,7 @@ def move(balls, dt):
 @compiled
 def step_reach(balls, knobs):
     """How far [m] a step looks: by a margin, or as far as two of the fastest balls travel in it."""
-    if not knobs.far:
+    if knobs.model != LEAPFROG:
         return knobs.margin
     fastest = 0.0
     for ball in balls[:-1]:
@@ -417,10 +413,8 @@ def turn(c, balls, dt):
 @compiled
 def time_to_impact(gap, v_n, a_n):
     """When a gap closes [s]; inf if it does not."""
-    if not (v_n < 0.0 or a_n < 0.0):
-        return math.inf
     square = v_n * v_n - 2.0 * gap * a_n
-    if square < 0.0:
+    if square < 0.0 or not (v_n < 0.0 or a_n < 0.0):
         return math.inf
     root = math.sqrt(square)
     return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n
@@ -563,25 +557,18 @@ class Stepper:
         solref, solimp = contact.soft_defaults(
             scene.restitution, dt, settings.solref, settings.solimp
         )
-        warm = {"lcp": float(settings.warm), "soft": 1.0}.get(model, 0.0)
+        warm = {"lcp": settings.warm, "soft": 1.0}.get(model, 0.0)
+        margin = contact.CONTACT_MARGIN if model in ("lcp", "leapfrog") else 0.0
+        skin, stiffness, beta = np.median(scene.radius), settings.stiffness, settings.baumgarte
+        numbers = dt, contact.GRAVITY, margin, contact.OPENS, skin, stiffness, scene.damping
+        numbers += scene.restitution, beta, warm, contact.LAST_BITS
         self.knobs = Knobs(
             MODELS.index(model),
-            float(dt),
-            contact.GRAVITY,
-            contact.CONTACT_MARGIN if model in ("lcp", "leapfrog") else 0.0,
-            model == "leapfrog",
-            contact.OPENS,
-            float(np.median(scene.radius)),
-            float(settings.stiffness),
-            float(scene.damping),
-            float(scene.restitution),
-            float(settings.baumgarte),
             int(settings.iters),
-            warm,
             contact.MOST_SWEEPS,
-            contact.LAST_BITS,
             tuple(map(float, solref)),
             tuple(map(float, solimp)),
+            *map(float, numbers),
         )
         self.balls = make_balls(scene.q0, scene.v0, scene.mass, scene.radius)
         self.listed, self.pairs = -math.inf, np.empty((2, 0), int)
