@@ -15,7 +15,7 @@ every engine as shipped. What had to be chosen:
               does. A ball is two slide joints. Many balls: CG and a sparse Jacobian, since the
               sparse Newton of version 4.0.0 fails on piles (its makers say it is mended in 4.0.1).
     pymunk    iterations; bias, here named by the share of an overlap that it takes out in 2 ms. Its
-              slop is 1e-5 r instead of 0.1, which was made for pixels.
+              slop is 1e-6 m or less instead of 0.1, which was made for pixels.
     box2d3    substeps, and the frequency [Hz] of its soft contacts (30 as shipped; it never gets
               stiffer than an eighth of the substep rate). The world is `scale` times as large, so
               that its slop of 5 mm and its margin shrink against r. float32. Its forerunner 2.3 is
@@ -213,14 +213,14 @@ class Mujoco(Session):
 class Pymunk(Session):
     """Chipmunk: sequential impulses with cached sums; position error is pushed out on its own."""
 
-    def __init__(self, scene, dt, iterations, push=None, sleep=False):
+    def __init__(self, scene, dt, iterations, push=None, slop=1e-6, sleep=False):
         import pymunk
         import pymunk.batch
         from pymunk._chipmunk_cffi import lib
 
         self.batch, self.buffer = pymunk.batch, pymunk.batch.Buffer()
         self.space = space = pymunk.Space()
-        space.gravity, space.iterations, space.collision_slop = (0, -GRAVITY), iterations, 1e-6
+        space.gravity, space.iterations, space.collision_slop = (0, -GRAVITY), iterations, slop
         if push is not None:  # a share of an overlap in 2 ms; the engine keeps what a second leaves
             space.collision_bias = (1.0 - push) ** 500
         if sleep:

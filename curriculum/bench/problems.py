@@ -137,7 +137,7 @@ def judged(scene, t):
     return judged_at(scene.q0.tobytes(), scene.mass.tobytes(), scene.restitution, len(t), t[1])
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)  # starts and steps of a problem
 def judged_at(places, mass, restitution, steps, dt):
     x, y = np.frombuffer(places).reshape(2, -1)
     scene = contact.scene_of(x, y, np.frombuffer(mass), restitution=restitution)
@@ -193,7 +193,7 @@ PROBLEMS = (
             "a contact that turns while it pushes, and must let go at cos = 2/3 of its start"),
     Problem("pile", "Pile: eight balls fall beside and over one another, 1 s", 1.0,
             built("pile", 8), judged,
-            "impacts that decide where everything goes next: small errors grow", 10),
+            "impacts that decide where everything goes next: small errors grow", 20),
     Problem("elastic", "Elastic bounce: one ball, restitution 1, 20 s", 20.0,
             built("bounce", restitution=1.0), column,
             "two dozen impacts that may neither take nor give energy, and whose times add up", 3),
@@ -212,7 +212,7 @@ PROBLEMS = (
             "impacts that hand on a speed, along balls that lie on the table"),
     Problem("pile_bounce", "Bouncing pile: eight balls, restitution 0.5, 0.5 s", 0.5,
             built("pile", 8, 0.5), judged,
-            "impacts at all angles that give back: small errors grow faster", 10),
+            "impacts at all angles that give back: small errors grow faster", 20),
 )
 # fmt: on
 BY_NAME = {problem.name: problem for problem in PROBLEMS}

@@ -120,7 +120,9 @@ SETTINGS = (
     pymunk(ITERATIONS, iterations=10, sleep=True),
     *(pymunk(PUSHING, iterations=n, push=0.2) for n in (10, 100)),
     *(pymunk(PUSHING, iterations=n, push=1.0) for n in (10, 30, 100)),
-    *(pymunk(PUSHING, half=1, iterations=n, push=x) for n, x in ((10, 0.2), (10, 1.0), (30, 1.0))),
+    *(pymunk(PUSHING, half=1, iterations=10, push=x) for x in (0.2, 1.0)),
+    *(pymunk(PUSHING + ", slop {slop:g} m", half=h, iterations=n, push=1.0, slop=x)
+      for h, n, x in ((0, 30, 2e-7), (1, 10, 1e-7), (1, 30, 1e-10))),
     box2d3(SHIPPED, inner=4),
     *(box2d3(HARD, inner=n, hertz=1e9) for n in (1, 4, 16, 64)),
     box2d3(HARD, inner=4, hertz=1e9, sleep=True),
