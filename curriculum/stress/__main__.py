@@ -2,7 +2,6 @@
 
     python -m curriculum.stress                         everything; writes curriculum/stress/results
     python -m curriculum.stress --quick                 under a minute, into outputs/stress-quick
-    python -m curriculum.stress --scheduler HOST:PORT   on the workers of a dask scheduler
     python -m curriculum.stress --scene 17              what every property says of one scene
     python -m curriculum.stress --scene small:0-299     of 300 small ones, to the first violation
 
@@ -33,7 +32,6 @@ def parse(argv):
     flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
     flag("--draw", action="store_true", help="page and figure again, from the results alone")
     flag("--workers", type=count, metavar="N", help="processes (all cores)")
-    flag("--scheduler", metavar="HOST:PORT", help="run on the workers of this dask scheduler")
     flag("--scene", type=chosen, metavar="[small:]N[-N]", help="what all properties say of these")
     return parser.parse_args(argv)
 
@@ -64,27 +62,17 @@ def some_scenes(todo):
 def everything(args):
     """A full or quick run, and its report. Returns the violations."""
     from curriculum.measured import results
-    from curriculum.stress import extremes, heaps, maps, mujoco_match, report
+    from curriculum.stress import report
 
     command = "python -m curriculum.stress" + " --quick" * args.quick
+    origin = partial(results.origin, command, "curriculum/stress/jobs.py", kept=not args.quick)
+    todo = jobs.all_jobs(args.quick)
     try:
-        origins = {
-            name: results.origin(command, *files, kept=not args.quick)
-            for name, files in jobs.MADE_BY.items()
-        }
+        origins = dict.fromkeys(todo, origin()) | {"extremes": origin("contact.py")}
     except ValueError as error:  # a tree that is not committed
         sys.exit(f"python -m curriculum.stress: {error}")
-    large, small, many = jobs.QUICK if args.quick else jobs.FULL
-    sections = {
-        "scenes": jobs.scene_jobs(range(large)) + jobs.scene_jobs(range(small), small=True),
-        "maps": maps.map_jobs(args.quick),
-        "extremes": extremes.extreme_jobs(args.quick),
-        "mujoco": mujoco_match.match_jobs(args.quick),
-        "heaps": heaps.heap_jobs(many),
-    }
     found = {
-        name: parallel.run_jobs(jobs.run, todo, name, args.workers, args.scheduler)
-        for name, todo in sections.items()
+        name: parallel.run_jobs(jobs.run, each, name, args.workers) for name, each in todo.items()
     }
     return report.write(found, origins, report.QUICK if args.quick else report.RESULTS)
 
@@ -107,5 +95,5 @@ if __name__ == "__main__":
     try:
         with needs("dev"):
             sys.exit(main())
-    except (ImportError, OSError) as error:  # no answer from a scheduler, no room for results
+    except OSError as error:  # no room for results
         sys.exit(f"python -m curriculum.stress: {error}")

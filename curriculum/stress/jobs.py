@@ -1,22 +1,24 @@
-"""What can be worked out on its own, on any process or machine: jobs, and the counts they give.
+"""What can be worked out on its own, in any process: jobs, and the counts they give.
 
 A job: (place, subject, properties). A place is how its violations are said, such as "scene 17".
 """
 
 import contact
-from curriculum.stress import properties, scenes
+from curriculum.stress import extremes, heaps, maps, mujoco_match, properties, scenes
 from curriculum.stress.properties import judge
 from curriculum.stress.trial import Trial
 
-# random scenes of up to 30 balls, and of up to four; heaps
-FULL, QUICK = (10_000, 1_000, 10_000), (60, 100, 20)
-MADE_BY = {  # the modules of each section; stale.py finds what they import
-    "scenes": ["curriculum/stress/jobs.py"],
-    "maps": ["curriculum/stress/jobs.py", "curriculum/stress/maps.py"],
-    "extremes": ["curriculum/stress/jobs.py", "curriculum/stress/extremes.py", "contact.py"],
-    "mujoco": ["curriculum/stress/jobs.py", "curriculum/stress/mujoco_match.py"],
-    "heaps": ["curriculum/stress/jobs.py", "curriculum/stress/heaps.py"],
-}
+
+def all_jobs(quick):
+    """{section: its jobs}; quick: about a hundredth of them."""
+    large, small, many = (60, 100, 20) if quick else (10_000, 1_000, 10_000)
+    return {
+        "scenes": scene_jobs(range(large)) + scene_jobs(range(small), small=True),
+        "maps": list(maps.map_jobs(quick)),
+        "extremes": list(extremes.extreme_jobs(quick)),
+        "mujoco": list(mujoco_match.match_jobs(quick)),
+        "heaps": heaps.heap_jobs(many),
+    }
 
 
 def scene_jobs(numbers, small=False):

@@ -31,11 +31,38 @@ def lcp_target(motion, spec):
     return np.where(bias > 0.0, np.maximum(bias, bounce), across)
 
 
-def directions(motion, k, on):
-    """What a push of 1 N s at each contact `on` adds to the momenta in step k (2 N, contacts)."""
-    given = motion.sides[on] * (motion.mass > 0.0)
-    each = motion.normal[k][:, on, None] * given
+def directions(motion, normal, on):
+    """What a push of 1 N s at each contact `on` along its normal (2, C) adds to all momenta
+    (2 N, contacts)."""
+    each = normal[:, on, None] * motion.sides[on] * (motion.mass > 0.0)
     return each.transpose(0, 2, 1).reshape(2 * len(motion.mass), on.sum())
+
+
+def meeting(motion, k):
+    """The normals (2, C) of when two balls meet in flight after state k or, if they miss, are
+    nearest: leapfrog's, in the same operations, since a root may lose half of its digits."""
+    a, b, normal = motion.a, motion.b, motion.normals[k].copy()
+    (dx, dy), (vx, vy) = (row[k][:, a] - row[k][:, b] for row in (motion.q, motion.v))
+    reach = motion.reach[-len(a) :] if len(a) else 0.0
+    along, fast = dx * vx + dy * vy, vx * vx + vy * vy
+    apart = dx * dx + dy * dy - reach * reach
+    t = (-along - np.sqrt(np.maximum(0.0, along * along - fast * apart))) / fast
+    t = np.where((apart > 0.0) & (along < 0.0), np.minimum(motion.dt, t), 0.0)
+    x, y = dx + t * vx, dy + t * vy
+    normal[:, len(motion.mass) :] = np.array((x, y)) / np.sqrt(x * x + y * y)
+    return normal
+
+
+def unexplained(given, n, size):
+    """How far momenta (2, N) are from any sum of the columns of n (2 N, .) that takes none less
+    than 0 times; size (N,): of each ball, in which that is counted."""
+    from scipy.optimize import nnls  # slow, so only where it is needed
+
+    weight = np.tile(inverse(size), 2)
+    rows = n * weight[:, None]
+    unit = np.sqrt((rows * rows).sum(0))
+    rows = rows[:, unit > 0.0] / unit[unit > 0.0]
+    return nnls(rows, given.ravel() * weight, maxiter=100 * len(weight))[1]
 
 
 def far_from_singular(n, mass):

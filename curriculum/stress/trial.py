@@ -66,16 +66,9 @@ class Trial:
         run = self.run_exact(self.dt, self.spec["steps"])
         return run and Trajectory(self, run)
 
-    def brief(self, dt, steps, **changes):
-        """A short run of exact; None where exact is not judged, or does not come to its end."""
-        run = self.exact and self.run_exact(dt, steps, **changes)
-        return run if run and len(run.t) > steps else None
-
-    def run_exact(self, dt, steps, **changes):
-        """A run of exact with entries of the spec changed, as far as EVENTS go; None, and a note,
-        where it refuses.
-        """
-        case, done = ("exact", scenes.to_scene(self.spec | changes), dt), []
+    def run_exact(self, dt, steps):
+        """A run of exact, as far as EVENTS go; None, and a note, where it refuses."""
+        case, done = ("exact", self.scene, dt), []
 
         def report(samples):
             done.append(samples)
@@ -130,15 +123,16 @@ class Trajectory:
 
     def measure(self, radius):
         """Set depth, normal and reach: the distance of the centres at which two balls touch."""
-        q = self.q[:-1]
+        q = self.q
         apart = q[:, :, self.a] - q[:, :, self.b]
         distance = np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1])
         self.reach = np.concatenate((radius, radius[self.a] + radius[self.b]))
-        self.depth = self.reach - np.concatenate((q[:, 1], distance), axis=1)
-        self.normal = np.zeros((len(q), 2, len(self.sides)))
-        self.normal[:, 1] = 1.0  # up, at the floor and where two centres are one
-        of_pairs, distance = self.normal[:, :, len(radius) :], distance[:, None]
+        self.depth = self.reach - np.concatenate((q[:-1, 1], distance[:-1]), axis=1)
+        self.normals = np.zeros((len(q), 2, len(self.sides)))
+        self.normals[:, 1] = 1.0  # up, at the floor and where two centres are one
+        of_pairs, distance = self.normals[:, :, len(radius) :], distance[:, None]
         np.divide(apart, distance, out=of_pairs, where=distance > 0.0)
+        self.normal = self.normals[:-1]
 
     def along(self, v):
         """The normal velocity [m/s] of every contact (S, C)."""
