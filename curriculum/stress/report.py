@@ -38,8 +38,9 @@ def write(found, origins, folder):
     scenes["violations"] += jobs.idle(scenes)
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     sections["maps"]["penalty"] = rows
-    gains = sections["heaps"]["notes"].pop("gains").values()
-    sections["heaps"]["gains"] = heaps.table_of(gains)
+    notes = sections["heaps"]["notes"]
+    sections["heaps"]["gains"] = heaps.table_of(notes.pop("gains").values())
+    sections["heaps"]["thrown"] = heaps.thrown(notes.pop("thrown").values())
     for name, section in sections.items():
         section["notes"] = {what: len(places) for what, places in sorted(section["notes"].items())}
         sections[name] = results.save(folder, name, section, origins[name])
@@ -91,7 +92,7 @@ def page(sections):
         notes = [f"- {what}: {count:,}" for what, count in section["notes"].items()]
         if name == "heaps":
             head = ["dt", "restitution", "model", "gained energy", "most, as a share"]
-            parts += [heaps.LIMITS, results.table(head, section["gains"])]
+            parts += [heaps.LIMITS, section["thrown"], results.table(head, section["gains"])]
         if notes:
             parts += ["Not judged, or limits that were met, in scenes:", "\n".join(notes)]
     parts += ["![](penalty-map.svg)", results.footer(sections["scenes"])]
