@@ -19,7 +19,7 @@ FAULTS = [
     (C, "c.start = max(0.0, c.lam + share * (c.lam - c.before))",
      "c.start = c.lam + share * (c.lam - c.before)", "test_golden.py -k leapfrog"),
     (C, "bounces = [c for c in closed if c.hits and restitution > 0.0]", "bounces = []",
-     MODELS + "drives_into_others"),
+     "test_fast.py -k bytes_of_the_plain"),
     (C, "if fast > 0.0 else dt  # 0", "if fast >= 0.0 else dt  # 0", MODELS + "too_slow_for"),
     (C, "if a_n is None or not (v_n < 0.0 or a_n < 0.0):",
      "if a_n is None or v_n >= 0.0 and a_n >= 0.0:", MODELS + "no_number_stops"),
