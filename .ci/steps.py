@@ -132,14 +132,9 @@ def alone():
     for scene in ("drop", "bounce", "stack"):
         line = f"{python} --scene {scene} --out {scene} && test -s {scene}/metrics.json"
         check("contact.py alone in an empty folder", line, "alone")
-    smoke = " && ".join(
-        f"PYTHONHASHSEED={n} {python} --smoke --out o >{n}.txt && cp o/metrics.json {n}.json"
-        for n in (1, 2)
-    )
-    same = "cmp 1.txt 2.txt && cmp 1.json 2.json"
-    check("--smoke twice, byte for byte", f"{smoke} && {same}", "alone")
     fresh("bare")
-    check("numpy, rerun-sdk and pytest", ".ci/python", "bare", PYTHON=sys.executable)
+    name = "numpy, rerun-sdk and pytest, and --smoke twice, byte for byte"
+    check(name, ".ci/python", "bare", PYTHON=sys.executable)
 
 
 def side_by_side(*lanes):

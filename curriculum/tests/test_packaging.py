@@ -1,7 +1,5 @@
 """What a user installs, and what the README tells him to type."""
 
-import ast
-import importlib.metadata
 import os
 import re
 
@@ -11,12 +9,7 @@ from curriculum.commands import write_whole
 from curriculum.tests.helpers import CONTACT, ROOT, python
 
 README = (ROOT / "README.md").read_text("utf-8")
-FILES = ("*.py", "exercises/**/*.py", "curriculum/**/*.py")
 TEXTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
-PROJECT = (ROOT / "pyproject.toml").read_text("utf-8")
-DECLARED = PROJECT.split("[tool.")[0]  # dependencies and extras
-
-
 COMMANDS = sorted(
     ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__main__")
     for path in ROOT.glob("curriculum/**/*.py")
@@ -65,15 +58,6 @@ def test_what_is_no_file_is_written_into_and_stays_what_it_is(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_tests_without_a_package_are_skipped_by_its_name(only, tmp_path):
-    (tmp_path / "conftest.py").write_bytes((ROOT / "curriculum/tests/conftest.py").read_bytes())
-    (tmp_path / "test_a.py").write_text("import yaml\n")
-    (tmp_path / "test_b.py").write_text("import curriculum.pgae\n")
-    words = ("-S", "-m", "pytest", "-p", "no:cacheprovider", "-rs", "--rootdir", tmp_path, tmp_path)
-    printed = python(*words, PYTHONPATH=os.pathsep.join((only("pytest"), str(ROOT)))).stdout
-    assert "test_a.py: yaml is missing" in printed and "1 skipped, 1 error" in printed
-
-
 def test_readme_is_short_and_shows_the_balls_first():
     lines = README.splitlines()
     assert len(lines) <= 130
@@ -110,25 +94,6 @@ def test_commands_of_the_texts_exist_with_their_flags():
 def test_extras_of_the_texts_are_those_of_the_package():
     named = set(re.findall(r"\.\[(\w+)\]|--extra (\w+)|^\| `(\w+)` \|", README, re.M))
     named = {name for names in named for name in names if name}
-    declared = re.findall(r"^(\w+) = \[", DECLARED.split("[project.optional-")[1], re.M)
+    project = (ROOT / "pyproject.toml").read_text("utf-8").split("[project.optional-")[1]
+    declared = re.findall(r"^(\w+) = \[", project.split("[tool.")[0], re.M)
     assert named == set(declared) == {"learn", "page", "notebook", "bench", "dev"}
-
-
-def plain(name):
-    """A distribution's name as PyPI compares it."""
-    return re.sub(r"[-_.]+", "-", re.match(r"[\w.-]+", name)[0]).lower()
-
-
-def test_every_import_is_of_a_package_that_an_extra_brings():
-    declared = re.findall(r'[\["]([\w-]+)[\[\]>]', DECLARED)  # "dask[distributed]>=1" brings both
-    installed = {plain(each.name): each for each in importlib.metadata.distributions()}
-    known = {plain(name) for name in declared} | {"contact-chapter"}
-    for name in known & installed.keys():  # and what those require: Jinja2 brings MarkupSafe
-        known = known | {plain(each) for each in installed[name].requires or []}
-    owners = importlib.metadata.packages_distributions()
-    for path in (path for each in FILES for path in ROOT.glob(each)):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-            names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-            for name in {each.split(".")[0] for each in names} & set(owners):
-                assert {plain(owner) for owner in owners[name]} & known, (path, name)

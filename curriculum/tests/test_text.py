@@ -78,12 +78,6 @@ def line_of(path, text):
     return path.read_text("utf-8").partition(text)[0].count("\n") + 1
 
 
-def commit(project):
-    """Commit all that there is."""
-    for words in ("init", "add .", "-c user.name=x -c user.email=x@x commit --message x"):
-        subprocess.run(["git", *words.split()], cwd=project, check=True, capture_output=True)
-
-
 @pytest.fixture(scope="module")
 def accepted(tmp_path_factory):
     """A project that is in order; its runs are cached."""
@@ -158,6 +152,10 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
     ("contact.py", "n . (v_a - v_b)", "n . (v_b - v_a)", ["{}:1: contact.py changed"]),
     ("contact.py", "CONTACT_MARGIN = 1e-3", "CONTACT_MARGIN = 2e-3",
      ["{}:#: setup changed", f"{CHAPTER}:6: contact.CONTACT_MARGIN * 1000|.0f was 1 and is 2"]),
+    ("contact.py", "RADIUS = 0.1  # m", "# --- region lost ---\nRADIUS = 0.1  # m",
+     ["{}:#: '# --- region lost ---' does not belong there"]),
+    ("contact.py", "# --- region: setup ---", "lost = 1\n# --- region: setup ---",
+     ["{}:#: code outside any region: 'lost = 1'"]),
     ("meta.yaml", "  drop: []", "  drop: []\n  long: [--steps, 3]", ["{}:1: run long is quoted "]),
     ("meta.yaml", '\n  sweep:', '\n  swept:',
      ["{}:1: hashes of what is gone: swept", "contact.py:#: sweep changed, and "]),
@@ -183,29 +181,17 @@ def test_each_error_of_a_text_is_named_in_a_line_with_its_place_and_nothing_else
         assert len(hits) == 1, (problem, done.stdout + done.stderr)
         lines.remove(hits[0])
     assert (done.returncode, lines) == (1, [])
-
-
-def test_markers_that_are_wrong_and_code_outside_of_regions_are_named(project):
-    script = project / "contact.py"
-    edit(script, "# --- region: flight ---", "# --- region flight ---")
-    edit(script, "# --- region: setup ---", "lost = 1\n# --- region: setup ---")
-    printed = run_gate(project).stdout
-    line = line_of(script, "# --- region flight ---")
-    wrong = "'# --- region flight ---' does not belong there"
-    assert f"contact.py:{line}: {wrong}" in printed
-    line = line_of(script, "lost = 1")
-    assert f"contact.py:{line}: code outside any region: 'lost = 1'" in printed
-    refused = run_gate(project, "--accept", "simulate")
-    assert refused.returncode == 2 and wrong in refused.stderr
+    refused = run_gate(project, "--accept", "setup")
+    assert refused.returncode == 2 and "does not belong there" in refused.stderr
 
 
 def test_a_changed_region_names_who_speaks_of_it_and_is_accepted_by_name(project):
-    code = regions.read_all()["sweep"].code
+    text = (project / "contact.py").read_text("utf-8").partition("# --- region: sweep ---\n")[2]
+    code = text.partition("# --- region: ")[0].rstrip("\n") + "\n"
     edit(project / "contact.py", code, code + "# a better word\n")
     failed = run_gate(project)
-    code_at, project_at = line_of(project / CHAPTER, "## Code"), 9
     line = line_of(project / "contact.py", "# --- region: sweep ---") + 1
-    speak = f"{CHAPTER}:{project_at}, {CHAPTER}:{code_at}, {EXERCISE}:1"
+    speak = f"{CHAPTER}:9, {CHAPTER}:{line_of(project / CHAPTER, '## Code')}, {EXERCISE}:1"
     assert failed.stdout == (
         f"contact.py:{line}: sweep changed, and {speak} speak of it; "
         "repair: read these, then python -m curriculum.text --accept sweep\n"
@@ -219,8 +205,7 @@ def test_a_changed_region_names_who_speaks_of_it_and_is_accepted_by_name(project
     assert run_gate(project, "--accept", "setup").returncode == 0
     assert run_gate(project).returncode == 0
     hashes = yaml.safe_load((project / "meta.yaml").read_text("utf-8"))["region_hashes"]
-    text = regions.Region("sweep", code + "# a better word\n", 0, "").code
-    assert hashes["sweep"] == hashlib.sha256(text.encode()).hexdigest()
+    assert hashes["sweep"] == hashlib.sha256(f"{code}# a better word\n".encode()).hexdigest()
 
 
 def test_what_is_quoted_is_kept_until_its_code_changes_and_marked_where_it_is_stale(project):
@@ -307,16 +292,17 @@ def test_a_row_holds_the_median_in_minutes_and_shows_it_in_the_unit_that_reads_b
 
 def test_measuring_writes_a_whole_row_of_todays_code(project):
     pytest.importorskip("rerun", reason="rerun is not installed, and the default run records")
-    commit(project)
     for pattern in ("checks.py", "curriculum/*.py", "curriculum/run/*.py", "exercises/**/*"):
         for path in filter(Path.is_file, ROOT.glob(pattern)):
             copied = project / path.relative_to(ROOT)
             copied.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, copied)
     command = "-B", "-m", "curriculum.measured.ledger", "cpu", "--runs", "1"
+    subprocess.run(["git", "init"], cwd=project, check=True, capture_output=True)
     run = python(*command, cwd=project)
     assert run.returncode == 1 and "commit these first: ?? checks.py" in run.stderr
-    commit(project)
+    for words in ("add .", "-c user.name=x -c user.email=x@x commit --message x"):
+        subprocess.run(["git", *words.split()], cwd=project, check=True, capture_output=True)
     run = python(*command, cwd=project)
     assert run.returncode == 0 and re.search(r": [\d.]+ (s|min)$", run.stdout.strip()), run.stderr
     header, pending, row = (project / "wallclock.csv").read_text("utf-8").splitlines()
@@ -381,13 +367,3 @@ def test_sentence_in_words_is_held_to_the_numbers(numbers):
         numbers.broken("quality.soft.depth")
     with pytest.raises(references.TextError, match="'quality.lcp.state' is 'ok', no number"):
         numbers.broken("quality.lcp.state > 0")
-
-
-def test_hash_of_a_region_is_that_of_the_text_between_its_markers():
-    lines = (ROOT / "contact.py").read_bytes().split(b"\n")
-    first = lines.index(b"# --- region: sweep ---")
-    last = lines.index(b"# --- region: lcp ---", first)
-    shown = b"".join(line + b"\n" for line in lines[first + 1 : last]).rstrip() + b"\n"
-    sweep = regions.read_all()["sweep"]
-    assert sweep.sha == hashlib.sha256(shown).hexdigest() and sweep.line == first + 2
-    assert "solve_contacts" in sweep.defines
