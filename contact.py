@@ -348,7 +348,8 @@ def leapfrog_step(balls, dt, restitution, iters) -> None:
     overlap is taken back then, and throws nobody.
 
     Not mended: sweeps that do not finish let a stack sag, but less than lcp's; several impacts of
-    one ball within a step count as one; a long step can drive a heavy ball through light ones.
+    one ball within a step count as one; a bounce on a ball at rest is of first order, since its
+    time is that of free flight; a long step can drive a heavy ball through light ones.
     """
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
@@ -397,7 +398,8 @@ def ask(c, restitution, dt):
     c.stays = min(-gap, OPENS * (c.a.radius + c.b.radius)) / dt  # gap + dt v_n >= 0
     c.free = not c.hits and c.stays < v_n + dt * GRAVITY  # would stay open, were it alone
     c.target = c.stays
-    c.after = min(0.0, back)
+    fast = v_n < dt * GRAVITY and not c.hits  # meets only what cannot fall away: bounces then
+    c.after = back if fast else min(0.0, back)
     left = dt - when
     end = left * (-restitution * hit + 0.5 * left * a_n)  # the gap to which it bounces till then
     if c.hits and end > 0.0:

@@ -354,7 +354,7 @@ def ask(c, balls, knobs):
     stays = (opens if opens < -gap else -gap) / dt
     hits = hit < dt * gravity
     c.target = stays
-    after = back if back < 0.0 else 0.0
+    after = back if back < 0.0 or (v_n < dt * gravity and not hits) else 0.0
     left = dt - when
     end = left * (-restitution * hit + 0.5 * left * a_n)
     if hits and end > 0.0:

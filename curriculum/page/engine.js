@@ -247,7 +247,8 @@ function ask(c, state, radius, { dt, restitution }) {
   c.stays = least(-gap, OPENS * (radius[c.i] + (c.j < 0 ? 0 : radius[c.j]))) / dt;
   c.free = !c.hits && c.stays < speed + dt * GRAVITY; // would stay open, were it alone
   c.target = c.stays;
-  c.after = least(0, back);
+  const fast = speed < dt * GRAVITY && !c.hits; // meets only what cannot fall away
+  c.after = fast ? back : least(0, back);
   if (!c.hits || !(end > 0)) return;
   c.target = greatest([c.target, (end - greatest([gap, 0])) / dt]);
   c.after = least(-restitution * hit + left * a, back);

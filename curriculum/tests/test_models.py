@@ -303,6 +303,15 @@ def test_a_ball_without_room_changes_no_bounce_elsewhere():
     assert np.abs(one - other[:, :, :8]).max() < 1e-12
 
 
+def test_a_ball_that_lands_on_one_at_rest_bounces_at_any_time_of_a_step():
+    """So slowly that it meets the other only because that one, on the floor, cannot fall away."""
+    for y in np.linspace(0.35, 0.353, 60):
+        scene = contact.scene_of(
+            0.0, [0.11, y], [0.7, 2.0], [0.11, 0.12], vy=[0, -1], restitution=0.9
+        )
+        assert run_model("leapfrog", scene, 0.003, 50).v[:, 1, 1].max() > 0.8
+
+
 @pytest.mark.parametrize("vx", [1e-170, -1e-170, 0.0])
 def test_leapfrog_takes_a_ball_that_is_too_slow_for_a_square(vx):
     scene = contact.scene_of([0.0, 0.2004], 0.7, [1.0, 2.0], vx=[vx, 0.0])

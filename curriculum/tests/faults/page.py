@@ -65,7 +65,7 @@ FAULTS = [
     (ENGINE, "landing = row;", "landing = row + 3;", reads("landing_of_a_series")),
     (ENGINE, "if (noRoom(rows)) {", "if (false) {", BITS),
     (ENGINE, "known < crowd.size", "false", BITS),
-    (ENGINE, "c.after = least(0, back);", "c.after = 0;", BITS),
+    (ENGINE, "c.after = fast ? back : least(0, back);", "c.after = 0;", BITS),
     (ENGINE, "if (!(c.hits || struck", "if ((c.hits || struck", BITS),
     (ENGINE, "fall(vy, mass, 0.5 * dt) };", "fall(vy, mass, dt) };", BITS),
     (ENGINE, "if (onward < 0) t = 1;", "", BITS),
