@@ -24,8 +24,7 @@ def penalty_normal_force(depth, v_n, stiffness, damping):
     depth > 0. The spring has `stiffness` [N/m]; the damper has `damping` [N s/m] and works against
     the motion; v_n [m/s] is positive when the bodies separate.
     """
-    f_n = ...  # TODO: blank 1
-    return f_n
+    return ...  # TODO: blank 1
 
 
 def project_impulse(lam, dlam):
@@ -34,8 +33,7 @@ def project_impulse(lam, dlam):
     `lam` has been accumulated so far; `dlam`, of either sign, is the change that would bring this
     contact to its target velocity right now.
     """
-    new_lam = ...  # TODO: blank 2
-    return new_lam
+    return ...  # TODO: blank 2
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ read it; now write it without looking. A contact c gives you
     c.lam       the impulse [N s] given so far, 0 at first; keep it up to date
     c.push(p)   gives body a the impulse p [N s] along the normal, and body b the opposite one
 
-    python exercises/ex5_solve_contacts.py      # your solver under a stack and under a cradle
+    python exercises/ex5_solve_contacts.py      # balls under your solver, and under contact.py's
     python exercises/ex5_solve_contacts.py --hint 1     # 1 to 3
     python checks.py -k ex5                     # random stacks, against contact.py's answers
 """

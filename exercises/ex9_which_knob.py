@@ -25,7 +25,6 @@ the column rest gap/r of the second command:
 
 from kit import script
 
-# fmt: off
 BETS = """
               k x 4    dt / 4    sweeps x 4    beta x 4
     sink        ?        ?           ?            ?
@@ -34,7 +33,6 @@ BETS = """
     sag         ?        ?           ?            ?
     trembling   ?        ?           ?            ?
 """
-# fmt: on
 SAG = None  # r, from your paper
 
 

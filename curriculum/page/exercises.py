@@ -1,7 +1,6 @@
 """The exercises as the page shows them: their docstrings, and the facts of answers.json."""
 
 import ast
-import functools
 import re
 
 from curriculum.page.chapter import inline, markdown
@@ -11,7 +10,7 @@ from exercises.kit import FACTS, blanks, predict
 FOLDER = ROOT / "exercises"
 TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")
 COMMAND = re.compile(r"^    ((?:python|pytest)\b.*?)(?:\s{2,}#.*)?$", re.MULTILINE)
-measured = functools.cache(predict.measure)  # the numbers of a bet
+measured = predict.measure  # the numbers of a bet
 BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2, filled in the page
 
 
@@ -46,7 +45,7 @@ def exercise(path):
     name, task, bet = f"ex{number}", text, {"choices": {}}
     facts = FACTS[name]
     if name in predict.BETS:
-        numbers, bet = measured(name), predict.asked(words)._asdict()
+        numbers, bet = measured(name), predict.asked(words)
         task = bet["task"]
         bet["answer"] = predict.answer(name, numbers)
         bet["reasons"] = {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()}

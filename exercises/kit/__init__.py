@@ -1,9 +1,9 @@
 """What the exercises stand on: bets, blanks and how they are judged. Nothing to fill in here.
 
     script.py     an exercise's command line, and what checks.py asks
-    predict.py    exercises 1, 3, 4: bets          knobs.py     exercise 9: four knobs
-    time_limit.py      tries a fill in its own process  trials.py    judges it, and shows it at work
-    blanks.py     what belongs in a blank          progress.py  which exercises are done
+    predict.py    exercises 1, 3, 4: bets     knobs.py        exercise 9: four knobs
+    blanks.py     what belongs in a blank     time_limit.py   tries a fill in its own process
+    trials.py     judges it, shows it at work progress.py     which exercises are done
 
 answers.json has hints, keys, reasons, inputs and slips. contact.py and curriculum/ are found above
 the folder of the exercises, from wherever one starts.

@@ -49,35 +49,22 @@ def matrix(m, k, c, dt):
     return [[1.0 - dt * dt * k / m, -dt * slowed], [dt * k / m, slowed]]
 
 
-def solver(
-    missing="c.target - c.v_n()",
-    total="max(0.0, c.lam + add)",
-    mass="c.m_eff",
-    push="c.push(lam - c.lam)",
-    count="iters",
-    kept="lam",
-    **names,
-):
-    """A solve_contacts with one of its parts exchanged; `names` are what the parts may use."""
-    lines = (
-        f"for _ in range({count}):",
-        " for c in contacts:",
-        f"  add = ({missing}) * {mass}",
-        f"  lam = {total}",
-        f"  {push}",
-        f"  c.lam = {kept}",
-    )
-    code = compile("\n".join(lines), "a solve_contacts", "exec")
-    return lambda contacts, iters: exec(code, names | {"contacts": contacts, "iters": iters})
+SWEEP = """\
+for _ in range(iters):
+    for c in contacts:
+        add = (c.target - c.v_n()) * c.m_eff
+        lam = max(0.0, c.lam + add)
+        c.push(lam - c.lam)
+        c.lam = lam
+"""
 
 
-def jacobi(contacts, iters):
-    """A solve_contacts that pushes nothing before it has looked at every contact."""
-    for _ in range(iters):
-        wanted = [max(0.0, c.lam + (c.target - c.v_n()) * c.m_eff) for c in contacts]
-        for c, lam in zip(contacts, wanted):
-            c.push(lam - c.lam)
-            c.lam = lam
+def solver(*changes, **names):
+    """A solve_contacts of this text, with (old, new) exchanged; `names` are what it may use."""
+    text = SWEEP
+    for old, new in zip(changes[::2], changes[1::2]):
+        text = text.replace(old, new)
+    return lambda contacts, iters: exec(text, names | {"contacts": contacts, "iters": iters})
 
 
 def stacks():
@@ -101,44 +88,34 @@ def stacks():
     return inputs
 
 
-def stack(masses, speeds, contacts):
-    """The balls and the contacts of a stack."""
-    balls = [contact.Ball(0.0, 0.1, *speed, mass, 0.1) for mass, speed in zip(masses, speeds)]
-    floor, made = contact.Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0), []  # one of its own
-    for a, b, angle, target in contacts:
-        c = contact.Contact(balls[a], [*balls, floor][b], math.sin(angle), math.cos(angle), 0.0)
-        c.target = target
-        made.append(c)
-    return balls, made
-
-
-def run_stack(function, **case):
+def run_stack(function, masses, speeds, contacts):
     """The impulses and the velocities that a solver leaves; ... where it is a blank.
 
     The last number is 1 where a stack of four or more is done by `iters` = 1: so soon is none.
     """
-    (balls, made), (_, early) = stack(**case), stack(**case)
-    if function(made, 600) is ...:
-        return ...
-    function(early, 1)
-    found = [c.lam for c in made]
-    soon = len(found) > 3 and np.allclose([c.lam for c in early], found, 1e-5, 1e-9)
-    return [*found, *(speed for ball in balls for speed in (ball.vx, ball.vy)), float(soon)]
-
-
-def run_after(function, **case):
-    """What after_the_move gives; whether a contact is asked is what Python takes for a yes."""
-    got = function(*case.values())
-    return (bool(got[0]), *got[1:]) if isinstance(got, (tuple, list)) else got
-
-
-# the others are called as they are
-RUN = {"solve_contacts": run_stack, "after_the_move": run_after}
+    lams = []
+    for iters in (1, 600):
+        balls = [contact.Ball(0.0, 0.1, *speed, mass, 0.1) for mass, speed in zip(masses, speeds)]
+        bodies, made = [*balls, contact.Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)], []
+        for a, b, angle, target in contacts:  # -1 is the last of bodies, the floor
+            c = contact.Contact(bodies[a], bodies[b], math.sin(angle), math.cos(angle), 0.0)
+            c.target = target
+            made.append(c)
+        if function(made, iters) is ...:
+            return ...
+        lams.append([c.lam for c in made])
+    soon = len(made) > 3 and np.allclose(*lams, 1e-5, 1e-9)
+    return [*lams[-1], *(speed for ball in balls for speed in (ball.vx, ball.vy)), float(soon)]
 
 
 def run(name, function, case):
-    """What a fill gives on one of its inputs."""
-    return RUN[name](function, **case) if name in RUN else function(*case.values())
+    """What a fill gives on one of its inputs; whether a contact is asked is Python's yes or no."""
+    if name == "solve_contacts":
+        return run_stack(function, **case)
+    got = function(*case.values())
+    if name == "after_the_move" and isinstance(got, (tuple, list)):
+        return (bool(got[0]), *got[1:])
+    return got
 
 
 def labels(name, case):
@@ -147,7 +124,7 @@ def labels(name, case):
         return BLANKS[name].labels
     lam = [f"lam, {a} on {'floor' if b < 0 else b}" for a, b, _, _ in case["contacts"]]
     speeds = [f"{v} of {ball}" for ball in range(len(case["masses"])) for v in ("vx", "vy")]
-    return [*lam, *speeds, "done by 1 sweep"]
+    return [*lam, *speeds, "1 sweep does it"]
 
 
 def blank(exercise, right, slips, inputs=None, arguments="", **more):

@@ -1,7 +1,9 @@
 """Exercise 9: five troubles against four knobs, measured, and the sag of a tower."""
 
+import math
 import statistics
 import textwrap
+from functools import cache
 
 import contact
 from curriculum.commands import near
@@ -26,6 +28,7 @@ TROUBLES = {  # model, scene, balls, dt [s], steps, measure, seeds
 TOWER = {"bodies": 7, "dt": 0.001, "beta": 0.5, "r": 0.1}  # one sweep a step
 
 
+@cache
 def measure():
     """{trouble: what it is as it is}, and {trouble: [what each knob makes of it, as a share]}."""
     usual, shares = {}, {}
@@ -39,14 +42,12 @@ def measure():
     return usual, shares
 
 
-def marks(shares):
-    """{trouble: [-, = or + of each knob]}: what became of a trouble, as a share of what it was."""
-    return {
-        trouble: ["-" if share <= 0.5 else "+" if share >= 2.0 else "=" for share in row]
-        for trouble, row in shares.items()
-    }
+def mark(share):
+    """-, = or +: what became of a trouble, as a share of what it was."""
+    return "-" if share <= 0.5 else "+" if share >= 2.0 else "="
 
 
+@cache
 def measure_sag():
     """The sag of the tower [r]."""
     tower = contact.build_scene("stack", 0, TOWER["bodies"])
@@ -54,8 +55,9 @@ def measure_sag():
     return quality("lcp", tower, TOWER["dt"], 2000, settings)["rest_penetration_frac"]
 
 
-def numbers(usual, shares):
+def numbers():
     """What the reasons quote."""
+    usual, shares = measure()
     quoted = {
         f"{trouble}_{knob.split()[0]}": share
         for trouble, row in shares.items()
@@ -67,58 +69,51 @@ def numbers(usual, shares):
 
 
 def bets(exercise):
-    """{trouble: [the learner's marks]}. Raises ValueError, in words, where some are missing."""
-    lines = exercise.BETS.replace("\N{MINUS SIGN}", "-").splitlines()
+    """{trouble: [the learner's marks]}, and what is wrong with the first row that is not whole."""
+    lines = getattr(exercise, "BETS", "").replace("\N{MINUS SIGN}", "-").splitlines()
     rows = {words[0]: words[1:] for line in lines if (words := line.split())}
     for trouble in TROUBLES:
         given = rows.get(trouble, ["nothing"])
         if len(given) != len(KNOBS) or set(given) - set("-=+"):
-            raise ValueError(
-                f"BETS in {near(exercise.__file__)}, row {trouble}: given {' '.join(given)}, "
-                "allowed: four marks, each - (less), = or + (more)"
-            )
-    return {trouble: rows[trouble] for trouble in TROUBLES}
+            row = f"BETS in {near(exercise.__file__)}, row {trouble}: given {' '.join(given)}"
+            return rows, f"{row}, allowed: four marks, each - (less), = or + (more)"
+    return rows, ""
 
 
 def state(exercise):
     """("blank", "wrong" or "right", why in words) of BETS and SAG."""
+    _, wrong = bets(exercise)
+    if wrong:
+        return "blank", wrong
     try:
-        bets(exercise)
-        if exercise.SAG is None:
-            raise ValueError(f"no SAG yet: work it out on paper, in {near(exercise.__file__)}")
-        given = float(exercise.SAG)
-    except (TypeError, ValueError) as error:
-        return "blank", str(error)
-    sag = measure_sag()
-    if abs(abs(given) - sag) <= 0.02 * sag:  # the column rest gap/r says it with a minus
-        return "right", ""
+        given = abs(float(exercise.SAG))  # the column rest gap/r says it with a minus
+    except (TypeError, ValueError):
+        said = "no SAG yet" if exercise.SAG is None else f"SAG: given {exercise.SAG!r}"
+        return "blank", f"{said}; write a number in {near(exercise.__file__)}, in r, from paper"
+    if math.isclose(given, measure_sag(), rel_tol=0.02):
+        return "right", f"The tower sags by {measure_sag():.4g} r, as you worked out."
     for text, meaning in FACTS["ex9"]["slips"].items():
-        if abs(abs(given) - eval(text, {}, TOWER)) <= 0.01 * abs(given):
+        if math.isclose(given, eval(text, {}, TOWER), rel_tol=0.02):
             return "wrong", f"SAG: given {given:g} r; likely: {meaning}"
     return "wrong", f"SAG: given {given:g} r, and the tower sags otherwise; --hint 5 asks how"
 
 
 def judged(name, exercise):
     """The state of the exercise, and [what, state, words, shown]: all that was measured."""
-    try:
-        mine = bets(exercise)
-    except ValueError as error:
-        return "blank", [[name, "blank", str(error), ""]]
-    usual, shares = measure()
-    right, quoted = marks(shares), numbers(usual, shares)
-    pairs = [pair for trouble in right for pair in zip(right[trouble], mine[trouble])]
-    hits = sum(true == guess for true, guess in pairs)
-    rows = {
-        trouble: [
-            f"{true} {share:.3g}" + ("" if true == guess else f" ({guess})")
-            for true, share, guess in zip(right[trouble], shares[trouble], mine[trouble])
-        ]
-        for trouble in right
-    }
-    bet = f"Your bet holds in {hits} of {len(pairs)}; where it was another, it stands in brackets."
-    shown = [columns("times as much", KNOBS, rows, "{}") + f"\n{bet}"]
-    for trouble, reason in FACTS[name]["reasons"].items():
-        shown.append(textwrap.fill(f"{trouble}: {reason.format(**quoted)}", 96))
     what, words = state(exercise)
-    words = words or f"The tower sags by {measure_sag():.4g} r, as you worked out."
-    return what, [[name, what, words, "\n\n".join((*shown, ""))]]
+    mine, wrong = bets(exercise)
+    if wrong:
+        return what, [[name, what, words, ""]]
+    rows, hits, shares = {}, 0, measure()[1]
+    for trouble, row in shares.items():
+        pairs = [(mark(share), guess) for share, guess in zip(row, mine[trouble])]
+        hits += sum(true == guess for true, guess in pairs)
+        rows[trouble] = [
+            f"{share:.3g} {true}" + ("" if true == guess else f" ({guess})")
+            for share, (true, guess) in zip(row, pairs)
+        ]
+    shown = columns("times as much", KNOBS, rows, "{}")
+    shown += f"\nYour bet holds in {hits} of 20; where it was another, it stands in brackets.\n"
+    for trouble, reason in FACTS[name]["reasons"].items():
+        shown += "\n" + textwrap.fill(f"{trouble}: {reason.format(**numbers())}", 96) + "\n"
+    return what, [[name, what, words, shown]]

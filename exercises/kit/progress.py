@@ -1,7 +1,6 @@
 """Which exercises are done, and which comes next. It needs no numpy: any command can ask."""
 
 import json
-import os
 import sys
 
 from curriculum.commands import command, write_json
@@ -10,9 +9,8 @@ from . import ROOT
 
 DONE = ROOT / "outputs/ch3.5-contact/exercises.json"
 ORDER = ("ex1", "ex3", "ex6", "ex2", "ex5", "ex9", "ex10", "ex7", "ex4", "ex8")  # the chapter's
-OURS = [file for file in os.listdir(ROOT / "exercises") if file.endswith(".py")]
-NAMES = {file.partition("_")[0]: file for file in OURS}
-FILES = {name: f"exercises/{NAMES[name]}" for name in ORDER if name in NAMES}
+PATHS = [path for name in ORDER for path in (ROOT / "exercises").glob(f"{name}_*.py")]
+FILES = {path.stem.partition("_")[0]: f"exercises/{path.name}" for path in PATHS}
 
 
 def done():

@@ -13,28 +13,20 @@ BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the mo
 
 
 def unquoted(kind, error, trace):
-    """A letter without quotes, a name that is gone: an error of Python's; say it in one line."""
-    if kind not in (NameError, AttributeError) or name_of(sys.modules["__main__"]) not in (
-        *BETS,
-        "ex8",
-    ):
+    """PREDICTION = A, a letter without quotes: say it in one line."""
+    if kind is not NameError:
         return sys.__excepthook__(kind, error, trace)
     print(time_limit.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
 
 
-sys.excepthook = unquoted  # PREDICTION = A
-
-
-def name_of(exercise):
-    """What ORDER calls it: ex1 of exercises/ex1_predict_contact.py."""
-    return Path(getattr(exercise, "__file__", "")).stem.split("_")[0]
+sys.excepthook = unquoted
 
 
 @stoppable()
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
-    name = name_of(exercise)
+    name = Path(exercise.__file__).stem.split("_")[0]  # ex1 of exercises/ex1_predict_contact.py
     hints = FACTS[name]["hints"]
     parser = Parser(description=f"Exercise {name}.")
     most = f"print hint N, 1 to {len(hints)}, and do nothing else"
@@ -69,7 +61,7 @@ def checked(name, file):
     if name not in BETS:
         state, found = time_limit.judged(name, file)
         note(name, state == "right")
-        return state, "\n\n".join(words for _, each, words, _ in found if each == state)
+        return state, "\n".join(words for _, each, words, _ in found if each == state)
     try:
         state, words = BETS[name].state(time_limit.load(file))
     except Exception as error:

@@ -24,8 +24,7 @@ def judged(name, file):
     kit = str(Path(__file__).resolve().parents[1])
     command = [sys.executable, "-B", "-c", START, kit, name, str(file)]
     streams = {"capture_output": True, "encoding": "utf-8", "errors": "replace"}
-    plain = os.environ | {"PYTHONOPTIMIZE": ""}  # docstrings are shown
-    done = subprocess.run(command, env=plain, stdin=subprocess.DEVNULL, **streams)
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, **streams)
     if done.returncode == 0 and done.stdout:
         return json.loads(done.stdout)
     what = (re.findall(r"^trying (\w+)$", done.stderr, re.MULTILINE) or [name])[-1]
@@ -33,10 +32,7 @@ def judged(name, file):
     place = f"{near(str(file))}, line {line[1]}" if line else near(str(file))
     words = f"{what} ended its process (exit status {done.returncode}), see {place}"
     if "Timeout (" in done.stderr:
-        words = (
-            f"{what} does not end: stopped after {LIMIT} s in {place}. "
-            "Which number of that loop should come to an end, and does it?"
-        )
+        words = f"{what} takes too long, or does not end: stopped after {LIMIT} s in {place}"
     return "wrong", [[what, "wrong", words, ""]]
 
 
