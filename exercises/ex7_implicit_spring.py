@@ -23,9 +23,7 @@ from kit import script
 
 def implicit_spring(depth, stiffness, damping, dt):
     """(softness [1/kg], target [m/s]) of a contact that overlaps by `depth` [m] before the step."""
-    softness = ...  # TODO: blank 1
-    target = ...  # TODO: blank 2
-    return softness, target
+    return ...  # TODO: softness and target
 
 
 if __name__ == "__main__":

@@ -39,7 +39,7 @@ def tried(function, name, case):
     lines = said.getvalue().splitlines()
     more = [f"  and {len(lines) - 8} lines more"] if len(lines) > 8 else []
     printed = [*(f"  printed   {line:.80}" for line in lines[:8]), *more]
-    if got is ... or (isinstance(got, tuple) and any(part is ... for part in got)):
+    if got is ...:
         return None, printed
     try:
         if got is None or isinstance(got, str):  # which numpy would take for a number
@@ -94,10 +94,10 @@ def judge(exercise, name):
         return "wrong", str(error)
     if any(got is None for got in found):
         lines = Path(exercise.__file__).read_text("utf-8").splitlines()
-        first = function.__code__.co_firstlineno  # of what is left, the line to write
-        k = next(k for k in range(first, len(lines)) if re.search(r"\.\.\.( |$)", lines[k]))
+        first = function.__code__.co_firstlineno
+        k = next((k for k in range(first, len(lines)) if "return ..." in lines[k]), first)
         return "blank", (
-            f"{name} is still a blank: {file}, line {k + 1}: {lines[k].split('#')[0].strip()}  "
+            f"{name} is still a blank: write what line {k + 1} of {file} returns. "
             f"The task stands at the top of that file; --hint {blank.hint} asks a question"
         )
     expected = on_all_inputs(blank.right, name)
