@@ -10,7 +10,6 @@ export class Reader {
   // passages: [{node, section, look}] in the order of the page; look: what the live figure shows
   constructor(passages, sectionOf, lanes) {
     Object.assign(this, { passages, sectionOf, lanes, shown: null, called: null });
-    this.figures = [...document.querySelectorAll(".part > .fig")];
     this.live = document.getElementById("figure");
     this.beside = window.matchMedia("(min-width: 78rem)");
     for (const span of document.querySelectorAll(".drag")) this.#number(span);
@@ -68,17 +67,15 @@ export class Reader {
   }
 
   // The last passage that begins above a line of the window is in sight. The live figure steps back
-  // where that has no use for it, and where something else needs its room.
+  // where that has no use for it.
   follow() {
     const { innerHeight } = window;
-    const place = (each) => each.getBoundingClientRect();
     const seen = this.passages.filter(({ node }) => node.offsetParent); // not behind a veil
     const line = this.beside.matches ? 0.7 : 1; // of the window; where no figure stands, at once
-    const last = seen.findLast(({ node }) => place(node).top < line * innerHeight) || seen[0];
+    const begins = ({ node }) => node.getBoundingClientRect().top < line * innerHeight;
+    const last = seen.findLast(begins) || seen[0];
     if (!last) return;
-    const over = (box) => box.top < innerHeight && box.bottom > 0;
-    const spread = (each) => over(place(each)) && getComputedStyle(each).marginLeft[0] === "-";
-    this.live.classList.toggle("back", !last.look || this.figures.some(spread));
+    this.live.classList.toggle("back", !last.look);
     if (last === this.shown) return;
     this.shown = last;
     if (last.look) this.#look(last.section, last.look, true);

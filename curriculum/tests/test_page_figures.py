@@ -97,7 +97,9 @@ def test_a_ball_let_go_on_a_spring_is_as_deep_as_that_of_contact_py(draw):
     floor, ball = sponge.shapes("table-top")[0]["y1"], sponge.shapes("ball")[0]
     gap = run.q[-1, 1, 0] / R - 1
     assert (floor - ball["cy"]) / ball["r"] - 1 == pytest.approx(gap, abs=2e-4)
-    assert numbers(sponge.words)[2] == pytest.approx(G / k / R, rel=5e-3)
+    _, force, deep = numbers(sponge.words)
+    assert force == pytest.approx(max(0.0, -gap) * k * R / G, rel=0.06)
+    assert deep == pytest.approx(G / k / R, rel=5e-3)
 
 
 def test_normals_are_drawn_as_detect_contacts_has_them(draw):
@@ -382,7 +384,7 @@ def test_twice_ends_its_steps_as_contact_py_does_and_draws_both_orders(draw):
         assert (chart_x(px), chart_y(py)) == pytest.approx((6.5, off), rel=0.05)
 
 
-def test_the_landing_of_a_series_is_the_first_contact_of_contact_py(v8):
+def test_the_landing_of_a_series_is_the_first_contact_of_contact_py_and_its_push_stops_the_fall(v8):
     scene = contact.scene_of(0, [0.37, 0.9], [2.0, 0.3], vy=[-0.2, 0.0])
     given = {"x": [0, 0], "y": [0.37, 0.9], "vx": [0, 0], "vy": [-0.2, 0], "mass": [2, 0.3]}
     given |= {"radius": [R, R]}
@@ -393,8 +395,11 @@ def test_the_landing_of_a_series_is_the_first_contact_of_contact_py(v8):
         gap = contact.smallest_gap(run.q, scene.radius)
         landing = contact.first_contact(run, scene, 0.003, gap)
         call = f"ENGINE.runModel('{model}', scene, {json.dumps(knobs)}, 200)"
-        call = f"((scene) => ENGINE.series({call}, scene).landing)({json.dumps(given)})"
-        assert v8(call) == landing < 200
+        call = f"((scene) => ENGINE.series({call}, scene))({json.dumps(given)})"
+        landed, push = v8(f"(({{ landing, push }}) => [landing, push[{landing}]])({call})")
+        faster = np.diff(run.v[landing - 1 : landing + 1, 1], axis=0)[0] / 0.003 + G
+        assert landed == landing < 200
+        assert push == pytest.approx(scene.mass @ faster / (2.3 * G), abs=1e-6)
 
 
 def test_a_section_keeps_what_is_set_and_says_what_differs_from_its_text(v8):
