@@ -64,6 +64,9 @@ def everything(args):
     from curriculum.measured import results
     from curriculum.stress import report
 
+    if not args.quick:
+        with needs("bench"):
+            import mujoco  # noqa: F401  # without it a section would judge nothing
     command = "python -m curriculum.stress" + " --quick" * args.quick
     origin = partial(results.origin, command, "curriculum/stress/jobs.py", kept=not args.quick)
     todo = jobs.all_jobs(args.quick)

@@ -24,9 +24,11 @@ HEAD = """# Stress: what must hold on any scene, and where each model breaks
 
 A judgement is one property on one scene, row of a map, command line or match, counted only where \
 it could have failed: without a contact nothing is said of contacts. What was done is read from \
-the states before and after each step, and held against the chapter's formulas."""
-UNFINISHED = """Unfinished sweeps took {above_start:,} scenes above their start's energy, at worst \
-{place}, from {start:.4g} J to {most:.4g} J; {sweeps_most:,.0f} sweeps a step ended every rise."""
+the states before and after each step, and held against the chapter's formulas. U is 2^-53, the \
+largest rounding error of one operation; e is the restitution, v_n a speed along a normal."""
+UNFINISHED = """Unfinished sweeps of `lcp` took {above_start:,} scenes above their start's energy, \
+at worst {place}, from {start:.4g} J to {most:.4g} J; {sweeps_most:,.0f} sweeps a step ended every \
+rise."""
 
 
 def write(found, origins, folder):
@@ -35,13 +37,13 @@ def write(found, origins, folder):
     scenes = sections["scenes"]
     scenes |= {"scenes": len(found["scenes"]), "unfinished": jobs.unfinished(scenes)}
     scenes |= {"ran": jobs.ran(scenes)}
-    scenes["violations"] += jobs.idle(scenes)
     rows = list(sections["maps"]["notes"].pop("penalty").values())
     sections["maps"]["penalty"] = rows
     notes = sections["heaps"]["notes"]
     sections["heaps"]["gains"] = heaps.table_of(notes.pop("gains").values())
     sections["heaps"]["thrown"] = heaps.thrown(notes.pop("thrown").values())
     for name, section in sections.items():
+        section["violations"] += jobs.idle({"ran": {}} | section)
         section["notes"] = {what: len(places) for what, places in sorted(section["notes"].items())}
         sections[name] = results.save(folder, name, section, origins[name])
     draw(folder, sections)
@@ -64,12 +66,13 @@ def summary(sections):
     """How much was judged, and how many violations there are, in one sentence."""
     total = sum(section["judgements"] for section in sections.values())
     wrong = sum(len(section["violations"]) for section in sections.values())
-    scenes = sections["scenes"]["scenes"]
-    ran = ", ".join(f"{model} in {n:,}" for model, n in sections["scenes"]["ran"].items())
+    scenes, ran = sections["scenes"]["scenes"], sections["scenes"]["ran"]
+    fewer = [f", `{model}` in the {n:,} that it promises" for model, n in ran.items() if n < scenes]
+    heaps_run = max(row[0] for row in sections["heaps"]["properties"].values())
     return (
-        f"On {scenes:,} random scenes ({ran}), over the map of `penalty`, at the ends of every "
-        f"flag, beside MuJoCo and on 10,000 heaps, {total:,} judgements found "
-        f"{wrong or 'no'} violation{'s' * (wrong > 1)}."
+        f"{scenes:,} random scenes by every model{''.join(fewer)}; {heaps_run:,} heaps; `penalty` "
+        f"over step and stiffness; every flag at its ends; `soft` beside MuJoCo: {total:,} "
+        f"judgements, {wrong or 'no'} violation{'s' * (wrong != 1)}."
     )
 
 
@@ -91,7 +94,7 @@ def page(sections):
         parts += [f"- **{': '.join(words)}**" for words in section["violations"]]
         notes = [f"- {what}: {count:,}" for what, count in section["notes"].items()]
         if name == "heaps":
-            head = ["dt", "restitution", "model", "gained energy", "most, as a share"]
+            head = ["dt", "heaps", "model", "gained energy", "most, as a share of the start's"]
             parts += [heaps.LIMITS, section["thrown"], results.table(head, section["gains"])]
         if notes:
             parts += ["Not judged, or limits that were met, in scenes:", "\n".join(notes)]
