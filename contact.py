@@ -9,8 +9,8 @@ A table keeps a ball from falling through it: it pushes up, and it never pulls d
     lcp       impulses, found by sweeps: each contact pushes, or its bodies part (a linear
               complementarity problem, solved by projected Gauss-Seidel)
     leapfrog  the same sweeps twice a step: for the way that the balls go, then for their speed
-    exact     from one impact to the next, each at its own time: no time step
     soft      the contact of MuJoCo, a simulator of robots: lcp's sweeps, but each contact gives way
+    exact     from one impact to the next, each at its own time: no time step
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
 
     symbol    meaning                              unit    sign
@@ -64,7 +64,7 @@ except ModuleNotFoundError:
 GRAVITY = -9.81  # m/s^2, along y
 RADIUS = 0.1  # m, of every ball in the scenes; lengths are reported in units of it
 CONTACT_MARGIN = 1e-3  # m: lcp also lists smaller gaps, so a ball at rest stays on the list
-MOST_SWEEPS = 10_000  # of a step: exact then gives up, soft goes on and counts it as unsettled
+MOST_SWEEPS = 10_000  # of a solve: exact then gives up, soft goes on and counts it as unsettled
 LAST_BITS = 2.0**-42  # of the speeds, chosen: soft sweeps until no correction is above it
 SCENES = {"drop": 1, "bounce": 1, "stack": 3, "pile": 24}  # scene: how many balls it usually has
 
@@ -142,7 +142,7 @@ class Contact:
 
     __slots__ = "a b nx ny depth inv_mass m_eff target softness lam".split()
     __slots__ += "start before".split()  # of solve_with_momentum
-    __slots__ += "stays after hits free".split()  # of leapfrog
+    __slots__ += "stays after hits free".split()  # of leapfrog: see ask
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
@@ -159,7 +159,7 @@ class Contact:
 
     def push(self, impulse: float) -> None:
         """Give ball a this impulse [N s] along the normal, and ball b the opposite one."""
-        a, b = self.a, self.b  # the brackets are part of the bits that are promised
+        a, b = self.a, self.b  # the brackets fix the rounding, for the twin and the page, too
         a.vx += impulse * (a.inv_mass * self.nx)
         a.vy += impulse * (a.inv_mass * self.ny)
         if b is not FLOOR:  # 0 times NaN is NaN, and even that must not move the floor
@@ -242,9 +242,9 @@ def contact_target(c, restitution, baumgarte, dt):
     their target is at most -e v_n. So the impulses add no energy on the floor (Moreau 1988); a
     bias, unfinished sweeps, and the move after a bounce can.
     """
-    # A landing of drop: at a gap of 3 mm and v_n = -4.37 m/s no contact is listed, and the ball
-    # moves by dt v_n = -8.7 mm, to a depth of 5.7 mm. The bias is 0.2 / 0.002 s * 5.7 mm = 0.57
-    # m/s: the step ends at 4.5 mm. The next bias is 0.45 m/s, below v_n = 0.55: the ball hops.
+    # A landing of drop, seed 0: at a gap of 2.76 mm no contact is listed. v_n is -4.22 m/s, so the
+    # ball moves by 8.43 mm, to a depth of 5.67 mm. The bias is 0.2 / 0.002 s * 5.67 mm = 0.57 m/s,
+    # and the step ends at 4.54 mm. The next bias is 0.45 m/s, below v_n = 0.55: the ball hops.
     closing = c.depth / dt  # this v_n ends the step with a gap of 0
     bias = baumgarte / dt * c.depth  # < 0 across a gap
     if restitution == 0.0:
@@ -263,7 +263,7 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> int:
 
     Projected Gauss-Seidel: a sweep brings one contact after the other to its target, and each
     disturbs its neighbours; the next sweep mends those. Returns the number of the first sweep in
-    which no correction changed a v_n by more than `tolerance` [m/s]; 0 if there was none. The
+    which no correction was above `tolerance` [m/s]; 0 if there was none. The
     problem is Moreau's (1988), Stewart and Trinkle's (1996), and Anitescu and Potra's (1997).
     """
     for sweep in range(1, iters + 1):
@@ -274,7 +274,7 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> int:
             change = lam - c.lam
             c.push(change)
             c.lam = lam
-            settled = settled and abs(change) <= tolerance * c.m_eff  # NaN never settles
+            settled = settled and abs(change) <= tolerance * c.m_eff
         if settled:  # with a tolerance of 0 no further sweep would change a bit
             return sweep
     return 0
@@ -312,10 +312,11 @@ def remember(balls, contacts):
 
 # --- region: momentum ---
 def solve_with_momentum(contacts, iters: int, tolerance: float = 0.0) -> int:
-    """What solve_contacts finds and returns, in fewer sweeps: after each, lam goes on a little.
+    """What solve_contacts finds and returns; after each sweep, lam goes on a little.
 
-    It goes on by a share of its last change. The share grows from 0 towards 1 (Nesterov 1983), and
-    starts again at 0 when a sweep turns back (O'Donoghue and Candes 2015).
+    In towers and piles that takes far fewer sweeps. It goes on by a share of its last change. The
+    share grows from 0 towards 1 (Nesterov 1983), and starts again at 0 when a sweep turns back
+    (O'Donoghue and Candes 2015).
     """
     t = 1.0
     for c in contacts:
@@ -344,8 +345,9 @@ def leapfrog_step(balls, dt, restitution, iters) -> None:
 
     Without contacts that is leapfrog, exact in a parabola; with contacts that last it is RATTLE
     (Andersen 1983), of second order. It asks the sweep twice. For the way: gap + dt v_n >= 0. For
-    the speed, after the move: v_n >= 0 of those that pushed. lam stays in between: what opened an
-    overlap is taken back then, and throws nobody.
+    the speed, after the move: v_n >= 0 of those that pushed, or what their bounce asks. lam stays
+    in between: what opened an overlap is taken back then, and throws nobody. Where a bounce has no
+    room, the way is asked again without it.
 
     Not mended: sweeps that do not finish let a stack sag, but less than lcp's; several impacts of
     one ball within a step count as one; a bounce on a ball at rest is of first order, since its
@@ -370,7 +372,7 @@ def leapfrog_step(balls, dt, restitution, iters) -> None:
     struck = {ball for c in bounces for ball in (c.a, c.b)}
     for c in closed:
         if not (c.hits or c.a in struck or c.b in struck):
-            turn(c, 0.0)  # to the normal of now; an impact, and what it pushes on, keeps its own
+            turn(c, 0.0)  # normal of now; an impact, and what it pushes on, keeps that of the way
         c.target = c.after
     solve_with_momentum(closed, iters)  # the speed
 
@@ -386,19 +388,24 @@ OPENS = 0.03  # of the two radii, chosen: the most of an overlap that opens in a
 
 
 def ask(c, restitution, dt):
-    """Set what leapfrog asks of contact c [m/s]: target of the way, after of the speed."""
+    """Set what leapfrog asks of contact c [m/s]: target of the way, after of the speed.
+
+    hits: an impact comes within this step. stays: the least v_n of the way without a bounce. free:
+    surely it would stay open, were it alone.
+    """
     turn(c, dt)
     gap, v_n = -c.depth, c.v_n()
-    # of the gap: 0 where both balls fall
+    # acceleration of the gap: 0 where both balls fall
     a_n = GRAVITY * c.ny * ((c.a.inv_mass > 0.0) - (c.b.inv_mass > 0.0))
     when = time_to_impact(gap, v_n, a_n) if gap > 0.0 else 0.0
     hit = v_n + when * a_n if when < dt else 0.0  # v_n of the impact, if it comes now
     c.hits = hit < dt * GRAVITY  # slower is what gravity adds in a step: such a contact stays
-    back = -restitution * (v_n + dt * a_n)  # no target above it: solved impulses add no energy
+    back = -restitution * (v_n + dt * a_n)  # no speed above it: one solve then adds no energy
     c.stays = min(-gap, OPENS * (c.a.radius + c.b.radius)) / dt  # gap + dt v_n >= 0
-    c.free = not c.hits and c.stays < v_n + dt * GRAVITY  # would stay open, were it alone
+    c.free = not c.hits and c.stays < v_n + dt * GRAVITY
     c.target = c.stays
-    fast = v_n < dt * GRAVITY and not c.hits  # meets only what cannot fall away: bounces then
+    # no hit, but fast: if they push, one lies on something and cannot fall away, so they bounce
+    fast = v_n < dt * GRAVITY and not c.hits
     c.after = back if fast else min(0.0, back)
     left = dt - when
     end = left * (-restitution * hit + 0.5 * left * a_n)  # the gap to which it bounces till then
@@ -408,7 +415,7 @@ def ask(c, restitution, dt):
 
 
 def no_room(contacts):
-    """Take back the way of each bounce that drove a ball into one that it would not have met.
+    """Take back the way of each bounce that drove its ball into another, else out of reach.
 
     Else the sweeps push whatever is around to make room for it, and the balls gain energy. Balls
     that push one another count as one crowd. Returns whether there was such a bounce.
@@ -434,7 +441,7 @@ def turn(c, dt):
     """
     a, b = c.a, c.b
     dx, dy = a.x - b.x, a.y - b.y
-    vx, vy = a.vx - b.vx, a.vy - b.vy  # both fall alike, so gravity cancels
+    vx, vy = a.vx - b.vx, a.vy - b.vy  # gravity cancels where both fall
     reach = a.radius + b.radius
     along = dx * vx + dy * vy  # < 0: they come nearer
     fast = vx * vx + vy * vy
@@ -545,7 +552,7 @@ def settle(contacts):
 
 # --- region: exact-when ---
 def next_impact(pairs, gap_a):
-    """How long until the next gap closes [s], and who touches then; moves all depths on to it."""
+    """How long until the next gap closes [s], and who touches then; depths become those of then."""
     roots = [time_to_impact(-c.depth, c.v_n(), a_n) for c, a_n in zip(pairs, gap_a)]
     span = min(roots)
     for c, root, a_n in zip(pairs, roots, gap_a):
@@ -650,7 +657,7 @@ def simulate(step, scene, dt, steps, skip=False, progress=None, kicks=1) -> Run:
         k += flown or 1
         if progress:
             progress(k)
-    rows += 0.0  # one zero and one NaN: chance decides their signs
+    rows += 0.0  # -0 becomes 0, and every NaN the same one: chance decides their signs
     rows[np.isnan(rows)] = math.nan
     q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # kind, state, axis, ball
     return Run(np.arange(len(rows)) * dt, q, v, int((~settled).sum()))
@@ -693,7 +700,7 @@ MODELS = {  # in the order of the table: the knobs that change its runs
 }
 STEPPED = [model for model in MODELS if model != "exact"]
 MANY = 1e6  # of about steps times balls squared: from here on, compiled loops pay
-FEW = 8  # balls, chosen: a column of more is faster by curriculum/exact.py
+FEW = 8  # balls of a column, chosen: more are faster by curriculum/exact.py
 SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default: d0, d1, width [m], mid, power
 HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the hardest contact that MuJoCo allows
