@@ -33,7 +33,9 @@ def exercise(file, *words):
     """Try what the cell above wrote, and print what came of it."""
     here = {"cwd": COURSE, "env": os.environ | {"IN_A_NOTEBOOK": "1"}, "stdin": subprocess.DEVNULL}
     done = subprocess.run([sys.executable, file, *words], capture_output=True, text=True, **here)
-    lines = (done.stdout + done.stderr).replace(file, "the cell above").splitlines()
+    said = (done.stdout + done.stderr).replace(file, "the cell above")
+    said = re.sub(r"line (\d+)", lambda m: f"line {int(m[1]) + 1}", said)    # %%writefile is 1
+    lines = said.replace("--hint", "hint").splitlines()
     print("\n".join(line for line in lines if not line.startswith("next,")))
 
 # %% two

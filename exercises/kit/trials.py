@@ -98,7 +98,7 @@ def judge(exercise, name):
         k = next((k for k in range(first, len(lines)) if "return ..." in lines[k]), first)
         return "blank", (
             f"{name} is still a blank: write what line {k + 1} of {file} returns. "
-            f"The task stands at the top of that file; --hint {blank.hint} asks a question"
+            f"The task stands at its top; --hint {blank.hint} asks a question"
         )
     expected = on_all_inputs(blank.right, name)
     cases = list(zip(blank.inputs, found, expected, prints))
