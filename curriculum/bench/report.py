@@ -21,7 +21,6 @@ TRIED = (  # as the author of each engine would
     "cut at each look, and RK3, to 1e14. Tried, and no better: MuJoCo's RK4, implicitfast and "
     "discrete integrators, other time constants; Drake's Radau integrators."
 )
-EVERYTHING = "Everything, with settings and spread: [results](curriculum/bench/results/README.md)."
 OURS = "leapfrog"  # the model that the contest is about
 TINY = 1e-10  # r, what exact has to stay within
 SHARE = 0.2  # of the fastest peer's time
@@ -94,8 +93,8 @@ def races(section):
 
 def goals(sections):
     """(what was wanted, of what, what was measured, whether that is enough), one by one."""
-    for name in filter(sections.__contains__, GOALS):
-        yield from GOALS[name](sections[name])
+    for name, (goals_of, _) in PARTS.items():
+        yield from goals_of(sections[name]) if name in sections else ()
 
 
 def accuracy_goals(section):
@@ -136,9 +135,6 @@ def skip_goals(section):
             yield wanted, name, number(about["ratio"]), about["ratio"] <= limit
 
 
-GOALS = {"accuracy": accuracy_goals, "pile": pile_goals, "skip": skip_goals}
-
-
 # pages
 
 
@@ -162,7 +158,10 @@ def readme(sections):
             f"{about['cores']} cores of {about['cpu']}, with {', '.join(versions)}.",
             losses(sections),
         ]
-    return "\n\n".join((*parts, EVERYTHING))
+    everything = (
+        "Everything, with settings and spread: [results](curriculum/bench/results/README.md)."
+    )
+    return "\n\n".join((*parts, everything))
 
 
 WISHES = (  # what somebody wants, problems that ask for it, model, words of its setting
@@ -179,17 +178,13 @@ WISHES = (  # what somebody wants, problems that ask for it, model, words of its
 def choices(section):
     """Rows of the README's table: the worst of these problems, with one setting in all of them."""
     found = next(iter(duels(section).values()))  # at equal work
-    for wish, names, family, setting in WISHES:
-        wanted = [
-            p
-            for p in accuracy.unpacked(section["points"])
-            if (p["family"], p["words"], p["dt"]) == (family, setting, problems.REFERENCE_DT)
-            and p["problem"] in names
-        ]
+    usual = [p for p in accuracy.unpacked(section["points"]) if p["dt"] == problems.REFERENCE_DT]
+    for wish, names, *who in WISHES:
+        wanted = [p for p in usual if [p["family"], p["words"]] == who and p["problem"] in names]
         if wanted:
             p = max(wanted, key=lambda p: p["error"])
             peer = found.get(p["problem"], (None, None))[1]
-            yield [wish, f"{family}, {setting}", f"{cell(p)} ({p['problem']})", cell(peer)]
+            yield [wish, ", ".join(who), f"{cell(p)} ({p['problem']})", cell(peer)]
 
 
 def cell(p, won=False):
@@ -262,7 +257,7 @@ def page(sections):
     rows = [[*row, verdict[met]] for *row, met in goals(sections)]
     parts.append(results.table(["goal", "case", "measured", ""], rows))
     for name, section in sections.items():
-        parts += [*PARTS[name](section), results.footer(section)]
+        parts += [*PARTS[name][1](section), results.footer(section)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -349,20 +344,14 @@ def skip_part(section):
     )
 
 
-PARTS = {"accuracy": accuracy_part, "pile": pile_part, "skip": skip_part}
+PARTS = {  # section: its goals, its page
+    "accuracy": (accuracy_goals, accuracy_part),
+    "pile": (pile_goals, pile_part),
+    "skip": (skip_goals, skip_part),
+}
 
 
 # figures
-
-
-def figures(sections):
-    """{file name: SVG text}."""
-    made, section = {}, sections.get("accuracy", {"problems": ()})
-    for name in section["problems"]:
-        made[f"error-{name}.svg"] = error_figure(section, name)
-    if "pile" in sections:
-        made["settled.svg"] = pile_figure(sections["pile"])
-    return made
 
 
 def draw(axis, family, dots, label):
@@ -374,7 +363,7 @@ def draw(axis, family, dots, label):
     for x, y, counts in sorted(dots):
         if counts and (not front or y < front[-1][1]):
             front.append((x, y))
-    plotting.line(axis, *zip(*front or [((), ())]), family, label)
+    plotting.line(axis, [x for x, _ in front], [y for _, y in front], family, label)
 
 
 def error_figure(section, problem):
@@ -409,7 +398,7 @@ def pile_figure(section):
     figure, axes = plotting.figure(
         rows=len(counts),
         height=2.6,
-        below=0.5,
+        below=0.65,
         title="Piles at rest: time a step against depth",
         explained="Left and down is better. A dot is a setting, hollow where balls are still "
         "moving; a line joins the best of an engine at rest.",
@@ -433,5 +422,9 @@ def pile_figure(section):
 
 def write(folder, sections):
     """README.md and the figures into the results folder. Raises ImportError without matplotlib."""
-    for name, text in {"README.md": page(sections), **figures(sections)}.items():
-        results.write_page(folder, name, text)
+    made, section = {"README.md": page(sections)}, sections.get("accuracy", {"problems": ()})
+    made |= {f"error-{name}.svg": error_figure(section, name) for name in section["problems"]}
+    if "pile" in sections:
+        made["settled.svg"] = pile_figure(sections["pile"])
+    for name, content in made.items():
+        results.write_page(folder, name, content)
