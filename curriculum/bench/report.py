@@ -19,7 +19,8 @@ TRIED = (  # as the author of each engine would
     "step off, which makes their flight exact; Drake's discrete solver, CENIC at accuracies of "
     "1e-3 to 1e-9, stiffness 1e8 to 1e12, dissipation 100 and 1,000, read by its dense output and "
     "cut at each look, and RK3, to 1e14. Tried, and no better: MuJoCo's RK4, implicitfast and "
-    "discrete integrators, other time constants; Drake's Radau integrators."
+    "discrete integrators, other time constants. Drake's Radau integrators mostly took more than "
+    "25 s a run; in slide one came to 4.8e-5 r in 380 ms."
 )
 OURS = "leapfrog"  # the model that the contest is about
 TINY = 1e-10  # r, what exact has to stay within
