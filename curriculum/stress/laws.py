@@ -49,7 +49,8 @@ def meeting(motion, k):
     t = (-along - np.sqrt(np.maximum(0.0, along * along - fast * apart))) / fast
     t = np.where((apart > 0.0) & (along < 0.0), np.minimum(motion.dt, t), 0.0)
     x, y = dx + t * vx, dy + t * vy
-    normal[:, len(motion.mass) :] = np.array((x, y)) / np.sqrt(x * x + y * y)
+    of_pairs, distance = normal[:, len(motion.mass) :], np.sqrt(x * x + y * y)
+    np.copyto(of_pairs, np.array((x, y)) / distance, where=distance > 0.0)
     return normal
 
 
