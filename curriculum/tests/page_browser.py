@@ -79,7 +79,7 @@ def visiting(
         once = f"if (!sessionStorage.seen) {{ sessionStorage.seen = 1; {SHOWN} }}"
         context.add_init_script(once)
     page = context.new_page()
-    page.set_default_timeout(20_000)
+    page.set_default_timeout(60_000)  # ms: a busy machine takes long to load a page
     trouble, own = [], ("data:", "blob:", re.split("[?#]", url)[0])
 
     def listen(message):

@@ -7,7 +7,7 @@ FAULTS = [
     # leapfrog's rules
     (C, "        c.target = c.after\n", "        c.target = c.after\n        c.lam = 0.0\n",
      MODELS + "throws_nobody"),
-    (C, "            turn(c, 0.0)  # to", "            pass  # to", SLIDE),
+    (C, "            turn(c, 0.0)  # normal", "            pass  # normal", SLIDE),
     (C, "    accelerate(balls, 0.5 * dt)\n    before",
      "    accelerate(balls, dt)\n    before", MODELS + "with_one_step"),
     (C, "        c.target = max(c.target, (end - max(gap, 0.0)) / dt)\n", "", BOUNCES),

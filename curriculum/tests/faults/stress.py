@@ -19,8 +19,8 @@ AFTER = "c.after = min(-restitution * hit + left * a_n, back)"
 SEEN = {
     "NaN is no explosion": ("~(total - total[0] < EXP", "(total - total[0] >= EXP",
         "finite_or_said_to_have_exploded", "a model is not finite, and that is not said"),
-    "exact is no number after a short flight": ("array((evaluate(Q, times),",
-        "array((evaluate(Q, times) / (times < 1e-2),",
+    "exact is no number after a short flight": ("evaluate(both, times[:, None, None])",
+        "evaluate(both, times[:, None, None]) / (times < 1e-2)[:, None, None]",
         "finite_or_said_to_have_exploded", "exact is not finite"),
     "a flight moves with the old velocity": ("q[1:] = dt * fine[1::", "q[1:] = dt * fine[:-1:",
         "a_skip_changes_no_bit", "skips: a model"),
@@ -92,7 +92,7 @@ SEEN = {
         (TARGET, TARGET.replace("-self.e", "(1e-8 - self.e)"),
         "exact_pushes_and_never_pulls", "velocity after the impacts [m/s]"),
     "what begins to slide falls 1e-4 too slowly":
-        ("a[1] -= self.g * (held", "a[1] -= (1 - 1e-4) * self.g * (held",
+        ("(0.0, -self.g))[:, None] * (held", "(0.0, (1e-4 - 1) * self.g))[:, None] * (held",
         "exact_keeps_its_energy", "lost with e = # [J]"),
     "what rests rises at 1e-3 m/s^2":
         ("held.match(a, -turn[pushes])", "held.match(a, 1e-3 - turn[pushes])",
@@ -110,7 +110,7 @@ SEEN = {
         ("ball.vy += span * a[k]", "ball.vy += span * a[k] - 1e-9 * ball.vy",
         "exact_keeps_its_energy", "lost with e = # [J]"),
     "exact.py gains 1e-9 of v at an event":
-        ("sample(Q, span), now", "sample(Q, span) * [[[1.0]], [[1 + 1e-9]]], now",
+        ("states[:, -1], now", "states[:, -1] * [[[1.0]], [[1 + 1e-9]]], now",
         "exact_keeps_its_energy", "gained since the start [J]", "gained in a step [J]"),
     "exact flies 1e-7 too high":
         ("(ball.vy + 0.5 * t * a[k])", "(ball.vy + (0.5 - 1e-7) * t * a[k])",
@@ -137,7 +137,8 @@ SEEN = {
         "two_free_balls_pass_or_bounce_in_closed_form", "bounce, v [m/s]"),
     "leapfrog asks along the normal of now": ("    turn(c, dt)\n", "",
         "two_free_balls_pass_or_bounce_in_closed_form", "pass, q [m]", "pass, v [m/s]"),
-    "leapfrog ends a step along the normal of its start": ("turn(c, 0.0)  # to", "pass  # to",
+    "leapfrog ends a step along the normal of its start":
+        ("turn(c, 0.0)  # normal", "pass  # normal",
         "leapfrog_is_of_second_order",
         "slide, an eighth of the step", "spread, an eighth of the step"),
     "a bounce on the table keeps the speed that gravity adds":
