@@ -8,6 +8,7 @@ from contact import shown as number
 from curriculum.bench import accuracy, piles, problems, settings, skips
 from curriculum.bench.accuracy import BUDGET, WORK
 from curriculum.bench.engines import ENGINES, LABELS
+from curriculum.commands import write_whole
 from curriculum.measured import results
 from curriculum.run import plotting
 
@@ -428,4 +429,4 @@ def write(folder, sections):
     if "pile" in sections:
         made["settled.svg"] = pile_figure(sections["pile"])
     for name, content in made.items():
-        results.write_page(folder, name, content)
+        write_whole(folder / name, content)

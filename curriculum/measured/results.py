@@ -19,9 +19,9 @@ from pathlib import Path
 
 from curriculum.commands import write_json, write_whole
 from curriculum.measured import stale
-from curriculum.measured.stale import BLOCK, sealed
 from curriculum.regions import ROOT, read_text
 
+BLOCK = re.compile(r"(<!-- generated: (\w+) by .*? -->)\n(.*?)(?=<!-- end -->)", re.DOTALL)
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 NAME = "results.json"
 DIGITS = 6  # significant digits that a results file keeps
@@ -82,25 +82,13 @@ def footer(section: dict) -> str:
     )
 
 
-def sources(name: str) -> tuple:
-    """What the pages and figures of "bench" or "stress" are made of."""
-    return f"{FOLDERS[name]}/{NAME}", f"curriculum/{name}/report.py", "curriculum/run/plotting.py"
-
-
-def write_page(folder: Path, file: str, text: str) -> None:
-    """Write a page or a figure of a results folder, sealed where it is kept."""
-    for name, kept in FOLDERS.items():
-        if folder == ROOT / kept:
-            text = sealed(text, *sources(name))
-    write_whole(folder / file, text)
-
-
 def write_block(name: str, markdown: str) -> None:
     """Put the Markdown of "bench" or "stress" into the project's README, between its markers."""
-    text = sealed(markdown.strip(), *sources(name))
-    own = re.compile(BLOCK.pattern.replace(r"(\w+)", f"({name})"), re.DOTALL)
-    readme = own.sub(lambda match: f"{match[1]}\n{text}", read_text("README.md"))
-    write_whole(ROOT / "README.md", readme)
+
+    def block(match):
+        return f"{match[1]}\n{markdown.strip()}\n" if match[2] == name else match[0]
+
+    write_whole(ROOT / "README.md", BLOCK.sub(block, read_text("README.md")))
 
 
 def machine() -> dict:

@@ -4,10 +4,6 @@ A result keeps {name: fingerprint} of the steps and measures, and of every modul
 stress/ that its own modules import. A fingerprint is taken of the syntax tree: comments,
 docstrings and formatting do not count, and neither do the words of contact.py's region `flags`,
 which are help and errors. A name is a file, or a file "without" some regions.
-
-A seal is the last line of a page, a figure, or a block of the README that a command wrote: a
-comment with the files it was made of, and a hash of these and of the text. Who edits the text, or
-changes what made it and does not write it again, breaks the seal.
 """
 
 import ast
@@ -23,8 +19,6 @@ LESSON = f"contact.py without {' '.join(COMMAND_LINE)}"
 STEPS = (LESSON, *CODE[1:])
 STRING = re.compile(r'"[^"\n]*"')
 OF_PYTHON = re.compile(r"\w+=\[\], |(, )?\w+=\[\]|, (ctx=\w+\(\)|kind='u')")  # which one dumps it
-SEAL = re.compile(r"<!-- sealed ([0-9a-f]{12}) from (.*) -->\n\Z")
-BLOCK = re.compile(r"(<!-- generated: (\w+) by (.*?) -->)\n(.*?)(?=<!-- end -->)", re.DOTALL)
 
 
 def made_by(*files) -> list:
@@ -71,22 +65,3 @@ def changed(code: dict) -> list:
     """The names whose fingerprint is no longer that of a result's {name: fingerprint}."""
     now = fingerprint(*code)
     return [name for name, was in code.items() if now[name] != was]
-
-
-def seal_of(text: str, sources) -> str:
-    """12 hexadecimal digits of a text and of the files that it was made of."""
-    code = fingerprint(*(name for name in sources if name.endswith(".py")))
-    data = [read_text(name) for name in sources if not name.endswith(".py")]
-    return digest([text, code, data])
-
-
-def sealed(text: str, *sources) -> str:
-    """The text with its seal; sources are files of the project."""
-    text = text.rstrip("\n") + "\n"
-    return f"{text}<!-- sealed {seal_of(text, sources)} from {' '.join(sources)} -->\n"
-
-
-def holds(text: str) -> bool:
-    """Whether a text has its seal and is what was written, of what is there today."""
-    seal = SEAL.search(text)
-    return seal is not None and seal[1] == seal_of(text[: seal.start()], seal[2].split())

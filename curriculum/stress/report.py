@@ -1,5 +1,6 @@
 """results.json, README.md and the figure, from the results of the jobs."""
 
+from curriculum.commands import write_whole
 from curriculum.measured import results
 from curriculum.run import plotting
 from curriculum.stress import extremes, heaps, jobs, maps, mujoco_match, properties
@@ -53,9 +54,9 @@ def write(found, origins, folder):
 
 def draw(folder, sections):
     """Write page and figure, and the README's block where the results are kept."""
-    results.write_page(folder, "README.md", page(sections))
+    write_whole(folder / "README.md", page(sections))
     try:
-        results.write_page(folder, "penalty-map.svg", penalty_map(sections["maps"]))
+        write_whole(folder / "penalty-map.svg", penalty_map(sections["maps"]))
     except ImportError as error:
         print(f"no figure: {error}")
     if folder == RESULTS:

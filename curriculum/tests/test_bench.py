@@ -430,3 +430,14 @@ def test_the_pages_show_every_point_and_what_is_missed(tmp_path):
     figure = (tmp_path / "error-drop.svg").read_text("utf-8")
     assert "worst position error [r]" in figure and "leapfrog: leapfrog 0.2" in figure
     assert (tmp_path / "settled.svg").exists()
+
+
+def test_pages_and_readme_are_as_they_are_drawn_of_the_results_that_are_kept():
+    from curriculum.stress import report as stress
+
+    readme = (results.ROOT / "README.md").read_text("utf-8")
+    blocks = {match[2]: match[3].strip() for match in results.BLOCK.finditer(readme)}
+    for name, room in (("bench", report), ("stress", stress)):
+        kept = (results.ROOT / results.FOLDERS[name] / "README.md").read_text("utf-8")
+        assert kept == room.page(results.load(name))
+        assert blocks[name] == room.readme(results.load(name)).strip()

@@ -10,7 +10,7 @@ true of the code only a reader can say, and he is asked when the code changes. m
 hash of every region, of the opening words of contact.py and exact.py (the signs, the promise) and
 of each figure's captions; and every number as the texts last quoted it. Where one of them is
 another today, the gate names the passages that show or name the region, or the sentence that quotes
-the number. What a command writes needs no reader: it has a seal (measured/stale.py).
+the number.
 """
 
 import re
@@ -25,7 +25,7 @@ with needs("dev"):
     import yaml
 
     from curriculum.measured import ledger, results, stale
-    from curriculum.measured.stale import BLOCK
+    from curriculum.measured.results import BLOCK
     from curriculum.regions import ROOT, Region, blank, line_at, read_text, split_all
     from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, TextError, load_meta
 
@@ -183,18 +183,6 @@ class Gate:
             repair = f"read its sentence, then {GATE} --accept"
             self.say(file, line, f"{asked} was {was} and is {now}", repair)
 
-    def check_written(self):
-        """Pages, figures and blocks that a command wrote are as it wrote them."""
-        blocks = list(BLOCK.finditer(read_text(README)))
-        written = [(README, block[4], block[3]) for block in blocks]
-        again = {block[2]: block[3] for block in blocks}
-        for name, folder in results.FOLDERS.items():
-            for file in files(f"{folder}/*.md", f"{folder}/*.svg"):
-                written.append((file, read_text(file), again.get(name, "write it again")))
-        for file, text, command in written:
-            if not stale.holds(text):
-                self.say(file, 1, "is not what was written of today's results", command)
-
     def check_measured(self):
         """Results and rows of the ledger are of today's code, and the rows well formed."""
         for name, folder in results.FOLDERS.items():
@@ -245,7 +233,7 @@ def check() -> int:
     """Print every problem, and the command that accepts what was read."""
     gate = Gate()
     checks = gate.check_marks, gate.check_read, gate.check_names, gate.check_numbers
-    for each in (*checks, gate.check_measured, gate.check_written):
+    for each in (*checks, gate.check_measured):
         each()
     print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")
     if len(gate.changed) > 1:
