@@ -121,5 +121,21 @@ def write_whole(path, content):
 
 
 def write_json(path, data):
-    """Write strict JSON, whole or not at all. Raises ValueError on NaN and infinity."""
-    write_whole(path, json.dumps(data, indent=2, sort_keys=True, allow_nan=False) + "\n")
+    """Write strict JSON, whole or not at all: what is short, or flat, stands in one line.
+
+    Raises ValueError on NaN and infinity.
+    """
+    write_whole(path, laid_out(data) + "\n")
+
+
+def laid_out(data, indent=""):
+    """`data` as JSON, a line for each row of a table."""
+    line, deeper = json.dumps(data, sort_keys=True, allow_nan=False), indent + " "
+    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
+    if len(line) <= 300 or not any(isinstance(each, (dict, list)) for each in inner):
+        return line
+    if isinstance(data, dict):
+        parts = [f"{json.dumps(k)}: {laid_out(v, deeper)}" for k, v in sorted(data.items())]
+    else:
+        parts = [laid_out(each, deeper) for each in data]
+    return f"{line[0]}\n{deeper}" + f",\n{deeper}".join(parts) + f"\n{indent}{line[-1]}"

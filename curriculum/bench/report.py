@@ -282,22 +282,9 @@ def accuracy_part(section):
     )
     yield from (f"Not everywhere: {label}, {why}." for label, why in section["left_out"].items())
     for name, about in section["problems"].items():
-        points = points_of(section, name)
         yield f"## {about['title']}\n\nHard on: {about['stresses']}."
         yield f"![Run time against error: {name}](error-{name}.svg)"
-        yield contests(points, name)
-        yield table(
-            [p for p in points if p["dt"] == problems.REFERENCE_DT],
-            **{"at 2 ms": called, "worst error / r": error_of, "at the end": "final_error"},
-            **{"energy / E0": "energy_error", "deepest / r": "depth", "time [ms]": "ms"},
-        )
-
-
-def error_of(p):
-    """The error of a point, for a table: a spread, or words."""
-    if p["diverged"]:
-        return f"diverged in {p['diverged']} starts"
-    return "reference" if p["error"] is None else p["errors"]
+        yield contests(points_of(section, name), name)
 
 
 def contests(points, problem):
@@ -359,8 +346,10 @@ PARTS = {  # section: its goals, its page
 def draw(axis, family, dots, label):
     """Dots (x, y, whether it counts), faint, hollow where not; a line through the best of them."""
     faint = dict(plotting.look(family), marker="o", ls="", alpha=0.4, markersize=3.5)
-    for x, y, counts in dots:
-        axis.plot(x, y, **faint, mfc=faint["color"] if counts else "none")
+    for counts, fill in ((True, faint["color"]), (False, "none")):
+        axis.plot(
+            *zip(*[dot[:2] for dot in dots if dot[2] == counts] or [((), ())]), **faint, mfc=fill
+        )
     front = []
     for x, y, counts in sorted(dots):
         if counts and (not front or y < front[-1][1]):

@@ -143,7 +143,7 @@ def smaller(text: str) -> str:
     )
     dark = f"@media (prefers-color-scheme: dark) {{svg{{background:#14161b}}{rules}}}"
     text = re.sub(r"(<svg\b[^>]*>)", rf"\1\n<style>{dark}</style>", text, count=1)
-    return "\n".join(words.rstrip() for words in text.splitlines()) + "\n"
+    return re.sub(r">\s+<", "><", " ".join(text.split())) + "\n"
 
 
 @np.errstate(all="ignore")

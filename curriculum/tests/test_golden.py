@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum.commands import Parser
+from curriculum.commands import Parser, write_json
 from curriculum.regions import ROOT
 from curriculum.run import plotting
 
@@ -114,4 +114,4 @@ if __name__ == "__main__":
         "commands": {flags: run_command(flags) for flags in COMMANDS},
         "trajectories": {case: run_trajectory(case) for case in case_names(contact.MODELS)},
     }
-    PINNED.write_text(json.dumps(pins, indent=1) + "\n", "utf-8")
+    write_json(PINNED, pins)
