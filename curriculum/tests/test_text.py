@@ -5,7 +5,6 @@ import hashlib
 import json
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -266,42 +265,28 @@ def test_a_change_of_the_command_line_is_one_of_the_whole_file_alone():
     assert error.value.filename == "contact.py"
 
 
-def test_ledger_has_its_header_and_each_row_is_whole_or_pending(project):
-    for text, wrong in (
-        (PENDING + "ch3.5-contact,cpu,0.01,,,,PENDING\n", "3: neither a whole MEASURED row nor a"),
-        (PENDING.replace("tier", "machine"), "1: the header must be chapter,tier,wallclock_min"),
-    ):
-        (project / "wallclock.csv").write_text(text)
-        assert f"wallclock.csv:{wrong}" in run_gate(project).stdout
+def test_a_row_shows_its_time_in_the_unit_that_reads_best():
+    assert ledger.show({"status": "MEASURED", "wallclock_min": "0.5"}) == "30 s"
+    assert ledger.show({"status": "MEASURED", "wallclock_min": "1.5"}) == "1.5 min"
 
 
-def test_a_row_holds_the_median_in_minutes_and_shows_it_in_the_unit_that_reads_best():
-    assert ledger.minutes([900.0, 30.0, 12.0, 18.0, 240.0, 33.0]) == 0.5
-    row = {"status": "MEASURED", "config_hash": ledger.code_hash()}
-    assert ledger.show(row | {"wallclock_min": "0.5"}) == "30 s"
-    assert ledger.show(row | {"wallclock_min": "1.5"}) == "1.5 min"
-    old = row | {"wallclock_min": "1.5", "config_hash": "0" * 12}
-    assert ledger.show(old) == "1.5 min (stale)"
+def test_measuring_writes_a_whole_row_of_todays_code(monkeypatch, tmp_path, capsys):
+    from curriculum.bench import timing
 
+    times = iter([900.0, *[30.0, 12.0, 18.0] * 3])
+    monkeypatch.setattr(ledger, "LEDGER", tmp_path / "wallclock.csv")
+    monkeypatch.setattr(ledger, "dirty", lambda: "")
+    ledger.LEDGER.write_text(PENDING)
 
-def test_measuring_writes_a_whole_row_of_todays_code(project):
-    pytest.importorskip("rerun", reason="rerun is not installed, and the default run records")
-    for pattern in ("checks.py", "curriculum/*.py", "curriculum/run/*.py", "exercises/**/*"):
-        for path in filter(Path.is_file, ROOT.glob(pattern)):
-            copied = project / path.relative_to(ROOT)
-            copied.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(path, copied)
-    command = "-B", "-m", "curriculum.measured.ledger", "cpu", "--runs", "1"
-    subprocess.run(["git", "init"], cwd=project, check=True, capture_output=True)
-    run = python(*command, cwd=project)
-    assert run.returncode == 1 and "commit these first: ?? checks.py" in run.stderr
-    for words in ("add .", "-c user.name=x -c user.email=x@x commit --message x"):
-        subprocess.run(["git", *words.split()], cwd=project, check=True, capture_output=True)
-    run = python(*command, cwd=project)
-    assert run.returncode == 0 and re.search(r": [\d.]+ (s|min)$", run.stdout.strip()), run.stderr
-    header, pending, row = (project / "wallclock.csv").read_text("utf-8").splitlines()
-    assert f"{header}\n{pending}\n" == PENDING
-    assert row.startswith("ch3.5-contact,cpu,") and row.endswith(",MEASURED")
+    def taken(command, folder):
+        (Path(folder) / "contact.rrd").touch()
+        return next(times)
+
+    monkeypatch.setattr(timing, "whole_process", taken)
+    assert ledger.main(["cpu"]) == 0 and capsys.readouterr().out == "cpu: 18 s\n"
+    assert ledger.LEDGER.read_text().startswith(PENDING)
+    row = ledger.rows()[1]
+    assert row["wallclock_min"] == "0.3" and None not in row.values() and not ledger.stale(row)
 
 
 # numbers by reference, on runs given by hand
