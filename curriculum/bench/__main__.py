@@ -52,8 +52,6 @@ def main(argv=None):
         report.write(folder, sections)
         if folder == FULL:
             results.write_block("bench", report.readme(sections))
-        for wanted, case, found, met in report.goals(sections):
-            print(f"{'met   ' if met else 'MISSED'} {wanted}; {case}: {found}")
     except KeyboardInterrupt:
         print("stopped; what was finished is kept", file=sys.stderr)
         return 130

@@ -57,7 +57,7 @@ def cells(chosen, quick):
 
 def takes(c, dt, substeps):
     """Whether a contestant runs so: whoever is adaptive once, loops in Python without substeps."""
-    if c.adaptive or "sleep" in c.options:
+    if c.adaptive:
         return (dt, substeps) == STEPS[0]
     if c.options.get("python"):
         return substeps == 1
@@ -124,8 +124,8 @@ def point(job, errors, times):
 
 
 def allowed(p, budget=None, work=WORK):
-    """Whether a point competes: at equal work, or within so many us a ball in 2 ms; awake."""
-    if p["error"] is None or p["diverged"] or settings.ASLEEP in p["words"]:
+    """Whether a point competes: at equal work, or within so many us a ball in 2 ms."""
+    if p["error"] is None or p["diverged"]:
         return False
     if budget is None:
         return p["dt"] == problems.REFERENCE_DT and p["work"] <= work

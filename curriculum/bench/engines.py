@@ -4,9 +4,9 @@ Which settings of them compete stands in settings.py. Every engine is optional
 (`pip install -e '.[bench]'`); one that is missing is said to be. The same for all: balls that
 cannot rotate, no friction, no threads, the scene's masses, radii and restitution, gravity 9.81
 m/s^2, and a floor along y = 0. A ball of infinite mass is one that nothing moves. The same means
-for all: a session takes so many substeps for each step that is looked at, and no ball sleeps but
-where the setting says so. What is left of the last step, impulses or forces, begins the next one in
-every engine as shipped. What had to be chosen:
+for all: a session takes so many substeps for each step that is looked at, and no ball sleeps. What
+is left of the last step, impulses or forces, begins the next one in every engine as shipped. What
+had to be chosen:
 
     mujoco    solref: a time constant and a damping ratio, or, both negative, a stiffness and a
               damping given directly. "0 -(1+e)/dt" with solimp near 1 is Newton's impact law:
@@ -94,14 +94,14 @@ class Session:
 
 
 class Ours(Session):
-    """A model of contact.py, by its compiled twin or in Python. To `sleep` is to skip steps.
+    """A model of contact.py, by its compiled twin or in Python; no step is skipped.
 
     It always records. exact has no steps.
     """
 
-    def __init__(self, scene, dt, model, sleep=False, python=False, **knobs):
+    def __init__(self, scene, dt, model, python=False, **knobs):
         self.given = model, scene, dt
-        self.settings, self.python = contact.Settings(skip=sleep, **knobs), python
+        self.settings, self.python = contact.Settings(skip=False, **knobs), python
         self.motion = None
 
     def states(self, n):
@@ -160,7 +160,7 @@ def direct(beta, d, scene, dt):
 class Mujoco(Session):
     """Spring and damper made implicit and convex. `soften(scene, dt)` gives solref and solimp."""
 
-    def __init__(self, scene, dt, soften, sleep=False, speculative=False, **options):
+    def __init__(self, scene, dt, soften, speculative=False, **options):
         import mujoco
         from mujoco import rollout
 
@@ -169,7 +169,7 @@ class Mujoco(Session):
         solref, solimp = soften(scene, dt)
         balls, many = balls_of(scene), len(scene.mass) >= MANY
         options = {"solver": "CG", "jacobian": "sparse"} | options if many else options
-        flags = ' sleep="enable"' * sleep + ' speculative="enable"' * speculative
+        flags = ' speculative="enable"' * speculative
         chosen = " ".join(f'{name}="{value}"' for name, value in options.items())
         self.moving = np.flatnonzero(np.isfinite(scene.mass))
         self.model = mujoco.MjModel.from_xml_string(
@@ -213,7 +213,7 @@ class Mujoco(Session):
 class Pymunk(Session):
     """Chipmunk: sequential impulses with cached sums; position error is pushed out on its own."""
 
-    def __init__(self, scene, dt, iterations, push=None, slop=1e-6, sleep=False):
+    def __init__(self, scene, dt, iterations, push=None, slop=1e-6):
         import pymunk
         import pymunk.batch
         from pymunk._chipmunk_cffi import lib
@@ -223,8 +223,6 @@ class Pymunk(Session):
         space.gravity, space.iterations, space.collision_slop = (0, -GRAVITY), iterations, slop
         if push is not None:  # a share of an overlap in 2 ms; the engine keeps what a second leaves
             space.collision_bias = (1.0 - push) ** 500
-        if sleep:
-            space.sleep_time_threshold = 0.5
         bounce = math.sqrt(scene.restitution)  # the engine multiplies the two bodies' values
         floor = pymunk.Segment(space.static_body, (-FLOOR, 0), (FLOOR, 0), 0)
         floor.elasticity, floor.friction = bounce, 0.0
@@ -240,10 +238,9 @@ class Pymunk(Session):
             ball.elasticity, ball.friction = bounce, 0.0
             space.add(body, ball)
             self.bodies.append(body)
-        # Awake it is the engine alone: of one ball's microsecond, pymunk's own step is two thirds.
-        bare = partial(lib.cpSpaceStep, space._space, dt)
-        self.step = partial(space.step, dt) if sleep else bare
-        if len(self.bodies) > 1 and not np.isinf(scene.mass).any() and not sleep:
+        # the engine alone: of one ball's microsecond, pymunk's own step is two thirds.
+        self.step = partial(lib.cpSpaceStep, space._space, dt)
+        if len(self.bodies) > 1 and not np.isinf(scene.mass).any():
             self.heights = self.many_heights
 
     def heights(self):
@@ -263,14 +260,14 @@ class Pymunk(Session):
 class Box2d3(Session):
     """Box2D 3: soft contacts solved over small substeps, then relaxed."""
 
-    def __init__(self, scene, dt, inner, hertz=None, scale=10.0, sleep=False):
+    def __init__(self, scene, dt, inner, hertz=None, scale=10.0):
         import pyb2d3
 
         self.scale = scale
         self.world = world = pyb2d3.World(
             gravity=(0, -GRAVITY * scale), restitution_threshold=0.0, maximum_linear_speed=1e6
         )
-        world.sleeping_enabled = sleep
+        world.sleeping_enabled = False
         if hertz is not None:  # frequency [Hz], damping ratio, push-out speed
             world.set_contact_tuning(hertz, 10.0, 1e9)
         material = pyb2d3.surface_material(friction=0.0, restitution=scene.restitution)

@@ -1,11 +1,11 @@
-"""What was measured, for a reader: goals met and missed, tables, figures, the README's block.
+"""What was measured, for a reader: tables, figures, the README's block.
 
 All of it is made from results.json alone, so that the same results give the same text.
 """
 
 from contact import MODELS
 from contact import shown as number
-from curriculum.bench import accuracy, piles, problems, settings, skips
+from curriculum.bench import accuracy, piles, problems
 from curriculum.bench.accuracy import BUDGET, WORK
 from curriculum.bench.engines import ENGINES, LABELS
 from curriculum.commands import write_whole
@@ -24,8 +24,6 @@ TRIED = (  # as the author of each engine would
     "25 s a run; in slide one came to 4.8e-5 r in 380 ms."
 )
 OURS = "leapfrog"  # the model that the contest is about
-TINY = 1e-10  # r, what exact has to stay within
-SHARE = 0.2  # of the fastest peer's time
 NEVER = "never beaten"
 LEAST = 1e-17  # r: an error of exactly zero is drawn here
 CONTESTS = {  # words: limits of accuracy.allowed
@@ -90,26 +88,6 @@ def races(section):
             yield count, depth, ours, other, found.get(OURS)
 
 
-# goals
-
-
-def goals(sections):
-    """(what was wanted, of what, what was measured, whether that is enough), one by one."""
-    for name, (goals_of, _) in PARTS.items():
-        yield from goals_of(sections[name]) if name in sections else ()
-
-
-def accuracy_goals(section):
-    for p in accuracy.unpacked(section["points"]):
-        if p["family"] == "exact" and p["error"] is not None and not p["diverged"]:
-            wanted = f"exact: at most {TINY:g} r off"
-            yield wanted, p["problem"], f"{number(p['error'])} r", p["error"] <= TINY
-    for words, found in duels(section).items():
-        lost = lost_in(found)
-        wanted = f"{OURS}: no less accurate than any other engine in any problem"
-        yield wanted, words, "; ".join(lost) or f"{NEVER} in {len(found)}", not lost
-
-
 def lost_in(found):
     """The problems in which another engine is more accurate, with the errors."""
     return [
@@ -117,24 +95,6 @@ def lost_in(found):
         for name, (mine, peer) in found.items()
         if loses(mine, peer)
     ]
-
-
-def pile_goals(section):
-    for count, depth, ours, other, _ in races(section):
-        wanted = f"piles at rest, compiled: at most {SHARE} of the fastest other engine's time"
-        case = f"{count:,} balls, {depth:g} r"
-        if ours and other:
-            ratio = piles.time_at_rest(ours) / piles.time_at_rest(other)
-            yield wanted, case, number(ratio), ratio <= SHARE
-        else:
-            yield wanted, case, f"{'no other' if ours else 'other'} engines get there", bool(ours)
-
-
-def skip_goals(section):
-    for name, limit in skips.LIMITS.items():
-        if about := section["processes"].get(name):
-            wanted = f"whole process: at most {limit} times `import {about['base']}`"
-            yield wanted, name, number(about["ratio"]), about["ratio"] <= limit
 
 
 # pages
@@ -250,16 +210,13 @@ def rest_rows(section):
 
 
 def page(sections):
-    """README.md of the results folder: goals, and every table."""
-    verdict = {True: "met", False: "**missed**"}
+    """README.md of the results folder: who wins, and every table."""
     parts = ["# Run time against error", "Written by `python -m curriculum.bench`; do not edit."]
     if section := sections.get("accuracy"):
         head = [f"{who}, {when}" for when in CONTESTS for who in (OURS, "best other")]
         parts.append(results.table(["", "exact", *head], contest_rows(section)))
-    rows = [[*row, verdict[met]] for *row, met in goals(sections)]
-    parts.append(results.table(["goal", "case", "measured", ""], rows))
     for name, section in sections.items():
-        parts += [*PARTS[name][1](section), results.footer(section)]
+        parts += [*PARTS[name](section), results.footer(section)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -267,9 +224,8 @@ def accuracy_part(section):
     yield (
         "An error is the median over several starts, a time the median over fresh processes "
         "(CPU time, one thread; least to greatest). Everyone is looked at alike: every height, "
-        "every 2 ms; `16 x` are sixteen steps between two looks. Everyone takes every step, but "
-        "where the words say that balls may sleep, or contact.py skips what it knows; such a row "
-        "competes with nobody. Our models are compiled but where the words say Python; compiling "
+        "every 2 ms; `16 x` are sixteen steps between two looks. Everyone takes every step, and no "
+        "ball sleeps. Our models are compiled but where the words say Python; compiling "
         "is not counted (see the piles). pymunk, Box2D and Drake have no loop of their own and are "
         "called from Python, which costs up to a microsecond a call. leapfrog solves twice a step, "
         "so a step of it counts as two substeps. Drake under error control takes as many steps as "
@@ -312,7 +268,7 @@ def pile_part(section):
         f"{fresh} s where it must be compiled, and {again} s later on; neither is in the table. "
         "Ten thousand balls begin as ten settled copies of each engine's own thousand, since a "
         "lattice of so many does not come to rest in reach; only the winners at a thousand run "
-        "there. An engine that does not come to rest there has a row, and counts in no goal."
+        "there. An engine that does not come to rest there has a row, and is compared with nobody."
     )
     yield "![Time a step against depth](settled.svg)"
     for count in dict.fromkeys(row["bodies"] for row in section["rows"]):
@@ -333,11 +289,7 @@ def skip_part(section):
     )
 
 
-PARTS = {  # section: its goals, its page
-    "accuracy": (accuracy_goals, accuracy_part),
-    "pile": (pile_goals, pile_part),
-    "skip": (skip_goals, skip_part),
-}
+PARTS = {"accuracy": accuracy_part, "pile": pile_part, "skip": skip_part}
 
 
 # figures
@@ -363,14 +315,14 @@ def error_figure(section, problem):
     named = accuracy.headline(points).get(problem, {})
     for p in points:
         if not p["diverged"] and (p["error"] is not None or p["family"] == "exact"):
-            dot = max(p["error"] or 0, LEAST), p["ms"]["median"], settings.ASLEEP not in p["words"]
+            dot = max(p["error"] or 0, LEAST), p["ms"]["median"], True
             families.setdefault(p["family"], []).append(dot)
     figure, (axis,) = plotting.figure(
         height=3.7,
         below=1.5,
         title=about["title"],
-        explained="Left and down is better. A faint dot is one setting at one step, hollow where "
-        "balls may sleep; a line joins the best of a family, whose best at equal work is named. "
+        explained="Left and down is better. A faint dot is one setting at one step; "
+        "a line joins the best of a family, whose best at equal work is named. "
         "16 x: sixteen steps from look to look.",
     )
     for family, dots in families.items():
@@ -394,7 +346,7 @@ def pile_figure(section):
         explained="Left and down is better. A dot is a setting, hollow where balls are still "
         "moving; a line joins the best of an engine at rest.",
     )
-    every = [r for r in section["rows"] if settings.ASLEEP not in r["words"] and r["mean_depth"]]
+    every = [row for row in section["rows"] if row["mean_depth"]]
     deep = [max(row["mean_depth"], 1e-9) for row in every]
     for axis, count in zip(axes, counts):
         for engine in dict.fromkeys(row["family"] for row in every):

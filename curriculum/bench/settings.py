@@ -3,9 +3,9 @@
 **To send a better setting, add one line to SETTINGS**, or to PILES: the benchmark runs every line,
 draws the front of all settings of an engine, and names the best. Nothing else has to change. Words
 name the options, so what is said is what is run. Options are those of the session in engines.py;
-`only` names the problems that a setting is for. "may sleep" is shown, and never compared: such a
-setting leaves out steps. "begun half a step off" is a way to start: a step that first accelerates
-and then moves is exact in free flight if the speed that it begins with stands half a step earlier.
+`only` names the problems that a setting is for. "begun half a step off" is a way to start: a step
+that first accelerates and then moves is exact in free flight if the speed that it begins with
+stands half a step earlier.
 """
 
 from functools import partial
@@ -15,8 +15,6 @@ import numpy as np
 
 import contact
 from curriculum.bench import engines
-
-ASLEEP = "may sleep"  # in the words of a setting that is shown and not compared
 
 
 class Setting(NamedTuple):
@@ -70,7 +68,7 @@ def setting(engine, words, only=(), half=0.0, **options):
     """A setting whose words name these options."""
     words = words.format(**options) + ", begun half a step off" * bool(half)
     words = words.replace("substeps", "substep" if options.get("inner") == 1 else "substeps")
-    return Setting(engine, words + f", {ASLEEP}" * ("sleep" in options), options, only, half)
+    return Setting(engine, words, options, only, half)
 
 
 penalty, lcp, leapfrog, soft, exact = (
@@ -96,13 +94,11 @@ rk3 = partial(drake, scheme="runge_kutta3")
 OURS = (
     penalty("k 1e4", stiffness=1e4),
     lcp(SWEEPS, iters=20),
-    lcp(SWEEPS, iters=20, sleep=True),
     lcp(SWEEPS + ", in Python", iters=20, python=True),
     lcp(SWEEPS, SHARED, iters=100),
     *(lcp(WARM, SHARED, iters=n, warm=0.8) for n in (5, 20)),
     lcp(GAIN, iters=20, baumgarte=1.0),
     leapfrog(SWEEPS, iters=20),
-    leapfrog(SWEEPS, iters=20, sleep=True),
     leapfrog("solved, at most {iters} sweeps", SHARED, iters=1000),
     soft("as MuJoCo ships it, or direct where e > 0"),
     soft("time constant 2 dt, ratio 5, d 0.9999", ("drop", "slide", *SHARED),
@@ -113,11 +109,9 @@ SETTINGS = (
     mujoco("as shipped", soften=engines.shipped),
     *(mujoco("time constant 2 dt, ratio 5, d 0.9999", half=h, soften=STIFF) for h in (0, -1)),
     *(mujoco("direct, no push, d 0.9999", half=h, soften=RIGID) for h in (0, -1)),
-    mujoco("direct, no push, d 0.9999", soften=RIGID, sleep=True),
     mujoco("direct, no push, speculative", soften=RIGID, speculative=True),
     mujoco("direct, push 0.2, d 0.999", soften=PUSHED),
     *(pymunk(ITERATIONS, iterations=n) for n in (10, 100)),
-    pymunk(ITERATIONS, iterations=10, sleep=True),
     *(pymunk(PUSHING, iterations=n, push=0.2) for n in (10, 100)),
     *(pymunk(PUSHING, iterations=n, push=1.0) for n in (10, 30, 100)),
     *(pymunk(PUSHING, half=1, iterations=10, push=x) for x in (0.2, 1.0)),
@@ -125,7 +119,6 @@ SETTINGS = (
       for h, n, x in ((0, 30, 2e-7), (1, 10, 1e-7), (1, 30, 1e-10))),
     box2d3(SHIPPED, inner=4),
     *(box2d3(HARD, inner=n, hertz=1e9) for n in (1, 4, 16, 64)),
-    box2d3(HARD, inner=4, hertz=1e9, sleep=True),
     *(box2d3(SCALED, inner=4, hertz=1e9, scale=x) for x in (1.0, 100.0, 1000.0)),
     *(box2d3(SCALED, half=-1, inner=n, hertz=1e9, scale=x)
       for n, x in ((1, 10.0), (1, 100.0), (4, 1.0))),
@@ -151,10 +144,8 @@ PILES = (  # and how many substeps they take for a step of 2 ms
     *((leapfrog(SWEEPS, iters=n), 1) for n in (2, 4, 8, 20)),
     (box2d3(SHIPPED, inner=4), 1),
     *((box2d3(HARD, inner=n, hertz=1e9), 1) for n in (4, 8, 12, 16)),
-    (box2d3(HARD, inner=4, hertz=1e9, sleep=True), 1),
     *((pymunk(ITERATIONS, iterations=n), 1) for n in (10, 30)),
     (pymunk(PUSHING, iterations=10, push=0.2), 1),
-    (pymunk(ITERATIONS, iterations=10, sleep=True), 1),
     (mujoco("as shipped, CG", soften=engines.shipped), 1),
     (mujoco("2 dt, ratio 1, d 0.99, CG", soften=SPRING), 1),
     (mujoco("direct, push 0.2, d 0.999, CG", soften=PUSHED), 1),

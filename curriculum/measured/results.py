@@ -71,14 +71,13 @@ def table(head, rows) -> str:
 
 
 def footer(section: dict) -> str:
-    """One paragraph for the end of a page: when and on what it was measured, and if it is stale."""
-    about, changed = section["measured"], stale.changed(section["measured"]["code"])
+    """One paragraph for the end of a page: when and on what it was measured."""
+    about = section["measured"]
     versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
-    note = f" **Stale**: {', '.join(changed)} changed since; measure again." if changed else ""
     return (
         f"Measured by `{about['command']}` on {about['date']} at commit {about['commit']}, on "
         f"{about['cores']} cores of {about['cpu']} ({about['os']}), with Python {about['python']}, "
-        f"{versions}.{note}"
+        f"{versions}."
     )
 
 

@@ -90,17 +90,14 @@ def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setti
 
 
 @each_setting
-def test_an_engine_comes_to_rest_on_the_floor_awake_and_asleep(setting):
+def test_an_engine_comes_to_rest_on_the_floor(setting):
     session = setting.build(contact.scene_of(0.0, 1.0, vx=1e-5), 0.002)
     session.go(1000)
     q, v = session.state()
     slow = setting.engine == "drake" or "no push" in setting.words  # to push an overlap out
     assert abs(q[1, 0] - R) < (0.2 if slow else 0.02) * R
     assert abs(v).max() < 1e-2
-    if "sleep" not in setting.options:
-        assert v[0, 0] == pytest.approx(1e-5, rel=1e-3), "awake, it slides on for ever"
-    elif setting.engine != "pymunk":  # whose idle threshold waits for longer
-        assert not v.any(), "a ball asleep does not move at all"
+    assert v[0, 0] == pytest.approx(1e-5, rel=1e-3), "awake, it slides on for ever"
 
 
 @each_setting
@@ -212,14 +209,13 @@ def test_times_are_medians_of_runs_after_a_short_one():
     assert 0.0 < taken < time.process_time() - start
 
 
-def test_substeps_and_sleep_reach_ours_and_skips_change_no_bit():
+def test_substeps_reach_ours_and_no_step_is_skipped():
     scene = contact.build_scene("stack")
     run = contact.run_model("lcp", scene, 0.0005, 800, contact.Settings(skip=False))
-    for name in (LANDS, f"{LANDS}, may sleep"):
-        session = settings.BY_NAME[name].build(scene, 0.002, 4)
-        q, v = session.states(200)
-        assert q.tobytes() == run.q[::4].tobytes() and v.tobytes() == run.v[::4].tobytes()
-        assert session.settings.skip is (name != LANDS)
+    session = settings.BY_NAME[LANDS].build(scene, 0.002, 4)
+    q, v = session.states(200)
+    assert q.tobytes() == run.q[::4].tobytes() and v.tobytes() == run.v[::4].tobytes()
+    assert not session.settings.skip
 
 
 @pytest.mark.skipif(bool(engines.not_installed("pymunk")), reason="pymunk is missing")
@@ -266,7 +262,6 @@ def test_the_best_is_the_most_accurate_that_may_compete():
         point("lcp", 0.0100001, 25.0),
         point("lcp", 0.001, 9.0, work=64),
         point("lcp", 0.0001, 9.0, diverged=1),
-        point("lcp", 0.0001, 9.0, words="20 sweeps, may sleep"),
         point("lcp", None, 9.0),
         point("lcp", 0.02, 9.0, dt=0.004),
     ]
@@ -292,11 +287,10 @@ def section_of(points):
     return dict(problems=found, points=accuracy.packed(points), left_out={})
 
 
-@pytest.mark.parametrize("exact, mine, rival", [(1e-12, 0.1, 0.2), (1e-9, 0.2, 0.1)])
-def test_goals_are_met_and_missed_as_the_numbers_say(exact, mine, rival):
-    rows = [point("exact", exact, 1.0), point("leapfrog", mine, 5.0), point("pymunk", rival, 5.0)]
+@pytest.mark.parametrize("mine, rival", [(0.1, 0.2), (0.2, 0.1)])
+def test_who_wins_and_loses_is_as_the_numbers_say(mine, rival):
+    rows = [point("exact", 1e-12, 1.0), point("leapfrog", mine, 5.0), point("pymunk", rival, 5.0)]
     section = section_of(rows)
-    assert [met for *_, met in report.accuracy_goals(section)] == [exact < 1e-10] * 3
     (cells,) = report.contest_rows(section)
     assert [cell.startswith("**") for cell in cells[2:]] == [mine < rival, rival < mine] * 2
     assert ("is never beaten" in report.losses({"accuracy": section})) == (mine < rival)
@@ -375,7 +369,6 @@ ROWS = [
     pile_row("lcp", 1.0, 5e-5, at_rest=False),
     pile_row("leapfrog", 20.0, 5e-4),
     pile_row("box2d3", 40.0, 9e-5),
-    pile_row("box2d3", 0.1, 9e-5, settings.ASLEEP),
     pile_row("pymunk", 3.0, 2e-3),
 ]
 
@@ -385,7 +378,6 @@ def test_only_what_rests_awake_within_the_depth_is_compared():
         (12, 1e-3, ROWS[1], ROWS[4], ROWS[3]),
         (12, 1e-4, ROWS[0], ROWS[4], None),
     ]
-    assert [met for *_, met in report.pile_goals({"rows": ROWS})] == [True, False]
 
 
 def test_what_wins_with_a_thousand_balls_runs_with_ten_thousand():
@@ -423,7 +415,7 @@ def test_the_pages_show_every_point_and_what_is_missed(tmp_path):
         saved[name] = results.save(tmp_path, name, section, origin)
     report.write(tmp_path, saved)
     page = (tmp_path / "README.md").read_text("utf-8")
-    assert "| pymunk | - | - | 0.1 (pymunk 0.1, 2 ms) |" in page and page.count("**missed**") == 5
+    assert "| pymunk | - | - | 0.1 (pymunk 0.1, 2 ms) |" in page
     readme = report.readme(saved)
     assert "beaten in 1 of 1: drop (0.2 r, pymunk 0.1 r)" in readme and readme.count("\n") < 30
     assert "our fastest model 0.125 to 0.75 of" in readme and "leapfrog 0.5 to 0.5" in readme

@@ -200,7 +200,7 @@ def test_a_changed_region_names_who_speaks_of_it_and_is_accepted_by_name(project
     assert hashes["sweep"] == hashlib.sha256(f"{code}# a better word\n".encode()).hexdigest()
 
 
-def test_what_is_quoted_is_kept_until_its_code_changes_and_marked_where_it_is_stale(project):
+def test_what_is_quoted_is_kept_until_its_code_changes(project):
     shown = "from curriculum.text.references import Numbers; print(Numbers().text('{}'), end='')"
 
     def quoted(reference):
@@ -216,11 +216,6 @@ def test_what_is_quoted_is_kept_until_its_code_changes_and_marked_where_it_is_st
     edit(kept, '"before": 0.98', '"before": 0.88')
     edit(kept, f'"{np.__version__}"', '"1.0"')
     assert quoted("fact:jump.before|.4f") == "0.9804"
-    path = project / RESULTS
-    path.parent.mkdir(parents=True)
-    for code, text in ((OLD["code"], "3 (stale)"), (stale.fingerprint("contact.py"), "3")):
-        path.write_text(json.dumps({"skip": {"measured": {"code": code}, "n": 3}}))
-        assert quoted("bench:skip.n") == text
     edit(project / "contact.py", "GRAVITY = -9.81", "GRAVITY = -4.905")
     assert quoted("quality.penalty.rest_penetration_frac|.4f") == "0.0049"
 

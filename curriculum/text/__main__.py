@@ -177,7 +177,7 @@ class Gate:
 
     def check_number(self, file, line, asked, shown):
         """A reference gives what it gave when its sentence was read."""
-        self.quoted[asked] = now = shown.removesuffix(" (stale)")
+        self.quoted[asked] = now = shown
         was = self.meta["numbers"].get(asked, now)
         if was != now:
             repair = f"read its sentence, then {GATE} --accept"

@@ -9,10 +9,9 @@
     {{(a.b - c.d) / e.f|.1f}}                       + - * / and brackets, with blanks around signs
     {{= 1972 | year of the paper}}                  a typed number, with the reason why
 
-FORMAT is Python's; a fraction needs one. Results that were measured on other code are followed by
-"(stale)". A sentence is held to the numbers by a comment that compares two formulas:
-<!-- holds: quality.lcp.energy_excess < 1e-9 -->. What cannot be made raises TextError, which says
-in one line what is known instead.
+FORMAT is Python's; a fraction needs one. A sentence is held to the numbers by a comment that
+compares two formulas: <!-- holds: quality.lcp.energy_excess < 1e-9 -->. What cannot be made raises
+TextError, which says in one line what is known instead.
 """
 
 import json
@@ -33,7 +32,7 @@ import yaml
 import contact
 from curriculum.commands import write_whole
 from curriculum.measured import ledger, results
-from curriculum.measured.stale import changed, fingerprint
+from curriculum.measured.stale import fingerprint
 from curriculum.regions import CODE, NAME, ROOT
 from curriculum.text.facts import FACTS
 
@@ -167,8 +166,7 @@ class Numbers:
             text = format(value, form)
         except ValueError as error:
             raise TextError(f"{form!r} is no format of {formula!r}: {error}") from None
-        shown = typeset(text) if is_number(value) else text
-        return shown + " (stale)" * any(map(stale, OPERAND.findall(formula)))
+        return typeset(text) if is_number(value) else text
 
     def broken(self, claim) -> str:
         """What the two sides of FORMULA < FORMULA (or <= > >= ==) are, where it is not true."""
@@ -182,13 +180,6 @@ class Numbers:
         """The text with every reference replaced."""
         self.prepare(text)
         return REFERENCE.sub(lambda match: self.text(match[1]), text)
-
-
-def stale(operand: str) -> bool:
-    """Whether it quotes a result of other code than today's."""
-    name, _, key = operand.partition(":")
-    section = name in results.FOLDERS and results.load(name)[key.split(".")[0]]
-    return bool(section and changed(section["measured"]["code"]))
 
 
 def typeset(number: str) -> str:
