@@ -1,24 +1,17 @@
-"""What the five models promise: published figures, formulas, properties on any scene, the engine.
-
-The properties are those that the stress test judges on ten thousand scenes; here hypothesis draws
-the scenes, and shrinks one that fails to the simplest.
-"""
+"""What the five models promise: published figures, formulas, the engine; see test_stress, too."""
 
 import math
 from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 import contact
 from contact import STEPPED, Ball, Contact, Settings, build_scene, contact_quality, run_model
 from curriculum.bench import problems
 from curriculum.exact import simulate_exact
 from curriculum.stress import heaps, mujoco_match, scenes
-from curriculum.stress.properties import PROPERTIES, judge
-from curriculum.stress.trial import Trial
+from curriculum.stress.properties import judge
 
 R, G, DT = contact.RADIUS, 9.81, 0.002
 
@@ -67,61 +60,6 @@ def test_largest_steps_without_an_explosion_are_the_published_ones(name, penalty
     assert (grid["penalty"], grid["lcp"], grid["leapfrog"]) == (penalty, 0.064, 0.064)
     assert round(grid["lcp_penetration_frac"], 1) == 2.2 or name == "bounce"
     assert grid["lcp_through"] == "the floor", "deeper than its radius is not ok"
-
-
-# --- properties, on scenes that hypothesis draws -------------------------------------------------
-
-PLACES = st.integers(-16, 16).map(lambda k: k / 16)  # short numbers shrink well
-SPEEDS = st.one_of(st.just(0.0), st.integers(-8, 8).map(lambda k: k / 4), st.floats(-3.0, 3.0))
-
-
-@st.composite
-def specs(draw):
-    """A spec (see stress/scenes.py) of one to four balls, touching and overlapping included."""
-    count = draw(st.integers(1, 4))
-
-    def some(strategy):
-        return draw(st.lists(strategy, min_size=count, max_size=count))
-
-    radius = some(st.sampled_from([0.125, 0.1, 0.0625]))
-    lifts = some(st.one_of(st.just(0.0), st.integers(0, 16).map(lambda k: k / 16)))
-    knobs = {
-        "restitution": [0.0, 0.5, 1.0],
-        "damping": [0.0, 80.0],
-        "dt": [0.002, 0.001, 0.01, 1 / 64],
-        "steps": [5, 40],
-        "stiffness": [1e4, 100.0],
-        "baumgarte": [0.2, 0.0, 1.0],
-        "iters": [20, 1, 100],
-        "solref": [None, [0.02, 1.0]],
-        "warm": [0.0, 0.8],
-    }
-    return {
-        "x": some(PLACES),
-        "y": [r + lift for r, lift in zip(radius, lifts)],
-        "vx": some(SPEEDS),
-        "vy": some(SPEEDS),
-        "mass": some(st.sampled_from([1.0, 0.25, 10.0, math.inf])),
-        "radius": radius,
-    } | {name: draw(st.sampled_from(values)) for name, values in knobs.items()}
-
-
-SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
-
-
-@settings(
-    max_examples=150, deadline=None, derandomize=True, database=None, suppress_health_check=SLOW
-)
-@given(spec=specs())
-def test_every_property_holds_on_scenes_that_hypothesis_draws(spec):
-    still = [0.0 if math.isinf(mass) else 1.0 for mass in spec["mass"]]
-    spec |= {name: [v * s for v, s in zip(spec[name], still)] for name in ("vx", "vy")}
-    violations = {
-        name: words
-        for name, (_, _, words) in judge(Trial(spec), *PROPERTIES.values()).items()
-        if words
-    }
-    assert not violations
 
 
 # --- formulas ------------------------------------------------------------------------------------
