@@ -6,7 +6,6 @@ import json
 import os
 import shlex
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -52,22 +51,13 @@ def quoted(*words):
 
 
 def to_install(package, extra=None):
-    """One line that says how to install a package that is not there, or the extra that brings it.
-
-    With uv it is the same run again, with the package. A system's own Python may lack pip, or
-    refuse to be changed: there it is an environment of one's own.
-    """
-    import sysconfig  # slow, so only where it is needed
-
+    """One line that says how to install a missing package, or the extra that brings it."""
     wanted = ("-e", f"{near(str(ROOT))}[{extra}]") if extra else (package,)
-    refused = Path(sysconfig.get_path("stdlib"), "EXTERNALLY-MANAGED").exists()
     if "UV" in os.environ:
         more = ("--extra", extra) if extra else ("--with", package)
         line = quoted("uv", "run", *more, "python", *sys.orig_argv[1:])
-    elif find_spec("pip") and (sys.prefix != sys.base_prefix or not refused):
-        line = command("-m", "pip", "install", *wanted)
     else:
-        line = f"python3 -m venv .venv && {quoted('.venv/bin/pip', 'install', *wanted)}"
+        line = command("-m", "pip", "install", *wanted)
     return f"{package} is missing; install it: {line}"
 
 

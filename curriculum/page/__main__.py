@@ -1,4 +1,4 @@
-"""python -m curriculum.page [--out FILE] [--pictures FOLDER] [--measure]"""
+"""python -m curriculum.page [--out FILE] [--pictures FOLDER]"""
 
 import sys
 from pathlib import Path
@@ -16,7 +16,6 @@ def main(argv=None):
     add, default = parser.add_argument, Path("outputs/contact.html")
     add("--out", type=Path, default=default, metavar="FILE", help=f"the file to write ({default})")
     add("--pictures", type=Path, metavar="FOLDER", help="and the README's picture of it")
-    add("--measure", action="store_true", help="and how quickly it answers in Chromium")
     args = parser.parse_args(argv)
     if args.out.is_dir():
         parser.error(f"--out: given the folder {args.out}; allowed: a file")
@@ -32,13 +31,10 @@ def main(argv=None):
         return 1
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file; open it in a browser:")
     print(args.out.resolve().as_uri())
-    with needs("dev"):
-        if args.pictures or args.measure:
+    if args.pictures:
+        with needs("dev"):
             from curriculum.tests import page_measure
-        if args.pictures:
-            print(page_measure.photograph(args.out, args.pictures))
-        for line in page_measure.measure(args.out) if args.measure else []:
-            print(line, flush=True)
+        print(page_measure.photograph(args.out, args.pictures))
     return 0
 
 
