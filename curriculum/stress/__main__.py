@@ -71,7 +71,7 @@ def everything(args):
     origin = partial(results.origin, command, "curriculum/stress/jobs.py", kept=not args.quick)
     todo = jobs.all_jobs(args.quick)
     try:
-        origins = dict.fromkeys(todo, origin()) | {"extremes": origin("contact.py")}
+        origins = dict.fromkeys(todo, origin())
     except ValueError as error:  # a tree that is not committed
         sys.exit(f"python -m curriculum.stress: {error}")
     found = {

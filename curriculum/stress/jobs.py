@@ -4,7 +4,7 @@ A job: (place, subject, properties). A place is how its violations are said, suc
 """
 
 import contact
-from curriculum.stress import extremes, heaps, maps, mujoco_match, properties, scenes
+from curriculum.stress import heaps, maps, mujoco_match, properties, scenes
 from curriculum.stress.properties import judge
 from curriculum.stress.trial import Trial
 
@@ -15,7 +15,6 @@ def all_jobs(quick):
     return {
         "scenes": scene_jobs(range(large)) + scene_jobs(range(small), small=True),
         "maps": list(maps.map_jobs(quick)),
-        "extremes": list(extremes.extreme_jobs(quick)),
         "mujoco": list(mujoco_match.match_jobs(quick)),
         "heaps": heaps.heap_jobs(many),
     }

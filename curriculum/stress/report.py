@@ -3,27 +3,25 @@
 from curriculum.commands import write_whole
 from curriculum.measured import results
 from curriculum.run import plotting
-from curriculum.stress import extremes, heaps, jobs, maps, mujoco_match, properties
+from curriculum.stress import heaps, jobs, maps, mujoco_match, properties
 
 FOLDER = results.FOLDERS["stress"]
 RESULTS, QUICK = results.ROOT / FOLDER, results.ROOT / "outputs" / "stress-quick"
 TITLES = {
     "scenes": "Random scenes of up to 30 balls, and small ones of up to four",
     "maps": "A map of penalty: one ball dropped a metre",
-    "extremes": "Every flag of contact.py at its ends",
     "mujoco": "soft against MuJoCo: single steps and whole runs",
     "heaps": "Heaps whose sweeps are done: the energy and the order of leapfrog",
 }
 COLOURS = ("#fde9c9", "#ec9c5a", "#9c4058", "#2b1741")  # light to dark, as an outcome gets worse
 LINE = "#111111"  # over coloured cells, which stay as they are in the dark
 MARKS = (0.3, 1, 3, 10, 30, 100, 300)  # ms
-STATED = vars(properties) | vars(maps) | vars(extremes)  # by their names
-STATED |= vars(mujoco_match) | vars(heaps)
+STATED = vars(properties) | vars(maps) | vars(mujoco_match) | vars(heaps)  # by their names
 HEAD = """# Stress: what must hold on any scene, and where each model breaks
 
 {}
 
-A judgement is one property on one scene, row of a map, command line or match, counted only where \
+A judgement is one property on one scene, row of a map or match, counted only where \
 it could have failed: without a contact nothing is said of contacts. What was done is read from \
 the states before and after each step, and held against the chapter's formulas. U is 2^-53, the \
 largest rounding error of one operation; e is the restitution, v_n a speed along a normal."""
@@ -72,7 +70,7 @@ def summary(sections):
     heaps_run = max(row[0] for row in sections["heaps"]["properties"].values())
     return (
         f"{scenes:,} random scenes by every model{''.join(fewer)}; {heaps_run:,} heaps; `penalty` "
-        f"over step and stiffness; every flag at its ends; `soft` beside MuJoCo: {total:,} "
+        f"over step and stiffness; `soft` beside MuJoCo: {total:,} "
         f"judgements, {wrong or 'no'} violation{'s' * (wrong != 1)}."
     )
 

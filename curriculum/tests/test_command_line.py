@@ -227,15 +227,40 @@ def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
         assert quality[model] == pytest.approx(expected, abs=1e-11)
 
 
-@pytest.mark.parametrize("flags", [
-    "--dt 1000 --stiffness 1e15", "--dt 1e-6 --steps 3", "--mass 1e9 --iters 1",
-    "--solref -1e12 -1e12", "--damping 1e9",
-])  # fmt: skip
-def test_absurd_flags_give_no_warning_and_strict_json(flags, tmp_path, capsys):
+REALS = "0 5e-324 1e-300 1e-100 1e-9 0.5 1 7.3 1e9 1e100 1e308 -1 nan inf".split()
+WHOLE = "0 1 2 17 99999999999999999999 -3 2.5".split()
+EDGES = ("0.02", "1e-300", "1e308", "-1e308", "0"), ("1", "1e-162", "1e308", "0", "-50")
+FLAGS = {
+    **dict.fromkeys(["--dt", "--stiffness", "--damping", "--mass"], REALS),
+    **dict.fromkeys(["--baumgarte", "--restitution", "--warm"], REALS),
+    **dict.fromkeys(["--iters", "--steps", "--bodies", "--seed"], WHOLE),
+    "--solref": [f"{first} {second}" for first in EDGES[0] for second in EDGES[1]],
+    "--solimp": ["0 0 0 0 1", "1 1 1e308 1 1e308", "0.9 0.95 1e-320 0.5 2", "0.1 0.9 0 1e-300 99"],
+}
+TOGETHER = (
+    "--dt 1e200 --stiffness 1e300",
+    "--dt 1e-300 --stiffness 1e308 --damping 1e308",
+    "--dt 0.03 --stiffness 1e9 --mass 1e-9",
+    "--mass 1e9 --stiffness 1e-9 --dt 1",
+    "--restitution 1 --baumgarte 1 --dt 1 --iters 1",
+)
+ENDS = [f"{flag} {value}" for flag, tried in FLAGS.items() for value in tried[::2]]
+
+
+@pytest.mark.parametrize("scene", ["drop", "stack"])
+def test_flags_at_their_ends_give_a_right_report_or_one_line(scene, tmp_path, capsys):
     """A warning is an error in these tests."""
-    status, _, err = main(capsys, *flags.split(), "--no-rerun", "--out", tmp_path)
-    assert (status, err) == (0, "")
-    strict_json(tmp_path / "metrics.json")
+    for flags in (*ENDS, *TOGETHER):
+        few = () if "--steps" in flags else ("--steps", 60)
+        words = "--scene", scene, *flags.split(), *few, "--no-rerun", "--out", tmp_path
+        status, out, err = main(capsys, *words)
+        if status:
+            refused((status, out, err))
+            continue
+        assert err == "", flags
+        for model, row in strict_json(tmp_path / "metrics.json")["quality"].items():
+            (line,) = re.findall(rf"state: .*\b{model}\b.*", out)
+            assert not (line.endswith(" ok") and (row["blew_up"] or row["through"])), (flags, line)
 
 
 @pytest.mark.parametrize("flags", [(), ("--out", "outputs/deeper")])

@@ -1,14 +1,12 @@
 """The stress test sees nothing where nothing is, has tight bounds, and counts."""
 
-import json
-
 import numpy as np
 import pytest
 import scipy  # noqa: F401  # which the stress test loads late: skip by its name
 
 import contact
 from curriculum.stress import __main__ as command
-from curriculum.stress import extremes, heaps, jobs, maps, mujoco_match, scenes
+from curriculum.stress import heaps, jobs, maps, mujoco_match, scenes
 from curriculum.stress.properties import PROPERTIES, unlike
 from curriculum.stress.trial import Trial
 
@@ -90,28 +88,6 @@ def test_at_the_critical_dt_the_map_turns_from_settling_to_not():
     row = maps.PenaltyRow(80.0, 1e4, np.geomspace(1e-3, 0.1, 20))
     settles = [dt for dt in row.dts if row.outcome(dt) == maps.SETTLES]
     assert settles == [dt for dt in row.dts if dt < contact.critical_dt(1.0, 1e4, 80.0)]
-
-
-@pytest.mark.parametrize("flag", extremes.FLAGS)
-def test_the_ends_of_every_flag_give_a_right_report_or_one_line(flag):
-    todo = [job for job in extremes.extreme_jobs(quick=True) if f" {flag} " in job[0]]
-    added = jobs.added_up(map(jobs.run, todo))
-    assert added["violations"] == [] and added["judgements"] == len(todo)
-
-
-def test_a_wrong_word_and_a_traceback_would_be_seen(tmp_path):
-    path = tmp_path / "metrics.json"
-    right = dict.fromkeys((key for key, _ in contact.COLUMNS.values()), 0.5)
-    right |= {"blew_up": False, "through": None, "contact_error_frac": None}
-    for wrong in ({}, {"through": "the floor"}, {"blew_up": True}, {"rest_jitter": None}):
-        path.write_text(json.dumps({"quality": {"lcp": right | wrong}}), "utf-8")
-        trouble = extremes.complaint(0, "state: soft, lcp ok\n", "", path)
-        assert "called ok" in trouble if wrong else trouble is None
-    path.write_text('{"quality": {"lcp": {"depth": Infinity}}}', "utf-8")
-    with pytest.raises(ValueError, match="Infinity"):
-        extremes.complaint(0, "state: lcp ok\n", "", path)
-    assert "refuses" in extremes.complaint(2, "", "Traceback\nValueError: dt\n", path)
-    assert extremes.complaint(2, "", "contact.py: error: given 0; allowed: more\n", path) is None
 
 
 @pytest.mark.parametrize("flags, words", [

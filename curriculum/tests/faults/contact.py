@@ -53,6 +53,7 @@ FAULTS = [
     (C, "EXPLODED = 10.0", "EXPLODED = 11.0", MODELS + "ten_times"),
     (C, "falling = np.abs(last[1] - first[1]).max(initial=0.0) >= -0.5",
      "falling = False and -0.5 <", MODELS + "top_of_its_flight"),
+    (C, 'text = "trembles" if row["trembles"] else "ok"', 'return "ok"', LINE + "at_their_ends"),
     (C, "    if mass == math.inf:\n        return math.inf\n", "", MODELS + "critical_dt_also"),
     # the command line
     (C, 'if re.fullmatch("--[a-z]+=--", word)', 'if re.fullmatch("--[a-z]+=---", word)',
