@@ -12,24 +12,12 @@ import pytest
 from curriculum.tests.page_browser import browser, gecko  # noqa: F401
 
 os.environ.pop("UV", None)  # `uv run pytest` sets it; commands are printed as for any other Python
-FIRST = ("page", "text", "bench", "exercises", "command_line", "page_figures", "notebook", "exact")
-
-
-def pytest_configure(config):
-    """pytest-xdist keeps the order of the files; its own would have one core wait at the end."""
-    config.option.loadscopereorder = False
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers():
     """What `-n auto` starts: one more than there are cores, since tests of the page often wait."""
     return (os.cpu_count() or 1) + 1
-
-
-def pytest_collection_modifyitems(items):
-    """The files that take longest come first."""
-    rank = {f"test_{name}": place for place, name in enumerate(FIRST)}
-    items.sort(key=lambda item: rank.get(item.path.stem, len(rank)))
 
 
 @pytest.hookimpl(wrapper=True)

@@ -25,7 +25,7 @@ def test_no_claim_is_violated_by_the_code_as_it_stands(judged):
 
 
 YES_OR_NO = {"finite_or_said_to_have_exploded", "a_skip_changes_no_bit",
-             "a_far_ball_changes_nothing", "penalty_leaves_above_its_critical_dt"}  # fmt: skip
+             "a_far_ball_changes_nothing", "penalty_settles_as_its_critical_dt_says"}  # fmt: skip
 CHOSEN = {"leapfrog_adds_no_energy_once_its_sweeps_are_done"}
 
 
