@@ -1056,7 +1056,7 @@ def parse_flags(argv):
         parser.error("argument --solref: allowed: two numbers from 1e-06 up, or two up to 0")
     if not args.out.strip():
         parser.error("argument --out: given ''; allowed: the name of a folder")
-    remarks = beside("run.remarks")
+    remarks = beside("show.remarks")
     if remarks and (wrong := remarks.too_much(args.steps, args.bodies or SCENES[args.scene])):
         parser.error(wrong)
     return args
@@ -1121,8 +1121,8 @@ def write_files(args, metrics, runs, scene):
     text = json.dumps(metrics, indent=2, sort_keys=True, allow_nan=False)
     (out / "metrics.json").write_bytes(f"{text}\n".encode())
     yield f"metrics: {out / 'metrics.json'}"
-    recording = args.rerun, "recording", "run.recording", "contact.rrd"
-    picture = args.plot, "picture", "run.plotting", "contact.svg"
+    recording = args.rerun, "recording", "show.recording", "contact.rrd"
+    picture = args.plot, "picture", "show.picture", "contact.svg"
     for asked, name, module, file in (recording, picture):
         if asked and runs:
             try:
@@ -1235,7 +1235,7 @@ def report(args, argv):
     scene = chosen_scene(args, args.seed)
     runs, metrics = collect(args, scene)
     print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
-    if remarks := beside("run.remarks"):
+    if remarks := beside("show.remarks"):
         remarks.print_remarks(args, runs, scene)
     if runs:
         print_table(metrics["quality"], ending)

@@ -112,7 +112,7 @@ def suite(command):
 def checks():
     """What an author runs beside the tests, and the quick measurements."""
     for name, command in {
-        "the gate": "python -m curriculum.text",
+        "the gate": "python -m curriculum.gate",
         "ruff check": "ruff check .",
         "ruff format": "ruff format --check .",
         "types": "python -m mypy",

@@ -10,7 +10,7 @@ from curriculum.bench.accuracy import BUDGET, WORK
 from curriculum.bench.engines import ENGINES, LABELS
 from curriculum.commands import write_whole
 from curriculum.measured import results
-from curriculum.run import plotting
+from curriculum.show import picture
 
 TRIED = (  # as the author of each engine would
     "Tried as their authors would: MuJoCo with its own soft contact, stiff by a time constant, and "
@@ -297,7 +297,7 @@ PARTS = {"accuracy": accuracy_part, "pile": pile_part, "skip": skip_part}
 
 def draw(axis, family, dots, label):
     """Dots (x, y, whether it counts), faint, hollow where not; a line through the best of them."""
-    faint = dict(plotting.look(family), marker="o", ls="", alpha=0.4, markersize=3.5)
+    faint = dict(picture.look(family), marker="o", ls="", alpha=0.4, markersize=3.5)
     for counts, fill in ((True, faint["color"]), (False, "none")):
         axis.plot(
             *zip(*[dot[:2] for dot in dots if dot[2] == counts] or [((), ())]), **faint, mfc=fill
@@ -306,7 +306,7 @@ def draw(axis, family, dots, label):
     for x, y, counts in sorted(dots):
         if counts and (not front or y < front[-1][1]):
             front.append((x, y))
-    plotting.line(axis, [x for x, _ in front], [y for _, y in front], family, label)
+    picture.line(axis, [x for x, _ in front], [y for _, y in front], family, label)
 
 
 def error_figure(section, problem):
@@ -317,7 +317,7 @@ def error_figure(section, problem):
         if not p["diverged"] and (p["error"] is not None or p["family"] == "exact"):
             dot = max(p["error"] or 0, LEAST), p["ms"]["median"], True
             families.setdefault(p["family"], []).append(dot)
-    figure, (axis,) = plotting.figure(
+    figure, (axis,) = picture.figure(
         height=3.7,
         below=1.5,
         title=about["title"],
@@ -332,13 +332,13 @@ def error_figure(section, problem):
     axis.set_xlim(None, min(axis.get_xlim()[1], 30.0))
     below = dict(loc="lower left", bbox_to_anchor=(0.0, 0.22 / figure.get_figheight()))
     figure.legend(**below, borderaxespad=0, handlelength=3.2, fontsize=9)
-    return plotting.svg(figure, section)
+    return picture.svg(figure, section)
 
 
 def pile_figure(section):
     """Time a step against depth, a panel for each size; a setting that does not rest is hollow."""
     counts = list(dict.fromkeys(row["bodies"] for row in section["rows"]))
-    figure, axes = plotting.figure(
+    figure, axes = picture.figure(
         rows=len(counts),
         height=2.6,
         below=0.65,
@@ -359,8 +359,8 @@ def pile_figure(section):
         axis.set(xscale="log", yscale="log", title=f"{count:,} balls", ylabel="time a step [µs]")
         axis.set_xlim(min(deep) / 1.5, max(deep) * 1.5)
     axes[-1].set_xlabel("mean depth of the overlapping contacts [r]")
-    plotting.legend_below(axes[-1], columns=4, down=0.24)
-    return plotting.svg(figure, section)
+    picture.legend_below(axes[-1], columns=4, down=0.24)
+    return picture.svg(figure, section)
 
 
 def write(folder, sections):

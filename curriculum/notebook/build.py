@@ -19,13 +19,13 @@ import nbformat
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from curriculum.regions import ROOT, read_all
-from curriculum.text.references import INCLUDE, Numbers
+from curriculum.gate.references import INCLUDE, Numbers
 
 CHAPTER = ROOT / "curriculum/prose/chapter.md"
 CELLS = ROOT / "curriculum/notebook/cells.py"
 CARRIED = (  # with the pictures of reports that the chapter shows
     "contact.py checks.py exercises/*.py exercises/kit/* curriculum/__init__.py "
-    "curriculum/run/__init__.py curriculum/run/plotting.py curriculum/run/figures.mplstyle "
+    "curriculum/show/__init__.py curriculum/show/picture.py curriculum/show/figures.mplstyle "
     "curriculum/exact.py "
     "curriculum/commands.py curriculum/implicit.py "
     "curriculum/bench/results/error-slide.svg "

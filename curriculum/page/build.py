@@ -17,8 +17,8 @@ from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises, blank_cases
 from curriculum.page.panels import pieces
 from curriculum.regions import ROOT, read_all
-from curriculum.run import plotting
-from curriculum.text.references import Numbers, load_meta
+from curriculum.show import picture
+from curriculum.gate.references import Numbers, load_meta
 
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
 ENGINE = (  # constants of contact.py that engine.js takes
@@ -113,7 +113,7 @@ def environment(**held):
         for name, file, kind, *rest in fonts.FACES
     ]
     made.globals.update(colab=colab, faces=faces, models=[*contact.MODELS], hides=chapter.HIDES)
-    made.globals.update(ledger=ledger, pieces=pieces, plotting=plotting, drawn_by=drawn_by, **held)
+    made.globals.update(ledger=ledger, pieces=pieces, picture=picture, drawn_by=drawn_by, **held)
     return made
 
 

@@ -2,7 +2,7 @@
 
 Beside plain Markdown the chapter may hold
 - an include, a fence with the one line [include-by-region: FILE#NAME]: becomes a code panel;
-- references to numbers in double braces, filled before (curriculum/text/references.py);
+- references to numbers in double braces, filled before (curriculum/gate/references.py);
 - formulas between dollar signs: become MathML;
 - slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
   <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->, and <!-- puzzle -->, behind
@@ -35,7 +35,7 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 import contact
 from curriculum.page import fonts
-from curriculum.text.references import INCLUDE
+from curriculum.gate.references import INCLUDE
 
 CHAPTER = "curriculum/prose/chapter.md"
 KINDS = "figure|exercise|bench|stress|wallclock|puzzle|show"

@@ -2,7 +2,7 @@
 
 from curriculum.commands import write_whole
 from curriculum.measured import results
-from curriculum.run import plotting
+from curriculum.show import picture
 from curriculum.stress import heaps, jobs, maps, mujoco_match, properties
 
 FOLDER = results.FOLDERS["stress"]
@@ -110,7 +110,7 @@ def rows_of(judgements):
 
 def penalty_map(section):
     """What the drop does over dt and stiffness, a panel for each damper, with the theory: SVG."""
-    figure, axes = plotting.figure(
+    figure, axes = picture.figure(
         rows=2,
         title="penalty: what a ball dropped 1 m does",
         below=0.6,
@@ -122,7 +122,7 @@ def penalty_map(section):
         draw_panel(axis, rows, f"c = {damping:g} N s/m; line: k dt² + 2 c dt = 4 m")
     axes[0].get_legend().remove()
     axes[0].set_xlabel("")
-    return plotting.svg(figure, section)
+    return picture.svg(figure, section)
 
 
 def draw_panel(axis, rows, title):

@@ -286,10 +286,10 @@ for name in ("missing", "a", "b", "c"):
 
 def test_what_is_missing_is_none_and_what_is_broken_is_raised(tmp_path):
     shutil.copy(CONTACT, tmp_path)
-    (tmp_path / "curriculum/run").mkdir(parents=True)
-    faults = "import nmpy", "from curriculum.run import no_such_name", "1 / 0"
+    (tmp_path / "curriculum/show").mkdir(parents=True)
+    faults = "import nmpy", "from curriculum.show import no_such_name", "1 / 0"
     for name, fault in zip("abc", faults):
-        (tmp_path / f"curriculum/run/{name}.py").write_text(fault)
+        (tmp_path / f"curriculum/show/{name}.py").write_text(fault)
     done = python("-c", BROKEN, cwd="/", PYTHONPATH=str(tmp_path))
     expected = "None ModuleNotFoundError ImportError ZeroDivisionError"
     assert done.stdout.split() == expected.split()

@@ -74,9 +74,9 @@ def copy(tmp_path):
     folder = tmp_path / "my robot's course"
     leave = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "exercises", folder / "exercises", ignore=leave)
-    (folder / "curriculum/run").mkdir(parents=True)
+    (folder / "curriculum/show").mkdir(parents=True)
     for name in ("contact.py", "checks.py", *(f"curriculum/{name}.py" for name in (
-            "commands", "implicit", "exact", "run/remarks"))):  # fmt: skip
+            "commands", "implicit", "exact", "show/remarks"))):  # fmt: skip
         shutil.copy(ROOT / name, folder / name)
 
     def fill(name, *changes):

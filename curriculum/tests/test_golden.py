@@ -17,7 +17,7 @@ import pytest
 import contact
 from curriculum.commands import Parser, write_json
 from curriculum.regions import ROOT
-from curriculum.run import plotting
+from curriculum.show import picture
 
 PINNED = Path(__file__).with_name("golden.json")
 COMMANDS = (
@@ -73,7 +73,7 @@ def test_every_model_is_pinned():
 def test_whatever_knows_models_knows_this_one(model):
     """Looks, the compiled twin, the page's engine, the benchmark, the stress run."""
     engine = (ROOT / "curriculum/page/engine.js").read_text("utf-8")
-    assert model in plotting.LOOKS and model in plotting.COLORS  # and the page's style, from there
+    assert model in picture.LOOKS and model in picture.COLORS  # and the page's style, from there
     if model in contact.STEPPED:
         steps = re.search(r"export const STEP = \{(.*?)\}", engine, re.S)[1]
         assert f"{model}:" in steps

@@ -1,8 +1,8 @@
 """How every measured figure and the curves of a run are drawn: as small SVG files, text as text.
 
-    figure, axes = plotting.figure(rows=2, title="...", explained="...")
-    plotting.line(axes[0], x, y, "lcp", label="lcp, 20 sweeps")
-    svg = plotting.svg(figure, section)
+    figure, axes = picture.figure(rows=2, title="...", explained="...")
+    picture.line(axes[0], x, y, "lcp", label="lcp, 20 sweeps")
+    svg = picture.svg(figure, section)
 
 One method has one colour, marker and dash in every figure; models have the course's colours. A
 figure is 6 inches wide, so that a phone can show its words large enough, and panels stand below one

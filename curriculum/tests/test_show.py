@@ -13,7 +13,7 @@ import pytest
 
 import contact
 from curriculum import parallel, seeds
-from curriculum.run import plotting
+from curriculum.show import picture
 from curriculum.tests.helpers import CONTACT, ROOT, python
 
 DT, STEPS = 0.004, 300
@@ -59,7 +59,7 @@ def opened(path):
 
 
 def recorded(folder, scene, runs, quality):
-    recording = pytest.importorskip("curriculum.run.recording", reason="rerun is not installed")
+    recording = pytest.importorskip("curriculum.show.recording", reason="rerun is not installed")
     recording.write(str(folder / "contact.rrd"), runs, scene, quality, "a title")
     assert [path.name for path in folder.iterdir()] == ["contact.rrd"], "nothing else is left"
     return opened(folder / "contact.rrd")
@@ -128,7 +128,7 @@ def test_curves_are_the_runs_own_numbers_in_the_models_colour_with_their_peaks(s
         for curve, values in expected.items():
             logged = np.array(recording.series[f"/{curve}/{model}"]["Scalars:scalars"])[:, 0]
             assert logged == pytest.approx(values, rel=1e-9, abs=1e-9), f"{curve} of {model}"
-        rgba = int(plotting.COLORS[model][1:] + "ff", 16)
+        rgba = int(picture.COLORS[model][1:] + "ff", 16)
         assert set(recording.static[f"/world/{model}/balls"]["Points2D:colors"][0]) == {rgba}
         look = recording.static[f"/height/{model}"]
         assert (look["SeriesLines:colors"], look["SeriesLines:names"]) == ([[rgba]], [[model]])
@@ -201,12 +201,12 @@ def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(
     pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     scene, runs, quality = runs_of(contact.build_scene("bounce"))
     for name in ("a.svg", "b.svg"):
-        plotting.write(str(tmp_path / name), runs, scene, quality, "a title")
+        picture.write(str(tmp_path / name), runs, scene, quality, "a title")
     content = (tmp_path / "a.svg").read_text("utf-8")
     assert content == (tmp_path / "b.svg").read_text("utf-8")
     texts = {each.text for each in ElementTree.fromstring(content).iter() if each.text}
-    assert {"a title", *contact.MODELS, *plotting.curves(runs, scene)} <= texts
-    looks = [re.findall(rf'd="M[^"]+"[^>]*style="([^"]*stroke: {plotting.COLORS[model]}[^"]*)"',
+    assert {"a title", *contact.MODELS, *picture.curves(runs, scene)} <= texts
+    looks = [re.findall(rf'd="M[^"]+"[^>]*style="([^"]*stroke: {picture.COLORS[model]}[^"]*)"',
                         content) for model in contact.MODELS]  # fmt: skip
     assert [len(each) for each in looks] == [len(CURVES) + 1] * len(looks), "and in the legend"
     grey = {re.sub("#[0-9a-f]+|stroke-width: [^;]+", "", each[0]) for each in looks}

@@ -1,7 +1,7 @@
 """The gate: what chapter and README say, against what the code is and does.
 
-    python -m curriculum.text                 # check, write nothing; exit 1 and a line a problem
-    python -m curriculum.text --accept NAME   # what speaks of this region has been read, and every
+    python -m curriculum.gate                 # check, write nothing; exit 1 and a line a problem
+    python -m curriculum.gate --accept NAME   # what speaks of this region has been read, and every
                                               # sentence whose number moved (without a name: these)
 
 Regions are included once; slots, flags and names in `code` are of what is there; numbers are quoted
@@ -27,9 +27,9 @@ with needs("dev"):
     from curriculum.measured import ledger, results, stale
     from curriculum.measured.results import BLOCK
     from curriculum.regions import ROOT, Region, blank, line_at, read_text, split_all
-    from curriculum.text.references import HOLDS, INCLUDE, REFERENCE, Numbers, TextError, load_meta
+    from curriculum.gate.references import HOLDS, INCLUDE, REFERENCE, Numbers, TextError, load_meta
 
-GATE = "python -m curriculum.text"
+GATE = "python -m curriculum.gate"
 CHAPTER, README = TEXTS = ("curriculum/prose/chapter.md", "README.md")
 FIGURES = "curriculum/page/figures/*.js"
 FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)

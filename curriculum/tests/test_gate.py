@@ -13,7 +13,7 @@ import pytest
 from curriculum import regions
 from curriculum.measured import ledger, stale
 from curriculum.tests.helpers import ROOT, python
-from curriculum.text import references
+from curriculum.gate import references
 
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
@@ -56,8 +56,8 @@ WRITE = "from curriculum.measured import results; results.write_block('bench', '
 
 
 def run_gate(project, *flags):
-    """`python -m curriculum.text FLAGS` in a project."""
-    return python("-B", "-m", "curriculum.text", *flags, cwd=project)
+    """`python -m curriculum.gate FLAGS` in a project."""
+    return python("-B", "-m", "curriculum.gate", *flags, cwd=project)
 
 
 def edit(path, old, new):
@@ -76,7 +76,7 @@ def line_of(path, text):
 def accepted(tmp_path_factory):
     """A project that is in order; its runs are cached."""
     project = tmp_path_factory.mktemp("project")
-    for room in ("curriculum/text", "curriculum/measured"):
+    for room in ("curriculum/gate", "curriculum/measured"):
         shutil.copytree(ROOT / room, project / room)
     for name in ("__init__", "commands", "regions", "implicit"):
         shutil.copy(ROOT / f"curriculum/{name}.py", project / "curriculum")
@@ -186,7 +186,7 @@ def test_a_changed_region_names_who_speaks_of_it_and_is_accepted_by_name(project
     speak = f"{CHAPTER}:9, {CHAPTER}:{line_of(project / CHAPTER, '## Code')}, {EXERCISE}:1"
     assert failed.stdout == (
         f"contact.py:{line}: sweep changed, and {speak} speak of it; "
-        "repair: read these, then python -m curriculum.text --accept sweep\n"
+        "repair: read these, then python -m curriculum.gate --accept sweep\n"
     )
     refused = run_gate(project, "--accept", "nowhere")
     assert refused.returncode == 2 and refused.stderr.startswith("given nowhere, allowed: setup, ")
@@ -201,7 +201,7 @@ def test_a_changed_region_names_who_speaks_of_it_and_is_accepted_by_name(project
 
 
 def test_what_is_quoted_is_kept_until_its_code_changes(project):
-    shown = "from curriculum.text.references import Numbers; print(Numbers().text('{}'), end='')"
+    shown = "from curriculum.gate.references import Numbers; print(Numbers().text('{}'), end='')"
 
     def quoted(reference):
         return python("-B", "-c", shown.format(reference), cwd=project).stdout
@@ -211,7 +211,7 @@ def test_what_is_quoted_is_kept_until_its_code_changes(project):
     kept = project / ".cache/fact-jump.json"
     edit(kept, '"before": -0.0196', '"before": -0.0296')  # which only who reads it can know
     assert quoted("fact:jump.before|.4f") == "−0.0296"
-    edit(project / "curriculum/text/facts.py", "ball.vy + 1.0", "ball.vy + 2.0")
+    edit(project / "curriculum/gate/facts.py", "ball.vy + 1.0", "ball.vy + 2.0")
     assert quoted("fact:jump.before|.4f") == "0.9804"
     edit(kept, '"before": 0.98', '"before": 0.88')
     edit(kept, f'"{np.__version__}"', '"1.0"')

@@ -4,7 +4,7 @@
     {{drop-dt-0.03:quality.lcp.energy_excess|.2g}}  of another run that meta.yaml names
     {{contact.CONTACT_MARGIN}}  {{contact.Settings.iters}}    a constant, a default
     {{bench:skip.cases}}  {{stress:maps.cells}}     results of the benchmark, of the stress report
-    {{fact:jump.before}}                            a small measured fact, curriculum/text/facts.py
+    {{fact:jump.before}}                            a small measured fact, curriculum/gate/facts.py
     {{wallclock.cpu-laptop}}                        the ledger: minutes, or "not yet measured"
     {{(a.b - c.d) / e.f|.1f}}                       + - * / and brackets, with blanks around signs
     {{= 1972 | year of the paper}}                  a typed number, with the reason why
@@ -34,7 +34,7 @@ from curriculum.commands import write_whole
 from curriculum.measured import ledger, results
 from curriculum.measured.stale import fingerprint
 from curriculum.regions import CODE, NAME, ROOT
-from curriculum.text.facts import FACTS
+from curriculum.gate.facts import FACTS
 
 INCLUDE = re.compile(rf"\[include-by-region: (?P<file>[\w./-]+\.py)#(?P<name>{NAME})\]")
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")
@@ -44,7 +44,7 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FORMULA = re.compile(r"[\d.e+\-*/()\s]+")  # of numbers and signs alone
 CLAIM = re.compile(r"([^<>=]+) (<|<=|>|>=|==) ([^<>=]+)")
 SIGNS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq}
-MADE_BY = (*CODE, *(f"curriculum/{name}.py" for name in ("implicit", "seeds", "text/facts")))
+MADE_BY = (*CODE, *(f"curriculum/{name}.py" for name in ("implicit", "seeds", "gate/facts")))
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 import contact
 from curriculum import commands
-from curriculum.run.plotting import COLORS, contact_impulses, curves
+from curriculum.show.picture import COLORS, contact_impulses, curves
 
 try:
     import rerun as rr

@@ -1,0 +1,1 @@
+"""What keeps text, code, numbers and results together: `python -m curriculum.gate`."""
