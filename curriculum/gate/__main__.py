@@ -24,10 +24,10 @@ from curriculum.commands import Parser, needs, stoppable, write_whole
 with needs("dev"):
     import yaml
 
+    from curriculum.gate.references import HOLDS, INCLUDE, REFERENCE, Numbers, TextError, load_meta
     from curriculum.measured import ledger, results, stale
     from curriculum.measured.results import BLOCK
     from curriculum.regions import ROOT, Region, blank, line_at, read_text, split_all
-    from curriculum.gate.references import HOLDS, INCLUDE, REFERENCE, Numbers, TextError, load_meta
 
 GATE = "python -m curriculum.gate"
 CHAPTER, README = TEXTS = ("curriculum/prose/chapter.md", "README.md")

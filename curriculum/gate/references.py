@@ -31,10 +31,10 @@ import yaml
 
 import contact
 from curriculum.commands import write_whole
+from curriculum.gate.facts import FACTS
 from curriculum.measured import ledger, results
 from curriculum.measured.stale import fingerprint
 from curriculum.regions import CODE, NAME, ROOT
-from curriculum.gate.facts import FACTS
 
 INCLUDE = re.compile(rf"\[include-by-region: (?P<file>[\w./-]+\.py)#(?P<name>{NAME})\]")
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")

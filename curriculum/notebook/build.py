@@ -18,8 +18,8 @@ from pathlib import Path
 import nbformat
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from curriculum.regions import ROOT, read_all
 from curriculum.gate.references import INCLUDE, Numbers
+from curriculum.regions import ROOT, read_all
 
 CHAPTER = ROOT / "curriculum/prose/chapter.md"
 CELLS = ROOT / "curriculum/notebook/cells.py"

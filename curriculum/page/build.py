@@ -11,6 +11,7 @@ import jinja2
 from markupsafe import Markup
 
 import contact
+from curriculum.gate.references import Numbers, load_meta
 from curriculum.measured import ledger
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
@@ -18,7 +19,6 @@ from curriculum.page.exercises import all_exercises, blank_cases
 from curriculum.page.panels import pieces
 from curriculum.regions import ROOT, read_all
 from curriculum.show import picture
-from curriculum.gate.references import Numbers, load_meta
 
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
 ENGINE = (  # constants of contact.py that engine.js takes

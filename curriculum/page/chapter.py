@@ -34,8 +34,8 @@ from mdit_py_plugins.anchors import anchors_plugin
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 import contact
-from curriculum.page import fonts
 from curriculum.gate.references import INCLUDE
+from curriculum.page import fonts
 
 CHAPTER = "curriculum/prose/chapter.md"
 KINDS = "figure|exercise|bench|stress|wallclock|puzzle|show"

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from curriculum import regions
+from curriculum.gate import references
 from curriculum.measured import ledger, stale
 from curriculum.tests.helpers import ROOT, python
-from curriculum.gate import references
 
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
