@@ -20,7 +20,7 @@ from curriculum.regions import ROOT
 
 LEDGER = ROOT / "wallclock.csv"
 COMMAND = "python -m curriculum.measured.ledger"
-TIMED = "contact.py", "curriculum/show/picture.py", "curriculum/show/recording.py"  # a default run
+TIMED = (
     "contact.py",
     "curriculum/show/picture.py",
     "curriculum/show/recording.py",
