@@ -8,8 +8,8 @@ A table keeps a ball from falling through it: it pushes up, and it never pulls d
     penalty   a stiff spring and a damper: one more force, and no other change
     lcp       impulses, found by sweeps: each contact pushes, or its bodies part (a linear
               complementarity problem, solved by projected Gauss-Seidel)
-    leapfrog  the same sweeps twice a step: for the way that the balls go, then for their speed
     soft      the contact of MuJoCo, a simulator of robots: lcp's sweeps, but each contact gives way
+    leapfrog  an impact has its own moment; what lasts is asked twice: where, and how fast
     exact     from one impact to the next, each at its own time: no time step
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
 
@@ -50,6 +50,7 @@ import itertools
 import json
 import math
 import re
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -62,54 +63,6 @@ except ModuleNotFoundError:
     sys.exit(2)
 
 GRAVITY = -9.81  # m/s^2, along y
-RADIUS = 0.1  # m, of every ball in the scenes; lengths are reported in units of it
-CONTACT_MARGIN = 1e-3  # m: lcp also lists smaller gaps, so a ball at rest stays on the list
-MOST_SWEEPS = 10_000  # of a solve: exact then gives up, soft goes on and counts it as unsettled
-LAST_BITS = 2.0**-42  # of the speeds, chosen: soft sweeps until no correction is above it
-SCENES = {"drop": 1, "bounce": 1, "stack": 3, "pile": 24}  # scene: how many balls it usually has
-
-
-# --- region: scenes ---
-class Scene(NamedTuple):
-    """Balls over the floor: q0, v0 (2, N) [m, m/s]; mass [kg] and radius [m], both (N,)."""
-
-    name: str
-    q0: np.ndarray
-    v0: np.ndarray
-    mass: np.ndarray  # nothing changes the velocity of a ball of infinite mass
-    radius: np.ndarray
-    restitution: float  # e; penalty has no such knob
-    damping: float  # c of penalty [N s/m]
-
-
-def scene_of(x, y, mass=1, radius=RADIUS, vx=0, vy=0, restitution=0.0, damping=80.0, name="own"):
-    """The Scene of balls at x, y: a list of numbers each, or one number for all of them."""
-    rows = np.array(np.broadcast_arrays(np.atleast_1d(x), y, vx, vy, mass, radius), float)
-    return Scene(name, rows[:2], rows[2:4], rows[4], rows[5], restitution, damping)
-
-
-def build_scene(name, seed=0, bodies=None, restitution=None, damping=None, mass=1) -> Scene:
-    """The scene of that name, its balls at rest; each None stands for the scene's own value."""
-    rng = np.random.default_rng(seed)
-    draw = rng.uniform(-0.02, 0.02)  # m: the seed moves the start height a little
-    lift = abs(draw)  # m: stack and pile never start inside the floor
-    if name in ("drop", "bounce"):
-        x, y = 0.0, [1.0 + draw]
-    elif name == "stack":
-        x, y = 0.0, [(2 * i + 1) * RADIUS + lift for i in range(bodies or SCENES[name])]
-    elif name == "pile":  # a lattice, twice as wide as high, numbered at random and nudged
-        count = bodies or SCENES[name]
-        width = math.ceil(math.sqrt(2 * count))
-        row, column = np.divmod(rng.permutation(count), width)
-        nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
-        x = 2.5 * RADIUS * (column - 0.5 * (width - 1)) + nudge[0]
-        y = 2.5 * RADIUS * (row + 0.5) + lift + nudge[1]
-    else:
-        raise ValueError(f"scene {name!r}; allowed: {', '.join(SCENES)}")
-    e, c = (0.7, 0.0) if name == "bounce" else (0.0, 80.0)
-    e = e if restitution is None else restitution
-    c = c if damping is None else damping
-    return scene_of(x, y, mass, restitution=e, damping=c, name=name)
 
 
 # --- region: ball ---
@@ -117,39 +70,35 @@ class Ball:
     """A ball: position [m], velocity [m/s], mass [kg], radius [m], and the force on it [N]."""
 
     __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()  # no other name can be set
+    __slots__ += "ax ay since vx_before vy_before".split()  # of leapfrog
 
     def __init__(self, x, y, vx, vy, mass, radius):
         self.x, self.y = x, y
         self.vx, self.vy = vx, vy
-        self.fx, self.fy = 0.0, 0.0
+        self.fx = self.fy = 0.0
         self.mass = mass
         self.inv_mass = 1.0 / mass  # 0 for infinite mass: no push changes its velocity
         self.radius = radius
         self.pushed = {}  # {other ball: impulse of the last step}; see warm_start
+        self.ax = self.ay = self.since = 0.0  # see hold
 
 
 FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)  # shared by all runs; nothing moves it
 
 
-def make_balls(scene: Scene) -> list[Ball]:
-    """The scene's balls, for the steps to move."""
-    columns = np.stack((*scene.q0, *scene.v0, scene.mass, scene.radius), axis=1)
-    return [Ball(*values) for values in columns.tolist()]
-
-
 class Contact:
     """Balls a and b, how deep they overlap [m], and the unit normal (nx, ny) from b to a."""
 
-    __slots__ = "a b nx ny depth inv_mass m_eff target softness lam".split()
+    __slots__ = "a b nx ny depth inv_masses m_eff target softness lam".split()
     __slots__ += "start before".split()  # of solve_with_momentum
-    __slots__ += "stays after hits free".split()  # of leapfrog: see ask
+    __slots__ += "reach gap speed lies when struck".split()  # of leapfrog
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
         self.nx, self.ny, self.depth = nx, ny, depth
-        self.inv_mass = a.inv_mass + b.inv_mass
-        self.m_eff = 1.0 / self.inv_mass if self.inv_mass > 0.0 else 0.0  # effective mass [kg]
-        self.target = self.softness = 0.0  # m/s; R [1/kg] of soft, which then sets m_eff, too
+        self.inv_masses = a.inv_mass + b.inv_mass
+        self.m_eff = 1.0 / self.inv_masses if self.inv_masses > 0.0 else 0.0
+        self.target = self.softness = 0.0  # soft sets the softness, and m_eff with it
         self.lam = 0.0  # the impulse [N s] of this step so far
 
     def v_n(self) -> float:
@@ -159,7 +108,7 @@ class Contact:
 
     def push(self, impulse: float) -> None:
         """Give ball a this impulse [N s] along the normal, and ball b the opposite one."""
-        a, b = self.a, self.b  # the brackets fix the rounding, for the twin and the page, too
+        a, b = self.a, self.b
         a.vx += impulse * (a.inv_mass * self.nx)
         a.vy += impulse * (a.inv_mass * self.ny)
         if b is not FLOOR:  # 0 times NaN is NaN, and even that must not move the floor
@@ -168,6 +117,9 @@ class Contact:
 
 
 # --- region: contacts ---
+CONTACT_MARGIN = 1e-3  # m: lcp lists smaller gaps, too, so that a ball at rest stays on the list
+
+
 def detect_contacts(balls, margin: float = CONTACT_MARGIN) -> list[Contact]:
     """The contacts of balls with the floor and with each other whose gap is below `margin` [m]."""
     contacts = []  # the sweeps take them in this order, so it is part of the result
@@ -209,7 +161,7 @@ def penalty_normal_force(depth, v_n, stiffness, damping):
     return max(0.0, stiffness * depth - damping * v_n)
 
 
-def penalty_force(contacts, stiffness, damping):
+def penalty_force(contacts, dt, stiffness, damping):
     """Add the force of a spring and a damper to the two balls of every contact."""
     for c in contacts:
         f_n = penalty_normal_force(c.depth, c.v_n(), stiffness, damping)
@@ -217,15 +169,228 @@ def penalty_force(contacts, stiffness, damping):
         c.a.fy += f_n * c.ny
         c.b.fx -= f_n * c.nx  # equal and opposite
         c.b.fy -= f_n * c.ny
+        c.lam = dt * f_n
 
 
-def penalty_step(balls, dt: float, stiffness: float, damping: float) -> None:
+def penalty_step(balls, dt: float, stiffness: float, damping: float) -> list[Contact]:
     """One step [s] in which contact is one more force, and the integrator stays what it was."""
-    for ball in balls:
-        ball.fx = ball.fy = 0.0  # the floor's may add up: nobody reads it
-    penalty_force(detect_contacts(balls, margin=0.0), stiffness, damping)
+    contacts = detect_contacts(balls, margin=0.0)
+    penalty_force(contacts, dt, stiffness, damping)
     accelerate(balls, dt)
     move(balls, dt)
+    for ball in balls:
+        ball.fx = ball.fy = 0.0  # for the next step; the floor's may add up: nobody reads it
+    return contacts
+
+
+# --- region: critical-dt ---
+def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -> float:
+    """The largest stable step [s] of penalty for a ball kept in contact, or a stack of them.
+
+    In contact a step is a 2 x 2 matrix. Its eigenvalues stay within 1 (Jury's test) while c >= 0
+    and k dt^2 + 2 c dt < 4 m; solved for dt. Without a damper that is 2 sqrt(m / k).
+    """
+    if damping < 0.0:
+        return 0.0  # such a damper feeds every swing
+    if mass == math.inf:
+        return math.inf
+    if count > 1:  # the stiffest swing of a stack sees so many times the spring and the damper
+        more = 4.0 * math.cos(math.pi / (2 * count + 1)) ** 2
+        stiffness, damping = more * stiffness, more * damping
+    root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
+    return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
+
+
+# --- region: scenes ---
+RADIUS = 0.1  # m, of every ball in the scenes
+SCENES = {"drop": 1, "bounce": 1, "stack": 3, "pile": 24}  # scene: how many balls it usually has
+
+
+class Scene(NamedTuple):
+    """Balls over the floor: q0, v0 (2, N) [m, m/s]; mass [kg] and radius [m], both (N,)."""
+
+    name: str
+    q0: np.ndarray
+    v0: np.ndarray
+    mass: np.ndarray  # nothing changes the velocity of a ball of infinite mass
+    radius: np.ndarray
+    restitution: float  # e; penalty has no such knob
+    damping: float  # c of penalty [N s/m]
+
+
+def scene_of(x, y, mass=1, radius=RADIUS, vx=0, vy=0, restitution=0.0, damping=80.0, name="own"):
+    """The Scene of balls at x, y: a list of numbers each, or one number for all of them."""
+    rows = np.array(np.broadcast_arrays(np.atleast_1d(x), y, vx, vy, mass, radius), float)
+    return Scene(name, rows[:2], rows[2:4], rows[4], rows[5], restitution, damping)
+
+
+def build_scene(name, seed=0, bodies=None, restitution=None, damping=None, mass=1) -> Scene:
+    """The scene of that name, its balls at rest; each None stands for the scene's own value."""
+    if name not in SCENES:
+        raise ValueError(f"scene {name!r}; allowed: {', '.join(SCENES)}")
+    rng = np.random.default_rng(seed)
+    draw = rng.uniform(-0.02, 0.02)  # m: the seed moves the start height a little
+    lift = abs(draw)  # m: stack and pile never start inside the floor
+    count = bodies or SCENES[name]
+    x, y = 0.0, [1.0 + draw]  # drop, bounce
+    if name == "stack":
+        y = [(2 * i + 1) * RADIUS + lift for i in range(count)]
+    if name == "pile":  # a lattice, twice as wide as high, numbered at random and nudged
+        width = math.ceil(math.sqrt(2 * count))
+        row, column = np.divmod(rng.permutation(count), width)
+        nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
+        x = 2.5 * RADIUS * (column - 0.5 * (width - 1)) + nudge[0]
+        y = 2.5 * RADIUS * (row + 0.5) + lift + nudge[1]
+    e, c = (0.7, 0.0) if name == "bounce" else (0.0, 80.0)
+    e = e if restitution is None else restitution
+    c = c if damping is None else damping
+    return scene_of(x, y, mass, restitution=e, damping=c, name=name)
+
+
+def make_balls(scene: Scene) -> list[Ball]:
+    """The scene's balls, for the steps to move."""
+    columns = np.stack((*scene.q0, *scene.v0, scene.mass, scene.radius), axis=1)
+    return [Ball(*values) for values in columns.tolist()]
+
+
+# --- region: simulate ---
+class Run(NamedTuple):
+    """A recording: t (steps + 1,) [s]; q and v (steps + 1, 2, N) [m, m/s]."""
+
+    t: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+
+
+@np.errstate(all="ignore")
+def simulate(step, scene, dt, steps, skip=False, progress=None, kicks=0, see=None) -> Run:
+    """Take that many steps, `step(balls)` each, and record every state.
+
+    see(k, contacts) hears of the contacts that step k returns. progress(k) hears of steps done.
+    With `skip` it leaves out steps whose result is known, and no bit changes. Up to 250 steps of
+    flight are one sum, in which gravity acts `kicks` times a step (0: nobody flies). And a step
+    depends on nothing but the state and the impulses of the last step: when both come back (rest,
+    or any cycle), what follows is a copy. Who sees the contacts sees all: nothing is left out then.
+    """
+    balls = make_balls(scene)
+    rows = np.zeros((steps + 1, len(balls), 4))
+    skip = skip and see is None
+    k, seen = 0, dict[tuple, int]()  # seen: at which step a state came first
+    while True:
+        rows[k] = [(ball.x, ball.y, ball.vx, ball.vy) for ball in balls]
+        if k == steps:
+            break
+        pushed = [(a, b, lam) for a in balls for b, lam in a.pushed.items()]
+        first = seen.setdefault((rows[k].tobytes(), *pushed), k) if skip else k
+        if first < k:  # what came then comes again and again
+            rows[k + 1 :] = rows[first + 1 + np.arange(steps - k) % (k - first)]
+            break
+        flown = fly(balls, dt, rows[k : k + 251], kicks) if skip and kicks > 0 else 0
+        if flown == 0:
+            contacts = step(balls)
+            if see:
+                see(k, contacts)
+        k += flown or 1
+        if progress:
+            progress(k)
+    rows += 0.0  # -0 becomes 0, and every NaN the same one: chance decides their signs
+    rows[np.isnan(rows)] = math.nan
+    q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # kind, state, axis, ball
+    return Run(np.arange(len(rows)) * dt, q, v)
+
+
+# --- region: flight ---
+def fly(balls, dt, rows, kicks):
+    """Take steps, up to one that may see a contact; rows[0] is the state now. Returns how many."""
+    if any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls):  # mostly the cheapest to see
+        return 0
+    if detect_contacts(balls, step_reach(balls, dt)):  # no model looks farther
+        return 0
+    q, v = rows[..., :2], rows[..., 2:]  # views of the rows
+    kick = [dt / kicks * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
+    fine = np.zeros((kicks * (len(rows) - 1) + 1, len(balls), 2))  # velocities after each kick
+    fine[0] = v[0]
+    fine[1:, :, 1] = kick
+    np.add.accumulate(fine, out=fine)  # v, v + dt g, v + dt g + dt g, ...
+    v[:] = fine[::kicks]
+    q[1:] = dt * fine[1::kicks]  # the first kick of a step comes before its move
+    np.add.accumulate(q, out=q)  # in the order of the steps: the same bits
+    gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
+    fastest = np.sqrt(v[..., 0] * v[..., 0] + v[..., 1] * v[..., 1]).max(-1)
+    reach = [reach_of(speed, dt) for speed in fastest.tolist()]
+    near = np.flatnonzero(~(gap >= reach))  # and not gap < reach: NaN is not far away
+    flown = int(near[0]) if len(near) > 0 else len(rows) - 1
+    for ball, values in zip(balls, rows[flown].tolist()):
+        ball.x, ball.y, ball.vx, ball.vy = values
+        ball.pushed = ball.pushed if flown == 0 else {}
+    return flown
+
+
+def step_reach(balls, dt: float) -> float:
+    """How far [m] from one another balls may be that meet in a step: leapfrog looks so far."""
+    fastest = 0.0
+    for ball in balls:
+        fastest = max(fastest, math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy))
+    return reach_of(fastest, dt)
+
+
+def reach_of(fastest, dt):
+    """As far as four of the fastest balls come together [m]: others may drive a ball."""
+    return max(4.0 * dt * (fastest - dt * GRAVITY), CONTACT_MARGIN)
+
+
+# --- region: lcp ---
+def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0) -> list[Contact]:
+    """One step [s]: list contacts, set targets, then gravity, then impulses, then the move."""
+    contacts = detect_contacts(balls)
+    for c in contacts:  # before gravity: else e would also return the g dt just added
+        c.target = contact_target(c, restitution, baumgarte, dt)
+    accelerate(balls, dt)
+    if warm > 0.0:
+        warm_start(contacts, warm)
+    solve_contacts(contacts, iters)
+    if warm > 0.0:
+        remember(balls, contacts)
+    move(balls, dt)
+    return contacts
+
+
+def warm_start(contacts, share=1.0):
+    """Begin with a share of the impulses that the same balls gave each other in the last step."""
+    for c in contacts:
+        c.lam = share * c.a.pushed.get(c.b, 0.0)
+        c.push(c.lam)
+
+
+def remember(balls, contacts):
+    """Keep the impulses for the next step."""
+    for ball in balls:
+        ball.pushed = {}
+    for c in contacts:
+        c.a.pushed[c.b] = c.lam  # a pair always comes in this order, so a's side is enough
+
+
+# --- region: sweep ---
+def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> int:
+    """Find impulses with lam >= 0, w >= 0 and lam w = 0, where w = v_n + R lam - target.
+
+    Projected Gauss-Seidel: a sweep brings one contact after the other to its target, and each
+    disturbs its neighbours; the next sweep mends those. Returns the number of the first sweep in
+    which no correction was above `tolerance` [m/s]; 0 if there was none. The
+    problem is Moreau's (1988), Stewart and Trinkle's (1996), and Anitescu and Potra's (1997).
+    """
+    for sweep in range(1, iters + 1):
+        settled = True
+        for c in contacts:
+            missing = c.target - c.v_n() - c.softness * c.lam  # -w, the velocity that is missing
+            lam = max(0.0, c.lam + missing * c.m_eff)  # the sum is clamped: only a push
+            change = lam - c.lam
+            c.push(change)
+            c.lam = lam
+            settled = settled and abs(change) <= tolerance * c.m_eff
+        if settled:  # with a tolerance of 0 no further sweep would change a bit
+            return sweep
+    return 0
 
 
 # --- region: lcp-target ---
@@ -257,57 +422,92 @@ def contact_target(c, restitution, baumgarte, dt):
     return bounce if meets else min(bounce, closing)
 
 
-# --- region: sweep ---
-def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> int:
-    """Find impulses with lam >= 0, w >= 0 and lam w = 0, where w = v_n + R lam - target.
-
-    Projected Gauss-Seidel: a sweep brings one contact after the other to its target, and each
-    disturbs its neighbours; the next sweep mends those. Returns the number of the first sweep in
-    which no correction was above `tolerance` [m/s]; 0 if there was none. The
-    problem is Moreau's (1988), Stewart and Trinkle's (1996), and Anitescu and Potra's (1997).
-    """
-    for sweep in range(1, iters + 1):
-        settled = True
-        for c in contacts:
-            missing = c.target - c.v_n() - c.softness * c.lam  # -w, the velocity that is missing
-            lam = max(0.0, c.lam + missing * c.m_eff)  # the sum is clamped: only a push
-            change = lam - c.lam
-            c.push(change)
-            c.lam = lam
-            settled = settled and abs(change) <= tolerance * c.m_eff
-        if settled:  # with a tolerance of 0 no further sweep would change a bit
-            return sweep
-    return 0
+# --- region: soft ---
+MOST_SWEEPS = 10_000  # of a solve: soft then goes on with what it has, exact gives up
+LAST_BITS = 2.0**-42  # of the speeds, chosen: soft sweeps until no correction is above it
+SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
+SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default: d0, d1, width [m], mid, power
+HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the hardest contact that MuJoCo allows
 
 
-# --- region: lcp ---
-def lcp_step(balls, dt, restitution, baumgarte, iters, warm=0.0) -> None:
-    """One step [s]: list contacts, set targets, then gravity, then impulses, then the move."""
-    contacts = detect_contacts(balls)
-    for c in contacts:  # before gravity: else e would also return the g dt just added
-        c.target = contact_target(c, restitution, baumgarte, dt)
+def soft_step(balls, dt: float, solref: tuple, solimp: tuple) -> list[Contact]:
+    """One step [s] like lcp's, but softened, and swept until no correction is above LAST_BITS."""
+    contacts = detect_contacts(balls, margin=0.0)
+    for c in contacts:
+        soften(c, dt, solref, solimp)
     accelerate(balls, dt)
-    if warm > 0.0:
-        warm_start(contacts, warm)
-    solve_contacts(contacts, iters)
-    if warm > 0.0:
-        remember(balls, contacts)
-    move(balls, dt)
-
-
-def warm_start(contacts, share=1.0):
-    """Begin with a share of the impulses that the same balls gave each other in the last step."""
+    fastest = 0.0
     for c in contacts:
-        c.lam = share * c.a.pushed.get(c.b, 0.0)
-        c.push(c.lam)
-
-
-def remember(balls, contacts):
-    """Keep the impulses for the next step."""
+        fastest = max(fastest, abs(c.target))
     for ball in balls:
-        ball.pushed = {}
-    for c in contacts:
-        c.a.pushed[c.b] = c.lam  # a pair always comes in this order, so a's side is enough
+        fastest = max(fastest, abs(ball.vx), abs(ball.vy))
+    warm_start(contacts, 1.0)  # with R > 0 there is one answer, wherever the sweeps begin
+    solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * fastest)
+    remember(balls, contacts)
+    move(balls, dt)
+    return contacts
+
+
+def soften(c, dt, solref, solimp):
+    """Give contact c the target and the softness that MuJoCo's contact has.
+
+    A spring K [1/s^2] and a damper B [1/s] ask for the acceleration K d depth - B v_n, whatever
+    the mass (MuJoCo's mj_makeImpedance, mj_referenceConstraint). The softness R [1/kg] lets the
+    contact miss it: the less, the nearer d is to 1.
+    """
+    d = impedance(c.depth, solimp)
+    d1 = solimp[1]
+    if solref[0] > 0.0:  # time constant [s] and damping ratio
+        timeconst, dampratio = solref
+        K = 1.0 / (d1 * d1 * timeconst * timeconst * dampratio * dampratio)
+        B = 2.0 / (d1 * timeconst)
+    else:  # direct: minus stiffness, minus damping
+        K = -solref[0] / (d1 * d1)
+        B = -solref[1] / d1
+    v_n = c.v_n()  # before gravity acts
+    c.target = v_n + dt * (K * d * c.depth - B * v_n)
+    c.softness = max(1e-15, (1.0 - d) / d * c.inv_masses)  # no less: MuJoCo's mjMINVAL
+    c.m_eff = 1.0 / (c.inv_masses + c.softness)
+
+
+def soft_defaults(restitution, dt, solref=None, solimp=None) -> tuple[tuple, tuple]:
+    """The solref and solimp a run uses, within MuJoCo's bounds. None stands for the default."""
+    if solref is None and restitution > 0.0:
+        # minus stiffness and minus damping: this damping, in a hard contact, turns v_n into -e v_n
+        # within one step; there is no spring then, so a ball at rest sinks on, slowly
+        solref, solimp = (0.0, -(1.0 + restitution) / dt), solimp or HARD
+    elif solref is None or solref[0] > 0.0:
+        timeconst, dampratio = solref or SOLREF
+        solref = max(timeconst, 2.0 * dt), dampratio  # MuJoCo's refsafe: no faster than two steps
+    d0, d1, width, mid, power = solimp or SOLIMP
+    d0, d1, mid = (min(max(share, 0.0001), 0.9999) for share in (d0, d1, mid))
+    return solref, (d0, d1, width, mid, max(power, 1.0))
+
+
+# --- region: soft-impedance ---
+def impedance(depth: float, solimp: tuple) -> float:
+    """How hard the contact is at that depth [m], from 0 to 1: MuJoCo's d (its getimpedance)."""
+    d0, d1, width, mid, power = solimp  # d0 at the surface, d1 from a depth of `width` [m] on
+    if width <= 1e-15:  # m; MuJoCo takes the mean then
+        return 0.5 * (d0 + d1)
+    if depth >= width:
+        return d1
+    share = depth / width  # between: an S of two powers, which meet where share is mid
+    if share <= mid:
+        rise = raised(share, power) / raised(mid, power - 1.0)
+    else:
+        rise = 1.0 - raised(1.0 - share, power) / raised(1.0 - mid, power - 1.0)
+    return d0 + rise * (d1 - d0)
+
+
+def raised(x, power):
+    """x to that power; a whole one by products, which round alike in every language."""
+    if power != int(power):
+        return x**power
+    product = 1.0
+    for _ in range(int(power)):
+        product *= x
+    return product
 
 
 # --- region: momentum ---
@@ -340,134 +540,173 @@ def solve_with_momentum(contacts, iters: int, tolerance: float = 0.0) -> int:
 
 
 # --- region: leapfrog ---
-def leapfrog_step(balls, dt, restitution, iters) -> None:
-    """One step [s]: half of gravity, ask for the way, move, half of gravity, ask for the speed.
-
-    Without contacts that is leapfrog, exact in a parabola; with contacts that last it is RATTLE
-    (Andersen 1983), of second order. It asks the sweep twice. For the way: gap + dt v_n >= 0. For
-    the speed, after the move: v_n >= 0 of those that pushed, or what their bounce asks. lam stays
-    in between: what opened an overlap is taken back then, and throws nobody. Where a bounce has no
-    room, the way is asked again without it.
-
-    Not mended: sweeps that do not finish let a stack sag, but less than lcp's; several impacts of
-    one ball within a step count as one; a bounce on a ball at rest is of first order, since its
-    time is that of free flight; a long step can drive a heavy ball through light ones.
-    """
-    contacts = detect_contacts(balls, step_reach(balls, dt))
-    for c in contacts:
-        ask(c, restitution, dt)
-    accelerate(balls, 0.5 * dt)
-    before = [(ball.vx, ball.vy) for ball in balls]
-    solve_with_momentum(contacts, iters)  # the way
-    if no_room(contacts):
-        for ball, (vx, vy) in zip(balls, before):
-            ball.vx, ball.vy = vx, vy
-        for c in contacts:
-            c.lam = 0.0
-        solve_with_momentum(contacts, iters)
-    move(balls, dt)
-    accelerate(balls, 0.5 * dt)
-    closed = [c for c in contacts if c.lam > 0.0]
-    bounces = [c for c in closed if c.hits and restitution > 0.0]
-    struck = {ball for c in bounces for ball in (c.a, c.b)}
-    for c in closed:
-        if not (c.hits or c.a in struck or c.b in struck):
-            turn(c, 0.0)  # normal of now; an impact, and what it pushes on, keeps that of the way
-        c.target = c.after
-    solve_with_momentum(closed, iters)  # the speed
-
-
-def step_reach(balls, dt: float) -> float:
-    """How far [m] two balls come towards each other in a step, both as fast as the fastest gets."""
-    fastest = max(0.0, *(math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy) for ball in balls))
-    return max(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))
-
-
-# --- region: leapfrog-ask ---
 OPENS = 0.03  # of the two radii, chosen: the most of an overlap that opens in a step
 
 
-def ask(c, restitution, dt):
-    """Set what leapfrog asks of contact c [m/s]: target of the way, after of the speed.
+def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
+    """One step [s]: impacts; half of gravity, where, move; half of gravity, how fast.
 
-    hits: an impact comes within this step. stays: the least v_n of the way without a bounce. free:
-    surely it would stay open, were it alone.
+    An impact has its own moment, and is asked once. A contact that lasts is asked twice: where may
+    it go, gap + dt v_n >= 0; and after the move, how fast, v_n >= 0 of those that pushed. lam stays
+    in between: what opened an overlap is taken back then, and throws nobody. Without contacts that
+    is leapfrog, exact in a parabola; with contacts that last it is RATTLE (Andersen 1983).
+
+    Not mended: sweeps that do not finish let a stack sag; of more than MOST_STRIKES moments in a
+    step the last are taken as one; a ball that another drives farther than step_reach meets late.
     """
-    turn(c, dt)
-    gap, v_n = -c.depth, c.v_n()
-    # acceleration of the gap: 0 where both balls fall
-    a_n = GRAVITY * c.ny * ((c.a.inv_mass > 0.0) - (c.b.inv_mass > 0.0))
-    when = time_to_impact(gap, v_n, a_n) if gap > 0.0 else 0.0
-    hit = v_n + when * a_n if when < dt else 0.0  # v_n of the impact, if it comes now
-    c.hits = hit < dt * GRAVITY  # slower is what gravity adds in a step: such a contact stays
-    back = -restitution * (v_n + dt * a_n)  # no speed above it: one solve then adds no energy
-    c.stays = min(-gap, OPENS * (c.a.radius + c.b.radius)) / dt  # gap + dt v_n >= 0
-    c.free = not c.hits and c.stays < v_n + dt * GRAVITY
-    c.target = c.stays
-    # no hit, but fast: if they push, one lies on something and cannot fall away, so they bounce
-    fast = v_n < dt * GRAVITY and not c.hits
-    c.after = back if fast else min(0.0, back)
-    left = dt - when
-    end = left * (-restitution * hit + 0.5 * left * a_n)  # the gap to which it bounces till then
-    if c.hits and end > 0.0:
-        c.target = max(c.target, (end - max(gap, 0.0)) / dt)
-        c.after = min(-restitution * hit + left * a_n, back)
+    contacts = detect_contacts(balls, step_reach(balls, dt))
+    for c in contacts:
+        radii = c.a.radius + c.b.radius
+        c.reach = radii - max(0.0, c.depth - OPENS * radii)  # a deep overlap: no more than it opens
+        c.struck = 0.0
+        look(c, 0.0, dt)
+    if may_strike(contacts, dt):
+        hold(balls, contacts, dt, iters)
+        take_impacts(balls, contacts, dt, restitution, iters)
+    for c in contacts:
+        if c.lies:
+            look(c, nearest(c, dt), dt)
+        c.target = c.depth / dt
+        c.lam = 0.0
+    accelerate(balls, 0.5 * dt)
+    solve_with_momentum(contacts, iters)  # where
+    move(balls, dt)
+    accelerate(balls, 0.5 * dt)
+    closed = [c for c in contacts if c.lam > 0.0]
+    for c in closed:
+        look(c, 0.0, dt)  # normals of now
+        c.target = 0.0
+    solve_with_momentum(closed, iters)  # how fast
+    for c in contacts:
+        c.lam += c.struck
+    return contacts
 
 
-def no_room(contacts):
-    """Take back the way of each bounce that drove its ball into another, else out of reach.
+# --- region: leapfrog-look ---
+def look(c, t, dt):
+    """Turn contact c to the time t [s] of this step: its normal, gap [m], and v_n as its speed.
 
-    Else the sweeps push whatever is around to make room for it, and the balls gain energy. Balls
-    that push one another count as one crowd. Returns whether there was such a bounce.
+    Its depth is of the start of the step, along that normal. It lies, or lasts, if it would close
+    no faster than gravity makes it along its normal within one step.
     """
-    pushing = [c for c in contacts if c.lam > 0.0]
-    crowd = {ball for c in pushing if c.free for ball in (c.a, c.b) if ball.inv_mass > 0.0}
-    known = 0
-    while known < len(crowd):  # and all whom these push, until nobody comes new
-        known = len(crowd)
-        for c in pushing:
-            if c.a in crowd or c.b in crowd:
-                crowd.update(ball for ball in (c.a, c.b) if ball.inv_mass > 0.0)
-    bounces = [c for c in contacts if c.target > c.stays and (c.a in crowd or c.b in crowd)]
-    for c in bounces:
-        c.target = c.stays
-    return len(bounces) > 0
+    a, b = c.a, c.b
+    x, y, ax, ay = a.x - b.x, a.y - b.y, a.ax - b.ax, a.ay - b.ay
+    vx, vy = a.vx - b.vx + t * ax, a.vy - b.vy + t * ay
+    dx, dy = x + t * (vx - 0.5 * t * ax), y + t * (vy - 0.5 * t * ay)
+    distance = math.sqrt(dx * dx + dy * dy)
+    if b is not FLOOR and distance > 0.0:
+        c.nx, c.ny = dx / distance, dy / distance
+    c.gap = c.nx * dx + c.ny * dy - c.reach
+    c.speed = c.nx * vx + c.ny * vy
+    c.depth = c.reach - (c.nx * x + c.ny * y)
+    g_n = -GRAVITY * abs(c.ny)
+    slow = dt * g_n + 1e-9  # m/s
+    near = c.gap <= -0.5 * GRAVITY * dt * dt
+    c.lies = near and c.speed * c.speed + 2.0 * g_n * max(0.0, c.gap) <= slow * slow
 
 
-def turn(c, dt):
-    """Turn the normal of c to when its balls meet in free flight, or are nearest, within dt [s].
-
-    So balls that pass one another pass: gap + dt v_n along the normal of now would stop them.
-    """
+def nearest(c, dt):
+    """When the balls of c touch in free flight, or are nearest [s]; so balls that pass may pass."""
     a, b = c.a, c.b
     dx, dy = a.x - b.x, a.y - b.y
     vx, vy = a.vx - b.vx, a.vy - b.vy  # gravity cancels where both fall
-    reach = a.radius + b.radius
     along = dx * vx + dy * vy  # < 0: they come nearer
     fast = vx * vx + vy * vy
-    apart = dx * dx + dy * dy - reach * reach
-    t = 0.0  # balls that overlap or part: now
-    if apart > 0.0 > along:
-        root = math.sqrt(max(0.0, along * along - fast * apart))  # 0 if they miss
-        t = min(dt, (-along - root) / fast) if fast > 0.0 else dt  # 0: too slow for a square
-    x, y = dx + t * vx, dy + t * vy
-    distance = math.sqrt(x * x + y * y)
-    if b is not FLOOR and distance > 0.0:
-        c.nx, c.ny = x / distance, y / distance
-        c.depth = reach - (c.nx * dx + c.ny * dy)  # of now, along that normal
+    apart = dx * dx + dy * dy - c.reach * c.reach
+    if b is FLOOR or apart <= 0.0 or along >= 0.0 or fast == 0.0:
+        return 0.0
+    root = math.sqrt(max(0.0, along * along - fast * apart))  # 0 if they miss
+    return min(dt, (-along - root) / fast)
 
 
-# --- region: impact-time ---
-def time_to_impact(gap, v_n, a_n):
-    """When a gap closes [s]: the first root of gap + v_n t + a_n t^2 / 2; inf if it does not."""
-    if a_n is None or not (v_n < 0.0 or a_n < 0.0):  # None: it stays closed
-        return math.inf
-    square = v_n * v_n - 2.0 * gap * a_n
-    if square < 0.0:
-        return math.inf
-    root = math.sqrt(square)
-    # each form is a sum: a difference of near numbers would lose digits
-    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n
+# --- region: leapfrog-impacts ---
+MOST_STRIKES = 10  # in a step, chosen: the last takes all that are left at once
+
+
+def may_strike(contacts, dt):
+    """Whether any balls could meet within this step, and do not lie on one another."""
+    for c in contacts:
+        if not c.lies and c.gap + dt * (c.speed + dt * GRAVITY) < 0.0:
+            return True
+    return False
+
+
+def hold(balls, contacts, dt, iters):
+    """Give every ball the acceleration [m/s^2] that it has where what lies pushes it."""
+    lying = [c for c in contacts if c.lies]
+    for c in lying:
+        c.target = min(0.0, c.depth / dt)
+    for ball in balls:
+        ball.vx_before, ball.vy_before = ball.vx, ball.vy
+    accelerate(balls, 0.5 * dt)
+    solve_with_momentum(lying, iters)
+    for ball in balls:
+        ball.ax = 2.0 / dt * (ball.vx - ball.vx_before)
+        ball.ay = 2.0 / dt * (ball.vy - ball.vy_before)
+        ball.vx, ball.vy = ball.vx_before, ball.vy_before
+        ball.since = 0.0  # s: when it was struck last
+
+
+def take_impacts(balls, contacts, dt, restitution, iters):
+    """The impacts of this step, one moment after the other."""
+    left = MOST_STRIKES
+    when = next_meeting(contacts, dt)
+    while when < math.inf and left > 0:
+        left -= 1
+        strike_at(balls, contacts, when, dt if left == 0 else when, dt, restitution, iters)
+        when = next_meeting(contacts, dt)
+
+
+def next_meeting(contacts, dt):
+    """When the next balls strike one another [s]; inf if none do in this step."""
+    when = math.inf
+    for c in contacts:
+        meet(c, dt)
+        when = min(when, c.when)
+    return when
+
+
+def meet(c, dt):
+    """Set when the balls of c strike one another [s], by Newton's method; inf if not in this step.
+
+    c stays turned to then, or to when they have passed each other, so that they may.
+    """
+    first = max(c.a.since, c.b.since)
+    c.when = math.inf
+    t = first
+    for _ in range(12):
+        look(c, t, dt)
+        if c.speed >= 0.0 or c.lies or c.m_eff == 0.0 or (t == dt and c.gap > 0.0):
+            return
+        t = min(dt, max(first, t - c.gap / c.speed))
+    c.when = t
+
+
+def strike_at(balls, contacts, when, until, dt, restitution, iters):
+    """v_n becomes -e v_n of what meets from `when` to `until`, and what lies may not close.
+
+    Who was struck is set back to where it would have begun with its new velocity: so all balls
+    stay at the start of the step.
+    """
+    touching = []
+    for c in contacts:
+        struck = c.when <= until
+        look(c, when, dt)
+        if struck or c.lies:
+            back = -restitution * c.speed if struck else min(0.0, c.speed)
+            c.target = c.v_n() + back - c.speed  # at the start of the step
+            c.lam = 0.0
+            touching.append(c)
+    for ball in balls:
+        ball.vx_before, ball.vy_before = ball.vx, ball.vy
+    solve_with_momentum(touching, iters)
+    for c in touching:
+        c.struck += c.lam
+    for ball in balls:
+        if ball.vx != ball.vx_before or ball.vy != ball.vy_before:
+            ball.x -= when * (ball.vx - ball.vx_before)
+            ball.y -= when * (ball.vy - ball.vy_before)
+            ball.since = when
 
 
 # --- region: exact ---
@@ -551,6 +790,18 @@ def settle(contacts):
 
 
 # --- region: exact-when ---
+def time_to_impact(gap, v_n, a_n):
+    """When a gap closes [s]: the first root of gap + v_n t + a_n t^2 / 2; inf if it does not."""
+    if a_n is None or not (v_n < 0.0 or a_n < 0.0):  # None: it stays closed
+        return math.inf
+    square = v_n * v_n - 2.0 * gap * a_n
+    if square < 0.0:
+        return math.inf
+    root = math.sqrt(square)
+    # each form is a sum: a difference of near numbers would lose digits
+    return 2.0 * gap / (root - v_n) if v_n < 0.0 else -(v_n + root) / a_n
+
+
 def next_impact(pairs, gap_a):
     """How long until the next gap closes [s], and who touches then; depths become those of then."""
     roots = [time_to_impact(-c.depth, c.v_n(), a_n) for c, a_n in zip(pairs, gap_a)]
@@ -561,149 +812,28 @@ def next_impact(pairs, gap_a):
     return span, [c for c in pairs if c.depth >= 0.0]
 
 
-# --- region: soft-impedance ---
-def impedance(depth: float, solimp: tuple) -> float:
-    """How hard the contact is at that depth [m], from 0 to 1: MuJoCo's d (its getimpedance)."""
-    d0, d1, width, mid, power = solimp  # d0 at the surface, d1 from a depth of `width` [m] on
-    if width <= 1e-15:  # m; MuJoCo takes the mean then
-        return 0.5 * (d0 + d1)
-    if depth >= width:
-        return d1
-    share = depth / width  # between: an S of two powers, which meet where share is mid
-    if share <= mid:
-        rise = raised(share, power) / raised(mid, power - 1.0)
-    else:
-        rise = 1.0 - raised(1.0 - share, power) / raised(1.0 - mid, power - 1.0)
-    return d0 + rise * (d1 - d0)
-
-
-def raised(x, power):
-    """x to that power; a whole one by products, which round alike in every language."""
-    return math.prod([x] * int(power)) if power == int(power) else x**power
-
-
-# --- region: soft ---
-def soften(c, dt, solref, solimp):
-    """Give contact c the target and the softness that MuJoCo's contact has.
-
-    A spring K [1/s^2] and a damper B [1/s] ask for the acceleration K d depth - B v_n, whatever
-    the mass (MuJoCo's mj_makeImpedance, mj_referenceConstraint). The softness R [1/kg] lets the
-    contact miss it: the less, the nearer d is to 1.
-    """
-    d = impedance(c.depth, solimp)
-    d1 = solimp[1]
-    if solref[0] > 0.0:  # time constant [s] and damping ratio
-        timeconst, dampratio = solref
-        K = 1.0 / (d1 * d1 * timeconst * timeconst * dampratio * dampratio)
-        B = 2.0 / (d1 * timeconst)
-    else:  # direct: minus stiffness, minus damping
-        K = -solref[0] / (d1 * d1)
-        B = -solref[1] / d1
-    v_n = c.v_n()  # before gravity acts
-    c.target = v_n + dt * (K * d * c.depth - B * v_n)
-    c.softness = max(1e-15, (1.0 - d) / d * c.inv_mass)  # no less: MuJoCo's mjMINVAL
-    c.m_eff = 1.0 / (c.inv_mass + c.softness)
-
-
-def soft_step(balls, dt: float, solref: tuple, solimp: tuple) -> bool:
-    """One step [s] like lcp's, but softened. False if the sweeps did not come down to LAST_BITS."""
-    contacts = detect_contacts(balls, margin=0.0)
-    for c in contacts:
-        soften(c, dt, solref, solimp)
-    accelerate(balls, dt)
-    speeds = [c.target for c in contacts] + [v for ball in balls for v in (ball.vx, ball.vy)]
-    warm_start(contacts)  # with R > 0 there is one answer, wherever the sweeps begin
-    settled = solve_contacts(contacts, MOST_SWEEPS, LAST_BITS * max(map(abs, speeds))) > 0
-    remember(balls, contacts)
-    move(balls, dt)
-    return settled
-
-
-# --- region: simulate ---
-class Run(NamedTuple):
-    """A recording: t (steps + 1,) [s]; q and v (steps + 1, 2, N) [m, m/s]."""
-
-    t: np.ndarray
-    q: np.ndarray
-    v: np.ndarray
-    unsettled: int = 0  # steps whose sweeps did not settle
-
-
-@np.errstate(all="ignore")
-def simulate(step, scene, dt, steps, skip=False, progress=None, kicks=1) -> Run:
-    """Take that many steps, `step(balls)` each, and record every state.
-
-    With `skip` it leaves out steps whose result is known, and no bit changes. Up to 250 steps of
-    flight are one sum, in which gravity acts `kicks` times a step. And a step depends on nothing
-    but the state and the impulses of the last step: when both come back (rest, or any cycle), what
-    follows is a copy.
-    """
-    balls = make_balls(scene)
-    rows, settled = np.zeros((steps + 1, len(balls), 4)), np.ones(steps + 1, bool)
-    k, seen = 0, dict[tuple, int]()  # seen: at which step a state came first
-    while True:
-        rows[k] = [(ball.x, ball.y, ball.vx, ball.vy) for ball in balls]
-        if k == steps:
-            break
-        pushed = [(a, b, lam) for a in balls for b, lam in a.pushed.items()]
-        first = seen.setdefault((rows[k].tobytes(), *pushed), k) if skip else k
-        if first < k:  # what came then comes again and again
-            again = first + 1 + np.arange(steps - k) % (k - first)
-            rows[k + 1 :], settled[k + 1 :] = rows[again], settled[again]
-            break
-        flown = fly(balls, dt, rows[k : k + 251], kicks) if skip else 0
-        if flown == 0:
-            settled[k + 1] = step(balls) is not False  # False: sweeps of soft that did not settle
-        k += flown or 1
-        if progress:
-            progress(k)
-    rows += 0.0  # -0 becomes 0, and every NaN the same one: chance decides their signs
-    rows[np.isnan(rows)] = math.nan
-    q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # kind, state, axis, ball
-    return Run(np.arange(len(rows)) * dt, q, v, int((~settled).sum()))
-
-
-# --- region: flight ---
-def fly(balls, dt, rows, kicks):
-    """Take steps, up to one that may see a contact; rows[0] is the state now. Returns how many."""
-    if any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls):  # mostly the cheapest to see
-        return 0
-    if detect_contacts(balls, step_reach(balls, dt)):  # no model looks farther
-        return 0
-    q, v = rows[..., :2], rows[..., 2:]  # views of the rows
-    kick = [dt / kicks * GRAVITY if ball.inv_mass > 0.0 else 0.0 for ball in balls]
-    fine = np.zeros((kicks * (len(rows) - 1) + 1, len(balls), 2))  # velocities after each kick
-    fine[0] = v[0]
-    fine[1:, :, 1] = kick
-    np.add.accumulate(fine, out=fine)  # v, v + dt g, v + dt g + dt g, ...
-    v[:] = fine[::kicks]
-    q[1:] = dt * fine[1::kicks]  # the first kick of a step comes before its move
-    np.add.accumulate(q, out=q)  # in the order of the steps: the same bits
-    gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
-    fastest = np.sqrt(v[..., 0] * v[..., 0] + v[..., 1] * v[..., 1]).max(-1)
-    reach = np.maximum(CONTACT_MARGIN, 2.0 * dt * (fastest - dt * GRAVITY))  # as step_reach has it
-    near = np.flatnonzero(~(gap >= reach))  # and not gap < reach: NaN is not far away
-    flown = int(near[0]) if len(near) > 0 else len(rows) - 1
-    for ball, values in zip(balls, rows[flown].tolist()):
-        ball.x, ball.y, ball.vx, ball.vy = values
-        ball.pushed = ball.pushed if flown == 0 else {}
-    return flown
-
-
 # --- region: run ---
-MODELS = {  # in the order of the table: the knobs that change its runs
-    "penalty": ("stiffness", "damping"),
-    "lcp": ("restitution", "baumgarte", "iters", "warm"),
-    "leapfrog": ("restitution", "iters"),
-    "soft": ("restitution", "solref", "solimp"),
-    "exact": ("restitution",),
+class Model(NamedTuple):
+    """All there is to say of a model: whoever runs, records or draws it asks nothing else."""
+
+    step: Callable | None  # step(balls, dt, ...) returns the contacts; None: it takes no steps
+    knobs: tuple[str, ...]  # that change its runs, those of its step first and in its order
+    kicks: int  # how often a step adds gravity where nothing touches; 0: it is not flown
+    look: tuple  # colour, marker and dash of its curves
+
+
+MODELS = {  # in the order of the table
+    "penalty": Model(penalty_step, ("stiffness", "damping"), 1, ("#d55e00", "v", (0, (1, 1)))),
+    "lcp": Model(lcp_step, ("restitution", "baumgarte", "iters", "warm"), 1, ("#0072b2", "o", "-")),
+    "soft": Model(soft_step, ("solref", "solimp", "restitution"), 1, ("#cc79a7", "d", (0, (5, 1)))),
+    "leapfrog": Model(
+        leapfrog_step, ("restitution", "iters"), 2, ("#e69f00", "P", (0, (7, 1, 1, 1)))
+    ),
+    "exact": Model(None, ("restitution",), 0, ("#009e73", "*", (0, (2, 2)))),
 }
-STEPPED = [model for model in MODELS if model != "exact"]
+STEPPED = [model for model in MODELS if MODELS[model].step]
 MANY = 1e6  # of about steps times balls squared: from here on, compiled loops pay
 FEW = 8  # balls of a column, chosen: more are faster by curriculum/exact.py
-SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
-SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default: d0, d1, width [m], mid, power
-HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the hardest contact that MuJoCo allows
 
 
 class Settings(NamedTuple):
@@ -719,78 +849,37 @@ class Settings(NamedTuple):
 
 
 def run_model(
-    model: str, scene: Scene, dt: float, steps: int, settings: Settings = Settings(), progress=None
-) -> Run:
-    """The run of a scene by one of MODELS. `progress(k)` hears of the steps done.
+    model: str, scene: Scene, dt: float, steps: int, settings: Settings = Settings(),
+    progress=None, see=None,
+) -> Run:  # fmt: skip
+    """The run of a scene by one of MODELS; progress and see as simulate has them.
 
     Raises ValueError for what no model can run, RuntimeError where exact cannot be exact.
     """
-    check(model, scene, dt, steps, settings)
-    if model == "exact":
-        return run_exact(scene, dt, steps, progress)
-    many = settings.skip and steps * len(scene.mass) ** 2 > MANY
-    if many and (fast := beside("fast")):  # compiled loops, the same bits
-        return fast.run_model(model, scene, dt, steps, settings, progress)
-    kicks = 2 if model == "leapfrog" else 1
-    step = step_of(model, scene, dt, settings)
-    return simulate(step, scene, dt, steps, settings.skip, progress, kicks)
+    scene, settings = checked(model, scene, dt, steps, settings)
+    if MODELS[model].step is None:
+        if see:
+            raise ValueError(f"see: {model} takes no steps; allowed: {', '.join(STEPPED)}")
+        return choose_exact(scene, dt, steps, progress)
+    many = settings.skip and not see and steps * len(scene.mass) ** 2 > MANY
+    if many and (twin := beside("fast")):  # compiled loops, the same bits
+        return twin.run_model(model, scene, dt, steps, settings, progress)
+    step, kicks = step_of(model, scene, dt, settings), MODELS[model].kicks
+    return simulate(step, scene, dt, steps, settings.skip, progress, kicks, see)
 
 
-def check(model, scene, dt, steps, settings):
-    """Raise ValueError, with the name of the field, for what no model can run."""
-    mass, radius, e, s = scene.mass, scene.radius, scene.restitution, settings
-    solref, solimp = np.array(s.solref or SOLREF), np.array(s.solimp or SOLIMP)
-    spring = (solref > 0.0).all() or (solref <= 0.0).all()
-    for field, given, fine, allowed in (
-        ("model", model, model in MODELS, ", ".join(MODELS)),
-        ("dt", dt, 0.0 < dt < math.inf, "above 0 and finite"),
-        ("steps", steps, steps >= 0, "0 or more"),
-        ("q0", scene.q0, np.isfinite(scene.q0), "finite"),
-        ("v0", scene.v0, np.isfinite(scene.v0), "finite"),
-        ("mass", mass, mass > 0.0, "above 0; infinite for a ball that no push moves"),
-        ("radius", radius, (radius > 0.0) & (radius < math.inf), "above 0 and finite"),
-        ("restitution", e, 0.0 <= e <= 1.0, "from 0 to 1"),
-        ("damping", scene.damping, math.isfinite(scene.damping), "finite"),
-        ("stiffness", s.stiffness, 0.0 <= s.stiffness < math.inf, "0 or more, and finite"),
-        ("baumgarte", s.baumgarte, 0.0 <= s.baumgarte <= 1.0, "from 0 to 1"),
-        ("iters", s.iters, s.iters >= 1, "1 or more"),
-        ("warm", s.warm, 0.0 <= s.warm <= 1.0, "from 0 to 1"),
-        ("solref", solref, np.isfinite(solref).all() and spring, "two above 0, or two up to 0"),
-        ("solimp", solimp, (solimp >= 0.0) & (solimp < math.inf), "0 or more, and finite"),
-    ):
-        if not np.all(fine):
-            wrong = np.asarray(given)[~np.asarray(fine)].tolist()[0]
-            raise ValueError(f"{field}: given {wrong!r}; allowed: {allowed}")
-
-
-def step_of(model: str, scene: Scene, dt: float, settings: Settings):
-    """step(balls) of a model that steps."""
-    s, e = settings, scene.restitution
-    soft = soft_defaults(e, dt, s.solref, s.solimp)
-    return {
-        "penalty": lambda balls: penalty_step(balls, dt, s.stiffness, scene.damping),
-        "lcp": lambda balls: lcp_step(balls, dt, e, s.baumgarte, s.iters, s.warm),
-        "leapfrog": lambda balls: leapfrog_step(balls, dt, e, s.iters),
-        "soft": lambda balls: soft_step(balls, dt, *soft),
-    }[model]
-
-
-def soft_defaults(restitution, dt, solref=None, solimp=None) -> tuple[tuple, tuple]:
-    """The solref and solimp a run uses, within MuJoCo's bounds. None stands for the default."""
-    if solref is None and restitution > 0.0:
-        # minus stiffness and minus damping: this damping, in a hard contact, turns v_n into -e v_n
-        # within one step; there is no spring then, so a ball at rest sinks on, slowly
-        solref, solimp = (0.0, -(1.0 + restitution) / dt), solimp or HARD
-    elif solref is None or solref[0] > 0.0:
-        timeconst, dampratio = solref or SOLREF
-        solref = max(timeconst, 2.0 * dt), dampratio  # MuJoCo's refsafe: no faster than two steps
-    d0, d1, width, mid, power = solimp or SOLIMP
-    d0, d1, mid = (min(max(share, 0.0001), 0.9999) for share in (d0, d1, mid))
-    return solref, (d0, d1, width, mid, max(power, 1.0))
+def step_of(model: str, scene: Scene, dt: float, settings: Settings) -> partial:
+    """step(balls) of a model that steps; its knobs are in its keywords."""
+    step, knobs = MODELS[model].step, MODELS[model].knobs
+    e = scene.restitution
+    values = settings._asdict() | {"restitution": e, "damping": scene.damping}
+    values["solref"], values["solimp"] = soft_defaults(e, dt, settings.solref, settings.solimp)
+    taken = step.__code__.co_argcount - 2  # beside the balls and dt
+    return partial(step, dt=dt, **{knob: values[knob] for knob in knobs[:taken]})
 
 
 @np.errstate(over="ignore")
-def run_exact(scene, dt, steps, progress=None):
+def choose_exact(scene, dt, steps, progress=None):
     """The Run of a few balls over one another by exact_run, of others by curriculum/exact.py."""
     times = np.arange(steps + 1) * dt
     apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
@@ -811,23 +900,97 @@ def beside(name: str, needed=False):
 
     ImportError, in words, instead of None if it is `needed`.
     """
-    if (home := str(Path(__file__).resolve().parent)) not in sys.path:
-        sys.path.append(home)
+    home = Path(__file__).resolve().parent
     try:
+        if not Path(home, "curriculum", *name.split(".")).with_suffix(".py").exists():
+            raise ImportError("it needs the folder curriculum beside contact.py")
+        if str(home) not in sys.path:
+            sys.path.append(str(home))
         return importlib.import_module(f"curriculum.{name}")
     except ImportError as error:
-        absent = f"curriculum.{name}.".startswith(f"{error.name}.")  # this module or its folder
-        if error.name and not (absent and isinstance(error, ModuleNotFoundError)):
-            raise  # a fault in the module
-        if needed:  # without a name, the module says itself what it needs
-            words = "it needs the folder curriculum beside contact.py"
-            raise ImportError(words if error.name else str(error)) from None
+        if needed or error.name:  # without a name, the module says itself what it needs
+            raise
         return None
+
+
+# --- region: limits ---
+LIMITS = {  # of flags and of run_model alike: kind, lowest, highest
+    "seed": (int, 0, 10**18),
+    "dt": (float, 1e-9, 1e3),
+    "steps": (int, 0, 10**8),
+    "bodies": (int, 1, 10**4),
+    "mass": (float, 1e-300, 1e300),  # in a scene also infinite
+    "stiffness": (float, 0, 1e15),
+    "damping": (float, 0, 1e9),
+    "restitution": (float, 0, 1),
+    "baumgarte": (float, 0, 1),
+    "warm": (float, 0, 1),
+    "iters": (int, 1, MOST_SWEEPS),
+    "solref": (float, -1e12, 1e6),
+    "solimp": (float, 0, 100),
+    "radius": (float, 1e-300, 1e300),
+    "q0": (float, -1e300, 1e300),
+    "v0": (float, -1e300, 1e300),
+}
+
+
+def checked(model, scene, dt, steps, settings):
+    """Scene and Settings in floats. ValueError, with the name of the field that nothing can run."""
+    if model not in MODELS:
+        raise ValueError(f"model: given {model!r}; allowed: {', '.join(MODELS)}")
+    within("dt", dt)
+    within("steps", steps)
+    count = max(1, np.size(scene.mass))
+    shapes = {"q0": (2, count), "v0": (2, count), "mass": (count,), "radius": (count,)}
+    fields = scene._asdict()
+    for name in scene._fields[1:]:
+        fields[name] = within(name, fields[name], shapes.get(name, ()))
+    knobs = settings._asdict()
+    for name, shape in {"solref": (2,), "solimp": (5,)}.items():
+        if knobs[name] is not None:
+            knobs[name] = tuple(within(name, knobs[name], shape).tolist())
+    for name in ("stiffness", "baumgarte", "iters", "warm"):
+        knobs[name] = within(name, knobs[name])
+    if mixed(knobs["solref"]):
+        raise ValueError(f"solref: given {settings.solref}; allowed: {SPRINGS}")
+    return Scene(**fields), Settings(**knobs)
+
+
+@np.errstate(invalid="ignore")
+def within(name, given, shape=()):
+    """`given` as an array of that shape, or as one number; ValueError if it is not."""
+    kind, low, high = LIMITS[name]
+    try:
+        values = np.array(given)
+    except ValueError:  # rows of different lengths
+        values = np.array("")
+    if values.dtype.kind not in "iuf" or values.shape != shape:
+        form = f"numbers in the shape {shape}" if shape else "one number"
+        raise ValueError(f"{name}: given {str(given)[:60]}; allowed: {form}")
+    fine = (values >= low) & (values <= high) & ((values % 1 == 0) | (kind is float))
+    fine |= (values == math.inf) & (name == "mass")  # a ball that nothing moves
+    if not fine.all():
+        wrong = np.atleast_1d(values)[~np.atleast_1d(fine)][0].item()
+        raise ValueError(f"{name}: given {wrong!r}; allowed: {span(name)}")
+    return values.astype(kind) if shape else kind(values)
+
+
+def span(name):
+    """The numbers that LIMITS allow, in words."""
+    kind, low, high = LIMITS[name]
+    return f"{'a whole number' if kind is int else 'a number'} from {low:g} to {high:g}"
+
+
+SPRINGS = "two numbers from 1e-06 up, or two up to 0"
+
+
+def mixed(solref):
+    """Whether solref is neither a time constant and a damping ratio, nor minus two constants."""
+    return solref is not None and max(solref) > 0.0 and min(solref) < 1e-6
 
 
 # --- region: measure ---
 EXPLODED = 10.0  # a run that gains this many times its start energy, or more, has exploded
-RESTLESS = 1e-6  # r, chosen: an overlap that varies by less than this is at rest
 
 
 @np.errstate(all="ignore")
@@ -840,13 +1003,13 @@ def energy(q, v, mass):
 @np.errstate(all="ignore")
 def smallest_gap(q, radius):
     """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
-    if q.size * len(radius) > 2.0 * MANY and (fast := beside("fast")):
-        return fast.smallest_gap(q, radius)
+    if q.size * len(radius) > 2.0 * MANY and (twin := beside("fast")):
+        return twin.smallest_gap(q, radius)
     gap = (q[:, 1] - radius).min(-1)
     for lag in range(1, len(radius)):  # ball i and ball i + lag, for all i, all states at once
         dx, dy = (q[:, :, lag:] - q[:, :, :-lag]).swapaxes(0, 1)
-        reach = radius[lag:] + radius[:-lag]
-        gap = np.minimum(gap, (np.sqrt(dx * dx + dy * dy) - reach).min(-1))
+        radii = radius[lag:] + radius[:-lag]
+        gap = np.minimum(gap, (np.sqrt(dx * dx + dy * dy) - radii).min(-1))
     return gap
 
 
@@ -865,17 +1028,6 @@ def first_contact(run: Run, scene: Scene, dt: float, gap) -> int:
     return int(touched.argmax()) if touched.any() else len(touched)  # none
 
 
-def trembles(depth) -> bool:
-    """Whether the overlap [r] goes up and down every few steps to the end, and does not die out."""
-    # penalty does past its critical step, where the clamp cuts a swing that would grow, and
-    # without a damper at any step that is not much smaller
-    early, late = np.array_split(depth[3 * len(depth) // 4 :], 2)
-    if len(early) < 50 or not early.std() > RESTLESS:  # 50: chosen, a shorter run is no evidence
-        return False
-    turns = np.count_nonzero(np.diff(np.sign(np.diff(late))))
-    return bool(late.std() > 0.9 * early.std() and turns > len(late) / 8)
-
-
 def at_rest(run: Run, scene: Scene) -> bool:
     """Whether in the last two steps no ball that can move went faster than 1 mm/s, or fell.
 
@@ -888,22 +1040,50 @@ def at_rest(run: Run, scene: Scene) -> bool:
     return bool(not falling and np.hypot(*last).max(initial=0.0) < 1e-3)
 
 
+def went_through(run: Run, scene: Scene, gap, radius) -> str | None:
+    """What a ball went through: "the floor", "a ball" or None.
+
+    Its centre came below the floor, or nearer to another centre than the larger of their radii, in
+    a state or on the straight way to the next one. radius: of the smallest ball [m].
+    """
+    free = np.isfinite(scene.mass)
+    if (run.q[:, 1, free] < 0.0).any():
+        return "the floor"
+    way = np.diff(run.q, axis=0, append=run.q[-1:])
+    farthest = np.hypot(way[:, 0], way[:, 1]).max(-1)
+    near = gap - 2.0 * farthest < -radius  # elsewhere no two balls can have come so near
+    q, way = run.q[near], way[near]
+    for lag in range(1, len(free) if len(q) else 1):
+        d, w = q[:, :, lag:] - q[:, :, :-lag], way[:, :, lag:] - way[:, :, :-lag]
+        along, fast = -(d * w).sum(1), (w * w).sum(1)
+        share = np.clip(
+            np.where(fast > 0.0, along / np.where(fast > 0.0, fast, 1.0), 0.0), 0.0, 1.0
+        )
+        closest = np.hypot(*(d + share[:, None] * w).swapaxes(0, 1))
+        inside = closest < np.maximum(scene.radius[lag:], scene.radius[:-lag])
+        if (inside & (free[lag:] | free[:-lag])).any():
+            return "a ball"
+    return None
+
+
 # --- region: quality ---
 @np.errstate(all="ignore")
 def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = None):
-    """The measures of a run {key: value}, in radii of the first ball and in start energies.
+    """The measures of a run {key: value}, in radii of the smallest ball and in start energies.
 
     Errors of height are against `reference`.
     """
-    total = energy(run.q, run.v, scene.mass)
+    total, radius = energy(run.q, run.v, scene.mass), float(scene.radius.min())
     scale = abs(float(total[0])) or 1.0  # J; 1 J for a run that starts with none
     gap = smallest_gap(run.q, scene.radius)
     landing = first_contact(run, scene, dt, gap)
-    below = (run.q[:, 1, np.isfinite(scene.mass)] < 0.0).any()  # a centre below the floor
-    inside = gap.min() < -scene.radius.max()  # an overlap by a radius
-    gap = gap / float(scene.radius[0])
-    depth = np.maximum(-gap, 0.0)
     step = blow_up_step(total)
+    end = len(gap) if step is None else step  # what flies to pieces goes through everything
+    through = went_through(Run(run.t[:end], run.q[:end], run.v[:end]), scene, gap[:end], radius)
+    gap = gap / radius
+    depth = np.maximum(-gap, 0.0)
+    late = slice(3 * len(depth) // 4, None)  # the last quarter
+    height = (run.q[late, 1] - run.q[-1, 1]) / radius
     return {
         **height_errors(run, scene, dt, landing, reference),
         "first_contact_step": landing,  # the number of states where there is none
@@ -911,15 +1091,14 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
         "rest_penetration_frac": float(depth[-1]),  # the overlap at the end
         "rest_gap_frac": float(gap[-1]),
         "rebound_frac": float(gap[landing:].max(initial=0.0)),
-        "rest_jitter": float(np.std(depth[3 * len(depth) // 4 :])),
+        "rest_jitter": float(np.std(depth[late])),
+        "height_jitter_frac": float(np.std(height, axis=0).max()),  # of the ball that moves most
         "energy_excess": float((total - total[0]).max()) / scale,
         "contact_energy": float(np.maximum(np.diff(total), 0.0).sum()) / scale,
         "blew_up": step is not None,
         "blew_up_step": step,
-        "trembles": trembles(depth),
         "rests": step is None and at_rest(run, scene),
-        "through": "the floor" if below else "a ball" if inside else None,
-        "unsettled_steps": run.unsettled,  # whose sweeps, of soft, did not settle
+        "through": through,
     }
 
 
@@ -928,28 +1107,10 @@ def height_errors(run, scene, dt, landing, reference):
     worst = flight = later = None
     if reference is not None:
         landed = first_contact(reference, scene, dt, smallest_gap(reference.q, scene.radius))
-        error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius[0])
+        error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius.min())
         worst, flight = float(error.max()), float(error[: min(landing, landed)].max(initial=0.0))
         later = worst - flight
     return dict(height_error_frac=worst, flight_error_frac=flight, contact_error_frac=later)
-
-
-# --- region: critical-dt ---
-def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -> float:
-    """The largest stable step [s] of penalty for a ball kept in contact, or a stack of them.
-
-    In contact a step is a 2 x 2 matrix. Its eigenvalues stay within 1 (Jury's test) while c >= 0
-    and k dt^2 + 2 c dt < 4 m; solved for dt. Without a damper that is 2 sqrt(m / k).
-    """
-    if damping < 0.0:
-        return 0.0  # such a damper feeds every swing
-    if mass == math.inf:
-        return math.inf
-    if count > 1:  # the stiffest swing of a stack sees so many times the spring and the damper
-        more = 4.0 * math.cos(math.pi / (2 * count + 1)) ** 2
-        stiffness, damping = more * stiffness, more * damping
-    root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
-    return 4.0 * mass / (root + damping) if root + damping > 0.0 else math.inf
 
 
 # --- region: stability ---
@@ -957,58 +1118,65 @@ DT_GRID = (1, 2, 4, 8, 16, 32)  # multiples of --dt that the stability lines try
 GRID_MODELS = ("penalty", "lcp", "leapfrog")  # soft's time constant grows with the step
 
 
-def measure_stability(run, scene: Scene, dt, steps, stiffness, known: dict) -> dict:
-    """By model, the largest step of DT_GRID at which run(model, dt) does not explode.
+def measure_stability(args, scene: Scene, known: dict) -> dict:
+    """By model, the largest step of DT_GRID at which it does not explode; smaller are not tried.
 
-    known: {model: quality} at dt itself. Steps smaller than the largest are not tried.
+    known: {model: quality} at --dt itself.
     """
     mass, damping, count = float(scene.mass[0]), scene.damping, len(scene.mass)
     grid: dict = {
-        "dt_crit_penalty": critical_dt(mass, stiffness, 0.0),
-        "dt_crit_damped": critical_dt(mass, stiffness, damping),
-        "dt_crit_stack": critical_dt(mass, stiffness, damping, count),
+        "dt_crit_penalty": critical_dt(mass, args.stiffness, 0.0),
+        "dt_crit_damped": critical_dt(mass, args.stiffness, damping),
+        "dt_crit_stack": critical_dt(mass, args.stiffness, damping, count),
     }
     for model in GRID_MODELS:
         grid[model], there = None, {}  # what stays if no run comes to a contact
         for factor in reversed(DT_GRID):  # the answer comes first
-            h = dt * factor
-            quality = known[model] if factor == 1 else contact_quality(run(model, h), scene, h)
+            dt, quality = args.dt * factor, known[model]
+            if factor > 1:
+                quality = contact_quality(run_flags(args, scene, model, dt), scene, dt)
             if quality["blew_up"]:
                 grid[model] = 0.0  # what stays if all others explode
-            elif quality["first_contact_step"] <= steps:
-                grid[model], there = h, quality
+            elif quality["first_contact_step"] <= args.steps:
+                grid[model], there = dt, quality
                 break
-        for key in ("max_penetration_frac", "through", "trembles"):
-            grid[f"{model}_{key.removeprefix('max_')}"] = there.get(key)
+        grid[f"{model}_penetration_frac"] = there.get("max_penetration_frac")
+        grid[f"{model}_through"] = there.get("through")
     return grid
 
 
 # --- region: flags ---
 USUAL = Settings()
-NUMBERS = {  # flag: kind, lowest, highest, what it is when it is not given, meaning
-    "--seed": (int, 0, 10**18, 0, "draws the start height"),
-    "--dt": (float, 1e-6, 1e3, 0.002, "time step [s]"),
-    "--steps": (int, 0, 10**6, None, "how many (2000)"),
-    "--bodies": (int, 1, 10**4, None, "balls of stack (3) and pile (24)"),
-    "--mass": (float, 1e-9, 1e9, 1.0, "of every ball [kg]"),
-    "--stiffness": (float, 0, 1e15, USUAL.stiffness, "k of penalty [N/m]"),
-    "--damping": (float, -1e9, 1e9, -1.0, "c of penalty [N s/m]; below 0: the scene's, 80 or 0"),
-    "--restitution": (float, -1, 1, -1.0, "e of the others; below 0: the scene's, 0 or 0.7"),
-    "--baumgarte": (float, 0, 1, USUAL.baumgarte, "beta of lcp: share of an overlap to remove"),
-    "--warm": (float, 0, 1, USUAL.warm, "of lcp: share of the last impulses to begin with"),
-    "--iters": (int, 1, MOST_SWEEPS, USUAL.iters, "of lcp and leapfrog: sweeps a solve, at most"),
+SPRING = "of soft: time constant [s], damping ratio (0.02 1); or minus a stiffness, a damping"
+NUMBERS = {  # flag: what it is when it is not given, meaning
+    "seed": (0, "draws the start height"),
+    "dt": (0.002, "time step [s]"),
+    "steps": (None, "how many (2000)"),
+    "bodies": (None, "balls of stack (3) and pile (24)"),
+    "mass": (1.0, "of every ball [kg]"),
+    "stiffness": (USUAL.stiffness, "k of penalty [N/m]"),
+    "damping": (-1.0, "c of penalty [N s/m]; below 0: the scene's, 80 or 0"),
+    "restitution": (-1.0, "e of the others; below 0: the scene's, 0 or 0.7"),
+    "baumgarte": (USUAL.baumgarte, "beta of lcp: share of an overlap to remove"),
+    "warm": (USUAL.warm, "of lcp: share of the last impulses to begin with"),
+    "iters": (USUAL.iters, "of lcp and leapfrog: sweeps a solve, at most"),
+    "solref": (None, SPRING),
+    "solimp": (None, "of soft: d0 d1 width mid power (0.9 0.95 0.001 0.5 2)"),
 }
+SEVERAL = {"solref": 2, "solimp": 5}  # flag: how many numbers it takes
 
 
-def number(kind, low, high, text):
-    """The number of that kind, from low to high, that `text` is; a whole one may be 1e3."""
+def number(name, text):
+    """The number that `text` is, as LIMITS allow it; a whole one may be 1e3."""
+    kind, low, high = LIMITS[name]
     try:
         value = int(text) if text.isdecimal() else float(text)
     except ValueError:
         value = math.nan
+    if NUMBERS[name][0] == -1.0:  # below 0 it is the scene's own
+        low = -high
     if not low <= value <= high or (kind is int and value % 1 > 0):
-        allowed = f"{'a whole number' if kind is int else 'a number'} from {low:g} to {high:g}"
-        raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
+        raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {span(name)}")
     return kind(value) + 0  # -0.0 becomes 0.0
 
 
@@ -1016,14 +1184,11 @@ def add_flags(flag):
     """All flags, by argparse's add_argument."""
     flag("--scene", choices=SCENES, default="drop", help="one ball, drop or bounce; or many (drop)")
     flag("--contact", choices=("all", *MODELS), default="all", help="the model (all)")
-    for name, (kind, low, high, usual, text) in NUMBERS.items():
-        text += "" if usual is None else f" ({usual:g})"
-        flag(name, type=partial(number, kind, low, high), default=usual, metavar="N", help=text)
+    for name, (usual, text) in NUMBERS.items():
+        text += "" if usual in (None, -1.0) else f" ({usual:g})"
+        how = dict(type=partial(number, name), nargs=SEVERAL.get(name), metavar="N")
+        flag(f"--{name}", default=usual, help=text, **how)
     switch = argparse.BooleanOptionalAction
-    spring = "of soft: time constant [s], damping ratio (0.02 1); or minus a stiffness, a damping"
-    flag("--solref", type=partial(number, float, -1e12, 1e6), nargs=2, metavar="N", help=spring)
-    curve = "of soft: d0 d1 width mid power (0.9 0.95 0.001 0.5 2)"
-    flag("--solimp", type=partial(number, float, 0, 100), nargs=5, metavar="N", help=curve)
     flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
     flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
     flag("--skip", action=switch, default=True, help="leave out work that changes no bit (yes)")
@@ -1044,25 +1209,34 @@ def parse_flags(argv):
         if re.fullmatch("--[a-z]+=--", word):  # argparse would lose its way
             parser.error(f"argument {word[:-3]}: given '--', which is no value")
     args, unknown = parser.parse_known_args(argv)
-    if unknown:
-        hint = f"; a scene is chosen by --scene {unknown[0]}" if unknown[0] in SCENES else ""
-        parser.error(f"given {' '.join(unknown)}, which is no flag{hint}")
-    if args.smoke and args.steps is not None:
-        parser.error("--smoke has 800 steps: leave out --steps")
+    hint = "".join(f"; a scene is chosen by --scene {w}" for w in unknown[:1] if w in SCENES)
+    refused = {
+        f"given {' '.join(unknown)}, which is no flag{hint}": unknown,
+        "--smoke has 800 steps: leave out --steps": args.smoke and args.steps is not None,
+        "--bodies is for stack and pile": args.bodies and SCENES[args.scene] == 1,
+        f"argument --solref: allowed: {SPRINGS}": mixed(args.solref),
+        "argument --out: given ''; allowed: the name of a folder": not args.out.strip(),
+    }
+    for message, wrong in refused.items():
+        if wrong:
+            parser.error(message)
+    args.out = os.path.expanduser(args.out)
     args.steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
-    if args.bodies and SCENES[args.scene] == 1:
-        parser.error("--bodies is for stack and pile")
-    if args.solref and max(args.solref) > 0.0 and min(args.solref) < 1e-6:
-        parser.error("argument --solref: allowed: two numbers from 1e-06 up, or two up to 0")
-    if not args.out.strip():
-        parser.error("argument --out: given ''; allowed: the name of a folder")
-    remarks = beside("show.remarks")
-    if remarks and (wrong := remarks.too_much(args.steps, args.bodies or SCENES[args.scene])):
+    if wrong := too_much(args.steps, args.bodies or SCENES[args.scene]):
         parser.error(wrong)
     return args
 
 
-# --- region: files ---
+def too_much(steps, count):
+    """One line on a run of `count` balls that this machine cannot hold; None if it can."""
+    need = len(MODELS) * steps * (80 * count + 375)  # bytes, measured, with the recording
+    have = 8e9  # bytes, chosen, where the machine does not say
+    if hasattr(os, "sysconf"):
+        have = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    text = f"--steps {steps} of {count} balls need {need / 1e9:.0f} GB of memory; allowed: "
+    return None if need <= have else f"{text}{have / 1e9:.0f} GB, what there is"
+
+
 def chosen_scene(args, seed):
     """The scene that the flags ask for; a restitution or damping below 0 is the scene's own."""
     e, c = (None if value < 0.0 else value for value in (args.restitution, args.damping))
@@ -1079,72 +1253,28 @@ def run_flags(args, scene, model, dt):
 
 def run_all(args, scene):
     """{model: Run}, {model: why it has none}, and {model: contact_quality}, as the flags ask."""
-    runs, without, quality = {}, {}, {}
+    runs, without = {}, {}
     for model in MODELS if args.contact == "all" else [args.contact]:
         try:
-            if model == "exact" and args.contact == "all" and len(scene.mass) > 24:
-                raise RuntimeError("more than 24 balls; ask for it by --contact exact")
+            if model == "exact" and args.contact == "all" and len(scene.mass) > SCENES["pile"]:
+                raise RuntimeError("too many balls to wait for it; ask by --contact exact")
             runs[model] = run_flags(args, scene, model, args.dt)
         except RuntimeError as error:
             without[model] = str(error)
-    for model, run in runs.items():
-        quality[model] = contact_quality(run, scene, args.dt, runs.get("exact"))
-    return runs, without, quality
+    measure = partial(contact_quality, scene=scene, dt=args.dt, reference=runs.get("exact"))
+    return runs, without, {model: measure(run) for model, run in runs.items()}
 
 
-def collect(args, scene):
-    """The runs {model: Run}, and what metrics.json holds: knobs, measures, the stability grid."""
-    runs, without, quality = run_all(args, scene)
-    keys = "scene", "contact", "dt", "steps", "seed", "stiffness"
-    metrics = {key: getattr(args, key) for key in keys} | {"restitution": scene.restitution}
-    metrics |= {"quality": quality, "stability": {}, "without": without}
-    if args.contact == "all" and args.scene != "pile":
-        run = partial(run_flags, args, scene)
-        grid = measure_stability(run, scene, args.dt, args.steps, args.stiffness, quality)
-        metrics["stability"] = grid
-    return runs, rounded(metrics)
-
-
-def rounded(value):
-    """`value` as JSON holds it, its floats rounded to 12 decimals; None where one is not finite."""
-    return json.loads(
-        json.dumps(value),
-        parse_float=lambda text: round(float(text), 12) + 0.0,
-        parse_constant=lambda name: None,
-    )
-
-
-def write_files(args, metrics, runs, scene):
-    """Write metrics.json, and recording and picture if asked; a line on each. Raises OSError."""
-    out, title = Path(args.out), f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
-    out.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(metrics, indent=2, sort_keys=True, allow_nan=False)
-    (out / "metrics.json").write_bytes(f"{text}\n".encode())
-    yield f"metrics: {out / 'metrics.json'}"
-    recording = args.rerun, "recording", "show.recording", "contact.rrd"
-    picture = args.plot, "picture", "show.picture", "contact.svg"
-    for asked, name, module, file in (recording, picture):
-        if asked and runs:
-            try:
-                maker = beside(module, needed=True)
-                maker.write(str(out / file), runs, scene, metrics["quality"], title)
-                yield f"{name}: {out / file}"
-            except ImportError as error:
-                if error.name:
-                    raise  # a fault in the module
-                yield f"no {name}: {error}"
-
-
-# --- region: report ---
+# --- region: table ---
 COLUMNS = {  # title: key of contact_quality, meaning
-    "max pen/r": ("max_penetration_frac", "the deepest overlap; r is the radius of a ball"),
-    "rest gap/r": ("rest_gap_frac", "the smallest gap at the end: below 0 it is an overlap"),
-    "rebound/r": ("rebound_frac", "how far all surfaces part again after the first contact"),
+    "depth/r": ("max_penetration_frac", "the deepest overlap; r: radius of the smallest ball"),
+    "gap/r": ("rest_gap_frac", "the smallest gap at the end: below 0 it is an overlap"),
+    "hop/r": ("rebound_frac", "how far all surfaces part again after the first contact"),
     "energy+": ("energy_excess", "the most energy above the start, as a share of the start's"),
-    "energy in": ("contact_energy", "all rises of it, added up; what a spring gives back counts"),
-    "flight err/r": ("flight_error_frac", "the worst height error before the first contact"),
-    "contact err/r": ("contact_error_frac", "how much worse it gets after; both against exact"),
-    "jitter/r": ("rest_jitter", "standard deviation of the overlap in the last quarter"),
+    "energy in": ("contact_energy", "all rises of it, added up; a spring gives back, too"),
+    "flight/r": ("flight_error_frac", "the worst height error before the first contact"),
+    "off/r": ("height_error_frac", "the worst height error of all; both against exact"),
+    "jitter/r": ("height_jitter_frac", "how much a height varies in the last quarter (std)"),
 }
 
 
@@ -1161,55 +1291,41 @@ def ending(row) -> str:
     """How a run ended, in words."""
     if row["blew_up"]:
         return f"EXPLODED at step {row['blew_up_step']}"
-    text = "trembles" if row["trembles"] else "ok"
-    text = f"through {row['through']}" if row["through"] else text
-    steps = row["unsettled_steps"]
-    return f"{text}, sweeps unsettled in {steps} steps" if steps else text
+    if row["through"]:
+        return f"through {row['through']}"
+    return "rests" if row["rests"] else "moves"
 
 
 def print_table(rows, state):
     """A line per row {name: {key: value}}, then state(row) of each, then what a column means.
 
-    Columns without a number but 0 are only named.
+    A column in which all numbers are 0 or unknown is left out.
     """
-    columns, meanings, zero = [["", "contact", *rows]], {}, []
+    lines = [name.ljust(max(map(len, rows), default=0)) for name in ("", *rows)]
+    meanings = {}
     for title, (key, meaning) in COLUMNS.items():
         cells = [shown(row[key]) for row in rows.values()]
-        if set(cells) <= {"0", "-"}:
-            zero.append(title)
-            continue
-        above, _, below = title.rpartition(" ")  # in two lines: "max" over "pen/r"
-        columns.append([above, below, *cells])
-        meanings[title] = meaning
-    wide = [max(map(len, column)) for column in columns]
-    for name, *cells in zip(*columns) if meanings else ():
-        numbers = [f" {cell:>{width}}" for cell, width in zip(cells, wide[1:])]
-        print(f"{name:<{wide[0]}}" + "".join(numbers))
+        if not set(cells) <= {"0", "-"}:
+            meanings[title] = meaning
+            wide = max(map(len, (title, *cells)))
+            lines = [f"{line}  {cell:>{wide}}" for line, cell in zip(lines, (title, *cells))]
+    print("\n".join(lines))
     for text, names in itertools.groupby(rows, key=lambda name: state(rows[name])):
-        print(f"state: {', '.join(names)} {text}")
-    meanings["ok"] = "no explosion, no trembling, nothing went through; it may still move"
+        print(f"{text}: {', '.join(names)}")
     for title, meaning in meanings.items():
-        print(f"  {title:<15}{meaning}")
-    if zero:
-        print(f"  {'0 or unknown':<15}{', '.join(zero)}")
+        print(f"  {title:<11}{meaning}")
 
 
+# --- region: report ---
 def print_verdict(quality):
-    """Which model overlaps most, at worst and at rest, and how far each is off."""
-    whole = [name for name, row in quality.items() if not row["blew_up"]]
-    resting = [name for name in whole if quality[name]["rests"]]
-    for when, key, names in (("worst", "max", whole), ("rest", "rest", resting)):
-        depth = {name: quality[name][f"{key}_penetration_frac"] for name in names}
+    """Which model overlaps most, at worst and at rest."""
+    whole = {name: row for name, row in quality.items() if not row["blew_up"]}
+    resting = {name: row for name, row in whole.items() if row["rests"]}
+    for when, key, rows in (("worst", "max", whole), ("rest", "rest", resting)):
+        depth = {name: row[f"{key}_penetration_frac"] for name, row in rows.items()}
         groups = itertools.groupby(sorted(depth, key=depth.get, reverse=True), key=depth.get)
         text = " > ".join(" = ".join(group) for _, group in groups)
         print(f"verdict: depth at {when}:", text or "none is")
-    if moving := [name for name in whole if name not in resting]:
-        print("verdict: not at rest at the end:", ", ".join(moving))
-    error = {name: quality[name]["height_error_frac"] for name in whole if name != "exact"}
-    if None not in error.values() and "exact" in whole:
-        off = [f"{name} {shown(error[name])} r" for name in sorted(error, key=error.get)]
-        off += [f"{name} flies to pieces" for name in quality if name not in whole]
-        print("verdict: off by, at most:", ", ".join(off))
 
 
 def print_stability(grid, count):
@@ -1218,45 +1334,94 @@ def print_stability(grid, count):
     print(f"stability: the largest of {tried} times --dt without an explosion")
     for model in GRID_MODELS:
         depth, through = grid[f"{model}_penetration_frac"], grid[f"{model}_through"]
-        text = f"{grid[model] or 0:g} s, there {shown(depth)} r deep"
-        text += f", through {through}" if through else ""
-        text += ", and trembles" if grid[f"{model}_trembles"] else ""
-        if not grid[model]:
-            text = "comes to no contact" if grid[model] is None else "none, wherever it touches"
+        text = "comes to no contact" if grid[model] is None else "none, wherever it touches"
+        if grid[model]:
+            text = f"{grid[model]:g} s, there {shown(depth)} r deep"
+            text += f", through {through}" if through else ""
         print(f"stability: {model} {text}")
     stack = f"a stack of {count}: {shown(grid['dt_crit_stack'], 4)} s; " if count > 1 else ""
     one, undamped = shown(grid["dt_crit_damped"], 4), shown(grid["dt_crit_penalty"], 4)
-    print(f"critical dt of penalty, one ball: {one} s; {stack}", end="")
-    print(f"without the damper, 2 sqrt(m/k): {undamped} s")
+    print(f"critical dt of penalty, one ball: {one} s; {stack}2 sqrt(m/k): {undamped} s")
+
+
+def rounded(value):
+    """`value` as JSON holds it, its floats rounded to 12 decimals; None where one is not finite."""
+    return json.loads(
+        json.dumps(value),
+        parse_float=lambda text: round(float(text), 12) + 0.0,
+        parse_constant=lambda name: None,
+    )
+
+
+def write_whole(path, content: str):
+    """Write a file whole or not at all: a full disk leaves what stood there. Raises OSError.
+
+    What stands there and is no regular file (/dev/null, a pipe) is written into, not replaced.
+    """
+    path = Path(os.path.realpath(path))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.exists() and not path.is_file():
+        path.write_bytes(content.encode())
+        return
+    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    try:
+        temporary.write_bytes(content.encode())
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_files(args, metrics, runs, scene):
+    """Write metrics.json, and recording and picture if asked: a line on each. Raises OSError."""
+    out, title = Path(args.out), f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
+    text = json.dumps(metrics, indent=2, sort_keys=True, allow_nan=False)
+    write_whole(out / "metrics.json", f"{text}\n")
+    yield f"metrics: {out / 'metrics.json'}"
+    recording = args.rerun, "recording", "show.recording", "contact.rrd"
+    picture = args.plot, "picture", "show.picture", "contact.svg"
+    for asked, name, module, file in (recording, picture):
+        if asked:
+            try:
+                maker = beside(module, needed=True)
+                maker.write(str(out / file), runs, scene, metrics["quality"], title)
+                yield f"{name}: {out / file}"
+            except ImportError as error:
+                if error.name:
+                    raise  # a fault in the module
+                yield f"no {name}: {error}"
 
 
 def report(args, argv):
     """Run the models, print what was found, write the files. Returns the exit status."""
-    scene = chosen_scene(args, args.seed)
-    runs, metrics = collect(args, scene)
+    scene, remarks = chosen_scene(args, args.seed), beside("show.remarks")
+    runs, without, quality = run_all(args, scene)
+    if not runs:
+        return fail("; ".join(f"no {model}: {reason}" for model, reason in without.items()))
+    keys = "scene", "contact", "dt", "steps", "seed", "stiffness"
+    metrics = {key: getattr(args, key) for key in keys} | {"restitution": scene.restitution}
+    metrics |= {"quality": quality, "stability": {}, "without": without}
+    if args.contact == "all" and args.scene != "pile":  # whose critical step no formula gives
+        metrics["stability"] = measure_stability(args, scene, quality)
+    metrics = rounded(metrics)
     print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
-    if remarks := beside("show.remarks"):
+    if remarks:
         remarks.print_remarks(args, runs, scene)
-    if runs:
-        print_table(metrics["quality"], ending)
-    for model, reason in metrics["without"].items():
+    print_table(metrics["quality"], ending)
+    for model, reason in without.items():
         print(f"no {model}: {reason}")
     if len(runs) > 1:
         print_verdict(metrics["quality"])
     if metrics["stability"]:
         print_stability(metrics["stability"], len(scene.mass))
-    lines, lost = [], None
     try:
         for line in write_files(args, metrics, runs, scene):
-            lines.append(line)
+            print(line)
     except OSError as error:
         lost = f"cannot write to {args.out}: {error.strerror}"
-    print("\n".join(lines))
-    if lost:
         return fail(f"{lost}; the report is whole, give another --out to keep its files")
     if remarks:
         remarks.print_next(args, argv)
-    return 0 if runs else 2
+    return 0
 
 
 # --- region: main ---

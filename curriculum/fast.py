@@ -603,7 +603,7 @@ def run_model(model, scene, dt, steps, settings, progress=None) -> contact.Run:
         settled[past + period :: period] = settled[past]
     rows += 0.0  # turns -0.0 into 0.0
     rows[np.isnan(rows)] = math.nan  # which has a sign too, left to chance
-    return contact.Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:], int((~settled).sum()))
+    return contact.Run(np.arange(steps + 1) * dt, rows[:, :2], rows[:, 2:])
 
 
 def smallest_gap(q, radius) -> np.ndarray:

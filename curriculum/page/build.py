@@ -36,7 +36,7 @@ def page_data(veils):
     knobs = {name: getattr(settings, name) for name in "stiffness iters baumgarte warm".split()}
     return {
         "models": list(contact.MODELS),
-        "uses": contact.MODELS,
+        "uses": {model: row.knobs for model, row in contact.MODELS.items()},
         "scenes": {
             name: {
                 "start": scene.q0[1].tolist(),

@@ -26,11 +26,7 @@ WIDTH = 6.0  # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
 
 # colour, marker, dash: to be told apart without colour too; the models' colours are Okabe and Ito's
 LOOKS = {
-    "penalty": ("#d55e00", "v", (0, (1, 1))),
-    "lcp": ("#0072b2", "o", "-"),
-    "leapfrog": ("#e69f00", "P", (0, (7, 1, 1, 1))),
-    "soft": ("#cc79a7", "d", (0, (5, 1))),
-    "exact": ("#009e73", "*", (0, (2, 2))),
+    **{model: row.look for model, row in contact.MODELS.items()},
     "mujoco": ("#222222", "s", "-"),
     "pymunk": ("#a6611a", "D", (0, (4, 2))),
     "box2d3": ("#7b5ea7", "^", (0, (1, 2))),

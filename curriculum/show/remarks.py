@@ -19,7 +19,7 @@ def print_remarks(args, runs: dict[str, contact.Run], scene: contact.Scene) -> N
     """
     usual = contact.Settings()._asdict() | dict.fromkeys(("damping", "restitution"), -1.0)
     for knob in usual:
-        owners = [model for model, knobs in contact.MODELS.items() if knob in knobs]
+        owners = [model for model, row in contact.MODELS.items() if knob in row.knobs]
         if owners and getattr(args, knob) != usual[knob] and args.contact not in ("all", *owners):
             print(f"--{knob} is for {' and '.join(owners)}, and changes nothing here")
     if list(runs) == ["exact"]:
@@ -46,16 +46,6 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
         yield f"exact: its bounces rise to {heights} m" + (" ..." if len(tops) > APEXES else "")
     else:
         yield "exact: it does not bounce"
-
-
-def too_much(steps: int, count: int) -> str | None:
-    """One line on a run of `count` balls that this machine cannot hold; None if it can."""
-    need = len(contact.MODELS) * steps * (80 * count + 375)  # bytes, measured, with the recording
-    have = 8e9  # bytes, chosen, where the machine does not say
-    if hasattr(os, "sysconf"):
-        have = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    text = f"--steps {steps} of {count} balls need {need / 1e9:.0f} GB of memory; allowed: "
-    return None if need <= have else f"{text}{have / 1e9:.0f} GB, what there is"
 
 
 def print_next(args, argv: list[str]) -> None:

@@ -101,7 +101,7 @@ class Trajectory:
     def __init__(self, trial, run, model="exact"):
         near = (np.abs(np.concatenate((run.q, run.v), axis=1)) < ASTRAY).all((1, 2))
         states = max(1, int(np.append(near, False).argmin()))  # those before it goes astray
-        self.dt, self.mass, self.unsettled = trial.dt, trial.mass, run.unsettled
+        self.dt, self.mass = trial.dt, trial.mass
         self.q, self.v, self.astray = run.q[:states], run.v[:states], states < len(run.q)
         self.a, self.b = np.triu_indices(len(trial.mass), 1)
         eye = np.eye(len(trial.mass))
