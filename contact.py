@@ -70,7 +70,7 @@ class Ball:
     """A ball: position [m], velocity [m/s], mass [kg], radius [m], and the force on it [N]."""
 
     __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()  # no other name can be set
-    __slots__ += "ax ay since vx_before vy_before".split()  # of leapfrog
+    __slots__ += "ax ay since held vx_before vy_before".split()  # of leapfrog
 
     def __init__(self, x, y, vx, vy, mass, radius):
         self.x, self.y = x, y
@@ -81,6 +81,7 @@ class Ball:
         self.radius = radius
         self.pushed = {}  # {other ball: impulse of the last step}; see warm_start
         self.ax = self.ay = self.since = 0.0  # see hold
+        self.held = self.inv_mass == 0.0  # see find_held
 
 
 FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)  # shared by all runs; nothing moves it
@@ -91,7 +92,7 @@ class Contact:
 
     __slots__ = "a b nx ny depth inv_masses m_eff target softness lam".split()
     __slots__ += "start before".split()  # of solve_with_momentum
-    __slots__ += "reach gap speed lies when struck".split()  # of leapfrog
+    __slots__ += "reach gap speed when struck".split()  # of leapfrog
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
@@ -551,21 +552,21 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
     in between: what opened an overlap is taken back then, and throws nobody. Without contacts that
     is leapfrog, exact in a parabola; with contacts that last it is RATTLE (Andersen 1983).
 
-    Not mended: sweeps that do not finish let a stack sag; of more than MOST_STRIKES moments in a
-    step the last are taken as one; a ball that another drives farther than step_reach meets late.
+    Not mended: sweeps that do not finish let a stack sag; a bounce slower than gravity makes it in
+    a step is lost; of more than MOST_STRIKES moments in a step the last are taken as one.
     """
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
         radii = c.a.radius + c.b.radius
-        c.reach = radii - max(0.0, c.depth - OPENS * radii)  # a deep overlap: no more than it opens
+        c.reach = radii - max(0.0, c.depth - OPENS * radii)  # a deep overlap counts as a small one
         c.struck = 0.0
-        look(c, 0.0, dt)
+        look(c, 0.0)
+    find_held(balls, contacts, dt)
     if may_strike(contacts, dt):
-        hold(balls, contacts, dt, iters)
         take_impacts(balls, contacts, dt, restitution, iters)
     for c in contacts:
-        if c.lies:
-            look(c, nearest(c, dt), dt)
+        if lasts(c, dt):
+            look(c, nearest(c, dt))
         c.target = c.depth / dt
         c.lam = 0.0
     accelerate(balls, 0.5 * dt)
@@ -574,7 +575,7 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
     accelerate(balls, 0.5 * dt)
     closed = [c for c in contacts if c.lam > 0.0]
     for c in closed:
-        look(c, 0.0, dt)  # normals of now
+        look(c, 0.0)  # the normal of now
         c.target = 0.0
     solve_with_momentum(closed, iters)  # how fast
     for c in contacts:
@@ -582,12 +583,11 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
     return contacts
 
 
-# --- region: leapfrog-look ---
-def look(c, t, dt):
-    """Turn contact c to the time t [s] of this step: its normal, gap [m], and v_n as its speed.
+# --- region: leapfrog-lasts ---
+def look(c, t):
+    """Turn contact c to the time t [s] of this step: its normal, its gap [m], v_n as its speed.
 
-    Its depth is of the start of the step, along that normal. It lies, or lasts, if it would close
-    no faster than gravity makes it along its normal within one step.
+    Its depth is that of the start of the step along this normal.
     """
     a, b = c.a, c.b
     x, y, ax, ay = a.x - b.x, a.y - b.y, a.ax - b.ax, a.ay - b.ay
@@ -599,14 +599,37 @@ def look(c, t, dt):
     c.gap = c.nx * dx + c.ny * dy - c.reach
     c.speed = c.nx * vx + c.ny * vy
     c.depth = c.reach - (c.nx * x + c.ny * y)
-    g_n = -GRAVITY * abs(c.ny)
+
+
+def find_held(balls, contacts, dt):
+    """Find which balls are held: nothing moves them, or they lie on one that is held."""
+    for ball in balls:
+        ball.held = ball.inv_mass == 0.0
+    more = True
+    while more:
+        more = False
+        for c in contacts:
+            upper = c.a if c.ny > 0.0 else c.b
+            if not upper.held and rests_on_held(c) and lasts(c, dt):
+                upper.held = more = True
+
+
+def rests_on_held(c):
+    """Whether the lower ball of c is held; else both fall alike, and gravity does not close c."""
+    return c.b.held if c.ny > 0.0 else c.a.held
+
+
+def lasts(c, dt):
+    """Whether c closes no faster than gravity alone closes it within a step; else it strikes."""
+    g_n = 1e-6  # m/s^2: where gravity does not press, only what touches and rests may last
+    if rests_on_held(c):
+        g_n = max(g_n, -GRAVITY * abs(c.ny))
     slow = dt * g_n + 1e-9  # m/s
-    near = c.gap <= -0.5 * GRAVITY * dt * dt
-    c.lies = near and c.speed * c.speed + 2.0 * g_n * max(0.0, c.gap) <= slow * slow
+    return c.speed * c.speed + 2.0 * g_n * max(0.0, c.gap) <= slow * slow
 
 
 def nearest(c, dt):
-    """When the balls of c touch in free flight, or are nearest [s]; so balls that pass may pass."""
+    """When the balls of c touch in free flight, or are nearest [s]: so balls that pass may pass."""
     a, b = c.a, c.b
     dx, dy = a.x - b.x, a.y - b.y
     vx, vy = a.vx - b.vx, a.vy - b.vy  # gravity cancels where both fall
@@ -624,22 +647,33 @@ MOST_STRIKES = 10  # in a step, chosen: the last takes all that are left at once
 
 
 def may_strike(contacts, dt):
-    """Whether any balls could meet within this step, and do not lie on one another."""
+    """Whether any balls could meet within this step that do not lie on one another."""
     for c in contacts:
-        if not c.lies and c.gap + dt * (c.speed + dt * GRAVITY) < 0.0:
+        if c.gap + dt * (c.speed + dt * GRAVITY) < 0.0 and not lasts(c, dt):
             return True
     return False
 
 
+def take_impacts(balls, contacts, dt, restitution, iters):
+    """The impacts of this step, one moment after the other."""
+    hold(balls, contacts, dt, iters)
+    left = MOST_STRIKES
+    when = next_meeting(contacts, dt)
+    while when < math.inf and left > 0:
+        left -= 1
+        until = when if left > 0 else dt
+        strike_at(balls, contacts, when, until, dt, restitution, iters)
+        when = next_meeting(contacts, dt)
+
+
 def hold(balls, contacts, dt, iters):
-    """Give every ball the acceleration [m/s^2] that it has where what lies pushes it."""
-    lying = [c for c in contacts if c.lies]
-    for c in lying:
+    """Give every ball the acceleration [m/s^2] that it has where what lasts pushes it."""
+    lasting = [c for c in contacts if lasts(c, dt)]
+    for c in lasting:
         c.target = min(0.0, c.depth / dt)
-    for ball in balls:
-        ball.vx_before, ball.vy_before = ball.vx, ball.vy
+    keep_velocities(balls)
     accelerate(balls, 0.5 * dt)
-    solve_with_momentum(lying, iters)
+    solve_with_momentum(lasting, iters)
     for ball in balls:
         ball.ax = 2.0 / dt * (ball.vx - ball.vx_before)
         ball.ay = 2.0 / dt * (ball.vy - ball.vy_before)
@@ -647,14 +681,10 @@ def hold(balls, contacts, dt, iters):
         ball.since = 0.0  # s: when it was struck last
 
 
-def take_impacts(balls, contacts, dt, restitution, iters):
-    """The impacts of this step, one moment after the other."""
-    left = MOST_STRIKES
-    when = next_meeting(contacts, dt)
-    while when < math.inf and left > 0:
-        left -= 1
-        strike_at(balls, contacts, when, dt if left == 0 else when, dt, restitution, iters)
-        when = next_meeting(contacts, dt)
+def keep_velocities(balls):
+    """Remember the velocities of now."""
+    for ball in balls:
+        ball.vx_before, ball.vy_before = ball.vx, ball.vy
 
 
 def next_meeting(contacts, dt):
@@ -671,34 +701,33 @@ def meet(c, dt):
 
     c stays turned to then, or to when they have passed each other, so that they may.
     """
-    first = max(c.a.since, c.b.since)
     c.when = math.inf
+    first = max(c.a.since, c.b.since)
     t = first
     for _ in range(12):
-        look(c, t, dt)
-        if c.speed >= 0.0 or c.lies or c.m_eff == 0.0 or (t == dt and c.gap > 0.0):
+        look(c, t)
+        if c.speed >= 0.0 or lasts(c, dt) or c.m_eff == 0.0 or (t == dt and c.gap > 0.0):
             return
         t = min(dt, max(first, t - c.gap / c.speed))
     c.when = t
 
 
 def strike_at(balls, contacts, when, until, dt, restitution, iters):
-    """v_n becomes -e v_n of what meets from `when` to `until`, and what lies may not close.
+    """v_n becomes -e v_n of what meets from `when` to `until`, and what lasts may not close.
 
     Who was struck is set back to where it would have begun with its new velocity: so all balls
     stay at the start of the step.
     """
     touching = []
     for c in contacts:
-        struck = c.when <= until
-        look(c, when, dt)
-        if struck or c.lies:
-            back = -restitution * c.speed if struck else min(0.0, c.speed)
-            c.target = c.v_n() + back - c.speed  # at the start of the step
+        strikes = c.when <= until
+        look(c, when)
+        if strikes or lasts(c, dt):
+            after = -restitution * c.speed if strikes else min(0.0, c.speed)
+            c.target = c.v_n() + after - c.speed  # at the start of the step
             c.lam = 0.0
             touching.append(c)
-    for ball in balls:
-        ball.vx_before, ball.vy_before = ball.vx, ball.vy
+    keep_velocities(balls)
     solve_with_momentum(touching, iters)
     for c in touching:
         c.struck += c.lam
