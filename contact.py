@@ -73,12 +73,10 @@ class Ball:
     __slots__ += "ax ay since held vx_before vy_before".split()  # of leapfrog
 
     def __init__(self, x, y, vx, vy, mass, radius):
-        self.x, self.y = x, y
-        self.vx, self.vy = vx, vy
+        self.x, self.y, self.vx, self.vy = x, y, vx, vy
         self.fx = self.fy = 0.0
-        self.mass = mass
+        self.mass, self.radius = mass, radius
         self.inv_mass = 1.0 / mass  # 0 for infinite mass: no push changes its velocity
-        self.radius = radius
         self.pushed = {}  # {other ball: impulse of the last step}; see warm_start
         self.ax = self.ay = self.since = 0.0  # see hold
         self.held = self.inv_mass == 0.0  # see find_held
@@ -610,20 +608,19 @@ def find_held(balls, contacts, dt):
         more = False
         for c in contacts:
             upper = c.a if c.ny > 0.0 else c.b
-            if not upper.held and rests_on_held(c) and lasts(c, dt):
+            if not upper.held and gravity_on(c) > 0.0 and lasts(c, dt):
                 upper.held = more = True
 
 
-def rests_on_held(c):
-    """Whether the lower ball of c is held; else both fall alike, and gravity does not close c."""
-    return c.b.held if c.ny > 0.0 else c.a.held
+def gravity_on(c):
+    """How gravity closes c [m/s^2]: 0 if the lower ball is not held, since then both fall alike."""
+    held = c.b.held if c.ny > 0.0 else c.a.held
+    return -GRAVITY * abs(c.ny) if held else 0.0
 
 
 def lasts(c, dt):
     """Whether c closes no faster than gravity alone closes it within a step; else it strikes."""
-    g_n = 1e-6  # m/s^2: where gravity does not press, only what touches and rests may last
-    if rests_on_held(c):
-        g_n = max(g_n, -GRAVITY * abs(c.ny))
+    g_n = max(1e-6, gravity_on(c))  # m/s^2; where gravity does not press, what touches and rests
     slow = dt * g_n + 1e-9  # m/s
     return c.speed * c.speed + 2.0 * g_n * max(0.0, c.gap) <= slow * slow
 
@@ -877,18 +874,15 @@ class Settings(NamedTuple):
     skip: bool = True  # leave out steps whose result is known; no bit changes
 
 
-def run_model(
-    model: str, scene: Scene, dt: float, steps: int, settings: Settings = Settings(),
-    progress=None, see=None,
-) -> Run:  # fmt: skip
+def run_model(model, scene, dt, steps, settings=Settings(), progress=None, see=None) -> Run:
     """The run of a scene by one of MODELS; progress and see as simulate has them.
 
     Raises ValueError for what no model can run, RuntimeError where exact cannot be exact.
     """
     scene, settings = checked(model, scene, dt, steps, settings)
-    if MODELS[model].step is None:
-        if see:
-            raise ValueError(f"see: {model} takes no steps; allowed: {', '.join(STEPPED)}")
+    if see and model not in STEPPED:
+        raise ValueError(f"see: {model} takes no steps; allowed: {', '.join(STEPPED)}")
+    if model not in STEPPED:
         return choose_exact(scene, dt, steps, progress)
     many = settings.skip and not see and steps * len(scene.mass) ** 2 > MANY
     if many and (twin := beside("fast")):  # compiled loops, the same bits
@@ -943,79 +937,73 @@ def beside(name: str, needed=False):
 
 
 # --- region: limits ---
-LIMITS = {  # of flags and of run_model alike: kind, lowest, highest
-    "seed": (int, 0, 10**18),
-    "dt": (float, 1e-9, 1e3),
-    "steps": (int, 0, 10**8),
-    "bodies": (int, 1, 10**4),
-    "mass": (float, 1e-300, 1e300),  # in a scene also infinite
-    "stiffness": (float, 0, 1e15),
-    "damping": (float, 0, 1e9),
-    "restitution": (float, 0, 1),
-    "baumgarte": (float, 0, 1),
-    "warm": (float, 0, 1),
-    "iters": (int, 1, MOST_SWEEPS),
-    "solref": (float, -1e12, 1e6),
-    "solimp": (float, 0, 100),
+USUAL = Settings()
+NUMBERS = {  # kind, lowest, highest; of a flag also its usual value and its meaning
+    "seed": (int, 0, 10**18, 0, "draws the start height"),
+    "dt": (float, 1e-9, 1e3, 0.002, "time step [s]"),
+    "steps": (int, 0, 10**8, None, "how many (2000)"),
+    "bodies": (int, 1, 10**4, None, "balls of stack (3) and pile (24)"),
+    "mass": (float, 1e-300, 1e300, 1.0, "of every ball [kg]"),  # in a scene also infinite
+    "stiffness": (float, 0, 1e15, USUAL.stiffness, "k of penalty [N/m]"),
+    "damping": (float, 0, 1e9, -1.0, "c of penalty [N s/m]; below 0: the scene's, 80 or 0"),
+    "restitution": (float, 0, 1, -1.0, "e of the others; below 0: the scene's, 0 or 0.7"),
+    "baumgarte": (float, 0, 1, USUAL.baumgarte, "beta of lcp: share of an overlap to remove"),
+    "warm": (float, 0, 1, USUAL.warm, "of lcp: share of the last impulses to begin with"),
+    "iters": (int, 1, MOST_SWEEPS, USUAL.iters, "of lcp and leapfrog: sweeps a solve, at most"),
+    "solref": (float, -1e12, 1e6, None, "of soft: time constant [s], damping ratio (0.02 1); or "
+               "minus a stiffness, a damping"),
+    "solimp": (float, 0, 100, None, "of soft: d0 d1 width mid power (0.9 0.95 0.001 0.5 2)"),
     "radius": (float, 1e-300, 1e300),
     "q0": (float, -1e300, 1e300),
     "v0": (float, -1e300, 1e300),
-}
+}  # fmt: skip
 
 
 def checked(model, scene, dt, steps, settings):
     """Scene and Settings in floats. ValueError, with the name of the field that nothing can run."""
     if model not in MODELS:
         raise ValueError(f"model: given {model!r}; allowed: {', '.join(MODELS)}")
+    count = max(1, np.size(scene.mass))
+    shapes = dict(q0=(2, count), v0=(2, count), mass=(count,), radius=(count,))
+    shapes |= dict(solref=(2,), solimp=(5,))
     within("dt", dt)
     within("steps", steps)
-    count = max(1, np.size(scene.mass))
-    shapes = {"q0": (2, count), "v0": (2, count), "mass": (count,), "radius": (count,)}
-    fields = scene._asdict()
-    for name in scene._fields[1:]:
-        fields[name] = within(name, fields[name], shapes.get(name, ()))
-    knobs = settings._asdict()
-    for name, shape in {"solref": (2,), "solimp": (5,)}.items():
-        if knobs[name] is not None:
-            knobs[name] = tuple(within(name, knobs[name], shape).tolist())
-    for name in ("stiffness", "baumgarte", "iters", "warm"):
-        knobs[name] = within(name, knobs[name])
-    if mixed(knobs["solref"]):
-        raise ValueError(f"solref: given {settings.solref}; allowed: {SPRINGS}")
-    return Scene(**fields), Settings(**knobs)
+    fields = scene._asdict() | settings._asdict()
+    for name, given in fields.items():
+        if name in NUMBERS and not (name in ("solref", "solimp") and given is None):
+            fields[name] = within(name, given, shapes.get(name, ()))
+    return Scene(*map(fields.get, Scene._fields)), Settings(*map(fields.get, Settings._fields))
 
 
 @np.errstate(invalid="ignore")
 def within(name, given, shape=()):
-    """`given` as an array of that shape, or as one number; ValueError if it is not."""
-    kind, low, high = LIMITS[name]
+    """`given` as an array of that shape, or one number. ValueError if NUMBERS do not allow it."""
+    kind, low, high = NUMBERS[name][:3]
     try:
         values = np.array(given)
     except ValueError:  # rows of different lengths
         values = np.array("")
     if values.dtype.kind not in "iuf" or values.shape != shape:
         form = f"numbers in the shape {shape}" if shape else "one number"
-        raise ValueError(f"{name}: given {str(given)[:60]}; allowed: {form}")
+        raise ValueError(f"{name}: given {str(given).split()}"[:80] + f"; allowed: {form}")
     fine = (values >= low) & (values <= high) & ((values % 1 == 0) | (kind is float))
     fine |= (values == math.inf) & (name == "mass")  # a ball that nothing moves
+    if name == "solref":
+        fine &= (values >= 1e-6).all() or (values <= 0.0).all()
     if not fine.all():
-        wrong = np.atleast_1d(values)[~np.atleast_1d(fine)][0].item()
-        raise ValueError(f"{name}: given {wrong!r}; allowed: {span(name)}")
+        wrong = np.atleast_1d(values)[~np.atleast_1d(fine)].tolist()
+        raise ValueError(f"{name}: given {wrong[0]!r}; allowed: {span(name)}")
+    if name in ("solref", "solimp"):
+        return tuple(values.tolist())
     return values.astype(kind) if shape else kind(values)
 
 
 def span(name):
-    """The numbers that LIMITS allow, in words."""
-    kind, low, high = LIMITS[name]
+    """What NUMBERS allow, in words."""
+    kind, low, high = NUMBERS[name][:3]
+    if name == "solref":
+        return "two numbers from 1e-06 up, or two up to 0"
     return f"{'a whole number' if kind is int else 'a number'} from {low:g} to {high:g}"
-
-
-SPRINGS = "two numbers from 1e-06 up, or two up to 0"
-
-
-def mixed(solref):
-    """Whether solref is neither a time constant and a damping ratio, nor minus two constants."""
-    return solref is not None and max(solref) > 0.0 and min(solref) < 1e-6
 
 
 # --- region: measure ---
@@ -1069,26 +1057,22 @@ def at_rest(run: Run, scene: Scene) -> bool:
     return bool(not falling and np.hypot(*last).max(initial=0.0) < 1e-3)
 
 
-def went_through(run: Run, scene: Scene, gap, radius) -> str | None:
-    """What a ball went through: "the floor", "a ball" or None.
+def went_through(q, scene: Scene, gap, radius) -> str | None:
+    """What a ball went through in the states q (S, 2, N): "the floor", "a ball" or None.
 
-    Its centre came below the floor, or nearer to another centre than the larger of their radii, in
-    a state or on the straight way to the next one. radius: of the smallest ball [m].
+    Its centre came below the floor; or nearer to another centre than the larger of their radii, in
+    a state or on the straight way to the next one. gap: smallest_gap; radius: of the smallest ball.
     """
     free = np.isfinite(scene.mass)
-    if (run.q[:, 1, free] < 0.0).any():
+    if (q[:, 1, free] < 0.0).any():
         return "the floor"
-    way = np.diff(run.q, axis=0, append=run.q[-1:])
-    farthest = np.hypot(way[:, 0], way[:, 1]).max(-1)
-    near = gap - 2.0 * farthest < -radius  # elsewhere no two balls can have come so near
-    q, way = run.q[near], way[near]
-    for lag in range(1, len(free) if len(q) else 1):
+    way = np.diff(q, axis=0, append=q[-1:])
+    near = gap - 2.0 * np.hypot(way[:, 0], way[:, 1]).max(-1) < -radius  # elsewhere none can be
+    q, way = q[near], way[near]
+    for lag in range(1, len(free) if near.any() else 1):
         d, w = q[:, :, lag:] - q[:, :, :-lag], way[:, :, lag:] - way[:, :, :-lag]
-        along, fast = -(d * w).sum(1), (w * w).sum(1)
-        share = np.clip(
-            np.where(fast > 0.0, along / np.where(fast > 0.0, fast, 1.0), 0.0), 0.0, 1.0
-        )
-        closest = np.hypot(*(d + share[:, None] * w).swapaxes(0, 1))
+        nearest_at = np.nan_to_num(-(d * w).sum(1) / (w * w).sum(1)).clip(0.0, 1.0)
+        closest = np.hypot(*(d + nearest_at[:, None] * w).swapaxes(0, 1))
         inside = closest < np.maximum(scene.radius[lag:], scene.radius[:-lag])
         if (inside & (free[lag:] | free[:-lag])).any():
             return "a ball"
@@ -1108,7 +1092,7 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     landing = first_contact(run, scene, dt, gap)
     step = blow_up_step(total)
     end = len(gap) if step is None else step  # what flies to pieces goes through everything
-    through = went_through(Run(run.t[:end], run.q[:end], run.v[:end]), scene, gap[:end], radius)
+    through = went_through(run.q[:end], scene, gap[:end], radius)
     gap = gap / radius
     depth = np.maximum(-gap, 0.0)
     late = slice(3 * len(depth) // 4, None)  # the last quarter
@@ -1132,14 +1116,13 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
 
 
 def height_errors(run, scene, dt, landing, reference):
-    """The worst error of height [r], the worst before any contact, and how much worse it gets."""
-    worst = flight = later = None
-    if reference is not None:
-        landed = first_contact(reference, scene, dt, smallest_gap(reference.q, scene.radius))
-        error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius.min())
-        worst, flight = float(error.max()), float(error[: min(landing, landed)].max(initial=0.0))
-        later = worst - flight
-    return dict(height_error_frac=worst, flight_error_frac=flight, contact_error_frac=later)
+    """The worst error of height [r], and the worst before any contact; None without reference."""
+    if reference is None:
+        return {"height_error_frac": None, "flight_error_frac": None}
+    landed = first_contact(reference, scene, dt, smallest_gap(reference.q, scene.radius))
+    error = np.abs(run.q[:, 1] - reference.q[:, 1]).max(-1) / float(scene.radius.min())
+    flight = error[: min(landing, landed)].max(initial=0.0)
+    return {"height_error_frac": float(error.max()), "flight_error_frac": float(flight)}
 
 
 # --- region: stability ---
@@ -1175,35 +1158,14 @@ def measure_stability(args, scene: Scene, known: dict) -> dict:
 
 
 # --- region: flags ---
-USUAL = Settings()
-SPRING = "of soft: time constant [s], damping ratio (0.02 1); or minus a stiffness, a damping"
-NUMBERS = {  # flag: what it is when it is not given, meaning
-    "seed": (0, "draws the start height"),
-    "dt": (0.002, "time step [s]"),
-    "steps": (None, "how many (2000)"),
-    "bodies": (None, "balls of stack (3) and pile (24)"),
-    "mass": (1.0, "of every ball [kg]"),
-    "stiffness": (USUAL.stiffness, "k of penalty [N/m]"),
-    "damping": (-1.0, "c of penalty [N s/m]; below 0: the scene's, 80 or 0"),
-    "restitution": (-1.0, "e of the others; below 0: the scene's, 0 or 0.7"),
-    "baumgarte": (USUAL.baumgarte, "beta of lcp: share of an overlap to remove"),
-    "warm": (USUAL.warm, "of lcp: share of the last impulses to begin with"),
-    "iters": (USUAL.iters, "of lcp and leapfrog: sweeps a solve, at most"),
-    "solref": (None, SPRING),
-    "solimp": (None, "of soft: d0 d1 width mid power (0.9 0.95 0.001 0.5 2)"),
-}
-SEVERAL = {"solref": 2, "solimp": 5}  # flag: how many numbers it takes
-
-
 def number(name, text):
-    """The number that `text` is, as LIMITS allow it; a whole one may be 1e3."""
-    kind, low, high = LIMITS[name]
+    """The number that `text` is, as NUMBERS allow it; a whole one may be 1e3."""
+    kind, low, high, usual, _ = NUMBERS[name]
     try:
         value = int(text) if text.isdecimal() else float(text)
     except ValueError:
         value = math.nan
-    if NUMBERS[name][0] == -1.0:  # below 0 it is the scene's own
-        low = -high
+    low = -high if usual == -1.0 else low  # below 0 it is the scene's own
     if not low <= value <= high or (kind is int and value % 1 > 0):
         raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {span(name)}")
     return kind(value) + 0  # -0.0 becomes 0.0
@@ -1213,10 +1175,13 @@ def add_flags(flag):
     """All flags, by argparse's add_argument."""
     flag("--scene", choices=SCENES, default="drop", help="one ball, drop or bounce; or many (drop)")
     flag("--contact", choices=("all", *MODELS), default="all", help="the model (all)")
-    for name, (usual, text) in NUMBERS.items():
-        text += "" if usual in (None, -1.0) else f" ({usual:g})"
-        how = dict(type=partial(number, name), nargs=SEVERAL.get(name), metavar="N")
-        flag(f"--{name}", default=usual, help=text, **how)
+    for name, (_, _, _, *words) in NUMBERS.items():
+        if words:
+            usual, text = words
+            text += "" if usual in (None, -1.0) else f" ({usual:g})"
+            count = {"solref": 2, "solimp": 5}.get(name)
+            kind = partial(number, name)
+            flag(f"--{name}", type=kind, nargs=count, default=usual, metavar="N", help=text)
     switch = argparse.BooleanOptionalAction
     flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
     flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
@@ -1239,31 +1204,19 @@ def parse_flags(argv):
             parser.error(f"argument {word[:-3]}: given '--', which is no value")
     args, unknown = parser.parse_known_args(argv)
     hint = "".join(f"; a scene is chosen by --scene {w}" for w in unknown[:1] if w in SCENES)
-    refused = {
-        f"given {' '.join(unknown)}, which is no flag{hint}": unknown,
-        "--smoke has 800 steps: leave out --steps": args.smoke and args.steps is not None,
-        "--bodies is for stack and pile": args.bodies and SCENES[args.scene] == 1,
-        f"argument --solref: allowed: {SPRINGS}": mixed(args.solref),
-        "argument --out: given ''; allowed: the name of a folder": not args.out.strip(),
-    }
-    for message, wrong in refused.items():
-        if wrong:
-            parser.error(message)
+    if unknown:
+        parser.error(f"given {' '.join(unknown)}, which is no flag{hint}")
+    if args.smoke and args.steps is not None:
+        parser.error("--smoke has 800 steps: leave out --steps")
+    if args.bodies and SCENES[args.scene] == 1:
+        parser.error("--bodies is for stack and pile")
+    if args.solref and max(args.solref) > 0.0 and min(args.solref) < 1e-6:
+        parser.error(f"argument --solref: given {args.solref}; allowed: {span('solref')}")
+    if not args.out.strip():
+        parser.error("argument --out: given ''; allowed: the name of a folder")
     args.out = os.path.expanduser(args.out)
     args.steps = 800 if args.smoke else 2000 if args.steps is None else args.steps
-    if wrong := too_much(args.steps, args.bodies or SCENES[args.scene]):
-        parser.error(wrong)
     return args
-
-
-def too_much(steps, count):
-    """One line on a run of `count` balls that this machine cannot hold; None if it can."""
-    need = len(MODELS) * steps * (80 * count + 375)  # bytes, measured, with the recording
-    have = 8e9  # bytes, chosen, where the machine does not say
-    if hasattr(os, "sysconf"):
-        have = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    text = f"--steps {steps} of {count} balls need {need / 1e9:.0f} GB of memory; allowed: "
-    return None if need <= have else f"{text}{have / 1e9:.0f} GB, what there is"
 
 
 def chosen_scene(args, seed):
@@ -1300,7 +1253,7 @@ COLUMNS = {  # title: key of contact_quality, meaning
     "gap/r": ("rest_gap_frac", "the smallest gap at the end: below 0 it is an overlap"),
     "hop/r": ("rebound_frac", "how far all surfaces part again after the first contact"),
     "energy+": ("energy_excess", "the most energy above the start, as a share of the start's"),
-    "energy in": ("contact_energy", "all rises of it, added up; a spring gives back, too"),
+    "rises": ("contact_energy", "all that the energy rises, added up; a spring gives back, too"),
     "flight/r": ("flight_error_frac", "the worst height error before the first contact"),
     "off/r": ("height_error_frac", "the worst height error of all; both against exact"),
     "jitter/r": ("height_jitter_frac", "how much a height varies in the last quarter (std)"),
@@ -1338,25 +1291,15 @@ def print_table(rows, state):
             meanings[title] = meaning
             wide = max(map(len, (title, *cells)))
             lines = [f"{line}  {cell:>{wide}}" for line, cell in zip(lines, (title, *cells))]
-    print("\n".join(lines))
+    if meanings:
+        print("\n".join(lines))
     for text, names in itertools.groupby(rows, key=lambda name: state(rows[name])):
-        print(f"{text}: {', '.join(names)}")
+        print(f"state: {text}: {', '.join(names)}")
     for title, meaning in meanings.items():
         print(f"  {title:<11}{meaning}")
 
 
 # --- region: report ---
-def print_verdict(quality):
-    """Which model overlaps most, at worst and at rest."""
-    whole = {name: row for name, row in quality.items() if not row["blew_up"]}
-    resting = {name: row for name, row in whole.items() if row["rests"]}
-    for when, key, rows in (("worst", "max", whole), ("rest", "rest", resting)):
-        depth = {name: row[f"{key}_penetration_frac"] for name, row in rows.items()}
-        groups = itertools.groupby(sorted(depth, key=depth.get, reverse=True), key=depth.get)
-        text = " > ".join(" = ".join(group) for _, group in groups)
-        print(f"verdict: depth at {when}:", text or "none is")
-
-
 def print_stability(grid, count):
     """The largest step that each model stood, and the critical steps of penalty."""
     tried = ", ".join(map(str, DT_GRID))
@@ -1382,19 +1325,12 @@ def rounded(value):
     )
 
 
-def write_whole(path, content: str):
-    """Write a file whole or not at all: a full disk leaves what stood there. Raises OSError.
-
-    What stands there and is no regular file (/dev/null, a pipe) is written into, not replaced.
-    """
-    path = Path(os.path.realpath(path))
+def write_whole(path, text: str):
+    """Write a file whole or not at all: a full disk leaves what stood there. Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    if path.exists() and not path.is_file():
-        path.write_bytes(content.encode())
-        return
     temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     try:
-        temporary.write_bytes(content.encode())
+        temporary.write_bytes(text.encode())
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
@@ -1438,15 +1374,16 @@ def report(args, argv):
     print_table(metrics["quality"], ending)
     for model, reason in without.items():
         print(f"no {model}: {reason}")
-    if len(runs) > 1:
-        print_verdict(metrics["quality"])
     if metrics["stability"]:
         print_stability(metrics["stability"], len(scene.mass))
+    lines, lost = [], None
     try:
         for line in write_files(args, metrics, runs, scene):
-            print(line)
+            lines.append(line)
     except OSError as error:
         lost = f"cannot write to {args.out}: {error.strerror}"
+    print("\n".join(lines))
+    if lost:
         return fail(f"{lost}; the report is whole, give another --out to keep its files")
     if remarks:
         remarks.print_next(args, argv)
