@@ -992,17 +992,18 @@ def within(name, given, shape=()):
         fine &= (values >= 1e-6).all() or (values <= 0.0).all()
     if not fine.all():
         wrong = np.atleast_1d(values)[~np.atleast_1d(fine)].tolist()
-        raise ValueError(f"{name}: given {wrong[0]!r}; allowed: {span(name)}")
+        allowed = SPRINGS if name == "solref" else span(kind, low, high)
+        raise ValueError(f"{name}: given {wrong[0]!r}; allowed: {allowed}")
     if name in ("solref", "solimp"):
         return tuple(values.tolist())
     return values.astype(kind) if shape else kind(values)
 
 
-def span(name):
-    """What NUMBERS allow, in words."""
-    kind, low, high = NUMBERS[name][:3]
-    if name == "solref":
-        return "two numbers from 1e-06 up, or two up to 0"
+SPRINGS = "two numbers from 1e-06 up, or two up to 0"  # of solref
+
+
+def span(kind, low, high):
+    """The numbers of that kind from low to high, in words."""
     return f"{'a whole number' if kind is int else 'a number'} from {low:g} to {high:g}"
 
 
@@ -1158,16 +1159,15 @@ def measure_stability(args, scene: Scene, known: dict) -> dict:
 
 
 # --- region: flags ---
-def number(name, text):
-    """The number that `text` is, as NUMBERS allow it; a whole one may be 1e3."""
-    kind, low, high, usual, _ = NUMBERS[name]
+def number(kind, low, high, text):
+    """The number of that kind, from low to high, that `text` is; a whole one may be 1e3."""
     try:
         value = int(text) if text.isdecimal() else float(text)
     except ValueError:
         value = math.nan
-    low = -high if usual == -1.0 else low  # below 0 it is the scene's own
     if not low <= value <= high or (kind is int and value % 1 > 0):
-        raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {span(name)}")
+        given = f"given {text[:40]!r}; allowed: {span(kind, low, high)}"
+        raise argparse.ArgumentTypeError(given)
     return kind(value) + 0  # -0.0 becomes 0.0
 
 
@@ -1175,13 +1175,14 @@ def add_flags(flag):
     """All flags, by argparse's add_argument."""
     flag("--scene", choices=SCENES, default="drop", help="one ball, drop or bounce; or many (drop)")
     flag("--contact", choices=("all", *MODELS), default="all", help="the model (all)")
-    for name, (_, _, _, *words) in NUMBERS.items():
+    for name, (kind, low, high, *words) in NUMBERS.items():
         if words:
             usual, text = words
-            text += "" if usual in (None, -1.0) else f" ({usual:g})"
+            own = usual == -1.0  # and any other below 0: the scene's
+            text += "" if own or usual is None else f" ({usual:g})"
+            value = partial(number, kind, -high if own else low, high)
             count = {"solref": 2, "solimp": 5}.get(name)
-            kind = partial(number, name)
-            flag(f"--{name}", type=kind, nargs=count, default=usual, metavar="N", help=text)
+            flag(f"--{name}", type=value, nargs=count, default=usual, metavar="N", help=text)
     switch = argparse.BooleanOptionalAction
     flag("--smoke", action="store_true", help="a fixed 800 steps, for CI")
     flag("--device", choices=("cpu",), default="cpu", help="where it runs (cpu)")
@@ -1211,7 +1212,7 @@ def parse_flags(argv):
     if args.bodies and SCENES[args.scene] == 1:
         parser.error("--bodies is for stack and pile")
     if args.solref and max(args.solref) > 0.0 and min(args.solref) < 1e-6:
-        parser.error(f"argument --solref: given {args.solref}; allowed: {span('solref')}")
+        parser.error(f"argument --solref: given {args.solref}; allowed: {SPRINGS}")
     if not args.out.strip():
         parser.error("argument --out: given ''; allowed: the name of a folder")
     args.out = os.path.expanduser(args.out)
