@@ -24,36 +24,30 @@ from curriculum.commands import Parser, needs, stoppable, write_whole
 with needs("dev"):
     import yaml
 
-    from curriculum.gate.references import HOLDS, INCLUDE, REFERENCE, Numbers, TextError, load_meta
+    from curriculum.gate.chapter import CHAPTER, Part, faults, split
+    from curriculum.gate.references import HOLDS, REFERENCE, Numbers, TextError, load_meta
     from curriculum.measured import ledger, results, stale
     from curriculum.measured.results import BLOCK
     from curriculum.regions import ROOT, Region, blank, line_at, read_text, split_all
 
 GATE = "python -m curriculum.gate"
-CHAPTER, README = TEXTS = ("curriculum/prose/chapter.md", "README.md")
+TEXTS = (CHAPTER, "README.md")
 FIGURES = "curriculum/page/figures/*.js"
-FENCE = re.compile(r"^(```|~~~).*?^\1[ ]*$", re.MULTILINE | re.DOTALL)
-HEADING = re.compile(r"^#{1,6} +.*$", re.MULTILINE)
 KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line each
 OPENING = re.compile(r'\A(?:#[^\n]*\n|\s)*""".*?"""', re.DOTALL)  # of a Python file
 CAPTION = re.compile(
     r"""\b(?:title|caption):\s*(?:("|`)(?:(?!\1)[^\\]|\\.)*\1[\s+]*)+""", re.DOTALL
 )
-SLOT = r"<!-- (?P<kind>figure|exercise|bench|stress): (?P<slot>\S+) -->"
-MARK = re.compile(rf"^```\n{INCLUDE.pattern}\n```$|{SLOT}", re.MULTILINE)
-LIKE_A_MARK = re.compile(r"include-by-region|<!--\s*(?:figure|exercise|bench|stress)\b")
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
-# Where numbers may be typed: code, comments, formulas, references, links, tags, numbers of headings
-# and lists, versions with two dots, and what follows some words.
+# Where numbers may be typed in text: formulas, references, links, code, numbers of headings and
+# lists, versions with two dots, and what follows some words.
 NOT_PROSE = re.compile(
-    FENCE.pattern
-    + r"""
-    |<!--.*?-->
-    |\$\$.+?\$\$|\$[^$\n]+\$
+    r"""
+    \$\$.+?\$\$|\$[^$\n]+\$
     |\{\{[^\n]*?\}\}
-    |\[[^]]*\]\((?:try|drag):[^)]*\)|\]\([^)]*\)|https?://\S+|</?[a-z][^>]*>
+    |\[[^]]*\]\((?:try|drag):[^)]*\)|\]\([^)]*\)|https?://\S+
     |^\[[^]]*\]:[^\n]*|\[\[\d+\]\](?=\(\#references\))
-    |(`+)[^`]+\2
+    |(`+)[^`]+\1
     |\b(?:chapters?|phase|version|tag|python|numpy)[ ]
         \d+(?:\.\d+)*(?:(?:,|,?[ ]and|[ ]to)[ ]\d+\.\d+)*
     |(?<![\w.])\d+(?:\.\d+){2,}
@@ -73,16 +67,16 @@ class Passage(NamedTuple):
 
     def speaks_of(self, region: Region) -> bool:
         """Whether it includes the region, or has a name in `code` that the region defines."""
-        included = {match["name"] for match in INCLUDE.finditer(self.text)}
+        includes = {part.name for part in split(self.text) if part.kind == "region"}
         words = {word for span in SPAN.findall(self.text) for word in re.findall(r"\w+", span)}
-        return region.name in included or bool(region.defines & words)
+        return f"{region.file}#{region.name}" in includes or bool(region.defines & words)
 
 
 class Gate:
     """One pass over the project: `problems` are lines, `changed` what waits for a reader."""
 
     def __init__(self):
-        self.chapter, self.meta, self.quoted = read_text(CHAPTER), load_meta(), {}
+        self.chapter, self.meta, self.quoted = split(read_text(CHAPTER)), load_meta(), {}
         self.regions, self.problems = split_all()
         self.passages = list(passages())
         self.read = self.regions | {each.name: each for each in openings_and_captions()}
@@ -96,20 +90,15 @@ class Gate:
     def check_marks(self):
         """What the chapter includes, and its slots name, is there, and nothing lacks a place."""
         known, shown = self.known(), Counter()
-        for match in MARK.finditer(self.chapter):
-            file, region, kind, name = match.groups()
-            kind, name = kind or "region", name or f"{file}#{region}"
-            line = line_at(self.chapter, match.end()) - (kind == "region")
+        for kind, name, line, _ in self.chapter:
             shown[kind, name] += 1
-            if name not in known[kind]:
+            if name not in known.get(kind, (name,)):
                 names = ", ".join(known[kind])
                 self.say(CHAPTER, line, f"there is no {kind} {name}", f"name one of {names}")
-            elif shown[kind, name] > 1 and kind != "figure":
+            elif shown[kind, name] > 1 and kind in ("region", "exercise", "bench", "stress"):
                 self.say(CHAPTER, line, f"{kind} {name} stands here again", "delete one of the two")
-        for match in LIKE_A_MARK.finditer(blank(MARK, self.chapter)):
-            what = "an include that is not alone in its fence, or a slot that is not well formed"
-            repair = "write [include-by-region: FILE#NAME] in a fence, or <!-- figure: NAME -->"
-            self.say(CHAPTER, line_at(self.chapter, match.start()), what, repair)
+        for line, what, repair in faults(self.chapter):
+            self.say(CHAPTER, line, what, repair)
         for kind in ("region", "figure", "exercise"):
             for name, place in known[kind].items():
                 if not shown[kind, name]:
@@ -152,10 +141,11 @@ class Gate:
     def check_numbers(self):
         """None is typed into the chapter's prose, every reference can be made and gives what it
         gave, `holds:` is true, and each run is quoted."""
-        for token in TYPED.finditer(blank(NOT_PROSE, self.chapter)):
-            line, number = line_at(self.chapter, token.start()), token[0].rstrip(".,")
-            repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
-            self.say(CHAPTER, line, f"a typed number, {number}", repair)
+        for _, _, first, text in (p for p in self.chapter if p.kind in ("text", "heading")):
+            for token in TYPED.finditer(blank(NOT_PROSE, text)):
+                line, number = first + line_at(text, token.start()) - 1, token[0].rstrip(".,")
+                repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
+                self.say(CHAPTER, line, f"a typed number, {number}", repair)
         numbers, texts = Numbers(), {file: read_text(file) for file in TEXTS}
         numbers.prepare("".join(texts.values()))
         for file, text in texts.items():
@@ -199,10 +189,11 @@ class Gate:
 def passages():
     """The sections of chapter and README, the exercises, and the captions of figures."""
     for file in TEXTS:
-        text = blank(BLOCK, read_text(file))
-        starts = [match.start() for match in HEADING.finditer(blank(FENCE, text))]
-        for first, last in zip(starts, [*starts[1:], len(text)]):
-            yield Passage(file, line_at(text, first), text[first:last])
+        parts, read = split(blank(BLOCK, read_text(file))), []
+        for part in [*parts, Part("heading", "", 0, "")]:
+            if part.kind == "heading" and read and read[0].kind == "heading":
+                yield Passage(file, read[0].line, "".join(each.text for each in read))
+            read = [part] if part.kind == "heading" else [*read, part]
     for file in files("exercises/ex*.py"):
         yield Passage(file, 1, read_text(file))
     for each in openings_and_captions():

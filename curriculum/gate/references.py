@@ -34,9 +34,8 @@ from curriculum.commands import write_whole
 from curriculum.gate.facts import FACTS
 from curriculum.measured import ledger, results
 from curriculum.measured.stale import fingerprint
-from curriculum.regions import CODE, NAME, ROOT
+from curriculum.regions import CODE, ROOT
 
-INCLUDE = re.compile(rf"\[include-by-region: (?P<file>[\w./-]+\.py)#(?P<name>{NAME})\]")
 REFERENCE = re.compile(r"\{\{(.*?)\}\}")
 HOLDS = re.compile(r"<!--\s*holds:\s*(.*?)\s*-->", re.DOTALL)
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none

@@ -18,10 +18,10 @@ from pathlib import Path
 import nbformat
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from curriculum.gate.references import INCLUDE, Numbers
+from curriculum.gate.chapter import CHAPTER, read
+from curriculum.gate.references import Numbers
 from curriculum.regions import ROOT, read_all
 
-CHAPTER = ROOT / "curriculum/prose/chapter.md"
 CELLS = ROOT / "curriculum/notebook/cells.py"
 CARRIED = (  # with the pictures of reports that the chapter shows
     "contact.py checks.py exercises/*.py exercises/kit/* curriculum/__init__.py "
@@ -31,12 +31,6 @@ CARRIED = (  # with the pictures of reports that the chapter shows
     "curriculum/bench/results/error-slide.svg "
     "curriculum/stress/results/penalty-map.svg"
 ).split()
-MARK = re.compile(
-    rf"^```\w*\n{INCLUDE.pattern}\n```$|^(?=#{{1,3}} )"
-    r"|^<!-- (?P<kind>figure|exercise|bench|stress): (?P<slot>[\w-]+) -->$",
-    re.MULTILINE,
-)
-COMMENT = re.compile(r"<!--.*?-->\n*", re.DOTALL)
 SAID = (  # what only the page can do, and what to do here
     (r"Take it, lift it,\s+throw it\.", "Run the cell below."),
     (r"\b[Dd]rag the (\w+)", r"change the \1 in a cell"),
@@ -52,7 +46,7 @@ INTRODUCTION = """\
 *This is the chapter as a notebook. Run the cells from the top. The first one puts contact.py and
 the exercises into the folder `contact_chapter` beside this notebook. What you change in a cell of
 contact.py is felt in every cell below it; an exercise is a cell to edit and one that tries it.*"""
-REST = "## The rest of the file"  # of the chapter: the notebook's first cell has it
+REST = "The rest of the file"  # of the chapter: the notebook's first cell has it
 
 
 def folder():
@@ -73,8 +67,8 @@ def own_cells():
 
 
 def prose(text):
-    """Markdown as a cell, if there is any; comments and live links are for the page."""
-    text = LIVE.sub(r"\1", COMMENT.sub("", text)).strip()
+    """Markdown as a cell, if there is any; live links are for the page."""
+    text = LIVE.sub(r"\1", text).strip()
     for page, here in SAID:
         text = re.sub(page, here, text)
     return [new_markdown_cell(text)] if text else []
@@ -91,8 +85,9 @@ class Book:
         carry = f'FOLDER = """\n{folder()}"""\n{self.own["start"]}'
         return [*prose(INTRODUCTION), new_code_cell(carry, metadata=FOLDED)]
 
-    def region(self, file, name):
+    def region(self, include):
         """A region. Those of contact.py run; others are shown, since their names are their own."""
+        file, name = include.split("#")
         code = textwrap.dedent(MAIN.sub("", self.regions[name].code)).strip()
         if file == "contact.py":
             return [new_code_cell(f"# contact.py, region {name}\n{code}")]
@@ -127,17 +122,21 @@ class Book:
 
 def cells_of(text):
     """The chapter's cells, in order. An id comes from the content and the place among equals."""
-    book, cells, done, same = Book(), [], 0, Counter()
-    for found in MARK.finditer(text):
-        cells += prose(text[done : found.start()])
-        if len(cells) == 1:
-            cells += book.start()
-        done = found.end()
-        if found["name"]:
-            cells += book.region(found["file"], found["name"])
-        elif found["kind"]:
-            cells += getattr(book, found["kind"])(found["slot"])
-    cells += prose(text[done:])
+    book, cells, said, same = Book(), [], "", Counter()
+    for kind, name, _, written in read(text):
+        if kind == "heading" and name == REST:
+            break
+        place = getattr(book, kind, None)
+        if place or re.match("#{1,3} ", written):
+            cells += prose(said)
+            said = ""
+            if len(cells) == 1:
+                cells += book.start()
+        if place:
+            cells += place(name)
+        elif kind in ("text", "heading", "code"):
+            said += written
+    cells += prose(said)
     for cell in cells:
         about = f"{cell.cell_type} {same[cell.source]}\n{cell.source}"
         cell.id = hashlib.sha256(about.encode()).hexdigest()[:16]
@@ -147,7 +146,7 @@ def cells_of(text):
 
 def build():
     """The notebook as text. Raises ValueError where the chapter cannot be shown as it is."""
-    text = Numbers().fill(CHAPTER.read_text("utf-8")).partition(f"\n{REST}")[0]
+    text = Numbers().fill((ROOT / CHAPTER).read_text("utf-8"))
     made = new_notebook(cells=cells_of(text), metadata=METADATA)
     nbformat.validate(made)
     return nbformat.writes(made) + "\n"

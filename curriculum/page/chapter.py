@@ -1,18 +1,8 @@
 """chapter.md as HTML: its slots filled, and its answers veiled.
 
-Beside plain Markdown the chapter may hold
-- an include, a fence with the one line [include-by-region: FILE#NAME]: becomes a code panel;
-- references to numbers in double braces, filled before (curriculum/gate/references.py);
-- formulas between dollar signs: become MathML;
-- slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
-  <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->, and <!-- puzzle -->, behind
-  which the rest of a section is its answer. Other comments vanish;
-- <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
-  from there on, by the store's quantities and `models`, `from`, `to`;
-  <!-- show: none --> lets it step back, and may set quantities, too: <!-- show: none&dt=0.014 -->.
-  A passage goes from a heading or such a mark to the next. Its quantities are those that its mark
-  sets, and else contact.py's own; what the reader changes in one stays there;
-- links that set the same, [words](try:scene=drop&dt=0.03), and numbers to drag, [0.002](drag:dt).
+What the chapter holds beside plain Markdown, curriculum/gate/chapter.py says. A passage goes from a
+heading or a `show` to the next. Its quantities are those that its mark sets, and else contact.py's
+own; what the reader changes in one stays there.
 
 Nothing on the page tells the answer of a bet before the reader has bet or has asked to be shown. A
 segment, from a heading or an exercise to the next, that tells the answer of a bet above is put into
@@ -34,14 +24,10 @@ from mdit_py_plugins.anchors import anchors_plugin
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 import contact
-from curriculum.gate.references import INCLUDE
+from curriculum.gate.chapter import CHAPTER, read
 from curriculum.page import fonts
 
-CHAPTER = "curriculum/prose/chapter.md"
-KINDS = "figure|exercise|bench|stress|wallclock|puzzle|show"
-SLOT = re.compile(rf"<!--\s*({KINDS})(?:\s*:\s*(\S+))?\s*-->")
 UNIT = re.compile(r"(\d|^) (?=(?:r|s|m|mm|kg|J|N|N/m|m/s)\b)")  # the blank between number and unit
-COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 SETTINGS = {  # beside the quantities: what each may be
     "scene": "drop|bounce|stack",
     "models": "({0})(,({0}))*".format("|".join(contact.MODELS)),
@@ -129,7 +115,7 @@ def slug(title):
 
 def parser():
     """markdown-it with tables and formulas."""
-    md = MarkdownIt("commonmark", {"html": True, "typographer": True})
+    md = MarkdownIt("commonmark", {"html": False, "typographer": True})
     md.enable(["table", "smartquotes", "replacements"])
     md.use(dollarmath_plugin, renderer=formula).use(anchors_plugin, max_level=4, slug_func=slug)
     for rule in (text, code_inline, link_open):
@@ -154,40 +140,46 @@ def blocks(text, ranges, starts):
     """The chapter as a list of (kind, values): what the macros of that name are given, and
     ("figure", (name, which of this name, what its passage sets)). `ranges` are those of what the
     text may set, {name: (low, high)}; `starts` all values of a section, by the scene it shows."""
-    md, out, seen = parser(), [], Counter()
+    md, env, out, seen = parser(), {"ranges": ranges}, [], Counter()
+    md.parse(text, env)  # for the addresses of links, which stand at its end
     changes, place, marks = {}, "", 0
-    for node in SyntaxTreeNode(md.parse(text)).children:
-        home = starts[changes.get("scene", "drop")] | changes
-        env = {"line": node.map[0] + 1, "ranges": ranges, "home": home}
-        shown = COMMENT.sub("", md.renderer.render(node.to_tokens(), md.options, env))
-        include = node.type == "fence" and INCLUDE.fullmatch(node.content.strip())
-        if include:
-            out.append(("region", (include["name"],)))
-        elif node.type == "fence":
-            code = f'<pre class="shell" tabindex="0"><code>{escape(node.content)}</code></pre>'
+    for kind, name, line, written in read(text):
+        env |= {"home": starts[changes.get("scene", "drop")] | changes, "line": line}
+        if kind in ("text", "heading"):
+            shown = rendered(md, written, env)
+            out += shown
+            if kind == "heading":
+                changes, place, marks = {}, shown[0][1][1], 1
+        elif kind == "code":
+            code = f'<pre class="shell" tabindex="0"><code>{escape(name)}</code></pre>'
             out.append(("html", (Markup(code),)))
-        elif node.type == "heading":
-            changes, place, marks = {}, node.attrs["id"], 1
+        elif kind == "region":
+            out.append((kind, (name.partition("#")[2],)))
+        elif kind == "figure":
+            seen[name] += 1
+            out.append((kind, (name, f"-{seen[name]}" * (seen[name] > 1), changes)))
+        elif kind == "show":
+            changes = {} if name == "none" else asked(name.removeprefix("none&"), env)
+            marks += 1
+            out.append((kind, (f"{place}.{marks}", name)))
+        elif kind != "comment":
+            out.append((kind, (name,) if name else ()))
+    return out
+
+
+def rendered(md, text, env):
+    """Markdown as a list of ("html", (text,)) and ("heading", (level, id, text))."""
+    out, first = [], env["line"]
+    for node in SyntaxTreeNode(md.parse(text, env)).children:
+        env["line"] = first + node.map[0]
+        shown = md.renderer.render(node.to_tokens(), md.options, env)
+        if node.type == "heading":
             inner = re.sub(r"^<h\d[^>]*>|</h\d>\s*$", "", shown)
-            out.append(("heading", (int(node.tag[1]), place, Markup(inner))))
+            out.append(("heading", (int(node.tag[1]), node.attrs["id"], Markup(inner))))
         elif node.type == "table":
             held = shown.replace("<th></th>", "<td></td>")
             around = '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
             out.append(("html", (Markup(f"{around}{held}</div>"),)))
-        elif node.type == "html_block":
-            if shown.strip():
-                what = f"raw HTML, {node.content.strip()[:50]!r}; allowed: Markdown, and slots"
-                raise ValueError(f"{CHAPTER}:{env['line']}: {what}")
-            for kind, name in SLOT.findall(node.content):
-                values = (name,) if name else ()
-                if kind == "show":
-                    changes = {} if name == "none" else asked(name.removeprefix("none&"), env)
-                    marks += 1
-                    values = f"{place}.{marks}", name
-                if kind == "figure":
-                    seen[name] += 1
-                    values = name, f"-{seen[name]}" * (seen[name] > 1), changes
-                out.append((kind, values))
         else:
             out.append(("html", (Markup(shown),)))
     return out

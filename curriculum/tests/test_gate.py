@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from curriculum import regions
-from curriculum.gate import references
+from curriculum.gate import chapter, references
 from curriculum.measured import ledger, stale
 from curriculum.tests.helpers import ROOT, python
 
@@ -129,12 +129,13 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
     (CHAPTER, "figure: clamp", "figure: clamps",
      ["{}:13: there is no figure clamps", f"{CLAMP}:1: figure clamp has no place in {CHAPTER}"]),
     (CHAPTER, "exercise: ex1", "exercise ex1",
-     ["{}:14: an include that is not alone in its fence, or a slot that is not well formed",
+     ["{}:14: an include not alone in its fence, or a slot that is not well formed",
       f"{EXERCISE}:1: exercise ex1 has no place in {CHAPTER}"]),
+    (CHAPTER, "are not typed", "<b>are</b> not typed", ["{}:11: raw HTML, '<b>are</b> not"]),
     (CHAPTER, "contact.py#flight]", "contact.py#fligt]",
      ["{}:#: there is no region contact.py#fligt", "contact.py:#: region contact.py#flight ha"]),
     (CHAPTER, "contact.py#quality]", "contact.py#quality] and more",
-     ["{}:#: an include that is not alone", "contact.py:#: region contact.py#quality "]),
+     ["{}:#: an include not alone", "contact.py:#: region contact.py#quality "]),
     (CHAPTER, "contact.py#measure]", "contact.py#sweep]",
      ["{}:#: region contact.py#sweep stands here again", "contact.py:#: region contact.py#measur"]),
     ("README.md", "Settings.iters", "Settings.sweeps", ["{}:5: 'contact.Settings.sweeps': "]),
@@ -282,6 +283,43 @@ def test_measuring_writes_a_whole_row_of_todays_code(monkeypatch, tmp_path, caps
     assert ledger.LEDGER.read_text().startswith(PENDING)
     row = ledger.rows()[1]
     assert row["wallclock_min"] == "0.3" and None not in row.values() and not ledger.stale(row)
+
+
+READ = """# A ball
+
+It falls.
+<!-- a note
+on two lines -->
+<!-- show: none&dt=0.004 -->
+<!-- puzzle -->
+
+```
+# a comment, no heading
+```
+
+```
+[include-by-region: contact.py#ball]
+```
+
+## The end <!-- here -->
+"""
+
+
+def test_the_parts_of_a_text_are_all_of_it_each_with_its_line():
+    parts = chapter.split(READ)
+    assert "".join(part.text for part in parts) == READ
+    assert [part[:3] for part in parts if part.text.strip()] == [
+        ("heading", "A ball", 1),
+        ("text", "", 3),
+        ("comment", "a note\non two lines", 4),
+        ("show", "none&dt=0.004", 6),
+        ("puzzle", "", 7),
+        ("code", "# a comment, no heading\n", 9),
+        ("region", "contact.py#ball", 13),
+        ("heading", "The end <!-- here -->", 17),
+    ]
+    with pytest.raises(ValueError, match=r"chapter.md:17: raw HTML, '<!-- here -->'; repair"):
+        chapter.read(READ)
 
 
 # numbers by reference, on runs given by hand

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 import contact
+from curriculum.gate.chapter import CHAPTER, read
 from curriculum.implicit import implicit_step
 from curriculum.page.build import page_data
 from curriculum.page.bundle import evaluate
-from curriculum.page.chapter import CHAPTER
 from curriculum.regions import ROOT
 from curriculum.tests.page_drawing import Drawing, arrow, figures, numbers, place, power
 
-SLOT = re.compile(r"<!-- figure: ([\w-]+) -->")
-SLOTS = sorted(set(SLOT.findall((ROOT / CHAPTER).read_text("utf-8"))))
+PARTS = read((ROOT / CHAPTER).read_text("utf-8"))
+SLOTS = sorted({part.name for part in PARTS if part.kind == "figure"})
 R, G = contact.RADIUS, -contact.GRAVITY
 START = contact.build_scene("drop").q0[1, 0]
 

@@ -1,0 +1,95 @@
+"""The chapter's Markdown, read once: its parts, for the gate, the page, the notebook and the tests.
+
+Beside plain Markdown it may hold
+- an include, a fence with the one line [include-by-region: FILE#NAME]: the code of a region;
+- references to numbers in double braces (references.py), and formulas between dollar signs;
+- slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
+  <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->, and <!-- puzzle -->, behind
+  which the rest of a section is its answer;
+- <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
+  from there on, by quantities and `models`, `from`, `to`; <!-- show: none --> lets it step back,
+  and may set quantities, too: <!-- show: none&dt=0.014 -->;
+- links that set the same, [words](try:scene=drop&dt=0.03), and numbers to drag, [0.002](drag:dt).
+
+Other comments, on lines of their own, vanish. There is no HTML.
+"""
+
+import re
+from typing import NamedTuple
+
+from curriculum.regions import NAME, blank, line_at
+
+CHAPTER = "curriculum/prose/chapter.md"
+INCLUDE = re.compile(rf"\[include-by-region: ([\w./-]+\.py#{NAME})\]")
+SLOTS = "figure|exercise|bench|stress|show"
+MARKS = f"{SLOTS}|wallclock|puzzle"
+PART = re.compile(
+    rf"""
+    (?:^(?P<fence>```|~~~)[^\n]*\n(?P<code>(?s:.*?))^(?P=fence)[ ]*
+    |^\#{{1,6}}[ ]+(?P<heading>.*)
+    |^<!--[ ](?:(?P<kind>{SLOTS}):[ ](?P<slot>\S+)|(?P<mark>wallclock|puzzle))[ ]-->
+    |^<!--(?P<comment>(?s:.*?))-->[ ]*
+    )(?:\n+|\Z)
+    """,
+    re.MULTILINE | re.VERBOSE,
+)
+LIKE_A_MARK = re.compile(rf"include-by-region|<!--\s*(?:{MARKS})\b")
+INLINE = re.compile(r"(`+)[^`]+\1|\$\$.+?\$\$|\$[^$\n]+\$|<https?://[^>\s]+>", re.DOTALL)
+HTML = re.compile(rf"<(?!!--\s*(?:{MARKS})\b)[A-Za-z/!?][^\n]*")
+AS_IT_IS = "write [include-by-region: FILE#NAME] in a fence, or <!-- figure: NAME -->"
+
+
+class Part(NamedTuple):
+    """A piece of the chapter; all their texts together are the chapter.
+
+    kind: "text", "heading", "code" (a fence), "comment", "region", or what a slot is called.
+    name: of a region FILE#NAME, of a slot what stands behind its colon, else the words within.
+    """
+
+    kind: str
+    name: str
+    line: int
+    text: str
+
+
+def split(text) -> list:
+    """The parts of a text, in order."""
+    parts, done = [], 0
+    for match in PART.finditer(text):
+        if before := text[done : match.start()]:
+            parts.append(Part("text", "", line_at(text, done), before))
+        parts.append(Part(*kind_of(match), line_at(text, match.start()), match[0]))
+        done = match.end()
+    return [*parts, Part("text", "", line_at(text, done), text[done:])]
+
+
+def kind_of(match) -> tuple:
+    """(kind, name) of a match of PART."""
+    if match["fence"]:
+        include = INCLUDE.fullmatch(match["code"].strip())
+        return ("region", include[1]) if include else ("code", match["code"])
+    for kind in ("heading", "comment"):
+        if match[kind] is not None:
+            return kind, match[kind].strip()
+    return match["kind"] or match["mark"], match["slot"] or ""
+
+
+def faults(parts):
+    """What cannot be meant, as (line, what, what to write)."""
+    for kind, _, line, text in parts:
+        if kind in ("text", "heading", "code", "comment"):
+            for match in LIKE_A_MARK.finditer(text):
+                what = "an include not alone in its fence, or a slot that is not well formed"
+                yield line + line_at(text, match.start()) - 1, what, AS_IT_IS
+        if kind in ("text", "heading"):
+            for match in HTML.finditer(blank(INLINE, text)):
+                what = f"raw HTML, {match[0][:50]!r}"
+                yield line + line_at(text, match.start()) - 1, what, "write Markdown"
+
+
+def read(text) -> list:
+    """The parts of the chapter. Raises ValueError, a line a fault."""
+    parts = split(text)
+    if wrong := [f"{CHAPTER}:{line}: {what}; repair: {mend}" for line, what, mend in faults(parts)]:
+        raise ValueError("\n".join(wrong))
+    return parts
