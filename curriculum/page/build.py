@@ -37,6 +37,11 @@ def page_data(veils):
     return {
         "models": list(contact.MODELS),
         "uses": {model: row.knobs for model, row in contact.MODELS.items()},
+        "taken": {  # by each step, beside the balls and dt
+            model: row.knobs[: row.step.__code__.co_argcount - 2]
+            for model, row in contact.MODELS.items()
+            if row.step
+        },
         "scenes": {
             name: {
                 "start": scene.q0[1].tolist(),

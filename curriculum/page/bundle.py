@@ -5,6 +5,7 @@ function or a class. Two modules are made here: data.js, what the scripts know f
 files, and figures.js, {name: figure} of every file in figures/.
 """
 
+import functools
 import json
 import posixpath
 import re
@@ -13,7 +14,14 @@ from pathlib import Path
 
 from py_mini_racer import JSEvalException, MiniRacer
 
+import contact
+from curriculum.lesson.to_js import to_js
+from curriculum.regions import ROOT
+
 HERE = Path(__file__).resolve().parent
+USED = (  # of contact.py, beside the steps
+    "strike accelerations next_impact MOST_IMPACTS TOUCH critical_dt soft_defaults implicit_step"
+).split()
 IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
 # comments on lines of their own, and the blanks before a line of code
 PLAIN = re.compile(r"^[ ]*//[^\n]*\n|^/\*.*?\*/\n|^[ ]+(?=[^ ])", re.M | re.S)
@@ -24,6 +32,8 @@ def source(path, data):
     """The text of the module at `path`, seen from this folder. A file exports figure or figures."""
     if path == "data.js":
         return f"export const data = {json.dumps(data, sort_keys=True)};\n"
+    if path == "contact.js":
+        return contact_js()
     if path != "figures.js":
         return (HERE / path).read_text("utf-8")
     names = sorted(file.stem for file in (HERE / "figures").glob("*.js"))
@@ -33,6 +43,16 @@ def source(path, data):
     ]
     held = ", ".join(f'...(all{k} ?? {{ "{name}": one{k} }})' for k, name in enumerate(names))
     return "".join(imports) + f"export const figures = {{ {held} }};\n"
+
+
+@functools.cache
+def contact_js():
+    """The steps of contact.py, what exact and the figures use of it, and the implicit spring."""
+    steps = {name: model.step.__name__ for name, model in contact.MODELS.items() if model.step}
+    files = [ROOT / name for name in ("contact.py", "curriculum/implicit.py")]
+    table = ", ".join(f"{name}: {step}" for name, step in steps.items())
+    made = to_js([*steps.values(), *USED], *files)
+    return f'import {{ $ }} from "./python.js";\n{made}export const STEP = {{ {table} }};\n'
 
 
 def target(path, address):

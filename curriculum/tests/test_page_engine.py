@@ -1,14 +1,16 @@
-"""The page's engine in real browsers, against contact.py."""
+"""The steps of contact.py as JavaScript: the same bits, in V8 and in Firefox."""
 
-import base64
 import functools
 import json
+import re
 
 import numpy as np
 import pytest
+from py_mini_racer import MiniRacer
 
 import contact
 from curriculum.implicit import implicit_step
+from curriculum.lesson.to_js import to_js
 from curriculum.page.build import page_data
 from curriculum.page.bundle import bundle
 from curriculum.stress import scenes
@@ -25,13 +27,12 @@ def numbered_case(number):
 
 
 def as_told(scene, dt, settings, steps, model):
-    """The same as engine.js takes it."""
+    """The same as runs.js takes it."""
     columns = dict(zip(("x", "y", "vx", "vy"), np.concatenate((scene.q0, scene.v0)).tolist()))
     mass = [value if np.isfinite(value) else None for value in scene.mass.tolist()]
     columns |= {"mass": mass, "radius": scene.radius.tolist()}
-    material = {"restitution": scene.restitution, "damping": scene.damping}
-    knobs = {k: v for k, v in settings._asdict().items() if v is not None} | material | {"dt": dt}
-    return [model, columns | material, knobs, steps]
+    knobs = settings._asdict() | {"restitution": scene.restitution, "damping": scene.damping}
+    return [model, columns, knobs | {"dt": dt}, steps]
 
 
 def run_implicit(scene, dt, settings):
@@ -47,7 +48,7 @@ def run_implicit(scene, dt, settings):
 
 @functools.cache
 def cases():
-    """[(what engine.js is told, the run of contact.py)] of random scenes."""
+    """[(what runs.js is told, the run of contact.py)] of random scenes."""
     found = []
     for number in range(40):
         scene, dt, settings = numbered_case(number)
@@ -59,7 +60,8 @@ def cases():
     for vy in (2.0, [-1.7e308, 1e308]):  # they end in infinities and in no number
         fast = contact.scene_of([-0.1, 0.12], 0.3, [3, 0.2], [0.2, 0.17], [1e308, -1e308], vy)
         for model in contact.STEPPED:
-            run = contact.run_model(model, fast, 0.03, STEPS)
+            step = contact.step_of(model, fast, 0.03, contact.Settings())
+            run = contact.simulate(step, fast, 0.03, STEPS)
             found.append((as_told(fast, 0.03, contact.Settings(), STEPS, model), run))
     settings = contact.Settings(iters=50)
     x, y, r = [-0.3, 0.3, 0.0], [0.5, 0.5, 0.51], [0.17, 0.17, 0.13]
@@ -74,15 +76,15 @@ def cases():
 
 
 def script():
-    """A script whose value is x, y, vx, vy by engine.js of all cases."""
+    """A script whose value is x, y, vx, vy by runs.js of all cases."""
     return f"""(() => {{
-      const engine = {bundle("engine.js", page_data([]))};
-      const letters = (a) => Array.from(new Uint8Array(a.buffer), (b) => String.fromCharCode(b));
-      const coded = (numbers) => btoa(letters(numbers).join(""));
-      return {json.dumps([told for told, _ in cases()])}.map(([model, scene, knobs, steps]) => {{
-        scene.mass = scene.mass.map((mass) => mass ?? Infinity);
-        const run = engine.runModel(model, scene, knobs, steps);
-        return [run.x, run.y, run.vx, run.vy].map(coded);
+      const {{ column, record }} = {bundle("runs.js", page_data([]))};
+      const hex = (numbers) => Array.from(new Uint8Array(numbers.buffer),
+        (byte) => byte.toString(16).padStart(2, "0")).join("");
+      return {json.dumps([told for told, _ in cases()])}.map(([model, all, knobs, steps]) => {{
+        all.mass = all.mass.map((mass) => mass ?? Infinity);
+        const run = record(model, column(all.y, all), knobs, steps);
+        return [run.x, run.y, run.vx, run.vy].map(hex);
       }});
     }})()"""
 
@@ -94,7 +96,7 @@ def judge(found):
     for ((model, *told), run), mine in zip(cases(), found):
         theirs = [run.q[:, 0], run.q[:, 1], run.v[:, 0], run.v[:, 1]]
         for text, column in zip(mine, theirs):
-            held = base64.b64decode(text)
+            held = bytes.fromhex(text)
             if model == "exact":
                 off = np.frombuffer(held) - column.ravel()
                 assert np.abs(off).max() <= 1e-10 * contact.RADIUS, told
@@ -102,11 +104,21 @@ def judge(found):
                 assert held == column.tobytes(), (model, told)
 
 
-@pytest.mark.parametrize("which", ("chromium", "firefox"))
-def test_a_browser_computes_what_steps_to_the_last_bit_and_exact_to_1e_10_r(which, request):
-    if which == "chromium":
-        judge(request.getfixturevalue("browser").new_page().evaluate(script()))
-    else:
-        gecko = request.getfixturevalue("gecko")
-        gecko.visit("about:blank")
-        judge(gecko.evaluate(script()))
+def test_v8_computes_what_steps_to_the_last_bit_and_exact_to_1e_10_r():
+    engine = MiniRacer()
+    judge(json.loads(engine.eval(f"JSON.stringify({script()})")))
+    engine.close()
+
+
+def test_firefox_does_so_too(gecko):
+    gecko.visit("about:blank")
+    judge(gecko.evaluate(script()))
+
+
+def test_what_has_no_javascript_is_refused_by_its_line(tmp_path):
+    for line, named in (("x = {1, 2}", "{1, 2}"), ("x = a // 2", "FloorDiv"), ("new = a", "new")):
+        file = tmp_path / "steps.py"
+        file.write_text(f"def step(a):\n    {line}\n    return a\n", "utf-8")
+        with pytest.raises(ValueError, match=re.escape("steps.py:2: ")) as told:
+            to_js(["step"], file)
+        assert named in str(told.value)

@@ -1,0 +1,175 @@
+"""Functions of contact.py as JavaScript: the page computes with the very lines that it shows.
+
+to_js(roots, *files) takes what the roots reach. JavaScript's numbers are Python's, and + - * / and
+sqrt are rounded alike, so that a run has the same bits. What JavaScript lacks is in `$`: python.js.
+"""
+
+import ast
+
+FORMS = {  # of a node: its fields in JavaScript
+    "Tuple": "[{elts}]", "List": "[{elts}]", "Subscript": "{value}[{slice}]",
+    "BinOp": "({left} {op} {right})", "UnaryOp": "({op}{operand})",
+    "IfExp": "({test} ? {body} : {orelse})", "AugAssign": "{target} {op}= {value};",
+    "While": "while ({test}) {body}", "If": "if ({test}) {body} else {orelse}",
+    "Return": "return {value};", "Raise": "throw {exc};",
+    "Add": "+", "Sub": "-", "Mult": "*", "Div": "/", "Pow": "**", "USub": "-", "Not": "!",
+    "Lt": "<", "Gt": ">", "LtE": "<=", "GtE": ">=", "Eq": "===", "NotEq": "!==",
+    "Is": "===", "IsNot": "!==", "In": "in", "And": " && ", "Or": " || ",
+}  # fmt: skip
+NAMES = {"True": "true", "False": "false", "None": "null", "self": "this", "abs": "Math.abs"}
+NAMES |= {"int": "Math.trunc", "math.inf": "Infinity", "ArithmeticError": "Error"}
+NAMES |= {f"math.{name}": f"Math.{name}" for name in ("sqrt", "cos")}
+NAMES |= {name: f"$.{name}" for name in ("zip", "map")} | {"itertools.combinations": "$.pairs"}
+RESERVED = set("new var let const function with this typeof delete void default case".split())
+
+
+class Script(ast.NodeVisitor):
+    """visit(node) is the node as text. Raises ValueError at what it does not know."""
+
+    def __init__(self, known):
+        self.known = known  # {name: (file, node)} of what stands at the top of the files
+        self.declared, self.file, self.line = None, "", 0
+
+    def generic_visit(self, node):
+        self.line = getattr(node, "lineno", self.line)
+        if form := FORMS.get(type(node).__name__):
+            parts = {name: part for name, part in ast.iter_fields(node) if name != "ctx"}
+            return form.format(**{name: self.part(part, name) for name, part in parts.items()})
+        self.refuse(ast.unparse(node) or type(node).__name__)
+
+    def refuse(self, what):
+        allowed = "loops, lists, comparisons, + - * / **, max and min of numbers"
+        place = f"{self.file}:{self.line}"
+        raise ValueError(f"{place}: {what!r} is not made into JavaScript; allowed: {allowed}")
+
+    def part(self, part, name=""):
+        if not isinstance(part, list):
+            return self.visit(part) if part else ""
+        if name in ("body", "orelse"):
+            return "{\n" + "".join(self.visit(node) + "\n" for node in part) + "}"
+        return ", ".join(map(self.visit, part))
+
+    # ---- statements
+
+    def visit_FunctionDef(self, node):
+        method = [arg.arg for arg in node.args.args[:1]] == ["self"]
+        names = [arg.arg for arg in node.args.args[method:]]
+        usual = [""] * (len(names) - len(node.args.defaults))
+        usual += [f" = {self.visit(each)}" for each in node.args.defaults]
+        outer, self.declared = self.declared, set()
+        body, local = self.part(node.body, "body"), sorted(self.declared - set(names))
+        self.declared = outer
+        head = ", ".join(map(str.__add__, names, usual))
+        body = body.replace("{\n", f"{{\nlet {', '.join(local)};\n" if local else "{\n", 1)
+        name = "constructor" if node.name == "__init__" else node.name
+        return f"{'' if method else 'function '}{name}({head}) {body}"
+
+    def visit_ClassDef(self, node):
+        methods = [each for each in node.body if isinstance(each, ast.FunctionDef)]
+        return f"class {node.name} " + self.part(methods, "body")
+
+    def visit_Assign(self, node):
+        self.line, first = node.lineno, node.targets[0]
+        if self.declared is None:
+            return f"const {self.visit(first)} = {self.visit(node.value)};"
+        if isinstance(first, ast.Subscript):
+            return f"$.put({self.part([first.value, first.slice, node.value])});"
+        stored = [each for each in ast.walk(ast.Tuple(node.targets)) if isinstance(each, ast.Name)]
+        self.declared |= {each.id for each in stored if isinstance(each.ctx, ast.Store)}
+        return " = ".join(map(self.visit, [*node.targets, node.value])) + ";"
+
+    def visit_For(self, node):
+        head = f"let {self.visit(node.target)} of {self.visit(node.iter)}"
+        if isinstance(node.iter, ast.Call) and ast.unparse(node.iter.func) == "range":
+            k, first, last = self.visit(node.target), *["0", *map(self.visit, node.iter.args)][-2:]
+            head = f"let {k} = {first}; {k} < {last}; {k}++"
+        return f"for ({head}) " + self.part(node.body, "body")
+
+    def visit_Expr(self, node):
+        return "" if isinstance(node.value, ast.Constant) else self.visit(node.value) + ";"
+
+    # ---- expressions
+
+    def visit_Name(self, node):
+        if node.id in RESERVED:
+            self.refuse(node.id)
+        return NAMES.get(node.id, node.id)
+
+    def visit_Constant(self, node):
+        return NAMES.get(str(node.value), repr(node.value))
+
+    def visit_Attribute(self, node):
+        text = ast.unparse(node)
+        if text.startswith("contact."):  # in another file
+            return node.attr
+        return NAMES.get(text) or f"{self.visit(node.value)}.{node.attr}"
+
+    def visit_Dict(self, node):
+        return "new Map()" if not node.keys else self.refuse(ast.unparse(node))
+
+    def visit_BoolOp(self, node):
+        return f"({self.visit(node.op).join(map(self.visit, node.values))})"
+
+    def visit_Compare(self, node):
+        chain = [self.visit(each) for each in (node.left, *node.comparators)]
+        told = zip(chain, map(self.visit, node.ops), chain[1:])
+        told = [f"$.has({b}, {a})" if op == "in" else f"{a} {op} {b}" for a, op, b in told]
+        return f"({' && '.join(told)})"
+
+    def visit_ListComp(self, node):
+        text, over = self.visit(node.elt), "map"
+        for each in node.generators[::-1]:
+            to = self.visit(each.target)
+            tests = "".join(f".filter(({to}) => {self.visit(test)})" for test in each.ifs)
+            text = f"{self.visit(each.iter)}{tests}.{over}(({to}) => {text})"
+            over = "flatMap"
+        return text
+
+    visit_GeneratorExp = visit_ListComp
+
+    def visit_Call(self, node):
+        name, args = self.visit(node.func), [self.visit(each) for each in node.args]
+        defined = self.known.get(name, ("", None))[1]
+        if name in ("max", "min"):
+            if len(args) == 1:  # of a list, or what it is by default
+                more = [self.visit(each.value) for each in node.keywords]
+                return f"$.{name}Of({', '.join(args + more)})"
+            while len(args) > 1:
+                args[:2] = [f"$.{name}({args[0]}, {args[1]})"]
+            return args[0]
+        for each in node.keywords:  # by place; what is left out takes its default
+            place = [arg.arg for arg in defined.args.args].index(each.arg)
+            args += ["undefined"] * (place - len(args)) + [self.visit(each.value)]
+        if name.endswith(".get"):
+            return f"({name}({args[0]}) ?? {args[1]})"
+        name = name[: -len("append")] + "push" if name.endswith(".append") else name
+        new = isinstance(defined, ast.ClassDef) or name == "Error"
+        return f"{'new ' * new}{name}({', '.join(args)})"
+
+
+def reached(name, node, known):
+    """What of `known` a function uses: names that it does not set itself, and contact.NAME."""
+    names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
+    own = {each.id for each in names if isinstance(each.ctx, ast.Store)} - {name}
+    own |= {each.arg for each in ast.walk(node) if isinstance(each, ast.arg)}
+    others = [each for each in ast.walk(node) if isinstance(each, ast.Attribute)]
+    used = {each.id for each in names} - own
+    used |= {each.attr for each in others if ast.unparse(each.value) == "contact"}
+    return used & set(known)
+
+
+def to_js(roots, *files):
+    """The module that exports `roots` and all that they reach, of these files (pathlib.Path)."""
+    known = {}
+    for file in files:
+        for node in ast.parse(file.read_text("utf-8")).body:
+            target = node.targets[0] if isinstance(node, ast.Assign) else node
+            name = getattr(target, "name", getattr(target, "id", None))
+            known |= {name: (file.name, node)} if name else {}
+    wanted = list(roots)
+    for name in wanted:  # grows while it is read
+        wanted += sorted(reached(name, known[name][1], known) - set(wanted))
+    script, out = Script(known), []
+    for name, (script.file, node) in known.items():
+        out += [f"export {script.visit(node)}\n"] if name in wanted else []
+    return "".join(out)

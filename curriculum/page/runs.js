@@ -1,0 +1,135 @@
+/* Runs of the steps of contact.py, which are made into JavaScript when the page is built
+ * (curriculum/lesson/to_js.py), so that they have its bits. A recording has `n` balls and
+ * `steps` + 1 rows: t [s], and x, y, vx, vy flat, row by row. */
+import { Ball, GRAVITY, MOST_IMPACTS, STEP, TOUCH } from "./contact.js";
+import { accelerations, detect_contacts, next_impact, soft_defaults, strike } from "./contact.js";
+import { implicit_step } from "./contact.js";
+import { data } from "./data.js";
+
+export const MODELS = data.models;
+export const R = data.radius; // m
+export const G = -GRAVITY; // m/s^2, and the weight in N of a ball of 1 kg
+const PARTS = ["x", "y", "vx", "vy"];
+
+// Balls at these heights [m]; `more`: x, vx, vy, mass or radius, a number or one for each.
+export function column(heights, more = {}) {
+  const at = (name, usual, i) => [more[name] ?? usual].flat()[Array.isArray(more[name]) ? i : 0];
+  return heights.map((y, i) => {
+    const [x, vx, vy] = ["x", "vx", "vy"].map((name) => at(name, 0, i));
+    return new Ball(x, y, vx, vy, at("mass", 1, i), at("radius", R, i));
+  });
+}
+
+// step(balls) of a model with these knobs, as contact.step_of has it.
+export function stepOf(model, knobs) {
+  const { dt, restitution = 0, stiffness, damping } = knobs;
+  if (model === "implicit") {
+    const softness = 1 / (stiffness * dt * dt + damping * dt);
+    const spring = (depth) => [softness, dt * stiffness * depth * softness];
+    return (balls) => implicit_step(balls, dt, spring);
+  }
+  const { solref = null, solimp = null } = knobs;
+  const soft = soft_defaults(restitution, dt, solref, solimp);
+  const values = { ...knobs, restitution, solref: soft[0], solimp: soft[1] };
+  const told = data.taken[model].map((name) => values[name]);
+  return (balls) => STEP[model](balls, dt, ...told);
+}
+
+function blank(n, dt, steps) {
+  const run = { n, dt, steps, t: Float64Array.from({ length: steps + 1 }, (_, k) => dt * k) };
+  for (const key of PARTS) run[key] = new Float64Array((steps + 1) * n).fill(NaN);
+  return run;
+}
+
+// One zero and one NaN, as contact.py writes them.
+const write = (run, row, balls) =>
+  balls.forEach((ball, i) => {
+    for (const key of PARTS) run[key][row * run.n + i] = ball[key] === ball[key] ? ball[key] + 0 : NaN;
+  });
+
+/* The recording of a model; the balls are at its end afterwards. push(balls, row): before each
+ * step, forces may be set; see(row, contacts) after it. */
+export function record(model, balls, knobs, steps, { push = () => {}, see = () => {} } = {}) {
+  const run = blank(balls.length, knobs.dt, steps);
+  if (model === "exact") return recordExact(run, balls, knobs.restitution ?? 0);
+  const step = stepOf(model, knobs);
+  write(run, 0, balls);
+  for (let row = 1; row <= steps; row++) {
+    push(balls, row);
+    see(row, step(balls));
+    write(run, row, balls);
+  }
+  return run;
+}
+
+// From one impact to the next, of balls over one another: contact.exact_run.
+function recordExact(run, balls, restitution) {
+  const pairs = detect_contacts(balls, Infinity);
+  let touching = pairs.filter((c) => -c.depth <= TOUCH);
+  let [now, row] = [0, 0];
+  for (let impact = 0; impact < MOST_IMPACTS && row <= run.steps; impact++) {
+    strike(touching, restitution);
+    const [a, gaps] = accelerations(balls, touching, pairs);
+    const [span, next] = next_impact(pairs, gaps);
+    const fly = (t) =>
+      balls.map(({ x, y, vx, vy }, k) =>
+        ({ x, y: y + t * (vy + 0.5 * t * a[k]), vx, vy: vy + t * a[k] }));
+    for (; row <= run.steps && run.t[row] < now + span; row++) write(run, row, fly(run.t[row] - now));
+    fly(span).forEach((each, k) => Object.assign(balls[k], each));
+    [now, touching] = [now + span, next];
+  }
+  return run;
+}
+
+// ---- what is read of a run
+
+// The smallest gap [r] in a row, to the table or between two balls.
+export function gapIn({ n, x, y }, row, radius = R) {
+  let least = Infinity;
+  for (let i = row * n; i < (row + 1) * n; i++) {
+    least = Math.min(least, y[i] - radius);
+    for (let j = i + 1; j < (row + 1) * n; j++) {
+      const [dx, dy] = [x[i] - x[j], y[i] - y[j]];
+      least = Math.min(least, Math.sqrt(dx * dx + dy * dy) - 2 * radius);
+    }
+  }
+  return least / radius;
+}
+
+export const gapsOf = (run) => Array.from(run.t, (_, row) => gapIn(run, row));
+
+// The push of the table [m g] on balls of 1 kg, in the step that ends in a row: what changed their
+// momentum and was not gravity.
+export function pushIn({ n, dt, vy }, row) {
+  let sum = 0;
+  for (let i = row * n; row > 0 && i < (row + 1) * n; i++) sum += (vy[i] - vy[i - n]) / dt + G;
+  return Math.abs(sum) < 1e-9 * G ? 0 : sum / n / G;
+}
+
+// The most energy above the start, in starts, of balls of 1 kg; NaN counts as without end.
+export function gainOf({ n, y, vx, vy, steps }) {
+  const energy = (row) => {
+    let sum = 0;
+    for (let i = row * n; i < (row + 1) * n; i++) sum += 0.5 * (vx[i] ** 2 + vy[i] ** 2) + G * y[i];
+    return sum;
+  };
+  let [start, most] = [energy(0), 0];
+  for (let row = 1; row <= steps; row++) {
+    const gained = energy(row) / start - 1;
+    if (!(gained <= most)) most = gained === gained ? gained : Infinity;
+  }
+  return most;
+}
+
+// A function that keeps its last results, by its arguments.
+export function kept(compute) {
+  const held = new Map();
+  return (...given) => {
+    const key = JSON.stringify(given);
+    if (!held.has(key)) {
+      if (held.size > 20) held.clear();
+      held.set(key, compute(...given));
+    }
+    return held.get(key);
+  };
+}
