@@ -5,7 +5,7 @@
                                               # sentence whose number moved (without a name: these)
 
 Regions are included once; slots, flags and names in `code` are of what is there; numbers are quoted
-by reference, `holds:` comments are true, and results are of today's code. Whether a sentence is
+by reference, what holds a sentence is true, and results are of today's code. Whether a sentence is
 true of the code only a reader can say, and he is asked when the code changes. meta.yaml holds a
 hash of every region, of the opening words of contact.py and exact.py (the signs, the promise) and
 of each figure's captions; and every number as the texts last quoted it. Where one of them is
@@ -24,8 +24,9 @@ from curriculum.commands import Parser, needs, stoppable, write_whole
 with needs("dev"):
     import yaml
 
+    import contact
     from curriculum.gate.chapter import CHAPTER, Part, faults, split
-    from curriculum.gate.references import HOLDS, REFERENCE, Numbers, TextError, load_meta
+    from curriculum.gate.references import REFERENCE, Numbers, TextError, load_meta
     from curriculum.measured import ledger, results, stale
     from curriculum.measured.results import BLOCK
     from curriculum.regions import ROOT, Region, blank, line_at, read_text, split_all
@@ -44,7 +45,7 @@ SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 NOT_PROSE = re.compile(
     r"""
     \$\$.+?\$\$|\$[^$\n]+\$
-    |\{\{[^\n]*?\}\}
+    |\{\{\?.*?\}\}|\{\{[^\n]*?\}\}
     |\[[^]]*\]\((?:try|drag):[^)]*\)|\]\([^)]*\)|https?://\S+
     |^\[[^]]*\]:[^\n]*|\[\[\d+\]\](?=\(\#references\))
     |(`+)[^`]+\1
@@ -92,6 +93,10 @@ class Gate:
         known, shown = self.known(), Counter()
         for kind, name, line, _ in self.chapter:
             shown[kind, name] += 1
+            told = name.split(",") if kind == "tells" else []
+            if wrong := [n for n in told if n not in known["bet"] or not shown["exercise", n]]:
+                what = f"{', '.join(wrong)} is no bet above, so nobody has bet yet"
+                self.say(CHAPTER, line, what, "name an exercise above that has a PREDICTION")
             if name not in known.get(kind, (name,)):
                 names = ", ".join(known[kind])
                 self.say(CHAPTER, line, f"there is no {kind} {name}", f"name one of {names}")
@@ -113,7 +118,8 @@ class Gate:
             several = read_text(file).partition("export const figures = {")[2]
             names = KEY.findall(several) or re.findall(r"[\w-]+", several.partition("}")[0])
             figures |= dict.fromkeys(names or [Path(file).stem], (file, 1))
-        known = {"region": regions, "exercise": exercises, "figure": figures}
+        bets = {name: at for name, at in exercises.items() if "PREDICTION =" in read_text(at[0])}
+        known = {"bet": bets, "region": regions, "exercise": exercises, "figure": figures}
         for kind, folder in results.FOLDERS.items():
             drawn = files(f"{folder}/*.svg")
             known[kind] = {Path(f).stem.removeprefix("error-"): (f, 1) for f in drawn}
@@ -132,6 +138,7 @@ class Gate:
         """Names in `code` and flags, of chapter and captions, are in some code or in meta.yaml."""
         code = files("*.py", "exercises/**/*.py", "curriculum/*.py", "curriculum/[!t]*/*.py")
         known = set(re.findall(r"--[a-z]\w*|\w+", "".join(map(read_text, [*code, "meta.yaml"]))))
+        contact.add_flags(lambda flag, **_: known.add(flag))
         for file, first, text in self.passages:
             for match in SPAN.finditer(text) if file.startswith("curriculum") else ():
                 for name in {*re.findall(r"^[A-Za-z_]\w+$|--[a-z]\w*", match[1])} - known:
@@ -140,7 +147,7 @@ class Gate:
 
     def check_numbers(self):
         """None is typed into the chapter's prose, every reference can be made and gives what it
-        gave, `holds:` is true, and each run is quoted."""
+        gave, what holds a sentence is true, and each run is quoted."""
         for _, _, first, text in (p for p in self.chapter if p.kind in ("text", "heading")):
             for token in TYPED.finditer(blank(NOT_PROSE, text)):
                 line, number = first + line_at(text, token.start()) - 1, token[0].rstrip(".,")
@@ -149,8 +156,8 @@ class Gate:
         numbers, texts = Numbers(), {file: read_text(file) for file in TEXTS}
         numbers.prepare("".join(texts.values()))
         for file, text in texts.items():
-            for match in re.finditer(f"{REFERENCE.pattern}|(?s:{HOLDS.pattern})", text):
-                (asked, claim), line = match.groups(), line_at(text, match.start())
+            for match in REFERENCE.finditer(text):
+                (claim, asked), line = match.groups(), line_at(text, match.start(match.lastindex))
                 try:
                     shown = numbers.text(asked) if asked else ""
                     if claim and (false := numbers.broken(claim)):

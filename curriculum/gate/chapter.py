@@ -9,6 +9,8 @@ Beside plain Markdown it may hold
 - <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
   from there on, by quantities and `models`, `from`, `to`; <!-- show: none --> lets it step back,
   and may set quantities, too: <!-- show: none&dt=0.014 -->;
+- <!-- tells: ex1 --> (or ex1,ex3): what follows, up to the next heading or exercise, tells the
+  answer of that bet, and is hidden until the reader has bet (as is what follows a bet at once);
 - links that set the same, [words](try:scene=drop&dt=0.03), and numbers to drag, [0.002](drag:dt).
 
 Other comments, on lines of their own, vanish. There is no HTML.
@@ -21,7 +23,7 @@ from curriculum.regions import NAME, blank, line_at
 
 CHAPTER = "curriculum/prose/chapter.md"
 INCLUDE = re.compile(rf"\[include-by-region: ([\w./-]+\.py#{NAME})\]")
-SLOTS = "figure|exercise|bench|stress|show"
+SLOTS = "figure|exercise|bench|stress|show|tells"
 MARKS = f"{SLOTS}|wallclock|puzzle"
 PART = re.compile(
     rf"""

@@ -9,8 +9,10 @@
     {{(a.b - c.d) / e.f|.1f}}                       + - * / and brackets, with blanks around signs
     {{= 1972 | year of the paper}}                  a typed number, with the reason why
 
-FORMAT is Python's; a fraction needs one. A sentence is held to the numbers by a comment that
-compares two formulas: <!-- holds: quality.lcp.energy_excess < 1e-9 -->. What cannot be made raises
+    {{? 0.24 < quality.penalty.max_penetration_frac < 0.26}}    what its sentence says in words
+
+FORMAT is Python's; a fraction needs one. A reference of the last kind shows nothing, and the blanks
+before it go; with < <= > >= == it holds its sentence to the numbers. What cannot be made raises
 TextError, which says in one line what is known instead.
 """
 
@@ -36,12 +38,10 @@ from curriculum.measured import ledger, results
 from curriculum.measured.stale import fingerprint
 from curriculum.regions import CODE, ROOT
 
-REFERENCE = re.compile(r"\{\{(.*?)\}\}")
-HOLDS = re.compile(r"<!--\s*holds:\s*(.*?)\s*-->", re.DOTALL)
+REFERENCE = re.compile(r"\s*\{\{\?\s*((?s:.*?))\s*\}\}|\{\{(.*?)\}\}")  # a claim, or what is shown
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FORMULA = re.compile(r"[\d.e+\-*/()\s]+")  # of numbers and signs alone
-CLAIM = re.compile(r"([^<>=]+) (<|<=|>|>=|==) ([^<>=]+)")
 SIGNS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq}
 MADE_BY = (*CODE, *(f"curriculum/{name}.py" for name in ("implicit", "seeds", "gate/facts")))
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
@@ -168,17 +168,22 @@ class Numbers:
         return typeset(text) if is_number(value) else text
 
     def broken(self, claim) -> str:
-        """What the two sides of FORMULA < FORMULA (or <= > >= ==) are, where it is not true."""
-        parts = CLAIM.fullmatch(" ".join(claim.split()))
-        if not parts:
+        """What the sides of FORMULA < FORMULA are, where it is not true; there may be several."""
+        first, *rest = re.split(r" (<=?|>=?|==) ", " ".join(claim.split()))
+        if not rest:
             raise TextError(f"{claim!r} is not 'FORMULA < FORMULA'")
-        left, right = (self.value(f"({side})") for side in parts.group(1, 3))  # numbers alone
-        return "" if SIGNS[parts[2]](left, right) else f"{left:.6g} {parts[2]} {right:.6g}"
+        left = self.value(f"({first})")  # numbers alone
+        for sign, formula in zip(rest[::2], rest[1::2]):
+            right = self.value(f"({formula})")
+            if not SIGNS[sign](left, right):
+                return f"{left:.6g} {sign} {right:.6g}"
+            left = right
+        return ""
 
     def fill(self, text) -> str:
         """The text with every reference replaced."""
         self.prepare(text)
-        return REFERENCE.sub(lambda match: self.text(match[1]), text)
+        return REFERENCE.sub(lambda match: self.text(match[2]) if match[2] else "", text)
 
 
 def typeset(number: str) -> str:

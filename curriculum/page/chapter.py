@@ -5,9 +5,9 @@ heading or a `show` to the next. Its quantities are those that its mark sets, an
 own; what the reader changes in one stays there.
 
 Nothing on the page tells the answer of a bet before the reader has bet or has asked to be shown. A
-segment, from a heading or an exercise to the next, that tells the answer of a bet above is put into
-a veil, and a run of such segments behind one bar; the first heading of the run is seen. What tells
-an answer is found by its words, in text, code and figures.
+segment, from a heading or an exercise to the next, is put into a veil where it follows the bet at
+once, or says so by <!-- tells: ex1 -->. A run of such segments is behind one bar; the first heading
+of the run is seen.
 """
 
 import itertools
@@ -34,15 +34,7 @@ SETTINGS = {  # beside the quantities: what each may be
     "from": r"[\d.]+",
     "to": r"[\d.]+",
 }
-# what would tell the answer of a bet, in words (small letters) of text, code and figures
-TELLS = {
-    "ex1": r"\bsinks\b|\bdives\b|m g ?/ ?k|inside the table|gap at rest|at rest / r|rest depth",
-    "ex3": r"\bexplodes\b|blows up|stays? bounded|\bgains .{0,40}times (its|the) energy"
-    r"|the largest step",
-    "ex4": r"mass cancels|no mass in|\(1 . d\) \\?,? ?g\b|equally deep|per unit of mass",
-}
 HIDES = {"ex1": "How they land", "ex3": "What happens then", "ex4": "Where it rests"}
-END = "what-you-built-and-what-comes-next"  # from here on answers are named, and none is told
 
 
 # ---- Markdown
@@ -162,6 +154,8 @@ def blocks(text, ranges, starts):
             changes = {} if name == "none" else asked(name.removeprefix("none&"), env)
             marks += 1
             out.append((kind, (f"{place}.{marks}", name)))
+        elif kind == "tells":
+            out.append((kind, name.split(",")))
         elif kind != "comment":
             out.append((kind, (name,) if name else ()))
     return out
@@ -191,7 +185,7 @@ def rendered(md, text, env):
 def assemble(parts, macros, bets):
     """(HTML, [(level, id, text)] of its headings). The macro of a part's kind gives its HTML;
     `bets` are the exercises whose answers are veiled."""
-    contents, met, pieces = [], [], []
+    contents, pieces = [], []
     cuts = [k for k, (kind, _) in enumerate(parts) if k and kind in ("heading", "exercise")]
     segments = [parts[a:b] for a, b in zip([0, *cuts], [*cuts, len(parts)])]
     for ((kind, values), *rest), columns in zip(segments, columns_of(segments)):
@@ -199,15 +193,14 @@ def assemble(parts, macros, bets):
             *where, title = values
             contents.append((*where, Markup(re.sub(r"</?(code|a|math)[^>]*>", "", title))))
         head = getattr(macros, kind)(*values)
+        told = {name for kind, names in rest if kind == "tells" for name in names}
+        rest = [part for part in rest if part[0] != "tells"]
         inner = [getattr(macros, kind)(*values) for kind, values in rest]
         for at, part in enumerate(rest, 1):
             if part[0] == "puzzle":  # what follows it is its answer
                 inner[at:] = [macros.veil("puzzle"), *inner[at:], "</div></div>"]
         last = values[0] if kind == "exercise" else None
-        met += [last] if last in bets else []
-        met = [] if END in values else met
-        said = words(" ".join(inner)).lower()
-        veils = [name for name in met if said and (name == last or re.search(TELLS[name], said))]
+        veils = [bet for bet in bets if bet in told or bet == last and rest]
         head, inner = (
             f'<div class="part {column}">{each}</div>'
             for column, each in zip(columns, (head, "\n".join(inner)))
@@ -246,9 +239,3 @@ def veiled(segments, bets, macros):
         out += veiled([(head, inner, veils), *rest], others, macros)
         out += ["</div></div>"] if behind else []
     return out
-
-
-def words(html):
-    """What HTML says, in words: text, and the names of pictures."""
-    named = re.sub(r'<[^>]*\b(?:alt|aria-label)="([^"]*)"[^>]*>', r" \1 ", html)
-    return Markup(named).striptags()

@@ -28,13 +28,14 @@ FILES = {
 
 The ball rests {{quality.penalty.rest_penetration_frac|.5f}} r deep, seen from a margin of
 {{contact.CONTACT_MARGIN * 1000|.0f}} mm, and [drops](#x) by {{fact:jump.before|.4f}} m/s.
-<!-- holds: quality.penalty.rest_penetration_frac > quality.lcp.rest_penetration_frac -->
+{{? quality.penalty.rest_penetration_frac > quality.lcp.rest_penetration_frac}}
 
 ## A sweep
 
 One sweep of `solve_contacts` pushes, as with `--iters 1`. Python 3.10 and $k = 10$ are not typed.
 <!-- figure: clamp -->
 <!-- exercise: ex1 -->
+<!-- tells: ex1 -->
 
 ## Code
 """,
@@ -49,7 +50,7 @@ It has {{contact.Settings.iters}} sweeps.
 """,
     "meta.yaml": "runs:\n  drop: []\n",
     "wallclock.csv": PENDING,
-    EXERCISE: '"""Your bet: how often does `solve_contacts` sweep?"""\n',
+    EXERCISE: '"""How often does `solve_contacts` sweep?"""\nPREDICTION = None\n',
     CLAMP: 'const x = 1;\nexport const figure = { caption: "It pushes by `push`." };\n',
 }
 WRITE = "from curriculum.measured import results; results.write_block('bench', '| 1 |')"
@@ -132,6 +133,7 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
      ["{}:14: an include not alone in its fence, or a slot that is not well formed",
       f"{EXERCISE}:1: exercise ex1 has no place in {CHAPTER}"]),
     (CHAPTER, "are not typed", "<b>are</b> not typed", ["{}:11: raw HTML, '<b>are</b> not"]),
+    (CHAPTER, "tells: ex1", "tells: ex1,ex2", ["{}:15: ex1, ex2 is no bet above"]),
     (CHAPTER, "contact.py#flight]", "contact.py#fligt]",
      ["{}:#: there is no region contact.py#fligt", "contact.py:#: region contact.py#flight ha"]),
     (CHAPTER, "contact.py#quality]", "contact.py#quality] and more",
@@ -143,9 +145,9 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
     (CLAMP, "`push`", "`pulls_by`", ["{}:1: `pulls_by` is in no code"]),
     ("contact.py", "n . (v_a - v_b)", "n . (v_b - v_a)", ["{}:1: contact.py changed"]),
     ("contact.py", "CONTACT_MARGIN = 1e-3", "CONTACT_MARGIN = 2e-3",
-     ["{}:#: setup changed", f"{CHAPTER}:6: contact.CONTACT_MARGIN * 1000|.0f was 1 and is 2"]),
+     ["{}:#: contacts changed", f"{CHAPTER}:6: contact.CONTACT_MARGIN * 1000|.0f was 1 and is 2"]),
     ("contact.py", "RADIUS = 0.1  # m", "# --- region lost ---\nRADIUS = 0.1  # m",
-     ["{}:#: '# --- region lost ---' does not belong there"]),
+     ["{}:#: '# --- region lost ---' does not belong there", "{}:#: scenes changed"]),
     ("contact.py", "# --- region: setup ---", "lost = 1\n# --- region: setup ---",
      ["{}:#: code outside any region: 'lost = 1'"]),
     ("meta.yaml", "  drop: []", "  drop: []\n  long: [--steps, 3]", ["{}:1: run long is quoted "]),
@@ -194,8 +196,8 @@ def test_a_changed_region_names_who_speaks_of_it_and_is_accepted_by_name(project
     edit(project / "contact.py", "CONTACT_MARGIN = 1e-3", "CONTACT_MARGIN = 2e-3")
     assert run_gate(project, "--accept", "sweep").returncode == 0
     waits = run_gate(project).stdout
-    assert ": setup changed" in waits and waits.count("\n") == 1, "all numbers are recorded"
-    assert run_gate(project, "--accept", "setup").returncode == 0
+    assert ": contacts changed" in waits and waits.count("\n") == 1, "all numbers are recorded"
+    assert run_gate(project, "--accept", "contacts").returncode == 0
     assert run_gate(project).returncode == 0
     hashes = yaml.safe_load((project / "meta.yaml").read_text("utf-8"))["region_hashes"]
     assert hashes["sweep"] == hashlib.sha256(f"{code}# a better word\n".encode()).hexdigest()
@@ -375,6 +377,9 @@ def test_sentence_in_words_is_held_to_the_numbers(numbers):
         sign for sign in ("<", "<=", ">", ">=", "==") if not numbers.broken(f"steps {sign} 2e3")
     }
     assert holds == {"<=", ">=", "=="}
+    assert numbers.broken("2e3 <= steps < 1 + steps") == ""
+    assert numbers.broken("1 < steps < 2e3") == "2000 < 2000"
+    assert numbers.fill("so it is\n{{? steps ==\n1}}.") == "so it is."
     with pytest.raises(references.TextError, match="is not 'FORMULA < FORMULA'"):
         numbers.broken("quality.soft.depth")
     with pytest.raises(references.TextError, match="'quality.lcp.state' is 'ok', no number"):
