@@ -16,7 +16,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 from kit import script  # noqa: E402
 from kit.progress import FILES, practise  # noqa: E402
 
-from curriculum.commands import stoppable, to_install  # noqa: E402
+from curriculum.commands import to_install  # noqa: E402
 
 try:
     import pytest
@@ -34,7 +34,6 @@ def test_exercise(name):
         pytest.fail(words, pytrace=False)
 
 
-@stoppable()
 def main():
     """Run the checks. Returns the exit status."""
     how = "-o", "addopts=-q -rs"  # in a folder of one's own, too

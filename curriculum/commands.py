@@ -8,6 +8,8 @@ import shlex
 import sys
 from pathlib import Path
 
+from curriculum import unfinished
+
 ROOT = Path(__file__).resolve().parents[1]
 
 
@@ -76,38 +78,28 @@ def needs(extra):
         sys.exit(2)
 
 
-@contextlib.contextmanager
-def stoppable():
-    """Within it, Ctrl-C and output that nobody reads on (`| head -1`) end the program."""
-    try:
-        try:
-            yield
-        finally:
-            print(end="", flush=True)  # an error at Python's end has no handler
-    except BrokenPipeError:
-        os._exit(141)
-    except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)
-        sys.exit(130)
-
-
 def write_whole(path, content):
     """Replace the file at `path` by str or bytes, whole or not at all. Makes missing folders.
 
     What stands there and is no regular file (/dev/null, a pipe) is written into, not replaced.
+    Raises OSError that names the file.
     """
-    path, data = Path(path), content.encode() if isinstance(content, str) else content
-    if path.exists() and not path.is_file():
-        path.write_bytes(data)
-        return
-    path = Path(os.path.realpath(path))
-    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-    path.parent.mkdir(parents=True, exist_ok=True)
+    path, data = os.path.realpath(path), content.encode() if isinstance(content, str) else content
+    special = os.path.exists(path) and not os.path.isfile(path)
+    written = path if special else f"{path}.{os.getpid()}.tmp"
     try:
-        temporary.write_bytes(data)
-        temporary.replace(path)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        if not special:
+            unfinished.add(written)
+        Path(written).write_bytes(data)
+        if not special:
+            os.replace(written, path)
+    except OSError as error:
+        for left in unfinished & {written}:
+            Path(left).unlink(missing_ok=True)
+        raise OSError(error.errno, error.strerror, near(path)) from None
     finally:
-        temporary.unlink(missing_ok=True)
+        unfinished.discard(written)
 
 
 def write_json(path, data):

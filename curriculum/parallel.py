@@ -2,92 +2,155 @@
 
 import os
 import signal
+import sys
+import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, CancelledError, ProcessPoolExecutor
 from contextlib import contextmanager
-from multiprocessing import active_children, parent_process
+from itertools import count, islice
+from multiprocessing import parent_process
+from queue import Empty, SimpleQueue
 
 from curriculum import commands
 
+AHEAD, PATIENCE = 1000, 15.0  # jobs that are asked for at a time; s without a result
 
-def run_jobs(
-    function: Callable, jobs: Iterable, label: str, workers: int | None = None, scheduler=None
-) -> list:
-    """[function(job) for job in jobs], worked out in parallel, in the order of the jobs.
+
+def run_jobs(function: Callable, jobs: Iterable, label: str, workers: int | None = None) -> list:
+    """[function(job) for job in jobs], worked out on all cores, in the order of the jobs."""
+    jobs = list(jobs)
+    workers = min(len(jobs), workers or os.cpu_count() or 1)
+    found = as_they_come(function, jobs, len(jobs), label, workers)
+    return [result for _, result in sorted(found, key=lambda each: each[0])]
+
+
+def as_they_come(
+    function: Callable, jobs: Iterable, total: int, label: str, workers=None, scheduler=None
+) -> Iterator[tuple]:
+    """(place of a job, function(job)) of each, as they are done, with a bar; AHEAD at a time.
 
     function: one that another process can import. workers: how many processes, all cores if None;
-    one worker or one job needs no process. scheduler: "host:port" of a running dask scheduler; its
-    workers do the work instead; the code must be on their PYTHONPATH. The results are the same
-    wherever they come from. Raises what the function raises; ImportError where dask is
-    missing, and OSError, in one line, where the scheduler does not answer.
+    one needs no process. scheduler: "host:port" of a running dask scheduler; its workers do the
+    work instead; the code must be on their PYTHONPATH. Raises what the function raises; ImportError
+    where dask is missing; and OSError, in one line, where scheduler, workers or processes are gone.
     """
-    jobs = list(jobs)
-    count = min(len(jobs), workers or os.cpu_count() or 1)
-    if count < 2 and not scheduler:
-        return gathered(map(function, jobs), len(jobs), label)
-    with machines(scheduler) if scheduler else processes(count) as pool:
-        # pool.map would cancel at Ctrl-C what the pool then ends too
-        futures = [pool.submit(function, job) for job in jobs]
-        return gathered((future.result() for future in futures), len(jobs), label)
+    progress, done = bar(total, label), count(1)
+    workers = min(total, workers or os.cpu_count() or 1)
+    if workers < 2 and not scheduler:
+        for place, job in enumerate(jobs):
+            yield place, function(job)
+            progress(next(done))
+        return
+    with machines(scheduler) if scheduler else processes(workers) as (pool, look):
+        try:
+            for found in spread(pool, look, function, enumerate(jobs)):
+                yield found
+                progress(next(done))
+        except (BrokenExecutor, CancelledError):
+            raise ConnectionError(f"{scheduler or 'a process of the pool'} is gone") from None
 
 
-def gathered(results: Iterable, total: int, label: str) -> list:
-    """The list of the results, as they come, with a bar."""
-    done: list = []
-    progress = bar(total, label)
-    for result in results:
-        done.append(result)
-        progress(len(done))
-    return done
+def spread(pool, look, function, numbered) -> Iterator[tuple]:
+    """(place, function(job)) of each (place, job), as they are done; look() where nothing comes."""
+    done: SimpleQueue = SimpleQueue()
+    waiting = {}
+
+    def ask(most):
+        for place, job in islice(numbered, most):
+            with unheard():  # or a process that is started now would speak at Ctrl-C
+                future = pool.submit(function, job)
+            waiting[future] = place
+            future.add_done_callback(done.put)
+
+    ask(AHEAD)
+    while waiting:
+        try:
+            future = done.get(timeout=PATIENCE)
+        except Empty:
+            look()
+            continue
+        yield waiting.pop(future), future.result()
+        ask(1)
 
 
 def bar(total: int, label: str) -> Callable[[int], None]:
-    """progress(done), to be called with how many of `total` are done; it draws a bar with tqdm.
+    """progress(done), to be called with how many of `total` are done: how far it is, on stderr.
 
-    The bar comes after a second and is wiped at the end. There is none where stderr is no
-    terminal, where tqdm is not installed, and in a process of the pool, since bars would mix.
+    On a terminal after a second, in a line that is wiped at the end; elsewhere a line a minute.
+    Nothing in a process of the pool, since lines would mix.
     """
-    try:
-        from tqdm import tqdm
-    except ImportError:
+    if parent_process() is not None or not sys.stderr:
         return lambda done: None
-    unseen = parent_process() is not None or None  # None: where stderr is no terminal
-    shown = tqdm(total=total, desc=label, leave=False, delay=1.0, disable=unseen)
+    start = last = time.monotonic()
+    shown, (every, end) = False, (0.2, "\r") if sys.stderr.isatty() else (60.0, "\n")
 
     def progress(done):
-        shown.update(done - shown.n)
-        if done >= total:
-            shown.close()
+        nonlocal last, shown
+        now = time.monotonic()
+        if shown and end == "\r" and done >= total:
+            print(" " * 78, end=end, file=sys.stderr, flush=True)
+        elif now - last > every and now - start > 1.0 and done < total:
+            last, shown, left = now, True, (now - start) * (total / max(done, 1) - 1.0)
+            text = f"{label}: {done:,} of {total:,}, about {left:,.0f} s to go"
+            print(f"{text:<78}", end=end, file=sys.stderr, flush=True)
 
     return progress
 
 
 @contextmanager
-def processes(count):
-    """A pool of so many processes. Ctrl-C ends them too, and they say nothing."""
-    quiet = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_IGN)}
-    with ProcessPoolExecutor(count, **quiet) as pool:
-        try:
-            yield pool
-        except BaseException:
-            for process in active_children():
-                process.terminate()  # or leaving the pool would wait for all that was asked for
-            raise
+def unheard():
+    """Within it, Ctrl-C waits; a process that is started here never hears of it."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def follow_parent():
+    """End this process as soon as the one that started it is gone, however that ended."""
+
+    def follow():
+        parent_process().join()
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
+
+
+@contextmanager
+def processes(workers):
+    """A pool of so many processes, and what to do where nothing comes: wait on."""
+    pool = ProcessPoolExecutor(workers, initializer=follow_parent)
+    try:
+        yield pool, lambda: None
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
 @contextmanager
 def machines(scheduler: str) -> Iterator:
-    """The executor of a dask scheduler; see run_jobs."""
+    """The executor of a dask scheduler, and what to do where nothing comes; see as_they_come."""
     try:
         from dask.distributed import Client
     except ImportError:
         raise ImportError(commands.to_install("dask[distributed]")) from None
+    import logging
+
+    logging.getLogger("distributed").setLevel(logging.CRITICAL + 1)  # what is lost, we say
+    given = f"given the scheduler {scheduler!r}, which"
     try:
         client = Client(scheduler, timeout=10)
     except (OSError, ValueError) as error:
-        raise OSError(
-            f"given the scheduler {scheduler!r}, which does not answer ({error}); allowed: "
-            "host:port, as `dask scheduler` prints it"
-        ) from None
+        allowed = "allowed: host:port, as `dask scheduler` prints it"
+        raise OSError(f"{given} does not answer ({error}); {allowed}") from None
+
+    def look():
+        if not client.nthreads():
+            raise OSError(f"{given} has no workers; start some: dask worker {scheduler}")
+
     with client:
-        yield client.get_executor(pure=False)  # leaving the client cancels what is still asked for
+        yield client.get_executor(pure=False), look

@@ -36,7 +36,7 @@ def made_by(part):
 
 
 def main(argv=None):
-    """Returns the exit status: 1 where figures could not be drawn, 130 after Ctrl-C."""
+    """Returns the exit status: 1 where figures could not be drawn."""
     parser = Parser(prog="python -m curriculum.bench", description=__doc__)
     parser.add_argument("part", nargs="?", default="all", choices=("all", *PARTS, "draw"))
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
@@ -52,9 +52,6 @@ def main(argv=None):
         report.write(folder, sections)
         if folder == FULL:
             results.write_block("bench", report.readme(sections))
-    except KeyboardInterrupt:
-        print("stopped; what was finished is kept", file=sys.stderr)
-        return 130
     except (ImportError, FileNotFoundError, ValueError) as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1

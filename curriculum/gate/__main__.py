@@ -19,7 +19,7 @@ from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
-from curriculum.commands import Parser, needs, stoppable, write_whole
+from curriculum.commands import Parser, needs, write_whole
 
 with needs("dev"):
     import yaml
@@ -255,7 +255,6 @@ def accept(names) -> int:
     return 0
 
 
-@stoppable()
 def main(argv=None) -> int:
     """Check or accept. Returns the exit status: 0 in order, 1 not, 2 could not be done."""
     parser = Parser(prog=GATE, description=__doc__)

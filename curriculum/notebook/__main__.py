@@ -2,10 +2,9 @@
 
 import sys
 
-from curriculum.commands import Parser, needs, stoppable
+from curriculum.commands import Parser, needs
 
 
-@stoppable()
 @needs("notebook")
 def main():
     """Build and write. Returns the exit status: 0 written, 1 the notebook can't be built."""

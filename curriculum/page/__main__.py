@@ -3,10 +3,9 @@
 import sys
 from pathlib import Path
 
-from curriculum.commands import Parser, needs, stoppable
+from curriculum.commands import Parser, needs
 
 
-@stoppable()
 @needs("page")
 def main(argv=None):
     """Build and write. Returns the exit status: 0 written, 1 it can't be built, 2 bad usage."""

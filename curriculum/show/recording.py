@@ -146,11 +146,9 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     all do.
     """
     large, x = float(scene.radius.max()), scene.q0[0]
-    ends = {model: contact.ending(row) for model, row in quality.items()}
-    calm = [run for model, run in runs.items() if "EXPLODED" not in ends[model]]
+    calm = [run for model, run in runs.items() if not quality[model]["blew_up"]]
     shown = frame(calm or list(runs.values())[:1], x, large)
-    titles = {model: model if end == "ok" else f"{model}: {end}" for model, end in ends.items()}
-    lanes = [view(model, title, *shown) for model, title in titles.items()]
+    lanes = [view(model, title_of(model, row), *shown) for model, row in quality.items()]
     wide = np.ptp(shown[0]) > 1.2 * np.ptp(shown[1])
     rows = [rrb.Vertical(*lanes) if wide else rrb.Horizontal(*lanes)]
     if np.ptp(x) < large and not wide:
@@ -162,6 +160,11 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     shares = [5, 2, 3] if len(rows) == 3 else [5, 3]
     views = rrb.Vertical(*rows, row_shares=shares)
     return rrb.Blueprint(views, time_panel(), collapse_panels=True)
+
+
+def title_of(model: str, row: dict) -> str:
+    """A model's name, and how its run ended where that was badly."""
+    return f"{model}: {contact.ending(row)}" if row["blew_up"] or row["through"] else model
 
 
 def view(model: str, name: str, x_range: list, y_range: list) -> rrb.Spatial2DView:

@@ -297,28 +297,19 @@ def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
     assert done.stdout.splitlines()[-1] == "[]", done.stderr
 
 
-STARTS = {  # a shell in the background has its children ignore Ctrl-C, so seeds is told to hear it
-    "import runpy; print('ready', flush=True); runpy.run_path('contact.py', run_name='__main__')":
-    "--no-skip --steps 1000000",
-    "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
-    "from curriculum.seeds import main; print('ready', flush=True); sys.exit(main(sys.argv[1:]))":
-    "0:2000 --no-skip",
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("code, flags", STARTS.items(), ids=["contact", "seeds"])
-def test_ctrl_c_ends_a_run_and_its_workers_with_one_word_and_leaves_no_file(code, flags, tmp_path):
-    words = [sys.executable, "-c", code, *flags.split(), "--out", tmp_path / "out"]
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
+def test_ctrl_c_ends_a_run_with_one_word_and_leaves_no_file(tmp_path):
+    start = "import runpy; print('ready', flush=True); runpy.run_path('contact.py', {}, '__main__')"
+    flags = "--no-skip", "--steps", "1000000", "--out", tmp_path / "out"
+    words = [sys.executable, "-c", start, *flags]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as process:
         assert process.stdout.readline() == "ready\n"
-        time.sleep(1.0)  # into the steps, or the workers' start
+        time.sleep(1.0)  # into the steps
         os.killpg(process.pid, signal.SIGINT)  # what a terminal does
         out, err = process.communicate(timeout=30)
     assert (process.returncode, out, err.strip()) == (130, "", "stopped")
     assert not any(tmp_path.iterdir())
-    with pytest.raises(ProcessLookupError):
-        os.killpg(process.pid, 0)  # no worker is left
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")

@@ -2,9 +2,15 @@
 
 import json
 import math
+import multiprocessing
+import os
 import re
+import shutil
+import signal
 import subprocess
 import sys
+import time
+import zlib
 from collections import defaultdict, namedtuple
 from xml.etree import ElementTree
 
@@ -18,6 +24,7 @@ from curriculum.tests.helpers import CONTACT, ROOT, python
 
 DT, STEPS = 0.004, 300
 MASS, RADIUS = np.array([2.0, 1.3, 0.5]), np.array([0.12, 0.09, 0.08])  # from the lowest ball up
+FIVE = "0:5", "--contact", "lcp", "--steps", "300", "--out"
 CURVES = ("height", "penetration", "impulse", "energy", "rises")
 Recording = namedtuple("Recording", "series static blueprint application")
 
@@ -186,15 +193,13 @@ def test_of_many_balls_the_arrows_are_left_out_since_they_are_a_thicket(tmp_path
     assert "/world/lcp/balls" in recording.static and "/world/lcp/pushes" not in recording.static
 
 
-@pytest.mark.parametrize("model, dt, stiffness", [("penalty", 1e5, 1e300), ("lcp", 1e200, 1e4)])
-def test_a_run_that_overflows_or_outlasts_64_bit_nanoseconds_is_recorded(
-    model, dt, stiffness, tmp_path
-):
-    scene = contact.build_scene("drop")
-    run = contact.run_model(model, scene, dt, 300, contact.Settings(stiffness=stiffness))
-    quality = {model: contact.contact_quality(run, scene, dt)}
-    recording = recorded(tmp_path, scene, {model: run}, quality)
-    assert recording.series[f"/height/{model}"]["step"] == list(range(301))
+def test_a_run_that_overflows_is_recorded(tmp_path):
+    scene = contact.scene_of(0.0, 1.0, mass=1e-300)
+    run = contact.run_model("penalty", scene, 1e3, 300, contact.Settings(stiffness=1e15))
+    assert not np.isfinite(run.q).all()
+    quality = {"penalty": contact.contact_quality(run, scene, 1e3)}
+    recording = recorded(tmp_path, scene, {"penalty": run}, quality)
+    assert recording.series["/height/penalty"]["step"] == list(range(301))
 
 
 def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(tmp_path):
@@ -216,42 +221,181 @@ def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(
 def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path, capsys):
     """A cluster of two workers, as it would be on two machines."""
     distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
-    words = "0:5", "--contact", "lcp", "--steps", "300", "--out"
-    assert seeds.main([*words, str(tmp_path / "here")]) == 0
+    assert seeds.main([*FIVE, str(tmp_path / "here")]) == 0
     cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with distributed.LocalCluster(**cluster) as two:
-        there = (*words, str(tmp_path / "there"), "--scheduler", two.scheduler_address)
+        there = (*FIVE, str(tmp_path / "there"), "--scheduler", two.scheduler_address)
         assert seeds.main([*there]) == 0
     found = (tmp_path / "here/seeds.json").read_text("utf-8")
     assert found == (tmp_path / "there/seeds.json").read_text("utf-8")
     each = [
         runs_of(contact.build_scene("drop", seed), dt=0.002, models=["lcp"]) for seed in range(5)
     ]
-    depths = sorted(quality["lcp"]["max_penetration_frac"] for _, _, quality in each)
+    depths = [quality["lcp"]["max_penetration_frac"] for _, _, quality in each]
     rows = json.loads(found)["rows"]["lcp"]
-    for name, depth in (("lowest", depths[0]), ("median", depths[2]), ("highest", depths[-1])):
+    for name, depth in zip(("lowest", "median", "highest"), sorted(depths)[::2]):
         assert abs(rows[name]["max_penetration_frac"] - depth) < 1e-12
+        if name != "median":
+            assert rows[name]["seeds"]["max_penetration_frac"] == depths.index(depth)
 
 
-def test_seeds_count_what_exploded_went_through_or_could_not_be_run():
-    usual = dict.fromkeys((key for key, _ in contact.COLUMNS.values()), 1.0)
-    ends = (  # of three of four runs
-        {"blew_up": True, "through": "a ball", "rest_jitter": math.inf},
-        {"blew_up": False, "through": "a ball"},
-        {"blew_up": False, "through": None, "rebound_frac": None},
-    )
-    rows = seeds.summary([usual | end for end in ends])
+def test_a_cluster_without_workers_or_with_other_code_is_one_line_and_what_is_done_is_kept(
+    tmp_path, capsys, monkeypatch
+):
+    distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
+    monkeypatch.setattr(parallel, "PATIENCE", 0.1)
+    words = [*FIVE, str(tmp_path), "--scheduler"]
+    with distributed.LocalCluster(n_workers=0, dashboard_address=None) as none:
+        assert seeds.main([*words, none.scheduler_address]) == 2
+        err = capsys.readouterr().err
+        assert err.count("\n") == 1 and "has no workers; start some: dask worker" in err
+        shutil.copytree(ROOT, tmp_path / "other", ignore=shutil.ignore_patterns(".*", "tests"))
+        changed = (tmp_path / "other/contact.py").read_text("utf-8").replace("-9.81", "-9.82")
+        (tmp_path / "other/contact.py").write_text(changed, "utf-8")
+        start = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard"]
+        start += [none.scheduler_address, "--no-nanny", "--nthreads", "1"]
+        worker = subprocess.Popen(start, cwd=tmp_path / "other", stderr=subprocess.DEVNULL)
+        try:
+            distributed.Client(none).wait_for_workers(1)
+            assert seeds.main([*words, none.scheduler_address]) == 2
+        finally:
+            worker.kill(), worker.wait()
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1 and f"process {worker.pid}, has another contact.py: give" in err
+    kept = (tmp_path / "seeds.csv").read_text("utf-8")
+    assert kept.startswith("made by,") and kept.count("\n") == 1, "no row of other code"
+
+
+def test_parts_cut_rows_and_rows_of_other_flags_give_the_summary_of_one_whole_run(tmp_path, capsys):
+    assert seeds.main([*FIVE, str(tmp_path / "whole")]) == 0
+    part = [["3:5"], ["0:2"], ["0:3", "--dt", "0.004"]]
+    for name, words in zip("abc", part):
+        assert seeds.main([*words, *FIVE[1:], str(tmp_path / name)]) == 0
+    merged = tmp_path / "d/seeds.csv"
+    merged.parent.mkdir()
+    files = [(tmp_path / name / "seeds.csv").read_bytes() for name in "cab"]
+    merged.write_bytes(b"".join(files)[:-9])  # the last row is cut short
+    capsys.readouterr()
+    assert seeds.main([*FIVE, str(merged.parent)]) == 0
+    err = capsys.readouterr().err
+    assert "3 of 5 seeds are there; 3 rows of other flags or other code are left alone" in err
+    assert (tmp_path / "whole/seeds.json").read_bytes() == merged.with_name(
+        "seeds.json"
+    ).read_bytes()
+    torn = merged.read_bytes().splitlines()
+    assert len(torn) == 1 + 4 + 1 + 3 + 2 + 1, "and what was there stays"
+
+
+def test_two_results_of_one_seed_are_refused_not_mixed(tmp_path, capsys):
+    assert seeds.main([*FIVE, str(tmp_path)]) == 0
+    path = tmp_path / "seeds.csv"
+    row = path.read_bytes().splitlines()[-1].rpartition(b",")[0].replace(b"rests", b"moves")
+    with path.open("ab") as file:
+        file.write(b"%b,%08x\n" % (row, zlib.crc32(row)))
+    assert seeds.main([*FIVE, str(tmp_path)]) == 2
+    assert f"two results of seed {row.split(b',')[1].decode()} by lcp" in capsys.readouterr().err
+
+
+def killed_at_seed_3(seed):
+    if seed == 3 and multiprocessing.parent_process():
+        os._exit(9)
+    return [[seed, "lcp", *[0.5] * len(seeds.KEYS), "rests"]]
+
+
+def test_a_process_of_the_pool_that_is_killed_costs_no_row_and_is_one_line(
+    tmp_path, capsys, monkeypatch
+):
+    rows = seeds.Rows(tmp_path / "seeds.csv", "mark", ["lcp"])
+    with rows.opened() as file, pytest.raises(OSError, match="a process of the pool is gone"):
+        for _, new in parallel.as_they_come(killed_at_seed_3, range(50), 50, "seeds", 2):
+            rows.add(file, new)
+    again = seeds.Rows(rows.path, "mark", ["lcp"])
+    assert list(again.missing(range(50))) == list(rows.missing(range(50))), "all rows are on disk"
+    assert 3 in again.missing(range(50))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_a_night_of_seeds_that_is_stopped_keeps_its_rows_and_leaves_no_process(number, tmp_path):
+    words = "curriculum.seeds", "0:100000", "--no-skip", "--out", tmp_path
+    start = {"cwd": ROOT, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
+    with subprocess.Popen([sys.executable, "-m", *words], **start) as process:
+        rows = tmp_path / "seeds.csv"
+        while not rows.exists() or rows.read_bytes().count(b"\n") < 2:
+            assert process.poll() is None
+            time.sleep(0.01)
+        if number == signal.SIGINT:
+            os.killpg(process.pid, number)  # what a terminal does
+        else:
+            process.send_signal(number)
+        err = process.communicate(timeout=30)[1]
+    ends = {signal.SIGINT: (130, "stopped\n"), signal.SIGTERM: (143, "stopped\n")}
+    assert (process.returncode, err) == ends.get(number, (-number, ""))
+    with pytest.raises(ProcessLookupError):
+        while True:  # until no worker is left
+            os.killpg(process.pid, 0)
+            time.sleep(0.01)
+    assert [path.name for path in tmp_path.iterdir()] == ["seeds.csv"]
+
+
+COMMANDS = (  # and contact.py: see test_command_line
+    "checks.py", "exercises/ex1_predict_contact.py",
+    *(f"-m curriculum.{name}" for name in "seeds gate page notebook bench stress".split()),
+)  # fmt: skip
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
+@pytest.mark.parametrize("command", COMMANDS)
+def test_ctrl_c_and_sigterm_while_a_command_imports_are_one_word(command, tmp_path):
+    for name, status in ("SIGINT", 130), ("SIGTERM", 143):
+        stop = f"import os, signal\nos.kill(os.getpid(), signal.{name})\n"
+        (tmp_path / "numpy.py").write_text(stop)
+        done = python(*command.split(), PYTHONPATH=str(tmp_path))
+        assert (done.returncode, done.stdout, done.stderr) == (status, "", "stopped\n"), name
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
+@pytest.mark.parametrize(
+    "words",
+    ["-m curriculum.seeds 0:1 --steps 5 --out OUT", "checks.py -k ex2", "-m curriculum.page -h"],
+)
+def test_output_to_a_full_disk_is_one_line(words, tmp_path):
+    words = [sys.executable, *words.replace("OUT", str(tmp_path)).split()]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(words, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert (done.returncode, done.stderr) == (2, "error: No space left on device\n")
+
+
+def test_seeds_count_what_exploded_went_through_or_could_not_be_run(tmp_path):
+    ends = [  # of three of four runs: jitter, rebound, how it ended
+        (math.nan, 1.0, "EXPLODED at step 7"), (1.0, 1.0, "through a ball"), (1.0, None, "rests"),
+    ]  # fmt: skip
+    rows = seeds.Rows(tmp_path / "seeds.csv", "mark", ["lcp"])
+    with rows.opened() as file:
+        for seed, (jitter, rebound, end) in enumerate(ends):
+            known = {"height_jitter_frac": jitter, "rebound_frac": rebound}
+            values = [seeds.finite(known.get(key, 1.0)) for key in seeds.KEYS]
+            rows.add(file, [[seed, "lcp", *values, end]])
+        rows.add(file, [[3, "lcp", *[None] * len(seeds.KEYS), "no: crushed"]])
+    ways = rows.summary("lcp", range(4))
     words = "1 of 4 EXPLODED, 1 of 4 went through, 1 of 4 could not be run"
-    assert {seeds.ending(row, 4) for row in rows.values()} == {words}
-    jitter = {name: row["rest_jitter"] for name, row in rows.items()}
+    assert {seeds.ending(row, 4) for row in ways.values()} == {words}
+    jitter = {name: row["height_jitter_frac"] for name, row in ways.items()}
     assert jitter == {"median": 1.0, "lowest": 1.0, "highest": math.inf}
-    assert {row["rebound_frac"] for row in rows.values()} == {None}, "not of all runs, so of none"
+    assert {row["rebound_frac"] for row in ways.values()} == {None}, "not of all runs, so of none"
 
 
 @pytest.mark.parametrize(
     "words",
-    [*"3 4:4 5:2 0:1.5 a:b 0:1000000".split()]
-    + ["0:5 --seed 3", "0:5 --plot", "0:5 --dt 0", "0:5 --mass=--", "0:5 --scheduler=--"],
+    [*"3 4:4 5:2 0:1.5 a:b 0:1e9 0:9999999999999999999".split()]
+    + [
+        "0:5 --seed 3",
+        "0:5 --scheduler=",
+        "0:5 --plot",
+        "0:5 --dt 0",
+        "0:5 --mass=--",
+        "0:5 --scheduler=--",
+    ],
 )
 def test_seeds_refuses_bad_input_in_one_line(words, capsys):
     try:

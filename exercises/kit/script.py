@@ -4,7 +4,7 @@ import os
 import sys
 from pathlib import Path
 
-from curriculum.commands import Parser, command, stoppable
+from curriculum.commands import Parser, command
 
 from . import FACTS, knobs, predict, task_of, time_limit
 from .progress import done, note, practise
@@ -15,14 +15,13 @@ BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the mo
 def unquoted(kind, error, trace):
     """PREDICTION = A, a letter without quotes: say it in one line."""
     if kind is not NameError:
-        return sys.__excepthook__(kind, error, trace)
+        return said(kind, error, trace)
     print(time_limit.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
 
 
-sys.excepthook = unquoted
+said, sys.excepthook = sys.excepthook, unquoted
 
 
-@stoppable()
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
