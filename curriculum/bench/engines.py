@@ -1,40 +1,41 @@
 """Other engines, and our models, as sessions that step the scenes of contact.py.
 
-Which settings of them compete stands in settings.py. Every engine is optional
-(`pip install -e '.[bench]'`); one that is missing is said to be. The same for all: balls that
-cannot rotate, no friction, no threads, the scene's masses, radii and restitution, gravity 9.81
-m/s^2, and a floor along y = 0. A ball of infinite mass is one that nothing moves. The same means
-for all: a session takes so many substeps for each step that is looked at, and no ball sleeps. What
-is left of the last step, impulses or forces, begins the next one in every engine as shipped. What
-had to be chosen:
+Which settings of them compete stands in settings.csv. Every engine is optional (`pip install -e
+'.[bench]'`); one that is missing is said to be. The same for all: balls that cannot rotate, no
+friction, one thread, the scene's masses, radii and restitution, gravity 9.81 m/s^2, and a floor
+along y = 0. A ball of infinite mass is one that nothing moves. No ball sleeps, and what is left of
+the last step, impulses or forces, begins the next one as shipped. Options that had to be chosen:
 
-    mujoco    solref: a time constant and a damping ratio, or, both negative, a stiffness and a
-              damping given directly. "0 -(1+e)/dt" with solimp near 1 is Newton's impact law:
-              the ball leaves with e times the speed it came with (its documentation shows the
-              case e = 1). A stiffness of beta / dt^2 beside it pushes overlaps out, as Baumgarte
-              does. A ball is two slide joints. Many balls: CG and a sparse Jacobian, since the
-              sparse Newton of version 4.0.0 fails on piles (its makers say it is mended in 4.0.1).
-    pymunk    iterations; bias, here named by the share of an overlap that it takes out in 2 ms. Its
-              slop is 1e-6 m or less instead of 0.1, which was made for pixels.
-    box2d3    substeps, and the frequency [Hz] of its soft contacts (30 as shipped; it never gets
-              stiffer than an eighth of the substep rate). The world is `scale` times as large, so
-              that its slop of 5 mm and its margin shrink against r. float32. Its forerunner 2.3 is
-              left out.
-    drake     point contact, of stiffness k [N/m]. "discrete": its convex solver at a fixed step;
-              "CENIC": the same under error control; "RK3": an explicit integrator under error
-              control. These two are read by their own dense output, in one go; "cut" ends their
-              steps at each look, as for a user who looks while it runs. It has no coefficient of
-              restitution, so it runs where e is 0 (strong dissipation) or 1 (none), and says so
-              elsewhere.
+    mujoco    push, d: stiffness push / dt^2 and damping (1 + e) / dt, given directly, at impedance
+              d: Newton's impact law. timeconst, ratio, d: a time constant of so many steps and a
+              damping ratio. Neither: as shipped. A ball is two slide joints. Many balls: CG and a
+              sparse Jacobian, since the sparse Newton of version 4.0.0 fails on piles.
+    pymunk    push: the share of an overlap that goes in 2 ms; slop [m]: 1e-6 where nothing is said,
+              instead of 0.1, which was made for pixels.
+    box2d3    inner substeps; hertz of its soft contacts (30 as shipped; never above an eighth of
+              the substep rate); scale of the world, so that its slop shrinks against r. float32.
+    rapier    the same by its 3-D binding, of balls that stay in a plane. float32.
+    drake     point contact of that stiffness [N/m] and dissipation [s/m]; without a scheme its
+              convex solver at a fixed step, else an integrator with error control, read by its own
+              dense output, or, with cut, stopped at each look. It has no restitution: it runs where
+              e is 0 (strong dissipation) or 1 (none), and says so elsewhere.
+    siconos   Moreau-Jean at theta 1/2, by Debian's package, in a process of its own: siconos.py.
+    events    scipy's integrator from event to event: events.py.
 """
 
+import contextlib
 import importlib.util
+import json
 import math
+import subprocess
 from functools import partial
+from importlib import metadata
+from pathlib import Path
 
 import numpy as np
 
 import contact
+from curriculum.bench import events
 
 BLOCK = 200  # steps that a twin takes in one go
 GRAVITY = 9.81  # m/s^2, downwards
@@ -49,6 +50,7 @@ class Session:
     """
 
     substeps = 1
+    took = None  # CPU seconds of a trace in a process of its own, which that process has measured
 
     @staticmethod
     def cannot(scene):
@@ -94,21 +96,16 @@ class Session:
 
 
 class Ours(Session):
-    """A model of contact.py, by its compiled twin or in Python; no step is skipped.
+    """A model of contact.py, by its compiled loops; no step is skipped. exact has no steps."""
 
-    It always records. exact has no steps.
-    """
-
-    def __init__(self, scene, dt, model, python=False, **knobs):
+    def __init__(self, scene, dt, model, **knobs):
         self.given = model, scene, dt
-        self.settings, self.python = contact.Settings(skip=False, **knobs), python
-        self.motion = None
+        self.settings, self.motion = contact.Settings(skip=False, **knobs), None
 
     def states(self, n):
         model, scene, dt = self.given
-        if self.python or model == "exact":
-            run_model = contact.run_model
-        else:
+        run_model = contact.run_model
+        if contact.MODELS[model].step:
             from curriculum.fast import run_model
         run = run_model(model, scene, dt, n * self.substeps, self.settings)
         return run.q[:: self.substeps], run.v[:: self.substeps]
@@ -124,12 +121,45 @@ class Ours(Session):
             self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))
             self.settled = np.ones(BLOCK + 1, bool)
         for first in range(0, n, BLOCK):
-            last = min(BLOCK, n - first) + 1
-            self.motion.take(self.rows[:last], self.settled[:last], False)
+            self.last = min(BLOCK, n - first)
+            self.motion.take(self.rows[: self.last + 1], self.settled[: self.last + 1], False)
 
     def state(self):
-        balls = self.motion.balls[:-1]
-        return np.array((balls["x"], balls["y"])), np.array((balls["vx"], balls["vy"]))
+        return self.rows[self.last, :2].copy(), self.rows[self.last, 2:].copy()
+
+
+class Events(Session):
+    """The rival that goes from event to event, whole runs only."""
+
+    def __init__(self, scene, dt, rtol, longest):
+        self.scene, self.dt, self.how = scene, dt, dict(rtol=rtol, longest=longest)
+
+    def states(self, n):
+        times = np.arange(n + 1) * self.dt * self.substeps
+        return events.run(self.scene, times, GRAVITY, **self.how)
+
+    def trace(self, n):
+        return self.states(n)[0][:, 1]
+
+
+class Siconos(Session):
+    """Moreau-Jean's step, in a process of its own: Debian's Python has the package, not ours."""
+
+    def __init__(self, scene, dt, theta=0.5):
+        parts = scene.q0.T, scene.v0.T, np.minimum(scene.mass, 1e12), scene.radius  # a fixed one
+        self.given = dict(zip(("q", "v", "mass", "radius"), (part.tolist() for part in parts)))
+        self.given |= dict(e=scene.restitution, dt=dt, theta=theta, gravity=GRAVITY)
+
+    def states(self, n):
+        words = json.dumps(self.given | dict(looks=n, substeps=self.substeps))
+        command = [DEBIAN, Path(__file__).with_name("moreau.py")]
+        run = subprocess.run(command, input=words, capture_output=True, text=True, check=True)
+        found = json.loads(run.stdout.splitlines()[-1])
+        self.took = found["seconds"]
+        return tuple(np.array(found[part]).transpose(0, 2, 1) for part in "qv")
+
+    def trace(self, n):
+        return self.states(n)[0][:, 1]
 
 
 def balls_of(scene, scale=1.0):
@@ -139,38 +169,32 @@ def balls_of(scene, scale=1.0):
     return [(*row, math.isinf(row[2])) for row in rows]
 
 
-def shipped(scene, dt):
-    """solref and solimp as MuJoCo ships them: no restitution."""
-    return "0.02 1", "0.9 0.95 0.001 0.5 2"
+def spring(scene, dt, push=None, timeconst=None, ratio=1.0, d=0.9999):
+    """MuJoCo's solref and solimp, as its option's text. Both negative: given directly.
 
-
-def standard(timeconst, ratio, d, scene, dt):
-    """A time constant of so many steps and a damping ratio, at impedance d."""
-    return f"{timeconst * dt!r} {ratio!r}", f"{d!r} {d!r} 0.001"
-
-
-def direct(beta, d, scene, dt):
-    """Stiffness beta / dt^2 and damping (1 + e) / dt, given directly, at impedance d.
-
-    MuJoCo divides them by d^2 and d, so that the speed turns into exactly -e times itself.
+    MuJoCo divides stiffness and damping by d^2 and d: the speed turns into exactly -e times itself.
     """
-    return f"{-beta / dt**2!r} {-(1.0 + scene.restitution) / dt!r}", f"{d!r} {d!r} 0.001"
+    if push is None and timeconst is None:
+        return "0.02 1", "0.9 0.95 0.001 0.5 2"  # as it ships; no restitution
+    solref = -(push or 0.0) / dt**2, -(1.0 + scene.restitution) / dt
+    if timeconst is not None:
+        solref = timeconst * dt, ratio
+    return "{!r} {!r}".format(*solref), f"{d!r} {d!r} 0.001"
 
 
 class Mujoco(Session):
-    """Spring and damper made implicit and convex. `soften(scene, dt)` gives solref and solimp."""
+    """Spring and damper made implicit and convex. texts: solref and solimp, in place of options."""
 
-    def __init__(self, scene, dt, soften, speculative=False, **options):
+    def __init__(self, scene, dt, texts=None, speculative=False, xml="", **options):
         import mujoco
         from mujoco import rollout
 
         self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
         mujoco.set_mju_user_warning(lambda text: None)  # its default writes a log file
-        solref, solimp = soften(scene, dt)
+        solref, solimp = texts or spring(scene, dt, **options)
         balls, many = balls_of(scene), len(scene.mass) >= MANY
-        options = {"solver": "CG", "jacobian": "sparse"} | options if many else options
-        flags = ' speculative="enable"' * speculative
-        chosen = " ".join(f'{name}="{value}"' for name, value in options.items())
+        chosen = 'solver="CG" jacobian="sparse"' if many else xml
+        flags = ' speculative="enable"' if speculative else ""
         self.moving = np.flatnonzero(np.isfinite(scene.mass))
         self.model = mujoco.MjModel.from_xml_string(
             f'<mujoco><size memory="{"4G" if many else "-1"}"/>'
@@ -295,6 +319,46 @@ class Box2d3(Session):
         return q, self.bodies.get_linear_velocities().astype(float).T / self.scale
 
 
+class Rapier(Session):
+    """Rapier: soft contacts over small substeps, as Box2D 3; here balls that stay in a plane."""
+
+    def __init__(self, scene, dt, inner, hertz=None, scale=1.0, sweeps=1):
+        import rapier3d as rapier
+
+        self.scale, self.bodies = scale, []
+        self.world = world = rapier.PhysicsWorld(gravity=(0.0, -GRAVITY * scale, 0.0))
+        world.set_num_threads(1)
+        knobs = world.integration_parameters
+        knobs.dt, knobs.num_solver_iterations, knobs.num_internal_pgs_iterations = dt, inner, sweeps
+        knobs.normalized_max_linear_velocity = 1e6
+        if hertz is not None:
+            spring = rapier.SpringCoefficients(hertz, 10.0)
+            knobs.contact_softness = knobs.static_contact_softness = spring
+            knobs.normalized_max_corrective_velocity = 1e9
+            knobs.normalized_allowed_linear_error = 1e-7
+            knobs.contact_recycling = knobs.contact_clustering = False
+
+        def skin(shape):
+            return shape.friction(0.0).restitution(scene.restitution)
+
+        world.add_collider(skin(rapier.Collider.halfspace((0.0, 1.0, 0.0))))
+        for place, velocity, mass, radius, fixed in balls_of(scene, scale):
+            body = rapier.RigidBody.fixed() if fixed else rapier.RigidBody.dynamic()
+            body = body.translation((*place, 0.0)).enabled_rotations((False, False, False))
+            body = body.enabled_translations((True, True, False)).can_sleep(False)
+            body = body if fixed else body.linvel((*velocity, 0.0))
+            ball = skin(rapier.Collider.ball(radius)).mass(1.0 if fixed else mass)
+            self.bodies.append(world.rigid_bodies.get(world.add_body(body, [ball])))
+        self.step = world.step
+
+    def heights(self):
+        return [body.translation.y / self.scale for body in self.bodies]
+
+    def state(self):
+        q, v = ([getattr(b, part) for b in self.bodies] for part in ("translation", "linvel"))
+        return tuple(np.array([(p.x, p.y) for p in part]).T / self.scale for part in (q, v))
+
+
 class Drake(Session):
     """Compliant points: its discrete solver, or with `scheme` an integrator of that accuracy."""
 
@@ -399,18 +463,37 @@ ENGINES = {  # label, package, module, session
     "mujoco": ("MuJoCo", "mujoco", "mujoco", Mujoco),
     "pymunk": ("pymunk", "pymunk", "pymunk", Pymunk),
     "box2d3": ("Box2D 3", "pyb2d3", "pyb2d3", Box2d3),
+    "rapier": ("Rapier", "rapier3d", "rapier3d", Rapier),
     "drake": ("Drake", "drake", "pydrake", Drake),
+    "siconos": ("Siconos", "python3-siconos", None, Siconos),
+    "events": ("event-driven", "scipy", "scipy", Events),
 }
 LABELS = {name: name for name in contact.MODELS} | {name: row[0] for name, row in ENGINES.items()}
+DEBIAN = "/usr/bin/python3"
 
 
 def session(engine):
     """The class of the sessions of an engine, or of a model."""
-    return ENGINES[engine][-1] if engine in ENGINES else Ours
+    return ENGINES[engine][-1] if engine in ENGINES else partial(Ours, model=engine)
 
 
 def not_installed(engine) -> str | None:
     """What to install for an engine that is not there, or None."""
-    if engine in ENGINES and importlib.util.find_spec(ENGINES[engine][2]) is None:
-        return f"not installed: pip install {ENGINES[engine][1]}"
-    return None
+    package, module = ENGINES[engine][1:3] if engine in ENGINES else ("numpy", "numpy")
+    if module is None:
+        there = Path("/usr/lib/python3/dist-packages/siconos").exists()
+        return None if there else f"not installed: apt install {package}, on Debian"
+    there = importlib.util.find_spec(module)
+    return None if there else f"not installed: pip install {package}"
+
+
+def versions():
+    """{package: version} of every engine that is there."""
+    found = {}
+    for package in (row[1] for row in ENGINES.values()):
+        with contextlib.suppress(metadata.PackageNotFoundError):
+            found[package] = metadata.version(package)
+    if not not_installed("siconos"):
+        query = ["dpkg-query", "-W", "-f=${Version}", "python3-siconos"]
+        found["python3-siconos"] = subprocess.run(query, capture_output=True, text=True).stdout
+    return found

@@ -1,373 +1,380 @@
-"""What was measured, for a reader: tables, figures, the README's block.
+"""What was measured, for a reader: one page, few figures, and the README's block.
 
-All of it is made from results.json alone, so that the same results give the same text.
+All of it is made from the CSV files alone, so that the same results give the same text.
 """
 
-from contact import MODELS
+import csv
+from functools import partial
+from pathlib import Path
+
+from contact import MANY, MODELS, STEPPED
 from contact import shown as number
-from curriculum.bench import accuracy, piles, problems
-from curriculum.bench.accuracy import BUDGET, WORK
+from curriculum.bench import measure, problems
 from curriculum.bench.engines import ENGINES, LABELS
+from curriculum.bench.measure import BUDGETS, DEPTHS, WORK
 from curriculum.commands import write_whole
 from curriculum.measured import results
 from curriculum.show import picture
 
-TRIED = (  # as the author of each engine would
-    "Tried as their authors would: MuJoCo with its own soft contact, stiff by a time constant, and "
-    "direct for restitution, with and without a push, speculative; pymunk with 10 to 100 "
-    "iterations, pushes of 0.2 and 1 in 2 ms, a slop of 1e-6 to 1e-10 m; Box2D at 30 to 480 Hz and "
-    "hardest, with 1 to 64 substeps, in worlds 1 to 1,000 times as large; all three begun half a "
-    "step off, which makes their flight exact; Drake's discrete solver, CENIC at accuracies of "
-    "1e-3 to 1e-9, stiffness 1e8 to 1e12, dissipation 100 and 1,000, read by its dense output and "
-    "cut at each look, and RK3, to 1e14. Tried, and no better: MuJoCo's RK4, implicitfast and "
-    "discrete integrators, other time constants. Drake's Radau integrators mostly took more than "
-    "25 s a run; in slide one came to 4.8e-5 r in 380 ms."
-)
-OURS = "leapfrog"  # the model that the contest is about
-NEVER = "never beaten"
-LEAST = 1e-17  # r: an error of exactly zero is drawn here
-CONTESTS = {  # words: limits of accuracy.allowed
-    f"at equal work, at most {WORK} substeps in 2 ms": {},
-    f"in equal time, {BUDGET} µs a ball and 2 ms": dict(budget=BUDGET),
-}
-
-
-def text(value):
-    """A number, words, yes or no, or a median with its spread, for a reader."""
-    if isinstance(value, dict):
-        median, least, most = (number(value[which]) for which in ("median", "min", "max"))
-        return f"{median} ({least} to {most})"
-    if isinstance(value, bool):
-        return "yes" if value else "**no**"
-    return value if isinstance(value, str) else number(value)
-
-
-def table(rows, **columns):
-    """A Markdown table of dicts; columns: {head: what stands there}, a key or a function."""
-    shown = [[text(of(r) if callable(of) else r.get(of)) for of in columns.values()] for r in rows]
-    return results.table(list(columns), shown)
+RIVAL = "events"
+PEERS = [name for name in ENGINES if name != RIVAL]
+LEAST = 1e-16  # r: an error of exactly zero is drawn here
+DRAWN = "slide", "bounce", "pile"  # the problems with a picture of their own
+CONTESTS = {f"{work} substep{'s' * (work > 1)} in 2 ms": dict(work=work) for work in WORK}
+CONTESTS |= {f"{us} µs a ball and 2 ms": dict(budget=us) for us in BUDGETS}
+ENDS = "", "_min", "_max"
+HOW = Path(__file__).with_name("how.md")  # how it was measured, and what was tried
+TAKE = Path(__file__).with_name("take.csv")  # who wants what, and types which command
 
 
 def called(row):
-    """Family and setting of a row, for a reader."""
-    return f"{LABELS[row['family']]}: {row['words']}"
+    """Engine and setting of a row, for a reader: the options as they are typed."""
+    cut = f", {row['substeps']} x" if row["substeps"] > 1 else ""
+    return f"{LABELS[row['engine']]} {row['setting']}".strip() + cut
 
 
-def points_of(section, problem):
-    return [p for p in accuracy.unpacked(section["points"]) if p["problem"] == problem]
+def cell(p, named=False):
+    """Error and time of a point, for a reader, and whose it is."""
+    if p is None:
+        return "-"
+    error = "reference" if p["error"] is None else f"{number(p['error'])} r"
+    return f"{LABELS[p['engine']] + ' ' if named else ''}{error}, {number(p['ms'])} ms"
 
 
-def duel(found, ours=(OURS,), rank=accuracy.rank):
-    """The best row of ours and of the other engines, of {family: row}; None where there is none."""
-    peers = set(found).difference(MODELS)
-    return [
-        min((row for name, row in found.items() if name in side), key=rank, default=None)
-        for side in (ours, peers)
-    ]
+def contest(rows, **limit):
+    """{problem: {engine: its best point}}; the reference stands in it, though it has no error."""
+    found = measure.best_points(rows, **limit)
+    for p in rows:
+        if p["engine"] == "exact":
+            found.setdefault(p["problem"], {}).setdefault("exact", p)
+    return {name: found[name] for name in problems.BY_NAME if name in found}
 
 
-def duels(section):
-    """{words of a contest: {problem: (our best point, the best other engine's)}}."""
-    points = accuracy.unpacked(section["points"])
-    return {
-        words: {name: duel(each) for name, each in accuracy.headline(points, **limit).items()}
-        for words, limit in CONTESTS.items()
-    }
+def best_of(found, side, key=measure.rank):
+    """The best row of these engines, of {engine: row}; None where there is none."""
+    return min((row for name, row in found.items() if name in side), key=key, default=None)
 
 
 def loses(one, other):
     """Whether an error is larger than another, in three digits; of two that are measured."""
-    return bool(one and other) and accuracy.rank(one)[0] > accuracy.rank(other)[0]
+    return bool(one and other) and measure.rank(one)[0] > measure.rank(other)[0]
 
 
-def races(section):
-    """(balls, depth, our fastest row, the fastest other engine's, leapfrog's) of piles at rest."""
-    for depth in piles.DEPTHS:
-        for count, found in piles.fastest(section["rows"], depth).items():
-            ours, other = duel(found, MODELS, piles.time_at_rest)
-            yield count, depth, ours, other, found.get(OURS)
+def beaten(found, model, side):
+    """{problem: (the model's point, the better one of a side)} where the model is beaten."""
+    pairs = {name: (each.get(model), best_of(each, side)) for name, each in found.items()}
+    return {name: pair for name, pair in pairs.items() if loses(*pair)}
 
 
-def lost_in(found):
-    """The problems in which another engine is more accurate, with the errors."""
-    return [
-        f"{name} ({number(mine['error'])} r, {LABELS[peer['family']]} {number(peer['error'])} r)"
-        for name, (mine, peer) in found.items()
-        if loses(mine, peer)
+# claims
+
+
+def names(side):
+    *first, last = (LABELS[name] for name in side)
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def losses(rows, model="leapfrog"):
+    """A row for each limit: where a model is beaten by another engine, and by the rival."""
+    for words, limit in CONTESTS.items():
+        found, texts = contest(rows, **limit), []
+        took_part = sum(model in each for each in found.values())
+        for who in (PEERS, [RIVAL]):
+            lost = (f"{name} ({number(mine['error'])} r, {cell(peer, True)})"
+                    for name, (mine, peer) in beaten(found, model, who).items())  # fmt: skip
+            texts.append("; ".join(lost) or ("nowhere" if took_part else "a step of it counts two"))
+        yield [words, took_part, *texts]
+
+
+def claim(rows):
+    """What is claimed of leapfrog and exact, with opponents, limits and losses."""
+    side = [name for name in PEERS if any(p["engine"] == name for p in rows)]
+    where = []
+    for words, limit in CONTESTS.items():
+        found = contest(rows, **limit)
+        fields, lost = (
+            sum("leapfrog" in each for each in found.values()),
+            beaten(found, "leapfrog", side),
+        )
+        if fields:
+            but = f" (not {', '.join(lost)})" if lost else ""
+            where.append(f"in {fields - len(lost)} of {fields} with at most {words}{but}")
+    yield (
+        f"Beside {names(side)}, each by its most accurate setting, leapfrog is as accurate or more "
+        f"{', '.join(where)}."
+    )
+    yield from rivalry(contest(rows))
+
+
+def rivalry(found):
+    """Two sentences on the event-driven code, beside leapfrog and exact."""
+    pairs = [
+        (each["exact"], each[RIVAL]) for each in found.values() if {"exact", RIVAL} <= set(each)
     ]
+    if not pairs:
+        return
+    ratios = [rival["ms"] / exact["ms"] for exact, rival in pairs]
+    median, worst = (max(rival[key] for _, rival in pairs) for key in ("error", "error_max"))
+    lost = beaten(found, "leapfrog", [RIVAL])
+    yield (
+        "A code that goes from event to event, scipy's solve_ivp over a loop of contacts, is more "
+        f"accurate than leapfrog in {len(lost)} of {len(found)} ({', '.join(lost)}). It takes "
+        f"{number(min(ratios))} to {number(max(ratios))} times as long as exact, and agrees with "
+        f"every reference, exact or a closed form, to {number(median)} r (the worst start: "
+        f"{number(worst)} r)."
+    )
+
+
+def steadiness(rows):
+    """How far times differ between processes."""
+    spans = sorted(p["ms_max"] / p["ms_min"] - 1.0 for p in rows)
+    usual, most = (number(100.0 * span) for span in (spans[len(spans) // 2], spans[-1]))
+    return f"The greatest time of a point is {usual} % above its least (median; at most {most} %)."
+
+
+def races(rows):
+    """(balls, depth, our fastest row, leapfrog's, the fastest other engine's) of piles at rest."""
+    fast = partial(best_of, key=lambda row: row["resting"])
+    for depth in DEPTHS:
+        for count, found in measure.fastest(rows, depth).items():
+            yield count, depth, fast(found, MODELS), found.get("leapfrog"), fast(found, ENGINES)
+
+
+def resting(row):
+    return f"{called(row)}: {number(row['resting'])} µs" if row else "-"
 
 
 # pages
 
 
-def readme(sections):
+def take(sections):
+    """Rows of the README's table: what one types, and gets, and would get elsewhere."""
+    rows, rest = sections["accuracy"], sections.get("piles", ())
+    with TAKE.open(encoding="utf-8", newline="") as file:
+        for want in csv.DictReader(file):
+            typed = "<br>".join(f"`{line}`" for line in want["type"].splitlines())
+            key = want["engine"], want["setting"], int(want["substeps"])
+            if want["problem"].isdecimal():
+                yield from pile_row(rest, int(want["problem"]), key, want["wish"], typed)
+                continue
+            found = contest(rows).get(want["problem"], {})
+            for p in rows:
+                this = (p["engine"], p["setting"], p["substeps"]) == key and p["dt"] == measure.DT
+                if this and p["problem"] == want["problem"]:
+                    peers = cell(found.get(RIVAL)), cell(best_of(found, PEERS), True)
+                    yield [want["wish"], typed, cell(p), *peers]
+
+
+def pile_row(rows, count, key, wish, typed):
+    """The row on a pile at rest: as deep as ours, the fastest other engine."""
+    for row in rows:
+        if row["bodies"] == count and (row["engine"], row["setting"], row["substeps"]) == key:
+            depth = min([d for d in DEPTHS if row["mean_depth"] <= d], default=DEPTHS[0])
+            other = best_of(measure.fastest(rows, depth).get(count, {}), PEERS,
+                            lambda row: row["resting"])  # fmt: skip
+            mine = f"at most {depth:g} r deep, {number(row['resting'])} µs a step"
+            yield [wish, typed, mine, "-", resting(other)]
+
+
+def readme(sections, made):
     """The block of the project's README: what to take, how it was measured, what is lost."""
     parts = ["![Run time against error: slide](curriculum/bench/results/error-slide.svg)"]
-    if section := sections.get("accuracy"):
-        about = section["measured"]
-        modules = [engine[1] for engine in ENGINES.values()]
-        versions = [f"{name} {about['versions'].get(name, '-')}" for name in modules]
-        head = ["you want", "take", "you get", "the best other engine"]
+    if "accuracy" in sections:
+        head = ["you want", "type", "you get", "the event-driven code", "the best other engine"]
+        about = made["accuracy"]
+        versions = (f"{row[1]} {about['versions'].get(row[1], 'not there')}"
+                    for row in ENGINES.values())  # fmt: skip
         parts += [
-            results.table(head, [*choices(section), *rest_rows(sections.get("pile"))]),
-            "An error is the worst distance of a ball from where it should be, in radii, with its "
-            "CPU time for the whole run; both are medians. The other engines may be any of their "
-            f"settings with up to {WORK} substeps in 2 ms, Drake's steps as it chose them, every "
-            "ball awake; ours are compiled. leapfrog solves twice a step, so its substeps count "
-            "twice. Most problems are parabolas between contacts, where it has no error by "
-            "construction: slide, spread and glance show its order. Nothing here has friction or "
-            "rotation, which the other engines are made for. On "
-            f"{about['cores']} cores of {about['cpu']}, with {', '.join(versions)}.",
-            losses(sections),
+            results.table(head, take(sections)),
+            "An error is the worst distance of a ball from where it should be, in radii, with the "
+            "CPU time of the run; both are medians. Others may be any of their settings with up to "
+            f"{WORK[-1]} substeps in 2 ms, Drake's and the event-driven code's steps as they chose "
+            f"them. {compiled(sections)} Nothing here has friction or rotation, which the engines "
+            f"are made for. On {about['cores']} cores of {about['cpu']}, with "
+            f"{', '.join(versions)}.",
+            " ".join((*claim(sections["accuracy"]), *pile_claim(sections.get("piles", ())))),
         ]
-    everything = (
-        "Everything, with settings and spread: [results](curriculum/bench/results/README.md)."
+    end = "Everything, with losses at every limit: [results](curriculum/bench/results/README.md)."
+    return "\n\n".join((*parts, end))
+
+
+def compiled(sections):
+    """The line on what the times of leapfrog and lcp leave out."""
+    taken = {row["process"]: row["seconds"] for row in sections.get("processes", ())}
+    extra = taken.get("one compiled step", 0.0) - taken.get("import numpy", 0.0)
+    return (
+        f"{', '.join(STEPPED)} are compiled by numba, which costs {number(extra)} s the first "
+        f"time in a process; where steps times balls squared is below {MANY:,.0f}, run_model "
+        "takes the plain loops, to the same bits."
     )
-    return "\n\n".join((*parts, everything))
 
 
-WISHES = (  # what somebody wants, problems that ask for it, model, words of its setting
-    ("a fall, a landing, bounces", ("drop", "bounce", "elastic"), "leapfrog", "20 sweeps"),
-    ("balls that slide over one another", ("slide", "spread", "glance"), "leapfrog", "20 sweeps"),
-    ("stacks and towers, at once", ("stack", "tower"), "leapfrog", "20 sweeps"),
-    ("heavy on light, towers, to the end", ("heavy_100", "heavy_1000", "tower"), "leapfrog",
-     "solved, at most 1000 sweeps"),
-    ("piles that fall", ("pile", "pile_bounce"), "leapfrog", "20 sweeps, 8 x"),
-    ("the answer itself", ("bounce", "slide", "tower"), "exact", "event to event"),
-)  # fmt: skip
+def pile_claim(rows):
+    """Sentences on how fast piles rest, beside the fastest other engine at equal depth."""
+    for words, which in (("the fastest of our models", 2), ("leapfrog", 3)):
+        ratios = {f"{race[0]:,} balls, {race[1]:g} r": race[which]["resting"] / race[4]["resting"]
+                  for race in races(rows) if race[which] and race[4]}  # fmt: skip
+        if ratios:
+            most, least = max(ratios, key=ratios.get), number(min(ratios.values()))
+            yield (
+                f"At rest and at equal depth, a step of {words} takes {least} to "
+                f"{number(ratios[most])} ({most}) of the fastest other engine's time."
+            )
 
 
-def choices(section):
-    """Rows of the README's table: the worst of these problems, with one setting in all of them."""
-    found = next(iter(duels(section).values()))  # at equal work
-    usual = [p for p in accuracy.unpacked(section["points"]) if p["dt"] == problems.REFERENCE_DT]
-    for wish, names, *who in WISHES:
-        wanted = [p for p in usual if [p["family"], p["words"]] == who and p["problem"] in names]
-        if wanted:
-            p = max(wanted, key=lambda p: p["error"])
-            peer = found.get(p["problem"], (None, None))[1]
-            yield [wish, ", ".join(who), f"{cell(p)} ({p['problem']})", cell(peer)]
-
-
-def cell(p, won=False):
-    """Error and time of a point, for a reader, and whose it is of other engines; bold if it won."""
-    if p is None:
-        return "-"
-    who = f"{LABELS[p['family']]} " * (p["family"] not in MODELS)
-    error = "reference" if p["error"] is None else f"{number(p['error'])} r"
-    words = f"{who}{error}, {number(p['ms']['median'])} ms"
-    return f"**{words}**" if won else words
-
-
-def losses(sections):
-    """Sentences that say where another engine is more accurate, and how fast piles rest."""
-    lines = []
-    for words, found in duels(sections["accuracy"]).items():
-        lost = lost_in(found)
-        where = f"beaten in {len(lost)} of {len(found)}: {'; '.join(lost)}" if lost else NEVER
-        lines.append(f"{words[0].upper()}{words[1:]}, {OURS} is {where}.")
-    shares = [[], []]
-    for *_, ours, other, leapfrog in races(sections["pile"]) if "pile" in sections else ():
-        for share, mine in zip(shares, (ours, leapfrog)):
-            if mine and other:
-                share.append(piles.time_at_rest(mine) / piles.time_at_rest(other))
-    if all(shares):
-        ours, leapfrog = (f"{number(min(each))} to {number(max(each))}" for each in shares)
-        lines.append(
-            f"Piles at rest, at equal depth, take our fastest model {ours} of the fastest other "
-            f"engine's time, leapfrog {leapfrog}."
-        )
-    return " ".join(lines)
-
-
-def contest_rows(section):
-    """For each problem exact, and in each contest our model and the best peer; the winner bold."""
-    contests = duels(section).values()
-    for p in accuracy.unpacked(section["points"]):
-        if p["family"] == "exact":
-            row = [p["problem"], cell(p)]
-            for found in contests:
-                mine, peer = found.get(p["problem"], (None, None))
-                row += [
-                    bold(cell(mine), not loses(mine, peer)),
-                    bold(cell(peer), loses(mine, peer)),
-                ]
-            yield row
-
-
-def bold(words, yes):
-    return f"**{words}**" if yes else words
-
-
-def rest_rows(section):
-    """The README's row on piles: 1,000 balls at rest, at the smaller depth that was asked for."""
-    for count, depth, ours, other, _ in races(section) if section else ():
-        if (count, depth) == (1000, min(piles.DEPTHS)) and ours and other:
-            us, who = (number(piles.time_at_rest(row)) for row in (ours, other))
-            words = f"{ours['family']}, {ours['words']}"
-            got = f"at most {depth:g} r deep, {us} µs a step"
-            yield ["1,000 balls at rest, fast", words, got, f"{LABELS[other['family']]} {who} µs"]
-
-
-def page(sections):
-    """README.md of the results folder: who wins, and every table."""
+def page(sections, made):
+    """README.md of the results folder: who wins, where not, and how it was measured."""
     parts = ["# Run time against error", "Written by `python -m curriculum.bench`; do not edit."]
-    if section := sections.get("accuracy"):
-        head = [f"{who}, {when}" for when in CONTESTS for who in (OURS, "best other")]
-        parts.append(results.table(["", "exact", *head], contest_rows(section)))
-    for name, section in sections.items():
-        parts += [*PARTS[name](section), results.footer(section)]
-    return "\n\n".join(parts) + "\n"
+    if rows := sections.get("accuracy"):
+        parts += [
+            "Worst error and time, of each its most accurate setting with at most "
+            f"{WORK[-1]} substeps in 2 ms; the better of leapfrog and the best other in bold.",
+            results.table(
+                ["problem", "exact", "event-driven", "leapfrog", "lcp", "best other"], winners(rows)
+            ),  # fmt: skip
+            " ".join((*claim(rows), steadiness(rows))),
+            "![Error and time beside the best other engine](ratios.svg)",
+            "## Where leapfrog is beaten",
+            results.table(
+                ["at most", "problems", "by another engine", "by the event-driven code"],
+                losses(rows),
+            ),  # fmt: skip
+            "## Work and precision",
+            *(f"![Run time against error: {name}](error-{name}.svg)" for name in DRAWN),
+            "\n".join(f"- {p.name}: {p.title}; {p.stresses}." for p in problems.PROBLEMS),
+        ]
+    if rows := sections.get("piles"):
+        head = ["balls", "mean depth [r]", "our fastest", "leapfrog", "the fastest other engine"]
+        table = [[f"{c:,}", f"{d:g}", *map(resting, each)] for c, d, *each in races(rows)]
+        parts += ["## Piles at rest, a step of 2 ms", results.table(head, table)]
+        parts += [" ".join(pile_claim(rows)), "![Time a step against depth](settled.svg)"]
+        parts += [falling(rows)]
+    if rows := sections.get("processes"):
+        table = [[row["process"], *(number(row[f"seconds{k}"]) for k in ENDS)] for row in rows]
+        parts += ["## Whole processes", results.table(["", "seconds", "least", "greatest"], table)]
+    how = HOW.read_text("utf-8").strip()
+    notes = (f"- {name}: {results.footer({'measured': about})}" for name, about in made.items())
+    return "\n\n".join((*parts, "## How it was measured", how + "\n" + "\n".join(notes))) + "\n"
 
 
-def accuracy_part(section):
-    yield (
-        "An error is the median over several starts, a time the median over fresh processes "
-        "(CPU time, one thread; least to greatest). Everyone is looked at alike: every height, "
-        "every 2 ms; `16 x` are sixteen steps between two looks. Everyone takes every step, and no "
-        "ball sleeps. Our models are compiled but where the words say Python; compiling "
-        "is not counted (see the piles). pymunk, Box2D and Drake have no loop of their own and are "
-        "called from Python, which costs up to a microsecond a call. leapfrog solves twice a step, "
-        "so a step of it counts as two substeps. Drake under error control takes as many steps as "
-        "it needs, whose mean counts; of its discrete solver, which is slow, there is one start "
-        "and one process. Engines in float32 are right to about 1e-6 r, the closed forms to 1e-12 "
-        f"r; of piles, spread and glance `exact` is the reference. {TRIED} Left out: PyBullet, "
-        "whose restitution depends on the step; Box2D 2.3, which version 3 replaces; Siconos and "
-        "Rapier, which have no package here. A better setting? Add a line to SETTINGS in "
-        "[settings.py](../settings.py) and send it."
-    )
-    yield from (f"Not everywhere: {label}, {why}." for label, why in section["left_out"].items())
-    for name, about in section["problems"].items():
-        yield f"## {about['title']}\n\nHard on: {about['stresses']}."
-        yield f"![Run time against error: {name}](error-{name}.svg)"
-        yield contests(points_of(section, name), name)
+def winners(rows):
+    """A row a problem: error and time of each; the winner of leapfrog and the best other bold."""
+    for name, found in contest(rows).items():
+        mine, other = found.get("leapfrog"), best_of(found, PEERS)
+        won = loses(mine, other)
+        cells = [cell(found.get(who)) for who in ("exact", RIVAL, "leapfrog", "lcp")]
+        cells.append(cell(other, True))
+        if mine and other:
+            cells[4 if won else 2] = f"**{cells[4 if won else 2]}**"
+        yield [name, *cells]
 
 
-def contests(points, problem):
-    """The best of each family with ever more work, and in ever more time."""
-    limits = {f"{work} substeps": dict(work=work) for work in (1, 4, WORK)}
-    limits |= {f"{us} µs": dict(budget=us) for us in accuracy.BUDGETS}
-    found = {head: accuracy.headline(points, **each) for head, each in limits.items()}
-    rows = {}
-    for head, each in found.items():
-        for family, p in each.get(problem, {}).items():
-            best = f"{number(p['error'])} ({p['words']}, {1e3 * p['dt']:g} ms)"
-            rows.setdefault(family, {"name": LABELS[family]})[head] = best
-    heads = {head: head for head in limits}
-    return table(rows.values(), **{"least error / r within": "name"}, **heads)
-
-
-def pile_part(section):
-    fresh, again = (number(section["compile"].get(name)) for name in ("fresh", "again"))
-    yield "## Piles between walls of fixed balls"
-    yield (
-        "The same walls in every engine, steps of 2 ms. A pile counts as settled only where no "
-        f"ball was faster than {piles.AT_REST:g} m/s over the last {piles.WATCHED} steps; depth "
-        "is the mean of the overlapping contacts. Times are CPU time, median over fresh "
-        "processes (least to greatest). A process that takes one step by the twin needs "
-        f"{fresh} s where it must be compiled, and {again} s later on; neither is in the table. "
-        "Ten thousand balls begin as ten settled copies of each engine's own thousand, since a "
-        "lattice of so many does not come to rest in reach; only the winners at a thousand run "
-        "there. An engine that does not come to rest there has a row, and is compared with nobody."
-    )
-    yield "![Time a step against depth](settled.svg)"
-    for count in dict.fromkeys(row["bodies"] for row in section["rows"]):
-        yield table(
-            [row for row in section["rows"] if row["bodies"] == count],
-            **{f"{count:,} balls": called, "at rest": "at_rest", "fastest ball [m/s]": "speed"},
-            **{"mean depth / r": "mean_depth", "worst": "worst_depth"},
-            **{"settled [µs a step]": "resting", "falling [µs a step]": "falling"},
-        )
-
-
-def skip_part(section):
-    yield "## What a whole process takes"
-    yield table(
-        [about | dict(name=name) for name, about in section["processes"].items()],
-        **{"whole process": "name", "seconds": text, "times its import": "ratio"},
-        **{"by the least times": "least"},
-    )
-
-
-PARTS = {"accuracy": accuracy_part, "pile": pile_part, "skip": skip_part}
+def falling(rows):
+    """How long a step takes while a pile falls, of each engine at its fastest."""
+    counts = list(dict.fromkeys(row["bodies"] for row in rows))
+    engines = list(dict.fromkeys(row["engine"] for row in rows))
+    table = []
+    for engine in engines:
+        least = [min((row["falling"] for row in rows
+                      if (row["engine"], row["bodies"]) == (engine, count)), default=None)
+                 for count in counts]  # fmt: skip
+        table.append([LABELS[engine], *map(number, least)])
+    return results.table(["falling, fastest [µs a step]", *(f"{c:,}" for c in counts)], table)
 
 
 # figures
 
 
-def draw(axis, family, dots, label):
-    """Dots (x, y, whether it counts), faint, hollow where not; a line through the best of them."""
-    faint = dict(picture.look(family), marker="o", ls="", alpha=0.4, markersize=3.5)
-    for counts, fill in ((True, faint["color"]), (False, "none")):
-        axis.plot(
-            *zip(*[dot[:2] for dot in dots if dot[2] == counts] or [((), ())]), **faint, mfc=fill
-        )
-    front = []
-    for x, y, counts in sorted(dots):
-        if counts and (not front or y < front[-1][1]):
-            front.append((x, y))
-    picture.line(axis, [x for x, _ in front], [y for _, y in front], family, label)
+def front(dots):
+    """The dots that no other one beats in both x and y."""
+    found = []
+    for x, y in sorted(dots):
+        if not found or y < found[-1][1]:
+            found.append((x, y))
+    return found
 
 
-def error_figure(section, problem):
-    """Time against error: every setting a faint dot, the best of each family a line."""
-    about, families, points = section["problems"][problem], {}, points_of(section, problem)
-    named = accuracy.headline(points).get(problem, {})
-    for p in points:
-        if not p["diverged"] and (p["error"] is not None or p["family"] == "exact"):
-            dot = max(p["error"] or 0, LEAST), p["ms"]["median"], True
-            families.setdefault(p["family"], []).append(dot)
+def draw(axis, engine, dots, label):
+    x, y = zip(*front(dots))
+    picture.line(axis, x, y, engine, label)
+
+
+def error_figure(rows, problem, about):
+    """Time against error: the front of all settings and steps of each engine."""
+    title = problems.BY_NAME[problem].title
     figure, (axis,) = picture.figure(
-        height=3.7,
-        below=1.5,
-        title=about["title"],
-        explained="Left and down is better. A faint dot is one setting at one step; "
-        "a line joins the best of a family, whose best at equal work is named. "
-        "16 x: sixteen steps from look to look.",
-    )
-    for family, dots in families.items():
-        draw(axis, family, dots, called(named[family]) if family in named else LABELS[family])
+        height=3.4, below=0.8, title=title,
+        explained="Left and down is better. A line joins what no other setting or step of the same "
+        "engine beats in both error and time.",
+    )  # fmt: skip
+    for engine in LABELS:
+        found = [(max(p["error"], LEAST), p["ms"]) for p in rows
+                 if p["engine"] == engine and p["problem"] == problem
+                 and not p["diverged"] and p["error"] is not None]  # fmt: skip
+        if found:
+            draw(axis, engine, found, LABELS[engine])
     axis.set(xscale="log", yscale="log", xlabel="worst position error [r]")
-    axis.set_ylabel(f"time for {about['duration']:g} s of motion [ms]")
+    axis.set_ylabel(f"time for {problems.BY_NAME[problem].duration:g} s of motion [ms]")
     axis.set_xlim(None, min(axis.get_xlim()[1], 30.0))
-    below = dict(loc="lower left", bbox_to_anchor=(0.0, 0.22 / figure.get_figheight()))
-    figure.legend(**below, borderaxespad=0, handlelength=3.2, fontsize=9)
-    return picture.svg(figure, section)
+    picture.legend_below(axis, columns=4, down=0.2)
+    return picture.svg(figure, {"measured": about})
 
 
-def pile_figure(section):
-    """Time a step against depth, a panel for each size; a setting that does not rest is hollow."""
-    counts = list(dict.fromkeys(row["bodies"] for row in section["rows"]))
+def ratio_figure(rows, about):
+    """Time over error of leapfrog and exact beside the best other engine's, a dot a problem."""
+    figure, (axis,) = picture.figure(
+        height=3.4, below=0.4, title="Beside the best other engine, at most 16 substeps in 2 ms",
+        explained="A dot is a problem: error and time, as shares of the most accurate other "
+        "engine's. Left and down of the cross both are smaller.",
+    )  # fmt: skip
+    for model in ("exact", "leapfrog"):
+        dots = []
+        for name, found in contest(rows).items():
+            mine, other = found.get(model), best_of(found, PEERS)
+            if mine and other and mine["error"] is not None:
+                dots.append((max(mine["error"], LEAST) / other["error"], mine["ms"] / other["ms"]))
+                axis.annotate(name, dots[-1], (4, 2), textcoords="offset points", fontsize=7)
+        if dots:
+            picture.line(axis, *zip(*dots), model, ls="")
+    axis.axhline(1.0, color=picture.PALE, lw=0.8)
+    axis.axvline(1.0, color=picture.PALE, lw=0.8)
+    axis.set(xscale="log", yscale="log", xlabel="error / the best other's")
+    axis.set_ylabel("time / the best other's")
+    picture.legend_below(axis, columns=2, down=0.2)
+    return picture.svg(figure, {"measured": about})
+
+
+def pile_figure(rows, about):
+    """Time a step against depth, a panel for each size, of what rests."""
+    counts = list(dict.fromkeys(row["bodies"] for row in rows))
     figure, axes = picture.figure(
-        rows=len(counts),
-        height=2.6,
-        below=0.65,
-        title="Piles at rest: time a step against depth",
-        explained="Left and down is better. A dot is a setting, hollow where balls are still "
-        "moving; a line joins the best of an engine at rest.",
-    )
-    every = [row for row in section["rows"] if row["mean_depth"]]
-    deep = [max(row["mean_depth"], 1e-9) for row in every]
+        rows=len(counts), height=2.0, below=0.65, title="Piles at rest: time a step against depth",
+        explained="Left and down is better. A line joins what no other setting of the same engine "
+        "beats in both.",
+    )  # fmt: skip
+    still = [row for row in rows if row["at_rest"] and row["mean_depth"]]
     for axis, count in zip(axes, counts):
-        for engine in dict.fromkeys(row["family"] for row in every):
-            dots = [
-                (x, piles.time_at_rest(row), row["at_rest"])
-                for x, row in zip(deep, every)
-                if (row["bodies"], row["family"]) == (count, engine)
-            ]
-            draw(axis, engine, dots, LABELS[engine])
+        for engine in LABELS:
+            found = [(max(row["mean_depth"], 1e-9), row["resting"]) for row in still
+                     if (row["bodies"], row["engine"]) == (count, engine)]  # fmt: skip
+            if found:
+                draw(axis, engine, found, LABELS[engine])
         axis.set(xscale="log", yscale="log", title=f"{count:,} balls", ylabel="time a step [µs]")
-        axis.set_xlim(min(deep) / 1.5, max(deep) * 1.5)
     axes[-1].set_xlabel("mean depth of the overlapping contacts [r]")
-    picture.legend_below(axes[-1], columns=4, down=0.24)
-    return picture.svg(figure, section)
+    picture.legend_below(axes[0], columns=4, down=0.24) if len(counts) == 1 else axes[-1].legend(
+        *axes[0].get_legend_handles_labels(), loc="upper left", ncols=4, bbox_to_anchor=(-0.1, -0.3)
+    )
+    return picture.svg(figure, {"measured": about})
 
 
-def write(folder, sections):
+def write(folder, sections, made):
     """README.md and the figures into the results folder. Raises ImportError without matplotlib."""
-    made, section = {"README.md": page(sections)}, sections.get("accuracy", {"problems": ()})
-    made |= {f"error-{name}.svg": error_figure(section, name) for name in section["problems"]}
-    if "pile" in sections:
-        made["settled.svg"] = pile_figure(sections["pile"])
-    for name, content in made.items():
+    files = {"README.md": page(sections, made)}
+    if rows := sections.get("accuracy"):
+        files["ratios.svg"] = ratio_figure(rows, made["accuracy"])
+        for name in {p["problem"] for p in rows} & set(DRAWN):
+            files[f"error-{name}.svg"] = error_figure(rows, name, made["accuracy"])
+    if rows := sections.get("piles"):
+        files["settled.svg"] = pile_figure(rows, made["piles"])
+    for name, content in files.items():
         write_whole(folder / name, content)

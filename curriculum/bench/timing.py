@@ -30,9 +30,9 @@ def timed(call) -> tuple:
         gc.enable()
 
 
-def spread(values) -> dict:
-    """Median, least and greatest of a list."""
-    return dict(median=statistics.median(values), min=min(values), max=max(values))
+def spread(name, values) -> dict:
+    """Median, least and greatest of a list, as the columns of a row."""
+    return {name: statistics.median(values), f"{name}_min": min(values), f"{name}_max": max(values)}
 
 
 def in_fresh_processes(work, jobs, processes, label, rare=()) -> list:

@@ -186,7 +186,8 @@ class Gate:
             for section, content in results.load(name).items():
                 if names := stale.changed(content["measured"]["code"]):
                     what = f"section {section} was measured on other code ({', '.join(names)})"
-                    self.say(f"{folder}/{results.NAME}", 1, what, content["measured"]["command"])
+                    file = f"{folder}/{results.NAMES[name]}"
+                    self.say(file, 1, what, content["measured"]["command"])
         for line, row in enumerate(ledger.rows(), 2):
             if ledger.stale(row):
                 what = f"{row['tier']} was measured on other code"

@@ -11,7 +11,7 @@ import numpy as np
 import contact
 from curriculum.bench import engines
 
-OPTIONS = dict(tolerance=0, iterations=1000, ls_iterations=200)
+OPTIONS = 'tolerance="0" iterations="1000" ls_iterations="200"'
 SPRINGS = (-5000.0, -100.0), (0.05, 0.5)
 CURVES = (0.0, 0.95, 0.001, 0.5, 2.0), (0.9, 0.95, 0.0, 0.5, 2.0), (0.2, 0.9, 0.005, 0.4, 2.5)
 STRIDE = 20  # every 20th state is stepped from
@@ -63,7 +63,7 @@ def soft_is_mujoco(case):
     scene, dt, steps, settings = case[1:]
     knobs = contact.soft_defaults(scene.restitution, dt, settings.solref, settings.solimp)
     texts = [" ".join(map(repr, values)) for values in knobs]
-    q, v = engines.Mujoco(scene, dt, lambda *_: texts, **OPTIONS).states(steps)
+    q, v = engines.Mujoco(scene, dt, texts, xml=OPTIONS).states(steps)
     for k in range(0, steps, STRIDE):
         balls = contact.make_balls(scene._replace(q0=q[k], v0=v[k]))
         contact.soft_step(balls, dt, *knobs)
