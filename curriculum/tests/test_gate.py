@@ -237,8 +237,8 @@ CHANGES = [  # of a file: whether results are stale then
         ("curriculum/stress/properties.py", "stress/jobs"),
         ("curriculum/stress/jobs.py", "stress/jobs"),
     ]
-    + [(f"curriculum/{name}.py", "bench/accuracy") for name in ("exact", "fast", "bench/engines")]
-    + [("contact.py", "bench/accuracy"), ("curriculum/bench/problems.py", "bench/accuracy")],
+    + [(f"curriculum/{name}.py", "bench/measure") for name in ("exact", "fast", "bench/engines")]
+    + [("contact.py", "bench/measure"), ("curriculum/bench/problems.py", "bench/measure")],
 )
 def test_results_are_stale_when_what_made_them_changed_and_not_for_words(file, room, monkeypatch):
     read = stale.read_text
