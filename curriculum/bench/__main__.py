@@ -27,7 +27,6 @@ with needs("bench"):
     from curriculum.bench import engines, measure, report, settings
     from curriculum.measured import results
 
-PARTS = {"accuracy": measure.points, "piles": measure.piles, "processes": measure.processes}
 FILES = {"accuracy": "points.csv", "piles": "piles.csv", "processes": "processes.csv"}
 FULL = results.ROOT / results.FOLDERS["bench"]
 QUICK = results.ROOT / "outputs" / "bench-quick"
@@ -77,7 +76,7 @@ def take(part, quick, only, folder):
     sections, made = load(folder)
     others = [c.name for c in settings.EVERYBODY if c.name not in wanted]
     stay = [row for row in sections.get(part, ()) if only and name_of(row) in others]
-    found = PARTS[part](quick, lambda c: c.name in wanted, stay)
+    found = measure.PARTS[part](quick, lambda c: c.name in wanted, stay)
     if not found:
         raise ValueError(f"{part}: nothing of {only or 'it'} runs here")
     save(folder / FILES[part], in_order(part, stay + found))
@@ -104,12 +103,12 @@ def name_of(row):
 def main(argv=None):
     """Returns the exit status: 1 where figures could not be drawn."""
     parser = Parser(prog="python -m curriculum.bench", description=__doc__)
-    parser.add_argument("part", nargs="?", default="all", choices=("all", *PARTS, "draw"))
+    parser.add_argument("part", nargs="?", default="all", choices=("all", *measure.PARTS, "draw"))
     parser.add_argument("--only", help="settings whose name contains this")
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
     args = parser.parse_args(argv)
     folder = QUICK if args.quick else FULL
-    parts = [name for name in PARTS if args.part in ("all", name)]
+    parts = [name for name in measure.PARTS if args.part in ("all", name)]
     if args.only and "processes" in parts:
         parts.remove("processes")  # which are no settings
     try:
@@ -120,7 +119,7 @@ def main(argv=None):
         sections, made = load(folder)
         report.write(folder, sections, made)
         if folder == FULL:
-            results.write_block("bench", report.readme(sections, made))
+            results.write_block("bench", report.written("readme.md", sections, made))
     except (ImportError, FileNotFoundError, ValueError) as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1

@@ -1,26 +1,10 @@
 """Other engines, and our models, as sessions that step the scenes of contact.py.
 
-Which settings of them compete stands in settings.csv. Every engine is optional (`pip install -e
-'.[bench]'`); one that is missing is said to be. The same for all: balls that cannot rotate, no
-friction, one thread, the scene's masses, radii and restitution, gravity 9.81 m/s^2, and a floor
-along y = 0. A ball of infinite mass is one that nothing moves. No ball sleeps, and what is left of
-the last step, impulses or forces, begins the next one as shipped. Options that had to be chosen:
-
-    mujoco    push, d: stiffness push / dt^2 and damping (1 + e) / dt, given directly, at impedance
-              d: Newton's impact law. timeconst, ratio, d: a time constant of so many steps and a
-              damping ratio. Neither: as shipped. A ball is two slide joints. Many balls: CG and a
-              sparse Jacobian, since the sparse Newton of version 4.0.0 fails on piles.
-    pymunk    push: the share of an overlap that goes in 2 ms; slop [m]: 1e-6 where nothing is said,
-              instead of 0.1, which was made for pixels.
-    box2d3    inner substeps; hertz of its soft contacts (30 as shipped; never above an eighth of
-              the substep rate); scale of the world, so that its slop shrinks against r. float32.
-    rapier    the same by its 3-D binding, of balls that stay in a plane. float32.
-    drake     point contact of that stiffness [N/m] and dissipation [s/m]; without a scheme its
-              convex solver at a fixed step, else an integrator with error control, read by its own
-              dense output, or, with cut, stopped at each look. It has no restitution: it runs where
-              e is 0 (strong dissipation) or 1 (none), and says so elsewhere.
-    siconos   Moreau-Jean at theta 1/2, by Debian's package, in a process of its own: siconos.py.
-    events    scipy's integrator from event to event: events.py.
+Which settings compete stands in settings.csv. Every engine is optional; one that is missing is said
+to be. The same for all: balls that cannot rotate, no friction, one thread, the scene's masses,
+radii and restitution, gravity 9.81 m/s^2, and a floor along y = 0. A ball of infinite mass is one
+that nothing moves. No ball sleeps, and what is left of the last step, impulses or forces, begins
+the next one as shipped. The options of settings.csv are the arguments of a session's __init__.
 """
 
 import contextlib
@@ -35,6 +19,7 @@ from pathlib import Path
 import numpy as np
 
 import contact
+from curriculum import fast
 from curriculum.bench import events
 
 BLOCK = 200  # steps that a twin takes in one go
@@ -88,14 +73,21 @@ class Session:
         return tuple(map(np.array, zip(*self.looks(self.state, n))))
 
     def with_the_fixed(self, q, v):
-        """q and v of every ball, from flat lists that begin with x, y for each one that moves."""
+        """q and v of every ball, from flat lists: x, y and perhaps more for each one that moves."""
         found = self.scene.q0.copy(), self.scene.v0.copy()
         for whole, part in zip(found, (q, v)):
             whole[:, self.moving] = part.reshape(len(self.moving), -1)[:, :2].T
         return found
 
 
-class Ours(Session):
+class Whole(Session):
+    """A session that gives whole runs, by states(n) alone."""
+
+    def trace(self, n):
+        return self.states(n)[0][:, 1]
+
+
+class Ours(Whole):
     """A model of contact.py, by its compiled loops; no step is skipped. exact has no steps."""
 
     def __init__(self, scene, dt, model, **knobs):
@@ -104,19 +96,12 @@ class Ours(Session):
 
     def states(self, n):
         model, scene, dt = self.given
-        run_model = contact.run_model
-        if contact.MODELS[model].step:
-            from curriculum.fast import run_model
+        run_model = fast.run_model if contact.MODELS[model].step else contact.run_model
         run = run_model(model, scene, dt, n * self.substeps, self.settings)
         return run.q[:: self.substeps], run.v[:: self.substeps]
 
-    def trace(self, n):
-        return self.states(n)[0][:, 1]
-
     def advance(self, n):
         if self.motion is None:
-            from curriculum import fast
-
             self.motion = fast.Stepper(*self.given, self.settings)
             self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))
             self.settled = np.ones(BLOCK + 1, bool)
@@ -128,8 +113,8 @@ class Ours(Session):
         return self.rows[self.last, :2].copy(), self.rows[self.last, 2:].copy()
 
 
-class Events(Session):
-    """The rival that goes from event to event, whole runs only."""
+class Events(Whole):
+    """The rival that goes from event to event."""
 
     def __init__(self, scene, dt, rtol, longest):
         self.scene, self.dt, self.how = scene, dt, dict(rtol=rtol, longest=longest)
@@ -138,11 +123,8 @@ class Events(Session):
         times = np.arange(n + 1) * self.dt * self.substeps
         return events.run(self.scene, times, GRAVITY, **self.how)
 
-    def trace(self, n):
-        return self.states(n)[0][:, 1]
 
-
-class Siconos(Session):
+class Siconos(Whole):
     """Moreau-Jean's step, in a process of its own: Debian's Python has the package, not ours."""
 
     def __init__(self, scene, dt, theta=0.5):
@@ -152,14 +134,11 @@ class Siconos(Session):
 
     def states(self, n):
         words = json.dumps(self.given | dict(looks=n, substeps=self.substeps))
-        command = [DEBIAN, Path(__file__).with_name("moreau.py")]
+        command = ["/usr/bin/python3", Path(__file__).with_name("moreau.py")]
         run = subprocess.run(command, input=words, capture_output=True, text=True, check=True)
         found = json.loads(run.stdout.splitlines()[-1])
         self.took = found["seconds"]
         return tuple(np.array(found[part]).transpose(0, 2, 1) for part in "qv")
-
-    def trace(self, n):
-        return self.states(n)[0][:, 1]
 
 
 def balls_of(scene, scale=1.0):
@@ -469,7 +448,6 @@ ENGINES = {  # label, package, module, session
     "events": ("event-driven", "scipy", "scipy", Events),
 }
 LABELS = {name: name for name in contact.MODELS} | {name: row[0] for name, row in ENGINES.items()}
-DEBIAN = "/usr/bin/python3"
 
 
 def session(engine):

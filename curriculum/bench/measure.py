@@ -310,3 +310,6 @@ def processes(quick, wanted, known):
                 seconds.setdefault(name, []).append(timing.whole_process(commands[name], out))
     return [dict(process=name) | timing.spread("seconds", found[1:])
             for name, found in sorted(seconds.items())]  # the first warms the caches  # fmt: skip
+
+
+PARTS = {"accuracy": points, "piles": piles, "processes": processes}

@@ -49,7 +49,7 @@ def test_exact_and_the_event_driven_code_agree_with_every_reference_and_penalty_
     }
     exact, events, penalty = (each["error"] for each in error.values())
     assert exact < 1e-10 and events < 1e-9 and penalty > 1e-4
-    assert f"{problem.duration:g} s" in problem.title
+    assert problem.title.endswith(f" {problem.duration:g} s")
 
 
 def test_the_error_of_an_invented_run_is_that_worked_out_by_hand():
@@ -275,7 +275,7 @@ def test_who_wins_and_loses_is_as_the_numbers_say(mine, rival):
     rows.append(point("events", 1e-9, 30.0))
     (cells,) = report.winners(rows)
     assert [cell.startswith("**") for cell in cells[3::2]] == [mine < rival, rival < mine]
-    words = " ".join(report.claim(rows))
+    words = " ".join(report.claims(rows))
     assert ("in 1 of 1 with at most 16" in words) == (mine < rival)
     assert ("16 substeps in 2 ms (not drop)" in words) == (rival < mine)
     assert "more accurate than leapfrog in 1 of 1 (drop). It takes 30 to 30 times" in words
@@ -285,7 +285,7 @@ def test_who_wins_and_loses_is_as_the_numbers_say(mine, rival):
 
 def taken():
     """Rows of take.csv."""
-    with report.TAKE.open(encoding="utf-8", newline="") as file:
+    with (report.HERE / "take.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -316,7 +316,7 @@ def test_what_the_readme_tells_one_to_type_is_the_run_that_was_measured(row):
 
 def test_the_readme_has_at_most_eight_rows_and_none_that_another_beats_in_error_and_time():
     sections, _ = bench.load(bench.FULL)
-    shown = list(report.take(sections))
+    shown = list(report.take(sections["accuracy"], sections["piles"]))
     assert len(shown) == len(taken()) <= 8, "every row of it was measured"
     found = [p for row in taken() for p in sections["accuracy"]
              if [p[key] for key in ("problem", "engine", "setting")]
@@ -404,7 +404,7 @@ def test_only_what_rests_within_the_depth_is_compared():
         (12, 1e-3, ROWS[1], ROWS[3], ROWS[4]),
         (12, 1e-4, ROWS[0], None, ROWS[4]),
     ]
-    ours, leapfrog = report.pile_claim(ROWS)
+    ours, leapfrog = report.pile_claims(ROWS)
     assert "takes 0.125 to 0.75 (12 balls, 0.0001 r)" in ours and "0.5 to 0.5" in leapfrog
 
 
@@ -444,10 +444,10 @@ def test_one_engine_can_be_measured_alone_and_all_other_rows_stay(tmp_path, monk
         return [point(c.engine, 7.0, 1.0, setting=c.options)
                 for c in settings.BY_NAME.values() if wanted(c)]  # fmt: skip
 
-    monkeypatch.setitem(bench.PARTS, "accuracy", measured)
+    monkeypatch.setitem(measure.PARTS, "accuracy", measured)
     bench.take("accuracy", True, None, tmp_path)
     whole = bench.load(tmp_path)[0]["accuracy"]
-    monkeypatch.setitem(bench.PARTS, "accuracy", lambda *given: [
+    monkeypatch.setitem(measure.PARTS, "accuracy", lambda *given: [
         row | dict(error=8.0) for row in measured(*given)])  # fmt: skip
     bench.take("accuracy", True, "lcp iters=20", tmp_path)
     sections, made = bench.load(tmp_path)
@@ -467,6 +467,6 @@ def test_page_block_and_figures_are_made_of_the_results_that_are_kept(tmp_path):
     page = (tmp_path / "README.md").read_text("utf-8")
     assert page == (bench.FULL / "README.md").read_text("utf-8") and page.count("\n") <= 150
     readme = (bench.results.ROOT / "README.md").read_text("utf-8")
-    assert report.readme(sections, made).strip() in readme
+    assert report.written("readme.md", sections, made).strip() in readme
     for figure in tmp_path.glob("*.svg"):
         assert len(figure.read_bytes()) < 80_000 and (bench.FULL / figure.name).exists()
