@@ -41,6 +41,11 @@ class Region(NamedTuple):
     file: str
 
     @property
+    def source(self) -> str:
+        """What an include and a stamp call it."""
+        return f"{self.file}#{self.name}"
+
+    @property
     def sha(self) -> str:
         """64 hexadecimal digits."""
         return hashlib.sha256(self.code.encode("utf-8")).hexdigest()

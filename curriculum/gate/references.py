@@ -3,7 +3,7 @@
     {{quality.penalty.rest_penetration_frac|.5f}}   metrics.json of the reference run
     {{drop-dt-0.03:quality.lcp.energy_excess|.2g}}  of another run that meta.yaml names
     {{contact.CONTACT_MARGIN}}  {{contact.Settings.iters}}    a constant, a default
-    {{bench:skip.cases}}  {{stress:maps.cells}}     results of the benchmark, of the stress report
+    {{stress:TABLE.FIRST_CELL.COLUMN}}  {{bench:made.piles.date}}     results, by row and column
     {{fact:jump.before}}                            a small measured fact, curriculum/gate/facts.py
     {{wallclock.cpu-laptop}}                        the ledger: minutes, or "not yet measured"
     {{(a.b - c.d) / e.f|.1f}}                       + - * / and brackets, with blanks around signs
@@ -32,18 +32,17 @@ from pathlib import Path
 import yaml
 
 import contact
+from curriculum import stored
 from curriculum.commands import write_whole
 from curriculum.gate.facts import FACTS
-from curriculum.measured import ledger, results
-from curriculum.measured.stale import fingerprint
-from curriculum.regions import CODE, ROOT
+from curriculum.regions import ROOT
 
 REFERENCE = re.compile(r"\s*\{\{\?\s*((?s:.*?))\s*\}\}|\{\{(.*?)\}\}")  # a claim, or what is shown
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FORMULA = re.compile(r"[\d.e+\-*/()\s]+")  # of numbers and signs alone
 SIGNS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq}
-MADE_BY = (*CODE, *(f"curriculum/{name}.py" for name in ("implicit", "seeds", "gate/facts")))
+MADE_BY = ("contact.py", "curriculum/*.py", "curriculum/lesson/*.py", "curriculum/gate/facts.py")
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
 
@@ -56,14 +55,21 @@ def load_meta() -> dict:
     """meta.yaml. Raises TextError, which says where, when it is not YAML."""
     try:
         with open(ROOT / "meta.yaml", encoding="utf-8") as file:
-            return {"region_hashes": {}, "numbers": {}} | yaml.safe_load(file)
+            return {"region_hashes": {}, "read": {}} | yaml.safe_load(file)
     except yaml.YAMLError as error:
         raise TextError(f"meta.yaml is not YAML: {' '.join(str(error).split())}") from None
 
 
+@cache
+def made_by() -> dict:
+    """The stamp of the code that makes numbers."""
+    files = sorted(str(path.relative_to(ROOT)) for each in MADE_BY for path in ROOT.glob(each))
+    return stored.stamp(*files)
+
+
 def cached(name: str, inputs, make):
     """make()'s result (JSON), made anew where `inputs` or the code changed since the last time."""
-    about = [inputs, fingerprint(*MADE_BY), version("numpy"), sys.version]
+    about = [inputs, made_by(), version("numpy"), sys.version]
     path = KEPT / f"{name}.json"
     with suppress(OSError, ValueError):
         known, made = json.loads(path.read_text("utf-8"))
@@ -107,7 +113,7 @@ class Numbers:
     def prepare(self, text):
         """Make the runs that a text names, on all cores."""
         wanted = [name for name in load_meta()["runs"] if f"{name}:" in text]
-        fingerprint(*MADE_BY)  # and kept: Python 3.11 cannot parse in two threads at once
+        made_by()  # and kept: Python 3.11 cannot parse in two threads at once
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(self.run, wanted))
 
@@ -120,12 +126,14 @@ class Numbers:
             tree = {name: value for name, value in vars(contact).items() if name.isupper()}
             tree["Settings"] = contact.Settings()._asdict()
         elif name == "wallclock":
-            tree = {row["tier"]: ledger.show(row) for row in ledger.rows()}
+            tree = {row["tier"]: stored.taken(row) for row in stored.ledger()}
         elif name == "fact":
             fact, _, key = key.partition(".")
             tree = cached(f"fact-{fact}", None, dig(FACTS, fact, f"fact:{fact}"))
-        elif name in results.FOLDERS:
-            tree = results.load(name)
+        elif name in stored.FOLDERS:
+            tables, made = stored.load(stored.FOLDERS[name])
+            rows = {k: {str([*row.values()][0]): row for row in t} for k, t in tables.items()}
+            tree = {"made": made} | rows
         else:
             tree = self.run(name or next(iter(load_meta()["runs"])))
         return dig(tree, key, text)

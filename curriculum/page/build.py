@@ -11,8 +11,8 @@ import jinja2
 from markupsafe import Markup
 
 import contact
+from curriculum import stored
 from curriculum.gate.references import Numbers, load_meta
-from curriculum.measured import ledger
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises, blank_cases
@@ -118,7 +118,7 @@ def environment(**held):
         for name, file, kind, *rest in fonts.FACES
     ]
     made.globals.update(colab=colab, faces=faces, models=[*contact.MODELS], hides=chapter.HIDES)
-    made.globals.update(ledger=ledger, pieces=pieces, picture=picture, drawn_by=drawn_by, **held)
+    made.globals.update(stored=stored, pieces=pieces, picture=picture, drawn_by=drawn_by, **held)
     return made
 
 

@@ -4,20 +4,21 @@ import compileall
 import hashlib
 import json
 import re
+import shlex
 import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from curriculum import regions
+from curriculum import regions, stored
 from curriculum.gate import chapter, references
-from curriculum.measured import ledger, stale
 from curriculum.tests.helpers import ROOT, python
 
 yaml = pytest.importorskip("yaml", reason="PyYAML is not installed")
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
-EXERCISE, RESULTS = "exercises/ex1_bet.py", "curriculum/bench/results/made.json"
+EXERCISE, MADE = "exercises/ex1_bet.py", "curriculum/bench/results/made.json"
+OPENINGS = ["contact.py", "figures/clamp"]
 PENDING = (
     "chapter,tier,wallclock_min,config_hash,commit,date,status\nch3.5-contact,t4,,,,,PENDING\n"
 )
@@ -53,7 +54,7 @@ It has {{contact.Settings.iters}} sweeps.
     EXERCISE: '"""How often does `solve_contacts` sweep?"""\nPREDICTION = None\n',
     CLAMP: 'const x = 1;\nexport const figure = { caption: "It pushes by `push`." };\n',
 }
-WRITE = "from curriculum.measured import results; results.write_block('bench', '| 1 |')"
+WRITE = "from curriculum import stored; stored.write_block('bench', '| 1 |')"
 
 
 def run_gate(project, *flags):
@@ -77,9 +78,8 @@ def line_of(path, text):
 def accepted(tmp_path_factory):
     """A project that is in order; its runs are cached."""
     project = tmp_path_factory.mktemp("project")
-    for room in ("curriculum/gate", "curriculum/measured"):
-        shutil.copytree(ROOT / room, project / room)
-    for name in ("__init__", "commands", "regions", "implicit"):
+    shutil.copytree(ROOT / "curriculum/gate", project / "curriculum/gate")
+    for name in ("__init__", "commands", "regions", "implicit", "stored"):
         shutil.copy(ROOT / f"curriculum/{name}.py", project / "curriculum")
     for file in (".gitignore", "contact.py"):
         shutil.copy(ROOT / file, project)
@@ -92,10 +92,9 @@ def accepted(tmp_path_factory):
         (project / file).parent.mkdir(parents=True, exist_ok=True)
         (project / file).write_text(text + shown * (file == CHAPTER), "utf-8")
     assert python("-B", "-c", WRITE, cwd=project).returncode == 0
-    first = run_gate(project)
-    names = first.stdout.splitlines()[-1].split(" --accept ")[1].split()
-    assert {"sweep", "implicit-spring", "contact.py", "figures/clamp"} < set(names)
-    assert run_gate(project, "--accept", *names).returncode == 0
+    names = shlex.split(run_gate(project).stdout.splitlines()[-1].split(" --read ")[1])
+    assert names == ["A sponge", "A sweep", "Code", "README.md: Run", "ex1"] + OPENINGS
+    assert run_gate(project, "--read", *names).returncode == 0
     compileall.compile_dir(project, quiet=1)  # once for all its copies
     return project
 
@@ -116,7 +115,7 @@ def test_project_that_was_read_passes_and_nothing_is_written(project):
     assert before == {path: path.read_bytes() for path in project.rglob("*") if path.is_file()}
 
 
-OLD = {"command": "python -m curriculum.bench skip", "code": {"contact.py": "0" * 12}}
+OLD = {"command": "python -m curriculum.bench piles", "code": {"contact.py#sweep": "0" * 12}}
 ERRORS = [  # file, what stands there, what takes its place, the problems that it makes
     (CHAPTER, "r deep,", "r deep, 0.25 r,", ["{}:5: a typed number, 0.25"]),
     (CHAPTER, "seen from", "{{= 3}} seen from", ["{}:5: '= 3': a typed number needs a reason: "]),
@@ -141,21 +140,25 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
     (CHAPTER, "contact.py#measure]", "contact.py#sweep]",
      ["{}:#: region contact.py#sweep stands here again", "contact.py:#: region contact.py#measur"]),
     ("README.md", "Settings.iters", "Settings.sweeps", ["{}:5: 'contact.Settings.sweeps': "]),
-    (CLAMP, "It pushes by", "It pulls by", ["{}:1: figures/clamp changed"]),
+    (CLAMP, "It pushes by", "It pulls by", ["{}:1: read 'figures/clamp' again: its words changed"]),
     (CLAMP, "`push`", "`pulls_by`", ["{}:1: `pulls_by` is in no code"]),
-    ("contact.py", "n . (v_a - v_b)", "n . (v_b - v_a)", ["{}:1: contact.py changed"]),
+    ("contact.py", "n . (v_a - v_b)", "n . (v_b - v_a)", ["{}:1: read 'contact.py' again: its w"]),
     ("contact.py", "CONTACT_MARGIN = 1e-3", "CONTACT_MARGIN = 2e-3",
-     ["{}:#: contacts changed", f"{CHAPTER}:6: contact.CONTACT_MARGIN * 1000|.0f was 1 and is 2"]),
+     [f"{CHAPTER}:3: read 'A sponge' again: nobody has read stiffness|.0f there, contact.CONTACT_"
+      "MARGIN * 1000|.0f was 1 and is 2; repair: python -m curriculum.gate --read 'A sponge'",
+      f"{CHAPTER}:#: read 'Code' again: contact.py#contacts changed, contact.py#scenes changed; "]),
+    (CHAPTER, "seen from a margin", "of {{stiffness|.0f}} N/m, seen from a margin", []),
     ("contact.py", "RADIUS = 0.1  # m", "# --- region lost ---\nRADIUS = 0.1  # m",
-     ["{}:#: '# --- region lost ---' does not belong there", "{}:#: scenes changed"]),
+     ["{}:#: '# --- region lost ---' does not belong there"]),
     ("contact.py", "# --- region: setup ---", "lost = 1\n# --- region: setup ---",
      ["{}:#: code outside any region: 'lost = 1'"]),
     ("meta.yaml", "  drop: []", "  drop: []\n  long: [--steps, 3]", ["{}:1: run long is quoted "]),
     ("meta.yaml", '\n  sweep:', '\n  swept:',
-     ["{}:1: hashes of what is gone: swept", "contact.py:#: sweep changed, and "]),
+     ["{}:1: it keeps what is gone, or other, of swept; repair: "]),
     ("wallclock.csv", PENDING, PENDING
      + "ch3.5-contact,cpu,0.01,0123456789ab,1234567,2026-01-02,MEASURED\n",
-     ["{}:3: cpu was measured on other code"]),
+     ["{}:1: contact.py#sweep changed since these were measured: bench piles, the wall-clock of "
+      "cpu; repair: whoever merges types python -m curriculum.bench piles; python -m curriculum."]),
 ]  # fmt: skip
 
 
@@ -165,9 +168,8 @@ def test_each_error_of_a_text_is_named_in_a_line_with_its_place_and_nothing_else
     for file, old, new, problems in ERRORS:
         edit(project / file, old, new)
         expected += [problem.replace("{}", file) for problem in problems]
-    (project / RESULTS).parent.mkdir(parents=True)
-    (project / RESULTS).write_text(json.dumps({"skip": OLD}))
-    expected.append(f"{RESULTS}:1: section skip was measured on other code (")
+    (project / MADE).parent.mkdir(parents=True)
+    (project / MADE).write_text(json.dumps({"piles": OLD}))
     done = run_gate(project)
     lines = [line for line in done.stdout.splitlines() if "; repair: " in line]
     for problem in expected:
@@ -176,31 +178,40 @@ def test_each_error_of_a_text_is_named_in_a_line_with_its_place_and_nothing_else
         assert len(hits) == 1, (problem, done.stdout + done.stderr)
         lines.remove(hits[0])
     assert (done.returncode, lines) == (1, [])
-    refused = run_gate(project, "--accept", "setup")
+    refused = run_gate(project, "--read", "Code")
     assert refused.returncode == 2 and "does not belong there" in refused.stderr
 
 
-def test_a_changed_region_names_who_speaks_of_it_and_is_accepted_by_name(project):
+def test_a_changed_region_names_each_passage_that_speaks_of_it_until_it_is_read(project):
     text = (project / "contact.py").read_text("utf-8").partition("# --- region: sweep ---\n")[2]
     code = text.partition("# --- region: ")[0].rstrip("\n") + "\n"
     edit(project / "contact.py", code, code + "# a better word\n")
-    failed = run_gate(project)
-    line = line_of(project / "contact.py", "# --- region: sweep ---") + 1
-    speak = f"{CHAPTER}:9, {CHAPTER}:{line_of(project / CHAPTER, '## Code')}, {EXERCISE}:1"
-    assert failed.stdout == (
-        f"contact.py:{line}: sweep changed, and {speak} speak of it; "
-        "repair: read these, then python -m curriculum.gate --accept sweep\n"
+    where = {"A sweep": f"{CHAPTER}:9", "ex1": f"{EXERCISE}:1"}
+    where["Code"] = f"{CHAPTER}:{line_of(project / CHAPTER, '## Code')}"
+    lines = {
+        f"{place}: read {name!r} again: contact.py#sweep changed; "
+        f"repair: python -m curriculum.gate --read {shlex.quote(name)}"
+        for name, place in where.items()
+    }
+    failed = run_gate(project).stdout.splitlines()
+    assert set(failed[:3]) == lines
+    assert failed[3:] == [
+        "",
+        "when all of them are read: python -m curriculum.gate --read 'A sweep' Code ex1",
+    ]
+    refused = run_gate(project, "--read", "nowhere")
+    assert refused.returncode == 2 and refused.stderr.startswith(
+        "given nowhere; allowed: Chapter, A "
     )
-    refused = run_gate(project, "--accept", "nowhere")
-    assert refused.returncode == 2 and refused.stderr.startswith("given nowhere, allowed: setup, ")
-    edit(project / "contact.py", "CONTACT_MARGIN = 1e-3", "CONTACT_MARGIN = 2e-3")
-    assert run_gate(project, "--accept", "sweep").returncode == 0
-    waits = run_gate(project).stdout
-    assert ": contacts changed" in waits and waits.count("\n") == 1, "all numbers are recorded"
-    assert run_gate(project, "--accept", "contacts").returncode == 0
-    assert run_gate(project).returncode == 0
-    hashes = yaml.safe_load((project / "meta.yaml").read_text("utf-8"))["region_hashes"]
-    assert hashes["sweep"] == hashlib.sha256(f"{code}# a better word\n".encode()).hexdigest()
+
+    def kept():
+        return yaml.safe_load((project / "meta.yaml").read_text("utf-8"))["region_hashes"]["sweep"]
+
+    was = kept()
+    assert run_gate(project, "--read", "A sweep", "ex1").returncode == 0
+    assert kept() == was and run_gate(project).stdout.count("\n") == 1
+    assert run_gate(project, "--read", "Code").returncode == 0 == run_gate(project).returncode
+    assert kept() == hashlib.sha256(f"{code}# a better word\n".encode()).hexdigest()
 
 
 def test_what_is_quoted_is_kept_until_its_code_changes(project):
@@ -231,60 +242,74 @@ CHANGES = [  # of a file: whether results are stale then
 ]
 
 
+def stale_after(changes, made, monkeypatch):
+    """What of a stamp has changed where texts of files are others."""
+    monkeypatch.setattr(stored, "read_text", lambda f: changes.get(f) or regions.read_text(f))
+    return stored.changed(made)
+
+
 @pytest.mark.parametrize(
     "file, room",
     [
         ("curriculum/stress/properties.py", "stress/jobs"),
         ("curriculum/stress/jobs.py", "stress/jobs"),
+        ("contact.py", "bench/measure"),
     ]
-    + [(f"curriculum/{name}.py", "bench/measure") for name in ("exact", "fast", "bench/engines")]
-    + [("contact.py", "bench/measure"), ("curriculum/bench/problems.py", "bench/measure")],
+    + [(f"curriculum/{name}.py", "bench/measure") for name in ("exact", "fast", "bench/problems")],
 )
 def test_results_are_stale_when_what_made_them_changed_and_not_for_words(file, room, monkeypatch):
-    read = stale.read_text
-    made = stale.fingerprint(*stale.made_by(f"curriculum/{room}.py"))
+    made = stored.stamp(*stored.made_by(f"curriculum/{room}.py"))
     for old, new, counts in CHANGES:
-        texts = {file: re.sub(old, new, read(file), count=1)}
-        assert texts[file] != read(file), (file, old)
-        monkeypatch.setattr(stale, "read_text", lambda name, own=texts: own.get(name) or read(name))
-        assert bool(stale.changed(made)) == counts, (old, new)
+        text = re.sub(old, new, regions.read_text(file), count=1)
+        assert text != regions.read_text(file), (file, old)
+        assert bool(stale_after({file: text}, made, monkeypatch)) == counts, (old, new)
 
 
-def test_a_change_of_the_command_line_is_one_of_the_whole_file_alone():
-    text = stale.read_text("contact.py")
-    other = text.replace("800 if", "900 if")
-    assert stale.digits("contact.py", text) != stale.digits("contact.py", other)
-    assert stale.digits(stale.LESSON, text) == stale.digits(stale.LESSON, other)
-    words = text.replace("share of an overlap", "part of an overlap")  # of help
-    assert words != text and stale.digits("contact.py", words) == stale.digits("contact.py", text)
-    assert set(stale.COMMAND_LINE) <= set(regions.read_all())
-    with pytest.raises(SyntaxError) as error:
-        stale.digits(stale.LESSON, "impor ast\n")
-    assert error.value.filename == "contact.py"
+REGIONS = [  # of contact.py: what stands there, and another thing; whose results that makes stale
+    ("3 * len(depth) // 4", "2 * len(depth) // 4", {"stress"}),  # a measure
+    (
+        "lam = max(0.0, c.lam + missing",
+        "lam = max(0.1, c.lam + missing",
+        {"bench", "stress"},
+    ),  # the sweep
+    ("share of an overlap", "part of an overlap", set()),  # help
+    ("has 800 steps: leave", "has 900 steps: leave", set()),  # an error of the command line
+]
+
+
+@pytest.mark.parametrize("old, new, rooms", REGIONS)
+def test_only_the_regions_that_a_room_uses_make_its_results_stale(old, new, rooms, monkeypatch):
+    text = regions.read_text("contact.py")
+    assert old in text
+    for room, file in (("bench", "bench/measure"), ("stress", "stress/jobs")):
+        made = stored.stamp(*stored.made_by(f"curriculum/{file}.py"))
+        stale = stale_after({"contact.py": text.replace(old, new)}, made, monkeypatch)
+        assert bool(stale) == (room in rooms), (room, stale)
+        monkeypatch.undo()
 
 
 def test_a_row_shows_its_time_in_the_unit_that_reads_best():
-    assert ledger.show({"status": "MEASURED", "wallclock_min": "0.5"}) == "30 s"
-    assert ledger.show({"status": "MEASURED", "wallclock_min": "1.5"}) == "1.5 min"
+    assert stored.taken({"status": "MEASURED", "wallclock_min": "0.5"}) == "30 s"
+    assert stored.taken({"status": "MEASURED", "wallclock_min": "1.5"}) == "1.5 min"
 
 
 def test_measuring_writes_a_whole_row_of_todays_code(monkeypatch, tmp_path, capsys):
     from curriculum.bench import timing
 
     times = iter([900.0, *[30.0, 12.0, 18.0] * 3])
-    monkeypatch.setattr(ledger, "LEDGER", tmp_path / "wallclock.csv")
-    monkeypatch.setattr(ledger, "dirty", lambda: "")
-    ledger.LEDGER.write_text(PENDING)
+    monkeypatch.setattr(stored, "LEDGER", tmp_path / "wallclock.csv")
+    monkeypatch.setattr(stored, "dirty", lambda: "")
+    stored.LEDGER.write_text(PENDING)
 
     def taken(command, folder):
         (Path(folder) / "contact.rrd").touch()
         return next(times)
 
     monkeypatch.setattr(timing, "whole_process", taken)
-    assert ledger.main(["cpu"]) == 0 and capsys.readouterr().out == "cpu: 18 s\n"
-    assert ledger.LEDGER.read_text().startswith(PENDING)
-    row = ledger.rows()[1]
-    assert row["wallclock_min"] == "0.3" and None not in row.values() and not ledger.stale(row)
+    assert stored.main(["cpu"]) == 0 and capsys.readouterr().out == "cpu: 18 s\n"
+    assert stored.LEDGER.read_text().startswith(PENDING)
+    row = stored.ledger()[1]
+    assert row["wallclock_min"] == "0.3" and None not in row.values() and not stored.stale(row)
 
 
 READ = """# A ball
@@ -352,7 +377,7 @@ MADE_OF = {  # reference: what a reader sees, or what is said where it cannot be
     "quality.lcp.depth|.2q": "'.2q' is no format of 'quality.lcp.depth'",
     "quality.lcp.deep|.2f": "no 'deep'; known there: depth, state",
     "nowhere:steps": "no run 'nowhere' in meta.yaml; known there: drop, heavy",
-    "contact.NOTHING": "no 'NOTHING'; known there: GRAVITY, RADIUS",
+    "contact.NOTHING": "no 'NOTHING'; known there: GRAVITY, ",
     "quality.lcp|.2f": "is no number; known there: depth, state",
     "steps / 0|.1f": "division by zero",
     "steps + quality.lcp.state": "'quality.lcp.state' is 'ok', no number",

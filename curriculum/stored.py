@@ -1,0 +1,247 @@
+"""What was measured and is kept: tables, the machine, and a stamp of the code that made them.
+
+A folder of results holds tables, NAME.csv, and made.json: {part: how it came to be}, as origin()
+says. A stamp is {source: hash}; a source is a file, or a region of contact.py, contact.py#sweep. It
+is taken of the syntax: comments, docstrings and form do not count. The ledger, wallclock.csv, has
+the time of a whole default run, the median of nine; its config_hash is that of a stamp.
+
+    python -m curriculum.stored cpu-laptop   # time `python contact.py` here, write that row
+"""
+
+import ast
+import csv
+import hashlib
+import io
+import json
+import os
+import platform
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+from datetime import date
+from functools import lru_cache
+from importlib import metadata
+from pathlib import Path
+
+from curriculum.commands import Parser, write_whole
+from curriculum.regions import ROOT, read_text, split
+
+BLOCK = re.compile(r"(<!-- generated: (\w+) by .*? -->)\n(.*?)(?=<!-- end -->)", re.DOTALL)
+FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
+DIGITS = 6  # significant digits that a table keeps
+PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
+COMMIT = "describe --always --abbrev=10 --exclude=*".split()
+ALWAYS = ("curriculum/exact.py", "curriculum/fast.py")  # what contact.py asks for by `beside`
+MAKES = re.compile(r"curriculum/(bench|stress|lesson|exact|fast|implicit)\b")  # numbers
+IMPORT = re.compile(r"from curriculum([\w.]*) import (.*)")
+USES = re.compile(r"\bcontact\.(\w+)|from contact import (.*)")
+OF_PYTHON = re.compile(r"\w+=\[\], |(, )?\w+=\[\]|, (ctx=\w+\(\)|kind='u')")  # which one dumps it
+LEDGER = ROOT / "wallclock.csv"
+COMMAND = "python -m curriculum.stored"
+TIMED = ("contact.py", "curriculum/show/picture.py", "curriculum/show/recording.py")
+
+
+# ---- stamps
+
+
+def stamp(*sources) -> dict:
+    """{source: 12 hexadecimal digits} as they are today; what is not there is empty."""
+    code = {r.source: r.code for r in split(read_text("contact.py"), "contact.py")[0]}
+    return {each: digits(each, code.get(each) or read_text(each)) for each in sources}
+
+
+def changed(kept: dict) -> list:
+    """The sources of a stamp that are not what they were."""
+    now = stamp(*kept)
+    return [source for source, was in kept.items() if now[source] != was]
+
+
+def digest(value) -> str:
+    """12 hexadecimal digits of anything that JSON can hold."""
+    return hashlib.sha256(json.dumps(value).encode()).hexdigest()[:12]
+
+
+@lru_cache
+def digits(source, text) -> str:
+    """The hash of a source's text. In NUMBERS of contact.py, words are help and do not count."""
+    if source.endswith(".csv"):
+        return digest(text)
+    tree = ast.parse(text, source)
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            node.body = node.body[ast.get_docstring(node) is not None :]
+        if isinstance(node, ast.Constant) and source == "contact.py#limits":
+            node.value = None if " " in str(node.value) else node.value
+    return digest(OF_PYTHON.sub("", ast.dump(tree)))
+
+
+def made_by(*files) -> list:
+    """The sources of what these files measure: they, what makes numbers of what they import, and
+    the regions of contact.py that define what these use, or what those regions use."""
+    regions, _ = split(read_text("contact.py"), "contact.py")
+    sources, waiting, used = set(), [*files, *ALWAYS], set()
+    while waiting:
+        if (file := waiting.pop()) in sources or not (text := read_text(file)):
+            continue
+        sources.add(file)
+        used |= set(re.findall(r"\w+", " ".join(map(" ".join, USES.findall(text)))))
+        for room, words in IMPORT.findall(text):
+            base = "curriculum" + room.replace(".", "/")
+            paths = [f"{base}.py", *(f"{base}/{word}.py" for word in re.findall(r"\w+", words))]
+            waiting += filter(MAKES.match, paths)
+    while more := [r for r in regions if r.defines & used]:
+        regions = [region for region in regions if region not in more]
+        sources |= {region.source for region in more}
+        trees = (ast.parse(region.code) for region in more)
+        used |= {n.id for tree in trees for n in ast.walk(tree) if isinstance(n, ast.Name)}
+    return sorted(sources)
+
+
+# ---- results
+
+
+def load(folder) -> tuple:
+    """({NAME: [row]} of the tables of a folder, made.json). Numbers are numbers, "" is None."""
+    tables = {}
+    for path in sorted(Path(ROOT, folder).glob("*.csv")):
+        rows = csv.DictReader(path.read_text("utf-8").splitlines())
+        tables[path.stem] = [{name: value(cell) for name, cell in row.items()} for row in rows]
+    return tables, json.loads(read_text(f"{folder}/made.json") or "{}")
+
+
+def value(cell):
+    """What a cell of a table holds."""
+    for kind in (int, float):
+        try:
+            return kind(cell)
+        except ValueError:
+            pass
+    return cell or None
+
+
+def save(path, rows) -> None:
+    """Write rows, dicts with the same names, as a table; None and what is not finite is empty."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(rows[0])
+    for row in rows:
+        cells = [f"{x:.{DIGITS}g}" if isinstance(x, float) else x for x in row.values()]
+        writer.writerow(["" if cell in ("nan", "inf", "-inf") else cell for cell in cells])
+    write_whole(path, text.getvalue())
+
+
+def origin(command: str, *files, kept=True) -> dict:
+    """How results come to be; to be asked before they are measured, and kept in made.json.
+
+    command: what measures them again, as one types it. files: the modules that measure. Raises
+    ValueError where the results are to be kept, and the code is not that of a commit.
+    """
+    if kept and dirty():
+        raise ValueError(f"{command} is kept with its commit; commit these first: {dirty()}")
+    return {"command": command, **machine(), "code": stamp(*made_by(*files))}
+
+
+def table(head, rows) -> str:
+    """A Markdown table."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in lines)
+
+
+def footer(about: dict) -> str:
+    """One paragraph for the end of a page: when and on what it was measured."""
+    versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
+    return (
+        f"Measured by `{about['command']}` on {about['date']} at commit {about['commit']}, on "
+        f"{about['cores']} cores of {about['cpu']} ({about['os']}), with Python {about['python']}, "
+        f"{versions}."
+    )
+
+
+def write_block(name: str, markdown: str) -> None:
+    """Put the Markdown of "bench" or "stress" into the project's README, between its markers."""
+
+    def block(match):
+        return f"{match[1]}\n{markdown.strip()}\n" if match[2] == name else match[0]
+
+    write_whole(ROOT / "README.md", BLOCK.sub(block, read_text("README.md")))
+
+
+def machine() -> dict:
+    """Date, commit ("unknown" without git; with "+" where Python files differ from it), processor
+    and system; and the versions of packages that are installed, {package: text}."""
+    info = read_text("/proc/cpuinfo")
+    name = re.search(r"model name\s*: (.+)", info)
+    return {
+        "date": date.today().isoformat(),
+        "commit": (git(*COMMIT).strip() or "unknown") + "+" * bool(dirty()),
+        "cpu": name[1] if name else platform.processor() or "unknown processor",
+        "cores": str(os.cpu_count()),
+        "os": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        "versions": {
+            name: each.version for name in PACKAGES for each in metadata.distributions(name=name)
+        },
+    }
+
+
+def dirty() -> str:
+    """The Python files that differ from the commit, as git shows them; "" without git."""
+    return git("status", "--porcelain", "--", "*.py").strip()
+
+
+def git(*words) -> str:
+    """What a git command prints; nothing where it fails or there is no git."""
+    try:
+        return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout
+    except OSError:
+        return ""
+
+
+# ---- the ledger
+
+
+def ledger() -> list:
+    """The rows of the ledger, dicts of str."""
+    return list(csv.DictReader(LEDGER.read_text("utf-8").splitlines()))
+
+
+def taken(row) -> str:
+    """A row's time as text, with two digits: in seconds below a minute."""
+    if row["status"] == "PENDING":
+        return "not yet measured"
+    minutes = float(row["wallclock_min"])
+    return f"{minutes:.2g} min" if minutes >= 1 else f"{60 * minutes:.2g} s"
+
+
+def stale(row) -> bool:
+    """Whether a row was measured on other code than today's."""
+    return row["config_hash"] not in ("", digest(stamp(*TIMED)))
+
+
+def main(argv=None) -> int:
+    """Measure a tier's row, write and show it. Returns the exit status."""
+    parser = Parser(prog=COMMAND, description=__doc__.split("\n")[0])
+    parser.add_argument("tier", help="what the ledger calls this machine, such as cpu-laptop")
+    tier, about = parser.parse_args(argv).tier, machine()
+    if dirty():
+        parser.error(f"a row is kept with its commit; commit these first: {dirty()}")
+    from curriculum.bench.timing import whole_process
+
+    with tempfile.TemporaryDirectory() as out:
+        command = [sys.executable, "contact.py", "--out", out]
+        seconds = [whole_process(command, out) for _ in range(10)]  # the first warms the caches
+        if not list(Path(out).glob("*.rrd")):
+            parser.error("no recording: pip install rerun-sdk")
+    rows = {row["tier"]: row for row in ledger()}
+    minutes = f"{statistics.median(seconds[1:]) / 60:.3g}"
+    facts = minutes, digest(stamp(*TIMED)), about["commit"], about["date"], "MEASURED"
+    rows[tier] = dict(zip(ledger()[0], ("ch3.5-contact", tier, *facts)))
+    save(LEDGER, list(rows.values()))
+    print(f"{tier}: {taken(rows[tier])}")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
