@@ -1,6 +1,8 @@
 """The same work on many inputs: on all cores, or on the machines of a dask scheduler; and a bar."""
 
+import logging
 import os
+import pickle
 import signal
 import sys
 import threading
@@ -8,6 +10,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, ProcessPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from itertools import count, islice
 from multiprocessing import parent_process
 from queue import Empty, SimpleQueue
@@ -42,16 +45,14 @@ def as_they_come(
             yield place, function(job)
             progress(next(done))
         return
-    with machines(scheduler) if scheduler else processes(workers) as (pool, look):
-        try:
-            for found in spread(pool, look, function, enumerate(jobs)):
-                yield found
-                progress(next(done))
-        except (BrokenExecutor, CancelledError):
-            raise ConnectionError(f"{scheduler or 'a process of the pool'} is gone") from None
+    function = carried(function) if scheduler else function
+    with machines(scheduler) if scheduler else processes(workers) as (submit, look):
+        for found in spread(submit, look, function, enumerate(jobs)):
+            yield found
+            progress(next(done))
 
 
-def spread(pool, look, function, numbered) -> Iterator[tuple]:
+def spread(submit, look, function, numbered) -> Iterator[tuple]:
     """(place, function(job)) of each (place, job), as they are done; look() where nothing comes."""
     done: SimpleQueue = SimpleQueue()
     waiting = {}
@@ -59,7 +60,7 @@ def spread(pool, look, function, numbered) -> Iterator[tuple]:
     def ask(most):
         for place, job in islice(numbered, most):
             with unheard():  # or a process that is started now would speak at Ctrl-C
-                future = pool.submit(function, job)
+                future = submit(function, job)
             waiting[future] = place
             future.add_done_callback(done.put)
 
@@ -72,6 +73,24 @@ def spread(pool, look, function, numbered) -> Iterator[tuple]:
             continue
         yield waiting.pop(future), future.result()
         ask(1)
+
+
+def carried(function):
+    """function, for a machine of a cluster: its scheduler need not have the code, and an error of
+    importing it names the machine."""
+    data = pickle.dumps(function)
+
+    def there(job):  # dask sends a function within a function as it is, not by its name
+        import os
+        import pickle
+        import platform
+
+        try:
+            return pickle.loads(data)(job)
+        except ImportError as error:
+            raise ImportError(f"{platform.node()}, process {os.getpid()}: {error}") from None
+
+    return there
 
 
 def bar(total: int, label: str) -> Callable[[int], None]:
@@ -123,24 +142,24 @@ def follow_parent():
 
 @contextmanager
 def processes(workers):
-    """A pool of so many processes, and what to do where nothing comes: wait on."""
+    """How to ask a pool of so many processes, and what to do where nothing comes: wait on."""
     pool = ProcessPoolExecutor(workers, initializer=follow_parent)
     try:
-        yield pool, lambda: None
+        yield pool.submit, lambda: None
+    except BrokenExecutor:
+        raise ConnectionError("a process of the pool is gone") from None
     finally:
         pool.shutdown(cancel_futures=True)
 
 
 @contextmanager
 def machines(scheduler: str) -> Iterator:
-    """The executor of a dask scheduler, and what to do where nothing comes; see as_they_come."""
+    """How to ask a dask scheduler, and what to do where nothing comes; see as_they_come."""
     try:
-        from dask.distributed import Client
+        from dask.distributed import Client, KilledWorker
     except ImportError:
         raise ImportError(commands.to_install("dask[distributed]")) from None
-    import logging
-
-    logging.getLogger("distributed").setLevel(logging.CRITICAL + 1)  # what is lost, we say
+    logging.disable()  # dask's tracebacks of what is lost: we say it in a line
     given = f"given the scheduler {scheduler!r}, which"
     try:
         client = Client(scheduler, timeout=10)
@@ -153,4 +172,9 @@ def machines(scheduler: str) -> Iterator:
             raise OSError(f"{given} has no workers; start some: dask worker {scheduler}")
 
     with client:
-        yield client.get_executor(pure=False), look
+        try:
+            yield partial(client.submit, pure=False), look
+        except CancelledError:
+            raise ConnectionError(f"{given} is gone") from None
+        except KilledWorker as error:
+            raise ConnectionError(f"{given} lost four workers at one job ({error})") from None

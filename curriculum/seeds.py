@@ -17,7 +17,6 @@ import io
 import json
 import math
 import os
-import platform
 import sqlite3
 import statistics
 import sys
@@ -30,6 +29,7 @@ import contact
 from curriculum import parallel
 from curriculum.commands import Parser, near, write_json
 
+PROG = "python -m curriculum.seeds"
 KEYS = [key for key, _ in contact.COLUMNS.values()]
 CODE = "contact.py", "curriculum/exact.py", "curriculum/seeds.py"  # what a row depends on
 ORDERS = {"median": "", "lowest": "ASC", "highest": "DESC"}
@@ -48,7 +48,7 @@ def seed_range(text):
 
 def parse(argv):
     """The seeds, the scheduler or None, and the other flags as contact.parse_flags gives them."""
-    parser = Parser(prog="python -m curriculum.seeds", description=__doc__)
+    parser = Parser(prog=PROG, description=__doc__)
     parser.add_argument("seeds", type=seed_range, metavar="A:B", help="from A to B - 1")
     parser.add_argument("--scheduler", metavar="HOST:PORT", help="run them on a dask cluster")
     mine, rest = parser.parse_known_args(argv)
@@ -63,6 +63,7 @@ def parse(argv):
 def main(argv=None):
     """Run what is missing, print the table, write seeds.json. Returns the exit status."""
     seeds, scheduler, args = parse(argv)
+    fail = Parser(prog=PROG).error
     models = list(contact.MODELS) if args.contact == "all" else [args.contact]
     path = Path(args.out, "seeds.csv")
     try:
@@ -75,9 +76,9 @@ def main(argv=None):
         if not clash:
             write_json(path.with_suffix(".json"), kept | {"seeds": [seeds[0], seeds[-1] + 1]})
     except (ImportError, OSError, sqlite3.Error) as error:
-        return contact.fail(f"{error}; what is done is kept: the same command goes on from there")
+        fail(f"{error}; what is done is kept: the same command goes on from there")
     if clash:
-        return contact.fail(f"{near(str(path))}: {clash}")
+        fail(f"{near(str(path))}: {clash}")
     print(
         f"scene {args.scene}, seeds {seeds[0]} to {seeds[-1]}: {args.steps} steps of {args.dt:g} s"
     )
@@ -125,8 +126,7 @@ def made_by(args):
 def qualities(args, known, seed):
     """[[seed, model, measures, how it ended]] of one seed; another process may run it."""
     if other := [name for name in known if code()[name] != known[name]]:
-        here = f"{platform.node()}, process {os.getpid()}"
-        raise ImportError(f"{here}, has another {', '.join(other)}: give all machines the same")
+        raise ImportError(f"another {', '.join(other)} is there; give all machines the same")
     _, without, quality = contact.run_all(args, contact.chosen_scene(args, seed))
     ends = {model: (row, contact.ending(row)) for model, row in quality.items()}
     ends |= {model: (dict.fromkeys(KEYS), f"no: {why}") for model, why in without.items()}
@@ -255,4 +255,6 @@ def ending(row, count):
 
 
 if __name__ == "__main__":
+    from curriculum.seeds import main  # whose functions another machine can import
+
     sys.exit(main())
