@@ -8,28 +8,22 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-OPENS_A_WINDOW = (".venv/bin/rerun ", "uv run rerun ")  # so CI reads the recording instead
+TEXT = (ROOT / "README.md").read_text("utf-8")
 
 
-def section(text, heading):
-    """What stands below a heading of the second level."""
-    return text.partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
+def set_up(system):
+    """The two lines of pip, windows or uv in the block below "Run it"."""
+    heading = {"pip": "Linux", "windows": "Windows", "uv": "anywhere with uv"}[system]
+    block = TEXT.partition("\n## Run it\n")[2].partition("\n## ")[0]
+    lines = re.search(rf"^# {heading}.*\n(.+)\n(.+)\n(?=#|```)", block, re.M)
+    if not lines:
+        raise SystemExit(f"README.md, Run it: two lines are expected below # {heading}")
+    return lines.groups()
 
 
-def set_up(text):
-    """{"pip", "windows", "uv": the two lines each} of the block below "Run it"."""
-    lines_of = {}
-    for name, heading in {"pip": "Linux", "windows": "Windows", "uv": "anywhere with uv"}.items():
-        lines = re.search(rf"^# {heading}.*\n(.+)\n(.+)\n(?=#|```)", section(text, "Run it"), re.M)
-        if not lines:
-            raise SystemExit(f"README.md, Run it: two lines are expected below # {heading}")
-        lines_of[name] = lines.groups()
-    return lines_of
-
-
-def rows(text):
+def rows():
     """[(what, the pip command, the uv command)] of the table below "What to do next"."""
-    table = section(text, "What to do next").partition("\n| --- | --- | --- |\n")[2]
+    table = TEXT.partition("\n## What to do next\n")[2].partition("\n| --- | --- | --- |\n")[2]
     lines = table.split("\n\n")[0].splitlines()
     cells = [re.fullmatch(r"\| (.+?) \| `(.+?)` \| `(.+?)` \|", line) for line in lines]
     if len(cells) < 5 or not all(cells):
@@ -38,4 +32,4 @@ def rows(text):
 
 
 if __name__ == "__main__":
-    print(set_up((ROOT / "README.md").read_text("utf-8"))[sys.argv[1]][0])
+    print(set_up(sys.argv[1])[0])

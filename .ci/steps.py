@@ -15,18 +15,11 @@ from pathlib import Path
 import readme
 
 WORK = Path(sys.argv[1])
-TEXT = (readme.ROOT / "README.md").read_text("utf-8")
-# what a newcomer's shell has not
-LEFT_OUT = "UV VIRTUAL_ENV PYTHONPATH CONDA_PREFIX PYTHONDONTWRITEBYTECODE".split()
-SHELL = {k: v for k, v in os.environ.items() if k not in LEFT_OUT} | {
-    "CI": "true",
-    "RERUN_STRICT": "1",
-    "RERUN_ANALYTICS": "0",
-    "MPLBACKEND": "Agg",
-    "PIP_NO_COMPILE": "1",  # Python compiles what is imported, a small part of what is installed
-    "UV_PYTHON": sys.executable,
-}
-ASKS = 2  # the exit status of a bet that is not made yet
+OPENS_A_WINDOW = (".venv/bin/rerun ", "uv run rerun ")  # so CI reads the recording instead
+NOT_A_NEWCOMERS = "UV VIRTUAL_ENV PYTHONPATH CONDA_PREFIX PYTHONDONTWRITEBYTECODE".split()
+SET = "CI=true RERUN_STRICT=1 RERUN_ANALYTICS=0 MPLBACKEND=Agg PIP_NO_COMPILE=1"
+SHELL = {k: v for k, v in os.environ.items() if k not in NOT_A_NEWCOMERS}
+SHELL |= dict(each.split("=") for each in SET.split()) | {"UV_PYTHON": sys.executable}
 done, start = [], time.monotonic()  # (passed, failed) of each line that was run
 
 
@@ -52,20 +45,17 @@ def check(name, command, folder, expect=0, **more):
 
 
 def fresh(folder):
-    """A fresh clone of what is committed; where git can't, a copy without what was made here."""
-    if subprocess.run(["git", "clone", "--quiet", readme.ROOT, WORK / folder]).returncode:
-        print("no clone can be made; this is a copy", flush=True)
-        made = shutil.ignore_patterns(".venv", "outputs", ".cache", "__pycache__", "*.egg-info")
-        shutil.copytree(readme.ROOT, WORK / folder, ignore=made)
+    """A fresh clone of what is committed; changes in this folder are not tested."""
+    subprocess.run(["git", "clone", "--quiet", readme.ROOT, WORK / folder], check=True)
     (WORK / "numbers").mkdir(exist_ok=True)  # that the text quotes; kept by the hash of their code
     (WORK / folder / ".cache").symlink_to(WORK / "numbers")
 
 
 def row(folder, what, command):
     """One row of "What to do next", with its expected exit status; page and notebook are kept."""
-    for start in readme.OPENS_A_WINDOW:
+    for start in OPENS_A_WINDOW:
         command = command.replace(start, f"{start}rrd verify ")
-    check(what, command, folder, ASKS if "/ex1_" in command else 0)
+    check(what, command, folder, 2 if "/ex1_" in command else 0)  # a bet that is not made yet
     for path in (WORK / folder / "outputs").glob("contact.*"):
         path.rename(WORK / f"{folder}-{path.name}")
 
@@ -73,10 +63,10 @@ def row(folder, what, command):
 def pip_column():
     """The first set-up line; then every row in the environment that it made, and nothing else."""
     folder = WORK / "pip"
-    check("README, pip: run", readme.set_up(TEXT)["pip"][0], "pip")
+    check("README, pip: run", readme.set_up("pip")[0], "pip")
     assert list(folder.glob("outputs/*/contact.rrd")), "the main job made no recording"
     (folder / ".venv").rename(WORK / "first")
-    for what, command, _ in readme.rows(TEXT):
+    for what, command, _ in readme.rows():
         shutil.rmtree(folder / ".venv", ignore_errors=True)  # pip replaces files: links will do
         shutil.copytree(WORK / "first", folder / ".venv", symlinks=True, copy_function=os.link)
         row("pip", what, command)
@@ -84,20 +74,21 @@ def pip_column():
 
 def uv_column():
     """The same by uv, each time from no environment at all; of its tests, that they are found."""
-    first, test = readme.set_up(TEXT)["uv"]
-    check("README, uv: run", first, "uv")
-    tests = ("uv: test", "", f"{test} --collect-only -q")
-    for what, _, command in (*readme.rows(TEXT), tests):
+    first, test = readme.set_up("uv")
+    found = "uv: test, found", "", f"{test} --collect-only -q"
+    for what, _, command in (("uv: run", "", first), *readme.rows(), found):
         shutil.rmtree(WORK / "uv/.venv", ignore_errors=True)
         row("uv", what, command)
+    check("uv: page and notebook", "test -s ../uv-contact.html -a -s ../uv-contact.ipynb", "uv")
 
 
 def authors():
     """What an author has, in the environment that the README's line makes; beside it, its tests."""
     fresh("dev")
-    install, _, tests = readme.set_up(TEXT)["pip"][1].rpartition(" && ")
+    install, _, tests = readme.set_up("pip")[1].rpartition(" && ")
     check("README, pip: test, set-up", install, "dev")
-    side_by_side(lambda: suite(tests), checks)
+    with ThreadPoolExecutor() as pool:  # side by side
+        list(pool.map(lambda lane: lane(), (lambda: suite(tests), checks)))
 
 
 def suite(command):
@@ -113,11 +104,10 @@ def checks():
     """What an author runs beside the tests, and the quick measurements."""
     for name, command in {
         "the gate": "python -m curriculum.gate",
-        "ruff check": "ruff check .",
-        "ruff format": "ruff format --check .",
+        "ruff": "ruff check . && .venv/bin/ruff format --check .",
         "types": "python -m mypy",
         "CONTRIBUTING": "pre-commit install && .venv/bin/pre-commit validate-config",
-        "workflows": "zizmor --offline --quiet --min-severity medium .github/workflows",
+        "workflows": "zizmor --offline --quiet --min-severity medium .github",
         "ten planted faults": "python -m curriculum.tests.plant --most 10",
         "quick benchmark": "python -m curriculum.bench --quick",
         "quick stress": "python -m curriculum.stress --quick",
@@ -128,33 +118,22 @@ def checks():
 def alone():
     """contact.py in an empty folder with numpy alone; and with rerun and pytest, the tests."""
     shutil.copy(readme.ROOT / "contact.py", WORK / "alone")
-    python = "uv run --no-project --with numpy python contact.py"
-    for scene in ("drop", "bounce", "stack"):
-        line = f"{python} --scene {scene} --out {scene} && test -s {scene}/metrics.json"
-        check("contact.py alone in an empty folder", line, "alone")
+    run = "uv run --no-project --with numpy python contact.py --out $it --scene $it"
+    line = f"for it in drop bounce stack; do {run}; test -s $it/metrics.json; done"
+    check("contact.py alone in an empty folder", line, "alone")
     fresh("bare")
-    name = "numpy, rerun-sdk and pytest, and --smoke twice, byte for byte"
-    check(name, ".ci/python", "bare", PYTHON=sys.executable)
-
-
-def side_by_side(*lanes):
-    """Run them at the same time; a fault in one is counted, and the others go on."""
-    with ThreadPoolExecutor() as pool:
-        for lane, future in [(lane, pool.submit(lane)) for lane in lanes]:
-            if error := future.exception():
-                print(f"FAILED | {lane.__name__}: {error!r}", flush=True)
-                done.append((0, 1))
+    check("numpy, rerun-sdk, pytest; --smoke twice", ".ci/python", "bare", PYTHON=sys.executable)
 
 
 def main():
     """All steps. Returns the exit status."""
     (WORK / "alone").mkdir()
     fresh("pip"), fresh("uv")
-    if subprocess.run(["git", "status", "--short"], cwd=readme.ROOT, capture_output=True).stdout:
-        print("note: the clones hold what is committed; the changes in this folder are not tested")
-    side_by_side(pip_column, uv_column, alone, authors)
-    made = " ".join(str(path) for path in sorted(WORK.glob("*-contact.*")))
-    check("page and notebook, looked into", f".venv/bin/python .ci/look.py {made}", "dev")
+    with ThreadPoolExecutor() as pool:  # where one raises, the others come to their end first
+        list(pool.map(lambda lane: lane(), (pip_column, uv_column, alone, authors)))
+    for name, file in {"page": "contact.html", "notebook": "contact.ipynb"}.items():
+        again = f".venv/bin/python -m curriculum.{name} --out {file} && cmp {file} ../pip-{file}"
+        check(f"the {name} is the one that the tests look at", again, "dev")
     passed, failed = (sum(each) for each in zip(*done))
     print(f"{time.monotonic() - start:.0f} s; lines of the README and of authors, and the tests:")
     print(f"{passed} passed, {failed} failed")
