@@ -5,7 +5,6 @@
     {{contact.CONTACT_MARGIN}}  {{contact.Settings.iters}}    a constant, a default
     {{stress:TABLE.FIRST_CELL.COLUMN}}  {{bench:made.piles.date}}     results, by row and column
     {{fact:jump.before}}                            a small measured fact, curriculum/gate/facts.py
-    {{wallclock.cpu-laptop}}                        the ledger: minutes, or "not yet measured"
     {{(a.b - c.d) / e.f|.1f}}                       + - * / and brackets, with blanks around signs
     {{= 1972 | year of the paper}}                  a typed number, with the reason why
 
@@ -26,7 +25,6 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
-from operator import eq, ge, gt, le, lt
 from pathlib import Path
 
 import yaml
@@ -41,7 +39,7 @@ REFERENCE = re.compile(r"\s*\{\{\?\s*((?s:.*?))\s*\}\}|\{\{(.*?)\}\}")  # a clai
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FORMULA = re.compile(r"[\d.e+\-*/()\s]+")  # of numbers and signs alone
-SIGNS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq}
+CLAIM = re.compile(rf"{FORMULA.pattern}( (<=?|>=?|==) {FORMULA.pattern})+")
 MADE_BY = ("contact.py", "curriculum/*.py", "curriculum/lesson/*.py", "curriculum/gate/facts.py")
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
@@ -119,14 +117,11 @@ class Numbers:
 
     def operand(self, text):
         """What one name stands for: a number, a text, or a dict of them."""
-        name, colon, key = text.rpartition(":")
-        if not colon and text.startswith(("contact.", "wallclock.")):
-            name, _, key = text.partition(".")
-        if name == "contact":
+        name, _, key = text.rpartition(":")
+        if text.startswith("contact."):
+            name, key = "contact", text.removeprefix("contact.")
             tree = {name: value for name, value in vars(contact).items() if name.isupper()}
             tree["Settings"] = contact.Settings()._asdict()
-        elif name == "wallclock":
-            tree = {row["tier"]: stored.taken(row) for row in stored.ledger()}
         elif name == "fact":
             fact, _, key = key.partition(".")
             tree = cached(f"fact-{fact}", None, dig(FACTS, fact, f"fact:{fact}"))
@@ -143,17 +138,22 @@ class Numbers:
         if OPERAND.fullmatch(formula):
             return self.operand(formula)
 
+        return self.reckoned(formula, FORMULA, "has other signs than + - * / ( )")[0]
+
+    def reckoned(self, formula, form, wrong):
+        """What Python makes of a formula, and the formula in numbers."""
+
         def number(match):
             value = self.operand(match[0])
             if not is_number(value):
                 raise TextError(f"{match[0]!r} is {str(value)[:40]!r}, no number")
             return f"({value!r})"
 
-        reckoned = OPERAND.sub(number, formula)
-        if not FORMULA.fullmatch(reckoned):
-            raise TextError(f"{formula!r} has other signs than + - * / ( )")
+        numbers = OPERAND.sub(number, " ".join(formula.split()))
+        if not form.fullmatch(numbers):
+            raise TextError(f"{formula!r} {wrong}")
         try:
-            return eval(reckoned)
+            return eval(numbers), numbers
         except (NameError, SyntaxError, TypeError, ZeroDivisionError) as error:
             raise TextError(f"{formula!r} cannot be reckoned: {error}") from None
 
@@ -176,17 +176,9 @@ class Numbers:
         return typeset(text) if is_number(value) else text
 
     def broken(self, claim) -> str:
-        """What the sides of FORMULA < FORMULA are, where it is not true; there may be several."""
-        first, *rest = re.split(r" (<=?|>=?|==) ", " ".join(claim.split()))
-        if not rest:
-            raise TextError(f"{claim!r} is not 'FORMULA < FORMULA'")
-        left = self.value(f"({first})")  # numbers alone
-        for sign, formula in zip(rest[::2], rest[1::2]):
-            right = self.value(f"({formula})")
-            if not SIGNS[sign](left, right):
-                return f"{left:.6g} {sign} {right:.6g}"
-            left = right
-        return ""
+        """A claim in numbers, where it is not true. It may have several signs: 1 < a < 2."""
+        true, numbers = self.reckoned(claim, CLAIM, "is not 'FORMULA < FORMULA'")
+        return "" if true else numbers
 
     def fill(self, text) -> str:
         """The text with every reference replaced."""
