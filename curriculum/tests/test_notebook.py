@@ -15,7 +15,7 @@ import pytest
 import contact
 from curriculum import regions
 from curriculum.gate.chapter import CHAPTER, read
-from curriculum.notebook import build as notebook
+from curriculum.notebook import __main__ as notebook
 
 SOFTER = "def penalty_normal_force(depth, v_n, stiffness, damping):\n    return 0.0\n"
 ASKED = f"""\
@@ -91,7 +91,7 @@ def test_runs_and_the_benchmark_are_pictures(executed):
 
 
 def test_cells_of_its_own_are_all_used(book):
-    own, code = notebook.own_cells(), code_of(book)
+    own, code = notebook.Book().own, code_of(book)
     assert [name for name in own if own[name] not in code] == []
 
 
