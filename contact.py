@@ -88,15 +88,15 @@ FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)  # shared by all runs; nothing m
 class Contact:
     """Balls a and b, how deep they overlap [m], and the unit normal (nx, ny) from b to a."""
 
-    __slots__ = "a b nx ny depth inv_masses m_eff target softness lam".split()
+    __slots__ = "a b nx ny depth m_eff target softness lam".split()
     __slots__ += "start before".split()  # of solve_with_momentum
     __slots__ += "reach gap speed when struck".split()  # of leapfrog
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
         self.nx, self.ny, self.depth = nx, ny, depth
-        self.inv_masses = a.inv_mass + b.inv_mass
-        self.m_eff = 1.0 / self.inv_masses if self.inv_masses > 0.0 else 0.0
+        inv_m_eff = a.inv_mass + b.inv_mass
+        self.m_eff = 1.0 / inv_m_eff if inv_m_eff > 0.0 else 0.0
         self.target = self.softness = 0.0  # soft sets the softness, and m_eff with it
         self.lam = 0.0  # the impulse [N s] of this step so far
 
@@ -329,8 +329,8 @@ def step_reach(balls, dt: float) -> float:
     """How far [m] from one another balls may be that meet in a step: leapfrog looks so far."""
     fastest = 0.0
     for ball in balls:
-        fastest = max(fastest, math.sqrt(ball.vx * ball.vx + ball.vy * ball.vy))
-    return reach_of(fastest, dt)
+        fastest = max(fastest, ball.vx * ball.vx + ball.vy * ball.vy)
+    return reach_of(math.sqrt(fastest), dt)
 
 
 def reach_of(fastest, dt):
@@ -465,8 +465,9 @@ def soften(c, dt, solref, solimp):
         B = -solref[1] / d1
     v_n = c.v_n()  # before gravity acts
     c.target = v_n + dt * (K * d * c.depth - B * v_n)
-    c.softness = max(1e-15, (1.0 - d) / d * c.inv_masses)  # no less: MuJoCo's mjMINVAL
-    c.m_eff = 1.0 / (c.inv_masses + c.softness)
+    inv_m_eff = c.a.inv_mass + c.b.inv_mass
+    c.softness = max(1e-15, (1.0 - d) / d * inv_m_eff)  # no less: MuJoCo's mjMINVAL
+    c.m_eff = 1.0 / (inv_m_eff + c.softness)
 
 
 def soft_defaults(restitution, dt, solref=None, solimp=None) -> tuple[tuple, tuple]:
@@ -715,15 +716,13 @@ def strike_at(balls, contacts, when, until, dt, restitution, iters):
     Who was struck is set back to where it would have begun with its new velocity: so all balls
     stay at the start of the step.
     """
-    touching = []
     for c in contacts:
-        strikes = c.when <= until
         look(c, when)
-        if strikes or lasts(c, dt):
-            after = -restitution * c.speed if strikes else min(0.0, c.speed)
-            c.target = c.v_n() + after - c.speed  # at the start of the step
-            c.lam = 0.0
-            touching.append(c)
+    touching = [c for c in contacts if c.when <= until or lasts(c, dt)]
+    for c in touching:
+        after = -restitution * c.speed if c.when <= until else min(0.0, c.speed)
+        c.target = c.v_n() + after - c.speed  # at the start of the step
+        c.lam = 0.0
     keep_velocities(balls)
     solve_with_momentum(touching, iters)
     for c in touching:
@@ -886,7 +885,9 @@ def run_model(model, scene, dt, steps, settings=Settings(), progress=None, see=N
         return choose_exact(scene, dt, steps, progress)
     many = settings.skip and not see and steps * len(scene.mass) ** 2 > MANY
     if many and (twin := beside("fast")):  # compiled loops, the same bits
-        return twin.run_model(model, scene, dt, steps, settings, progress)
+        run = twin.run_if_it_pays(model, scene, dt, steps, settings, progress)
+        if run:
+            return run
     step, kicks = step_of(model, scene, dt, settings), MODELS[model].kicks
     return simulate(step, scene, dt, steps, settings.skip, progress, kicks, see)
 
@@ -1022,7 +1023,9 @@ def energy(q, v, mass):
 def smallest_gap(q, radius):
     """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
     if q.size * len(radius) > 2.0 * MANY and (twin := beside("fast")):
-        return twin.smallest_gap(q, radius)
+        found = twin.gap_if_it_pays(q, radius)
+        if found is not None:
+            return found
     gap = (q[:, 1] - radius).min(-1)
     for lag in range(1, len(radius)):  # ball i and ball i + lag, for all i, all states at once
         dx, dy = (q[:, :, lag:] - q[:, :, :-lag]).swapaxes(0, 1)

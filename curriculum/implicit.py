@@ -12,7 +12,7 @@ def implicit_step(balls, dt, spring):
     contacts = contact.detect_contacts(balls, margin=0.0)
     for c in contacts:
         c.softness, c.target = spring(c.depth)
-        c.m_eff = 1.0 / (c.inv_masses + c.softness)
+        c.m_eff = 1.0 / (c.a.inv_mass + c.b.inv_mass + c.softness)
     contact.accelerate(balls, dt)
     contact.solve_contacts(contacts, 100)
     contact.move(balls, dt)

@@ -26,7 +26,7 @@ from importlib import metadata
 from pathlib import Path
 
 from curriculum.commands import Parser, write_whole
-from curriculum.regions import ROOT, read_text, split
+from curriculum.lesson.regions import ROOT, read_text, split
 
 BLOCK = re.compile(r"(<!-- generated: (\w+) by .*? -->)\n(.*?)(?=<!-- end -->)", re.DOTALL)
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}

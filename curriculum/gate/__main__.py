@@ -26,7 +26,7 @@ with needs("dev"):
     from curriculum.gate.chapter import CHAPTER, faults, split
     from curriculum.gate.passages import FIGURES, SPAN, TEXTS, files, passages
     from curriculum.gate.references import REFERENCE, Numbers, TextError, load_meta
-    from curriculum.regions import ROOT, blank, line_at, read_text, split_all
+    from curriculum.lesson.regions import ROOT, blank, line_at, read_text, split_all
 
 GATE = "python -m curriculum.gate"
 KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line each

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from curriculum.gate.chapter import CHAPTER, split
-from curriculum.regions import ROOT, blank, line_at, read_text
+from curriculum.lesson.regions import ROOT, blank, line_at, read_text
 from curriculum.stored import BLOCK
 
 TEXTS = (CHAPTER, "README.md")

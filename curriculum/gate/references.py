@@ -33,7 +33,7 @@ import contact
 from curriculum import stored
 from curriculum.commands import write_whole
 from curriculum.gate.facts import FACTS
-from curriculum.regions import ROOT
+from curriculum.lesson.regions import ROOT
 
 REFERENCE = re.compile(r"\s*\{\{\?\s*((?s:.*?))\s*\}\}|\{\{(.*?)\}\}")  # a claim, or what is shown
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none

@@ -18,8 +18,8 @@ from importlib import metadata
 from pathlib import Path
 
 from curriculum.commands import write_json, write_whole
+from curriculum.lesson.regions import ROOT, read_text
 from curriculum.measured import stale
-from curriculum.regions import ROOT, read_text
 
 BLOCK = re.compile(r"(<!-- generated: (\w+) by .*? -->)\n(.*?)(?=<!-- end -->)", re.DOTALL)
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}

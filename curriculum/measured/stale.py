@@ -12,7 +12,7 @@ import json
 import re
 from functools import lru_cache
 
-from curriculum.regions import CODE, REGION, read_text
+from curriculum.lesson.regions import CODE, REGION, read_text
 
 COMMAND_LINE = ("flags", "report", "files", "main")  # regions that no step or measure stands in
 LESSON = f"contact.py without {' '.join(COMMAND_LINE)}"

@@ -26,7 +26,7 @@ with needs("notebook"):
 
     from curriculum.gate.chapter import CHAPTER, read
     from curriculum.gate.references import Numbers
-    from curriculum.regions import ROOT, read_all
+    from curriculum.lesson.regions import ROOT, read_all
 
 CARRIED = """contact.py checks.py exercises/*.py exercises/kit/* curriculum/__init__.py
 curriculum/show/__init__.py curriculum/show/picture.py curriculum/show/figures.mplstyle

@@ -13,11 +13,11 @@ from markupsafe import Markup
 import contact
 from curriculum import stored
 from curriculum.gate.references import Numbers, load_meta
+from curriculum.lesson.regions import ROOT, read_all
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises, blank_cases
 from curriculum.page.panels import pieces
-from curriculum.regions import ROOT, read_all
 from curriculum.show import picture
 
 SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column

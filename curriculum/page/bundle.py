@@ -15,8 +15,8 @@ from pathlib import Path
 from py_mini_racer import JSEvalException, MiniRacer
 
 import contact
+from curriculum.lesson.regions import ROOT
 from curriculum.lesson.to_js import to_js
-from curriculum.regions import ROOT
 
 HERE = Path(__file__).resolve().parent
 USED = (  # of contact.py, beside the steps

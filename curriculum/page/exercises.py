@@ -3,8 +3,8 @@
 import ast
 import re
 
+from curriculum.lesson.regions import ROOT
 from curriculum.page.chapter import inline, markdown
-from curriculum.regions import ROOT
 from exercises.kit import FACTS, blanks, predict
 
 FOLDER = ROOT / "exercises"

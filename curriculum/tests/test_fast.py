@@ -1,13 +1,16 @@
 """The compiled twin of contact.py gives the bytes of the plain loops, whatever it is given."""
 
 import math
+import os
+import shutil
 
 import numpy as np
 import pytest
 
 import contact
+from curriculum.lesson import to_loops
 from curriculum.stress import scenes
-from curriculum.tests.helpers import python
+from curriculum.tests.helpers import ROOT, python
 
 fast = pytest.importorskip("curriculum.fast", reason="numba is missing", exc_type=ImportError)
 MODELS = contact.STEPPED
@@ -29,7 +32,6 @@ def check_same(model, scene, dt, steps, **knobs):
     for name, left, right in zip("tqv", one, other):
         differ = (left.view(np.int64) != right.view(np.int64)).reshape(len(left), -1).any(1)
         assert not differ.any(), f"{name} of {model} first differs at step {differ.argmax()}"
-    assert one.unsettled == other.unsettled, "steps that did not settle"
     gaps = [way(other.q, scene.radius) for way in (fast.smallest_gap, contact.smallest_gap)]
     np.testing.assert_array_equal(*gaps)
     return other
@@ -78,12 +80,6 @@ def test_balls_that_stand_still_go_on_while_their_impulses_change(
     twin = check_same(model, scene, dt, 400, **knobs)
     plain = contact.run_model(model, scene, dt, 400, contact.Settings(**knobs))  # with skips
     assert plain.q.tobytes() == twin.q.tobytes() and plain.v.tobytes() == twin.v.tobytes()
-
-
-def test_the_twin_counts_the_steps_that_do_not_settle_also_where_a_cycle_is_copied():
-    """In a step of the smallest number above 0 all is rounding: every other step settles."""
-    scene = contact.scene_of(0.0, [0.09, 0.28], [7.8, 8.2])
-    assert check_same("soft", scene, 5e-324, 13, solref=(-120.0, -5.0)).unsettled == 7
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -137,15 +133,19 @@ def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls_and_under_a_lar
 def test_a_large_ball_adds_no_pairs_of_small_ones():
     alone = contact.build_scene("pile", 0, 2000)
     beside = add_ball(alone, x=0.0, y=30.0, radius=10.0, mass=1.0)
-    balls = [fast.Stepper("lcp", s, 0.002, contact.Settings()).balls for s in (alone, beside)]
-    assert np.array_equal(*(fast.list_pairs(each, 0.1) for each in balls))
+    pairs = []
+    for scene in (alone, beside):
+        balls = fast.make_balls(scene.q0, scene.v0, scene.mass, scene.radius)
+        loops = fast.GAPS.load(scene.q0[None], balls, 0.1)
+        pairs.append(loops.list_pairs(balls, 0.1))
+    assert np.array_equal(*pairs)
 
 
 def test_a_pile_comes_to_rest_from_a_warm_start_and_lies_less_deep():
     speed, depth = {}, {}
     scene = shaft(60, 8)
     for warm in (0.0, 0.8):
-        _, q, v, _ = fast.run_model("lcp", scene, 0.002, 6000, contact.Settings(warm=warm))
+        _, q, v = fast.run_model("lcp", scene, 0.002, 6000, contact.Settings(warm=warm))
         speed[warm] = np.sqrt((v[-1] ** 2).sum(0)).max()
         depth[warm] = -fast.smallest_gap(q[-1:], scene.radius)[0]
     assert max(speed.values()) < 1e-3
@@ -158,25 +158,82 @@ def test_a_run_taken_on_in_parts_has_the_bytes_of_the_whole():
     stepper = fast.Stepper("lcp", scene, 0.002, chosen)
     rows = np.empty((301, 4, 30))
     for first, last in ((0, 1), (1, 120), (120, 300)):
-        stepper.take(rows[first : last + 1], np.ones(301, bool), False)
+        stepper.take(rows[first : last + 1])
     assert np.array_equal(rows[1:, :2], whole.q[1:])
     assert np.array_equal(rows[1:, 2:], whole.v[1:])
 
 
 def test_run_model_gives_many_balls_to_the_twin_and_says_how_far_it_is():
     scene, heard = contact.build_scene("pile", 0, 200), []
+    fast.run_model("lcp", scene, 0.002, 1, contact.Settings())  # now its loops are kept
     run = contact.run_model("lcp", scene, 0.002, 130, progress=heard.append)
     assert heard == [130], "the plain loops report every step"
     assert run.q.tobytes() == plainly("lcp", scene, 0.002, 130, contact.Settings()).q.tobytes()
 
 
-@pytest.mark.parametrize("prepare", ["", "import sys; sys.modules['numba'] = None; "])
-def test_where_nothing_is_compiled_contact_takes_its_plain_loops(prepare):
-    code = (
-        prepare + "import contact; assert contact.beside('fast') is None; "
-        "scene = contact.build_scene('pile', 0, 40); "
-        "print(contact.run_model('lcp', scene, 0.002, 20).q.sum())"
-    )
-    done = python("-c", code, NUMBA_DISABLE_JIT="0" if prepare else "1")
-    whole = fast.run_model("lcp", contact.build_scene("pile", 0, 40), 0.002, 20, contact.Settings())
-    assert done.stdout == f"{whole.q.sum()}\n", done.stderr
+PLAIN = "contact.run_model('lcp', contact.build_scene('pile', 0, 40), 0.002, 700).q.sum()"
+TINY = (
+    "compiled.Loops('tiny', 'def twice(x):\\n    return 2.0 * x\\n', 'twice').load(1.0).twice(3.0)"
+)
+
+
+def run_in(folder, value, **environment):
+    """What a copy of the course in a folder says that a value is."""
+    if not (folder / "contact.py").exists():
+        for name in ("contact.py", "curriculum/commands.py", "curriculum/fast.py"):
+            (folder / name).parent.mkdir(exist_ok=True)
+            shutil.copy(ROOT / name, folder / name)
+        shutil.copytree(ROOT / "curriculum/lesson", folder / "curriculum/lesson")
+    code = f"import contact; from curriculum.lesson import compiled; print({value})"
+    code = code if value == TINY else f"import contact; print({value})"
+    done = python("-c", code, cwd=folder, PYTHONPATH="", **environment)
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr[-2000:]
+    return float(done.stdout)
+
+
+def test_nothing_is_compiled_for_a_short_run_or_where_numba_must_not(tmp_path):
+    scene = contact.build_scene("pile", 0, 40)
+    right = plainly("lcp", scene, 0.002, 700, contact.Settings()).q.sum()
+    assert run_in(tmp_path, PLAIN) == run_in(tmp_path, PLAIN, NUMBA_DISABLE_JIT="1") == right
+    assert not (tmp_path / ".cache").exists()
+
+
+def test_whatever_stands_in_the_way_of_the_kept_loops_they_give_the_same(tmp_path):
+    """Cut, random, a file in place of the folder, no home."""
+    cache = tmp_path / ".cache/loops"
+    assert run_in(tmp_path, TINY) == 6.0 and list(cache.glob("tiny_*/kept"))
+    for content in (b"cut", os.urandom(3000)):
+        kept = [*cache.rglob("*.nb?")]
+        assert kept, "compiled anew and kept"
+        for path in kept:
+            path.write_bytes(content)
+        assert run_in(tmp_path, TINY, HOME="/nowhere") == run_in(tmp_path, TINY) == 6.0
+    shutil.rmtree(tmp_path / ".cache")
+    (tmp_path / ".cache").write_text("no folder")
+    assert run_in(tmp_path, TINY) == 6.0
+
+
+def test_other_source_and_other_constants_are_other_loops(monkeypatch):
+    names = {fast.loops_of("lcp_step").name}
+    monkeypatch.setattr(contact, "GRAVITY", -1.62)
+    assert "GRAVITY = -1.62" in fast.loops_of("lcp_step").source
+    assert len(names | {fast.loops_of("lcp_step").name, fast.loops_of("soft_step").name}) == 3
+
+
+SIXTH = (
+    "def sixth_step(balls, dt):\n    contacts = detect_contacts(balls)\n    {}\n    return contacts"
+)
+
+
+@pytest.mark.parametrize("line, words", [
+    ("top = max(ball.y for ball in balls)", "no loop can say it; write a loop"),
+    ("struck = {c.a for c in contacts}", "write a mark on the balls, or a loop"),
+    ("balls.sort()", r"balls.sort\(\).*; write math's own, or a function of contact.py"),
+    ("balls[0].colour = 1.0", ".colour is no field of Ball or Contact"),
+    ("speeds = [ball.vx for ball in balls]", "write a loop, or choose: x = "),
+])  # fmt: skip
+def test_what_no_loop_can_say_is_refused_with_its_line_and_what_to_write_instead(line, words):
+    lesson = (ROOT / "contact.py").read_text("utf-8")
+    number = lesson.count("\n") + 3
+    with pytest.raises(to_loops.Refused, match=f"line {number}: .*{words}"):
+        to_loops.loops("sixth_step", lesson + SIXTH.format(line))

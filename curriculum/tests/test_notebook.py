@@ -13,8 +13,8 @@ import nbformat
 import pytest
 
 import contact
-from curriculum import regions
 from curriculum.gate.chapter import CHAPTER, read
+from curriculum.lesson import regions
 from curriculum.notebook import __main__ as notebook
 
 SOFTER = "def penalty_normal_force(depth, v_n, stiffness, damping):\n    return 0.0\n"

@@ -11,9 +11,9 @@ import pytest
 import contact
 from curriculum.gate.chapter import CHAPTER, read
 from curriculum.implicit import implicit_step
+from curriculum.lesson.regions import ROOT
 from curriculum.page.build import page_data
 from curriculum.page.bundle import evaluate
-from curriculum.regions import ROOT
 from curriculum.tests.page_drawing import Drawing, arrow, figures, numbers, place, power
 
 PARTS = read((ROOT / CHAPTER).read_text("utf-8"))

@@ -31,5 +31,5 @@ FAULTS = [
     (STORED, "is not None :]", "is None :]", STALE),
     (STORED, 'if " " in str(node.value)', "if False", STALE),
     (STORED, "used |= {n.id ", "{n.id ", STALE),
-    ("curriculum/regions.py", 'dedent(code).rstrip("\\n")', "dedent(code)", READ),
+    ("curriculum/lesson/regions.py", 'dedent(code).rstrip("\\n")', "dedent(code)", READ),
 ]  # fmt: skip

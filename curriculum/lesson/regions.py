@@ -15,7 +15,14 @@ from typing import NamedTuple
 
 from curriculum.commands import ROOT
 
-CODE = ("contact.py", "curriculum/exact.py", "curriculum/fast.py")  # what a run runs
+CODE = (  # what a run runs
+    "contact.py",
+    "curriculum/exact.py",
+    "curriculum/fast.py",
+    "curriculum/lesson/to_loops.py",
+    "curriculum/lesson/rows.py",
+    "curriculum/lesson/compiled.py",
+)
 LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/implicit.py")  # what has regions
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
 NAME = r"[a-z][a-z0-9_-]*"

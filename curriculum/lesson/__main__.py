@@ -1,0 +1,14 @@
+"""Compile the loops for many balls and keep them: `python -m curriculum.lesson`, once, a minute."""
+
+import contact
+from curriculum import fast
+from curriculum.commands import Parser
+
+if __name__ == "__main__":
+    Parser(prog="python -m curriculum.lesson", description=__doc__).parse_args()
+    scene = contact.build_scene("pile", bodies=3)
+    for model in contact.STEPPED:
+        fast.run_model(model, scene, 0.002, 2, contact.Settings())
+        print(f"compiled: {model}", flush=True)
+    fast.smallest_gap(scene.q0[None], scene.radius)
+    print("compiled: the smallest gap")

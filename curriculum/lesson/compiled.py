@@ -1,0 +1,80 @@
+"""Loops compiled by numba, kept on disk, and taken only where that pays.
+
+The source of the loops is a file in a folder of its own, named by the hash of all that decides what
+is compiled. So what was compiled for another contact.py is never taken, two processes may write at
+once, and whatever stands in the way of the folder (read-only, full, cut, no home) costs the keeping
+or the compiling, and never the run: the plain loops do it.
+"""
+
+import hashlib
+import os
+import shutil
+import sys
+import types
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from curriculum.commands import ROOT, to_install, write_whole
+
+try:
+    NUMBA = version("numba")  # itself it is imported where loops are loaded: that takes a while
+except PackageNotFoundError:
+    raise ImportError(to_install("numba")) from None
+if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":  # contact.py's own loops are faster
+    raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
+
+FOLDER = ROOT / ".cache" / "loops"
+SECONDS = 8.0  # about what it takes to compile the loops of one model
+
+
+class Loops:
+    """The functions of a source, to be compiled: `entry` is the one that is called from Python."""
+
+    def __init__(self, name: str, source: str, entry: str):
+        made_of = f"{source}{sys.version}{NUMBA}"
+        self.name = f"{name}_{hashlib.sha256(made_of.encode()).hexdigest()[:16]}"
+        self.source, self.entry = source, entry
+        self.folder = FOLDER / self.name
+        self.kept = self.folder / "kept"  # stands there once all is compiled and on disk
+        self.module: types.ModuleType | None = None
+
+    def pays(self, seconds: float) -> bool:
+        """Whether to take them for a run that plain loops would need so many seconds for."""
+        return self.module is not None or self.kept.exists() or seconds > SECONDS
+
+    def load(self, *examples):
+        """The module, its entry compiled for arguments like these; slow the first time."""
+        if self.module is None:
+            if not self.kept.exists() and sys.stderr and sys.stderr.isatty():
+                print(f"compiling {self.name.rpartition('_')[0]}, once ...", file=sys.stderr)
+            try:
+                self.module = self.compile(self.write(), examples)
+                if not self.kept.exists():
+                    write_whole(self.kept, "")
+            except Exception:  # numba's own, pickle's, a full disk: forget what is kept
+                shutil.rmtree(self.folder, ignore_errors=True)
+                if self.module is None:
+                    self.module = self.compile(None, examples)
+        return self.module
+
+    def write(self) -> Path:
+        """The file of the source."""
+        path = self.folder / f"{self.name}.py"
+        if not path.exists():
+            write_whole(path, self.source)
+        return path
+
+    def compile(self, path, examples) -> types.ModuleType:
+        """The module with its functions compiled, kept beside `path` if there is one."""
+        import numba
+
+        module = types.ModuleType(self.name)
+        module.__file__ = str(path or f"<{self.name}>")
+        sys.modules[self.name] = module  # numba's files name it
+        exec(compile(self.source, module.__file__, "exec"), vars(module))
+        for name, function in list(vars(module).items()):
+            if isinstance(function, types.FunctionType):
+                keep = path is not None and name == self.entry
+                setattr(module, name, numba.njit(function, cache=keep))
+        getattr(module, self.entry).compile(tuple(numba.typeof(each) for each in examples))
+        return module
