@@ -38,10 +38,10 @@ def made(step, fixed) -> Loops:
     text = to_loops.loops(step)
     if "def step_reach(" not in text:  # it looks as far as the margin
         text += f"\n\ndef step_reach(W, balls, dt):\n    return {contact.CONTACT_MARGIN!r}\n"
-    return Loops(step, f"{BY_HAND}\n\n{text}\n\ntake_step = {step}\n", "take_steps")
+    return Loops(step, f"{BY_HAND}\n\n{text}\n\ntake_step = {step}\n")
 
 
-GAPS = Loops("gaps", BY_HAND, "find_gaps")
+GAPS = Loops("gaps", BY_HAND)
 
 
 def table(names, source) -> np.dtype:
@@ -85,7 +85,9 @@ class Stepper:
     def take(self, states, cycles=False) -> tuple[int, int]:
         """Take len(states) - 1 steps at most, as take_steps does; returns steps and period."""
         given = states, self.world, self.listed, cycles, self.spreads, self.knobs
-        self.world, self.listed, steps, period = self.loops.load(*given).take_steps(*given)
+        self.world, self.listed, steps, period = self.loops.load({"take_steps": given}).take_steps(
+            *given
+        )
         return steps, period
 
 
@@ -130,7 +132,7 @@ def smallest_gap(q, radius) -> np.ndarray:
     """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
     balls = make_balls(q[0], np.zeros_like(q[0]), np.ones(len(radius)), radius)
     given = np.array(q, float), balls, float(np.median(radius))
-    return GAPS.load(*given).find_gaps(*given)
+    return GAPS.load({"find_gaps": given}).find_gaps(*given)
 
 
 def gap_if_it_pays(q, radius) -> np.ndarray | None:

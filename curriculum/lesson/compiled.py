@@ -28,12 +28,12 @@ SECONDS = 8.0  # about what it takes to compile the loops of one model
 
 
 class Loops:
-    """The functions of a source, to be compiled: `entry` is the one that is called from Python."""
+    """The functions of a source, to be compiled, each with numba's options."""
 
-    def __init__(self, name: str, source: str, entry: str):
-        made_of = f"{source}{sys.version}{NUMBA}"
-        self.name = f"{name}_{hashlib.sha256(made_of.encode()).hexdigest()[:16]}"
-        self.source, self.entry = source, entry
+    def __init__(self, name: str, source: str, **options):
+        decided_by = f"{source}{options}{sys.version}{NUMBA}"
+        self.name = f"{name}_{hashlib.sha256(decided_by.encode()).hexdigest()[:16]}"
+        self.source, self.options = source, options
         self.folder = FOLDER / self.name
         self.kept = self.folder / "kept"  # stands there once all is compiled and on disk
         self.module: types.ModuleType | None = None
@@ -42,8 +42,11 @@ class Loops:
         """Whether to take them for a run that plain loops would need so many seconds for."""
         return self.module is not None or self.kept.exists() or seconds > SECONDS
 
-    def load(self, *examples):
-        """The module, its entry compiled for arguments like these; slow the first time."""
+    def load(self, examples: dict) -> types.ModuleType:
+        """The module, compiled for {function that Python calls: arguments like these}.
+
+        Slow the first time. Raises ImportError where numba cannot be imported.
+        """
         if self.module is None:
             if not self.kept.exists() and sys.stderr and sys.stderr.isatty():
                 print(f"compiling {self.name.rpartition('_')[0]}, once ...", file=sys.stderr)
@@ -51,6 +54,8 @@ class Loops:
                 self.module = self.compile(self.write(), examples)
                 if not self.kept.exists():
                     write_whole(self.kept, "")
+            except ImportError:
+                raise
             except Exception:  # numba's own, pickle's, a full disk: forget what is kept
                 shutil.rmtree(self.folder, ignore_errors=True)
                 if self.module is None:
@@ -74,7 +79,8 @@ class Loops:
         exec(compile(self.source, module.__file__, "exec"), vars(module))
         for name, function in list(vars(module).items()):
             if isinstance(function, types.FunctionType):
-                keep = path is not None and name == self.entry
-                setattr(module, name, numba.njit(function, cache=keep))
-        getattr(module, self.entry).compile(tuple(numba.typeof(each) for each in examples))
+                keep = path is not None and name in examples
+                setattr(module, name, numba.njit(function, cache=keep, **self.options))
+        for name, given in examples.items():
+            getattr(module, name).compile(tuple(numba.typeof(each) for each in given))
         return module

@@ -136,7 +136,7 @@ def test_a_large_ball_adds_no_pairs_of_small_ones():
     pairs = []
     for scene in (alone, beside):
         balls = fast.make_balls(scene.q0, scene.v0, scene.mass, scene.radius)
-        loops = fast.GAPS.load(scene.q0[None], balls, 0.1)
+        loops = fast.GAPS.load({"find_gaps": (scene.q0[None], balls, 0.1)})
         pairs.append(loops.list_pairs(balls, 0.1))
     assert np.array_equal(*pairs)
 
@@ -180,7 +180,10 @@ TINY = (
 def run_in(folder, value, **environment):
     """What a copy of the course in a folder says that a value is."""
     if not (folder / "contact.py").exists():
-        for name in ("contact.py", "curriculum/commands.py", "curriculum/fast.py"):
+        for name in (
+            "contact.py",
+            *(f"curriculum/{n}.py" for n in ("__init__", "commands", "fast")),
+        ):
             (folder / name).parent.mkdir(exist_ok=True)
             shutil.copy(ROOT / name, folder / name)
         shutil.copytree(ROOT / "curriculum/lesson", folder / "curriculum/lesson")
