@@ -160,11 +160,10 @@ def main():
         print(error, file=sys.stderr)
         return 1
     print(f"{out}: {len(text.encode()) / 1000:.0f} kB")
-    lab, install = (
-        command("-m", "jupyter", "lab", out),
-        command("-m", "pip", "install", "jupyterlab"),
+    print(
+        f"open it: upload it to colab.research.google.com; {command('-m', 'jupyter', 'lab', out)}"
     )
-    print(f"open it on colab.research.google.com, or here: {lab}\n(which needs: {install})")
+    print(f"(jupyter lab: {command('-m', 'pip', 'install', 'jupyterlab')})")
     return 0
 
 

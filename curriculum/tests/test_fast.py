@@ -172,9 +172,8 @@ def test_run_model_gives_many_balls_to_the_twin_and_says_how_far_it_is():
 
 
 PLAIN = "contact.run_model('lcp', contact.build_scene('pile', 0, 40), 0.002, 700).q.sum()"
-TINY = (
-    "compiled.Loops('tiny', 'def twice(x):\\n    return 2.0 * x\\n', 'twice').load(1.0).twice(3.0)"
-)
+TWICE = "def twice(x):\n    return 2.0 * x\n"
+TINY = f"compiled.Loops('tiny', {TWICE!r}).load({{'twice': (1.0,)}}).twice(3.0)"
 
 
 def run_in(folder, value, **environment):
