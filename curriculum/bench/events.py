@@ -20,26 +20,27 @@ PHASES = 2000
 
 
 class World:
-    """Balls as flat arrays (x0, y0, x1, y1, ...); a contact is a pair (a, b), b = -1 the floor."""
+    """Balls as flat arrays (x0, y0, x1, y1, ...), the floor as the last one, at (0, 0) for ever."""
 
     def __init__(self, scene, gravity):
-        count, moves = len(scene.mass), np.isfinite(scene.mass)
-        pairs = itertools.combinations(range(-1, count), 2)
-        self.b, self.a = np.array([p for p in pairs if moves[p[1]] or p[0] >= 0 and moves[p[0]]]).T
-        self.w, self.e = np.repeat(1.0 / scene.mass, 2), scene.restitution
+        mass = np.append(scene.mass, np.inf)
+        pairs = itertools.combinations(range(len(mass)), 2)
+        self.a, self.b = np.array([(a, b) for a, b in pairs if np.isfinite(mass[[a, b]]).any()]).T
+        self.floor = self.b == len(scene.mass)
+        self.w, self.e = np.repeat(1.0 / mass, 2), scene.restitution
         self.reach = scene.radius[self.a] + np.append(scene.radius, 0.0)[self.b]
-        self.g = np.where(np.arange(2 * count) % 2, -gravity, 0.0) * np.repeat(moves, 2)
+        self.g = np.where(np.arange(2 * len(mass)) % 2, -gravity, 0.0) * (self.w > 0.0)
 
     def apart(self, x, which):
         """x of ball a less x of ball b (K, 2); of the floor only what is vertical counts."""
-        x, floor = np.append(x, (0.0, 0.0)).reshape(-1, 2), self.b[which] < 0
+        x = x.reshape(-1, 2)
         d = x[self.a[which]] - x[self.b[which]]
-        d[floor, 0] = 0.0
+        d[self.floor[which], 0] = 0.0
         return d
 
     def length(self, d, which):
         """Of d; of the floor's contacts with its sign, or who falls far through it is above it."""
-        return np.where(self.b[which] < 0, d[:, 1], np.hypot(*d.T))
+        return np.where(self.floor[which], d[:, 1], np.hypot(d[:, 0], d[:, 1]))
 
     def gaps(self, q, which=slice(None)):
         return self.length(self.apart(q, which), which) - self.reach[which]
@@ -47,13 +48,12 @@ class World:
     def system(self, q, v, which):
         """J, W, and the accelerations of the gaps of these contacts without any push."""
         d, dv = self.apart(q, which), self.apart(v, which)
-        length = self.length(d, which)
-        n, k = d / length[:, None], np.arange(len(d))
-        J = np.zeros((len(d), len(self.w) // 2 + 1, 2))
-        J[k, self.a[which]] += n
-        J[k, self.b[which]] -= n
-        J = J[:, :-1].reshape(len(d), -1)
-        turn = ((dv**2).sum(1) - (J @ v) ** 2) / length * (self.b[which] >= 0)
+        length, k = self.length(d, which), np.arange(len(d))
+        n = d / length[:, None]
+        J = np.zeros((len(d), len(self.w) // 2, 2))
+        J[k, self.a[which]], J[k, self.b[which]] = n, -n
+        J = J.reshape(len(d), -1)
+        turn = ((dv**2).sum(1) - (J @ v) ** 2) / length * ~self.floor[which]
         return J, (J * self.w) @ J.T, J @ self.g + turn
 
     def phase(self, t, end, y, holding, rtol, longest):
@@ -111,7 +111,7 @@ def pushes(W, free):
 def run(scene, times, gravity, rtol=1e-12, longest=0.01):
     """q and v (T, 2, N) at these times. longest [s]: of a step, so that no gap is missed."""
     world, rows, t = World(scene, gravity), [], 0.0
-    y = np.append(scene.q0.T.ravel(), scene.v0.T.ravel())
+    y = np.concatenate([np.append(part.T.ravel(), (0.0, 0.0)) for part in (scene.q0, scene.v0)])
     for _ in range(PHASES):
         q, v = np.split(y, 2)
         v, holding = world.strike(q, v)
@@ -122,4 +122,4 @@ def run(scene, times, gravity, rtol=1e-12, longest=0.01):
         if t >= times[-1] or found.status < 0:
             break
     rows += [y] * (len(times) - len(rows))
-    return np.array(rows).reshape(len(times), 2, -1, 2).transpose(1, 0, 3, 2)
+    return np.array(rows).reshape(len(times), 2, -1, 2).transpose(1, 0, 3, 2)[..., :-1]

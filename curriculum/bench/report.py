@@ -144,24 +144,41 @@ def compiled(rows):
 
 
 def take(points, piles):
-    """Rows of the README's table: what one types, and gets, and would get elsewhere."""
-    best, keys = contest(points), ("engine", "setting", "substeps")
+    """Rows of the README's table: what one types, and gets, and would get elsewhere.
+
+    A row that another one of the table beats in both error and time is not shown.
+    """
+    chosen, best = list(wanted((*points, *piles))), contest(points)
+    for want, row in chosen:
+        name, rivals = row.get("problem"), [other for _, other in chosen]
+        if any(beats(other, row) for other in rivals if name and other.get("problem") == name):
+            continue
+        typed = "<br>".join(f"`{line}`" for line in want["type"].splitlines())
+        if name:
+            other = cell(best[name].get(RIVAL)), cell(best_of(best[name], PEERS), True)
+            yield [want["wish"], typed, cell(row), *other]
+            continue
+        depth = min(d for d in DEPTHS if row["mean_depth"] <= d)
+        other = next(r[4] for r in races(piles) if r[:2] == (row["bodies"], depth))
+        mine = f"at most {depth:g} r deep, {number(row['resting'])} µs a step"
+        yield [want["wish"], typed, mine, "-", resting(other)]
+
+
+def wanted(rows):
+    """(a line of take.csv, the row that was measured of it)"""
+    keys = "engine", "setting", "substeps"
     with (HERE / "take.csv").open(encoding="utf-8", newline="") as file:
         for want in csv.DictReader(file):
-            typed = "<br>".join(f"`{line}`" for line in want["type"].splitlines())
-            key, where = [want[k] for k in keys], want["problem"]
-            for row in (*points, *piles):
-                if [str(row[k]) for k in keys] != key or row.get("dt", measure.DT) != measure.DT:
-                    continue
-                if row.get("problem") == where:
-                    found = best[where]
-                    other = cell(found.get(RIVAL)), cell(best_of(found, PEERS), True)
-                    yield [want["wish"], typed, cell(row), *other]
-                elif str(row.get("bodies")) == where:
-                    depth = min(d for d in DEPTHS if row["mean_depth"] <= d)
-                    other = next(r[4] for r in races(piles) if r[:2] == (row["bodies"], depth))
-                    mine = f"at most {depth:g} r deep, {number(row['resting'])} µs a step"
-                    yield [want["wish"], typed, mine, "-", resting(other)]
+            for row in rows:
+                where = row.get("problem") or str(row.get("bodies"))
+                same = where == want["problem"] and row.get("dt", measure.DT) == measure.DT
+                if same and all(str(row[key]) == want[key] for key in keys):
+                    yield want, row
+
+
+def beats(one, other):
+    """Whether a point is better than another in both error and time; the reference has no error."""
+    return (one["error"] or 0.0) < (other["error"] or 0.0) and one["ms"] < other["ms"]
 
 
 def winners(rows):
