@@ -1,7 +1,7 @@
 """The benchmark's command line.
 
     python -m curriculum.bench              everything below, one after the other (25 minutes)
-    python -m curriculum.bench accuracy     run time against error, where the answer is known
+    python -m curriculum.bench points       run time against error, where the answer is known
     python -m curriculum.bench piles        time a step of 12 to 10,000 balls, at equal depth
     python -m curriculum.bench processes    what whole processes take
     python -m curriculum.bench draw         page and figures again, from the results alone
@@ -11,9 +11,6 @@ the settings whose name contains these words; all other rows stay. With --quick 
 two, measures little, and writes to outputs/bench-quick, which nothing quotes.
 """
 
-import csv
-import io
-import json
 import os
 import sys
 import time
@@ -21,47 +18,22 @@ import time
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
-from curriculum.commands import Parser, needs, write_json, write_whole
+from curriculum import stored
+from curriculum.commands import Parser, needs, write_json
 
 with needs("bench"):
     from curriculum.bench import engines, measure, report, settings
-    from curriculum.measured import results
 
-FILES = {"accuracy": "points.csv", "piles": "piles.csv", "processes": "processes.csv"}
-FULL = results.ROOT / results.FOLDERS["bench"]
-QUICK = results.ROOT / "outputs" / "bench-quick"
-CODE = "curriculum/bench/measure.py"  # what it imports is found
+FULL, QUICK = stored.ROOT / stored.FOLDERS["bench"], stored.ROOT / "outputs" / "bench-quick"
+CODE = "curriculum/bench/measure.py", "curriculum/bench/settings.csv"  # and what they import
 
 
 def load(folder):
-    """{part: rows} of a results folder, and its made.json; numbers are numbers, "" is None."""
-    sections = {}
-    for part, name in FILES.items():
-        if (folder / name).exists():
-            with (folder / name).open(encoding="utf-8", newline="") as file:
-                sections[part] = [{k: value_of(k, v) for k, v in row.items()}
-                                  for row in csv.DictReader(file)]  # fmt: skip
-    made = folder / "made.json"
-    return sections, json.loads(made.read_text("utf-8")) if made.exists() else {}
-
-
-def value_of(column, text):
-    """A cell of a CSV file: words in three columns, else a number, or None."""
-    if column in ("problem", "engine", "setting", "process"):
-        return text
-    number = float(text) if text else None
-    return int(number) if number is not None and number.is_integer() else number
-
-
-def save(path, rows):
-    """Rows as CSV, whole or not at all; floats with five digits, None and NaN empty."""
-    out = io.StringIO()
-    writer = csv.DictWriter(out, rows[0], lineterminator="\n")
-    writer.writeheader()
-    for row in rows:
-        writer.writerow({k: f"{v:.5g}" if isinstance(v, float) and v == v else
-                         "" if v != v or v is None else v for k, v in row.items()})  # fmt: skip
-    write_whole(path, out.getvalue())
+    """{part: rows} of a results folder, and its made.json."""
+    tables, made = stored.load(folder)
+    for row in (*tables.get("points", ()), *tables.get("piles", ())):
+        row["setting"] = row["setting"] or ""
+    return tables, made
 
 
 def take(part, quick, only, folder):
@@ -70,7 +42,7 @@ def take(part, quick, only, folder):
     if not wanted:
         raise ValueError(f"--only {only}: no setting in settings.csv has this name")
     command = f"python -m curriculum.bench {part}" + f" --only {only!r}" * bool(only)
-    about = results.origin(command, CODE, *["contact.py"] * (part == "processes"),
+    about = stored.origin(command, *CODE, *["contact.py"] * (part == "processes"),
                            kept=folder == FULL)  # fmt: skip
     about["versions"] |= engines.versions()
     sections, made = load(folder)
@@ -79,7 +51,7 @@ def take(part, quick, only, folder):
     found = measure.PARTS[part](quick, lambda c: c.name in wanted, stay)
     if not found:
         raise ValueError(f"{part}: nothing of {only or 'it'} runs here")
-    save(folder / FILES[part], in_order(part, stay + found))
+    stored.save(folder / f"{part}.csv", in_order(part, stay + found))
     if not only:
         made = {key: value for key, value in made.items() if key.split()[0] != part}
     write_json(folder / "made.json", made | {f"{part} {only or ''}".strip(): about})
@@ -119,7 +91,7 @@ def main(argv=None):
         sections, made = load(folder)
         report.write(folder, sections, made)
         if folder == FULL:
-            results.write_block("bench", report.written("readme.md", sections, made))
+            stored.write_block("bench", report.written("readme.md", sections, made))
     except (ImportError, FileNotFoundError, ValueError) as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1

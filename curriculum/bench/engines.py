@@ -19,7 +19,6 @@ from pathlib import Path
 import numpy as np
 
 import contact
-from curriculum import fast
 from curriculum.bench import events
 
 BLOCK = 200  # steps that a twin takes in one go
@@ -96,13 +95,15 @@ class Ours(Whole):
 
     def states(self, n):
         model, scene, dt = self.given
-        run_model = fast.run_model if contact.MODELS[model].step else contact.run_model
+        run_model = contact.run_model
+        if contact.MODELS[model].step:
+            run_model = contact.beside("fast", needed=True).run_model
         run = run_model(model, scene, dt, n * self.substeps, self.settings)
         return run.q[:: self.substeps], run.v[:: self.substeps]
 
     def advance(self, n):
         if self.motion is None:
-            self.motion = fast.Stepper(*self.given, self.settings)
+            self.motion = contact.beside("fast", needed=True).Stepper(*self.given, self.settings)
             self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))
             self.settled = np.ones(BLOCK + 1, bool)
         for first in range(0, n, BLOCK):
@@ -134,8 +135,9 @@ class Siconos(Whole):
 
     def states(self, n):
         words = json.dumps(self.given | dict(looks=n, substeps=self.substeps))
-        command = ["/usr/bin/python3", Path(__file__).with_name("moreau.py")]
-        run = subprocess.run(command, input=words, capture_output=True, text=True, check=True)
+        command = ["/usr/bin/python3", "-c", "import moreau; moreau.main()"]
+        how = dict(cwd=Path(__file__).parent, capture_output=True, text=True, check=True)
+        run = subprocess.run(command, input=words, **how)
         found = json.loads(run.stdout.splitlines()[-1])
         self.took = found["seconds"]
         return tuple(np.array(found[part]).transpose(0, 2, 1) for part in "qv")

@@ -47,7 +47,7 @@ MANY, COPIES, AGAIN = 10_000, 10, 1500  # made of settled copies; steps to settl
 def points(quick, wanted, known):
     """A row a point, of the settings that are wanted."""
     jobs = list(cells(quick, wanted))
-    print(f"accuracy: {len(jobs)} points, their errors first, then their times", flush=True)
+    print(f"{len(jobs)} points, their errors first, then their times", flush=True)
     errors = parallel.run_jobs(errors_of, jobs, "errors")
     rare = {job for job in jobs if settings.BY_NAME[job[1]].rare}
     times = timing.in_fresh_processes(time_of, jobs, 1 if quick else PROCESSES, "run times", rare)
@@ -312,4 +312,4 @@ def processes(quick, wanted, known):
             for name, found in sorted(seconds.items())]  # the first warms the caches  # fmt: skip
 
 
-PARTS = {"accuracy": points, "piles": piles, "processes": processes}
+PARTS = {"points": points, "piles": piles, "processes": processes}

@@ -58,7 +58,3 @@ def main():
     seconds = time.process_time() - start
     q, v = ([[ball[k] for ball in row] for row in rows] for k in (0, 1))
     print("\n" + json.dumps(dict(seconds=seconds, q=q, v=v)))  # after the words of the solver
-
-
-if __name__ == "__main__":
-    main()

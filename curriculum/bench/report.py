@@ -9,11 +9,11 @@ from pathlib import Path
 
 from contact import MANY, MODELS, STEPPED
 from contact import shown as number
+from curriculum import stored
 from curriculum.bench import measure, problems
 from curriculum.bench.engines import ENGINES, LABELS
 from curriculum.bench.measure import BUDGETS, DEPTHS, WORK
 from curriculum.commands import write_whole
-from curriculum.measured import results
 from curriculum.show import picture
 
 HERE = Path(__file__).parent
@@ -223,7 +223,7 @@ def lines(rows):
 def written(name, sections, made):
     """page.md or readme.md with everything filled in."""
     points, piles, processes = (sections.get(part, ()) for part in measure.PARTS)
-    about = made.get("accuracy", {"versions": {}})
+    about = made.get("points", {"versions": {}})
     there = (f"{row[1]} {about['versions'].get(row[1], 'not there')}" for row in ENGINES.values())
     resters = ([f"{race[0]:,}", f"{race[1]:g}", *map(resting, race[2:])] for race in races(piles))
     taken = ([row["process"], *(number(row[f"seconds{k}"]) for k in ("", "_min", "_max"))]
@@ -242,7 +242,7 @@ def written(name, sections, made):
         races=lines(resters),
         falling=lines(falling(piles)),
         processes=lines(taken),
-        origins="\n".join(f"- {part}: {results.footer({'measured': each})}"
+        origins="\n".join(f"- {part}: {stored.footer(each)}"
                           for part, each in made.items()),
     )  # fmt: skip
 
@@ -305,10 +305,10 @@ def ratio_figure(rows, about):
 
 def write(folder, sections, made):
     """README.md and the figures into the results folder. Raises ImportError without matplotlib."""
-    files, rows = {"README.md": written("page.md", sections, made)}, sections.get("accuracy", ())
+    files, rows = {"README.md": written("page.md", sections, made)}, sections.get("points", ())
     if rows:
-        files["ratios.svg"] = ratio_figure(rows, made["accuracy"])
+        files["ratios.svg"] = ratio_figure(rows, made["points"])
     for name in [name for name in DRAWN if any(p["problem"] == name for p in rows)]:
-        files[f"error-{name}.svg"] = error_figure(rows, name, made["accuracy"])
+        files[f"error-{name}.svg"] = error_figure(rows, name, made["points"])
     for name, content in files.items():
         write_whole(folder / name, content)

@@ -80,7 +80,7 @@ def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setti
     exact = setting.adaptive or setting.engine in ("leapfrog", "siconos")
     known = late * g * t * dt / (substeps * setting.inner) / 2
     known = 0.0 if exact or "ahead" in setting.knobs else known
-    within = 0.7 * math.sqrt(setting.knobs.get("accuracy", 0.0))  # of CENIC, measured
+    within = 0.7 * math.sqrt(setting.knobs.get("points", 0.0))  # of CENIC, measured
     assert lag == pytest.approx(known, rel=0.01, abs=max(2e-5, within))
 
 
@@ -316,7 +316,7 @@ def test_what_the_readme_tells_one_to_type_is_the_run_that_was_measured(row):
 
 def test_the_readme_has_at_most_eight_rows_and_none_that_another_beats_in_error_and_time():
     sections, _ = bench.load(bench.FULL)
-    points, piles = sections["accuracy"], sections["piles"]
+    points, piles = sections["points"], sections["piles"]
     shown = [row[0] for row in report.take(points, piles)]
     assert 6 <= len(shown) <= 8 and len(list(report.wanted(points + piles))) == len(taken())
     slow = [dict(p, ms=1e9, error=p["error"] and 1.0) if p["engine"] == "leapfrog" else p
@@ -428,10 +428,10 @@ def test_time_is_that_of_the_processor_and_a_process_that_fails_is_not_timed(tmp
 
 def test_rows_come_back_from_their_file_as_they_were_measured(tmp_path):
     rows = [point("exact", None, 1.23456), point("lcp", 0.25, 3.0)]
-    bench.save(tmp_path / "points.csv", rows)
+    bench.stored.save(tmp_path / "points.csv", rows)
     sections, made = bench.load(tmp_path)
-    assert made == {} and sections["accuracy"][1] == rows[1]
-    assert sections["accuracy"][0]["error"] is None and sections["accuracy"][0]["ms"] == 1.2346
+    assert made == {} and sections["points"][1] == rows[1]
+    assert sections["points"][0]["error"] is None and sections["points"][0]["ms"] == 1.23456
 
 
 def test_one_engine_can_be_measured_alone_and_all_other_rows_stay(tmp_path, monkeypatch):
@@ -439,21 +439,21 @@ def test_one_engine_can_be_measured_alone_and_all_other_rows_stay(tmp_path, monk
         return [point(c.engine, 7.0, 1.0, setting=c.options)
                 for c in settings.BY_NAME.values() if wanted(c)]  # fmt: skip
 
-    monkeypatch.setitem(measure.PARTS, "accuracy", measured)
-    bench.take("accuracy", True, None, tmp_path)
-    whole = bench.load(tmp_path)[0]["accuracy"]
-    monkeypatch.setitem(measure.PARTS, "accuracy", lambda *given: [
+    monkeypatch.setitem(measure.PARTS, "points", measured)
+    bench.take("points", True, None, tmp_path)
+    whole = bench.load(tmp_path)[0]["points"]
+    monkeypatch.setitem(measure.PARTS, "points", lambda *given: [
         row | dict(error=8.0) for row in measured(*given)])  # fmt: skip
-    bench.take("accuracy", True, "lcp iters=20", tmp_path)
+    bench.take("points", True, "lcp iters=20", tmp_path)
     sections, made = bench.load(tmp_path)
-    new = [row for row in sections["accuracy"] if row["error"] == 8.0]
-    assert [bench.name_of(row) for row in sections["accuracy"]] == list(map(bench.name_of, whole))
+    new = [row for row in sections["points"] if row["error"] == 8.0]
+    assert [bench.name_of(row) for row in sections["points"]] == list(map(bench.name_of, whole))
     assert {bench.name_of(row) for row in new} == {n for n in settings.BY_NAME if LANDS in n}
-    assert sorted(made) == ["accuracy", f"accuracy {LANDS}"]
-    bench.take("accuracy", True, None, tmp_path)
-    assert sorted(bench.load(tmp_path)[1]) == ["accuracy"]
+    assert sorted(made) == ["points", f"points {LANDS}"]
+    bench.take("points", True, None, tmp_path)
+    assert sorted(bench.load(tmp_path)[1]) == ["points"]
     with pytest.raises(ValueError, match="--only no_such: no setting"):
-        bench.take("accuracy", True, "no_such", tmp_path)
+        bench.take("points", True, "no_such", tmp_path)
 
 
 def test_page_block_and_figures_are_made_of_the_results_that_are_kept(tmp_path):
@@ -461,7 +461,7 @@ def test_page_block_and_figures_are_made_of_the_results_that_are_kept(tmp_path):
     report.write(tmp_path, sections, made)
     page = (tmp_path / "README.md").read_text("utf-8")
     assert page == (bench.FULL / "README.md").read_text("utf-8") and page.count("\n") <= 150
-    readme = (bench.results.ROOT / "README.md").read_text("utf-8")
+    readme = (bench.stored.ROOT / "README.md").read_text("utf-8")
     assert report.written("readme.md", sections, made).strip() in readme
     for figure in tmp_path.glob("*.svg"):
         assert len(figure.read_bytes()) < 80_000 and (bench.FULL / figure.name).exists()
