@@ -66,6 +66,7 @@ class Gate:
         """What the chapter includes, and its slots name, is there, and nothing lacks a place."""
         known, shown = self.known(), Counter()
         for kind, name, line, _ in self.chapter:
+            name = name.partition("?")[0]  # behind it a figure's settings
             shown[kind, name] += 1
             told = name.split(",") if kind == "tells" else []
             if wrong := [n for n in told if n not in known["bet"] or not shown["exercise", n]]:

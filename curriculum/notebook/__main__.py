@@ -46,7 +46,7 @@ INTRODUCTION = """\
 the exercises into the folder `contact_chapter` beside this notebook. What you change in a cell of
 contact.py is felt in every cell below it; an exercise is a cell to edit and one that tries it. No
 cell has been run for you: you are to bet first.*"""
-PLACES = ("region", "figure", "exercise", "bench", "stress")
+PLACES = ("region", "exercise", "bench", "stress")
 REST = "The rest of the file"  # of the chapter: the notebook's first cell has it
 
 
@@ -91,11 +91,6 @@ class Book:
             return [new_code_cell(f"# contact.py, region {name}\n{code}")]
         return [new_markdown_cell(f"{file}, region {name}:\n\n```python\n{code}\n```")]
 
-    def figure(self, name):
-        """The cell of this name, once; the page has figures that the notebook has not."""
-        source = self.own.pop(name, None)
-        return [new_code_cell(source)] if source else []
-
     def exercise(self, name):
         """The exercise's file as a cell that writes it, and one that runs it."""
         (path,) = (ROOT / "exercises").glob(f"{name}_*.py")
@@ -124,15 +119,17 @@ def cells_of(text):
     for kind, name, _, written in read(text):
         if kind == "heading" and name == REST:
             break
-        place = getattr(book, kind) if kind in PLACES else None
-        if place or re.match("#{1,3} ", written):
+        slot = name.partition("?")[0] if kind in ("exercise", "figure") else None
+        run = [new_code_cell(book.own.pop(slot))] if slot in book.own else []
+        if run or kind in PLACES or re.match("#{1,3} ", written):
             cells, prose = cells + said(prose), ""
             if len(cells) == 1:
                 cells += book.start()
-        if place:
-            cells += place(name)
+        if kind in PLACES:
+            cells += getattr(book, kind)(name)
         elif kind in ("text", "heading", "code"):
             prose += written
+        cells += run
     for cell in [*cells, *said(prose)]:
         about = f"{cell.cell_type} {same[cell.source]}\n{cell.source}"
         cell.id = hashlib.sha256(about.encode()).hexdigest()[:16]

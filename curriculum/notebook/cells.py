@@ -1,7 +1,7 @@
 """The cells that only the notebook has: its set-up, and runs with their pictures.
 
-Each cell begins with a line `# %% NAME`. curriculum/notebook/ puts it where the chapter has the
-figure of that name; `start` comes first. Names that are not defined here are contact.py's.
+Each cell begins with a line `# %% NAME`. It comes where the chapter has the first figure of that
+name, or after the exercise; `start` comes first. Names that are not defined here are contact.py's.
 """
 # ruff: noqa: E401, E402, F401, F821, I001
 # fmt: off
@@ -38,11 +38,11 @@ def exercise(file, *words):
     lines = said.replace("--hint", "hint").splitlines()
     print("\n".join(line for line in lines if not line.startswith("next,")))
 
-# %% two
+# %% ex1
 show_run("--scene", "drop")
 
 # %% cliff
 show_run("--dt", "0.03")
 
-# %% twice
+# %% sag
 show_run("--scene", "stack", "--bodies", "10")
