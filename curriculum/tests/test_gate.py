@@ -79,8 +79,9 @@ def line_of(path, text):
 def accepted(tmp_path_factory):
     """A project that is in order; its runs are cached."""
     project = tmp_path_factory.mktemp("project")
-    shutil.copytree(ROOT / "curriculum/gate", project / "curriculum/gate")
-    for name in ("__init__", "commands", "regions", "implicit", "stored"):
+    for room in ("curriculum/gate", "curriculum/lesson"):
+        shutil.copytree(ROOT / room, project / room)
+    for name in ("__init__", "commands", "implicit", "stored"):
         shutil.copy(ROOT / f"curriculum/{name}.py", project / "curriculum")
     for file in (".gitignore", "contact.py"):
         shutil.copy(ROOT / file, project)
