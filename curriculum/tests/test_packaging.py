@@ -2,13 +2,14 @@
 
 import os
 import re
+from pathlib import Path
 
 import pytest
 
 from curriculum.commands import write_whole
 from curriculum.tests.helpers import CONTACT, ROOT, python
 
-README = (ROOT / "README.md").read_text("utf-8")
+README, CONTRIBUTING = ((ROOT / f"{x}.md").read_text("utf-8") for x in ("README", "CONTRIBUTING"))
 TEXTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 COMMANDS = sorted(
     ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__main__")
@@ -83,6 +84,20 @@ def test_commands_of_the_texts_exist_with_their_flags():
     helped = python(CONTACT, "--help").stdout
     for flag in set(re.findall(r"contact\.py[^`\n]*?(--[a-z]+)", text)) - {"--help"}:
         assert flag in helped, flag
+
+
+def test_rooms_of_the_table_are_there_and_import_only_what_stands_above_them():
+    lines = re.findall(r"^\| (.+?) \| .+? \| (.+?) \| .*\|$", CONTRIBUTING, re.M)[2:]
+    tests = {name for _, names in lines for name in names.split(", ")} | {"test_packaging.py"}
+    assert tests == {path.name for path in (ROOT / "curriculum/tests").glob("test_*.py")}
+    above = {"commands", "parallel", "seeds", "implicit", "measured"}  # which any room may use
+    for room in ", ".join(rooms for rooms, _ in lines).split(", "):
+        above.add(Path(room).stem)
+        (place,) = {each for each in (ROOT / room, ROOT / "curriculum" / room) if each.exists()}
+        for file in [place] if place.is_file() else set(place.rglob("*.py")):
+            text = file.read_text("utf-8") if file.name != "__main__.py" else ""
+            used = set(re.findall(r"^from curriculum(?: import|\.) ?(\w+)", text, re.M))
+            assert used <= above, (file, used - above)
 
 
 def test_extras_of_the_texts_are_those_of_the_package():
