@@ -1,20 +1,23 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2.0", "pytest"]
+# ///
 """Checks of the ten exercises: `pytest checks.py`, or one of them, `pytest checks.py -k ex1_`.
 
-    python checks.py                # the same, and says what comes next
-    python checks.py --junit-xml results.xml    # for programs that ask; all flags are pytest's
+    python checks.py -k ex2     # the same, and says what comes next; all flags are pytest's
 
 What is not done yet is skipped by name. A bet is done once it was made and its script was read. A
 fill that is wrong fails with what went in, what came out, what was expected, and the likely slip.
 """
 
+import re
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
 sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
-from kit import script  # noqa: E402
-from kit.progress import FILES, practise  # noqa: E402
+from kit.script import FILES, checked, practise  # noqa: E402
 
 from curriculum.commands import to_install  # noqa: E402
 
@@ -24,10 +27,26 @@ except ModuleNotFoundError:
     sys.exit(f"checks.py: {to_install('pytest')}")
 
 
+def unknown(command):
+    """What is wrong with the names after -k in a command line; "" if there are such exercises."""
+    tests = [f"checks.py::test_exercise[{Path(file).stem}]" for file in FILES.values()]
+    chosen = " ".join(re.findall(r"(?:^| )-k[= ]?(.*?)(?= -|$)", command)).lower()
+    names = [name for name in re.findall(r"\w[\w.]*", chosen) if name not in ("and", "or", "not")]
+    wrong = [name for name in names if not any(name in test for test in tests)]
+    known = ", ".join(Path(file).stem for file in FILES.values())
+    return f"-k {' '.join(wrong)}: no such exercise; there are {known}" if wrong else ""
+
+
+if words := unknown(" ".join(sys.argv)):
+    if __name__ == "__main__":
+        sys.exit(words)
+    raise pytest.Collector.CollectError(words)
+
+
 @pytest.mark.parametrize("name", FILES, ids=lambda name: Path(FILES[name]).stem)
 def test_exercise(name):
     """Skip what is still to be done, and fail what is wrong. A bet is done once it was read."""
-    state, words = script.checked(name, ROOT / FILES[name])
+    state, words = checked(name, ROOT / FILES[name])
     if state == "blank":
         pytest.skip(f"{name}: {words}")
     if state == "wrong":

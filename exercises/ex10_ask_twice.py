@@ -2,10 +2,14 @@
 # requires-python = ">=3.10"
 # dependencies = ["numpy>=2.0"]
 # ///
-"""Exercise 10, write it (30 minutes): ask twice.
+"""Exercise 10, write it (40 minutes): ask twice.
 
-lcp asks one question for two things. One velocity has to say where a ball may go, and how fast it
-may be afterwards. So ask twice. What is around your two functions is lcp_step, taken apart:
+An impact has its own moment. Between two of them a gap is a parabola in time, gap + v_n t +
+a_n t^2 / 2, and the next impact is where it closes: write time_to_impact first.
+
+What lasts has no such moment, and lcp asks one question for two things. One velocity has to say
+where a ball may go, and how fast it may be afterwards. So ask twice. What is around your other two
+functions is lcp_step, taken apart:
 
     list all contacts that a step may bring together
     kick, least = before_the_move(gap, dt)          for each contact, its gap
@@ -16,14 +20,26 @@ may be afterwards. So ask twice. What is around your two functions is lcp_step, 
     sweeps once more, for those that are asked, each beginning with its lam
 
 exact judges it, on a drop, a stack, a ball that slides off another and one that begins in another.
-Then look at its order: what is left of the error of the slide when the step is a quarter?
+Then read off the order of your step: the error of the slide falls like dt to which power? Two rows
+say it; write the power as ORDER.
 
-    python exercises/ex10_ask_twice.py      # your step beside lcp's
-    python exercises/ex10_ask_twice.py --hint 1     # 1, 2: before the move; 3 to 5: after it
+    python exercises/ex10_ask_twice.py      # your functions at work, and your step beside lcp's
+    python exercises/ex10_ask_twice.py --hint 1     # to 8: two a function, three of after_the_move
     python checks.py -k ex10
 """
 
+import math  # noqa: F401  math.sqrt and math.inf are what you need
+
 from kit import script
+
+
+def time_to_impact(gap, v_n, a_n):
+    """When a gap [m] >= 0 closes [s]; math.inf if it never does.
+
+    Its speed is v_n [m/s] now, > 0 opening, and its acceleration a_n [m/s^2] stays: -9.81 under
+    gravity. A gap of 0 that opens has just bounced: asked is when it closes again.
+    """
+    return ...  # TODO: blank 1
 
 
 def before_the_move(gap, dt):
@@ -31,7 +47,7 @@ def before_the_move(gap, dt):
 
     The step ends with gap + dt v_n [m]; it may not be negative. gap < 0 is an overlap.
     """
-    return ...  # TODO: blank 1
+    return ...  # TODO: blank 2
 
 
 def after_the_move(lam, then, now):
@@ -40,7 +56,10 @@ def after_the_move(lam, then, now):
     `lam` [N s] is what it gave on the way; `then` and `now` are the angles [rad] of its normal
     before and after the move. The balls stay where they are now: only their speeds are left.
     """
-    return ...  # TODO: blank 2
+    return ...  # TODO: blank 3
+
+
+ORDER = None  # of your slide's error, as a power of dt
 
 
 if __name__ == "__main__":

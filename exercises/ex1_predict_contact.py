@@ -4,19 +4,19 @@
 # ///
 """Exercise 1, predict then run (10 minutes): where does the ball end up?
 
-A ball falls about a metre onto a table and is followed for 1.6 s, twice, from the same height. The
-two runs differ in one thing, the answer to: what force does the table apply? In penalty the table
-is a very stiff spring with a damper beside it. In lcp it gives the impulse after which ball and
-table no longer approach each other. Measured is how deep the ball is in the table at the worst
-moment and at the end, in ball radii r.
+A ball of 4 kg falls half a metre onto a table and is followed for 4 s, twice. The two runs differ
+in one thing, the answer to: what force does the table apply? In penalty the table is a very stiff
+spring with a damper beside it. In lcp it gives the impulse after which ball and table no longer
+approach each other. Measured is how deep the ball is in the table at the worst moment and at the
+end, in ball radii r.
 
-A ball drops onto the table. What do the two contact models do differently?
+Where does it lie when it has come to rest?
 
-    A  Nothing that matters: both stop the ball at the surface. A contact is a contact.
-    B  The penalty ball never gets into the table but bounces for ever; the lcp ball gets in and
-       settles.
-    C  The penalty ball gets much deeper into the table on landing and also comes to rest inside it;
-       the lcp ball ends on the surface.
+    A  Both times on the surface: a table is a table.
+    B  Under penalty inside the table, as deep as a ball of 1 kg would lie there, since the table is
+       the same; under lcp on the surface.
+    C  Under penalty inside the table, four times as deep as a ball of 1 kg; under lcp on the
+       surface.
 
 One sentence: when the ball lies still, how does each model arrive at a push of m g?
 

@@ -4,16 +4,17 @@
 # ///
 """Exercise 3, predict then run (10 minutes): what does a longer step do?
 
-The drop again, same ball, same spring, with the time step raised from 0.002 s to 0.03 s: somebody
-is in a hurry. penalty is the table as a spring; lcp asks for the impulse after which ball and table
-no longer approach. Measured is the highest energy of the run above the energy at the start, in
-units of the energy at the start.
+Two balls, one of 0.1 kg and one of 10 kg, each drop half a metre onto the table. The spring is the
+usual one, and the time step is raised from 0.002 s to 0.03 s: somebody is in a hurry. penalty is
+the table as a spring; lcp asks for the impulse after which ball and table no longer approach.
+Measured is the highest energy of the run above the energy at the start, in units of the energy at
+the start.
 
-The drop with dt = 0.03 s. How much energy does each contact model gain?
+At dt = 0.03 s, which of them gain energy many times over?
 
-    A  Both blow up: no contact survives a step that long.
-    B  The penalty ball gains energy many times over; the lcp ball stays bounded.
-    C  Neither blows up: a longer step costs accuracy, the ball only sinks in a little more.
+    A  All four: no contact survives a step that long.
+    B  Both balls under penalty, since the step is too long for that spring; none under lcp.
+    C  Under penalty the light ball, and the heavy one gains none; none under lcp.
 
 One sentence: in each model, what happens between two looks at the depth?
 

@@ -5,12 +5,12 @@ import re
 
 from curriculum.lesson.regions import ROOT
 from curriculum.page.chapter import inline, markdown
-from exercises.kit import FACTS, blanks, predict
+from exercises.kit import FACTS, bets, slips
 
 FOLDER = ROOT / "exercises"
 TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")
 COMMAND = re.compile(r"^    ((?:python|pytest)\b.*?)(?:\s{2,}#.*)?$", re.MULTILINE)
-measured = predict.measure  # the numbers of a bet
+measured = bets.measure  # the numbers of a bet
 BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2, filled in the page
 
 
@@ -19,12 +19,12 @@ def blank_cases():
     each as what it gives, to five digits, and what it means."""
     cases = {}
     for name in BLANKS:
-        blank, slips = blanks.BLANKS[name], []
+        blank, known = slips.BLANKS[name], []
         for function, meaning in blank.slips:
             rough = [float(f"{function(*case.values()):.5g}") for case in blank.inputs]
-            slips.append((rough, meaning.replace("`", "")))
+            known.append((rough, meaning.replace("`", "")))
         right = [blank.right(*case.values()) for case in blank.inputs]
-        cases[name] = {"inputs": blank.inputs, "right": right, "slips": slips}
+        cases[name] = {"inputs": blank.inputs, "right": right, "slips": known}
     return cases
 
 
@@ -44,12 +44,12 @@ def exercise(path):
     number, minutes, told = parts.groups()
     name, task, bet = f"ex{number}", text, {"choices": {}}
     facts = FACTS[name]
-    if name in predict.BETS:
-        numbers, bet = measured(name), predict.asked(words)
+    if name in bets.BETS:
+        numbers, bet = measured(name), bets.asked(words)
         task = bet["task"]
-        bet["answer"] = predict.answer(name, numbers)
+        bet["answer"] = bets.answer(name, numbers)
         bet["reasons"] = {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()}
-        bet["table"] = [re.split(r"\s{2,}", x) for x in predict.table(name, numbers).splitlines()]
+        bet["table"] = [re.split(r"\s{2,}", x) for x in bets.table(name, numbers).splitlines()]
     return bet | {
         "id": name,
         "title": f"Exercise {number}: {told}",

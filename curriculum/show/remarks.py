@@ -1,13 +1,11 @@
-"""What a run's table does not say: flags that change nothing, what exact did, what to do next."""
+"""What a run's table does not say: flags that change nothing, and what exact did."""
 
-import os
 from collections.abc import Iterator
-from importlib.util import find_spec
 
 import numpy as np
 
 import contact
-from curriculum.commands import ROOT, command
+from exercises.kit.script import print_next  # noqa: F401  which contact.py asks for here
 
 APEXES = 5  # heights of bounces that are printed
 
@@ -46,18 +44,3 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
         yield f"exact: its bounces rise to {heights} m" + (" ..." if len(tops) > APEXES else "")
     else:
         yield "exact: it does not bounce"
-
-
-def print_next(args, argv: list[str]) -> None:
-    """Print the last lines of a run: how to see it, and the next exercise that is not done.
-
-    args: the flags as contact.parse_flags gives them; argv: the words they were read from.
-    """
-    from exercises.kit.progress import practise
-
-    recording = os.path.join(args.out, "contact.rrd")
-    if args.rerun and os.path.exists(recording):
-        print(f"next, watch it: {command('-m', 'rerun', recording)}")
-    elif not args.plot and find_spec("matplotlib"):
-        print(f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}")
-    print(practise())

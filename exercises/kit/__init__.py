@@ -1,15 +1,13 @@
-"""What the exercises stand on: bets, blanks and how they are judged. Nothing to fill in here.
+"""What the exercises stand on. Nothing to fill in here, and much that gives an answer away.
 
-    script.py     an exercise's command line, and what checks.py asks
-    predict.py    exercises 1, 3, 4: bets     knobs.py        exercise 9: four knobs
-    blanks.py     what belongs in a blank     time_limit.py   tries a fill in its own process
-    trials.py     judges it, shows it at work progress.py     which exercises are done
+    script.py   an exercise's command line, what checks.py asks, which exercise comes next
+    judge.py    tries what was written, in a process of its own, and shows it at work
+    bets.py     bets, and numbers from paper      slips.py   inputs, and slips by what they give
 
-answers.json has hints, keys, reasons, inputs and slips. contact.py and curriculum/ are found above
-the folder of the exercises, from wherever one starts.
+answers.json has hints, keys, reasons, inputs and slips; ../solutions/ a right answer of each.
+contact.py and curriculum/ are found above the folder of the exercises, from wherever one starts.
 """
 
-import ast
 import json
 import sys
 from pathlib import Path
@@ -20,11 +18,6 @@ if str(ROOT) not in sys.path:
 FACTS = json.loads(Path(__file__).with_name("answers.json").read_text("utf-8"))
 
 
-def task_of(exercise):
-    """The docstring of an exercise, read from its file: Python may leave it out (-OO)."""
-    return ast.get_docstring(ast.parse(Path(exercise.__file__).read_text("utf-8")), clean=False)
-
-
 def columns(corner, heads, rows, form):
     """A small table as text. rows {name: values}; `form` writes a value, as "{:.3f} r" does."""
     wide = max(16, *map(len, rows))
@@ -33,3 +26,20 @@ def columns(corner, heads, rows, form):
         cells = ("-" if value is None else form.format(value) for value in values)
         lines.append(f"{name:<{wide}}" + "".join(f"{cell:>15}" for cell in cells))
     return "\n".join(lines)
+
+
+def task_of(exercise):
+    """The docstring of an exercise, read from its file: Python may leave it out (-OO)."""
+    import ast  # slow, so only where it is needed
+
+    return ast.get_docstring(ast.parse(Path(exercise.__file__).read_text("utf-8")), clean=False)
+
+
+def load(file):
+    """The module of an exercise."""
+    import importlib.util
+
+    spec = importlib.util.spec_from_file_location(Path(file).stem, file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

@@ -1,70 +1,184 @@
-"""An exercise's command line, and what checks.py asks of it. Nothing to fill in here."""
+"""An exercise's command line, what checks.py asks of it, and what comes next."""
 
+import json
 import os
+import re
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
-from curriculum.commands import Parser, command
+from curriculum.commands import Parser, command, near, quoted, write_json
 
-from . import FACTS, knobs, predict, task_of, time_limit
-from .progress import done, note, practise
+from . import FACTS, ROOT, task_of
 
-BETS = dict.fromkeys(predict.BETS, predict) | {"ex9": knobs}  # exercise: the module that runs it
-
-
-def unquoted(kind, error, trace):
-    """PREDICTION = A, a letter without quotes: say it in one line."""
-    if kind is not NameError:
-        return said(kind, error, trace)
-    print(time_limit.unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
-
-
-said, sys.excepthook = sys.excepthook, unquoted
+BETS = "ex1", "ex3", "ex9"  # done once they were read
+ORDER = ("ex1", "ex3", "ex6", "ex2", "ex5", "ex9", "ex10", "ex7", "ex4", "ex8")  # the chapter's
+PATHS = [path for name in ORDER for path in (ROOT / "exercises").glob(f"{name}_*.py")]
+FILES = {path.stem.partition("_")[0]: f"exercises/{path.name}" for path in PATHS}
+DONE = ROOT / "outputs/ch3.5-contact/exercises.json"
+LIMIT = 15  # s, chosen: right answers take about one
+START = "import sys; sys.path.insert(0, sys.argv[1]); from kit import judge; judge.child()"
 
 
 def main():
     """The command line of the exercise that was started. Ends with its exit status."""
     exercise = sys.modules["__main__"]
-    name = Path(exercise.__file__).stem.split("_")[0]  # ex1 of exercises/ex1_predict_contact.py
+    name = Path(exercise.__file__).stem.partition("_")[0]  # ex1 of ex1_predict_contact.py
     hints = FACTS[name]["hints"]
     parser = Parser(description=f"Exercise {name}.")
     most = f"print hint N, 1 to {len(hints)}, and do nothing else"
     numbers = range(1, len(hints) + 1)
     parser.add_argument("--hint", type=int, choices=numbers, metavar="N", help=most)
-    hint = parser.parse_args().hint
-    if hint:
-        print(f"hint {hint} of {len(hints)}: {hints[hint - 1]}")
+    solution = ROOT / f"exercises/solutions/{name}.py"
+    if solution.exists():
+        words = "print a right answer, and show it at work"
+        parser.add_argument("--solution", action="store_true", help=words)
+    args = parser.parse_args()
+    if args.hint:
+        print(f"hint {args.hint} of {len(hints)}: {hints[args.hint - 1]}")
+    elif getattr(args, "solution", False):
+        print(solution.read_text("utf-8"))
+        sys.exit(show(judged(name, solution)))
     else:
         sys.exit(run(name, exercise))
 
 
+def unreadable(file, error):
+    """One line on a file that is no Python, or stops while it is read."""
+    hint = f"; {error.name} needs quotes around it" if type(error) is NameError else ""
+    line, trace = getattr(error, "lineno", None), error.__traceback__
+    while trace and not line:
+        line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == str(file) else None
+        trace = trace.tb_next
+    place = f"{near(str(file))}{f', line {line}' if line else ''}"
+    return f"{place}, cannot be read: {type(error).__name__}: {error}{hint}"
+
+
+def unquoted(kind, error, trace):
+    """PREDICTION = A, a letter without quotes: say it in one line."""
+    if kind is not NameError:
+        return otherwise(kind, error, trace)
+    print(unreadable(trace.tb_frame.f_code.co_filename, error), file=sys.stderr)
+
+
+otherwise, sys.excepthook = sys.excepthook, unquoted
+
+
 def run(name, exercise):
     """Judge what was written and show it at work. Exit status: 0 right, 1 wrong, 2 not done."""
-    if name in BETS:
-        state, found = BETS[name].judged(name, exercise)
-    else:
-        state, found = time_limit.judged(name, exercise.__file__)
+    state, found = judged(name, exercise.__file__)
     note(name, state == "right")
     if state == "blank" and "IN_A_NOTEBOOK" not in os.environ:  # a bet whole; of a task, its title
         task = task_of(exercise).strip()
         print(task if name in BETS else task.split("\n")[0], end="\n\n")
+    status = show((state, found))
+    if state == "right":
+        if (ROOT / f"exercises/solutions/{name}.py").exists():
+            print(f"\nanother right answer: exercises/solutions/{name}.py")
+        print(f"\n{practise()}")
+    return status
+
+
+def show(verdict):
+    """Print what was found of each part. Returns the exit status."""
+    state, found = verdict
     for what, _, words, shown in found:
         print(*filter(None, (shown, words or f"{what} is right")), sep="\n", flush=True)
-    if state == "right":
-        print(f"\n{practise()}")
     return ("right", "wrong", "blank").index(state)
 
 
 def checked(name, file):
     """("blank", "wrong" or "right", why in words), as checks.py asks."""
-    if name not in BETS:
-        state, found = time_limit.judged(name, file)
-        note(name, state == "right")
-        return state, "\n".join(words for _, each, words, _ in found if each == state)
+    state, found = judged(name, file)
+    if name in BETS and state == "right" and name not in done():
+        return "blank", f"the bet is made; now read what happens: {typed(file)}"
+    note(name, state == "right")
+    return state, "\n".join(words for _, each, words, _ in found if each == state)
+
+
+def judged(name, file):
+    """The state of an exercise, and [what, state, words, shown] of all that it asks for.
+
+    Whatever the learner's code does, it does it in another process, which writes a report.
+    """
+    import contact  # noqa: F401, I001  # which says it where numpy is missing
+    import subprocess
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder, "report")
+        report.touch()
+        kit = str(Path(__file__).resolve().parents[1])
+        words = [sys.executable, "-B", "-c", START, kit, name, str(file), str(report)]
+        silent = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+        try:
+            status = subprocess.run(words, timeout=LIMIT + 15, **silent).returncode
+        except subprocess.TimeoutExpired:
+            status = "Timeout ("
+        text = report.read_text("utf-8", "replace")
+    if status == 0 and text.endswith("\n"):
+        return json.loads(text.splitlines()[-1])
+    what = (re.findall(r"^trying (\w+)$", text, re.MULTILINE) or [name])[-1]
+    line = re.search(rf'File ".*{re.escape(Path(file).name)}", line (\d+)', text)
+    place = near(str(file)) + (f", line {line[1]}" if line else "")
+    words = f"{what} ended its process (exit status {status}), see {place}"
+    if "Timeout (" in f"{text}{status}":
+        words = f"{what} takes too long, or does not end: stopped after {LIMIT} s in {place}"
+    return "wrong", [[what, "wrong", words, ""]]
+
+
+# What is done, and what comes next: any command may ask, and it needs no numpy
+
+
+def done():
+    """{exercise: "done"}, as far as it was noted."""
     try:
-        state, words = BETS[name].state(time_limit.load(file))
-    except Exception as error:
-        return "wrong", time_limit.unreadable(file, error)
-    if state == "right" and name not in done():
-        return "blank", f"the bet is made; now read what happens: {command(file)}"
-    return state, words
+        noted = json.loads(DONE.read_text("utf-8"))
+        if isinstance(noted, dict):
+            return noted
+        aside = near(str(DONE.replace(DONE.with_name("exercises-set-aside.json"))))
+        print(f"{near(str(DONE))} lists no exercises; it is set aside, as {aside}", file=sys.stderr)
+    except (OSError, ValueError, RecursionError):
+        pass
+    return {}
+
+
+def note(name, right):
+    """Note whether an exercise is done."""
+    before = done()
+    noted = {key: "done" for key in {*before, name} if key != name or right}
+    try:
+        if noted != before:
+            write_json(DONE, noted)
+    except OSError as error:
+        print(f"cannot note that {name} is done: {error}", file=sys.stderr)
+
+
+def typed(file):
+    """The command that runs an exercise, as the README says it: with uv it asks for numpy alone."""
+    return quoted("uv", "run", file) if "UV" in os.environ else command(file)
+
+
+def practise():
+    """The line that names the next exercise that is not done, or what comes after them."""
+    noted = done()
+    for name, file in FILES.items():
+        if name not in noted:
+            return f"next, an exercise: {typed(ROOT / file)}"
+    return "all exercises are done; next, the questions at the end of the chapter"
+
+
+def print_next(args, argv: list[str]) -> None:
+    """Print the last lines of a run: how to see it, and the next exercise that is not done.
+
+    args: the flags as contact.parse_flags gives them; argv: the words they were read from.
+    """
+    recording = os.path.join(args.out, "contact.rrd")
+    if args.rerun and os.path.exists(recording):
+        viewer = Path(sys.executable).with_name("rerun.exe" if os.name == "nt" else "rerun")
+        by = ("uv", "run", "rerun") if "UV" in os.environ else (viewer,)
+        there = quoted(*by, recording) if by[0] == "uv" or viewer.exists() else None
+        print(f"next, watch it: {there or command('-m', 'rerun', recording)}")
+    elif not args.plot and find_spec("matplotlib"):
+        print(f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}")
+    print(practise())

@@ -1,11 +1,11 @@
-"""What judges the exercises that are filled in: values beside the right ones, and balls that fall.
-
-Nothing to fill in here, and much that gives an answer away.
-"""
+"""Tries what a learner wrote, in a process of its own; values beside the right ones, and balls."""
 
 import contextlib
+import faulthandler
 import io
+import json
 import math
+import os
 import re
 import sys
 import traceback
@@ -19,8 +19,83 @@ import contact
 from curriculum.commands import near
 from curriculum.implicit import implicit_step
 
-from . import FACTS, columns
-from .blanks import BLANKS, labels, run, solver
+from . import FACTS, bets, columns, load
+from .script import LIMIT, unreadable
+from .slips import BLANKS, labels, run, solver
+
+MOST_MEMORY = 2**32  # bytes, chosen
+
+
+def child():
+    """The other process: try, write what was found into the report, and be gone."""
+    name, file, path = sys.argv[2:]
+    leave, os._exit = os._exit, not_here  # so that it has a line, too
+    with open(path, "w", encoding="utf-8") as report, open(os.devnull, "w") as nowhere:
+        faulthandler.enable(report, all_threads=False)
+        faulthandler.dump_traceback_later(LIMIT, exit=True, file=report)
+        with contextlib.suppress(ImportError, ValueError, OSError):
+            import resource  # where there is one
+
+            resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+        with contextlib.redirect_stdout(nowhere), contextlib.redirect_stderr(nowhere):
+            try:
+                found = judged(name, load(file), report)
+            except BaseException as error:
+                found = "wrong", [[name, "wrong", unreadable(file, error), ""]]
+        print(json.dumps(found), file=report)
+    leave(0)  # whatever threads are left
+
+
+def not_here(status):
+    """os._exit, for a learner."""
+    raise SystemExit(f"os._exit({status})")
+
+
+def judged(name, exercise, report=None):
+    """The state of an exercise, and [what, state, words, shown] of everything that it asks for."""
+    found, states = [], {"": "right"}
+    for blank in (each for each in BLANKS if BLANKS[each].exercise == name):
+        print(f"trying {blank}", file=report, flush=True)
+        found.append(judge_blank(exercise, blank, states))
+    if name in bets.BETS:
+        found = [bets.judge_bet(name, exercise)]
+    elif name == "ex8":
+        found = [["two_fingers", *judge_fingers(exercise)]]
+    elif name == "ex9":
+        found = [bets.judge_knobs(name, exercise)]
+        found.append(bets.judge_number(name, exercise, bets.sag(), **bets.TOWER))
+    elif name == "ex4":
+        found = [bets.judge_number(name, exercise, bets.soft_depth())]
+    elif name == "ex10" and set(states.values()) == {"right"}:
+        order = slide_order(exercise)
+        found.append(bets.judge_number(name, exercise, order, order=order))
+    elif name == "ex10":
+        found.append(["ORDER", "blank", "ORDER is asked once the functions are right", ""])
+    return min((part[1] for part in found), key=("wrong", "blank", "right").index), found
+
+
+def judge_blank(exercise, blank, states):
+    """[what, state, words, shown] of a function; `states` of those before it, and it is added."""
+    state, words = judge(exercise, blank)
+    after, shown = BLANKS[blank].after, ""
+    if state == "wrong" and states[after] != "right":
+        state, words = "blank", f"{blank} is tried once {after} is right"
+    states[blank] = state
+    if blank in SHOWN and "blank" not in states.values():
+        try:  # also a wrong one: to see is to know why
+            shown = SHOWN[blank](exercise, blank)
+        except (Exception, SystemExit) as error:
+            if state == "right":
+                words = f"a trial of {blank} stopped: {said_of(error)}"
+            states[blank] = "wrong"
+    return [blank, states[blank], words, shown]
+
+
+# Values beside the right ones
+
+
+class Endless(Exception):
+    """A search that goes on where it should have stopped."""
 
 
 def tried(function, name, case):
@@ -30,13 +105,13 @@ def tried(function, name, case):
     """
     said, got = io.StringIO(), None
     try:
-        with contextlib.redirect_stdout(said):
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             got = run(name, function, case)
         words = f"{name} returned {got!r:.60}, and not numbers"
         words += "; does it end with `return`?" if got is None else ""
-    except (Exception, SystemExit) as error:
-        words = f"{name} raised {said_of(error)}"
-    lines = said.getvalue().splitlines()
+    except BaseException as error:
+        words = f"{name} {error}" if type(error) is Endless else f"{name} raised {said_of(error)}"
+    lines = [] if said.closed else said.getvalue().splitlines()
     more = [f"  and {len(lines) - 8} lines more"] if len(lines) > 8 else []
     printed = [*(f"  printed   {line:.80}" for line in lines[:8]), *more]
     if got is ...:
@@ -45,21 +120,21 @@ def tried(function, name, case):
         if got is None or isinstance(got, str):  # which numpy would take for a number
             raise TypeError
         return np.atleast_1d(np.asarray(got, float).squeeze()), printed
-    except (TypeError, ValueError):
+    except Exception:
         raise ValueError("\n".join((words, *printed))) from None
 
 
 def said_of(error):
     """An error in words, with the last line of the learner's own code that it came through."""
     frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if re.fullmatch(r"ex\d+_\w+\.py", Path(frame.filename).name)]
+    own = [each for each in frames if re.fullmatch(r"ex\d+\w*\.py", Path(each.filename).name)]
     lines = [f"\n  line {frame.lineno}: {frame.line}" for frame in own[-1:]]
     return "".join((f"{type(error).__name__}: {error}", *lines))
 
 
 def agree(got, right, within):
     """Whether two rows of numbers, NaN among them, agree within that share of their size."""
-    allowed = within * np.abs(np.nan_to_num(right)).max() + 1e-14
+    allowed = within * np.abs(right[np.isfinite(right)]).max(initial=0.0) + 1e-14
     return got.shape == right.shape and np.allclose(got, right, 0.0, allowed, equal_nan=True)
 
 
@@ -82,6 +157,24 @@ def slip(name, found, expected):
     return ""
 
 
+@contextlib.contextmanager
+def watched(exercise, name):
+    """Within it, a search for the longest step that only goes on and on is stopped, in words."""
+    last, higher = [0.0], [0]
+
+    def step_matrix(mass, stiffness, damping, dt):
+        up = dt > max(last[0], 4.0 * contact.critical_dt(mass, stiffness, damping))
+        last[0], higher[0] = dt, higher[0] + 1 if up else 0
+        if higher[0] > 1000:
+            raise Endless(FACTS["ex6"]["searches"]["endless"].format(dt))
+        return matrix(mass, stiffness, damping, dt)
+
+    theirs = vars(exercise) if name == "longest_step" else {}
+    matrix = theirs.get("step_matrix", lambda *_: ...)
+    with mock.patch.dict(theirs, {"step_matrix": step_matrix} if theirs else {}):
+        yield
+
+
 @np.errstate(all="ignore")
 def judge(exercise, name):
     """("blank", "wrong" or "right", why in words): a learner's function on all inputs."""
@@ -89,7 +182,8 @@ def judge(exercise, name):
     if not callable(function):
         return "wrong", f"{name} is no longer a function in {file}"
     try:
-        found, prints = zip(*(tried(function, name, case) for case in blank.inputs))
+        with watched(exercise, name):
+            found, prints = zip(*(tried(function, name, case) for case in blank.inputs))
     except ValueError as error:
         return "wrong", str(error)
     if any(got is None for got in found):
@@ -136,31 +230,41 @@ def failing(name, case, got, right):
 # What the fills do to balls
 
 
-TRIALS = {  # what is seen: model, scene, dt [s], steps, k [N/m], what is taken of the heights
+TRIALS = {  # what is seen: blanks, model, scene, dt [s], steps, k [N/m], what is taken of heights
     "A ball is pressed into the table and let go: how high it jumps.": (
-        "penalty", contact.scene_of(0.0, 0.07, damping=60.0), 0.001, 1000, 8e3, np.max),
+        "penalty_normal_force", "penalty",
+        contact.scene_of(0.0, 0.07, damping=60.0), 0.001, 1000, 8e3, np.max),
     "A ball is thrown up from the table: how high it is, in the mean.": (
-        "lcp", contact.scene_of(0.0, 0.1, vy=2.0), 0.002, 600, 1e4, np.mean),
+        "project_impulse solve_contacts", "lcp",
+        contact.scene_of(0.0, 0.1, vy=2.0), 0.002, 600, 1e4, np.mean),
     "A ball drops into the groove of two that are held: how high it lies at the end.": (
-        "lcp", contact.scene_of([0.0, -0.105, 0.105], [0.8, 0.1, 0.1], [1.0, math.inf, math.inf]),
+        "project_impulse solve_contacts", "lcp",
+        contact.scene_of([0.0, -0.105, 0.105], [0.8, 0.1, 0.1], [1.0, math.inf, math.inf]),
         0.002, 600, 1e4, lambda heights: heights[-1]),
+    "A ball bounces from one impact to the next: how high it is, in the mean.": (
+        "time_to_impact", "exact",
+        contact.scene_of(0.0, 1.0, restitution=0.7), 0.002, 1000, 1e4, np.mean),
 }  # fmt: skip
 
 
 def height(trial):
     """The height of the first ball in a trial, above the table [r]."""
-    model, of, dt, steps, k, of_all = TRIALS[trial]
+    _, model, of, dt, steps, k, of_all = TRIALS[trial]
     run = contact.run_model(model, of, dt, steps, contact.Settings(stiffness=k))
     return round(of_all(run.q[:, 1, 0]) / 0.1 - 1.0, 3) + 0.0  # and no -0.000
 
 
 def compare(exercise, name):
     """Balls under the learner's function in the place of contact.py's, beside its own."""
-    where, mine, (pressed, *trials) = name, getattr(exercise, name), TRIALS
-    if name == "penalty_normal_force":
-        trials = [pressed]
+    where, mine = name, getattr(exercise, name)
+    trials = [trial for trial, (blanks, *_) in TRIALS.items() if name in blanks]
     if name == "project_impulse":  # which contact.py writes out in its sweep
         where, mine = "solve_contacts", solver("max(0.0, c.lam + add)", "f(c.lam, add)", f=mine)
+    if name == "time_to_impact":  # a_n is None where a gap stays closed
+
+        def mine(*of, theirs=mine):
+            return math.inf if of[2] is None else theirs(*of)
+
     with mock.patch.object(contact, where, mine):
         yours = [height(trial) for trial in trials]
     rows = {trial: (mine, height(trial)) for trial, mine in zip(trials, yours)}
@@ -195,7 +299,7 @@ def drops(exercise, _):
 
 
 def asking_twice(exercise, balls, dt, iters=20):
-    """leapfrog's step for e = 0, by the two functions of exercise 10."""
+    """What lasts in leapfrog's step, by two functions of exercise 10."""
     kick, _ = exercise.before_the_move(0.0, dt)
     contacts = contact.detect_contacts(balls, contact.step_reach(balls, dt))
     for c in contacts:
@@ -224,32 +328,42 @@ PROBLEMS = {  # scene, dt [s], seconds
 INSIDE = contact.scene_of([0.0, 0.0], [0.1, 0.25])  # half a radius in one another
 
 
+def steps_at(exercise, dt):
+    """The learner's step, and lcp's."""
+    lcp = partial(contact.lcp_step, dt=dt, restitution=0.0, baumgarte=0.2, iters=20)
+    return partial(asking_twice, exercise, dt=dt), lcp
+
+
+def errors(exercise, name):
+    """How far the learner's step and lcp's come from exact in a problem [r]."""
+    of, dt, seconds = PROBLEMS[name]
+    count = round(seconds / dt)
+    true = contact.run_model("exact", of, dt, count).q
+    runs = [contact.simulate(step, of, dt, count) for step in steps_at(exercise, dt)]
+    return [float(np.hypot(*(run.q - true).swapaxes(0, 1)).max()) / 0.1 for run in runs]
+
+
+def slide_order(exercise):
+    """By which power of the step the error of the learner's slide falls."""
+    long, short = (max(errors(exercise, name)[0], 1e-16) for name in [*PROBLEMS][2:])
+    return math.log(long / short, 4)
+
+
 def ask_twice(exercise, _):
-    """Errors beside exact, how high a ball comes that begins in another, the order of the slide."""
-
-    def steps(dt):
-        lcp = partial(contact.lcp_step, dt=dt, restitution=0.0, baumgarte=0.2, iters=20)
-        return partial(asking_twice, exercise, dt=dt), lcp
-
-    rows = {}
-    for name, (of, dt, seconds) in PROBLEMS.items():
-        count = round(seconds / dt)
-        true = contact.run_model("exact", of, dt, count).q
-        off = (contact.simulate(step, of, dt, count).q - true for step in steps(dt))
-        rows[name] = [np.hypot(x, y).max() / 0.1 for x, y in (each.swapaxes(0, 1) for each in off)]
-    orders = [math.log(max(a, 1e-16) / max(b, 1e-16), 4) for a, b in zip(*list(rows.values())[2:])]
-    high = (contact.simulate(step, INSIDE, 0.002, 300).q[:, 1].max() for step in steps(0.002))
-    rows["inside, height"] = [y / 0.1 for y in high]
+    """Errors beside exact, and how high a ball comes that begins in another."""
+    rows = {name: errors(exercise, name) for name in PROBLEMS}
+    runs = [contact.simulate(step, INSIDE, 0.002, 300) for step in steps_at(exercise, 0.002)]
+    rows["inside, height"] = [run.q[:, 1].max() / 0.1 for run in runs]
     table = columns("in r, beside exact", ("yours", "lcp"), rows, "{:.3g}")
-    order = f"The order of your slide is {orders[0]:.1f}, lcp's is {orders[1]:.1f}."
     inside = "inside: how high a ball rises that begins in another; at 3 r they only touch."
-    return f"{table}\n{inside}\n{order}"
+    return f"{table}\n{inside}"
 
 
 SHOWN = {  # blank: what shows it at work; of two that work together, the second
-    **dict.fromkeys(("penalty_normal_force", "project_impulse", "solve_contacts"), compare),
+    **dict.fromkeys("penalty_normal_force project_impulse solve_contacts".split(), compare),
     "longest_step": cliffs,
     "implicit_spring": drops,
+    "time_to_impact": compare,
     "after_the_move": ask_twice,
 }
 
@@ -264,16 +378,18 @@ def fingers(exercise):
     k, c = exercise.STIFFNESS, exercise.DAMPING
     softness = 1.0 / (k * dt * dt + c * dt)
 
+    springs = {
+        "penalty": lambda balls: contact.penalty_step(balls, dt, k, c),
+        "implicit": lambda balls: implicit_step(
+            balls, dt, lambda depth: (softness, dt * k * depth * softness)
+        ),
+        "soft": lambda balls: contact.soft_step(balls, dt, solref, solimp),
+    }
+
     def step(balls):
         for ball, force in zip(balls, (20.0, 0.0, -20.0)):  # the motors [N]
             ball.fx, ball.fy = force, 0.0
-        if exercise.MODEL == "soft":
-            return contact.soft_step(balls, dt, solref, solimp)
-        if exercise.MODEL == "implicit":
-            return implicit_step(balls, dt, lambda depth: (softness, dt * k * depth * softness))
-        contact.penalty_force(contact.detect_contacts(balls, margin=0.0), k, c)
-        contact.accelerate(balls, dt)
-        contact.move(balls, dt)
+        return springs[exercise.MODEL](balls)
 
     run = contact.simulate(step, of, dt, math.ceil(1.0 / dt - 1e-9))
     with np.errstate(all="ignore"):
@@ -282,21 +398,38 @@ def fingers(exercise):
         return last.max(), np.ptp(last), bool((np.abs(run.q[-1, 0]) < 0.3).all())
 
 
+CHOICES = {  # of exercise 8: what is allowed of each knob, in code and in words
+    "MODEL": (lambda value: value in ("penalty", "implicit", "soft"),
+              "'penalty', 'implicit' or 'soft'"),
+    "DT": (lambda value: 0.0005 <= value <= 0.1, "from 0.0005 s (2,000 steps) to 0.1 s"),
+    "STIFFNESS": (lambda value: 0.0 < value <= 1e15, "a number above 0"),
+    "DAMPING": (lambda value: 0.0 <= value <= 1e9, "a number, 0 or more"),
+    "SOLREF": (partial(contact.within, "solref", shape=(2,)), contact.SPRINGS),
+    "SOLIMP": (partial(contact.within, "solimp", shape=(5,)), "five numbers from 0 to 100"),
+}  # fmt: skip
+
+
+def out_of_bounds(exercise):
+    """The knobs of exercise 8 that cannot be run, each with what is allowed; "" if all can."""
+    wrong = []
+    for name, (allows, words) in CHOICES.items():
+        value, fine = getattr(exercise, name, None), False
+        with contextlib.suppress(Exception):
+            fine = bool(allows(value))
+        if not fine:
+            wrong.append(f"{name}: given {value!r:.60}; allowed: {words}")
+    return "\n".join(wrong)
+
+
 def judge_fingers(exercise):
     """("blank", "wrong" or "right", why in words, what was seen): the choice of exercise 8."""
-    model, dt, k, c = exercise.MODEL, exercise.DT, exercise.STIFFNESS, exercise.DAMPING
+    model, dt, k, c = (getattr(exercise, name, None) for name in [*CHOICES][:4])
     if model is None:
         return "blank", f"no choice yet: set MODEL in {near(exercise.__file__)}", ""
-    try:
-        knobs = model in ("penalty", "implicit", "soft"), 0.0005 <= dt <= 0.1, k > 0.0 <= c
-        if not all(knobs) or (len(exercise.SOLREF), len(exercise.SOLIMP)) != (2, 5):
-            raise ValueError
-        deepest, trembling, held = fingers(exercise)
-    except (TypeError, ValueError, ArithmeticError):
-        given = (f"{knob} {value!r}" for knob, value in vars(exercise).items() if knob.isupper())
-        allowed = "MODEL 'penalty', 'implicit' or 'soft', DT from 0.0005 s (2,000 steps) to 0.1 s, "
-        allowed += "STIFFNESS above 0, DAMPING 0 or more, SOLREF two numbers, SOLIMP five"
-        return "wrong", f"it cannot be run: given {', '.join(given)}; allowed: {allowed}", ""
+    if words := out_of_bounds(exercise):
+        rigid = f"\n{FACTS['ex8']['rigid']}" if model in ("lcp", "leapfrog", "exact") else ""
+        return "wrong", f"{words}{rigid}", ""
+    deepest, trembling, held = fingers(exercise)
     shown = f"overlap {deepest:.2g} r, trembling {trembling:.2g} r"
     faults = [] if trembling < 1e-5 else ["it trembles"]
     faults += [] if deepest < 1.001e-3 else ["it overlaps too much"]
@@ -316,30 +449,3 @@ def judge_fingers(exercise):
     else:
         advice = "a shorter time constant, of two steps or more, stiffens soft, so does impedance"
     return "wrong", f"{', and '.join(faults)}; {advice}", shown
-
-
-# A whole exercise
-
-
-def judged(name, exercise):
-    """The state of an exercise, and [what, state, words, shown] of everything that it asks for."""
-    if name == "ex8":
-        state, *seen = judge_fingers(exercise)
-        return state, [["two_fingers", state, *seen]]
-    found, states = [], {"": "right"}
-    for blank in (each for each in BLANKS if BLANKS[each].exercise == name):
-        print(f"trying {blank}", file=sys.stderr, flush=True)
-        state, words = judge(exercise, blank)
-        after = BLANKS[blank].after
-        if state == "wrong" and states[after] != "right":
-            state, words = "blank", f"{blank} is tried once {after} is right"
-        states[blank], shown = state, ""
-        if "blank" not in states.values() and blank in SHOWN:
-            try:  # also a wrong one: to see is to know why
-                shown = SHOWN[blank](exercise, blank)
-            except (Exception, SystemExit) as error:
-                if state == "right":
-                    words = f"a trial of {blank} stopped: {said_of(error)}"
-                states[blank] = "wrong"
-        found.append([blank, states[blank], words, shown])
-    return min(states.values(), key=("wrong", "blank", "right").index), found

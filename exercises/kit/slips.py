@@ -1,20 +1,25 @@
-"""The blanks: how each is tried, and what belongs in it. Much here gives an answer away.
+"""The functions that a learner writes: inputs, what is right, and slips by what they give.
 
 A fill is judged by what it gives on all inputs, beside what the right one gives; a wrong one is
 named by the slip of answers.json that gives the same.
 """
 
+import inspect
 import math
 import random
 from collections.abc import Callable
-from math import sqrt  # noqa: F401  expressions of answers.json use it
+from math import inf, sqrt  # noqa: F401  expressions of answers.json use them
 from typing import NamedTuple
 
 import numpy as np
 
 import contact
 
-from . import FACTS
+from . import FACTS, ROOT, load
+
+RIGHT = {path.stem: load(path) for path in (ROOT / "exercises/solutions").glob("ex*.py")}
+matrix = RIGHT["ex6"].step_matrix  # which most slips of it change in one place
+hits = RIGHT["ex10"].time_to_impact
 
 
 class Blank(NamedTuple):
@@ -43,28 +48,13 @@ def drawn(ranges, first=(), most=60):
     return inputs
 
 
-def matrix(m, k, c, dt):
-    """The right matrix of exercise 6, which most slips of it change in one place."""
-    slowed = 1.0 - dt * c / m
-    return [[1.0 - dt * dt * k / m, -dt * slowed], [dt * k / m, slowed]]
-
-
-SWEEP = """\
-for _ in range(iters):
-    for c in contacts:
-        add = (c.target - c.v_n()) * c.m_eff
-        lam = max(0.0, c.lam + add)
-        c.push(lam - c.lam)
-        c.lam = lam
-"""
-
-
 def solver(*changes, **names):
-    """A solve_contacts of this text, with (old, new) exchanged; `names` are what it may use."""
-    text = SWEEP
+    """The right solve_contacts, with (old, new) exchanged; `names` are what it may use."""
+    text = inspect.getsource(RIGHT["ex5"].solve_contacts)
     for old, new in zip(changes[::2], changes[1::2]):
         text = text.replace(old, new)
-    return lambda contacts, iters: exec(text, names | {"contacts": contacts, "iters": iters})
+    exec(text, names)
+    return names["solve_contacts"]
 
 
 def stacks():
@@ -127,16 +117,16 @@ def labels(name, case):
     return [*lam, *speeds, "1 sweep does it"]
 
 
-def blank(exercise, right, slips, inputs=None, arguments="", **more):
-    """A Blank from what answers.json says of it, where functions are expressions."""
+def blank(exercise, name, slips, inputs=None, arguments="", **more):
+    """A Blank from what answers.json says of it, where slips are expressions."""
     head = f"lambda {arguments}: " if arguments else ""
-    right, *wrong = (eval(head + text, globals()) for text in (right, *slips))  # our own text
-    cases = drawn(**inputs) if inputs else stacks()
+    wrong = (eval(head + text, globals()) for text in slips)  # our own text
+    cases, right = drawn(**inputs) if inputs else stacks(), getattr(RIGHT[exercise], name)
     return Blank(exercise, cases, right, list(zip(wrong, slips.values())), **more)
 
 
 BLANKS = {
-    name: blank(exercise, **facts)
+    name: blank(exercise, name, **facts)
     for exercise, each in FACTS.items()
     for name, facts in each.get("blanks", {}).items()
 }

@@ -1,0 +1,10 @@
+"""Exercise 5, a right answer: `python exercises/ex5_solve_contacts.py --solution` runs it."""
+
+
+def solve_contacts(contacts, iters):
+    for _ in range(iters):
+        for c in contacts:
+            add = (c.target - c.v_n()) * c.m_eff
+            lam = max(0.0, c.lam + add)
+            c.push(lam - c.lam)
+            c.lam = lam
