@@ -55,7 +55,7 @@ def test_exercise(name):
 
 def main():
     """Run the checks. Returns the exit status."""
-    how = "-o", "addopts=-q -rs"  # in a folder of one's own, too
+    how = "-o", "addopts=-q -rs -s"  # in a folder of one's own, too
     status = pytest.main([str(ROOT / "checks.py"), *how, *sys.argv[1:]])
     print(practise())
     return status

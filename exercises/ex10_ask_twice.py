@@ -28,7 +28,7 @@ say it; write the power as ORDER.
     python checks.py -k ex10
 """
 
-import math  # noqa: F401  math.sqrt and math.inf are what you need
+import math  # noqa: F401  you will want it
 
 from kit import script
 

@@ -28,7 +28,8 @@ with needs("notebook"):
     from curriculum.gate.references import Numbers
     from curriculum.lesson.regions import ROOT, read_all
 
-CARRIED = """contact.py checks.py exercises/*.py exercises/kit/* curriculum/__init__.py
+CARRIED = """contact.py checks.py exercises/*.py exercises/kit/* exercises/solutions/*
+    curriculum/__init__.py
 curriculum/show/__init__.py curriculum/show/picture.py curriculum/show/figures.mplstyle
 curriculum/exact.py curriculum/commands.py curriculum/implicit.py
 curriculum/bench/results/error-slide.svg curriculum/stress/results/penalty-map.svg""".split()
