@@ -604,6 +604,7 @@ def find_held(balls, contacts, dt):
     """Find which balls are held: nothing moves them, or they lie on one that is held."""
     for ball in balls:
         ball.held = ball.inv_mass == 0.0
+        ball.ax = ball.ay = 0.0  # see hold: nothing stays of the last step
     more = True
     while more:
         more = False
