@@ -18,8 +18,6 @@ for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before nump
 from curriculum.commands import Parser, needs
 
 with needs("dev"):
-    import scipy  # noqa: F401  # laws.py loads it late
-
     from contact import number
     from curriculum import parallel
     from curriculum.stress import jobs
@@ -49,49 +47,43 @@ def some_scenes(todo):
     found = []
     for job in todo:
         found.append(jobs.run(job))
-        if jobs.added_up(found[-1:])["violations"]:
+        if any(words for _, _, words in found[-1][1].values()):
             break
-    added = jobs.added_up(found)
-    for name, (_, count, share) in added["properties"].items():
-        print(f"{name}: {f'{count} comparisons, at {share:.1g} of the bound' if count else '-'}")
-    for what in added["notes"]:
+    judged, notes = jobs.added_up(found)
+    for row in judged:
+        say = f"{row['comparisons']} comparisons, at {row['share']:.1g} of the bound"
+        print(f"{row['property']}: {say if row['judged'] else '-'}")
+    for what in notes:
         print(f"met: {what}")
-    return added["violations"]
+    wrong = [row for row in judged if row["judged"] and row["violations"]]
+    print(*(f"VIOLATION: {row['property']}: {row['first']}" for row in wrong), sep="\n")
+    return wrong
 
 
 def everything(args):
     """A full or quick run, and its report. Returns the violations."""
-    from curriculum.measured import results
+    from curriculum import stored
     from curriculum.stress import report
 
+    if args.draw:
+        return report.draw(report.RESULTS)
     if not args.quick:
         with needs("bench"):
             import mujoco  # noqa: F401  # without it a section would judge nothing
     command = "python -m curriculum.stress" + " --quick" * args.quick
-    origin = partial(results.origin, command, "curriculum/stress/jobs.py", kept=not args.quick)
-    todo = jobs.all_jobs(args.quick)
     try:
-        origins = dict.fromkeys(todo, origin())
+        origin = stored.origin(command, "curriculum/stress/jobs.py", kept=not args.quick)
     except ValueError as error:  # a tree that is not committed
         sys.exit(f"python -m curriculum.stress: {error}")
-    found = {
-        name: parallel.run_jobs(jobs.run, each, name, args.workers) for name, each in todo.items()
-    }
-    return report.write(found, origins, report.QUICK if args.quick else report.RESULTS)
+    todo = jobs.all_jobs(args.quick).items()
+    found = {name: parallel.run_jobs(jobs.run, each, name, args.workers) for name, each in todo}
+    return report.write(found, origin, report.QUICK if args.quick else report.RESULTS)
 
 
 def main(argv=None):
     """Print the violations. Returns the exit status."""
     args = parse(argv)
-    if args.draw:
-        from curriculum.stress import report
-
-        report.draw(report.RESULTS, report.results.load("stress"))
-        return 0
-    violations = some_scenes(args.scene) if args.scene else everything(args)
-    for violation in violations:
-        print("VIOLATION:", ": ".join(violation))
-    return 1 if violations else 0
+    return 1 if (some_scenes(args.scene) if args.scene else everything(args)) else 0
 
 
 if __name__ == "__main__":

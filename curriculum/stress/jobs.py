@@ -3,20 +3,18 @@
 A job: (place, subject, properties). A place is how its violations are said, such as "scene 17".
 """
 
-import contact
 from curriculum.stress import heaps, maps, mujoco_match, properties, scenes
-from curriculum.stress.properties import judge
 from curriculum.stress.trial import Trial
 
 
 def all_jobs(quick):
     """{section: its jobs}; quick: about a hundredth of them."""
-    large, small, many = (60, 100, 20) if quick else (10_000, 1_000, 10_000)
+    large, small, many = (60, 100, 4) if quick else (8_000, 1_000, 1_000)
     return {
         "scenes": scene_jobs(range(large)) + scene_jobs(range(small), small=True),
+        "heaps": heaps.heap_jobs(many),
         "maps": list(maps.map_jobs(quick)),
         "mujoco": list(mujoco_match.match_jobs(quick)),
-        "heaps": heaps.heap_jobs(many),
     }
 
 
@@ -30,55 +28,32 @@ def run(job):
     place, subject, stated = job
     if not stated:
         subject = Trial(scenes.numbered_spec(*subject))
-    found = judge(subject, *(stated or properties.PROPERTIES.values()))
+    found = properties.judge(subject, *(stated or properties.PROPERTIES.values()))
     if not stated:
         subject.note("ran", **{model: 1 for model in subject.ran()})
     return place, found, getattr(subject, "noted", {})
 
 
 def added_up(found):
-    """What the results of several jobs come to.
+    """What the results of several jobs come to: (judged, notes).
 
-    properties: {name: [jobs judged, comparisons, off as a share of what is allowed at worst]};
-    violations: [[place, property, words]]; notes: {what was noted: {place: its numbers}}.
+    judged: a row for each property, with how many jobs it could judge, of how many numbers, how far
+    off the worst was as a share of what is allowed, how many violations there are, and the first in
+    words. What judged nothing is a violation. notes: {what was noted: {place: its numbers}}.
     """
-    totals, violations, notes = {}, [], {}
+    rows, notes = {}, {}
     for place, judged, noted in found:
         for name, (count, share, words) in judged.items():
-            total = totals.setdefault(name, [0, 0, 0.0])
-            total[:] = total[0] + (count > 0), total[1] + count, max(total[2], share)
-            if words:
-                violations.append([place, name, words])
+            start = {"property": name, "judged": 0, "comparisons": 0, "share": 0.0}
+            row = rows.setdefault(name, start | {"violations": 0, "first": None})
+            row["judged"] += count > 0
+            row["comparisons"] += count
+            row["share"] = max(row["share"], share)
+            row["violations"] += words is not None
+            row["first"] = row["first"] or (words and f"{place}: {words}")
         for what, numbers in noted.items():
             notes.setdefault(what, {})[place] = numbers
-    found = {"properties": totals, "violations": violations, "notes": notes}
-    return found | {"judgements": sum(judged for judged, _, _ in totals.values())}
-
-
-def ran(section):
-    """{model: in how many scenes it ran}."""
-    cases = section["notes"].pop("ran").values()
-    return {model: sum(model in case for case in cases) for model in contact.MODELS}
-
-
-def idle(section):
-    """A violation [place, name, words] for each model that ran in no scene, and each property that
-    judged none: what looks at nothing finds nothing.
-    """
-    counts = section["ran"] | {name: row[0] for name, row in section["properties"].items()}
-    return [["all scenes", name, "judged 0 times"] for name, count in counts.items() if not count]
-
-
-def unfinished(section):
-    """Energy that unfinished sweeps of lcp add: in how many scenes, and the worst of them."""
-    judged = section["properties"]["lcp_gains_energy_by_unfinished_sweeps_alone"][0]
-    cases = section["notes"].get(properties.UNFINISHED, {})
-    grown = {place: case["most"] / case["start"] for place, case in cases.items()}
-    worst = max(grown, key=grown.get, default=None)
-    return {
-        "scenes": judged,
-        "rises": len(cases),
-        "above_start": sum(factor > 1.0 + 1e-9 for factor in grown.values()),
-        "sweeps_most": max((case["sweeps"] for case in cases.values()), default=0),
-        "worst": {"place": worst} | cases.get(worst, {}),
-    }
+    for row in rows.values():
+        if not row["judged"]:
+            row.update(violations=1, first="judged 0 times")
+    return list(rows.values()), notes

@@ -22,29 +22,31 @@ def map_jobs(quick):
     dts, stiff = (8, 6) if quick else (40, 31)
     for c in (0.0, 80.0):
         for k in np.geomspace(1e2, 1e7, stiff).tolist():
-            row = PenaltyRow(c, k, np.geomspace(3e-4, 0.3, dts).tolist())
+            row = PenaltyRow(c, k, steps_of(dts))
             yield f"k {k:.4g}, c {c:g}", row, [penalty_settles_as_its_critical_dt_says]
+
+
+def steps_of(count):
+    """So many time steps [s] of the map."""
+    return np.geomspace(3e-4, 0.3, count).tolist()
 
 
 class PenaltyRow:
     """What penalty does at one damping [N s/m] and stiffness [N/m], over the time steps dt [s]."""
 
     def __init__(self, damping, stiffness, dts):
-        self.stiffness, self.scene = stiffness, SCENE._replace(damping=damping)
-        self.dts, self.noted = dts, {}
-
-    def run(self, scene, dt, steps):
-        """A run of so many steps."""
-        return run_twin("penalty", scene, dt, steps, contact.Settings(stiffness=self.stiffness))
+        self.damping, self.stiffness, self.dts, self.noted = damping, stiffness, dts, {}
 
     def outcome(self, dt):
         """One letter of OUTCOMES for the drop, watched until it should have settled.
 
         For eight times the slowest of: two decays of the damped spring, and the end of the bounces.
         """
-        c, k = self.scene.damping, self.stiffness
+        c, k = self.damping, self.stiffness
         decay = max(2.0, c * c / k, 0.1 * math.sqrt(k)) / c if c else 0.0
-        found = self.run(self.scene, dt, max(50, math.ceil((SECONDS + 8 * decay) / dt)))
+        steps = max(50, math.ceil((SECONDS + 8 * decay) / dt))
+        scene, knobs = SCENE._replace(damping=c), contact.Settings(stiffness=k)
+        found = run_twin("penalty", scene, dt, steps, knobs)
         if contact.blow_up_step(contact.energy(found.q, found.v, SCENE.mass)) is not None:
             return EXPLODES
         y, vy = found.q[:, 1, 0], found.v[:, 1, 0]
@@ -57,9 +59,9 @@ class PenaltyRow:
 
 def penalty_settles_as_its_critical_dt_says(row):
     """penalty: above its critical dt no dropped ball settles."""
-    critical = contact.critical_dt(1.0, row.stiffness, row.scene.damping)
+    critical = contact.critical_dt(1.0, row.stiffness, row.damping)
     outcomes = "".join(map(row.outcome, row.dts))
-    found = dict(damping=row.scene.damping, stiffness=row.stiffness, dt=row.dts, critical=critical)
+    found = {"damping": row.damping, "stiffness": row.stiffness, "critical": critical}
     row.noted["penalty"] = found | {"outcomes": outcomes}
     settled = np.array([outcome == SETTLES for outcome in outcomes])
     yield "settles above", settled & (np.array(row.dts) > critical), 0.0

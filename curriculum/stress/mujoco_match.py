@@ -34,20 +34,16 @@ def cases():
     whether there is a contact, and with d0 > 0 a contact begins with a jump of its force.
     """
     drop, bounce, stack = map(contact.build_scene, ("drop", "bounce", "stack"))
-    pile = contact.build_scene("pile", bodies=8)
     stack.q0[1] += 0.005 * np.arange(3)  # m between the balls
     for dt in (0.0005, 0.002, 0.008, 0.016):
         yield Case("drop", drop, dt)
         yield Case("bounce, direct solref", bounce, dt)
         yield Case("stack of 3, 5 mm apart", stack, dt)
-        yield Case("pile of 8", pile, dt, 300)
+        yield Case("pile of 8", contact.build_scene("pile", bodies=8), dt, 300)
     for mass, steps in (((10.0, 1.0, 0.1), 2000), ((0.1, 1.0, 10.0), 300)):
-        scene = stack._replace(mass=np.array(mass))
-        yield Case(f"stack of {mass} kg", scene, 0.002, steps)
-    for name, values in (("solref", SPRINGS), ("solimp", CURVES)):
-        for value in values:
-            knobs = contact.Settings(**{name: value})
-            yield Case(f"stack, {name} {value}", stack, 0.002, settings=knobs)
+        yield Case(f"stack of {mass} kg", stack._replace(mass=np.array(mass)), 0.002, steps)
+    for name, value in [("solref", s) for s in SPRINGS] + [("solimp", c) for c in CURVES]:
+        yield Case(f"{name} {value}", stack, 0.002, 2000, contact.Settings(**{name: value}))
 
 
 def match_jobs(quick):

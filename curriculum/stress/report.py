@@ -1,114 +1,120 @@
-"""results.json, README.md and the figure, from the results of the jobs."""
+"""Tables, README.md and the figure, from the results of the jobs."""
 
-from curriculum.commands import write_whole
-from curriculum.measured import results
+from pathlib import Path
+
+import numpy as np
+
+import contact
+from curriculum import stored
+from curriculum.commands import write_json, write_whole
 from curriculum.show import picture
 from curriculum.stress import heaps, jobs, maps, mujoco_match, properties
 
-FOLDER = results.FOLDERS["stress"]
-RESULTS, QUICK = results.ROOT / FOLDER, results.ROOT / "outputs" / "stress-quick"
-TITLES = {
-    "scenes": "Random scenes of up to 30 balls, and small ones of up to four",
-    "maps": "A map of penalty: one ball dropped a metre",
-    "mujoco": "soft against MuJoCo: single steps and whole runs",
-    "heaps": "Heaps whose sweeps are done: the energy and the order of leapfrog",
-}
+FOLDER = stored.FOLDERS["stress"]
+RESULTS, QUICK = stored.ROOT / FOLDER, stored.ROOT / "outputs" / "stress-quick"
+PAGE = Path(__file__).with_name("page.md")
 COLOURS = ("#fde9c9", "#ec9c5a", "#9c4058", "#2b1741")  # light to dark, as an outcome gets worse
 LINE = "#111111"  # over coloured cells, which stay as they are in the dark
 MARKS = (0.3, 1, 3, 10, 30, 100, 300)  # ms
 STATED = vars(properties) | vars(maps) | vars(mujoco_match) | vars(heaps)  # by their names
-HEAD = """# Stress: what must hold on any scene, and where each model breaks
-
-{}
-
-A judgement is one property on one scene, row of a map or match, counted only where \
-it could have failed: without a contact nothing is said of contacts. What was done is read from \
-the states before and after each step, and held against the chapter's formulas. U is 2^-53, the \
-largest rounding error of one operation; e is the restitution, v_n a speed along a normal."""
-UNFINISHED = """Unfinished sweeps of `lcp` took {above_start:,} scenes above their start's energy, \
-at worst {place}, from {start:.4g} J to {most:.4g} J; {sweeps_most:,.0f} sweeps a step ended every \
-rise."""
 
 
-def write(found, origins, folder):
-    """Write what the jobs of each section found. Returns the violations [place, name, words]."""
-    sections = {name: jobs.added_up(each) for name, each in found.items()}
-    scenes = sections["scenes"]
-    scenes |= {"scenes": len(found["scenes"]), "unfinished": jobs.unfinished(scenes)}
-    scenes |= {"ran": jobs.ran(scenes)}
-    rows = list(sections["maps"]["notes"].pop("penalty").values())
-    sections["maps"]["penalty"] = rows
-    notes = sections["heaps"]["notes"]
-    sections["heaps"]["gains"] = heaps.table_of(notes.pop("gains").values())
-    sections["heaps"]["thrown"] = heaps.thrown(notes.pop("thrown").values())
-    for name, section in sections.items():
-        section["violations"] += jobs.idle({"ran": {}} | section)
-        section["notes"] = {what: len(places) for what, places in sorted(section["notes"].items())}
-        sections[name] = results.save(folder, name, section, origins[name])
-    draw(folder, sections)
-    print(f"report: {folder / 'README.md'}")
-    return [violation for section in sections.values() for violation in section["violations"]]
+def tables_of(found):
+    """{table: rows} of what the jobs of each section found."""
+    judged, notes = [], {}
+    for each in found.values():
+        rows, noted = jobs.added_up(each)
+        judged, notes = judged + rows, notes | noted
+    ran, energies = notes.pop("ran").values(), list(notes.pop("energy").values())
+    models = {model: sum(model in each for each in ran) for model in contact.MODELS}
+    rises = notes.get(properties.UNFINISHED, {})
+    place = max(rises, key=lambda each: rises[each]["most"] / rises[each]["start"], default=None)
+    worst = {"place": place} | rises.get(place, {"sweeps": 0, "start": 0.0, "most": 0.0})
+    lcp = {
+        "what": "unfinished",
+        "scenes": next(r["judged"] for r in judged if r["property"].startswith("lcp_gains")),
+        "above_start": sum(each["most"] > each["start"] * (1 + 1e-9) for each in rises.values()),
+        "sweeps_most": max((each["sweeps"] for each in rises.values()), default=0),
+    }
+    for model in (model for model, count in models.items() if not count):
+        judged[0] |= {"violations": judged[0]["violations"] + 1, "first": f"{model} never ran"}
+    return {
+        "judged": judged,
+        "models": [{"model": model, "scenes": count} for model, count in models.items()],
+        "limits": [{"what": what, "scenes": len(places)} for what, places in sorted(notes.items())
+                   if what != "penalty"],
+        "lcp": [lcp | worst],
+        "energy": list(heaps.energy_rows(energies)),
+        "penalty": list(notes["penalty"].values()),
+    }  # fmt: skip
 
 
-def draw(folder, sections):
-    """Write page and figure, and the README's block where the results are kept."""
-    write_whole(folder / "README.md", page(sections))
+def write(found, origin, folder):
+    """Write what the jobs of each section found. Returns how many violations there are."""
+    for name, rows in tables_of(found).items():
+        stored.save(folder / f"{name}.csv", rows or [{"what": None}])
+    write_json(folder / "made.json", {"all": origin})
+    return draw(folder)
+
+
+def draw(folder):
+    """Write page and figure of a folder's tables, and the README's block where they are kept."""
+    tables, made = stored.load(folder)
+    write_whole(folder / "README.md", page(tables, made))
     try:
-        write_whole(folder / "penalty-map.svg", penalty_map(sections["maps"]))
+        write_whole(folder / "penalty-map.svg", penalty_map(tables["penalty"], made["all"]))
     except ImportError as error:
         print(f"no figure: {error}")
     if folder == RESULTS:
-        results.write_block("stress", readme(sections))
+        stored.write_block("stress", readme(tables))
+    print(f"report: {folder / 'README.md'}")
+    wrong = [row for row in tables["judged"] if row["violations"]]
+    for row in wrong:
+        print(f"VIOLATION: {row['property']}: {row['violations']:,}, first of {row['first']}")
+    return len(wrong)
 
 
-def summary(sections):
+def summary(tables):
     """How much was judged, and how many violations there are, in one sentence."""
-    total = sum(section["judgements"] for section in sections.values())
-    wrong = sum(len(section["violations"]) for section in sections.values())
-    scenes, ran = sections["scenes"]["scenes"], sections["scenes"]["ran"]
-    fewer = [f", `{model}` in the {n:,} that it promises" for model, n in ran.items() if n < scenes]
-    heaps_run = max(row[0] for row in sections["heaps"]["properties"].values())
+    total, wrong = (sum(row[name] for row in tables["judged"]) for name in ("judged", "violations"))
+    ran = {row["model"]: row["scenes"] for row in tables["models"]}
+    fewer = [f", `{m}` in the {n:,} that it promises" for m, n in ran.items() if n < ran["penalty"]]
+    runs = sum(row["runs"] for row in tables["energy"])
     return (
-        f"{scenes:,} random scenes by every model{''.join(fewer)}; {heaps_run:,} heaps; `penalty` "
-        f"over step and stiffness; `soft` beside MuJoCo: {total:,} "
-        f"judgements, {wrong or 'no'} violation{'s' * (wrong != 1)}."
+        f"{ran['penalty']:,} random scenes by every model{''.join(fewer)}; {runs:,} runs of heaps, "
+        "gaps, ceilings and columns; `penalty` over step and stiffness; `soft` beside MuJoCo: "
+        f"{total:,} judgements, {wrong or 'no'} violation{'s' * (wrong != 1)}."
     )
 
 
-def readme(sections):
+def readme(tables):
     """The stress block of the project's README: one figure and one sentence."""
     figure = f"![What penalty does over step and stiffness]({FOLDER}/penalty-map.svg)"
     link = f"[Every property, map and limit]({FOLDER}/README.md)."
-    return f"{figure}\n\n{summary(sections)} {link}"
+    return f"{figure}\n\n{summary(tables)} {link}"
 
 
-def page(sections):
+def page(tables, made):
     """README.md of the results."""
-    parts, unfinished = [HEAD.format(summary(sections))], sections["scenes"]["unfinished"]
-    if unfinished["rises"]:
-        parts.append(UNFINISHED.format(**unfinished, **unfinished["worst"]))
-    for name, section in sections.items():
-        head = ["property", "judged", "comparisons", "off, as a share of the bound"]
-        parts += [f"## {TITLES[name]}", results.table(head, rows_of(section["properties"]))]
-        parts += [f"- **{': '.join(words)}**" for words in section["violations"]]
-        notes = [f"- {what}: {count:,}" for what, count in section["notes"].items()]
-        if name == "heaps":
-            head = ["dt", "heaps", "model", "gained energy", "most, as a share of the start's"]
-            parts += [heaps.LIMITS, section["thrown"], results.table(head, section["gains"])]
-        if notes:
-            parts += ["Not judged, or limits that were met, in scenes:", "\n".join(notes)]
-    parts += ["![](penalty-map.svg)", results.footer(sections["scenes"])]
-    return "\n\n".join(parts) + "\n"
+    wrong = [f"**{r['property']}: {r['first']}**" for r in tables["judged"] if r["violations"]]
+    head = ["property", "judged", "comparisons", "off / bound"]
+    return PAGE.read_text("utf-8").format(
+        summary="\n\n".join([summary(tables), *wrong]),
+        energy=stored.table(*heaps.energy_table(tables["energy"])),
+        lcp=tables["lcp"][0],
+        limits="\n".join(f"- {row['what']}: {row['scenes']:,}" for row in tables["limits"]),
+        judged=stored.table(head, map(cells, tables["judged"])),
+        footer=stored.footer(made["all"]),
+    )
 
 
-def rows_of(judgements):
-    """What each property says, and how much of it was judged."""
-    for name, (judged, count, share) in judgements.items():
-        words = " ".join(STATED[name].__doc__.split("\n\n")[0].split())
-        yield [words, f"{judged:,}", f"{count:,}", f"{share or 0:.1g}"]
+def cells(row):
+    """What a property says, and how much of it was judged."""
+    words = " ".join(STATED[row["property"]].__doc__.split("\n\n")[0].split())
+    return [words, f"{row['judged']:,}", f"{row['comparisons']:,}", f"{row['share'] or 0:.1g}"]
 
 
-def penalty_map(section):
+def penalty_map(rows, made):
     """What the drop does over dt and stiffness, a panel for each damper, with the theory: SVG."""
     figure, axes = picture.figure(
         rows=2,
@@ -118,29 +124,30 @@ def penalty_map(section):
         "The speckle is luck: where in a step the ball meets the table.",
     )
     for axis, damping in zip(axes, (0.0, 80.0)):
-        rows = [row for row in section["penalty"] if row["damping"] == damping]
-        draw_panel(axis, rows, f"c = {damping:g} N s/m; line: k dt² + 2 c dt = 4 m")
+        draw_panel(axis, [row for row in rows if row["damping"] == damping])
+        axis.set_title(f"c = {damping:g} N s/m; line: k dt² + 2 c dt = 4 m")
     axes[0].get_legend().remove()
     axes[0].set_xlabel("")
-    return picture.svg(figure, section)
+    return picture.svg(figure, {"measured": made})
 
 
-def draw_panel(axis, rows, title):
+def draw_panel(axis, rows):
     """The outcomes at one damping, and the critical dt."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    dt, stiffness = rows[0]["dt"], [row["stiffness"] for row in rows]
-    classes = [[maps.OUTCOMES.index(letter) for letter in row["outcomes"]] for row in rows]
+    stiffness, critical = ([row[name] for row in rows] for name in ("stiffness", "critical"))
+    dt = maps.steps_of(len(rows[0]["outcomes"]))
+    classes = np.array([[maps.OUTCOMES.index(each) for each in row["outcomes"]] for row in rows])
     look = dict(cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5, shading="nearest")
     axis.pcolormesh(dt, stiffness, classes, rasterized=True, **look)
     axis.grid(False)
     for look in (dict(color="white", lw=4), dict(color=LINE, lw=1.8)):
-        axis.plot([row["critical"] for row in rows], stiffness, **look)
+        axis.plot(critical, stiffness, **look)
     patches = [Patch(color=colour, label=text) for colour, text in zip(COLOURS, maps.WORDS)]
     axis.legend(handles=patches, loc="upper left", bbox_to_anchor=(-0.1, -0.17), ncols=2)
     axis.set(xscale="log", yscale="log", xlim=(dt[0], dt[-1]), ylim=(stiffness[0], stiffness[-1]))
-    axis.set(ylabel="stiffness k [N/m]", title=title)
+    axis.set_ylabel("stiffness k [N/m]")
     axis.set_xticks([1e-3 * mark for mark in MARKS], MARKS)
     axis.minorticks_off()
     axis.set_xlabel("time step dt [ms]", loc="right")

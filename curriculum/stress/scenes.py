@@ -3,6 +3,7 @@
 A spec is a dict: x, y [m], vx, vy [m/s], mass [kg], radius [m] (lists, one value a ball),
 restitution, damping [N s/m], dt [s], steps, stiffness [N/m], baumgarte, iters, and of soft solref
 (None, or a time constant [s] and a damping ratio), warm. A mass of inf is a fixed ball.
+heap, gap, ceiling and column are contact.Scenes, for heaps.py.
 """
 
 import math
@@ -18,6 +19,11 @@ KNOBS = ("stiffness", "baumgarte", "iters", "solref", "warm")  # fields of conta
 def to_scene(spec):
     """The contact.Scene of a spec."""
     return contact.scene_of(**{name: spec[name] for name in (*BODY, "restitution", "damping")})
+
+
+def to_settings(spec, **more):
+    """The contact.Settings of a spec."""
+    return contact.Settings(**{name: spec[name] for name in KNOBS}, **more)
 
 
 def state(q, v):
@@ -106,3 +112,42 @@ def numbered_spec(number, small=False):
         "solref": pick(rng, None, spring),
         "warm": pick(rng, 0.0, 0.0, 0.8, 1.0),
     }
+
+
+def heap(rng):
+    """2 to 12 balls over the table, at rest or thrown."""
+    count = int(rng.integers(2, 13))
+    radius, mass = 0.05 * 4.0 ** rng.random(count), 100.0 ** rng.random(count)
+    wide, fast = rng.uniform(0.5, 2.0), rng.choice([0.0, 1.0, 3.0])
+    x, y = rng.uniform(-wide, wide, count), rng.uniform(0.2, 3.0 * wide, count)
+    return contact.scene_of(x, y, mass, radius, *(fast * rng.standard_normal((2, count))))
+
+
+def gap(rng):
+    """A ball of 1.3 kg that flies between two far heavier ones, which stand in any direction."""
+    radius, gap = rng.uniform(0.05, 0.3, 3), rng.uniform(0.001, 0.1)
+    angle, pace = rng.uniform(0.0, np.pi), rng.uniform(-10.0, 10.0)
+    along = np.array([np.cos(angle), np.sin(angle)])
+    ends = -radius[0], 2.0 * radius[2] + gap + radius[1], radius[2] + gap * rng.random()
+    x, y = np.outer(along, ends) + [[0.0], [2.0]]
+    mass = [*rng.choice([np.inf, *10.0 ** rng.uniform(0.0, 6.0, 2)], 2), 1.3]
+    vx, vy = np.outer(along, [0.0, 0.0, pace]) + rng.normal(0.0, 0.3, (2, 3)) * [0.0, 0.0, 1.0]
+    return contact.scene_of(x, y, mass, radius, vx, vy)
+
+
+def ceiling(rng):
+    """A column of 1 to 4 balls, all at up to 20 m/s, between the floor and a fixed ball."""
+    count = int(rng.integers(2, 6))
+    radius, gap = rng.uniform(0.05, 0.12, count), 10.0 ** rng.uniform(-6.0, -2.0, count)
+    y = np.cumsum(2.0 * radius + gap) - radius
+    mass = [*10.0 ** rng.uniform(-2.0, 3.0, count - 1), np.inf]
+    vy = [*rng.uniform(-20.0, 20.0, count - 1), 0.0]
+    return contact.scene_of(rng.normal(0.0, 1e-3, count), y, mass, radius, 0.0, vy)
+
+
+def column(rng, count):
+    """That many balls over one another, which fall or were thrown; masses up to 100 : 1."""
+    radius, gap = rng.uniform(0.05, 0.2, count), 10.0 ** rng.uniform(-4.0, -0.3, count)
+    y, mass = np.cumsum(2.0 * radius + gap) - radius, 10.0 ** rng.uniform(-1.0, 1.0, count)
+    vy = rng.choice([0.0, 2.0]) * rng.uniform(-1.0, 1.0, count)
+    return contact.scene_of(np.zeros(count), y, mass, radius, 0.0, vy)
