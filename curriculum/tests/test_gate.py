@@ -254,7 +254,7 @@ def stale_after(changes, made, monkeypatch):
     "file, room",
     [
         ("curriculum/stress/properties.py", "stress/jobs"),
-        ("curriculum/stress/jobs.py", "stress/jobs"),
+        ("curriculum/stress/heaps.py", "stress/jobs"),
         ("contact.py", "bench/measure"),
     ]
     + [(f"curriculum/{name}.py", "bench/measure") for name in ("exact", "fast", "bench/problems")],
