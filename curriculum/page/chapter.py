@@ -34,7 +34,7 @@ SETTINGS = {  # beside the quantities: what each may be
     "from": r"[\d.]+",
     "to": r"[\d.]+",
 }
-HIDES = {"ex1": "How they land", "ex3": "What happens then", "ex4": "Where it rests"}
+HIDES = {"ex1": "How they land", "ex3": "What happens then"}
 
 
 # ---- Markdown

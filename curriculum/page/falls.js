@@ -33,7 +33,6 @@ function hiddenBy(view, model) {
   const { dt, stiffness, damping } = view.values;
   if (model === "exact") return null;
   if (!view.open("ex1")) return "exercise 1";
-  if (model === "soft" && !view.open("ex4")) return "exercise 4";
   const throws = dt >= 0.97 * criticalDt(1, stiffness, damping).damped; // what exercise 3 asks
   return model === "penalty" && throws && !view.open("ex3") ? "exercise 3" : null;
 }

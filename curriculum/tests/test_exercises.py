@@ -586,6 +586,20 @@ def test_a_number_is_what_its_command_prints(name, model, tmp_path):
     assert float(row[1 + heads.index("gap/r")]) == pytest.approx(-NUMBERS[name][0], rel=5e-3)
 
 
+# The next chapter
+
+
+def test_the_finger_of_the_next_chapter_feels_what_it_pushes():
+    """Three balls of 2 N drag each, and impulses that add up to what the balls gained."""
+    example = load(ROOT / "exercises/next_chapter.py")
+    for model in contact.STEPPED:
+        run, force = example.push(model)
+        assert sum(force[-500:]) / 500 == pytest.approx(-6.0, rel=1e-3), model
+        assert run.v[-1, 0] == pytest.approx(0.3, abs=0.01) and force[0] == 0.0
+    printed = python("exercises/next_chapter.py").stdout
+    assert printed.count("-6.00") == len(contact.STEPPED)
+
+
 # What the chapter says, and when
 
 

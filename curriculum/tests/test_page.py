@@ -15,7 +15,6 @@ from curriculum.tests.page_browser import SHOWN, call, middle, mouse, visiting
 BETS = {  # a number of each that tells its answer, as the page writes it
     "ex1": ("penalty_deepest", ".3f"),
     "ex3": ("limit", ".4f"),
-    "ex4": ("penalty_heavy", ".5f"),
 }
 MOST = 900_000  # bytes of the page
 HALF = "Invalid markup: Incorrect number of children"
