@@ -169,7 +169,7 @@ def write_block(name: str, markdown: str) -> None:
 
 
 def machine() -> dict:
-    """Date, commit ("unknown" without git; with "+" where Python files differ from it), processor
+    """Date, commit ("unknown" without git; with "+" where sources differ from it), processor
     and system; and the versions of packages that are installed, {package: text}."""
     info = read_text("/proc/cpuinfo")
     name = re.search(r"model name\s*: (.+)", info)
@@ -187,8 +187,8 @@ def machine() -> dict:
 
 
 def dirty() -> str:
-    """The Python files that differ from the commit, as git shows them; "" without git."""
-    return git("status", "--porcelain", "--", "*.py").strip()
+    """The sources that differ from the commit, as git shows them; "" without git."""
+    return git("status", "--porcelain", "--", "*.py", ":(glob)curriculum/*/*.csv").strip()
 
 
 def git(*words) -> str:

@@ -181,20 +181,21 @@ class Gate:
 
     def check_results(self):
         """Results and rows of the ledger are of today's code; all that are not make one problem."""
-        sources, parts, commands = {}, [], {}
+        sources, parts, commands = {}, {}, {}
         for name, folder in stored.FOLDERS.items():
             for part, about in stored.load(folder)[1].items():
                 if moved := stored.changed(about["code"]):
-                    parts.append(f"{name} {part}")
                     sources |= dict.fromkeys(moved)
+                    parts[f"{name} {part}"] = f"{folder}/made.json"
                     commands[about["command"]] = None
         for row in filter(stored.stale, stored.ledger()):
-            parts.append(f"the wall-clock of {row['tier']}")
+            parts[f"the wall-clock of {row['tier']}"] = "wallclock.csv"
             commands[f"{stored.COMMAND} {row['tier']}"] = None
         if parts:
             moved = ", ".join([*sources][:6]) + ", ..." * (len(sources) > 6) or "the code"
             what = f"{moved} changed since these were measured: {', '.join(parts)}"
-            self.say("wallclock.csv", 1, what, f"whoever merges types {'; '.join(commands)}")
+            where = next(iter(parts.values()))
+            self.say(where, 1, what, f"whoever merges types {'; '.join(commands)}")
 
 
 def check() -> int:

@@ -1,8 +1,10 @@
 """Compile the loops for many balls and keep them: `python -m curriculum.lesson`, once, a minute."""
 
-import contact
-from curriculum import fast
-from curriculum.commands import Parser
+from curriculum.commands import Parser, needs
+
+with needs("bench"):
+    import contact
+    from curriculum import fast
 
 if __name__ == "__main__":
     Parser(prog="python -m curriculum.lesson", description=__doc__).parse_args()

@@ -159,8 +159,8 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
      ["{}:1: it keeps what is gone, or other, of swept; repair: "]),
     ("wallclock.csv", PENDING, PENDING
      + "ch3.5-contact,cpu,0.01,0123456789ab,1234567,2026-01-02,MEASURED\n",
-     ["{}:1: contact.py#sweep changed since these were measured: bench piles, the wall-clock of "
-      "cpu; repair: whoever merges types python -m curriculum.bench piles; python -m curriculum."]),
+     [f"{MADE}:1: contact.py#sweep changed since these were measured: bench piles, the wall-clock "
+      "of cpu; repair: whoever merges types python -m curriculum.bench piles; python -m curricul"]),
 ]  # fmt: skip
 
 
