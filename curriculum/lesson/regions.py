@@ -15,14 +15,6 @@ from typing import NamedTuple
 
 from curriculum.commands import ROOT
 
-CODE = (  # what a run runs
-    "contact.py",
-    "curriculum/exact.py",
-    "curriculum/fast.py",
-    "curriculum/lesson/to_loops.py",
-    "curriculum/lesson/rows.py",
-    "curriculum/lesson/compiled.py",
-)
 LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/implicit.py")  # what has regions
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
 NAME = r"[a-z][a-z0-9_-]*"

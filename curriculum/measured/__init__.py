@@ -1,1 +1,0 @@
-"""What benchmark, stress report and ledger store, and how it is known which code it is of."""
