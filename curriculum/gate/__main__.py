@@ -55,7 +55,11 @@ class Gate:
     def __init__(self):
         self.chapter, self.meta = split(read_text(CHAPTER)), load_meta()
         self.regions, self.problems = split_all()
-        self.passages = {each.name: each for each in passages()}
+        self.passages: dict = {}
+        for each in passages():
+            if each.name in self.passages:
+                self.say(each.file, each.line, f"a second heading {each.name}", "rename one")
+            self.passages[each.name] = each
         self.now = {p.name: p.regions(self.regions.values()) for p in self.passages.values()}
 
     def say(self, file, line, what, repair):

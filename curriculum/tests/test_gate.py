@@ -141,6 +141,7 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
      ["{}:#: an include not alone", "contact.py:#: region contact.py#quality "]),
     (CHAPTER, "contact.py#measure]", "contact.py#sweep]",
      ["{}:#: region contact.py#sweep stands here again", "contact.py:#: region contact.py#measur"]),
+    ("README.md", "# Project\n", "# Run\n", ["{}:3: a second heading README.md: Run"]),
     ("README.md", "Settings.iters", "Settings.sweeps", ["{}:5: 'contact.Settings.sweeps': "]),
     (CLAMP, "It pushes by", "It pulls by", ["{}:1: read 'figures/clamp' again: its words changed"]),
     (CLAMP, "`push`", "`pulls_by`", ["{}:1: `pulls_by` is in no code"]),
