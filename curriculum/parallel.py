@@ -71,8 +71,20 @@ def spread(submit, look, function, numbered) -> Iterator[tuple]:
         except Empty:
             look()
             continue
-        yield waiting.pop(future), future.result()
+        yield waiting.pop(future), fetched(future, look)
         ask(1)
+
+
+def fetched(future, look):
+    """The result of a future that is done. A cluster may lose it on the way, and work it out again;
+    look() where that takes long."""
+    while True:
+        try:
+            return future.result(PATIENCE)
+        except Exception as error:
+            if type(error).__name__ != "TimeoutError":  # Python 3.10 has three of that name
+                raise
+            look()
 
 
 def carried(function):

@@ -159,17 +159,23 @@ def contact_impulses(run: contact.Run, scene: contact.Scene) -> np.ndarray:
     return np.concatenate((np.zeros_like(run.v[:1]), mass * (np.diff(run.v, axis=0) - gained)))
 
 
+def weight(scene: contact.Scene) -> float:
+    """The weight [N] of all balls that can move."""
+    return -contact.GRAVITY * float(scene.mass[np.isfinite(scene.mass)].sum())
+
+
 @np.errstate(all="ignore")
 def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
     """What is plotted of runs {model: Run}, {title: {model: values (S,)}}."""
     drawn: dict = {}
     for model, run in runs.items():
+        gap = contact.smallest_gap(run.q, scene.radius)
         total = contact.energy(run.q, run.v, scene.mass)
-        depth = np.maximum(-contact.smallest_gap(run.q, scene.radius), 0.0)
+        force = contact_impulses(run, scene)[:, 1].sum(-1) / np.diff(run.t[:2]).sum()
         lines = {
             "height [m], mean": run.q[:, 1].mean(-1),
-            "penetration [r]": depth / scene.radius[0],
-            "impulse of floor [N s]": contact_impulses(run, scene)[:, 1].sum(-1),
+            "gap [r], below 0 it is an overlap": gap / scene.radius.min(),
+            f"force of floor [N], weight {weight(scene):.3g} N": force,
             "energy above start [J]": total - total[0],
             "rises of energy [J]": np.maximum(np.diff(total, prepend=total[0]), 0.0).cumsum(),
         }
@@ -178,20 +184,42 @@ def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
     return drawn
 
 
+@np.errstate(all="ignore")
+def worth_seeing(runs: dict, quality: dict) -> tuple[float, float]:
+    """From when to when [s]: from the first push, to when the last ball has come to rest.
+
+    It pushes in the state after the first contact. A ball rests once it goes slower than 1 cm/s for
+    good, judged by its way, since speeds at the end of leapfrog's steps may be larger; a tenth more
+    is shown, at most to the end.
+    """
+    pushes, rests = [], [0.0]
+    for model, run in runs.items():
+        pushed = quality[model]["first_contact_step"] + 1
+        pushes += run.t[pushed : pushed + 1].tolist()
+        slow = np.abs(np.diff(run.q, axis=0)) < 0.01 * np.diff(run.t)[:, None, None]
+        moving = np.flatnonzero(~slow.all((1, 2)))
+        rests += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]
+    return float(min(pushes, default=0.0)), float(max(rests))
+
+
 def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str) -> None:
-    """Draw the curves of runs {model: Run} over time, a panel each, as SVG, whole or not at all.
+    """Draw the curves of runs {model: Run} from the landing to rest, a panel each, as SVG.
 
     Takes what recording.write takes. Raises ImportError where matplotlib is missing.
     """
-    drawn = curves(runs, scene)
+    drawn, (first, last) = curves(runs, scene), worth_seeing(runs, quality)
+    first -= 0.1 * max(last - first, 0.0)
     picture, axes = figure(len(drawn), title, height=1.5, below=0.3)
     for axis, (name, lines) in zip(axes, drawn.items()):
         axis.set_title(name)
         axis.tick_params(labelbottom=axis is axes[-1])
         for place, (model, values) in enumerate(lines.items()):
-            seen = np.where(np.abs(values) < 1e30, values, np.nan)  # more cannot be drawn
+            t = runs[model].t
+            seen = (t >= first) & (t <= max(first, last)) & (np.abs(values) < 1e30)  # or not drawn
             width = 2.6 - 0.45 * place  # thick beneath thin: lines that coincide are all seen
-            line(axis, runs[model].t, seen, model, marker="", linewidth=width)
+            line(axis, t[seen], values[seen], model, marker="", linewidth=width)
+        if name.startswith("force"):
+            axis.set_ylim(0.0, 5.0 * weight(scene))
     axes[-1].set_xlabel("time [s]")
     legend_below(axes[-1], columns=len(runs), down=0.4)
     commands.write_whole(path, svg(picture))

@@ -1,19 +1,16 @@
-"""Runs as a rerun recording: a view of balls for every model, curves below.
+"""Runs as a rerun recording: a view of balls for every model, curves beside them.
 
 rerun's 2-D views have y down and no option, so y is negated here and nowhere else.
 Raises ImportError on import where rerun is missing.
 """
 
-import os
-import tempfile
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 
 import contact
 from curriculum import commands
-from curriculum.show.picture import COLORS, contact_impulses, curves
+from curriculum.show.picture import COLORS, contact_impulses, curves, weight, worth_seeing
 
 try:
     import rerun as rr
@@ -26,32 +23,41 @@ GROUND, LINE = "#3a3f4a", "#ffffff"
 MOST_ARROWS = 24  # balls: more have no arrows
 SECONDS = ("sim_time", "landing")  # timelines, besides step
 LONGEST = 9e9  # s: 64 bits of nanoseconds
-BEFORE = 0.1  # s: how long before the first contact the recording opens
-FARTHEST = 150  # radii: how far out of the middle a ball is still kept in view
 MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sinks by 0.01
+ABOUT = """\
+**{title}**
+
+An arrow is what all contacts push on a ball: a radius for its weight, and a
+radius more for each doubling. Below, the table is magnified: those views are so many r
+high. The line `landing` begins at the first contact, at {first:.4g} s; `sim_time` at the start.
+"""
 
 
 def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str) -> None:
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
 
-    quality: {model: contact_quality} of the runs. A recording shows no title. Whole columns are
-    sent, in rerun's strict mode. The timelines are step, sim_time (up to 9e9 s), and landing, which
-    it opens on: sim_time, but all that is long before the first contact at its start. The entities
-    are world/MODEL/{ground,table,balls,pushes} and CURVE/MODEL.
+    quality: {model: contact_quality} of the runs. Whole columns are sent, in rerun's strict mode.
+    The timelines are step, sim_time, and landing, which it opens on: sim_time, but all that is
+    before the first push at its start. The entities are about, world/MODEL/{ground,table,balls,
+    pushes} and CURVE/MODEL.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
     drawn, seconds = curves(runs, scene), worth_seeing(runs, quality)
     times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        temporary = Path(folder, os.path.basename(path))
+
+    def save(temporary):
         recording.save(temporary, default_blueprint=layout(runs, scene, drawn, seconds, quality))
+        words = ABOUT.format(title=title, first=seconds[0])
+        markdown = rr.TextDocument(words, media_type=rr.MediaType.MARKDOWN)
+        recording.log("about", markdown, static=True)
         for model, run in runs.items():
             send_table(recording, model)
             send_balls(recording, model, run, scene, times[model])
         send_curves(recording, runs, drawn, times)
         recording.disconnect()
-        commands.write_whole(path, temporary.read_bytes())
+
+    commands.write_whole(path, save)
 
 
 def rgba(color: str) -> np.ndarray:
@@ -60,12 +66,11 @@ def rgba(color: str) -> np.ndarray:
 
 
 def timelines(t: np.ndarray, first: float) -> list:
-    """The columns of time; those in seconds where 64 bits of nanoseconds can hold them."""
+    """The columns of time."""
     times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
-    if t[-1] < LONGEST:
-        for name, seconds in zip(SECONDS, (t, np.maximum(t, first))):
-            nanoseconds = np.round(seconds * 1e9).astype("timedelta64[ns]")  # no stamp is off
-            times.append(rr.TimeColumn(name, duration=nanoseconds))
+    for name, seconds in zip(SECONDS, (t, np.maximum(t, first))):
+        nanoseconds = np.round(np.minimum(seconds, LONGEST) * 1e9)  # no stamp is off
+        times.append(rr.TimeColumn(name, duration=nanoseconds.astype("timedelta64[ns]")))
     return times
 
 
@@ -138,31 +143,34 @@ def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
 
 
 def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
-    """The blueprint that travels in the file: the balls, the table magnified, the plots.
+    """The blueprint that travels in the file: on the left the balls, and under them the table
+    magnified; on the right what it is, and the plots.
 
-    Every run has views of its own, so balls that roll far never cross into another run's. Where
-    they roll, the views are as wide as the screen, one below the other; where they stand above one
-    another, the table is magnified under them. A run that explodes does not widen the views, unless
-    all do.
+    Every run has views of its own, so balls that roll far never cross into another run's. Piles
+    have them one below the other.
     """
-    large, x = float(scene.radius.max()), scene.q0[0]
-    calm = [run for model, run in runs.items() if not quality[model]["blew_up"]]
-    shown = frame(calm or list(runs.values())[:1], x, large)
-    lanes = [view(model, title_of(model, row), *shown) for model, row in quality.items()]
-    wide = np.ptp(shown[0]) > 1.2 * np.ptp(shown[1])
-    rows = [rrb.Vertical(*lanes) if wide else rrb.Horizontal(*lanes)]
-    if np.ptp(x) < large and not wide:
-        high, middle = MAGNIFIED * large, float(x[0])
-        near = [middle - 1.2 * high, middle + 1.2 * high], [-0.4 * high, 0.6 * high]
-        name = f"the table, magnified: {MAGNIFIED:g} r high"
-        rows.append(rrb.Horizontal(*[view(model, name, *near) for model in runs]))
-    rows.append(rrb.Horizontal(*[plot(title, *seconds) for title in drawn]))
-    shares = [5, 2, 3] if len(rows) == 3 else [5, 3]
-    views = rrb.Vertical(*rows, row_shares=shares)
-    return rrb.Blueprint(views, time_panel(), collapse_panels=True)
+    large, x, y = float(scene.radius.max()), *scene.q0
+    middle, half, pile = 0.5 * (x.min() + x.max()), 0.5 * np.ptp(x), np.ptp(x) > 0.0
+    wide, top = 1.6 * half + 2.5 * large, y.max() + 2.0 * large
+    sides = [middle - wide, middle + wide], [-top, 0.1 * top]
+    lanes = [view(model, name_of(model, row), *sides) for model, row in quality.items()]
+    high = 3.0 if pile else MAGNIFIED  # radii; of a pile it is the middle
+    reach = high * large
+    near = (
+        [middle - 1.2 * reach, middle + 1.2 * reach],
+        [-(0.9 if pile else 0.6) * reach, 0.4 * reach],
+    )
+    small = rrb.Horizontal(*[view(model, f"{high:g} r", *near) for model in runs])
+    lanes = rrb.Vertical(*lanes) if pile else rrb.Horizontal(*lanes)
+    left = rrb.Vertical(lanes, small, row_shares=[7 if pile else 5, 2])
+    about = rrb.TextDocumentView(origin="about", name="about")
+    most = 5.0 * weight(scene)
+    right = rrb.Vertical(about, *[plot(title, most, *seconds) for title in drawn])
+    both = rrb.Horizontal(left, right, column_shares=[3, 2])
+    return rrb.Blueprint(both, time_panel(), collapse_panels=True)
 
 
-def title_of(model: str, row: dict) -> str:
+def name_of(model: str, row: dict) -> str:
     """A model's name, and how its run ended where that was badly."""
     return f"{model}: {contact.ending(row)}" if row["blew_up"] or row["through"] else model
 
@@ -173,48 +181,15 @@ def view(model: str, name: str, x_range: list, y_range: list) -> rrb.Spatial2DVi
     return rrb.Spatial2DView(origin=f"world/{model}", name=name, visual_bounds=bounds)
 
 
-def frame(runs: list, x: np.ndarray, large: float) -> tuple[list, list]:
-    """The ranges of x and of -y [m] that hold all balls of the runs, from first to last.
-
-    A ball that leaves by more than FARTHEST radii is let go, or the others would be dots.
-    """
-    middle = 0.5 * (float(x.min()) + float(x.max()))
-    half = max(reach(run.q[:, 0] - middle, large) for run in runs) + 2.5 * large
-    top = max(reach(run.q[:, 1], large) for run in runs) + 2.0 * large
-    return [middle - half, middle + half], [-top, 0.12 * top]
-
-
-def reach(values: np.ndarray, large: float) -> float:
-    """The largest of the values by size [m], at most FARTHEST radii, also if one is not finite."""
-    return float(np.fmin(np.abs(values), FARTHEST * large).max())
-
-
-@np.errstate(all="ignore")
-def worth_seeing(runs: dict, quality: dict) -> tuple[float, float]:
-    """From when to when [s]: BEFORE the first contact, to when the last ball has come to rest.
-
-    It rests once it goes slower than 1 cm/s for good, judged by its way, since speeds at the end of
-    leapfrog's steps may be larger; a tenth more is shown, at most to the end.
-    """
-    struck, rests = [], [0.0]
-    for model, run in runs.items():
-        touched = quality[model]["first_contact_step"]
-        struck += run.t[touched : touched + 1].tolist()
-        slow = np.abs(np.diff(run.q, axis=0)) < 0.01 * np.diff(run.t)[:, None, None]
-        moving = np.flatnonzero(~slow.all((1, 2)))
-        rests += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]
-    return max(0.0, min(struck, default=0.0) - BEFORE), float(max(rests))
-
-
-def plot(title: str, first: float, last: float) -> rrb.TimeSeriesView:
-    """A plot of these seconds. One has the legend, which hides least where impulses are over."""
-    name = title.split()[0]
-    legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=name == "impulse")
-    shown = None
+def plot(title: str, most: float, first: float, last: float) -> rrb.TimeSeriesView:
+    """A plot of these seconds, in the colours of the balls; of a force up to `most`."""
+    name, shown = title.split()[0], None
+    axis = rrb.ScalarAxis(range=(0.0, most)) if name == "force" else None
     if first < last < LONGEST:  # all that was before stands on the first instant: left out
         start, end = (rrb.TimeRangeBoundary.absolute(seconds=each) for each in (first + 1e-6, last))
         shown = [rrb.VisibleTimeRange(line, start=start, end=end) for line in SECONDS]
-    return rrb.TimeSeriesView(origin=name, name=title, plot_legend=legend, time_ranges=shown)
+    how = {"plot_legend": rrb.PlotLegend(visible=False), "time_ranges": shown, "axis_y": axis}
+    return rrb.TimeSeriesView(origin=name, name=title, **how)
 
 
 def time_panel():

@@ -25,7 +25,7 @@ from curriculum.tests.helpers import CONTACT, ROOT, python
 DT, STEPS = 0.004, 300
 MASS, RADIUS = np.array([2.0, 1.3, 0.5]), np.array([0.12, 0.09, 0.08])  # from the lowest ball up
 FIVE = "0:5", "--contact", "lcp", "--steps", "300", "--out"
-CURVES = ("height", "penetration", "impulse", "energy", "rises")
+CURVES = ("height", "gap", "force", "energy", "rises")
 Recording = namedtuple("Recording", "series static blueprint application")
 
 
@@ -88,7 +88,9 @@ def test_a_recording_has_every_models_balls_pushes_table_and_curves_one_row_a_st
     recording = stack[0]
     moving = {f"/world/{model}/{kind}" for model in contact.MODELS for kind in ("balls", "pushes")}
     drawn = {f"/{curve}/{model}" for curve in CURVES for model in contact.MODELS}
-    tables = {f"/world/{model}/{kind}" for model in contact.MODELS for kind in ("table", "ground")}
+    tables = {"/about"} | {
+        f"/world/{model}/{kind}" for model in contact.MODELS for kind in ("table", "ground")
+    }
     assert set(recording.series) == moving | drawn
     assert set(recording.static) == moving | drawn | tables
     assert re.fullmatch("[a-z0-9_]+", recording.application)  # others are renamed with a warning
@@ -127,8 +129,8 @@ def test_curves_are_the_runs_own_numbers_in_the_models_colour_with_their_peaks(s
         gained = MASS * (np.diff(run.v[:, 1], axis=0) + 9.81 * DT)  # by contacts, upwards [N s]
         expected = {
             "height": run.q[:, 1].mean(-1),
-            "penetration": np.maximum(-contact.smallest_gap(run.q, RADIUS), 0.0) / RADIUS[0],
-            "impulse": np.append(0.0, gained.sum(1)),  # pushes between balls cancel: the floor's
+            "gap": contact.smallest_gap(run.q, RADIUS) / RADIUS.min(),
+            "force": np.append(0.0, gained.sum(1)) / DT,  # pushes between balls cancel: the floor's
             "energy": total - total[0],
             "rises": np.cumsum([0.0, *np.maximum(0.0, np.diff(total))]),
         }
@@ -147,9 +149,12 @@ def test_the_blueprint_shows_balls_the_table_magnified_and_five_plots(stack):
     facts = recording.blueprint
     origins = [origin.strip("/") for origin in sum(facts["ViewBlueprint:space_origin"], [])]
     worlds = [f"world/{model}" for model in contact.MODELS] * 2
-    assert sorted(origins) == sorted((*worlds, *CURVES))
+    assert sorted(origins) == sorted((*worlds, *CURVES, "about"))
     assert facts["TimePanelBlueprint:timeline"] == [["landing"]]
-    assert sum(facts["PlotLegend:visible"], []).count(True) == 1
+    names = sum(facts["ViewBlueprint:display_name"], [])
+    assert {"0.16 r", f"force of floor [N], weight {MASS.sum() * 9.81:.3g} N"} < set(names)
+    (about,) = recording.static["/about"]["TextDocument:text"]
+    assert "a title" in about[0]
     views = [view[0] for view in facts["VisualBounds2D:range"]]
     large = max(views, key=lambda view: np.ptp(view["y_range"]))
     small = min(views, key=lambda view: np.ptp(view["y_range"]))
@@ -167,7 +172,11 @@ def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(tmp_pa
     fall = np.sqrt(2.0 * (scene.q0[1, 0] - 0.1) / 9.81)  # s, of a ball that starts at rest
     times = recording.series["/world/lcp/balls"]
     first = times["landing"][0] / 1e9  # where a viewer's cursor starts
-    assert 0.09 < fall - first < 0.1 + DT
+    assert 0.0 < first - fall < 2 * DT
+    opening = times["landing"].count(times["landing"][0]) - 1  # the row that is shown then
+    for model in ("penalty", "lcp", "soft"):
+        pushed = recording.series[f"/world/{model}/pushes"]["Arrows2D:vectors"][opening]
+        assert -pushed[0][1] > 0.2, "a landing has its arrow"
     assert times["landing"] == [max(each, times["landing"][0]) for each in times["sim_time"]]
     panel = {key[19:]: each for key, each in recording.blueprint.items() if "TimePanel" in key}
     assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["landing"]])
@@ -175,7 +184,7 @@ def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(tmp_pa
     start, end = (sorted({int(n) / 1e9 for n in re.findall(r"\d{8,}", ranges)})[k] for k in (0, -1))
     ways = {model: np.abs(np.diff(run.q, axis=0)).max((1, 2)) for model, run in runs.items()}
     moves = DT * max(np.flatnonzero(way >= 0.01 * DT)[-1] for way in ways.values())
-    assert first < start < fall < moves and abs(end - 1.1 * moves) < 2 * DT
+    assert fall < first < start < moves and abs(end - 1.1 * moves) < 2 * DT
 
 
 def test_a_view_says_how_its_run_ended_and_an_explosion_does_not_widen_it(tmp_path):
