@@ -186,7 +186,6 @@ ENDS = [  # what a learner's function does, the state that it comes to, what is 
     ("return project_impulse(lam, dlam)", "wrong", "raised RecursionError"),
     ("import sys; sys.setrecursionlimit(10**9); return project_impulse(lam, dlam)", "wrong",
      "project_impulse "),
-    ("return bytearray(10**13)", "wrong", "raised MemoryError"),
     ("all = []\nwhile True:\n    all.append('x' * 10**7)", "wrong", "raised MemoryError"),
     ("while True:\n    pass", "wrong", "takes too long, or does not end: stopped after 1 s in "),
     ("return type('', (), {'__array__': 3})()", "wrong", "and not numbers"),
@@ -197,6 +196,8 @@ ENDS = [  # what a learner's function does, the state that it comes to, what is 
 def test_however_a_learners_code_ends_it_is_said_in_words(
     body, state, words, tmp_path, monkeypatch, capfd
 ):
+    if "append" in body and sys.platform != "linux":
+        pytest.skip("only here memory can be limited")
     limit = 1 if body.endswith("pass") else 60
     smaller = f"judge; judge.MOST_MEMORY, judge.LIMIT = 2**31, {limit}; judge."
     monkeypatch.setattr(script, "START", script.START.replace("judge.", smaller))
@@ -230,6 +231,7 @@ def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are(copy):
         assert "Traceback" not in printed
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="the README's table is for other systems")
 def test_printed_commands_are_those_of_the_readme(monkeypatch):
     readme = (ROOT / "README.md").read_text("utf-8")
     monkeypatch.chdir(ROOT)

@@ -21,7 +21,7 @@ from curriculum.implicit import implicit_step
 
 from . import FACTS, bets, columns, load
 from .script import LIMIT, unreadable
-from .slips import BLANKS, labels, run, solver
+from .slips import BLANKS, RIGHT, labels, run, solver
 
 MOST_MEMORY = 2**32  # bytes, chosen
 
@@ -328,10 +328,10 @@ PROBLEMS = {  # scene, dt [s], seconds
 INSIDE = contact.scene_of([0.0, 0.0], [0.1, 0.25])  # half a radius in one another
 
 
-def steps_at(exercise, dt):
-    """The learner's step, and lcp's."""
-    lcp = partial(contact.lcp_step, dt=dt, restitution=0.0, baumgarte=0.2, iters=20)
-    return partial(asking_twice, exercise, dt=dt), lcp
+def both(exercise, of, dt, count):
+    """The learner's run, and lcp's."""
+    mine = contact.simulate(partial(asking_twice, exercise, dt=dt), of, dt, count)
+    return mine, contact.run_model("lcp", of, dt, count)
 
 
 def errors(exercise, name):
@@ -339,8 +339,8 @@ def errors(exercise, name):
     of, dt, seconds = PROBLEMS[name]
     count = round(seconds / dt)
     true = contact.run_model("exact", of, dt, count).q
-    runs = [contact.simulate(step, of, dt, count) for step in steps_at(exercise, dt)]
-    return [float(np.hypot(*(run.q - true).swapaxes(0, 1)).max()) / 0.1 for run in runs]
+    off = (run.q - true for run in both(exercise, of, dt, count))
+    return [float(np.hypot(x, y).max()) / 0.1 for x, y in (each.swapaxes(0, 1) for each in off)]
 
 
 def slide_order(exercise):
@@ -352,7 +352,7 @@ def slide_order(exercise):
 def ask_twice(exercise, _):
     """Errors beside exact, and how high a ball comes that begins in another."""
     rows = {name: errors(exercise, name) for name in PROBLEMS}
-    runs = [contact.simulate(step, INSIDE, 0.002, 300) for step in steps_at(exercise, 0.002)]
+    runs = both(exercise, INSIDE, 0.002, 300)
     rows["inside, height"] = [run.q[:, 1].max() / 0.1 for run in runs]
     table = columns("in r, beside exact", ("yours", "lcp"), rows, "{:.3g}")
     inside = "inside: how high a ball rises that begins in another; at 3 r they only touch."
@@ -375,21 +375,17 @@ def fingers(exercise):
     """What a gripper does: its deepest overlap, how that varies [r], whether the cup is held."""
     dt, of = exercise.DT, contact.scene_of([-0.205, 0.0, 0.205], 0.1, [0.2, 1.0, 0.2])
     solref, solimp = contact.soft_defaults(0.0, dt, exercise.SOLREF, exercise.SOLIMP)
-    k, c = exercise.STIFFNESS, exercise.DAMPING
-    softness = 1.0 / (k * dt * dt + c * dt)
-
-    springs = {
-        "penalty": lambda balls: contact.penalty_step(balls, dt, k, c),
-        "implicit": lambda balls: implicit_step(
-            balls, dt, lambda depth: (softness, dt * k * depth * softness)
-        ),
-        "soft": lambda balls: contact.soft_step(balls, dt, solref, solimp),
+    k, c, spring = exercise.STIFFNESS, exercise.DAMPING, RIGHT["ex7"].implicit_spring
+    steps = {
+        "penalty": partial(contact.penalty_step, stiffness=k, damping=c),
+        "implicit": partial(implicit_step, spring=partial(spring, stiffness=k, damping=c, dt=dt)),
+        "soft": partial(contact.soft_step, solref=solref, solimp=solimp),
     }
 
     def step(balls):
         for ball, force in zip(balls, (20.0, 0.0, -20.0)):  # the motors [N]
             ball.fx, ball.fy = force, 0.0
-        return springs[exercise.MODEL](balls)
+        return steps[exercise.MODEL](balls, dt)
 
     run = contact.simulate(step, of, dt, math.ceil(1.0 / dt - 1e-9))
     with np.errstate(all="ignore"):
@@ -399,14 +395,13 @@ def fingers(exercise):
 
 
 CHOICES = {  # of exercise 8: what is allowed of each knob, in code and in words
-    "MODEL": (lambda value: value in ("penalty", "implicit", "soft"),
-              "'penalty', 'implicit' or 'soft'"),
-    "DT": (lambda value: 0.0005 <= value <= 0.1, "from 0.0005 s (2,000 steps) to 0.1 s"),
-    "STIFFNESS": (lambda value: 0.0 < value <= 1e15, "a number above 0"),
-    "DAMPING": (lambda value: 0.0 <= value <= 1e9, "a number, 0 or more"),
+    "MODEL": (lambda x: x in ("penalty", "implicit", "soft"), "'penalty', 'implicit' or 'soft'"),
+    "DT": (lambda x: 0.0005 <= x <= 0.1, "from 0.0005 s (2,000 steps) to 0.1 s"),
+    "STIFFNESS": (lambda x: 0.0 < x <= 1e15, "a number above 0"),
+    "DAMPING": (lambda x: 0.0 <= x <= 1e9, "a number, 0 or more"),
     "SOLREF": (partial(contact.within, "solref", shape=(2,)), contact.SPRINGS),
     "SOLIMP": (partial(contact.within, "solimp", shape=(5,)), "five numbers from 0 to 100"),
-}  # fmt: skip
+}
 
 
 def out_of_bounds(exercise):
