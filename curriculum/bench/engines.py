@@ -105,10 +105,9 @@ class Ours(Whole):
         if self.motion is None:
             self.motion = contact.beside("fast", needed=True).Stepper(*self.given, self.settings)
             self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))
-            self.settled = np.ones(BLOCK + 1, bool)
         for first in range(0, n, BLOCK):
             self.last = min(BLOCK, n - first)
-            self.motion.take(self.rows[: self.last + 1], self.settled[: self.last + 1], False)
+            self.motion.take(self.rows[: self.last + 1])
 
     def state(self):
         return self.rows[self.last, :2].copy(), self.rows[self.last, 2:].copy()
@@ -166,7 +165,7 @@ def spring(scene, dt, push=None, timeconst=None, ratio=1.0, d=0.9999):
 class Mujoco(Session):
     """Spring and damper made implicit and convex. texts: solref and solimp, in place of options."""
 
-    def __init__(self, scene, dt, texts=None, speculative=False, xml="", **options):
+    def __init__(self, scene, dt, texts=None, xml="", **options):
         import mujoco
         from mujoco import rollout
 
@@ -175,12 +174,11 @@ class Mujoco(Session):
         solref, solimp = texts or spring(scene, dt, **options)
         balls, many = balls_of(scene), len(scene.mass) >= MANY
         chosen = 'solver="CG" jacobian="sparse"' if many else xml
-        flags = ' speculative="enable"' if speculative else ""
         self.moving = np.flatnonzero(np.isfinite(scene.mass))
         self.model = mujoco.MjModel.from_xml_string(
             f'<mujoco><size memory="{"4G" if many else "-1"}"/>'
             f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" {chosen}>'
-            f'<flag autoreset="disable"{flags}/></option>'
+            f'<flag autoreset="disable"/></option>'
             f'<default><geom condim="1" solref="{solref}" solimp="{solimp}"/></default>'
             f'<worldbody><geom type="plane" size="0 0 1"/>{"".join(map(self.body, balls))}'
             "</worldbody></mujoco>"
@@ -303,14 +301,14 @@ class Box2d3(Session):
 class Rapier(Session):
     """Rapier: soft contacts over small substeps, as Box2D 3; here balls that stay in a plane."""
 
-    def __init__(self, scene, dt, inner, hertz=None, scale=1.0, sweeps=1):
+    def __init__(self, scene, dt, inner, hertz=None, scale=1.0):
         import rapier3d as rapier
 
         self.scale, self.bodies = scale, []
         self.world = world = rapier.PhysicsWorld(gravity=(0.0, -GRAVITY * scale, 0.0))
         world.set_num_threads(1)
         knobs = world.integration_parameters
-        knobs.dt, knobs.num_solver_iterations, knobs.num_internal_pgs_iterations = dt, inner, sweeps
+        knobs.dt, knobs.num_solver_iterations = dt, inner
         knobs.normalized_max_linear_velocity = 1e6
         if hertz is not None:
             spring = rapier.SpringCoefficients(hertz, 10.0)

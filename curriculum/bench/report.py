@@ -135,8 +135,10 @@ def compiled(rows):
     taken = {row["process"]: row["seconds"] for row in rows}
     extra = taken.get("one compiled step", 0.0) - taken.get("import numpy", 0.0)
     return (
-        f"numba costs {number(extra)} s the first time in a process, and where steps times balls "
-        f"squared is below {MANY:,.0f}, run_model takes the plain loops, to the same bits."
+        f"numba costs {number(extra)} s the first time in a process, and "
+        f"{number(taken.get('one compiled step, the first ever'))} s once on a machine. Where "
+        f"steps times balls squared is below {MANY:,.0f}, run_model takes the plain loops, to the "
+        "same bits."
     )
 
 

@@ -57,10 +57,10 @@ def in_fresh_processes(work, jobs, processes, label, rare=()) -> list:
 def whole_process(command, folder) -> float:
     """Seconds on the wall until a command has come to its end. Raises RuntimeError if it fails.
 
-    folder: where Python and numba keep what they compile. An environment that forbids to keep any
-    would have each process compile the course's modules again, but not numpy's.
+    folder: where Python keeps what it compiles. An environment that forbids to keep any would have
+    each process compile the course's modules again, but not numpy's.
     """
-    environment = dict(os.environ, PYTHONPYCACHEPREFIX=folder, NUMBA_CACHE_DIR=folder)
+    environment = dict(os.environ, PYTHONPYCACHEPREFIX=folder)
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     start = time.perf_counter()
     run = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
