@@ -19,7 +19,7 @@ FORMS = {  # of a node: its fields in JavaScript
 NAMES = {"True": "true", "False": "false", "None": "null", "self": "this", "abs": "Math.abs"}
 NAMES |= {"int": "Math.trunc", "math.inf": "Infinity", "ArithmeticError": "Error"}
 NAMES |= {f"math.{name}": f"Math.{name}" for name in ("sqrt", "cos")}
-NAMES |= {name: f"$.{name}" for name in ("zip", "map")} | {"itertools.combinations": "$.pairs"}
+NAMES |= {name: f"$.{name}" for name in ("zip", "map")}
 RESERVED = set("new var let const function with this typeof delete void default case".split())
 
 
@@ -79,11 +79,17 @@ class Script(ast.NodeVisitor):
         return " = ".join(map(self.visit, [*node.targets, node.value])) + ";"
 
     def visit_For(self, node):
-        head = f"let {self.visit(node.target)} of {self.visit(node.iter)}"
-        if isinstance(node.iter, ast.Call) and ast.unparse(node.iter.func) == "range":
-            k, first, last = self.visit(node.target), *["0", *map(self.visit, node.iter.args)][-2:]
-            head = f"let {k} = {first}; {k} < {last}; {k}++"
-        return f"for ({head}) " + self.part(node.body, "body")
+        to, over, body = self.visit(node.target), node.iter, self.part(node.body, "body")
+        called = ast.unparse(over.func) if isinstance(over, ast.Call) else ""
+        args = [self.visit(each) for each in over.args] if called else []
+        if called == "range":
+            first, last = ["0", *args][-2:]
+            return f"for (let {to} = {first}; {to} < {last}; {to}++) {body}"
+        if called == "itertools.combinations":  # of two
+            n = f"{args[0]}.length"
+            head = f"for (let $i = 0; $i < {n}; $i++) for (let $j = $i + 1; $j < {n}; $j++)"
+            return f"{head} {{\nlet {to} = [{args[0]}[$i], {args[0]}[$j]];\n{body}}}"
+        return f"for (let {to} of {self.visit(over)}) {body}"
 
     def visit_Expr(self, node):
         return "" if isinstance(node.value, ast.Constant) else self.visit(node.value) + ";"

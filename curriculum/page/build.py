@@ -16,45 +16,37 @@ from curriculum.gate.references import Numbers, load_meta
 from curriculum.lesson.regions import ROOT, read_all
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
-from curriculum.page.exercises import all_exercises, blank_cases
+from curriculum.page.exercises import all_exercises
 from curriculum.page.panels import pieces
 from curriculum.show import picture
 
-SCENES = ("drop", "bounce", "stack")  # of the live figure: balls in one column
-ENGINE = (  # constants of contact.py that engine.js takes
-    "GRAVITY CONTACT_MARGIN SOLREF SOLIMP HARD MOST_SWEEPS LAST_BITS EXPLODED "
-    "OPENS TOUCH SLOW TOGETHER STILL MOST_IMPACTS"
-).split()
+SCENES = ("drop", "bounce", "stack")  # of the figures: balls in one column
 ABOUT = {"error": "Run time against error: ", "penalty": "Stability: "}  # pictures by first word
 SCALE = 1.6  # of the pictures of bench and stress: their text of 10 px shall be read beside ours
+EARLY = 'document.documentElement.className = "js"'  # before the first paint
 COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb"
 
 
-def page_data(veils):
+def page_data():
     """What the scripts know from the Python files, the module data.js."""
-    settings, scenes = contact.Settings(), {name: contact.build_scene(name) for name in SCENES}
-    knobs = {name: getattr(settings, name) for name in "stiffness iters baumgarte warm".split()}
+    usual, scenes = contact.Settings(), {name: contact.build_scene(name) for name in SCENES}
+    taken = {m: row.step.__code__.co_argcount - 2 for m, row in contact.MODELS.items() if row.step}
+    knobs = {name: getattr(usual, name) for name in "stiffness iters baumgarte warm".split()}
     return {
         "models": list(contact.MODELS),
         "uses": {model: row.knobs for model, row in contact.MODELS.items()},
-        "taken": {  # by each step, beside the balls and dt
-            model: row.knobs[: row.step.__code__.co_argcount - 2]
-            for model, row in contact.MODELS.items()
-            if row.step
-        },
+        "taken": {model: contact.MODELS[model].knobs[:count] for model, count in taken.items()},
         "scenes": {
             name: {
                 "start": scene.q0[1].tolist(),
-                "damping": scene.damping,
-                "restitution": scene.restitution,
+                "own": {"damping": scene.damping, "restitution": scene.restitution},
             }
             for name, scene in scenes.items()
         },
         "radius": contact.RADIUS,
-        "defaults": knobs | {"dt": contact.parse_flags([]).dt},
-        "engine": {name: getattr(contact, name) for name in ENGINE},
-        "blank": blank_cases(),
-        "bets": veils,
+        "defaults": knobs
+        | {"dt": contact.parse_flags([]).dt, "damping": 80.0, "restitution": 0.0}
+        | {"impedance": contact.SOLIMP[1]},
     }
 
 
@@ -117,58 +109,39 @@ def environment(**held):
         (name, data_address(f"font/{kind}", (HERE / file).read_bytes()), *rest)
         for name, file, kind, *rest in fonts.FACES
     ]
-    made.globals.update(colab=colab, faces=faces, models=[*contact.MODELS], hides=chapter.HIDES)
+    made.globals.update(colab=colab, faces=faces, models=[*contact.MODELS])
     made.globals.update(stored=stored, pieces=pieces, picture=picture, drawn_by=drawn_by, **held)
     return made
-
-
-def check_lines(lines, regions):
-    """Raises ValueError where a line that figures light is not exactly one of its region."""
-    for name, (region, text) in lines.items():
-        code = regions[region].code if region in regions else ""
-        count = sum(text in line for line in code.splitlines())
-        if count != 1:
-            held = f"{text!r} stands in {count} lines of {region}; allowed: in one"
-            raise ValueError(f"curriculum/page/lines.js: {name}: {held}")
-
-
-def placed(parts, **known):
-    """The figures of the page, {id: [name, what its passage sets]}, for still.js. Raises ValueError
-    where the chapter names a figure, an exercise or a region that is not known."""
-    figures = {name: [name, {}] for name in ("grab", "lanes")}
-    for kind, values in parts:
-        if values and values[0] not in known.get(kind, values):
-            held = f"there is no {kind} {values[0]}; known: {[*known[kind]]}"
-            raise ValueError(f"{chapter.CHAPTER}: {held}")
-        if kind == "figure":
-            name, again, changes = values
-            figures.setdefault(name + again, [name, changes])
-            if name == "lanes":  # beside the text, and as a picture of its own
-                figures[f"{name}{again}-still"] = [name, changes]
-    return figures
 
 
 def build(text=None):
     """The page of the chapter, or of `text` in its place. Raises ValueError (file:line: what)
     where it can't be shown as it is."""
     text = (ROOT / chapter.CHAPTER).read_text("utf-8") if text is None else text
-    exercises, regions = all_exercises(), read_all()
-    bets = [name for name, each in exercises.items() if each["choices"]]
-    veils = [*bets, "puzzle"]
-    data = page_data(veils)
-    settable = evaluate("still.js", data, "settable()")
-    check_lines(settable["lines"], regions)
-    parts = chapter.blocks(Numbers().fill(text), settable["ranges"], settable["starts"])
-    figures = placed(parts, figure=settable["names"], exercise=exercises, region=regions)
-    drawn = evaluate("still.js", data, f"stills({json.dumps(figures)})")["figures"]
-    templates = environment(figures=drawn, exercises=exercises, regions=regions, veils=veils)
+    exercises, regions, data = all_exercises(), read_all(), page_data()
+    parts, tries = chapter.blocks(Numbers().fill(text))
+    for kind, (name, *_) in ((kind, values) for kind, values in parts if values):
+        known = {"exercise": exercises, "region": regions}.get(kind, [name])
+        if name not in known:
+            held = f"there is no {kind} {name}; known: {', '.join(known)}"
+            raise ValueError(f"{chapter.CHAPTER}: {held}")
+    slots = [
+        (id, name, given)
+        for kind, values in parts
+        if kind == "figure"
+        for id, name, given in [values]
+    ]
+    wanted = [[name, given] for _, name, given in slots] + [list(each) for each in tries]
+    drawn = evaluate("still.js", data, f"stills({json.dumps(wanted)})")
+    figures = {id: figure for (id, *_), figure in zip(slots, drawn)}
+    templates = environment(figures=figures, exercises=exercises, regions=regions)
     macros = templates.get_template("parts.html.j2").module
-    body, ((_, _, title), *contents) = chapter.assemble(parts, macros, bets)
-    script, early = bundle("main.js", data), macros.early()
+    body, ((_, _, title), *contents) = chapter.assemble(parts, macros)
+    script = bundle("main.js", data)
     return templates.get_template("page.html.j2").render(
-        policy=policy(early, script),
+        policy=policy(EARLY, script),
         style=stylesheet(),
-        early=early,
+        early=Markup(EARLY),
         script=Markup(script),
         heading=Markup(re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title)),
         contents=contents,

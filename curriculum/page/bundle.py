@@ -1,8 +1,9 @@
 """The page's JavaScript: modules joined into one script without globals, by their imports.
 
 A module says `import { a, b } from "./file.js";` on one line, and `export` before a const, a
-function or a class. Two modules are made here: data.js, what the scripts know from the Python
-files, and figures.js, {name: figure} of every file in figures/.
+function or a class. Made here are data.js, what the scripts know from the Python files; contact.js,
+the steps of contact.py (curriculum/lesson/to_js.py); and figures.js, {name: figure} of all files in
+figures/. lit.js is lit-html, and in a script that makes text text.js.
 """
 
 import functools
@@ -26,6 +27,8 @@ IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
 # comments on lines of their own, and the blanks before a line of code
 PLAIN = re.compile(r"^[ ]*//[^\n]*\n|^/\*.*?\*/\n|^[ ]+(?=[^ ])", re.M | re.S)
 EXPORT = re.compile(r"^export (const|function|class) ([\w$]+)", re.MULTILINE)
+LISTED = re.compile(r"\bexport\s*\{([^}]+)\};")  # as lit-html says what it exports
+CLAMP = "$.max(0.0, (c.lam + (missing * c.m_eff)))", "(c.lam + $.max(0.0, (missing * c.m_eff)))"
 
 
 def source(path, data):
@@ -52,7 +55,16 @@ def contact_js():
     files = [ROOT / name for name in ("contact.py", "curriculum/implicit.py")]
     table = ", ".join(f"{name}: {step}" for name, step in steps.items())
     made = to_js([*steps.values(), *USED], *files)
-    return f'import {{ $ }} from "./python.js";\n{made}export const STEP = {{ {table} }};\n'
+    solve = next(
+        each for each in made.split("export ") if each.startswith("function solve_contacts(")
+    )
+    if CLAMP[0] not in solve:
+        raise ValueError(
+            f"contact.py: solve_contacts has no line {CLAMP[0]}, which a figure changes"
+        )
+    wrong = solve.replace(*CLAMP).replace("solve_contacts", "solve_contacts_each", 1)
+    table = f"export const STEP = {{ {table} }};\nexport {wrong}\n"
+    return f'import {{ $ }} from "./python.js";\n{made}{table}'
 
 
 def target(path, address):
@@ -67,20 +79,27 @@ def module(path, text):
         names = match[1].replace(" as ", ": ")
         return f'const {{ {names} }} = modules["{target(path, match[2])}"];'
 
-    body = EXPORT.sub(r"\1 \2", IMPORT.sub(imported, PLAIN.sub("", text)))
-    names = ", ".join(name for _, name in EXPORT.findall(text))
+    listed = LISTED.search(text)
+    names = [name for _, name in EXPORT.findall(text)]
+    for each in listed[1].split(",") if listed else []:
+        own, _, called = each.strip().partition(" as ")
+        names.append(f"{called}: {own}" if called else own)
+    held = ", ".join(names)
+    plain = text if path == "lit-html.js" else PLAIN.sub("", text)  # with its license
+    body = EXPORT.sub(r"\1 \2", IMPORT.sub(imported, LISTED.sub("", plain)))
     if re.search(r"^(import|export)\b", body, re.MULTILINE):
         raise ValueError(f"curriculum/page/{path}: an import or export that is not on one line")
-    return f'modules["{path}"] = (() => {{\n{body}return {{ {names} }};\n}})();\n'
+    return f'modules["{path}"] = (() => {{\n{body}return {{ {held} }};\n}})();\n'
 
 
-def bundle(start, data):
+def bundle(start, data, lit="lit-html.js"):
     """One script: `start` and all that it imports, each module before those that need it."""
     texts, needs, paths = {}, {}, [start]
     for path in paths:
         if path not in texts:
-            texts[path] = source(path, data)
-            needs[path] = [target(path, address) for _, address in IMPORT.findall(texts[path])]
+            text = source(path, data).replace("./lit.js", f"./{lit}")
+            texts[path] = text
+            needs[path] = [target(path, address) for _, address in IMPORT.findall(text)]
             paths += needs[path]
     order = TopologicalSorter(needs).static_order()
     joined = "".join(module(path, texts[path]) for path in order)
@@ -95,7 +114,7 @@ def evaluate(start, data, call):
 
     Raises ValueError at what it throws, with the module where it does.
     """
-    engine, script = MiniRacer(), bundle(start, data)
+    engine, script = MiniRacer(), bundle(start, data, "text.js")
     try:
         engine.eval(f"const made = {script};")
         return json.loads(engine.eval(f"JSON.stringify(made.{call})"))

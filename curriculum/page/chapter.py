@@ -1,16 +1,11 @@
-"""chapter.md as HTML: its slots filled, and its answers veiled.
+"""chapter.md as HTML, its slots filled.
 
-What the chapter holds beside plain Markdown, curriculum/gate/chapter.py says. A passage goes from a
-heading or a `show` to the next. Its quantities are those that its mark sets, and else contact.py's
-own; what the reader changes in one stays there.
-
-Nothing on the page tells the answer of a bet before the reader has bet or has asked to be shown. A
-segment, from a heading or an exercise to the next, is put into a veil where it follows the bet at
-once, or says so by <!-- tells: ex1 -->. A run of such segments is behind one bar; the first heading
-of the run is seen.
+What the chapter holds beside plain Markdown, curriculum/gate/chapter.py says. A figure begins with
+what its slot sets, <!-- figure: cliff?dt=0.03 -->, and [words](try:cliff?dt=0.014) sets the nearest
+figure of that name.
 """
 
-import itertools
+import json
 import re
 from collections import Counter
 from html import escape
@@ -28,13 +23,6 @@ from curriculum.gate.chapter import CHAPTER, read
 from curriculum.page import fonts
 
 UNIT = re.compile(r"(\d|^) (?=(?:r|s|m|mm|kg|J|N|N/m|m/s)\b)")  # the blank between number and unit
-SETTINGS = {  # beside the quantities: what each may be
-    "scene": "drop|bounce|stack",
-    "models": "({0})(,({0}))*".format("|".join(contact.MODELS)),
-    "from": r"[\d.]+",
-    "to": r"[\d.]+",
-}
-HIDES = {"ex1": "How they land", "ex3": "What happens then"}
 
 
 # ---- Markdown
@@ -65,39 +53,23 @@ def code_inline(self, tokens, index, options, env):
 
 
 def link_open(self, tokens, index, options, env):
-    """A link; one that sets something in the page says what."""
+    """A link; one that sets a figure says which, and what."""
     token = tokens[index]
     scheme, _, rest = token.attrGet("href").partition(":")
     if scheme == "try":
-        asked(rest, env)
-        token.attrs = {"class": "try", "href": f"?{rest}"}
-    elif scheme == "drag":
-        held = tokens[index + 1].content
-        if asked(f"{rest}={held}", env, others={})[rest] != env["home"].get(rest):
-            raise ValueError(
-                f"{CHAPTER}:{env['line']}: {held} is to be dragged, and here {rest} is "
-                f"{env['home'].get(rest)}; set it before: <!-- show: none&{rest}={held} -->"
-            )
-        token.attrs = {"class": "drag", "data-knob": rest}
+        name, given = asked(rest)
+        env.setdefault("tries", []).append((name, given))
+        token.attrs = {"class": "try", "href": f"#fig-{name}", "data-name": name}
+        token.attrs["data-given"] = json.dumps(given)
     return self.renderToken(tokens, index, options, env)
 
 
-def asked(query, env, others=SETTINGS):
-    """What a query sets, {name: value}. Raises ValueError at the first that cannot be set."""
-    values, ranges = {}, env["ranges"]
-    for name, value in parse_qsl(query, keep_blank_values=True) or [(query, "")]:
-        low, high = ranges.get(name, (1.0, 0.0))
-        number = re.fullmatch(r"[\d.]+(e[+-]?\d+)?", value.replace(",", ""))
-        if number and low <= float(number[0]) <= high:
-            values[name] = float(number[0])
-        elif re.fullmatch(others.get(name, r"\b\B"), value):
-            values[name] = value
-        else:
-            known = others.get(name, f"the names {', '.join((*others, *ranges))}")
-            allowed = f"{low:g} to {high:g}" if name in ranges else known
-            what = f"{name}={value} sets nothing; allowed: {allowed}"
-            raise ValueError(f"{CHAPTER}:{env['line']}: {what}")
-    return values
+def asked(slot):
+    """(name, {quantity: value}) of NAME?quantity=value&..., as in a slot."""
+    name, _, query = slot.partition("?")
+    number = re.compile(r"-?[\d.]+(e[+-]?\d+)?")
+    values = parse_qsl(query, keep_blank_values=True)
+    return name, {k: float(v) if number.fullmatch(v) else v for k, v in values}
 
 
 def slug(title):
@@ -128,44 +100,33 @@ def inline(text):
 # ---- the parts of the chapter
 
 
-def blocks(text, ranges, starts):
-    """The chapter as a list of (kind, values): what the macros of that name are given, and
-    ("figure", (name, which of this name, what its passage sets)). `ranges` are those of what the
-    text may set, {name: (low, high)}; `starts` all values of a section, by the scene it shows."""
-    md, env, out, seen = parser(), {"ranges": ranges}, [], Counter()
+def blocks(text):
+    """The chapter as a list of (kind, values), what the macros of that name are given, and what its
+    links set, [(name, values)]. A figure's values are its id and what asked() gives of its slot."""
+    md, env, out, seen = parser(), {}, [], Counter()
     md.parse(text, env)  # for the addresses of links, which stand at its end
-    changes, place, marks = {}, "", 0
-    for kind, name, line, written in read(text):
-        env |= {"home": starts[changes.get("scene", "drop")] | changes, "line": line}
+    env["tries"] = []
+    for kind, name, _, written in read(text):
         if kind in ("text", "heading"):
-            shown = rendered(md, written, env)
-            out += shown
-            if kind == "heading":
-                changes, place, marks = {}, shown[0][1][1], 1
+            out += rendered(md, written, env)
         elif kind == "code":
-            code = f'<pre class="shell" tabindex="0"><code>{escape(name)}</code></pre>'
+            code = f'<pre class="shell"><code>{escape(name)}</code></pre>'
             out.append(("html", (Markup(code),)))
         elif kind == "region":
             out.append((kind, (name.partition("#")[2],)))
         elif kind == "figure":
-            seen[name] += 1
-            out.append((kind, (name, f"-{seen[name]}" * (seen[name] > 1), changes)))
-        elif kind == "show":
-            changes = {} if name == "none" else asked(name.removeprefix("none&"), env)
-            marks += 1
-            out.append((kind, (f"{place}.{marks}", name)))
-        elif kind == "tells":
-            out.append((kind, name.split(",")))
-        elif kind != "comment":
+            figure, given = asked(name)
+            seen[figure] += 1
+            out.append((kind, (f"{figure}-{seen[figure]}".removesuffix("-1"), figure, given)))
+        elif kind in ("exercise", "bench", "stress", "wallclock", "puzzle"):
             out.append((kind, (name,) if name else ()))
-    return out
+    return out, env["tries"]
 
 
 def rendered(md, text, env):
     """Markdown as a list of ("html", (text,)) and ("heading", (level, id, text))."""
-    out, first = [], env["line"]
+    out = []
     for node in SyntaxTreeNode(md.parse(text, env)).children:
-        env["line"] = first + node.map[0]
         shown = md.renderer.render(node.to_tokens(), md.options, env)
         if node.type == "heading":
             inner = re.sub(r"^<h\d[^>]*>|</h\d>\s*$", "", shown)
@@ -182,60 +143,14 @@ def rendered(md, text, env):
 # ---- the whole
 
 
-def assemble(parts, macros, bets):
-    """(HTML, [(level, id, text)] of its headings). The macro of a part's kind gives its HTML;
-    `bets` are the exercises whose answers are veiled."""
-    contents, pieces = [], []
-    cuts = [k for k, (kind, _) in enumerate(parts) if k and kind in ("heading", "exercise")]
-    segments = [parts[a:b] for a, b in zip([0, *cuts], [*cuts, len(parts)])]
-    for ((kind, values), *rest), columns in zip(segments, columns_of(segments)):
-        if kind == "heading":
-            *where, title = values
-            contents.append((*where, Markup(re.sub(r"</?(code|a|math)[^>]*>", "", title))))
-        head = getattr(macros, kind)(*values)
-        told = {name for kind, names in rest if kind == "tells" for name in names}
-        rest = [part for part in rest if part[0] != "tells"]
-        inner = [getattr(macros, kind)(*values) for kind, values in rest]
-        for at, part in enumerate(rest, 1):
-            if part[0] == "puzzle":  # what follows it is its answer
-                inner[at:] = [macros.veil("puzzle"), *inner[at:], "</div></div>"]
-        last = values[0] if kind == "exercise" else None
-        veils = [bet for bet in bets if bet in told or bet == last and rest]
-        head, inner = (
-            f'<div class="part {column}">{each}</div>'
-            for column, each in zip(columns, (head, "\n".join(inner)))
-        )
-        if last or values[0] <= 2:  # exercises, and what begins a part, are always seen
-            pieces.append((head, "", ()))
-            head = ""
-        pieces.append((head, inner, veils))
-    return Markup("\n".join(veiled(pieces, bets, macros))), contents
-
-
-def columns_of(segments):
-    """Of each segment whether the live figure stands beside its head, and beside the rest."""
-    columns, shown = [], False
-    for (first, _), *rest in segments:
-        marks = [not values[1].startswith("none") for kind, values in rest if kind == "show"]
-        heading = first == "heading"
-        beside = (shown and not heading) or any(marks)
-        columns.append([beside if heading else shown, beside] if rest or not heading else None)
-        shown = marks[-1] if marks else beside
-    for k in reversed(range(len(columns))):  # a heading alone stands where the next one does
-        columns[k] = columns[k] or columns[k + 1]
-    return [["beside" if each else "centred" for each in both] for both in columns]
-
-
-def veiled(segments, bets, macros):
-    """The HTML of segments [(head, inner, veils)]: a run of them behind one veil has one bar."""
-    if not bets:
-        return [each for head, inner, _ in segments for each in (head, inner)]
-    out, (bet, *others) = [], bets
-    for behind, run in itertools.groupby(segments, key=lambda each: bet in each[2]):
-        (head, inner, veils), *rest = run
-        if behind:
-            out += [head, macros.veil(bet)]
-            head = ""
-        out += veiled([(head, inner, veils), *rest], others, macros)
-        out += ["</div></div>"] if behind else []
-    return out
+def assemble(parts, macros):
+    """(HTML, [(level, id, text)] of its headings). The macro of a part's kind gives its HTML."""
+    titles = [values for kind, values in parts if kind == "heading"]
+    contents = [(*w, Markup(re.sub(r"</?(code|a|math)[^>]*>", "", title))) for *w, title in titles]
+    html, folded = [], False
+    for kind, values in parts:
+        if folded and kind in ("heading", "exercise"):
+            html.append("</details>")
+        folded = kind == "puzzle" or (folded and kind not in ("heading", "exercise"))
+        html.append(getattr(macros, kind)(*values))
+    return Markup("\n".join(html)), contents

@@ -1,59 +1,16 @@
-/* What every picture of the page shares: numbers as text, the look of a model, a small plotter, and
- * balls, tables and arrows. All of it makes SVG as text and touches no document, so the same code
- * draws in a reader's browser and, when the page is built, the still pictures that need no script.
- * A model is told apart three ways: colour and dash (CSS class m-NAME), and marker (here). */
+/* What every picture of the page shares: numbers as text, a model's look, scales and charts, balls,
+ * tables, arrows. `svg` is lit's in a browser and makes text when the page is built (text.js). A
+ * model is told apart three ways: colour and dash (CSS class m-NAME), and marker (here). */
+import { svg } from "./lit.js";
 
-const RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
-const NOISE = 5e-13; // contact.py prints twelve decimals; less is rounding
-
-export const round = (a) => Math.round(a * 100) / 100;
+export { svg };
 export const within = (low, value, high) => Math.min(high, Math.max(low, value));
-export const escape = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
-
-// One element as text; children are text already. Numbers are rounded to a hundredth of a pixel.
-export function el(tag, attributes, ...children) {
-  const written = Object.entries(attributes)
-    .map(([name, value]) => [name, typeof value === "number" ? round(value) : escape(value)])
-    .map(([name, value]) => ` ${name}="${value}"`);
-  return `<${tag}${written.join("")}>${children.join("")}</${tag}>`;
-}
-
-// v_n and m g as formulas have them, in escaped text; `low` and `up` lead to the n and back.
-const typeset = (text, italic, low, up) =>
-  escape(text)
-    .replace(/\bv_n\b/g, `${italic("v")}${low}n${up}`)
-    .replace(/\bm g\b/g, italic("mg"));
-const slanted = (text) => `<tspan font-style="italic">${text}</tspan>`;
-export const inSentence = (text) =>
-  typeset(text.replace(/ × /g, "\u00a0×\u00a0"), (a) => `<i>${a}</i>`, "<sub>", "</sub>");
-
-export const label = (text, x, y, anchor = "start", kind = "tick strong") => {
-  const low = '<tspan dy="4" font-size="75%">';
-  const set = typeset(text, slanted, low, '</tspan><tspan dy="-4">\u200b</tspan>');
-  return el("text", { x, y, class: kind, "text-anchor": anchor }, set);
-};
-export const line = (x1, y1, x2, y2, kind = "rule dashed") =>
-  el("line", { x1, y1, x2, y2, class: kind });
-export const circle = (cx, cy, r, kind) => el("circle", { cx, cy, r, class: kind });
-export const rect = (x, y, width, height, kind) =>
-  el("rect", { x, y, width: Math.max(0, width), height, class: kind });
-export const shift = (x, y, ...children) =>
-  el("g", { transform: `translate(${round(x)} ${round(y)})` }, ...children);
-export const path = (points, kind) =>
-  el("path", { d: `M${points.map((point) => point.map(round).join(" ")).join("L")}`, class: kind });
-
-// What lies within a rectangle.
-export function clipped(x, y, width, height, ...children) {
-  const viewBox = [x, y, width, height].map(round).join(" ");
-  return el("svg", { x, y, width, height, viewBox }, ...children);
-}
+const px = (value) => Math.round(value * 100) / 100;
 
 // ---- numbers
 
+const RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 export const whole = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, ",");
-export const plural = (count, word) => `${whole(count)} ${word}${count === 1 ? "" : "s"}`;
-
-// A power of ten.
 export const tenTo = (exponent) =>
   `10${String(exponent).replace(/./g, (c) => RAISED["-0123456789".indexOf(c)])}`;
 
@@ -62,7 +19,7 @@ export function number(value, digits = 3) {
   if (Number.isNaN(value)) return "not a number";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
   const size = Math.abs(value);
-  if (size < NOISE) return "0";
+  if (size < 5e-13) return "0"; // contact.py prints twelve decimals; less is rounding
   if (size < 1e-3 || size >= 1e6) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
     return `${mantissa} × ${tenTo(Number(exponent))}`.replace("-", "−");
@@ -71,75 +28,119 @@ export function number(value, digits = 3) {
   return (value < 0 ? "−" : "") + (long ? whole(Math.round(size)) : size.toPrecision(digits));
 }
 
-// A plain decimal for inputs and commands: the shortest that reads back as the same number.
-export const plain = (value) => String(Number(value.toPrecision(12)));
+// A plain decimal: the shortest that reads back as the same number.
+export const plain = (value) => String(Number(value.toPrecision(12))).replace("-", "−");
 
-// ---- models
+// ---- shapes
+
+export const label = (text, x, y, anchor = "start", kind = "strong") =>
+  svg`<text x=${px(x)} y=${px(y)} text-anchor=${anchor} class=${kind}>${text}</text>`;
+export const line = (x1, y1, x2, y2, kind = "rule dashed") =>
+  svg`<line x1=${px(x1)} y1=${px(y1)} x2=${px(x2)} y2=${px(y2)} class=${kind}/>`;
+export const circle = (x, y, r, kind) =>
+  svg`<circle cx=${px(x)} cy=${px(y)} r=${px(r)} class=${kind}/>`;
+export const rect = (x, y, width, height, kind) =>
+  svg`<rect x=${px(x)} y=${px(y)} width=${px(Math.max(0, width))} height=${px(Math.max(0, height))}
+    class=${kind}/>`;
+const way = (points) => points.map((point) => point.map(px).join(" ")).join("L");
+export const path = (points, kind) => svg`<path d="M${way(points)}" class=${kind}/>`;
+export const area = (points, kind) => svg`<path d="M${way(points)}Z" class=${kind}/>`;
+
+// What lies within a rectangle.
+export const clipped = (x, y, width, height, ...inside) =>
+  svg`<svg x=${px(x)} y=${px(y)} width=${px(width)} height=${px(height)}
+    viewBox="${px(x)} ${px(y)} ${px(width)} ${px(height)}">${inside}</svg>`;
 
 // The marker of a model around (x, y): triangle, disc, cross, square, star.
 function markerPath(model, x, y, r) {
   const ring = (count, size, first = 0) =>
     Array.from({ length: count }, (_, k) => {
       const angle = 2 * Math.PI * (first + k / count);
-      const far = typeof size === "number" ? size : size[k % 2];
-      return `${round(x + far * r * Math.sin(angle))} ${round(y - far * r * Math.cos(angle))}`;
+      const far = r * (Array.isArray(size) ? size[k % 2] : size);
+      return [x + far * Math.sin(angle), y - far * Math.cos(angle)];
     });
-  const half = (way) => `a${r} ${r} 0 1 0 ${2 * way * r} 0`;
-  if (model === "lcp") return `M${round(x - r)} ${round(y)}${half(1)}${half(-1)}Z`;
-  if (model === "leapfrog") {
-    const [a, b] = [0.45 * r, 0.85 * r]; // half of an arm's width, its length
-    const sides = `h${2 * a}v${b}h${b}v${2 * a}h${-b}v${b}h${-2 * a}v${-b}h${-b}v${-2 * a}h${b}`;
-    return `M${round(x - a)} ${round(y - a - b)}${sides}Z`;
-  }
-  const corners = { penalty: [3, 1.35, 1 / 6], soft: [4, 1.3, 1 / 8], exact: [10, [1.5, 0.62]] };
-  return `M${ring(...corners[model]).join("L")}Z`;
+  const cross = [1, 3, 3, 1, 1, -1, -1, -3, -3, -1, -1, 1].map((a) => 0.43 * r * a);
+  const corners = {
+    penalty: () => ring(3, 1.35, 1 / 6), soft: () => ring(4, 1.3, 1 / 8),
+    exact: () => ring(10, [1.5, 0.62]), lcp: () => ring(24, 1),
+    leapfrog: () => cross.map((a, k) => [x + a, y + cross[(k + 9) % 12]]),
+  };
+  return `M${way((corners[model] ?? corners.lcp)())}Z`;
 }
 
 export const mark = (model, x, y, r = 4.5) =>
-  el("path", { d: markerPath(model, x, y, r), class: `mark m-${model}` });
+  svg`<path d=${markerPath(model, x, y, r)} class="mark m-${model}"/>`;
 
-// ---- scales
+export const ball = (model, x, y, r, kind = "ball") => [
+  circle(x, y, r, `${kind} m-${model}`),
+  kind === "ball" && r >= 7 && model !== "fixed"
+    ? svg`<path d=${markerPath(model, x, y, Math.min(8, 0.4 * r))} class="ball-mark"/>`
+    : "",
+];
+
+// The table: its top is the line, what lies below is hatched.
+export const table = (x, y, width, height) => [
+  rect(x, y, width, height, "ground"), rect(x, y, width, height, "hatch"),
+  line(x, y, x + width, y, "table-top"),
+];
+
+// An arrow from (x, y) by (dx, dy).
+export function arrow(kind, x, y, dx, dy) {
+  const size = Math.hypot(dx, dy);
+  if (!(size > 0.5)) return "";
+  const [head, turn] = [Math.min(9, size), (Math.atan2(dy, dx) * 180) / Math.PI];
+  return svg`<path class="arrow ${kind}" transform="translate(${px(x)} ${px(y)}) rotate(${px(turn)})"
+    d="M0 0H${px(size - head)}m${head} 0l${-head} ${px(0.45 * head)}v${px(-0.9 * head)}z"/>`;
+}
+
+// What is seen through a lens of `size` px around (x, y).
+export const through = (x, y, size, ...inside) =>
+  svg`<g style="clip-path: circle(${px(size)}px at ${px(x)}px ${px(y)}px) view-box">
+    ${circle(x, y, size, "lens-ground")}${inside}</g>${circle(x, y, size, "lens-rim")}`;
+
+// ---- charts
 
 // From the domain of an axis to px; `back` leads from px to the domain.
 function scaleOf({ domain, log }, from, to) {
   const [first, last] = log ? domain.map(Math.log10) : domain;
   const straight = (v) => (log ? (v > 0 ? Math.max(first, Math.log10(v)) : first) : v);
   const scale = (v) => from + ((straight(v) - first) / (last - first)) * (to - from);
-  scale.back = (px) => {
-    const at = first + within(0, (px - from) / (to - from), 1) * (last - first);
-    return log ? 10 ** at : at;
+  scale.back = (at) => {
+    const value = first + within(0, (at - from) / (to - from), 1) * (last - first);
+    return log ? 10 ** value : value;
   };
   return scale;
 }
 
 // An axis over a domain, with ticks at these values; [value, text] stays as it is.
 export const axis = (domain, name, ...at) => ({
-  domain,
-  label: name,
-  ticks: at.map((each) => (Array.isArray(each) ? each : [each, plain(each).replace("-", "−")])),
+  domain, label: name, ticks: at.map((each) => (Array.isArray(each) ? each : [each, plain(each)])),
 });
 
-// About `most` round numbers between low and high for a plain axis.
+// An axis of powers of ten, from 10^low to 10^high, with a tick at every so manieth.
+export function tens(low, high, name, every = 1) {
+  const powers = Array.from({ length: Math.floor((high - low) / every) + 1 }, (_, k) => low + k * every);
+  return { ...axis([10 ** low, 10 ** high], name, ...powers.map((p) => [10 ** p, tenTo(p)])), log: true };
+}
+
+// About `most` round numbers between low and high.
 export function steps(low, high, most = 5) {
   const rough = (high - low) / most;
   const size = 10 ** Math.floor(Math.log10(rough));
   const every = [1, 2, 5, 10].map((k) => k * size).find((step) => step >= rough * 0.999);
-  const ticks = [];
-  for (let k = Math.ceil(low / every - 1e-9); k * every <= high + 1e-9 * every; k++)
-    ticks.push(k * every);
-  return ticks;
+  const [first, last] = [Math.ceil(low / every - 1e-9), Math.floor(high / every + 1e-9)];
+  return Array.from({ length: last - first + 1 }, (_, k) => (first + k) * every);
 }
-
-// ---- the plotter
 
 /* A line through many points: of those in half a pixel the first, the least, the greatest and the
  * last, so that spikes survive. Values that are not finite end the line. */
-function linePath({ xs, ys, from = 0, to = xs.length }, { sx, sy, box }) {
+function linePath(points, { sx, sy, box }) {
   const columns = new Map();
-  for (let i = from; i < to && Number.isFinite(ys[i]); i++) {
-    const x = Math.round(2 * sx(xs[i])) / 2;
-    if (!columns.has(x)) columns.set(x, []);
-    columns.get(x).push(round(within(box.top - 40, sy(ys[i]), box.bottom + 40)));
+  for (const [x, y] of points) {
+    if (!Number.isFinite(y)) break;
+    const at = Math.round(2 * sx(x)) / 2;
+    if (!columns.has(at)) columns.set(at, []);
+    columns.get(at).push(px(within(box.top - 40, sy(y), box.bottom + 40)));
   }
   const drawn = [...columns].map(([x, all]) => {
     const few = [all[0], Math.min(...all), Math.max(...all), all[all.length - 1]];
@@ -148,101 +149,48 @@ function linePath({ xs, ys, from = 0, to = xs.length }, { sx, sy, box }) {
   return drawn.length ? `M${drawn.join("L")}` : "";
 }
 
-function frame({ x, y }, { sx, sy, box }) {
-  const { left, right, top, bottom, low } = box;
-  const across = y.ticks.map(([value, text]) => {
-    const at = sy(value);
-    return line(left, at, right, at, "grid") + label(text, left - 6, at + 5, "end", "tick");
-  });
-  let free = -Infinity; // from here on there is room for a tick's text
-  const along = x.ticks.map(([value, text]) => {
-    const [at, half] = [sx(value), 4.2 * text.length];
-    const place = Math.min(at, right + 4 - half);
-    const drawn = line(at, bottom, at, bottom + 5, "axis");
-    if (place - half < free) return drawn;
-    free = place + half + 6;
-    return drawn + label(text, place, bottom + 20, "middle", "tick");
-  });
-  if (y.label) across.push(label(y.label, box.edge, top - 12, "start", "axis-name"));
-  if (x.label) along.push(label(x.label, right, low - 4, "end", "axis-name"));
-  return [...across, ...along, line(left, bottom, right, bottom, "axis")].join("");
-}
-
-// A straight line across the plot at one x or one y, and its words beside it.
-function ruleOf({ x, y, text = "", kind = "", side = "start", row = 0 }, { sx, sy, box }) {
-  const at = x === undefined ? sy(y) : sx(x);
-  const shown = `rule ${kind}`;
-  if (x === undefined)
-    return [line(box.left, at, box.right, at, shown), label(text, box.right - 4, at - 5, "end")];
-  const place = at + (side === "end" ? -5 : 5);
-  return [
-    line(at, box.top, at, box.bottom, shown),
-    label(text, place, box.top + 12 + row * 18, side),
-  ];
-}
-
-/* A plot within the rectangle [left, top, width, height] of the drawing: {svg, sx, sy, box}.
- * x and y: {domain: [low, high], log, ticks: [[value, text]...], label};
- * lines: {model, xs, ys, markers, from, to, kind}; rules: {x or y, text, kind, side, row};
- * points: {model, x, y, size}; margin: px left of it; under(chart): what is drawn beneath. */
-export function plot([edge, above, width, height], options) {
-  const { x, y, lines = [], rules = [], points = [], under = () => "" } = options;
+/* A chart within [left, top, width, height]: {picture, sx, sy, box}. x and y: axes, or {domain,
+ * ticks, label, log}; lines: {model, points, kind, marks}; `rules`: {x or y, text, kind, side, row};
+ * under(chart): what is drawn beneath. */
+export function plot([edge, above, width, height], { x, y, lines = [], rules = [], under }) {
   const wide = Math.max(0, ...y.ticks.map(([, text]) => text.length));
   const box = {
-    edge,
-    low: above + height,
-    left: edge + (options.margin || Math.max(30, 10 + 8 * wide)),
-    right: edge + width - 10,
-    top: above + (y.label ? 26 : 8),
-    bottom: above + height - (x.ticks.length ? (x.label ? 42 : 24) : 6),
+    left: edge + Math.max(26, 12 + 8.4 * wide), right: edge + width - 12,
+    top: above + (y.label ? 28 : 8), bottom: above + height - (x.label ? 46 : x.ticks.length ? 26 : 6),
   };
-  const sx = scaleOf(x, box.left, box.right);
-  const chart = { box, sx, sy: scaleOf(y, box.bottom, box.top) };
-  const { sy } = chart;
-  const ruled = rules.map((rule) => ruleOf(rule, chart));
-  const marked = ({ model, xs, ys, markers = [] }) =>
-    markers.map((at) => (Number.isFinite(ys[at]) ? mark(model, sx(xs[at]), sy(ys[at])) : ""));
-  const inside = [
-    ...ruled.map(([drawn]) => drawn),
-    ...lines.map((each) =>
-      el("path", { d: linePath(each, chart), class: `line m-${each.model} ${each.kind || ""}` }),
-    ),
-    ...lines.flatMap(marked),
-    ...points.map((each) => mark(each.model, sx(each.x), sy(each.y), each.size)),
+  const [sx, sy] = [scaleOf(x, box.left, box.right), scaleOf(y, box.bottom, box.top)];
+  const chart = { sx, sy, box };
+  const across = y.ticks.map(([value, text]) => [
+    line(box.left, sy(value), box.right, sy(value), "grid"),
+    label(text, box.left - 7, sy(value) + 5, "end", "tick"),
+  ]);
+  let free = -Infinity; // from here on there is room for a tick's text
+  const along = x.ticks.map(([value, text]) => {
+    const [at, half] = [sx(value), 4.4 * text.length];
+    const room = at - half >= free;
+    if (room) free = at + half + 8;
+    const tick = line(at, box.bottom, at, box.bottom + 5, "axis");
+    return [tick, room ? label(text, at, box.bottom + 21, "middle", "tick") : ""];
+  });
+  const ruled = rules.map(({ x: atX, y: atY, text = "", kind = "", side = "start", row = 0 }) => {
+    const [toX, toY] = [sx(atX ?? 0), sy(atY ?? 0)];
+    if (atX === undefined)
+      return [line(box.left, toY, box.right, toY, `rule ${kind}`), label(text, box.right - 4, toY - 7, "end")];
+    const told = label(text, toX + (side === "end" ? -6 : 6), box.top + 14 + 20 * row, side);
+    return [line(toX, box.top, toX, box.bottom, `rule ${kind}`), told];
+  });
+  const drawn = lines.map(({ model, points, kind = "", marks = [] }) => [
+    svg`<path d=${linePath(points, chart)} class="line m-${model} ${kind}"/>`,
+    marks.filter((k) => k < points.length && Number.isFinite(points[k][1])).map((k) =>
+      mark(model, sx(points[k][0]), sy(points[k][1]))),
+  ]);
+  const inside = [ruled.map(([rule]) => rule), drawn];
+  const picture = [
+    under ? under(chart) : "", across, along, line(box.left, box.bottom, box.right, box.bottom, "axis"),
+    y.label ? label(y.label, edge, above + 14, "start", "axis-name") : "",
+    x.label ? label(x.label, box.right, above + height - 4, "end", "axis-name") : "",
+    clipped(box.left, box.top - 3, box.right - box.left, box.bottom - box.top + 6, inside),
+    ruled.map(([, text]) => text),
   ];
-  const [across, down] = [box.right - box.left, box.bottom - box.top];
-  const svg = [
-    under(chart),
-    frame(options, chart),
-    clipped(box.left, box.top - 3, across, down + 6, ...inside),
-    ...ruled.map(([, text]) => text),
-  ].join("");
-  return { ...chart, svg };
-}
-
-// ---- balls, tables, arrows
-
-export function ball(model, x, y, r, kind = "ball") {
-  const disc = circle(x, y, r, `${kind} m-${model}`);
-  if (kind !== "ball" || r < 7) return disc;
-  const d = markerPath(model, x, y, Math.min(8, r * 0.4));
-  return disc + el("path", { d, class: "ball-mark" });
-}
-
-// The table: its top is the line, what lies below is hatched, by a pattern of the page.
-export const table = (x, y, width, height) =>
-  rect(x, y, width, height, "ground") + rect(x, y, width, height, "hatch") +
-  line(x, y, x + width, y, "table-top");
-
-// An arrow from (x, y) by (dx, dy).
-export function arrow(kind, x, y, dx, dy) {
-  const size = Math.hypot(dx, dy);
-  if (!(size > 0.5)) return "";
-  const head = Math.min(9, size);
-  const along = (far, aside) =>
-    `${round(x + (far * dx - aside * dy) / size)} ${round(y + (far * dy + aside * dx) / size)}`;
-  const back = size - head;
-  const point = [along(size, 0), along(back, 0.45 * head), along(back, -0.45 * head)];
-  const d = `M${along(0, 0)}L${along(back, 0)}M${point.join("L")}Z`;
-  return el("path", { d, class: `arrow ${kind}` });
+  return { ...chart, picture };
 }

@@ -5,27 +5,12 @@ import re
 
 from curriculum.lesson.regions import ROOT
 from curriculum.page.chapter import inline, markdown
-from exercises.kit import FACTS, bets, slips
+from exercises.kit import FACTS, bets
 
 FOLDER = ROOT / "exercises"
 TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")
 COMMAND = re.compile(r"^    ((?:python|pytest)\b.*?)(?:\s{2,}#.*)?$", re.MULTILINE)
 measured = bets.measure  # the numbers of a bet
-BLANKS = ("penalty_normal_force", "project_impulse")  # of exercise 2, filled in the page
-
-
-def blank_cases():
-    """How checks.py tries the blanks of exercise 2: inputs, what is right on them, and the slips,
-    each as what it gives, to five digits, and what it means."""
-    cases = {}
-    for name in BLANKS:
-        blank, known = slips.BLANKS[name], []
-        for function, meaning in blank.slips:
-            rough = [float(f"{function(*case.values()):.5g}") for case in blank.inputs]
-            known.append((rough, meaning.replace("`", "")))
-        right = [blank.right(*case.values()) for case in blank.inputs]
-        cases[name] = {"inputs": blank.inputs, "right": right, "slips": known}
-    return cases
 
 
 def task_of(text):

@@ -1,7 +1,8 @@
 """The code that the page shows: each region a panel, each definition in it a piece of a few lines.
 
 A docstring shows its first line, the rest is folded behind it. A definition with more than LONG
-lines of code is folded behind its head, and so are constants and what is no idea of the chapter.
+lines of code is folded behind its head, but for the steps, and so are constants and what is no
+idea of the chapter.
 """
 
 import ast
@@ -12,11 +13,17 @@ from pygments import highlight
 from pygments.formatters import HtmlFormatter
 from pygments.lexers import PythonLexer
 
+import contact
+
 LONG = 20  # lines of code
 BOOKKEEPING = set(  # regions, and definitions of others, that are no idea of the chapter
     "setup scenes ball flight run measure flags report files main quality stability "
-    "warm_start remember raised inverse make_balls".split()
+    "step_reach reach_of warm_start remember raised inverse make_balls".split()
 )
+OPEN = {row.step.__name__ for row in contact.MODELS.values() if row.step} | {
+    "exact_run",
+    "simulate",
+}
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
 
@@ -39,11 +46,20 @@ def pieces(region):
         if isinstance(node, (ast.FunctionDef, ast.ClassDef))
     }
     cuts = sorted({0, len(text), *nodes, *(node.end_lineno for node in nodes.values())})
-    return [
-        piece(text[a:b], html[a:b], nodes.get(a), a, region.name)
-        for a, b in zip(cuts, cuts[1:])
-        if "".join(text[a:b]).strip()
-    ]
+    made = []
+    for a, b in zip(cuts, cuts[1:]):
+        if not "".join(text[a:b]).strip():
+            continue
+        new = piece(text[a:b], html[a:b], nodes.get(a), a, region.name)
+        if made and made[-1]["folded"] and new["folded"]:  # behind one head
+            last = made.pop()
+            new |= {
+                "html": last["html"] + "\n\n" + new["html"],
+                "lines": last["lines"] + new["lines"],
+            }
+            new["head"] = f"{last['head']}, {new['head']}"
+        made.append(new)
+    return made
 
 
 def piece(text, html, node, start, region):
@@ -61,7 +77,8 @@ def piece(text, html, node, start, region):
     name = node.name if node else None
     return {
         "html": Markup("".join(html)),
-        "head": next(line for line in text if line.strip() and line[0] != "@"),
+        "head": name or " ".join(re.findall(r"^(\w+)[ :].*=", "\n".join(text), re.M)) or "imports",
         "lines": len(text),
-        "folded": len(text) - said > LONG or node is None or bool({name, region} & BOOKKEEPING),
+        "folded": name not in OPEN
+        and (len(text) - said > LONG or node is None or bool({name, region} & BOOKKEEPING)),
     }

@@ -7,7 +7,6 @@ export const $ = {
   max, min, maxOf: of(max), minOf: of(min),
   map: (f, all) => all.map((each) => f(each)),
   zip: (first, ...more) => first.map((each, k) => [each, ...more.map((all) => all[k])]),
-  pairs: (all) => all.flatMap((a, k) => all.slice(k + 1).map((b) => [a, b])),
   has: (all, one) => all.includes(one),
   put: (held, key, value) => (held instanceof Map ? held.set(key, value) : (held[key] = value)),
 };

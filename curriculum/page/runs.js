@@ -1,9 +1,9 @@
 /* Runs of the steps of contact.py, which are made into JavaScript when the page is built
  * (curriculum/lesson/to_js.py), so that they have its bits. A recording has `n` balls and
  * `steps` + 1 rows: t [s], and x, y, vx, vy flat, row by row. */
-import { Ball, GRAVITY, MOST_IMPACTS, STEP, TOUCH } from "./contact.js";
+import { Ball, Contact, FLOOR, GRAVITY, MOST_IMPACTS, STEP, TOUCH } from "./contact.js";
 import { accelerations, detect_contacts, next_impact, soft_defaults, strike } from "./contact.js";
-import { implicit_step } from "./contact.js";
+import { implicit_step, solve_contacts } from "./contact.js";
 import { data } from "./data.js";
 
 export const MODELS = data.models;
@@ -132,4 +132,28 @@ export function kept(compute) {
     }
     return held.get(key);
   };
+}
+
+// ---- a column swept contact after contact
+
+// The contacts of balls of these masses over one another, from below, with impulses and speeds.
+export function stacked(masses, lam, vy) {
+  const balls = column(masses.map((_, i) => (2 * i + 1) * R), { mass: masses, vy });
+  return balls.map((ball, i) =>
+    Object.assign(new Contact(ball, i ? balls[i - 1] : FLOOR, 0, 1, 0), { lam: lam[i] }));
+}
+
+/* What single visits do, from below and again: [{contact, wanted, lam, vy}], where `wanted` is the
+ * change before the clamp; first what they start with. */
+export function visits(masses, lam, vy, count) {
+  const contacts = stacked(masses, lam, vy);
+  const now = () => ({ lam: contacts.map((c) => c.lam), vy: contacts.map(({ a }) => a.vy) });
+  const seen = [{ contact: null, wanted: 0, ...now() }];
+  for (let at = 0; at < count; at++) {
+    const contact = at % contacts.length;
+    const wanted = -contacts[contact].v_n() * contacts[contact].m_eff;
+    solve_contacts([contacts[contact]], 1);
+    seen.push({ contact, wanted, ...now() });
+  }
+  return seen;
 }

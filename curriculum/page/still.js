@@ -1,49 +1,35 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
-import { inSentence } from "./draw.js";
 import { figures } from "./figures.js";
-import { seenLater } from "./glance.js";
-import { LINES } from "./lines.js";
-import { buttonsOf, heightOf, stillView } from "./stage.js";
-import { data } from "./data.js";
-import { QUANTITIES, Section, startOf } from "./store.js";
+import { textOf } from "./lit.js";
+import { fromPlace, QUANTITIES, stateOf, toSlider, viewOf } from "./stage.js";
 
-const WIDTH = 640;
+const [WIDE, NARROW] = [640, 358]; // px
 
-// What a figure shows first in a section: {svg, words, height, narrow, ...}.
-function still([id, [name, changes]]) {
-  try {
-    const figure = figures[name] ?? {};
-    const { title, caption = "", knobs = [] } = figure;
-    const view = stillView(figure, new Section(id, changes).values, WIDTH);
-    if (id.endsWith("-still")) {
-      // the live figure without a script and on paper: with all answers
-      Object.assign(view, { height: 380, open: () => true });
-      seenLater(figure, view, changes);
-    }
-    const made = figure.draw(view);
-    for (const part of ["title", "height", "svg", "words"])
-      if (!(part in { ...figure, ...made })) throw new Error(`it has no ${part}`);
-    const [height, narrow] = [view.height, heightOf(figure, 1)];
-    const counts = { knobs: knobs.length, buttons: buttonsOf(figure).length };
-    const { svg, words } = made;
-    const texts = { words, sentence: inSentence(words), title, caption: inSentence(caption) };
-    return [id, { svg, ...texts, width: WIDTH, height, narrow, ...counts }];
-  } catch (error) {
-    throw new Error(`the figure ${name}: ${error}`);
+// What a slot may set: what the figure has, in its range.
+function check(own, given) {
+  for (const [name, value] of Object.entries(given)) {
+    const { low = value, high = value } = QUANTITIES[name] ?? {};
+    if (!(name in own)) throw new Error(`${name} sets nothing; known: ${Object.keys(own).join(", ")}`);
+    if (!(value >= low && value <= high)) throw new Error(`${name}=${value}; allowed: from ${low} to ${high}`);
   }
 }
 
-// Of figures {id: [name, what its section sets]}.
-export const stills = (wanted) => ({
-  figures: Object.fromEntries(Object.entries(wanted).map(still)),
-});
+// What a figure shows first.
+function still([name, given]) {
+  const figure = figures[name];
+  if (!figure) throw new Error(`there is no figure ${name}; known: ${Object.keys(figures).join(", ")}`);
+  try {
+    check(stateOf(figure, {}), given);
+    const view = viewOf(figure, given, WIDE);
+    const { picture, words, values } = figure.draw(view);
+    const { title, caption, height, knobs = [], buttons = () => [] } = figure;
+    const sliders = typeof knobs === "function" ? knobs(view.own) : knobs;
+    const heights = [WIDE, NARROW].map((width) => height(width, view.own));
+    return { svg: textOf(picture), words, values, title, caption, heights, knobs: sliders.length, buttons: buttons(view).length };
+  } catch (error) {
+    throw new Error(`the figure ${name}: ${error.message}`);
+  }
+}
 
-// What the text may set: {quantity: [low, high]}, and every value as a scene has it at first.
-export const settable = () => ({
-  names: Object.keys(figures),
-  lines: LINES,
-  starts: Object.fromEntries(Object.keys(data.scenes).map((scene) => [scene, startOf(scene)])),
-  ranges: Object.fromEntries(
-    Object.entries(QUANTITIES).map(([name, { low, high }]) => [name, [low, high]]),
-  ),
-});
+export const stills = (wanted) => wanted.map(still);
+export { figures, fromPlace, QUANTITIES, textOf, toSlider, viewOf };

@@ -11,8 +11,6 @@ from pathlib import Path
 
 import pytest
 
-SHOWN = """for (const id of ["ex1", "ex3"])
-  localStorage.setItem(`contact-chapter:${id}`, '{"shown": true}');"""
 QUIET = {  # of Firefox: no request of its own
     "remote.active-protocols": 1,
     "datareporting.policy.dataSubmissionEnabled": False,
@@ -62,22 +60,14 @@ def browser():
 
 
 @contextlib.contextmanager
-def visiting(
-    browser, url, width=1280, height=900, motion="reduce", javascript=True, shown=True, **options
-):
-    """A fresh profile on the page. Fails if it complains, throws, or asks for anything but itself.
-
-    `shown`: as for a reader who has asked to see the answers of the bets.
-    """
+def visiting(browser, url, width=1280, height=900, motion="reduce", javascript=True, **options):
+    """A fresh profile on the page. Fails if it complains, throws, or asks for more than itself."""
     context = browser.new_context(
         viewport={"width": width, "height": height},
         reduced_motion=motion,
         java_script_enabled=javascript,
         **options,
     )
-    if shown:
-        once = f"if (!sessionStorage.seen) {{ sessionStorage.seen = 1; {SHOWN} }}"
-        context.add_init_script(once)
     page = context.new_page()
     page.set_default_timeout(60_000)  # ms: a busy machine takes long to load a page
     trouble, own = [], ("data:", "blob:", re.split("[?#]", url)[0])
@@ -105,66 +95,50 @@ def opened(file, query="", **options):
             yield page
 
 
-SHOWS = "checkVisibility({ opacityProperty: true, visibilityProperty: true })"
-# wait until a figure is drawn for the frame that it has: one far from the window was not
-DRAWN = """async (fig, frames = 4) => {
-  const frame = fig?.querySelector(".drawing");
-  const fits = ({ width, height } = frame?.querySelector("svg").viewBox.baseVal ?? {}) =>
-    !frame?.clientHeight || (fig.querySelector(".handle") &&
-      Math.abs(width * frame.clientHeight - height * frame.clientWidth) < height);
-  for (let k = 0; k < frames || (k < 600 && !fits()); k++)
-    await new Promise(requestAnimationFrame);
-}"""
-# a figure in the middle of the window, drawn: the live one beside the text that it belongs to
+FRAMES = "for (let k = 0; k < 3; k++) await new Promise(requestAnimationFrame);"
+# a figure in the middle of the window, alive
 SEE = f"""async (id) => {{
   const fig = document.getElementById(id);
-  const live = fig.closest("#figure");
-  const places = live ? document.querySelectorAll(".show[data-show*=models]") : [fig];
-  for (const place of places) {{
-    place.scrollIntoView({{ block: live ? "start" : "center" }});
-    await ({DRAWN})(fig, live ? 9 : 4);
-    if (!live?.matches(".back")) break; // it steps back where a wide figure needs its room
-  }}
+  fig.scrollIntoView({{ block: "center" }});
+  for (let k = 0; k < 99 && !fig.querySelector(".back"); k++)
+    await new Promise(requestAnimationFrame);
+  {FRAMES}
   return fig;
 }}"""
-# in every figure: what lies at the middle of each button, knob, handle, link and ball, if not that
+# in every figure: what lies at the middle of each button, knob and handle, if not that
 HITS = f"""(async () => {{
-  const [wrong, parts, see] = [[], ".handle, button, input, a, circle.ball", {SEE}];
+  const [wrong, see] = [[], {SEE}];
   for (const {{ id }} of document.querySelectorAll(".fig")) {{
     const fig = await see(id);
-    const all = () => [...fig.querySelectorAll(parts)].filter((node) => node.{SHOWS});
-    for (let k = 0; k < all().length; k++) {{
-      const place = () => all()[k].getBoundingClientRect();
-      if (place().top < 0 || place().bottom > innerHeight) {{
-        all()[k].scrollIntoView({{ block: "center" }});
-        await new Promise(requestAnimationFrame);
-      }}
-      const [node, box] = [all()[k], place()];
+    for (const node of fig.querySelectorAll(".handle, button:not(:disabled), input")) {{
+      const part = node.querySelector(".knob-dot, circle") ?? node;
+      part.scrollIntoView({{ block: "center" }});
+      const box = part.getBoundingClientRect();
       const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
-      const grabbed = node.matches(".ball") && at?.matches(".handle") && fig.contains(at);
-      if (!grabbed && !node.contains(at))
-        wrong.push([fig.id, node.outerHTML.slice(0, 80), at?.outerHTML.slice(0, 80)]);
+      const other = node.matches(".handle") && at?.closest(".handle");
+      if (!node.contains(at) && !(other && fig.contains(other)))
+        wrong.push([id, node.outerHTML.slice(0, 90), at?.outerHTML.slice(0, 90)]);
     }}
   }}
   return wrong;
 }})()"""
-# the figures that one can see; the live one, on a phone, comes up only when it is called
-FIGURES = """() => [...document.querySelectorAll(".fig")].filter((fig) => fig.checkVisibility())
-  .map(({ id }) => id)"""
-# the middle of a figure's first handle, once it is in sight; and whether that is what lies there
+FIGURES = "() => [...document.querySelectorAll('.fig')].map(({ id }) => id)"
+# the middle of a figure's last handle that can be grabbed there, once it is in sight
 MIDDLE = f"""async (id) => {{
-  const see = {SEE};
-  const handle = (await see(id)).querySelector(".handle");
-  if (!handle.closest("#figure")) handle.scrollIntoView({{ block: "center" }});
-  await new Promise(requestAnimationFrame);
-  const {{ x, y, width, height }} = handle.getBoundingClientRect();
-  const middle = [x + width / 2, y + height / 2];
-  return [...middle, document.elementFromPoint(...middle) === handle];
+  const [see, fig] = [{SEE}, document.getElementById(id)];
+  await see(id);
+  const all = [...fig.querySelectorAll(".handle")].reverse().map((handle) => {{
+    const part = handle.querySelector(".knob-dot, circle");
+    const {{ x, y, width, height }} = part.getBoundingClientRect();
+    const middle = [x + width / 2, y + height / 2];
+    return handle.contains(document.elementFromPoint(...middle)) && middle;
+  }});
+  return all.find(Boolean) ?? null;
 }}"""
-WORDS = """async (id) => {
-  for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
-  return document.querySelector(`#${id} .words`).textContent;
-}"""
+WORDS = f"""async (id) => {{
+  {FRAMES}
+  return document.querySelector(`#${{id}} .words`).textContent;
+}}"""
 MOVES = ((-12, 12), (24, -24), (70, -60), (-70, 60))  # px: to and fro, for what stands at an end
 
 
@@ -173,26 +147,16 @@ def call(page, function, *given):
     return page.evaluate(f"({function})({', '.join(map(json.dumps, given))})")
 
 
-def middle(node):
-    """The middle of what a locator finds [px], in the middle of the window, drawn."""
-    node.evaluate(f"""async (node) => {{
-      node.scrollIntoView({{ block: "center" }});
-      await ({DRAWN})(node.closest(".fig"));
-    }}""")
-    box = node.bounding_box()
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-
-
-def mouse(page, x, y, moves=MOVES, button="left"):
+def mouse(page, x, y, moves=MOVES):
     """Press Chromium's mouse at a place, and draw it to and fro; a move at a time."""
     page.mouse.move(x, y)
-    page.mouse.down(button=button)
+    page.mouse.down()
     try:
         for dx, dy in moves:
             page.mouse.move(x + dx, y + dy, steps=2)
             yield
     finally:
-        page.mouse.up(button=button)
+        page.mouse.up()
 
 
 def mouse_of_firefox(page, x, y):
@@ -206,8 +170,8 @@ def mouse_of_firefox(page, x, y):
         page.pointer("Up")
 
 
-def finger(page, x, y, moves=MOVES[:3], others=()):
-    """The same with a finger on a phone; then put `others` down beside it, at places [x, y]."""
+def finger(page, x, y, moves=MOVES[:3]):
+    """The same with a finger on a phone."""
     touch = page.context.new_cdp_session(page)
 
     def send(kind, *at):
@@ -218,11 +182,6 @@ def finger(page, x, y, moves=MOVES[:3], others=()):
     try:
         for dx, dy in moves:
             send("Move", {"x": x + dx, "y": y + dy})
-            yield
-        held = {"x": x + dx, "y": y + dy, "id": 0}
-        for x, y in others:
-            send("Start", held, {"x": x, "y": y, "id": 1})
-            send("Move", held, {"x": x + 30, "y": y + 20, "id": 1})
             yield
     finally:
         send("End")
@@ -276,12 +235,6 @@ class Tab:
             return {"type": "pointerMove", "x": round(each[0]), "y": round(each[1])}
 
         source = {"type": "pointer", "id": "mouse", "actions": list(map(action, does))}
-        self.call("input.performActions", context=self.context, actions=[source])
-
-    def press(self, *keys):
-        """Press and release keys, one after the other."""
-        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
-        source = {"type": "key", "id": "keyboard", "actions": actions}
         self.call("input.performActions", context=self.context, actions=[source])
 
 

@@ -1,159 +1,154 @@
-/* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors. On
- * the first screen it plays by itself; later time step and stiffness can be dragged, too, and the
- * spring's force can be taken from the end of the step. */
-import { axis, ball, circle, clipped, el, label, line, number, path, plot, rect } from "../draw.js";
-import { table, within } from "../draw.js";
-import { criticalDt, runModel, series, stateAt } from "../engine.js";
-import { grip, kept, pair, R, scene, tens, through } from "../kit.js";
+/* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors.
+ * With map=1 time step and stiffness can be chosen in a field of what becomes of it, and the
+ * spring's force be taken from the end of the step. Values: what it does, how deep the left finger
+ * is in the cup at the worst and by how much that trembles in the last quarter [r]. */
+import { axis, ball, circle, clipped, label, line, number, path, plot, rect } from "../draw.js";
+import { svg, table, tens, through } from "../draw.js";
+import { critical_dt } from "../contact.js";
+import { column, kept, R, record } from "../runs.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
-const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s, s: what is judged comes after it
-const [GROUND, TOP, TIMES] = [24, 190, 60]; // px of table, px of the picture; of the lens
-const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be set
-const APART = 1; // m: what has flown so far is seen there before it is played
-const NAMES = ["the left finger", "the cup", "the right finger"];
-const PLACES = { x0: AT[0], x1: AT[1], x2: AT[2] };
-const start = () => ({ ...PLACES, time: null, tries: [], late: false });
+const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s; what is judged comes after this share
+const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be chosen
+const FATES = ["holds still", "trembles", "flies apart"];
 
-const tellsOf = (dt, k, late) =>
-  `dt = ${number(1000 * dt, 2)} ms, k = ${number(k, 2)} N/m${late ? ", force from the end" : ""}`;
-
-// The run, its deepest overlap row by row [r], and what happens in the last quarter; `late`: with
-// the force from the end of the step.
-const squeezed = kept((dt, stiffness, late, ...x) => {
-  const all = scene([R, R, R], { x, mass: MASS, motor: MOTOR });
-  const steps = Math.ceil(SECONDS / dt - 1e-9);
+function squeeze(dt, stiffness, late, x, seconds) {
+  const steps = Math.ceil(seconds / dt - 1e-9);
+  const push = (balls) => balls.forEach((ball, i) => {
+    // as a force of the step; the implicit one has taken it up and is rid of it
+    ball.fx = MOTOR[i];
+  });
   const model = late ? "implicit" : "penalty";
-  const run = runModel(model, all, { dt, stiffness, damping: DAMPING }, steps);
-  const depths = series(run, all).gap.map((gap) => Math.max(0, -gap));
-  const last = depths.subarray(Math.floor(LATE * (steps + 1)));
-  const deepest = Math.max(...last);
-  const trembling = deepest - Math.min(...last);
-  const held = stateAt(run, steps).x.every((each) => Math.abs(each) < 0.3);
-  const gone = run.x.findIndex((each) => Math.abs(each) > APART); // ball by ball
-  const until = gone < 0 ? SECONDS : dt * Math.floor(gone / 3);
-  const does = held ? (trembling < 1e-5 ? "holds still" : "trembles") : "is gone";
-  return { run, depths, deepest, trembling, does, until };
+  return record(model, column([R, R, R], { x, mass: MASS }), { dt, stiffness, damping: DAMPING }, steps, { push });
+}
+
+// How deep finger and cup are in one another, row by row [r], and what happens in the end.
+function judged({ n, x, y, steps }) {
+  const depths = Array.from({ length: steps + 1 }, (_, row) => {
+    const [dx, dy] = [x[n * row + 1] - x[n * row], y[n * row + 1] - y[n * row]];
+    return 2 - Math.sqrt(dx * dx + dy * dy) / R;
+  });
+  const last = depths.slice(Math.floor(LATE * (steps + 1)));
+  const [most, least] = [Math.max(...last), Math.min(...last)];
+  const gone = !x.subarray(-n).every((each) => Math.abs(each) < 0.3);
+  const fate = gone ? 2 : most - least < 1e-5 ? 0 : 1;
+  return { depths, deepest: most, trembling: most - least, fate };
+}
+
+const squeezed = kept((dt, k, late, ...x) => {
+  const run = squeeze(dt, k, late, x, SECONDS);
+  return { run, ...judged(run) };
 });
 
-// Where finger and cup meet, enlarged: how far they overlap.
-function lens(x, y, size, r, depth) {
-  const [far, half] = [r * TIMES, 0.5 * depth * r * TIMES];
-  const edge = (model, side) => ball(model, x + side * (far - half), y, far, "magnified");
-  const seen = through(x, y, size, edge("fixed", -1), edge("penalty", 1));
-  return seen + label(`× ${TIMES}`, x + size + 6, y + 5, "start", "tick");
-}
+// What becomes of it over the field, a fate a cell.
+const [COLUMNS, ROWS] = [18, 11];
+const share = ([low, high], at) => low * (high / low) ** at;
+const field = kept((late) =>
+  Array.from({ length: COLUMNS * ROWS }, (_, cell) => {
+    const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)];
+    const dt = share(DT, (i + 0.5) / COLUMNS);
+    return judged(squeeze(dt, share(K, (j + 0.5) / ROWS), late, AT, 0.6)).fate;
+  }));
 
-// Fingers and cup over the table; from further away, with a scale, where they have flown apart.
-function picture({ own, width }, { run, depths, until }) {
-  const late = LATE + ((own.time - LATE) % (SECONDS - LATE)); // over and over
-  const time = own.time <= SECONDS ? (own.time ?? until) : late;
-  const row = Math.min(run.steps, Math.round(time / run.dt));
-  const seen = (all) => Array.from(all.subarray(0, 3 * row + 3), (each) => (each < 1e9 ? each : 0));
-  const [xs, ys] = [seen(run.x), seen(run.y)]; // until now
-  const [far, high] = [xs, ys].map((all) => Math.max(0.3, ...all.map(Math.abs)));
-  const floor = TOP - 14 - GROUND;
-  const scale = Math.min(360, (width / 2 - 8) / (far + R), (floor - 8) / (high + R)); // px for 1 m
-  const r = Math.max(9, R * scale); // what has flown far is still seen
-  const place = (_, k) => [width / 2 + xs[k] * scale, floor - Math.max(R, ys[k]) * scale];
-  const places = xs.map(place);
-  const at = places.slice(-3);
-  const trail = (i) => path(places.filter((_, k) => k % 3 === i), "line m-fixed thin");
-  const arm = ([tip, up], side) => rect(side < 0 ? -9 : tip, up - 0.3 * r, width, 0.6 * r, "arm");
-  const ten = 10 ** Math.floor(Math.log10((0.3 * width) / scale)); // m
-  const ruler = label(`${number(ten, 1)} m`, 8, 20) + line(8, 28, 8 + ten * scale, 28, "rule");
-  const arms = clipped(0, 0, at[0][0], TOP, arm(at[0], -1)) + arm(at[2], 1);
-  const [cupX, cupY] = at[1];
-  const touch = (at[0][0] + cupX) / 2;
-  const rim = { cx: cupX, cy: cupY - 0.72 * r, rx: 0.62 * r, ry: 0.15 * r, class: "cup" };
-  const drawn = [
-    table(0, floor, width, GROUND),
-    far > 0.3 ? ruler + [0, 1, 2].map(trail).join("") : arms,
-    ...at.map(([x, y], i) => ball(i === 1 ? "penalty" : "fixed", x, y, r, "ball plainly")),
-    el("ellipse", rim),
-    far > 0.3 ? "" : line(touch, cupY, 52, 50) + lens(52, 50, 44, r, depths[row]),
+// Fingers and cup over the table, seen from further away once they have flown apart.
+function picture({ n, x, y, steps }, row, { width, floor }) {
+  const far = Math.max(0.32, ...Array.from(x.subarray(n * row, n * (row + 1)), Math.abs).map((each) => Math.min(each, 99)));
+  const scale = (width / 2 - 4) / (far + R); // px for 1 m
+  const r = Math.max(5, R * scale);
+  const at = Array.from({ length: n }, (_, i) => [x, y].map((all) => Math.min(99, Math.max(-99, all[n * row + i] || 0))));
+  const places = at.map(([px, py]) => [width / 2 + px * scale, floor - Math.max(R, py) * scale]);
+  const [[leftX, leftY], [cupX, cupY], [rightX, rightY]] = places;
+  const arms = far > 0.32 ? [] : [
+    rect(0, leftY - 0.3 * r, leftX, 0.6 * r, "arm"), rect(rightX, rightY - 0.3 * r, width - rightX, 0.6 * r, "arm"),
   ];
-  return { svg: clipped(0, 0, width, TOP - 14, ...drawn), at, r, scale };
+  const ten = 10 ** Math.floor(Math.log10((0.3 * width) / scale));
+  return { r, touch: [(leftX + cupX) / 2, cupY], drawn: [
+    table(0, floor, width, 24), arms,
+    places.map(([px, py], i) => ball(i === 1 ? "penalty" : "fixed", px, py, r, "plainly ball")),
+    svg`<ellipse cx=${cupX} cy=${cupY - 0.72 * r} rx=${0.62 * r} ry=${0.15 * r} class="cup"/>`,
+    far > 0.32 ? [line(8, 22, 8 + ten * scale, 22, "rule"), label(`${number(ten, 1)} m`, 8, 16, "start", "tick")] : "",
+  ] };
 }
 
-// Time step and stiffness: what can be set, what was tried, and from where on a finger trembles.
-function choices(view, dt, k, does) {
+/* Where the left finger touches the cup, enlarged so much that the overlap fills it: the cup's edge
+ * stays, the finger's trembles, and the trail of its last places stays with it. */
+function lens(x, y, size, { depths, deepest, trembling }, row) {
+  const times = Math.min(0.9 / Math.max(deepest, 1e-6), 0.5 / Math.max(trembling, 1e-9)) * size; // px for 1 r
+  const edge = x - 0.5 * Math.min(0.9 * size, deepest * times);
+  const tip = (k) => edge + Math.min(2 * size, depths[k] * times);
+  const big = 40 * size;
+  const before = [8, 6, 4, 2].filter((back) => row >= back).map((back) =>
+    line(tip(row - back), y - size, tip(row - back), y + size, "trail"));
+  return [
+    through(x, y, size, circle(edge + big, y, big, "magnified m-penalty"),
+      circle(tip(row) - big, y, big, "magnified m-fixed"), before),
+    label(`× ${number(times / 40, 1)}`, x, y + size + 20, "middle", "tick"),
+  ];
+}
+
+function choices(view, top, fate) {
   const { own, width, height } = view;
-  const { late } = own;
-  const ticks = [0.5, 1, 2, 4, 8].map((ms) => [ms / 1000, String(ms)]);
-  const ks = Array.from({ length: 25 }, (_, i) => K[0] * (K[1] / K[0]) ** (i / 24));
-  const limits = ks.map((k) => criticalDt(MASS[0], k, DAMPING).damped);
-  const { svg, sx, sy } = plot([0, TOP, width, height - TOP], {
-    x: { ...axis(DT, "time step dt (ms)", ...ticks), log: true },
-    y: { ...tens(4, 6), domain: K, label: "stiffness k (N/m)" },
-    lines: late ? [] : [{ model: "fixed", xs: limits, ys: ks, kind: "plainly" }],
+  const chart = plot([0, top, width, height - top], {
+    x: { ...axis(DT, "time step dt (ms)", ...[0.5, 1, 2, 4, 8].map((ms) => [ms / 1000, String(ms)])), log: true },
+    y: { ...tens(4, 6, "stiffness k (N/m)"), domain: K },
+    under: ({ sx, sy }) => field(own.late).map((each, cell) => {
+      const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)];
+      const [x0, x1] = [i, i + 1].map((k) => sx(share(DT, k / COLUMNS)));
+      const [y0, y1] = [j + 1, j].map((k) => sy(share(K, k / ROWS)));
+      return each ? rect(x0, y0, x1 - x0 + 0.3, y1 - y0 + 0.3, `fate-${each}`) : "";
+    }),
   });
-  const same = (each) => each.dt === dt && each.k === k && each.late === late;
-  if (!view.dragging && !own.tries.some(same)) own.tries.push({ dt, k, late, does });
-  const [limit, edge] = [ks.findIndex((k) => k > 2e5), { "holds still": "dot", trembles: "look" }];
-  const at = (step, stiff) => [sx(within(DT[0], step, DT[1])), sy(within(K[0], stiff, K[1]))];
-  const tried = own.tries.filter((each) => each.late === late).map(({ dt, k, does }) => {
-    const [x, y] = at(dt, k);
-    return edge[does] ? circle(x, y, 6, `${edge[does]} m-penalty`) : label("×", x, y + 6, "middle");
-  });
-  const beyond = late ? "" : label("critical step", sx(limits[limit]) + 8, sy(ks[limit]));
-  const named = ["time step and stiffness", tellsOf(dt, k, late)];
-  const to = { at: (x, y) => [sx.back(x), sy.back(y)], px: 8, digits: 2 };
-  const knob = pair(view, "choice", at(dt, k), ...named, { dt: DT, stiffness: K }, to);
-  return { svg: svg + beyond + tried.join(""), knob };
+  const { sx, sy, box } = chart;
+  const limit = Array.from({ length: 40 }, (_, k) => share(K, k / 39)).map((k) => [critical_dt(MASS[0], k, DAMPING), k]);
+  const inside = limit.filter(([dt]) => dt > DT[0] && dt < DT[1]).map(([dt, k]) => [sx(dt), sy(k)]);
+  const what = {
+    label: "time step and stiffness", text: `dt ${number(1000 * own.dt, 2)} ms, k ${number(own.stiffness, 2)} N/m: ${FATES[fate]}`,
+    value: ["dt", "stiffness"], low: [DT[0], K[0]], high: [DT[1], K[1]], step: [0.0002, 2000],
+    at: (x, y) => [sx.back(x), sy.back(y)], also: { time: 0 }, release: () => view.play(0),
+  };
+  const names = own.late ? [["holds", 0.2, 0.4]] : [["holds", 0.08, 0.86], ["trembles", 0.6, 0.8], ["flies apart", 0.7, 0.25]];
+  return [
+    chart.picture, own.late ? "" : path(inside, "rule"),
+    names.map(([name, across, down]) =>
+      label(name, box.left + across * (box.right - box.left), box.top + down * (box.bottom - box.top))),
+    view.point(sx(own.dt), sy(own.stiffness), what),
+  ];
 }
 
-// `small`: without what can be chosen, and it plays by itself where things may move.
-function drawn(view, small) {
-  const { own } = view;
-  const [dt, k] = [view.get("dt"), view.get("stiffness")];
-  const run = squeezed(dt, k, own.late, own.x0, own.x1, own.x2);
-  const { does, deepest, trembling } = run;
-  const { svg, at, r, scale } = picture(view, run);
-  const { svg: map, knob } = small ? { svg: "" } : choices(view, dt, k, does);
-  if (small && own.time === null && view.near && !view.still) view.play();
-  const hold = ([x, y], i) => {
-    const range = { r, low: AT[i] - 0.03, high: AT[i] + 0.03, step: 0.002, release: view.play };
-    const text = `starts at ${number(own[`x${i}`], 3)} m`;
-    return grip(view, `x${i}`, x, y, NAMES[i], text, { ...range, by: (dx) => dx / scale });
-  };
-  const moves = does === "trembles" ? ` by ${number(trembling, 2)} r` : "";
-  const began = [own.x1 - own.x0, own.x2 - own.x1].map((far) => number(1000 * (far - 2 * R), 2));
-  const holds = `it overlaps by ${number(deepest, 2)} r and ${does}${moves}`;
+function draw(view) {
+  const { own, width } = view;
+  const run = squeezed(own.dt, own.stiffness, own.late, own.x0, own.x1, own.x2);
+  const { fate, deepest, trembling } = run;
+  const beginning = own.map ? 0 : LATE;
+  const row = Math.min(run.run.steps, Math.floor((beginning + own.time) / own.dt));
+  const narrow = width < 480;
+  const place = narrow ? { width, floor: 150 } : { width: 0.56 * width, floor: 222 };
+  const { drawn, touch } = picture(run.run, row, place);
+  const [x, y, size] = narrow ? [width / 2, 290, 104] : [0.79 * width, 138, Math.min(124, 0.2 * width)];
+  const moves = fate === 1 ? `, by ${number(trembling, 2)} r` : "";
+  const told = fate < 2 ? `It ${FATES[fate]}${moves}; finger and cup overlap by ${number(deepest, 2)} r` : "It flies apart";
   return {
-    svg: svg + map,
-    words:
-      `${tellsOf(dt, k, own.late)}: ${does === "is gone" ? "fingers and cup fly apart" : holds}. ` +
-      `The gaps at the start are ${began.join(" and ")} mm.`,
-    handles: at.map(hold).concat(knob ?? []),
-    lit: own.late ? ["softness"] : [],
+    picture: [
+      clipped(0, 0, place.width, narrow ? 176 : 250, drawn),
+      fate < 2 ? [line(...touch, x - (narrow ? 0 : size), y - (narrow ? size : 0), "grid"), lens(x, y, size, run, row)] : "",
+      own.map ? choices(view, narrow ? 424 : 300, fate) : "",
+    ],
+    words: `dt = ${number(1000 * own.dt, 2)} ms, k = ${number(own.stiffness, 2)} N/m${own.late ? ", force from the end" : ""}: ${told}.`,
+    values: { does: FATES[fate], deepest, trembling, row },
   };
 }
 
-const promise = {
+export const figure = {
   title: "A gripper that trembles",
-  caption: "Two fingers squeeze a cup, in slow motion; the lens shows where the left one touches.",
-  height: TOP - 14,
-  start,
-  clock: () => ({ from: LATE, end: 1e6, rate: 0.04, name: "Play" }),
-  draw: (view) => drawn(view, true),
-};
-
-const gripper = {
-  title: "A gripper",
-  caption:
-    "It holds still, trembles or flies apart: drag time step and stiffness, push the fingers or " +
-    "the cup, and take the springs’ force from the end of the step.",
-  height: 440,
-  start,
-  clock: () => ({ end: SECONDS, rate: 0.1, name: "Squeeze" }),
-  buttons: [
-    [
-      ({ own }) => `Force from the ${own.late ? "beginning" : "end"} of the step`,
-      ({ own }) => (own.late = !own.late),
-    ],
+  caption: "Two fingers squeeze a cup, in slow motion. The lens shows where the left one touches it.",
+  height: (width, { map } = {}) => (width < 480 ? 420 : 290) + (map ? 300 : 0),
+  start: () => ({ dt: 0.004, map: 0, late: 0, x0: AT[0], x1: AT[1], x2: AT[2] }),
+  clock: ({ own }) =>
+    (own.map ? { end: SECONDS, rate: 0.1 } : { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true }),
+  buttons: (view) => [
+    view.running ? ["Stop", view.stop] : [view.own.map ? "Squeeze" : "Play", () => view.play()],
+    ...(view.own.map ? [["Force from the end of the step", () => Object.assign(view.own, { late: 1 - view.own.late, time: 0 }),
+      String(Boolean(view.own.late))]] : []),
   ],
-  draw: (view) => drawn(view, false),
+  draw,
 };
-
-export const figures = { promise, gripper };

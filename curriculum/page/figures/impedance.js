@@ -1,70 +1,45 @@
-/* MuJoCo's impedance: how firmly a soft contact asks, by its depth. */
-import { arrow, axis, ball, label, number, table } from "../draw.js";
-import { impedance, softDefaults } from "../engine.js";
-import { beside, grip, lens, R, softKnobs } from "../kit.js";
+/* MuJoCo's impedance: how large a share of a hard contact's answer a soft one gives, by its depth.
+ * Values: depth [widths] and d. */
+import { arrow, axis, ball, clipped, label, mark, number, plot, table } from "../draw.js";
+import { impedance, soft_defaults } from "../contact.js";
 
-const [GROUND, HARD, TIMES] = [60, 120, 40]; // px of the table, of an arrow for d = 1; of the lens
-const MOST = 1.5; // widths
-
-// How d rises with the depth, in widths.
-function chartOf([d0, d1], at, depth) {
-  const xs = Array.from({ length: 61 }, (_, k) => (k / 60) * MOST);
-  const pad = 0.25 * (d1 - d0) + 1e-4;
-  const ticks = d1 - d0 > 1e-3 ? [d0, (d0 + d1) / 2, d1] : [d1];
-  const named = ticks.map((each) => [each, each.toFixed(d1 > 0.99 ? 4 : 3)]);
-  return {
-    x: axis([0, MOST], "depth / width", 0, 0.5, 1),
-    y: axis([d0 - pad, d1 + pad], "impedance d", ...named),
-    lines: [{ model: "soft", xs, ys: xs.map(at) }],
-    points: [{ model: "soft", x: depth, y: at(depth), size: 8 }],
-  };
-}
-
-// The ball `deep` in the table [r], and its share of a hard contact's answer as an arrow.
-const picture = (left, floor, r, deep, d, share) => [
-  table(0, floor, left, GROUND),
-  ball("soft", left / 2, floor + (deep - 1) * r, r),
-  lens("soft", 40, 42, r, deep, 38, TIMES),
-  arrow("push m-soft weaker", left - 22, floor, 0, -HARD),
-  arrow("push m-soft", left - 34, floor, 0, -HARD * d),
-  label(share, left - 4, floor - HARD - 8, "end", "tick"),
-].join("");
+const [WIDTH, MOST, HARD, PRESS] = [0.001, 1.5, 120, 24]; // m; widths; px: a share of 1, a width
 
 function draw(view) {
-  const { depth } = view.own; // in widths
-  const { solimp } = softDefaults(softKnobs(view));
-  const [, , width, middle] = solimp;
-  const at = (x) => impedance(x * width, solimp);
+  const { own, width, height } = view;
+  const { depth, impedance: d1 } = own;
+  const [, solimp] = soft_defaults(0, 0.002, null, [2 * d1 - 1, d1, WIDTH, 0.5, 2]);
+  const at = (x) => impedance(x * WIDTH, solimp);
   const d = at(depth);
-  const digits = d > 0.99 ? 4 : 3;
-  const [floor, r] = [view.height - GROUND, Math.min(50, 0.09 * view.width)]; // px
-  const share = `${number(100 * d, digits)} %`;
-  const drawn = (left) => picture(left, floor, r, (depth * width) / R, d, share);
-  const { svg, sx, sy, middle: centre } = beside(view, chartOf(solimp, at, depth), drawn);
-  const text = `${number(1000 * depth * width, 2)} mm deep, d = ${number(d, digits)}`;
-  const range = { low: 0, high: MOST, step: 0.05, at: sx.back };
-  const press = { ...range, r, step: -0.05, by: (dx, dy) => dy / 60 };
-  const whole = grip(view, "depth", centre, floor - r, "the ball: press it", text, press);
-  const rise = depth <= middle ? "rising" : "levelling";
+  const [left, floor] = [Math.round(0.4 * width), height - 60];
+  const r = Math.min(50, 0.22 * left);
+  const chart = plot([left + 12, 0, width - left - 12, height], {
+    x: axis([0, MOST], "depth / mm", 0, 0.5, 1, 1.5),
+    y: axis([solimp[0] - 0.01, d1 + 0.01], "impedance d", ...[solimp[0], at(0.5), d1].map((v) => [v, v.toFixed(d1 > 0.99 ? 4 : 3)])),
+    lines: [{ model: "soft", points: Array.from({ length: 61 }, (_, k) => [k / 40, at(k / 40)]), kind: "plainly" }],
+  });
+  const share = `${(100 * d).toPrecision(d > 0.99 ? 4 : 3)} %`;
+  const text = `${number(depth * WIDTH * 1000, 2)} mm deep`;
+  const what = { label: "the depth", text: `${text}: ${share}`, value: "depth", low: 0, high: MOST, step: 0.05 };
+  const x = left / 2 - 16;
   return {
-    svg,
-    words:
-      `${text}: of the acceleration that a hard contact would give it gives ${share}, and ` +
-      `R = (1 − d) / d = ${number((1 - d) / d)} per unit of inverse mass.`,
-    handles: [
-      { ...whole, name: "ball" },
-      grip(view, "depth", sx(depth), sy(d), "the depth", text, range),
+    picture: [
+      clipped(0, 0, left, height, table(0, floor, left, 60)),
+      view.grab({ ...what, at: (_, y) => y / PRESS }, ball("soft", x, floor + PRESS * depth - r, r)),
+      arrow("push m-soft weaker", x + r + 14, floor, 0, -HARD), arrow("push m-soft", x + r + 30, floor, 0, -HARD * d),
+      label("hard", x + r + 14, floor + 22, "middle", "tick"), label(share, x + r + 26, floor - HARD - 10, "middle"),
+      chart.picture, mark("soft", chart.sx(depth), chart.sy(d), 7),
+      view.point(chart.sx(depth), chart.box.bottom, { ...what, at: chart.sx.back }),
     ],
-    lit: [depth >= 1 ? "hardest" : rise],
+    words: `${text[0].toUpperCase()}${text.slice(1)}, the contact gives ${share} of the acceleration that a hard one would give.`,
+    values: { depth, d },
   };
 }
 
 export const figure = {
   title: "MuJoCo’s impedance",
-  caption:
-    "The deeper the ball, the larger its share of a hard contact’s answer: press the ball, or " +
-    "drag the point.",
-  height: 250,
+  caption: "The deeper the ball, the larger its share of a hard contact’s answer.",
+  height: () => 260,
   knobs: ["impedance"],
   start: () => ({ depth: 0.5 }),
   draw,

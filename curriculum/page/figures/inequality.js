@@ -1,98 +1,84 @@
-/* One inequality: at the end of a step the gap, gap + dt v_n, must not be negative. What lcp asks
- * for in its place is a choice: which share of a gap to close or of an overlap to open, and how far
- * ahead to look. */
-import { arrow, axis, ball, circle, el, label, line, number, table } from "../draw.js";
-import { GRAVITY, runModel } from "../engine.js";
-import { beside, grip, kept, knobs, R, scene } from "../kit.js";
+/* Where a step ends: gap + dt v_n may not be negative. In the plane of gap and speed what lcp or
+ * leapfrog asks for, of a ball that comes fast, and one step. Values: gap and dt v_n before the
+ * step [r], gap [r] and speed [m/s] after it. */
+import { area, arrow, axis, ball, circle, clipped, label, line, number, plot, table } from "../draw.js";
+import { column, G, kept, R, record } from "../runs.js";
 
 const [DOWN, UP] = [-5, 2]; // m/s; a gap is counted in what 1 m/s closes in a step
-const [PX, GROUND] = [26, 92]; // px: what 1 m/s does in a step, the table
+const [PX, GROUND] = [30, 96]; // px: what 1 m/s does in a step, the table
 
-// One step of lcp from a gap [r] with a speed [m/s]: gap and speed at its end.
-const stepped = kept((gap, v, settings) => {
-  const start = scene([(1 + gap) * R], { vy: [v] });
-  const run = runModel("lcp", start, { ...settings, restitution: 0 }, 1);
+// One step from a gap [r] with a speed [m/s]: gap and speed at its end.
+const stepped = kept((model, gap, v, dt, baumgarte) => {
+  const run = record(model, column([(1 + gap) * R], { vy: v }), { dt, baumgarte, iters: 20, warm: 0 }, 1);
   return { gap: run.y[1] / R - 1, v: run.vy[1] };
 });
 
-// The plane of gap and speed: where a step ends inside, and the speeds that lcp asks for.
-function chartOf(unit, settings, { gap, free, end }) {
+function chartOf(view, unit, { gap, free, end }) {
+  const { model, dt, baumgarte } = view.own;
   const speeds = Array.from({ length: 141 }, (_, k) => -UP + ((UP - DOWN) * k) / 140);
-  const asked = speeds.map((k) => stepped(k * unit, -90, settings).v); // of a ball that comes fast
-  return {
-    x: axis([-UP * unit, -DOWN * unit], "gap / r", 0, +(2 * unit).toPrecision(2)),
+  // how far a ball that comes at 90 m/s may go, as a speed
+  const asked = speeds.map((k) => [k * unit, (stepped(model, k * unit, -90, dt, baumgarte).gap / unit - k)]);
+  const left = Math.round(0.42 * view.width);
+  return plot([left + 8, 0, view.width - left - 8, view.height], {
+    x: axis([-UP * unit, -DOWN * unit], "gap / r", 0, Number((2 * unit).toPrecision(2)), Number((4 * unit).toPrecision(2))),
     y: axis([DOWN, UP], "v_n (m/s)", DOWN, 0, UP),
-    lines: [{ model: "lcp", xs: speeds.map((k) => k * unit), ys: asked, kind: "plainly" }],
-    under: ({ sx, sy, box: { left, bottom } }) => {
-      const [from, to] = [sx(-UP * unit), sx(-DOWN * unit)];
-      const d = `M${from} ${sy(UP)}L${to} ${sy(DOWN)}L${left} ${bottom}Z`;
+    lines: [{ model, points: asked, kind: "plainly" }],
+    under: ({ sx, sy, box }) => {
+      const [from, to] = [[sx(-UP * unit), sy(UP)], [sx(-DOWN * unit), sy(DOWN)]];
       const [x, y] = [sx(gap), sy(Math.max(DOWN, free))];
       return [
-        el("path", { d, class: "region" }),
-        line(sx(0), sy(UP), sx(0), bottom, "grid") + line(from, sy(UP), to, sy(DOWN), "rule"),
-        label("ends inside", left + 6, bottom - 8, "start", "tick"),
-        arrow("push m-lcp", x, y, 0, sy(end.v) - y) + circle(x, y, 5, "dot"),
-      ].join("");
+        area([from, to, [box.left, box.bottom]], "region"), line(...from, ...to, "rule"),
+        line(sx(0), sy(UP), sx(0), box.bottom, "grid"), label("ends inside", box.left + 8, box.bottom - 10, "start", "tick"),
+        arrow(`push m-${model}`, x, y, 0, sy((end.gap - gap) / unit) - y), circle(x, y, 5, "dot"),
+      ];
     },
-  };
-}
-
-// Ball, gap and dt v_n: from y to the tip, `end` where the ball is after the step [px].
-function picture(left, { floor, r, y, end, tip, enlarged }) {
-  const x = 0.42 * left;
-  const [aside, far] = [x + r + 14, x - r - 12];
-  return [
-    table(0, floor, left, GROUND),
-    label(`gaps × ${number(enlarged, 2)}`, 4, 14, "start", "tick"),
-    ball("lcp", x, y - r, r),
-    ball("lcp", x, end - r, r, "ghost"),
-    line(x, y, aside, y, "grid"),
-    arrow("push m-fixed", far, floor, 0, y - floor),
-    label("gap", Math.max(14, far), floor + 18, "middle"),
-    arrow("weight", aside, y, 0, tip - y),
-    label("dt v_n", Math.min(aside + 8, left - 46), 0.5 * (y + tip) + 5, "start", "strong"),
-  ].join("");
+  });
 }
 
 function draw(view) {
-  const { own } = view;
-  const settings = knobs(view);
-  const unit = settings.dt / R; // r that 1 m/s does in a step
+  const { own, width, height } = view;
+  const { dt, model } = own;
+  const unit = dt / R; // r that 1 m/s does in a step
   const gap = own.gap * unit;
-  const free = own.v + settings.dt * GRAVITY; // m/s, once gravity has acted
-  const end = stepped(gap, own.v, settings);
+  const free = own.v - dt * G; // m/s, once gravity has acted
+  const end = stepped(model, gap, own.v, dt, own.baumgarte);
   const sum = gap + unit * free; // r
-  const [floor, r] = [view.height - GROUND, Math.min(40, 0.08 * view.width)]; // px
+  const [left, floor] = [Math.round(0.42 * width), height - GROUND];
+  const r = Math.min(40, 0.22 * left);
   const at = (far) => floor - (far / unit) * PX;
-  const [y, tip] = [at(gap), Math.min(view.height - 14, at(sum))];
-  const places = { floor, r, y, end: at(end.gap), tip, enlarged: PX / unit / r };
-  const chart = chartOf(unit, settings, { gap, free, end });
-  const { svg, middle } = beside(view, chart, (left) => picture(left, places), 0.46);
-  const x = 0.84 * middle;
-  const [tall, moves] = [gap, unit * free].map((each) => `${number(each, 2)} r`);
-  const adds = `gap ${tall} + dt v_n ${moves} = ${number(sum, 2)} r${sum < 0 ? ", inside" : ""}`;
-  const pushed = end.v > free + 1e-9;
-  const does = pushed ? `lcp pushes, and it ends at ${number(end.gap, 2)} r` : "lcp does not push";
-  const lift = { r, low: -UP, high: -DOWN, step: 0.1, by: (dx, dy) => -dy / PX };
-  const fly = { low: DOWN, high: UP, step: 0.1, at: (toX, to) => (y - to) / PX };
+  const [x, y, tip] = [0.42 * left, at(gap), Math.min(height - 12, at(sum))];
+  const lift = {
+    label: "the ball: its gap", text: `${number(gap, 2)} r`, value: "gap", low: -UP, high: 4, step: 0.1,
+    at: (_, to) => -to / PX,
+  };
+  const fly = {
+    label: "its speed", text: `${number(own.v, 2)} m/s`, value: "v", low: DOWN, high: UP, step: 0.1,
+    at: (_, to) => -to / PX,
+  };
+  const pushed = Math.abs(end.gap - sum) > 1e-9;
+  const [tall, moves] = [gap, unit * free].map((each) => number(each, 2));
   return {
-    svg,
-    words: `${adds}; ${does}.`,
-    handles: [
-      grip(view, "gap", x, y - r, "the ball: its gap", tall, lift),
-      grip(view, "v", x + r + 14, tip, "its speed", `${number(own.v, 2)} m/s`, fly),
+    picture: [
+      clipped(0, 0, left, height, table(0, floor, left, GROUND), ball(model, x, at(end.gap) - r, r, "ghost"),
+        line(x, y, x + r + 14, y, "grid"), arrow("push m-fixed", x - r - 12, floor, 0, y - floor),
+        label("gap", Math.max(18, x - r - 12), floor + 20, "middle"), arrow("weight", x + r + 14, y, 0, tip - y),
+        label("dt v_n", x + r + 22, 0.5 * (y + tip) + 5)),
+      view.grab(lift, ball(model, x, y - r, r, "ball plainly")), view.point(x + r + 14, tip, fly),
+      chartOf(view, unit, { gap, free, end }).picture,
     ],
-    lit: pushed ? ["bias"] : [],
+    words: `Gap ${tall} r and dt v_n ${moves} r make ${number(sum, 2)} r${sum < 0 ? ", inside" : ""}. ` +
+      `${pushed ? `${model} pushes: the step ends at ${number(end.gap, 2)} r` : `${model} does not push`}, with ${number(end.v, 2)} m/s.`,
+    values: { gap, moves: unit * free, sum, end, pushed },
   };
 }
 
 export const figure = {
   title: "One inequality: where a step ends",
-  caption:
-    "Gap and dt v_n may not add up to less than nothing: drag the ball and its speed, and see " +
-    "which speeds lcp asks for in place of that, from how far away, and where the step ends.",
-  height: 350,
-  knobs: ["baumgarte"],
-  start: () => ({ gap: 3, v: -4 }),
+  caption: "The grey half would end inside the table. The line is what the model asks for in its place.",
+  height: () => 350,
+  knobs: ({ model }) => (model === "lcp" ? ["baumgarte"] : []),
+  start: () => ({ gap: 0.4, v: -2, model: "lcp" }),
+  buttons: ({ own }) => ["lcp", "leapfrog"].map((model) =>
+    [model, () => (own.model = model), String(own.model === model)]),
   draw,
 };

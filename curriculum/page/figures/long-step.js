@@ -1,90 +1,55 @@
-/* One long step by hand: what it does to place and speed is a 2 x 2 matrix, and its eigenvalues say
- * whether the next steps grow. */
-import { axis, circle, label, line, mark, number, plot, within } from "../draw.js";
-import { criticalDt, runModel } from "../engine.js";
-import { grip, kept, R, scene } from "../kit.js";
+/* One step of a pressed spring multiplies depth and speed by a matrix: its two eigenvalues beside
+ * the circle of size one. Values: the eigenvalues [real, imaginary], their size, the critical step. */
+import { arrow, circle, label, line, mark, number, path, within } from "../draw.js";
+import { critical_dt } from "../contact.js";
 
-const DEPTH = 0.2; // r: how deep the ball is pressed in
-const LONGEST = 0.032; // s
-const TOP = 1.8; // r
-const FINE = 2e-5; // s
-const TEXT = 56; // px below the chart
-
-// Depth x (from the place of rest) and upward speed v after one step from (x, v): 1 kg, no clamp.
-const stepMatrix = (dt, k, c) => [
-  [1 - k * dt * dt, -dt * (1 - c * dt)],
-  [k * dt, 1 - c * dt],
-];
+const matrixOf = (dt, k, c) => [[1 - k * dt * dt, -dt * (1 - c * dt)], [k * dt, 1 - c * dt]]; // of 1 kg
 
 // The eigenvalues of a 2 x 2 matrix, as [real, imaginary] each.
 function eigenvalues([[a, b], [c, d]]) {
-  const square = ((a - d) / 2) ** 2 + b * c;
+  const [square, middle] = [((a - d) / 2) ** 2 + b * c, (a + d) / 2];
   const root = Math.sqrt(Math.abs(square));
-  const middle = (a + d) / 2;
   return [root, -root].map((part) => (square < 0 ? [middle, part] : [middle + part, 0]));
 }
 
-// The heights [r] of the pressed ball, and their times [ms].
-const pressed = kept((dt, stiffness, damping, count) => {
-  const run = runModel("penalty", scene([(1 - DEPTH) * R]), { dt, stiffness, damping }, count);
-  return { xs: Array.from(run.t, (t) => 1000 * t), ys: Array.from(run.y, (y) => y / R - 1) };
-});
-
-// The unit circle and the eigenvalues, from `left` on.
-function circleOf(pairs, left, width, height) {
-  const unit = Math.min(width / 4.8, (height - 50) / 2.4);
-  const [x, y] = [left + width - 1.7 * unit, height / 2];
-  const least = Math.min(...pairs.map(([real]) => real));
-  const at = ([real, imaginary]) => [x + within(-2.8, real, 1.5) * unit, y - imaginary * unit];
-  return [
-    label("eigenvalues", left + width, 14, "end", "axis-name"),
-    line(x - 2.8 * unit, y, x + 1.6 * unit, y, "grid"),
-    line(x, y - 1.2 * unit, x, y + 1.2 * unit, "grid"),
-    circle(x, y, unit, "rule"),
-    label("−1", x - unit - 5, y + 18, "end", "tick"),
-    label("1", x + unit + 5, y + 18, "start", "tick"),
-    ...pairs.map((pair) => mark("penalty", ...at(pair), 7)),
-    least < -2.8 ? label(`← ${number(least)}`, x - 2.8 * unit - 8, y - unit - 8) : "",
-  ].join("");
-}
+const pairOf = ({ stiffness, damping }, dt) => eigenvalues(matrixOf(dt, stiffness, damping));
 
 function draw(view) {
-  const [dt, k, c] = ["dt", "stiffness", "damping"].map(view.get);
-  const matrix = stepMatrix(dt, k, c);
-  const pairs = eigenvalues(matrix);
+  const { own, width, height } = view;
+  const pairs = pairOf(own, own.dt);
   const size = Math.max(...pairs.map((pair) => Math.hypot(...pair)));
-  const [left, height] = [Math.round(0.56 * view.width), view.height - TEXT];
-  const once = pressed(dt, k, c, 1);
-  const [x, y] = [Math.min(1000 * LONGEST, 1000 * dt), Math.min(TOP, once.ys[1])];
-  const fine = pressed(FINE, k, c, Math.round(LONGEST / FINE));
-  const { svg, sx, sy, box } = plot([0, 0, left, height], {
-    x: axis([0, 1000 * LONGEST], "time (ms)", 0, 10, 20, 30),
-    y: axis([-0.5, TOP], "height / r", 0, 1),
-    lines: [{ model: "exact", ...fine, kind: "thin" }, { model: "penalty", ...once, kind: "law" }],
-    rules: [{ y: 0 }],
-    points: [{ model: "penalty", x, y, size: 7 }],
-  });
-  const row = ([a, b], i) =>
-    `${"xv"[i]}’ = ${number(a)} x ${b < 0 ? "−" : "+"} ${number(Math.abs(b))} v`;
-  const rows = matrix.map((each, i) => label(row(each, i), box.left, view.height - 24 + 20 * i));
+  const critical = critical_dt(1, own.stiffness, own.damping);
+  const unit = Math.min(width / 5.2, (height - 30) / 2.5);
+  const [x, y] = [width - 1.75 * unit, height / 2];
+  const at = ([real, imaginary]) => [x + within(-3.2, real, 1.5) * unit, y - imaginary * unit];
+  // the way of both, from a step of nothing to twice the critical one
+  const ways = [0, 1].map((which) =>
+    Array.from({ length: 241 }, (_, k) => at(pairOf(own, (k / 120) * critical)[which])));
+  const least = Math.min(...pairs.map(([real]) => real));
+  const complex = pairs[0][1] > 0;
   const fate = size < 1 - 1e-9 ? "die away" : size > 1 + 1e-9 ? "grow" : "stay as large";
-  const { damped } = criticalDt(1, k, c);
-  const text = `dt = ${number(1000 * dt)} ms`;
-  const range = { high: LONGEST, step: 0.0005, at: (to) => sx.back(to) / 1000 };
+  const kind = complex ? "a pair, as the ball rings" : least < 0 ? "two, and one throws it from side to side" : "two, and it creeps back";
   return {
-    svg: svg + circleOf(pairs, left + 16, view.width - left - 16, height) + rows.join(""),
-    words:
-      `${text}: the larger eigenvalue has size ${number(size)}, so the steps ${fate}; ` +
-      `they grow from dt = ${number(1000 * damped)} ms on.`,
-    handles: [grip(view, "dt", sx(x), sy(y), "the end of the step", text, range)],
+    picture: [
+      line(x - 3.2 * unit, y, x + 1.6 * unit, y, "axis"), line(x, y - 1.2 * unit, x, y + 1.2 * unit, "grid"),
+      circle(x, y, unit, "region-ring"), label("size 1", x + 0.74 * unit, y - 0.78 * unit, "start", "tick"),
+      label("−1", x - unit - 6, y + 20, "end", "tick"), label("1", x + unit + 6, y + 20, "start", "tick"),
+      label("0", x - 6, y + 20, "end", "tick"), ways.map((each) => path(each, "rule dashed thin")),
+      pairs.map((pair) => mark("penalty", ...at(pair), 8)),
+      least < -3.2 ? [arrow("weight", 40, y - 24, -30, 0), label(number(least), 46, y - 19)] : "",
+      label("real", x + 1.6 * unit, y - 8, "end", "tick"), label("imaginary", x + 6, y - 1.12 * unit, "start", "tick"),
+    ],
+    words: `dt = ${number(1000 * own.dt)} ms: ${kind}; the larger has size ${number(size)}, so the steps ${fate}. ` +
+      `They grow from ${number(1000 * critical)} ms on.`,
+    values: { pairs, size, critical },
   };
 }
 
 export const figure = {
-  title: "One long step of a pressed spring",
-  caption:
-    "One step multiplies place and speed by a matrix: drag its end, and the ball never rests " +
-    "once an eigenvalue leaves the circle.",
-  height: 310,
+  title: "The eigenvalues of one step",
+  caption: "Make the step longer: the pair meets, parts along the line, and one leaves the circle at −1.",
+  height: (width) => (width < 480 ? 230 : 300),
+  knobs: ["dt", "stiffness", "damping"],
+  start: () => ({ dt: 0.014 }),
   draw,
 };

@@ -1,139 +1,64 @@
-/* What unfinished sweeps leave: a column at rest under lcp sags as on springs. Its law stands
- * beside it, and the sweeps of a step can be spent on substeps. */
-import { axis, ball, label, number, path, plural, rect, table, tenTo } from "../draw.js";
-import { runModel, stateAt } from "../engine.js";
-import { beside, depthsOf, G, grip, kept, knobs, R, scene, tens, through } from "../kit.js";
+/* What unfinished sweeps leave: a column at rest under lcp sags as on springs. The overlap of every
+ * contact is a bar, the law a line. Values: overlaps and law from below [r], whether it rests. */
+import { axis, ball, label, line, number, path, plot, rect, steps, table, tenTo } from "../draw.js";
+import { column, G, kept, R, record } from "../runs.js";
 
-const [FEWEST, FIRST, MOST, HEAVIEST] = [2, 8, 10, 100]; // balls, balls, balls, kg
-const [LENS, GROUND, LARGEST] = [15, 38, 30]; // px: a lens, the table, a ball
 const ROWS = 300; // steps until all is at rest: the run starts where the law has it
 
-// The law: how deep each ball is pressed into what is below it [r]; `masses` from below.
-const lawOf = (masses, { dt, iters, baumgarte, warm }) =>
-  masses.map((own, i) => {
-    const above = masses.slice(i + 1).reduce((sum, mass) => sum + mass, 0);
-    const deep = ((1 - warm) / (baumgarte * iters)) * (above / own) * ((G * dt * dt) / R);
-    return above && deep ? Math.min(1, deep) : 0; // no number where nothing is asked to open
-  });
+// The law: how deep each of so many balls is pressed into what is below it [r].
+const lawOf = (count, { dt, iters, baumgarte, warm }) =>
+  Array.from({ length: count }, (_, i) =>
+    Math.min(1, (((1 - warm) / (baumgarte * iters)) * (count - 1 - i) * G * dt * dt) / R));
 
-// The same of a run of lcp; and whether it is at rest.
-const sags = kept((masses, settings) => {
+const sags = kept((count, knobs) => {
   let top = 0;
-  const heights = lawOf(masses, settings).map((deep) => (top += (2 - deep) * R) - R);
-  const balls = scene(heights, { mass: masses });
-  const run = runModel("lcp", balls, { ...settings, restitution: 0 }, ROWS);
-  const [before, depths] = [ROWS - 9, ROWS].map((row) => depthsOf(stateAt(run, row).y));
-  const rests = (deep, i) => Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9;
-  return { depths, rests: depths.every(rests) };
+  const law = knobs.baumgarte > 0 ? lawOf(count, knobs) : Array(count).fill(0);
+  const run = record("lcp", column(law.map((deep) => (top += (2 - deep) * R) - R)), knobs, ROWS);
+  const depthsIn = (row) => {
+    const ys = Array.from(run.y.subarray(row * count, (row + 1) * count));
+    return ys.map((y, i) => (i ? 2 - (y - ys[i - 1]) / R : 1 - y / R));
+  };
+  const [before, depths] = [depthsIn(ROWS - 9), depthsIn(ROWS)];
+  return { depths, rests: depths.every((deep, i) => Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9) };
 });
 
-// All ways to spend the sweeps of a step on equal substeps.
-const waysOf = ({ dt, iters, ...others }) =>
-  Array.from({ length: iters }, (_, k) => k + 1)
-    .filter((parts) => iters % parts === 0)
-    .map((parts) => ({ ...others, parts, dt: dt / parts, iters: iters / parts }));
-
-// Which of them has about so many substeps.
-function nearest(ways, wanted) {
-  const off = ways.map(({ parts }) => Math.abs(Math.log(parts / wanted)));
-  return off.indexOf(Math.min(...off));
-}
-
-// A contact through a lens: a ball in what is below it, both in px, and the law as a bracket.
-function lens(x, y, deep, law) {
-  const [near, far] = [x + LENS + 3, x + LENS + 9];
-  const below = rect(x - LENS, y, 2 * LENS, LENS, "body m-fixed");
-  const above = rect(x - LENS, y - LENS, 2 * LENS, LENS + deep, "ball m-lcp");
-  const bracket = path([[far, y], [near, y], [near, y + law], [far, y + law]], "rule");
-  return through(x, y, LENS, below, above) + bracket;
-}
-
-// The column, a lens at each contact, and how deep it is; and the place of each ball.
-function column(left, height, masses, depths, law) {
-  const r = Math.min(LARGEST, (height - GROUND - 14) / (2 * masses.length)); // px
-  const floor = height - GROUND;
-  const size = (0.85 * LENS) / Math.max(1e-9, ...depths, ...law); // px for an overlap of 1 r
-  const ten = 10 ** Math.floor(Math.log10(Math.max(1e-9, ...depths))); // r: in it they are settings
-  const places = masses.map((_, i) => [r + 6, floor - (2 * i + 1) * r]);
-  const drawn = masses.map((mass, i) => {
-    const [x, y] = places[i];
-    const heavy = mass === 1 ? "" : label(number(mass, 2), x, y + 5, "middle", "on-ball");
-    const at = x + r + LENS + 12;
-    const shown = Math.round((100 * depths[i]) / ten) / 100 + 0; // no -0
-    return [
-      ball("lcp", x, y, r, heavy ? "ball plainly" : "ball") + heavy,
-      lens(at, y + r, size * depths[i], size * law[i]),
-      label(shown.toFixed(2), at + LENS + 16, y + r + (i ? 5 : -4)),
-    ].join("");
-  });
-  const power = Math.log10(ten);
-  const enlarged = label(power ? `in ${tenTo(power)} r` : "in r", left - 4, height - 5, "end");
-  return { svg: table(0, floor, left, GROUND) + drawn.join("") + enlarged, places, r };
-}
-
-// The lowest overlap with each way to spend the sweeps, and the law as a line.
-function chartOf(ways, all) {
-  const ys = all.map(({ depths }) => Math.max(0, depths[0]));
-  const laws = all.map(({ law }) => law[0]);
-  const xs = ways.map(({ parts }) => parts);
-  const top = Math.ceil(Math.log10(Math.max(1e-9, ...ys, ...laws)) + 0.1);
-  const most = ways[0].iters; // substeps of one sweep
-  return {
-    x: { ...axis([0.9, 1.12 * most], "substeps", ...new Set([1, most])), log: true },
-    y: { ...tens(top - 3, top), label: "lowest overlap / r" },
-    lines: [
-      { model: "fixed", xs, ys: laws, kind: "plainly" },
-      { model: "lcp", xs, ys, kind: "thin" },
-    ],
-    points: xs.map((x, k) => ({ model: "lcp", x, y: ys[k], size: 5 })),
-  };
-}
-
 function draw(view) {
-  const { own } = view;
-  const masses = own.masses.slice(0, own.count);
-  const ways = waysOf(knobs(view));
-  const now = nearest(ways, own.parts);
-  const all = ways.map((way) => ({ ...sags(masses, way), law: lawOf(masses, way) }));
-  const { depths, rests, law } = all[now];
-  let made;
-  const picture = (left) => (made = column(left, view.height, masses, depths, law)).svg;
-  const { svg, sx, sy } = beside(view, chartOf(ways, all), picture, 0.42);
-  const hold = ([x, y], i) => {
-    const get = () => Math.log10(own.masses[i]);
-    const set = (to) => (own.masses[i] = Number((10 ** to).toPrecision(2)));
-    const range = { r: made.r, low: 0, high: Math.log10(HEAVIEST), step: 0.1, get, set };
-    const text = `${number(own.masses[i], 2)} kg`;
-    const name = `ball ${i + 1} from below: drag it up, and it is heavier`;
-    return grip(view, `ball-${i}`, x, y, name, text, { ...range, by: (dx, dy) => -dy / 60 });
-  };
-  const { dt, iters, baumgarte, parts } = ways[now];
-  const spent = `${plural(parts, "substep")} of ${plural(iters, "sweep")}`;
-  const lawful = number(law[0], 2);
-  const way = { low: 1, high: ways[0].iters, at: sx.back, get: () => parts };
-  const next = (by) => (own.parts = ways[nearest(ways, own.parts) + by]?.parts ?? own.parts);
-  const given = `K = ${iters}, β = ${baumgarte}, dt = ${number(1000 * dt)} ms`;
-  const deep = `${number(depths[0], 2)} r deep${rests ? "" : ", and still moves"}`;
-  const knob = grip(view, "parts", sx(parts), sy(Math.max(0, depths[0])), "substeps", spent, way);
+  const { own, width, height } = view;
+  const { balls, dt, iters, baumgarte, warm } = own;
+  const { depths, rests } = sags(balls, { dt, iters, baumgarte, warm, restitution: 0 });
+  const law = baumgarte > 0 && warm < 1 ? lawOf(balls, own) : null;
+  const most = Math.max(1e-9, ...depths, ...(law ?? [])) * 1.12;
+  const power = Math.floor(Math.log10(most));
+  const ticks = steps(0, most, 4).map((v) => [v, number(v / 10 ** power, 2).replace(/\.?0+$/, "") || "0"]);
+  const left = Math.round(0.24 * width);
+  const r = Math.min(30, (height - 60) / (2 * balls), 0.4 * left);
+  const floor = height - 46;
+  const at = (i) => floor - 2 * i * r; // of a contact
+  const { picture } = plot([left, 0, width - left, height], {
+    x: axis([0, most], `overlap in ${power ? `${tenTo(power)} r` : "r"}`, ...ticks), y: { domain: [0, 1], ticks: [] },
+    rules: [{ x: 0 }],
+    under: ({ sx }) => [
+      depths.map((deep, i) => rect(sx(0), at(i) - 0.6 * r, sx(Math.max(0, deep)) - sx(0), 0.8 * r, "bar-fill m-lcp")),
+      law ? path(law.map((deep, i) => [sx(deep), at(i) - 0.2 * r]), "law-line") : "",
+      law ? label("the law", sx(law[1]) + 8, at(1) - 0.2 * r + 4) : "",
+    ],
+  });
+  const says = law ? `the law says ${number(law[0], 2)} r` : "there is no law: nothing opens an overlap";
   return {
-    svg,
-    words: `${given}: the lowest of ${own.count} balls is ${deep}; the law says ${lawful} r.`,
-    handles: [...made.places.map(hold), { ...knob, nudge: (dx, dy) => next(Math.sign(dx - dy)) }],
+    picture: [
+      table(0, floor, left, 30), Array.from({ length: balls }, (_, i) => ball("lcp", left / 2, at(i) - r, r)), picture,
+      line(left / 2 + r, floor, left + 20, floor, "grid"),
+    ],
+    words: `The lowest of ${balls} balls is ${number(depths[0], 2)} r deep${rests ? "" : ", and still moves"}; ${says}.`,
+    values: { depths, law, rests },
   };
 }
 
 export const figure = {
   title: "What unfinished sweeps leave",
-  caption:
-    "Each lens shows how deep a ball lies in what is below it, and the bracket what the law " +
-    "says: drag a ball up to make it heavier, and spend the sweeps of a step on substeps.",
-  height: 480,
-  narrow: 360,
-  knobs: ["iters", "baumgarte", "dt", "warm"],
-  start: () => ({ masses: Array(MOST).fill(1), count: FIRST, parts: 1 }),
-  buttons: [
-    ["A ball more", ({ own }) => (own.count = Math.min(MOST, own.count + 1))],
-    ["A ball less", ({ own }) => (own.count = Math.max(FEWEST, own.count - 1))],
-  ],
+  caption: "A bar for every contact of a column at rest: how deep it is. The line is the law.",
+  height: () => 320,
+  knobs: ["iters", "baumgarte", "dt", "warm", "balls"],
+  start: () => ({ balls: 8 }),
   draw,
 };
