@@ -91,7 +91,7 @@ function grabbing(view, box) {
     const { label, text, low, high, step, at, also, release } = what;
     const names = several(what.value);
     const [lows, highs, size] = [several(low), several(high), several(step)];
-    const now = names.map((name) => view.own[name]);
+    const now = () => names.map((name) => view.own[name]);
     const put = (wanted) => {
       const fine = wanted.map((v, k) => Number(within(lows[k], v, highs[k]).toPrecision(5)));
       view.set({ ...also, ...Object.fromEntries(names.map((name, k) => [name, fine[k]])) });
@@ -102,7 +102,7 @@ function grabbing(view, box) {
       event.currentTarget.focus({ preventScroll: true });
       event.currentTarget.setPointerCapture(event.pointerId);
       const place = several(at(...from(event)));
-      held = { pointer: event.pointerId, off: place.map((v, k) => now[k] - v) };
+      held = { pointer: event.pointerId, off: place.map((v, k) => now()[k] - v) };
       view.stop();
     };
     const drag = (event) => {
@@ -120,10 +120,10 @@ function grabbing(view, box) {
       if (!(by || lets) || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
       if (lets) release();
-      else put(now.map((v, k) => v + (names.length > 1 ? by[k] : by[0] + by[1]) * size[k % size.length]));
+      else put(now().map((v, k) => v + (names.length > 1 ? by[k] : by[0] + by[1]) * size[k % size.length]));
     };
     return svg`<g class="handle" role="slider" tabindex="0" aria-label=${label} aria-valuetext=${text}
-      aria-valuenow=${now[0]} @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
+      aria-valuenow=${now()[0]} @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
       @pointercancel=${letGo} @keydown=${key} @touchstart=${(event) => event.preventDefault()}>${shape}</g>`;
   };
 }

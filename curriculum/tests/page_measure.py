@@ -18,6 +18,9 @@ def photograph(page, folder):
         call(tab, MOMENT, shown.get_attribute("id"))
         for _ in range(3):  # ten steps each
             tab.keyboard.press("Shift+ArrowRight")
+        tab.evaluate("document.activeElement.blur()")
         tab.wait_for_timeout(300)
-        shown.locator("svg.plot").screenshot(path=folder / PICTURE)
+        box = shown.locator("svg.plot").bounding_box()
+        box |= {"y": box["y"] + 0.22 * box["height"], "height": 0.78 * box["height"]}
+        tab.screenshot(path=folder / PICTURE, clip=box)
     return folder / PICTURE

@@ -104,7 +104,7 @@ function draw(view) {
     picture: [
       table(0, floor, view.width, GROUND),
       all.map((each, k) => lane(view, each, row, k, { floor, scale, wide, top })),
-      line(4, floor, 4, floor - 0.2 * scale, "rule"), label("0.2 m", 10, floor - 0.1 * scale + 5, "start", "tick"),
+      line(4, floor, 4, floor - 0.2 * scale, "rule"), label("0.2 m", 2, floor - 0.2 * scale - 7, "start", "tick"),
       chartOf(view, seen, chartTop),
     ],
     words: `${time.toFixed(3)} s: ${told.join(", ")}.`,

@@ -119,8 +119,8 @@ function draw(view) {
   const { own, width } = view;
   const run = squeezed(own.dt, own.stiffness, own.late, own.x0, own.x1, own.x2);
   const { fate, deepest, trembling } = run;
-  const beginning = own.map ? 0 : LATE;
-  const row = Math.min(run.run.steps, Math.floor((beginning + own.time) / own.dt));
+  const time = own.map && own.time > 0 ? own.time : LATE + own.time * (1 - own.map);
+  const row = Math.min(run.run.steps, Math.floor(time / own.dt));
   const narrow = width < 480;
   const place = narrow ? { width, floor: 150 } : { width: 0.56 * width, floor: 222 };
   const { drawn, touch } = picture(run.run, row, place);
