@@ -11,7 +11,7 @@ from curriculum.page.exercises import all_exercises, measured
 from curriculum.tests import page_browser
 from curriculum.tests.page_browser import SEE, WORDS, call, finger, mouse, visiting
 
-BETS = {"ex1": "penalty_deepest", "ex3": "limit"}  # what tells the answer
+BETS = {"ex1": ("penalty_deepest", ".3f"), "ex3": ("limit", ".4f")}  # what tells the answer
 MOST = 900_000  # bytes of the page
 HALF = "Invalid markup: Incorrect number of children"
 
@@ -208,9 +208,9 @@ def test_balls_fall_when_they_are_let_fall_and_no_sooner(visit):
 def test_a_bet_hides_its_answer_in_its_own_box_and_a_click_opens_it_for_good(visit):
     exercises = all_exercises()
     with visit() as page:
-        for name, key in BETS.items():
+        for name, (key, form) in BETS.items():
             answer = page.locator(f"#{name} .answer")
-            told = f"{measured(name)[key]:.3g}"[:5]
+            told = format(measured(name)[key], form)
             assert told not in page.locator(f"#{name}").inner_text()
             right = exercises[name]["answer"]
             other = next(letter for letter in "ABC" if letter != right)
