@@ -30,15 +30,20 @@ def stop(number, frame):
     os._exit(128 + number)
 
 
+def said(error):
+    """An error without its number, and with the file that it is about."""
+    what = getattr(error, "strerror", None) or str(error)
+    return f"{what}: {error.filename}" if getattr(error, "filename", None) else what
+
+
 def refused(kind, error, trace):
     """sys.excepthook: what the system refuses is said in one line; a slip keeps its traceback."""
     if isinstance(error, BrokenPipeError):
         os._exit(141)
     if not isinstance(error, OSError):
         return sys.__excepthook__(kind, error, trace)
-    what = f"{error.strerror}: {error.filename}" if error.filename else error.strerror or error
     with contextlib.suppress(OSError):
-        print(f"error: {what}", file=sys.stderr, flush=True)
+        print(f"error: {said(error)}", file=sys.stderr, flush=True)
     os._exit(2)
 
 

@@ -26,7 +26,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import contact
-from curriculum import parallel
+from curriculum import parallel, said
 from curriculum.commands import Parser, near, write_json
 
 PROG = "python -m curriculum.seeds"
@@ -76,7 +76,7 @@ def main(argv=None):
         if not clash:
             write_json(path.with_suffix(".json"), kept | {"seeds": [seeds[0], seeds[-1] + 1]})
     except (ImportError, OSError, sqlite3.Error) as error:
-        fail(f"{error}; what is done is kept: the same command goes on from there")
+        fail(f"{said(error)}; what is done is kept: the same command goes on from there")
     if clash:
         fail(f"{near(str(path))}: {clash}")
     print(
@@ -146,7 +146,7 @@ class Rows:
         self.table = sqlite3.connect("", isolation_level=None)  # a file that goes at the end
         names = ", ".join(("seed INTEGER, model, ending, sum", *(f"{key} REAL" for key in KEYS)))
         self.table.execute(f"CREATE TABLE rows ({names}, UNIQUE (seed, model, sum))")
-        if path.exists():
+        if path.is_file():  # /dev/zero would never end
             self.table.execute("BEGIN")
             with path.open("rb") as file:
                 for line in file:
