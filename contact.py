@@ -712,7 +712,7 @@ def meet(c, dt):
 
 
 def strike_at(balls, contacts, when, until, dt, restitution, iters):
-    """v_n becomes -e v_n of what meets from `when` to `until`, and what lasts may not close.
+    """v_n becomes -e v_n of what meets from `when` to `until`; what lasts closes no faster.
 
     Who was struck is set back to where it would have begun with its new velocity: so all balls
     stay at the start of the step.
@@ -721,7 +721,8 @@ def strike_at(balls, contacts, when, until, dt, restitution, iters):
         look(c, when)
     touching = [c for c in contacts if c.when <= until or lasts(c, dt)]
     for c in touching:
-        after = -restitution * c.speed if c.when <= until else min(0.0, c.speed)
+        # what lasts and opens may close as fast: a target of 0 would take its speed for the others
+        after = -restitution * c.speed if c.when <= until else -abs(c.speed)
         c.target = c.v_n() + after - c.speed  # at the start of the step
         c.lam = 0.0
     keep_velocities(balls)
