@@ -1,16 +1,9 @@
 """What is measured: run time against error, piles between walls, whole processes.
 
-A point is one problem and setting, looked at every dt, after so many substeps. At 2 ms all take 1,
-4 and 16, their own inner substeps counted: equal work. leapfrog solves twice in each, and its
-substeps count twice, so it takes 2 and 8 as well. Of an engine that chooses its steps, those that
-it took count. Errors are medians over the starts; times are CPU times, medians over fresh
-processes, every height read at each look. No ball sleeps, and no step is skipped.
-
-Piles fall between the same walls of fixed balls in every engine, from the same lattice, and settle
-untimed. One is at rest if no ball covers its way faster than AT_REST from look to look while it is
-watched: speeds may hold what the next step takes back. Then it is timed in fresh processes, while
-it falls and when it rests. Engines are compared at equal depth. 10,000 balls are ten shafts of
-1,000, which begin as the one had settled; only the settings run that won with 1,000.
+How stands in page.md. A point is one problem and setting, looked at every dt, after so many
+substeps. Errors are medians over the starts; times are CPU times, medians over fresh processes,
+every height read at each look. Piles fall from the same lattice and settle untimed. Then they are
+timed in fresh processes: from the lattice, and from their own settled state.
 """
 
 import importlib.util

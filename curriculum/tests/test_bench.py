@@ -149,25 +149,6 @@ def test_a_ball_sinks_by_m_g_over_k_into_drakes_floor():
     assert 0.13 - height == pytest.approx(0.7 * g / 1e8, rel=0.02)
 
 
-STIFFER = [
-    ("box2d3 inner=16 hertz=1e9", "box2d3 inner=4"),
-    ("rapier inner=1 hertz=480 scale=10 ahead=-1", "rapier inner=4"),
-    ("mujoco push=0.2 d=0.999", "mujoco"),
-]
-
-
-@pytest.mark.parametrize("stiff, soft", STIFFER)
-def test_stiffer_knobs_of_an_engine_sink_less(stiff, soft):
-    sunk = []
-    for name in (stiff, soft):
-        if why := engines.not_installed(settings.BY_NAME[name].engine):
-            pytest.skip(why)
-        session = settings.BY_NAME[name].build(contact.build_scene("stack"), 0.002)
-        session.go(1500)
-        sunk.append(R - session.state()[0][1, 0])
-    assert sunk[0] < 0.1 * sunk[1]
-
-
 @pytest.mark.skipif(bool(engines.not_installed("pymunk")), reason="pymunk is missing")
 def test_the_engine_of_pymunk_alone_goes_where_a_users_step_goes():
     setting, scene = settings.BY_NAME["pymunk iterations=10"], problems.BY_NAME["pile"].build(0)
