@@ -81,7 +81,7 @@ def needs(extra):
 def write_whole(path, content):
     """Replace the file at `path`, whole or not at all. Makes missing folders.
 
-    content: str, bytes, or a function that writes a file of the name that it is given.
+    content: str or bytes.
     What stands there and is no regular file (/dev/null, a pipe) is written into, not replaced.
     Raises OSError that names the file.
     """
@@ -92,7 +92,7 @@ def write_whole(path, content):
         os.makedirs(os.path.dirname(path), exist_ok=True)
         if not special:
             unfinished.add(written)
-        data(written) if callable(data) else Path(written).write_bytes(data)
+        Path(written).write_bytes(data)
         if not special:
             os.replace(written, path)
     except OSError as error:

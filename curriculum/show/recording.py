@@ -45,19 +45,16 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
     drawn, seconds = curves(runs, scene), worth_seeing(runs, quality)
     times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
-
-    def save(temporary):
-        recording.save(temporary, default_blueprint=layout(runs, scene, drawn, seconds, quality))
-        words = ABOUT.format(title=title, first=seconds[0])
-        markdown = rr.TextDocument(words, media_type=rr.MediaType.MARKDOWN)
-        recording.log("about", markdown, static=True)
-        for model, run in runs.items():
-            send_table(recording, model)
-            send_balls(recording, model, run, scene, times[model])
-        send_curves(recording, runs, drawn, times)
-        recording.disconnect()
-
-    commands.write_whole(path, save)
+    kept = recording.binary_stream()  # rerun's own file would wait for ever where a disk is full
+    blueprint = layout(runs, scene, drawn, seconds, quality)
+    recording.send_blueprint(blueprint, make_active=False, make_default=True)
+    words = ABOUT.format(title=title, first=seconds[0])
+    recording.log("about", rr.TextDocument(words, media_type=rr.MediaType.MARKDOWN), static=True)
+    for model, run in runs.items():
+        send_table(recording, model)
+        send_balls(recording, model, run, scene, times[model])
+    send_curves(recording, runs, drawn, times)
+    commands.write_whole(path, kept.read())
 
 
 def rgba(color: str) -> np.ndarray:
