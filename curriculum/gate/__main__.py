@@ -36,7 +36,7 @@ NOT_PROSE = re.compile(
     r"""
     \$\$.+?\$\$|\$[^$\n]+\$
     |\{\{\?.*?\}\}|\{\{[^\n]*?\}\}
-    |\[[^]]*\]\((?:try|drag):[^)]*\)|\]\([^)]*\)|https?://\S+
+    |\[[^]]*\]\(try:[^)]*\)|\]\([^)]*\)|https?://\S+
     |^\[[^]]*\]:[^\n]*|\[\[\d+\]\](?=\(\#references\))
     |(`+)[^`]+\1
     |\b(?:chapters?|phase|version|tag|python|numpy)[ ]
@@ -72,10 +72,6 @@ class Gate:
         for kind, name, line, _ in self.chapter:
             name = name.partition("?")[0]  # behind it a figure's settings
             shown[kind, name] += 1
-            told = name.split(",") if kind == "tells" else []
-            if wrong := [n for n in told if n not in known["bet"] or not shown["exercise", n]]:
-                what = f"{', '.join(wrong)} is no bet above, so nobody has bet yet"
-                self.say(CHAPTER, line, what, "name an exercise above that has a PREDICTION")
             if name not in known.get(kind, (name,)):
                 names = ", ".join(known[kind])
                 self.say(CHAPTER, line, f"there is no {kind} {name}", f"name one of {names}")
@@ -92,13 +88,12 @@ class Gate:
         """{kind: {name: (file, line)}} of all that a mark of the chapter may name."""
         regions = {r.source: (r.file, r.line - 1) for r in self.regions.values()}
         exercises = {Path(f).name.split("_")[0]: (f, 1) for f in files("exercises/ex*.py")}
-        bets = {name: at for name, at in exercises.items() if "PREDICTION =" in read_text(at[0])}
         figures: dict = {}
         for file in files(FIGURES):
             several = read_text(file).partition("export const figures = {")[2]
             names = KEY.findall(several) or re.findall(r"[\w-]+", several.partition("}")[0])
             figures |= dict.fromkeys(names or [Path(file).stem], (file, 1))
-        known = {"bet": bets, "region": regions, "exercise": exercises, "figure": figures}
+        known = {"region": regions, "exercise": exercises, "figure": figures}
         for kind, folder in stored.FOLDERS.items():
             drawn = files(f"{folder}/*.svg")
             known[kind] = {Path(f).stem.removeprefix("error-"): (f, 1) for f in drawn}

@@ -6,12 +6,7 @@ Beside plain Markdown it may hold
 - slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
   <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->, and <!-- puzzle -->, behind
   which the rest of a section is its answer;
-- <!-- show: scene=drop&models=penalty,lcp&from=0.3&to=1.2 -->: what the live figure shows
-  from there on, by quantities and `models`, `from`, `to`; <!-- show: none --> lets it step back,
-  and may set quantities, too: <!-- show: none&dt=0.014 -->;
-- <!-- tells: ex1 --> (or ex1,ex3): what follows, up to the next heading or exercise, tells the
-  answer of that bet, and is hidden until the reader has bet (as is what follows a bet at once);
-- links that set the same, [words](try:scene=drop&dt=0.03), and numbers to drag, [0.002](drag:dt).
+- links that set a figure, [words](try:cliff?dt=0.014), as behind its own name: cliff?dt=0.03.
 
 Other comments, on lines of their own, vanish. There is no HTML.
 """
@@ -23,7 +18,7 @@ from curriculum.lesson.regions import NAME, blank, line_at
 
 CHAPTER = "curriculum/prose/chapter.md"
 INCLUDE = re.compile(rf"\[include-by-region: ([\w./-]+\.py#{NAME})\]")
-SLOTS = "figure|exercise|bench|stress|show|tells"
+SLOTS = "figure|exercise|bench|stress"
 MARKS = f"{SLOTS}|wallclock|puzzle"
 PART = re.compile(
     rf"""
@@ -35,9 +30,9 @@ PART = re.compile(
     """,
     re.MULTILINE | re.VERBOSE,
 )
-LIKE_A_MARK = re.compile(rf"include-by-region|<!--\s*(?:{MARKS})\b")
+LIKE_A_MARK = re.compile(rf"include-by-region|<!--\s*(?:(?:{MARKS})\b|[\w-]+(?::\s*\S+)?\s*-->)")
 INLINE = re.compile(r"(`+)[^`]+\1|\$\$.+?\$\$|\$[^$\n]+\$|<https?://[^>\s]+>", re.DOTALL)
-HTML = re.compile(rf"<(?!!--\s*(?:{MARKS})\b)[A-Za-z/!?][^\n]*")
+HTML = re.compile(r"<[A-Za-z/!?][^\n]*")
 AS_IT_IS = "write [include-by-region: FILE#NAME] in a fence, or <!-- figure: NAME -->"
 
 
@@ -84,7 +79,7 @@ def faults(parts):
                 what = "an include not alone in its fence, or a slot that is not well formed"
                 yield line + line_at(text, match.start()) - 1, what, AS_IT_IS
         if kind in ("text", "heading"):
-            for match in HTML.finditer(blank(INLINE, text)):
+            for match in HTML.finditer(blank(LIKE_A_MARK, blank(INLINE, text))):
                 what = f"raw HTML, {match[0][:50]!r}"
                 yield line + line_at(text, match.start()) - 1, what, "write Markdown"
 

@@ -15,7 +15,6 @@ FAULTS = [
     (GATE, r"|\]\([^)]*\)|", r"|\[[^]]*\]\([^)]*\)|", ERRORS),
     (GATE, r"^[A-Za-z_]\w+$|--[a-z]\w*", r"--[a-z]\w*", ERRORS),
     (GATE, "if not shown[kind, name]:", "if False:", ERRORS),
-    (GATE, 'or not shown["exercise", n]', "", ERRORS),
     (GATE, "if source not in was:", "if False:", ERRORS),
     (GATE, "elif was[source] != now:", "elif False:", ERRORS),
     (GATE, "filter(stored.stale, stored.ledger())", "()", ERRORS),
