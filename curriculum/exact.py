@@ -27,7 +27,6 @@ Masses are within a ratio of 100 where 0 < e < 1. Beyond that it stops with one 
 """
 
 import math
-from functools import cached_property
 
 import numpy as np
 
@@ -47,18 +46,20 @@ def inverse(W):
     Contacts that depend on one another, as under a slab, have such pushes, and W has no inverse.
     Of the many lam that fit, the first matrix then gives the least.
     """
-    unit = 1.0 / np.sqrt(W.diagonal())
-    unit = unit * unit[:, None]  # makes the diagonal 1, whatever the masses
+    unit = 1.0 / np.sqrt(np.diag(W))
+    unit = unit * unit.reshape(-1, 1)  # makes the diagonal 1, whatever the masses
     try:
         found = np.linalg.inv(W * unit)
-        if np.abs(found.diagonal()).max(initial=0.0) < 1e10:  # no contact depends on others
+        if not (np.abs(np.diag(found)) >= 1e10).any():  # no contact depends on others
             return found * unit, np.zeros_like(W)
-    except np.linalg.LinAlgError:
+    except Exception:
         pass
     size, axes = np.linalg.eigh(W * unit)
-    moves = size > NOISE * size.max(initial=0.0)
+    moves = size > NOISE * size[-1]
     size, idle = np.where(moves, size, math.inf), axes * ~moves
-    return axes / size @ axes.T * unit, idle @ idle.T * unit
+    return axes / size @ np.ascontiguousarray(axes.T) * unit, idle @ np.ascontiguousarray(
+        idle.T
+    ) * unit
 
 
 def solve_lcp(W, b):
@@ -74,13 +75,13 @@ def solve_lcp(W, b):
     no s, and lower that sum without end: go their way until the first contact is at 0.
     """
     if len(b) < 2:
-        return np.maximum(-b / W.diagonal(), 0.0)
-    unit = np.sqrt(W.diagonal())
-    size = np.abs(b / unit).max(initial=0.0)
-    lam, active = np.zeros(len(b)), np.ones(len(b), bool)
+        return np.maximum(-b / np.diag(W), 0.0)
+    unit = np.sqrt(np.diag(W))
+    size = np.abs(b / unit).max()
+    lam, active = np.zeros(len(b)), np.ones(len(b), np.bool_)
     for _ in range(50 + 10 * len(b)):
         trial, on = np.zeros(len(b)), np.flatnonzero(active)
-        solve, idle = inverse(W[on[:, None], on])
+        solve, idle = inverse(W[on][:, on])
         trial[on] = idle @ -b[on]
         endless = np.abs(trial * unit).max() > 1e3 * NOISE * size
         if not endless:
@@ -96,206 +97,163 @@ def solve_lcp(W, b):
             raise RuntimeError("exact: a ball is crushed between two that nothing moves")
         lam = np.maximum(trial, 0.0)
         s = np.where(active, 0.0, (W @ lam + b) / unit)
-        if s.min(initial=0.0) >= -NOISE * size:
+        if s.min() >= -NOISE * size:
             return lam
         active[s.argmin()] = True
-    raise RuntimeError(f"exact: {len(b)} contacts at one moment: their masses are too unequal")
+    raise RuntimeError("exact: contacts at one moment: their masses are too unequal")
 
 
 # --- endregion ---
 
 
-class Contacts:
-    """K contacts as columns: sign (N, K) is 1 in the row of ball a and -1 in that of ball b."""
+class Motion:
+    """Where all balls are at an event, and what each of the K contacts they can make did so far.
 
-    def __init__(self, scene):
-        """All that the balls of a scene can ever make; two that nothing moves make none."""
+    q, v, a are flat here, (2 N,): all x, then all y. J (C, 2 N) has a row for each of C contacts,
+    its normal at ball a and minus that at ball b: J v is v_n, and w J' lam is what pushes lam add
+    to v. sign (N, K) is 1 in the row of ball a and -1 in that of ball b.
+    """
+
+    def __init__(self, scene, gravity):
+        """All contacts that the balls can ever make; two that nothing moves make none."""
         count = len(scene.mass)
         w, radius = np.pad([1.0 / scene.mass, scene.radius], ((0, 0), (0, 1)))  # last: the floor
         pairs = np.array(np.triu_indices(count + 1, 1))
         pairs = pairs[:, w[pairs].sum(0) > 0.0]
         balls = np.arange(count)[:, None]
-        self.w, self.sign = w[:-1], 1.0 * (pairs[0] == balls) - (pairs[1] == balls)
+        self.sign = 1.0 * (pairs[0] == balls) - (pairs[1] == balls)
         self.reach, self.share = radius[pairs].sum(0), w[pairs].sum(0)  # r_a + r_b; 1 / m_eff
         self.radius, self.floor = radius[pairs[0]], pairs[1] == count
-        self.n = np.zeros((2, len(self.reach)))
-
-    def pick(self, chosen):
-        """The chosen contacts, as a new Contacts."""
-        part = object.__new__(Contacts)
-        part.w = self.w
-        for name in ("sign", "n", "reach", "floor", "radius", "share"):
-            setattr(part, name, getattr(self, name)[..., chosen])
-        return part
-
-    def locate(self, q):
-        """Take the normals from positions q (2, N). Returns the gaps (K,)."""
-        d = q @ self.sign
-        distance = np.where(self.floor, d[1], np.sqrt((d * d).sum(0)))
-        self.n = np.where(self.floor | (distance == 0.0), [[0.0], [1.0]], d / distance)
-        return distance - self.reach
-
-    def along(self, rows):
-        """n . (rows_a - rows_b): of velocities, v_n."""
-        return (self.n * (rows @ self.sign)).sum(0)
-
-    def across(self, rows):
-        """The part along the surface, of velocities the slip; 0 at the floor, which never turns."""
-        d = rows @ self.sign
-        return np.where(self.floor, 0.0, self.n[0] * d[1] - self.n[1] * d[0])
-
-    def push(self, lam):
-        """M^-1 J' lam (2, N): what pushes lam (K,) add to the velocities."""
-        return (self.n * lam) @ self.sign.T * self.w
-
-    def delassus(self):
-        """W = J M^-1 J' (K, K): column k is what a unit push at contact k adds to all v_n."""
-        return self.sign.T * self.w @ self.sign * (self.n.T @ self.n)
-
-    @cached_property
-    def inverse(self):
-        """W^-1, made once: while the contacts push, their normals turn by no more than rounding."""
-        return inverse(self.delassus())[0]
-
-    def match(self, rows, target):
-        """Rows changed by the pushes that make `along` the target; twice, for the last digits."""
-        for _ in range(2):
-            rows = rows + self.push(self.inverse @ (target - self.along(rows)))
-        return rows
-
-
-class Motion:
-    """Where all balls are at an event, and what each of the K contacts they can make did so far."""
-
-    def __init__(self, scene, gravity):
-        self.q, self.v = np.array((scene.q0, scene.v0), float)
-        self.w = 1.0 / scene.mass
-        self.radius, self.e, self.g = scene.radius, scene.restitution, -gravity
-        self.all = Contacts(scene)
-        self.gap = self.all.locate(self.q)  # [m]
+        self.q, self.v = np.array((scene.q0, scene.v0), float).reshape(2, -1)
+        self.w, self.e, self.g, self.radii = (
+            np.tile(w[:-1], 2),
+            scene.restitution,
+            -gravity,
+            scene.radius,
+        )
+        self.fall = np.where(self.w > 0.0, np.repeat((0.0, gravity), count), 0.0)
+        self.gap = np.full(len(self.reach), math.inf)  # [m]
+        self.locate()
+        self.gap = self.found
         self.rests = np.zeros(len(self.gap), bool)  # it touched at the last event and did not part
         self.since = np.full(len(self.gap), math.inf)  # the time [s] since it touched,
         self.parting = np.ones(len(self.gap))  # and |v_n| [m/s] then
-        self.speed = np.sqrt(self.g * self.all.radius)  # [m/s], the measure of a slow v_n
+        self.speed = np.sqrt(self.g * self.radius)  # [m/s], the measure of a slow v_n
 
-    def touch(self):
-        """Which contacts touch now.
+    def locate(self):
+        """Take normals (2, K) and gaps (K,) from q.
 
         A light ball between two others bounces until its gaps fall below the rounding of q. So
         next_event tracks gaps, and a tiny one touches only if it was wider.
         """
-        self.bits = np.spacing(np.abs(self.q).max())
-        self.small = TOUCH * self.all.radius + 4.0 * self.bits
-        self.found = self.all.locate(self.q)
+        d = self.q.reshape(2, -1) @ self.sign
+        distance = np.where(self.floor, d[1], np.sqrt((d * d).sum(0)))
+        self.n = np.where(self.floor | (distance == 0.0), [[0.0], [1.0]], d / distance)
+        self.found, self.bits = distance - self.reach, np.spacing(np.abs(self.q).max())
+        self.small = TOUCH * self.radius + 4.0 * self.bits
         self.gap = np.where(np.abs(self.found) < 1e4 * self.small, self.gap, self.found)
-        self.separate()
-        v_n = self.all.along(self.v)
-        opened = (self.parting + np.abs(v_n)) * self.since  # about how wide it has been
-        still = self.rests & (v_n <= NOISE * self.speed)
-        least = np.where(still, self.small, np.minimum(self.small, 1e-4 * opened))
-        return np.flatnonzero(self.gap <= least)
 
-    def separate(self):
-        """Move apart what overlaps, as at a start, by pushes that heavy balls feel less."""
-        for _ in range(50):  # what a push closes is for the next round
+    def rows(self, chosen):
+        """J of the chosen contacts."""
+        return (self.n[:, None, chosen] * self.sign[:, chosen]).reshape(len(self.q), -1).T
+
+    def slip(self, chosen, rows):
+        """The part of flat rows along the surface; 0 at the floor, which never turns."""
+        n, d = self.n[:, chosen], rows.reshape(2, -1) @ self.sign[:, chosen]
+        return np.where(self.floor[chosen], 0.0, n[0] * d[1] - n[1] * d[0])
+
+    def match(self, rows, J, solve, target):
+        """Rows changed by the pushes that make J rows the target; twice, for the last digits."""
+        for _ in range(2):
+            rows = rows + self.w * ((solve @ (target - J @ rows)) @ J)
+        return rows
+
+    def touch(self):
+        """Which contacts touch now."""
+        self.locate()
+        for _ in range(50):  # move apart what overlaps, as at a start; what a push closes is next
             if not (self.found < -self.small).any():
                 break
-            near = self.found <= -2.0 * self.found.min()
-            part = self.all.pick(near)
-            self.q = self.q + part.push(solve_lcp(part.delassus(), self.found[near]))
-            self.found = self.gap = self.all.locate(self.q)
+            near = np.flatnonzero(self.found <= -2.0 * self.found.min())
+            J = self.rows(near)
+            self.q = self.q + self.w * (solve_lcp(J * self.w @ J.T, self.found[near]) @ J)
+            self.locate()
+            self.gap = self.found
+        near = np.flatnonzero(self.gap <= self.small)
+        v_n = self.rows(near) @ self.v
+        opened = (self.parting[near] + np.abs(v_n)) * self.since[near]  # about how wide it has been
+        still = self.rests[near] & (v_n <= NOISE * self.speed[near])
+        return near[still | (self.gap[near] <= 1e-4 * opened)]
 
-    def strike(self, touching):
+    def strike(self, touching, J):
         """Impulses: where a contact pushes, v_n becomes -e v_n, at all contacts at once.
 
         That is an LCP in s = v_n after - target with target = -e v_n, as in contact.py; the target
-        is 0 where the bounce would rise less than LAST radii.
+        is 0 where the bounce would rise less than LAST radii. Returns v_n after.
         """
-        contacts, speed = self.all.pick(touching), self.speed[touching]
-        v_n = contacts.along(self.v)
+        v_n, speed = J @ self.v, self.speed[touching]
         if (v_n < -NOISE * speed).any():
             target = -self.e * v_n
             target[(v_n < 0.0) & (target < math.sqrt(2.0 * LAST) * speed)] = 0.0
-            struck = solve_lcp(contacts.delassus(), v_n - target) > 0.0
-            self.v = contacts.pick(struck).match(self.v, target[struck])
+            W = J * self.w @ J.T
+            on = np.flatnonzero(solve_lcp(W, v_n - target))
+            self.v = self.match(self.v, J[on], inverse(W[on][:, on])[0], target[on])
+            v_n = J @ self.v
+        return v_n
 
-    def support(self, touching):
-        """Forces for what rests: which contacts push, these Contacts, and all accelerations.
+    def support(self, touching, J, v_n):
+        """Forces for what rests: which contacts push, and all accelerations.
 
         A resting gap may open and may not close: its second derivative n . a + slip^2 / reach is
         >= 0, with 0 where it pushes. The second term is there because the normal turns. A contact
         that parts rests all the same if its force brings it back before it rises LAST radii.
         """
-        contacts = self.all.pick(touching)
-        v_n = contacts.along(self.v)
         self.gap[touching], self.since[touching], self.parting[touching] = 0.0, 0.0, np.abs(v_n)
-        a = np.zeros_like(self.q)
-        a[1] = np.where(self.w > 0.0, -self.g, 0.0)
-        rises = v_n**2 / (2.0 * LAST * contacts.radius)  # LAST radii under this acceleration
+        rises = v_n**2 / (2.0 * LAST * self.radius[touching])  # LAST radii under this acceleration
         needs = np.where(np.abs(v_n) > NOISE * self.speed[touching], rises, 0.0)
-        still = needs <= self.g
+        stays = needs <= self.g
         while True:
-            resting = contacts.pick(still)
-            turn = resting.across(self.v) ** 2 / resting.reach
-            lam = solve_lcp(resting.delassus(), resting.along(a) + turn)
-            stays = needs[still] <= lam * resting.share
+            touching, J, needs = touching[stays], J[stays], needs[stays]
+            turn = self.slip(touching, self.v) ** 2 / self.reach[touching]
+            W = J * self.w @ J.T
+            pushes = solve_lcp(W, J @ self.fall + turn) * self.share[touching]
+            stays = needs <= pushes
             if stays.all():
                 break
-            still[still] = stays
-        touching = touching[still]
-        self.rests = np.bincount(touching, minlength=len(self.gap)) > 0
+        self.rests[:] = False
+        self.rests[touching] = True
         if (np.abs(self.found[touching]) > self.bits).any():  # close what counts as closed
-            self.q = resting.match(self.q, resting.along(self.q) - self.found[touching])
-        pushes = lam * resting.share > NOISE * self.g
-        held = resting.pick(pushes)
-        if pushes.any():
-            beside = held.sign.any(1)
-            a, self.v = held.match(a, -turn[pushes]), held.match(self.v, 0.0)
-            a[:, beside] *= np.abs(a[:, beside]) > NOISE * self.g  # else a heap at rest creeps
-            slow = NOISE * np.sqrt(self.g * self.radius[beside])
-            self.v[:, beside] *= np.abs(self.v[:, beside]) > slow
-        return touching[pushes], held, a
+            self.q = self.match(self.q, J, inverse(W)[0], J @ self.q - self.found[touching])
+        on = np.flatnonzero(pushes > NOISE * self.g)
+        J, turn, a = J[on], turn[on], self.fall
+        if len(on):
+            solve = inverse(W[on][:, on])[0]
+            a, self.v = self.match(a, J, solve, -turn), self.match(self.v, J, solve, 0.0)
+            beside = np.tile(self.sign[:, touching[on]].any(1), 2)  # else a heap at rest creeps
+            a = np.where(beside & (np.abs(a) <= NOISE * self.g), 0.0, a)
+            slow = NOISE * np.sqrt(self.g * np.tile(self.radii, 2))
+            self.v = np.where(beside & (np.abs(self.v) <= slow), 0.0, self.v)
+        return touching[on], a
 
-    # --- region: slide-series ---
     def slide(self, held):
-        """While the held contacts push: q as a series Q (ORDER + 1, 2, N) in time, their forces
-        lam (ORDER + 1, K), the last two 0, and how long [s] both last.
-
-        Q_k, n_k, lam_k are the factors of t^k. While a contact is closed its normal is
-        (q_a - q_b) / reach, so n_k = (Q_k,a - Q_k,b) / reach. Newton's law at order k is
-
-            (k + 1) (k + 2) Q_{k+2} = a_k + M^-1 n_0 lam_k,   a_k = g + M^-1 sum_{m<k} n_{k-m} lam_m
-
-        (g only in a_0). And n . n = 1, so sum_m n_m . n_{k+2-m} = 0, which holds Q_{k+2} twice.
-        Times (k + 1) (k + 2) reach / 2 it is linear in lam_k, at every order with the same matrix:
-
-            W lam_k + n_0 . (a_k,a - a_k,b) + turn_k = 0,
-            turn_k = (k + 1) (k + 2) reach / 2 sum_{m=1}^{k+1} n_m . n_{k+2-m}
-        """
-        self.q = held.match(self.q, held.along(self.q) - held.locate(self.q))
-        held.locate(self.q)
-        self.v = held.match(self.v, 0.0)
-        Q, lam = np.zeros((ORDER + 1, *self.q.shape)), np.zeros((ORDER + 1, len(held.reach)))
-        n = np.zeros((ORDER + 1, *held.n.shape))
-        Q[0], Q[1], n[0] = self.q, self.v, held.n
-        turns, pushes = held.sign / held.reach * ~held.floor, held.sign.T * held.w
-        a = np.array((0.0, -self.g))[:, None] * (held.w > 0.0)
-        W, solve, half = held.delassus(), -held.inverse, 0.5 * held.reach
-        for k in range(ORDER - 1):
-            n[k + 1] = Q[k + 1] @ turns
-            if k > 0:
-                a = np.einsum("mk,mxk->xk", lam[:k], n[k:0:-1]) @ pushes
-            factor = (k + 1) * (k + 2)
-            turn = factor * half * np.einsum("mxk,mxk->k", n[1 : k + 2], n[k + 1 : 0 : -1])
-            misses = held.along(a) + turn
-            force = solve @ misses
-            force += solve @ (W @ force + misses)  # once more, for the last digits
-            lam[k], Q[k + 2] = force, (a + held.n * force @ pushes) / factor
-        lam[0] = np.maximum(lam[0], 0.0) + NOISE * self.g / held.share
-        size = np.abs(Q[-2:] / self.radius).max((1, 2))  # the last two terms stay below 1e-16 r
+        """While the held contacts push: q as a series, their forces, and how long [s] both last."""
+        self.locate()
+        J = self.rows(held)
+        solve = inverse(J * self.w @ J.T)[0]
+        self.q = self.match(self.q, J, solve, J @ self.q - self.found[held])
+        self.locate()
+        J = self.rows(held)
+        self.v = self.match(self.v, J, solve, 0.0)
+        Q = np.zeros((ORDER + 1, len(self.q)))
+        Q[0], Q[1] = self.q, self.v
+        reach, sign = self.reach[held], self.sign[:, held]
+        turns, pushes = sign / reach * ~self.floor[held], sign.T * self.w[: len(sign)]
+        lam = slide_series(Q, self.fall, self.w, self.n[:, held], J, turns, pushes, 0.5 * reach, solve)
+        lam[0] = np.maximum(lam[0], 0.0) + NOISE * self.g / self.share[held]
+        size = np.abs(Q[-2:] / np.tile(self.radii, 2)).max(
+            1
+        )  # the last two terms stay below 1e-16 r
         return Q, lam, min((1e-16 / size) ** (1.0 / np.array((ORDER - 1, ORDER))))
-
-    # --- endregion ---
 
     def next_event(self, Q, which, lam, horizon):
         """How long [s] the series Q holds: until a gap closes, a force lam ends, or the horizon.
@@ -306,81 +264,131 @@ class Motion:
         free = np.ones(len(self.gap), bool)
         free[which] = False
         if horizon < math.inf:  # who is out of reach until then
-            moves = (np.abs(Q[1:]).sum(1) * horizon ** np.arange(1, len(Q))[:, None]).sum(0)
-            free &= self.gap <= moves @ np.abs(self.all.sign)
+            moves = horizon ** np.arange(1, len(Q)) @ np.abs(Q[1:])
+            free &= self.gap <= moves.reshape(2, -1).sum(0) @ np.abs(self.sign)
         near = np.flatnonzero(free)
-        part, gap, rests = self.all.pick(near), np.maximum(self.gap[near], 0.0), self.rests[near]
-        P = gap_series(part, gap, Q)
-        wider = np.where(rests, 0.5 * self.small[near], np.minimum(4.0 * self.bits, 1e-9 * gap))
-        falls = np.hstack((P, lam))
-        falls[0, : len(near)] += np.where(part.floor, wider, wider * (wider + 2.0 * part.reach))
-        span, first = first_fall(falls, horizon)
-        value = evaluate(P, span)
-        root = value / (part.reach + np.sqrt(part.reach**2 + value))
-        self.gap[near] = np.where(part.floor, value, root)
+        gap, reach, floor = np.maximum(self.gap[near], 0.0), self.reach[near], self.floor[near]
+        P = gap_series(Q.reshape(len(Q), 2, -1) @ self.sign[:, near], gap, reach, floor)
+        rounds = np.minimum(4.0 * self.bits, 1e-9 * gap)
+        wider = np.where(self.rests[near], 0.5 * self.small[near], rounds)
+        falls = np.concatenate((P.T, lam.T))
+        falls[: len(near), 0] += np.where(floor, wider, wider * (wider + 2.0 * reach))
+        span, first = first_of(falls, horizon)
+        value = horner(P, span)
+        root = value / (reach + np.sqrt(reach**2 + value))
+        self.gap[near] = np.where(floor, value, root)
         self.gap[near[first : first + 1]] = 0.0
         self.since += span
         return span
 
 
-def evaluate(P, t):
-    """sum P[k] t^k by Horner's rule."""
-    total = P[-1]
-    for row in P[-2::-1]:
-        total = total * t + row
-    return total
+# --- region: slide-series ---
+def slide_series(Q, a, w, n_0, J, turns, pushes, half, solve):
+    """While K contacts push: fill in the series Q (terms, 2 N) of q in time. Returns that of the
+    forces lam (terms, K), the last two 0.
+
+    Q_k, n_k, lam_k are the factors of t^k. While a contact is closed its normal is
+    (q_a - q_b) / reach, so n_k = (Q_k,a - Q_k,b) / reach. Newton's law at order k is
+
+        (k + 1) (k + 2) Q_{k+2} = a_k + M^-1 n_0 lam_k,   a_k = g + M^-1 sum_{m<k} n_{k-m} lam_m
+
+    (g only in a_0). And n . n = 1, so sum_m n_m . n_{k+2-m} = 0, which holds Q_{k+2} twice.
+    Times (k + 1) (k + 2) reach / 2 it is linear in lam_k, at every order with the same matrix:
+
+        W lam_k + n_0 . (a_k,a - a_k,b) + turn_k = 0,
+        turn_k = (k + 1) (k + 2) reach / 2 sum_{m=1}^{k+1} n_m . n_{k+2-m}
+    """
+    lam, n = np.zeros((len(Q), 1, len(J))), np.zeros((len(Q), 2, len(J)))
+    n[0], away, push = n_0, -solve, J * w
+    for k in range(len(Q) - 2):
+        n[k + 1] = Q[k + 1].reshape(2, -1) @ turns
+        if k > 0:
+            a = ((n[k:0:-1] * lam[:k]).sum(0) @ pushes).reshape(-1)
+        factor = (k + 1.0) * (k + 2.0)
+        turn = factor * half * (n[1 : k + 2] * n[k + 1 : 0 : -1]).sum(0).sum(0)
+        lam[k, 0] = away @ (J @ a + turn)
+        Q[k + 2] = (a + lam[k, 0] @ push) / factor
+    return lam[:, 0]
 
 
-def gap_series(contacts, gap, Q):
+# --- endregion ---
+
+
+def gap_series(d, gap, reach, floor):
     """Series (terms, K) with the signs of the gaps, from `gap` on: y - r, or d . d - reach^2."""
-    d = Q @ contacts.sign
     P = np.zeros((max(len(d), 5), d.shape[2]))  # 5: a parabola's square is whole
-    for k, row in enumerate(d):
-        P[k : k + len(d)] += (row * d[: len(P) - k]).sum(1)
-    P[:, contacts.floor] = 0.0
-    P[: len(d), contacts.floor] = d[:, 1, contacts.floor]
-    P[0] = np.where(contacts.floor, gap, gap * (gap + 2.0 * contacts.reach))
+    for k in range(len(d)):
+        P[k : k + len(d)] += (d[k] * d[: len(P) - k]).sum(1)
+    P[:, floor] = 0.0
+    P[: len(d)] += np.where(floor, d[:, 1], 0.0)
+    P[0] = np.where(floor, gap, gap * (gap + 2.0 * reach))
     return P
 
 
-def first_fall(P, horizon):
-    """The first t <= horizon at which a column of P (terms, K), all >= 0 at 0, falls through 0,
-    and which column; horizon and K if none does.
+def first_of(falls, horizon):
+    """When [s] the first row of falls (K, terms), each a series, falls through 0, and which row.
+
+    Horizon and K if none does. A row that is likely to be soon comes first: most others cannot fall
+    before it, not even if all that lifts them were not there.
+    """
+    first, row = horizon, len(falls)
+    if row == 0:
+        return first, row
+    likely = np.argmin(falls[:, 0] / np.maximum(-falls[:, 1], 1e-9))
+    t = first_fall(falls[likely], horizon)
+    if t <= horizon:
+        first, row = t, likely
+    sinks, power = falls[:, 0].copy(), 1.0
+    for k in range(1, falls.shape[1]):
+        power *= min(first, 1e15)
+        sinks += np.minimum(falls[:, k], 0.0) * power
+    for k in np.flatnonzero(sinks <= 0.0):
+        t = first_fall(falls[k], first)
+        if t < first:
+            first, row = t, k
+    return first, row
+
+
+def first_fall(p, horizon):
+    """The first t <= horizon at which p[0] + p[1] t + ..., >= 0 at 0, falls through 0; else inf.
 
     Newton's method with the least curvature on the way to `end`, so that no step passes a root.
     It is the horizon at first, then nearer, and twice as far each time: a short way curves less.
     """
-    first, column, k = horizon, P.shape[1], np.arange(len(P))[:, None]
-    slopes = k[1:] * P[1:]
-    bends, live = 0.5 * k[1:-1] * slopes[1:], np.arange(column)
-    t, end = np.zeros(column), np.full(column, horizon)
+    t, end = 0.0, horizon
+    c, b, a = p[2], 3.0 * p[3], 6.0 * p[4]
     for _ in range(200):
-        bend, power = least(bends, t, end), np.vander(t, len(P), True).T
-        value, slope = np.maximum((P * power).sum(0), 0.0), (slopes * power[:-1]).sum(0)
-        root = np.sqrt(slope * slope - 4.0 * value * bend)  # NaN: it never falls
-        step = np.where(slope < 0.0, 2.0 * value / (root - slope), (slope + root) / (-2.0 * bend))
-        step = np.where((step >= 0.0) & ((slope < 0.0) | (bend < 0.0)), step, math.inf)
-        found = step <= 1e-15 * t
-        if found.any() and t[found].min() <= first:
-            first, column = t[found].min(), live[found][t[found].argmin()]
-        far = t + step > end
-        on = ~found & (t <= first) & ~(far & (end >= horizon))
-        live, t = live[on], np.where(far, end, t + step)[on]
-        if not len(live):
-            return first, column
-        P, slopes, bends = P[:, on], slopes[:, on], bends[:, on]
-        end = np.minimum(np.maximum(2.0 * t, horizon / 8.0), horizon)
-    near = t.argmin()  # next to no curvature: it is as good as there
-    return (t[near], live[near]) if t[near] <= first else (first, column)
+        value = slope = far = 0.0
+        for k in range(len(p) - 1, -1, -1):
+            slope = slope * t + value
+            value = value * t + p[k]
+        for k in range(len(p) - 1, 4, -1):
+            far = (far + 0.5 * k * (k - 1) * abs(p[k])) * end
+        bend = c + t * (b + t * a)  # half the curvature: exact for parabolas, whose end may be inf
+        if a > 0.0 and t < -0.5 * b / a < end:
+            bend = c - 0.25 * b * b / a
+        if end < math.inf:
+            bend = min(bend, c + end * (b + end * a)) - far * end * end
+        square, step = slope * slope - 4.0 * max(value, 0.0) * bend, math.inf
+        if square >= 0.0 and slope < 0.0:
+            step = 2.0 * max(value, 0.0) / (math.sqrt(square) - slope)
+        elif square >= 0.0 and bend < 0.0:
+            step = (slope + math.sqrt(square)) / (-2.0 * bend)
+        if step <= 1e-15 * t:
+            return t
+        if t + step > end >= horizon:
+            return math.inf
+        t = min(t + step, end)
+        end = min(max(2.0 * t, horizon / 8.0), horizon)
+    return t  # next to no curvature: it is as good as there
 
 
-def least(P, t, end):
-    """No sum P[k] s^k is less for s in [t, end]; exact for parabolas, whose end may be inf."""
-    c, b, a = P[:3]
-    vertex = np.where(a > 0.0, np.minimum(np.maximum(-0.5 * b / a, t), end), t)
-    s = np.array((t, vertex, end))
-    rest = np.abs(P[3:]) * np.vander(end, len(P), True).T[3:]
-    return np.fmin.reduce(c + s * (b + s * a)) - rest.sum(0)
+def horner(P, t):
+    """sum P[k] t^k."""
+    total = P[-1]
+    for row in P[-2::-1]:
+        total = total * t + row
+    return total
 
 
 class Cycle:
@@ -405,7 +413,7 @@ class Cycle:
     def read(self, times):
         """q, v (2, S, 2, N) at times (S,) since the saved state, round and round."""
         starts = np.cumsum([0.0] + [span for span, _ in self.flights])
-        times, out = times % starts[-1], np.empty((2, len(times), *self.flights[0][1].shape[1:]))
+        times, out = times % starts[-1], np.empty((2, len(times), self.flights[0][1].shape[1]))
         number = np.searchsorted(starts, times, "right") - 1
         for k in np.unique(number):
             here = number == k
@@ -414,11 +422,11 @@ class Cycle:
 
 
 def sample(Q, times):
-    """q, v (2, S, 2, N) at times (S,) of the series Q."""
-    both = np.zeros((len(Q), 2, 1, *Q.shape[1:]))
+    """q, v (2, S, 2 N) at times (S,) of the series Q."""
+    both = np.zeros((len(Q), 2, 1, Q.shape[1]))
     both[:, 0, 0] = Q
-    both[:-1, 1, 0] = np.arange(1.0, len(Q))[:, None, None] * Q[1:]
-    return evaluate(both, times[:, None, None])
+    both[:-1, 1, 0] = np.arange(1.0, len(Q))[:, None] * Q[1:]
+    return horner(both, times[:, None])
 
 
 def refuse(scene):
@@ -442,19 +450,22 @@ def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MOST_IMP
     done. Raises RuntimeError beyond the promise, and after `most` events.
     """
     refuse(scene)
-    motion, cycle, out = Motion(scene, gravity), Cycle(), np.empty((2, len(times), *scene.q0.shape))
-    now, done = 0.0, 0
+    motion, cycle, out = Motion(scene, gravity), Cycle(), np.empty((2, len(times), scene.q0.size))
+    now, done, event = 0.0, 0, True
     for _ in range(most):
-        touching = motion.touch()
-        motion.strike(touching)
-        which, held, a = motion.support(touching)
-        if cycle.repeats(motion):
-            out[:, done:] = cycle.read(times[done:] - now)
-            return out
+        if event:
+            touching = motion.touch()
+            J = motion.rows(touching)
+            held, a = motion.support(touching, J, motion.strike(touching, J))
+            if cycle.repeats(motion):
+                out[:, done:] = cycle.read(times[done:] - now)
+                break
+            slides = motion.slip(held, motion.v).any() or motion.slip(held, a).any()
         Q, lam, horizon = np.array((motion.q, motion.v, 0.5 * a)), np.empty((5, 0)), math.inf
-        if held.across(motion.v).any() or held.across(a).any():
+        if slides:
             Q, lam, horizon = motion.slide(held)
-        span = motion.next_event(Q, which, lam, horizon)
+        span = motion.next_event(Q, held, lam, horizon)
+        event = span < horizon
         last = int(np.searchsorted(times, now + span))
         states = sample(Q, np.append(times[done:last] - now, span))
         out[:, done:last] = states[:, :-1]
@@ -462,9 +473,11 @@ def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MOST_IMP
         done = last
         progress(done)
         if done == len(times):
-            return out
+            break
         (motion.q, motion.v), now = states[:, -1], now + span
-    raise RuntimeError(
-        f"exact: more than {most:,} events by {now:.6g} s, balls rattle without end."
-        " Take a shorter run, another restitution, or closer masses"
-    )
+    else:
+        raise RuntimeError(
+            f"exact: more than {most:,} events by {now:.6g} s, balls rattle without end."
+            " Take a shorter run, another restitution, or closer masses"
+        )
+    return out.reshape(2, len(times), *scene.q0.shape)
