@@ -36,6 +36,7 @@ ORDER = 20  # of the series of balls that slide; a longer one lasts longer and c
 TOUCH = 1e-12  # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
 LAST = 1e-13  # of a radius: a bounce that would rise less is the last of its series
 NOISE = 1e-12  # of g, of sqrt(g r), of the largest: less is rounding, which leaves 1e-15
+GRAZE = 1e-7  # of the slip: a ball between two others may close as slowly as that
 RATIO = 100.0  # of masses: above it, where 0 < e < 1, light balls rattle under heavy ones
 
 
@@ -62,7 +63,7 @@ def inverse(W):
     ) * unit
 
 
-def solve_lcp(W, b):
+def solve_lcp(W, b, slack=0.0):
     """lam (K,) >= 0 with s = W lam + b >= 0 and lam s = 0, W (K, K), b (K,). One pivot at a time.
 
     Let A be the active contacts, those that may push; all of them at first, as at rest. Solve
@@ -72,7 +73,8 @@ def solve_lcp(W, b):
     lam'W lam / 2 + b'lam is lower than before, so no A comes twice (Lawson and Hanson 1974).
 
     Where contacts of A depend on one another, there may be no such trial. Then some pushes change
-    no s, and lower that sum without end: go their way until the first contact is at 0.
+    no s, and lower that sum without end: go their way until the first contact is at 0. If none gets
+    there, a ball is crushed, unless all that closes is within slack sqrt(W_kk), which is forgiven.
     """
     if len(b) < 2:
         return np.maximum(-b / np.diag(W), 0.0)
@@ -92,6 +94,9 @@ def solve_lcp(W, b):
             share = lam[pulls] / -way[pulls]
             lam = np.where(active, lam + share.min() * way, 0.0)
             active[pulls[share.argmin()]] = False
+            continue
+        if endless and (trial * unit).max() <= np.where(trial > 0.0, slack, 0.0).max():
+            b = b + trial * np.diag(W)
             continue
         if endless:
             raise RuntimeError("exact: a ball is crushed between two that nothing moves")
@@ -176,7 +181,9 @@ class Motion:
                 break
             near = np.flatnonzero(self.found <= -2.0 * self.found.min())
             J = self.rows(near)
-            self.q = self.q + self.w * (solve_lcp(J * self.w @ J.T, self.found[near]) @ J)
+            slack = 4.0 * self.bits / np.sqrt(self.share[near])
+            lam = solve_lcp(J * self.w @ J.T, self.found[near], slack)
+            self.q = self.q + self.w * (lam @ J)
             self.locate()
             self.gap = self.found
         near = np.flatnonzero(self.gap <= self.small)
@@ -189,16 +196,19 @@ class Motion:
         """Impulses: where a contact pushes, v_n becomes -e v_n, at all contacts at once.
 
         That is an LCP in s = v_n after - target with target = -e v_n, as in contact.py; the target
-        is 0 where the bounce would rise less than LAST radii. Returns v_n after.
+        is 0 where the bounce would rise less than LAST radii. A ball that passes between two fixed ones
+        and touches both closes a little until its normals have turned, by GRAZE^2 radii at most: no
+        push could help. Returns v_n after.
         """
         v_n, speed = J @ self.v, self.speed[touching]
         if (v_n < -NOISE * speed).any():
             target = -self.e * v_n
             target[(v_n < 0.0) & (target < math.sqrt(2.0 * LAST) * speed)] = 0.0
             W = J * self.w @ J.T
-            on = np.flatnonzero(solve_lcp(W, v_n - target))
+            turns = GRAZE * np.abs(self.slip(touching, self.v)) / np.sqrt(self.share[touching])
+            on = np.flatnonzero(solve_lcp(W, v_n - target, turns))
             self.v = self.match(self.v, J[on], inverse(W[on][:, on])[0], target[on])
-            v_n = J @ self.v
+            v_n = np.maximum(J @ self.v, np.minimum(target, 0.0))  # what was forgiven is 0
         return v_n
 
     def support(self, touching, J, v_n):
