@@ -26,11 +26,19 @@ Masses are within a ratio of 100 where 0 < e < 1. Beyond that it stops with one 
     lam          impulse or force of a contact, >= 0                               N s or N
 """
 
+import inspect
 import math
+import sys
+from functools import cache
 
 import numpy as np
 
 from contact import MOST_IMPACTS  # of events, the limit of contact.py's own exact_run
+
+try:
+    from curriculum.lesson.compiled import Loops
+except ImportError:  # no numba
+    Loops = None
 
 ORDER = 20  # of the series of balls that slide; a longer one lasts longer and costs more
 TOUCH = 1e-12  # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
@@ -116,26 +124,21 @@ class Motion:
 
     q, v, a are flat here, (2 N,): all x, then all y. J (C, 2 N) has a row for each of C contacts,
     its normal at ball a and minus that at ball b: J v is v_n, and w J' lam is what pushes lam add
-    to v. sign (N, K) is 1 in the row of ball a and -1 in that of ball b.
+    to v. sides (K, N) is 1 in the column of ball a and -1 in that of ball b.
     """
 
     def __init__(self, scene, gravity):
         """All contacts that the balls can ever make; two that nothing moves make none."""
-        count = len(scene.mass)
-        w, radius = np.pad([1.0 / scene.mass, scene.radius], ((0, 0), (0, 1)))  # last: the floor
+        count, w = len(scene.mass), 1.0 / np.append(scene.mass, math.inf)  # last: the floor
+        radius = np.append(scene.radius, 0.0)
         pairs = np.array(np.triu_indices(count + 1, 1))
         pairs = pairs[:, w[pairs].sum(0) > 0.0]
-        balls = np.arange(count)[:, None]
-        self.sign = 1.0 * (pairs[0] == balls) - (pairs[1] == balls)
+        self.sides = np.eye(count + 1)[:, :-1][pairs[0]] - np.eye(count + 1)[:, :-1][pairs[1]]
         self.reach, self.share = radius[pairs].sum(0), w[pairs].sum(0)  # r_a + r_b; 1 / m_eff
         self.radius, self.floor = radius[pairs[0]], pairs[1] == count
         self.q, self.v = np.array((scene.q0, scene.v0), float).reshape(2, -1)
-        self.w, self.e, self.g, self.radii = (
-            np.tile(w[:-1], 2),
-            scene.restitution,
-            -gravity,
-            scene.radius,
-        )
+        self.w, self.e, self.g = np.tile(w[:-1], 2), scene.restitution, -gravity
+        self.radii = np.tile(radius[:-1], 2)
         self.fall = np.where(self.w > 0.0, np.repeat((0.0, gravity), count), 0.0)
         self.gap = np.full(len(self.reach), math.inf)  # [m]
         self.locate()
@@ -144,28 +147,31 @@ class Motion:
         self.since = np.full(len(self.gap), math.inf)  # the time [s] since it touched,
         self.parting = np.ones(len(self.gap))  # and |v_n| [m/s] then
         self.speed = np.sqrt(self.g * self.radius)  # [m/s], the measure of a slow v_n
+        self.by = choose_loops()
 
     def locate(self):
-        """Take normals (2, K) and gaps (K,) from q.
+        """Take normals (K, 2) and gaps (K,) from q.
 
         A light ball between two others bounces until its gaps fall below the rounding of q. So
         next_event tracks gaps, and a tiny one touches only if it was wider.
         """
-        d = self.q.reshape(2, -1) @ self.sign
-        distance = np.where(self.floor, d[1], np.sqrt((d * d).sum(0)))
-        self.n = np.where(self.floor | (distance == 0.0), [[0.0], [1.0]], d / distance)
+        x, y = self.q.reshape(2, -1) @ self.sides.T
+        distance = np.where(self.floor, y, np.sqrt(x * x + y * y))
+        up = self.floor | (distance == 0.0)
+        self.n = np.where(up, ((0.0,), (1.0,)), (x, y) / distance).T
         self.found, self.bits = distance - self.reach, np.spacing(np.abs(self.q).max())
         self.small = TOUCH * self.radius + 4.0 * self.bits
         self.gap = np.where(np.abs(self.found) < 1e4 * self.small, self.gap, self.found)
 
     def rows(self, chosen):
         """J of the chosen contacts."""
-        return (self.n[:, None, chosen] * self.sign[:, chosen]).reshape(len(self.q), -1).T
+        J = self.n[chosen][:, :, None] * self.sides[chosen][:, None]
+        return J.reshape(len(chosen), len(self.q))
 
     def slip(self, chosen, rows):
         """The part of flat rows along the surface; 0 at the floor, which never turns."""
-        n, d = self.n[:, chosen], rows.reshape(2, -1) @ self.sign[:, chosen]
-        return np.where(self.floor[chosen], 0.0, n[0] * d[1] - n[1] * d[0])
+        n, (x, y) = self.n[chosen], rows.reshape(2, -1) @ self.sides[chosen].T
+        return np.where(self.floor[chosen], 0.0, n[:, 0] * y - n[:, 1] * x)
 
     def match(self, rows, J, solve, target):
         """Rows changed by the pushes that make J rows the target; twice, for the last digits."""
@@ -182,7 +188,7 @@ class Motion:
             near = np.flatnonzero(self.found <= -2.0 * self.found.min())
             J = self.rows(near)
             slack = 4.0 * self.bits / np.sqrt(self.share[near])
-            lam = solve_lcp(J * self.w @ J.T, self.found[near], slack)
+            lam = self.by.solve_lcp(J * self.w @ J.T, self.found[near], slack)
             self.q = self.q + self.w * (lam @ J)
             self.locate()
             self.gap = self.found
@@ -196,9 +202,9 @@ class Motion:
         """Impulses: where a contact pushes, v_n becomes -e v_n, at all contacts at once.
 
         That is an LCP in s = v_n after - target with target = -e v_n, as in contact.py; the target
-        is 0 where the bounce would rise less than LAST radii. A ball that passes between two fixed ones
-        and touches both closes a little until its normals have turned, by GRAZE^2 radii at most: no
-        push could help. Returns v_n after.
+        is 0 where the bounce would rise less than LAST radii. A ball that passes between two others
+        that nothing moves, and touches both, closes until its normals have turned, by GRAZE^2 radii
+        at most: that is forgiven. Returns v_n after.
         """
         v_n, speed = J @ self.v, self.speed[touching]
         if (v_n < -NOISE * speed).any():
@@ -206,8 +212,8 @@ class Motion:
             target[(v_n < 0.0) & (target < math.sqrt(2.0 * LAST) * speed)] = 0.0
             W = J * self.w @ J.T
             turns = GRAZE * np.abs(self.slip(touching, self.v)) / np.sqrt(self.share[touching])
-            on = np.flatnonzero(solve_lcp(W, v_n - target, turns))
-            self.v = self.match(self.v, J[on], inverse(W[on][:, on])[0], target[on])
+            on = np.flatnonzero(self.by.solve_lcp(W, v_n - target, turns))
+            self.v = self.match(self.v, J[on], self.by.inverse(W[np.ix_(on, on)])[0], target[on])
             v_n = np.maximum(J @ self.v, np.minimum(target, 0.0))  # what was forgiven is 0
         return v_n
 
@@ -226,22 +232,22 @@ class Motion:
             touching, J, needs = touching[stays], J[stays], needs[stays]
             turn = self.slip(touching, self.v) ** 2 / self.reach[touching]
             W = J * self.w @ J.T
-            pushes = solve_lcp(W, J @ self.fall + turn) * self.share[touching]
+            pushes = self.by.solve_lcp(W, J @ self.fall + turn, 0.0 * turn) * self.share[touching]
             stays = needs <= pushes
             if stays.all():
                 break
         self.rests[:] = False
         self.rests[touching] = True
         if (np.abs(self.found[touching]) > self.bits).any():  # close what counts as closed
-            self.q = self.match(self.q, J, inverse(W)[0], J @ self.q - self.found[touching])
+            self.q = self.match(self.q, J, self.by.inverse(W)[0], J @ self.q - self.found[touching])
         on = np.flatnonzero(pushes > NOISE * self.g)
         J, turn, a = J[on], turn[on], self.fall
         if len(on):
-            solve = inverse(W[on][:, on])[0]
+            solve = self.by.inverse(W[np.ix_(on, on)])[0]
             a, self.v = self.match(a, J, solve, -turn), self.match(self.v, J, solve, 0.0)
-            beside = np.tile(self.sign[:, touching[on]].any(1), 2)  # else a heap at rest creeps
+            beside = np.tile(self.sides[touching[on]].any(0), 2)  # else a heap at rest creeps
             a = np.where(beside & (np.abs(a) <= NOISE * self.g), 0.0, a)
-            slow = NOISE * np.sqrt(self.g * np.tile(self.radii, 2))
+            slow = NOISE * np.sqrt(self.g * self.radii)
             self.v = np.where(beside & (np.abs(self.v) <= slow), 0.0, self.v)
         return touching[on], a
 
@@ -249,20 +255,18 @@ class Motion:
         """While the held contacts push: q as a series, their forces, and how long [s] both last."""
         self.locate()
         J = self.rows(held)
-        solve = inverse(J * self.w @ J.T)[0]
+        solve = self.by.inverse(J * self.w @ J.T)[0]
         self.q = self.match(self.q, J, solve, J @ self.q - self.found[held])
         self.locate()
         J = self.rows(held)
         self.v = self.match(self.v, J, solve, 0.0)
         Q = np.zeros((ORDER + 1, len(self.q)))
         Q[0], Q[1] = self.q, self.v
-        reach, sign = self.reach[held], self.sign[:, held]
-        turns, pushes = sign / reach * ~self.floor[held], sign.T * self.w[: len(sign)]
-        lam = slide_series(Q, self.fall, self.w, self.n[:, held], J, turns, pushes, 0.5 * reach, solve)
+        turns = np.where(self.floor[held], 0.0, 1.0 / self.reach[held])
+        given = self.fall, self.w, self.n[held], J, self.sides[held], self.reach[held], turns, solve
+        lam = self.by.slide_series(Q, *given)
         lam[0] = np.maximum(lam[0], 0.0) + NOISE * self.g / self.share[held]
-        size = np.abs(Q[-2:] / np.tile(self.radii, 2)).max(
-            1
-        )  # the last two terms stay below 1e-16 r
+        size = np.abs(Q[-2:] / self.radii).max(1)  # the last two terms stay below 1e-16 r
         return Q, lam, min((1e-16 / size) ** (1.0 / np.array((ORDER - 1, ORDER))))
 
     def next_event(self, Q, which, lam, horizon):
@@ -275,16 +279,13 @@ class Motion:
         free[which] = False
         if horizon < math.inf:  # who is out of reach until then
             moves = horizon ** np.arange(1, len(Q)) @ np.abs(Q[1:])
-            free &= self.gap <= moves.reshape(2, -1).sum(0) @ np.abs(self.sign)
+            free &= self.gap <= np.abs(self.sides) @ moves.reshape(2, -1).sum(0)
         near = np.flatnonzero(free)
         gap, reach, floor = np.maximum(self.gap[near], 0.0), self.reach[near], self.floor[near]
-        P = gap_series(Q.reshape(len(Q), 2, -1) @ self.sign[:, near], gap, reach, floor)
         rounds = np.minimum(4.0 * self.bits, 1e-9 * gap)
         wider = np.where(self.rests[near], 0.5 * self.small[near], rounds)
-        falls = np.concatenate((P.T, lam.T))
-        falls[: len(near), 0] += np.where(floor, wider, wider * (wider + 2.0 * reach))
-        span, first = first_of(falls, horizon)
-        value = horner(P, span)
+        d = Q.reshape(len(Q), 2, -1) @ self.sides[near].T
+        span, first, value = self.by.next_fall(d, gap, reach, floor, wider, lam, horizon)
         root = value / (reach + np.sqrt(reach**2 + value))
         self.gap[near] = np.where(floor, value, root)
         self.gap[near[first : first + 1]] = 0.0
@@ -293,7 +294,7 @@ class Motion:
 
 
 # --- region: slide-series ---
-def slide_series(Q, a, w, n_0, J, turns, pushes, half, solve):
+def slide_series(Q, a, w, n_0, J, sides, reach, turns, solve):
     """While K contacts push: fill in the series Q (terms, 2 N) of q in time. Returns that of the
     forces lam (terms, K), the last two 0.
 
@@ -309,13 +310,14 @@ def slide_series(Q, a, w, n_0, J, turns, pushes, half, solve):
         turn_k = (k + 1) (k + 2) reach / 2 sum_{m=1}^{k+1} n_m . n_{k+2-m}
     """
     lam, n = np.zeros((len(Q), 1, len(J))), np.zeros((len(Q), 2, len(J)))
-    n[0], away, push = n_0, -solve, J * w
+    turns = np.ascontiguousarray((sides * turns.reshape(-1, 1)).T)  # 1 / reach; 0 at the floor
+    n[0], away, push, pushes = n_0.T, -solve, J * w, sides * w[: sides.shape[1]]
     for k in range(len(Q) - 2):
         n[k + 1] = Q[k + 1].reshape(2, -1) @ turns
         if k > 0:
             a = ((n[k:0:-1] * lam[:k]).sum(0) @ pushes).reshape(-1)
         factor = (k + 1.0) * (k + 2.0)
-        turn = factor * half * (n[1 : k + 2] * n[k + 1 : 0 : -1]).sum(0).sum(0)
+        turn = 0.5 * factor * reach * (n[1 : k + 2] * n[k + 1 : 0 : -1]).sum(0).sum(0)
         lam[k, 0] = away @ (J @ a + turn)
         Q[k + 2] = (a + lam[k, 0] @ push) / factor
     return lam[:, 0]
@@ -324,15 +326,22 @@ def slide_series(Q, a, w, n_0, J, turns, pushes, half, solve):
 # --- endregion ---
 
 
-def gap_series(d, gap, reach, floor):
-    """Series (terms, K) with the signs of the gaps, from `gap` on: y - r, or d . d - reach^2."""
-    P = np.zeros((max(len(d), 5), d.shape[2]))  # 5: a parabola's square is whole
+def next_fall(d, gap, reach, floor, wider, lam, horizon):
+    """When [s] the first of K gaps or of some forces lam (terms, L) falls through 0, which, and the
+    gaps then: y - r, or d . d - reach^2. `wider` [m] is added to the gaps while we look for it.
+
+    d (terms, 2, K) are the series of q_a - q_b; the gaps themselves are known better.
+    """
+    count, P = len(gap), np.zeros((max(len(d), 5), len(gap)))  # 5: a parabola's square is whole
     for k in range(len(d)):
         P[k : k + len(d)] += (d[k] * d[: len(P) - k]).sum(1)
     P[:, floor] = 0.0
     P[: len(d)] += np.where(floor, d[:, 1], 0.0)
     P[0] = np.where(floor, gap, gap * (gap + 2.0 * reach))
-    return P
+    falls = np.concatenate((P.T, lam.T))
+    falls[:count, 0] += np.where(floor, wider, wider * (wider + 2.0 * reach))
+    span, first = first_of(falls, horizon)
+    return span, first, horner(P, span)
 
 
 def first_of(falls, horizon):
@@ -401,6 +410,31 @@ def horner(P, t):
     return total
 
 
+@cache
+def loops():
+    """The functions above as numba compiles them, or None without numba."""
+    these = inverse, solve_lcp, slide_series, next_fall, first_of, first_fall, horner
+    head = f"import math\nimport numpy as np\nNOISE = {NOISE!r}\n"
+    source = "\n\n".join((head, *(inspect.getsource(each) for each in these)))
+    return Loops and Loops("exact", source, error_model="numpy")
+
+
+def compile_loops():
+    """Compile them, and keep them on disk; the first time that takes 20 s. Returns the module."""
+    flags, row, table = np.ones(1, bool), np.ones(1), np.ones((1, 1))
+    slide = table, row, row, table, table, table, row, row, table
+    gaps = np.ones((1, 2, 1)), row, row, flags, row, table, math.inf
+    calls = {"inverse": (table,), "solve_lcp": (table, row, row)}
+    return loops().load(calls | {"slide_series": slide, "next_fall": gaps})
+
+
+def choose_loops():
+    """The compiled functions where they lie on disk, else those here: no run knows its events."""
+    if loops() and loops().pays(0.0):
+        return compile_loops()
+    return sys.modules[__name__]
+
+
 class Cycle:
     """What happened since a saved state: once that comes again, to the last bit, all of it does.
 
@@ -415,7 +449,7 @@ class Cycle:
         state = b"".join(part.tobytes() for part in (motion.q, motion.v, motion.gap, motion.rests))
         if state == self.saved and any(span for span, _ in self.flights):
             return True
-        if len(self.flights) == self.length or self.saved is None:
+        if len(self.flights) >= self.length or self.saved is None:
             self.saved, self.flights = state, []
             self.length = min(2 * self.length, 1000)  # a bound of memory
         return False
@@ -441,7 +475,7 @@ def sample(Q, times):
 
 def refuse(scene):
     """Raise RuntimeError for masses beyond the promise."""
-    e, mass = scene.restitution, scene.mass[np.isfinite(scene.mass)]
+    e, mass = scene.restitution, 1.0 * scene.mass[np.isfinite(scene.mass)]
     ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
     if 0.0 < e < 1.0 and ratio > RATIO:
         given = (
