@@ -44,7 +44,7 @@ ORDER = 20  # of the series of balls that slide; a longer one lasts longer and c
 TOUCH = 1e-12  # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
 LAST = 1e-13  # of a radius: a bounce that would rise less is the last of its series
 NOISE = 1e-12  # of g, of sqrt(g r), of the largest: less is rounding, which leaves 1e-15
-GRAZE = 1e-7  # of the slip: a ball between two others may close as slowly as that
+GRAZE = 3e-8  # of the slip: a ball between two others may close as slowly as that
 RATIO = 100.0  # of masses: above it, where 0 < e < 1, light balls rattle under heavy ones
 
 
@@ -318,8 +318,11 @@ def slide_series(Q, a, w, n_0, J, sides, reach, turns, solve):
             a = ((n[k:0:-1] * lam[:k]).sum(0) @ pushes).reshape(-1)
         factor = (k + 1.0) * (k + 2.0)
         turn = 0.5 * factor * reach * (n[1 : k + 2] * n[k + 1 : 0 : -1]).sum(0).sum(0)
-        lam[k, 0] = away @ (J @ a + turn)
-        Q[k + 2] = (a + lam[k, 0] @ push) / factor
+        for _ in range(2):  # once more, for the last digits
+            force = away @ (J @ a + turn)
+            lam[k, 0] += force
+            a = a + force @ push
+        Q[k + 2] = a / factor
     return lam[:, 0]
 
 
