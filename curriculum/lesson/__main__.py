@@ -4,7 +4,7 @@ from curriculum.commands import Parser, needs
 
 with needs("bench"):
     import contact
-    from curriculum import fast
+    from curriculum import exact, fast
 
 if __name__ == "__main__":
     Parser(prog="python -m curriculum.lesson", description=__doc__).parse_args()
@@ -13,4 +13,6 @@ if __name__ == "__main__":
         fast.run_model(model, scene, 0.002, 2, contact.Settings())
         print(f"compiled: {model}", flush=True)
     fast.smallest_gap(scene.q0[None], scene.radius)
-    print("compiled: the smallest gap")
+    print("compiled: the smallest gap", flush=True)
+    exact.compile_loops()
+    print("compiled: exact")

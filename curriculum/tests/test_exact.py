@@ -244,6 +244,32 @@ def test_at_the_moment_of_an_impact_the_velocities_are_those_after_all_its_round
     assert run(pair, [0.0])[1][0, 1] == pytest.approx([0.5, 1.0], abs=1e-15)
 
 
+def test_a_ball_passes_between_two_fixed_ones_that_it_touches_and_is_not_crushed():
+    """A hair above their line it closes on both, and no push could help; it falls as if free."""
+    scene = scene_of([0.0, 2.0 * R, 4.0 * R], [1.0, 1.0 + 1e-9, 1.0], np.array((np.inf, 1, np.inf)))
+    scene.v0[1, 1] = -0.04
+    q, _ = run(scene, [0.0, 0.3])
+    assert q[1, 1, 1] == pytest.approx(1.0 + 1e-9 - 0.04 * 0.3 - 0.5 * G * 0.3**2, abs=1e-9)
+
+
+def test_a_heap_in_a_box_comes_to_rest_and_stays_for_hours():
+    """What rounding leaves of v and a at rest is 0: else the heap creeps, by 1e-6 r in hours."""
+    rng, k = np.random.default_rng(0), np.arange(6)
+    x, y = k % 4 * 0.21 + 0.12 + rng.uniform(-0.005, 0.005, 6), 0.15 + 0.25 * (k // 4)
+    walls = [-R, -R, 0.95, 0.95], [R, 3.0 * R, R, 3.0 * R]
+    mass = np.array([np.inf] * 4 + [1.0] * 6)
+    scene = scene_of(np.append(walls[0], x), np.append(walls[1], y + rng.uniform(0, 0.02, 6)), mass)
+    q, v = run(scene, [0.0, 60.0, 1e4])
+    assert np.array_equal(q[1], q[2]) and not v[1:].any()
+
+
+def test_whole_number_masses_are_masses():
+    scene = scene_of([0.0, 1.0], [1.0, 3.0], np.array((1, 2)), restitution=0.5)
+    assert np.array_equal(
+        run(scene, [0.0, 1.0]), run(scene._replace(mass=np.array((1.0, 2.0))), [0.0, 1.0])
+    )
+
+
 def test_fixed_balls_alone_and_no_ball_in_reach_make_no_event():
     q, v = run(scene_of([0.0, 0.1], [R, R], np.inf), [0.0, 1.0])
     assert np.array_equal(q[0], q[1]) and not v.any()

@@ -10,7 +10,7 @@ FAULTS = [
     (E, "LAST = 1e-13", "LAST = 1e-9", ANY),
     (E, "NOISE = 1e-12", "NOISE = 1e-8", ANY),
     (E, "NOISE = 1e-12", "NOISE = 1e-17", ANY),
-    (E, "np.minimum(self.small, 1e-4 * opened)", "self.small", BLOCKS),
+    (E, "still | (self.gap[near] <= 1e-4 * opened)", "still | (self.gap[near] <= 1.0)", BLOCKS),
     (E, "1e4 * self.small", "0.0", BLOCKS),
     (E, "np.minimum(4.0 * self.bits, 1e-9 * gap)", "4.0 * self.bits", T + "a_hair_above"),
     (E, "min((1e-16 / size)", "min((1e-9 / size)", T + "'slides or pyramid'"),
@@ -22,14 +22,14 @@ FAULTS = [
      T + "weight_above"),
     # impacts and what rests
     (E, "target = -self.e * v_n\n", "target = -self.e * np.abs(v_n)\n", ANY),
-    (E, "resting.across(self.v) ** 2 / resting.reach", "0.0 * resting.reach",
+    (E, "self.slip(touching, self.v) ** 2 / self.reach[touching]", "0.0 * self.reach[touching]",
      T + "'slides_off or pyramid'"),
     (E, "lam[0] = np.maximum(lam[0], 0.0) + NOISE",
      "lam[0] = np.maximum(lam[0], 0.0) + 1e9 * NOISE", T + "two_thirds"),
-    (E, "for _ in range(50):  # what a push", "for _ in range(0):  # what a push",
+    (E, "for _ in range(50):  # move apart", "for _ in range(0):  # move apart",
      T + "overlap_at_the_start"),
     # flights
-    (E, "4.0 * value * bend", "2.0 * value * bend", HEAP),
+    (E, "4.0 * max(value, 0.0) * bend", "2.0 * max(value, 0.0) * bend", HEAP),
     (E, "if state == self.saved and any(", "if state == self.saved or any(", T + "parabolas"),
     (E, "times % starts[-1]", "times % (starts[-1] * (1.0 + 1e-9))", T + "in_phase"),
 ]  # fmt: skip
