@@ -423,7 +423,7 @@ def loops():
 
 
 def compile_loops():
-    """Compile them, and keep them on disk; the first time that takes about 20 s. Returns the module."""
+    """Compile them and keep them on disk: about 20 s, the first time. Returns the module."""
     flags, row, table = np.ones(1, bool), np.ones(1), np.ones((1, 1))
     slide = table, row, row, table, table, table, row, row, table
     gaps = np.ones((1, 2, 1)), row, row, flags, row, table, math.inf
