@@ -5,7 +5,6 @@ ANSWERS, T = "exercises/kit/answers.json", "test_exercises.py -k "
 FAULTS = [
     # what is judged
     (JUDGE, "allowed = within * np", "allowed = 1e7 * within * np", T + "wrong_fill"),
-    (JUDGE, "right[np.isfinite(right)]", "right", T + "wrong_fill"),
     (JUDGE, ".squeeze())", ".ravel())", T + "step_matrix"),
     (SLIPS, "len(made) > 3 and np", "False and np", T + "wrong_fill"),
     (SLIPS, "(bool(got[0])", "(got[0]", T + "right_fill"),
