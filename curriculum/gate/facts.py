@@ -3,12 +3,15 @@
 Each returns {name: number}; the text quotes one as {{fact:jump.before}}.
 """
 
+import inspect
 import itertools
 import math
+from functools import partial
 
 import numpy as np
 
 import contact
+from curriculum.core import core_step, turn
 from curriculum.implicit import implicit_step
 
 DT = 0.002
@@ -153,8 +156,57 @@ def blocks():
     return values
 
 
+def predict():
+    """What a pencil says of the drop [r]: penalty's and lcp's deepest overlap, and lcp's hop."""
+    scene, g = contact.build_scene("drop"), -contact.GRAVITY
+    speed = math.sqrt(2.0 * g * (float(scene.q0[1, 0]) - contact.RADIUS))
+    depth, beta = landing()["depth"] / 1000.0, contact.Settings().baumgarte
+    leaves = beta * depth / DT
+    return {
+        "dive_penalty": speed * math.sqrt(1.0 / contact.Settings().stiffness) / contact.RADIUS,
+        "dive_lcp": (speed * DT - contact.CONTACT_MARGIN) / contact.RADIUS,
+        "hop": (leaves**2 / (2.0 * g) - (depth - leaves * DT)) / contact.RADIUS,
+        "hop_full": (depth / DT) ** 2 / (2.0 * g) / contact.RADIUS,
+    }
+
+
+LEFT_OUT = {  # what of core_step: what stands there, what then stands there instead
+    "whole": ("", ""),
+    "kick": ("0.5 * dt)\n    contact.solve", "dt)\n    contact.solve"),
+    "lam": ("        turn(c)\n", "        turn(c)\n        c.lam = 0.0\n"),
+    "normals": ("        turn(c)\n", ""),
+    "all": ("[c for c in contacts if c.lam > 0.0]", "contacts"),
+    "margin": ("contact.step_reach(balls, dt)", "contact.CONTACT_MARGIN"),
+}
+
+
+def core():
+    """What leapfrog's core is worth without one of its lines [r].
+
+    drop, slide: the worst error; inside: how high a ball flies that starts 0.3 r in the table.
+    """
+    source, values = inspect.getsource(core_step), {}
+    problems = {"drop": (contact.build_scene("drop"), 2000), "slide": (_on_a_ball(), 240)}
+    for name, (old, new) in LEFT_OUT.items():
+        made = {"contact": contact, "turn": turn}
+        changed = source.replace(old, new) if old else source
+        if name == "kick":
+            changed = changed.replace("    contact.accelerate(balls, 0.5 * dt)\n", "")
+        exec(changed, made)
+        step = partial(made["core_step"], dt=DT, iters=20)
+        values[name] = {}
+        for problem, (scene, steps) in problems.items():
+            run = contact.simulate(step, scene, DT, steps)
+            right = contact.run_model("exact", scene, DT, steps)
+            off = np.hypot(*(run.q - right.q)[:, :, -1].T).max()
+            values[name][problem] = float(off) / contact.RADIUS
+        run = contact.simulate(step, contact.scene_of(0.0, 0.07), DT, 500)
+        values[name]["inside"] = float(run.q[:, 1].max() - contact.RADIUS) / contact.RADIUS
+    return values
+
+
 FACTS = {
     each.__name__: each
-    for each in (implicit_spring, sweeps, landing, jump, soft_heavy)
+    for each in (implicit_spring, sweeps, landing, jump, soft_heavy, predict, core)
     + (slide, order, friction, blocks)
 }

@@ -15,7 +15,12 @@ from typing import NamedTuple
 
 from curriculum.commands import ROOT
 
-LITERATE = ("contact.py", "curriculum/exact.py", "curriculum/implicit.py")  # what has regions
+LITERATE = (  # what has regions
+    "contact.py",
+    "curriculum/exact.py",
+    "curriculum/implicit.py",
+    "curriculum/core.py",
+)
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
 NAME = r"[a-z][a-z0-9_-]*"
 REGION = re.compile(
