@@ -20,9 +20,11 @@ export function startBet(box) {
     stored((held) => held.setItem(KEY + box.id, JSON.stringify(bet)));
   };
   function show() {
-    for (const each of choices) each.setAttribute("aria-pressed", String(each.dataset.choice === bet.choice));
+    for (const each of choices) each.setAttribute("aria-pressed",
+      String(each.dataset.choice === bet.choice));
     const right = bet.choice === answer.dataset.right;
-    box.querySelector(".verdict").textContent = right ? "You bet on it, and it is so." : "It comes out otherwise.";
+    box.querySelector(".verdict").textContent = right ? "You bet on it, and it is so."
+      : "It comes out otherwise.";
   }
   if (bet.choice) show();
   answer.open = Boolean(bet.choice);

@@ -119,8 +119,10 @@ export const axis = (domain, name, ...at) => ({
 
 // An axis of powers of ten, from 10^low to 10^high, with a tick at every so manieth.
 export function tens(low, high, name, every = 1) {
-  const powers = Array.from({ length: Math.floor((high - low) / every) + 1 }, (_, k) => low + k * every);
-  return { ...axis([10 ** low, 10 ** high], name, ...powers.map((p) => [10 ** p, tenTo(p)])), log: true };
+  const powers = Array.from({ length: Math.floor((high - low) / every) + 1 }, (_, k) =>
+    low + k * every);
+  return { ...axis([10 ** low, 10 ** high], name, ...powers.map((p) => [10 ** p, tenTo(p)])),
+    log: true };
 }
 
 // About `most` round numbers between low and high.
@@ -156,7 +158,8 @@ export function plot([edge, above, width, height], { x, y, lines = [], rules = [
   const wide = Math.max(0, ...y.ticks.map(([, text]) => text.length));
   const box = {
     left: edge + Math.max(26, 12 + 8.4 * wide), right: edge + width - 12,
-    top: above + (y.label ? 28 : 8), bottom: above + height - (x.label ? 46 : x.ticks.length ? 26 : 6),
+    top: above + (y.label ? 28 : 8), bottom: above + height - (x.label ? 46 : x.ticks.length ? 26
+      : 6),
   };
   const [sx, sy] = [scaleOf(x, box.left, box.right), scaleOf(y, box.bottom, box.top)];
   const chart = { sx, sy, box };
@@ -175,7 +178,8 @@ export function plot([edge, above, width, height], { x, y, lines = [], rules = [
   const ruled = rules.map(({ x: atX, y: atY, text = "", kind = "", side = "start", row = 0 }) => {
     const [toX, toY] = [sx(atX ?? 0), sy(atY ?? 0)];
     if (atX === undefined)
-      return [line(box.left, toY, box.right, toY, `rule ${kind}`), label(text, box.right - 4, toY - 7, "end")];
+      return [line(box.left, toY, box.right, toY, `rule ${kind}`),
+        label(text, box.right - 4, toY - 7, "end")];
     const told = label(text, toX + (side === "end" ? -6 : 6), box.top + 14 + 20 * row, side);
     return [line(toX, box.top, toX, box.bottom, `rule ${kind}`), told];
   });
@@ -186,7 +190,8 @@ export function plot([edge, above, width, height], { x, y, lines = [], rules = [
   ]);
   const inside = [ruled.map(([rule]) => rule), drawn];
   const picture = [
-    under ? under(chart) : "", across, along, line(box.left, box.bottom, box.right, box.bottom, "axis"),
+    under ? under(chart) : "", across, along, line(box.left, box.bottom, box.right, box.bottom,
+      "axis"),
     y.label ? label(y.label, edge, above + 14, "start", "axis-name") : "",
     x.label ? label(x.label, box.right, above + height - 4, "end", "axis-name") : "",
     clipped(box.left, box.top - 3, box.right - box.left, box.bottom - box.top + 6, inside),

@@ -23,6 +23,14 @@ document.addEventListener("click", (event) => {
   if (bottom < 120 || top > window.innerHeight - 120) box.scrollIntoView({ block: "center" });
 });
 
+// On a phone code is folded, since it is wider than the screen.
+const narrow = window.matchMedia("(max-width: 40rem)");
+const unfold = () => {
+  for (const each of document.querySelectorAll("details.source")) each.open = !narrow.matches;
+};
+narrow.addEventListener("change", unfold);
+unfold();
+
 // On paper the answers of bets are read.
 let opened = [];
 window.addEventListener("beforeprint", () => {

@@ -44,19 +44,19 @@ function blank(n, dt, steps) {
 // One zero and one NaN, as contact.py writes them.
 const write = (run, row, balls) =>
   balls.forEach((ball, i) => {
-    for (const key of PARTS) run[key][row * run.n + i] = ball[key] === ball[key] ? ball[key] + 0 : NaN;
+    for (const key of PARTS) run[key][row * run.n + i] = ball[key] === ball[key] ? ball[key] + 0
+      : NaN;
   });
 
-/* The recording of a model; the balls are at its end afterwards. push(balls, row): before each
- * step, forces may be set; see(row, contacts) after it. */
-export function record(model, balls, knobs, steps, { push = () => {}, see = () => {} } = {}) {
+// The recording of a model; before each step push(balls) may set forces.
+export function record(model, balls, knobs, steps, push = () => {}) {
   const run = blank(balls.length, knobs.dt, steps);
   if (model === "exact") return recordExact(run, balls, knobs.restitution ?? 0);
   const step = stepOf(model, knobs);
   write(run, 0, balls);
   for (let row = 1; row <= steps; row++) {
-    push(balls, row);
-    see(row, step(balls));
+    push(balls);
+    step(balls);
     write(run, row, balls);
   }
   return run;
@@ -74,7 +74,8 @@ function recordExact(run, balls, restitution) {
     const fly = (t) =>
       balls.map(({ x, y, vx, vy }, k) =>
         ({ x, y: y + t * (vy + 0.5 * t * a[k]), vx, vy: vy + t * a[k] }));
-    for (; row <= run.steps && run.t[row] < now + span; row++) write(run, row, fly(run.t[row] - now));
+    for (; row <= run.steps && run.t[row] < now + span; row++) write(run, row,
+      fly(run.t[row] - now));
     fly(span).forEach((each, k) => Object.assign(balls[k], each));
     [now, touching] = [now + span, next];
   }

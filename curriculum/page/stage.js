@@ -42,7 +42,8 @@ export const stateOf = (figure, given) =>
 export function viewOf(figure, given, width = WIDTH) {
   const own = stateOf(figure, given);
   const { height } = figure;
-  const view = { own, text: { ...own }, width, set() {}, play() {}, running: false, grab: (_, shape) => shape };
+  const view = { own, text: { ...own }, width, set() {}, play() {}, running: false,
+    grab: (_, shape) => shape };
   Object.defineProperty(view, "height", { get: () => height(view.width, own) });
   view.point = (x, y, what) =>
     view.grab(what, svg`${circle(x, y, 22, "halo")}${circle(x, y, 8, "knob-dot")}`);
@@ -68,7 +69,8 @@ function slider(view, name) {
   const quantity = QUANTITIES[name];
   const { low, high, step } = range(quantity);
   const value = view.own[name];
-  const put = ({ target }) => view.set({ [name]: fromPlace(name, view.text[name], Number(target.value)) });
+  const put = ({ target }) => view.set({ [name]: fromPlace(name, view.text[name],
+    Number(target.value)) });
   const told = `${Number(value.toPrecision(4)).toLocaleString("en")} ${quantity.unit}`;
   return html`<label class="knob"><span>${quantity.label}</span><input type="range" min=${low}
     max=${high} step=${step} .value=${String(toSlider(quantity, value))} aria-valuetext=${told}
@@ -120,7 +122,8 @@ function grabbing(view, box) {
       if (!(by || lets) || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
       if (lets) release();
-      else put(now().map((v, k) => v + (names.length > 1 ? by[k] : by[0] + by[1]) * size[k % size.length]));
+      else put(now().map((v, k) => v + (names.length > 1 ? by[k]
+        : by[0] + by[1]) * size[k % size.length]));
     };
     return svg`<g class="handle" role="slider" tabindex="0" aria-label=${label} aria-valuetext=${text}
       aria-valuenow=${now()[0]} @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
@@ -161,7 +164,8 @@ export function stage(box, figure, given, still) {
     view.set({ time: loops ? time % end : Math.min(end, time) });
     if (view.running) requestAnimationFrame(tick);
   }
-  const same = () => Object.keys(view.text).every((name) => name === "time" || view.own[name] === view.text[name]);
+  const same = () => Object.keys(view.text).every((name) => name === "time"
+    || view.own[name] === view.text[name]);
   const back = () => {
     Object.assign(view.own, view.text);
     view.stop();
@@ -171,8 +175,8 @@ export function stage(box, figure, given, still) {
   function draw() {
     frame = 0;
     if (!near) return;
-    const { picture, words, values } = figure.draw(view);
-    view.values = values;
+    const { picture, words } = figure.draw(view);
+    const said = words.replace(/(\d) (?=(?:r|s|ms|mm|m|N|kg|m\/s|N\/m)\b)/g, "$1\u00a0");
     const press = (act) => () => {
       act(view);
       view.set({});
@@ -181,7 +185,7 @@ export function stage(box, figure, given, still) {
     const buttons = figure.buttons?.(view) ?? [];
     render(html`<svg class="plot" viewBox="0 0 ${view.width} ${view.height}" role="group"
       aria-label=${figure.title}>${picture}</svg>
-      <figcaption>${figure.caption}</figcaption><p class="words">${words}</p>
+      <figcaption>${figure.caption}</figcaption><p class="words">${said}</p>
       <div class="controls">${knobs.map((name) => slider(view, name))}
       <div class="buttons">${buttons.map(([text, act, pressed]) => html`<button type="button"
         aria-pressed=${pressed ?? nothing} @click=${press(act)}>${text}</button>`)}

@@ -25,7 +25,8 @@ function still([name, given]) {
     const { title, caption, height, knobs = [], buttons = () => [] } = figure;
     const sliders = typeof knobs === "function" ? knobs(view.own) : knobs;
     const heights = [WIDE, NARROW].map((width) => height(width, view.own));
-    return { svg: textOf(picture), words, values, title, caption, heights, knobs: sliders.length, buttons: buttons(view).length };
+    return { svg: textOf(picture), words, values, title, caption, heights, knobs: sliders.length,
+      buttons: buttons(view).length };
   } catch (error) {
     throw new Error(`the figure ${name}: ${error.message}`);
   }

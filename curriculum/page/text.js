@@ -1,7 +1,8 @@
 /* lit's templates as text, for the stills that are drawn when the page is built: what listens is
  * left out, and what is no template itself is escaped. */
 const escape = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
-const told = (value) => value?.markup ?? (Array.isArray(value) ? value.map(told).join("") : escape(value ?? ""));
+const told = (value) => value?.markup ?? (Array.isArray(value) ? value.map(told).join("")
+  : escape(value ?? ""));
 
 export function svg(strings, ...values) {
   let markup = "";
@@ -9,7 +10,8 @@ export function svg(strings, ...values) {
     const listens = typeof values[k] === "function";
     const bare = /=$/.test(string) && !listens;
     const text = listens ? string.replace(/\s@\w+=$/, "") : string;
-    markup += text + (k < values.length && !listens ? (bare ? `"${told(values[k])}"` : told(values[k])) : "");
+    markup += text + (k < values.length && !listens
+      ? (bare ? `"${told(values[k])}"` : told(values[k])) : "");
   });
   return { markup: markup.replace(/\s+/g, " ") };
 }

@@ -12,12 +12,14 @@ function leaves(vx, vy, solve) {
   const [one, held] = [new Ball(0, 0, vx, vy, 1, R), new Ball(0, 0, 0, 0, Infinity, R)];
   const contacts = SIDES.map((side) => new Contact(one, held, -0.6 * side, 0.8, 0));
   solve(contacts, 20);
-  return { vx: one.vx, vy: one.vy, lam: contacts.map(({ lam }) => lam), speed: Math.hypot(one.vx, one.vy) };
+  return { vx: one.vx, vy: one.vy, lam: contacts.map(({ lam }) => lam),
+    speed: Math.hypot(one.vx, one.vy) };
 }
 
 function draw(view) {
   const { vx, vy } = view.own;
-  const [right, wrong] = [solve_contacts, solve_contacts_each].map((solve) => leaves(vx, vy, solve));
+  const [right, wrong] = [solve_contacts, solve_contacts_each].map((solve) =>
+    leaves(vx, vy, solve));
   const r = Math.min(50, view.width / 9.5);
   const [y, scale] = [view.height - 3.3 * r, 1.7 * r]; // px of an arrow for 1 m/s
   const groove = (after, title, x) => [
@@ -29,11 +31,13 @@ function draw(view) {
       return arrow("push m-lcp", x + side * 0.6 * r - dx, y + 0.8 * r - dy, dx, dy);
     }),
     after.speed > 1e-3 ? arrow("weight", x, y, scale * after.vx, -scale * after.vy) : "",
-    label(`leaves: ${number(after.speed < 1e-3 ? 0 : after.speed, 2)} m/s`, x, view.height - 6, "middle"),
+    label(`leaves: ${number(after.speed < 1e-3 ? 0 : after.speed, 2)} m/s`, x, view.height - 6,
+      "middle"),
   ];
   const x = view.width / 4;
   const what = {
-    label: "where the ball comes from", value: ["vx", "vy"], low: [-1.2, -1.6], high: [1.2, -0.1], step: 0.1,
+    label: "where the ball comes from", value: ["vx", "vy"], low: [-1.2, -1.6], high: [1.2,
+      -0.1], step: 0.1,
     text: `${number(vx, 2)} m/s to the right and ${number(-vy, 2)} m/s down`,
     at: (toX, toY) => [-toX / scale, toY / scale],
   };

@@ -12,7 +12,8 @@ const START = data.scenes.drop.start;
 
 // At least so many seconds, and so many steps.
 const ring = (dt, stiffness, damping) =>
-  record("penalty", column(START), { dt, stiffness, damping }, Math.max(STEPS, Math.round(SECONDS / dt)));
+  record("penalty", column(START), { dt, stiffness, damping },
+    Math.max(STEPS, Math.round(SECONDS / dt)));
 
 // How far the ball still moves in the last quarter [r].
 function moves({ y }) {
@@ -38,18 +39,23 @@ function draw(view) {
   const critical = critical_dt(1, stiffness, damping);
   const popular = critical_dt(1, stiffness, 0);
   const right = critical > 0.006 ? "end" : "start";
-  const rules = [{ x: critical, text: `with its damper: ${number(1000 * critical)} ms`, side: right }];
+  const rules = [{ x: critical, text: `with its damper: ${number(1000 * critical)} ms`,
+    side: right }];
   if (popular < HIGH && view.width >= 480)
-    rules.push({ x: popular, text: `2√(m/k): ${number(1000 * popular)} ms`, kind: "dashed", row: 1, side: right });
+    rules.push({ x: popular, text: `2√(m/k): ${number(1000 * popular)} ms`, kind: "dashed", row: 1,
+      side: right });
   const chart = plot([0, 0, view.width, view.height], {
-    x: { ...axis([LOW, HIGH], "time step dt (ms)", ...[0.5, 1, 2, 4, 8, 16, 32, 64].map((ms) => [ms / 1000, plain(ms)])), log: true },
-    y: { ...axis([NONE, FARTHEST], "still moving at the end / r", [NONE, "0"], 0.001, 1, 1000, [1e6, tenTo(6)]), log: true },
+    x: { ...axis([LOW, HIGH], "time step dt (ms)",
+      ...[0.5, 1, 2, 4, 8, 16, 32, 64].map((ms) => [ms / 1000, plain(ms)])), log: true },
+    y: { ...axis([NONE, FARTHEST], "still moving at the end / r", [NONE, "0"], 0.001, 1, 1000,
+      [1e6, tenTo(6)]), log: true },
     lines: [{ model: "penalty", points: curve(stiffness, damping), kind: "plainly" }], rules,
   });
   const explodes = !(gained < 10);
   const rests = far <= NONE;
   const gains = gained > 1e-9 ? `gains ${number(gained, 4)} times its energy` : "gains no energy";
-  const ends = explodes ? "it explodes" : rests ? `it comes to rest ${number(G / stiffness / R, 2)} r deep` : "it never rests";
+  const ends = explodes ? "it explodes" : rests
+    ? `it comes to rest ${number(G / stiffness / R, 2)} r deep` : "it never rests";
   const [x, y] = [chart.sx(within(LOW, dt, HIGH)), chart.sy(far)];
   const what = {
     label: "the time step", text: `${number(1000 * dt)} ms: ${ends}`, value: "dt", low: LOW, high: HIGH,

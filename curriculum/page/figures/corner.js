@@ -1,7 +1,8 @@
 /* The corner, three times: gap to the right, force upwards, what a model allows as a thick line, and
  * the state that runs along it while the ball is lifted or pressed into the table. Values: gap [r]
  * and force [m g]. */
-import { arrow, axis, ball, circle, clipped, line, mark, number, path, plot, svg, table } from "../draw.js";
+import { arrow, axis, ball, circle, clipped, line, mark, number, path, plot, svg,
+  table } from "../draw.js";
 import { label, through, within } from "../draw.js";
 import { Contact, FLOOR, soft_defaults, soften } from "../contact.js";
 import { column, G, kept, R, record } from "../runs.js";
@@ -31,7 +32,8 @@ function corner(model, law, { shown = WIDE, hand = 0.5, ...about }) {
       x: axis([shown.low, shown.high], "gap / r", ...shown.xs),
       y: axis([-0.035 * shown.most, 1.07 * shown.most], "force / m g", ...shown.ys),
       lines: [{ model, points: curve, kind: "law plainly" }],
-      under: ({ sx, sy, box }) => path([[box.right, sy(0)], [sx(0), sy(0)], [sx(0), box.top]], "allowed"),
+      under: ({ sx, sy, box }) => path([[box.right, sy(0)], [sx(0), sy(0)], [sx(0), box.top]],
+        "allowed"),
     });
     const seen = [within(shown.low, gap, shown.high), Math.min(1.05 * shown.most, load)];
     const text = `gap ${number(gap, 2)} r, force ${number(load, 2)} m g`;
@@ -40,14 +42,20 @@ function corner(model, law, { shown = WIDE, hand = 0.5, ...about }) {
       at: (_, to) => -to / r, also: { time: 0 }, release: free && (() => view.play(0)),
     };
     const held = own.time === 0;
-    const doing = !held ? "Let go" : pressed > 0 ? `Pressed with ${number(pressed, 2)} m g` : "Held by the hand";
+    const doing = !held ? "Let go" : pressed > 0 ? `Pressed with ${number(pressed, 2)} m g`
+      : "Held by the hand";
     return {
       picture: [
-        clipped(0, 0, left, height, table(0, floor, left, 74), below ? below(x, Math.max(y + r, floor), height) : "",
-          held && own.hand > 0 ? line(x, y, x, 0) : arrow("weight", x, y - r - 14 - 3 * Math.sqrt(held ? load : 1), 0, 10 + 3 * Math.sqrt(held ? load : 1)),
-          arrow(`push m-${model}`, x + r + 12, floor, 0, (-100 * Math.sqrt(load)) / Math.sqrt(shown.most))),
+        clipped(0, 0, left, height, table(0, floor, left, 74), below
+          ? below(x, Math.max(y + r, floor), height) : "",
+          held && own.hand > 0 ? line(x, y, x, 0)
+            : arrow("weight", x, y - r - 14 - 3 * Math.sqrt(held ? load : 1), 0,
+            10 + 3 * Math.sqrt(held ? load : 1)),
+          arrow(`push m-${model}`, x + r + 12, floor, 0,
+            (-100 * Math.sqrt(load)) / Math.sqrt(shown.most))),
         view.grab(what, ball(model, x, y, r)),
-        shown === NEAR ? [lens(model, 44, 46, -gap, 40, 12 * r), label("× 12", 90, 22, "start", "tick")] : "",
+        shown === NEAR ? [lens(model, 44, 46, -gap, 40, 12 * r),
+          label("× 12", 90, 22, "start", "tick")] : "",
         chart.picture, mark(model, chart.sx(seen[0]), chart.sy(seen[1]), 7),
       ],
       words: `${doing}: ${text}.`,
@@ -117,7 +125,8 @@ export const figures = {
     caption: "A ramp beside the wall: the ball must get in before the table pushes.",
     hand: -0.5, knobs: ["stiffness"],
     clock: () => ({ end: SECONDS, rate: 0.25 }),
-    buttons: (view) => [view.running ? ["Stop", view.stop] : ["Let go", () => view.play(view.own.time)]],
+    buttons: (view) => [view.running ? ["Stop", view.stop]
+      : ["Let go", () => view.play(view.own.time)]],
   }),
   "corner-soft": corner("soft", rounded, {
     title: "soft rounds the corner off",

@@ -26,7 +26,8 @@ function runsOf(own) {
   const { scene, models, dt, lift, until } = own;
   const heights = data.scenes[scene].start.map((y) => y + lift);
   const names = MODELS.filter((model) => models.split(",").includes(model));
-  const all = names.map((model) => run(model, heights, knobsOf(own, model), Math.ceil(Math.max(own.to, own.from + 8 * dt) / dt)));
+  const all = names.map((model) => run(model, heights, knobsOf(own, model),
+    Math.ceil(Math.max(own.to, own.from + 8 * dt) / dt)));
   const landing = Math.max(1, Math.min(...all.map((each) => each.landing)) - 1) * dt;
   const to = until ? landing : Math.max(own.from + 8 * dt, own.to);
   return { all, to, from: until ? 0 : own.from };
@@ -36,15 +37,18 @@ const heightsIn = ({ made: { n, y } }, row) => Array.from(y.subarray(row * n, (r
 
 const placeWords = (gap) => {
   if (!Number.isFinite(gap)) return "nowhere";
-  return Math.abs(gap) < 5e-5 ? "touching" : `${number(Math.abs(gap), 2)} r ${gap < 0 ? "in" : "up"}`;
+  return Math.abs(gap) < 5e-5 ? "touching"
+    : `${number(Math.abs(gap), 2)} r ${gap < 0 ? "in" : "up"}`;
 };
 
 // A model's balls, held by the hand; from above what a picture holds, an arrow and how high.
 function lane(view, each, row, k, { floor, scale, wide, top }) {
-  const [x, heights, start] = [wide * (k + 0.5), heightsIn(each, row), data.scenes[view.own.scene].start];
+  const [x, heights, start] = [wide * (k + 0.5), heightsIn(each, row),
+    data.scenes[view.own.scene].start];
   const r = Math.max(5, R * scale);
   const shown = heights.map((height) => {
-    if (height < top + R) return ball(each.model, x, Math.min(floor + r, floor - height * scale), r);
+    if (height < top + R) return ball(each.model, x, Math.min(floor + r, floor - height * scale),
+      r);
     const far = Number.isFinite(height) ? `${number(height, 2)} m` : "out of sight";
     return [arrow("weight", x, 54, 0, -30), label(far, x, 70, "middle", "tick")];
   });
@@ -67,10 +71,13 @@ function chartOf(view, { all, from, to }, top) {
   const shown = all.map(({ model, made, gaps }, k) => {
     const [first, last] = [from, to].map((t) => Math.round(t / made.dt));
     const points = gaps.slice(first, last + 1).map((gap, i) => [made.t[first + i], gap]);
-    return { model, points, marks: [0.12, 0.37, 0.62, 0.87].map((s) => Math.round((s + 0.05 * k) * points.length)) };
+    return { model, points, marks: [0.12, 0.37, 0.62, 0.87].map((s) =>
+      Math.round((s + 0.05 * k) * points.length)) };
   });
-  const finite = shown.flatMap(({ points }) => points.map(([, gap]) => gap)).filter(Number.isFinite);
-  const [low, high] = [finite.reduce((a, b) => Math.min(a, b), -0.05), finite.reduce((a, b) => Math.max(a, b), 0)];
+  const finite = shown.flatMap(({ points }) =>
+    points.map(([, gap]) => gap)).filter(Number.isFinite);
+  const [low, high] = [finite.reduce((a, b) => Math.min(a, b), -0.05),
+    finite.reduce((a, b) => Math.max(a, b), 0)];
   const most = Math.min(high, Math.max(2, -2 * low), (HIGHEST - R) / R);
   const domain = [Math.max(low, -10) - 0.06 * (most - low), most + 0.06 * (most - low)];
   const time = within(from, from + view.own.time, to);
@@ -104,11 +111,13 @@ function draw(view) {
     picture: [
       table(0, floor, view.width, GROUND),
       all.map((each, k) => lane(view, each, row, k, { floor, scale, wide, top })),
-      line(4, floor, 4, floor - 0.2 * scale, "rule"), label("0.2 m", 2, floor - 0.2 * scale - 7, "start", "tick"),
+      line(4, floor, 4, floor - 0.2 * scale, "rule"), label("0.2 m", 2, floor - 0.2 * scale - 7,
+        "start", "tick"),
       chartOf(view, seen, chartTop),
     ],
     words: `${time.toFixed(3)} s: ${told.join(", ")}.`,
-    values: { time, row, top, gaps: Object.fromEntries(all.map(({ model }, k) => [model, gaps[k]])) },
+    values: { time, row, top, gaps: Object.fromEntries(all.map(({ model }, k) =>
+      [model, gaps[k]])) },
   };
 }
 
@@ -133,7 +142,8 @@ export const figure = {
       view.stop();
       view.own.time = Math.min(lengthOf(view), view.own.time + view.own.dt);
     }],
-    [`${view.own.slower} × slower`, () => (view.own.slower = { 6: 30, 30: 1, 1: 6 }[view.own.slower])],
+    [`${view.own.slower} × slower`, () => (view.own.slower = { 6: 30, 30: 1,
+      1: 6 }[view.own.slower])],
     ["From the start", () => (view.own.time = 0)],
   ],
   draw,

@@ -13,13 +13,11 @@ const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be chosen
 const FATES = ["holds still", "trembles", "flies apart"];
 
 function squeeze(dt, stiffness, late, x, seconds) {
+  const balls = column([R, R, R], { x, mass: MASS });
+  const knobs = { dt, stiffness, damping: DAMPING };
+  const push = () => balls.forEach((ball, i) => (ball.fx = MOTOR[i]));
   const steps = Math.ceil(seconds / dt - 1e-9);
-  const push = (balls) => balls.forEach((ball, i) => {
-    // as a force of the step; the implicit one has taken it up and is rid of it
-    ball.fx = MOTOR[i];
-  });
-  const model = late ? "implicit" : "penalty";
-  return record(model, column([R, R, R], { x, mass: MASS }), { dt, stiffness, damping: DAMPING }, steps, { push });
+  return record(late ? "implicit" : "penalty", balls, knobs, steps, push);
 }
 
 // How deep finger and cup are in one another, row by row [r], and what happens in the end.
@@ -52,28 +50,33 @@ const field = kept((late) =>
 
 // Fingers and cup over the table, seen from further away once they have flown apart.
 function picture({ n, x, y, steps }, row, { width, floor }) {
-  const far = Math.max(0.32, ...Array.from(x.subarray(n * row, n * (row + 1)), Math.abs).map((each) => Math.min(each, 99)));
+  const far = Math.max(0.32, ...Array.from(x.subarray(n * row, n * (row + 1)),
+    Math.abs).map((each) => Math.min(each, 99)));
   const scale = (width / 2 - 4) / (far + R); // px for 1 m
   const r = Math.max(5, R * scale);
-  const at = Array.from({ length: n }, (_, i) => [x, y].map((all) => Math.min(99, Math.max(-99, all[n * row + i] || 0))));
+  const at = Array.from({ length: n }, (_, i) =>
+    [x, y].map((all) => Math.min(99, Math.max(-99, all[n * row + i] || 0))));
   const places = at.map(([px, py]) => [width / 2 + px * scale, floor - Math.max(R, py) * scale]);
   const [[leftX, leftY], [cupX, cupY], [rightX, rightY]] = places;
   const arms = far > 0.32 ? [] : [
-    rect(0, leftY - 0.3 * r, leftX, 0.6 * r, "arm"), rect(rightX, rightY - 0.3 * r, width - rightX, 0.6 * r, "arm"),
+    rect(0, leftY - 0.3 * r, leftX, 0.6 * r, "arm"), rect(rightX, rightY - 0.3 * r, width - rightX,
+      0.6 * r, "arm"),
   ];
   const ten = 10 ** Math.floor(Math.log10((0.3 * width) / scale));
   return { r, touch: [(leftX + cupX) / 2, cupY], drawn: [
     table(0, floor, width, 24), arms,
     places.map(([px, py], i) => ball(i === 1 ? "penalty" : "fixed", px, py, r, "plainly ball")),
     svg`<ellipse cx=${cupX} cy=${cupY - 0.72 * r} rx=${0.62 * r} ry=${0.15 * r} class="cup"/>`,
-    far > 0.32 ? [line(8, 22, 8 + ten * scale, 22, "rule"), label(`${number(ten, 1)} m`, 8, 16, "start", "tick")] : "",
+    far > 0.32 ? [line(8, 22, 8 + ten * scale, 22, "rule"),
+      label(`${number(ten, 1)} m`, 8, 16, "start", "tick")] : "",
   ] };
 }
 
 /* Where the left finger touches the cup, enlarged so much that the overlap fills it: the cup's edge
  * stays, the finger's trembles, and the trail of its last places stays with it. */
 function lens(x, y, size, { depths, deepest, trembling }, row) {
-  const times = Math.min(0.9 / Math.max(deepest, 1e-6), 0.5 / Math.max(trembling, 1e-9)) * size; // px for 1 r
+  const times = Math.min(0.9 / Math.max(deepest, 1e-6),
+    0.5 / Math.max(trembling, 1e-9)) * size; // px for 1 r
   const edge = x - 0.5 * Math.min(0.9 * size, deepest * times);
   const tip = (k) => edge + Math.min(2 * size, depths[k] * times);
   const big = 40 * size;
@@ -89,7 +92,8 @@ function lens(x, y, size, { depths, deepest, trembling }, row) {
 function choices(view, top, fate) {
   const { own, width, height } = view;
   const chart = plot([0, top, width, height - top], {
-    x: { ...axis(DT, "time step dt (ms)", ...[0.5, 1, 2, 4, 8].map((ms) => [ms / 1000, String(ms)])), log: true },
+    x: { ...axis(DT, "time step dt (ms)",
+      ...[0.5, 1, 2, 4, 8].map((ms) => [ms / 1000, String(ms)])), log: true },
     y: { ...tens(4, 6, "stiffness k (N/m)"), domain: K },
     under: ({ sx, sy }) => field(own.late).map((each, cell) => {
       const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)];
@@ -99,18 +103,21 @@ function choices(view, top, fate) {
     }),
   });
   const { sx, sy, box } = chart;
-  const limit = Array.from({ length: 40 }, (_, k) => share(K, k / 39)).map((k) => [critical_dt(MASS[0], k, DAMPING), k]);
+  const limit = Array.from({ length: 40 }, (_, k) => share(K, k / 39)).map((k) =>
+    [critical_dt(MASS[0], k, DAMPING), k]);
   const inside = limit.filter(([dt]) => dt > DT[0] && dt < DT[1]).map(([dt, k]) => [sx(dt), sy(k)]);
   const what = {
     label: "time step and stiffness", text: `dt ${number(1000 * own.dt, 2)} ms, k ${number(own.stiffness, 2)} N/m: ${FATES[fate]}`,
     value: ["dt", "stiffness"], low: [DT[0], K[0]], high: [DT[1], K[1]], step: [0.0002, 2000],
     at: (x, y) => [sx.back(x), sy.back(y)], also: { time: 0 }, release: () => view.play(0),
   };
-  const names = own.late ? [["holds", 0.2, 0.4]] : [["holds", 0.08, 0.86], ["trembles", 0.6, 0.8], ["flies apart", 0.7, 0.25]];
+  const names = own.late ? [["holds", 0.2, 0.4]]
+    : [["holds", 0.08, 0.86], ["trembles", 0.6, 0.8], ["flies apart", 0.7, 0.25]];
   return [
     chart.picture, own.late ? "" : path(inside, "rule"),
     names.map(([name, across, down]) =>
-      label(name, box.left + across * (box.right - box.left), box.top + down * (box.bottom - box.top))),
+      label(name, box.left + across * (box.right - box.left),
+        box.top + down * (box.bottom - box.top))),
     view.point(sx(own.dt), sy(own.stiffness), what),
   ];
 }
@@ -124,13 +131,15 @@ function draw(view) {
   const narrow = width < 480;
   const place = narrow ? { width, floor: 150 } : { width: 0.56 * width, floor: 222 };
   const { drawn, touch } = picture(run.run, row, place);
-  const [x, y, size] = narrow ? [width / 2, 290, 104] : [0.79 * width, 138, Math.min(124, 0.2 * width)];
+  const [x, y, size] = narrow ? [width / 2, 290, 104]
+    : [0.79 * width, 138, Math.min(124, 0.2 * width)];
   const moves = fate === 1 ? `, by ${number(trembling, 2)} r` : "";
   const told = fate < 2 ? `It ${FATES[fate]}${moves}; finger and cup overlap by ${number(deepest, 2)} r` : "It flies apart";
   return {
     picture: [
       clipped(0, 0, place.width, narrow ? 176 : 250, drawn),
-      fate < 2 ? [line(...touch, x - (narrow ? 0 : size), y - (narrow ? size : 0), "grid"), lens(x, y, size, run, row)] : "",
+      fate < 2 ? [line(...touch, x - (narrow ? 0 : size), y - (narrow ? size : 0), "grid"),
+        lens(x, y, size, run, row)] : "",
       own.map ? choices(view, narrow ? 424 : 300, fate) : "",
     ],
     words: `dt = ${number(1000 * own.dt, 2)} ms, k = ${number(own.stiffness, 2)} N/m${own.late ? ", force from the end" : ""}: ${told}.`,
@@ -144,10 +153,12 @@ export const figure = {
   height: (width, { map } = {}) => (width < 480 ? 420 : 290) + (map ? 300 : 0),
   start: () => ({ dt: 0.004, map: 0, late: 0, x0: AT[0], x1: AT[1], x2: AT[2] }),
   clock: ({ own }) =>
-    (own.map ? { end: SECONDS, rate: 0.1 } : { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true }),
+    (own.map ? { end: SECONDS, rate: 0.1 }
+      : { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true }),
   buttons: (view) => [
     view.running ? ["Stop", view.stop] : [view.own.map ? "Squeeze" : "Play", () => view.play()],
-    ...(view.own.map ? [["Force from the end of the step", () => Object.assign(view.own, { late: 1 - view.own.late, time: 0 }),
+    ...(view.own.map ? [["Force from the end of the step", () =>
+      Object.assign(view.own, { late: 1 - view.own.late, time: 0 }),
       String(Boolean(view.own.late))]] : []),
   ],
   draw,

@@ -15,19 +15,25 @@ function draw(view) {
   const r = Math.min(50, 0.22 * left);
   const chart = plot([left + 12, 0, width - left - 12, height], {
     x: axis([0, MOST], "depth / mm", 0, 0.5, 1, 1.5),
-    y: axis([solimp[0] - 0.01, d1 + 0.01], "impedance d", ...[solimp[0], at(0.5), d1].map((v) => [v, v.toFixed(d1 > 0.99 ? 4 : 3)])),
-    lines: [{ model: "soft", points: Array.from({ length: 61 }, (_, k) => [k / 40, at(k / 40)]), kind: "plainly" }],
+    y: axis([solimp[0] - 0.01, d1 + 0.01], "impedance d",
+      ...[solimp[0], at(0.5), d1].map((v) => [v, v.toFixed(d1 > 0.99 ? 4 : 3)])),
+    lines: [{ model: "soft", points: Array.from({ length: 61 }, (_, k) => [k / 40, at(k / 40)]),
+      kind: "plainly" }],
   });
   const share = `${(100 * d).toPrecision(d > 0.99 ? 4 : 3)} %`;
   const text = `${number(depth * WIDTH * 1000, 2)} mm deep`;
-  const what = { label: "the depth", text: `${text}: ${share}`, value: "depth", low: 0, high: MOST, step: 0.05 };
+  const what = { label: "the depth", text: `${text}: ${share}`, value: "depth", low: 0, high: MOST,
+    step: 0.05 };
   const x = left / 2 - 16;
   return {
     picture: [
       clipped(0, 0, left, height, table(0, floor, left, 60)),
-      view.grab({ ...what, at: (_, y) => y / PRESS }, ball("soft", x, floor + PRESS * depth - r, r)),
-      arrow("push m-soft weaker", x + r + 14, floor, 0, -HARD), arrow("push m-soft", x + r + 30, floor, 0, -HARD * d),
-      label("hard", x + r + 14, floor + 22, "middle", "tick"), label(share, x + r + 26, floor - HARD - 10, "middle"),
+      view.grab({ ...what, at: (_, y) => y / PRESS },
+        ball("soft", x, floor + PRESS * depth - r, r)),
+      arrow("push m-soft weaker", x + r + 14, floor, 0, -HARD), arrow("push m-soft", x + r + 30,
+        floor, 0, -HARD * d),
+      label("hard", x + r + 14, floor + 22, "middle", "tick"), label(share, x + r + 26,
+        floor - HARD - 10, "middle"),
       chart.picture, mark("soft", chart.sx(depth), chart.sy(d), 7),
       view.point(chart.sx(depth), chart.box.bottom, { ...what, at: chart.sx.back }),
     ],

@@ -28,10 +28,12 @@ const landing = kept((share, dt, baumgarte, restitution) => {
 
 function draw(view) {
   const { share, dt, baumgarte, restitution } = view.own;
-  const { seconds, fall, depth, bounce, bias, larger, sum, bounces } = landing(share, dt, baumgarte, restitution);
+  const { seconds, fall, depth, bounce, bias, larger, sum, bounces } = landing(share, dt,
+    baumgarte, restitution);
   const { width, height } = view;
   const [left, floor] = [Math.round(0.38 * width), height - GROUND];
-  const [px, r, x] = [FALL / fall, Math.min(42, 0.22 * left), left / 2]; // px for a gap of 1 r; for a radius
+  const [px, r, x] = [FALL / fall, Math.min(42, 0.22 * left),
+    left / 2]; // px for a gap of 1 r; for a radius
   const top = 1.15 * Math.max(0.5 * fall, larger.high, bounces ? sum.high : 0);
   const chart = plot([left + 8, 0, width - left - 8, height], {
     x: axis([0, seconds], "time (s)", ...steps(0, seconds, 3)),
@@ -40,7 +42,8 @@ function draw(view) {
       ...(bounces ? [{ model: "lcp", points: sum.points, kind: "thin dotted" }] : [])],
   });
   const wish = (name, v, at) => (v > 0 ? [
-    arrow(v < Math.max(bounce, bias) ? "push m-lcp weaker" : "push m-lcp", at, floor, 0, -Math.min(floor - 30, ARROW * v)),
+    arrow(v < Math.max(bounce, bias) ? "push m-lcp weaker"
+      : "push m-lcp", at, floor, 0, -Math.min(floor - 30, ARROW * v)),
     label(name, Math.max(28, at), floor + GROUND - 10, "middle"),
   ] : "");
   const aside = Math.min(r + 24, x - 24);
@@ -52,8 +55,10 @@ function draw(view) {
   const wishes = `: bounce ${number(bounce)} m/s, bias ${number(bias)} m/s. The larger lifts it ${number(larger.high)} r, their sum (dotted) ${number(sum.high)} r.`;
   return {
     picture: [
-      clipped(0, 0, left, height, table(0, floor, left, GROUND), label(`gaps × ${number(px / r, 2)}`, 4, 16, "start", "tick"),
-        ball("lcp", x, floor - share * FALL - r, r, "ghost"), wish("bounce", bounce, x - aside), wish("bias", bias, x + aside)),
+      clipped(0, 0, left, height, table(0, floor, left, GROUND),
+        label(`gaps × ${number(px / r, 2)}`, 4, 16, "start", "tick"),
+        ball("lcp", x, floor - share * FALL - r, r, "ghost"), wish("bounce", bounce,
+          x - aside), wish("bias", bias, x + aside)),
       view.grab(what, ball("lcp", x, floor + depth * px - r, r)), chart.picture,
     ],
     words: `It lands ${text} and is found ${number(depth, 2)} r deep${bounces ? wishes : `; it hops ${number(larger.high, 2)} r high.`}`,

@@ -3,7 +3,8 @@
 import { arrow, circle, label, line, mark, number, path, within } from "../draw.js";
 import { critical_dt } from "../contact.js";
 
-const matrixOf = (dt, k, c) => [[1 - k * dt * dt, -dt * (1 - c * dt)], [k * dt, 1 - c * dt]]; // of 1 kg
+const matrixOf = (dt, k, c) => [[1 - k * dt * dt, -dt * (1 - c * dt)],
+  [k * dt, 1 - c * dt]]; // of 1 kg
 
 // The eigenvalues of a 2 x 2 matrix, as [real, imaginary] each.
 function eigenvalues([[a, b], [c, d]]) {
@@ -28,16 +29,21 @@ function draw(view) {
   const least = Math.min(...pairs.map(([real]) => real));
   const complex = pairs[0][1] > 0;
   const fate = size < 1 - 1e-9 ? "die away" : size > 1 + 1e-9 ? "grow" : "stay as large";
-  const kind = complex ? "a pair, as the ball rings" : least < 0 ? "two, and one throws it from side to side" : "two, and it creeps back";
+  const kind = complex ? "a pair, as the ball rings" : least < 0
+    ? "two, and one throws it from side to side" : "two, and it creeps back";
   return {
     picture: [
-      line(x - 3.2 * unit, y, x + 1.6 * unit, y, "axis"), line(x, y - 1.2 * unit, x, y + 1.2 * unit, "grid"),
-      circle(x, y, unit, "region-ring"), label("size 1", x + 0.74 * unit, y - 0.78 * unit, "start", "tick"),
-      label("−1", x - unit - 6, y + 20, "end", "tick"), label("1", x + unit + 6, y + 20, "start", "tick"),
+      line(x - 3.2 * unit, y, x + 1.6 * unit, y, "axis"), line(x, y - 1.2 * unit, x,
+        y + 1.2 * unit, "grid"),
+      circle(x, y, unit, "region-ring"), label("size 1", x + 0.74 * unit, y - 0.78 * unit, "start",
+        "tick"),
+      label("−1", x - unit - 6, y + 20, "end", "tick"), label("1", x + unit + 6, y + 20, "start",
+        "tick"),
       label("0", x - 6, y + 20, "end", "tick"), ways.map((each) => path(each, "rule dashed thin")),
       pairs.map((pair) => mark("penalty", ...at(pair), 8)),
       least < -3.2 ? [arrow("weight", 40, y - 24, -30, 0), label(number(least), 46, y - 19)] : "",
-      label("real", x + 1.6 * unit, y - 8, "end", "tick"), label("imaginary", x + 6, y - 1.12 * unit, "start", "tick"),
+      label("real", x + 1.6 * unit, y - 8, "end", "tick"), label("imaginary", x + 6,
+        y - 1.12 * unit, "start", "tick"),
     ],
     words: `dt = ${number(1000 * own.dt)} ms: ${kind}; the larger has size ${number(size)}, so the steps ${fate}. ` +
       `They grow from ${number(1000 * critical)} ms on.`,

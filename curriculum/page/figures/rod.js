@@ -8,14 +8,16 @@ import { within } from "../draw.js";
 
 // A rod of 1 kg and 2 m; the end, seen from the middle [m]; without a push it rises and slides [m/s].
 const [X, Y, FREE] = [Math.sqrt(0.2), -Math.sqrt(0.8), [0.4, 4]];
-const W = [[1 + 3 * X * X, -3 * X * Y], [-3 * X * Y, 1 + 3 * Y * Y]]; // 1/kg, of impulses at the end
+// 1/kg, of impulses at the end
+const W = [[1 + 3 * X * X, -3 * X * Y], [-3 * X * Y, 1 + 3 * Y * Y]];
 const MOST = 1.3; // N s, that are seen
 
 // v_n, v_t and friction at a push p: it rubs with mu p against the motion, or as much as it takes.
 function after(p, mu) {
   const sticks = (FREE[1] + W[1][0] * p) / W[1][1];
   const rub = -Math.min(mu * p, sticks);
-  return { v_n: FREE[0] + W[0][0] * p + W[0][1] * rub, v_t: FREE[1] + W[1][0] * p + W[1][1] * rub, rub };
+  return { v_n: FREE[0] + W[0][0] * p + W[0][1] * rub, v_t: FREE[1] + W[1][0] * p + W[1][1] * rub,
+    rub };
 }
 
 // Where what f gives for a push comes to zero; on straight pieces, between neighbours of a fine grid.
@@ -45,7 +47,8 @@ function draw(view) {
   const chart = plot([narrow ? 0 : left + 8, top, narrow ? width : width - left - 8, tall], {
     x: axis([0, MOST], "push of the table (N s)", 0, 0.5, 1),
     y: axis([-0.35, 0.6], "v_n of the end (m/s)", -0.2, 0, 0.2), rules: [{ y: 0 }],
-    lines: [{ model: "exact", points: Array.from({ length: 261 }, (_, k) => [(k * MOST) / 260, after((k * MOST) / 260, mu).v_n]), kind: "plainly" }],
+    lines: [{ model: "exact", points: Array.from({ length: 261 }, (_, k) =>
+      [(k * MOST) / 260, after((k * MOST) / 260, mu).v_n]), kind: "plainly" }],
   });
   const { sx, sy } = chart;
   const scale = (floor - 16) / 1.9; // px for 1 m
@@ -61,7 +64,8 @@ function draw(view) {
   const does = Math.abs(v_n) < 5e-3 ? "stays on the table" : v_n > 0 ? "rises" : "is pressed in";
   return {
     picture: [
-      clipped(0, 0, left, floor + 28, table(0, floor, left, 60), line(2 * middle[0] - x, 2 * middle[1] - y, x, y, "rod"),
+      clipped(0, 0, left, floor + 28, table(0, floor, left, 60),
+        line(2 * middle[0] - x, 2 * middle[1] - y, x, y, "rod"),
         circle(...middle, 4, "dot"), arrow("weight", x, y, 14 * Math.min(4, v_t), -14 * 4 * v_n),
         arrow("push m-exact", x, y + 26, 0, -26 * within(0, push, 1))),
       chart.picture,

@@ -19,7 +19,8 @@ const sags = kept((count, knobs) => {
     return ys.map((y, i) => (i ? 2 - (y - ys[i - 1]) / R : 1 - y / R));
   };
   const [before, depths] = [depthsIn(ROWS - 9), depthsIn(ROWS)];
-  return { depths, rests: depths.every((deep, i) => Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9) };
+  return { depths, rests: depths.every((deep, i) =>
+    Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9) };
 });
 
 function draw(view) {
@@ -29,24 +30,29 @@ function draw(view) {
   const law = baumgarte > 0 && warm < 1 ? lawOf(balls, own) : null;
   const most = Math.max(1e-9, ...depths, ...(law ?? [])) * 1.12;
   const power = Math.floor(Math.log10(most));
-  const ticks = steps(0, most, 4).map((v) => [v, number(v / 10 ** power, 2).replace(/\.?0+$/, "") || "0"]);
+  const ticks = steps(0, most, 4).map((v) =>
+    [v, number(v / 10 ** power, 2).replace(/\.?0+$/, "") || "0"]);
   const left = Math.round(0.24 * width);
   const r = Math.min(30, (height - 60) / (2 * balls), 0.4 * left);
   const floor = height - 46;
   const at = (i) => floor - 2 * i * r; // of a contact
   const { picture } = plot([left, 0, width - left, height], {
-    x: axis([0, most], `overlap in ${power ? `${tenTo(power)} r` : "r"}`, ...ticks), y: { domain: [0, 1], ticks: [] },
+    x: axis([0, most], `overlap in ${power ? `${tenTo(power)} r` : "r"}`,
+      ...ticks), y: { domain: [0, 1], ticks: [] },
     rules: [{ x: 0 }],
     under: ({ sx }) => [
-      depths.map((deep, i) => rect(sx(0), at(i) - 0.6 * r, sx(Math.max(0, deep)) - sx(0), 0.8 * r, "bar-fill m-lcp")),
+      depths.map((deep, i) => rect(sx(0), at(i) - 0.6 * r, sx(Math.max(0, deep)) - sx(0), 0.8 * r,
+        "bar-fill m-lcp")),
       law ? path(law.map((deep, i) => [sx(deep), at(i) - 0.2 * r]), "law-line") : "",
       law ? label("the law", sx(law[1]) + 8, at(1) - 0.2 * r + 4) : "",
     ],
   });
-  const says = law ? `the law says ${number(law[0], 2)} r` : "there is no law: nothing opens an overlap";
+  const says = law ? `the law says ${number(law[0], 2)} r`
+    : "there is no law: nothing opens an overlap";
   return {
     picture: [
-      table(0, floor, left, 30), Array.from({ length: balls }, (_, i) => ball("lcp", left / 2, at(i) - r, r)), picture,
+      table(0, floor, left, 30), Array.from({ length: balls }, (_, i) =>
+        ball("lcp", left / 2, at(i) - r, r)), picture,
       line(left / 2 + r, floor, left + 20, floor, "grid"),
     ],
     words: `The lowest of ${balls} balls is ${number(depths[0], 2)} r deep${rests ? "" : ", and still moves"}; ${says}.`,

@@ -15,13 +15,15 @@ function draw(view) {
   const [scale, floor] = [Math.min(680, width / 1.1), height - GROUND]; // px for 1 m
   const place = (toX, toY) => [width / 2 + toX * scale, floor - toY * scale];
   const all = detect_contacts(column([y, R], { x: [x, 0], vx: [vx, 0], vy: [vy, 0] }), Infinity);
-  const contacts = [all[0], all[2]].map((c) => ({ nx: c.nx, ny: c.ny, depth: c.depth / R, v_n: c.v_n() }));
+  const contacts = [all[0], all[2]].map((c) => ({ nx: c.nx, ny: c.ny, depth: c.depth / R,
+    v_n: c.v_n() }));
   const told = contacts.map(({ depth, v_n }, k) =>
     `a and ${k ? "b" : "table"}: depth ${number(depth)} r, v_n ${number(v_n)} m/s, ${wayOf(v_n)}`);
   const normals = contacts.map(({ nx, ny }, k) => {
     const [fromX, fromY] = k ? place(nx * R, R + ny * R) : place(x, 0);
     const [dx, dy] = [0.7 * R * scale * nx, -0.7 * R * scale * ny];
-    return [arrow("push m-exact", fromX, fromY, dx, dy), label("n", fromX + dx + 10, fromY + dy + 5, "start", "axis-name")];
+    return [arrow("push m-exact", fromX, fromY, dx, dy),
+      label("n", fromX + dx + 10, fromY + dy + 5, "start", "axis-name")];
   });
   const [[ax, ay], [bx, by], r] = [place(x, y), place(0, R), R * scale];
   const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);
@@ -37,9 +39,12 @@ function draw(view) {
   };
   return {
     picture: [
-      table(0, floor, width, GROUND), ball("fixed", bx, by, r, "body"), label("b", bx, by + 5, "middle", "on-ball"),
-      view.grab(there, [ball("exact", ax, ay, r, "ball plainly"), label("a", ax, ay - 0.5 * r, "middle", "on-ball")]),
-      normals, arrow("weight", ax, ay, ARROW * vx * scale, -ARROW * vy * scale), view.point(...tip, fast),
+      table(0, floor, width, GROUND), ball("fixed", bx, by, r, "body"), label("b", bx, by + 5,
+        "middle", "on-ball"),
+      view.grab(there, [ball("exact", ax, ay, r, "ball plainly"),
+        label("a", ax, ay - 0.5 * r, "middle", "on-ball")]),
+      normals, arrow("weight", ax, ay, ARROW * vx * scale, -ARROW * vy * scale), view.point(...tip,
+        fast),
     ],
     words: told.map((each) => `Contact of ${each}.`).join(" "),
     values: { contacts },

@@ -11,7 +11,8 @@ const STEPS = Array.from({ length: 7 }, (_, k) => 0.0005 * 2 ** k); // s
 const placesOf = kept((model, lean, dt) => {
   const [x, y] = [2 * R * Math.sin(lean), 2 * R * Math.cos(lean)];
   const balls = column([HEIGHT, HEIGHT + y], { x: [0, x], mass: [Infinity, 1] });
-  const run = record(model, balls, { dt, baumgarte: 0.2, iters: 20, warm: 0 }, Math.floor(SECONDS / dt + 1e-9));
+  const run = record(model, balls, { dt, baumgarte: 0.2, iters: 20, warm: 0 },
+    Math.floor(SECONDS / dt + 1e-9));
   return Array.from(run.t, (_, k) => [run.x[2 * k + 1] / R, (run.y[2 * k + 1] - HEIGHT) / R]);
 });
 
@@ -31,10 +32,12 @@ function draw(view) {
   const { dt, lean } = own;
   const all = BOTH.map((model) => STEPS.map((step) => [step, errorOf(model, lean, step)]));
   const now = BOTH.map((model) => errorOf(model, lean, dt));
-  const slopes = all.map(([[, first]], k) => STEPS.map((step) => [step, 0.45 * first * (step / STEPS[0]) ** (k + 1)]));
+  const slopes = all.map(([[, first]], k) =>
+    STEPS.map((step) => [step, 0.45 * first * (step / STEPS[0]) ** (k + 1)]));
   const left = Math.round(0.34 * width);
   const chart = plot([left, 0, width - left, height], {
-    x: { ...axis([STEPS[0], 0.064], "time step dt (ms)", ...[0.5, 2, 8, 32].map((ms) => [ms / 1000, String(ms)])), log: true },
+    x: { ...axis([STEPS[0], 0.064], "time step dt (ms)",
+      ...[0.5, 2, 8, 32].map((ms) => [ms / 1000, String(ms)])), log: true },
     y: tens(-6, 1, "error / r", 2),
     lines: [...slopes.map((points) => ({ model: "fixed", points, kind: "thin dotted" })),
       ...all.map((points, k) => ({ model: BOTH[k], points, marks: [1, 3, 5] }))],
@@ -44,7 +47,8 @@ function draw(view) {
   const [x, y] = [1.15 * scale, 3.4 * scale];
   const place = ([toX, toY]) => [x + toX * scale, y - toY * scale];
   const slid = BOTH.map((model) => {
-    const seen = placesOf(model, lean, dt).map(place).filter(([to, down]) => to < left - scale && down < height - scale);
+    const seen = placesOf(model, lean, dt).map(place).filter(([to, down]) => to < left - scale
+      && down < height - scale);
     return [path(seen, `line m-${model}`), ball(model, ...seen[seen.length - 1], scale, "ghost")];
   });
   const what = {
@@ -54,8 +58,10 @@ function draw(view) {
   const top = place([2 * Math.sin(lean), 2 * Math.cos(lean)]);
   return {
     picture: [
-      ball("fixed", x, y, scale, "body"), slid, view.grab(what, ball("leapfrog", ...top, scale, "ball plainly")), chart.picture,
-      slopes.map((points, k) => label(`slope ${k + 1}`, sx(points[1][0]) + 4, sy(points[1][1]) + 20, "start", "tick")),
+      ball("fixed", x, y, scale, "body"), slid, view.grab(what,
+        ball("leapfrog", ...top, scale, "ball plainly")), chart.picture,
+      slopes.map((points, k) => label(`slope ${k + 1}`, sx(points[1][0]) + 4,
+        sy(points[1][1]) + 20, "start", "tick")),
       now.map((error, k) => mark(BOTH[k], sx(dt), sy(error), 8)),
     ],
     words: `With steps of ${number(1000 * dt)} ms the sliding ball is off by ${number(now[0], 2)} r with lcp ` +

@@ -15,7 +15,8 @@ function bar({ contact, wanted, lam }, c, y, sx) {
   const clamped = lam[c] === 0 && wanted < 0;
   return [
     rect(sx(0), y - 9, sx(lam[c]) - sx(0), 18, "bar-fill m-lcp"),
-    c === contact ? arrow("weight", sx(clamped ? 0 : lam[c] - wanted), y - 17, sx(wanted) - sx(0), 0) : "",
+    c === contact ? arrow("weight", sx(clamped ? 0 : lam[c] - wanted), y - 17, sx(wanted) - sx(0),
+      0) : "",
     lam[c] > 0 ? label(number(lam[c]), sx(lam[c]) + 8, y + 6) : "",
     c === contact && clamped ? label("clamped at 0", sx(0) + 8, y + 6) : "",
   ];
@@ -29,7 +30,8 @@ function draw(view) {
   const left = Math.round(0.36 * width);
   const x = 0.4 * left;
   const { picture } = plot([left, 0, width - left, height], {
-    x: axis([0, 3.6], "impulse / m g dt", 0, 1, 2, 3), y: { domain: [0, 1], ticks: [] }, rules: [{ x: 0 }],
+    x: axis([0, 3.6], "impulse / m g dt", 0, 1, 2, 3), y: { domain: [0, 1],
+      ticks: [] }, rules: [{ x: 0 }],
     under: ({ sx }) => NAMES.map((_, c) => bar({ contact, wanted, lam }, c, heightOf(c) - 12, sx)),
   });
   const each = (v, i) => arrow("weight", x + PX + 12, heightOf(i) - PX, 0, -UNIT * v);
