@@ -185,21 +185,23 @@ def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
 
 
 @np.errstate(all="ignore")
-def worth_seeing(runs: dict, quality: dict) -> tuple[float, float]:
-    """From when to when [s]: from the first push, to when the last ball has come to rest.
+def worth_seeing(runs: dict, scene: contact.Scene) -> tuple[float, float]:
+    """From when to when [s]: from when every model has pushed, to when the last ball rests.
 
-    It pushes in the state after the first contact. A ball rests once it goes slower than 1 cm/s for
+    A ball rests once it goes slower than 1 cm/s for
     good, judged by its way, since speeds at the end of leapfrog's steps may be larger; a tenth more
     is shown, at most to the end.
     """
     pushes, rests = [], [0.0]
-    for model, run in runs.items():
-        pushed = quality[model]["first_contact_step"] + 1
-        pushes += run.t[pushed : pushed + 1].tolist()
+    for run in runs.values():
+        pushed = (
+            np.abs(contact_impulses(run, scene)).max((1, 2)) > 1e-6 * weight(scene) * run.t[1:2]
+        )
+        pushes += run.t[np.flatnonzero(pushed)[:1]].tolist()
         slow = np.abs(np.diff(run.q, axis=0)) < 0.01 * np.diff(run.t)[:, None, None]
         moving = np.flatnonzero(~slow.all((1, 2)))
         rests += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]
-    return float(min(pushes, default=0.0)), float(max(rests))
+    return float(max(pushes, default=0.0)), float(max(rests))
 
 
 def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str) -> None:
@@ -207,7 +209,7 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
 
     Takes what recording.write takes. Raises ImportError where matplotlib is missing.
     """
-    drawn, (first, last) = curves(runs, scene), worth_seeing(runs, quality)
+    drawn, (first, last) = curves(runs, scene), worth_seeing(runs, scene)
     first -= 0.1 * max(last - first, 0.0)
     picture, axes = figure(len(drawn), title, height=1.5, below=0.3)
     for axis, (name, lines) in zip(axes, drawn.items()):

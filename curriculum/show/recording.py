@@ -42,7 +42,7 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
     pushes} and CURVE/MODEL.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
-    drawn, seconds = curves(runs, scene), worth_seeing(runs, quality)
+    drawn, seconds = curves(runs, scene), worth_seeing(runs, scene)
     times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
     kept = recording.binary_stream()  # rerun's own file would wait for ever where a disk is full
