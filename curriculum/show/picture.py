@@ -11,6 +11,7 @@ another. The SVG has no date and fixed ids: the same results give the same bytes
 
 import io
 import math
+import os
 import re
 import textwrap
 from pathlib import Path
@@ -55,6 +56,7 @@ IN_THE_DARK = {
 
 def pyplot() -> ModuleType:
     """matplotlib.pyplot, set up for these figures; an ImportError that says how to install it."""
+    os.environ["MPLBACKEND"] = "svg"  # whatever stood there; it may be none of matplotlib's
     try:
         import matplotlib
     except ImportError:

@@ -45,6 +45,8 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
     drawn, seconds = curves(runs, scene), worth_seeing(runs, scene)
     times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
+    if not rr.is_enabled(recording):
+        raise ImportError("rerun is switched off by the variable RERUN")
     kept = recording.binary_stream()  # rerun's own file would wait for ever where a disk is full
     blueprint = layout(runs, scene, drawn, seconds, quality)
     recording.send_blueprint(blueprint, make_active=False, make_default=True)
