@@ -20,7 +20,6 @@ NAMES = {"True": "true", "False": "false", "None": "null", "self": "this", "abs"
 NAMES |= {"int": "Math.trunc", "math.inf": "Infinity", "ArithmeticError": "Error"}
 NAMES |= {f"math.{name}": f"Math.{name}" for name in ("sqrt", "cos")}
 NAMES |= {name: f"$.{name}" for name in ("zip", "map")}
-RESERVED = set("new var let const function with this typeof delete void default case".split())
 
 
 class Script(ast.NodeVisitor):
@@ -52,13 +51,14 @@ class Script(ast.NodeVisitor):
     # ---- statements
 
     def visit_FunctionDef(self, node):
-        method = [arg.arg for arg in node.args.args[:1]] == ["self"]
-        names = [arg.arg for arg in node.args.args[method:]]
+        names = [arg.arg for arg in node.args.args]
+        method = names[:1] == ["self"]
+        names = names[method:]
         usual = [""] * (len(names) - len(node.args.defaults))
         usual += [f" = {self.visit(each)}" for each in node.args.defaults]
-        outer, self.declared = self.declared, set()
+        self.declared = set(names)
         body, local = self.part(node.body, "body"), sorted(self.declared - set(names))
-        self.declared = outer
+        self.declared = None
         head = ", ".join(map(str.__add__, names, usual))
         body = body.replace("{\n", f"{{\nlet {', '.join(local)};\n" if local else "{\n", 1)
         name = "constructor" if node.name == "__init__" else node.name
@@ -97,8 +97,6 @@ class Script(ast.NodeVisitor):
     # ---- expressions
 
     def visit_Name(self, node):
-        if node.id in RESERVED:
-            self.refuse(node.id)
         return NAMES.get(node.id, node.id)
 
     def visit_Constant(self, node):
@@ -117,7 +115,7 @@ class Script(ast.NodeVisitor):
         return f"({self.visit(node.op).join(map(self.visit, node.values))})"
 
     def visit_Compare(self, node):
-        chain = [self.visit(each) for each in (node.left, *node.comparators)]
+        chain = list(map(self.visit, (node.left, *node.comparators)))
         told = zip(chain, map(self.visit, node.ops), chain[1:])
         told = [f"$.has({b}, {a})" if op == "in" else f"{a} {op} {b}" for a, op, b in told]
         return f"({' && '.join(told)})"
@@ -134,6 +132,9 @@ class Script(ast.NodeVisitor):
     visit_GeneratorExp = visit_ListComp
 
     def visit_Call(self, node):
+        self.line, known = node.lineno, {*self.known, *NAMES, *(self.declared or ()), "max", "min"}
+        if isinstance(node.func, ast.Name) and node.func.id not in known:
+            self.refuse(ast.unparse(node))
         name, args = self.visit(node.func), [self.visit(each) for each in node.args]
         defined = self.known.get(name, ("", None))[1]
         if name in ("max", "min"):

@@ -21,12 +21,11 @@ function still([name, given]) {
   try {
     check(stateOf(figure, {}), given);
     const view = viewOf(figure, given, WIDE);
-    const { picture, words, values } = figure.draw(view);
-    const { title, caption, height, knobs = [], buttons = () => [] } = figure;
+    const { picture, words } = figure.draw(view);
+    const { title, caption, height, knobs = [] } = figure;
     const sliders = typeof knobs === "function" ? knobs(view.own) : knobs;
     const heights = [WIDE, NARROW].map((width) => height(width, view.own));
-    return { svg: textOf(picture), words, values, title, caption, heights, knobs: sliders.length,
-      buttons: buttons(view).length };
+    return { svg: textOf(picture), words, title, caption, heights, knobs: sliders.length };
   } catch (error) {
     throw new Error(`the figure ${name}: ${error.message}`);
   }
