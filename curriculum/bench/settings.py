@@ -58,7 +58,8 @@ class Setting(NamedTuple):
     @property
     def rare(self):
         """Whether one start and one process have to be enough."""
-        return self.engine == "siconos" or self.engine == "drake" and not self.adaptive
+        slow = not self.adaptive or "radau3" in self.options
+        return self.engine == "siconos" or self.engine == "drake" and slow
 
     def runs(self, problem):
         """Whether it is for a problem, or for the piles (any of piles/1, piles/4, ...)."""
