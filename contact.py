@@ -78,8 +78,7 @@ class Ball:
         self.mass, self.radius = mass, radius
         self.inv_mass = 1.0 / mass  # 0 for infinite mass: no push changes its velocity
         self.pushed = {}  # {other ball: impulse of the last step}; see warm_start
-        self.ax = self.ay = self.since = 0.0  # see hold
-        self.held = self.inv_mass == 0.0  # see find_held
+        self.ax = self.ay = self.since = self.held = 0.0  # see hold and find_held
 
 
 FLOOR = Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0)  # shared by all runs; nothing moves it
@@ -601,23 +600,25 @@ def look(c, t):
 
 
 def find_held(balls, contacts, dt):
-    """Find which balls are held: nothing moves them, or they lie on one that is held."""
+    """Find which balls are held: 2 if fixed or on the floor, 1 if only on balls that are held."""
     for ball in balls:
-        ball.held = ball.inv_mass == 0.0
+        ball.held = 0.0 if ball.inv_mass > 0.0 else 2.0
         ball.ax = ball.ay = 0.0  # see hold: nothing stays of the last step
     more = True
     while more:
         more = False
         for c in contacts:
             upper = c.a if c.ny > 0.0 else c.b
-            if not upper.held and gravity_on(c) > 0.0 and lasts(c, dt):
-                upper.held = more = True
+            if upper.held == 0.0 and gravity_on(c) > 0.0 and lasts(c, dt):
+                upper.held = 2.0 if c.b is FLOOR else 1.0
+                more = True
 
 
 def gravity_on(c):
-    """How gravity closes c [m/s^2]: 0 if the lower ball is not held, since then both fall alike."""
-    held = c.b.held if c.ny > 0.0 else c.a.held
-    return -GRAVITY * abs(c.ny) if held else 0.0
+    """How gravity closes c [m/s^2]: 0 if both balls fall, or if the upper one cannot fall."""
+    upper, lower = (c.a, c.b) if c.ny > 0.0 else (c.b, c.a)
+    presses = lower is FLOOR or (lower.held > 0.0 and upper.held < 2.0)
+    return -GRAVITY * abs(c.ny) if presses else 0.0
 
 
 def lasts(c, dt):
@@ -702,12 +703,14 @@ def meet(c, dt):
     """
     c.when = math.inf
     first = max(c.a.since, c.b.since)
-    t = first
-    for _ in range(12):
+    t, before = first, -1.0
+    for _ in range(40):  # six are many, but balls that only graze halve the way each time
+        if t == before:
+            break
         look(c, t)
         if c.speed >= 0.0 or lasts(c, dt) or c.m_eff == 0.0 or (t == dt and c.gap > 0.0):
             return
-        t = min(dt, max(first, t - c.gap / c.speed))
+        before, t = t, min(dt, max(first, t - c.gap / c.speed))
     c.when = t
 
 
