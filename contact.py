@@ -657,8 +657,7 @@ def may_strike(contacts, dt):
 def take_impacts(balls, contacts, dt, restitution, iters):
     """The impacts of this step, one moment after the other."""
     hold(balls, contacts, dt, iters)
-    left = MOST_STRIKES
-    when = next_meeting(contacts, dt)
+    left, when = MOST_STRIKES, next_meeting(contacts, dt)
     while when < math.inf and left > 0:
         left -= 1
         until = when if left > 0 else dt

@@ -11,7 +11,7 @@ FORMS = {  # of a node: its fields in JavaScript
     "BinOp": "({left} {op} {right})", "UnaryOp": "({op}{operand})",
     "IfExp": "({test} ? {body} : {orelse})", "AugAssign": "{target} {op}= {value};",
     "While": "while ({test}) {body}", "If": "if ({test}) {body} else {orelse}",
-    "Return": "return {value};", "Raise": "throw {exc};",
+    "Return": "return {value};", "Raise": "throw {exc};", "Break": "break;",
     "Add": "+", "Sub": "-", "Mult": "*", "Div": "/", "Pow": "**", "USub": "-", "Not": "!",
     "Lt": "<", "Gt": ">", "LtE": "<=", "GtE": ">=", "Eq": "===", "NotEq": "!==",
     "Is": "===", "IsNot": "!==", "In": "in", "And": " && ", "Or": " || ",
