@@ -41,8 +41,9 @@ import os
 import signal
 import sys
 
-if __name__ == "__main__":  # Ctrl-C at any time, also while modules load
-    signal.signal(signal.SIGINT, lambda *_: (os.write(2, b"stopped\n"), os._exit(130)))
+if __name__ == "__main__":  # a stop is heard at any time, also while modules load
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, _: (os.write(2, b"stopped\n"), os._exit(128 + number)))
 
 import argparse
 import importlib
@@ -551,7 +552,7 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
     is leapfrog, exact in a parabola; with contacts that last it is RATTLE (Andersen 1983).
 
     Not mended: sweeps that do not finish let a stack sag; a bounce slower than gravity makes it in
-    a step is lost; of more than MOST_STRIKES moments in a step the last are taken as one.
+    a step is lost; of more moments in a step than MOST_LOOKS allows the last are taken as one.
     """
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
@@ -643,7 +644,8 @@ def nearest(c, dt):
 
 
 # --- region: leapfrog-impacts ---
-MOST_STRIKES = 10  # in a step, chosen: the last takes all that are left at once
+MOST_STRIKES = 10.0  # moments of impact in a step, chosen: the last takes all that are left at once
+MOST_LOOKS = 3000  # of contacts in a step, chosen: where there are few, more moments than that
 
 
 def may_strike(contacts, dt):
@@ -657,7 +659,8 @@ def may_strike(contacts, dt):
 def take_impacts(balls, contacts, dt, restitution, iters):
     """The impacts of this step, one moment after the other."""
     hold(balls, contacts, dt, iters)
-    left, when = MOST_STRIKES, next_meeting(contacts, dt)
+    left = max(MOST_STRIKES, MOST_LOOKS / len(contacts))
+    when = next_meeting(contacts, dt)
     while when < math.inf and left > 0:
         left -= 1
         until = when if left > 0 else dt
@@ -862,7 +865,7 @@ MODELS = {  # in the order of the table
 }
 STEPPED = [model for model in MODELS if MODELS[model].step]
 MANY = 1e6  # of about steps times balls squared: from here on, compiled loops pay
-FEW = 8  # balls of a column, chosen: more are faster by curriculum/exact.py
+FEW = 4  # balls of a column, measured: more are faster by curriculum/exact.py
 
 
 class Settings(NamedTuple):

@@ -1,4 +1,4 @@
-"""The core of leapfrog: what lasts is asked twice. It does not bounce; contact.py's leapfrog does."""
+"""The core of leapfrog: what lasts is asked twice. It does not bounce; contact.py has the whole."""
 
 import math
 

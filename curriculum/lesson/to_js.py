@@ -137,6 +137,8 @@ class Script(ast.NodeVisitor):
             self.refuse(ast.unparse(node))
         name, args = self.visit(node.func), [self.visit(each) for each in node.args]
         defined = self.known.get(name, ("", None))[1]
+        if name == "len":
+            return f"{args[0]}.length"
         if name in ("max", "min"):
             if len(args) == 1:  # of a list, or what it is by default
                 more = [self.visit(each.value) for each in node.keywords]
