@@ -10,9 +10,7 @@ MOMENT = """(id) => document.querySelector(`#${id} [aria-label="the time shown"]
 def photograph(page, folder):
     """Save PICTURE in a folder: the figure with all models, just after the landing; its path."""
     with opened(page, width=720, device_scale_factor=2) as tab:
-        shown = tab.locator(
-            '.fig[data-given*="leapfrog,soft,exact"], .fig[data-given*="soft,exact"]'
-        ).last
+        shown = tab.locator("[data-figure=falls][data-given*=soft][data-given*=exact]").last
         shown.scroll_into_view_if_needed()
         tab.wait_for_timeout(500)
         call(tab, MOMENT, shown.get_attribute("id"))
