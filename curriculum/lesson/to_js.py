@@ -19,7 +19,7 @@ FORMS = {  # of a node: its fields in JavaScript
 NAMES = {"True": "true", "False": "false", "None": "null", "self": "this", "abs": "Math.abs"}
 NAMES |= {"int": "Math.trunc", "math.inf": "Infinity", "ArithmeticError": "Error"}
 NAMES |= {f"math.{name}": f"Math.{name}" for name in ("sqrt", "cos")}
-NAMES |= {name: f"$.{name}" for name in ("zip", "map")}
+NAMES |= {name: f"$.{name}" for name in ("zip", "map", "len")}
 
 
 class Script(ast.NodeVisitor):

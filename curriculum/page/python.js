@@ -5,6 +5,7 @@ const of = (pick) => (all, other) => (all.length ? all.reduce(pick) : other);
 
 export const $ = {
   max, min, maxOf: of(max), minOf: of(min),
+  len: (all) => all.length,
   map: (f, all) => all.map((each) => f(each)),
   zip: (first, ...more) => first.map((each, k) => [each, ...more.map((all) => all[k])]),
   has: (all, one) => all.includes(one),
