@@ -28,8 +28,8 @@ const dropped = kept((...given) => {
 });
 
 const curve = kept((...spring) =>
-  Array.from({ length: 48 }, (_, k) => {
-    const dt = LOW * (HIGH / LOW) ** (k / 47);
+  Array.from({ length: 40 }, (_, k) => {
+    const dt = LOW * (HIGH / LOW) ** (k / 39);
     return [dt, moves(ring(dt, ...spring))];
   }));
 
