@@ -69,7 +69,7 @@ function draw(view) {
         line(x, y, x + r + 14, y, "grid"), arrow("push m-fixed", x - r - 12, floor, 0, y - floor),
         label("gap", Math.max(18, x - r - 12), floor + 20, "middle"), arrow("weight", x + r + 14,
           y, 0, tip - y),
-        label("dt v_n", x + r + 22, 0.5 * (y + tip) + 5)),
+        label("dt v_n", Math.min(x + r + 22, left - 46), 0.5 * (y + tip) + 5)),
       view.grab(lift, ball(model, x, y - r, r, "ball plainly")), view.point(x + r + 14, tip, fly),
       chartOf(view, unit, { gap, free, end }).picture,
     ],
