@@ -38,7 +38,7 @@ from contact import MOST_IMPACTS  # of events, the limit of contact.py's own exa
 try:
     from curriculum.lesson.compiled import Loops
 except ImportError:  # no numba
-    Loops = None
+    Loops = None  # type: ignore[assignment, misc]
 
 ORDER = 20  # of the series of balls that slide; a longer one lasts longer and costs more
 TOUCH = 1e-12  # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
@@ -419,7 +419,7 @@ def loops():
     these = inverse, solve_lcp, slide_series, next_fall, first_of, first_fall, horner
     head = f"import math\nimport numpy as np\nNOISE = {NOISE!r}\n"
     source = "\n\n".join((head, *(inspect.getsource(each) for each in these)))
-    return Loops and Loops("exact", source, error_model="numpy")
+    return Loops and Loops("exact", source, error_model="numpy")  # type: ignore[truthy-function]
 
 
 def compile_loops():

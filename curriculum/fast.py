@@ -118,7 +118,7 @@ def run_if_it_pays(model, scene, dt, steps, settings, progress=None) -> contact.
     count = len(scene.mass)
     seconds = steps * (1.5e-7 * count * count + 4e-5 * count)  # of plain loops, measured
     try:
-        if not loops_of(contact.MODELS[model].step.__name__).pays(seconds):
+        if not loops_of(contact.MODELS[model].step.__name__).pays(seconds):  # type: ignore
             return None
         return run_model(model, scene, dt, steps, settings, progress)
     except to_loops.Refused as error:

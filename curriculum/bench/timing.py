@@ -41,7 +41,7 @@ def in_fresh_processes(work, jobs, processes, label, rare=()) -> list:
     A rare job runs in the first process only.
     """
     jobs, spawn = list(jobs), multiprocessing.get_context("spawn")
-    found = [[] for _ in jobs]
+    found = [[] for _ in jobs]  # type: ignore[var-annotated]
     report = bar(processes * len(jobs), label)
     for number in range(processes):
         order = random.Random(number).sample(range(len(jobs)), len(jobs))

@@ -17,7 +17,7 @@ class World(NamedTuple):
     contacts: np.ndarray
     pairs: np.ndarray  # (2, M): balls that may touch in this step, in contact.py's order
     pushed: np.ndarray  # the impulses of the last step, in the order of its contacts
-    count: np.ndarray  # how many contacts, and how many impulses
+    count: np.ndarray  # type: ignore[assignment]  # how many contacts, and how many impulses
 
 
 # What is compiled

@@ -53,7 +53,7 @@ def functions(tree) -> dict:
 
 def called(node) -> str:
     """The name of the function or method of a call."""
-    return getattr(node.func, "attr", None) or getattr(node.func, "id", "")
+    return getattr(node.func, "attr", None) or getattr(node.func, "id", "")  # type: ignore
 
 
 def needed(step, found) -> dict:

@@ -47,7 +47,8 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
     recording = rr.RecordingStream("contact")
     if not rr.is_enabled(recording):
         raise ImportError("rerun is switched off by the variable RERUN")
-    kept = recording.binary_stream()  # rerun's own file would wait for ever where a disk is full
+    # rerun's own file would wait for ever where a disk is full
+    kept = recording.binary_stream()  # type: ignore[misc]
     blueprint = layout(runs, scene, drawn, seconds, quality)
     recording.send_blueprint(blueprint, make_active=False, make_default=True)
     words = ABOUT.format(title=title, first=seconds[0])
@@ -148,7 +149,8 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     Every run has views of its own, so balls that roll far never cross into another run's. Piles
     have them one below the other.
     """
-    large, x, y = float(scene.radius.max()), *scene.q0
+    large = float(scene.radius.max())
+    x, y = scene.q0
     middle, half, pile = 0.5 * (x.min() + x.max()), 0.5 * np.ptp(x), np.ptp(x) > 0.0
     wide, top = 1.6 * half + 2.5 * large, y.max() + 2.0 * large
     sides = [middle - wide, middle + wide], [-top, 0.1 * top]
@@ -160,8 +162,8 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
         [-(0.9 if pile else 0.6) * reach, 0.4 * reach],
     )
     small = rrb.Horizontal(*[view(model, f"{high:g} r", *near) for model in runs])
-    lanes = rrb.Vertical(*lanes) if pile else rrb.Horizontal(*lanes)
-    left = rrb.Vertical(lanes, small, row_shares=[7 if pile else 5, 2])
+    lanes = rrb.Vertical(*lanes) if pile else rrb.Horizontal(*lanes)  # type: ignore[assignment]
+    left = rrb.Vertical(lanes, small, row_shares=[7 if pile else 5, 2])  # type: ignore[arg-type]
     about = rrb.TextDocumentView(origin="about", name="about")
     most = 5.0 * weight(scene)
     right = rrb.Vertical(about, *[plot(title, most, *seconds) for title in drawn])
@@ -188,7 +190,7 @@ def plot(title: str, most: float, first: float, last: float) -> rrb.TimeSeriesVi
         start, end = (rrb.TimeRangeBoundary.absolute(seconds=each) for each in (first + 1e-6, last))
         shown = [rrb.VisibleTimeRange(line, start=start, end=end) for line in SECONDS]
     how = {"plot_legend": rrb.PlotLegend(visible=False), "time_ranges": shown, "axis_y": axis}
-    return rrb.TimeSeriesView(origin=name, name=title, **how)
+    return rrb.TimeSeriesView(origin=name, name=title, **how)  # type: ignore[arg-type]
 
 
 def time_panel():
