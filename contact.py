@@ -8,21 +8,21 @@ A table keeps a ball from falling through it: it pushes up, and it never pulls d
     penalty   a stiff spring and a damper: one more force, and no other change
     lcp       impulses, found by sweeps: each contact pushes, or its bodies part (a linear
               complementarity problem, solved by projected Gauss-Seidel)
-    soft      the contact of MuJoCo, a simulator of robots: lcp's sweeps, but each contact gives way
-    leapfrog  an impact has its own moment; what lasts is asked twice: where, and how fast
-    exact     from one impact to the next, each at its own time: no time step
+    soft      the contact of MuJoCo, a robot simulator: lcp's sweeps, but each contact gives way
+    leapfrog  impacts at their own moments; a contact that lasts is asked twice: where, and how fast
+    exact     goes from one impact to the next: no time step
 Left out: friction, rotation, and all shapes but balls over the line y = 0.
 
     symbol    meaning                              unit    sign
-    x, y      position of a ball's centre; q both  m       y is up
-    vx, vy    its velocity; v both                 m/s
+    x, y      centre of a ball; q is both          m       y is up
+    vx, vy    its velocity; v is both              m/s
     gap       distance of two surfaces             m       > 0 apart
     depth     -gap                                 m       > 0 overlapping
     n         normal of a contact, a unit vector   -       from body b to body a; from the floor up
     v_n       n . (v_a - v_b)                      m/s     > 0 separating
     f_n       contact force of penalty             N       >= 0: a contact only pushes
     lam       contact impulse over one step        N s     >= 0: a contact only pushes
-    target    the least v_n after the step         m/s     > 0 separating
+    target    the least v_n after the solve        m/s     > 0 separating
     softness  R: v_n stays R lam below its target  1/kg    0 is hard
     m_eff     effective mass, what a push moves    kg      1 / (1 / m_a + 1 / m_b + R)
     e         restitution: share of the speed that a bounce gives back, 0 to 1
@@ -33,7 +33,7 @@ Run it:
     python contact.py --contact penalty --dt 0.03   # one model, a longer step
     python contact.py --smoke --no-rerun            # fixed length, the same bytes every time
 It needs numpy and nothing else. The course's folder beside it adds the recording, pictures, many
-seeds at once, compiled loops for many balls, and exact where balls slide over one another.
+seeds at once, compiled loops for many balls, and exact for more than one column of balls.
 """
 
 # --- region: setup ---
@@ -71,7 +71,7 @@ class Ball:
     """A ball: position [m], velocity [m/s], mass [kg], radius [m], and the force on it [N]."""
 
     __slots__ = "x y vx vy fx fy mass inv_mass radius pushed".split()  # no other name can be set
-    __slots__ += "ax ay since held vx_before vy_before".split()  # of leapfrog
+    __slots__ += "ax ay since held vx_before vy_before".split()  # used by leapfrog
 
     def __init__(self, x, y, vx, vy, mass, radius):
         self.x, self.y, self.vx, self.vy = x, y, vx, vy
@@ -89,8 +89,8 @@ class Contact:
     """Balls a and b, how deep they overlap [m], and the unit normal (nx, ny) from b to a."""
 
     __slots__ = "a b nx ny depth m_eff target softness lam".split()
-    __slots__ += "start before".split()  # of solve_with_momentum
-    __slots__ += "reach gap speed when struck".split()  # of leapfrog
+    __slots__ += "start before".split()  # used by solve_with_momentum
+    __slots__ += "reach gap speed when struck".split()  # used by leapfrog
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
@@ -156,7 +156,7 @@ def move(balls, dt: float) -> None:
 
 # --- region: penalty ---
 def penalty_normal_force(depth, v_n, stiffness, damping):
-    """f_n [N] of a spring and a damper at `depth` > 0 [m]: max(0, ...), since it never pulls."""
+    """The force f_n [N] of spring and damper at `depth` > 0 [m]; not below 0: it never pulls."""
     return max(0.0, stiffness * depth - damping * v_n)
 
 
@@ -178,7 +178,7 @@ def penalty_step(balls, dt: float, stiffness: float, damping: float) -> list[Con
     accelerate(balls, dt)
     move(balls, dt)
     for ball in balls:
-        ball.fx = ball.fy = 0.0  # for the next step; the floor's may add up: nobody reads it
+        ball.fx = ball.fy = 0.0  # for the next step; FLOOR's sum stays: nobody reads it
     return contacts
 
 
@@ -186,14 +186,14 @@ def penalty_step(balls, dt: float, stiffness: float, damping: float) -> list[Con
 def critical_dt(mass: float, stiffness: float, damping: float, count: int = 1) -> float:
     """The largest stable step [s] of penalty for a ball kept in contact, or a stack of them.
 
-    In contact a step is a 2 x 2 matrix. Its eigenvalues stay within 1 (Jury's test) while c >= 0
-    and k dt^2 + 2 c dt < 4 m; solved for dt. Without a damper that is 2 sqrt(m / k).
+    In contact a step is a 2 x 2 matrix of m, k, c. Its eigenvalues stay within 1 (Jury's test)
+    while c >= 0 and k dt^2 + 2 c dt < 4 m. Solve that for dt; c = 0 gives 2 sqrt(m / k).
     """
     if damping < 0.0:
-        return 0.0  # such a damper feeds every swing
+        return 0.0  # a negative damper adds energy to every swing
     if mass == math.inf:
         return math.inf
-    if count > 1:  # the stiffest swing of a stack sees so many times the spring and the damper
+    if count > 1:  # in its stiffest swing, a stack feels `more` times the spring and the damper
         more = 4.0 * math.cos(math.pi / (2 * count + 1)) ** 2
         stiffness, damping = more * stiffness, more * damping
     root = math.sqrt(damping * damping + 4.0 * mass * stiffness)
@@ -234,7 +234,7 @@ def build_scene(name, seed=0, bodies=None, restitution=None, damping=None, mass=
     x, y = 0.0, [1.0 + draw]  # drop, bounce
     if name == "stack":
         y = [(2 * i + 1) * RADIUS + lift for i in range(count)]
-    if name == "pile":  # a lattice, twice as wide as high, numbered at random and nudged
+    if name == "pile":  # a lattice, about twice as wide as high, numbered at random and nudged
         width = math.ceil(math.sqrt(2 * count))
         row, column = np.divmod(rng.permutation(count), width)
         nudge = rng.uniform(-0.1 * RADIUS, 0.1 * RADIUS, (2, count))
@@ -265,11 +265,11 @@ class Run(NamedTuple):
 def simulate(step, scene, dt, steps, skip=False, progress=None, kicks=0, see=None) -> Run:
     """Take that many steps, `step(balls)` each, and record every state.
 
-    see(k, contacts) hears of the contacts that step k returns. progress(k) hears of steps done.
-    With `skip` it leaves out steps whose result is known, and no bit changes. Up to 250 steps of
-    flight are one sum, in which gravity acts `kicks` times a step (0: nobody flies). And a step
-    depends on nothing but the state and the impulses of the last step: when both come back (rest,
-    or any cycle), what follows is a copy. Who sees the contacts sees all: nothing is left out then.
+    see(k, contacts) gets the contacts that step k returns; progress(k), how many steps are done.
+    With `skip`, and without `see`, steps whose result is known are left out, and no bit changes. Up
+    to 250 steps of flight are one sum, with gravity added `kicks` times a step (0: nobody flies).
+    And a step depends only on the state and the impulses of the last step: when both come back (at
+    rest, or in a cycle), what follows is a copy.
     """
     balls = make_balls(scene)
     rows = np.zeros((steps + 1, len(balls), 4))
@@ -292,7 +292,7 @@ def simulate(step, scene, dt, steps, skip=False, progress=None, kicks=0, see=Non
         k += flown or 1
         if progress:
             progress(k)
-    rows += 0.0  # -0 becomes 0, and every NaN the same one: chance decides their signs
+    rows += 0.0  # -0 becomes 0, and every NaN the same one: their signs mean nothing
     rows[np.isnan(rows)] = math.nan
     q, v = rows.reshape(len(rows), -1, 2, 2).transpose(2, 0, 3, 1).copy()  # kind, state, axis, ball
     return Run(np.arange(len(rows)) * dt, q, v)
@@ -300,8 +300,8 @@ def simulate(step, scene, dt, steps, skip=False, progress=None, kicks=0, see=Non
 
 # --- region: flight ---
 def fly(balls, dt, rows, kicks):
-    """Take steps, up to one that may see a contact; rows[0] is the state now. Returns how many."""
-    if any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls):  # mostly the cheapest to see
+    """Take steps until one may see a contact; rows[0] is the state now. Returns how many."""
+    if any(ball.y - ball.radius < CONTACT_MARGIN for ball in balls):  # cheap, so it is asked first
         return 0
     if detect_contacts(balls, step_reach(balls, dt)):  # no model looks farther
         return 0
@@ -317,7 +317,7 @@ def fly(balls, dt, rows, kicks):
     gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
     fastest = np.sqrt(v[..., 0] * v[..., 0] + v[..., 1] * v[..., 1]).max(-1)
     reach = [reach_of(speed, dt) for speed in fastest.tolist()]
-    near = np.flatnonzero(~(gap >= reach))  # and not gap < reach: NaN is not far away
+    near = np.flatnonzero(~(gap >= reach))  # not `gap < reach`: NaN must count as near
     flown = int(near[0]) if len(near) > 0 else len(rows) - 1
     for ball, values in zip(balls, rows[flown].tolist()):
         ball.x, ball.y, ball.vx, ball.vy = values
@@ -326,7 +326,7 @@ def fly(balls, dt, rows, kicks):
 
 
 def step_reach(balls, dt: float) -> float:
-    """How far [m] from one another balls may be that meet in a step: leapfrog looks so far."""
+    """The widest gap [m] that balls may close in a step: leapfrog looks this far."""
     fastest = 0.0
     for ball in balls:
         fastest = max(fastest, ball.vx * ball.vx + ball.vy * ball.vy)
@@ -334,7 +334,7 @@ def step_reach(balls, dt: float) -> float:
 
 
 def reach_of(fastest, dt):
-    """As far as four of the fastest balls come together [m]: others may drive a ball."""
+    """Four times the way of the fastest ball [m]: two meet, and a hit may speed them up."""
     return max(4.0 * dt * (fastest - dt * GRAVITY), CONTACT_MARGIN)
 
 
@@ -375,14 +375,14 @@ def solve_contacts(contacts, iters: int, tolerance: float = 0.0) -> int:
 
     Projected Gauss-Seidel: a sweep brings one contact after the other to its target, and each
     disturbs its neighbours; the next sweep mends those. Returns the number of the first sweep in
-    which no correction was above `tolerance` [m/s]; 0 if there was none. The
-    problem is Moreau's (1988), Stewart and Trinkle's (1996), and Anitescu and Potra's (1997).
+    which no correction was above `tolerance` [m/s]; 0 if there was none. The problem is that of
+    Moreau (1988), Stewart and Trinkle (1996), and Anitescu and Potra (1997).
     """
     for sweep in range(1, iters + 1):
         settled = True
         for c in contacts:
             missing = c.target - c.v_n() - c.softness * c.lam  # -w, the velocity that is missing
-            lam = max(0.0, c.lam + missing * c.m_eff)  # the sum is clamped: only a push
+            lam = max(0.0, c.lam + missing * c.m_eff)  # clamp the sum: it may shrink, never pull
             change = lam - c.lam
             c.push(change)
             c.lam = lam
@@ -398,8 +398,8 @@ def contact_target(c, restitution, baumgarte, dt):
 
     The step ends with gap + dt v_n, which must not be negative. So v_n has to be at least
     -gap / dt = depth / dt: a gap may close, and an overlap must open. To open it in one step would
-    throw the balls apart, so only the share beta of it opens (Baumgarte 1972): that v_n is the
-    bias. The same formula lets only that share of a gap close.
+    throw the balls apart, so a step opens only the share beta of it (Baumgarte 1972): that v_n is
+    the bias. By the same formula only that share of a gap may close.
 
     With e > 0, balls that touch or would meet within this step bounce: the target is -e v_n, or
     the bias of an overlap if that is larger. Balls that would not meet may close their gap, but
@@ -407,7 +407,7 @@ def contact_target(c, restitution, baumgarte, dt):
     bias, unfinished sweeps, and the move after a bounce can.
     """
     # A landing of drop, seed 0: at a gap of 2.76 mm no contact is listed. v_n is -4.22 m/s, so the
-    # ball moves by 8.43 mm, to a depth of 5.67 mm. The bias is 0.2 / 0.002 s * 5.67 mm = 0.57 m/s,
+    # ball moves by 8.44 mm, to a depth of 5.67 mm. The bias is 0.2 / 0.002 s * 5.67 mm = 0.57 m/s,
     # and the step ends at 4.54 mm. The next bias is 0.45 m/s, below v_n = 0.55: the ball hops.
     closing = c.depth / dt  # this v_n ends the step with a gap of 0
     bias = baumgarte / dt * c.depth  # < 0 across a gap
@@ -415,22 +415,22 @@ def contact_target(c, restitution, baumgarte, dt):
         return bias
     v_n = c.v_n()
     bounce = -restitution * v_n
-    if bias > 0.0:  # an overlap, and a gain
+    if bias > 0.0:  # an overlap, and beta > 0
         return max(bias, bounce)
     meets = -dt * v_n >= -c.depth  # v_n < 0 closes -dt v_n of the gap -depth in this step
     return bounce if meets else min(bounce, closing)
 
 
 # --- region: soft ---
-MOST_SWEEPS = 10_000  # of a solve: soft then goes on with what it has, exact gives up
-LAST_BITS = 2.0**-42  # of the speeds, chosen: soft sweeps until no correction is above it
+MOST_SWEEPS = 10_000  # in a solve; after them soft goes on with what it has, and exact gives up
+LAST_BITS = 2.0**-42  # of the fastest speed (a choice): soft sweeps until no correction is above
 SOLREF = (0.02, 1.0)  # MuJoCo's default: time constant [s], damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default: d0, d1, width [m], mid, power
 HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)  # the hardest contact that MuJoCo allows
 
 
 def soft_step(balls, dt: float, solref: tuple, solimp: tuple) -> list[Contact]:
-    """One step [s] like lcp's, but softened, and swept until no correction is above LAST_BITS."""
+    """One step [s] like lcp's, but softened, and swept until only LAST_BITS would change."""
     contacts = detect_contacts(balls, margin=0.0)
     for c in contacts:
         soften(c, dt, solref, solimp)
@@ -452,7 +452,7 @@ def soften(c, dt, solref, solimp):
 
     A spring K [1/s^2] and a damper B [1/s] ask for the acceleration K d depth - B v_n, whatever
     the mass (MuJoCo's mj_makeImpedance, mj_referenceConstraint). The softness R [1/kg] lets the
-    contact miss it: the less, the nearer d is to 1.
+    contact miss it. The nearer d is to 1, the smaller R is.
     """
     d = impedance(c.depth, solimp)
     d1 = solimp[1]
@@ -492,7 +492,7 @@ def impedance(depth: float, solimp: tuple) -> float:
         return 0.5 * (d0 + d1)
     if depth >= width:
         return d1
-    share = depth / width  # between: an S of two powers, which meet where share is mid
+    share = depth / width  # in between: an S of two powers, which meet where share is mid
     if share <= mid:
         rise = raised(share, power) / raised(mid, power - 1.0)
     else:
@@ -512,19 +512,19 @@ def raised(x, power):
 
 # --- region: momentum ---
 def solve_with_momentum(contacts, iters: int, tolerance: float = 0.0) -> int:
-    """What solve_contacts finds and returns; after each sweep, lam goes on a little.
+    """Like solve_contacts, but after each sweep every lam goes on a little.
 
-    In towers and piles that takes far fewer sweeps. It goes on by a share of its last change. The
+    Towers and piles then need far fewer sweeps. lam goes on by a share of its last change. The
     share grows from 0 towards 1 (Nesterov 1983), and starts again at 0 when a sweep turns back
     (O'Donoghue and Candes 2015).
     """
     t = 1.0
     for c in contacts:
-        c.start = c.before = c.lam  # where a sweep starts; what the sweep before it had come to
+        c.start = c.before = c.lam  # lam before this sweep; lam after the last sweep
     for sweep in range(1, iters + 1):
         if solve_contacts(contacts, 1, tolerance):
             return sweep
-        onward = 0.0  # below 0: on the whole the sweep took back what had been carried on
+        onward = 0.0  # below 0: on the whole, the sweep turned against the way lam was going
         for c in contacts:
             onward += (c.lam - c.start) * (c.lam - c.before)
         if onward < 0.0:
@@ -540,19 +540,19 @@ def solve_with_momentum(contacts, iters: int, tolerance: float = 0.0) -> int:
 
 
 # --- region: leapfrog ---
-OPENS = 0.03  # of the two radii, chosen: the most of an overlap that opens in a step
+OPENS = 0.03  # of the two radii (a choice): the most of an overlap that a step opens
 
 
 def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
     """One step [s]: impacts; half of gravity, where, move; half of gravity, how fast.
 
-    An impact has its own moment, and is asked once. A contact that lasts is asked twice: where may
-    it go, gap + dt v_n >= 0; and after the move, how fast, v_n >= 0 of those that pushed. lam stays
-    in between: what opened an overlap is taken back then, and throws nobody. Without contacts that
-    is leapfrog, exact in a parabola; with contacts that last it is RATTLE (Andersen 1983).
+    An impact is asked once, at its own moment. A contact that lasts is asked twice: where may it
+    go, gap + dt v_n >= 0; and after the move, if it pushed, how fast, v_n >= 0. lam is kept
+    in between, so the push that opened an overlap is taken back, and throws nobody. Without
+    contacts that is leapfrog, exact on a parabola; with lasting ones, RATTLE (Andersen 1983).
 
-    Not mended: sweeps that do not finish let a stack sag; a bounce slower than gravity makes it in
-    a step is lost; of more moments in a step than MOST_LOOKS allows the last are taken as one.
+    Not mended: unfinished sweeps let a stack sag; an impact slower than what gravity adds in a step
+    does not bounce; after as many moments as MOST_LOOKS allows, the last takes the rest of a step.
     """
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
@@ -584,9 +584,9 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
 
 # --- region: leapfrog-lasts ---
 def look(c, t):
-    """Turn contact c to the time t [s] of this step: its normal, its gap [m], v_n as its speed.
+    """Set contact c to time t [s] of this step: its normal, its gap [m], and its speed, v_n then.
 
-    Its depth is that of the start of the step along this normal.
+    Its depth is that at the start of the step, along this normal.
     """
     a, b = c.a, c.b
     x, y, ax, ay = a.x - b.x, a.y - b.y, a.ax - b.ax, a.ay - b.ay
@@ -604,7 +604,7 @@ def find_held(balls, contacts, dt):
     """Find which balls are held: 2 if fixed or on the floor, 1 if only on balls that are held."""
     for ball in balls:
         ball.held = 0.0 if ball.inv_mass > 0.0 else 2.0
-        ball.ax = ball.ay = 0.0  # see hold: nothing stays of the last step
+        ball.ax = ball.ay = 0.0  # what hold set in the last step is gone
     more = True
     while more:
         more = False
@@ -616,21 +616,21 @@ def find_held(balls, contacts, dt):
 
 
 def gravity_on(c):
-    """How gravity closes c [m/s^2]: 0 if both balls fall, or if the upper one cannot fall."""
+    """How gravity closes c [m/s^2]: 0 for balls unless the lower is held and the upper can fall."""
     upper, lower = (c.a, c.b) if c.ny > 0.0 else (c.b, c.a)
     presses = lower is FLOOR or (lower.held > 0.0 and upper.held < 2.0)
     return -GRAVITY * abs(c.ny) if presses else 0.0
 
 
 def lasts(c, dt):
-    """Whether c closes no faster than gravity alone closes it within a step; else it strikes."""
-    g_n = max(1e-6, gravity_on(c))  # m/s^2; where gravity does not press, what touches and rests
+    """Whether c lasts: it would touch no faster than gravity alone makes it in a step."""
+    g_n = max(1e-6, gravity_on(c))  # m/s^2; without gravity on it, only touching at rest lasts
     slow = dt * g_n + 1e-9  # m/s
     return c.speed * c.speed + 2.0 * g_n * max(0.0, c.gap) <= slow * slow
 
 
 def nearest(c, dt):
-    """When the balls of c touch in free flight, or are nearest [s]: so balls that pass may pass."""
+    """When the balls of c touch in free flight, or are nearest [s]: so they may pass each other."""
     a, b = c.a, c.b
     dx, dy = a.x - b.x, a.y - b.y
     vx, vy = a.vx - b.vx, a.vy - b.vy  # gravity cancels where both fall
@@ -644,12 +644,12 @@ def nearest(c, dt):
 
 
 # --- region: leapfrog-impacts ---
-MOST_STRIKES = 10.0  # moments of impact in a step, chosen: the last takes all that are left at once
-MOST_LOOKS = 3000  # of contacts in a step, chosen: where there are few, more moments than that
+MOST_STRIKES = 10.0  # moments of impact in a step, at least (a choice); the last takes all the rest
+MOST_LOOKS = 3000  # at contacts in a step (a choice): if they are few, more moments are allowed
 
 
 def may_strike(contacts, dt):
-    """Whether any balls could meet within this step that do not lie on one another."""
+    """Whether a contact that does not last could close within this step."""
     for c in contacts:
         if c.gap + dt * (c.speed + dt * GRAVITY) < 0.0 and not lasts(c, dt):
             return True
@@ -669,7 +669,7 @@ def take_impacts(balls, contacts, dt, restitution, iters):
 
 
 def hold(balls, contacts, dt, iters):
-    """Give every ball the acceleration [m/s^2] that it has where what lasts pushes it."""
+    """Give every ball its acceleration [m/s^2]: gravity, and pushes of contacts that last."""
     lasting = [c for c in contacts if lasts(c, dt)]
     for c in lasting:
         c.target = min(0.0, c.depth / dt)
@@ -701,12 +701,12 @@ def next_meeting(contacts, dt):
 def meet(c, dt):
     """Set when the balls of c strike one another [s], by Newton's method; inf if not in this step.
 
-    c stays turned to then, or to when they have passed each other, so that they may.
+    c stays at that moment, or at one when they have passed each other, so that they may.
     """
     c.when = math.inf
     first = max(c.a.since, c.b.since)
     t, before = first, -1.0
-    for _ in range(40):  # six are many, but balls that only graze halve the way each time
+    for _ in range(40):  # a few will do, but balls that only graze halve the way each time
         if t == before:
             break
         look(c, t)
@@ -717,21 +717,21 @@ def meet(c, dt):
 
 
 def strike_at(balls, contacts, when, until, dt, restitution, iters):
-    """v_n becomes -e v_n of what meets from `when` to `until`; what lasts closes no faster.
+    """v_n becomes -e v_n where balls meet from `when` to `until`; what lasts closes no faster.
 
-    Who was struck is set back to where it would have begun with its new velocity: so all balls
+    A struck ball is set back to where it would have begun with its new velocity: so all balls
     stay at the start of the step.
     """
     for c in contacts:
         look(c, when)
     touching = [c for c in contacts if c.when <= until or lasts(c, dt)]
     for c in touching:
-        # what lasts and opens may close as fast: a target of 0 would take its speed for the others
+        # what lasts and opens may close as fast: a push up to a target of 0 would add energy
         after = -restitution * c.speed if c.when <= until else -abs(c.speed)
         c.target = c.v_n() + after - c.speed  # at the start of the step
         c.lam = 0.0
     keep_velocities(balls)
-    solve_with_momentum(touching, 10 * iters, 1e-11)  # m/s; unfinished, it would add energy
+    solve_with_momentum(touching, 10 * iters, 1e-11)  # m/s; unfinished sweeps may add energy
     for c in touching:
         c.struck += c.lam
     for ball in balls:
@@ -752,12 +752,12 @@ MOST_IMPACTS = 20_000  # a run with more is given up
 def exact_run(scene: Scene, times, progress=None):
     """q, v (S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, of balls over one another.
 
-    Between two impacts every acceleration stays the same, so a gap is a parabola in time, and the
-    next impact is the first root of all: no time step, no error but rounding (1e-10 r over seconds
-    and metres). Raises RuntimeError after MOST_IMPACTS; ArithmeticError if sweeps do not settle.
+    Between two impacts every acceleration stays the same, so a gap is a parabola in time. The next
+    impact is the earliest root: no time step, no error but rounding (1e-10 radii over seconds and
+    metres). Raises RuntimeError after MOST_IMPACTS; ArithmeticError if sweeps do not settle.
     """
     balls = make_balls(scene)
-    pairs = detect_contacts(balls, margin=math.inf)  # all of them: who may ever touch
+    pairs = detect_contacts(balls, margin=math.inf)  # every pair: any two may touch later
     touching = [c for c in pairs if -c.depth <= TOUCH]
     start = np.array((scene.q0, scene.v0), float)
     q, v = np.tile(start[:, None], (1, len(times), 1, 1))
@@ -846,15 +846,15 @@ def next_impact(pairs, gap_a):
 
 # --- region: run ---
 class Model(NamedTuple):
-    """All there is to say of a model: whoever runs, records or draws it asks nothing else."""
+    """All there is to know of a model: whoever runs, records or draws it asks nothing else."""
 
     step: Callable | None  # step(balls, dt, ...) returns the contacts; None: it takes no steps
-    knobs: tuple[str, ...]  # that change its runs, those of its step first and in its order
+    knobs: tuple[str, ...]  # settings that change its runs: first its step's, in the step's order
     kicks: int  # how often a step adds gravity where nothing touches; 0: it is not flown
     look: tuple  # colour, marker and dash of its curves
 
 
-MODELS = {  # in the order of the table
+MODELS = {  # in the order of the printed table
     "penalty": Model(penalty_step, ("stiffness", "damping"), 1, ("#d55e00", "v", (0, (1, 1)))),
     "lcp": Model(lcp_step, ("restitution", "baumgarte", "iters", "warm"), 1, ("#0072b2", "o", "-")),
     "soft": Model(soft_step, ("solref", "solimp", "restitution"), 1, ("#cc79a7", "d", (0, (5, 1)))),
@@ -864,8 +864,8 @@ MODELS = {  # in the order of the table
     "exact": Model(None, ("restitution",), 0, ("#009e73", "*", (0, (2, 2)))),
 }
 STEPPED = [model for model in MODELS if MODELS[model].step]
-MANY = 1e6  # of about steps times balls squared: from here on, compiled loops pay
-FEW = 4  # balls of a column, measured: more are faster by curriculum/exact.py
+MANY = 1e6  # steps times balls squared, about: from here on, compiled loops pay
+FEW = 4  # balls in a column; curriculum/exact.py was measured to be faster for more
 
 
 class Settings(NamedTuple):
@@ -873,7 +873,7 @@ class Settings(NamedTuple):
 
     stiffness: float = 1e4  # k of penalty [N/m]
     baumgarte: float = 0.2  # beta of lcp: the share of an overlap that one step removes
-    iters: int = 20  # of lcp and leapfrog: Gauss-Seidel sweeps a solve, at most
+    iters: int = 20  # of lcp and leapfrog: sweeps a solve, at most; an impact has 10 times as many
     warm: float = 0.0  # of lcp: the share of a step's impulses that the next begins with
     solref: tuple | None = None  # of soft: time constant [s], damping ratio; see soft_defaults
     solimp: tuple | None = None  # of soft: how hard, at which depth; see impedance
@@ -905,13 +905,13 @@ def step_of(model: str, scene: Scene, dt: float, settings: Settings) -> partial:
     e = scene.restitution
     values = settings._asdict() | {"restitution": e, "damping": scene.damping}
     values["solref"], values["solimp"] = soft_defaults(e, dt, settings.solref, settings.solimp)
-    taken = step.__code__.co_argcount - 2  # beside the balls and dt
+    taken = step.__code__.co_argcount - 2  # not counting balls and dt
     return partial(step, dt=dt, **{knob: values[knob] for knob in knobs[:taken]})
 
 
 @np.errstate(over="ignore")
 def choose_exact(scene, dt, steps, progress=None):
-    """The Run of a few balls over one another by exact_run, of others by curriculum/exact.py."""
+    """The Run by exact_run for a few balls over one another, else by curriculum/exact.py."""
     times = np.arange(steps + 1) * dt
     apart = smallest_gap(scene.q0[None], scene.radius)[0] >= -TOUCH
     column = apart and (scene.q0[0] == scene.q0[0, 0]).all() and not scene.v0[0].any()
@@ -939,7 +939,7 @@ def beside(name: str, needed=False):
             sys.path.append(str(home))
         return importlib.import_module(f"curriculum.{name}")
     except ImportError as error:
-        if needed or error.name:  # without a name, the module says itself what it needs
+        if needed or error.name:  # a name: a fault; none: the module says what it needs
             raise
         return None
 
@@ -968,7 +968,7 @@ NUMBERS = {  # kind, lowest, highest; of a flag also its usual value and its mea
 
 
 def checked(model, scene, dt, steps, settings):
-    """Scene and Settings in floats. ValueError, with the name of the field that nothing can run."""
+    """Scene and Settings in the right types. ValueError names the field that nothing can run."""
     if model not in MODELS:
         raise ValueError(f"model: given {model!r}; allowed: {', '.join(MODELS)}")
     count = max(1, np.size(scene.mass))
@@ -1057,9 +1057,9 @@ def first_contact(run: Run, scene: Scene, dt: float, gap) -> int:
 
 
 def at_rest(run: Run, scene: Scene) -> bool:
-    """Whether in the last two steps no ball that can move went faster than 1 mm/s, or fell.
+    """Whether no ball that can move went faster than 1 mm/s in the last step, or is falling.
 
-    Ways are judged, not speeds: leapfrog's may hold half a step of gravity that moves nothing.
+    It judges ways, not speeds: leapfrog's may hold half a step of gravity that moves nothing.
     """
     if len(run.t) < 3:
         return False
@@ -1078,7 +1078,7 @@ def went_through(q, scene: Scene, gap, radius) -> str | None:
     if (q[:, 1, free] < 0.0).any():
         return "the floor"
     way = np.diff(q, axis=0, append=q[-1:])
-    near = gap - 2.0 * np.hypot(way[:, 0], way[:, 1]).max(-1) < -radius  # elsewhere none can be
+    near = gap - 2.0 * np.hypot(way[:, 0], way[:, 1]).max(-1) < -radius  # elsewhere no ball can be
     q, way = q[near], way[near]
     for lag in range(1, len(free) if near.any() else 1):
         d, w = q[:, :, lag:] - q[:, :, :-lag], way[:, :, lag:] - way[:, :, :-lag]
@@ -1102,7 +1102,7 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     gap = smallest_gap(run.q, scene.radius)
     landing = first_contact(run, scene, dt, gap)
     step = blow_up_step(total)
-    end = len(gap) if step is None else step  # what flies to pieces goes through everything
+    end = len(gap) if step is None else step  # after an explosion, balls go through anything
     through = went_through(run.q[:end], scene, gap[:end], radius)
     gap = gap / radius
     depth = np.maximum(-gap, 0.0)
@@ -1110,7 +1110,7 @@ def contact_quality(run: Run, scene: Scene, dt: float, reference: Run | None = N
     height = (run.q[late, 1] - run.q[-1, 1]) / radius
     return {
         **height_errors(run, scene, dt, landing, reference),
-        "first_contact_step": landing,  # the number of states where there is none
+        "first_contact_step": landing,  # without a contact: the number of states
         "max_penetration_frac": float(depth.max()),
         "rest_penetration_frac": float(depth[-1]),  # the overlap at the end
         "rest_gap_frac": float(gap[-1]),
@@ -1138,7 +1138,7 @@ def height_errors(run, scene, dt, landing, reference):
 
 # --- region: stability ---
 DT_GRID = (1, 2, 4, 8, 16, 32)  # multiples of --dt that the stability lines try
-GRID_MODELS = ("penalty", "lcp", "leapfrog")  # soft's time constant grows with the step
+GRID_MODELS = ("penalty", "lcp", "leapfrog")  # not soft: its time constant grows with the step
 
 
 def measure_stability(args, scene: Scene, known: dict) -> dict:
@@ -1188,7 +1188,7 @@ def add_flags(flag):
     for name, (kind, low, high, *words) in NUMBERS.items():
         if words:
             usual, text = words
-            own = usual == -1.0  # and any other below 0: the scene's
+            own = usual == -1.0  # like any other below 0: the scene's own value
             text += "" if own or usual is None else f" ({usual:g})"
             value = partial(number, kind, -high if own else low, high)
             count = {"solref": 2, "solimp": 5}.get(name)
@@ -1211,7 +1211,7 @@ def parse_flags(argv):
     parser._negative_number_matcher = re.compile(r"(?i)-\.?(\d|inf|nan)")  # -1e4 is a value
     add_flags(parser.add_argument)
     for word in argv:
-        if re.fullmatch("--[a-z]+=--", word):  # argparse would lose its way
+        if re.fullmatch("--[a-z]+=--", word):  # argparse would misread it
             parser.error(f"argument {word[:-3]}: given '--', which is no value")
     args, unknown = parser.parse_known_args(argv)
     hint = "".join(f"; a scene is chosen by --scene {w}" for w in unknown[:1] if w in SCENES)
@@ -1348,7 +1348,7 @@ def write_whole(path, text: str):
 
 
 def write_files(args, metrics, runs, scene):
-    """Write metrics.json, and recording and picture if asked: a line on each. Raises OSError."""
+    """Write metrics.json; if asked, recording, picture. Yields a line for each. Raises OSError."""
     out, title = Path(args.out), f"{args.scene}, seed {args.seed}, dt = {args.dt:g} s"
     text = json.dumps(metrics, indent=2, sort_keys=True, allow_nan=False)
     write_whole(out / "metrics.json", f"{text}\n")
@@ -1376,7 +1376,7 @@ def report(args, argv):
     keys = "scene", "contact", "dt", "steps", "seed", "stiffness"
     metrics = {key: getattr(args, key) for key in keys} | {"restitution": scene.restitution}
     metrics |= {"quality": quality, "stability": {}, "without": without}
-    if args.contact == "all" and args.scene != "pile":  # whose critical step no formula gives
+    if args.contact == "all" and args.scene != "pile":  # no formula gives a pile's critical step
         metrics["stability"] = measure_stability(args, scene, quality)
     metrics = rounded(metrics)
     print(f"scene {args.scene}, seed {args.seed}: {args.steps} steps of {args.dt:g} s")
@@ -1413,10 +1413,10 @@ def main(argv=None):
     argv = sys.argv[1:] if argv is None else argv
     for stream in filter(None, (sys.stdout, sys.stderr)):
         if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")  # a name that it cannot encode
+            stream.reconfigure(errors="backslashreplace")  # for names that it cannot encode
     try:
         status = report(parse_flags(argv), argv)
-        print(end="", flush=True)  # an error at Python's end has no handler
+        print(end="", flush=True)  # now: an error at Python's exit could not be handled
         return status
     except MemoryError:
         return fail("not enough memory; allowed: fewer --steps or --bodies")
