@@ -16,8 +16,8 @@ FAULTS = [
     (C, "or fast == 0.0:", "or fast < 0.0:", MODELS + "too_slow_for"),
     # an impact has its own moment
     (C, "if may_strike(contacts, dt):", "if False:", STEP),
-    (C, "-GRAVITY * abs(c.ny) if held else 0.0", "-GRAVITY if held else 0.0", MOMENT),
-    (C, "-GRAVITY * abs(c.ny) if held else 0.0", "-GRAVITY * abs(c.ny)", MODELS + "both_fall"),
+    (C, "-GRAVITY * abs(c.ny) if presses else 0.0", "-GRAVITY if presses else 0.0", MOMENT),
+    (C, "(lower.held > 0.0 and", "(lower.held >= 0.0 and", MODELS + "both_fall"),
     (C, "g_n = max(1e-6, gravity_on(c))", "g_n = max(1e-1, gravity_on(c))", MOMENT),
     (C, "until = when if left > 0 else dt", "until = dt", MOMENT),
     (C, "            ball.since = when\n", "            ball.since = 0.0\n",
