@@ -22,7 +22,7 @@ FAULTS = [
     (GATE, "if r.source in waiting else r.sha", "if False else r.sha", READ),
     (PASSAGES, " or r.defines & words", "", READ),
     (PASSAGES, "if own else {}", "if False else {}", ERRORS),
-    (CHAPTER, "HTML.finditer(blank(INLINE, text))", "()", ERRORS),
+    (CHAPTER, "HTML.finditer(blank(LIKE_A_MARK, blank(INLINE, text)))", "()", ERRORS),
     (REFERENCES, "[inputs, made_by(), ", "[inputs, ", KEPT),
     (REFERENCES, 'version("numpy"), sys.version', "sys.version", KEPT),
     (REFERENCES, '"" if true else numbers', '""', "test_gate.py -k test_sentence_in_words"),

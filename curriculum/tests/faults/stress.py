@@ -19,7 +19,7 @@ FAULTS = [
     # a contact of lcp returns less than it gave
     (C, "c.lam = lam\n", "c.lam = (1.0 - 1e-11) * lam\n", SEES),
     # the first ball of a contact of exact.py feels 1e-7 more
-    (E, "1.0 * (pairs[0] == balls)", "(1.0 + 1e-7) * (pairs[0] == balls)", SEES),
+    (E, "np.eye(count + 1)[:, :-1][pairs[0]] -", "(1.0 + 1e-7) * np.eye(count + 1)[:, :-1][pairs[0]] -", SEES),
     # the Baumgarte gain of pairs is halved
     (C, "bias = baumgarte / dt", "bias = (1.0 if c.b is FLOOR else 0.5) * baumgarte / dt", SEES),
     # lcp bounces with e less 1e-9
@@ -30,8 +30,7 @@ FAULTS = [
     # exact bounces with e less 1e-8
     (E, "target = -self.e * v_n", "target = (1e-8 - self.e) * v_n", SEES),
     # exact.py leaves 1e-12 m of an overlap
-    (E, "resting.along(self.q) - self.found[touching])",
-     "resting.along(self.q) - self.found[touching] - 1e-12)", SEES),
+    (E, "J @ self.q - self.found[touching])", "J @ self.q - self.found[touching] - 1e-12)", SEES),
     # leapfrog forgets what it gave on the way, and ends a step along the normal of its start
     (C, "c.target = 0.0\n    solve_", "c.target = c.lam = 0.0\n    solve_", ORDER),
     (C, "look(c, 0.0)  # the normal of now", "pass  # the normal of now", ORDER),
