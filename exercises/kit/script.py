@@ -12,7 +12,7 @@ from curriculum.commands import Parser, command, near, quoted, write_json
 from . import FACTS, ROOT, task_of
 
 BETS = "ex1", "ex3", "ex9"  # done once they were read
-ORDER = ("ex1", "ex3", "ex6", "ex2", "ex5", "ex9", "ex10", "ex7", "ex4", "ex8")  # the chapter's
+ORDER = ("ex1", "ex3", "ex6", "ex2", "ex5", "ex9", "ex10", "ex7", "ex8", "ex4")  # the chapter's
 PATHS = [path for name in ORDER for path in (ROOT / "exercises").glob(f"{name}_*.py")]
 FILES = {path.stem.partition("_")[0]: f"exercises/{path.name}" for path in PATHS}
 DONE = ROOT / "outputs/ch3.5-contact/exercises.json"
