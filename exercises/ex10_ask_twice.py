@@ -23,8 +23,7 @@ exact judges it, on a drop, a stack, a ball that slides off another and one that
 Then read off the order of your step: the error of the slide falls like dt to which power? Two rows
 say it; write the power as ORDER.
 
-    python exercises/ex10_ask_twice.py      # your functions at work, and your step beside lcp's
-    python exercises/ex10_ask_twice.py --hint 1     # to 8: two a function, three of after_the_move
+    python exercises/ex10_ask_twice.py      # add --hint 1 (to 8: two a function, three of the last)
     python checks.py -k ex10
 """
 
@@ -61,6 +60,4 @@ def after_the_move(lam, then, now):
 
 ORDER = None  # of your slide's error, as a power of dt
 
-
-if __name__ == "__main__":
-    script.main()
+script.main(__name__)

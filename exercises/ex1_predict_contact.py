@@ -15,8 +15,7 @@ Where does it lie when it has come to rest?
     A  Both times on the surface: a table is a table.
     B  Under penalty inside the table, as deep as a ball of 1 kg would lie there, since the table is
        the same; under lcp on the surface.
-    C  Under penalty inside the table, four times as deep as a ball of 1 kg; under lcp on the
-       surface.
+    C  Under penalty inside it, four times as deep as a ball of 1 kg; under lcp on the surface.
 
 One sentence: when the ball lies still, how does each model arrive at a push of m g?
 
@@ -31,6 +30,4 @@ from kit import script
 PREDICTION = None  # "A", "B" or "C"
 WHY = ""  # your sentence
 
-
-if __name__ == "__main__":
-    script.main()
+script.main(__name__)

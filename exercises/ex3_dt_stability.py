@@ -7,8 +7,7 @@
 Two balls, one of 0.1 kg and one of 10 kg, each drop half a metre onto the table. The spring is the
 usual one, and the time step is raised from 0.002 s to 0.03 s: somebody is in a hurry. penalty is
 the table as a spring; lcp asks for the impulse after which ball and table no longer approach.
-Measured is the highest energy of the run above the energy at the start, in units of the energy at
-the start.
+Measured is the highest energy of the run above that at the start, in units of that at the start.
 
 At dt = 0.03 s, which of them gain energy many times over?
 
@@ -29,6 +28,4 @@ from kit import script
 PREDICTION = None  # "A", "B" or "C"
 WHY = ""  # your sentence
 
-
-if __name__ == "__main__":
-    script.main()
+script.main(__name__)

@@ -22,6 +22,4 @@ from kit import script
 
 DEPTH = None  # r, from your paper
 
-
-if __name__ == "__main__":
-    script.main()
+script.main(__name__)

@@ -13,8 +13,7 @@ read it; now write it without looking. A contact c gives you
     c.lam       the impulse [N s] given so far, 0 at first; keep it up to date
     c.push(p)   gives body a the impulse p [N s] along the normal, and body b the opposite one
 
-    python exercises/ex5_solve_contacts.py      # balls under your solver, and under contact.py's
-    python exercises/ex5_solve_contacts.py --hint 1     # 1 to 3
+    python exercises/ex5_solve_contacts.py      # add --hint 1 (2, 3) for a question that helps
     python checks.py -k ex5                     # random stacks, against contact.py's answers
 """
 
@@ -31,5 +30,4 @@ def solve_contacts(contacts, iters):
     return ...  # TODO: your loop, in place of this line
 
 
-if __name__ == "__main__":
-    script.main()
+script.main(__name__)

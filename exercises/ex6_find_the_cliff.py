@@ -10,8 +10,7 @@ step is a matrix. It can be taken again and again as long as no eigenvalue of it
 Write the matrix, then find the longest step by any search you like. The script sets your answer
 beside a formula.
 
-    python exercises/ex6_find_the_cliff.py      # your longest step, for four springs
-    python exercises/ex6_find_the_cliff.py --hint 1     # 1, 2: the matrix; 3, 4: the search
+    python exercises/ex6_find_the_cliff.py      # add --hint 1 (2; 3, 4: the search) for a question
     python checks.py -k ex6
 
 Gravity only moves the place of balance, so leave it out. The step is semi-implicit Euler: the new
@@ -38,5 +37,4 @@ def longest_step(mass, stiffness, damping):
     return ...  # TODO: blank 2
 
 
-if __name__ == "__main__":
-    script.main()
+script.main(__name__)

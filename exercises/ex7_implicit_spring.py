@@ -13,8 +13,7 @@ where v_n is the speed after the step. You do not know it yet, but you have a sw
 and lam together: solve_contacts looks for lam >= 0 such that v_n + softness lam - target is zero
 where it pushes. Which softness and which target make that the equation above?
 
-    python exercises/ex7_implicit_spring.py     # your spring beside penalty, at longer dt
-    python exercises/ex7_implicit_spring.py --hint 1    # 1 to 3
+    python exercises/ex7_implicit_spring.py     # add --hint 1 (2, 3) for a question that helps
     python checks.py -k ex7
 """
 
@@ -26,5 +25,4 @@ def implicit_spring(depth, stiffness, damping, dt):
     return ...  # TODO: softness and target
 
 
-if __name__ == "__main__":
-    script.main()
+script.main(__name__)

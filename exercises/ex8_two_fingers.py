@@ -13,8 +13,7 @@ by less than a hundredth of that, with at most 2,000 steps for the second. There
 way. Before you try numbers, estimate: what do 20 N do to a spring, and how light is the lightest
 thing that hangs on it?
 
-    python exercises/ex8_two_fingers.py         # what your choice does, and what stops it
-    python exercises/ex8_two_fingers.py --hint 1    # 1 to 3
+    python exercises/ex8_two_fingers.py         # add --hint 1 (2, 3) for a question that helps
     python checks.py -k ex8
 """
 
@@ -29,6 +28,4 @@ DAMPING = 80.0  # N s/m, of penalty and implicit
 SOLREF = (0.02, 1.0)  # of soft: time constant [s] and damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # of soft: the impedance, see contact.impedance
 
-
-if __name__ == "__main__":
-    script.main()
+script.main(__name__)

@@ -35,6 +35,4 @@ BETS = """
 """
 SAG = None  # r, from your paper
 
-
-if __name__ == "__main__":
-    script.main()
+script.main(__name__)

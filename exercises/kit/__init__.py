@@ -2,17 +2,16 @@
 
     script.py   an exercise's command line, what checks.py asks, which exercise comes next
     judge.py    tries what was written, in a process of its own, and shows it at work
-    bets.py     bets, and numbers from paper      slips.py   inputs, and slips by what they give
+    bets.py     bets                slips.py    inputs, and slips by what they give
 
 answers.json has hints, keys, reasons, inputs and slips; ../solutions/ a right answer of each.
-contact.py and curriculum/ are found above the folder of the exercises, from wherever one starts.
 """
 
 import json
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[2]  # where contact.py and curriculum/ are
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 FACTS = json.loads(Path(__file__).with_name("answers.json").read_text("utf-8"))

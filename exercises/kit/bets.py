@@ -1,6 +1,5 @@
-"""Bets, what is measured, and a word on every choice; and numbers that were worked out on paper."""
+"""Bets: what is measured, and a word on every choice."""
 
-import math
 import re
 import statistics
 import textwrap
@@ -11,46 +10,43 @@ from curriculum.commands import near
 
 from . import FACTS, columns, task_of
 
-USUAL = contact.Settings()
-README = 1.0, 1.0, 0.002  # of its first line: ball [kg], height [m], step [s]
-BETS = {  # exercise: corner of its table, how a number is written, steps, {label: (head of its
-    # column, key of contact_quality, ball [kg], height [m], dt [s])}
-    "ex1": ("depth", "{:.5f} r", 2000, {
+USUAL, MODELS = contact.Settings(), ("penalty", "lcp")  # the models of which one bets
+BETS = {  # exercise: corner of its table, how a number is written, {label: (head of its column,
+    # key of contact_quality, ball [kg], height [m], dt [s])}; shown is README's first line
+    "ex1": ("depth", "{:.5f} r", {
         "deepest": ("deepest", "max_penetration_frac", 4.0, 0.65, 0.002),
         "at_rest": ("at rest", "rest_penetration_frac", 4.0, 0.65, 0.002),
-        "shown_deepest": ("", "max_penetration_frac", *README),
-        "shown_at_rest": ("", "rest_penetration_frac", *README)}),
-    "ex3": ("energy gained", "{:.4g}", 2000, {
+        "shown_deepest": ("", "max_penetration_frac", 1.0, 1.0, 0.002),
+        "shown_at_rest": ("", "rest_penetration_frac", 1.0, 1.0, 0.002)}),
+    "ex3": ("energy gained", "{:.4g}", {
         "light": ("0.1 kg", "energy_excess", 0.1, 0.65, 0.03),
         "heavy": ("10 kg", "energy_excess", 10.0, 0.65, 0.03),
         "light_depth": ("", "max_penetration_frac", 0.1, 0.65, 0.03),
         "shown": ("", "energy_excess", 1.0, 1.0, 0.03)}),
 }  # fmt: skip
-MODELS = "penalty", "lcp"  # of which one bets
 
 
-def quality(model, scene, dt, steps, settings=USUAL):
-    """The measures of a run."""
+def quality(key, model, scene, dt, steps=2000, settings=USUAL):
+    """A measure of a run."""
     run = contact.run_model(model, scene, dt, steps, settings)
-    return contact.contact_quality(run, scene, dt)
+    return contact.contact_quality(run, scene, dt)[key]
 
 
 @cache
 def measure(name):
     """The numbers of a bet, {MODEL_LABEL: number}, and what its reasons quote beside them."""
-    *_, steps, parts = BETS[name]
     numbers = {
-        f"{model}_{label}": quality(model, contact.scene_of(0.0, y, mass), dt, steps)[key]
-        for label, (_, key, mass, y, dt) in parts.items()
+        f"{model}_{label}": quality(key, model, contact.scene_of(0.0, y, mass), dt)
+        for label, (_, key, mass, y, dt) in BETS[name][2].items()
         for model in MODELS
     }
-    known = numbers | {"critical_dt": contact.critical_dt}
-    return numbers | {key: eval(text, known.copy()) for key, text in FACTS[name]["also"].items()}
+    also = {key: eval(text, vars(contact)) for key, text in FACTS[name]["also"].items()}
+    return numbers | also
 
 
 def table(name, numbers):
     """The measurement of a bet as text."""
-    corner, form, _, parts = BETS[name]
+    corner, form, parts = BETS[name]
     heads = {label: head for label, (head, *_) in parts.items() if head}
     rows = {model: [numbers[f"{model}_{label}"] for label in heads] for model in MODELS}
     return columns(corner, heads.values(), rows, form)
@@ -89,12 +85,8 @@ def judge_bet(name, exercise):
         return [name, "blank", f"no reason yet: WHY is {why!r}; {wanted}", ""]
     numbers = measure(name)
     right, facts = answer(name, numbers), FACTS[name]
-    lines = [
-        f"You predicted {mine}: {choices[mine]}",
-        f"Because: {why.strip()}",
-        "",
-        "That is what happens." if mine == right else f"What happens is {right}: {choices[right]}",
-    ]
+    so = "That is what happens." if mine == right else f"What happens is {right}: {choices[right]}"
+    lines = [f"You predicted {mine}: {choices[mine]}", f"Because: {why.strip()}", "", so]
     for choice in sorted(choices, key=lambda choice: choice != right):  # the right one first
         word = "Why" if choice == right else "Why not"
         lines += ["", f"{word} {choice}: {facts['reasons'][choice].format(**numbers)}"]
@@ -128,7 +120,7 @@ def measure_knobs():
     for trouble, (model, scene, bodies, dt, steps, key, seeds) in TROUBLES.items():
         scenes = [contact.build_scene(scene, seed, bodies) for seed in range(seeds)]
         quoted[trouble], *turned = (
-            statistics.fmean(quality(model, of, dt / by, by * steps, knobs)[key] for of in scenes)
+            statistics.fmean(quality(key, model, of, dt / by, by * steps, knobs) for of in scenes)
             for by, knobs in ((1, USUAL), *KNOBS.values())
         )
         shares[trouble] = [number / quoted[trouble] for number in turned]
@@ -165,45 +157,3 @@ def judge_knobs(name, exercise):
     for trouble, reason in FACTS[name]["reasons"].items():
         words += "\n" + textwrap.fill(f"{trouble}: {reason.format(**quoted)}", 96) + "\n"
     return [name, "right", words, columns("times as much", KNOBS, rows, "{}")]
-
-
-# Numbers
-
-
-SOFT = 3.0, (0.05, 1.0), (0.8, 0.8, 0.001, 0.5, 2.0)  # exercise 4: mass [kg], solref, solimp
-TOWER = {"bodies": 7, "dt": 0.001, "beta": 0.5}  # exercise 9: one sweep a step
-
-
-@cache
-def soft_depth():
-    """How deep the ball of exercise 4 rests [r]."""
-    settings = USUAL._replace(solref=SOFT[1], solimp=SOFT[2])
-    ball = contact.build_scene("drop", mass=SOFT[0])
-    return quality("soft", ball, 0.002, 2000, settings)["rest_penetration_frac"]
-
-
-@cache
-def sag():
-    """How deep the lowest ball of exercise 9's tower lies [r]."""
-    tower = contact.build_scene("stack", 0, TOWER["bodies"])
-    settings = USUAL._replace(iters=1, baumgarte=TOWER["beta"])
-    return quality("lcp", tower, TOWER["dt"], 2000, settings)["rest_penetration_frac"]
-
-
-def judge_number(name, exercise, true, **known):
-    """[what, state, words, shown] of a number; its slips are formulas of what is `known`."""
-    facts, file = FACTS[name]["number"], near(exercise.__file__)
-    what, within = facts["name"], facts["within"]
-    given = getattr(exercise, what, None)
-    try:
-        mine = abs(float(given))  # the table says an overlap with a minus
-    except (TypeError, ValueError, OverflowError):
-        said = f"no {what} yet" if given is None else f"{what}: given {given!r}"
-        return [what, "blank", f"{said}; write a number in {file}, {facts['unit']}", ""]
-    if math.isclose(mine, true, rel_tol=within):
-        return [what, "right", facts["right"].format(true), ""]
-    for text, meaning in facts["slips"].items():
-        if math.isclose(mine, eval(text, {}, known), rel_tol=within):
-            return [what, "wrong", f"{what}: given {given}; likely: {meaning}", ""]
-    words = f"{what}: given {given}, and it is another; --hint {facts['hint']} asks a question"
-    return [what, "wrong", words, ""]

@@ -6,9 +6,7 @@ import io
 import json
 import math
 import os
-import re
 import sys
-import traceback
 from functools import cache, partial
 from pathlib import Path
 from unittest import mock
@@ -20,7 +18,7 @@ from curriculum.commands import near
 from curriculum.implicit import implicit_step
 
 from . import FACTS, bets, columns, load
-from .script import LIMIT, unreadable
+from .script import LIMIT, own_lines, unreadable
 from .slips import BLANKS, RIGHT, labels, run, solver
 
 MOST_MEMORY = 2**32  # bytes, chosen
@@ -29,7 +27,7 @@ MOST_MEMORY = 2**32  # bytes, chosen
 def child():
     """The other process: try, write what was found into the report, and be gone."""
     name, file, path = sys.argv[2:]
-    leave, os._exit = os._exit, not_here  # so that it has a line, too
+    leave, os._exit = os._exit, sys.exit  # which has its line
     with open(path, "w", encoding="utf-8") as report, open(os.devnull, "w") as nowhere:
         faulthandler.enable(report, all_threads=False)
         faulthandler.dump_traceback_later(LIMIT, exit=True, file=report)
@@ -46,31 +44,14 @@ def child():
     leave(0)  # whatever threads are left
 
 
-def not_here(status):
-    """os._exit, for a learner."""
-    raise SystemExit(f"os._exit({status})")
-
-
 def judged(name, exercise, report=None):
     """The state of an exercise, and [what, state, words, shown] of everything that it asks for."""
     found, states = [], {"": "right"}
     for blank in (each for each in BLANKS if BLANKS[each].exercise == name):
         print(f"trying {blank}", file=report, flush=True)
         found.append(judge_blank(exercise, blank, states))
-    if name in bets.BETS:
-        found = [bets.judge_bet(name, exercise)]
-    elif name == "ex8":
-        found = [["two_fingers", *judge_fingers(exercise)]]
-    elif name == "ex9":
-        found = [bets.judge_knobs(name, exercise)]
-        found.append(bets.judge_number(name, exercise, bets.sag(), **bets.TOWER))
-    elif name == "ex4":
-        found = [bets.judge_number(name, exercise, bets.soft_depth())]
-    elif name == "ex10" and set(states.values()) == {"right"}:
-        order = slide_order(exercise)
-        found.append(bets.judge_number(name, exercise, order, order=order))
-    elif name == "ex10":
-        found.append(["ORDER", "blank", "ORDER is asked once the functions are right", ""])
+    if set(states.values()) == {"right"}:
+        found += [part(name, exercise) for part in PARTS.get(name, ())]
     return min((part[1] for part in found), key=("wrong", "blank", "right").index), found
 
 
@@ -94,10 +75,6 @@ def judge_blank(exercise, blank, states):
 # Values beside the right ones
 
 
-class Endless(Exception):
-    """A search that goes on where it should have stopped."""
-
-
 def tried(function, name, case):
     """What comes out, as numbers in their rows, None of a blank; and the lines that it printed.
 
@@ -110,10 +87,10 @@ def tried(function, name, case):
         words = f"{name} returned {got!r:.60}, and not numbers"
         words += "; does it end with `return`?" if got is None else ""
     except BaseException as error:
-        words = f"{name} {error}" if type(error) is Endless else f"{name} raised {said_of(error)}"
+        words = f"{name} raised {said_of(error)}"
     lines = [] if said.closed else said.getvalue().splitlines()
-    more = [f"  and {len(lines) - 8} lines more"] if len(lines) > 8 else []
-    printed = [*(f"  printed   {line:.80}" for line in lines[:8]), *more]
+    printed = [f"  printed   {line:.80}" for line in lines[:8]]
+    printed += [f"  and {len(lines) - 8} lines more"] if len(lines) > 8 else []
     if got is ...:
         return None, printed
     try:
@@ -126,9 +103,7 @@ def tried(function, name, case):
 
 def said_of(error):
     """An error in words, with the last line of the learner's own code that it came through."""
-    frames = traceback.extract_tb(error.__traceback__)
-    own = [each for each in frames if re.fullmatch(r"ex\d+\w*\.py", Path(each.filename).name)]
-    lines = [f"\n  line {frame.lineno}: {frame.line}" for frame in own[-1:]]
+    lines = [f"\n  line {each.lineno}: {each.line}" for each in own_lines(error)[-1:]]
     return "".join((f"{type(error).__name__}: {error}", *lines))
 
 
@@ -157,24 +132,6 @@ def slip(name, found, expected):
     return ""
 
 
-@contextlib.contextmanager
-def watched(exercise, name):
-    """Within it, a search for the longest step that only goes on and on is stopped, in words."""
-    last, higher = [0.0], [0]
-
-    def step_matrix(mass, stiffness, damping, dt):
-        up = dt > max(last[0], 4.0 * contact.critical_dt(mass, stiffness, damping))
-        last[0], higher[0] = dt, higher[0] + 1 if up else 0
-        if higher[0] > 1000:
-            raise Endless(FACTS["ex6"]["searches"]["endless"].format(dt))
-        return matrix(mass, stiffness, damping, dt)
-
-    theirs = vars(exercise) if name == "longest_step" else {}
-    matrix = theirs.get("step_matrix", lambda *_: ...)
-    with mock.patch.dict(theirs, {"step_matrix": step_matrix} if theirs else {}):
-        yield
-
-
 @np.errstate(all="ignore")
 def judge(exercise, name):
     """("blank", "wrong" or "right", why in words): a learner's function on all inputs."""
@@ -182,8 +139,7 @@ def judge(exercise, name):
     if not callable(function):
         return "wrong", f"{name} is no longer a function in {file}"
     try:
-        with watched(exercise, name):
-            found, prints = zip(*(tried(function, name, case) for case in blank.inputs))
+        found, prints = zip(*(tried(function, name, case) for case in blank.inputs))
     except ValueError as error:
         return "wrong", str(error)
     if any(got is None for got in found):
@@ -230,34 +186,29 @@ def failing(name, case, got, right):
 # What the fills do to balls
 
 
-TRIALS = {  # what is seen: blanks, model, scene, dt [s], steps, k [N/m], what is taken of heights
+TRIALS = {  # what is seen: blanks, model, scene, what is taken of the heights
     "A ball is pressed into the table and let go: how high it jumps.": (
-        "penalty_normal_force", "penalty",
-        contact.scene_of(0.0, 0.07, damping=60.0), 0.001, 1000, 8e3, np.max),
+        "penalty_normal_force", "penalty", contact.scene_of(0.0, 0.07, damping=60.0), np.max),
     "A ball is thrown up from the table: how high it is, in the mean.": (
-        "project_impulse solve_contacts", "lcp",
-        contact.scene_of(0.0, 0.1, vy=2.0), 0.002, 600, 1e4, np.mean),
+        "project_impulse solve_contacts", "lcp", contact.scene_of(0.0, 0.1, vy=2.0), np.mean),
     "A ball drops into the groove of two that are held: how high it lies at the end.": (
-        "project_impulse solve_contacts", "lcp",
-        contact.scene_of([0.0, -0.105, 0.105], [0.8, 0.1, 0.1], [1.0, math.inf, math.inf]),
-        0.002, 600, 1e4, lambda heights: heights[-1]),
+        "project_impulse solve_contacts", "lcp", contact.scene_of(
+            [0.0, -0.105, 0.105], [0.8, 0.1, 0.1], [1.0, math.inf, math.inf]), lambda y: y[-1]),
     "A ball bounces from one impact to the next: how high it is, in the mean.": (
-        "time_to_impact", "exact",
-        contact.scene_of(0.0, 1.0, restitution=0.7), 0.002, 1000, 1e4, np.mean),
+        "time_to_impact", "exact", contact.scene_of(0.0, 1.0, restitution=0.7), np.mean),
 }  # fmt: skip
 
 
 def height(trial):
     """The height of the first ball in a trial, above the table [r]."""
-    _, model, of, dt, steps, k, of_all = TRIALS[trial]
-    run = contact.run_model(model, of, dt, steps, contact.Settings(stiffness=k))
-    return round(of_all(run.q[:, 1, 0]) / 0.1 - 1.0, 3) + 0.0  # and no -0.000
+    _, model, scene, of_all = TRIALS[trial]
+    q = contact.run_model(model, scene, 0.002, 600).q
+    return round(of_all(q[:, 1, 0]) / 0.1 - 1.0, 3) + 0.0  # and no -0.000
 
 
 def compare(exercise, name):
     """Balls under the learner's function in the place of contact.py's, beside its own."""
     where, mine = name, getattr(exercise, name)
-    trials = [trial for trial, (blanks, *_) in TRIALS.items() if name in blanks]
     if name == "project_impulse":  # which contact.py writes out in its sweep
         where, mine = "solve_contacts", solver("max(0.0, c.lam + add)", "f(c.lam, add)", f=mine)
     if name == "time_to_impact":  # a_n is None where a gap stays closed
@@ -265,9 +216,10 @@ def compare(exercise, name):
         def mine(*of, theirs=mine):
             return math.inf if of[2] is None else theirs(*of)
 
+    trials = [trial for trial, (blanks, *_) in TRIALS.items() if name in blanks]
     with mock.patch.object(contact, where, mine):
         yours = [height(trial) for trial in trials]
-    rows = {trial: (mine, height(trial)) for trial, mine in zip(trials, yours)}
+    rows = dict(zip(trials, zip(yours, map(height, trials))))
     return columns("lengths in ball radii", ("yours", "contact.py"), rows, "{:.3f}")
 
 
@@ -287,8 +239,7 @@ def drops(exercise, _):
     for dt in (0.002, 0.008, 0.016, 0.064):
         spring = partial(exercise.implicit_spring, stiffness=1e4, damping=80.0, dt=dt)
         step, steps = partial(implicit_step, dt=dt, spring=spring), int(8.0 / dt)
-        mine = contact.simulate(step, of, dt, steps, skip=True)
-        runs = mine, contact.run_model("penalty", of, dt, steps)
+        runs = contact.simulate(step, of, dt, steps), contact.run_model("penalty", of, dt, steps)
         found = [contact.contact_quality(run, of, dt) for run in runs]
         rest = [None if q["blew_up"] else q["rest_penetration_frac"] for q in found]
         rows[f"dt {dt:.3f} s"] = [*(q["energy_excess"] for q in found), *rest]
@@ -324,39 +275,22 @@ PROBLEMS = {  # scene, dt [s], seconds
     "stack, error": (contact.build_scene("stack"), 0.002, 1.0),
     "slide, error": (SLIDE, 0.002, 0.4),
     "slide, dt / 4": (SLIDE, 0.0005, 0.4),
+    "inside, height": (contact.scene_of(0.0, [0.1, 0.25]), 0.002, 0.6),
 }
-INSIDE = contact.scene_of([0.0, 0.0], [0.1, 0.25])  # half a radius in one another
-
-
-def both(exercise, of, dt, count):
-    """The learner's run, and lcp's."""
-    mine = contact.simulate(partial(asking_twice, exercise, dt=dt), of, dt, count)
-    return mine, contact.run_model("lcp", of, dt, count)
-
-
-def errors(exercise, name):
-    """How far the learner's step and lcp's come from exact in a problem [r]."""
-    of, dt, seconds = PROBLEMS[name]
-    count = round(seconds / dt)
-    true = contact.run_model("exact", of, dt, count).q
-    off = (run.q - true for run in both(exercise, of, dt, count))
-    return [float(np.hypot(x, y).max()) / 0.1 for x, y in (each.swapaxes(0, 1) for each in off)]
-
-
-def slide_order(exercise):
-    """By which power of the step the error of the learner's slide falls."""
-    long, short = (max(errors(exercise, name)[0], 1e-16) for name in [*PROBLEMS][2:])
-    return math.log(long / short, 4)
 
 
 def ask_twice(exercise, _):
     """Errors beside exact, and how high a ball comes that begins in another."""
-    rows = {name: errors(exercise, name) for name in PROBLEMS}
-    runs = both(exercise, INSIDE, 0.002, 300)
-    rows["inside, height"] = [run.q[:, 1].max() / 0.1 for run in runs]
+    rows = {}
+    for name, (of, dt, seconds) in PROBLEMS.items():
+        count, step = round(seconds / dt), partial(asking_twice, exercise, dt=dt)
+        runs = contact.simulate(step, of, dt, count), contact.run_model("lcp", of, dt, count)
+        rows[name] = [run.q[:, 1].max() / 0.1 for run in runs]
+        if "inside" not in name:
+            off = [run.q - contact.run_model("exact", of, dt, count).q for run in runs]
+            rows[name] = [np.hypot(each[:, 0], each[:, 1]).max() / 0.1 for each in off]
     table = columns("in r, beside exact", ("yours", "lcp"), rows, "{:.3g}")
-    inside = "inside: how high a ball rises that begins in another; at 3 r they only touch."
-    return f"{table}\n{inside}"
+    return f"{table}\ninside: how high a ball rises that begins in another; at 3 r they only touch."
 
 
 SHOWN = {  # blank: what shows it at work; of two that work together, the second
@@ -368,7 +302,7 @@ SHOWN = {  # blank: what shows it at work; of two that work together, the second
 }
 
 
-# Exercise 8
+# The gripper of exercise 8, and numbers from paper
 
 
 def fingers(exercise):
@@ -404,26 +338,27 @@ CHOICES = {  # of exercise 8: what is allowed of each knob, in code and in words
 }
 
 
-def out_of_bounds(exercise):
-    """The knobs of exercise 8 that cannot be run, each with what is allowed; "" if all can."""
-    wrong = []
-    for name, (allows, words) in CHOICES.items():
-        value, fine = getattr(exercise, name, None), False
-        with contextlib.suppress(Exception):
-            fine = bool(allows(value))
-        if not fine:
-            wrong.append(f"{name}: given {value!r:.60}; allowed: {words}")
-    return "\n".join(wrong)
+def fits(allows, value):
+    """Whether a knob may have that value; what cannot even be compared may not."""
+    with contextlib.suppress(Exception):
+        return bool(allows(value))
+    return False
 
 
-def judge_fingers(exercise):
-    """("blank", "wrong" or "right", why in words, what was seen): the choice of exercise 8."""
-    model, dt, k, c = (getattr(exercise, name, None) for name in [*CHOICES][:4])
+def judge_fingers(_, exercise):
+    """[what, state, words, shown]: the choice of exercise 8, by what it does."""
+    what, given = "two_fingers", {knob: getattr(exercise, knob, None) for knob in CHOICES}
+    model, dt, k, c, *_ = given.values()
     if model is None:
-        return "blank", f"no choice yet: set MODEL in {near(exercise.__file__)}", ""
-    if words := out_of_bounds(exercise):
-        rigid = f"\n{FACTS['ex8']['rigid']}" if model in ("lcp", "leapfrog", "exact") else ""
-        return "wrong", f"{words}{rigid}", ""
+        return [what, "blank", f"no choice yet: set MODEL in {near(exercise.__file__)}", ""]
+    wrong = [
+        f"{knob}: given {given[knob]!r:.60}; allowed: {words}"
+        for knob, (allows, words) in CHOICES.items()
+        if not fits(allows, given[knob])
+    ]
+    if wrong:
+        wrong += [FACTS["ex8"]["rigid"]] if model in ("lcp", "leapfrog", "exact") else []
+        return [what, "wrong", "\n".join(wrong), ""]
     deepest, trembling, held = fingers(exercise)
     shown = f"overlap {deepest:.2g} r, trembling {trembling:.2g} r"
     faults = [] if trembling < 1e-5 else ["it trembles"]
@@ -431,16 +366,41 @@ def judge_fingers(exercise):
     if not held:
         faults = ["the cup is gone: the fingers flew off or went through it"]
     if not faults:
-        return "right", "", shown
-    way = 1e3 * dt * dt  # of a finger in a step: 20 N on 0.2 kg, in r
-    advice = f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and "
+        return [what, "right", "", shown]
+    pressed = f"20 N press a spring of {k:g} N/m in by {200.0 / k:.2g} r, and "
+    longest, way = contact.critical_dt(0.1, k, c), 1e3 * dt * dt  # of 20 N on 0.2 kg, in r
+    advice = {
+        "penalty": f"{pressed}a finger on it wants steps below {longest:.1g} s",
+        "implicit": f"{pressed}it settles in about c / k = {c / k:.1g} s",
+        "soft": "a shorter time constant, of two steps or more, stiffens soft, so does impedance",
+    }[model]
     if not held and way > 0.5:
         advice = f"in one step of {dt:g} s its motor carries a finger {way:.2g} r"
-    elif model == "penalty":
-        longest = contact.critical_dt(0.1, k, c)
-        advice += f"a finger on it wants steps below {longest:.1g} s"
-    elif model == "implicit":
-        advice += f"it settles in about c / k = {c / k:.1g} s"
-    else:
-        advice = "a shorter time constant, of two steps or more, stiffens soft, so does impedance"
-    return "wrong", f"{', and '.join(faults)}; {advice}", shown
+    return [what, "wrong", f"{', and '.join(faults)}; {advice}", shown]
+
+
+def judge_number(name, exercise):
+    """[what, state, words, shown] of a number; its slips are other formulas."""
+    facts, file = FACTS[name]["number"], near(exercise.__file__)
+    what, within = facts["name"], facts["within"]
+    given, true = getattr(exercise, what, None), getattr(RIGHT[name], what)
+    try:
+        mine = abs(float(given))  # the table says an overlap with a minus
+    except (TypeError, ValueError, OverflowError):
+        said = f"no {what} yet" if given is None else f"{what}: given {given!r}"
+        return [what, "blank", f"{said}; write a number in {file}, {facts['unit']}", ""]
+    if math.isclose(mine, true, rel_tol=within):
+        return [what, "right", facts["right"].format(true), ""]
+    for text, meaning in facts["slips"].items():
+        if math.isclose(mine, eval(text), rel_tol=within):  # our own text
+            return [what, "wrong", f"{what}: given {given}; likely: {meaning}", ""]
+    words = f"{what}: given {given}, and it is another; --hint {facts['hint']} asks a question"
+    return [what, "wrong", words, ""]
+
+
+PARTS = {  # exercise: what it asks for beside functions
+    **dict.fromkeys(("ex1", "ex3"), [bets.judge_bet]),
+    **dict.fromkeys(("ex4", "ex10"), [judge_number]),
+    "ex8": [judge_fingers],
+    "ex9": [bets.judge_knobs, judge_number],
+}

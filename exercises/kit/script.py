@@ -4,6 +4,7 @@ import json
 import os
 import re
 import sys
+import traceback
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -20,37 +21,41 @@ LIMIT = 15  # s, chosen: right answers take about one
 START = "import sys; sys.path.insert(0, sys.argv[1]); from kit import judge; judge.child()"
 
 
-def main():
-    """The command line of the exercise that was started. Ends with its exit status."""
-    exercise = sys.modules["__main__"]
+def main(started):
+    """The command line of an exercise that is started, not imported. Ends with its exit status."""
+    if started != "__main__":
+        return
+    exercise = sys.modules[started]
     name = Path(exercise.__file__).stem.partition("_")[0]  # ex1 of ex1_predict_contact.py
-    hints = FACTS[name]["hints"]
+    hints, solution = FACTS[name]["hints"], ROOT / f"exercises/solutions/{name}.py"
     parser = Parser(description=f"Exercise {name}.")
     most = f"print hint N, 1 to {len(hints)}, and do nothing else"
     numbers = range(1, len(hints) + 1)
     parser.add_argument("--hint", type=int, choices=numbers, metavar="N", help=most)
-    solution = ROOT / f"exercises/solutions/{name}.py"
     if solution.exists():
         words = "print a right answer, and show it at work"
         parser.add_argument("--solution", action="store_true", help=words)
     args = parser.parse_args()
     if args.hint:
         print(f"hint {args.hint} of {len(hints)}: {hints[args.hint - 1]}")
-    elif getattr(args, "solution", False):
+    elif "solution" in args and args.solution:
         print(solution.read_text("utf-8"))
         sys.exit(show(judged(name, solution)))
     else:
-        sys.exit(run(name, exercise))
+        sys.exit(run(name, exercise, solution.exists()))
+
+
+def own_lines(error):
+    """The lines of a learner's own code that an error came through."""
+    frames = traceback.extract_tb(error.__traceback__)
+    return [each for each in frames if re.fullmatch(r"ex\d+\w*\.py", Path(each.filename).name)]
 
 
 def unreadable(file, error):
     """One line on a file that is no Python, or stops while it is read."""
     hint = f"; {error.name} needs quotes around it" if type(error) is NameError else ""
-    line, trace = getattr(error, "lineno", None), error.__traceback__
-    while trace and not line:
-        line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == str(file) else None
-        trace = trace.tb_next
-    place = f"{near(str(file))}{f', line {line}' if line else ''}"
+    lines = [getattr(error, "lineno", None), *(each.lineno for each in own_lines(error))]
+    place = near(str(file)) + "".join(f", line {line}" for line in lines[-1:] if line)
     return f"{place}, cannot be read: {type(error).__name__}: {error}{hint}"
 
 
@@ -64,7 +69,7 @@ def unquoted(kind, error, trace):
 otherwise, sys.excepthook = sys.excepthook, unquoted
 
 
-def run(name, exercise):
+def run(name, exercise, solved):
     """Judge what was written and show it at work. Exit status: 0 right, 1 wrong, 2 not done."""
     state, found = judged(name, exercise.__file__)
     note(name, state == "right")
@@ -73,7 +78,7 @@ def run(name, exercise):
         print(task if name in BETS else task.split("\n")[0], end="\n\n")
     status = show((state, found))
     if state == "right":
-        if (ROOT / f"exercises/solutions/{name}.py").exists():
+        if solved:
             print(f"\nanother right answer: exercises/solutions/{name}.py")
         print(f"\n{practise()}")
     return status
@@ -105,12 +110,11 @@ def judged(name, file):
     import subprocess
     import tempfile
 
+    silent = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder, "report")
         report.touch()
-        kit = str(Path(__file__).resolve().parents[1])
-        words = [sys.executable, "-B", "-c", START, kit, name, str(file), str(report)]
-        silent = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+        words = [sys.executable, "-B", "-c", START, ROOT / "exercises", name, file, report]
         try:
             status = subprocess.run(words, timeout=LIMIT + 15, **silent).returncode
         except subprocess.TimeoutExpired:
@@ -124,6 +128,8 @@ def judged(name, file):
     words = f"{what} ended its process (exit status {status}), see {place}"
     if "Timeout (" in f"{text}{status}":
         words = f"{what} takes too long, or does not end: stopped after {LIMIT} s in {place}"
+        if what == "longest_step":
+            words += f"\n  likely: {FACTS['ex6']['searches']['endless']}"
     return "wrong", [[what, "wrong", words, ""]]
 
 
@@ -134,13 +140,9 @@ def done():
     """{exercise: "done"}, as far as it was noted."""
     try:
         noted = json.loads(DONE.read_text("utf-8"))
-        if isinstance(noted, dict):
-            return noted
-        aside = near(str(DONE.replace(DONE.with_name("exercises-set-aside.json"))))
-        print(f"{near(str(DONE))} lists no exercises; it is set aside, as {aside}", file=sys.stderr)
     except (OSError, ValueError, RecursionError):
-        pass
-    return {}
+        noted = {}
+    return noted if isinstance(noted, dict) else {}
 
 
 def note(name, right):

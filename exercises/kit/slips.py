@@ -1,15 +1,9 @@
-"""The functions that a learner writes: inputs, what is right, and slips by what they give.
-
-A fill is judged by what it gives on all inputs, beside what the right one gives; a wrong one is
-named by the slip of answers.json that gives the same.
-"""
+"""The functions that a learner writes: inputs, what is right, and slips by what they give."""
 
 import inspect
 import math
 import random
-from collections.abc import Callable
 from math import inf, sqrt  # noqa: F401  expressions of answers.json use them
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,17 +16,19 @@ matrix = RIGHT["ex6"].step_matrix  # which most slips of it change in one place
 hits = RIGHT["ex10"].time_to_impact
 
 
-class Blank(NamedTuple):
-    """A function that a learner writes."""
+class Blank:
+    """A function that a learner writes; slips are [(a function that makes it, what it means)].
 
-    exercise: str
-    inputs: list  # [{argument: value}]
-    right: Callable
-    slips: list  # [(a function that makes it, what it means)]
-    hint: int  # the first that helps
-    within: float = 1e-9  # what counts as equal, as a share of the size of what is right
-    after: str = ""  # the blank that this one is built on
-    labels: list = []  # of the numbers that come out
+    hint: the first that helps. within: what counts as equal, as a share of the size of what is
+    right. after: the blank that this one is built on. labels: of the numbers that come out.
+    """
+
+    def __init__(self, exercise, name, slips, inputs=None, arguments="", **more):
+        self.exercise, self.right = exercise, getattr(RIGHT[exercise], name)
+        self.inputs = drawn(**inputs) if inputs else stacks()  # [{argument: value}]
+        head = f"lambda {arguments}: " if arguments else ""
+        self.slips = [(eval(head + text, globals()), why) for text, why in slips.items()]  # ours
+        vars(self).update({"within": 1e-9, "after": "", "labels": []} | more)
 
 
 def drawn(ranges, first=(), most=60):
@@ -117,16 +113,8 @@ def labels(name, case):
     return [*lam, *speeds, "1 sweep does it"]
 
 
-def blank(exercise, name, slips, inputs=None, arguments="", **more):
-    """A Blank from what answers.json says of it, where slips are expressions."""
-    head = f"lambda {arguments}: " if arguments else ""
-    wrong = (eval(head + text, globals()) for text in slips)  # our own text
-    cases, right = drawn(**inputs) if inputs else stacks(), getattr(RIGHT[exercise], name)
-    return Blank(exercise, cases, right, list(zip(wrong, slips.values())), **more)
-
-
 BLANKS = {
-    name: blank(exercise, name, **facts)
+    name: Blank(exercise, name, **facts)
     for exercise, each in FACTS.items()
     for name, facts in each.get("blanks", {}).items()
 }
