@@ -45,23 +45,12 @@ def refused(outcome):
 
 
 BAD = {
-    "--seed": "-1 1.5 x",
-    "--scene": "pool",
-    "--contact": "mujoco",
-    "--stiffness": "-1 nan inf stiff",
-    "--damping": "nan inf",
-    "--restitution": "1.01 nan",
-    "--baumgarte": "-0.01 1.01 nan",
-    "--iters": "0 -3 1.5 99999999999999999999",
-    "--warm": "-0.1 1.1 nan",
-    "--dt": "0 -0.002 nan inf fast",
-    "--steps": "-1 2.5 nan 1000000000000",
-    "--bodies": "0 -2 many",
-    "--mass": "0 -1 nan 1e-320 1e308",
-    "--device": "cuda",
-    "--solref": "soft nan",
-    "--solimp": "-0.1 nan",
-}
+    "--scene": "pool", "--contact": "mujoco", "--device": "cuda", "--seed": "-1 1.5 x",
+    "--dt": "0 -0.002 nan inf fast", "--steps": "-1 2.5 nan 1000000000000", "--bodies": "0 -2 many",
+    "--mass": "0 -1 nan 1e-320 1e308", "--stiffness": "-1 nan inf stiff", "--damping": "nan inf",
+    "--restitution": "1.01 nan", "--baumgarte": "-0.01 1.01 nan", "--warm": "-0.1 1.1 nan",
+    "--iters": "0 -3 1.5 99999999999999999999", "--solref": "soft nan", "--solimp": "-0.1 nan",
+}  # fmt: skip
 WORDS = {"--solref": 2, "--solimp": 5}
 
 
@@ -93,6 +82,7 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
     ("--no-such-flag", "--no-such-flag"), ("--out ''", "--out: given ''; allowed: "),
     ("drop", "--scene drop"), ("--out=--", "--out"), ("drop bounce", "given drop bounce"),
     ("--scene pile --steps 10000000 --bodies 10000", "not enough memory; allowed: fewer --steps"),
+    ("--scene pile --steps 10 --bodies 10000 --contact exact", "not enough memory; allowed: "),
 ])  # fmt: skip
 def test_flags_that_contradict_one_another_or_ask_too_much_are_refused(flags, part, capsys):
     assert part in refused(main(capsys, *shlex.split(flags)))
@@ -124,12 +114,13 @@ def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(
     monkeypatch.chdir(tmp_path / "beside")
     status, out, err = main(capsys, *flags.split())
     shutil.copy(CONTACT, tmp_path)
-    alone = python("-S", "contact.py", *flags.split(), cwd=tmp_path, PYTHONPATH=only("numpy"))
-    found = [
+    how = {"PYTHONPATH": only("numpy"), "PYTHONHASHSEED": "97"}
+    alone = python("-S", "contact.py", *flags.split(), cwd=tmp_path, **how)
+    mine, its = (
         [line for line in text.splitlines() if not line.startswith(FOLDER_ONLY)]
         for text in (alone.stdout, out)
-    ]
-    assert found[0] == found[1] and (alone.returncode, alone.stderr) == (status, err)
+    )
+    assert mine == its and (alone.returncode, alone.stderr) == (status, err)
     written = [path.read_bytes() for path in tmp_path.rglob("metrics.json")]
     assert len(written) == 2 * (status == 0 and flags != "--help") and len({*written}) <= 1
 
@@ -147,10 +138,9 @@ def test_without_numpy_it_is_one_line_that_says_how_to_install_it():
     assert "pip install numpy" in bare.stderr and sys.executable in bare.stderr
 
 
-@pytest.mark.parametrize(
-    "package, file, flags",
-    [("rerun", "recording", ""), ("matplotlib", "picture", "--plot --no-rerun")],
-)
+@pytest.mark.parametrize("package, file, flags", [
+    ("rerun", "recording", ""), ("matplotlib", "picture", "--plot --no-rerun")
+])  # fmt: skip
 def test_a_package_that_is_missing_costs_its_file_and_says_how_to_install_it(
     package, file, flags, tmp_path
 ):
@@ -160,17 +150,6 @@ def test_a_package_that_is_missing_costs_its_file_and_says_how_to_install_it(
     assert made.returncode == 0 and made.stderr == ""
     (line,) = [line for line in made.stdout.splitlines() if line.startswith(f"no {file}: ")]
     assert "install it: " in line and (tmp_path / "metrics.json").exists()
-
-
-def test_smoke_writes_the_same_bytes_whatever_hash_seed_folder_and_skips(tmp_path):
-    made = []
-    for place, skips in (("a", ()), ("b", ("--no-skip",))):
-        (tmp_path / place).mkdir()
-        flags = ("--smoke", "--no-rerun", *skips, "--out", tmp_path / f"out-{place}")
-        done = python(CONTACT, *flags, cwd=tmp_path / place, PYTHONHASHSEED=str(ord(place)))
-        assert done.returncode == 0 and done.stderr == ""
-        made.append((tmp_path / f"out-{place}/metrics.json").read_bytes())
-    assert made[0] == made[1] and str(tmp_path).encode() not in made[0]
 
 
 @pytest.mark.parametrize("scene", contact.SCENES)
@@ -211,33 +190,27 @@ def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
     assert main(capsys, *words, "--out", tmp_path)[0] == 0
     scene = contact.build_scene("stack", 5, 4, 0.5, 20.0, 2.0)
     settings = contact.Settings(5e3, 0.4, 3, 0.5, (0.03, 0.8), (0.5, 0.9, 0.002, 0.4, 3.0))
-    runs = {
-        model: contact.run_model(model, scene, 0.004, 150, settings) for model in contact.MODELS
-    }
+    runs = {m: contact.run_model(m, scene, 0.004, 150, settings) for m in contact.MODELS}
     quality = strict_json(tmp_path / "metrics.json")["quality"]
     for model, run in runs.items():
         expected = contact.contact_quality(run, scene, 0.004, runs["exact"])
         assert quality[model] == pytest.approx(expected, abs=1e-11)
 
 
-REALS = "0 5e-324 1e-300 1e-100 1e-9 0.5 1 7.3 1e9 1e100 1e308 -1 nan inf".split()
-WHOLE = "0 1 2 17 99999999999999999999 -3 2.5".split()
+REALS, WHOLE = "0 1e-300 1e-9 1 1e9 1e308 nan".split(), "0 2 99999999999999999999 2.5".split()
 EDGES = ("0.02", "1e-300", "1e308", "-1e308", "0"), ("1", "1e-162", "1e308", "0", "-50")
 FLAGS = {
     **dict.fromkeys(["--dt", "--stiffness", "--damping", "--mass"], REALS),
     **dict.fromkeys(["--baumgarte", "--restitution", "--warm"], REALS),
     **dict.fromkeys(["--iters", "--steps", "--bodies", "--seed"], WHOLE),
-    "--solref": [f"{first} {second}" for first in EDGES[0] for second in EDGES[1]],
-    "--solimp": ["0 0 0 0 1", "1 1 1e308 1 1e308", "0.9 0.95 1e-320 0.5 2", "0.1 0.9 0 1e-300 99"],
+    "--solref": [f"{first} {second}" for first in EDGES[0] for second in EDGES[1]][::2],
+    "--solimp": ["0 0 0 0 1", "0.9 0.95 1e-320 0.5 2"],
 }
 TOGETHER = (
-    "--dt 1e200 --stiffness 1e300",
-    "--dt 1e-300 --stiffness 1e308 --damping 1e308",
-    "--dt 0.03 --stiffness 1e9 --mass 1e-9",
-    "--mass 1e9 --stiffness 1e-9 --dt 1",
+    "--dt 0.03 --stiffness 1e9 --mass 1e-9", "--mass 1e9 --stiffness 1e-9 --dt 1",
     "--restitution 1 --baumgarte 1 --dt 1 --iters 1",
-)
-ENDS = [f"{flag} {value}" for flag, tried in FLAGS.items() for value in tried[::2]]
+)  # fmt: skip
+ENDS = [f"{flag} {value}" for flag, tried in FLAGS.items() for value in tried]
 
 
 @pytest.mark.parametrize("scene", ["drop", "stack"])
@@ -312,32 +285,35 @@ def test_ctrl_c_ends_a_run_with_one_word_and_leaves_no_file(tmp_path):
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
-def test_output_to_a_full_disk_is_one_line_and_no_output_at_all_is_no_error(tmp_path):
-    words = f"{sys.executable} {ROOT / 'contact.py'} --steps 5 --no-rerun --out {tmp_path}"
-    full, closed = (
-        subprocess.run(f"{words} {where}", shell=True, stderr=subprocess.PIPE, text=True)
-        for where in (">/dev/full", ">&-")
-    )
-    assert full.returncode == 2 and full.stderr.count("\n") == 1 and "No space" in full.stderr
-    assert (closed.returncode, closed.stderr) == (0, "")
-
-
 @pytest.mark.parametrize("words, unbuffered", [
     ("contact.py --steps 5 --no-rerun --out OUT", ""), ("checks.py -k ex2", ""),
     ("contact.py --steps 5 --no-rerun --out OUT", "1"), ("checks.py -k ex2", "1"),
-    ("-m curriculum.seeds 0:1 --steps 5 --out OUT", ""),
+    ("-m curriculum.seeds 0:1 --steps 5 --out OUT", ""), ("-m curriculum.page -h", ""),
     ("exercises/ex1_predict_contact.py --hint 1", ""),
 ])  # fmt: skip
-def test_a_pipe_that_nobody_reads_ends_it_without_a_word(words, unbuffered, tmp_path):
+def test_a_pipe_that_nobody_reads_ends_it_without_a_word_and_a_full_disk_with_a_line(
+    words, unbuffered, tmp_path
+):
+    environment = os.environ | NO_PLUGINS | {"PYTHONUNBUFFERED": unbuffered}
+    how = {"cwd": ROOT, "env": environment, "stderr": subprocess.PIPE, "text": True}
+    typed = [sys.executable, *words.replace("OUT", str(tmp_path)).split()]
     reader, writer = os.pipe()
     os.close(reader)
-    words = [sys.executable, *words.replace("OUT", str(tmp_path)).split()]
-    pipes = {"stdout": writer, "stderr": subprocess.PIPE, "text": True}
-    environment = os.environ | NO_PLUGINS | {"PYTHONUNBUFFERED": unbuffered}
-    done = subprocess.run(words, cwd=ROOT, env=environment, **pipes)
+    done = subprocess.run(typed, stdout=writer, **how)
     os.close(writer)
     assert (done.returncode, done.stderr) == (141, "")
+    if os.path.exists("/dev/full"):  # not every system has it
+        with open("/dev/full", "w") as full:
+            done = subprocess.run(typed, stdout=full, **how)
+        who = "contact.py: error: cannot print the rest" if words[:7] == "contact" else "error"
+        assert (done.returncode, done.stderr) == (2, f"{who}: No space left on device\n")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="its shell closes no output")
+def test_no_output_at_all_is_no_error(tmp_path):
+    words = f"{sys.executable} {CONTACT} --steps 5 --no-rerun --out {tmp_path} >&-"
+    closed = subprocess.run(words, shell=True, stderr=subprocess.PIPE, text=True)
+    assert (closed.returncode, closed.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("option, files", [("-O", ["--no-rerun"]), ("-OO", ["--plot"])])
@@ -355,14 +331,10 @@ def test_it_runs_without_asserts_docstrings_and_in_an_ascii_locale(option, files
 
 # fmt: off
 LINES = [
-    ("--contact exact", r"exact: the ball lands after 0\.429\d+ s, at 4\.21\d+ m/s"),
     ("--contact exact --scene bounce", r"exact: its bounces rise to 0\.4437, 0\.2174, .* m \.\.\."),
     ("--contact lcp --stiffness 5", "--stiffness is for penalty, and changes nothing here"),
     ("--contact soft --iters 5", "--iters is for lcp and leapfrog, and changes nothing here"),
     ("--scene stack --dt 0.006 --contact penalty", "penalty .* 0.00252"),  # it trembles
-    ("--scene bounce", "state: moves: penalty"),
-    ("--smoke --scene bounce", "state: moves: penalty, lcp, soft, leapfrog, exact"),
-    ("--contact exact", "state: rests: exact"),
     ("--dt 0.064", "state: through the floor: lcp, soft"),
     ("--dt 0.064", "stability: lcp .*, through the floor"),
     ("--scene stack --contact soft --dt 0.1", "state: through a ball: soft"),
@@ -389,10 +361,3 @@ def test_a_disk_that_fills_up_costs_a_file_and_names_those_that_were_written(tmp
     done = python("contact.py", "--steps", "5", "--out", tmp_path, cwd=ROOT)
     assert done.returncode == 2 and f"metrics: {tmp_path}" in done.stdout
     assert "cannot write" in done.stderr and done.stderr.count("\n") == 1
-
-
-@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
-def test_ctrl_c_while_modules_load_is_one_word_too(tmp_path):
-    (tmp_path / "numpy.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
-    done = python(CONTACT, PYTHONPATH=str(tmp_path))
-    assert (done.returncode, done.stdout, done.stderr) == (130, "", "stopped\n")
