@@ -23,6 +23,7 @@ AHEAD, PATIENCE = 1000, 15.0  # jobs that are asked for at a time; s without a r
 def run_jobs(function: Callable, jobs: Iterable, label: str, workers: int | None = None) -> list:
     """[function(job) for job in jobs], worked out on all cores, in the order of the jobs."""
     jobs = list(jobs)
+    workers = min(len(jobs), workers or os.cpu_count() or 1)
     found = as_they_come(function, jobs, len(jobs), label, workers)
     return [result for _, result in sorted(found, key=lambda each: each[0])]
 

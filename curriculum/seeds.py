@@ -17,11 +17,10 @@ import io
 import json
 import math
 import os
+import sqlite3
 import statistics
 import sys
 import zlib
-from array import array
-from collections import defaultdict
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
@@ -33,16 +32,17 @@ from curriculum.commands import Parser, near, write_json
 PROG = "python -m curriculum.seeds"
 KEYS = [key for key, _ in contact.COLUMNS.values()]
 CODE = "contact.py", "curriculum/exact.py", "curriculum/seeds.py"  # what a row depends on
-WAYS = {"median": statistics.median, "lowest": min, "highest": max}
-UNKNOWN = -math.inf  # which no measure is, see finite
+ORDERS = {"median": "", "lowest": "ASC", "highest": "DESC"}
 
 
 def seed_range(text):
     """An argparse type: the seeds of "A:B", from A to B - 1."""
     first, _, last = text.partition(":")
     if not (first.isdecimal() and last.isdecimal() and int(first) < int(last) <= 10**18):
-        allowed = "A:B, whole numbers up to 1e18, A < B, such as 0:20 for 0 to 19"
-        raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
+        raise argparse.ArgumentTypeError(
+            f"given {text[:40]!r}; allowed: A:B, whole numbers up to 1e18, A < B, "
+            "such as 0:20 for 0 to 19"
+        )
     return range(int(first), int(last))
 
 
@@ -69,17 +69,22 @@ def main(argv=None):
     try:
         rows = Rows(path, made_by(args), models)
         run_missing(rows, args, seeds, scheduler)
+        clash = rows.clash()
         summaries = {model: rows.summary(model, seeds) for model in models}
         summaries = contact.rounded({model: each for model, each in summaries.items() if each})
         kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps, "rows": summaries}
-        if rows.clash:
-            fail(f"{near(str(path))}: {rows.clash}; take the rows of one machine out")
-        write_json(path.with_suffix(".json"), kept | {"seeds": [seeds[0], seeds[-1] + 1]})
-    except (ImportError, OSError) as error:
+        if not clash:
+            write_json(path.with_suffix(".json"), kept | {"seeds": [seeds[0], seeds[-1] + 1]})
+    except (ImportError, OSError, sqlite3.Error) as error:
         fail(f"{said(error)}; what is done is kept: the same command goes on from there")
-    print(f"scene {args.scene}, seeds {seeds[0]} to {seeds[-1]}:", end=" ")
-    print(f"{args.steps} steps of {args.dt:g} s")
-    table = {f"{m} {way}": row for m, ways in summaries.items() for way, row in ways.items()}
+    if clash:
+        fail(f"{near(str(path))}: {clash}")
+    print(
+        f"scene {args.scene}, seeds {seeds[0]} to {seeds[-1]}: {args.steps} steps of {args.dt:g} s"
+    )
+    table = {
+        f"{model} {way}": row for model, ways in summaries.items() for way, row in ways.items()
+    }
     contact.print_table(table, lambda row: ending(row, len(seeds)))
     for model, ways in summaries.items():
         print(f"{model}, seeds of its lowest and highest:", extremes(ways) or "-")
@@ -134,18 +139,19 @@ def finite(value):
 
 
 class Rows:
-    """The rows of a file that have this mark: found[model][seed] is (how it ended, measures).
-
-    others: how many have another mark. clash: on two results of one seed, of machines that differ.
-    """
+    """The rows of a file that have this mark, in a table on the disk, so that memory stays flat."""
 
     def __init__(self, path, mark, models):
-        self.path, self.mark, self.models, self.others, self.clash = path, mark, models, 0, ""
-        self.found = defaultdict(dict)
+        self.path, self.mark, self.models, self.others = path, mark, models, 0
+        self.table = sqlite3.connect("", isolation_level=None)  # a file that goes at the end
+        names = ", ".join(("seed INTEGER, model, ending, sum", *(f"{key} REAL" for key in KEYS)))
+        self.table.execute(f"CREATE TABLE rows ({names}, UNIQUE (seed, model, sum))")
         if path.is_file():  # /dev/zero would never end
+            self.table.execute("BEGIN")
             with path.open("rb") as file:
                 for line in file:
                     self.take(line)
+            self.table.execute("COMMIT")
 
     def take(self, line):
         """A line of the file, if it is whole, which its sum says, and has the mark."""
@@ -156,9 +162,8 @@ class Rows:
         if mark != self.mark:
             self.others += 1
             return
-        row = sys.intern(end), array("d", (float(each) if each else UNKNOWN for each in values))
-        if self.found[model].setdefault(int(seed), row) != row:
-            self.clash = f"two results of seed {seed} by {model}"
+        row = int(seed), model, end, digest, *(float(each) if each else None for each in values)
+        self.table.execute(f"INSERT OR IGNORE INTO rows VALUES ({'?, ' * (len(row) - 1)}?)", row)
 
     def opened(self):
         """The file, to be written to at its end; a row that was cut short is closed."""
@@ -182,8 +187,16 @@ class Rows:
     def missing(self, seeds):
         """Those of the seeds of which a model is missing."""
         for seed in seeds:
-            if any(seed not in self.found[model] for model in self.models):
+            found = self.table.execute("SELECT count(*) FROM rows WHERE seed = ?", (seed,))
+            if found.fetchone()[0] < len(self.models):
                 yield seed
+
+    def clash(self):
+        """A line on two results of one seed by one model, of machines that differ; or ""."""
+        twice = "SELECT seed, model FROM rows GROUP BY seed, model HAVING count(*) > 1"
+        for seed, model in self.table.execute(twice):
+            return f"two results of seed {seed} by {model}; take the rows of one machine out"
+        return ""
 
     def summary(self, model, seeds):
         """{"median": row, "lowest": row, "highest": row} of a model's runs; None if it has none.
@@ -191,19 +204,24 @@ class Rows:
         A row counts the runs, those that exploded, and others that went through something; a key
         that a run lacks is None. seeds: by which seed it is the lowest or the highest.
         """
-        found = sorted((s, *row) for s, row in self.found[model].items() if s in seeds)
-        runs = [row for row in found if row[1][:4] != "no: "]
-        ends = [end.split()[0] for _, end, _ in runs]
-        counts = {"runs": len(runs), "blew_up": ends.count("EXPLODED")}
-        counts["through"] = ends.count("through")
-        ways = {way: counts | {"seeds": {}} for way in WAYS}
-        for place, key in enumerate(KEYS if runs else ()):
-            values = [row[place] for _, _, row in runs]
-            whole = UNKNOWN not in values
-            for way, of in WAYS.items():
-                value = ways[way][key] = of(values) if whole else None
-                if way != "median":
-                    ways[way]["seeds"][key] = runs[values.index(value)][0] if whole else None
+        where = "FROM rows WHERE model = ? AND seed BETWEEN ? AND ? AND ending NOT LIKE 'no: %'"
+
+        def ask(what, order=""):
+            which = model, seeds[0], seeds[-1]
+            return self.table.execute(f"SELECT {what} {where} {order}", which).fetchall()
+
+        ended = "count(*), total(ending LIKE 'EXPLODED%'), total(ending LIKE 'through%')"
+        counts = dict(zip(("runs", "blew_up", "through"), map(int, ask(ended)[0])))
+        ways, runs = {way: {**counts, "seeds": {}} for way in ORDERS}, counts["runs"]
+        for key in KEYS if runs else ():
+            whole = ask(f"count({key})") == [(runs,)]
+            for way, order in ORDERS.items():
+                ((value, seed),) = ask(f"{key}, seed", f"ORDER BY {key} {order}, seed LIMIT 1")
+                ways[way] |= {key: value if whole else None}
+                ways[way]["seeds"] |= {key: seed if whole else None}
+            if whole:
+                middle = f"ORDER BY {key} LIMIT {2 - runs % 2} OFFSET {(runs - 1) // 2}"
+                ways["median"] |= {key: statistics.mean(value for (value,) in ask(key, middle))}
         del ways["median"]["seeds"]
         return ways if runs else None
 
@@ -218,16 +236,22 @@ def csv_line(values):
 def extremes(ways):
     """By which seeds the measures of a model are the lowest and the highest, where they differ."""
     low, high = ways["lowest"], ways["highest"]
-    columns = [(title, key) for title, (key, _) in contact.COLUMNS.items()]
-    differ = [(t, k) for t, k in columns if contact.shown(low[k]) != contact.shown(high[k])]
-    return ", ".join(f"{t} {low['seeds'][k]} and {high['seeds'][k]}" for t, k in differ)
+    differ = {
+        t: k
+        for t, (k, _) in contact.COLUMNS.items()
+        if len({*map(contact.shown, (low[k], high[k]))}) > 1
+    }
+    return ", ".join(f"{t} {low['seeds'][k]} and {high['seeds'][k]}" for t, k in differ.items())
 
 
 def ending(row, count):
     """How the runs of a row ended."""
-    ends = ("EXPLODED", row["blew_up"]), ("went through", row["through"])
-    ends += (("could not be run", count - row["runs"]),)
-    return ", ".join(f"{n} of {count} {end}" for end, n in ends if n) or "ok"
+    ends = {
+        "EXPLODED": row["blew_up"],
+        "went through": row["through"],
+        "could not be run": count - row["runs"],
+    }
+    return ", ".join(f"{n} of {count} {end}" for end, n in ends.items() if n) or "ok"
 
 
 if __name__ == "__main__":
