@@ -42,8 +42,8 @@ import signal
 import sys
 
 if __name__ == "__main__":  # a stop is heard at any time, also while modules load
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda number, _: (os.write(2, b"stopped\n"), os._exit(128 + number)))
+    for sign in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(sign, lambda sign, _: (os.write(2, b"stopped\n"), os._exit(128 + sign)))
 
 import argparse
 import importlib

@@ -1,10 +1,16 @@
 """Compile the loops for many balls and keep them: `python -m curriculum.lesson`, once, a minute."""
 
+import sys
+
 from curriculum.commands import Parser, needs
 
 with needs("bench"):
     import contact
+try:
     from curriculum import exact, fast
+except ImportError as error:  # no numba
+    print(f"python -m curriculum.lesson: {error}", file=sys.stderr)
+    sys.exit(2)
 
 if __name__ == "__main__":
     Parser(prog="python -m curriculum.lesson", description=__doc__).parse_args()

@@ -19,7 +19,7 @@ from curriculum.commands import ROOT, to_install, write_whole
 try:
     NUMBA = version("numba")  # itself it is imported where loops are loaded: that takes a while
 except PackageNotFoundError:
-    raise ModuleNotFoundError(to_install("numba"), name="numba") from None
+    raise ImportError(to_install("numba")) from None  # without a name: it says itself what it needs
 if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":  # contact.py's own loops are faster
     raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
 
