@@ -8,9 +8,9 @@ import shlex
 import sys
 from pathlib import Path
 
-from curriculum import unfinished
+from curriculum import HOME, unfinished
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(HOME)
 
 
 class Parser(argparse.ArgumentParser):
@@ -85,40 +85,25 @@ def write_whole(path, content):
     What stands there and is no regular file (/dev/null, a pipe) is written into, not replaced.
     Raises OSError that names the file.
     """
-    path, data = os.path.realpath(path), content.encode() if isinstance(content, str) else content
-    special = os.path.exists(path) and not os.path.isfile(path)
-    written = path if special else f"{path}.{os.getpid()}.tmp"
+    data = content.encode() if isinstance(content, str) else content
+    path = Path(os.path.realpath(path))
+    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    unfinished.add(temporary)
     try:
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        if not special:
-            unfinished.add(written)
-        Path(written).write_bytes(data)
-        if not special:
-            os.replace(written, path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if path.exists() and not path.is_file():
+            path.write_bytes(data)
+        else:
+            temporary.write_bytes(data)
+            temporary.replace(path)
     except OSError as error:
-        for left in unfinished & {written}:
-            Path(left).unlink(missing_ok=True)
-        raise OSError(error.errno, error.strerror, near(path)) from None
+        raise OSError(error.errno, error.strerror, near(str(path))) from None
     finally:
-        unfinished.discard(written)
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+        unfinished.discard(temporary)
 
 
 def write_json(path, data):
-    """Write strict JSON, whole or not at all: what is short, or flat, stands in one line.
-
-    Raises ValueError on NaN and infinity.
-    """
-    write_whole(path, laid_out(data) + "\n")
-
-
-def laid_out(data, indent=""):
-    """`data` as JSON, a line for each row of a table."""
-    line, deeper = json.dumps(data, sort_keys=True, allow_nan=False), indent + " "
-    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
-    if len(line) <= 300 or not any(isinstance(each, (dict, list)) for each in inner):
-        return line
-    if isinstance(data, dict):
-        parts = [f"{json.dumps(k)}: {laid_out(v, deeper)}" for k, v in sorted(data.items())]
-    else:
-        parts = [laid_out(each, deeper) for each in data]
-    return f"{line[0]}\n{deeper}" + f",\n{deeper}".join(parts) + f"\n{indent}{line[-1]}"
+    """Write strict JSON, whole or not at all. Raises ValueError on NaN and infinity."""
+    write_whole(path, json.dumps(data, indent=1, sort_keys=True, allow_nan=False) + "\n")

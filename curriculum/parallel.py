@@ -3,6 +3,7 @@
 import logging
 import os
 import pickle
+import platform
 import signal
 import sys
 import threading
@@ -11,9 +12,9 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, ProcessPoolExecutor
 from contextlib import contextmanager
 from functools import partial
-from itertools import count, islice
+from itertools import islice
 from multiprocessing import parent_process
-from queue import Empty, SimpleQueue
+from queue import SimpleQueue
 
 from curriculum import commands
 
@@ -23,7 +24,6 @@ AHEAD, PATIENCE = 1000, 15.0  # jobs that are asked for at a time; s without a r
 def run_jobs(function: Callable, jobs: Iterable, label: str, workers: int | None = None) -> list:
     """[function(job) for job in jobs], worked out on all cores, in the order of the jobs."""
     jobs = list(jobs)
-    workers = min(len(jobs), workers or os.cpu_count() or 1)
     found = as_they_come(function, jobs, len(jobs), label, workers)
     return [result for _, result in sorted(found, key=lambda each: each[0])]
 
@@ -38,18 +38,17 @@ def as_they_come(
     work instead; the code must be on their PYTHONPATH. Raises what the function raises; ImportError
     where dask is missing; and OSError, in one line, where scheduler, workers or processes are gone.
     """
-    progress, done = bar(total, label), count(1)
+    progress, numbered = bar(total, label), enumerate(jobs)
     workers = min(total, workers or os.cpu_count() or 1)
-    if workers < 2 and not scheduler:
-        for place, job in enumerate(jobs):
-            yield place, function(job)
-            progress(next(done))
-        return
-    function = carried(function) if scheduler else function
-    with machines(scheduler) if scheduler else processes(workers) as (submit, look):
-        for found in spread(submit, look, function, enumerate(jobs)):
-            yield found
-            progress(next(done))
+    if scheduler:
+        found = on_machines(scheduler, function, numbered)
+    elif workers > 1:
+        found = on_cores(workers, function, numbered)
+    else:
+        found = ((place, function(job)) for place, job in numbered)
+    for done, each in enumerate(found, 1):
+        yield each
+        progress(done)
 
 
 def spread(submit, look, function, numbered) -> Iterator[tuple]:
@@ -66,65 +65,41 @@ def spread(submit, look, function, numbered) -> Iterator[tuple]:
 
     ask(AHEAD)
     while waiting:
+        future = None
         try:
             future = done.get(timeout=PATIENCE)
-        except Empty:
-            look()
-            continue
-        yield waiting.pop(future), fetched(future, look)
-        ask(1)
-
-
-def fetched(future, look):
-    """The result of a future that is done. A cluster may lose it on the way, and work it out again;
-    look() where that takes long."""
-    while True:
-        try:
-            return future.result(PATIENCE)
+            result = future.result(PATIENCE)
         except Exception as error:
-            if type(error).__name__ != "TimeoutError":  # Python 3.10 has three of that name
+            if type(error).__name__ not in ("Empty", "TimeoutError"):  # Python 3.10 has three
                 raise
             look()
-
-
-def carried(function):
-    """function, for a machine of a cluster: its scheduler need not have the code, and an error of
-    importing it names the machine."""
-    data = pickle.dumps(function)
-
-    def there(job):  # dask sends a function within a function as it is, not by its name
-        import os
-        import pickle
-        import platform
-
-        try:
-            return pickle.loads(data)(job)
-        except ImportError as error:
-            raise ImportError(f"{platform.node()}, process {os.getpid()}: {error}") from None
-
-    return there
+            if future:  # a cluster lost the result on its way, and works it out again
+                done.put(future)
+            continue
+        yield waiting.pop(future), result
+        ask(1)
 
 
 def bar(total: int, label: str) -> Callable[[int], None]:
     """progress(done), to be called with how many of `total` are done: how far it is, on stderr.
 
-    On a terminal after a second, in a line that is wiped at the end; elsewhere a line a minute.
+    On a terminal every second, in a line that is wiped at the end; elsewhere a line a minute.
     Nothing in a process of the pool, since lines would mix.
     """
     if parent_process() is not None or not sys.stderr:
         return lambda done: None
     start = last = time.monotonic()
-    shown, (every, end) = False, (0.2, "\r") if sys.stderr.isatty() else (60.0, "\n")
+    every, end = (1.0, "\r") if sys.stderr.isatty() else (60.0, "\n")
 
     def progress(done):
-        nonlocal last, shown
-        now = time.monotonic()
-        if shown and end == "\r" and done >= total:
-            print(" " * 78, end=end, file=sys.stderr, flush=True)
-        elif now - last > every and now - start > 1.0 and done < total:
-            last, shown, left = now, True, (now - start) * (total / max(done, 1) - 1.0)
+        nonlocal last
+        now, text = time.monotonic(), ""
+        if done < total and now - last > every:
+            last, left = now, (now - start) * (total / max(done, 1) - 1.0)
             text = f"{label}: {done:,} of {total:,}, about {left:,.0f} s to go"
-            print(f"{text:<78}", end=end, file=sys.stderr, flush=True)
+        elif done < total or last == start or end == "\n":
+            return
+        print(f"{text:<78}", end=end, file=sys.stderr, flush=True)
 
     return progress
 
@@ -132,14 +107,12 @@ def bar(total: int, label: str) -> Callable[[int], None]:
 @contextmanager
 def unheard():
     """Within it, Ctrl-C waits; a process that is started here never hears of it."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    mask = getattr(signal, "pthread_sigmask", lambda how, signals: signals)  # Windows has none
+    before = mask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        mask(signal.SIG_SETMASK, before)
 
 
 def follow_parent():
@@ -152,27 +125,25 @@ def follow_parent():
     threading.Thread(target=follow, daemon=True).start()
 
 
-@contextmanager
-def processes(workers):
-    """How to ask a pool of so many processes, and what to do where nothing comes: wait on."""
+def on_cores(workers, function, numbered) -> Iterator[tuple]:
+    """Spread the jobs over so many processes."""
     pool = ProcessPoolExecutor(workers, initializer=follow_parent)
     try:
-        yield pool.submit, lambda: None
+        yield from spread(pool.submit, lambda: None, function, numbered)
     except BrokenExecutor:
         raise ConnectionError("a process of the pool is gone") from None
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-@contextmanager
-def machines(scheduler: str) -> Iterator:
-    """How to ask a dask scheduler, and what to do where nothing comes; see as_they_come."""
+def on_machines(scheduler: str, function, numbered) -> Iterator[tuple]:
+    """Spread the jobs over the workers of a dask scheduler; see as_they_come."""
     try:
         from dask.distributed import Client, KilledWorker
     except ImportError:
         raise ImportError(commands.to_install("dask[distributed]")) from None
     logging.disable()  # dask's tracebacks of what is lost: we say it in a line
-    given = f"given the scheduler {scheduler!r}, which"
+    given, data = f"given the scheduler {scheduler!r}, which", pickle.dumps(function)
     try:
         client = Client(scheduler, timeout=10)
     except (OSError, ValueError) as error:
@@ -183,9 +154,15 @@ def machines(scheduler: str) -> Iterator:
         if not client.nthreads():
             raise OSError(f"{given} has no workers; start some: dask worker {scheduler}")
 
+    def there(job):  # dask sends it as it is, not by its name: the scheduler needs no code of ours
+        try:
+            return pickle.loads(data)(job)
+        except ImportError as error:
+            raise ImportError(f"{platform.node()}, process {os.getpid()}: {error}") from None
+
     with client:
         try:
-            yield partial(client.submit, pure=False), look
+            yield from spread(partial(client.submit, pure=False), look, there, numbered)
         except CancelledError:
             raise ConnectionError(f"{given} is gone") from None
         except KilledWorker as error:
