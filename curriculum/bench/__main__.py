@@ -12,8 +12,8 @@ two, measures little, and writes to outputs/bench-quick, which nothing quotes.
 """
 
 import os
+import subprocess
 import sys
-import time
 
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
@@ -38,34 +38,29 @@ def load(folder):
 
 def take(part, quick, only, folder):
     """Measure a part, or the settings of it that are named, and write its file."""
-    wanted = [c.name for c in settings.EVERYBODY if not only or only in c.name]
+    order, groups = [c.name for c in settings.EVERYBODY], list(report.problems.BY_NAME)
+    wanted = [name for name in order if not only or only in name]
     if not wanted:
         raise ValueError(f"--only {only}: no setting in settings.csv has this name")
     command = f"python -m curriculum.bench {part}" + f" --only {only!r}" * bool(only)
-    about = stored.origin(command, *CODE, *["contact.py"] * (part == "processes"),
-                           kept=folder == FULL)  # fmt: skip
+    code = (*CODE, "contact.py") if part == "processes" else CODE
+    about = stored.origin(command, *code, kept=folder == FULL)
     about["versions"] |= engines.versions()
     sections, made = load(folder)
-    others = [c.name for c in settings.EVERYBODY if c.name not in wanted]
-    stay = [row for row in sections.get(part, ()) if only and name_of(row) in others]
-    found = measure.PARTS[part](quick, lambda c: c.name in wanted, stay)
+    rows = [row for row in sections.get(part, ()) if only and name_of(row) in order]
+    rows = [row for row in rows if name_of(row) not in wanted]
+    found = measure.PARTS[part](quick, lambda c: c.name in wanted, rows)
     if not found:
         raise ValueError(f"{part}: nothing of {only or 'it'} runs here")
-    stored.save(folder / f"{part}.csv", in_order(part, stay + found))
+
+    def place(row):  # that it has in a whole measurement
+        return row.get("bodies") or groups.index(row["problem"]), order.index(name_of(row))
+
+    rows = sorted(rows + found, key=place) if only else found
     if not only:
         made = {key: value for key, value in made.items() if key.split()[0] != part}
+    stored.save(folder / f"{part}.csv", rows)
     write_json(folder / "made.json", made | {f"{part} {only or ''}".strip(): about})
-
-
-def in_order(part, rows):
-    """Rows as a whole measurement has them: by problem or size, then as in settings.csv."""
-    if part == "processes":
-        return rows
-    order = [c.name for c in settings.EVERYBODY]
-    groups = list(report.problems.BY_NAME)
-    return sorted(rows, key=lambda row: (
-        row["bodies"] if part == "piles" else groups.index(row["problem"]),
-        order.index(name_of(row))))  # fmt: skip
 
 
 def name_of(row):
@@ -73,7 +68,6 @@ def name_of(row):
 
 
 def main(argv=None):
-    """Returns the exit status: 1 where figures could not be drawn."""
     parser = Parser(prog="python -m curriculum.bench", description=__doc__)
     parser.add_argument("part", nargs="?", default="all", choices=("all", *measure.PARTS, "draw"))
     parser.add_argument("--only", help="settings whose name contains this")
@@ -84,20 +78,18 @@ def main(argv=None):
     if args.only and "processes" in parts:
         parts.remove("processes")  # which are no settings
     try:
+        if parts:  # or loops would be compiled while they are timed
+            subprocess.run([sys.executable, "-m", "curriculum.lesson"], cwd=stored.ROOT, check=True)
         for name in parts:
-            start = time.monotonic()
             take(name, args.quick, args.only, folder)
-            print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
         sections, made = load(folder)
         report.write(folder, sections, made)
         if folder == FULL:
             stored.write_block("bench", report.written("readme.md", sections, made))
     except (ImportError, FileNotFoundError, ValueError) as error:
-        print(f"bench: {error}", file=sys.stderr)
-        return 1
+        parser.error(error)
     print(f"wrote {folder}")
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

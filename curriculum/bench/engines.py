@@ -1,18 +1,15 @@
 """Other engines, and our models, as sessions that step the scenes of contact.py.
 
-Which settings compete stands in settings.csv. Every engine is optional; one that is missing is said
-to be. The same for all: balls that cannot rotate, no friction, one thread, the scene's masses,
-radii and restitution, gravity 9.81 m/s^2, and a floor along y = 0. A ball of infinite mass is one
-that nothing moves. No ball sleeps, and what is left of the last step, impulses or forces, begins
-the next one as shipped. The options of settings.csv are the arguments of a session's __init__.
+Every engine is optional. The same for all: balls that cannot rotate, no friction, one thread, the
+scene's masses, radii and restitution, and a floor along y = 0. A ball of infinite mass is one that
+nothing moves. No ball sleeps, and what is left of the last step, impulses or forces, begins the
+next one as shipped. The options of settings.csv are the arguments of a session's __init__.
 """
 
-import contextlib
-import importlib.util
 import json
 import math
 import subprocess
-from functools import partial
+from functools import cache, partial
 from importlib import metadata
 from pathlib import Path
 
@@ -28,35 +25,20 @@ MANY = 60  # balls: from here on MuJoCo gets CG and a sparse Jacobian
 
 
 class Session:
-    """One world, ready to step, in metres and seconds. A subclass gives step() and state().
-
-    It is looked at after every `substeps` of its steps.
-    """
+    """One world, looked at after every `substeps` steps. A subclass has step, state and heights."""
 
     substeps = 1
     took = None  # CPU seconds of a trace in a process of its own, which that process has measured
 
-    @staticmethod
-    def cannot(scene):
-        """Why the engine does not run a scene, or None."""
-
-    def advance(self, n):
-        """Take n steps and read nothing: the bare cost of stepping."""
-        step = self.step
-        for _ in range(n):
-            step()
-
     def go(self, n):
-        """Take the steps of n looks, and read nothing."""
-        self.advance(n * self.substeps)
-
-    def heights(self):
-        """The height of every ball."""
-        return self.state()[0][1]
+        """Take the steps of n looks and read nothing: the bare cost of stepping."""
+        step = self.step
+        for _ in range(n * self.substeps):
+            step()
 
     def looks(self, read, n):
         """read() at the start and at each of n looks."""
-        steps = self.step if self.substeps == 1 else partial(self.advance, self.substeps)
+        steps = self.step if self.substeps == 1 else partial(self.go, 1)
         rows = [read()]
         for _ in range(n):
             steps()
@@ -68,13 +50,13 @@ class Session:
         return self.looks(self.heights, n)
 
     def states(self, n):
-        """q and v at each of n looks, (n + 1, 2, N)."""
+        """q and v [m, m/s] at each of n looks, (n + 1, 2, N)."""
         return tuple(map(np.array, zip(*self.looks(self.state, n))))
 
-    def with_the_fixed(self, q, v):
+    def with_the_fixed(self, *parts):
         """q and v of every ball, from flat lists: x, y and perhaps more for each one that moves."""
         found = self.scene.q0.copy(), self.scene.v0.copy()
-        for whole, part in zip(found, (q, v)):
+        for whole, part in zip(found, parts):
             whole[:, self.moving] = part.reshape(len(self.moving), -1)[:, :2].T
         return found
 
@@ -95,42 +77,39 @@ class Ours(Whole):
 
     def states(self, n):
         model, scene, dt = self.given
-        run_model = contact.run_model
-        if contact.MODELS[model].step:
-            run_model = contact.beside("fast", needed=True).run_model
-        run = run_model(model, scene, dt, n * self.substeps, self.settings)
+        steps = contact.MODELS[model].step
+        home = contact.beside("fast", needed=True) if steps else contact
+        run = home.run_model(model, scene, dt, n * self.substeps, self.settings)
         return run.q[:: self.substeps], run.v[:: self.substeps]
 
-    def advance(self, n):
+    def go(self, n):
         if self.motion is None:
             self.motion = contact.beside("fast", needed=True).Stepper(*self.given, self.settings)
             self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))
-        for first in range(0, n, BLOCK):
-            self.last = min(BLOCK, n - first)
+        steps = n * self.substeps
+        for first in range(0, steps, BLOCK):
+            self.last = min(BLOCK, steps - first)
             self.motion.take(self.rows[: self.last + 1])
 
     def state(self):
-        return self.rows[self.last, :2].copy(), self.rows[self.last, 2:].copy()
+        return np.split(self.rows[self.last].copy(), 2)
 
 
 class Events(Whole):
     """The rival that goes from event to event."""
 
-    def __init__(self, scene, dt, rtol, longest):
-        self.scene, self.dt, self.how = scene, dt, dict(rtol=rtol, longest=longest)
+    def __init__(self, scene, dt, **how):
+        self.run, self.dt = partial(events.run, scene, gravity=GRAVITY, **how), dt
 
     def states(self, n):
-        times = np.arange(n + 1) * self.dt * self.substeps
-        return events.run(self.scene, times, GRAVITY, **self.how)
+        return self.run(np.arange(n + 1) * self.dt * self.substeps)
 
 
 class Siconos(Whole):
     """Moreau-Jean's step, in a process of its own: Debian's Python has the package, not ours."""
 
-    def __init__(self, scene, dt, theta=0.5):
-        parts = scene.q0.T, scene.v0.T, np.minimum(scene.mass, 1e12), scene.radius  # a fixed one
-        self.given = dict(zip(("q", "v", "mass", "radius"), (part.tolist() for part in parts)))
-        self.given |= dict(e=scene.restitution, dt=dt, theta=theta, gravity=GRAVITY)
+    def __init__(self, scene, dt):
+        self.given = dict(balls=balls_of(scene), e=scene.restitution, dt=dt, gravity=GRAVITY)
 
     def states(self, n):
         words = json.dumps(self.given | dict(looks=n, substeps=self.substeps))
@@ -138,18 +117,21 @@ class Siconos(Whole):
         how = dict(cwd=Path(__file__).parent, capture_output=True, text=True)
         run = subprocess.run(command, input=words, **how)
         if run.returncode:  # its solver has given up; that is no error of ours
-            self.took, lost = math.nan, np.full((n + 1, 2, len(self.given["q"])), math.nan)
-            return lost, lost
-        found = json.loads(run.stdout.splitlines()[-1])
-        self.took = found["seconds"]
-        return tuple(np.array(found[part]).transpose(0, 2, 1) for part in "qv")
+            self.took, rows = math.nan, np.full((n + 1, len(self.given["balls"]), 4), math.nan)
+        else:
+            self.took, rows = json.loads(run.stdout.splitlines()[-1])
+        return np.split(np.array(rows).transpose(0, 2, 1), 2, axis=1)
 
 
 def balls_of(scene, scale=1.0):
-    """(place, velocity, mass, radius, fixed) of every ball, in a world so many times as large."""
-    places, speeds = (map(tuple, (scale * part).T.tolist()) for part in (scene.q0, scene.v0))
-    rows = zip(places, speeds, scene.mass.tolist(), (scale * scene.radius).tolist())
-    return [(*row, math.isinf(row[2])) for row in rows]
+    """(place, velocity, mass, radius, fixed) of every ball, in a world so many times as large.
+
+    The mass of a fixed one is 1: no engine asks for it.
+    """
+    fixed = np.isinf(scene.mass)
+    places, speeds = (map(tuple, (scale * part.T).tolist()) for part in (scene.q0, scene.v0))
+    columns = np.where(fixed, 1.0, scene.mass), scale * scene.radius, fixed
+    return list(zip(places, speeds, *(column.tolist() for column in columns)))
 
 
 def spring(scene, dt, push=None, timeconst=None, ratio=1.0, d=0.9999):
@@ -175,41 +157,39 @@ class Mujoco(Session):
         self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
         mujoco.set_mju_user_warning(lambda text: None)  # its default writes a log file
         solref, solimp = texts or spring(scene, dt, **options)
-        balls, many = balls_of(scene), len(scene.mass) >= MANY
+        many = len(scene.mass) >= MANY
         chosen = 'solver="CG" jacobian="sparse"' if many else xml
-        self.moving = np.flatnonzero(np.isfinite(scene.mass))
         self.model = mujoco.MjModel.from_xml_string(
             f'<mujoco><size memory="{"4G" if many else "-1"}"/>'
             f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" {chosen}>'
             f'<flag autoreset="disable"/></option>'
-            f'<default><geom condim="1" solref="{solref}" solimp="{solimp}"/></default>'
-            f'<worldbody><geom type="plane" size="0 0 1"/>{"".join(map(self.body, balls))}'
+            f'<default><geom condim="1" solref="{solref}" solimp="{solimp}"/></default><worldbody>'
+            f'<geom type="plane" size="0 0 1"/>{"".join(map(self.body, balls_of(scene)))}'
             "</worldbody></mujoco>"
         )
         self.data = mujoco.MjData(self.model)
         self.step = partial(mujoco.mj_step, self.model, self.data)
+        self.moving = np.flatnonzero(np.isfinite(scene.mass))
         self.data.qpos[:] = scene.q0[:, self.moving].T.ravel()
         self.data.qvel[:] = scene.v0[:, self.moving].T.ravel()
-        self.full = mujoco.mjtState.mjSTATE_FULLPHYSICS
-        self.start = np.empty(mujoco.mj_stateSize(self.model, self.full))
 
     @staticmethod
     def body(ball):
         (x, y), _, mass, radius, fixed = ball
         joints = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
         body = f'<body pos="{x!r} 0 {y!r}">' if fixed else f"<body>{joints}"
-        mass = 1.0 if fixed else mass
         return f'{body}<geom type="sphere" size="{radius!r}" mass="{mass!r}"/></body>'
 
-    def advance(self, n):
-        self.mujoco.mj_step(self.model, self.data, nstep=n)
+    def go(self, n):
+        self.mujoco.mj_step(self.model, self.data, nstep=n * self.substeps)
 
     def trace(self, n):
         """MuJoCo's own rollout, a loop in C that keeps every state: time, positions, velocities."""
-        self.mujoco.mj_getState(self.model, self.data, self.start, self.full)
-        steps = n * self.substeps
-        rows = self.rollout(self.model, self.data, self.start, nstep=steps)[0][0]
-        rows = np.vstack((self.start, rows[self.substeps - 1 :: self.substeps]))
+        full = self.mujoco.mjtState.mjSTATE_FULLPHYSICS
+        start = np.empty(self.mujoco.mj_stateSize(self.model, full))
+        self.mujoco.mj_getState(self.model, self.data, start, full)
+        rows = self.rollout(self.model, self.data, start, nstep=n * self.substeps)[0][0]
+        rows = np.vstack((start, rows[self.substeps - 1 :: self.substeps]))
         return rows[:, 2 : 1 + self.model.nq : 2]
 
     def state(self):
@@ -225,25 +205,22 @@ class Pymunk(Session):
         from pymunk._chipmunk_cffi import lib
 
         self.batch, self.buffer = pymunk.batch, pymunk.batch.Buffer()
-        self.space = space = pymunk.Space()
+        self.space, self.bodies = pymunk.Space(), []
+        space = self.space
         space.gravity, space.iterations, space.collision_slop = (0, -GRAVITY), iterations, slop
         if push is not None:  # a share of an overlap in 2 ms; the engine keeps what a second leaves
             space.collision_bias = (1.0 - push) ** 500
-        bounce = math.sqrt(scene.restitution)  # the engine multiplies the two bodies' values
-        floor = pymunk.Segment(space.static_body, (-FLOOR, 0), (FLOOR, 0), 0)
-        floor.elasticity, floor.friction = bounce, 0.0
-        space.add(floor)
         if len(scene.mass) >= MANY:
             space.use_spatial_hash(2.0 * scene.radius.max(), 10 * len(scene.mass))
-        self.bodies = []
+        space.add(pymunk.Segment(space.static_body, (-FLOOR, 0), (FLOOR, 0), 0))
         for place, velocity, mass, radius, fixed in balls_of(scene):
             kind = pymunk.Body.STATIC if fixed else pymunk.Body.DYNAMIC
             body = pymunk.Body(mass, math.inf, kind)
             body.position, body.velocity = place, velocity
-            ball = pymunk.Circle(body, radius)
-            ball.elasticity, ball.friction = bounce, 0.0
-            space.add(body, ball)
+            space.add(body, pymunk.Circle(body, radius))
             self.bodies.append(body)
+        for shape in space.shapes:  # the engine multiplies the two bodies' elasticities
+            shape.elasticity, shape.friction = math.sqrt(scene.restitution), 0.0
         # the engine alone: of one ball's microsecond, pymunk's own step is two thirds.
         self.step = partial(lib.cpSpaceStep, space._space, dt)
         if len(self.bodies) > 1 and not np.isinf(scene.mass).any():
@@ -267,27 +244,22 @@ class Box2d3(Session):
     """Box2D 3: soft contacts solved over small substeps, then relaxed."""
 
     def __init__(self, scene, dt, inner, hertz=None, scale=10.0):
-        import pyb2d3
+        import pyb2d3 as box2d
 
-        self.scale = scale
-        self.world = world = pyb2d3.World(
-            gravity=(0, -GRAVITY * scale), restitution_threshold=0.0, maximum_linear_speed=1e6
-        )
-        world.sleeping_enabled = False
+        how = dict(restitution_threshold=0.0, maximum_linear_speed=1e6)
+        self.world = world = box2d.World(gravity=(0, -GRAVITY * scale), **how)
+        self.scale, self.bodies, world.sleeping_enabled = scale, box2d.Bodies(), False
         if hertz is not None:  # frequency [Hz], damping ratio, push-out speed
             world.set_contact_tuning(hertz, 10.0, 1e9)
-        material = pyb2d3.surface_material(friction=0.0, restitution=scene.restitution)
+        material = box2d.surface_material(friction=0.0, restitution=scene.restitution)
         floor = world.create_static_body(position=(0, -1.0))  # a segment would tilt by rounding
-        floor.create_shape(pyb2d3.shape_def(material=material), pyb2d3.box(FLOOR * scale, 1.0))
-        self.bodies = pyb2d3.Bodies()
+        floor.create_shape(box2d.shape_def(material=material), box2d.box(FLOOR * scale, 1.0))
         for place, velocity, mass, radius, fixed in balls_of(scene, scale):
             make = world.create_static_body if fixed else world.create_dynamic_body
             moves = {} if fixed else dict(linear_velocity=velocity, fixed_rotation=True)
-            body = make(position=place, **moves)
-            density = 1.0 if fixed else mass / (math.pi * radius * radius)
-            body.create_shape(
-                pyb2d3.shape_def(density=density, material=material), pyb2d3.circle(radius=radius)
-            )
+            body, density = make(position=place, **moves), mass / (math.pi * radius * radius)
+            skin = box2d.shape_def(density=density, material=material)
+            body.create_shape(skin, box2d.circle(radius=radius))
             self.bodies.append(body)
         self.step = partial(world.step, dt, inner)
         if len(scene.mass) == 1:
@@ -297,8 +269,8 @@ class Box2d3(Session):
         return self.bodies.get_positions()[:, 1] / self.scale
 
     def state(self):
-        q = self.bodies.get_positions().astype(float).T / self.scale
-        return q, self.bodies.get_linear_velocities().astype(float).T / self.scale
+        parts = self.bodies.get_positions(), self.bodies.get_linear_velocities()
+        return tuple(part.astype(float).T / self.scale for part in parts)
 
 
 class Rapier(Session):
@@ -329,7 +301,7 @@ class Rapier(Session):
             body = body.translation((*place, 0.0)).enabled_rotations((False, False, False))
             body = body.enabled_translations((True, True, False)).can_sleep(False)
             body = body if fixed else body.linvel((*velocity, 0.0))
-            ball = skin(rapier.Collider.ball(radius)).mass(1.0 if fixed else mass)
+            ball = skin(rapier.Collider.ball(radius)).mass(mass)
             self.bodies.append(world.rigid_bodies.get(world.add_body(body, [ball])))
         self.step = world.step
 
@@ -342,79 +314,71 @@ class Rapier(Session):
 
 
 class Drake(Session):
-    """Compliant points: its discrete solver, or with `scheme` an integrator of that accuracy."""
+    """Compliant points: its discrete solver, or with `scheme` an integrator of that accuracy.
 
-    def __init__(
-        self, scene, dt, scheme=None, accuracy=1e-5, stiffness=1e8, dissipation=1e3, cut=False
-    ):
+    It has no coefficient of restitution, only a dissipation, so it is for e = 0 and e = 1.
+    """
+
+    def __init__(self, scene, dt, stiffness, scheme=None, accuracy=None, dissipation=1e3, cut=0):
         import logging
 
-        from pydrake.geometry import HalfSpace, Sphere
-        from pydrake.math import RigidTransform
-        from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, ContactModel
-        from pydrake.multibody.tree import PlanarJoint, SpatialInertia
-        from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
-        from pydrake.systems.framework import DiagramBuilder
+        import pydrake.all as drake
 
         logging.getLogger("drake").setLevel(logging.ERROR)
-        builder = DiagramBuilder()
-        plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=0.0 if scheme else dt)
-        plant.mutable_gravity_field().set_gravity_vector([0.0, -GRAVITY, 0.0])
-        skin = self.skin(scene, stiffness, dissipation, dt)
-        up = RigidTransform(HalfSpace.MakePose([0.0, 1.0, 0.0], [0.0, 0.0, 0.0]))
-        plant.RegisterCollisionGeometry(plant.world_body(), up, HalfSpace(), "floor", skin)
-        self.scene, self.dt, self.plant, self.time = scene, dt, plant, 0
-        self.dense = scheme and not cut
+        self.scene, self.dt, self.time, self.dense = scene, dt, 0, scheme and not cut
         self.moving = np.flatnonzero(np.isfinite(scene.mass))
+        builder = drake.DiagramBuilder()
+        plant, _ = drake.AddMultibodyPlantSceneGraph(builder, time_step=0.0 if scheme else dt)
+        self.plant, skin = plant, self.skin(scene, stiffness, dissipation, dt)
+        plant.mutable_gravity_field().set_gravity_vector([0.0, -GRAVITY, 0.0])
+        floor = drake.RigidTransform(drake.HalfSpace.MakePose([0.0, 1.0, 0.0], np.zeros(3)))
+        shapes = [(plant.world_body(), floor, drake.HalfSpace(), "floor")]
         for k, (place, _, mass, radius, fixed) in enumerate(balls_of(scene)):
-            body, pose = plant.world_body(), RigidTransform([*place, 0.0])
+            body, pose = plant.world_body(), drake.RigidTransform([*place, 0.0])
             if not fixed:
-                inertia = SpatialInertia.SolidSphereWithMass(mass, radius)
-                body, pose = plant.AddRigidBody(f"ball {k}", inertia), RigidTransform()
+                inertia = drake.SpatialInertia.SolidSphereWithMass(mass, radius)
+                body, pose = plant.AddRigidBody(f"ball {k}", inertia), drake.RigidTransform()
                 frames = plant.world_frame(), body.body_frame()
-                plant.AddJoint(PlanarJoint(f"joint {k}", *frames))
-            plant.RegisterCollisionGeometry(body, pose, Sphere(radius), f"ball {k}", skin)
-        plant.set_contact_model(ContactModel.kPoint)
+                plant.AddJoint(drake.PlanarJoint(f"joint {k}", *frames))
+            shapes.append((body, pose, drake.Sphere(radius), f"ball {k}"))
+        for shape in shapes:
+            plant.RegisterCollisionGeometry(*shape, skin)
+        plant.set_contact_model(drake.ContactModel.kPoint)
         plant.Finalize()
-        self.simulator = Simulator(builder.Build())
+        self.simulator = drake.Simulator(builder.Build())
         self.context = plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
         for put, given in ((plant.SetPositions, scene.q0), (plant.SetVelocities, scene.v0)):
             put(self.context, np.pad(given[:, self.moving].T, ((0, 0), (0, 1))).ravel())  # x, y, 0
         if scheme:
-            ResetIntegratorFromFlags(self.simulator, scheme, 0.1)
+            drake.ResetIntegratorFromFlags(self.simulator, scheme, 0.1)
             self.simulator.get_mutable_integrator().set_target_accuracy(accuracy)
         self.simulator.Initialize()
 
     @staticmethod
-    def cannot(scene):
-        some = 0.0 < scene.restitution < 1.0
-        return "has no coefficient of restitution, only a dissipation" if some else None
-
-    @staticmethod
     def skin(scene, stiffness, dissipation, dt):
         """Stiffness and dissipation of every surface: none for e = 1, strong for e = 0."""
-        from pydrake.geometry import AddContactMaterial, ProximityProperties
-        from pydrake.multibody.plant import CoulombFriction
+        import pydrake.all as drake
 
-        skin, elastic = ProximityProperties(), scene.restitution == 1.0
-        AddContactMaterial(
-            dissipation=0.0 if elastic else dissipation,
-            point_stiffness=2.0 * stiffness,  # two surfaces in series: half of it
-            friction=CoulombFriction(0.0, 0.0),
-            properties=skin,
-        )
-        skin.AddProperty("material", "relaxation_time", 0.0 if elastic else dt)
+        skin, lossy = drake.ProximityProperties(), float(scene.restitution < 1.0)
+        friction = drake.CoulombFriction(0.0, 0.0)
+        both = 2.0 * stiffness  # two surfaces in series: half of it
+        drake.AddContactMaterial(lossy * dissipation, both, friction, skin)
+        skin.AddProperty("material", "relaxation_time", lossy * dt)
         return skin
 
-    def advance(self, n):
-        self.time += n
+    def go(self, n):
+        self.time += n * self.substeps
         self.simulator.AdvanceTo(self.time * self.dt)
 
     def step(self):
-        self.advance(1)
+        self.go(1)
 
     def heights(self):
         return self.plant.GetPositions(self.context)[1::3]
+
+    def state(self):
+        plant, context = self.plant, self.context
+        return self.with_the_fixed(plant.GetPositions(context), plant.GetVelocities(context))
 
     def whole(self, n):
         """Positions and velocities at n + 1 looks (n + 1, 6 N), by the engine's dense output."""
@@ -436,45 +400,30 @@ class Drake(Session):
         rows = [self.with_the_fixed(*np.split(row, 2)) for row in self.whole(n)]
         return tuple(map(np.array, zip(*rows)))
 
-    def state(self):
-        plant, context = self.plant, self.context
-        return self.with_the_fixed(plant.GetPositions(context), plant.GetVelocities(context))
 
-
-ENGINES = {  # label, package, module, session
-    "mujoco": ("MuJoCo", "mujoco", "mujoco", Mujoco),
-    "pymunk": ("pymunk", "pymunk", "pymunk", Pymunk),
-    "box2d3": ("Box2D 3", "pyb2d3", "pyb2d3", Box2d3),
-    "rapier": ("Rapier", "rapier3d", "rapier3d", Rapier),
-    "drake": ("Drake", "drake", "pydrake", Drake),
-    "siconos": ("Siconos", "python3-siconos", None, Siconos),
-    "events": ("event-driven", "scipy", "scipy", Events),
+ENGINES = {  # label, package, session
+    "mujoco": ("MuJoCo", "mujoco", Mujoco),
+    "pymunk": ("pymunk", "pymunk", Pymunk),
+    "box2d3": ("Box2D 3", "pyb2d3", Box2d3),
+    "rapier": ("Rapier", "rapier3d", Rapier),
+    "drake": ("Drake", "drake", Drake),
+    "siconos": ("Siconos", "python3-siconos", Siconos),
+    "events": ("event-driven", "scipy", Events),
 }
 LABELS = {name: name for name in contact.MODELS} | {name: row[0] for name, row in ENGINES.items()}
 
 
-def session(engine):
-    """The class of the sessions of an engine, or of a model."""
-    return ENGINES[engine][-1] if engine in ENGINES else partial(Ours, model=engine)
-
-
-def not_installed(engine) -> str | None:
-    """What to install for an engine that is not there, or None."""
-    package, module = ENGINES[engine][1:3] if engine in ENGINES else ("numpy", "numpy")
-    if module is None:
-        there = Path("/usr/lib/python3/dist-packages/siconos").exists()
-        return None if there else f"not installed: apt install {package}, on Debian"
-    there = importlib.util.find_spec(module)
-    return None if there else f"not installed: pip install {package}"
-
-
+@cache
 def versions():
     """{package: version} of every engine that is there."""
-    found = {}
-    for package in (row[1] for row in ENGINES.values()):
-        with contextlib.suppress(metadata.PackageNotFoundError):
-            found[package] = metadata.version(package)
-    if not not_installed("siconos"):
+    packages = [package for _, package, _ in ENGINES.values()]
+    found = {name: d.version for name in packages for d in metadata.distributions(name=name)}
+    if Path("/usr/lib/python3/dist-packages/siconos").exists():  # which pip knows nothing of
         query = ["dpkg-query", "-W", "-f=${Version}", "python3-siconos"]
         found["python3-siconos"] = subprocess.run(query, capture_output=True, text=True).stdout
     return found
+
+
+def missing(engine):
+    """Whether an engine is not installed; a model is always there."""
+    return engine in ENGINES and ENGINES[engine][1] not in versions()

@@ -6,11 +6,9 @@ every height read at each look. Piles fall from the same lattice and settle unti
 timed in fresh processes: from the lattice, and from their own settled state.
 """
 
-import importlib.util
 import math
 import random
 import statistics
-import subprocess
 import sys
 import tempfile
 from functools import cache, partial
@@ -20,13 +18,11 @@ from scipy.spatial import cKDTree
 
 import contact
 from curriculum import parallel
-from curriculum.bench import problems, settings, timing
-from curriculum.commands import ROOT
+from curriculum.bench import engines, problems, settings, timing
 
-WORK, BUDGETS, BUDGET = (1, 4, 16), (3, 10, 100), 10  # substeps in 2 ms; us a ball in 2 ms
+WORK, BUDGETS = (1, 4, 16), (3, 10, 100)  # substeps in 2 ms; us a ball in 2 ms
 PROCESSES = 3
 ENOUGH = 0.03  # s: once the runs of a point have taken so long, it is not timed again
-QUICK = dict(names=("drop", "slide"), steps=((0.002, 1), (0.002, 4)))
 STEPS = tuple((problems.REFERENCE_DT, substeps) for substeps in (1, 2, 4, 8, 16))
 STEPS += tuple((dt, 1) for dt in problems.COARSER)
 DT = 0.002  # s, of the piles
@@ -41,7 +37,6 @@ MANY, COPIES, AGAIN = 10_000, 10, 1500  # made of settled copies; steps to settl
 
 def points(quick, wanted, known):
     """A row a point, of the settings that are wanted."""
-    compiled()
     jobs = list(cells(quick, wanted))
     print(f"{len(jobs)} points, their errors first, then their times", flush=True)
     errors = parallel.run_jobs(errors_of, jobs, "errors")
@@ -52,16 +47,14 @@ def points(quick, wanted, known):
 
 def cells(quick, wanted):
     """(problem, setting, dt, substeps, starts) of every point, by names."""
-    for problem in problems.PROBLEMS:
-        for name, c in settings.BY_NAME.items():
-            dear = quick and (
-                c.engine in ("drake", "siconos") or problem.name not in QUICK["names"]
-            )
-            if wanted(c) and c.runs(problem.name) and not dear and not c.refuses(problem.build(0)):
-                starts = 1 if c.rare or quick else problem.starts
-                for dt, substeps in QUICK["steps"] if quick else STEPS:
-                    if takes(c, dt, substeps):
-                        yield problem.name, name, dt, substeps, starts
+    steps = ((0.002, 1), (0.002, 4)) if quick else STEPS
+    for name in ("drop", "slide") if quick else problems.BY_NAME:
+        for c in settings.BY_NAME.values():
+            here = c.runs(name) and wanted(c) and not engines.missing(c.engine)
+            starts = 1 if c.rare or quick else problems.BY_NAME[name].starts
+            if here and not (quick and c.engine in ("drake", "siconos")):
+                taken = [each for each in steps if takes(c, *each)]
+                yield from ((name, c.name, *each, starts) for each in taken)
 
 
 def takes(c, dt, substeps):
@@ -82,9 +75,8 @@ def errors_of(job):
         scene = problem.build(start)
         session = c.build(scene, dt, substeps)
         states = session.states(problem.steps(dt))
-        run = contact.Run(np.arange(len(states[0])) * dt, *states)
-        work = work_of(c, session, problem.steps(dt))
-        found.append(problems.quality(problem, scene, run) | dict(work=work))
+        error = problems.quality(problems.answer(name, start, dt), *states, scene.mass)
+        found.append(error | dict(work=work_of(c, session, problem.steps(dt))))
     return found
 
 
@@ -102,9 +94,7 @@ def time_of(job, timed=timing.timed):
     found = []
     for looks in (min(50, steps), steps, steps, steps):
         session = settings.BY_NAME[name].build(scene, dt, substeps)
-        seconds, heights = timed(partial(session.trace, looks))
-        if len(heights) != looks + 1:
-            raise RuntimeError(f"{name} was looked at {len(heights)} times, not {looks + 1}")
+        seconds, _ = timed(partial(session.trace, looks))
         found.append(session.took or seconds)
         if sum(found[1:]) > ENOUGH:
             break
@@ -120,30 +110,35 @@ def point(job, errors, times):
     row["diverged"] = sum(e["diverged"] is not None for e in errors)
     itself = problems.BY_NAME[problem].truth is problems.judged and c.engine == "exact"
     spread = timing.spread("error", [e["error"] for e in errors])
-    del spread["error_min"]
-    row |= dict.fromkeys(spread) if itself else spread  # the reference has no error of its own
+    row |= {key: None if itself else spread[key] for key in ("error", "error_max")}
     return row | timing.spread("ms", [1e3 * seconds for seconds in times])
 
 
 @cache
-def moving(problem):
-    """How many balls of a problem move."""
-    return int(np.isfinite(problems.BY_NAME[problem].build(0).mass).sum())
+def looks_of_balls(problem):
+    """In how many looks of 2 ms, added up over the balls that move, a problem is run."""
+    moving = np.isfinite(problems.BY_NAME[problem].build(0).mass).sum()
+    return moving * problems.BY_NAME[problem].steps(problems.REFERENCE_DT)
 
 
 def allowed(p, budget=None, work=WORK[-1]):
-    """Whether a point competes: at equal work, or within so many us a ball in 2 ms."""
-    if p["error"] is None or p["diverged"]:
-        return False
+    """Whether a point competes: at equal work, or within so many us a ball in 2 ms. exact does,
+    also as the reference, which has no error."""
+    if p["engine"] == "exact" or p["error"] is None or p["diverged"]:
+        return p["engine"] == "exact"
     if budget is None:
         return p["dt"] == problems.REFERENCE_DT and p["work"] <= work
-    looks = problems.BY_NAME[p["problem"]].duration / problems.REFERENCE_DT
-    return p["ms"] <= 1e-3 * budget * moving(p["problem"]) * looks
+    return p["ms"] <= 1e-3 * budget * looks_of_balls(p["problem"])
 
 
-def best_points(rows, **limit):
+def contest(rows, **limit):
     """{problem: {engine: its most accurate point}} of those that are allowed to compete."""
     return best((p for p in rows if allowed(p, **limit)), "problem", rank)
+
+
+def rank(p):
+    """What decides between two settings: the error in three digits, then the time."""
+    return float(f"{p['error'] or 0.0:.3g}"), p["ms"]
 
 
 def best(rows, group, rank):
@@ -153,16 +148,6 @@ def best(rows, group, rank):
         rivals = found.setdefault(row[group], {})
         rivals[row["engine"]] = min(rivals.get(row["engine"], row), row, key=rank)
     return found
-
-
-def rank(p):
-    """What decides between two settings: the error in three digits, then the time."""
-    return float(f"{p['error']:.3g}"), p["ms"]
-
-
-def compiled():
-    """Have all loops compiled and kept, before anything is timed."""
-    subprocess.run([sys.executable, "-m", "curriculum.lesson"], cwd=ROOT, check=True)
 
 
 # piles
@@ -193,7 +178,6 @@ def side_by_side(scene):
 
 def piles(quick, wanted, known):
     """A row a setting and size; known: the rows that stay, of whom some may have won."""
-    compiled()
     rows, states = [], {}
     for count in (12,) if quick else (*SIZES, MANY):
         chosen = winners(known + rows) if count == MANY else range(len(settings.PILES))
@@ -204,24 +188,20 @@ def piles(quick, wanted, known):
 
 def piles_of(count, chosen, states, processes):
     """The rows of one size: settle all settings, then time them. states[k]: the last settled."""
-    scene = shaft(count)
-    jobs = [(count, k, states.get(k)) for k in chosen if not settings.PILES[k].refuses(scene)]
-    print(f"pile of {count}: {len(jobs)} settings settle, then they are timed", flush=True)
+    chosen = [k for k in chosen if not engines.missing(settings.PILES[k].engine)]
+    print(f"pile of {count}: {len(chosen)} settings settle, then they are timed", flush=True)
+    jobs = [(count, k, states.get(k)) for k in chosen]
     settled = parallel.run_jobs(settle, jobs, f"{count} balls settle")
-    states.update((k, found[:2]) for (_, k, _), found in zip(jobs, settled))
-    work, rows = [(count, k, states[k]) for _, k, _ in jobs], []
+    states.update((k, found[:2]) for k, found in zip(chosen, settled))
+    work, rows = [(count, k, states[k]) for k in chosen], []
     times = timing.in_fresh_processes(falling_and_resting, work, processes, f"{count} balls")
-    for (_, k, _), state, found in zip(jobs, settled, times):
+    for k, (_, _, state), found in zip(chosen, settled, times):
         c = settings.PILES[k]
-        row = dict(bodies=count, engine=c.engine, setting=c.options, substeps=c.cuts) | state[2]
-        for which, name in enumerate(("falling", "resting")):
-            row |= timing.spread(name, [each[which] for each in found])
+        row = dict(bodies=count, engine=c.engine, setting=c.options, substeps=c.cuts) | state
+        for name, each in zip(("falling", "resting"), zip(*found)):
+            row |= timing.spread(name, each)
         rows.append(row)
     return rows
-
-
-def build(k, scene):
-    return settings.PILES[k].build(scene, DT, settings.PILES[k].cuts)
 
 
 def settle(job):
@@ -229,9 +209,8 @@ def settle(job):
     count, k, start = job
     scene, steps = shaft(count), SETTLE
     if count == MANY:
-        one, steps = shaft(MANY // COPIES), AGAIN
-        scene = side_by_side(one._replace(q0=np.array(start[0]), v0=np.array(start[1])))
-    session = build(k, scene)
+        scene, steps = side_by_side(shaft(MANY // COPIES)._replace(q0=np.array(start[0]))), AGAIN
+    session = settings.PILES[k].build(scene, DT, settings.PILES[k].cuts)
     session.go(steps - WATCHED)
     speeds, (before, _) = [], session.state()
     for _ in range(WATCHED // TURN):
@@ -255,8 +234,8 @@ def depths(q, scene):
     pairs = scene.radius[a] + scene.radius[b] - np.hypot(*(q[:, a] - q[:, b]))
     found = np.concatenate((scene.radius - q[1], pairs)) / contact.RADIUS
     found = np.append(found[found > 0.0], 0.0)
-    return dict(mean_depth=float(found.sum() / max(1, len(found) - 1)),
-                worst_depth=float(found.max()))  # fmt: skip
+    mean = float(found.sum() / max(1, len(found) - 1))
+    return dict(mean_depth=mean, worst_depth=float(found.max()))
 
 
 def falling_and_resting(job, timed=timing.timed):
@@ -264,7 +243,7 @@ def falling_and_resting(job, timed=timing.timed):
     count, k, (q, v) = job
     scene, found = shaft(count), []
     for start in (scene, scene._replace(q0=np.array(q, float), v0=np.array(v, float))):
-        session = build(k, start)
+        session = settings.PILES[k].build(start, DT, settings.PILES[k].cuts)
         session.go(100)
         seconds = [timed(partial(session.go, TURN))[0] for _ in range(TURNS)]
         found.append(1e6 * statistics.median(seconds) / TURN)
@@ -289,29 +268,27 @@ def winners(rows):
 
 def processes(quick, wanted, known):
     """Seconds of whole processes of contact.py, of importing what they need, and of compiling."""
-    python, seconds = sys.executable, {}
     step = (  # with a folder of its own for what is compiled
         "import pathlib, sys; from curriculum.lesson import compiled; "
         "compiled.FOLDER = pathlib.Path(sys.argv[1]); import contact; from curriculum import fast; "
         "fast.run_model('lcp', contact.build_scene('drop'), 0.002, 1, contact.Settings())"
     )
     with tempfile.TemporaryDirectory() as out, tempfile.TemporaryDirectory() as cold:
-        run = [python, "contact.py", "--out", out]
-        commands = {f"import {name}": [python, "-c", f"import {name}"] for name in ("numpy",)}
-        for scene in ("drop", "bounce", "stack"):
-            commands[f"contact.py --scene {scene} --no-rerun"] = [
-                *run, "--no-rerun", "--scene", scene]  # fmt: skip
-        if importlib.util.find_spec("rerun") is not None:
-            commands |= {"import rerun": [python, "-c", "import rerun"], "contact.py": run}
-        commands["one compiled step"] = [python, "-c", step, out]
-        if not quick:
-            first = timing.whole_process([python, "-c", step, cold], cold)
-            seconds["one compiled step, the first ever"] = [None, first]
+        words = {f"import {name}": ["-c", f"import {name}"] for name in ("numpy", "rerun")}
+        words["one compiled step"] = ["-c", step, out]
+        for flags in ("", *(f" --scene {each} --no-rerun" for each in ("drop", "bounce", "stack"))):
+            words[f"contact.py{flags}"] = ["contact.py", "--out", out, *flags.split()]
+
+        def seconds(*words, folder=out):
+            return timing.whole_process([sys.executable, *words], folder)
+
+        first = [] if quick else [seconds("-c", step, cold, folder=cold)]
+        found = {"one compiled step, the first ever": first}
         for number in range(3 if quick else 16):
-            for name in random.Random(number).sample(list(commands), len(commands)):
-                seconds.setdefault(name, []).append(timing.whole_process(commands[name], out))
-    return [dict(process=name) | timing.spread("seconds", found[1:])
-            for name, found in sorted(seconds.items())]  # the first warms the caches  # fmt: skip
+            for name in random.Random(number).sample(list(words), len(words)):
+                found.setdefault(name, []).append(seconds(*words[name]))
+    rows = {name: each[len(each) > 1 :] for name, each in found.items() if each}  # the first warms
+    return [dict(process=name) | timing.spread("seconds", rows[name]) for name in sorted(rows)]
 
 
 PARTS = {"points": points, "piles": piles, "processes": processes}

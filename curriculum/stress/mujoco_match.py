@@ -48,7 +48,7 @@ def cases():
 
 def match_jobs(quick):
     """A job for every case; quick: every fourth. None where MuJoCo is not installed."""
-    for case in list(cases())[:: 4 if quick else 1] if not engines.not_installed("mujoco") else ():
+    for case in list(cases())[:: 4 if quick else 1] if not engines.missing("mujoco") else ():
         yield f"{case.what}, dt {case.dt:g}", case, [soft_is_mujoco]
 
 

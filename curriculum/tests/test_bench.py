@@ -20,14 +20,10 @@ from curriculum.bench import __main__ as bench  # noqa: E402
 from curriculum.bench import engines, measure, problems, report, settings, timing  # noqa: E402
 
 R, g = contact.RADIUS, 9.81
-ALL = [s for s in settings.BY_NAME.values() if not engines.not_installed(s.engine)]
+ALL = [s for s in settings.BY_NAME.values() if not engines.missing(s.engine)]
 STEPPED = [s for s in ALL if s.engine in engines.ENGINES and s.engine not in ("siconos", "events")]
 RESTING = [s for s in STEPPED if s.runs("drop")]
 each_setting = pytest.mark.parametrize("setting", RESTING, ids=lambda s: s.name)
-
-
-def run_of(setting, scene, dt, looks, substeps=1):
-    return contact.Run(np.arange(looks + 1) * dt, *setting.build(scene, dt, substeps).states(looks))
 
 
 # references
@@ -41,15 +37,12 @@ def test_closed_forms_are_what_paper_and_pencil_give():
 
 @pytest.mark.parametrize("problem", problems.PROBLEMS, ids=lambda p: p.name)
 def test_exact_and_the_event_driven_code_agree_with_every_reference_and_penalty_does_not(problem):
-    scene, dt = problem.build(1), 0.004
-    steps = min(problem.steps(dt), 300)
-    error = {
-        name: problems.quality(problem, scene, run_of(settings.BY_NAME[name], scene, dt, steps))
-        for name in ("exact", "events rtol=1e-12 longest=0.01", "penalty stiffness=1e4")
-    }
-    exact, events, penalty = (each["error"] for each in error.values())
-    assert exact < 1e-10 and events < 1e-9 and penalty > 1e-4
-    assert problem.title.endswith(f" {problem.duration:g} s")
+    scene, steps = problem.build(1), min(problem.steps(0.004), 300)
+    truth, error = problems.answer(problem.name, 1, 0.004)[: steps + 1], []
+    for name in ("exact", "events rtol=1e-12 longest=0.01", "penalty stiffness=1e4"):
+        states = settings.BY_NAME[name].build(scene, 0.004).states(steps)
+        error.append(problems.quality(truth, *states, scene.mass)["error"])
+    assert error[0] < 1e-10 and error[1] < 1e-9 and error[2] > 1e-4
 
 
 def test_the_error_of_an_invented_run_is_that_worked_out_by_hand():
@@ -58,7 +51,7 @@ def test_the_error_of_an_invented_run_is_that_worked_out_by_hand():
     q, v = problem.truth(scene, t)
     q[100, 1] += 0.3 * R
     q[-1, 1] -= 0.2 * R
-    found = problems.quality(problem, scene, contact.Run(t, q, v))
+    found = problems.quality(problems.answer("drop", 0, 0.002), q, v, scene.mass)
     assert found == {"error": pytest.approx(0.3), "diverged": None}
 
 
@@ -108,12 +101,12 @@ def test_two_balls_of_unequal_mass_and_size_that_collide_go_on_with_their_moment
 
 @each_setting
 def test_an_engine_holds_the_fixed_ball_and_lets_the_other_slide_off(setting):
-    problem = problems.BY_NAME["slide"]
-    scene = problem.build(4)
-    run = run_of(setting, scene, 0.001, 300)
-    assert np.allclose(run.q[:, :, 0], scene.q0[:, 0], atol=1e-7) and not run.v[:, :, 0].any()
+    scene = problems.BY_NAME["slide"].build(4)
+    q, v = setting.build(scene, 0.001).states(300)
+    assert np.allclose(q[:, :, 0], scene.q0[:, 0], atol=1e-7) and not v[:, :, 0].any()
     loose = setting.name == "rapier inner=4"  # as shipped it uses contacts of some steps ago
-    assert problems.quality(problem, scene, run)["error"] < (0.5 if loose else 0.2)
+    found = problems.quality(problems.answer("slide", 4, 0.001)[:301], q, v, scene.mass)
+    assert found["error"] < (0.5 if loose else 0.2)
 
 
 def bouncing():
@@ -132,7 +125,7 @@ def test_an_engine_bounces_with_the_restitution_of_the_scene(setting, e, within)
     assert v[impact + 3, 1, 0] == pytest.approx(-e * v[impact, 1, 0], abs=within)
 
 
-@pytest.mark.skipif(bool(engines.not_installed("siconos")), reason="Siconos is missing")
+@pytest.mark.skipif(engines.missing("siconos"), reason="Siconos is missing")
 def test_siconos_falls_lands_and_bounces_in_its_own_process_and_times_itself():
     scene = contact.scene_of([0.3, 0.9], [1.0, 1.0], restitution=0.5)
     session = settings.BY_NAME["siconos"].build(scene, 0.002)
@@ -142,14 +135,14 @@ def test_siconos_falls_lands_and_bounces_in_its_own_process_and_times_itself():
     assert q[0, :, 1] == pytest.approx([0.9, 1.0]) and 0.0 < session.took < 5.0
 
 
-@pytest.mark.skipif(bool(engines.not_installed("drake")), reason="needs Drake")
+@pytest.mark.skipif(engines.missing("drake"), reason="needs Drake")
 def test_a_ball_sinks_by_m_g_over_k_into_drakes_floor():
     scene = contact.scene_of(0.0, 0.13, 0.7, 0.13)
     height = settings.BY_NAME["drake stiffness=1e8"].build(scene, 0.002).trace(500)[-1][0]
     assert 0.13 - height == pytest.approx(0.7 * g / 1e8, rel=0.02)
 
 
-@pytest.mark.skipif(bool(engines.not_installed("pymunk")), reason="pymunk is missing")
+@pytest.mark.skipif(engines.missing("pymunk"), reason="pymunk is missing")
 def test_the_engine_of_pymunk_alone_goes_where_a_users_step_goes():
     setting, scene = settings.BY_NAME["pymunk iterations=10"], problems.BY_NAME["pile"].build(0)
     bare, users = (setting.build(scene, 0.002) for _ in range(2))
@@ -203,7 +196,7 @@ def test_all_engines_get_the_same_substeps_and_leapfrogs_two_solves_count_twice(
     assert all({1, 4, 16} <= work and max(work) in (16, 64) for work in found.values())
 
 
-@pytest.mark.skipif(bool(engines.not_installed("drake")), reason="needs Drake")
+@pytest.mark.skipif(engines.missing("drake"), reason="needs Drake")
 @pytest.mark.parametrize("accuracy, least, most", [(1e-7, 4, 16), (1e-9, 30, 99)])
 def test_the_steps_of_an_engine_that_chooses_them_are_counted(accuracy, least, most):
     chosen = [c.name for c in ALL if c.runs("slide") and c.knobs.get("scheme") == "cenic"]
@@ -238,10 +231,10 @@ def test_the_best_is_the_most_accurate_that_may_compete():
         point("lcp", None, 9.0),
         point("lcp", 0.02, 9.0, dt=0.004),
     ]
-    assert measure.best_points(points)["drop"]["lcp"] == points[2]
-    assert measure.best_points(points, budget=10)["drop"]["lcp"]["error"] == 0.001  # any work
-    assert measure.best_points(points[:3], budget=10)["drop"]["lcp"]["error"] == 0.03
-    assert measure.best_points(points, work=1) == {}
+    assert measure.contest(points)["drop"]["lcp"] == points[2]
+    assert measure.contest(points, budget=10)["drop"]["lcp"]["error"] == 0.001  # any work
+    assert measure.contest(points[:3], budget=10)["drop"]["lcp"]["error"] == 0.03
+    assert measure.contest(points, work=1) == {}
 
 
 # claims
@@ -253,7 +246,7 @@ def test_who_wins_and_loses_is_as_the_numbers_say(mine, rival):
     rows.append(point("events", 1e-9, 30.0))
     (cells,) = report.winners(rows)
     assert [cell.startswith("**") for cell in cells[3::2]] == [mine < rival, rival < mine]
-    words = " ".join(report.claims(rows))
+    words = report.written("claims.md", {"points": rows}, {})
     assert ("in 1 of 1 with at most 16" in words) == (mine < rival)
     assert ("16 substeps in 2 ms (not drop)" in words) == (rival < mine)
     assert "more accurate than leapfrog in 1 of 1 (drop). It takes 30 to 30 times" in words
@@ -328,8 +321,8 @@ PILED = range(len(settings.PILES))
 
 @pytest.mark.parametrize("number", PILED, ids=lambda k: f"{settings.PILES[k].name} {k}")
 def test_a_pile_of_twelve_settles_between_walls_in_every_engine(number):
-    if why := engines.not_installed(settings.PILES[number].engine):
-        pytest.skip(why)
+    if engines.missing(settings.PILES[number].engine):
+        pytest.skip("it is not installed")
     q, v, row = measure.settle((12, number, None))
     assert row["at_rest"] and row["speed"] < 1e-3
     assert abs(q[0, :12]).max() < 6.0 * R, "no ball left the shaft"
@@ -377,8 +370,8 @@ def test_only_what_rests_within_the_depth_is_compared():
         (12, 1e-3, ROWS[1], ROWS[3], ROWS[4]),
         (12, 1e-4, ROWS[0], None, ROWS[4]),
     ]
-    ours, leapfrog = report.pile_claims(ROWS)
-    assert "takes 0.125 to 0.75 (12 balls, 0.0001 r)" in ours and "0.5 to 0.5" in leapfrog
+    words = report.written("claims.md", {"piles": ROWS}, {})
+    assert "takes 0.125 to 0.75 (12 balls, 0.0001 r)" in words and "takes 0.5 to 0.5" in words
 
 
 def test_what_wins_with_a_thousand_balls_runs_with_ten_thousand():
