@@ -106,7 +106,7 @@ def load(folder) -> tuple:
     """({NAME: [row]} of the tables of a folder, made.json). Numbers are numbers, "" is None."""
     tables = {}
     for path in sorted(Path(ROOT, folder).glob("*.csv")):
-        rows = csv.DictReader(path.read_text("utf-8").splitlines())
+        rows = csv.DictReader(path.read_text("utf-8").splitlines(True))
         tables[path.stem] = [{name: value(cell) for name, cell in row.items()} for row in rows]
     return tables, json.loads(read_text(f"{folder}/made.json") or "{}")
 

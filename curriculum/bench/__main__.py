@@ -14,6 +14,7 @@ two, measures little, and writes to outputs/bench-quick, which nothing quotes.
 import os
 import subprocess
 import sys
+from operator import itemgetter
 
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
@@ -22,49 +23,37 @@ from curriculum import stored
 from curriculum.commands import Parser, needs, write_json
 
 with needs("bench"):
-    from curriculum.bench import engines, measure, report, settings
+    from curriculum.bench import engines, measure, report
 
 FULL, QUICK = stored.ROOT / stored.FOLDERS["bench"], stored.ROOT / "outputs" / "bench-quick"
 CODE = "curriculum/bench/measure.py", "curriculum/bench/settings.csv"  # and what they import
-
-
-def load(folder):
-    """{part: rows} of a results folder, and its made.json."""
-    tables, made = stored.load(folder)
-    for row in (*tables.get("points", ()), *tables.get("piles", ())):
-        row["setting"] = row["setting"] or ""
-    return tables, made
+who = itemgetter("engine", "setting")  # of a row
 
 
 def take(part, quick, only, folder):
     """Measure a part, or the settings of it that are named, and write its file."""
-    order, groups = [c.name for c in settings.EVERYBODY], list(report.problems.BY_NAME)
-    wanted = [name for name in order if not only or only in name]
+    order, groups = [c[:2] for c in engines.EVERYBODY], list(report.problems.BY_NAME)
+    wanted = [c[:2] for c in engines.EVERYBODY if not only or only in c.name]
     if not wanted:
         raise ValueError(f"--only {only}: no setting in settings.csv has this name")
     command = f"python -m curriculum.bench {part}" + f" --only {only!r}" * bool(only)
     code = (*CODE, "contact.py") if part == "processes" else CODE
     about = stored.origin(command, *code, kept=folder == FULL)
     about["versions"] |= engines.versions()
-    sections, made = load(folder)
-    rows = [row for row in sections.get(part, ()) if only and name_of(row) in order]
-    rows = [row for row in rows if name_of(row) not in wanted]
-    found = measure.PARTS[part](quick, lambda c: c.name in wanted, rows)
+    sections, made = stored.load(folder)
+    stay = [row for row in sections.get(part, ()) if only and who(row) in set(order) - set(wanted)]
+    found = measure.PARTS[part](quick, lambda c: c[:2] in wanted, stay)
     if not found:
         raise ValueError(f"{part}: nothing of {only or 'it'} runs here")
 
     def place(row):  # that it has in a whole measurement
-        return row.get("bodies") or groups.index(row["problem"]), order.index(name_of(row))
+        return row.get("bodies") or groups.index(row["problem"]), order.index(who(row))
 
-    rows = sorted(rows + found, key=place) if only else found
+    rows = sorted(stay + found, key=place) if only else found
     if not only:
         made = {key: value for key, value in made.items() if key.split()[0] != part}
     stored.save(folder / f"{part}.csv", rows)
     write_json(folder / "made.json", made | {f"{part} {only or ''}".strip(): about})
-
-
-def name_of(row):
-    return f"{row['engine']} {row['setting']}".strip()
 
 
 def main(argv=None):
@@ -82,7 +71,7 @@ def main(argv=None):
             subprocess.run([sys.executable, "-m", "curriculum.lesson"], cwd=stored.ROOT, check=True)
         for name in parts:
             take(name, args.quick, args.only, folder)
-        sections, made = load(folder)
+        sections, made = stored.load(folder)
         report.write(folder, sections, made)
         if folder == FULL:
             stored.write_block("bench", report.written("readme.md", sections, made))

@@ -1,27 +1,40 @@
-"""Other engines, and our models, as sessions that step the scenes of contact.py.
+"""Who competes: other engines, and our models, as sessions that step the scenes of contact.py.
+
+**To send a better setting, add one line to settings.csv**: the engine, its options as they are
+typed, and the problems that it is for (names, "all", "-name" for all but this one, or a group of
+GROUPS; piles/4: the piles, with four substeps in a step of 2 ms). The benchmark runs every line and
+names the best. Options are the arguments of a session's __init__, or contact.py's own flags.
 
 Every engine is optional. The same for all: balls that cannot rotate, no friction, one thread, the
 scene's masses, radii and restitution, and a floor along y = 0. A ball of infinite mass is one that
 nothing moves. No ball sleeps, and what is left of the last step, impulses or forces, begins the
-next one as shipped. The options of settings.csv are the arguments of a session's __init__.
+next one as shipped.
 """
 
 import json
 import math
 import subprocess
+from ast import literal_eval
 from functools import cache, partial
 from importlib import metadata
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 import contact
+from curriculum import stored
 from curriculum.bench import events
 
-BLOCK = 200  # steps that a twin takes in one go
+HERE = Path(__file__).parent
+BLOCK = 200  # steps that one of our models takes in one go
 GRAVITY = 9.81  # m/s^2, downwards
 FLOOR = 1000.0  # m, half the length of the floor, where an engine wants an end to it
 MANY = 60  # balls: from here on MuJoCo gets CG and a sparse Jacobian
+GROUPS = {
+    "shared": "stack pile heavy_100 heavy_1000 tower spread pile_bounce cradle",
+    "resting": "drop slide stack heavy_100 heavy_1000 tower spread glance",  # e = 0, no lottery
+}
 
 
 class Session:
@@ -114,7 +127,7 @@ class Siconos(Whole):
     def states(self, n):
         words = json.dumps(self.given | dict(looks=n, substeps=self.substeps))
         command = ["/usr/bin/python3", "-c", "import moreau; moreau.main()"]
-        how = dict(cwd=Path(__file__).parent, capture_output=True, text=True)
+        how = dict(cwd=HERE, capture_output=True, text=True)
         run = subprocess.run(command, input=words, **how)
         if run.returncode:  # its solver has given up; that is no error of ours
             self.took, rows = math.nan, np.full((n + 1, len(self.given["balls"]), 4), math.nan)
@@ -380,25 +393,19 @@ class Drake(Session):
         plant, context = self.plant, self.context
         return self.with_the_fixed(plant.GetPositions(context), plant.GetVelocities(context))
 
-    def whole(self, n):
-        """Positions and velocities at n + 1 looks (n + 1, 6 N), by the engine's dense output."""
+    def looks(self, read, n):
+        """By the engine's dense output, unless it steps or is cut: heights, or states."""
+        if not self.dense:
+            return super().looks(read, n)
         integrator, look = self.simulator.get_mutable_integrator(), self.dt * self.substeps
         integrator.StartDenseIntegration()
         self.simulator.AdvanceTo(n * look)
         found = integrator.StopDenseIntegration()
         times = np.clip(np.arange(n + 1) * look, found.start_time(), found.end_time())
-        return found.vector_values(times).T
-
-    def trace(self, n):
-        if not self.dense:
-            return super().trace(n)
-        return self.whole(n)[:, 1 : 3 * len(self.moving) : 3]
-
-    def states(self, n):
-        if not self.dense:
-            return super().states(n)
-        rows = [self.with_the_fixed(*np.split(row, 2)) for row in self.whole(n)]
-        return tuple(map(np.array, zip(*rows)))
+        rows = found.vector_values(times).T  # (n + 1, 6 N)
+        if read == self.heights:
+            return rows[:, 1 : 3 * len(self.moving) : 3]
+        return [self.with_the_fixed(*np.split(row, 2)) for row in rows]
 
 
 ENGINES = {  # label, package, session
@@ -427,3 +434,67 @@ def versions():
 def missing(engine):
     """Whether an engine is not installed; a model is always there."""
     return engine in ENGINES and ENGINES[engine][1] not in versions()
+
+
+class Setting(NamedTuple):
+    """One engine, or one of our models, with one set of choices: a line of settings.csv.
+
+    `ahead` is a way to start: a step that first accelerates and then moves is exact in free flight
+    if its first speed stands half a step earlier.
+    """
+
+    engine: str  # a key of ENGINES, or a model
+    options: str | None  # as they stand in the file
+    problems: str
+
+    @property
+    def name(self):
+        return f"{self.engine} {self.options or ''}".strip()
+
+    @property
+    def knobs(self):
+        """The options as a dict of numbers, tuples and words."""
+        pairs = (word.split("=", 1) for word in (self.options or "").split())
+        return {key: text if text.isidentifier() else literal_eval(text) for key, text in pairs}
+
+    @property
+    def inner(self):
+        """Substeps that the engine takes by itself in each step."""
+        return self.knobs.get("inner", 1)
+
+    @property
+    def adaptive(self):
+        """Whether it chooses its own steps: dt is only how often it is looked at."""
+        return self.engine in ("exact", "events") or "scheme" in self.knobs
+
+    @property
+    def rare(self):
+        """Whether one start and one process have to be enough."""
+        slow = self.knobs.get("scheme") in (None, "radau3")
+        return self.engine == "siconos" or self.engine == "drake" and slow
+
+    def runs(self, problem):
+        """Whether it is for a problem, or for the piles (any of piles/1, piles/4, ...)."""
+        words = " ".join(GROUPS.get(word, word) for word in self.problems.split()).split()
+        listed = problem in (word.partition("/")[0] for word in words)
+        return listed or problem != "piles" and "all" in words and f"-{problem}" not in words
+
+    @property
+    def cuts(self):
+        """Substeps that it takes for a step of the piles."""
+        return int(self.problems.partition("piles/")[2].split(" ")[0] or 1)
+
+    def build(self, scene, dt, substeps=1):
+        """A session that is looked at every dt [s], after so many steps."""
+        knobs, dt, engine = self.knobs, dt / substeps, self.engine
+        ahead = knobs.pop("ahead", 0) * contact.GRAVITY * dt / self.inner / 2
+        v0 = np.where(np.isfinite(scene.mass), scene.v0 + np.array([[0.0], [ahead]]), scene.v0)
+        make = ENGINES[engine][-1] if engine in ENGINES else partial(Ours, model=engine)
+        session = make(scene._replace(v0=v0), dt, **knobs)
+        session.substeps = substeps
+        return session
+
+
+EVERYBODY = [Setting(**row) for row in stored.load(HERE)[0]["settings"]]
+BY_NAME = {setting.name: setting for setting in EVERYBODY if setting.problems[:5] != "piles"}
+PILES = [setting for setting in EVERYBODY if setting.runs("piles")]

@@ -61,21 +61,21 @@ class World:
         half, others = len(y) // 2, np.setdiff1d(np.arange(len(self.a)), holding)
         start = np.minimum(self.gaps(y[:half], others), 0.0) - NUDGE
 
-        def forces(y):
+        def pushed(y):
+            if not len(holding):
+                return np.ones(1), self.g
             J, W, free = self.system(y[:half], y[half:], holding)
-            return -np.linalg.solve(W, free), J
+            lam = -np.linalg.solve(W, free)
+            return lam, self.g + self.w * (lam @ J)
 
         def slope(t, y):
-            if not len(holding):
-                return np.append(y[half:], self.g)
-            lam, J = forces(y)
-            return np.append(y[half:], self.g + self.w * (lam @ J))
+            return np.append(y[half:], pushed(y)[1])
 
         def closes(t, y):
             return (self.gaps(y[:half], others) - start).min(initial=1.0)
 
         def parts(t, y):
-            return forces(y)[0].min(initial=1.0) if len(holding) else 1.0
+            return pushed(y)[0].min()
 
         closes.terminal = parts.terminal = True
         closes.direction = parts.direction = -1.0

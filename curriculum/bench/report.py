@@ -3,20 +3,18 @@
 The words stand in page.md, readme.md and claims.md, the numbers come from the CSV files alone.
 """
 
-import csv
-from pathlib import Path
+from operator import itemgetter
 
 from contact import MANY, MODELS, STEPPED
 from contact import shown as number
 from curriculum import stored
 from curriculum.bench import measure, problems
-from curriculum.bench.engines import ENGINES, LABELS
+from curriculum.bench.engines import ENGINES, HERE, LABELS
 from curriculum.bench.events import PHASES
-from curriculum.bench.measure import BUDGETS, DEPTHS, WORK, contest
+from curriculum.bench.measure import BUDGETS, DEPTHS, DT, WORK, contest
 from curriculum.commands import write_whole
 from curriculum.show import picture
 
-HERE = Path(__file__).parent
 RIVAL = "events"
 PEERS = [name for name in ENGINES if name != RIVAL]
 LEAST = 1e-16  # r: an error of exactly zero is drawn here
@@ -38,7 +36,7 @@ def resting(row):
     if row is None:
         return "-"
     cut = f", {row['substeps']} x" if row["substeps"] > 1 else ""
-    called = f"{LABELS[row['engine']]} {row['setting']}".strip()
+    called = f"{LABELS[row['engine']]} {row['setting'] or ''}".strip()
     return f"{called}{cut}: {number(row['resting'])} µs"
 
 
@@ -69,13 +67,9 @@ def races(rows):
     """(balls, depth, our fastest row, leapfrog's, the fastest other engine's) of piles at rest."""
     for depth in DEPTHS:
         for count, found in measure.fastest(rows, depth).items():
-            ours, others = (
-                best_of(found, side, lambda row: row["resting"]) for side in (MODELS, ENGINES)
-            )
+            sides = (best_of(found, side, itemgetter("resting")) for side in (MODELS, ENGINES))
+            ours, others = sides
             yield count, depth, ours, found.get("leapfrog"), others
-
-
-# claims
 
 
 def claims(points, piles, processes):
@@ -89,7 +83,7 @@ def claims(points, piles, processes):
     found = contest(points)
     both = [each for each in found.values() if {"exact", RIVAL} <= set(each)]
     ratios = [each[RIVAL]["ms"] / each["exact"]["ms"] for each in both]
-    (lost,) = (row[3] for row in limits(points) if row[0].startswith(f"{WORK[-1]} substeps"))
+    lost = [name for name, each in found.items() if loses(each.get("leapfrog"), each.get(RIVAL))]
     errors = ([each[RIVAL][key] for each in both] for key in ("error", "error_max"))
     usual, worst = (number(max(each, default=None)) for each in errors)
     spans = sorted(100.0 * (p["ms_max"] / p["ms_min"] - 1.0) for p in points if p["ms"]) or [0.0]
@@ -124,9 +118,6 @@ def shares(piles, which):
     return f"{reach(ratios)} ({ratios.get(max(ratios, default=None))})"
 
 
-# tables
-
-
 def take(points, piles):
     """Rows of the README's table: what one types, and gets, and would get elsewhere.
 
@@ -148,14 +139,12 @@ def take(points, piles):
 
 def wanted(rows):
     """(a line of take.csv, the row that was measured of it)"""
-    table = {(str(row.get("problem", row.get("bodies"))), *map(str, measured)): row for row in rows
-             for measured in [(row["engine"], row["setting"], row["substeps"])]
-             if row.get("dt", measure.DT) == measure.DT}  # fmt: skip
-    with (HERE / "take.csv").open(encoding="utf-8", newline="") as file:
-        for want in csv.DictReader(file):
-            key = want["problem"], want["engine"], want["setting"], want["substeps"]
-            if key in table:
-                yield want, table[key]
+    same = "engine", "setting", "substeps"
+    for want in stored.load(HERE)[0]["take"]:
+        for row in rows:
+            if all(row[key] == want[key] for key in same) and row.get("dt", DT) == DT:
+                if want["problem"] == row.get("problem", row.get("bodies")):
+                    yield want, row
 
 
 def beats(one, other):
@@ -220,9 +209,6 @@ def written(name, sections, made):
                         for name, *seconds in (row.values() for row in processes)),
         origins="\n".join(f"- {part}: {stored.footer(each)}" for part, each in made.items()),
     )  # fmt: skip
-
-
-# figures
 
 
 def front(dots):
