@@ -90,7 +90,7 @@ class Contact:
 
     __slots__ = "a b nx ny depth m_eff target softness lam".split()
     __slots__ += "start before".split()  # used by solve_with_momentum
-    __slots__ += "reach gap speed when struck".split()  # used by leapfrog
+    __slots__ += "reach gap speed when struck least".split()  # used by leapfrog
 
     def __init__(self, a, b, nx, ny, depth):
         self.a, self.b = a, b
@@ -559,6 +559,7 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
         radii = c.a.radius + c.b.radius
         c.reach = radii - max(0.0, c.depth - OPENS * radii)  # a deep overlap counts as a small one
         c.struck = 0.0
+        c.least = 1e-6 if restitution > 0.0 else -GRAVITY
         look(c, 0.0)
     find_held(balls, contacts, dt)
     if may_strike(contacts, dt):
@@ -624,7 +625,7 @@ def gravity_on(c):
 
 def lasts(c, dt):
     """Whether c lasts: it would touch no faster than gravity alone makes it in a step."""
-    g_n = max(1e-6, gravity_on(c))  # m/s^2; without gravity on it, only touching at rest lasts
+    g_n = max(c.least, gravity_on(c))  # m/s^2
     slow = dt * g_n + 1e-9  # m/s
     return c.speed * c.speed + 2.0 * g_n * max(0.0, c.gap) <= slow * slow
 
