@@ -552,7 +552,7 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
     contacts that is leapfrog, exact on a parabola; with lasting ones, RATTLE (Andersen 1983).
 
     Not mended: unfinished sweeps let a stack sag; an impact slower than what gravity adds in a step
-    does not bounce; after as many moments as MOST_LOOKS allows, the last takes the rest of a step.
+    does not bounce; after as many moments as MOST_PUSHES allows, the last takes the rest of a step.
     """
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
@@ -645,8 +645,7 @@ def nearest(c, dt):
 
 
 # --- region: leapfrog-impacts ---
-MOST_STRIKES = 10.0  # moments of impact in a step, at least (a choice); the last takes all the rest
-MOST_LOOKS = 3000  # at contacts in a step (a choice): if they are few, more moments are allowed
+MOST_PUSHES = 2000.0  # at contacts, times iters: what the impacts of a step may cost (a choice)
 
 
 def may_strike(contacts, dt):
@@ -660,12 +659,14 @@ def may_strike(contacts, dt):
 def take_impacts(balls, contacts, dt, restitution, iters):
     """The impacts of this step, one moment after the other."""
     hold(balls, contacts, dt, iters)
-    left = max(MOST_STRIKES, MOST_LOOKS / len(contacts))
+    left = MOST_PUSHES * iters / len(contacts)  # sweeps
+    last = False
     when = next_meeting(contacts, dt)
-    while when < math.inf and left > 0:
-        left -= 1
-        until = when if left > 0 else dt
-        strike_at(balls, contacts, when, until, dt, restitution, iters)
+    while when < math.inf and not last:
+        last = left < iters
+        until = dt if last else when
+        most = int(max(iters, min(10 * iters, left)))  # unfinished sweeps may add energy
+        left -= 1 + strike_at(balls, contacts, when, until, dt, restitution, most)
         when = next_meeting(contacts, dt)
 
 
@@ -717,11 +718,11 @@ def meet(c, dt):
     c.when = t
 
 
-def strike_at(balls, contacts, when, until, dt, restitution, iters):
+def strike_at(balls, contacts, when, until, dt, restitution, most):
     """v_n becomes -e v_n where balls meet from `when` to `until`; what lasts closes no faster.
 
     A struck ball is set back to where it would have begun with its new velocity: so all balls
-    stay at the start of the step.
+    stay at the start of the step. Returns how many sweeps it took, `most` at most.
     """
     for c in contacts:
         look(c, when)
@@ -732,7 +733,7 @@ def strike_at(balls, contacts, when, until, dt, restitution, iters):
         c.target = c.v_n() + after - c.speed  # at the start of the step
         c.lam = 0.0
     keep_velocities(balls)
-    solve_with_momentum(touching, 10 * iters, 1e-11)  # m/s; unfinished sweeps may add energy
+    sweeps = solve_with_momentum(touching, most, 1e-11)  # m/s
     for c in touching:
         c.struck += c.lam
     for ball in balls:
@@ -740,6 +741,7 @@ def strike_at(balls, contacts, when, until, dt, restitution, iters):
             ball.x -= when * (ball.vx - ball.vx_before)
             ball.y -= when * (ball.vy - ball.vy_before)
             ball.since = when
+    return sweeps if sweeps > 0 else most
 
 
 # --- region: exact ---
