@@ -140,6 +140,7 @@ def on_machines(scheduler: str, function, numbered) -> Iterator[tuple]:
     """Spread the jobs over the workers of a dask scheduler; see as_they_come."""
     try:
         from dask.distributed import Client, KilledWorker
+        from distributed.comm import CommClosedError
     except ImportError:
         raise ImportError(commands.to_install("dask[distributed]")) from None
     logging.disable()  # dask's tracebacks of what is lost: we say it in a line
@@ -163,7 +164,7 @@ def on_machines(scheduler: str, function, numbered) -> Iterator[tuple]:
     with client:
         try:
             yield from spread(partial(client.submit, pure=False), look, there, numbered)
-        except CancelledError:
+        except (CancelledError, CommClosedError):
             raise ConnectionError(f"{given} is gone") from None
         except KilledWorker as error:
             raise ConnectionError(f"{given} lost four workers at one job ({error})") from None

@@ -69,18 +69,16 @@ def pyplot() -> ModuleType:
     return plt
 
 
-def figure(rows=1, title="", explained="", height=3.4, share=(1,), below=0.0) -> tuple:
-    """A figure with its heading, and the list of its axes, row by row.
+def figure(rows=1, title="", explained="", height=3.4, below=0.0) -> tuple:
+    """A figure with its heading, and the list of its axes, one below the other.
 
-    height: inches of a row of panels. share: widths of the columns, as ratios. below: inches kept
-    free under the panels, for a legend. The note wraps by itself.
+    height: inches of a panel. below: inches kept free under them, for a legend.
     """
     lines = textwrap.wrap(explained, 84)
     top, bottom = 0.7 + 0.17 * len(lines), 0.62 + below
     tall = top + bottom + rows * height
-    edges = dict(width_ratios=share, top=1 - top / tall, bottom=bottom / tall)
-    size = dict(figsize=(WIDTH, tall), squeeze=False, gridspec_kw=edges)
-    made, axes = pyplot().subplots(rows, len(share), **size)
+    made, axes = pyplot().subplots(rows, figsize=(WIDTH, tall), squeeze=False)
+    made.subplots_adjust(top=1 - top / tall, bottom=bottom / tall)
     made.text(0.01, 1 - 0.26 / tall, title, fontsize=12, fontweight="bold")
     for k, words in enumerate(lines):
         made.text(0.01, 1 - (0.46 + 0.17 * k) / tall, words, fontsize=9, color=PALE)
@@ -88,16 +86,12 @@ def figure(rows=1, title="", explained="", height=3.4, share=(1,), below=0.0) ->
     return made, list(axes.flat)
 
 
-def look(name: str) -> dict:
-    """How a method is drawn, as keywords of axes.plot."""
-    color, marker, dash = LOOKS[name]
-    size = {"*": 9.0, "d": 6.5}.get(marker, 5.5)
-    return dict(color=color, marker=marker, ls=dash, markersize=size)
-
-
 def line(axis, x, y, name: str, label: str | None = None, **changes) -> None:
     """One method as a line with its own look."""
-    axis.plot(x, y, label=label or name, **{**look(name), **changes})
+    color, marker, dash = LOOKS[name]
+    size = {"*": 9.0, "d": 6.5}.get(marker, 5.5)
+    look = dict(color=color, marker=marker, ls=dash, markersize=size)
+    axis.plot(x, y, label=label or name, **look | changes)
 
 
 def legend_below(axis, columns: int, down: float) -> None:
@@ -190,16 +184,13 @@ def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
 def worth_seeing(runs: dict, scene: contact.Scene) -> tuple[float, float]:
     """From when to when [s]: from when every model has pushed, to when the last ball rests.
 
-    A ball rests once it goes slower than 1 cm/s for
-    good, judged by its way, since speeds at the end of leapfrog's steps may be larger; a tenth more
-    is shown, at most to the end.
+    A ball rests once it goes slower than 1 cm/s for good, judged by its way, since speeds at the
+    end of leapfrog's steps may be larger; a tenth more is shown, at most to the end.
     """
     pushes, rests = [], [0.0]
     for run in runs.values():
-        pushed = (
-            np.abs(contact_impulses(run, scene)).max((1, 2)) > 1e-6 * weight(scene) * run.t[1:2]
-        )
-        pushes += run.t[np.flatnonzero(pushed)[:1]].tolist()
+        push = np.abs(contact_impulses(run, scene)).max((1, 2))
+        pushes += run.t[np.flatnonzero(push > 1e-6 * weight(scene) * run.t[1:2])[:1]].tolist()
         slow = np.abs(np.diff(run.q, axis=0)) < 0.01 * np.diff(run.t)[:, None, None]
         moving = np.flatnonzero(~slow.all((1, 2)))
         rests += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]
@@ -212,7 +203,7 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
     Takes what recording.write takes. Raises ImportError where matplotlib is missing.
     """
     drawn, (first, last) = curves(runs, scene), worth_seeing(runs, scene)
-    first -= 0.1 * max(last - first, 0.0)
+    first -= 0.03 * max(last - first, 0.0)
     picture, axes = figure(len(drawn), title, height=1.5, below=0.3)
     for axis, (name, lines) in zip(axes, drawn.items()):
         axis.set_title(name)

@@ -152,15 +152,13 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     large = float(scene.radius.max())
     x, y = scene.q0
     middle, half, pile = 0.5 * (x.min() + x.max()), 0.5 * np.ptp(x), np.ptp(x) > 0.0
-    wide, top = 1.6 * half + 2.5 * large, y.max() + 2.0 * large
+    wide, top = 1.6 * half + 1.6 * large, y.max() + 2.0 * large
     sides = [middle - wide, middle + wide], [-top, 0.1 * top]
     lanes = [view(model, name_of(model, row), *sides) for model, row in quality.items()]
     high = 3.0 if pile else MAGNIFIED  # radii; of a pile it is the middle
     reach = high * large
-    near = (
-        [middle - 1.2 * reach, middle + 1.2 * reach],
-        [-(0.9 if pile else 0.6) * reach, 0.4 * reach],
-    )
+    up = 0.9 if pile else 0.6
+    near = [middle - 1.2 * reach, middle + 1.2 * reach], [-up * reach, 0.4 * reach]
     small = rrb.Horizontal(*[view(model, f"{high:g} r", *near) for model in runs])
     lanes = rrb.Vertical(*lanes) if pile else rrb.Horizontal(*lanes)  # type: ignore[assignment]
     left = rrb.Vertical(lanes, small, row_shares=[7 if pile else 5, 2])  # type: ignore[arg-type]
