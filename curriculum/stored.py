@@ -23,6 +23,7 @@ import tempfile
 from datetime import date
 from functools import lru_cache
 from importlib import metadata
+from modulefinder import ModuleFinder
 from pathlib import Path
 
 from curriculum.commands import Parser, write_whole
@@ -32,18 +33,13 @@ BLOCK = re.compile(r"(<!-- generated: (\w+) by .*? -->)\n(.*?)(?=<!-- end -->)",
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 DIGITS = 6  # significant digits that a table keeps
 PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
-COMMIT = "describe --always --abbrev=10 --exclude=*".split()
 ALWAYS = ("curriculum/exact.py", "curriculum/fast.py")  # what contact.py asks for by `beside`
-MAKES = re.compile(r"curriculum/(bench|stress|lesson|exact|fast|implicit)\b")  # numbers
-IMPORT = re.compile(r"from curriculum([\w.]*) import (.*)")
+MAKES = re.compile(r"curriculum/(bench|stress|lesson|exact|fast|implicit|core)\b")  # numbers
 USES = re.compile(r"\bcontact\.(\w+)|from contact import (.*)")
 OF_PYTHON = re.compile(r"\w+=\[\], |(, )?\w+=\[\]|, (ctx=\w+\(\)|kind='u')")  # which one dumps it
 LEDGER = ROOT / "wallclock.csv"
 COMMAND = "python -m curriculum.stored"
 TIMED = ("contact.py", "curriculum/show/picture.py", "curriculum/show/recording.py")
-
-
-# ---- stamps
 
 
 def stamp(*sources) -> dict:
@@ -81,25 +77,21 @@ def made_by(*files) -> list:
     """The sources of what these files measure: they, what makes numbers of what they import, and
     the regions of contact.py that define what these use, or what those regions use."""
     regions, _ = split(read_text("contact.py"), "contact.py")
-    sources, waiting, used = set(), [*files, *ALWAYS], set()
-    while waiting:
-        if (file := waiting.pop()) in sources or not (text := read_text(file)):
-            continue
-        sources.add(file)
-        used |= set(re.findall(r"\w+", " ".join(map(" ".join, USES.findall(text)))))
-        for room, words in IMPORT.findall(text):
-            base = "curriculum" + room.replace(".", "/")
-            paths = [f"{base}.py", *(f"{base}/{word}.py" for word in re.findall(r"\w+", words))]
-            waiting += filter(MAKES.match, paths)
+    finder, sources = ModuleFinder([str(ROOT)]), {f for f in (*files, *ALWAYS) if read_text(f)}
+    for file in (file for file in sources if file.endswith(".py")):
+        finder.run_script(str(ROOT / file))  # which runs nothing
+    for module in map(vars, finder.modules.values()):
+        if module["__file__"] and not module["__path__"]:  # no package
+            sources.add(Path(module["__file__"]).relative_to(ROOT).as_posix())
+    sources -= {each for each in sources - {*files} if not MAKES.match(each)}
+    uses = USES.findall("".join(map(read_text, sources)))
+    used = set(re.findall(r"\w+", " ".join(map(" ".join, uses))))
     while more := [r for r in regions if r.defines & used]:
         regions = [region for region in regions if region not in more]
         sources |= {region.source for region in more}
         trees = (ast.parse(region.code) for region in more)
         used |= {n.id for tree in trees for n in ast.walk(tree) if isinstance(n, ast.Name)}
     return sorted(sources)
-
-
-# ---- results
 
 
 def load(folder) -> tuple:
@@ -113,12 +105,10 @@ def load(folder) -> tuple:
 
 def value(cell):
     """What a cell of a table holds."""
-    for kind in (int, float):
-        try:
-            return kind(cell)
-        except ValueError:
-            pass
-    return cell or None
+    try:
+        return ast.literal_eval(cell)
+    except (SyntaxError, ValueError):
+        return cell or None
 
 
 def save(path, rows) -> None:
@@ -138,9 +128,31 @@ def origin(command: str, *files, kept=True) -> dict:
     command: what measures them again, as one types it. files: the modules that measure. Raises
     ValueError where the results are to be kept, and the code is not that of a commit.
     """
-    if kept and dirty():
-        raise ValueError(f"{command} is kept with its commit; commit these first: {dirty()}")
-    return {"command": command, **machine(), "code": stamp(*made_by(*files))}
+    info = re.search(r"model name\s*: (.+)", read_text("/proc/cpuinfo"))
+    if kept and (dirty := git("status", "--porcelain", "--", "*.py", ":(glob)curriculum/*/*.csv")):
+        raise ValueError(f"{command} is kept with its commit; commit these first: {dirty}")
+    return {
+        "command": command,
+        "date": date.today().isoformat(),
+        "commit": git("describe", "--always", "--abbrev=10", "--exclude=*") or "unknown",
+        "cpu": info[1] if info else platform.processor() or "unknown processor",
+        "cores": str(os.cpu_count()),
+        "os": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+        "versions": {
+            name: each.version for name in PACKAGES for each in metadata.distributions(name=name)
+        },
+        "code": stamp(*made_by(*files)),
+    }
+
+
+def git(*words) -> str:
+    """What a git command prints; nothing where it fails or there is no git."""
+    try:
+        done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
+    except OSError:
+        return ""
+    return done.stdout.strip()
 
 
 def table(head, rows) -> str:
@@ -168,40 +180,6 @@ def write_block(name: str, markdown: str) -> None:
     write_whole(ROOT / "README.md", BLOCK.sub(block, read_text("README.md")))
 
 
-def machine() -> dict:
-    """Date, commit ("unknown" without git; with "+" where sources differ from it), processor
-    and system; and the versions of packages that are installed, {package: text}."""
-    info = read_text("/proc/cpuinfo")
-    name = re.search(r"model name\s*: (.+)", info)
-    return {
-        "date": date.today().isoformat(),
-        "commit": (git(*COMMIT).strip() or "unknown") + "+" * bool(dirty()),
-        "cpu": name[1] if name else platform.processor() or "unknown processor",
-        "cores": str(os.cpu_count()),
-        "os": f"{platform.system()} {platform.machine()}",
-        "python": platform.python_version(),
-        "versions": {
-            name: each.version for name in PACKAGES for each in metadata.distributions(name=name)
-        },
-    }
-
-
-def dirty() -> str:
-    """The sources that differ from the commit, as git shows them; "" without git."""
-    return git("status", "--porcelain", "--", "*.py", ":(glob)curriculum/*/*.csv").strip()
-
-
-def git(*words) -> str:
-    """What a git command prints; nothing where it fails or there is no git."""
-    try:
-        return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout
-    except OSError:
-        return ""
-
-
-# ---- the ledger
-
-
 def ledger() -> list:
     """The rows of the ledger, dicts of str."""
     return list(csv.DictReader(LEDGER.read_text("utf-8").splitlines()))
@@ -220,24 +198,29 @@ def stale(row) -> bool:
     return row["config_hash"] not in ("", digest(stamp(*TIMED)))
 
 
+def measured(about, seconds) -> dict:
+    """A row of the ledger: how it came to be, and what each run took [s]; the first warms up."""
+    minutes, code = statistics.median(seconds[1:]) / 60, digest(stamp(*TIMED))
+    facts = "ch3.5-contact", about["command"].split()[-1], f"{minutes:.3g}", code
+    return dict(zip(ledger()[0], (*facts, about["commit"], about["date"], "MEASURED")))
+
+
 def main(argv=None) -> int:
     """Measure a tier's row, write and show it. Returns the exit status."""
     parser = Parser(prog=COMMAND, description=__doc__.split("\n")[0])
     parser.add_argument("tier", help="what the ledger calls this machine, such as cpu-laptop")
-    tier, about = parser.parse_args(argv).tier, machine()
-    if dirty():
-        parser.error(f"a row is kept with its commit; commit these first: {dirty()}")
+    tier, rows = parser.parse_args(argv).tier, {row["tier"]: row for row in ledger()}
     from curriculum.bench.timing import whole_process
 
-    with tempfile.TemporaryDirectory() as out:
-        command = [sys.executable, "contact.py", "--out", out]
-        seconds = [whole_process(command, out) for _ in range(10)]  # the first warms the caches
-        if not list(Path(out).glob("*.rrd")):
-            parser.error("no recording: pip install rerun-sdk")
-    rows = {row["tier"]: row for row in ledger()}
-    minutes = f"{statistics.median(seconds[1:]) / 60:.3g}"
-    facts = minutes, digest(stamp(*TIMED)), about["commit"], about["date"], "MEASURED"
-    rows[tier] = dict(zip(ledger()[0], ("ch3.5-contact", tier, *facts)))
+    try:
+        about = origin(f"{COMMAND} {tier}", *TIMED)
+        with tempfile.TemporaryDirectory() as out:
+            command = [sys.executable, "contact.py", "--out", out]
+            rows[tier] = measured(about, [whole_process(command, out) for _ in range(10)])
+            if not list(Path(out).glob("*.rrd")):
+                raise ValueError("no recording: pip install rerun-sdk")
+    except ValueError as error:
+        parser.error(str(error))
     save(LEDGER, list(rows.values()))
     print(f"{tier}: {taken(rows[tier])}")
     return 0

@@ -10,11 +10,13 @@ read: the hashes of its regions, its numbers. Where one of them is another today
 asks to read the passage again. region_hashes are those of regions whose passages are all read.
 """
 
+import hashlib
 import re
 import shlex
 import sys
 from collections import Counter
 from pathlib import Path
+from typing import NamedTuple
 
 from curriculum.commands import Parser, needs, write_whole
 
@@ -23,30 +25,96 @@ with needs("dev"):
 
     import contact
     from curriculum import stored
-    from curriculum.gate.chapter import CHAPTER, faults, split
-    from curriculum.gate.passages import FIGURES, SPAN, TEXTS, files, passages
+    from curriculum.gate.chapter import CHAPTER, INLINE, faults, split
     from curriculum.gate.references import REFERENCE, Numbers, TextError, load_meta
-    from curriculum.lesson.regions import ROOT, blank, line_at, read_text, split_all
+    from curriculum.lesson.regions import DOCSTRING, ROOT, blank, line_at, read_text, split_all
 
 GATE = "python -m curriculum.gate"
+TEXTS = (CHAPTER, "README.md")
+FIGURES = "curriculum/page/figures/*.js"
 KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line each
-# Where numbers may be typed in text: formulas, references, links, code, numbers of headings and
+CAPTION = re.compile(
+    r"""\b(?:title|caption):\s*(?:("|`)(?:(?!\1)[^\\]|\\.)*\1[\s+]*)+""", re.DOTALL
+)
+SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
+# Where numbers may be typed in text: code and formulas, references, links, numbers of headings and
 # lists, versions with two dots, and what follows some words.
 NOT_PROSE = re.compile(
-    r"""
-    \$\$.+?\$\$|\$[^$\n]+\$
-    |\{\{\?.*?\}\}|\{\{[^\n]*?\}\}
+    rf"""
+    {INLINE.pattern}
+    |\{{\{{\?(?s:.*?)\}}\}}|\{{\{{[^\n]*?\}}\}}
     |\[[^]]*\]\(try:[^)]*\)|\]\([^)]*\)|https?://\S+
     |^\[[^]]*\]:[^\n]*|\[\[\d+\]\](?=\(\#references\))
-    |(`+)[^`]+\1
     |\b(?:chapters?|phase|version|tag|python|numpy)[ ]
         \d+(?:\.\d+)*(?:(?:,|,?[ ]and|[ ]to)[ ]\d+\.\d+)*
-    |(?<![\w.])\d+(?:\.\d+){2,}
+    |(?<![\w.])\d+(?:\.\d+){{2,}}
     |^\#+[ ]+\d[\d.]*|^[ >]*\d+[.)][ ]
     """,
     re.DOTALL | re.MULTILINE | re.IGNORECASE | re.VERBOSE,
 )
 TYPED = re.compile(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*")  # a token that begins with a digit
+
+
+class Passage(NamedTuple):
+    """What a reader reads in one go: a heading of chapter or README with its text, an exercise, the
+    captions of a figure, or the opening words of contact.py (the signs) and exact.py (the promise).
+
+    `name` is what one types when one has read it; `line` the one on which it begins.
+    """
+
+    name: str
+    file: str
+    line: int
+    text: str
+
+    def line_of(self, index) -> int:
+        """The line of its file that holds text[index]."""
+        return self.line + line_at(self.text, index) - 1
+
+    def sources(self, regions) -> dict:
+        """{source: hash}: the regions that it includes or names, and its own words in code."""
+        included = {part.name for part in split(self.text) if part.kind == "region"}
+        words = {word for span in SPAN.findall(self.text) for word in re.findall(r"\w+", span)}
+        own = not self.file.startswith(("exercises/", *TEXTS))
+        found = {"its words": hashlib.sha256(self.text.encode()).hexdigest()} if own else {}
+        found |= {r.source: r.sha for r in regions if r.source in included or r.defines & words}
+        return {source: sha[:12] for source, sha in found.items()}
+
+
+def passages():
+    """All of them, in the order of their files."""
+    for file in TEXTS:
+        yield from sections(file)
+    for file in files("exercises/ex*.py"):
+        yield Passage(exercise_of(file), file, 1, read_text(file))
+    for file in ("contact.py", "curriculum/exact.py"):
+        yield Passage(Path(file).name, file, 1, DOCSTRING.match(read_text(file))[0])
+    for file in files(FIGURES):
+        captions = "\n".join(caption[0] for caption in CAPTION.finditer(read_text(file)))
+        yield Passage(f"figures/{Path(file).stem}", file, 1, captions)
+
+
+def sections(file) -> list:
+    """The headings of a text, each with what stands under it; what a command wrote is left out."""
+    found = []
+    for part in split(blank(stored.BLOCK, read_text(file))):
+        if part.kind == "heading":
+            name = part.name if file == CHAPTER else f"{file}: {part.name}"
+            found.append(Passage(name, file, part.line, ""))
+        if found:
+            found[-1] = found[-1]._replace(text=found[-1].text + part.text)
+    return found
+
+
+def files(*patterns) -> list:
+    """The project's files of these patterns, as they are named in git."""
+    paths = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
+    return [path.relative_to(ROOT).as_posix() for path in paths]
+
+
+def exercise_of(file) -> str:
+    """ex5 of exercises/ex5_solve_contacts.py."""
+    return Path(file).name.split("_")[0]
 
 
 class Gate:
@@ -56,11 +124,11 @@ class Gate:
         self.chapter, self.meta = split(read_text(CHAPTER)), load_meta()
         self.regions, self.problems = split_all()
         self.passages: dict = {}
-        for each in passages():
+        for each in filter(lambda each: each.text, passages()):
             if each.name in self.passages:
                 self.say(each.file, each.line, f"a second heading {each.name}", "rename one")
             self.passages[each.name] = each
-        self.now = {p.name: p.regions(self.regions.values()) for p in self.passages.values()}
+        self.now = {p.name: p.sources(self.regions.values()) for p in self.passages.values()}
 
     def say(self, file, line, what, repair):
         """Note a problem."""
@@ -75,7 +143,7 @@ class Gate:
             if name not in known.get(kind, (name,)):
                 names = ", ".join(known[kind])
                 self.say(CHAPTER, line, f"there is no {kind} {name}", f"name one of {names}")
-            elif shown[kind, name] > 1 and kind in ("region", "exercise", "bench", "stress"):
+            elif shown[kind, name] > 1 and kind in known and kind != "figure":
                 self.say(CHAPTER, line, f"{kind} {name} stands here again", "delete one of the two")
         for line, what, repair in faults(self.chapter):
             self.say(CHAPTER, line, what, repair)
@@ -86,14 +154,12 @@ class Gate:
 
     def known(self) -> dict:
         """{kind: {name: (file, line)}} of all that a mark of the chapter may name."""
-        regions = {r.source: (r.file, r.line - 1) for r in self.regions.values()}
-        exercises = {Path(f).name.split("_")[0]: (f, 1) for f in files("exercises/ex*.py")}
-        figures: dict = {}
+        known: dict = {"figure": {}}
+        known["region"] = {r.source: (r.file, r.line - 1) for r in self.regions.values()}
+        known["exercise"] = {exercise_of(f): (f, 1) for f in files("exercises/ex*.py")}
         for file in files(FIGURES):
-            several = read_text(file).partition("export const figures = {")[2]
-            names = KEY.findall(several) or re.findall(r"[\w-]+", several.partition("}")[0])
-            figures |= dict.fromkeys(names or [Path(file).stem], (file, 1))
-        known = {"region": regions, "exercise": exercises, "figure": figures}
+            several = KEY.findall(read_text(file).partition("export const figures = {")[2])
+            known["figure"] |= dict.fromkeys(several or [Path(file).stem], (file, 1))
         for kind, folder in stored.FOLDERS.items():
             drawn = files(f"{folder}/*.svg")
             known[kind] = {Path(f).stem.removeprefix("error-"): (f, 1) for f in drawn}
@@ -121,43 +187,33 @@ class Gate:
         quoting = [each for each in self.passages.values() if each.file in TEXTS]
         numbers, text = Numbers(), "".join(each.text for each in quoting)
         numbers.prepare(text)
-        for each in quoting:
-            for match in REFERENCE.finditer(each.text):
-                self.check_number(numbers, each, *match.groups(), match.start(match.lastindex))
+        found = [(each, match) for each in quoting for match in REFERENCE.finditer(each.text)]
+        for passage, match in found:
+            asked = match[2] or "="
+            try:
+                shown = numbers.shown(*match.groups())
+                if not asked.startswith("="):
+                    self.now[passage.name][asked] = shown
+            except TextError as error:
+                line = passage.line_of(match.start(match.lastindex))
+                self.say(passage.file, line, error, "correct the text, or name what is known")
         for name in [*self.meta["runs"]][1:]:
             if f"{name}:" not in text:
                 self.say("meta.yaml", 1, f"run {name} is quoted nowhere", "take it out")
 
-    def check_number(self, numbers, passage, claim, asked, index):
-        """One reference of a passage."""
-        try:
-            if claim and (false := numbers.broken(claim)):
-                what = f"{claim!r} does not hold: {false}"
-                self.say(passage.file, passage.line_of(index), what, "correct the text")
-            elif asked and (shown := numbers.text(asked)) and not asked.startswith("="):
-                self.now[passage.name][asked] = shown
-        except TextError as error:
-            what = f"{claim or asked!r}: {error}"
-            self.say(passage.file, passage.line_of(index), what, "name what is known")
-
-    def moved(self, passage) -> list:
-        """What is not as it was when somebody read a passage, in words."""
-        was, words = self.meta["read"].get(passage.name), []
-        for source, now in self.now[passage.name].items():
-            if was is None:
-                return ["nobody has read it"]
-            if source not in was:
-                words.append(f"nobody has read {source} there")
-            elif was[source] != now:
-                number = f"{{{{{source}}}}}" in passage.text
-                words.append(
-                    f"{source} " + (f"was {was[source]} and is {now}" if number else "changed")
-                )
-        return words
-
     def unread(self) -> dict:
-        """{name: what moved} of the passages that somebody must read."""
-        return {p.name: moved for p in self.passages.values() if (moved := self.moved(p))}
+        """{name of a passage: what is not as it was when somebody read it, in words}."""
+        unread: dict = {}
+        for name, sources in self.now.items():
+            was = self.meta["read"].get(name, {})
+            for source, now in sources.items():
+                if source not in was:
+                    unread.setdefault(name, []).append(f"nobody has read {source} there")
+                elif was[source] != now:
+                    number = f"{{{{{source}}}}}" in self.passages[name].text
+                    words = f"was {was[source]} and is {now}" if number else "changed"
+                    unread.setdefault(name, []).append(f"{source} {words}")
+        return unread
 
     def hashes(self) -> dict:
         """region_hashes as they ought to be: today's, or as they were while a passage waits."""
@@ -173,36 +229,40 @@ class Gate:
             what = f"read {name!r} again: {', '.join(moved)}"
             self.say(each.file, each.line, what, f"{GATE} --read {shlex.quote(name)}")
         kept, right = self.meta["region_hashes"], self.hashes()
-        wrong = {name for name in kept | right if kept.get(name) != right.get(name)}
+        wrong = {name for name, _ in kept.items() ^ right.items()}
         if wrong := sorted(wrong | (self.meta["read"].keys() - self.passages)):
             what = f"it keeps what is gone, or other, of {', '.join(wrong)}"
             self.say("meta.yaml", 1, what, f"{GATE} --read")
 
     def check_results(self):
         """Results and rows of the ledger are of today's code; all that are not make one problem."""
-        sources, parts, commands = {}, {}, {}
-        for name, folder in stored.FOLDERS.items():
-            for part, about in stored.load(folder)[1].items():
-                if moved := stored.changed(about["code"]):
-                    sources |= dict.fromkeys(moved)
-                    parts[f"{name} {part}"] = f"{folder}/made.json"
-                    commands[about["command"]] = None
+        stale = [  # what, its file, the command that measures it again, what changed
+            (f"{name} {part}", f"{folder}/made.json", about["command"], moved)
+            for name, folder in stored.FOLDERS.items()
+            for part, about in stored.load(folder)[1].items()
+            if (moved := stored.changed(about["code"]))
+        ]
         for row in filter(stored.stale, stored.ledger()):
-            parts[f"the wall-clock of {row['tier']}"] = "wallclock.csv"
-            commands[f"{stored.COMMAND} {row['tier']}"] = None
-        if parts:
-            moved = ", ".join([*sources][:6]) + ", ..." * (len(sources) > 6) or "the code"
-            what = f"{moved} changed since these were measured: {', '.join(parts)}"
-            where = next(iter(parts.values()))
-            self.say(where, 1, what, f"whoever merges types {'; '.join(commands)}")
+            tier = row["tier"]
+            stale.append(
+                (f"the wall-clock of {tier}", "wallclock.csv", f"{stored.COMMAND} {tier}", [])
+            )
+        if stale:
+            parts, places, commands, moved = zip(*stale)
+            sources = ", ".join([*dict.fromkeys(sum(moved, []))][:6]) or "the code"
+            what = f"{sources} changed since these were measured: {', '.join(parts)}"
+            again = "; ".join(dict.fromkeys(commands))
+            self.say(places[0], 1, what, f"whoever merges types {again}")
 
 
 def check() -> int:
     """Print every problem, and the command that says that all is read."""
     gate = Gate()
-    checks = gate.check_marks, gate.check_names, gate.check_numbers, gate.check_read
-    for each in (*checks, gate.check_results):
-        each()
+    gate.check_marks()
+    gate.check_names()
+    gate.check_numbers()
+    gate.check_read()
+    gate.check_results()
     print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")
     if len(unread := gate.unread()) > 1:
         print(f"\nwhen all of them are read: {GATE} --read {shlex.join(unread)}")
@@ -219,11 +279,11 @@ def read(names) -> int:
     gate.check_numbers()
     stamps = gate.meta["read"] | {name: gate.now[name] for name in names}
     gate.meta["read"] = {p: stamps[p] for p in gate.passages if stamps.get(p)}
-    head = re.split("^region_hashes:", read_text("meta.yaml"), maxsplit=1, flags=re.MULTILINE)[0]
+    head = read_text("meta.yaml").partition("\nregion_hashes:")[0].rstrip()
     form = {"sort_keys": False, "allow_unicode": True, "width": 10**6}
     hashes = yaml.safe_dump({"region_hashes": gate.hashes()}, **form)
     stamps = yaml.safe_dump({"read": gate.meta["read"]}, default_flow_style=None, **form)
-    write_whole(ROOT / "meta.yaml", f"{head.rstrip()}\n\n{hashes}{stamps}")
+    write_whole(ROOT / "meta.yaml", f"{head}\n\n{hashes}{stamps}")
     print(f"recorded in meta.yaml as read: {', '.join(names) or 'nothing more'}")
     return 0
 

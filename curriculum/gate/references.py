@@ -15,6 +15,7 @@ before it go; with < <= > >= == it holds its sentence to the numbers. What canno
 TextError, which says in one line what is known instead.
 """
 
+import difflib
 import json
 import os
 import re
@@ -33,14 +34,13 @@ import contact
 from curriculum import stored
 from curriculum.commands import write_whole
 from curriculum.gate.facts import FACTS
-from curriculum.lesson.regions import ROOT
+from curriculum.lesson.regions import ROOT, read_text
 
 REFERENCE = re.compile(r"\s*\{\{\?\s*((?s:.*?))\s*\}\}|\{\{(.*?)\}\}")  # a claim, or what is shown
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-FORMULA = re.compile(r"[\d.e+\-*/()\s]+")  # of numbers and signs alone
-CLAIM = re.compile(rf"{FORMULA.pattern}( (<=?|>=?|==) {FORMULA.pattern})+")
-MADE_BY = ("contact.py", "curriculum/*.py", "curriculum/lesson/*.py", "curriculum/gate/facts.py")
+FORMULA = re.compile(r"[\d.e+\-*/()<=>\s]+")  # of numbers and signs alone
+MADE_BY = "contact.py", "curriculum/seeds.py", "curriculum/gate/facts.py"  # and what they import
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
 
@@ -52,8 +52,7 @@ class TextError(ValueError):
 def load_meta() -> dict:
     """meta.yaml. Raises TextError, which says where, when it is not YAML."""
     try:
-        with open(ROOT / "meta.yaml", encoding="utf-8") as file:
-            return {"region_hashes": {}, "read": {}} | yaml.safe_load(file)
+        return {"region_hashes": {}, "read": {}} | yaml.safe_load(read_text("meta.yaml"))
     except yaml.YAMLError as error:
         raise TextError(f"meta.yaml is not YAML: {' '.join(str(error).split())}") from None
 
@@ -61,8 +60,7 @@ def load_meta() -> dict:
 @cache
 def made_by() -> dict:
     """The stamp of the code that makes numbers."""
-    files = sorted(str(path.relative_to(ROOT)) for each in MADE_BY for path in ROOT.glob(each))
-    return stored.stamp(*files)
+    return stored.stamp(*stored.made_by(*MADE_BY))
 
 
 def cached(name: str, inputs, make):
@@ -73,10 +71,10 @@ def cached(name: str, inputs, make):
         known, made = json.loads(path.read_text("utf-8"))
         if known == about:
             return made
-    made = make()
+    text = json.dumps([about, make()])
     with suppress(OSError):  # a folder that cannot be written costs time, and no number
-        write_whole(path, json.dumps([about, made]))
-    return made
+        write_whole(path, text)
+    return json.loads(text)[1]
 
 
 def run_contact(flags) -> dict:
@@ -102,10 +100,8 @@ class Numbers:
     def run(self, name) -> dict:
         """metrics.json of one run that meta.yaml names."""
         if name not in self.runs:
-            runs = load_meta()["runs"]
-            if name not in runs:
-                raise TextError(f"no run {name!r} in meta.yaml; known there: {known(runs)}")
-            self.runs[name] = cached(f"run-{name}", runs[name], lambda: run_contact(runs[name]))
+            flags = pick(load_meta()["runs"], name, name)
+            self.runs[name] = cached(f"run-{name}", flags, lambda: run_contact(flags))
         return self.runs[name]
 
     def prepare(self, text):
@@ -116,42 +112,36 @@ class Numbers:
             list(pool.map(self.run, wanted))
 
     def operand(self, text):
-        """What one name stands for: a number, a text, or a dict of them."""
-        name, _, key = text.rpartition(":")
+        """What one name stands for: a number or a text."""
+        source, _, key = text.rpartition(":")
         if text.startswith("contact."):
-            name, key = "contact", text.removeprefix("contact.")
-            tree = {name: value for name, value in vars(contact).items() if name.isupper()}
-            tree["Settings"] = contact.Settings()._asdict()
-        elif name == "fact":
-            fact, _, key = key.partition(".")
-            tree = cached(f"fact-{fact}", None, dig(FACTS, fact, f"fact:{fact}"))
-        elif name in stored.FOLDERS:
-            tables, made = stored.load(stored.FOLDERS[name])
+            tree, key = vars(contact) | {"Settings": contact.Settings()._asdict()}, text[8:]
+        elif source == "fact":
+            fact = key.partition(".")[0]
+            make = pick(FACTS, fact, text)
+            tree = {fact: cached(f"fact-{fact}", None, make)}
+        elif source in stored.FOLDERS:
+            tables, made = stored.load(stored.FOLDERS[source])
             rows = {k: {str([*row.values()][0]): row for row in t} for k, t in tables.items()}
             tree = {"made": made} | rows
         else:
-            tree = self.run(name or next(iter(load_meta()["runs"])))
-        return dig(tree, key, text)
+            tree = self.run(source or next(iter(load_meta()["runs"])))
+        return pick(dict(leaves(tree)), key, text)
 
-    def value(self, formula):
-        """The value of one name, or of a formula of names and numbers, as Python reckons."""
-        if OPERAND.fullmatch(formula):
-            return self.operand(formula)
-
-        return self.reckoned(formula, FORMULA, "has other signs than + - * / ( )")[0]
-
-    def reckoned(self, formula, form, wrong):
-        """What Python makes of a formula, and the formula in numbers."""
+    def value(self, formula) -> tuple:
+        """What a formula is, as Python reckons, and the formula in numbers."""
 
         def number(match):
             value = self.operand(match[0])
-            if not is_number(value):
+            if type(value) not in (int, float):
                 raise TextError(f"{match[0]!r} is {str(value)[:40]!r}, no number")
             return f"({value!r})"
 
+        if OPERAND.fullmatch(formula):
+            return self.operand(formula), formula  # which may be a text
         numbers = OPERAND.sub(number, " ".join(formula.split()))
-        if not form.fullmatch(numbers):
-            raise TextError(f"{formula!r} {wrong}")
+        if not FORMULA.fullmatch(numbers):
+            raise TextError(f"{formula!r} has other signs than + - * / ( ) < <= > >= ==")
         try:
             return eval(numbers), numbers
         except (NameError, SyntaxError, TypeError, ZeroDivisionError) as error:
@@ -162,23 +152,31 @@ class Numbers:
         formula, _, form = (part.strip() for part in reference.partition("|"))
         if formula.startswith("="):
             if not form:
-                raise TextError("a typed number needs a reason: {{= NUMBER | REASON}}")
+                raise TextError(
+                    f"{formula!r}: a typed number needs a reason: {{{{= NUMBER | REASON}}}}"
+                )
             return formula[1:].strip()
-        value = self.value(formula)
-        if not (is_number(value) or isinstance(value, str)):
-            raise TextError(f"{formula!r} is no number; known there: {known(value)}")
+        value, _ = self.value(formula)
+        if type(value) not in (int, float, str):
+            raise TextError(f"{formula!r} is {value}, no number")
         if isinstance(value, float) and not form:
             raise TextError(f"{formula!r} is a fraction and needs a format, such as |.3f")
         try:
             text = format(value, form)
         except ValueError as error:
             raise TextError(f"{form!r} is no format of {formula!r}: {error}") from None
-        return typeset(text) if is_number(value) else text
+        return text if isinstance(value, str) else typeset(text)
 
-    def broken(self, claim) -> str:
-        """A claim in numbers, where it is not true. It may have several signs: 1 < a < 2."""
-        true, numbers = self.reckoned(claim, CLAIM, "is not 'FORMULA < FORMULA'")
-        return "" if true else numbers
+    def shown(self, claim, asked) -> str:
+        """The same; and of a claim nothing, where it is true. It may have several signs: 1 < a < 2.
+        Raises TextError."""
+        if asked:
+            return self.text(asked)
+        true, numbers = self.value(claim)
+        if true is not True:
+            what = "does not hold" if true is False else "is not 'FORMULA < FORMULA'"
+            raise TextError(f"{claim!r} {what}: {numbers}")
+        return ""
 
     def fill(self, text) -> str:
         """The text with every reference replaced."""
@@ -193,28 +191,18 @@ def typeset(number: str) -> str:
     return mantissa.replace("-", "−") + raised
 
 
-def is_number(value) -> bool:
-    """Whether it is an int or a float; True and False are none."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
+def leaves(tree, path=""):
+    """Pairs ("a.b.3", value) of all that stands in dicts, lists and tuples."""
+    tree = dict(enumerate(tree)) if isinstance(tree, (list, tuple)) else tree
+    if not isinstance(tree, dict):
+        yield path[1:], tree
+    for name, each in tree.items() if isinstance(tree, dict) else ():
+        yield from leaves(each, f"{path}.{name}")
 
 
-def known(tree) -> str:
-    """The names of what is in a tree, for a message."""
-    return ", ".join(inside(tree)) or "nothing"
-
-
-def inside(tree) -> dict:
-    """{name: value} of what is in a dict, a list or a tuple; nothing is in anything else."""
-    if isinstance(tree, (list, tuple)):
-        return {str(k): each for k, each in enumerate(tree)}
-    return tree if isinstance(tree, dict) else {}
-
-
-def dig(tree, key: str, whole: str):
-    """tree["a"]["b.c"][3] for the key "a.b.c.3"; `whole` is the reference, for the error."""
-    if not key:
-        return tree
-    for name, value in inside(tree).items():
-        if f"{key}.".startswith(f"{name}."):
-            return dig(value, key[len(name) + 1 :], whole)
-    raise TextError(f"{whole!r} is not there: no {key!r}; known there: {known(tree)}")
+def pick(table, name, asked):
+    """What a table has under a name. Raises TextError, which says what is like it there."""
+    if name not in table:
+        near = difflib.get_close_matches(name, table, n=5, cutoff=0.0)
+        raise TextError(f"{asked!r} is not there: no {name!r}; known there: {', '.join(near)}")
+    return table[name]
