@@ -36,10 +36,13 @@ def near(word):
     return os.path.relpath(word) if below else word
 
 
-def command(*words):
-    """A command for the Python that is running, quoted for this system's shell."""
-    python = ("uv", "run", "python") if "UV" in os.environ else (sys.executable,)  # uv run sets it
-    return quoted(*python, *words)
+def command(*words, bring=()):
+    """A command for the Python that is running, quoted for this system's shell.
+
+    bring: uv's words for what is needed beside the project, such as ("--extra", "page").
+    """
+    uv = ("uv", "run", *bring, "python")
+    return quoted(*(uv if "UV" in os.environ else (sys.executable,)), *words)  # uv run sets it
 
 
 def quoted(*words):
@@ -55,11 +58,9 @@ def quoted(*words):
 def to_install(package, extra=None):
     """One line that says how to install a missing package, or the extra that brings it."""
     wanted = ("-e", f"{near(str(ROOT))}[{extra}]") if extra else (package,)
-    if "UV" in os.environ:
-        more = ("--extra", extra) if extra else ("--with", package)
-        line = quoted("uv", "run", *more, "python", *sys.orig_argv[1:])
-    else:
-        line = command("-m", "pip", "install", *wanted)
+    bring = ("--extra", extra) if extra else ("--with", package)
+    words = sys.orig_argv[1:] if "UV" in os.environ else ("-m", "pip", "install", *wanted)
+    line = command(*words, bring=bring)
     return f"{package} is missing; install it: {line}"
 
 

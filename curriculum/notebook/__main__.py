@@ -33,31 +33,31 @@ CARRIED = """contact.py checks.py exercises/*.py exercises/kit/* exercises/solut
 curriculum/show/__init__.py curriculum/show/picture.py curriculum/show/figures.mplstyle
 curriculum/exact.py curriculum/commands.py curriculum/implicit.py
 curriculum/bench/results/error-slide.svg curriculum/stress/results/penalty-map.svg""".split()
-SAID = (  # what only the page can do, and what to do here
-    (r"\[([^\]]*)\]\(try:[^)]*\)", r"\1"),
-    (r"Take it, lift it,\s+throw it\.", "Run the cell below."),
-    (r"\b[Dd]rag the (\w+)", r"change the \1 in a cell"),
+SAID = {  # what only the page can do: what to do here
+    r"\[([^\]]*)\]\(try:[^)]*\)": r"\1",
+    r"Take it, lift it,\s+throw it\.": "Run the cell below.",
+    r"\b[Dd]rag the (\w+)": r"change the \1 in a cell",
+}
+OWN = re.split(
+    r"^# %% (\S+)\n", Path(__file__).with_name("cells.py").read_text("utf-8"), flags=re.M
 )
-MAIN = re.compile(r'^if __name__ == "__main__":.*\n(?: +.*\n?)+\n*', re.MULTILINE)
-OWN = Path(__file__).with_name("cells.py").read_text("utf-8")
 KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
 METADATA = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
+FOLDED = {"jupyter": {"source_hidden": True}, "cellView": "form"}
 INTRODUCTION = """\
 *This is the chapter as a notebook. Run the cells from the top. The first one puts contact.py and
 the exercises into the folder `contact_chapter` beside this notebook. What you change in a cell of
 contact.py is felt in every cell below it; an exercise is a cell to edit and one that tries it. No
 cell has been run for you: you are to bet first.*"""
-PLACES = ("region", "exercise", "bench", "stress")
 REST = "The rest of the file"  # of the chapter: the notebook's first cell has it
 
 
 def folder():
     """The files that the notebook carries, as a zip in base64, 76 characters a line."""
     made = io.BytesIO()
+    paths = [path for each in CARRIED for path in sorted(ROOT.glob(each)) if path.is_file()]
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as packed:
-        for path in (
-            path for each in CARRIED for path in sorted(ROOT.glob(each)) if path.is_file()
-        ):
+        for path in paths:
             name = zipfile.ZipInfo(path.relative_to(ROOT).as_posix())  # dated 1980: same bytes
             packed.writestr(name, path.read_bytes(), zipfile.ZIP_DEFLATED)
     return base64.encodebytes(made.getvalue()).decode()
@@ -65,72 +65,62 @@ def folder():
 
 def said(text):
     """Markdown as a cell, if there is any."""
-    for page, here in SAID:
+    for page, here in SAID.items():
         text = re.sub(page, here, text)
     return [new_markdown_cell(text.strip())] if text.strip() else []
 
 
-class Book:
-    """What takes the places that the chapter marks: each method gives cells."""
+def region(source):
+    """A region. Those of contact.py run; others are shown, since their names are their own."""
+    file, name = source.split("#")
+    code = textwrap.dedent(read_all()[name].code).strip()
+    if file == "contact.py":
+        return [new_code_cell(f"# contact.py, region {name}\n{code}")]
+    return [new_markdown_cell(f"{file}, region {name}:\n\n```python\n{code}\n```")]
 
-    def __init__(self):
-        parts = re.split(r"^# %% ([\w-]+)\n", OWN, flags=re.MULTILINE)
-        self.own = {name: source.strip() for name, source in zip(parts[1::2], parts[2::2])}
-        self.code = {region.source: region.code for region in read_all().values()}
 
-    def start(self):
-        """What the notebook is, and the cell that carries the folder."""
-        folded = {"jupyter": {"source_hidden": True}, "cellView": "form"}
-        carry = f'FOLDER = """\n{folder()}"""\n{self.own.pop("start")}'
-        return [*said(INTRODUCTION), new_code_cell(carry, metadata=folded)]
+def exercise(name):
+    """The exercise's file as a cell that writes it, and one that runs it."""
+    (path,) = (ROOT / "exercises").glob(f"{name}_*.py")
+    file, source = path.relative_to(ROOT).as_posix(), path.read_text("utf-8").strip()
+    source = source.split("# ///\n")[-1]  # what the file needs, the first cell installed
+    source = re.sub(r"^(    python .*\n)+", "    the next cell\n", source, flags=re.MULTILINE)
+    hint = f'exercise("{file}", "--hint", "1")'
+    return [
+        new_markdown_cell("Edit the next cell and run it; the one after it tries it."),
+        new_code_cell(f"%%writefile contact_chapter/{file}\n{source}"),
+        new_code_cell(f'exercise("{file}")\n# a question that helps: {hint}'),
+    ]
 
-    def region(self, source):
-        """A region. Those of contact.py run; others are shown, since their names are their own."""
-        code, (file, name) = MAIN.sub("", self.code[source]), source.split("#")
-        code = textwrap.dedent(code).strip()
-        if file == "contact.py":
-            return [new_code_cell(f"# contact.py, region {name}\n{code}")]
-        return [new_markdown_cell(f"{file}, region {name}:\n\n```python\n{code}\n```")]
 
-    def exercise(self, name):
-        """The exercise's file as a cell that writes it, and one that runs it."""
-        (path,) = (ROOT / "exercises").glob(f"{name}_*.py")
-        file, source = path.relative_to(ROOT).as_posix(), path.read_text("utf-8").strip()
-        source = source.split("# ///\n")[-1]  # what the file needs, the first cell installed
-        source = re.sub(r"^(    python .*\n)+", "    the next cell\n", source, flags=re.MULTILINE)
-        hint = f'exercise("{file}", "--hint", "1")'
-        return [
-            new_markdown_cell("Edit the next cell and run it; the one after it tries it."),
-            new_code_cell(f"%%writefile contact_chapter/{file}\n{source}"),
-            new_code_cell(f'exercise("{file}")\n# a question that helps: {hint}'),
-        ]
+def picture(name):
+    """A picture of a report."""
+    (path,) = ROOT.glob(f"curriculum/*/results/*{name}.svg")
+    file = path.relative_to(ROOT).as_posix()
+    return [new_code_cell(f'SVG(filename=os.path.join(COURSE, "{file}"))')]
 
-    def bench(self, name):
-        """A picture of a report."""
-        (path,) = ROOT.glob(f"curriculum/*/results/*{name}.svg")
-        file = path.relative_to(ROOT).as_posix()
-        return [new_code_cell(f'SVG(filename=os.path.join(COURSE, "{file}"))')]
 
-    stress = bench
+PLACES = {"region": region, "exercise": exercise, "bench": picture, "stress": picture}
 
 
 def cells_of(text):
     """The chapter's cells, in order. An id comes from the content and the place among equals."""
-    book, cells, prose, same = Book(), [], "", Counter()
+    own = {name: source.strip() for name, source in zip(OWN[1::2], OWN[2::2])}
+    cells, prose, same = [], "", Counter()
+    carry = f'FOLDER = """\n{folder()}"""\n{own.pop("start")}'
     for kind, name, _, written in read(text):
         if kind == "heading" and name == REST:
             break
-        slot = name.partition("?")[0] if kind in ("exercise", "figure") else None
-        run = [new_code_cell(book.own.pop(slot))] if slot in book.own else []
-        if run or kind in PLACES or re.match("#{1,3} ", written):
+        made = PLACES[kind](name) if kind in PLACES else []
+        if kind in ("exercise", "figure") and (run := own.pop(name.partition("?")[0], "")):
+            made.append(new_code_cell(run))
+        if made or re.match("#{1,3} ", written):
             cells, prose = cells + said(prose), ""
             if len(cells) == 1:
-                cells += book.start()
-        if kind in PLACES:
-            cells += getattr(book, kind)(name)
-        elif kind in ("text", "heading", "code"):
+                cells += [*said(INTRODUCTION), new_code_cell(carry, metadata=FOLDED)]
+        cells += made
+        if kind in ("text", "heading", "code"):
             prose += written
-        cells += run
     for cell in [*cells, *said(prose)]:
         about = f"{cell.cell_type} {same[cell.source]}\n{cell.source}"
         cell.id = hashlib.sha256(about.encode()).hexdigest()[:16]
@@ -158,10 +148,8 @@ def main():
         print(error, file=sys.stderr)
         return 1
     print(f"{out}: {len(text.encode()) / 1000:.0f} kB")
-    print(
-        f"open it: upload it to colab.research.google.com; {command('-m', 'jupyter', 'lab', out)}"
-    )
-    print(f"(jupyter lab: {command('-m', 'pip', 'install', 'jupyterlab')})")
+    start = command("-m", "jupyterlab", out, bring=("--extra", "notebook"))
+    print(f"open it: {start}\nor upload it to colab.research.google.com")
     return 0
 
 
