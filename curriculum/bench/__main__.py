@@ -37,8 +37,8 @@ def take(part, quick, only, folder):
     if not wanted:
         raise ValueError(f"--only {only}: no setting in settings.csv has this name")
     command = f"python -m curriculum.bench {part}" + f" --only {only!r}" * bool(only)
-    code = (*CODE, "contact.py") if part == "processes" else CODE
-    about = stored.origin(command, *code, kept=folder == FULL)
+    code = ("contact.py", "curriculum/bench/commands.csv") if part == "processes" else ()
+    about = stored.origin(command, *CODE, *code, kept=folder == FULL)
     about["versions"] |= engines.versions()
     sections, made = stored.load(folder)
     stay = [row for row in sections.get(part, ()) if only and who(row) in set(order) - set(wanted)]

@@ -75,7 +75,7 @@ class World:
             return (self.gaps(y[:half], others) - start).min(initial=1.0)
 
         def parts(t, y):
-            return pushed(y)[0].min()
+            return pushed(y)[0].min(initial=1.0)
 
         closes.terminal = parts.terminal = True
         closes.direction = parts.direction = -1.0

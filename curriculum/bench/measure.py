@@ -18,7 +18,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 import contact
-from curriculum import parallel
+from curriculum import parallel, stored
 from curriculum.bench import engines, problems, timing
 
 WORK, BUDGETS = (1, 4, 16), (3, 10, 100)  # substeps in 2 ms; us a ball in 2 ms
@@ -231,28 +231,20 @@ def winners(rows):
 
 
 def processes(quick, wanted, known):
-    """Seconds of whole processes of contact.py, of importing what they need, and of compiling."""
-    step = (  # with a folder of its own for what is compiled
-        "import pathlib, sys; from curriculum.lesson import compiled; "
-        "compiled.FOLDER = pathlib.Path(sys.argv[1]); import contact; from curriculum import fast; "
-        "fast.run_model('lcp', contact.build_scene('drop'), 0.002, 1, contact.Settings())"
-    )
+    """Seconds of whole processes, as commands.csv has them: of contact.py, of importing what it
+    needs, and of compiling. The first round warms the caches; the first ever runs but once."""
+    commands, found = stored.load(engines.HERE)[0]["commands"], {}
     with tempfile.TemporaryDirectory() as out, tempfile.TemporaryDirectory() as cold:
-        words = {f"import {name}": ["-c", f"import {name}"] for name in ("numpy", "rerun")}
-        words["one compiled step"] = ["-c", step, out]
-        for flags in ("", *(f" --scene {each} --no-rerun" for each in ("drop", "bounce", "stack"))):
-            words[f"contact.py{flags}"] = ["contact.py", "--out", out, *flags.split()]
-
-        def seconds(*words, folder=out):
-            return timing.whole_process([sys.executable, *words], folder)
-
-        first = [] if quick else [seconds("-c", step, cold, folder=cold)]
-        found = {"one compiled step, the first ever": first}
         for number in range(3 if quick else 16):
-            for name in random.Random(number).sample(list(words), len(words)):
-                found.setdefault(name, []).append(seconds(*words[name]))
-    rows = {name: each[len(each) > 1 :] for name, each in found.items() if each}  # the first warms
-    return [dict(process=name) | timing.spread("seconds", rows[name]) for name in sorted(rows)]
+            for row in random.Random(number).sample(commands, len(commands)):
+                first = row["process"].endswith("the first ever")
+                if not first or number == 0 and not quick:
+                    words = [word.format(out=out, cold=cold) for word in row["words"].split(" | ")]
+                    command, folder = [sys.executable, *words], cold if first else out
+                    seconds = timing.whole_process(command, folder)
+                    found.setdefault(row["process"], []).append(seconds)
+    rows = ((name, found[name][len(found[name]) > 1 :]) for name in sorted(found))
+    return [dict(process=name) | timing.spread("seconds", seconds) for name, seconds in rows]
 
 
 PARTS = {"points": points, "piles": piles, "processes": processes}
