@@ -36,7 +36,6 @@ MANY, COPIES, AGAIN = 10_000, 10, 1500  # made of settled copies; steps to settl
 def points(quick, wanted, known):
     """A row a point, of the settings that are wanted."""
     jobs = list(cells(quick, wanted))
-    print(f"{len(jobs)} points, their errors first, then their times", flush=True)
     rows = parallel.run_jobs(errors_of, jobs, "errors")
     rare = {job for job in jobs if engines.BY_NAME[job[1]].rare}
     times = timing.in_fresh_processes(time_of, jobs, 1 if quick else PROCESSES, "run times", rare)
@@ -163,7 +162,6 @@ def piles(quick, wanted, known):
         chosen = winners(known + rows) if count == MANY else range(len(engines.PILES))
         chosen = [k for k in chosen if wanted(engines.PILES[k])][:: 4 if quick else 1]
         chosen = [k for k in chosen if not engines.missing(engines.PILES[k].engine)]
-        print(f"pile of {count}: {len(chosen)} settings settle, then they are timed", flush=True)
         jobs, label = [(count, k, states.get(k)) for k in chosen], f"{count} balls"
         settled = parallel.run_jobs(settle, jobs, f"{label} settle")
         states.update((k, found[:2]) for k, found in zip(chosen, settled))

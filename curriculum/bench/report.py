@@ -65,11 +65,11 @@ def limits(points):
 
 def races(rows):
     """(balls, depth, our fastest row, leapfrog's, the fastest other engine's) of piles at rest."""
+    key = itemgetter("resting")
     for depth in DEPTHS:
         for count, found in measure.fastest(rows, depth).items():
-            sides = (best_of(found, side, itemgetter("resting")) for side in (MODELS, ENGINES))
-            ours, others = sides
-            yield count, depth, ours, found.get("leapfrog"), others
+            ours, other = (best_of(found, side, key) for side in (MODELS, ENGINES))
+            yield count, depth, ours, found.get("leapfrog"), other
 
 
 def claims(points, piles, processes):
@@ -193,31 +193,28 @@ def written(name, sections, made):
     about = made.get("points", {"versions": {}})
     there = (f"{row[1]} {about['versions'].get(row[1], 'not there')}" for row in ENGINES.values())
     facts = claims(points, piles, processes)
-    words = (HERE / "claims.md").read_text("utf-8").format(**facts).strip().split("\n\n")
-    return (HERE / name).read_text("utf-8").format(
-        **dict(zip(("claims", "piles", "compiled"), words)), **facts,
+    template, words = ((HERE / file).read_text("utf-8") for file in (name, "claims.md"))
+    facts |= zip(("claims", "piles", "compiled"), words.format(**facts).strip().split("\n\n"))
+    raced = ([f"{n:,}", f"{depth:g}", *map(resting, each)] for n, depth, *each in races(piles))
+    return template.format(
+        **facts,
         work=WORK[-1],
         stepped=", ".join(STEPPED),
         machine=f"{about.get('cores')} cores of {about.get('cpu')}, with {', '.join(there)}",
         take=lines(take(points, piles)),
         winners=lines(winners(points)),
         losses=lines(losses(points)),
-        races=lines([f"{race[0]:,}", f"{race[1]:g}", *map(resting, race[2:])]
-                    for race in races(piles)),
+        races=lines(raced),
         falling=lines(falling(piles)),
-        processes=lines([name, *map(number, seconds)]
-                        for name, *seconds in (row.values() for row in processes)),
+        processes=lines([name, *map(number, each)] for name, *each in map(dict.values, processes)),
         origins="\n".join(f"- {part}: {stored.footer(each)}" for part, each in made.items()),
-    )  # fmt: skip
+    )
 
 
 def front(dots):
     """The dots that no other one beats in both x and y."""
-    found = []
-    for x, y in sorted(dots):
-        if not found or y < found[-1][1]:
-            found.append((x, y))
-    return found
+    dots = sorted(dots)
+    return [dot for k, dot in enumerate(dots) if all(dot[1] < y for _, y in dots[:k])]
 
 
 def figure_of(dots, columns, title, explained, x, y, cross=(), **look):

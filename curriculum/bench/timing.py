@@ -1,9 +1,8 @@
 """Timing: several fresh processes, each in an order of its own; and whole processes.
 
-One process can be lucky with its memory, and one order can favour whoever runs after a pause. So
-several fresh processes shuffle the work anew; a figure is the median over them, its spread reaches
-from the least to the greatest. Calls are timed by CPU time: all run on one thread, so on a quiet
-machine that is the time that passes. Whole processes are timed by the clock on the wall.
+One process can be lucky with its memory, and one order can favour whoever runs after a pause.
+Calls are timed by CPU time: all run on one thread, so on a quiet machine that is the time that
+passes. Whole processes are timed by the clock on the wall.
 """
 
 import gc
