@@ -19,21 +19,19 @@ from curriculum.lesson import rows, to_loops
 from curriculum.lesson.compiled import Loops
 
 STATES = 200_000  # positions of balls that are filled in one go, before progress() hears of it
-SPREADS = ("penalty", "lcp")  # their contacts may come in another order, if none is remembered
 PUSHED = np.dtype([("rank", np.int64), ("lam", float)])
-HOT = "a b nx ny m_eff target softness lam start before vx vy inv_mass"  # of a sweep
 _, _, BY_HAND = Path(rows.__file__).read_text("utf-8").partition("\n# What is compiled")
 BY_HAND = f"import math\nimport numpy as np\nfrom {rows.__name__} import World\n{BY_HAND}"
+GAPS = Loops("gaps", BY_HAND)
 
 
 def loops_of(step: str) -> Loops:
     """The loops of a step of contact.py, with its constants of now."""
-    fixed = {name: v for name, v in vars(contact).items() if type(v) in (int, float)}
-    return made(step, tuple(fixed.items()))
+    return made(step, *(each for each in vars(contact).items() if type(each[1]) in (int, float)))
 
 
 @cache
-def made(step, fixed) -> Loops:
+def made(step, *constants) -> Loops:
     """loops_of, made once for the same constants."""
     text = to_loops.loops(step)
     if "def step_reach(" not in text:  # it looks as far as the margin
@@ -41,27 +39,19 @@ def made(step, fixed) -> Loops:
     return Loops(step, f"{BY_HAND}\n\n{text}\n\ntake_step = {step}\n")
 
 
-GAPS = Loops("gaps", BY_HAND)
-
-
 def table(names, source) -> np.dtype:
-    """A row of those of the names that the loops use, those of a sweep side by side, to be fast."""
+    """A row of those of the names that the loops use."""
     used = [name for name in names if re.search(rf"\.{name}\b", source)]
-    used.sort(key=lambda name: name not in HOT.split())
     return np.dtype([(name, np.uint32 if name in "ab" else float) for name in used])
 
 
-def make_balls(q, v, mass, radius, source=BY_HAND) -> np.ndarray:
-    """The balls of a state: q, v (2, N), mass, radius (N,), for these loops; then the floor."""
-    balls = np.zeros(len(mass) + 1, table((*to_loops.BALL, "listed_x", "listed_y"), source))
-    inv_mass = np.append(1.0 / mass, 0.0)
-    known = dict(zip(("x", "y", "vx", "vy", "mass", "radius"), (*q, *v, mass, radius)))
-    for name in balls.dtype.names:
-        if name in known:
-            balls[name][:-1] = known[name]
-    for name, values in {"inv_mass": inv_mass, "held": inv_mass == 0.0}.items():
-        if name in balls.dtype.names:
-            balls[name] = values
+def make_balls(scene, source=BY_HAND) -> np.ndarray:
+    """The balls of a scene, for these loops; then the floor."""
+    balls = np.zeros(len(scene.mass) + 1, table((*to_loops.BALL, "listed_x", "listed_y"), source))
+    columns = dict(zip(("x", "y", "vx", "vy"), (*scene.q0, *scene.v0)))
+    columns |= {"mass": scene.mass, "radius": scene.radius, "inv_mass": 1.0 / scene.mass}
+    for name in {*columns} & {*balls.dtype.names}:
+        balls[name][:-1] = columns[name]
     return balls
 
 
@@ -71,24 +61,20 @@ class Stepper:
     def __init__(self, model, scene, dt, settings):
         step = contact.step_of(model, scene, dt, settings)
         self.knobs = tuple(step.keywords.values())
-        self.spreads = model in SPREADS and step.keywords.get("warm", 0.0) == 0.0
+        self.spreads = model == "lcp" and step.keywords["warm"] == 0.0  # any order does
         self.loops, self.listed = loops_of(step.func.__name__), -math.inf
         source = self.loops.source
-        balls = make_balls(scene.q0, scene.v0, scene.mass, scene.radius, source)
         tables = (
             np.empty(0, table(to_loops.CONTACT, source)),
             np.empty((2, 0), np.uint32),
             np.empty(0, PUSHED),
         )
-        self.world = rows.World(balls, *tables, np.zeros(2, np.int64))
+        self.world = rows.World(make_balls(scene, source), *tables, np.zeros(2, np.int64))
 
-    def take(self, states, cycles=False) -> tuple[int, int]:
-        """Take len(states) - 1 steps at most, as take_steps does; returns steps and period."""
-        given = states, self.world, self.listed, cycles, self.spreads, self.knobs
-        self.world, self.listed, steps, period = self.loops.load({"take_steps": given}).take_steps(
-            *given
-        )
-        return steps, period
+    def take(self, states) -> None:
+        """Take len(states) - 1 steps, and write the states to states[1:]."""
+        given = states, self.world, self.listed, self.spreads, self.knobs
+        self.world, self.listed = self.loops.load({"take_steps": given}).take_steps(*given)
 
 
 def run_model(model, scene, dt, steps, settings, progress=None) -> contact.Run:
@@ -99,15 +85,10 @@ def run_model(model, scene, dt, steps, settings, progress=None) -> contact.Run:
     stepper = Stepper(model, scene, dt, settings)
     states = np.empty((steps + 1, 4, len(scene.mass)))
     states[0, :2], states[0, 2:] = scene.q0, scene.v0
-    k, period = 0, 0
-    while k < steps and not period:
-        end = min(k + 1 + STATES // len(scene.mass), steps)
-        taken, period = stepper.take(states[k : end + 1], settings.skip)
-        k += taken
+    for k in range(0, steps, part := 1 + STATES // len(scene.mass)):
+        stepper.take(states[k : k + part + 1])
         if progress:
-            progress(k)
-    for past in range(k - period + 1, k + 1):  # what comes again and again
-        states[past + period :: period] = states[past]
+            progress(min(k + part, steps))
     states += 0.0  # turns -0.0 into 0.0
     states[np.isnan(states)] = math.nan  # which has a sign too, left to chance
     return contact.Run(np.arange(steps + 1) * dt, states[:, :2], states[:, 2:])
@@ -130,8 +111,7 @@ def run_if_it_pays(model, scene, dt, steps, settings, progress=None) -> contact.
 
 def smallest_gap(q, radius) -> np.ndarray:
     """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
-    balls = make_balls(q[0], np.zeros_like(q[0]), np.ones(len(radius)), radius)
-    given = np.array(q, float), balls, float(np.median(radius))
+    given = np.array(q, float), np.array(radius, float)
     return GAPS.load({"find_gaps": given}).find_gaps(*given)
 
 

@@ -33,17 +33,6 @@ def smaller(first, second):
     return second if second < first else first
 
 
-def room(W):
-    """An array for the rows of contacts, as many as there can be."""
-    return np.empty(len(W.contacts), np.uint32)
-
-
-def next_row(W):
-    """The row of a new contact."""
-    W.count[0] += 1
-    return np.uint32(W.count[0] - 1)
-
-
 def warm_start(W, contacts, share):
     """Begin with a share of the last step's impulses: both tables are in the same order."""
     k, known = 0, W.count[1]
@@ -69,34 +58,37 @@ def remember(W, balls, contacts):
         W.pushed[k].rank, W.pushed[k].lam = rank(W, c), W.contacts[c].lam
 
 
+def shadows(x, y, radius):
+    """Shadows on the axis of the wider spread: the balls in their order, and both ends of each.
+
+    A shadow is as long as its own ball is wide, so one large ball costs no more than itself; above
+    is room for rounding.
+    """
+    place = y if np.ptp(y) > np.ptp(x) else x
+    low, high = place - radius, place + (1.0 + 1e-9) * radius + 1e-15 * np.abs(place)
+    return np.argsort(low), low, high
+
+
 def list_pairs(balls, reach):
     """The pairs (2, M) of balls whose gap is at most `reach` [m] now: first < second, in order.
 
-    Near balls are found by their shadows on the axis of the wider spread. A shadow is as long as
-    its own ball is wide, so one large ball costs no more than itself; above is room for `reach` and
-    for rounding. A ball with a position that is not finite is in no pair: it touches nothing.
+    A ball with a position that is not finite is in no pair: it touches nothing.
     """
     for ball in balls:
         ball.listed_x, ball.listed_y = ball.x, ball.y
-    x, y, radius = balls["x"][:-1], balls["y"][:-1], balls["radius"][:-1]
-    place = y if np.ptp(y) > np.ptp(x) else x
-    low = place - radius
-    high = place + (1.0 + 1e-9) * (radius + reach) + 1e-15 * np.abs(place)
-    order, count, size = np.argsort(low), len(balls), 0
-    keys = np.empty(4 * count, np.int64)  # a number for each pair, which grows as pairs do
+    x, y, radius = balls.x[:-1], balls.y[:-1], balls.radius[:-1]
+    order, low, high = shadows(x, y, radius)
+    reach, count, keys = (1.0 + 1e-9) * reach, len(balls), []
     for k in range(len(order)):
         i = order[k]
         for j in order[k + 1 :]:
-            if low[j] > high[i]:
+            if low[j] > high[i] + reach:
                 break
-            dx, dy = balls[i].x - balls[j].x, balls[i].y - balls[j].y
-            limit = (balls[i].radius + balls[j].radius + reach) * (1.0 + 1e-9)
+            dx, dy = x[i] - x[j], y[i] - y[j]
+            limit = (1.0 + 1e-9) * (radius[i] + radius[j]) + reach
             if dx * dx + dy * dy <= limit * limit:
-                if size == len(keys):
-                    keys = np.concatenate((keys, keys))
-                keys[size] = min(i, j) * count + max(i, j)
-                size += 1
-    keys = np.sort(keys[:size])
+                keys.append(min(i, j) * count + max(i, j))
+    keys = np.sort(np.array(keys))
     return np.stack((keys // count, keys % count)).astype(np.uint32)  # no row is negative
 
 
@@ -130,35 +122,18 @@ def with_pairs(W, reach, spreads):
     pairs = list_pairs(W.balls, reach)
     if spreads:
         pairs = spread_out(pairs, len(W.balls))
-    contacts, pushed = W.contacts, W.pushed
-    if len(contacts) < len(W.balls) + pairs.shape[1]:
-        contacts = np.empty(len(W.balls) + 2 * pairs.shape[1], contacts.dtype)
-        pushed = np.empty(len(contacts), pushed.dtype)
-        pushed[: W.count[1]] = W.pushed[: W.count[1]]
-    return World(W.balls, contacts, pairs, pushed, W.count)
+    most = max(len(W.contacts), len(W.balls) + pairs.shape[1])
+    pushed = np.empty(most, W.pushed.dtype)
+    pushed[: W.count[1]] = W.pushed[: W.count[1]]
+    return World(W.balls, np.empty(most, W.contacts.dtype), pairs, pushed, W.count)
 
 
-def same(state, other, pushed, others):
-    """Whether states and impulses are equal. Then their futures are, but for signs of zeros."""
-    for one, two in zip(state.flat, other.flat):
-        if one != two:
-            return False
-    for c, d in zip(pushed, others):
-        if c.rank != d.rank or c.lam != d.lam:
-            return False
-    return len(pushed) == len(others)
-
-
-def take_steps(states, W, listed, cycles, spreads, knobs):
+def take_steps(states, W, listed, spreads, knobs):
     """Take len(states) - 1 steps, and write the states to states[1:].
 
-    The world's pairs had gaps of at most `listed` [m]. Returns these two at the end, the steps
-    taken, and 0. With `cycles` a state that has come before ends the steps, and in place of 0
-    stands how many steps ago it was. A state is compared with one other, that of the largest power
-    of two (Brent 1980).
+    The world's pairs had gaps of at most `listed` [m]. Returns these two at the end.
     """
-    balls, skin = np.arange(len(W.balls) - 1).astype(np.uint32), np.median(W.balls["radius"][:-1])
-    mark, marked = 1, W.pushed[:0]
+    balls, skin = np.arange(len(W.balls) - 1).astype(np.uint32), np.median(W.balls.radius[:-1])
     for k in range(1, len(states)):
         reach = step_reach(W, balls, knobs[0])  # no model looks farther
         if not farthest_move(W.balls) <= 0.499 * (listed - reach):  # two may have come so near
@@ -170,56 +145,26 @@ def take_steps(states, W, listed, cycles, spreads, knobs):
             ball = W.balls[i]
             states[k, 0, i], states[k, 1, i] = ball.x, ball.y
             states[k, 2, i], states[k, 3, i] = ball.vx, ball.vy
-        pushed = W.pushed[: W.count[1]]
-        if cycles and k > mark and same(states[k], states[mark], pushed, marked):
-            return W, listed, k, k - mark
-        if k == 2 * mark or k == 1:
-            mark, marked = k, pushed.copy()
-    return W, listed, len(states) - 1, 0
+    return W, listed
 
 
-def find_gaps(q, balls, skin):
+def find_gaps(q, radius):
     """The smallest gap to the floor or between two balls in each state q (S, 2, N).
 
-    A pair that is not listed was farther apart than `reach`, and may have come nearer by what two
-    balls have moved. Where that does not decide, the pairs are listed anew, as far as it takes.
+    Balls whose shadows are farther apart than the smallest gap so far need no look, unless a
+    position is not finite: a gap of two may be no number then, and so is the smallest.
     """
     gaps = np.empty(len(q))
-    pairs = list_pairs(balls, 0.0)
-    reach = -math.inf
     for k in range(len(q)):
-        balls["x"][:-1], balls["y"][:-1] = q[k, 0], q[k, 1]
-        if not np.isfinite(q[k]).all():
-            gaps[k] = gap_of_all(balls)
-            continue
-        gaps[k] = gap_of_listed(balls, pairs)
-        if not gaps[k] < 0.999 * reach - 2.0 * farthest_move(balls):
-            reach, gaps[k] = 0.5 * skin + 1e-150, math.inf
-            while not gaps[k] < 0.999 * reach:
-                reach *= 2.0
-                pairs = list_pairs(balls, reach)
-                gaps[k] = gap_of_listed(balls, pairs)
+        x, y = q[k, 0], q[k, 1]
+        finite, gap = np.isfinite(q[k]).all(), (y - radius).min()
+        order, low, high = shadows(x, y, radius)
+        for n in range(len(order)):
+            i = order[n]
+            for j in order[n + 1 :]:
+                if finite and low[j] > high[i] + gap + 1e-9 * abs(gap):
+                    break
+                dx, dy, radii = x[i] - x[j], y[i] - y[j], radius[i] + radius[j]
+                gap = np.minimum(gap, math.sqrt(dx * dx + dy * dy) - radii)
+        gaps[k] = gap
     return gaps
-
-
-def gap_between(a, b):
-    """The gap [m] between two balls."""
-    dx, dy = b.x - a.x, b.y - a.y
-    return math.sqrt(dx * dx + dy * dy) - (b.radius + a.radius)
-
-
-def gap_of_listed(balls, pairs):
-    """The smallest gap to the floor or between listed balls."""
-    gap = (balls["y"][:-1] - balls["radius"][:-1]).min()
-    for k in range(pairs.shape[1]):
-        gap = min(gap, gap_between(balls[pairs[0, k]], balls[pairs[1, k]]))
-    return gap
-
-
-def gap_of_all(balls):
-    """The smallest gap of all; NaN if any gap is."""
-    gap = (balls["y"][:-1] - balls["radius"][:-1]).min()
-    for i in range(len(balls) - 1):
-        for j in range(i):
-            gap = np.minimum(gap, gap_between(balls[i], balls[j]))
-    return gap

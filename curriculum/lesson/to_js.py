@@ -156,19 +156,18 @@ class Script(ast.NodeVisitor):
         return f"{'new ' * new}{name}({', '.join(args)})"
 
 
-def reached(name, node, known):
-    """What of `known` a function uses: names that it does not set itself, and contact.NAME."""
+def uses(name, node):
+    """The names that a definition uses and does not set itself, and those of contact.NAME."""
     names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
     own = {each.id for each in names if isinstance(each.ctx, ast.Store)} - {name}
     own |= {each.arg for each in ast.walk(node) if isinstance(each, ast.arg)}
     others = [each for each in ast.walk(node) if isinstance(each, ast.Attribute)]
     used = {each.id for each in names} - own
-    used |= {each.attr for each in others if ast.unparse(each.value) == "contact"}
-    return used & set(known)
+    return used | {each.attr for each in others if ast.unparse(each.value) == "contact"}
 
 
-def to_js(roots, *files):
-    """The module that exports `roots` and all that they reach, of these files (pathlib.Path)."""
+def needed(roots, *files):
+    """{name: (file, node)} of what `roots` reach at the top of these files, in their order."""
     known = {}
     for file in files:
         for node in ast.parse(file.read_text("utf-8")).body:
@@ -177,8 +176,14 @@ def to_js(roots, *files):
             known |= {name: (file.name, node)} if name else {}
     wanted = list(roots)
     for name in wanted:  # grows while it is read
-        wanted += sorted(reached(name, known[name][1], known) - set(wanted))
+        wanted += sorted(uses(name, known[name][1]) & set(known) - set(wanted))
+    return {name: known[name] for name in known if name in wanted}
+
+
+def to_js(roots, *files):
+    """The module that exports `roots` and all that they reach, of these files (pathlib.Path)."""
+    known = needed(roots, *files)
     script, out = Script(known), []
-    for name, (script.file, node) in known.items():
-        out += [f"export {script.visit(node)}\n"] if name in wanted else []
+    for script.file, node in known.values():
+        out.append(f"export {script.visit(node)}\n")
     return "".join(out)

@@ -80,5 +80,5 @@ def test_a_step_that_no_loop_can_say_runs_plain_and_says_so(course):
     )
     done = python(*words, course / "plain", cwd=course)
     assert done.returncode == 0 and "sixth" in done.stdout
-    assert done.stderr.startswith("sixth runs in plain loops: line ")
-    assert "no loop can say it; write the values one by one" in done.stderr
+    assert done.stderr.startswith("sixth runs in plain loops: contact.py:")
+    assert "*[c.depth / dt]: no loop can say it; write loops" in done.stderr
