@@ -17,7 +17,7 @@ from curriculum.lesson.regions import ROOT, read_all
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises
-from curriculum.page.panels import pieces
+from curriculum.page.panels import BOOKKEEPING, panel
 from curriculum.show import picture
 
 SCENES = ("drop", "bounce", "stack")  # of the figures: balls in one column
@@ -110,7 +110,8 @@ def environment(**held):
         for name, file, kind, *rest in fonts.FACES
     ]
     made.globals.update(colab=colab, faces=faces, models=[*contact.MODELS])
-    made.globals.update(stored=stored, pieces=pieces, picture=picture, drawn_by=drawn_by, **held)
+    made.globals.update(stored=stored, picture=picture, drawn_by=drawn_by, **held)
+    made.globals.update(panel=panel, bookkeeping=BOOKKEEPING)
     return made
 
 

@@ -41,8 +41,9 @@ def formula(text, options):
 
 
 def text(self, tokens, index, options, env):
-    """Plain words; no line ends between a number and its unit."""
-    return UNIT.sub("\\1\u00a0", escape(tokens[index].content))
+    """Plain words; no line ends between a number and its unit, and v_n is set as a formula."""
+    words = UNIT.sub("\\1\u00a0", escape(tokens[index].content))
+    return words.replace("v_n", "<i>v<sub>n</sub></i>")
 
 
 def code_inline(self, tokens, index, options, env):
@@ -133,8 +134,7 @@ def rendered(md, text, env):
             out.append(("heading", (int(node.tag[1]), node.attrs["id"], Markup(inner))))
         elif node.type == "table":
             held = shown.replace("<th></th>", "<td></td>")
-            around = '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
-            out.append(("html", (Markup(f"{around}{held}</div>"),)))
+            out.append(("html", (Markup(f'<div class="scroll">{held}</div>'),)))
         else:
             out.append(("html", (Markup(shown),)))
     return out

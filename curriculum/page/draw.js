@@ -33,8 +33,11 @@ export const plain = (value) => String(Number(value.toPrecision(12))).replace("-
 
 // ---- shapes
 
+// Text in which v_n stands as a formula.
+const worded = (text) => text.split("v_n").map((part, k) => (k ? svg`<tspan class="formula">v<tspan
+    class="sub" dy="4">n</tspan></tspan><tspan dy="-4">${part}</tspan>` : part));
 export const label = (text, x, y, anchor = "start", kind = "strong") =>
-  svg`<text x=${px(x)} y=${px(y)} text-anchor=${anchor} class=${kind}>${text}</text>`;
+  svg`<text x=${px(x)} y=${px(y)} text-anchor=${anchor} class=${kind}>${worded(text)}</text>`;
 export const line = (x1, y1, x2, y2, kind = "rule dashed") =>
   svg`<line x1=${px(x1)} y1=${px(y1)} x2=${px(x2)} y2=${px(y2)} class=${kind}/>`;
 export const circle = (x, y, r, kind) =>
@@ -89,7 +92,8 @@ export function arrow(kind, x, y, dx, dy) {
   const size = Math.hypot(dx, dy);
   if (!(size > 0.5)) return "";
   const [head, turn] = [Math.min(9, size), (Math.atan2(dy, dx) * 180) / Math.PI];
-  return svg`<path class="arrow ${kind}" transform="translate(${px(x)} ${px(y)}) rotate(${px(turn)})"
+  return svg`<path class="arrow ${kind}"
+    transform="translate(${px(x)} ${px(y)}) rotate(${px(turn)})"
     d="M0 0H${px(size - head)}m${head} 0l${-head} ${px(0.45 * head)}v${px(-0.9 * head)}z"/>`;
 }
 
@@ -117,13 +121,20 @@ export const axis = (domain, name, ...at) => ({
   domain, label: name, ticks: at.map((each) => (Array.isArray(each) ? each : [each, plain(each)])),
 });
 
-// An axis of powers of ten, from 10^low to 10^high, with a tick at every so manieth.
+// An axis of powers of ten, from 10^low to 10^high, with a tick at each of so many.
 export function tens(low, high, name, every = 1) {
-  const powers = Array.from({ length: Math.floor((high - low) / every) + 1 }, (_, k) =>
-    low + k * every);
-  return { ...axis([10 ** low, 10 ** high], name, ...powers.map((p) => [10 ** p, tenTo(p)])),
-    log: true };
+  const powers = Array.from({ length: (high - low) / every + 1 }, (_, k) => low + k * every);
+  const ticks = powers.map((p) => [10 ** p, tenTo(p)]);
+  return { ...axis([10 ** low, 10 ** high], name, ...ticks), log: true };
 }
+
+// An axis of time steps.
+export const timeSteps = (low, high) => ({
+  ...axis([low, high], "time step dt (ms)",
+    ...[0.5, 1, 2, 4, 8, 16, 32, 64].map((ms) => [ms / 1000, plain(ms)])
+      .filter(([dt]) => dt >= low && dt <= high)),
+  log: true,
+});
 
 // About `most` round numbers between low and high.
 export function steps(low, high, most = 5) {
@@ -151,18 +162,16 @@ function linePath(points, { sx, sy, box }) {
   return drawn.length ? `M${drawn.join("L")}` : "";
 }
 
-/* A chart within [left, top, width, height]: {picture, sx, sy, box}. x and y: axes, or {domain,
- * ticks, label, log}; lines: {model, points, kind, marks}; `rules`: {x or y, text, kind, side, row};
- * under(chart): what is drawn beneath. */
-export function plot([edge, above, width, height], { x, y, lines = [], rules = [], under }) {
+/* A chart in a view's picture, from `left` and `top` on: {picture, sx, sy, box}. x and y: axes;
+ * lines: {model, points, kind, marks}; zero: whether a line shows where y is 0. */
+export function plot({ width, height }, { left = 0, top = 0, x, y, lines = [], zero, ...more }) {
   const wide = Math.max(0, ...y.ticks.map(([, text]) => text.length));
+  const bottom = more.height ?? height;
   const box = {
-    left: edge + Math.max(26, 12 + 8.4 * wide), right: edge + width - 12,
-    top: above + (y.label ? 28 : 8), bottom: above + height - (x.label ? 46 : x.ticks.length ? 26
-      : 6),
+    left: left + Math.max(26, 12 + 8.4 * wide), right: width - 12,
+    top: top + (y.label ? 28 : 8), bottom: bottom - 46,
   };
   const [sx, sy] = [scaleOf(x, box.left, box.right), scaleOf(y, box.bottom, box.top)];
-  const chart = { sx, sy, box };
   const across = y.ticks.map(([value, text]) => [
     line(box.left, sy(value), box.right, sy(value), "grid"),
     label(text, box.left - 7, sy(value) + 5, "end", "tick"),
@@ -175,27 +184,17 @@ export function plot([edge, above, width, height], { x, y, lines = [], rules = [
     const tick = line(at, box.bottom, at, box.bottom + 5, "axis");
     return [tick, room ? label(text, at, box.bottom + 21, "middle", "tick") : ""];
   });
-  const ruled = rules.map(({ x: atX, y: atY, text = "", kind = "", side = "start", row = 0 }) => {
-    const [toX, toY] = [sx(atX ?? 0), sy(atY ?? 0)];
-    if (atX === undefined)
-      return [line(box.left, toY, box.right, toY, `rule ${kind}`),
-        label(text, box.right - 4, toY - 7, "end")];
-    const told = label(text, toX + (side === "end" ? -6 : 6), box.top + 14 + 20 * row, side);
-    return [line(toX, box.top, toX, box.bottom, `rule ${kind}`), told];
-  });
   const drawn = lines.map(({ model, points, kind = "", marks = [] }) => [
-    svg`<path d=${linePath(points, chart)} class="line m-${model} ${kind}"/>`,
+    svg`<path d=${linePath(points, { sx, sy, box })} class="line m-${model} ${kind}"/>`,
     marks.filter((k) => k < points.length && Number.isFinite(points[k][1])).map((k) =>
       mark(model, sx(points[k][0]), sy(points[k][1]))),
   ]);
-  const inside = [ruled.map(([rule]) => rule), drawn];
   const picture = [
-    under ? under(chart) : "", across, along, line(box.left, box.bottom, box.right, box.bottom,
-      "axis"),
-    y.label ? label(y.label, edge, above + 14, "start", "axis-name") : "",
-    x.label ? label(x.label, box.right, above + height - 4, "end", "axis-name") : "",
-    clipped(box.left, box.top - 3, box.right - box.left, box.bottom - box.top + 6, inside),
-    ruled.map(([, text]) => text),
+    across, along, line(box.left, box.bottom, box.right, box.bottom, "axis"),
+    zero ? line(box.left, sy(0), box.right, sy(0), "rule") : "",
+    label(y.label, left, top + 14, "start", "axis-name"),
+    label(x.label, box.right, bottom - 4, "end", "axis-name"),
+    clipped(box.left, box.top - 3, box.right - box.left, box.bottom - box.top + 6, drawn),
   ];
-  return { ...chart, picture };
+  return { sx, sy, box, picture };
 }

@@ -23,21 +23,26 @@ document.addEventListener("click", (event) => {
   if (bottom < 120 || top > window.innerHeight - 120) box.scrollIntoView({ block: "center" });
 });
 
-// On a phone code is folded, since it is wider than the screen.
+// On a phone folded: code, which is wider than the screen, and what asks for a terminal.
 const narrow = window.matchMedia("(max-width: 40rem)");
-const unfold = () => {
-  for (const each of document.querySelectorAll("details.source")) each.open = !narrow.matches;
+const fold = (closed) => {
+  for (const each of document.querySelectorAll("details.folds")) {
+    each.open = !closed;
+    each.querySelector("summary").tabIndex = closed ? 0 : -1;
+  }
 };
-narrow.addEventListener("change", unfold);
-unfold();
+narrow.addEventListener("change", () => fold(narrow.matches));
+fold(narrow.matches);
 
-// On paper the answers of bets are read.
+// On paper all is open that was read.
 let opened = [];
 window.addEventListener("beforeprint", () => {
+  fold(false);
   opened = [...document.querySelectorAll("details.answer:not([open])")];
   for (const each of opened) each.open = true;
 });
 window.addEventListener("afterprint", () => {
+  fold(narrow.matches);
   for (const each of opened) each.open = false;
 });
 document.documentElement.dataset.ready = "yes";

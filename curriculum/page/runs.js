@@ -123,12 +123,12 @@ export function gainOf({ n, y, vx, vy, steps }) {
 }
 
 // A function that keeps its last results, by its arguments.
-export function kept(compute) {
+export function kept(compute, most = 20) {
   const held = new Map();
   return (...given) => {
     const key = JSON.stringify(given);
     if (!held.has(key)) {
-      if (held.size > 20) held.clear();
+      if (held.size > most) held.clear();
       held.set(key, compute(...given));
     }
     return held.get(key);

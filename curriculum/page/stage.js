@@ -10,9 +10,10 @@
  *   buttons(view)   [[label, act, pressed]]
  *
  * The view has own, width, height, set(changes), and grab(what, shape): a shape around which one
- * can put a hand, where `what` is {label, text, value, low, high, step, at(x, y), also, release}. A
+ * can put a hand, where `what` is {label, value, low, high, step, at(x, y), also, release}. A
  * value is a name of the figure's state, or two of them; at gives what belongs to a place, `also`
- * is set with it. view.point is the same with a knob at (x, y). */
+ * is set with it. view.point is the same with a knob at (x, y). What a handle has done, the
+ * figure's words say, to a screen reader, too. */
 import { html, nothing, render, svg } from "./lit.js";
 import { circle, within } from "./draw.js";
 import { data } from "./data.js";
@@ -42,13 +43,21 @@ export const stateOf = (figure, given) =>
 export function viewOf(figure, given, width = WIDTH) {
   const own = stateOf(figure, given);
   const { height } = figure;
-  const view = { own, text: { ...own }, width, set() {}, play() {}, running: false,
-    grab: (_, shape) => shape };
+  const grab = (_, shape) => shape;
+  const view = { own, text: { ...own }, width, set() {}, play() {}, running: false, grab };
   Object.defineProperty(view, "height", { get: () => height(view.width, own) });
   view.point = (x, y, what) =>
     view.grab(what, svg`${circle(x, y, 22, "halo")}${circle(x, y, 8, "knob-dot")}`);
   return view;
 }
+
+export const knobsOf = ({ knobs = [] }, own) => (typeof knobs === "function" ? knobs(own) : knobs);
+
+// Words in which v_n stands as a formula, and no line ends between a number and its unit.
+export const worded = (words) =>
+  words.replace(/ × |(?<=[\d⁰-⁹]) (?=%|(?:r|m?s|m?m|N|kg|m\/s|N\/m)\b)/g, (blank) =>
+    blank.replaceAll(" ", "\u00a0")).split("v_n")
+    .map((part, k) => (k ? html`<i>v<sub>n</sub></i>${part}` : part));
 
 // ---- sliders
 
@@ -90,7 +99,7 @@ function grabbing(view, box) {
     return [clientX - left, clientY - top].map((at) => (at * view.width) / width);
   };
   return (what, shape) => {
-    const { label, text, low, high, step, at, also, release } = what;
+    const { label, low, high, step, at, also, release } = what;
     const names = several(what.value);
     const [lows, highs, size] = [several(low), several(high), several(step)];
     const now = () => names.map((name) => view.own[name]);
@@ -121,13 +130,14 @@ function grabbing(view, box) {
       const lets = release && (event.key === "Enter" || event.key === " ");
       if (!(by || lets) || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
-      if (lets) release();
-      else put(now().map((v, k) => v + (names.length > 1 ? by[k]
-        : by[0] + by[1]) * size[k % size.length]));
+      if (lets) return release();
+      const by1 = (k) => (names.length > 1 ? by[k] : by[0] + by[1]);
+      put(now().map((v, k) => v + by1(k) * size[k % size.length]));
     };
-    return svg`<g class="handle" role="slider" tabindex="0" aria-label=${label} aria-valuetext=${text}
+    const stay = (event) => event.preventDefault(); // no finger moves the page
+    return svg`<g class="handle" role="slider" tabindex="0" aria-label=${label}
       aria-valuenow=${now()[0]} @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
-      @pointercancel=${letGo} @keydown=${key} @touchstart=${(event) => event.preventDefault()}>${shape}</g>`;
+      @pointercancel=${letGo} @keydown=${key} @touchstart=${stay}>${shape}</g>`;
   };
 }
 
@@ -164,40 +174,43 @@ export function stage(box, figure, given, still) {
     view.set({ time: loops ? time % end : Math.min(end, time) });
     if (view.running) requestAnimationFrame(tick);
   }
-  const same = () => Object.keys(view.text).every((name) => name === "time"
-    || view.own[name] === view.text[name]);
+  const same = () => Object.keys(view.text).every((name) => view.own[name] === view.text[name]
+    || (name === "time" && figure.clock?.(view).loops));
   const back = () => {
     Object.assign(view.own, view.text);
     view.stop();
-    view.set({});
   };
 
   function draw() {
     frame = 0;
     if (!near) return;
     const { picture, words } = figure.draw(view);
-    const said = words.replace(/(\d) (?=(?:r|s|ms|mm|m|N|kg|m\/s|N\/m)\b)/g, "$1\u00a0");
-    const press = (act) => () => {
-      act(view);
-      view.set({});
+    const button = ([text, act, pressed]) => {
+      const press = () => {
+        act(view);
+        view.set({});
+      };
+      return html`<button type="button" aria-pressed=${pressed ?? nothing} @click=${press}
+        >${text}</button>`;
     };
-    const knobs = typeof figure.knobs === "function" ? figure.knobs(view.own) : figure.knobs ?? [];
-    const buttons = figure.buttons?.(view) ?? [];
+    const buttons = figure.buttons?.(view).map(button);
     render(html`<svg class="plot" viewBox="0 0 ${view.width} ${view.height}" role="group"
       aria-label=${figure.title}>${picture}</svg>
-      <figcaption>${figure.caption}</figcaption><p class="words">${said}</p>
-      <div class="controls">${knobs.map((name) => slider(view, name))}
-      <div class="buttons">${buttons.map(([text, act, pressed]) => html`<button type="button"
-        aria-pressed=${pressed ?? nothing} @click=${press(act)}>${text}</button>`)}
-      <button type="button" class="back" ?disabled=${same()} @click=${back}>As in the text</button></div></div>`, box);
+      <figcaption>${worded(figure.caption)}</figcaption><p class="words">${worded(words)}</p>
+      <button type="button" class="back" title="As in the text" aria-label="As in the text"
+      ?disabled=${same()} @click=${back}>↺</button>
+      <div class="controls">${knobsOf(figure, view.own).map((name) => slider(view, name))}
+      ${buttons && html`<div class="buttons">${buttons}</div>`}</div>`, box);
+    for (const handle of box.querySelectorAll(".handle"))
+      handle.setAttribute("aria-valuetext", words);
   }
   new ResizeObserver(([{ contentRect: { width } }]) => {
     view.width = Math.max(LEAST, width);
     view.set({});
   }).observe(box);
   // a figure far from the window keeps its still, and does not run
-  new IntersectionObserver(([{ isIntersecting }]) => {
-    near = isIntersecting;
+  new IntersectionObserver((seen) => {
+    near = seen[seen.length - 1].isIntersecting;
     if (!near) return view.stop();
     if (!begun) box.replaceChildren(); // the still
     begun = true;

@@ -1,7 +1,7 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
 import { figures } from "./figures.js";
 import { textOf } from "./lit.js";
-import { fromPlace, QUANTITIES, stateOf, toSlider, viewOf } from "./stage.js";
+import { fromPlace, knobsOf, QUANTITIES, stateOf, toSlider, viewOf, worded } from "./stage.js";
 
 const [WIDE, NARROW] = [640, 358]; // px
 
@@ -9,27 +9,35 @@ const [WIDE, NARROW] = [640, 358]; // px
 function check(own, given) {
   for (const [name, value] of Object.entries(given)) {
     const { low = value, high = value } = QUANTITIES[name] ?? {};
-    if (!(name in own)) throw new Error(`${name} sets nothing; known: ${Object.keys(own).join(", ")}`);
-    if (!(value >= low && value <= high)) throw new Error(`${name}=${value}; allowed: from ${low} to ${high}`);
+    if (!(name in own))
+      throw new Error(`${name} sets nothing; known: ${Object.keys(own).join(", ")}`);
+    if (!(value >= low && value <= high))
+      throw new Error(`${name}=${value}; allowed: from ${low} to ${high}`);
   }
 }
 
 // What a figure shows first.
 function still([name, given]) {
   const figure = figures[name];
-  if (!figure) throw new Error(`there is no figure ${name}; known: ${Object.keys(figures).join(", ")}`);
+  if (!figure)
+    throw new Error(`there is no figure ${name}; known: ${Object.keys(figures).join(", ")}`);
   try {
     check(stateOf(figure, {}), given);
     const view = viewOf(figure, given, WIDE);
     const { picture, words } = figure.draw(view);
-    const { title, caption, height, knobs = [] } = figure;
-    const sliders = typeof knobs === "function" ? knobs(view.own) : knobs;
-    const heights = [WIDE, NARROW].map((width) => height(width, view.own));
-    return { svg: textOf(picture), words, title, caption, heights, knobs: sliders.length };
+    return {
+      title: figure.title,
+      svg: textOf(picture),
+      words: textOf(worded(words)),
+      caption: textOf(worded(figure.caption)),
+      heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
+      knobs: knobsOf(figure, view.own).length,
+      buttons: figure.buttons ? 1 : 0,
+    };
   } catch (error) {
     throw new Error(`the figure ${name}: ${error.message}`);
   }
 }
 
 export const stills = (wanted) => wanted.map(still);
-export { figures, fromPlace, QUANTITIES, textOf, toSlider, viewOf };
+export { figures, fromPlace, knobsOf, QUANTITIES, textOf, toSlider, viewOf };

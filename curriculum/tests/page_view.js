@@ -13,34 +13,36 @@ const drawn = (name, given = {}, own = {}, width = 640) => {
 };
 const several = (value) => (Array.isArray(value) ? value : [value]);
 
-// What goes wrong where hands and knobs go to all their ends: handles that leave, texts that are none.
+// What goes wrong where hands and knobs go to all their ends: handles that leave, texts that are
+// none.
 const lost = (name, given, width) => {
   const [found, first] = [new Set(), drawn(name, given, {}, width)];
-  const knobs = MADE.figures[name].knobs ?? [];
-  const ends = (typeof knobs === "function" ? knobs(first.own) : knobs)
-    .flatMap((knob) => [MADE.QUANTITIES[knob].low, MADE.QUANTITIES[knob].high].map((v) => ({ [knob]: v })));
-  const places = first.handles.flatMap(({ value, low, high }) =>
-    [low, high].map((end) => Object.fromEntries(several(value).map((key, k) => [key, several(end)[k] ?? end]))));
-  for (const place of [{}, ...places])
-    for (const end of [{}, ...ends]) {
-      const { svg, words, handles, height } = drawn(name, given, { ...place, ...end }, width);
-      const said = JSON.stringify({ ...place, ...end });
-      if (/NaN|undefined|null|Infinity|not a number/.test(svg + words)) found.add(`no number at ${said}`);
-      for (const { shape, label } of handles) {
-        const [, x, y] = shape.match(/cx="(\S+)" cy="(\S+)"/) ?? [];
-        if (x && !(x >= 0 && x <= width && y >= -1 && y <= height + 1)) found.add(`${label} at ${said}`);
-      }
+  const ends = MADE.knobsOf(MADE.figures[name], first.own).flatMap((knob) =>
+    ["low", "high"].map((end) => ({ [knob]: MADE.QUANTITIES[knob][end] })));
+  const places = first.handles.flatMap(({ value, low, high }) => [low, high].map((end) =>
+    Object.fromEntries(several(value).map((key, k) => [key, several(end)[k] ?? end]))));
+  for (const own of [{}, ...places].flatMap((place) =>
+    [{}, ...ends].map((end) => ({ ...place, ...end })))) {
+    const { svg, words, handles, height } = drawn(name, given, own, width);
+    const said = JSON.stringify(own);
+    if (/NaN|undefined|null|Infinity|not a number/.test(svg + words))
+      found.add(`no number at ${said}`);
+    for (const { shape, label } of handles) {
+      const [, x, y] = shape.match(/cx="(\S+)" cy="(\S+)"/) ?? [];
+      if (!(x >= 0 && x <= width && y >= -1 && y <= height + 1)) found.add(`${label} at ${said}`);
     }
+  }
   return [...found];
 };
 
-// Handles that say the same wherever the arrow keys take them.
+// Handles of which the words say the same wherever the arrow keys take them.
 const mute = (name, given) => {
   const { handles, own } = drawn(name, given);
-  return handles.filter(({ value, step, label }) => {
+  return handles.filter(({ value, step }) => {
     const said = [-3, 0, 3].map((by) => {
-      const moved = several(value).map((key, k) => [key, own[key] + by * (several(step)[k] ?? step)]);
-      return drawn(name, given, Object.fromEntries(moved)).handles.find((each) => each.label === label)?.text;
+      const moved = several(value).map((key, k) =>
+        [key, own[key] + by * (several(step)[k] ?? step)]);
+      return drawn(name, given, Object.fromEntries(moved)).words;
     });
     return new Set(said).size < 2;
   }).map(({ label }) => label);

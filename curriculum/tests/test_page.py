@@ -181,7 +181,7 @@ def test_the_hero_trembles_by_itself_stops_and_stays_still_where_motion_is_not_w
             if moves:
                 places = [float(each) for each in seen]
                 assert max(places) - min(places) > 10  # px: one sees it
-                page.locator("#fig-gripper button").first.click()
+                page.locator("#fig-gripper .buttons button").first.click()
                 page.wait_for_timeout(200)
                 held = page.evaluate(edge)
                 page.wait_for_timeout(300)
@@ -197,7 +197,7 @@ def test_balls_fall_when_they_are_let_fall_and_no_sooner(visit):
         before = call(page, WORDS, name)
         page.wait_for_timeout(400)
         assert call(page, WORDS, name) == before
-        page.locator(f"#{name} button").first.click()
+        page.locator(f"#{name} .buttons button").first.click()
         page.wait_for_timeout(600)
         assert call(page, WORDS, name) != before
 
@@ -231,7 +231,7 @@ def test_print_has_figures_and_answers_and_nothing_to_press(visit):
         paper = page.pdf(
             format="A4", margin={side: "1.5cm" for side in ("top", "bottom", "left", "right")}
         )
-        assert len(re.findall(rb"/Type\s*/Page\b", paper)) < 40
+        assert len(re.findall(rb"/Type\s*/Page\b", paper)) < 30
 
 
 def test_without_scripts_text_figures_and_answers_are_there(visit):
@@ -248,22 +248,23 @@ def test_a_phone_shows_no_formula_below_16_px_and_no_figure_higher_than_itself(p
       parseFloat(getComputedStyle(node).fontSize))"""
     assert min(phone.evaluate(sizes)) >= 16
     heights = """() => [...document.querySelectorAll(".fig")].map((fig) => fig.offsetHeight)"""
-    assert max(phone.evaluate(heights)) <= 1.2 * 844
+    assert max(phone.evaluate(heights)) <= 844
+    assert phone.evaluate("document.documentElement.scrollHeight") < 52 * 844
 
 
-def test_what_a_figure_can_be_told_stands_beside_its_text_by_keyboard(tab):
+def test_what_a_figure_can_be_told_stands_beside_its_text_by_keyboard(visit):
     """A figure's own stops are together, and few: no other stands between them."""
     stops = """() => [...document.querySelectorAll("a[href], button, input, summary, [tabindex]")]
-      .filter((node) => node.tabIndex >= 0 && node.checkVisibility())
+      .filter((node) => node.tabIndex >= 0 && !node.disabled && node.checkVisibility())
       .map((node) => node.closest(".fig")?.id ?? "")"""
-    for name in call(tab, page_browser.FIGURES):
-        call(tab, SEE, name)
-    found = [name for name in tab.evaluate(stops)]
+    with visit() as page:
+        for name in call(page, page_browser.FIGURES):
+            call(page, SEE, name)
+        found = page.evaluate(stops)
+    assert len(found) <= 200
     for name in set(found) - {""}:
-        first = found.index(name)
-        count = found.count(name)
+        first, count = found.index(name), found.count(name)
         assert found[first : first + count] == [name] * count and count <= 12
-    assert found.count("") <= 140
 
 
 def test_axe_finds_no_violation(tab):

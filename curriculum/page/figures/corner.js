@@ -1,68 +1,62 @@
-/* The corner, three times: gap to the right, force upwards, what a model allows as a thick line, and
- * the state that runs along it while the ball is lifted or pressed into the table. Values: gap [r]
- * and force [m g]. */
-import { arrow, axis, ball, circle, clipped, line, mark, number, path, plot, svg,
-  table } from "../draw.js";
-import { label, through, within } from "../draw.js";
+/* The corner, three times: gap to the right, force upwards, what a model allows as a thick line,
+ * and the state that runs along it while the ball is lifted or pressed into the table. Values: gap
+ * [r] and force [m g]. */
+import { arrow, axis, ball, circle, clipped, label, line, mark, number, path } from "../draw.js";
+import { plot, svg, table, through, within } from "../draw.js";
 import { Contact, FLOOR, soft_defaults, soften } from "../contact.js";
 import { column, G, kept, R, record } from "../runs.js";
 
 const WIDE = { low: -0.4, high: 1, most: 30, xs: [0, 0.5, 1], ys: [0, 10, 20, 30] };
 const NEAR = { low: -0.03, high: 0.06, most: 12, xs: [-0.03, 0, 0.05], ys: [0, 4, 8, 12] };
-
-// A table's contact with a ball, `size` px around, so large that a depth can be seen.
-const lens = (model, x, y, depth, size, times) => [
-  through(x, y, size, table(x - size, y, 2 * size, size),
-    circle(x, y + (depth - 1) * times, times, `magnified m-${model}`)),
-];
+const MORE = 12; // what the lens enlarges, which is needed where the ball goes in by little
 
 /* law(own): {gap(load), curve, most}: the gap [r] under a load [m g], the line that is allowed, and
- * the hardest press in the picture; free(gap, time) is [gap, load] of the ball once it is let go. */
+ * the hardest press in the picture; free(gap, time) is [gap, load] of the ball once it is let go,
+ * below(x, y, height) what is seen under it. */
 function corner(model, law, { shown = WIDE, hand = 0.5, ...about }) {
   function draw(view) {
     const { own, width, height } = view;
     const { gap: gapOf, curve, most = shown.most, free, below } = law(own);
     const pressed = Math.max(0, -own.hand) * Math.min(shown.most, most); // m g
     const start = pressed > 0 ? gapOf(pressed) : own.hand * shown.high;
-    const [gap, load] = own.time > 0 ? free(start, own.time) : [start, pressed];
+    const held = own.time === 0;
+    const [gap, load] = held ? [start, pressed] : free(start, own.time);
     const [left, floor] = [Math.min(0.4 * width, 260), height - 74];
     const [r, x] = [Math.min(70, 0.3 * left), left / 2];
     const y = Math.min(floor - r - gap * r, height - 12);
-    const chart = plot([left + 12, 0, width - left - 12, height], {
+    const { sx, sy, box, picture } = plot(view, {
+      left: left + 12,
       x: axis([shown.low, shown.high], "gap / r", ...shown.xs),
       y: axis([-0.035 * shown.most, 1.07 * shown.most], "force / m g", ...shown.ys),
       lines: [{ model, points: curve, kind: "law plainly" }],
-      under: ({ sx, sy, box }) => path([[box.right, sy(0)], [sx(0), sy(0)], [sx(0), box.top]],
-        "allowed"),
     });
-    const seen = [within(shown.low, gap, shown.high), Math.min(1.05 * shown.most, load)];
-    const text = `gap ${number(gap, 2)} r, force ${number(load, 2)} m g`;
     const what = {
-      label: "the ball: lift it or press it", text, value: "hand", low: -1, high: 1, step: 0.05,
+      label: "the ball: lift it or press it", value: "hand", low: -1, high: 1, step: 0.05,
       at: (_, to) => -to / r, also: { time: 0 }, release: free && (() => view.play(0)),
     };
-    const held = own.time === 0;
-    const doing = !held ? "Let go" : pressed > 0 ? `Pressed with ${number(pressed, 2)} m g`
-      : "Held by the hand";
+    const long = 10 + 3 * Math.sqrt(held ? load : 1);
+    const above = held && own.hand > 0 ? line(x, y, x, 0)
+      : arrow("weight", x, y - r - 4 - long, 0, long);
+    const depth = [table(4, 46, 80, 40),
+      circle(44, 46 - (1 + gap) * MORE * r, MORE * r, `magnified m-${model}`)];
+    const hold = pressed > 0 ? `Pressed with ${number(pressed, 2)} m g` : "Held by the hand";
     return {
       picture: [
-        clipped(0, 0, left, height, table(0, floor, left, 74), below
-          ? below(x, Math.max(y + r, floor), height) : "",
-          held && own.hand > 0 ? line(x, y, x, 0)
-            : arrow("weight", x, y - r - 14 - 3 * Math.sqrt(held ? load : 1), 0,
-            10 + 3 * Math.sqrt(held ? load : 1)),
-          arrow(`push m-${model}`, x + r + 12, floor, 0,
-            (-100 * Math.sqrt(load)) / Math.sqrt(shown.most))),
+        clipped(0, 0, left, height, table(0, floor, left, 74), above,
+          below ? below(x, Math.max(y + r, floor), height) : "",
+          arrow(`push m-${model}`, x + r + 12, floor, 0, -100 * Math.sqrt(load / shown.most))),
         view.grab(what, ball(model, x, y, r)),
-        shown === NEAR ? [lens(model, 44, 46, -gap, 40, 12 * r),
-          label("× 12", 90, 22, "start", "tick")] : "",
-        chart.picture, mark(model, chart.sx(seen[0]), chart.sy(seen[1]), 7),
+        shown === NEAR
+          ? [through(44, 46, 40, depth), label(`× ${MORE}`, 90, 22, "start", "tick")] : "",
+        path([[box.right, sy(0)], [sx(0), sy(0)], [sx(0), box.top]], "allowed"), picture,
+        mark(model, sx(within(shown.low, gap, shown.high)),
+          sy(Math.min(1.05 * shown.most, load)), 7),
       ],
-      words: `${doing}: ${text}.`,
+      words: `${held ? hold : "Let go"}: gap ${number(gap, 2)} r, force ${number(load, 2)} m g.`,
       values: { gap, load },
     };
   }
-  return { height: () => 300, start: () => ({ hand }), draw, ...about };
+  return { height: (width) => (width < 480 ? 260 : 300), start: () => ({ hand }), draw, ...about };
 }
 
 const wall = () => ({ gap: () => 0, curve: [[WIDE.high, 0], [0, 0], [0, 1.07 * WIDE.most]] });
@@ -100,8 +94,7 @@ function ramp({ stiffness, damping }) {
 function rounded({ impedance: d, dt }) {
   const [solref, solimp] = soft_defaults(0, dt, null, [2 * d - 1, d, 0.001, 0.5, 2]);
   const load = (deep) => {
-    const [ball] = column([R]);
-    const contact = new Contact(ball, FLOOR, 0, 1, deep * R);
+    const contact = new Contact(column([R])[0], FLOOR, 0, 1, deep * R);
     soften(contact, dt, solref, solimp);
     return contact.target / contact.softness / (G * dt);
   };
@@ -110,7 +103,7 @@ function rounded({ impedance: d, dt }) {
     if (middle === less || middle === more) return -more;
     return load(middle) > wanted ? gap(wanted, less, middle) : gap(wanted, middle, more);
   };
-  const depths = Array.from({ length: 60 }, (_, k) => (-1.2 * NEAR.low * (k + 1)) / 60);
+  const depths = Array.from({ length: 60 }, (_, k) => -0.02 * NEAR.low * (k + 1));
   const curve = [[NEAR.high, 0], [0, 0], ...depths.map((each) => [-each, load(each)])];
   return { gap, curve, most: load(-NEAR.low) };
 }
@@ -125,8 +118,8 @@ export const figures = {
     caption: "A ramp beside the wall: the ball must get in before the table pushes.",
     hand: -0.5, knobs: ["stiffness"],
     clock: () => ({ end: SECONDS, rate: 0.25 }),
-    buttons: (view) => [view.running ? ["Stop", view.stop]
-      : ["Let go", () => view.play(view.own.time)]],
+    buttons: (view) =>
+      [view.running ? ["Stop", view.stop] : ["Let go", () => view.play(view.own.time)]],
   }),
   "corner-soft": corner("soft", rounded, {
     title: "soft rounds the corner off",

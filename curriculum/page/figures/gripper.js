@@ -2,14 +2,15 @@
  * With map=1 time step and stiffness can be chosen in a field of what becomes of it, and the
  * spring's force be taken from the end of the step. Values: what it does, how deep the left finger
  * is in the cup at the worst and by how much that trembles in the last quarter [r]. */
-import { axis, ball, circle, clipped, label, line, number, path, plot, rect } from "../draw.js";
-import { svg, table, tens, through } from "../draw.js";
+import { ball, circle, clipped, label, line, number, path, plot, rect, svg } from "../draw.js";
+import { table, tens, through, timeSteps, within } from "../draw.js";
 import { critical_dt } from "../contact.js";
 import { column, kept, R, record } from "../runs.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
 const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s; what is judged comes after this share
 const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be chosen
+const SEEN = 0.32; // m: who is further away has flown apart
 const FATES = ["holds still", "trembles", "flies apart"];
 
 function squeeze(dt, stiffness, late, x, seconds) {
@@ -20,17 +21,19 @@ function squeeze(dt, stiffness, late, x, seconds) {
   return record(late ? "implicit" : "penalty", balls, knobs, steps, push);
 }
 
-// How deep finger and cup are in one another, row by row [r], and what happens in the end.
+// How deep finger and cup are in one another, row by row [r], what happens in the end, and `last`,
+// the row up to which all can be seen.
 function judged({ n, x, y, steps }) {
   const depths = Array.from({ length: steps + 1 }, (_, row) => {
     const [dx, dy] = [x[n * row + 1] - x[n * row], y[n * row + 1] - y[n * row]];
     return 2 - Math.sqrt(dx * dx + dy * dy) / R;
   });
-  const last = depths.slice(Math.floor(LATE * (steps + 1)));
-  const [most, least] = [Math.max(...last), Math.min(...last)];
-  const gone = !x.subarray(-n).every((each) => Math.abs(each) < 0.3);
-  const fate = gone ? 2 : most - least < 1e-5 ? 0 : 1;
-  return { depths, deepest: most, trembling: most - least, fate };
+  const late = depths.slice(Math.floor(LATE * (steps + 1)));
+  const [most, least] = [Math.max(...late), Math.min(...late)];
+  const gone = x.findIndex((each, k) => !(Math.abs(each) < SEEN && y[k] < SEEN));
+  const fate = gone >= 0 ? 2 : most - least < 1e-5 ? 0 : 1;
+  const last = gone < 0 ? steps : Math.floor(gone / n);
+  return { depths, deepest: most, trembling: most - least, fate, last };
 }
 
 const squeezed = kept((dt, k, late, ...x) => {
@@ -48,118 +51,115 @@ const field = kept((late) =>
     return judged(squeeze(dt, share(K, (j + 0.5) / ROWS), late, AT, 0.6)).fate;
   }));
 
-// Fingers and cup over the table, seen from further away once they have flown apart.
-function picture({ n, x, y, steps }, row, { width, floor }) {
-  const far = Math.max(0.32, ...Array.from(x.subarray(n * row, n * (row + 1)),
-    Math.abs).map((each) => Math.min(each, 99)));
-  const scale = (width / 2 - 4) / (far + R); // px for 1 m
-  const r = Math.max(5, R * scale);
-  const at = Array.from({ length: n }, (_, i) =>
-    [x, y].map((all) => Math.min(99, Math.max(-99, all[n * row + i] || 0))));
-  const places = at.map(([px, py]) => [width / 2 + px * scale, floor - Math.max(R, py) * scale]);
+// Fingers and cup over the table, and where the left one touches it.
+function picture({ n, x, y }, row, { width, floor }) {
+  const scale = (width / 2 - 4) / (SEEN + R); // px for 1 m
+  const r = R * scale;
+  const places = Array.from({ length: n }, (_, i) =>
+    [width / 2 + x[n * row + i] * scale, floor - Math.max(R, y[n * row + i]) * scale]);
   const [[leftX, leftY], [cupX, cupY], [rightX, rightY]] = places;
-  const arms = far > 0.32 ? [] : [
-    rect(0, leftY - 0.3 * r, leftX, 0.6 * r, "arm"), rect(rightX, rightY - 0.3 * r, width - rightX,
-      0.6 * r, "arm"),
-  ];
-  const ten = 10 ** Math.floor(Math.log10((0.3 * width) / scale));
-  return { r, touch: [(leftX + cupX) / 2, cupY], drawn: [
-    table(0, floor, width, 24), arms,
+  return { touch: [(leftX + cupX) / 2, cupY], drawn: [
+    table(0, floor, width, 24),
+    rect(0, leftY - 0.3 * r, leftX, 0.6 * r, "arm"),
+    rect(rightX, rightY - 0.3 * r, width - rightX, 0.6 * r, "arm"),
     places.map(([px, py], i) => ball(i === 1 ? "penalty" : "fixed", px, py, r, "plainly ball")),
     svg`<ellipse cx=${cupX} cy=${cupY - 0.72 * r} rx=${0.62 * r} ry=${0.15 * r} class="cup"/>`,
-    far > 0.32 ? [line(8, 22, 8 + ten * scale, 22, "rule"),
-      label(`${number(ten, 1)} m`, 8, 16, "start", "tick")] : "",
   ] };
 }
 
 /* Where the left finger touches the cup, enlarged so much that the overlap fills it: the cup's edge
  * stays, the finger's trembles, and the trail of its last places stays with it. */
-function lens(x, y, size, { depths, deepest, trembling }, row) {
+function lens(x, y, size, { depths, fate, ...late }, row) {
+  const { deepest, trembling } = fate === 2 ? { deepest: 0.05, trembling: 0 } : late;
   const times = Math.min(0.9 / Math.max(deepest, 1e-6),
     0.5 / Math.max(trembling, 1e-9)) * size; // px for 1 r
   const edge = x - 0.5 * Math.min(0.9 * size, deepest * times);
-  const tip = (k) => edge + Math.min(2 * size, depths[k] * times);
+  const tip = (k) => edge + within(-size, depths[k] * times, 2 * size);
   const big = 40 * size;
   const before = [8, 6, 4, 2].filter((back) => row >= back).map((back) =>
     line(tip(row - back), y - size, tip(row - back), y + size, "trail"));
   return [
     through(x, y, size, circle(edge + big, y, big, "magnified m-penalty"),
       circle(tip(row) - big, y, big, "magnified m-fixed"), before),
-    label(`× ${number(times / 40, 1)}`, x, y + size + 20, "middle", "tick"),
+    label(`× ${number(times / 40, 2)}`, x, y + size + 20, "middle", "tick"),
   ];
 }
 
-function choices(view, top, fate) {
-  const { own, width, height } = view;
-  const chart = plot([0, top, width, height - top], {
-    x: { ...axis(DT, "time step dt (ms)",
-      ...[0.5, 1, 2, 4, 8].map((ms) => [ms / 1000, String(ms)])), log: true },
-    y: { ...tens(4, 6, "stiffness k (N/m)"), domain: K },
-    under: ({ sx, sy }) => field(own.late).map((each, cell) => {
-      const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)];
-      const [x0, x1] = [i, i + 1].map((k) => sx(share(DT, k / COLUMNS)));
-      const [y0, y1] = [j + 1, j].map((k) => sy(share(K, k / ROWS)));
-      return each ? rect(x0, y0, x1 - x0 + 0.3, y1 - y0 + 0.3, `fate-${each}`) : "";
-    }),
+function choices(view, top) {
+  const { own } = view;
+  const { sx, sy, box, picture } = plot(view, {
+    top, x: timeSteps(...DT), y: { ...tens(4, 6, "stiffness k (N/m)"), domain: K },
   });
-  const { sx, sy, box } = chart;
-  const limit = Array.from({ length: 40 }, (_, k) => share(K, k / 39)).map((k) =>
-    [critical_dt(MASS[0], k, DAMPING), k]);
-  const inside = limit.filter(([dt]) => dt > DT[0] && dt < DT[1]).map(([dt, k]) => [sx(dt), sy(k)]);
+  const cells = field(own.late).map((each, cell) => {
+    const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)];
+    const [x0, x1] = [i, i + 1].map((k) => sx(share(DT, k / COLUMNS)));
+    const [y0, y1] = [j + 1, j].map((k) => sy(share(K, k / ROWS)));
+    return each ? rect(x0, y0, x1 - x0 + 0.3, y1 - y0 + 0.3, `fate-${each}`) : "";
+  });
+  const limit = Array.from({ length: 40 }, (_, k) => share(K, k / 39))
+    .map((k) => [critical_dt(MASS[0], k, DAMPING), k])
+    .filter(([dt]) => dt > DT[0] && dt < DT[1]).map(([dt, k]) => [sx(dt), sy(k)]);
   const what = {
-    label: "time step and stiffness", text: `dt ${number(1000 * own.dt, 2)} ms, k ${number(own.stiffness, 2)} N/m: ${FATES[fate]}`,
-    value: ["dt", "stiffness"], low: [DT[0], K[0]], high: [DT[1], K[1]], step: [0.0002, 2000],
-    at: (x, y) => [sx.back(x), sy.back(y)], also: { time: 0 }, release: () => view.play(0),
+    label: "time step and stiffness", value: ["dt", "stiffness"], low: [DT[0], K[0]],
+    high: [DT[1], K[1]], step: [0.0002, 2000], at: (x, y) => [sx.back(x), sy.back(y)],
+    also: { time: 0 }, release: () => view.play(0),
   };
   const names = own.late ? [["holds", 0.2, 0.4]]
     : [["holds", 0.08, 0.86], ["trembles", 0.6, 0.8], ["flies apart", 0.7, 0.25]];
   return [
-    chart.picture, own.late ? "" : path(inside, "rule"),
-    names.map(([name, across, down]) =>
-      label(name, box.left + across * (box.right - box.left),
-        box.top + down * (box.bottom - box.top))),
+    cells, picture, own.late ? "" : path(limit, "rule"),
+    names.map(([name, across, down]) => label(name, box.left + across * (box.right - box.left),
+      box.top + down * (box.bottom - box.top))),
     view.point(sx(own.dt), sy(own.stiffness), what),
   ];
 }
 
+const runOf = ({ own }) =>
+  squeezed(own.dt, own.stiffness, own.late, own.x0, own.x1, own.x2);
+
 function draw(view) {
   const { own, width } = view;
-  const run = squeezed(own.dt, own.stiffness, own.late, own.x0, own.x1, own.x2);
+  const run = runOf(view);
   const { fate, deepest, trembling } = run;
-  const time = own.map && own.time > 0 ? own.time : LATE + own.time * (1 - own.map);
-  const row = Math.min(run.run.steps, Math.floor(time / own.dt));
+  const begins = own.map && (own.time > 0 || fate === 2) ? 0 : LATE; // s
+  const row = Math.min(run.last, Math.floor((begins + own.time) / own.dt));
   const narrow = width < 480;
-  const place = narrow ? { width, floor: 150 } : { width: 0.56 * width, floor: 222 };
+  const place = narrow ? { width, floor: 104 } : { width: 0.56 * width, floor: 180 };
   const { drawn, touch } = picture(run.run, row, place);
-  const [x, y, size] = narrow ? [width / 2, 290, 104]
+  const [x, y, size] = narrow ? [width / 2, 236, 90]
     : [0.79 * width, 138, Math.min(124, 0.2 * width)];
   const moves = fate === 1 ? `, by ${number(trembling, 2)} r` : "";
-  const told = fate < 2 ? `It ${FATES[fate]}${moves}; finger and cup overlap by ${number(deepest, 2)} r` : "It flies apart";
+  const told = fate === 2 ? "it flies apart"
+    : `it ${FATES[fate]}${moves}; finger and cup overlap by ${number(deepest, 2)} r`;
+  const [ms, k] = [1000 * own.dt, own.stiffness].map((each) => number(each, 2));
   return {
     picture: [
-      clipped(0, 0, place.width, narrow ? 176 : 250, drawn),
-      fate < 2 ? [line(...touch, x - (narrow ? 0 : size), y - (narrow ? size : 0), "grid"),
-        lens(x, y, size, run, row)] : "",
-      own.map ? choices(view, narrow ? 424 : 300, fate) : "",
+      clipped(0, 0, place.width, place.floor + 24, drawn),
+      line(...touch, x - (narrow ? 0 : size), y - (narrow ? size : 0), "grid"),
+      lens(x, y, size, run, row),
+      own.map ? choices(view, narrow ? 360 : 300) : "",
     ],
-    words: `dt = ${number(1000 * own.dt, 2)} ms, k = ${number(own.stiffness, 2)} N/m${own.late ? ", force from the end" : ""}: ${told}.`,
+    words: `dt = ${ms} ms, k = ${k} N/m${own.late ? ", force from the end" : ""}: ${told}.`,
     values: { does: FATES[fate], deepest, trembling, row },
   };
 }
 
+const toEnd = (view) => Math.min(SECONDS, runOf(view).last * view.own.dt);
+
 export const figure = {
   title: "A gripper that trembles",
-  caption: "Two fingers squeeze a cup, in slow motion. The lens shows where the left one touches it.",
-  height: (width, { map } = {}) => (width < 480 ? 420 : 290) + (map ? 300 : 0),
+  caption: "Two fingers squeeze a cup, in slow motion; the lens shows where the left touches it.",
+  height: (width, { map } = {}) => (width < 480 ? 352 : 290) + (map ? 260 : 0),
   start: () => ({ dt: 0.004, map: 0, late: 0, x0: AT[0], x1: AT[1], x2: AT[2] }),
-  clock: ({ own }) =>
-    (own.map ? { end: SECONDS, rate: 0.1 }
+  clock: (view) =>
+    (view.own.map ? { end: toEnd(view), rate: 0.1 }
       : { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true }),
-  buttons: (view) => [
-    view.running ? ["Stop", view.stop] : [view.own.map ? "Squeeze" : "Play", () => view.play()],
-    ...(view.own.map ? [["Force from the end of the step", () =>
-      Object.assign(view.own, { late: 1 - view.own.late, time: 0 }),
-      String(Boolean(view.own.late))]] : []),
-  ],
+  buttons: (view) => {
+    const { own } = view;
+    const play = [own.map ? "Squeeze" : "Play", () => view.play()];
+    const change = () => Object.assign(own, { late: 1 - own.late, time: 0 });
+    const late = ["Force from the end of the step", change, String(Boolean(own.late))];
+    return [view.running ? ["Stop", view.stop] : play, ...(own.map ? [late] : [])];
+  },
   draw,
 };

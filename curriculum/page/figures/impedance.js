@@ -12,32 +12,31 @@ function draw(view) {
   const at = (x) => impedance(x * WIDTH, solimp);
   const d = at(depth);
   const [left, floor] = [Math.round(0.4 * width), height - 60];
-  const r = Math.min(50, 0.22 * left);
-  const chart = plot([left + 12, 0, width - left - 12, height], {
+  const [r, x] = [Math.min(50, 0.22 * left), left / 2 - 16];
+  const ticks = [solimp[0], at(0.5), d1].map((v) => [v, v.toFixed(d1 > 0.99 ? 4 : 3)]);
+  const points = Array.from({ length: 61 }, (_, k) => [k / 40, at(k / 40)]);
+  const { sx, sy, box, picture } = plot(view, {
+    left: left + 12,
     x: axis([0, MOST], "depth / mm", 0, 0.5, 1, 1.5),
-    y: axis([solimp[0] - 0.01, d1 + 0.01], "impedance d",
-      ...[solimp[0], at(0.5), d1].map((v) => [v, v.toFixed(d1 > 0.99 ? 4 : 3)])),
-    lines: [{ model: "soft", points: Array.from({ length: 61 }, (_, k) => [k / 40, at(k / 40)]),
-      kind: "plainly" }],
+    y: axis([solimp[0] - 0.01, d1 + 0.01], "impedance d", ...ticks),
+    lines: [{ model: "soft", points, kind: "plainly" }],
   });
   const share = `${(100 * d).toPrecision(d > 0.99 ? 4 : 3)} %`;
-  const text = `${number(depth * WIDTH * 1000, 2)} mm deep`;
-  const what = { label: "the depth", text: `${text}: ${share}`, value: "depth", low: 0, high: MOST,
-    step: 0.05 };
-  const x = left / 2 - 16;
+  const what = { label: "the depth", value: "depth", low: 0, high: MOST, step: 0.05 };
   return {
     picture: [
       clipped(0, 0, left, height, table(0, floor, left, 60)),
       view.grab({ ...what, at: (_, y) => y / PRESS },
         ball("soft", x, floor + PRESS * depth - r, r)),
-      arrow("push m-soft weaker", x + r + 14, floor, 0, -HARD), arrow("push m-soft", x + r + 30,
-        floor, 0, -HARD * d),
-      label("hard", x + r + 14, floor + 22, "middle", "tick"), label(share, x + r + 26,
-        floor - HARD - 10, "middle"),
-      chart.picture, mark("soft", chart.sx(depth), chart.sy(d), 7),
-      view.point(chart.sx(depth), chart.box.bottom, { ...what, at: chart.sx.back }),
+      arrow("push m-soft weaker", x + r + 14, floor, 0, -HARD),
+      arrow("push m-soft", x + r + 30, floor, 0, -HARD * d),
+      label("hard", x + r + 14, floor + 22, "middle", "tick"),
+      label(share, x + r + 26, floor - HARD - 10, "middle"),
+      picture, mark("soft", sx(depth), sy(d), 7),
+      view.point(sx(depth), box.bottom, { ...what, at: sx.back }),
     ],
-    words: `${text[0].toUpperCase()}${text.slice(1)}, the contact gives ${share} of the acceleration that a hard one would give.`,
+    words: `${number(depth * WIDTH * 1000, 2)} mm deep, the contact gives ${share} of the ` +
+      "acceleration that a hard one would give.",
     values: { depth, d },
   };
 }
@@ -45,7 +44,7 @@ function draw(view) {
 export const figure = {
   title: "MuJoCo’s impedance",
   caption: "The deeper the ball, the larger its share of a hard contact’s answer.",
-  height: () => 260,
+  height: (width) => (width < 480 ? 230 : 260),
   knobs: ["impedance"],
   start: () => ({ depth: 0.5 }),
   draw,

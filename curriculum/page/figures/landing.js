@@ -23,53 +23,57 @@ const landing = kept((share, dt, baumgarte, restitution) => {
   const depth = -Math.min(0, ...larger.points.slice(0, 4).map(([, gap]) => gap));
   const [bounce, bias] = [restitution * ARRIVES, (baumgarte / dt) * depth * R];
   const sum = flight(-depth, bounce + bias, { ...knobs, restitution: 0 }, seconds);
-  return { seconds, fall, depth, bounce, bias, larger, sum, bounces: restitution > 0 };
+  return { seconds, fall, depth, bounce, bias, larger, sum };
 });
 
 function draw(view) {
-  const { share, dt, baumgarte, restitution } = view.own;
-  const { seconds, fall, depth, bounce, bias, larger, sum, bounces } = landing(share, dt,
-    baumgarte, restitution);
-  const { width, height } = view;
+  const { own: { share, dt, baumgarte, restitution }, width, height } = view;
+  const { seconds, fall, depth, bounce, bias, larger, sum } =
+    landing(share, dt, baumgarte, restitution);
+  const bounces = restitution > 0;
   const [left, floor] = [Math.round(0.38 * width), height - GROUND];
-  const [px, r, x] = [FALL / fall, Math.min(42, 0.22 * left),
-    left / 2]; // px for a gap of 1 r; for a radius
+  const [px, r, x] = [FALL / fall, Math.min(42, 0.22 * left), left / 2]; // px: for a gap of 1 r
   const top = 1.15 * Math.max(0.5 * fall, larger.high, bounces ? sum.high : 0);
-  const chart = plot([left + 8, 0, width - left - 8, height], {
+  const lines = [{ model: "lcp", points: larger.points, kind: "plainly" }];
+  if (bounces) lines.push({ model: "lcp", points: sum.points, kind: "thin dotted" });
+  const { picture } = plot(view, {
+    left: left + 8,
     x: axis([0, seconds], "time (s)", ...steps(0, seconds, 3)),
-    y: axis([-1.2 * fall, top], "gap / r", ...steps(0, top, 3)), rules: [{ y: 0 }],
-    lines: [{ model: "lcp", points: larger.points, kind: "plainly" },
-      ...(bounces ? [{ model: "lcp", points: sum.points, kind: "thin dotted" }] : [])],
+    y: axis([-1.2 * fall, top], "gap / r", ...steps(0, top, 3)), zero: true, lines,
   });
-  const wish = (name, v, at) => (v > 0 ? [
-    arrow(v < Math.max(bounce, bias) ? "push m-lcp weaker"
-      : "push m-lcp", at, floor, 0, -Math.min(floor - 30, ARROW * v)),
-    label(name, Math.max(28, at), floor + GROUND - 10, "middle"),
-  ] : "");
-  const aside = Math.min(r + 24, x - 24);
-  const text = `${number(100 * share, 2)} % of a step after a look`;
+  const wish = (name, v, aside) => {
+    if (!(v > 0)) return "";
+    const kind = v < Math.max(bounce, bias) ? "weaker" : "";
+    const at = x + aside * Math.min(r + 24, x - 24);
+    return [arrow(`push m-lcp ${kind}`, at, floor, 0, -Math.min(floor - 30, ARROW * v)),
+      label(name, Math.max(28, at), floor + GROUND - 10, "middle")];
+  };
   const what = {
-    label: "the ball: how deep it is found", text, value: "share", low: 0, high: 0.99, step: 0.05,
+    label: "the ball: how deep it is found", value: "share", low: 0, high: 0.99, step: 0.05,
     at: (_, y) => -y / FALL,
   };
-  const wishes = `: bounce ${number(bounce)} m/s, bias ${number(bias)} m/s. The larger lifts it ${number(larger.high)} r, their sum (dotted) ${number(sum.high)} r.`;
+  const hops = bounces ? `: bounce ${number(bounce)} m/s, bias ${number(bias)} m/s. The larger ` +
+    `lifts it ${number(larger.high)} r, their sum (dotted) ${number(sum.high)} r.`
+    : `; it hops ${number(larger.high, 2)} r high.`;
   return {
     picture: [
       clipped(0, 0, left, height, table(0, floor, left, GROUND),
         label(`gaps × ${number(px / r, 2)}`, 4, 16, "start", "tick"),
-        ball("lcp", x, floor - share * FALL - r, r, "ghost"), wish("bounce", bounce,
-          x - aside), wish("bias", bias, x + aside)),
-      view.grab(what, ball("lcp", x, floor + depth * px - r, r)), chart.picture,
+        ball("lcp", x, floor - share * FALL - r, r, "ghost"),
+        wish("bounce", bounce, -1), wish("bias", bias, 1)),
+      view.grab(what, ball("lcp", x, floor + depth * px - r, r)), picture,
     ],
-    words: `It lands ${text} and is found ${number(depth, 2)} r deep${bounces ? wishes : `; it hops ${number(larger.high, 2)} r high.`}`,
+    words: `It lands ${number(100 * share, 2)} % of a step after a look and is found ` +
+      `${number(depth, 2)} r deep${hops}`,
     values: { depth, bounce, bias, larger: larger.high, sum: sum.high },
   };
 }
 
 export const figure = {
   title: "A landing within a step",
-  caption: "The dashed ball is the last look before the landing. The sooner after a look it lands, the deeper the next one finds it.",
-  height: () => 290,
+  caption: "The dashed ball is the last look before the landing. The sooner after it the ball "
+    + "lands, the deeper the next look finds it.",
+  height: (width) => (width < 480 ? 260 : 290),
   knobs: ["baumgarte", "restitution"],
   start: () => ({ share: 0.327, restitution: 0 }), // the chapter's own drop
   draw,

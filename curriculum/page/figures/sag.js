@@ -19,8 +19,8 @@ const sags = kept((count, knobs) => {
     return ys.map((y, i) => (i ? 2 - (y - ys[i - 1]) / R : 1 - y / R));
   };
   const [before, depths] = [depthsIn(ROWS - 9), depthsIn(ROWS)];
-  return { depths, rests: depths.every((deep, i) =>
-    Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9) };
+  const still = (deep, i) => Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9;
+  return { depths, rests: depths.every(still) };
 });
 
 function draw(view) {
@@ -36,26 +36,24 @@ function draw(view) {
   const r = Math.min(30, (height - 60) / (2 * balls), 0.4 * left);
   const floor = height - 46;
   const at = (i) => floor - 2 * i * r; // of a contact
-  const { picture } = plot([left, 0, width - left, height], {
-    x: axis([0, most], `overlap in ${power ? `${tenTo(power)} r` : "r"}`,
-      ...ticks), y: { domain: [0, 1], ticks: [] },
-    rules: [{ x: 0 }],
-    under: ({ sx }) => [
-      depths.map((deep, i) => rect(sx(0), at(i) - 0.6 * r, sx(Math.max(0, deep)) - sx(0), 0.8 * r,
-        "bar-fill m-lcp")),
-      law ? path(law.map((deep, i) => [sx(deep), at(i) - 0.2 * r]), "law-line") : "",
-      law ? label("the law", sx(law[1]) + 8, at(1) - 0.2 * r + 4) : "",
-    ],
+  const { sx, box, picture } = plot(view, {
+    left, x: axis([0, most], `overlap in ${power ? `${tenTo(power)} r` : "r"}`, ...ticks),
+    y: axis([0, 1], ""),
   });
   const says = law ? `the law says ${number(law[0], 2)} r`
     : "there is no law: nothing opens an overlap";
   return {
     picture: [
-      table(0, floor, left, 30), Array.from({ length: balls }, (_, i) =>
-        ball("lcp", left / 2, at(i) - r, r)), picture,
-      line(left / 2 + r, floor, left + 20, floor, "grid"),
+      table(0, floor, left, 30), line(left / 2 + r, floor, left + 20, floor, "grid"),
+      depths.map((_, i) => ball("lcp", left / 2, at(i) - r, r)),
+      depths.map((deep, i) =>
+        rect(sx(0), at(i) - 0.6 * r, sx(Math.max(0, deep)) - sx(0), 0.8 * r, "bar-fill m-lcp")),
+      law ? [path(law.map((deep, i) => [sx(deep), at(i) - 0.2 * r]), "law-line"),
+        label("the law", sx(law[1]) + 8, at(1) - 0.2 * r + 4)] : "",
+      picture, line(sx(0), box.top, sx(0), box.bottom, "rule"),
     ],
-    words: `The lowest of ${balls} balls is ${number(depths[0], 2)} r deep${rests ? "" : ", and still moves"}; ${says}.`,
+    words: `The lowest of ${balls} balls is ${number(depths[0], 2)} r deep` +
+      `${rests ? "" : ", and still moves"}; ${says}.`,
     values: { depths, law, rests },
   };
 }
@@ -63,7 +61,7 @@ function draw(view) {
 export const figure = {
   title: "What unfinished sweeps leave",
   caption: "A bar for every contact of a column at rest: how deep it is. The line is the law.",
-  height: () => 320,
+  height: (width) => (width < 480 ? 280 : 320),
   knobs: ["iters", "baumgarte", "dt", "warm", "balls"],
   start: () => ({ balls: 8 }),
   draw,

@@ -12,13 +12,13 @@ const wayOf = (v) => (v > 1e-12 ? "separating" : v < -1e-12 ? "closing" : "neith
 function draw(view) {
   const { x, y, vx, vy } = view.own; // of ball a; ball b lies still in the middle
   const { width, height } = view;
-  const [scale, floor] = [Math.min(680, width / 1.1), height - GROUND]; // px for 1 m
+  const [scale, floor] = [Math.min(580, width / 1.1), height - GROUND]; // px for 1 m
   const place = (toX, toY) => [width / 2 + toX * scale, floor - toY * scale];
   const all = detect_contacts(column([y, R], { x: [x, 0], vx: [vx, 0], vy: [vy, 0] }), Infinity);
-  const contacts = [all[0], all[2]].map((c) => ({ nx: c.nx, ny: c.ny, depth: c.depth / R,
-    v_n: c.v_n() }));
-  const told = contacts.map(({ depth, v_n }, k) =>
-    `a and ${k ? "b" : "table"}: depth ${number(depth)} r, v_n ${number(v_n)} m/s, ${wayOf(v_n)}`);
+  const contacts = [all[0], all[2]].map((c) =>
+    ({ nx: c.nx, ny: c.ny, depth: c.depth / R, v_n: c.v_n() }));
+  const told = contacts.map(({ depth, v_n }, k) => `Contact of a and ${k ? "b" : "table"}: ` +
+    `depth ${number(depth)} r, v_n ${number(v_n)} m/s, ${wayOf(v_n)}.`);
   const normals = contacts.map(({ nx, ny }, k) => {
     const [fromX, fromY] = k ? place(nx * R, R + ny * R) : place(x, 0);
     const [dx, dy] = [0.7 * R * scale * nx, -0.7 * R * scale * ny];
@@ -27,34 +27,32 @@ function draw(view) {
   });
   const [[ax, ay], [bx, by], r] = [place(x, y), place(0, R), R * scale];
   const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);
-  const tip = [within(10, tipX, width - 10), within(10, tipY, height - 10)]; // none is lost
   const there = {
-    label: "ball a", text: told.join("; "), value: ["x", "y"], low: [-SIDE, 0], high: [SIDE, TOP],
-    step: 0.01, at: (toX, toY) => [(toX - width / 2) / scale, (floor - toY) / scale],
+    label: "ball a", value: ["x", "y"], low: [-SIDE, 0], high: [SIDE, TOP], step: 0.01,
+    at: (toX, toY) => [(toX - width / 2) / scale, (floor - toY) / scale],
   };
   const fast = {
     label: "the velocity of ball a", value: ["vx", "vy"], low: [-FAST, -FAST], high: [FAST, FAST],
-    text: `${number(vx, 2)} m/s to the right, ${number(vy, 2)} m/s up; ${told.join("; ")}`,
     step: 0.1, at: (toX, toY) => [toX / scale / ARROW, -toY / scale / ARROW],
   };
   return {
     picture: [
-      table(0, floor, width, GROUND), ball("fixed", bx, by, r, "body"), label("b", bx, by + 5,
-        "middle", "on-ball"),
+      table(0, floor, width, GROUND),
+      ball("fixed", bx, by, r, "body"), label("b", bx, by + 5, "middle", "on-ball"),
       view.grab(there, [ball("exact", ax, ay, r, "ball plainly"),
         label("a", ax, ay - 0.5 * r, "middle", "on-ball")]),
-      normals, arrow("weight", ax, ay, ARROW * vx * scale, -ARROW * vy * scale), view.point(...tip,
-        fast),
+      normals, arrow("weight", ax, ay, ARROW * vx * scale, -ARROW * vy * scale),
+      view.point(within(10, tipX, width - 10), within(10, tipY, height - 10), fast),
     ],
-    words: told.map((each) => `Contact of ${each}.`).join(" "),
+    words: told.join(" "),
     values: { contacts },
   };
 }
 
 export const figure = {
   title: "The signs of a contact",
-  caption: "The normal n points to a, the depth is positive in an overlap, and v_n while the two separate.",
-  height: (width) => (width < 480 ? 220 : 330),
+  caption: "The normal n points to a, depth is positive in an overlap, v_n while they separate.",
+  height: (width) => (width < 480 ? 200 : 280),
   start: () => ({ x: 0.24, y: 0.3, vx: 0.3, vy: -1.2 }),
   draw,
 };

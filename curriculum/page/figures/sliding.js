@@ -1,6 +1,7 @@
-/* A ball slides off a held one: the worst error of its place over the step, with lcp of first order
- * and with leapfrog of second. Values: the errors at the chosen step [r], and those of all steps. */
-import { axis, ball, label, mark, number, path, plot, tens } from "../draw.js";
+/* A ball slides off a held one: the worst error of its place over the step, with lcp of first
+ * order and with leapfrog of second. Values: the errors at the chosen step [r], and those of all
+ * steps. */
+import { axis, ball, label, mark, number, path, plot, tens, timeSteps } from "../draw.js";
 import { column, kept, R, record } from "../runs.js";
 
 const BOTH = ["lcp", "leapfrog"];
@@ -11,8 +12,8 @@ const STEPS = Array.from({ length: 7 }, (_, k) => 0.0005 * 2 ** k); // s
 const placesOf = kept((model, lean, dt) => {
   const [x, y] = [2 * R * Math.sin(lean), 2 * R * Math.cos(lean)];
   const balls = column([HEIGHT, HEIGHT + y], { x: [0, x], mass: [Infinity, 1] });
-  const run = record(model, balls, { dt, baumgarte: 0.2, iters: 20, warm: 0 },
-    Math.floor(SECONDS / dt + 1e-9));
+  const knobs = { dt, baumgarte: 0.2, iters: 20, warm: 0 };
+  const run = record(model, balls, knobs, Math.floor(SECONDS / dt + 1e-9));
   return Array.from(run.t, (_, k) => [run.x[2 * k + 1] / R, (run.y[2 * k + 1] - HEIGHT) / R]);
 });
 
@@ -28,44 +29,41 @@ const errorOf = kept((model, lean, dt) => {
 });
 
 function draw(view) {
-  const { own, width, height } = view;
-  const { dt, lean } = own;
+  const { own: { dt, lean }, width, height } = view;
   const all = BOTH.map((model) => STEPS.map((step) => [step, errorOf(model, lean, step)]));
   const now = BOTH.map((model) => errorOf(model, lean, dt));
   const slopes = all.map(([[, first]], k) =>
     STEPS.map((step) => [step, 0.45 * first * (step / STEPS[0]) ** (k + 1)]));
   const left = Math.round(0.34 * width);
-  const chart = plot([left, 0, width - left, height], {
-    x: { ...axis([STEPS[0], 0.064], "time step dt (ms)",
-      ...[0.5, 2, 8, 32].map((ms) => [ms / 1000, String(ms)])), log: true },
-    y: tens(-6, 1, "error / r", 2),
+  const { sx, sy, picture } = plot(view, {
+    left, x: timeSteps(STEPS[0], 0.064), y: tens(-6, 1, "error / r", 2),
     lines: [...slopes.map((points) => ({ model: "fixed", points, kind: "thin dotted" })),
       ...all.map((points, k) => ({ model: BOTH[k], points, marks: [1, 3, 5] }))],
   });
-  const { sx, sy } = chart;
   const scale = Math.min(44, left / 4.6); // px for 1 r
   const [x, y] = [1.15 * scale, 3.4 * scale];
   const place = ([toX, toY]) => [x + toX * scale, y - toY * scale];
   const slid = BOTH.map((model) => {
-    const seen = placesOf(model, lean, dt).map(place).filter(([to, down]) => to < left - scale
-      && down < height - scale);
+    const seen = placesOf(model, lean, dt).map(place)
+      .filter(([to, down]) => to < left - scale && down < height - scale);
     return [path(seen, `line m-${model}`), ball(model, ...seen[seen.length - 1], scale, "ghost")];
   });
   const what = {
-    label: "the sliding ball: where it starts", text: `${number((lean * 180) / Math.PI, 2)}°`, value: "lean",
-    low: 0.05, high: 0.8, step: 0.02, at: (toX, toY) => Math.atan2(toX - x, Math.max(1, y - toY)),
+    label: "the sliding ball: where it starts", value: "lean", low: 0.05, high: 0.8, step: 0.02,
+    at: (toX, toY) => Math.atan2(toX - x, Math.max(1, y - toY)),
   };
   const top = place([2 * Math.sin(lean), 2 * Math.cos(lean)]);
   return {
     picture: [
-      ball("fixed", x, y, scale, "body"), slid, view.grab(what,
-        ball("leapfrog", ...top, scale, "ball plainly")), chart.picture,
-      slopes.map((points, k) => label(`slope ${k + 1}`, sx(points[1][0]) + 4,
-        sy(points[1][1]) + 20, "start", "tick")),
+      ball("fixed", x, y, scale, "body"), slid,
+      view.grab(what, ball("leapfrog", ...top, scale, "ball plainly")), picture,
+      slopes.map(([, [step, error]], k) =>
+        label(`slope ${k + 1}`, sx(step) + 4, sy(error) + 20, "start", "tick")),
       now.map((error, k) => mark(BOTH[k], sx(dt), sy(error), 8)),
     ],
-    words: `With steps of ${number(1000 * dt)} ms the sliding ball is off by ${number(now[0], 2)} r with lcp ` +
-      `and by ${number(now[1], 2)} r with leapfrog.`,
+    words: `With steps of ${number(1000 * dt)} ms the ball that slides from ` +
+      `${number((lean * 180) / Math.PI, 2)}° is off by ${number(now[0], 2)} r with lcp and by ` +
+      `${number(now[1], 2)} r with leapfrog.`,
     values: { lcp: now[0], leapfrog: now[1], all },
   };
 }
@@ -73,7 +71,7 @@ function draw(view) {
 export const figure = {
   title: "Sliding: the error over the step",
   caption: "Half the step: lcp’s error is half as large, leapfrog’s a quarter.",
-  height: (width) => (width < 480 ? 320 : 340),
+  height: (width) => (width < 480 ? 290 : 340),
   knobs: ["dt"],
   start: () => ({ lean: 0.35 }),
   draw,

@@ -1,6 +1,7 @@
 /* The sweeps, contact after contact: a stack of three, its impulses as bars, the clamp at zero.
  * Values: contacts mended, the impulses [m g dt], whether the last change was clamped. */
-import { arrow, axis, ball, circle, clipped, label, number, plot, rect, table } from "../draw.js";
+import { arrow, axis, ball, circle, clipped, label, line, number, plot, rect } from "../draw.js";
+import { table } from "../draw.js";
 import { kept, visits } from "../runs.js";
 
 const [COUNT, PX, SWEEPS, UNIT] = [3, 34, 20, 24]; // UNIT: px of an arrow for a speed of g dt
@@ -10,45 +11,45 @@ const NAMES = ["ball 1 on the table", "ball 2 on ball 1", "ball 3 on ball 2"];
 // In m g dt and g dt: all balls have fallen for one step, the uppermost has a speed besides.
 const course = kept((top) => visits([1, 1, 1], [0, 0, 0], [-1, -1, top - 1], LAST));
 
-// A contact's impulse as a bar, and what the last change asked for.
-function bar({ contact, wanted, lam }, c, y, sx) {
-  const clamped = lam[c] === 0 && wanted < 0;
-  return [
-    rect(sx(0), y - 9, sx(lam[c]) - sx(0), 18, "bar-fill m-lcp"),
-    c === contact ? arrow("weight", sx(clamped ? 0 : lam[c] - wanted), y - 17, sx(wanted) - sx(0),
-      0) : "",
-    lam[c] > 0 ? label(number(lam[c]), sx(lam[c]) + 8, y + 6) : "",
-    c === contact && clamped ? label("clamped at 0", sx(0) + 8, y + 6) : "",
-  ];
-}
-
 function draw(view) {
   const { own, width, height } = view;
   const at = Math.min(LAST, Math.floor(own.time + 1e-9));
   const { contact, wanted, lam, vy } = course(own.top)[at];
+  const clamped = contact !== null && lam[contact] === 0 && wanted < 0;
   const heightOf = (c) => height - 42 - 2 * c * PX; // of a contact
   const left = Math.round(0.36 * width);
   const x = 0.4 * left;
-  const { picture } = plot([left, 0, width - left, height], {
-    x: axis([0, 3.6], "impulse / m g dt", 0, 1, 2, 3), y: { domain: [0, 1],
-      ticks: [] }, rules: [{ x: 0 }],
-    under: ({ sx }) => NAMES.map((_, c) => bar({ contact, wanted, lam }, c, heightOf(c) - 12, sx)),
+  const { sx, box, picture } = plot(view, {
+    left, x: axis([0, 3.6], "impulse / m g dt", 0, 1, 2, 3), y: axis([0, 1], ""),
   });
-  const each = (v, i) => arrow("weight", x + PX + 12, heightOf(i) - PX, 0, -UNIT * v);
-  const what = {
-    label: "the uppermost ball’s speed before the sweeps", text: `${number(own.top - 1, 2)} g dt`, value: "top",
-    low: -1, high: 3, step: 0.1, at: (_, y) => -y / UNIT,
+  // a contact's impulse, and what the last change asked for
+  const bar = (impulse, c) => {
+    const y = heightOf(c) - 12;
+    const last = c === contact;
+    const before = sx(clamped ? 0 : impulse - wanted);
+    return [
+      rect(sx(0), y - 9, sx(impulse) - sx(0), 18, "bar-fill m-lcp"),
+      last ? arrow("weight", before, y - 17, sx(wanted) - sx(0), 0) : "",
+      impulse > 0 ? label(number(impulse), sx(impulse) + 8, y + 6) : "",
+      last && clamped ? label("clamped at 0", sx(0) + 8, y + 6) : "",
+    ];
   };
-  const clamped = contact !== null && lam[contact] === 0 && wanted < 0;
-  const change = `${wanted < 0 ? "less" : "more"} by ${number(Math.abs(wanted), 2)}${clamped ? ", clamped at 0" : ""}`;
+  const what = {
+    label: "the uppermost ball’s speed before the sweeps", value: "top", low: -1, high: 3,
+    step: 0.1, at: (_, y) => -y / UNIT,
+  };
+  const change = `${wanted < 0 ? "less" : "more"} by ${number(Math.abs(wanted), 2)}`;
+  const end = clamped ? ", clamped at 0" : "";
   const told = contact === null ? "Gravity has acted and no contact has pushed"
-    : `Sweep ${Math.ceil(at / COUNT)}, ${NAMES[contact]}: ${change}`;
+    : `Sweep ${Math.ceil(at / COUNT)}, ${NAMES[contact]}: ${change}${end}`;
   return {
     picture: [
       clipped(0, 0, left, height, table(0, heightOf(0), left, 42)),
-      [0, 1].map((i) => ball("lcp", x, heightOf(i) - PX, PX, "body")), vy.map(each),
+      [0, 1].map((i) => ball("lcp", x, heightOf(i) - PX, PX, "body")),
+      vy.map((v, i) => arrow("weight", x + PX + 12, heightOf(i) - PX, 0, -UNIT * v)),
       view.grab(what, ball("lcp", x, heightOf(2) - PX, PX)),
-      contact === null ? "" : circle(x, heightOf(contact), 8, "event m-lcp"), picture,
+      contact === null ? "" : circle(x, heightOf(contact), 8, "event m-lcp"),
+      lam.map(bar), picture, line(sx(0), box.top, sx(0), box.bottom, "rule"),
     ],
     words: `${told}. The contacts carry ${lam.map((one) => number(one)).join(", ")} m g dt.`,
     values: { at, lam, clamped },
@@ -57,14 +58,16 @@ function draw(view) {
 
 export const figure = {
   title: "The sweeps, contact after contact",
-  caption: "Each contact mends itself and disturbs its neighbours. Drag the uppermost ball’s speed up: the clamp stops its contact from pulling.",
+  caption: "Each contact mends itself and disturbs its neighbours. Drag the uppermost ball’s speed "
+    + "up: the clamp stops its contact from pulling.",
   height: () => 270,
   start: () => ({ time: COUNT, top: 0 }),
   clock: () => ({ end: LAST, rate: 2 }),
-  buttons: (view) => [
-    view.running ? ["Stop", view.stop] : ["Play", () => view.play()],
-    ["One contact on", () => (view.own.time = (Math.floor(view.own.time) + 1) % (LAST + 1))],
-    ["From the start", () => (view.own.time = 0)],
-  ],
+  buttons: (view) => {
+    const { own } = view;
+    const next = () => (own.time = (Math.floor(own.time) + 1) % (LAST + 1));
+    return [view.running ? ["Stop", view.stop] : ["Play", () => view.play()],
+      ["One contact on", next]];
+  },
   draw,
 };
