@@ -12,7 +12,6 @@ import shutil
 import sys
 import types
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 
 from curriculum.commands import ROOT, to_install, write_whole
 
@@ -47,29 +46,24 @@ class Loops:
 
         Slow the first time. Raises ImportError where numba cannot be imported.
         """
+        path = self.folder / f"{self.name}.py"
         if self.module is None:
             if not self.kept.exists() and sys.stderr and sys.stderr.isatty():
                 print(f"compiling {self.name.rpartition('_')[0]}, once ...", file=sys.stderr)
             try:
-                self.module = self.compile(self.write(), examples)
+                if not path.exists():
+                    write_whole(path, self.source)
+                self.module = self.compile(examples, path)
                 if not self.kept.exists():
                     write_whole(self.kept, "")
             except ImportError:
                 raise
             except Exception:  # numba's own, pickle's, a full disk: forget what is kept
                 shutil.rmtree(self.folder, ignore_errors=True)
-                if self.module is None:
-                    self.module = self.compile(None, examples)
+                self.module = self.module or self.compile(examples)
         return self.module
 
-    def write(self) -> Path:
-        """The file of the source."""
-        path = self.folder / f"{self.name}.py"
-        if not path.exists():
-            write_whole(path, self.source)
-        return path
-
-    def compile(self, path, examples) -> types.ModuleType:
+    def compile(self, examples, path=None) -> types.ModuleType:
         """The module with its functions compiled, kept beside `path` if there is one."""
         import numba
 
@@ -82,5 +76,5 @@ class Loops:
                 keep = path is not None and name in examples
                 setattr(module, name, numba.njit(function, cache=keep, **self.options))
         for name, given in examples.items():
-            getattr(module, name).compile(tuple(numba.typeof(each) for each in given))
+            getattr(module, name).compile(tuple(map(numba.typeof, given)))
         return module

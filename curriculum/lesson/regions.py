@@ -15,13 +15,8 @@ from typing import NamedTuple
 
 from curriculum.commands import ROOT
 
-LITERATE = (  # what has regions
-    "contact.py",
-    "curriculum/exact.py",
-    "curriculum/implicit.py",
-    "curriculum/core.py",
-)
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
+LITERATE = (*WHOLE, "curriculum/exact.py", "curriculum/implicit.py", "curriculum/core.py")
 NAME = r"[a-z][a-z0-9_-]*"
 REGION = re.compile(
     rf"^ *# --- region: ({NAME}) ---\n(.*?)(^ *# --- endregion --- *$|(?=^# --- region: )|\Z)",

@@ -7,10 +7,11 @@ sqrt are rounded alike, so that a run has the same bits. What JavaScript lacks i
 import ast
 
 FORMS = {  # of a node: its fields in JavaScript
-    "Tuple": "[{elts}]", "List": "[{elts}]", "Subscript": "{value}[{slice}]",
-    "BinOp": "({left} {op} {right})", "UnaryOp": "({op}{operand})",
-    "IfExp": "({test} ? {body} : {orelse})", "AugAssign": "{target} {op}= {value};",
-    "While": "while ({test}) {body}", "If": "if ({test}) {body} else {orelse}",
+    "Tuple": "[{elts}]", "List": "[{elts}]", "Dict": "new Map({keys})",
+    "Subscript": "{value}[{slice}]", "BinOp": "({left} {op} {right})",
+    "UnaryOp": "({op}{operand})", "IfExp": "({test} ? {body} : {orelse})",
+    "AugAssign": "{target} {op}= {value};", "While": "while ({test}) {body}",
+    "If": "if ({test}) {body} else {orelse}",
     "Return": "return {value};", "Raise": "throw {exc};", "Break": "break;",
     "Add": "+", "Sub": "-", "Mult": "*", "Div": "/", "Pow": "**", "USub": "-", "Not": "!",
     "Lt": "<", "Gt": ">", "LtE": "<=", "GtE": ">=", "Eq": "===", "NotEq": "!==",
@@ -27,7 +28,7 @@ class Script(ast.NodeVisitor):
 
     def __init__(self, known):
         self.known = known  # {name: (file, node)} of what stands at the top of the files
-        self.declared, self.file, self.line = None, "", 0
+        self.local, self.file, self.line = set(), "", 0
 
     def generic_visit(self, node):
         self.line = getattr(node, "lineno", self.line)
@@ -56,12 +57,14 @@ class Script(ast.NodeVisitor):
         names = names[method:]
         usual = [""] * (len(names) - len(node.args.defaults))
         usual += [f" = {self.visit(each)}" for each in node.args.defaults]
-        self.declared = set(names)
-        body, local = self.part(node.body, "body"), sorted(self.declared - set(names))
-        self.declared = None
-        head = ", ".join(map(str.__add__, names, usual))
-        body = body.replace("{\n", f"{{\nlet {', '.join(local)};\n" if local else "{\n", 1)
+        local = ", ".join(sorted(stored(node) - set(names)))
+        self.local = {*names, *stored(node)}
+        body = self.part(node.body, "body").replace(
+            "{\n", f"{{\nlet {local};\n" if local else "{\n", 1
+        )
+        self.local = set()
         name = "constructor" if node.name == "__init__" else node.name
+        head = ", ".join(map(str.__add__, names, usual))
         return f"{'' if method else 'function '}{name}({head}) {body}"
 
     def visit_ClassDef(self, node):
@@ -70,12 +73,10 @@ class Script(ast.NodeVisitor):
 
     def visit_Assign(self, node):
         self.line, first = node.lineno, node.targets[0]
-        if self.declared is None:
+        if not self.local:
             return f"const {self.visit(first)} = {self.visit(node.value)};"
         if isinstance(first, ast.Subscript):
             return f"$.put({self.part([first.value, first.slice, node.value])});"
-        stored = [each for each in ast.walk(ast.Tuple(node.targets)) if isinstance(each, ast.Name)]
-        self.declared |= {each.id for each in stored if isinstance(each.ctx, ast.Store)}
         return " = ".join(map(self.visit, [*node.targets, node.value])) + ";"
 
     def visit_For(self, node):
@@ -108,9 +109,6 @@ class Script(ast.NodeVisitor):
             return node.attr
         return NAMES.get(text) or f"{self.visit(node.value)}.{node.attr}"
 
-    def visit_Dict(self, node):
-        return "new Map()" if not node.keys else self.refuse(ast.unparse(node))
-
     def visit_BoolOp(self, node):
         return f"({self.visit(node.op).join(map(self.visit, node.values))})"
 
@@ -132,13 +130,11 @@ class Script(ast.NodeVisitor):
     visit_GeneratorExp = visit_ListComp
 
     def visit_Call(self, node):
-        self.line, known = node.lineno, {*self.known, *NAMES, *(self.declared or ()), "max", "min"}
+        self.line, known = node.lineno, {*self.known, *NAMES, *self.local, "max", "min"}
         if isinstance(node.func, ast.Name) and node.func.id not in known:
             self.refuse(ast.unparse(node))
         name, args = self.visit(node.func), [self.visit(each) for each in node.args]
         defined = self.known.get(name, ("", None))[1]
-        if name == "len":
-            return f"{args[0]}.length"
         if name in ("max", "min"):
             if len(args) == 1:  # of a list, or what it is by default
                 more = [self.visit(each.value) for each in node.keywords]
@@ -156,13 +152,17 @@ class Script(ast.NodeVisitor):
         return f"{'new ' * new}{name}({', '.join(args)})"
 
 
+def stored(node):
+    """The names that a definition sets itself."""
+    names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
+    return {each.id for each in names if isinstance(each.ctx, ast.Store)}
+
+
 def uses(name, node):
     """The names that a definition uses and does not set itself, and those of contact.NAME."""
-    names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
-    own = {each.id for each in names if isinstance(each.ctx, ast.Store)} - {name}
-    own |= {each.arg for each in ast.walk(node) if isinstance(each, ast.arg)}
+    own = stored(node) - {name} | {each.arg for each in ast.walk(node) if isinstance(each, ast.arg)}
+    used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)} - own
     others = [each for each in ast.walk(node) if isinstance(each, ast.Attribute)]
-    used = {each.id for each in names} - own
     return used | {each.attr for each in others if ast.unparse(each.value) == "contact"}
 
 
