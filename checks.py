@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent
 sys.path[:0] = [str(ROOT), str(ROOT / "exercises")]
 
-from kit.script import FILES, checked, practise  # noqa: E402
+from kit.script import FILES, judged, practise  # noqa: E402
 
 from curriculum.commands import to_install  # noqa: E402
 
@@ -25,39 +25,27 @@ try:
 except ModuleNotFoundError:
     sys.exit(f"checks.py: {to_install('pytest')}")
 
-
-def unknown(command):
-    """What is wrong with the names after -k in a command line; "" if there are such exercises."""
-    known = ", ".join(Path(file).stem for file in FILES.values())
-    words = f"and or not checks.py test_exercise {known}"
-    chosen = " ".join(re.findall(r"(?:^| )-k[= ]?(.*?)(?= -|$)", command)).lower()
-    wrong = [name for name in re.findall(r"\w[\w.]*", chosen) if name not in words]
-    return f"-k {' '.join(wrong)}: no such exercise; there are {known}" if wrong else ""
-
-
-if words := unknown(" ".join(sys.argv)):
-    if __name__ == "__main__":
-        sys.exit(words)
+KNOWN = ", ".join(Path(file).stem for file in FILES.values())
+CHOSEN = " ".join(re.findall(r" -k[= ]?(.*?)(?= -|$)", " ".join(sys.argv))).lower()
+ALLOWED = f"and or not checks.py test_exercise {KNOWN}"
+WRONG = [name for name in re.findall(r"\w[\w.]*", CHOSEN) if name not in ALLOWED]
+if WRONG and __name__ != "__main__":
+    words = f"-k {' '.join(WRONG)}: no such exercise; there are {KNOWN}"
     raise pytest.Collector.CollectError(words)
 
 
 @pytest.mark.parametrize("name", FILES, ids=lambda name: Path(FILES[name]).stem)
 def test_exercise(name):
-    """A bet is done once it was read."""
-    state, words = checked(name, ROOT / FILES[name])
+    """A bet is right once it is made."""
+    state, words = judged(name, ROOT / FILES[name])
     if state == "blank":
         pytest.skip(f"{name}: {words}")
     if state == "wrong":
         pytest.fail(words, pytrace=False)
 
 
-def main():
-    """Run the checks. Returns the exit status."""
+if __name__ == "__main__":
     how = "-o", "addopts=-q -rs -s"  # in a folder of one's own, too
     status = pytest.main([str(ROOT / "checks.py"), *how, *sys.argv[1:]])
     print(practise())
-    return status
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(status)

@@ -20,8 +20,8 @@ functions is lcp_step, taken apart:
     sweeps once more, for those that are asked, each beginning with its lam
 
 exact judges it, on a drop, a stack, a ball that slides off another and one that begins in another.
-Then read off the order of your step: the error of the slide falls like dt to which power? Two rows
-say it; write the power as ORDER.
+Then read off the order of your step: the error of the slide, off/r, falls like dt to which power?
+Write it as ORDER.
 
     python exercises/ex10_ask_twice.py      # add --hint 1 (to 8: two a function, three of the last)
     python checks.py -k ex10

@@ -8,7 +8,7 @@ Each contact model has one line in which the table is told that it may push and 
 Detection, normals, masses and time stepping are given, in contact.py; the two lines are yours. The
 signs are those of the table at the top of contact.py.
 
-    python exercises/ex2_completion_contact.py      # three trials; add --hint 1 (2; 3, 4: second)
+    python exercises/ex2_completion_contact.py      # add --hint 1 (2; 3, 4: second)
     python checks.py -k ex2                         # many inputs; skips what is still a blank
 
 Out of scope: friction, and several contacts at once (your second line is called for each in turn).

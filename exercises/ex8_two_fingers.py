@@ -7,11 +7,11 @@
 A cup, here a ball of 1 kg, stands on a table. Two fingers of 0.2 kg close on it from left and right
 and squeeze it with 20 N each, for one second. This is the gripper from the first page of the
 chapter, and it trembles: set MODEL = "penalty", leave the numbers as they are, and see by how much.
-Then make it hold still: choose a model, its numbers and the time step so that in the last quarter
-of the second nothing overlaps by more than a thousandth of a radius, and the deepest overlap varies
-by less than a hundredth of that, with at most 2,000 steps for the second. There is more than one
-way. Before you try numbers, estimate: what do 20 N do to a spring, and how light is the lightest
-thing that hangs on it?
+Then make it hold still: choose a model, its numbers and the time step so that in the end nothing
+overlaps by more than a thousandth of a radius, and the deepest overlap of the last quarter varies
+(std) by less than a hundredth of that, with steps of 0.5 to 20 ms. There is more than one way.
+Before you try numbers, estimate: what do 20 N do to a spring, and how light is the lightest thing
+that hangs on it?
 
     python exercises/ex8_two_fingers.py         # add --hint 1 (2, 3) for a question that helps
     python checks.py -k ex8

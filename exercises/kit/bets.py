@@ -1,5 +1,6 @@
-"""Bets: what is measured, and a word on every choice."""
+"""Bets: what is measured, and a word on every choice; and numbers from paper."""
 
+import math
 import re
 import statistics
 import textwrap
@@ -8,22 +9,23 @@ from functools import cache
 import contact
 from curriculum.commands import near
 
-from . import FACTS, columns, task_of
+from . import FACTS, ROOT, load
+from .script import task_of
 
 USUAL, MODELS = contact.Settings(), ("penalty", "lcp")  # the models of which one bets
-BETS = {  # exercise: corner of its table, how a number is written, {label: (head of its column,
-    # key of contact_quality, ball [kg], height [m], dt [s])}; shown is README's first line
-    "ex1": ("depth", "{:.5f} r", {
-        "deepest": ("deepest", "max_penetration_frac", 4.0, 0.65, 0.002),
-        "at_rest": ("at rest", "rest_penetration_frac", 4.0, 0.65, 0.002),
-        "shown_deepest": ("", "max_penetration_frac", 1.0, 1.0, 0.002),
-        "shown_at_rest": ("", "rest_penetration_frac", 1.0, 1.0, 0.002)}),
-    "ex3": ("energy gained", "{:.4g}", {
-        "light": ("0.1 kg", "energy_excess", 0.1, 0.65, 0.03),
-        "heavy": ("10 kg", "energy_excess", 10.0, 0.65, 0.03),
-        "light_depth": ("", "max_penetration_frac", 0.1, 0.65, 0.03),
-        "shown": ("", "energy_excess", 1.0, 1.0, 0.03)}),
-}  # fmt: skip
+RIGHT = {}  # the right answers, by their names
+for path in sorted((ROOT / "exercises/solutions").glob("ex*.py")):
+    RIGHT |= vars(load(path))
+
+
+def columns(corner, heads, rows, form):
+    """A small table as text. rows {name: values}; `form` writes a value, as "{:.3f} r" does."""
+    wide = max(16, *map(len, rows))
+    lines = [f"{corner:<{wide}}" + "".join(f"{head:>15}" for head in heads)]
+    for name, values in rows.items():
+        cells = ("-" if value is None else form.format(value) for value in values)
+        lines.append(f"{name:<{wide}}" + "".join(f"{cell:>15}" for cell in cells))
+    return "\n".join(lines)
 
 
 def quality(key, model, scene, dt, steps=2000, settings=USUAL):
@@ -35,21 +37,23 @@ def quality(key, model, scene, dt, steps=2000, settings=USUAL):
 @cache
 def measure(name):
     """The numbers of a bet, {MODEL_LABEL: number}, and what its reasons quote beside them."""
+    facts = FACTS[name]
     numbers = {
-        f"{model}_{label}": quality(key, model, contact.scene_of(0.0, y, mass), dt)
-        for label, (_, key, mass, y, dt) in BETS[name][2].items()
+        f"{model}_{label}": quality(
+            row["key"], model, contact.scene_of(0.0, row["y"], row["mass"]), row["dt"]
+        )
+        for label, row in facts["measured"].items()
         for model in MODELS
     }
-    also = {key: eval(text, vars(contact)) for key, text in FACTS[name]["also"].items()}
-    return numbers | also
+    return numbers | {key: eval(text, vars(contact)) for key, text in facts["also"].items()}
 
 
 def table(name, numbers):
     """The measurement of a bet as text."""
-    corner, form, parts = BETS[name]
-    heads = {label: head for label, (head, *_) in parts.items() if head}
+    facts = FACTS[name]
+    heads = {label: row["head"] for label, row in facts["measured"].items() if row["head"]}
     rows = {model: [numbers[f"{model}_{label}"] for label in heads] for model in MODELS}
-    return columns(corner, heads.values(), rows, form)
+    return columns(facts["corner"], heads.values(), rows, facts["form"])
 
 
 def answer(name, numbers):
@@ -72,19 +76,18 @@ def asked(text):
 
 
 def judge_bet(name, exercise):
-    """[what, state, words, shown] of a bet: its numbers, and a word on every choice."""
-    bet, file = asked(task_of(exercise)), near(exercise.__file__)
+    """(state, words) of a bet: its numbers, and a word on every choice."""
+    bet, file = asked(task_of(name)), near(exercise.__file__)
     given, why = getattr(exercise, "PREDICTION", None), str(getattr(exercise, "WHY", ""))
     choices, mine = bet["choices"], str(given).strip(" \t\n.)(").upper()
     if mine not in choices:
         made = "no prediction yet" if given is None else f"PREDICTION is {given!r}"
-        words = f"{made}; write one of {', '.join(map(repr, choices))} in {file}"
-        return [name, "blank", words, ""]
+        return "blank", f"{made}; write one of {', '.join(map(repr, choices))} in {file}"
     if len(why.split()) < 4:
         wanted = f"write a sentence of four words or more in {file}. {bet['why']}"
-        return [name, "blank", f"no reason yet: WHY is {why!r}; {wanted}", ""]
-    numbers = measure(name)
-    right, facts = answer(name, numbers), FACTS[name]
+        return "blank", f"no reason yet: WHY is {why!r}; {wanted}"
+    numbers, facts = measure(name), FACTS[name]
+    right = answer(name, numbers)
     so = "That is what happens." if mine == right else f"What happens is {right}: {choices[right]}"
     lines = [f"You predicted {mine}: {choices[mine]}", f"Because: {why.strip()}", "", so]
     for choice in sorted(choices, key=lambda choice: choice != right):  # the right one first
@@ -92,18 +95,13 @@ def judge_bet(name, exercise):
         lines += ["", f"{word} {choice}: {facts['reasons'][choice].format(**numbers)}"]
     lines += ["", facts["shown"].format(**numbers)]
     verdict = "\n".join(textwrap.fill(line, 96) for line in lines)
-    return [name, "right", verdict, f"{table(name, numbers)}\n"]
+    return "right", f"{table(name, numbers)}\n\n{verdict}"
 
 
 # Exercise 9: five troubles against four knobs
 
 
-KNOBS = {  # head: (what dt is divided by, settings)
-    "k x 4": (1, USUAL._replace(stiffness=4 * USUAL.stiffness)),
-    "dt / 4": (4, USUAL),
-    "sweeps x 4": (1, USUAL._replace(iters=4 * USUAL.iters)),
-    "beta x 4": (1, USUAL._replace(baumgarte=4 * USUAL.baumgarte)),
-}
+KNOBS = {"k x 4": "stiffness", "dt / 4": "dt", "sweeps x 4": "iters", "beta x 4": "baumgarte"}
 TROUBLES = {  # model, scene, balls, dt [s], steps, measure, seeds
     "sink": ("penalty", "drop", 1, 0.002, 2000, "rest_penetration_frac", 1),
     "dive": ("lcp", "drop", 1, 0.002, 600, "max_penetration_frac", 9),
@@ -113,17 +111,23 @@ TROUBLES = {  # model, scene, balls, dt [s], steps, measure, seeds
 }
 
 
+def trouble_of(trouble, knob=None):
+    """How large a trouble is, with that knob turned."""
+    model, scene, bodies, dt, steps, key, seeds = TROUBLES[trouble]
+    settings, by = USUAL, 4 if knob == "dt" else 1
+    if knob in USUAL._fields:
+        settings = USUAL._replace(**{knob: 4 * getattr(USUAL, knob)})
+    scenes = [contact.build_scene(scene, seed, bodies) for seed in range(seeds)]
+    return statistics.fmean(quality(key, model, s, dt / by, by * steps, settings) for s in scenes)
+
+
 @cache
 def measure_knobs():
     """{trouble: [what each knob makes of it, as a share]}, and what the reasons quote."""
     quoted, shares = {}, {}
-    for trouble, (model, scene, bodies, dt, steps, key, seeds) in TROUBLES.items():
-        scenes = [contact.build_scene(scene, seed, bodies) for seed in range(seeds)]
-        quoted[trouble], *turned = (
-            statistics.fmean(quality(key, model, of, dt / by, by * steps, knobs) for of in scenes)
-            for by, knobs in ((1, USUAL), *KNOBS.values())
-        )
-        shares[trouble] = [number / quoted[trouble] for number in turned]
+    for trouble in TROUBLES:
+        quoted[trouble] = trouble_of(trouble)
+        shares[trouble] = [trouble_of(trouble, k) / quoted[trouble] for k in KNOBS.values()]
         quoted |= {f"{trouble}_{k.split()[0]}": x for k, x in zip(KNOBS, shares[trouble])}
     limit = contact.critical_dt(1.0, USUAL.stiffness, contact.build_scene("stack").damping, 3)
     return shares, quoted | {"step": TROUBLES["trembling"][3], "limit": limit}
@@ -135,25 +139,43 @@ def mark(share):
 
 
 def judge_knobs(name, exercise):
-    """[what, state, words, shown] of the twenty bets."""
+    """(state, words) of the twenty bets."""
     lines = str(getattr(exercise, "BETS", "")).replace("\N{MINUS SIGN}", "-").splitlines()
     mine = {words[0]: words[1:] for line in lines if (words := line.split())}
     for trouble in TROUBLES:
         given = mine.get(trouble, ["nothing"])
         if len(given) != len(KNOBS) or set(given) - set("-=+"):
             row = f"BETS in {near(exercise.__file__)}, row {trouble}: given {' '.join(given)}"
-            words = f"{row}, allowed: four marks, each - (less), = or + (more)"
-            return [name, "blank", words, ""]
-    rows, hits = {}, 0
+            return "blank", f"{row}, allowed: four marks, each - (less), = or + (more)"
+    rows, hits, words = {}, 0, ""
     shares, quoted = measure_knobs()
     for trouble, row in shares.items():
-        pairs = [(mark(share), guess) for share, guess in zip(row, mine[trouble])]
-        hits += sum(true == guess for true, guess in pairs)
+        pairs = [(share, mark(share), guess) for share, guess in zip(row, mine[trouble])]
+        hits += sum(true == guess for _, true, guess in pairs)
         rows[trouble] = [
             f"{share:.3g} {true}" + ("" if true == guess else f" ({guess})")
-            for share, (true, guess) in zip(row, pairs)
+            for share, true, guess in pairs
         ]
-    words = f"Your bet holds in {hits} of 20; where it was another, it stands in brackets.\n"
-    for trouble, reason in FACTS[name]["reasons"].items():
-        words += "\n" + textwrap.fill(f"{trouble}: {reason.format(**quoted)}", 96) + "\n"
-    return [name, "right", words, columns("times as much", KNOBS, rows, "{}")]
+        reason = FACTS[name]["reasons"][trouble].format(**quoted)
+        words += "\n" + textwrap.fill(f"{trouble}: {reason}", 96) + "\n"
+    said = f"Your bet holds in {hits} of 20; where it was another, it stands in brackets."
+    return "right", f"{columns('times as much', KNOBS, rows, '{}')}\n{said}\n{words}"
+
+
+def judge_number(name, exercise):
+    """(state, words) of a number from paper; its slips are other formulas."""
+    facts, file = FACTS[name]["number"], near(exercise.__file__)
+    what, within = facts["name"], facts["within"]
+    given, true = getattr(exercise, what, None), RIGHT[what]
+    try:
+        mine = abs(float(given))  # the table says an overlap with a minus
+    except (TypeError, ValueError, OverflowError):
+        said = f"no {what} yet" if given is None else f"{what}: given {given!r}"
+        return "blank", f"{said}; write a number in {file}, {facts['unit']}"
+    if math.isclose(mine, true, rel_tol=within):
+        return "right", facts["right"].format(true)
+    for text, meaning in facts["slips"].items():
+        if math.isclose(mine, eval(text), rel_tol=within):  # our own text
+            return "wrong", f"{what}: given {given}; likely: {meaning}"
+    ask = f"{file} --hint {facts['hint']} asks a question"
+    return "wrong", f"{what}: given {given}, and it is another; {ask}"
