@@ -7,7 +7,7 @@ FAULTS = [
     (JUDGE, "allowed = within * np", "allowed = 1e7 * within * np", T + "slip"),
     (JUDGE, "len(made) > 3 and np", "False and np", T + "slip"),
     (JUDGE, 'if states[blank] == "wrong" and states.get', "if False and states.get", T + "types"),
-    (JUDGE, 'states[blank], words = "wrong", f"a trial', '_, words = "wrong", f"a trial', T + "types"),
+    (JUDGE, 'states[blank], words = "wrong", f', '_, words = "wrong", f', T + "types"),
     (TRIALS, "trembling < 1e-5", "trembling < 1e-3", T + "gripper"),
     (TRIALS, "deepest < 1.001e-3", "deepest < 1e-2", T + "gripper"),
     (TRIALS, "< 0.3).all()", "< 0.3).any()", T + "gripper"),
