@@ -43,7 +43,7 @@ NOT_PROSE = re.compile(
     rf"""
     {INLINE.pattern}
     |\{{\{{\?(?s:.*?)\}}\}}|\{{\{{[^\n]*?\}}\}}
-    |\[[^]]*\]\(try:[^)]*\)|\]\([^)]*\)|https?://\S+
+    |\]\([^)]*\)|https?://\S+
     |^\[[^]]*\]:[^\n]*|\[\[\d+\]\](?=\(\#references\))
     |\b(?:chapters?|phase|version|tag|python|numpy)[ ]
         \d+(?:\.\d+)*(?:(?:,|,?[ ]and|[ ]to)[ ]\d+\.\d+)*

@@ -5,8 +5,8 @@ Beside plain Markdown it may hold
 - references to numbers in double braces (references.py), and formulas between dollar signs;
 - slots, comments on a line of their own: <!-- figure: NAME -->, <!-- exercise: NAME -->,
   <!-- bench: NAME -->, <!-- stress: NAME -->, <!-- wallclock -->, and <!-- puzzle -->, behind
-  which the rest of a section is its answer;
-- links that set a figure, [words](try:cliff?dt=0.014), as behind its own name: cliff?dt=0.03.
+  which the rest of a section is its answer. What a figure begins with stands behind its name:
+  cliff?dt=0.03.
 
 Other comments, on lines of their own, vanish. There is no HTML.
 """

@@ -34,7 +34,6 @@ curriculum/show/__init__.py curriculum/show/picture.py curriculum/show/figures.m
 curriculum/exact.py curriculum/commands.py curriculum/implicit.py
 curriculum/bench/results/error-slide.svg curriculum/stress/results/penalty-map.svg""".split()
 SAID = {  # what only the page can do: what to do here
-    r"\[([^\]]*)\]\(try:[^)]*\)": r"\1",
     r"Take it, lift it,\s+throw it\.": "Run the cell below.",
     r"\b[Dd]rag the (\w+)": r"change the \1 in a cell",
 }

@@ -120,19 +120,14 @@ def build(text=None):
     where it can't be shown as it is."""
     text = (ROOT / chapter.CHAPTER).read_text("utf-8") if text is None else text
     exercises, regions, data = all_exercises(), read_all(), page_data()
-    parts, tries = chapter.blocks(Numbers().fill(text))
+    parts = chapter.blocks(Numbers().fill(text))
     for kind, (name, *_) in ((kind, values) for kind, values in parts if values):
         known = {"exercise": exercises, "region": regions}.get(kind, [name])
         if name not in known:
             held = f"there is no {kind} {name}; known: {', '.join(known)}"
             raise ValueError(f"{chapter.CHAPTER}: {held}")
-    slots = [
-        (id, name, given)
-        for kind, values in parts
-        if kind == "figure"
-        for id, name, given in [values]
-    ]
-    wanted = [[name, given] for _, name, given in slots] + [list(each) for each in tries]
+    slots = [values for kind, values in parts if kind == "figure"]
+    wanted = [[name, given] for _, name, given in slots]
     drawn = evaluate("still.js", data, f"stills({json.dumps(wanted)})")
     figures = {id: figure for (id, *_), figure in zip(slots, drawn)}
     templates = environment(figures=figures, exercises=exercises, regions=regions)

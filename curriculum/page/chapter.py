@@ -1,11 +1,8 @@
 """chapter.md as HTML, its slots filled.
 
-What the chapter holds beside plain Markdown, curriculum/gate/chapter.py says. A figure begins with
-what its slot sets, <!-- figure: cliff?dt=0.03 -->, and [words](try:cliff?dt=0.014) sets the nearest
-figure of that name.
+What the chapter holds beside plain Markdown, curriculum/gate/chapter.py says.
 """
 
-import json
 import re
 from collections import Counter
 from html import escape
@@ -53,18 +50,6 @@ def code_inline(self, tokens, index, options, env):
     return f'<code class="{kind}">{escape(text)}</code>'
 
 
-def link_open(self, tokens, index, options, env):
-    """A link; one that sets a figure says which, and what."""
-    token = tokens[index]
-    scheme, _, rest = token.attrGet("href").partition(":")
-    if scheme == "try":
-        name, given = asked(rest)
-        env.setdefault("tries", []).append((name, given))
-        token.attrs = {"class": "try", "href": f"#fig-{name}", "data-name": name}
-        token.attrs["data-given"] = json.dumps(given)
-    return self.renderToken(tokens, index, options, env)
-
-
 def asked(slot):
     """(name, {quantity: value}) of NAME?quantity=value&..., as in a slot."""
     name, _, query = slot.partition("?")
@@ -83,7 +68,7 @@ def parser():
     md = MarkdownIt("commonmark", {"html": False, "typographer": True})
     md.enable(["table", "smartquotes", "replacements"])
     md.use(dollarmath_plugin, renderer=formula).use(anchors_plugin, max_level=4, slug_func=slug)
-    for rule in (text, code_inline, link_open):
+    for rule in (text, code_inline):
         md.add_render_rule(rule.__name__, rule)
     return md
 
@@ -102,11 +87,10 @@ def inline(text):
 
 
 def blocks(text):
-    """The chapter as a list of (kind, values), what the macros of that name are given, and what its
-    links set, [(name, values)]. A figure's values are its id and what asked() gives of its slot."""
+    """The chapter as a list of (kind, values), what the macros of that name are given. A figure's
+    values are its id and what asked() gives of its slot."""
     md, env, out, seen = parser(), {}, [], Counter()
     md.parse(text, env)  # for the addresses of links, which stand at its end
-    env["tries"] = []
     for kind, name, _, written in read(text):
         if kind in ("text", "heading"):
             out += rendered(md, written, env)
@@ -121,7 +105,7 @@ def blocks(text):
             out.append((kind, (f"{figure}-{seen[figure]}".removesuffix("-1"), figure, given)))
         elif kind in ("exercise", "bench", "stress", "wallclock", "puzzle"):
             out.append((kind, (name,) if name else ()))
-    return out, env["tries"]
+    return out
 
 
 def rendered(md, text, env):

@@ -46,7 +46,8 @@ export const rect = (x, y, width, height, kind) =>
   svg`<rect x=${px(x)} y=${px(y)} width=${px(Math.max(0, width))} height=${px(Math.max(0, height))}
     class=${kind}/>`;
 const way = (points) => points.map((point) => point.map(px).join(" ")).join("L");
-export const path = (points, kind) => svg`<path d="M${way(points)}" class=${kind}/>`;
+export const path = (points, kind) =>
+  svg`<path d=${points.length ? `M${way(points)}` : ""} class=${kind}/>`;
 export const area = (points, kind) => svg`<path d="M${way(points)}Z" class=${kind}/>`;
 
 // What lies within a rectangle.
@@ -145,25 +146,9 @@ export function steps(low, high, most = 5) {
   return Array.from({ length: last - first + 1 }, (_, k) => (first + k) * every);
 }
 
-/* A line through many points: of those in half a pixel the first, the least, the greatest and the
- * last, so that spikes survive. Values that are not finite end the line. */
-function linePath(points, { sx, sy, box }) {
-  const columns = new Map();
-  for (const [x, y] of points) {
-    if (!Number.isFinite(y)) break;
-    const at = Math.round(2 * sx(x)) / 2;
-    if (!columns.has(at)) columns.set(at, []);
-    columns.get(at).push(px(within(box.top - 40, sy(y), box.bottom + 40)));
-  }
-  const drawn = [...columns].map(([x, all]) => {
-    const few = [all[0], Math.min(...all), Math.max(...all), all[all.length - 1]];
-    return `${x} ${few[1] < few[2] ? few.join("V") : few[0]}`;
-  });
-  return drawn.length ? `M${drawn.join("L")}` : "";
-}
-
 /* A chart in a view's picture, from `left` and `top` on: {picture, sx, sy, box}. x and y: axes;
- * lines: {model, points, kind, marks}; zero: whether a line shows where y is 0. */
+ * lines: {model, points, kind, marks}, each up to where a value is no number; zero: whether a line
+ * shows where y is 0. */
 export function plot({ width, height }, { left = 0, top = 0, x, y, lines = [], zero, ...more }) {
   const wide = Math.max(0, ...y.ticks.map(([, text]) => text.length));
   const bottom = more.height ?? height;
@@ -184,11 +169,13 @@ export function plot({ width, height }, { left = 0, top = 0, x, y, lines = [], z
     const tick = line(at, box.bottom, at, box.bottom + 5, "axis");
     return [tick, room ? label(text, at, box.bottom + 21, "middle", "tick") : ""];
   });
-  const drawn = lines.map(({ model, points, kind = "", marks = [] }) => [
-    svg`<path d=${linePath(points, { sx, sy, box })} class="line m-${model} ${kind}"/>`,
-    marks.filter((k) => k < points.length && Number.isFinite(points[k][1])).map((k) =>
-      mark(model, sx(points[k][0]), sy(points[k][1]))),
-  ]);
+  const drawn = lines.map(({ model, points, kind = "", marks = [] }) => {
+    const end = points.findIndex(([, value]) => !Number.isFinite(value));
+    const places = points.slice(0, end < 0 ? points.length : end).map(([at, value]) =>
+      [sx(at), within(box.top - 40, sy(value), box.bottom + 40)]);
+    return [path(places, `line m-${model} ${kind}`),
+      marks.filter((k) => k < places.length).map((k) => mark(model, ...places[k]))];
+  });
   const picture = [
     across, along, line(box.left, box.bottom, box.right, box.bottom, "axis"),
     zero ? line(box.left, sy(0), box.right, sy(0), "rule") : "",

@@ -1,27 +1,12 @@
-/* The start: figures, bets, and links of the text that set a figure. */
+/* The start: figures, bets, and what is folded on a phone and open on paper. */
 import { startBet } from "./bets.js";
 import { figures } from "./figures.js";
-import { stage, stateOf } from "./stage.js";
+import { stage } from "./stage.js";
 
 const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-const parsed = (box) => JSON.parse(box.dataset.given);
-const stages = [...document.querySelectorAll("[data-figure]")].map((box) =>
-  ({ box, view: stage(box, figures[box.dataset.figure], parsed(box), still) }));
+for (const box of document.querySelectorAll("[data-figure]"))
+  stage(box, figures[box.dataset.figure], JSON.parse(box.dataset.given), still);
 document.querySelectorAll(".exercise:has(.bet)").forEach(startBet);
-
-// The nearest figure of that name above a link, or else below it.
-document.addEventListener("click", (event) => {
-  const link = event.target.closest("a.try");
-  if (!link) return;
-  event.preventDefault();
-  const named = stages.filter(({ box }) => box.dataset.figure === link.dataset.name);
-  const above = named.filter(({ box }) => box.compareDocumentPosition(link) & 4);
-  const { box, view } = above[above.length - 1] ?? named[0];
-  view.stop();
-  view.set(stateOf(figures[link.dataset.name], parsed(link)));
-  const { top, bottom } = box.getBoundingClientRect();
-  if (bottom < 120 || top > window.innerHeight - 120) box.scrollIntoView({ block: "center" });
-});
 
 // On a phone folded: code, which is wider than the screen, and what asks for a terminal.
 const narrow = window.matchMedia("(max-width: 40rem)");

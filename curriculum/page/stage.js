@@ -35,20 +35,17 @@ const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowD
 const LEAST = 358; // px: on a screen smaller than a phone's it is drawn so, and made smaller
 const WIDTH = 640; // px, of a still
 
-// The state of a figure with what the text sets.
-export const stateOf = (figure, given) =>
-  ({ ...data.defaults, time: 0, ...figure.start?.(given), ...given });
-
-// The view of a figure that nobody touches.
+// The view of a figure that nobody touches; its state is its own with what the text sets.
 export function viewOf(figure, given, width = WIDTH) {
-  const own = stateOf(figure, given);
-  const { height } = figure;
-  const grab = (_, shape) => shape;
-  const view = { own, text: { ...own }, width, set() {}, play() {}, running: false, grab };
-  Object.defineProperty(view, "height", { get: () => height(view.width, own) });
-  view.point = (x, y, what) =>
-    view.grab(what, svg`${circle(x, y, 22, "halo")}${circle(x, y, 8, "knob-dot")}`);
-  return view;
+  const own = { ...data.defaults, time: 0, ...figure.start?.(given), ...given };
+  return {
+    own, text: { ...own }, width, running: false,
+    get height() { return figure.height(this.width, own); },
+    grab: (_, shape) => shape,
+    point(x, y, what) {
+      return this.grab(what, [circle(x, y, 22, "halo"), circle(x, y, 8, "knob-dot")]);
+    },
+  };
 }
 
 export const knobsOf = ({ knobs = [] }, own) => (typeof knobs === "function" ? knobs(own) : knobs);
@@ -61,8 +58,6 @@ export const worded = (words) =>
 
 // ---- sliders
 
-const range = ({ low, high, step, log }) =>
-  (log ? { low: 0, high: PLACES, step: 1 } : { low, high, step });
 export const toSlider = ({ low, high, log }, value) =>
   (log ? Math.round((PLACES * Math.log(value / low)) / Math.log(high / low)) : value);
 const fromSlider = ({ low, high, log }, at) =>
@@ -76,10 +71,10 @@ export function fromPlace(name, text, at) {
 
 function slider(view, name) {
   const quantity = QUANTITIES[name];
-  const { low, high, step } = range(quantity);
+  const { low, high, step } = quantity.log ? { low: 0, high: PLACES, step: 1 } : quantity;
   const value = view.own[name];
-  const put = ({ target }) => view.set({ [name]: fromPlace(name, view.text[name],
-    Number(target.value)) });
+  const put = ({ target }) =>
+    view.set({ [name]: fromPlace(name, view.text[name], Number(target.value)) });
   const told = `${Number(value.toPrecision(4)).toLocaleString("en")} ${quantity.unit}`;
   return html`<label class="knob"><span>${quantity.label}</span><input type="range" min=${low}
     max=${high} step=${step} .value=${String(toSlider(quantity, value))} aria-valuetext=${told}
@@ -146,7 +141,6 @@ function grabbing(view, box) {
 export function stage(box, figure, given, still) {
   const view = viewOf(figure, given);
   let [frame, near, begun, last] = [0, false, false, 0];
-  view.still = still; // nothing may move by itself
   view.grab = grabbing(view, box);
   view.set = (changes) => {
     Object.assign(view.own, changes);

@@ -1,7 +1,7 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
 import { figures } from "./figures.js";
 import { textOf } from "./lit.js";
-import { fromPlace, knobsOf, QUANTITIES, stateOf, toSlider, viewOf, worded } from "./stage.js";
+import { fromPlace, knobsOf, QUANTITIES, toSlider, viewOf, worded } from "./stage.js";
 
 const [WIDE, NARROW] = [640, 358]; // px
 
@@ -22,7 +22,7 @@ function still([name, given]) {
   if (!figure)
     throw new Error(`there is no figure ${name}; known: ${Object.keys(figures).join(", ")}`);
   try {
-    check(stateOf(figure, {}), given);
+    check(viewOf(figure, {}).own, given);
     const view = viewOf(figure, given, WIDE);
     const { picture, words } = figure.draw(view);
     return {

@@ -70,7 +70,7 @@ function picture({ n, x, y }, row, { width, floor }) {
 /* Where the left finger touches the cup, enlarged so much that the overlap fills it: the cup's edge
  * stays, the finger's trembles, and the trail of its last places stays with it. */
 function lens(x, y, size, { depths, fate, ...late }, row) {
-  const { deepest, trembling } = fate === 2 ? { deepest: 0.05, trembling: 0 } : late;
+  const { deepest, trembling } = fate === 2 ? { deepest: 0.15, trembling: 0 } : late;
   const times = Math.min(0.9 / Math.max(deepest, 1e-6),
     0.5 / Math.max(trembling, 1e-9)) * size; // px for 1 r
   const edge = x - 0.5 * Math.min(0.9 * size, deepest * times);
@@ -94,7 +94,7 @@ function choices(view, top) {
     const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)];
     const [x0, x1] = [i, i + 1].map((k) => sx(share(DT, k / COLUMNS)));
     const [y0, y1] = [j + 1, j].map((k) => sy(share(K, k / ROWS)));
-    return each ? rect(x0, y0, x1 - x0 + 0.3, y1 - y0 + 0.3, `fate-${each}`) : "";
+    return each ? rect(x0, y0, x1 - x0, y1 - y0, `fate-${each}`) : "";
   });
   const limit = Array.from({ length: 40 }, (_, k) => share(K, k / 39))
     .map((k) => [critical_dt(MASS[0], k, DAMPING), k])
