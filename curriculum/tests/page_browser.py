@@ -147,44 +147,41 @@ def call(page, function, *given):
     return page.evaluate(f"({function})({', '.join(map(json.dumps, given))})")
 
 
-def mouse(page, x, y, moves=MOVES):
-    """Press Chromium's mouse at a place, and draw it to and fro; a move at a time."""
-    page.mouse.move(x, y)
-    page.mouse.down()
-    try:
-        for dx, dy in moves:
-            page.mouse.move(x + dx, y + dy, steps=2)
-            yield
-    finally:
-        page.mouse.up()
+def pointer_of(page, touch):
+    """A function that does "Down", "Move" or "Up" at a place, with the mouse or with a finger."""
+    if isinstance(page, Tab):
+        return page.pointer
+    if not touch:
 
+        def mouse(kind, x, y):
+            page.mouse.move(x, y, steps=2)
+            if kind != "Move":
+                getattr(page.mouse, kind.lower())()
 
-def mouse_of_firefox(page, x, y):
-    """The same in Firefox."""
-    page.pointer((x, y), "Down")
-    try:
-        for dx, dy in MOVES:
-            page.pointer((x + dx // 2, y + dy // 2), (x + dx, y + dy))
-            yield
-    finally:
-        page.pointer("Up")
+        return mouse
+    session = page.context.new_cdp_session(page)
 
-
-def finger(page, x, y, moves=MOVES[:3]):
-    """The same with a finger on a phone."""
-    touch = page.context.new_cdp_session(page)
-
-    def send(kind, *at):
-        touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": at})
+    def finger(kind, x, y):
+        kind = {"Down": "Start", "Up": "End"}.get(kind, kind)
+        at = [] if kind == "End" else [{"x": x, "y": y}]
+        session.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": at})
         page.wait_for_timeout(30)
 
-    send("Start", {"x": x, "y": y})
+    return finger
+
+
+def drag(page, x, y, moves=MOVES, touch=False):
+    """Press at a place of either browser, and draw what lies there to and fro; a move at a time."""
+    does = pointer_of(page, touch)
+    does("Down", x, y)
+    to = x, y
     try:
         for dx, dy in moves:
-            send("Move", {"x": x + dx, "y": y + dy})
+            to = x + dx, y + dy
+            does("Move", *to)
             yield
     finally:
-        send("End")
+        does("Up", *to)
 
 
 class Tab:
@@ -226,15 +223,12 @@ class Tab:
         assert answer["type"] != "exception", answer.get("exceptionDetails", {}).get("text")
         return json.loads(answer["result"]["value"]) if "value" in answer["result"] else None
 
-    def pointer(self, *does):
-        """Move the mouse to places [x, y], press ("Down") and release it ("Up"), in this order."""
-
-        def action(each):
-            if isinstance(each, str):
-                return {"type": f"pointer{each}", "button": 0}
-            return {"type": "pointerMove", "x": round(each[0]), "y": round(each[1])}
-
-        source = {"type": "pointer", "id": "mouse", "actions": list(map(action, does))}
+    def pointer(self, kind, x, y):
+        """Move the mouse to a place, and there press it ("Down") or release it ("Up")."""
+        actions = [{"type": "pointerMove", "x": round(x), "y": round(y)}]
+        if kind != "Move":
+            actions.append({"type": f"pointer{kind}", "button": 0})
+        source = {"type": "pointer", "id": "mouse", "actions": actions}
         self.call("input.performActions", context=self.context, actions=[source])
 
 

@@ -5,7 +5,7 @@ import { detect_contacts } from "../contact.js";
 import { column, R } from "../runs.js";
 
 const [GROUND, ARROW] = [26, 0.1]; // px of table; m in the picture for 1 m/s
-const [SIDE, TOP, FAST] = [0.45, 0.34, 1.5]; // m, m, m/s: how far one can drag
+const [SIDE, LOW, TOP, FAST] = [0.45, 0.03, 0.34, 1.5]; // m, m/s: how far one can drag
 
 const wayOf = (v) => (v > 1e-12 ? "separating" : v < -1e-12 ? "closing" : "neither");
 
@@ -28,7 +28,7 @@ function draw(view) {
   const [[ax, ay], [bx, by], r] = [place(x, y), place(0, R), R * scale];
   const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);
   const there = {
-    label: "ball a", value: ["x", "y"], low: [-SIDE, 0], high: [SIDE, TOP], step: 0.01,
+    label: "ball a", value: ["x", "y"], low: [-SIDE, LOW], high: [SIDE, TOP], step: 0.01,
     at: (toX, toY) => [(toX - width / 2) / scale, (floor - toY) / scale],
   };
   const fast = {
