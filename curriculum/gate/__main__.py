@@ -7,7 +7,7 @@ Regions are included once; slots, flags and names in `code` are of what is there
 by reference, what holds a sentence is true, and results are of today's code. Whether a sentence is
 true of the code only a reader can say. meta.yaml keeps what each passage spoke of when it was last
 read: the hashes of its regions, its numbers. Where one of them is another today, or new, the gate
-asks to read the passage again. region_hashes are those of regions whose passages are all read.
+asks to read the passage again. region_hashes are of the code when all passages were last read.
 """
 
 import hashlib
@@ -25,7 +25,7 @@ with needs("dev"):
 
     import contact
     from curriculum import stored
-    from curriculum.gate.chapter import CHAPTER, INLINE, faults, split
+    from curriculum.gate.chapter import CHAPTER, INCLUDE, INLINE, faults, split
     from curriculum.gate.references import REFERENCE, Numbers, TextError, load_meta
     from curriculum.lesson.regions import DOCSTRING, ROOT, blank, line_at, read_text, split_all
 
@@ -73,8 +73,8 @@ class Passage(NamedTuple):
 
     def sources(self, regions) -> dict:
         """{source: hash}: the regions that it includes or names, and its own words in code."""
-        included = {part.name for part in split(self.text) if part.kind == "region"}
-        words = {word for span in SPAN.findall(self.text) for word in re.findall(r"\w+", span)}
+        included, named = INCLUDE.findall(self.text), " ".join(SPAN.findall(self.text))
+        words = set(re.findall(r"\w+", named))
         own = not self.file.startswith(("exercises/", *TEXTS))
         found = {"its words": hashlib.sha256(self.text.encode()).hexdigest()} if own else {}
         found |= {r.source: r.sha for r in regions if r.source in included or r.defines & words}
@@ -86,7 +86,7 @@ def passages():
     for file in TEXTS:
         yield from sections(file)
     for file in files("exercises/ex*.py"):
-        yield Passage(exercise_of(file), file, 1, read_text(file))
+        yield Passage(Path(file).stem.split("_")[0], file, 1, read_text(file))
     for file in ("contact.py", "curriculum/exact.py"):
         yield Passage(Path(file).name, file, 1, DOCSTRING.match(read_text(file))[0])
     for file in files(FIGURES):
@@ -110,11 +110,6 @@ def files(*patterns) -> list:
     """The project's files of these patterns, as they are named in git."""
     paths = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
     return [path.relative_to(ROOT).as_posix() for path in paths]
-
-
-def exercise_of(file) -> str:
-    """ex5 of exercises/ex5_solve_contacts.py."""
-    return Path(file).name.split("_")[0]
 
 
 class Gate:
@@ -156,7 +151,7 @@ class Gate:
         """{kind: {name: (file, line)}} of all that a mark of the chapter may name."""
         known: dict = {"figure": {}}
         known["region"] = {r.source: (r.file, r.line - 1) for r in self.regions.values()}
-        known["exercise"] = {exercise_of(f): (f, 1) for f in files("exercises/ex*.py")}
+        known["exercise"] = {Path(f).stem.split("_")[0]: (f, 1) for f in files("exercises/ex*.py")}
         for file in files(FIGURES):
             several = KEY.findall(read_text(file).partition("export const figures = {")[2])
             known["figure"] |= dict.fromkeys(several or [Path(file).stem], (file, 1))
@@ -201,11 +196,11 @@ class Gate:
             if f"{name}:" not in text:
                 self.say("meta.yaml", 1, f"run {name} is quoted nowhere", "take it out")
 
-    def unread(self) -> dict:
-        """{name of a passage: what is not as it was when somebody read it, in words}."""
+    def unread(self, read) -> dict:
+        """{name of a passage: what is not as somebody has read it, in words}."""
         unread: dict = {}
         for name, sources in self.now.items():
-            was = self.meta["read"].get(name, {})
+            was = read.get(name, {})
             for source, now in sources.items():
                 if source not in was:
                     unread.setdefault(name, []).append(f"nobody has read {source} there")
@@ -215,24 +210,26 @@ class Gate:
                     unread.setdefault(name, []).append(f"{source} {words}")
         return unread
 
-    def hashes(self) -> dict:
-        """region_hashes as they ought to be: today's, or as they were while a passage waits."""
-        waiting = {source for name in self.unread() for source in self.now[name]}
-        was, regions = self.meta["region_hashes"], self.regions.values()
-        shas = {r.name: was.get(r.name) if r.source in waiting else r.sha for r in regions}
-        return {name: sha for name, sha in shas.items() if sha}
+    def record(self, names=()) -> dict:
+        """What meta.yaml ought to keep when somebody has read these passages, too."""
+        read = self.meta["read"] | {name: self.now[name] for name in names}
+        hashes = {region.name: region.sha for region in self.regions.values()}
+        return {
+            "region_hashes": self.meta["region_hashes"] if self.unread(read) else hashes,
+            "read": {name: read[name] for name in self.passages if read.get(name)},
+        }
 
     def check_read(self):
         """All passages are read as they are, and nothing is kept of what is gone."""
-        for name, moved in self.unread().items():
+        for name, moved in self.unread(self.meta["read"]).items():
             each = self.passages[name]
             what = f"read {name!r} again: {', '.join(moved)}"
             self.say(each.file, each.line, what, f"{GATE} --read {shlex.quote(name)}")
-        kept, right = self.meta["region_hashes"], self.hashes()
-        wrong = {name for name, _ in kept.items() ^ right.items()}
-        if wrong := sorted(wrong | (self.meta["read"].keys() - self.passages)):
-            what = f"it keeps what is gone, or other, of {', '.join(wrong)}"
-            self.say("meta.yaml", 1, what, f"{GATE} --read")
+        for key, right in self.record().items():
+            kept = self.meta[key]
+            if wrong := [n for n in {**kept, **right} if kept.get(n) != right.get(n)]:
+                what = f"its {key} keeps what is gone, or other, of {', '.join(wrong)}"
+                self.say("meta.yaml", 1, what, f"{GATE} --read")
 
     def check_results(self):
         """Results and rows of the ledger are of today's code; all that are not make one problem."""
@@ -264,7 +261,7 @@ def check() -> int:
     gate.check_read()
     gate.check_results()
     print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")
-    if len(unread := gate.unread()) > 1:
+    if len(unread := gate.unread(gate.meta["read"])) > 1:
         print(f"\nwhen all of them are read: {GATE} --read {shlex.join(unread)}")
     return 1 if gate.problems else 0
 
@@ -277,13 +274,12 @@ def read(names) -> int:
         wrong = f"given {', '.join(unknown)}; allowed: {', '.join(gate.passages)}"
         raise TextError("\n".join(gate.problems) or wrong)
     gate.check_numbers()
-    stamps = gate.meta["read"] | {name: gate.now[name] for name in names}
-    gate.meta["read"] = {p: stamps[p] for p in gate.passages if stamps.get(p)}
-    head = read_text("meta.yaml").partition("\nregion_hashes:")[0].rstrip()
-    form = {"sort_keys": False, "allow_unicode": True, "width": 10**6}
-    hashes = yaml.safe_dump({"region_hashes": gate.hashes()}, **form)
-    stamps = yaml.safe_dump({"read": gate.meta["read"]}, default_flow_style=None, **form)
-    write_whole(ROOT / "meta.yaml", f"{head}\n\n{hashes}{stamps}")
+    text = read_text("meta.yaml").partition("\nregion_hashes:")[0].rstrip() + "\n\n"
+    for key, kept in gate.record(names).items():
+        flow = None if key == "read" else False  # a line each
+        form = {"sort_keys": False, "allow_unicode": True, "width": 10**6}
+        text += yaml.safe_dump({key: kept}, default_flow_style=flow, **form)
+    write_whole(ROOT / "meta.yaml", text)
     print(f"recorded in meta.yaml as read: {', '.join(names) or 'nothing more'}")
     return 0
 
