@@ -77,7 +77,8 @@ def made_by(*files) -> list:
     """The sources of what these files measure: they, what makes numbers of what they import, and
     the regions of contact.py that define what these use, or what those regions use."""
     regions, _ = split(read_text("contact.py"), "contact.py")
-    finder, sources = ModuleFinder([str(ROOT)]), {f for f in (*files, *ALWAYS) if read_text(f)}
+    finder = ModuleFinder([str(ROOT)], excludes=["curriculum.stored"])
+    sources = {file for file in (*files, *ALWAYS) if read_text(file)}
     for file in (file for file in sources if file.endswith(".py")):
         finder.run_script(str(ROOT / file))  # which runs nothing
     for module in map(vars, finder.modules.values()):

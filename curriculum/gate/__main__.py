@@ -26,7 +26,7 @@ with needs("dev"):
     import contact
     from curriculum import stored
     from curriculum.gate.chapter import CHAPTER, INCLUDE, INLINE, faults, split
-    from curriculum.gate.references import REFERENCE, Numbers, TextError, load_meta
+    from curriculum.gate.references import REFERENCE, TextError, hold, load_meta, prepare, shown
     from curriculum.lesson.regions import DOCSTRING, ROOT, blank, line_at, read_text, split_all
 
 GATE = "python -m curriculum.gate"
@@ -180,15 +180,14 @@ class Gate:
                 repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
                 self.say(CHAPTER, line, f"a typed number, {number}", repair)
         quoting = [each for each in self.passages.values() if each.file in TEXTS]
-        numbers, text = Numbers(), "".join(each.text for each in quoting)
-        numbers.prepare(text)
+        prepare(text := "".join(each.text for each in quoting))
         found = [(each, match) for each in quoting for match in REFERENCE.finditer(each.text)]
         for passage, match in found:
-            asked = match[2] or "="
+            claim, asked = match.groups()
             try:
-                shown = numbers.shown(*match.groups())
-                if not asked.startswith("="):
-                    self.now[passage.name][asked] = shown
+                number = shown(asked) if asked else hold(claim)
+                if asked and not asked.startswith("="):
+                    self.now[passage.name][asked] = number
             except TextError as error:
                 line = passage.line_of(match.start(match.lastindex))
                 self.say(passage.file, line, error, "correct the text, or name what is known")

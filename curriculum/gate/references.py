@@ -90,98 +90,91 @@ def run_contact(flags) -> dict:
         return json.loads((Path(out) / f"{file}.json").read_text("utf-8"))
 
 
-class Numbers:
-    """Everything that a text can quote. What is asked for is run or read, once; nothing else is."""
+@cache
+def known(source, fact="") -> dict:
+    """{"a.b.3": number or text} of what a source holds: a run, a fact, contact.py, results."""
+    if source == "contact":
+        tree = vars(contact) | {"Settings": contact.Settings()._asdict()}
+    elif source == "fact":
+        tree = {fact: cached(f"fact-{fact}", None, pick(FACTS, fact, f"fact:{fact}"))}
+    elif source in stored.FOLDERS:
+        tables, made = stored.load(stored.FOLDERS[source])
+        rows = {k: {str([*row.values()][0]): row for row in t} for k, t in tables.items()}
+        tree = {"made": made} | rows
+    else:
+        flags = pick(load_meta()["runs"], source, source)
+        tree = cached(f"run-{source}", flags, lambda: run_contact(flags))
+    return dict(leaves(tree))
 
-    def __init__(self, runs=None):
-        """`runs` by name (dicts like metrics.json) stand in for fresh ones, as in an exercise."""
-        self.runs = dict(runs or {})
 
-    def run(self, name) -> dict:
-        """metrics.json of one run that meta.yaml names."""
-        if name not in self.runs:
-            flags = pick(load_meta()["runs"], name, name)
-            self.runs[name] = cached(f"run-{name}", flags, lambda: run_contact(flags))
-        return self.runs[name]
+def prepare(text):
+    """Make the runs that a text names, on all cores. What is asked for is made once."""
+    wanted = [name for name in load_meta()["runs"] if f"{name}:" in text]
+    made_by()  # and kept: Python 3.11 cannot parse in two threads at once
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(known, wanted))
 
-    def prepare(self, text):
-        """Make the runs that a text names, on all cores."""
-        wanted = [name for name in load_meta()["runs"] if f"{name}:" in text]
-        made_by()  # and kept: Python 3.11 cannot parse in two threads at once
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            list(pool.map(self.run, wanted))
 
-    def operand(self, text):
-        """What one name stands for: a number or a text."""
-        source, _, key = text.rpartition(":")
-        if text.startswith("contact."):
-            tree, key = vars(contact) | {"Settings": contact.Settings()._asdict()}, text[8:]
-        elif source == "fact":
-            fact = key.partition(".")[0]
-            make = pick(FACTS, fact, text)
-            tree = {fact: cached(f"fact-{fact}", None, make)}
-        elif source in stored.FOLDERS:
-            tables, made = stored.load(stored.FOLDERS[source])
-            rows = {k: {str([*row.values()][0]): row for row in t} for k, t in tables.items()}
-            tree = {"made": made} | rows
-        else:
-            tree = self.run(source or next(iter(load_meta()["runs"])))
-        return pick(dict(leaves(tree)), key, text)
+def operand(name):
+    """What one name stands for: a number or a text."""
+    source, _, key = name.rpartition(":")
+    if name.startswith("contact."):
+        source, _, key = name.partition(".")
+    fact = key.partition(".")[0] if source == "fact" else ""
+    return pick(known(source or next(iter(load_meta()["runs"])), fact), key, name)
 
-    def value(self, formula) -> tuple:
-        """What a formula is, as Python reckons, and the formula in numbers."""
 
-        def number(match):
-            value = self.operand(match[0])
-            if type(value) not in (int, float):
-                raise TextError(f"{match[0]!r} is {str(value)[:40]!r}, no number")
-            return f"({value!r})"
+def reckon(formula) -> tuple:
+    """What a formula is, as Python reckons, and the formula in numbers."""
 
-        if OPERAND.fullmatch(formula):
-            return self.operand(formula), formula  # which may be a text
-        numbers = OPERAND.sub(number, " ".join(formula.split()))
-        if not FORMULA.fullmatch(numbers):
-            raise TextError(f"{formula!r} has other signs than + - * / ( ) < <= > >= ==")
-        try:
-            return eval(numbers), numbers
-        except (NameError, SyntaxError, TypeError, ZeroDivisionError) as error:
-            raise TextError(f"{formula!r} cannot be reckoned: {error}") from None
+    def number(match):
+        value = operand(match[0])
+        if type(value) not in (int, float):
+            raise TextError(f"{match[0]!r} is {str(value)[:40]!r}, no number")
+        return f"({value!r})"
 
-    def text(self, reference) -> str:
-        """What a reader sees in place of {{reference}}."""
-        formula, _, form = (part.strip() for part in reference.partition("|"))
-        if formula.startswith("="):
-            if not form:
-                raise TextError(
-                    f"{formula!r}: a typed number needs a reason: {{{{= NUMBER | REASON}}}}"
-                )
-            return formula[1:].strip()
-        value, _ = self.value(formula)
-        if type(value) not in (int, float, str):
-            raise TextError(f"{formula!r} is {value}, no number")
-        if isinstance(value, float) and not form:
-            raise TextError(f"{formula!r} is a fraction and needs a format, such as |.3f")
-        try:
-            text = format(value, form)
-        except ValueError as error:
-            raise TextError(f"{form!r} is no format of {formula!r}: {error}") from None
-        return text if isinstance(value, str) else typeset(text)
+    if OPERAND.fullmatch(formula):
+        return operand(formula), formula  # which may be a text
+    numbers = OPERAND.sub(number, " ".join(formula.split()))
+    if not FORMULA.fullmatch(numbers):
+        raise TextError(f"{formula!r} has other signs than + - * / ( ) < <= > >= ==")
+    try:
+        return eval(numbers), numbers
+    except (NameError, SyntaxError, TypeError, ZeroDivisionError) as error:
+        raise TextError(f"{formula!r} cannot be reckoned: {error}") from None
 
-    def shown(self, claim, asked) -> str:
-        """The same; and of a claim nothing, where it is true. It may have several signs: 1 < a < 2.
-        Raises TextError."""
-        if asked:
-            return self.text(asked)
-        true, numbers = self.value(claim)
-        if true is not True:
-            what = "does not hold" if true is False else "is not 'FORMULA < FORMULA'"
-            raise TextError(f"{claim!r} {what}: {numbers}")
-        return ""
 
-    def fill(self, text) -> str:
-        """The text with every reference replaced."""
-        self.prepare(text)
-        return REFERENCE.sub(lambda match: self.text(match[2]) if match[2] else "", text)
+def shown(reference) -> str:
+    """What a reader sees in place of {{reference}}. Raises TextError."""
+    formula, _, form = (part.strip() for part in reference.partition("|"))
+    if formula.startswith("=") and form:
+        return formula[1:].strip()
+    if formula.startswith("="):
+        raise TextError(f"{formula!r}: a typed number needs a reason: {{{{= NUMBER | REASON}}}}")
+    value, _ = reckon(formula)
+    if type(value) not in (int, float, str):
+        raise TextError(f"{formula!r} is {value}, no number")
+    if isinstance(value, float) and not form:
+        raise TextError(f"{formula!r} is a fraction and needs a format, such as |.3f")
+    try:
+        text = format(value, form)
+    except ValueError as error:
+        raise TextError(f"{form!r} is no format of {formula!r}: {error}") from None
+    return text if isinstance(value, str) else typeset(text)
+
+
+def hold(claim) -> None:
+    """Raise TextError where a claim is not true. It may have several signs: 1 < a < 2."""
+    true, numbers = reckon(claim)
+    if true is not True:
+        what = "does not hold" if true is False else "is not 'FORMULA < FORMULA'"
+        raise TextError(f"{claim!r} {what}: {numbers}")
+
+
+def fill(text) -> str:
+    """The text with every reference replaced."""
+    prepare(text)
+    return REFERENCE.sub(lambda match: shown(match[2]) if match[2] else "", text)
 
 
 def typeset(number: str) -> str:

@@ -25,7 +25,7 @@ with needs("notebook"):
     from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
     from curriculum.gate.chapter import CHAPTER, read
-    from curriculum.gate.references import Numbers
+    from curriculum.gate.references import fill
     from curriculum.lesson.regions import ROOT, read_all
 
 CARRIED = """contact.py checks.py exercises/*.py exercises/kit/* exercises/solutions/*
@@ -129,7 +129,7 @@ def cells_of(text):
 
 def build():
     """The notebook as text. Raises ValueError where the chapter cannot be shown as it is."""
-    text = Numbers().fill((ROOT / CHAPTER).read_text("utf-8"))
+    text = fill((ROOT / CHAPTER).read_text("utf-8"))
     made = new_notebook(cells=list(cells_of(text)), metadata=METADATA)
     nbformat.validate(made)
     return nbformat.writes(made) + "\n"

@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 import contact
 from curriculum import stored
-from curriculum.gate.references import Numbers, load_meta
+from curriculum.gate.references import fill, load_meta
 from curriculum.lesson.regions import ROOT, read_all
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
@@ -120,7 +120,7 @@ def build(text=None):
     where it can't be shown as it is."""
     text = (ROOT / chapter.CHAPTER).read_text("utf-8") if text is None else text
     exercises, regions, data = all_exercises(), read_all(), page_data()
-    parts = chapter.blocks(Numbers().fill(text))
+    parts = chapter.blocks(fill(text))
     for kind, (name, *_) in ((kind, values) for kind, values in parts if values):
         known = {"exercise": exercises, "region": regions}.get(kind, [name])
         if name not in known:
