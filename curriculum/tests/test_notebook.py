@@ -2,6 +2,7 @@
 
 import json
 import re
+import tempfile
 
 import ipykernel  # noqa: F401  # which runs it
 import matplotlib  # noqa: F401
@@ -47,10 +48,13 @@ def ran(text, tmp_path_factory):
         if cell.source.startswith("%%writefile contact_chapter/exercises/ex1_"):
             made = cell.source.replace("PREDICTION = None", 'PREDICTION = "A"')
             cell.source = made.replace('WHY = ""', 'WHY = "a table is a table, I think"')
-    with pytest.MonkeyPatch.context() as shell:
+    with pytest.MonkeyPatch.context() as shell, tempfile.TemporaryDirectory() as sockets:
         shell.delenv("MPLBACKEND", raising=False)  # a kernel shows pictures unless told otherwise
-        client = nbclient.NotebookClient(book, resources={"metadata": {"path": str(folder)}})
-        client.create_kernel_manager().transport = "ipc" if zmq.has("ipc") else "tcp"  # no port
+        where = {"metadata": {"path": str(folder)}}
+        client = nbclient.NotebookClient(book, startup_timeout=1800, resources=where)
+        manager = client.create_kernel_manager()
+        if zmq.has("ipc"):  # a file in place of a port that others may want
+            manager.transport, manager.ip = "ipc", f"{sockets}/kernel"
         client.execute()
     cells = [cell for cell in book.cells if cell.cell_type == "code"]
     assert all(cell.execution_count for cell in cells)
