@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 import contact
+import curriculum
 from curriculum.tests.helpers import CONTACT, NO_PLUGINS, ROOT, python
 
 FOLDER_ONLY = ("recording:", "next,", "no recording:", "exact: ")  # lines that the folder adds
@@ -54,25 +55,21 @@ BAD = {
 WORDS = {"--solref": 2, "--solimp": 5}
 
 
-@pytest.mark.parametrize(
-    "flag, value", [(flag, each) for flag in BAD for each in ("--", *BAD[flag].split())]
-)
+@pytest.mark.parametrize("flag", BAD)
 def test_bad_input_is_one_line_that_says_what_was_given_and_what_is_allowed(
-    flag, value, tmp_path, monkeypatch, capsys
+    flag, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
-    several = flag in WORDS and value != "--"
-    words = [flag, *[value] * WORDS[flag]] if several else [f"{flag}={value}"]
-    err = refused(main(capsys, "--scene", "stack", *words))
-    assert flag in err and value[:40] in err and re.search("allowed|choose from|no value", err)
+    for value in ("--", *BAD[flag].split()):
+        several = flag in WORDS and value != "--"
+        words = [flag, *[value] * WORDS[flag]] if several else [f"{flag}={value}"]
+        err = refused(main(capsys, "--scene", "stack", *words))
+        assert flag in err and value[:40] in err and re.search("allowed|choose from|no value", err)
     assert not any(tmp_path.iterdir())
-
-
-def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
     parser = argparse.ArgumentParser(add_help=False)
     contact.add_flags(parser.add_argument)
     takes = {each.option_strings[0] for each in parser._actions if each.nargs != 0}
-    assert takes - {"--skip", "--rerun"} == {*BAD, "--out"}
+    assert takes - {"--skip", "--rerun"} == {*BAD, "--out"}, "none is left out here"
 
 
 @pytest.mark.parametrize("flags, part", [
@@ -86,14 +83,6 @@ def test_every_flag_that_takes_a_value_is_among_those_tried_with_bad_input():
 ])  # fmt: skip
 def test_flags_that_contradict_one_another_or_ask_too_much_are_refused(flags, part, capsys):
     assert part in refused(main(capsys, *shlex.split(flags)))
-
-
-def test_the_scenes_own_restitution_and_damping_can_be_asked_for_as_published(tmp_path, capsys):
-    flags = ("--scene", "bounce", "--no-rerun", "--out", tmp_path)
-    assert main(capsys, *flags)[0] == 0
-    own = (tmp_path / "metrics.json").read_bytes()
-    assert main(capsys, *flags, "--damping", "-1", "--restitution", "-1")[0] == 0
-    assert (tmp_path / "metrics.json").read_bytes() == own
 
 
 ALONE = [
@@ -125,31 +114,41 @@ def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(
     assert len(written) == 2 * (status == 0 and flags != "--help") and len({*written}) <= 1
 
 
-def test_what_needs_the_folder_says_so_in_one_line_when_it_is_not_there(tmp_path):
-    lone = shutil.copy(CONTACT, tmp_path)
-    plot = python(lone, "--plot", "--steps", "5", cwd=tmp_path)
-    assert (plot.returncode, plot.stderr) == (0, "")
-    assert sum(line.startswith("no picture") for line in plot.stdout.splitlines()) == 1
+# What is in the way, the environment, the words, the exit status, what output and errors say.
+PLAIN = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"} | NO_PLUGINS
+WAYS = [
+    ("contact.py", {}, "contact.py --plot --steps 5", 0, "no picture", ""),
+    ("", {}, "-S CONTACT", 2, "", ".* -m pip install numpy.*"),
+    ("rerun.py", {}, "CONTACT --steps 5", 0, "metrics: .*\nno recording: .*install it: ", ""),
+    ("matplotlib.py", {}, "CONTACT --steps 5 --plot --no-rerun", 0, "no picture: .*install it", ""),
+    ("out/contact.rrd/", {}, "CONTACT --steps 5 --out out", 2, "metrics: out", ".*cannot write .*"),
+    ("outputs", {}, "CONTACT --smoke --no-rerun", 2, "stability: pen", ".*the report is whole.*"),
+    ("x", {}, "CONTACT --smoke --no-rerun --out x/y", 2, "stability: pen", ".*cannot write to x.*"),
+    ("", PLAIN, "-O CONTACT --steps 1e1 --no-rerun", 0, ": 10 steps", ""),
+    ("", PLAIN, "-OO CONTACT --steps 1e1 --plot", 0, "picture: outputs", ""),
+    ("", PLAIN, "-O checks.py -k ex2", 0, "ex2: ", ""),
+    ("", PLAIN, "-OO exercises/ex2_completion_contact.py", 2, "two lines that make a contact", ""),
+    ("", {"PYTHONIOENCODING": "ascii"}, "CONTACT --steps 5 --no-rerun --out é", 0, "xe9", ""),
+]  # fmt: skip
 
 
-def test_without_numpy_it_is_one_line_that_says_how_to_install_it():
-    bare = python("-S", CONTACT)
-    assert bare.returncode == 2 and bare.stdout == "" and bare.stderr.count("\n") == 1
-    assert "pip install numpy" in bare.stderr and sys.executable in bare.stderr
-
-
-@pytest.mark.parametrize("package, file, flags", [
-    ("rerun", "recording", ""), ("matplotlib", "picture", "--plot --no-rerun")
-])  # fmt: skip
-def test_a_package_that_is_missing_costs_its_file_and_says_how_to_install_it(
-    package, file, flags, tmp_path
+@pytest.mark.parametrize("put, environment, words, status, says, complains", WAYS)
+def test_whatever_is_in_the_way_it_says_so_in_a_line_and_gives_what_it_can(
+    put, environment, words, status, says, complains, tmp_path
 ):
-    (tmp_path / f"{package}.py").write_text("raise ImportError('not installed')")
-    words = (*flags.split(), "--steps", "5", "--out", tmp_path)
-    made = python(CONTACT, *words, PYTHONPATH=str(tmp_path))
-    assert made.returncode == 0 and made.stderr == ""
-    (line,) = [line for line in made.stdout.splitlines() if line.startswith(f"no {file}: ")]
-    assert "install it: " in line and (tmp_path / "metrics.json").exists()
+    (tmp_path / put).parent.mkdir(exist_ok=True)
+    if put == "contact.py":
+        shutil.copy(CONTACT, tmp_path)
+    elif put.endswith("/"):
+        (tmp_path / put).mkdir()
+    elif put:
+        (tmp_path / put).write_text("raise ImportError('not installed')")
+    ours = "checks" in words or "exercises" in words
+    typed = words.replace("CONTACT", str(CONTACT)).split()
+    where = {"cwd": ROOT if ours else tmp_path, "PYTHONPATH": str(tmp_path), **environment}
+    done = python(*typed, **where)
+    assert done.returncode == status and re.search(says, done.stdout), done.stdout
+    assert re.fullmatch(complains, done.stderr.removesuffix("\n")), done.stderr
 
 
 @pytest.mark.parametrize("scene", contact.SCENES)
@@ -184,6 +183,12 @@ def test_figures_stand_under_their_headings_and_every_heading_is_explained(tmp_p
 
 
 def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
+    """-1 asks for the scene's own restitution and damping, as it is published."""
+    written = []
+    for own in "", "--damping -1 --restitution -1":
+        assert main(capsys, *f"--scene bounce --no-rerun {own} --out {tmp_path}".split())[0] == 0
+        written.append((tmp_path / "metrics.json").read_bytes())
+    assert written[0] == written[1]
     flags = "--scene stack --bodies 4 --seed 5 --mass 2 --restitution 0.5 --damping 20 --dt 0.004"
     knobs = "--stiffness 5e3 --baumgarte 0.4 --iters 3 --warm 0.5 --solref 0.03 0.8"
     words = f"{flags} --steps 150 {knobs} --solimp 0.5 0.9 0.002 0.4 3 --no-rerun".split()
@@ -229,36 +234,19 @@ def test_flags_at_their_ends_give_a_right_report_or_one_line(scene, tmp_path, ca
             assert not (line.endswith(" ok") and (row["blew_up"] or row["through"])), (flags, line)
 
 
-@pytest.mark.parametrize("flags", [(), ("--out", "outputs/deeper")])
-def test_where_nothing_can_be_written_the_report_is_whole(flags, tmp_path, monkeypatch, capsys):
-    """A file stands where the folder should be: the one asked for, or the default one."""
-    monkeypatch.chdir(tmp_path)
-    Path("outputs").write_text("a file")
-    status, out, err = main(capsys, "--smoke", "--no-rerun", *flags)
-    assert status == 2 and err.count("\n") == 1
-    assert "cannot write" in err and "the report is whole" in err
-    assert "stability: penalty" in out
-    assert [path.name for path in tmp_path.iterdir()] == ["outputs"]
-
-
-BROKEN = """import contact
-for name in ("missing", "a", "b", "c"):
-    try:
-        print(contact.beside(f"show.{name}"))
-    except Exception as error:
-        print(type(error).__name__)
-"""
-
-
-def test_what_is_missing_is_none_and_what_is_broken_is_raised(tmp_path):
-    shutil.copy(CONTACT, tmp_path)
-    (tmp_path / "curriculum/show").mkdir(parents=True)
-    faults = "import nmpy", "from curriculum.show import no_such_name", "1 / 0"
-    for name, fault in zip("abc", faults):
-        (tmp_path / f"curriculum/show/{name}.py").write_text(fault)
-    done = python("-c", BROKEN, cwd="/", PYTHONPATH=str(tmp_path))
-    expected = "None ModuleNotFoundError ImportError ZeroDivisionError"
-    assert done.stdout.split() == expected.split()
+@pytest.mark.parametrize("fault, kind", [
+    ("import nmpy", ModuleNotFoundError), ("from curriculum import no_such_name", ImportError),
+    ("1 / 0", ZeroDivisionError),
+])  # fmt: skip
+def test_what_is_missing_is_none_and_what_is_broken_is_raised(fault, kind, tmp_path, monkeypatch):
+    assert contact.beside("missing") is None
+    (tmp_path / "curriculum").mkdir()
+    (tmp_path / "curriculum/faulty.py").write_text(fault)
+    monkeypatch.setattr(contact, "__file__", str(tmp_path / "contact.py"))
+    monkeypatch.setattr(curriculum, "__path__", [str(tmp_path / "curriculum")])
+    monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path)])
+    with pytest.raises(kind):
+        contact.beside("faulty")
 
 
 def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
@@ -270,19 +258,42 @@ def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
     assert done.stdout.splitlines()[-1] == "[]", done.stderr
 
 
-@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
+COMMANDS = (
+    "contact.py", "checks.py", "exercises/ex1_predict_contact.py",
+    *(f"-m curriculum.{name}" for name in "seeds gate page notebook bench stress".split()),
+)  # fmt: skip
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
+@pytest.mark.parametrize("command", COMMANDS)
+def test_ctrl_c_and_sigterm_while_a_command_imports_are_one_word(command, tmp_path):
+    for name, status in ("SIGINT", 130), ("SIGTERM", 143):
+        stop = f"import os, signal\nos.kill(os.getpid(), signal.{name})\n"
+        (tmp_path / "numpy.py").write_text(stop)
+        done = python(*command.split(), PYTHONPATH=str(tmp_path))
+        assert (done.returncode, done.stdout, done.stderr) == (status, "", "stopped\n"), name
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 def test_ctrl_c_ends_a_run_with_one_word_and_leaves_no_file(tmp_path):
     start = "import runpy; print('ready', flush=True); runpy.run_path('contact.py', {}, '__main__')"
-    flags = "--no-skip", "--steps", "1000000", "--out", tmp_path / "out"
-    words = [sys.executable, "-c", start, *flags]
+    words = [
+        sys.executable,
+        "-c",
+        start,
+        "--no-skip",
+        "--steps",
+        "1000000",
+        "--out",
+        tmp_path / "o",
+    ]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as process:
         assert process.stdout.readline() == "ready\n"
         time.sleep(1.0)  # into the steps
         os.killpg(process.pid, signal.SIGINT)  # what a terminal does
-        out, err = process.communicate(timeout=30)
-    assert (process.returncode, out, err.strip()) == (130, "", "stopped")
-    assert not any(tmp_path.iterdir())
+        assert process.communicate(timeout=30) == ("", "stopped\n")
+    assert process.returncode == 130 and not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("words, unbuffered", [
@@ -316,19 +327,6 @@ def test_no_output_at_all_is_no_error(tmp_path):
     assert (closed.returncode, closed.stderr) == (0, "")
 
 
-@pytest.mark.parametrize("option, files", [("-O", ["--no-rerun"]), ("-OO", ["--plot"])])
-def test_it_runs_without_asserts_docstrings_and_in_an_ascii_locale(option, files, tmp_path):
-    plain = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"} | NO_PLUGINS
-    done = python(option, CONTACT, "--steps", "1e1", *files, "--out", tmp_path, **plain)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert strict_json(tmp_path / "metrics.json")["steps"] == 10
-    checks = python(option, "checks.py", "-k", "ex2", **plain)
-    assert "ex2: " in checks.stdout and (checks.returncode, checks.stderr) == (0, "")
-    asked = python(option, "exercises/ex2_completion_contact.py", **plain)
-    assert "two lines that make a contact one-sided" in asked.stdout
-    assert (asked.returncode, asked.stderr) == (2, "")
-
-
 # fmt: off
 LINES = [
     ("--contact exact --scene bounce", r"exact: its bounces rise to 0\.4437, 0\.2174, .* m \.\.\."),
@@ -348,16 +346,3 @@ LINES = [
 def test_the_report_says_what_a_reader_would_ask(flags, line, tmp_path, capsys):
     _, out, _ = main(capsys, *flags.split(), "--no-rerun", "--out", tmp_path)
     assert any(re.fullmatch(line, each) for each in out.splitlines()), out
-
-
-def test_a_name_that_stdout_cannot_encode_is_spelled_out(tmp_path):
-    words = "contact.py", "--steps", "5", "--no-rerun", "--out", tmp_path / "é"
-    done = python(*words, cwd=ROOT, PYTHONIOENCODING="ascii")
-    assert (done.returncode, done.stderr) == (0, "") and "xe9" in done.stdout
-
-
-def test_a_disk_that_fills_up_costs_a_file_and_names_those_that_were_written(tmp_path):
-    (tmp_path / "contact.rrd").mkdir()  # in the way of the recording
-    done = python("contact.py", "--steps", "5", "--out", tmp_path, cwd=ROOT)
-    assert done.returncode == 2 and f"metrics: {tmp_path}" in done.stdout
-    assert "cannot write" in done.stderr and done.stderr.count("\n") == 1
