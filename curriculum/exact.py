@@ -6,18 +6,19 @@ series where a ball slides over another. An event is a gap that closes, a force 
 or a series that comes to its end. At each:
 
     touch        picks the contacts that touch,
-    bounce       gives impulses to those that close: an LCP in velocities,
+    strike       gives impulses to those that close: an LCP in velocities,
     support      gives forces to those that rest: the same LCP in accelerations,
     slide        makes a series of the motion, only where a contact that pushes also slips,
     next_event   finds the first gap that closes or force that ends.
 
 The promise. Over some seconds and metres it is within 1e-10 r of every closed form: drop, bounce,
-elastic, stack, the slide to its release at two thirds, the pyramid, the blocks that count pi (3,
-31, 314, 3141 impacts). Rounding grows with both: 5.3e-10 r over 20,000 s, 2.4e-9 r from 1e6 m up.
-Piles of 3 to 24 balls with e from 0 to 0.9 are within 1e-8 r of an independent solver for as long
-as a start shifted by 1e-15 m stays within 1e-9 r. No overlap is above 1e-12 r. No energy is gained
-above 1e-12 of the start, and none is lost at e = 1. The answer is the same whenever it is sampled.
-Masses are within a ratio of 100 where 0 < e < 1. Beyond that it stops with one clear error.
+stack, the slide to its release, the pyramid, the blocks that count pi (3, 31, 314, 3141 impacts).
+Rounding grows with both: 2.4e-9 r from 1e6 m up. Piles of 3 to 24 balls with e from 0 to 0.9 are
+within 1e-8 r of an independent solver for as long as a start shifted by 1e-15 m stays within 1e-9
+r; so long plain and compiled, one code whose sums are rounded otherwise, are within 1e-12 r of one
+another. No overlap is above 1e-12 r. No energy is gained above 1e-12 of the start, and none is lost
+at e = 1. The answer is the same whenever it is sampled. Masses are within a ratio of 100 where
+0 < e < 1. Beyond that it stops with one clear error.
 
     q, v, a      positions, velocities, accelerations: (2, N), a column a ball     m, m/s, m/s^2
     w            1 / mass; 0 for a ball that nothing moves                         1/kg
@@ -65,20 +66,18 @@ def inverse(W):
         pass
     size, axes = np.linalg.eigh(W * unit)
     moves = size > NOISE * size[-1]
-    size, idle = np.where(moves, size, math.inf), axes * ~moves
-    return axes / size @ np.ascontiguousarray(axes.T) * unit, idle @ np.ascontiguousarray(
-        idle.T
-    ) * unit
+    idle, size = axes * ~moves, np.where(moves, size, math.inf)
+    return axes / size @ axes.T.copy() * unit, idle @ idle.T.copy() * unit
 
 
 def solve_lcp(W, b, slack=0.0):
-    """lam (K,) >= 0 with s = W lam + b >= 0 and lam s = 0, W (K, K), b (K,). One pivot at a time.
+    """lam (K,) >= 0 with s = W lam + b >= 0 and lam s = 0, W (K, K), b (K,), by pivots.
 
-    Let A be the active contacts, those that may push; all of them at first, as at rest. Solve
+    A are the active contacts, those that may push; all of them at first, as at rest. Solve
     W_AA trial_A = -b_A, so that s_A = 0. If some trial_k < 0, k would have to pull: go from lam
-    towards trial until the first of them is at 0, and take it out of A. Else lam = trial, and if
-    some s_k < 0, its gap still closes: the fastest one joins A. Each time that no contact pulls,
-    lam'W lam / 2 + b'lam is lower than before, so no A comes twice (Lawson and Hanson 1974).
+    towards trial until the first are at 0, and take them out of A. Else lam = trial, and those with
+    s_k < 0, whose gap still closes, join A. Each time that no contact pulls, lam'W lam / 2 + b'lam
+    is lower than before, so no A comes twice (Lawson and Hanson 1974).
 
     Where contacts of A depend on one another, there may be no such trial. Then some pushes change
     no s, and lower that sum without end: go their way until the first contact is at 0. If none gets
@@ -87,33 +86,36 @@ def solve_lcp(W, b, slack=0.0):
     if len(b) < 2:
         return np.maximum(-b / np.diag(W), 0.0)
     unit = np.sqrt(np.diag(W))
-    size = np.abs(b / unit).max()
+    small = NOISE * np.abs(b / unit).max()
     lam, active = np.zeros(len(b)), np.ones(len(b), np.bool_)
     for _ in range(50 + 10 * len(b)):
-        trial, on = np.zeros(len(b)), np.flatnonzero(active)
-        solve, idle = inverse(W[on][:, on])
-        trial[on] = idle @ -b[on]
-        endless = np.abs(trial * unit).max() > 1e3 * NOISE * size
-        if not endless:
-            trial[on] = solve @ -b[on]
-        pulls = np.flatnonzero(trial * unit < -NOISE * size)
+        trial, endless = push_all(W, b, np.flatnonzero(active), 1e3 * small / unit)
+        pulls = np.flatnonzero(trial * unit < -small)
         if len(pulls):
             way = trial if endless else trial - lam
             share = lam[pulls] / -way[pulls]
             lam = np.where(active, lam + share.min() * way, 0.0)
-            active[pulls[share.argmin()]] = False
-            continue
-        if endless and (trial * unit).max() <= np.where(trial > 0.0, slack, 0.0).max():
-            b = b + trial * np.diag(W)
-            continue
-        if endless:
+            active[pulls[share == share.min()]] = False
+        elif endless and (trial * unit).max() > np.where(trial > 0.0, slack, 0.0).max():
             raise RuntimeError("exact: a ball is crushed between two that nothing moves")
-        lam = np.maximum(trial, 0.0)
-        s = np.where(active, 0.0, (W @ lam + b) / unit)
-        if s.min() >= -NOISE * size:
-            return lam
-        active[s.argmin()] = True
+        elif endless:
+            b = b + trial * np.diag(W)
+        else:
+            lam = np.maximum(trial, 0.0)
+            closes = ~active & ((W @ lam + b) / unit < -small)
+            if not closes.any():
+                return lam
+            active |= closes
     raise RuntimeError("exact: contacts at one moment: their masses are too unequal")
+
+
+def push_all(W, b, on, small):
+    """trial (K,) of solve_lcp, by the contacts `on`, and whether it is pushes without end."""
+    solve, idle = inverse(W[on][:, on])
+    trial, way = np.zeros(len(b)), idle @ -b[on]
+    endless = (np.abs(way) > small[on]).any()
+    trial[on] = way if endless else solve @ -b[on]
+    return trial, endless
 
 
 # --- endregion ---
@@ -122,9 +124,8 @@ def solve_lcp(W, b, slack=0.0):
 class Motion:
     """Where all balls are at an event, and what each of the K contacts they can make did so far.
 
-    q, v, a are flat here, (2 N,): all x, then all y. J (C, 2 N) has a row for each of C contacts,
-    its normal at ball a and minus that at ball b: J v is v_n, and w J' lam is what pushes lam add
-    to v. sides (K, N) is 1 in the column of ball a and -1 in that of ball b.
+    q, v, a are flat here, (2 N,): all x, then all y. J (C, 2 N) has n of each of C contacts at ball
+    a and -n at ball b: J v is v_n, and w J' lam is what pushes lam add to v. sides (K, N): 1, -1.
     """
 
     def __init__(self, scene, gravity):
@@ -140,38 +141,38 @@ class Motion:
         self.w, self.e, self.g = np.tile(w[:-1], 2), scene.restitution, -gravity
         self.radii = np.tile(radius[:-1], 2)
         self.fall = np.where(self.w > 0.0, np.repeat((0.0, gravity), count), 0.0)
-        self.gap = np.full(len(self.reach), math.inf)  # [m]
-        self.locate()
-        self.gap = self.found
+        self.gap = 0.0
+        self.locate(track=0.0)
         self.rests = np.zeros(len(self.gap), bool)  # it touched at the last event and did not part
-        self.since = np.full(len(self.gap), math.inf)  # the time [s] since it touched,
-        self.parting = np.ones(len(self.gap))  # and |v_n| [m/s] then
+        self.since, self.parting = self.rests + math.inf, self.rests + 1.0  # [s]; |v_n| then [m/s]
         self.speed = np.sqrt(self.g * self.radius)  # [m/s], the measure of a slow v_n
-        self.by = choose_loops()
+        kept = loops() and loops().pays(0.0)  # on disk; no run knows how many events it will have
+        self.by = compile_loops() if kept else sys.modules[__name__]
 
-    def locate(self):
-        """Take normals (K, 2) and gaps (K,) from q.
+    def locate(self, track=1e4):
+        """Take gaps (K,) from q, but keep those below `track` times the smallest.
 
         A light ball between two others bounces until its gaps fall below the rounding of q. So
         next_event tracks gaps, and a tiny one touches only if it was wider.
         """
         x, y = self.q.reshape(2, -1) @ self.sides.T
-        distance = np.where(self.floor, y, np.sqrt(x * x + y * y))
-        up = self.floor | (distance == 0.0)
-        self.n = np.where(up, ((0.0,), (1.0,)), (x, y) / distance).T
-        self.found, self.bits = distance - self.reach, np.spacing(np.abs(self.q).max())
+        self.found = np.where(self.floor, y, np.sqrt(x * x + y * y)) - self.reach
+        self.bits = np.spacing(np.abs(self.q).max())
         self.small = TOUCH * self.radius + 4.0 * self.bits
-        self.gap = np.where(np.abs(self.found) < 1e4 * self.small, self.gap, self.found)
+        self.gap = np.where(np.abs(self.found) < track * self.small, self.gap, self.found)
 
     def rows(self, chosen):
-        """J of the chosen contacts."""
-        J = self.n[chosen][:, :, None] * self.sides[chosen][:, None]
-        return J.reshape(len(chosen), len(self.q))
+        """J of the chosen contacts; the normal is up at the floor, and where centres are one."""
+        sides = self.sides[chosen]
+        n = np.where(self.floor[chosen], ((0.0,), (1.0,)), self.q.reshape(2, -1) @ sides.T)
+        n[1] += ~n.any(0)
+        n /= np.sqrt((n * n).sum(0))
+        return (n.T[:, :, None] * sides[:, None]).reshape(len(chosen), len(self.q))
 
     def slip(self, chosen, rows):
         """The part of flat rows along the surface; 0 at the floor, which never turns."""
-        n, (x, y) = self.n[chosen], rows.reshape(2, -1) @ self.sides[chosen].T
-        return np.where(self.floor[chosen], 0.0, n[:, 0] * y - n[:, 1] * x)
+        x, y, along_x, along_y = np.array((self.q, rows)).reshape(4, -1) @ self.sides[chosen].T
+        return np.where(self.floor[chosen], 0.0, (x * along_y - y * along_x) / self.reach[chosen])
 
     def match(self, rows, J, solve, target):
         """Rows changed by the pushes that make J rows the target; twice, for the last digits."""
@@ -180,31 +181,30 @@ class Motion:
         return rows
 
     def touch(self):
-        """Which contacts touch now."""
-        self.locate()
+        """Which contacts touch now, and their J."""
         for _ in range(50):  # move apart what overlaps, as at a start; what a push closes is next
             if not (self.found < -self.small).any():
                 break
             near = np.flatnonzero(self.found <= -2.0 * self.found.min())
             J = self.rows(near)
             slack = 4.0 * self.bits / np.sqrt(self.share[near])
-            lam = self.by.solve_lcp(J * self.w @ J.T, self.found[near], slack)
-            self.q = self.q + self.w * (lam @ J)
-            self.locate()
-            self.gap = self.found
+            self.q += self.w * (self.by.solve_lcp(J * self.w @ J.T, self.found[near], slack) @ J)
+            self.locate(track=0.0)
         near = np.flatnonzero(self.gap <= self.small)
-        v_n = self.rows(near) @ self.v
+        J = self.rows(near)
+        v_n = J @ self.v
         opened = (self.parting[near] + np.abs(v_n)) * self.since[near]  # about how wide it has been
         still = self.rests[near] & (v_n <= NOISE * self.speed[near])
-        return near[still | (self.gap[near] <= 1e-4 * opened)]
+        on = still | (self.gap[near] <= 1e-4 * opened)
+        return near[on], J[on]
 
     def strike(self, touching, J):
         """Impulses: where a contact pushes, v_n becomes -e v_n, at all contacts at once.
 
-        That is an LCP in s = v_n after - target with target = -e v_n, as in contact.py; the target
-        is 0 where the bounce would rise less than LAST radii. A ball that passes between two others
-        that nothing moves, and touches both, closes until its normals have turned, by GRAZE^2 radii
-        at most: that is forgiven. Returns v_n after.
+        That is an LCP in s = v_n after - target, target = -e v_n as in contact.py, or 0 where the
+        bounce would rise less than LAST radii. A ball that passes between two that nothing moves,
+        and touches both, closes until its normals have turned, by GRAZE^2 radii at most: that is
+        forgiven. Returns v_n after.
         """
         v_n, speed = J @ self.v, self.speed[touching]
         if (v_n < -NOISE * speed).any():
@@ -213,7 +213,7 @@ class Motion:
             W = J * self.w @ J.T
             turns = GRAZE * np.abs(self.slip(touching, self.v)) / np.sqrt(self.share[touching])
             on = np.flatnonzero(self.by.solve_lcp(W, v_n - target, turns))
-            self.v = self.match(self.v, J[on], self.by.inverse(W[np.ix_(on, on)])[0], target[on])
+            self.v = self.match(self.v, J[on], self.by.inverse(W[on][:, on])[0], target[on])
             v_n = np.maximum(J @ self.v, np.minimum(target, 0.0))  # what was forgiven is 0
         return v_n
 
@@ -238,32 +238,25 @@ class Motion:
                 break
         self.rests[:] = False
         self.rests[touching] = True
-        if (np.abs(self.found[touching]) > self.bits).any():  # close what counts as closed
-            self.q = self.match(self.q, J, self.by.inverse(W)[0], J @ self.q - self.found[touching])
         on = np.flatnonzero(pushes > NOISE * self.g)
-        J, turn, a = J[on], turn[on], self.fall
-        if len(on):
-            solve = self.by.inverse(W[np.ix_(on, on)])[0]
-            a, self.v = self.match(a, J, solve, -turn), self.match(self.v, J, solve, 0.0)
-            beside = np.tile(self.sides[touching[on]].any(0), 2)  # else a heap at rest creeps
-            a = np.where(beside & (np.abs(a) <= NOISE * self.g), 0.0, a)
-            slow = NOISE * np.sqrt(self.g * self.radii)
-            self.v = np.where(beside & (np.abs(self.v) <= slow), 0.0, self.v)
+        J, turn = J[on], turn[on]
+        solve = self.by.inverse(W[on][:, on])[0]
+        a, self.v = self.match(self.fall, J, solve, -turn), self.match(self.v, J, solve, 0.0)
+        beside = np.tile(self.sides[touching[on]].any(0), 2)  # else a heap at rest creeps
+        a[beside & (np.abs(a) <= NOISE * self.g)] = 0.0
+        self.v[beside & (np.abs(self.v) <= NOISE * np.sqrt(self.g * self.radii))] = 0.0
         return touching[on], a
 
     def slide(self, held):
         """While the held contacts push: q as a series, their forces, and how long [s] both last."""
-        self.locate()
         J = self.rows(held)
         solve = self.by.inverse(J * self.w @ J.T)[0]
         self.q = self.match(self.q, J, solve, J @ self.q - self.found[held])
-        self.locate()
         J = self.rows(held)
         self.v = self.match(self.v, J, solve, 0.0)
         Q = np.zeros((ORDER + 1, len(self.q)))
         Q[0], Q[1] = self.q, self.v
-        turns = np.where(self.floor[held], 0.0, 1.0 / self.reach[held])
-        given = self.fall, self.w, self.n[held], J, self.sides[held], self.reach[held], turns, solve
+        given = self.fall, self.w, J, self.sides[held], self.reach[held], self.floor[held], solve
         lam = self.by.slide_series(Q, *given)
         lam[0] = np.maximum(lam[0], 0.0) + NOISE * self.g / self.share[held]
         size = np.abs(Q[-2:] / self.radii).max(1)  # the last two terms stay below 1e-16 r
@@ -285,16 +278,13 @@ class Motion:
         rounds = np.minimum(4.0 * self.bits, 1e-9 * gap)
         wider = np.where(self.rests[near], 0.5 * self.small[near], rounds)
         d = Q.reshape(len(Q), 2, -1) @ self.sides[near].T
-        span, first, value = self.by.next_fall(d, gap, reach, floor, wider, lam, horizon)
-        root = value / (reach + np.sqrt(reach**2 + value))
-        self.gap[near] = np.where(floor, value, root)
-        self.gap[near[first : first + 1]] = 0.0
+        span, self.gap[near] = self.by.next_fall(d, gap, reach, floor, wider, lam, horizon)
         self.since += span
         return span
 
 
 # --- region: slide-series ---
-def slide_series(Q, a, w, n_0, J, sides, reach, turns, solve):
+def slide_series(Q, a, w, J, sides, reach, floor, solve):
     """While K contacts push: fill in the series Q (terms, 2 N) of q in time. Returns that of the
     forces lam (terms, K), the last two 0.
 
@@ -310,8 +300,10 @@ def slide_series(Q, a, w, n_0, J, sides, reach, turns, solve):
         turn_k = (k + 1) (k + 2) reach / 2 sum_{m=1}^{k+1} n_m . n_{k+2-m}
     """
     lam, n = np.zeros((len(Q), 1, len(J))), np.zeros((len(Q), 2, len(J)))
-    turns = np.ascontiguousarray((sides * turns.reshape(-1, 1)).T)  # 1 / reach; 0 at the floor
-    n[0], away, push, pushes = n_0.T, -solve, J * w, sides * w[: sides.shape[1]]
+    turns = sides.T * np.where(floor, 0.0, 1.0 / reach)
+    n[0] = Q[0].reshape(2, -1) @ turns
+    n[0, 1] += floor
+    away, push, pushes = -solve, J * w, sides * w[: sides.shape[1]]
     for k in range(len(Q) - 2):
         n[k + 1] = Q[k + 1].reshape(2, -1) @ turns
         if k > 0:
@@ -330,10 +322,11 @@ def slide_series(Q, a, w, n_0, J, sides, reach, turns, solve):
 
 
 def next_fall(d, gap, reach, floor, wider, lam, horizon):
-    """When [s] the first of K gaps or of some forces lam (terms, L) falls through 0, which, and the
-    gaps then: y - r, or d . d - reach^2. `wider` [m] is added to the gaps while we look for it.
+    """When [s] the first of K gaps or of some forces lam (terms, L) falls through 0, and the gaps
+    then. `wider` [m] is added to the gaps while we look for it.
 
-    d (terms, 2, K) are the series of q_a - q_b; the gaps themselves are known better.
+    d (terms, 2, K) are the series of q_a - q_b; gaps are known better. P falls: y - r, or d . d -
+    reach^2. What is likely to be soon comes first: most others cannot, even if nothing lifted them.
     """
     count, P = len(gap), np.zeros((max(len(d), 5), len(gap)))  # 5: a parabola's square is whole
     for k in range(len(d)):
@@ -343,32 +336,21 @@ def next_fall(d, gap, reach, floor, wider, lam, horizon):
     P[0] = np.where(floor, gap, gap * (gap + 2.0 * reach))
     falls = np.concatenate((P.T, lam.T))
     falls[:count, 0] += np.where(floor, wider, wider * (wider + 2.0 * reach))
-    span, first = first_of(falls, horizon)
-    return span, first, horner(P, span)
-
-
-def first_of(falls, horizon):
-    """When [s] the first row of falls (K, terms), each a series, falls through 0, and which row.
-
-    Horizon and K if none does. A row that is likely to be soon comes first: most others cannot fall
-    before it, not even if all that lifts them were not there.
-    """
-    first, row = horizon, len(falls)
-    if row == 0:
-        return first, row
-    likely = np.argmin(falls[:, 0] / np.maximum(-falls[:, 1], 1e-9))
-    t = first_fall(falls[likely], horizon)
-    if t <= horizon:
-        first, row = t, likely
-    sinks, power = falls[:, 0].copy(), 1.0
-    for k in range(1, falls.shape[1]):
-        power *= min(first, 1e15)
-        sinks += np.minimum(falls[:, k], 0.0) * power
-    for k in np.flatnonzero(sinks <= 0.0):
-        t = first_fall(falls[k], first)
-        if t < first:
-            first, row = t, k
-    return first, row
+    span, first = horizon, len(falls)
+    soon = np.argsort(falls[:, 0] / np.maximum(-falls[:, 1], 1e-9))[:1]
+    for _ in range(2):
+        for k in soon:
+            t = first_fall(falls[k], span)
+            if t < span:
+                span, first = t, k
+        sinks = np.minimum(falls[:, 1:], 0.0) @ min(span, 1e15) ** np.arange(1.0, falls.shape[1])
+        soon = np.flatnonzero(falls[:, 0] + sinks <= 0.0)
+    gap = P[-1]
+    for row in P[-2::-1]:
+        gap = gap * span + row
+    gap = np.where(floor, gap, gap / (reach + np.sqrt(reach**2 + gap)))
+    gap[first : first + 1] = 0.0
+    return span, gap
 
 
 def first_fall(p, horizon):
@@ -405,18 +387,10 @@ def first_fall(p, horizon):
     return t  # next to no curvature: it is as good as there
 
 
-def horner(P, t):
-    """sum P[k] t^k."""
-    total = P[-1]
-    for row in P[-2::-1]:
-        total = total * t + row
-    return total
-
-
 @cache
 def loops():
     """The functions above as numba compiles them, or None without numba."""
-    these = inverse, solve_lcp, slide_series, next_fall, first_of, first_fall, horner
+    these = inverse, solve_lcp, push_all, slide_series, next_fall, first_fall
     head = f"import math\nimport numpy as np\nNOISE = {NOISE!r}\n"
     source = "\n\n".join((head, *(inspect.getsource(each) for each in these)))
     return Loops and Loops("exact", source, error_model="numpy")  # type: ignore[truthy-function]
@@ -425,88 +399,40 @@ def loops():
 def compile_loops():
     """Compile them and keep them on disk: about 20 s, the first time. Returns the module."""
     flags, row, table = np.ones(1, bool), np.ones(1), np.ones((1, 1))
-    slide = table, row, row, table, table, table, row, row, table
+    slide = table, row, row, table, table, row, flags, table
     gaps = np.ones((1, 2, 1)), row, row, flags, row, table, math.inf
     calls = {"inverse": (table,), "solve_lcp": (table, row, row)}
     return loops().load(calls | {"slide_series": slide, "next_fall": gaps})
 
 
-def choose_loops():
-    """The compiled functions where they lie on disk, else those here: no run knows its events."""
-    if loops() and loops().pays(0.0):
-        return compile_loops()
-    return sys.modules[__name__]
-
-
-class Cycle:
-    """What happened since a saved state: once that comes again, to the last bit, all of it does.
-
-    A later state is saved after 1, 2, 4, ... events, so that any cycle is found (Brent 1980).
-    """
-
-    def __init__(self):
-        self.saved, self.flights, self.length = None, [], 1
-
-    def repeats(self, motion):
-        """Whether this state is the saved one; perhaps save it."""
-        state = b"".join(part.tobytes() for part in (motion.q, motion.v, motion.gap, motion.rests))
-        if state == self.saved and any(span for span, _ in self.flights):
-            return True
-        if len(self.flights) >= self.length or self.saved is None:
-            self.saved, self.flights = state, []
-            self.length = min(2 * self.length, 1000)  # a bound of memory
-        return False
-
-    def read(self, times):
-        """q, v (2, S, 2, N) at times (S,) since the saved state, round and round."""
-        starts = np.cumsum([0.0] + [span for span, _ in self.flights])
-        times, out = times % starts[-1], np.empty((2, len(times), self.flights[0][1].shape[1]))
-        number = np.searchsorted(starts, times, "right") - 1
-        for k in np.unique(number):
-            here = number == k
-            out[:, here] = sample(self.flights[k][1], times[here] - starts[k])
-        return out
-
-
 def sample(Q, times):
-    """q, v (2, S, 2 N) at times (S,) of the series Q."""
-    both = np.zeros((len(Q), 2, 1, Q.shape[1]))
-    both[:, 0, 0] = Q
-    both[:-1, 1, 0] = np.arange(1.0, len(Q))[:, None] * Q[1:]
-    return horner(both, times[:, None])
-
-
-def refuse(scene):
-    """Raise RuntimeError for masses beyond the promise."""
-    e, mass = scene.restitution, 1.0 * scene.mass[np.isfinite(scene.mass)]
-    ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
-    if 0.0 < e < 1.0 and ratio > RATIO:
-        given = (
-            f"masses {ratio:.4g} : 1 at restitution {e:g}; at most {RATIO:g} : 1 where 0 < e < 1"
-        )
-        raise RuntimeError(f"exact: {given}. Take closer masses, or restitution 0 or 1")
+    """q, v (2, S, 2 N) at times (S,) of the series Q, with the same bits at any S."""
+    powers = np.vander(times, len(Q))  # small terms first
+    rates = np.arange(len(Q) - 1.0, 0.0, -1.0)[:, None] * Q[:0:-1]
+    both = (powers, Q[::-1]), (powers[:, 1:], rates)
+    return np.array([np.einsum("sk,kn->sn", *each) for each in both])
 
 
 @np.errstate(all="ignore")
 def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MOST_IMPACTS) -> np.ndarray:
-    """q, v (2, S, 2, N) [m, m/s] at `times` (S,) [s], rising from 0, from event to event.
+    """q, v (2, S, 2, N) [m, m/s] of a contact.Scene at `times` (S,) [s], rising from 0.
 
-    The scene has q0, v0 (2, N), mass (N,), inf for a ball that nothing moves, radius (N,) and
-    restitution; gravity [m/s^2] is along y, negative. At the moment of an event v is that after
-    all rounds of impacts of this moment. progress(k) is called after each event with the samples
-    done. Raises RuntimeError beyond the promise, and after `most` events.
+    Gravity [m/s^2] is along y, negative. At the moment of an event v is that after all rounds of
+    impacts. progress(k) is called after each event with the samples done. Raises RuntimeError
+    beyond the promise, and after `most` events.
     """
-    refuse(scene)
-    motion, cycle, out = Motion(scene, gravity), Cycle(), np.empty((2, len(times), scene.q0.size))
+    e, mass = scene.restitution, 1.0 * scene.mass[np.isfinite(scene.mass)]
+    ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
+    if 0.0 < e < 1.0 and ratio > RATIO:
+        why = f"masses {ratio:.4g} : 1 at restitution {e:g}; at most {RATIO:g} : 1 where 0 < e < 1"
+        raise RuntimeError(f"exact: {why}. Take closer masses, or restitution 0 or 1")
+    motion, out = Motion(scene, gravity), np.empty((2, len(times), scene.q0.size))
     now, done, event = 0.0, 0, True
     for _ in range(most):
+        motion.locate()
         if event:
-            touching = motion.touch()
-            J = motion.rows(touching)
+            touching, J = motion.touch()
             held, a = motion.support(touching, J, motion.strike(touching, J))
-            if cycle.repeats(motion):
-                out[:, done:] = cycle.read(times[done:] - now)
-                break
             slides = motion.slip(held, motion.v).any() or motion.slip(held, a).any()
         Q, lam, horizon = np.array((motion.q, motion.v, 0.5 * a)), np.empty((5, 0)), math.inf
         if slides:
@@ -516,15 +442,12 @@ def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MOST_IMP
         last = int(np.searchsorted(times, now + span))
         states = sample(Q, np.append(times[done:last] - now, span))
         out[:, done:last] = states[:, :-1]
-        cycle.flights.append((span, Q))
         done = last
         progress(done)
         if done == len(times):
-            break
+            return out.reshape(2, len(times), *scene.q0.shape)
         (motion.q, motion.v), now = states[:, -1], now + span
-    else:
-        raise RuntimeError(
-            f"exact: more than {most:,} events by {now:.6g} s, balls rattle without end."
-            " Take a shorter run, another restitution, or closer masses"
-        )
-    return out.reshape(2, len(times), *scene.q0.shape)
+    raise RuntimeError(
+        f"exact: more than {most:,} events by {now:.6g} s, balls rattle without end."
+        " Take a shorter run, another restitution, or closer masses"
+    )

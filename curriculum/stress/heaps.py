@@ -53,10 +53,7 @@ class Heap:
         run = run_twin(model, scene, dt, STEPS[dt], contact.Settings(iters=1000))
         total = contact.energy(run.q, run.v, scene.mass)
         total = (total - total[0]) / abs(total[0])
-        self.noted["energy"][name_of(model, dt, kind, bounce)] = (
-            float(total.max()),
-            -float(total[-1]),
-        )
+        self.noted["energy"][model, dt, kind, bounce] = total.max(), -total[-1]
         return scene, run, total
 
 
@@ -81,37 +78,18 @@ def leapfrog_loses_none_where_all_bounces(heap):
             yield kind, -np.diff(total), KEPT, ~(slow[1:] | slow[:-1])
 
 
-def name_of(model, dt, kind, bounce):
-    """What the runs of one model, step, kind and restitution are called."""
-    return f"{model}, {1e3 * dt:g} ms, {kind}, e {bounce}"
-
-
 def runs():
     """(model, dt, kind, bounce) of all runs of a heap."""
     return itertools.product(MODELS, STEPS, KINDS, BOUNCES)
 
 
 def energy_rows(cases):
-    """A row for each name: how many gained, and lost, and the most, as shares of the start's."""
-    for name in itertools.starmap(name_of, runs()):
-        gained, lost = np.array([case[name] for case in cases]).T
-        row = {"what": name, "runs": len(cases), "gained": int((gained > KEPT).sum())}
-        row |= {"most_gained": float(gained.max()), "lost": int((lost > KEPT).sum())}
-        yield row | {"most_lost": float(lost.max())}
-
-
-def energy_table(rows):
-    """Head and rows for a reader: who gained, and with e = 1 who lost."""
-    rows, found = {row["what"]: row for row in rows}, []
+    """A row for each step, kind and model: how many gained, and with e = 1 lost, and the most."""
+    columns = [(f"e {bounce}", bounce, 0) for bounce in BOUNCES] + [("e 1, lost", "1", 1)]
     for dt, kind, model in itertools.product(STEPS, KINDS, MODELS):
-        mine = [rows[name_of(model, dt, kind, bounce)] for bounce in BOUNCES]
-        cells = [counted(row["gained"], row["most_gained"]) for row in mine]
-        e_1 = mine[list(BOUNCES).index("1")]
-        cells.append(counted(e_1["lost"], e_1["most_lost"]))
-        found.append([f"{1e3 * dt:g} ms", kind, model, *cells])
-    return ["dt", "scenes", "model", *(f"e {bounce}" for bounce in BOUNCES), "e 1, lost"], found
-
-
-def counted(many, most):
-    """How many, and the most, for a reader."""
-    return f"{many:,}: {most:.1g}" if many else "0"
+        row = {"dt": f"{1e3 * dt:g} ms", "scenes": kind, "model": model}
+        for name, bounce, which in columns:
+            found = np.array([case[model, dt, kind, bounce][which] for case in cases])
+            many = int((found > KEPT).sum())
+            row[name] = f"{many:,}: {found.max():.1g}" if many else "0"
+        yield row | {"runs": len(cases) * len(BOUNCES)}

@@ -27,15 +27,6 @@ def tables_of(found):
         judged, notes = judged + rows, notes | noted
     ran, energies = notes.pop("ran").values(), list(notes.pop("energy").values())
     models = {model: sum(model in each for each in ran) for model in contact.MODELS}
-    rises = notes.get(properties.UNFINISHED, {})
-    place = max(rises, key=lambda each: rises[each]["most"] / rises[each]["start"], default=None)
-    worst = {"place": place} | rises.get(place, {"sweeps": 0, "start": 0.0, "most": 0.0})
-    lcp = {
-        "what": "unfinished",
-        "scenes": next(r["judged"] for r in judged if r["property"].startswith("lcp_gains")),
-        "above_start": sum(each["most"] > each["start"] * (1 + 1e-9) for each in rises.values()),
-        "sweeps_most": max((each["sweeps"] for each in rises.values()), default=0),
-    }
     for model in (model for model, count in models.items() if not count):
         judged[0] |= {"violations": judged[0]["violations"] + 1, "first": f"{model} never ran"}
     return {
@@ -43,7 +34,6 @@ def tables_of(found):
         "models": [{"model": model, "scenes": count} for model, count in models.items()],
         "limits": [{"what": what, "scenes": len(places)} for what, places in sorted(notes.items())
                    if what != "penalty"],
-        "lcp": [lcp | worst],
         "energy": list(heaps.energy_rows(energies)),
         "penalty": list(notes["penalty"].values()),
     }  # fmt: skip
@@ -100,8 +90,7 @@ def page(tables, made):
     head = ["property", "judged", "comparisons", "off / bound"]
     return PAGE.read_text("utf-8").format(
         summary="\n\n".join([summary(tables), *wrong]),
-        energy=stored.table(*heaps.energy_table(tables["energy"])),
-        lcp=tables["lcp"][0],
+        energy=stored.table(list(tables["energy"][0]), map(dict.values, tables["energy"])),
         limits="\n".join(f"- {row['what']}: {row['scenes']:,}" for row in tables["limits"]),
         judged=stored.table(head, map(cells, tables["judged"])),
         footer=stored.footer(made["all"]),

@@ -15,7 +15,7 @@ run_twin = (contact.beside("fast") or contact).run_model  # the same bits, as a 
 G = 9.81  # m/s^2, what every model must have, so it is not asked of contact.py
 U = 2.0**-53  # the largest relative rounding error of one operation
 STEPPED = contact.STEPPED
-EVENTS = 100  # of a run of exact; the rest is not waited for
+EVENTS = 300  # of a run of exact; one with more is not waited for
 TOUCHING = 1e-12  # m: a deeper overlap at the start, and exact promises nothing
 ASTRAY = 1e6  # m, m/s: a run is judged until a ball is farther off, or faster
 
@@ -56,25 +56,17 @@ class Trial:
 
     @cached_property
     def exact(self):
-        """Its Trajectory, as far as EVENTS go; None, and a note, where it promises nothing."""
+        """Its Trajectory; None, and a note, where it promises nothing, or has too many EVENTS."""
         if self.start < -TOUCHING:
             self.note("exact: starts in an overlap")
             return None
-        steps, done = self.spec["steps"], []
-
-        def report(samples):
-            done.append(samples)
-            if len(done) > EVENTS:
-                raise TimeoutError
-
+        left = iter(range(EVENTS))
         try:
-            run = contact.run_model("exact", self.scene, self.dt, steps, progress=report)
-        except TimeoutError:
-            self.note(f"exact: cut after {EVENTS} events")
-            if done[-1] < 2:
-                return None
-            # what was done by then is made again, and judged
-            run = contact.run_model("exact", self.scene, self.dt, done[-1] - 1)
+            given = "exact", self.scene, self.dt, self.spec["steps"]
+            run = contact.run_model(*given, progress=lambda k: next(left))
+        except StopIteration:
+            self.note(f"exact: more than {EVENTS} events")
+            return None
         except RuntimeError as error:
             sentence = re.split("; |\\. ", str(error).removeprefix("exact: "))[0]
             self.note("exact refuses: " + re.sub(r"\d[\d.,]*", "…", sentence))
