@@ -29,15 +29,6 @@ def named(each):
     return getattr(each, "name", each)
 
 
-# references and engines
-
-
-def test_closed_forms_are_what_paper_and_pencil_give():
-    height, speed = problems.bounce_motion(g / 2, 0.5, [0.5, 1.5, 3.5])  # falls for 1 s
-    assert height == pytest.approx([g * 3 / 8, g / 8, 0.0])
-    assert speed == pytest.approx([-g / 2, 0.0, 0.0], abs=1e-12)
-
-
 @pytest.mark.parametrize("problem", problems.PROBLEMS, ids=named)
 def test_exact_and_the_event_driven_code_agree_with_every_reference_and_penalty_does_not(problem):
     scene, steps, error = problem.build(1), min(problem.steps(0.004), 300), []
@@ -135,9 +126,6 @@ def test_the_engine_of_pymunk_alone_goes_where_a_users_step_goes():
     assert np.array_equal(bare.states(400), users.states(400))
 
 
-# points
-
-
 def test_the_cell_of_the_drop_is_what_one_works_out_by_hand():
     drop, row = problems.BY_NAME["drop"], measure.errors_of(("drop", LANDS, 0.002, 4, 5))
     first, *_, last = sorted(math.sqrt(2 * (drop.build(k).q0[1, 0] - R) / g) for k in range(5))
@@ -218,21 +206,19 @@ TAKEN = stored.load(engines.HERE)[0]["take"]
 
 @pytest.mark.parametrize("row", TAKEN, ids=lambda row: f"{row['engine']} {row['problem']}")
 def test_what_the_readme_tells_one_to_type_is_the_run_that_was_measured(row):
-    """As typed: a command line of contact.py, or two lines of Python."""
-    key, typed, cuts = (row["engine"], row["setting"]), row["type"], row["substeps"]
-    problem, scene, steps = problems.BY_NAME.get(row["problem"]), measure.shaft(1000), 4
-    if problem:
-        scene, steps = problem.build(0), problem.steps(measure.DT)
+    """As typed: a command line of contact.py, or two lines of Python; of the pile four looks."""
+    problem, typed, cuts = problems.BY_NAME.get(row["problem"]), row["type"], row["substeps"]
     if typed.startswith("python contact.py "):
         args = contact.parse_flags(shlex.split(typed)[2:])
-        assert args.steps == steps * cuts
-        run = contact.run_flags(args, contact.chosen_scene(args, args.seed), args.contact, args.dt)
+        scene = contact.chosen_scene(args, args.seed)
+        run = contact.run_flags(args, scene, args.contact, args.dt)
     else:
         known = {}
-        exec(typed.replace("24000", "16"), known)  # as one types it
+        exec(typed.replace("24000", "16"), known)
         run = known["run"]
-    setting = next(each for each in engines.EVERYBODY if each[:2] == key)
-    expected = setting.build(scene, measure.DT, cuts).states(steps)[0]
+    setting = next(s for s in engines.EVERYBODY if s[:2] == (row["engine"], row["setting"]))
+    session = setting.build(problem.build(0) if problem else measure.shaft(1000), 0.002, cuts)
+    expected, _ = session.states(problem.steps(0.002) if problem else 4)
     assert np.array_equal(run.q[::cuts], expected)
 
 
@@ -247,23 +233,14 @@ def test_the_readme_has_at_most_eight_rows_and_none_that_another_beats_in_error_
     assert "the same, faster" in shown and "the same, faster" not in left
 
 
-# piles
-
-
 @pytest.mark.parametrize("count", [12, 100, 1000, 10_000])
 def test_a_shaft_starts_without_contact_between_walls_that_nothing_moves(count):
     scene = measure.shaft(count)
     assert fast.smallest_gap(scene.q0[None], scene.radius)[0] > 0.04 * R
-    walls = np.isinf(scene.mass)
-    (x, y), (wall_x, wall_y) = scene.q0[:, ~walls], scene.q0[:, walls]
-    assert len(x) == count and wall_y.max() > y.max()
-    assert wall_x.min() < x.min() - R and wall_x.max() > x.max() + R
-    assert wall_x.min() + wall_x.max() == pytest.approx(0.0), "as near to 0 as float32 wants it"
-
-
-def test_depths_are_those_of_the_contacts():
-    found = measure.depths(np.array(((0, 0, 9), (0.9, 2.7, 1.0005))) * R)  # the last hovers
-    assert (found["mean_depth"], found["worst_depth"]) == pytest.approx((0.15, 0.2))
+    balls, walls = (scene.q0[:, np.isinf(scene.mass) == fixed] for fixed in (False, True))
+    assert balls.shape[1] == count and walls[1].max() > balls[1].max()
+    assert np.ptp(walls[0]) > np.ptp(balls[0]) + 2.0 * R
+    assert walls[0].min() + walls[0].max() == pytest.approx(0.0), "as float32 wants it"
 
 
 @pytest.mark.parametrize("number", range(len(engines.PILES)))
@@ -271,9 +248,13 @@ def test_a_pile_of_twelve_settles_between_walls_in_every_engine(number):
     if engines.missing(engines.PILES[number].engine):
         pytest.skip(f"{engines.PILES[number].engine} is missing")
     q, v, row = measure.settle((12, number, None))
-    assert row["at_rest"] and row["speed"] < 1e-3
+    assert row["at_rest"] and row["speed"] < 1e-3 and 0.0 < row["mean_depth"] < 0.02
     assert abs(q[0, :12]).max() < 6.0 * R, "no ball left the shaft"
-    assert 0.0 < row["mean_depth"] < 0.02
+
+
+def test_depths_are_those_of_the_contacts():
+    found = measure.depths(np.array(((0, 0, 9), (0.9, 2.7, 1.0005))) * R)  # the last hovers
+    assert found == pytest.approx(dict(mean_depth=0.15, worst_depth=0.2))
 
 
 def test_a_pile_is_timed_a_step_from_the_lattice_and_from_its_settled_state():
@@ -315,9 +296,6 @@ def test_only_what_rests_within_the_depth_is_compared_and_wins():
     number = next(k for k, c in enumerate(engines.PILES) if c.engine == "box2d3")
     row = pile_row("box2d3", 9.0, 0.99e-3, engines.PILES[number].options, bodies=1000)
     assert measure.winners([row]) == [number], "it runs with ten thousand"
-
-
-# timing, files, pages
 
 
 def test_each_process_is_fresh_and_what_is_rare_runs_in_one():
