@@ -59,14 +59,14 @@ def remember(W, balls, contacts):
 
 
 def shadows(x, y, radius):
-    """Shadows on the axis of the wider spread: the balls in their order, and both ends of each.
+    """Where the balls' shadows on the axis of the wider spread begin, and where they end.
 
     A shadow is as long as its own ball is wide, so one large ball costs no more than itself; above
     is room for rounding.
     """
     place = y if np.ptp(y) > np.ptp(x) else x
     low, high = place - radius, place + (1.0 + 1e-9) * radius + 1e-15 * np.abs(place)
-    return np.argsort(low), low, high
+    return low, high
 
 
 def list_pairs(balls, reach):
@@ -77,7 +77,8 @@ def list_pairs(balls, reach):
     for ball in balls:
         ball.listed_x, ball.listed_y = ball.x, ball.y
     x, y, radius = balls.x[:-1], balls.y[:-1], balls.radius[:-1]
-    order, low, high = shadows(x, y, radius)
+    low, high = shadows(x, y, radius)
+    order = np.argsort(low)
     reach, count, keys = (1.0 + 1e-9) * reach, len(balls), []
     for k in range(len(order)):
         i = order[k]
@@ -154,11 +155,12 @@ def find_gaps(q, radius):
     Balls whose shadows are farther apart than the smallest gap so far need no look, unless a
     position is not finite: a gap of two may be no number then, and so is the smallest.
     """
-    gaps = np.empty(len(q))
+    gaps, order = np.empty(len(q)), np.arange(len(radius))
     for k in range(len(q)):
         x, y = q[k, 0], q[k, 1]
         finite, gap = np.isfinite(q[k]).all(), (y - radius).min()
-        order, low, high = shadows(x, y, radius)
+        low, high = shadows(x, y, radius)
+        order = order[np.argsort(low[order])]  # fast, since few balls change places
         for n in range(len(order)):
             i = order[n]
             for j in order[n + 1 :]:
