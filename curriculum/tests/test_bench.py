@@ -126,20 +126,18 @@ def test_the_engine_of_pymunk_alone_goes_where_a_users_step_goes():
     assert np.array_equal(bare.states(400), users.states(400))
 
 
-def test_the_cell_of_the_drop_is_what_one_works_out_by_hand():
+def test_a_point_is_what_one_works_out_by_hand_in_medians_over_its_starts(monkeypatch):
     drop, row = problems.BY_NAME["drop"], measure.errors_of(("drop", LANDS, 0.002, 4, 5))
     first, *_, last = sorted(math.sqrt(2 * (drop.build(k).q0[1, 0] - R) / g) for k in range(5))
     least, most = 0.98 * g * 0.0005 * first / 2, 4 * g * 0.0005 * last  # half a substep, a dive
     assert least <= row["error"] * R < row["error_max"] * R <= most
     assert (row["setting"], row["work"], row["diverged"]) == ("iters=20", 4, 0)
-
-
-def test_a_point_has_medians_over_starts_and_the_reference_has_no_error(monkeypatch):
     found = iter([(9.0, True), (1.0, False), (2.0, False)] * 2)
     monkeypatch.setattr(problems, "quality", lambda *run: next(found))
     row = measure.errors_of(("drop", LANDS, 0.002, 4, 3))
     assert (row["error"], row["error_max"], row["diverged"]) == (2.0, 9.0, 1)
-    assert measure.errors_of(("spread", "exact", 0.002, 1, 3))["error"] is None
+    row = measure.errors_of(("spread", "exact", 0.002, 1, 3))
+    assert row["error"] is None, "the reference has no error of its own"
 
 
 def test_times_are_medians_of_runs_after_a_short_one():
@@ -172,15 +170,9 @@ def point(engine, error, ms, dt=0.002, work=16, setting=None, diverged=0):
 
 
 def test_the_best_is_the_most_accurate_that_may_compete():
-    points = [
-        point("lcp", 0.03, 1.0),
-        point("lcp", 0.01, 30.0),
-        point("lcp", 0.0100001, 25.0),
-        point("lcp", 0.001, 9.0, work=64),
-        point("lcp", 0.0001, 9.0, diverged=1),
-        point("lcp", None, 9.0),
-        point("lcp", 0.02, 9.0, dt=0.004),
-    ]
+    points = [point("lcp", *each) for each in ((0.03, 1.0), (0.01, 30.0), (0.0100001, 25.0))]
+    points += [point("lcp", 0.001, 9.0, work=64), point("lcp", 0.0001, 9.0, diverged=1)]
+    points += [point("lcp", None, 9.0), point("lcp", 0.02, 9.0, dt=0.004)]
     assert measure.contest(points)["drop"]["lcp"] == points[2]
     assert measure.contest(points, budget=10)["drop"]["lcp"]["error"] == 0.001  # any work
     assert measure.contest(points[:3], budget=10)["drop"]["lcp"]["error"] == 0.03
@@ -281,15 +273,10 @@ def pile_row(engine, us, depth, setting=None, at_rest=1, bodies=12):
 
 
 def test_only_what_rests_within_the_depth_is_compared_and_wins():
-    rows = [
-        pile_row("lcp", 30.0, 5e-5),
-        pile_row("lcp", 5.0, 5e-4),
-        pile_row("lcp", 1.0, 5e-5, at_rest=0),
-        pile_row("leapfrog", 20.0, 5e-4),
-        pile_row("box2d3", 40.0, 9e-5),
-        pile_row("pymunk", 3.0, 2e-3),
-    ]
-    fair, strict = (12, 1e-3, rows[1], rows[3], rows[4]), (12, 1e-4, rows[0], None, rows[4])
+    rows = [pile_row("lcp", 30.0, 5e-5), pile_row("lcp", 5.0, 5e-4)]
+    rows += [pile_row("lcp", 1.0, 5e-5, at_rest=0), pile_row("leapfrog", 20.0, 5e-4)]
+    rows += [pile_row("box2d3", 40.0, 9e-5), pile_row("pymunk", 3.0, 2e-3)]
+    fair, strict = (12, 1e-3, rows[1], *rows[3:5]), (12, 1e-4, rows[0], None, rows[4])
     assert list(report.races(rows)) == [fair, strict]
     words = report.written("claims.md", {"piles": rows}, {})
     assert "takes 0.125 to 0.75 (12 balls, 0.0001 r)" in words and "takes 0.5 to 0.5" in words
@@ -298,13 +285,10 @@ def test_only_what_rests_within_the_depth_is_compared_and_wins():
     assert measure.winners([row]) == [number], "it runs with ten thousand"
 
 
-def test_each_process_is_fresh_and_what_is_rare_runs_in_one():
+def test_time_is_that_of_the_processor_in_fresh_processes_that_do_not_fail(tmp_path):
     jobs, rare = ["1", "__import__('os').getpid()", "3"], ["3"]
     one, (first, second), rare = timing.in_fresh_processes(eval, jobs, 2, "test", rare)
     assert one == [1, 1] and rare == [3] and first != second
-
-
-def test_time_is_that_of_the_processor_and_a_process_that_fails_is_not_timed(tmp_path):
     assert timing.timed(lambda: time.sleep(0.2))[0] < 0.1, "waiting costs nothing"
     assert timing.timed(gc.isenabled)[1] is False and gc.isenabled()
     with pytest.raises(RuntimeError, match="fails: [^$]*no_such"):
