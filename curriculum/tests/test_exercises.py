@@ -145,7 +145,7 @@ def test_what_is_wrong_or_broken_fails_its_own_check_and_says_why(copy):
         "cannot be read, C needs quotes around it: NameError: name 'C' is not defined",
         "  line 30: PREDICTION = C", "ex3: no prediction yet", "SyntaxError",
         "likely: nothing keeps the table from pulling", "printed   sum -0.3",
-        "solve_contacts is no longer a function of yours", "blank: write what line 23 begins",
+        "solve_contacts is no longer a function of yours", "blank: write what line 29 returns",
         "row sink: given ? ? ? ?, allowed: four", "their contacts are rigid",
         "raised NameError: name 'dtt' is not defined\n  line 49: return 0.5, gap / dtt",
     ):  # fmt: skip
@@ -262,6 +262,7 @@ TYPED = [  # a function, what a learner writes in it, what is said: "" where it 
      "return way @ np.array([[1, 0], [dt * k, 1 - dt * c]])", ""),
     ("step_matrix", "return [1, 2, 3]", "how many numbers: got 3, expected 2 rows of 2"),
     ("longest_step", HALVES, ""),
+    ("longest_step", "return [1.0, 2.0]", "how many numbers: got 2, expected 1"),
     ("longest_step", HALVES.replace("abs", "np.real"), "the same step, an end of the search"),
     ("longest_step", HALVES.replace("<=", ">"), "the same step, an end of the search"),
     ("longest_step", HALVES.replace("1e-7", "1e-3"), "the search is too coarse"),

@@ -182,7 +182,7 @@ def likely(name, found, expected):
     for slip, meaning in BLANKS[name]["slips"].items():
         if all(map(agree, found, on_all_inputs(name, slip))):
             return meaning
-    if name != "longest_step":
+    if name != "longest_step" or found[0].shape != (1,):
         return ""
     meanings, shares = FACTS["ex6"]["searches"], [x / y for x, y in zip(found, expected)]
     if sum(agree(got, max(found), 1e-4) for got in found) > len(found) / 2:
@@ -199,8 +199,8 @@ def judge(function, name, file):
     except ValueError as error:
         return "wrong", str(error)
     if any(got is None for got in found):
-        line = inspect.unwrap(function).__code__.co_firstlineno
-        return "blank", f"{name} is still a blank: write what line {line} begins; {ask}"
+        line = max(line for *_, line in inspect.unwrap(function).__code__.co_lines() if line)
+        return "blank", f"{name} is still a blank: write what line {line} returns; {ask}"
     expected, within = on_all_inputs(name), BLANKS[name].get("within", 1e-9)
     cases = list(zip(inputs(name), found, expected, prints))
     wrong = [case for case in cases if not agree(*case[1:3], within)]
