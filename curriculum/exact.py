@@ -138,10 +138,9 @@ class Motion:
         self.reach, self.share = radius[pairs].sum(0), w[pairs].sum(0)  # r_a + r_b; 1 / m_eff
         self.radius, self.floor = radius[pairs[0]], pairs[1] == count
         self.q, self.v = np.array((scene.q0, scene.v0), float).reshape(2, -1)
-        self.w, self.e, self.g = np.tile(w[:-1], 2), scene.restitution, -gravity
-        self.radii = np.tile(radius[:-1], 2)
+        self.w, self.radii = np.tile((w[:-1], radius[:-1]), 2)
+        self.e, self.g, self.gap = scene.restitution, -gravity, 0.0
         self.fall = np.where(self.w > 0.0, np.repeat((0.0, gravity), count), 0.0)
-        self.gap = 0.0
         self.locate(track=0.0)
         self.rests = np.zeros(len(self.gap), bool)  # it touched at the last event and did not part
         self.since, self.parting = self.rests + math.inf, self.rests + 1.0  # [s]; |v_n| then [m/s]
@@ -442,12 +441,9 @@ def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MOST_IMP
         last = int(np.searchsorted(times, now + span))
         states = sample(Q, np.append(times[done:last] - now, span))
         out[:, done:last] = states[:, :-1]
-        done = last
-        progress(done)
+        progress(done := last)
         if done == len(times):
             return out.reshape(2, len(times), *scene.q0.shape)
         (motion.q, motion.v), now = states[:, -1], now + span
-    raise RuntimeError(
-        f"exact: more than {most:,} events by {now:.6g} s, balls rattle without end."
-        " Take a shorter run, another restitution, or closer masses"
-    )
+    why = f"more than {most:,} events by {now:.6g} s, balls rattle without end"
+    raise RuntimeError(f"exact: {why}. Take a shorter run, another restitution, or closer masses")

@@ -14,8 +14,7 @@ import contact
 from curriculum.stress import scenes
 from curriculum.stress.trial import G, Trajectory, run_twin
 
-FINE, COARSE = 0.002, 0.016  # s
-STEPS = {FINE: 750, COARSE: 94}  # how many: 1.5 s in all
+STEPS = {0.002: 750, 0.016: 94}  # dt [s]: how many, 1.5 s in all
 KINDS = "heap", "gap", "ceiling", "column of 2", "column of 3"  # scenes that are drawn
 BOUNCES = {"0": 0.0, "0.5": 0.5, "0.9": 0.9, "1": 1.0, "drawn": None}  # e, and one from 0 to 1
 MODELS = "leapfrog", "lcp"
@@ -59,7 +58,7 @@ class Heap:
 
 def leapfrog_gains_no_energy(heap):
     """leapfrog, e from 0 to 1, at 2 and 16 ms: of what starts apart nothing ever gains energy."""
-    for model, dt, kind, bounce in runs():
+    for model, dt, kind, bounce in itertools.product(MODELS, STEPS, KINDS, BOUNCES):
         total = heap.run(model, dt, kind, bounce)[2]
         if model == "leapfrog":
             yield f"{kind}, e {bounce}, {dt} s", total[1:].max(), KEPT
@@ -73,14 +72,9 @@ def leapfrog_loses_none_where_all_bounces(heap):
     """
     for kind in KINDS:
         if kind != "ceiling":
-            scene, run, total = heap.run("leapfrog", FINE, kind, "1")
-            slow = Trajectory(scene, FINE, run).slowest() < 2.0 * G * FINE
+            scene, run, total = heap.run("leapfrog", 0.002, kind, "1")
+            slow = Trajectory(scene, 0.002, run).slowest() < 2.0 * G * 0.002
             yield kind, -np.diff(total), KEPT, ~(slow[1:] | slow[:-1])
-
-
-def runs():
-    """(model, dt, kind, bounce) of all runs of a heap."""
-    return itertools.product(MODELS, STEPS, KINDS, BOUNCES)
 
 
 def energy_rows(cases):

@@ -30,7 +30,8 @@ def run(job):
         subject = Trial(scenes.numbered_spec(*subject))
     found = properties.judge(subject, *(stated or properties.PROPERTIES.values()))
     if not stated:
-        subject.note("ran", **{model: 1 for model in subject.ran()})
+        runs = subject.motions | {"exact": subject.exact}  # of which some could be judged
+        subject.noted["ran"] = {m: 1 for m, each in runs.items() if each and len(each.listed)}
     return place, found, getattr(subject, "noted", {})
 
 

@@ -17,10 +17,10 @@ import numpy as np
 
 import contact
 from curriculum.stress import scenes
-from curriculum.stress.trial import STEPPED, G, Trajectory, Trial, U
+from curriculum.stress.trial import STEPPED, G, Trajectory, U
 
-NOTABLE = 1e-9  # share of the energy; what unfinished sweeps add ends below it
-MOST = contact.MOST_SWEEPS  # by which it must have ended
+NOTABLE = 1e-9  # share of the speeds: if sweeps still move more, they are not done
+MOST = contact.MOST_SWEEPS
 PROMISE = 1e-12  # of exact: of a radius, and of the energy at the start
 NEAR = 1e-9  # share of the sizes that leapfrog's bounces may be off
 
@@ -186,7 +186,7 @@ def enough_sweeps_solve_lcp(trial):
         clash = np.maximum(grew, 0.0) @ target > stays * fastest + 4 * U * lam @ np.abs(target)
         if clash or moved > NOTABLE * fastest:
             who = "nothing" if clash else f"no {MOST:,} sweeps"
-            trial.note(f"lcp: a step that {who} can solve")
+            trial.noted[f"lcp: a step that {who} can solve"] = {}
             continue
         left = motion.along(v, motion.normals[k])[rows] - target
         # a gap is a distance less radii, rounded thrice by U of the places: gap / dt of two that
@@ -206,40 +206,6 @@ def lcp_target(gap, v_n, spec):
         return bias
     across = np.where(spec["dt"] * v_n <= -gap, bounce, np.minimum(bounce, close))
     return np.where(bias > 0.0, np.maximum(bias, bounce), across)
-
-
-def lcp_gains_energy_by_unfinished_sweeps_alone(trial):
-    """lcp without gain, cold: F = E + e/(1+e) dt sum m g v_y rises by what the sweeps leave undone.
-
-    In the norm of the masses, with D = v' - v: E' - E = lam.J v' - |D|^2 / 2. With targets of at
-    most -e J v this gives F' - F <= lam.w / (1+e) - (1-e)/(1+e) |D|^2 / 2, and lam.w = 0 once the
-    sweeps are done. So the step with the largest rise is taken again with more sweeps, until it is
-    below NOTABLE: a limit of the model, noted; an overdue end is a violation.
-    """
-    free = Trial(trial.spec | {"baumgarte": 0.0, "warm": 0.0})
-    motion = free.motions["lcp"]
-    if not motion.listed.any():
-        return
-    rise, size = rises(motion, motion.v[:-1], motion.v[1:], trial.spec["restitution"])
-    k = int((rise - NOTABLE * size).argmax())
-    sweeps, left, start = trial.spec["iters"], rise[k], scenes.state(motion.q[k], motion.v[k])
-    while left > NOTABLE * size[k] and sweeps < MOST:
-        sweeps = min(2 * sweeps, MOST)
-        v = free.run("lcp", **start, steps=1, iters=sweeps).v
-        left = rises(motion, v[:1], v[1:], trial.spec["restitution"])[0][0]
-    if sweeps > trial.spec["iters"]:
-        trial.note("lcp: unfinished sweeps add energy, without any push of Baumgarte's")
-    yield f"rise [J] with {sweeps} sweeps", left, NOTABLE * size[k]
-
-
-def rises(motion, first, last, e):
-    """(rise of F beyond the law, the energies) of steps from velocities to velocities."""
-    mass, D = motion.mass, last - first
-    before, after, D2 = (0.5 * (mass * v * v).sum((1, 2)) for v in (first, last, D))
-    lead = e / (1 + e) * motion.dt * G * (mass * D[:, 1]).sum(1)
-    moved = motion.dt * G * (mass * last[:, 1]).sum(1)
-    size = before + (mass * G * np.abs(motion.q[:-1, 1])).sum(1).max()
-    return after - before + moved - lead + (1 - e) / (1 + e) * D2, np.maximum(size, after)
 
 
 def leapfrog_is_exact_until_something_lasts(trial):

@@ -28,10 +28,6 @@ class Trial:
         self.start = contact.smallest_gap(self.scene.q0[None], self.scene.radius)[0]
         self.made, self.noted = {}, {}
 
-    def note(self, what, **numbers):
-        """Remember what cannot be judged, or a limit that was met."""
-        self.noted[what] = numbers
-
     def run(self, model, way="twin", **changes):
         """The run of a stepped model, with entries of the spec changed.
 
@@ -44,11 +40,6 @@ class Trial:
             self.made[key] = take(*given, scenes.to_settings(spec, skip=way != "plain"))
         return self.made[key]
 
-    def ran(self):
-        """The models whose run could be judged."""
-        runs = self.motions | {"exact": self.exact}
-        return [model for model, motion in runs.items() if motion and len(motion.listed)]
-
     @cached_property
     def motions(self):
         """{model: Trajectory} of the stepped models."""
@@ -58,18 +49,18 @@ class Trial:
     def exact(self):
         """Its Trajectory; None, and a note, where it promises nothing, or has too many EVENTS."""
         if self.start < -TOUCHING:
-            self.note("exact: starts in an overlap")
+            self.noted["exact: starts in an overlap"] = {}
             return None
         left = iter(range(EVENTS))
         try:
             given = "exact", self.scene, self.dt, self.spec["steps"]
             run = contact.run_model(*given, progress=lambda k: next(left))
         except StopIteration:
-            self.note(f"exact: more than {EVENTS} events")
+            self.noted[f"exact: more than {EVENTS} events"] = {}
             return None
         except RuntimeError as error:
             sentence = re.split("; |\\. ", str(error).removeprefix("exact: "))[0]
-            self.note("exact refuses: " + re.sub(r"\d[\d.,]*", "…", sentence))
+            self.noted["exact refuses: " + re.sub(r"\d[\d.,]*", "…", sentence)] = {}
             return None
         return Trajectory(self.scene, self.dt, run)
 

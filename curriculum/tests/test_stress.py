@@ -76,7 +76,7 @@ def test_a_number_that_is_off_is_a_violation_and_a_flight_says_nothing_of_energy
     ball = {"x": [0.0], "y": [9.0], "vx": [0.0], "vy": [0.0], "mass": [1.0], "radius": [0.1]}
     flight = Trial(scenes.numbered_spec(0, small=True) | ball | {"steps": 5})
     found = jobs.properties.judge(flight, *PROPERTIES.values())
-    assert found["lcp_gains_energy_by_unfinished_sweeps_alone"] == [0, 0.0, None]
+    assert found["enough_sweeps_solve_lcp"] == [0, 0.0, None]
     assert not any(words for _, _, words in found.values())
     flight.run("lcp").q[3, 1, 0] += 1e-9
     del flight.motions
