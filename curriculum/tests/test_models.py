@@ -245,6 +245,25 @@ def test_leapfrog_keeps_the_energy_of_a_ball_that_bounces_under_a_fixed_one():
         assert np.abs(total / total[0] - 1.0).max() < 1e-9
 
 
+def test_impacts_cost_a_pile_a_bounded_number_of_pushes_and_at_rest_none(monkeypatch):
+    strike, pushes = contact.strike_at, [0]
+
+    def counted(balls, contacts, *rest):
+        sweeps = strike(balls, contacts, *rest)
+        pushes[-1] += sweeps * len(contacts)
+        return sweeps
+
+    for bodies, e, steps, most in (150, 0.5, 300, 46_000), (24, 0.0, 3000, 0):
+        scene = build_scene("pile", bodies=bodies, restitution=e)
+        run = run_model("leapfrog", scene, DT, steps)
+        later = scene._replace(q0=run.q[-1], v0=run.v[-1])
+        with monkeypatch.context() as patched:
+            patched.setattr(contact, "strike_at", counted)
+            run_model("leapfrog", later, DT, 5, see=lambda *_: pushes.append(0))
+        assert max(pushes) <= most and len(pushes) == 6
+        pushes[:] = [0]
+
+
 @pytest.mark.parametrize("vx", [1e-170, -1e-170, 0.0])
 def test_leapfrog_takes_a_ball_that_is_too_slow_for_a_square(vx):
     scene = contact.scene_of([0.0, 0.2004], 0.7, [1.0, 2.0], vx=[vx, 0.0])
