@@ -908,6 +908,7 @@ def run_model(model, scene, dt, steps, settings=Settings(), progress=None, see=N
 def step_of(model: str, scene: Scene, dt: float, settings: Settings) -> partial:
     """step(balls) of a model that steps; its knobs are in its keywords."""
     step, knobs = MODELS[model].step, MODELS[model].knobs
+    assert step, f"{model} takes no steps"
     e = scene.restitution
     values = settings._asdict() | {"restitution": e, "damping": scene.damping}
     values["solref"], values["solimp"] = soft_defaults(e, dt, settings.solref, settings.solimp)
