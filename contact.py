@@ -559,7 +559,7 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
         radii = c.a.radius + c.b.radius
         c.reach = radii - max(0.0, c.depth - OPENS * radii)  # a deep overlap counts as a small one
         c.struck = 0.0
-        c.least = 1e-6 if restitution > 0.0 else -GRAVITY  # e = 0: whatever is slow may last
+        c.least = 1e-6 if restitution > 0.0 else -GRAVITY  # m/s^2; see lasts
         look(c, 0.0)
     find_held(balls, contacts, dt)
     if may_strike(contacts, dt):
@@ -626,9 +626,10 @@ def gravity_on(c):
 def lasts(c, dt):
     """Whether c lasts: it would touch no faster than gravity alone makes it in a step.
 
-    With e > 0, where gravity does not press it, only what touches at rest lasts.
+    Gravity must press it; or, with e = 0, both balls lie; or they touch at rest.
     """
-    g_n = max(c.least, gravity_on(c))  # m/s^2
+    lie = c.a.held > 0.0 and c.b.held > 0.0
+    g_n = max(gravity_on(c), c.least if lie else 1e-6)  # m/s^2
     slow = dt * g_n + 1e-9  # m/s
     return c.speed * c.speed + 2.0 * g_n * max(0.0, c.gap) <= slow * slow
 

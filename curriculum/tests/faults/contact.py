@@ -18,7 +18,7 @@ FAULTS = [
     (C, "if may_strike(contacts, dt):", "if False:", STEP),
     (C, "-GRAVITY * abs(c.ny) if presses else 0.0", "-GRAVITY if presses else 0.0", MOMENT),
     (C, "(lower.held > 0.0 and", "(lower.held >= 0.0 and", MODELS + "both_fall"),
-    (C, "c.least = 1e-6 if restitution > 0.0", "c.least = 1e-1 if restitution > 0.0", MOMENT),
+    (C, "c.least if lie else 1e-6", "c.least", MODELS + "both_fall"),
     (C, "1e-6 if restitution > 0.0 else -GRAVITY", "1e-6", MODELS + "at_rest_none"),
     (C, "until = dt if last else when", "until = dt", MOMENT),
     (C, "min(10 * iters, left)", "10 * iters", MODELS + "at_rest_none"),
