@@ -316,8 +316,8 @@ def fly(balls, dt, rows, kicks):
     np.add.accumulate(q, out=q)  # in the order of the steps: the same bits
     gap = smallest_gap(q.transpose(0, 2, 1), np.array([ball.radius for ball in balls]))
     fastest = np.sqrt(v[..., 0] * v[..., 0] + v[..., 1] * v[..., 1]).max(-1)
-    reach = [reach_of(speed, dt) for speed in fastest.tolist()]
-    near = np.flatnonzero(~(gap >= reach))  # not `gap < reach`: NaN must count as near
+    safe = (gap >= reach_of(fastest, dt)) & (gap >= CONTACT_MARGIN)
+    near = np.flatnonzero(~safe)  # not `gap < reach`: NaN must count as near
     flown = int(near[0]) if len(near) > 0 else len(rows) - 1
     for ball, values in zip(balls, rows[flown].tolist()):
         ball.x, ball.y, ball.vx, ball.vy = values
@@ -330,12 +330,12 @@ def step_reach(balls, dt: float) -> float:
     fastest = 0.0
     for ball in balls:
         fastest = max(fastest, ball.vx * ball.vx + ball.vy * ball.vy)
-    return reach_of(math.sqrt(fastest), dt)
+    return max(reach_of(math.sqrt(fastest), dt), CONTACT_MARGIN)
 
 
 def reach_of(fastest, dt):
     """Four times the way of the fastest ball [m]: two meet, and a hit may speed them up."""
-    return max(4.0 * dt * (fastest - dt * GRAVITY), CONTACT_MARGIN)
+    return 4.0 * dt * (fastest - dt * GRAVITY)
 
 
 # --- region: lcp ---
