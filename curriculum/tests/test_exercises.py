@@ -6,7 +6,6 @@ Needs numpy and pytest and nothing else, as a learner has them.
 import inspect
 import math
 import re
-import runpy
 import shlex
 import shutil
 import subprocess
@@ -54,12 +53,10 @@ def judged(name, text):
 def copy(tmp_path):
     """A learner's copy, in a folder with a space and a quote, and a function that fills it in."""
     folder = tmp_path / "my robot's course"
-    leave = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(ROOT / "exercises", folder / "exercises", ignore=leave)
-    (folder / "curriculum/show").mkdir(parents=True)
-    for name in ("contact.py", "checks.py", *(f"curriculum/{name}.py" for name in (
-            "__init__", "commands", "implicit", "exact", "show/remarks"))):  # fmt: skip
-        shutil.copy(ROOT / name, folder / name)
+    leave = shutil.ignore_patterns(
+        ".*", "__pycache__", "outputs", "tests", "bench", "page", "fast.py"
+    )
+    shutil.copytree(ROOT, folder, ignore=leave)
 
     def fill(name, *changes):
         """The right answer, or (old, new) of the file."""
@@ -76,36 +73,32 @@ def copy(tmp_path):
     return folder, fill
 
 
-def run(folder, *command, lacks="yaml", options=()):
-    """The command there, by a learner's Python, in which a package cannot be imported."""
-    start = (
-        f"import sys, runpy; sys.modules[{lacks!r}] = None; sys.argv = sys.argv[1:]; "
-        "sys.path[0] = sys.argv[0].rpartition('/')[0] or '.'; "
-        "runpy.run_path(sys.argv[0], run_name='__main__')"
-    )
-    return python(*options, "-c", start, *command, cwd=folder, **NO_PLUGINS)
+def run(folder, *words):
+    return python(*words, cwd=folder, **NO_PLUGINS)
 
 
-def test_a_script_that_is_not_filled_in_prints_its_task_anywhere_and_without_docstrings(tmp_path):
+def test_a_script_prints_its_task_or_a_hint_anywhere_and_without_docstrings(tmp_path):
     for name, whole in (("ex1", True), ("ex2", False)):
-        result = run(tmp_path, ROOT / FILES[name], options=["-OO"])
+        result = run(tmp_path, "-OO", ROOT / FILES[name])
         task = GIVEN[name].__doc__.strip()
         assert result.stdout.startswith(task if whole else task.split("\n")[0])
         assert (result.returncode, result.stderr) == (2, "")
+    result = run(tmp_path, ROOT / FILES["ex2"], "--hint", 3)
+    assert result.stdout == f"hint 3 of 4: {FACTS['ex2']['hints'][2]}\n"
+    result = run(tmp_path, ROOT / FILES["ex2"], "--hint", 0)
+    assert result.returncode == 2 and "error: argument --hint: invalid choice" in result.stderr
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_every_script_prints_the_hint_that_is_asked_for_and_no_other(name, capsys, monkeypatch):
-    hints = FACTS[name]["hints"]
-    for number, hint in enumerate(hints, 1):
-        assert "?" in hint and not re.search(r"[=*/]|max\(", hint), "a hint asks"
-        monkeypatch.setattr(sys, "argv", [FILES[name], "--hint", str(number)])
-        runpy.run_path(str(ROOT / FILES[name]), run_name="__main__")
-        assert capsys.readouterr().out == f"hint {number} of {len(hints)}: {hint}\n"
-    monkeypatch.setattr(sys, "argv", [FILES[name], "--hint", "0"])
-    with pytest.raises(SystemExit, match="2"):
-        runpy.run_path(str(ROOT / FILES[name]), run_name="__main__")
-    assert re.fullmatch(r"ex\w+\.py: error: argument --hint: .*\n", capsys.readouterr().err)
+def test_an_exercise_asks_and_gives_nothing_away_and_its_solution_says_how_it_is_run(name):
+    text = (ROOT / FILES[name]).read_text("utf-8")
+    for giveaway in ("m g / k", "max(", "clamp", "sqrt", "0.25", "1409", "0.0036", "0.00118"):
+        assert giveaway not in text
+    head = r'(# .*\n)+"""Exercise \d+, [\w ]+ \(\d+ minutes\): .+[.?]\n'
+    assert re.match(head, text) and "--hint" in text
+    for hint in FACTS[name]["hints"]:
+        assert "?" in hint and not re.search(r"[=*/]|max\(", hint)
+    assert f"`python {FILES[name]} --solution`" in SOLUTIONS[name].splitlines()[0]
 
 
 def test_a_learners_way_through_all_ten(copy, tmp_path):
@@ -151,7 +144,7 @@ def test_what_is_wrong_or_broken_fails_its_own_check_and_says_why(copy):
     ):  # fmt: skip
         assert words in result.stdout, words
     assert "Traceback" not in result.stdout
-    result = python(folder / FILES["ex1"])
+    result = run(folder, FILES["ex1"])
     assert result.returncode and "needs quotes" in result.stderr
     assert "Traceback" not in result.stderr
 
@@ -198,9 +191,9 @@ def test_however_a_learners_code_ends_it_is_said_in_words(
         assert re.search(r"line \d\d|wrong on", said), "it has its line"
 
 
-def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are(copy):
+def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are():
     for words in (["checks.py", "-k", "ex2 or ex11"], ["-m", "pytest", "checks.py", "-kex11"]):
-        result = python(*words, cwd=copy[0], **NO_PLUGINS)
+        result = run(ROOT, *words)
         printed = result.stdout + result.stderr
         assert result.returncode and "-k ex11: no such exercise; there are ex1_predict" in printed
         assert "Traceback" not in printed
@@ -217,18 +210,16 @@ def test_printed_commands_are_those_of_the_readme(monkeypatch):
         assert f"`{command}`" in readme and ("uv run exercises" in command) == uv
 
 
-def test_without_pytest_or_numpy_one_line_says_how_to_get_it(copy):
-    folder, _ = copy
+def test_without_pytest_or_numpy_one_line_says_how_to_get_it():
     for lacks, file in (("pytest", "checks.py"), ("numpy", FILES["ex1"])):
-        result = run(folder, file, lacks=lacks)
+        start = f"import sys, runpy; sys.modules[{lacks!r}] = None; sys.path[0] = 'exercises'; "
+        result = run(ROOT, "-c", f"{start}runpy.run_path({file!r}, run_name='__main__')")
         assert result.returncode in (1, 2) and result.stderr.count("\n") == 1, result.stderr
         assert re.search(rf"{lacks}.*: .*(pip install|uv run --with) {lacks}", result.stderr)
 
 
 def test_a_solution_is_shown_at_work_by_its_flag():
-    for name, file in FILES.items():
-        assert f"`python {file} --solution`" in SOLUTIONS[name].splitlines()[0]
-    result = python(FILES["ex4"], "--solution")
+    result = run(ROOT, FILES["ex4"], "--solution")
     assert result.returncode == 0 and result.stdout.startswith(SOLUTIONS["ex4"])
     assert "rests 0.04905 r deep" in result.stdout
 
@@ -503,12 +494,3 @@ def test_exercises_are_offered_in_the_chapters_order():
     assert re.findall(r"<!-- exercise: (\w+) -->", text) == [*FILES]
     readme = " ".join((ROOT / "README.md").read_text("utf-8").split())
     assert f"do them in the order {', '.join(FILES)}, which is the chapter's" in readme
-
-
-@pytest.mark.parametrize("file", FILES.values())
-def test_an_exercise_gives_nothing_away(file):
-    text = (ROOT / file).read_text("utf-8")
-    for giveaway in ("m g / k", "max(", "clamp", "sqrt", "0.25", "1409", "0.0036", "0.00118"):
-        assert giveaway not in text
-    head = r'(# .*\n)+"""Exercise \d+, [\w ]+ \(\d+ minutes\): .+[.?]\n'
-    assert re.match(head, text) and "--hint" in text
