@@ -5,6 +5,7 @@ import os
 import pickle
 import platform
 import signal
+import socket
 import sys
 import threading
 import time
@@ -140,12 +141,14 @@ def on_machines(scheduler: str, function, numbered) -> Iterator[tuple]:
     """Spread the jobs over the workers of a dask scheduler; see as_they_come."""
     try:
         from dask.distributed import Client, KilledWorker
-        from distributed.comm import CommClosedError
+        from distributed.comm import CommClosedError, get_address_host_port
     except ImportError:
         raise ImportError(commands.to_install("dask[distributed]")) from None
     logging.disable()  # dask's tracebacks of what is lost: we say it in a line
     given, data = f"given the scheduler {scheduler!r}, which", pickle.dumps(function)
     try:
+        with socket.create_connection(get_address_host_port(scheduler), 10) as first:
+            first.recv(1)  # a scheduler speaks first; with its dashboard a client waits for ever
         client = Client(scheduler, timeout=10)
     except (OSError, ValueError) as error:
         allowed = "allowed: host:port, as `dask scheduler` prints it"

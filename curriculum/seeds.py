@@ -67,7 +67,8 @@ def main(argv=None):
         kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps, "rows": summaries}
         write_json(path.with_suffix(".json"), kept | {"seeds": [seeds[0], seeds[-1] + 1]})
     except (ImportError, OSError, sqlite3.Error) as error:
-        fail(f"{said(error)}; what is done is kept: the same command goes on from there")
+        kept = f"what is done is kept in {near(str(path))}: the same command goes on from there"
+        fail(f"{said(error)}; {kept}")
     print(f"scene {args.scene}, seeds {seeds[0]} to {seeds[-1]}:", end=" ")
     print(f"{args.steps} steps of {args.dt:g} s")
     table = {

@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -233,6 +234,11 @@ def test_a_cluster_without_workers_or_with_other_code_is_one_line_and_what_is_do
 ):
     distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
     monkeypatch.setattr(parallel, "PATIENCE", 0.1)
+    with socket.create_server(("127.0.0.1", 0)) as mute, monkeypatch.context() as soon:
+        there, connect = mute.getsockname(), socket.create_connection
+        soon.setattr(socket, "create_connection", lambda place, _: connect(place, 0.1))
+        words = *FIVE, str(tmp_path), "--scheduler", f"127.0.0.1:{there[1]}"
+        assert "which does not answer (timed out)" in one_line(capsys, *words)
     shutil.copytree(ROOT, tmp_path / "other", ignore=shutil.ignore_patterns(".*", "tests"))
     fast = tmp_path / "other/curriculum/fast.py"
     fast.write_text(f"{fast.read_text('utf-8')}\n\nMORE = 1\n", "utf-8")
