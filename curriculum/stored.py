@@ -29,7 +29,6 @@ from pathlib import Path
 from curriculum.commands import Parser, write_whole
 from curriculum.lesson.regions import ROOT, read_text, split
 
-BLOCK = re.compile(r"(<!-- generated: (\w+) by .*? -->)\n(.*?)(?=<!-- end -->)", re.DOTALL)
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 DIGITS = 6  # significant digits that a table keeps
 PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
@@ -174,11 +173,9 @@ def footer(about: dict) -> str:
 
 def write_block(name: str, markdown: str) -> None:
     """Put the Markdown of "bench" or "stress" into the project's README, between its markers."""
-
-    def block(match):
-        return f"{match[1]}\n{markdown.strip()}\n" if match[2] == name else match[0]
-
-    write_whole(ROOT / "README.md", BLOCK.sub(block, read_text("README.md")))
+    block = re.compile(rf"(<!-- generated: {name} by .*? -->\n).*?(?=<!-- end -->)", re.DOTALL)
+    text = block.sub(lambda match: f"{match[1]}{markdown.strip()}\n", read_text("README.md"))
+    write_whole(ROOT / "README.md", text)
 
 
 def ledger() -> list:

@@ -36,6 +36,7 @@ KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line 
 CAPTION = re.compile(
     r"""\b(?:title|caption):\s*(?:("|`)(?:(?!\1)[^\\]|\\.)*\1[\s+]*)+""", re.DOTALL
 )
+MADE = re.compile(r"<!-- generated: .*?<!-- end -->", re.DOTALL)  # by a command
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 # Where numbers may be typed in text: code and formulas, references, links, numbers of headings and
 # lists, versions with two dots, and what follows some words.
@@ -97,7 +98,7 @@ def passages():
 def sections(file) -> list:
     """The headings of a text, each with what stands under it; what a command wrote is left out."""
     found = []
-    for part in split(blank(stored.BLOCK, read_text(file))):
+    for part in split(blank(MADE, read_text(file))):
         if part.kind == "heading":
             name = part.name if file == CHAPTER else f"{file}: {part.name}"
             found.append(Passage(name, file, part.line, ""))
@@ -131,34 +132,29 @@ class Gate:
 
     def check_marks(self):
         """What the chapter includes, and its slots name, is there, and nothing lacks a place."""
-        known, shown = self.known(), Counter()
+        known: dict = {("region", r.source): (r.file, r.line - 1) for r in self.regions.values()}
+        for file in files("exercises/ex*.py"):
+            known["exercise", Path(file).stem.split("_")[0]] = file, 1
+        for file in files(FIGURES):
+            several = KEY.findall(read_text(file).partition("export const figures = {")[2])
+            known |= {("figure", name): (file, 1) for name in several or [Path(file).stem]}
+        for kind, folder in stored.FOLDERS.items():
+            drawn = files(f"{folder}/*.svg")  # some of them have a place, others have none
+            known |= {(kind, Path(file).stem.removeprefix("error-")): None for file in drawn}
+        shown = Counter()
         for kind, name, line, _ in self.chapter:
-            name = name.partition("?")[0]  # behind it a figure's settings
-            shown[kind, name] += 1
-            if name not in known.get(kind, (name,)):
-                names = ", ".join(known[kind])
-                self.say(CHAPTER, line, f"there is no {kind} {name}", f"name one of {names}")
-            elif shown[kind, name] > 1 and kind in known and kind != "figure":
+            mark = kind, name.partition("?")[0]  # behind it a figure's settings
+            shown[mark] += 1
+            if kind in ("region", "figure", "exercise", *stored.FOLDERS) and mark not in known:
+                names = ", ".join(name for each, name in known if each == kind)
+                self.say(CHAPTER, line, f"there is no {kind} {mark[1]}", f"name one of {names}")
+            elif shown[mark] > 1 and mark in known and kind != "figure":
                 self.say(CHAPTER, line, f"{kind} {name} stands here again", "delete one of the two")
         for line, what, repair in faults(self.chapter):
             self.say(CHAPTER, line, what, repair)
-        for kind in ("region", "figure", "exercise"):
-            for name, place in known[kind].items():
-                if not shown[kind, name]:
-                    self.say(*place, f"{kind} {name} has no place in {CHAPTER}", "give it one")
-
-    def known(self) -> dict:
-        """{kind: {name: (file, line)}} of all that a mark of the chapter may name."""
-        known: dict = {"figure": {}}
-        known["region"] = {r.source: (r.file, r.line - 1) for r in self.regions.values()}
-        known["exercise"] = {Path(f).stem.split("_")[0]: (f, 1) for f in files("exercises/ex*.py")}
-        for file in files(FIGURES):
-            several = KEY.findall(read_text(file).partition("export const figures = {")[2])
-            known["figure"] |= dict.fromkeys(several or [Path(file).stem], (file, 1))
-        for kind, folder in stored.FOLDERS.items():
-            drawn = files(f"{folder}/*.svg")
-            known[kind] = {Path(f).stem.removeprefix("error-"): (f, 1) for f in drawn}
-        return known
+        for mark, place in known.items():
+            if place and not shown[mark]:
+                self.say(*place, f"{' '.join(mark)} has no place in {CHAPTER}", "give it one")
 
     def check_names(self):
         """Names in `code` and flags, of chapter and captions, are in some code or in meta.yaml."""

@@ -88,12 +88,3 @@ def test_rooms_of_the_table_are_there_and_import_only_what_stands_above_them():
             text = file.read_text("utf-8") if file.name != "__main__.py" else ""
             used = set(re.findall(r"^from curriculum(?: import|\.) ?(\w+)", text, re.M))
             assert used <= above, (file, used - above)
-
-
-def test_extras_of_the_texts_are_those_of_the_package():
-    named = re.findall(r"\.\[(\w+)\]|--extra (\w+)", README)
-    project = (ROOT / "pyproject.toml").read_text("utf-8").split("[project.optional-")[1]
-    declared = re.findall(r"^(\w+) = \[", project.split("[tool.")[0], re.M)
-    assert (
-        {a or b for a, b in named} == {*declared} == {"learn", "page", "notebook", "bench", "dev"}
-    )

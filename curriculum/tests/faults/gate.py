@@ -13,7 +13,7 @@ FAULTS = [
     (GATE, r"[\d¼½¾⅓⅔⅛]", r"[\d]", ERRORS),
     (GATE, r"|\]\([^)]*\)|", r"|\[[^]]*\]\([^)]*\)|", ERRORS),
     (GATE, r"^[A-Za-z_]\w+$|--[a-z]\w*", r"--[a-z]\w*", ERRORS),
-    (GATE, "if not shown[kind, name]:", "if False:", ERRORS),
+    (GATE, "if place and not shown[mark]:", "if False:", ERRORS),
     (GATE, "if source not in was:", "if False:", ERRORS),
     (GATE, "elif was[source] != now:", "elif False:", ERRORS),
     (GATE, "filter(stored.stale, stored.ledger())", "()", ERRORS),
