@@ -146,14 +146,15 @@ export function steps(low, high, most = 5) {
   return Array.from({ length: last - first + 1 }, (_, k) => (first + k) * every);
 }
 
-/* A chart in a view's picture, from `left` and `top` on: {picture, sx, sy, box}. x and y: axes;
+/* A chart in a view's picture, from `left` and `top` on: {picture, sx, sy, box, knob}, where
+ * knob(value, name, step) is a knob on the axis that sets a value of the state. x and y: axes;
  * lines: {model, points, kind, marks}, each up to where a value is no number; zero: whether a line
  * shows where y is 0. */
-export function plot({ width, height }, { left = 0, top = 0, x, y, lines = [], zero, ...more }) {
+export function plot(view, { left = 0, top = 0, x, y, lines = [], zero, ...more }) {
   const wide = Math.max(0, ...y.ticks.map(([, text]) => text.length));
-  const bottom = more.height ?? height;
+  const bottom = more.height ?? view.height;
   const box = {
-    left: left + Math.max(26, 12 + 8.4 * wide), right: width - 12,
+    left: left + Math.max(26, 12 + 8.4 * wide), right: view.width - 12,
     top: top + (y.label ? 28 : 8), bottom: bottom - 46,
   };
   const [sx, sy] = [scaleOf(x, box.left, box.right), scaleOf(y, box.bottom, box.top)];
@@ -183,5 +184,7 @@ export function plot({ width, height }, { left = 0, top = 0, x, y, lines = [], z
     label(x.label, box.right, bottom - 4, "end", "axis-name"),
     clipped(box.left, box.top - 3, box.right - box.left, box.bottom - box.top + 6, drawn),
   ];
-  return { sx, sy, box, picture };
+  const knob = (value, name, step) => view.point(sx(view.own[value]), box.bottom,
+    { label: name, value, low: x.domain[0], high: x.domain[1], step, at: sx.back });
+  return { sx, sy, box, picture, knob };
 }

@@ -9,25 +9,24 @@ for (const box of document.querySelectorAll("[data-figure]"))
 document.querySelectorAll(".exercise:has(.bet)").forEach(startBet);
 
 // On a phone folded: code, which is wider than the screen, and what asks for a terminal.
+const folds = [...document.querySelectorAll("details.folds")];
 const narrow = window.matchMedia("(max-width: 40rem)");
-const fold = (closed) => {
-  for (const each of document.querySelectorAll("details.folds")) {
-    each.open = !closed;
-    each.querySelector("summary").tabIndex = closed ? 0 : -1;
+const fold = () => {
+  for (const each of folds) {
+    each.open = !narrow.matches;
+    each.querySelector("summary").tabIndex = narrow.matches ? 0 : -1;
   }
 };
-narrow.addEventListener("change", () => fold(narrow.matches));
-fold(narrow.matches);
+narrow.addEventListener("change", fold);
+fold();
 
-// On paper all is open that was read.
+// On paper all of it is open, and the answers of bets, too.
 let opened = [];
 window.addEventListener("beforeprint", () => {
-  fold(false);
-  opened = [...document.querySelectorAll("details.answer:not([open])")];
+  opened = document.querySelectorAll(":is(.folds, .answer):not([open])");
   for (const each of opened) each.open = true;
 });
 window.addEventListener("afterprint", () => {
-  fold(narrow.matches);
   for (const each of opened) each.open = false;
 });
 document.documentElement.dataset.ready = "yes";

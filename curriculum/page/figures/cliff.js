@@ -31,7 +31,7 @@ function draw(view) {
   });
   const [critical, popular] = [damping, 0].map((each) => critical_dt(1, stiffness, each));
   const ticks = [[NONE, "0"], 0.001, 1, 1000, [1e6, tenTo(6)]];
-  const { sx, sy, box, picture } = plot(view, {
+  const { sx, sy, box, picture, knob } = plot(view, {
     x: timeSteps(LOW, HIGH),
     y: { ...axis([NONE, FARTHEST], "still moving at the end / r", ...ticks), log: true },
     lines: [{ model: "penalty", points, kind: "plainly" }],
@@ -48,14 +48,11 @@ function draw(view) {
   const gains = gained > 1e-9 ? `gains ${number(gained, 4)} times its energy` : "gains no energy";
   const deep = `it comes to rest ${number(G / stiffness / R, 2)} r deep`;
   const ends = explodes ? "it explodes" : rests ? deep : "it never rests";
-  const what = {
-    label: "the time step", value: "dt", low: LOW, high: HIGH, step: 0.0002, at: sx.back,
-  };
   return {
     picture: [
       picture, limit(critical, "with its damper", right ? "end" : "start", "rule"),
       both ? limit(popular, "2√(m/k)", "start", "rule dashed") : "",
-      mark("penalty", sx(dt), sy(far), 8), view.point(sx(dt), box.bottom, what),
+      mark("penalty", sx(dt), sy(far), 8), knob("dt", "the time step", 0.0002),
     ],
     words: `At dt = ${number(1000 * dt)} ms the ball ${gains}; ${ends}.`,
     values: { far, gained, critical, explodes, rests },

@@ -41,7 +41,7 @@ function draw(view) {
   const left = narrow ? width : Math.round(0.36 * width);
   const floor = narrow ? 150 : height - 60;
   const points = Array.from({ length: 261 }, (_, k) => [k / 200, after(k / 200, mu)[0]]);
-  const { sx, sy, box, picture } = plot(view, {
+  const { sx, sy, picture, knob } = plot(view, {
     left: narrow ? 0 : left + 8, top: narrow ? 180 : 0,
     x: axis([0, MOST], "push of the table (N s)", 0, 0.5, 1),
     y: axis([-0.35, 0.6], "v_n of the end (m/s)", -0.2, 0, 0.2), zero: true,
@@ -49,9 +49,6 @@ function draw(view) {
   });
   const [x, scale] = [0.68 * left, (floor - 16) / 1.9]; // px; px for 1 m
   const middle = [x - X * scale, floor + Y * scale];
-  const what = {
-    label: "the push", value: "push", low: 0, high: MOST, step: 0.02, at: sx.back,
-  };
   const seen = coulomb.filter((p) => p <= MOST);
   const told = seen.map((p) => number(p, 2)).join(", ").replace(/, ([^,]*)$/, " and $1");
   const count = seen.length === 1 ? "one answer, a push" : `${seen.length} answers, pushes`;
@@ -65,7 +62,7 @@ function draw(view) {
         arrow("weight", x, floor, 14 * Math.min(4, v_t), -14 * 4 * v_n),
         arrow("push m-exact", x, floor + 26, 0, -26 * within(0, push, 1))),
       picture, seen.map((p) => circle(sx(p), sy(p ? 0 : FREE[0]), 9, "answer")),
-      mark("exact", sx(push), sy(v_n), 7), view.point(sx(push), box.bottom, what),
+      mark("exact", sx(push), sy(v_n), 7), knob("push", "the push", 0.02),
     ],
     words: `µ = ${number(mu)}: the law has ${count} of ${told} N s; relaxed it has one, ` +
       `${number(relaxed, 2)} N s. With ${number(push, 2)} N s the end ${does} and ${fate}.`,
