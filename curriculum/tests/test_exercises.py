@@ -346,9 +346,9 @@ HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)
     ({"MODEL": "implicit", "DAMPING": 8e3}, "it settles in about c / k = 0.8 s"),
     ({"MODEL": "hard"}, "MODEL: given 'hard'; allowed: penalty, implicit, soft"),
     ({"MODEL": "lcp"}, "lcp, leapfrog and exact are not asked for: their contacts are rigid"),
-    ({"DT": 0.0001}, "DT: given 0.0001; allowed: a number from 0.0005 to 0.02"),
-    ({"DT": "fast"}, "DT: given 'fast'; allowed: a number"),
-    ({"DAMPING": math.nan}, "DAMPING: given nan; allowed: a number from 0 to"),
+    ({"DT": 0.0001}, "given DT = 0.0001, STIFFNESS = 10000; allowed: DT from 0.0005 to"),
+    ({"DT": "fast"}, "dt: given ['fast']; allowed: one number"),
+    ({"DAMPING": math.nan}, "damping: given nan; allowed: a number from 0 to"),
     ({"SOLREF": 0.005}, "solref: given ['0.005']; allowed: "),
     ({"SOLIMP": (0.9, 0.95)}, "solimp: given "),
 ])  # fmt: skip

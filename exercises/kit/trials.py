@@ -121,19 +121,15 @@ SHOWN = {  # blank: what shows it at work; of two that work together, the second
 # The gripper of exercise 8
 
 
-NUMBERS = {"DT": (0.0005, 0.02), "STIFFNESS": (1.0, 1e12), "DAMPING": (0.0, 1e9)}
-
-
 def gripper(exercise):
     """Its step, by the model and the numbers chosen. Raises ValueError for what is not allowed."""
-    for knob, (low, high) in NUMBERS.items():
-        given = getattr(exercise, knob)
-        if not isinstance(given, (int, float)) or not low <= given <= high:
-            allowed = f"a number from {low:g} to {high:g}"
-            raise ValueError(f"{knob}: given {given!r:.60}; allowed: {allowed}")
-    dt, spring = exercise.DT, {"stiffness": exercise.STIFFNESS, "damping": exercise.DAMPING}
-    solref = contact.within("solref", exercise.SOLREF, (2,))
-    solimp = contact.within("solimp", exercise.SOLIMP, (5,))
+    knobs = {"dt": (), "stiffness": (), "damping": (), "solref": (2,), "solimp": (5,)}
+    values = [contact.within(k, getattr(exercise, k.upper()), shape) for k, shape in knobs.items()]
+    dt, k, c, solref, solimp = values
+    if not 0.0005 <= dt <= 0.02 or not k >= 1.0:
+        allowed = "DT from 0.0005 to 0.02 s, STIFFNESS from 1 N/m"
+        raise ValueError(f"given DT = {dt:g}, STIFFNESS = {k:g}; allowed: {allowed}")
+    spring = {"stiffness": k, "damping": c}
     solref, solimp = contact.soft_defaults(0.0, dt, solref, solimp)
     implicit = partial(RIGHT["implicit_spring"], dt=dt, **spring)
     steps = {
@@ -141,8 +137,8 @@ def gripper(exercise):
         "implicit": partial(implicit_step, dt=dt, spring=implicit),
         "soft": partial(contact.soft_step, dt=dt, solref=solref, solimp=solimp),
     }
-    if exercise.MODEL not in steps:
-        rigid = f". {FACTS['ex8']['rigid']}" if exercise.MODEL in contact.MODELS else ""
+    if str(exercise.MODEL) not in steps:
+        rigid = f". {FACTS['ex8']['rigid']}" if str(exercise.MODEL) in contact.MODELS else ""
         raise ValueError(f"MODEL: given {exercise.MODEL!r}; allowed: {', '.join(steps)}{rigid}")
     return steps[exercise.MODEL]
 
