@@ -56,12 +56,8 @@ def print_the_rest():
 
 
 # "-m" stands there while the module is looked for; our scripts lie in two folders
-_main = getattr(sys.modules["__main__"], "__file__", None)
-_ours = _main and os.path.dirname(os.path.realpath(_main)) in (
-    HOME,
-    os.path.join(HOME, "exercises"),
-)
-if _ours or sys.argv[0] == "-m":
+_main = os.path.realpath(getattr(sys.modules["__main__"], "__file__", None) or "/")
+if sys.argv[0] == "-m" or os.path.dirname(_main) in (HOME, os.path.join(HOME, "exercises")):
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
     sys.excepthook = refused
