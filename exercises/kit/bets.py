@@ -20,12 +20,8 @@ for path in sorted((ROOT / "exercises/solutions").glob("ex*.py")):
 
 def columns(corner, heads, rows, form):
     """A small table as text. rows {name: values}; `form` writes a value, as "{:.3f} r" does."""
-    wide = max(16, *map(len, rows))
-    lines = [f"{corner:<{wide}}" + "".join(f"{head:>15}" for head in heads)]
-    for name, values in rows.items():
-        cells = ("-" if value is None else form.format(value) for value in values)
-        lines.append(f"{name:<{wide}}" + "".join(f"{cell:>15}" for cell in cells))
-    return "\n".join(lines)
+    lines = [(corner, *heads), *((name, *map(form.format, row)) for name, row in rows.items())]
+    return "\n".join(f"{first:<16}" + "".join(f"{x:>15}" for x in rest) for first, *rest in lines)
 
 
 def quality(key, model, scene, dt, steps=2000, settings=USUAL):
@@ -150,12 +146,12 @@ def judge_knobs(name, exercise):
     rows, hits, words = {}, 0, ""
     shares, quoted = measure_knobs()
     for trouble, row in shares.items():
-        pairs = [(share, mark(share), guess) for share, guess in zip(row, mine[trouble])]
-        hits += sum(true == guess for _, true, guess in pairs)
+        true, guessed = [*map(mark, row)], mine[trouble]
         rows[trouble] = [
-            f"{share:.3g} {true}" + ("" if true == guess else f" ({guess})")
-            for share, true, guess in pairs
+            f"{share:.3g} {sign}" + ("" if sign == guess else f" ({guess})")
+            for share, sign, guess in zip(row, true, guessed)
         ]
+        hits += sum(map(str.__eq__, true, guessed))
         reason = FACTS[name]["reasons"][trouble].format(**quoted)
         words += "\n" + textwrap.fill(f"{trouble}: {reason}", 96) + "\n"
     said = f"Your bet holds in {hits} of 20; where it was another, it stands in brackets."

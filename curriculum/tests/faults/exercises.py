@@ -17,7 +17,7 @@ FAULTS = [
     (TRIALS, "contact.critical_dt(0.1, k, c)", "contact.critical_dt(0.2, k, c)", T + "gripper"),
     (TRIALS, "partial(asking_twice, exercise", "partial(asking_twice, contact", T + "asking"),
     (TRIALS, '"solve_contacts", solver(', '"penalty_step", solver(', T + "beside"),
-    (BETS, "sum(true == guess", "sum(true != guess", T + "counted"),
+    (BETS, "map(str.__eq__,", "map(str.__ne__,", T + "counted"),
     (BETS, 'replace("\\N{MINUS SIGN}", "-")', 'replace("~", "-")', T + "counted"),
     (BETS, "key=lambda choice: choice != right", "key=lambda choice: choice == right",
      T + "word_on_every"),
