@@ -49,6 +49,8 @@ def refused(kind, error, trace):
 
 def print_the_rest():
     """At the end, since Python itself would say what it could not print in a traceback."""
+    for number in (signal.SIGINT, signal.SIGTERM):  # too late: all is done
+        signal.signal(number, signal.SIG_IGN)
     try:
         print(end="", flush=True)
     except OSError as error:

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from collections import defaultdict
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -348,6 +349,17 @@ def test_seeds_refuses_bad_input_in_one_line(words, capsys):
 
 def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
     assert parallel.run_jobs(abs, range(-50, 0), "jobs", workers=2) == list(range(50, 0, -1))
+
+
+def test_without_a_terminal_a_line_a_minute_says_how_far_it_is(monkeypatch, capsys):
+    now = iter((0.0, 30.0, 61.0, 90.0, 122.0, 200.0))
+    monkeypatch.setattr(parallel, "time", SimpleNamespace(monotonic=lambda: next(now)))
+    progress = parallel.bar(5_000, "seeds")
+    for done in (1000, 2000, 3000, 4000, 5000):
+        progress(done)
+    lines = [line.strip() for line in capsys.readouterr().err.splitlines()]
+    ahead = {2: 92, 4: 30}
+    assert lines == [f"seeds: {k},000 of 5,000, about {s} s to go" for k, s in ahead.items()]
 
 
 def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):
