@@ -89,12 +89,6 @@ def policy(*scripts):
     )
 
 
-def stylesheet():
-    """The page's style, without what only its authors read."""
-    css = (HERE / "style.css").read_text("utf-8")
-    return Markup(re.sub(r"\n\s+", "\n", re.sub(r"/\*.*?\*/\s*", "", css, flags=re.DOTALL)))
-
-
 def environment(**held):
     """The templates' environment; its macros know what is held."""
     made = jinja2.Environment(
@@ -136,7 +130,7 @@ def build(text=None):
     script = bundle("main.js", data)
     return templates.get_template("page.html.j2").render(
         policy=policy(EARLY, script),
-        style=stylesheet(),
+        style=Markup((HERE / "style.css").read_text("utf-8")),
         early=Markup(EARLY),
         script=Markup(script),
         heading=Markup(re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title)),

@@ -24,8 +24,6 @@ USED = (  # of contact.py, beside the steps
     "strike accelerations next_impact MOST_IMPACTS TOUCH critical_dt soft_defaults implicit_step"
 ).split()
 IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
-# comments on lines of their own, and the blanks before a line of code
-PLAIN = re.compile(r"^[ ]*//[^\n]*\n|^/\*.*?\*/\n|^[ ]+(?=[^ ])", re.M | re.S)
 EXPORT = re.compile(r"^export (const|function|class) ([\w$]+)", re.MULTILINE)
 LISTED = re.compile(r"\bexport\s*\{([^}]+)\};")  # as lit-html says what it exports
 CLAMP = "$.max(0.0, (c.lam + (missing * c.m_eff)))", "(c.lam + $.max(0.0, (missing * c.m_eff)))"
@@ -85,8 +83,7 @@ def module(path, text):
         own, _, called = each.strip().partition(" as ")
         names.append(f"{called}: {own}" if called else own)
     held = ", ".join(names)
-    plain = text if path == "lit-html.js" else PLAIN.sub("", text)  # with its license
-    body = EXPORT.sub(r"\1 \2", IMPORT.sub(imported, LISTED.sub("", plain)))
+    body = EXPORT.sub(r"\1 \2", IMPORT.sub(imported, LISTED.sub("", text)))
     if re.search(r"^(import|export)\b", body, re.MULTILINE):
         raise ValueError(f"curriculum/page/{path}: an import or export that is not on one line")
     return f'modules["{path}"] = (() => {{\n{body}return {{ {held} }};\n}})();\n'

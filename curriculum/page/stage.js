@@ -83,8 +83,6 @@ function slider(view, name) {
 
 // ---- hands
 
-const several = (value) => (Array.isArray(value) ? value : [value]);
-
 /* What is grabbed: its state is changed by where the hand is, from where it was taken hold of, so
  * that nothing jumps; by the arrow keys, `step` at a time and ten times that with shift. */
 function grabbing(view, box) {
@@ -95,8 +93,8 @@ function grabbing(view, box) {
   };
   return (what, shape) => {
     const { label, low, high, step, at, also, release } = what;
-    const names = several(what.value);
-    const [lows, highs, size] = [several(low), several(high), several(step)];
+    const names = [what.value].flat();
+    const [lows, highs, size] = [[low].flat(), [high].flat(), [step].flat()];
     const now = () => names.map((name) => view.own[name]);
     const put = (wanted) => {
       const fine = wanted.map((v, k) => Number(within(lows[k], v, highs[k]).toPrecision(5)));
@@ -107,13 +105,13 @@ function grabbing(view, box) {
       event.preventDefault();
       event.currentTarget.focus({ preventScroll: true });
       event.currentTarget.setPointerCapture(event.pointerId);
-      const place = several(at(...from(event)));
+      const place = [at(...from(event))].flat();
       held = { pointer: event.pointerId, off: place.map((v, k) => now()[k] - v) };
       view.stop();
     };
     const drag = (event) => {
       if (held?.pointer !== event.pointerId) return;
-      put(several(at(...from(event))).map((v, k) => v + held.off[k]));
+      put([at(...from(event))].flat().map((v, k) => v + held.off[k]));
     };
     const letGo = (event) => {
       if (held?.pointer !== event.pointerId) return;
