@@ -4,12 +4,10 @@
 # ///
 """Exercise 10, write it (40 minutes): ask twice.
 
-An impact has its own moment. Between two of them a gap is a parabola in time, gap + v_n t +
-a_n t^2 / 2, and the next impact is where it closes: write time_to_impact first.
-
-What lasts has no such moment, and lcp asks one question for two things. One velocity has to say
-where a ball may go, and how fast it may be afterwards. So ask twice. What is around your other two
-functions is lcp_step, taken apart:
+An impact has its own moment. Between two impacts a gap is gap + v_n t + a_n t^2 / 2, and the next
+one is where it closes: write time_to_impact first. What lasts has no such moment, and lcp asks one
+question for two things: where a ball may go, and how fast it may be afterwards. So ask twice.
+Around your other two functions is lcp_step, taken apart:
 
     list all contacts that a step may bring together
     kick, least = before_the_move(gap, dt)          for each contact, its gap
@@ -19,9 +17,8 @@ functions is lcp_step, taken apart:
     asked, least, lam, normal = after_the_move(...) for each contact again
     sweeps once more, for those that are asked, each beginning with its lam
 
-exact judges it, on a drop, a stack, a ball that slides off another and one that begins in another.
-Then read off the order of your step: the error of the slide, off/r, falls like dt to which power?
-Write it as ORDER.
+exact judges it. Then read off the order of your step: the error of the slide, off/r, falls like dt
+to which power? Write it as ORDER.
 
     python exercises/ex10_ask_twice.py      # add --hint 1 (to 8: two a function, three of the last)
     python checks.py -k ex10
@@ -35,8 +32,8 @@ from kit import script
 def time_to_impact(gap, v_n, a_n):
     """When a gap [m] >= 0 closes [s]; math.inf if it never does.
 
-    Its speed is v_n [m/s] now, > 0 opening, and its acceleration a_n [m/s^2] stays: -9.81 under
-    gravity. A gap of 0 that opens has just bounced: asked is when it closes again.
+    Its speed is v_n [m/s], > 0 opening; its acceleration a_n [m/s^2] stays, -9.81 under gravity.
+    A gap of 0 that opens has just bounced: asked is when it closes again.
     """
     return ...  # TODO: blank 1
 

@@ -10,8 +10,8 @@ the acceleration K d depth, where K = 1 / (d1 timeconst dampratio)^2. That wish 
 and the share 1 - d goes to what the ball would do without the table. How deep does it lie in the
 end, in radii r = 0.1 m?
 
-Work it out on paper: at rest nothing accelerates. In which term does the mass stand? Write the
-depth as DEPTH, to three digits, and only then look at the column gap/r of the second command:
+Work it out on paper: at rest nothing accelerates. In which term does the mass stand? Write DEPTH,
+to three digits, and only then look at gap/r of the second command:
 
     python exercises/ex4_rest_of_soft.py        # add --hint 1 (2, 3) for a question that helps
     python contact.py --contact soft --mass 3 --solref 0.05 1 --solimp 0.8 0.8 0.001 0.5 2

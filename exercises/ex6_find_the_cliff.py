@@ -5,10 +5,9 @@
 """Exercise 6, find out (25 minutes): where is the cliff?
 
 A ball deep in the table of penalty, away from its balance by `depth` [m] and moving with `v_n`
-[m/s], has after one step another depth and another velocity. Both are sums of the old ones, so a
-step is a matrix. It can be taken again and again as long as no eigenvalue of it is larger than 1.
-Write the matrix, then find the longest step by any search you like. The script sets your answer
-beside a formula.
+[m/s], has another depth and velocity after one step. Both are sums of the old ones, so a step is a
+matrix. It can be taken again and again as long as no eigenvalue of it is larger than 1. Write the
+matrix, then find the longest step by any search you like; a formula stands beside your answer.
 
     python exercises/ex6_find_the_cliff.py      # add --hint 1 (2; 3, 4: the search) for a question
     python checks.py -k ex6

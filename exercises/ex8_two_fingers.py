@@ -4,14 +4,13 @@
 # ///
 """Exercise 8, choose (30 minutes): a gripper that holds still.
 
-A cup, here a ball of 1 kg, stands on a table. Two fingers of 0.2 kg close on it from left and right
-and squeeze it with 20 N each, for one second. This is the gripper from the first page of the
-chapter, and it trembles: set MODEL = "penalty", leave the numbers as they are, and see by how much.
-Then make it hold still: choose a model, its numbers and the time step so that in the end nothing
-overlaps by more than a thousandth of a radius, and the deepest overlap of the last quarter varies
-(std) by less than a hundredth of that, with steps of 0.5 to 20 ms. There is more than one way.
-Before you try numbers, estimate: what do 20 N do to a spring, and how light is the lightest thing
-that hangs on it?
+A cup, here a ball of 1 kg, stands on a table. Two fingers of 0.2 kg squeeze it from left and right
+with 20 N each, for one second. This is the gripper from the chapter's first page, and it trembles:
+set MODEL = "penalty" and see by how much. Then make it hold still: choose a model, its numbers and
+a step from 0.5 to 20 ms so that in the end nothing overlaps by more than a thousandth of a radius,
+and the overlap of the last quarter varies (std) by less than a hundredth of that. There is more
+than one way. Before you try numbers, estimate: what do 20 N do to a spring, and how light is the
+lightest thing that hangs on it?
 
     python exercises/ex8_two_fingers.py         # add --hint 1 (2, 3) for a question that helps
     python checks.py -k ex8

@@ -14,9 +14,8 @@ Five troubles that you have met, and four knobs. Each knob is turned alone, from
 
 In BETS put for every ? one of: - it becomes less, at most half; + more, at least double; = neither.
 Then a number, on paper. A tower of seven balls stands under lcp; a step has a single sweep, from
-the floor upwards, and an overlap opens by a half of itself. How deep is the lowest ball in the
-floor when all is at rest, in radii r = 0.1 m? Write it as SAG, to three digits, and then look at
-the column rest gap/r of the second command:
+the floor upwards, and opens half of an overlap. How deep is the lowest ball in the floor at rest,
+in radii r = 0.1 m? Write it as SAG, to three digits, then look at gap/r of the second command:
 
     python exercises/ex9_which_knob.py      # add --hint 1 (to 5) for a question that helps
     python contact.py --scene stack --bodies 7 --contact lcp --dt 0.001 --iters 1 --baumgarte 0.5

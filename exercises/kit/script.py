@@ -30,6 +30,8 @@ def main(started):
     sys.excepthook = OTHERWISE
     file = Path(sys.modules[started].__file__)
     name = file.stem.partition("_")[0]  # ex1 of ex1_predict_contact.py
+    if name not in FACTS:
+        sys.exit(f"{file.name}: an exercise's name begins with its number, as in {FILES['ex2']}")
     hints, solution = FACTS[name]["hints"], ROOT / f"exercises/solutions/{name}.py"
     parser = Parser(description=f"Exercise {name}.")
     most = f"print hint N, 1 to {len(hints)}, and do nothing else"
