@@ -32,6 +32,7 @@ FAULTS = [
     (SCRIPT, "^    return", "^  return", T + "all_ten"),
     (SCRIPT, '"Timeout" in begun', '"Timed" in begun', T + "however"),
     (SCRIPT, "(found[0][:1] or found[1][-1:]", "(found[0][:0] or found[1][:0]", T + "however"),
+    (JUDGE, "next(events) > MOST_EVENTS", "next(events) < 0", T + "however"),
     (JUDGE, "resource.setrlimit", "resource.getrlimit and len", T + "however"),
     (JUDGE, "leave(0)  #", "pass  #", T + "however"),
     # what names a slip
