@@ -58,8 +58,8 @@ FAULTS = [
     # the command line
     (C, 'if re.fullmatch("--[a-z]+=--", word)', 'if re.fullmatch("--[a-z]+=---", word)',
      LINE + "bad_input"),
-    (C, 'errors="backslashreplace"', 'errors="strict"', LINE + "cannot_encode"),
+    (C, 'errors="backslashreplace"', 'errors="strict"', LINE + "whatever_is"),
     (C, 'os.write(2, b"stopped\\n")', 'os.write(1, b"stopped\\n")',
-     "test_show.py -k command_imports"),
+     LINE + "command_imports"),
     (C, 'if row["through"]:', "if False:", LINE + "reader_would_ask"),
 ]  # fmt: skip
