@@ -200,11 +200,8 @@ def test_a_changed_region_names_each_passage_that_speaks_of_it_until_it_is_read(
         assert (f"\n  sweep: {sha}\n" in (project / "meta.yaml").read_text("utf-8")) != waits
 
 
-JUMP, DEEP, KEPT = (
-    "fact:jump.before",
-    "quality.penalty.rest_penetration_frac",
-    ".cache/fact-jump.json",
-)
+JUMP, DEEP = "fact:jump.before", "quality.penalty.rest_penetration_frac"
+KEPT = ".cache/fact-jump.json"
 LATER = [  # what is changed, one after the other, and what is quoted then
     (KEPT, '"before": -0.0196', '"before": -0.0296', JUMP, "−0.0296"),  # only who reads it knows
     (KEPT, f'"{np.__version__}"', '"1.0"', JUMP, "−0.0196"),

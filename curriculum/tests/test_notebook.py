@@ -72,12 +72,10 @@ def test_what_the_chapter_shows_of_contact_is_a_cell_and_no_mark_of_the_page_is_
     )
     parts = read((regions.ROOT / CHAPTER).read_text("utf-8"))
     rest = [part.name for part in parts].index(notebook.REST)
-    shown = [part.name.partition("#") for part in parts[:rest] if part.kind == "region"]
-    own = [source.strip() for source in notebook.OWN[2::2]]
-    for piece in own + [
-        known[name].code.strip() for file, _, name in shown if file == "contact.py"
-    ]:
-        assert piece in code
+    shown = [part.name.split("#") for part in parts[:rest] if part.kind == "region"]
+    pieces = [known[name].code for file, name in shown if file == "contact.py"]
+    for piece in [*notebook.OWN[2::2], *pieces]:
+        assert piece.strip() in code
     assert not re.search(r"\{\{|<!--|include-by-region", prose)
     said = r"[Tt]ake it, lift|throw it\.|\b[Dd]rag (it|the (?!ball back))|[Cc]lick"
     assert not re.search(said, prose), "only the page can do that"
