@@ -11,15 +11,15 @@ FAULTS = [
     (E, "NOISE = 1e-12", "NOISE = 1e-8", ANY),
     (E, "NOISE = 1e-12", "NOISE = 1e-17", ANY),
     (E, "still | (self.gap[near] <= 1e-4 * opened)", "still | (self.gap[near] <= 1.0)", BLOCKS),
-    (E, "1e4 * self.small", "0.0", BLOCKS),
-    (E, "np.minimum(4.0 * self.bits, 1e-9 * gap)", "4.0 * self.bits", T + "a_hair_above"),
+    (E, "track=1e4", "track=0.0", BLOCKS),
+    (E, "np.minimum(4.0 * self.bits, 1e-9 * gap)", "4.0 * self.bits", ANY),
     (E, "min((1e-16 / size)", "min((1e-9 / size)", T + "'slides or pyramid'"),
     (E, "step <= 1e-15 * t", "step <= 1e-9 * t", ANY),
     # the pivots
-    (E, "active[s.argmin()] = True", "active[s.argmax()] = True", PIVOT),
-    (E, "if not endless:", "if True:", PIVOT),
-    (E, "lam = np.maximum(trial, 0.0)", "lam = 1.000001 * np.maximum(trial, 0.0)",
-     T + "weight_above"),
+    (E, "closes = ~active & (", "closes = active & (", PIVOT),
+    (E, "active[pulls[share == share.min()]]", "active[pulls[share == share.max()]]", PIVOT),
+    (E, "way if endless else solve", "solve", PIVOT),
+    (E, "lam = np.maximum(trial, 0.0)", "lam = 1.000001 * np.maximum(trial, 0.0)", PIVOT),
     # impacts and what rests
     (E, "target = -self.e * v_n\n", "target = -self.e * np.abs(v_n)\n", ANY),
     (E, "self.slip(touching, self.v) ** 2 / self.reach[touching]", "0.0 * self.reach[touching]",
@@ -30,6 +30,8 @@ FAULTS = [
      T + "overlap_at_the_start"),
     # flights
     (E, "4.0 * max(value, 0.0) * bend", "2.0 * max(value, 0.0) * bend", HEAP),
-    (E, "if state == self.saved and any(", "if state == self.saved or any(", T + "parabolas"),
-    (E, "times % starts[-1]", "times % (starts[-1] * (1.0 + 1e-9))", T + "in_phase"),
+    (E, "min(span, 1e15) **", "min(0.5 * span, 1e15) **", ANY),
+    (E, "np.vander(times, len(Q))", "np.vander(times * (1.0 + 1e-12), len(Q))", T + "parabolas"),
+    # plain and compiled
+    (E, "NOISE = {NOISE!r}", "NOISE = 1e-4", T + "plain_and_compiled"),
 ]  # fmt: skip
