@@ -72,7 +72,7 @@ def test_counts_add_up_and_what_judges_nothing_is_a_violation():
     assert notes == {"met": {"a": {"n": 1}, "b": {"n": 2}}}
 
 
-def test_a_number_that_is_off_is_a_violation_and_a_flight_says_nothing_of_energy():
+def test_a_number_that_is_off_is_a_violation_and_a_flight_says_nothing_of_contacts():
     ball = {"x": [0.0], "y": [9.0], "vx": [0.0], "vy": [0.0], "mass": [1.0], "radius": [0.1]}
     flight = Trial(scenes.numbered_spec(0, small=True) | ball | {"steps": 5})
     found = jobs.properties.judge(flight, *PROPERTIES.values())
