@@ -38,7 +38,7 @@ FAULTS = [
     # what names a slip
     (JUDGE, "agree(got, max(found), 1e-4)", "False", T + "types"),
     (JUDGE, "min(shares) > 0.45", "min(shares) > 1", T + "types"),
-    (JUDGE, 'if name == "longest_step" and', "if False and", T + "types"),
+    (JUDGE, 'if name == "longest_step" and', "if False and", T + "however"),
     (JUDGE, "{known}", "{ask}", T + "slip"),
     (JUDGE, 'if prints[0] else f"', 'if not prints[0] else f"', T + "however"),
 ]  # fmt: skip
