@@ -59,64 +59,59 @@ def stack(tmp_path_factory):
     return recorded(tmp_path_factory.mktemp("stack"), *made), made[1]
 
 
-def test_a_recording_has_every_models_balls_pushes_table_and_curves_one_row_a_step(stack):
-    kinds = "balls", "pushes", "table", "ground"
-    world = {f"/world/{model}/{kind}" for model in contact.MODELS for kind in kinds}
-    drawn = {f"/{curve}/{model}" for curve in CURVES for model in contact.MODELS}
-    assert set(stack[0]) == world | drawn | {"/about", "/__properties", "views"}
-    for entity in world | drawn:
-        if not entity.endswith(("table", "ground")):
-            assert stack[0][entity]["step"] == list(range(STEPS + 1))
-            assert stack[0][entity]["sim_time"] == [4_000_000 * k for k in range(STEPS + 1)]  # ns
-    assert "a title" in stack[0]["/about"]["TextDocument:text"][0][0]
+def expected_of(run, model):
+    """What a recording of the stack must hold of a run: {entity: {column: values}}."""
+    total = (MASS * (0.5 * (run.v**2).sum(1) + 9.81 * run.q[:, 1])).sum(-1)
+    pushed = np.diff(run.v[:, 1], axis=0, prepend=np.nan) / DT + 9.81  # by contacts, upwards [N/kg]
+    pushed[0] = 0.0
+    weights = pushed / 9.81  # at rest it is 1, and the arrow a radius long
+    arrow = RADIUS * np.log2(1.0 + np.abs(weights)) * np.sign(weights)
+    color = int(picture.COLORS[model][1:] + "ff", 16)
+    at = np.stack((run.q[:, 0], -run.q[:, 1]), -1).astype(np.float32)  # y is down in 2-D views
+    curves = {
+        "height": run.q[:, 1].mean(-1),
+        "gap": contact.smallest_gap(run.q, RADIUS) / RADIUS.min(),
+        "force": (MASS * pushed).sum(1),  # pushes between balls cancel: the floor's
+        "energy": total - total[0],
+        "rises": np.cumsum([0.0, *np.maximum(0.0, np.diff(total))]),
+    }
+    look = {"Points2D:radii": [RADIUS.astype(np.float32)], "Points2D:colors": [[color] * 3]}
+    pushes = {"Arrows2D:origins": at, "Arrows2D:vectors": np.stack((0.0 * arrow, -arrow), -1)}
+    peaks = pytest.importorskip("rerun").components.AggregationPolicy.MinMax.value
+    line = {"SeriesLines:colors": [[color]], "SeriesLines:aggregation_policy": [[peaks]]}
+    return {
+        f"/world/{model}/balls": {"Points2D:positions": at, **look},
+        f"/world/{model}/pushes": pushes,
+        **{
+            f"/{curve}/{model}": {"Scalars:scalars": y[:, None], **line}
+            for curve, y in curves.items()
+        },
+    }
 
 
-def test_balls_are_where_the_run_had_them_up_is_up_and_an_arrow_is_a_radius_long_at_rest(stack):
-    """rerun's 2-D views have y down, so a height y above the table is logged as -y."""
+def test_a_recording_has_every_models_balls_pushes_and_curves_a_row_a_step(stack):
     recording, runs = stack
+    tables = {f"/world/{model}/{kind}" for model in runs for kind in ("table", "ground")}
+    found = tables | {"/about", "/__properties", "views"}
     for model, run in runs.items():
-        balls, pushes, below, above = (
-            recording[f"/world/{model}/{kind}"] for kind in ("balls", "pushes", "ground", "table")
-        )
-        shown = np.array(balls["Points2D:positions"])
-        assert np.array_equal(shown, (run.q * [[1], [-1]]).swapaxes(1, 2).astype(np.float32))
-        assert np.allclose(balls["Points2D:radii"], RADIUS)
-        orders = [each[name] for each in (below, balls, above) for name in each if "order" in name]
-        assert orders == sorted(orders) and len(set(map(str, orders))) == 3
-        assert (np.array(below["LineStrips2D:strips"])[..., 1] > 0.0).all(), "under the balls"
-        vectors = -np.array(pushes["Arrows2D:vectors"])[..., 1]
-        assert np.array_equal(np.array(pushes["Arrows2D:origins"]), shown)
-        weights = np.diff(run.v[:, 1], axis=0) / DT / 9.81 + 1.0  # a push, in weights of its ball
-        length = RADIUS * np.log2(1.0 + np.abs(weights)) * np.sign(weights)
-        assert np.abs(vectors[1:] - length).max() < 1e-5
-        if model != "penalty":  # which still moves
-            assert np.abs(vectors[-1] - RADIUS).max() < 0.02
+        for entity, columns in expected_of(run, model).items():
+            found.add(entity)
+            assert recording[entity]["step"] == list(range(STEPS + 1))
+            assert recording[entity]["sim_time"] == [4_000_000 * k for k in range(STEPS + 1)]  # ns
+            for name, values in columns.items():
+                bound = {"Scalars:scalars": 1e-9, "Arrows2D:vectors": 1e-5}.get(name, 0.0)
+                close = np.allclose(recording[entity][name], values, rtol=bound, atol=bound)
+                assert close, (entity, name)
+        assert recording[f"/height/{model}"]["SeriesLines:names"] == [[model]]
+    assert set(recording) == found and runs.keys() == contact.MODELS.keys()
+    assert "a title" in recording["/about"]["TextDocument:text"][0][0]
 
 
-def test_curves_are_the_runs_own_numbers_in_the_models_colour_with_their_peaks(stack):
-    recording, runs = stack
-    policy = pytest.importorskip("rerun").components.AggregationPolicy.MinMax.value
-    for model, run in runs.items():
-        total = (MASS * (0.5 * (run.v**2).sum(1) + 9.81 * run.q[:, 1])).sum(-1)
-        gained = MASS * (np.diff(run.v[:, 1], axis=0) + 9.81 * DT)  # by contacts, upwards [N s]
-        expected = {
-            "height": run.q[:, 1].mean(-1),
-            "gap": contact.smallest_gap(run.q, RADIUS) / RADIUS.min(),
-            "force": np.append(0.0, gained.sum(1)) / DT,  # pushes between balls cancel: the floor's
-            "energy": total - total[0],
-            "rises": np.cumsum([0.0, *np.maximum(0.0, np.diff(total))]),
-        }
-        rgba = int(picture.COLORS[model][1:] + "ff", 16)
-        assert set(recording[f"/world/{model}/balls"]["Points2D:colors"][0]) == {rgba}
-        for curve, values in expected.items():
-            found = recording[f"/{curve}/{model}"]
-            logged = np.array(found["Scalars:scalars"])[:, 0]
-            assert logged == pytest.approx(values, rel=1e-9, abs=1e-9), f"{curve} of {model}"
-            assert (found["SeriesLines:colors"], found["SeriesLines:names"]) == (
-                [[rgba]],
-                [[model]],
-            )
-            assert found["SeriesLines:aggregation_policy"] == [[policy]], "an average hides peaks"
+def test_the_table_is_a_line_over_the_balls_and_a_body_under_them(stack):
+    parts = [stack[0][f"/world/lcp/{kind}"] for kind in ("ground", "balls", "table")]
+    orders = [part[name] for part in parts for name in part if "order" in name]
+    assert orders == sorted(orders) and len(set(map(str, orders))) == 3
+    assert (np.array(parts[0]["LineStrips2D:strips"])[..., 1] > 0.0).all()  # below it
 
 
 def test_the_views_show_balls_the_table_magnified_and_five_plots(stack):
