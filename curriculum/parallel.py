@@ -162,7 +162,8 @@ def on_machines(scheduler: str, function, numbered) -> Iterator[tuple]:
         try:
             return pickle.loads(data)(job)
         except ImportError as error:
-            raise ImportError(f"{platform.node()}, process {os.getpid()}: {error}") from None
+            lacks = "; its PYTHONPATH must have the folder of contact.py" * bool(error.name)
+            raise ImportError(f"{platform.node()}, process {os.getpid()}: {error}{lacks}") from None
 
     with client:
         try:

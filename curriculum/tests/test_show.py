@@ -243,13 +243,20 @@ def test_a_cluster_without_workers_or_with_other_code_is_one_line_and_what_is_do
         assert "has no workers; start some: dask worker" in one_line(capsys, *words)
         start = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard"]
         start += [none.scheduler_address, "--no-nanny", "--nthreads", "1"]
-        worker = subprocess.Popen(start, cwd=tmp_path / "other", stderr=subprocess.DEVNULL)
-        try:
-            distributed.Client(none).wait_for_workers(1)
-            err = one_line(capsys, *words)
-        finally:
-            worker.kill(), worker.wait()
-    assert f"process {worker.pid}: another curriculum/fast.py is there; give all" in err
+        why = {
+            ".": "its PYTHONPATH must have the fold",
+            "other": "another curriculum/fast.py is there",
+        }
+        for folder, text in why.items():
+            worker = subprocess.Popen(start, cwd=tmp_path / folder, stderr=subprocess.DEVNULL)
+            try:
+                distributed.Client(none).wait_for_workers(1)
+                err = one_line(capsys, *words)
+            finally:
+                worker.kill(), worker.wait()
+            assert f", process {worker.pid}: " in err and text in err
+            while none.scheduler.workers:
+                time.sleep(0.01)
     kept = (tmp_path / "seeds.csv").read_text("utf-8")
     assert kept.startswith("made by,") and kept.count("\n") == 1, "no row of other code"
 
