@@ -19,7 +19,8 @@ import contact
 from curriculum.gate.chapter import CHAPTER, read
 from curriculum.page import fonts
 
-UNIT = re.compile(r"(\d|^) (?=(?:r|s|m|mm|kg|J|N|N/m|m/s)\b)")  # the blank between number and unit
+# the blanks within a number and between it and its unit
+UNIT = re.compile(r"(?:(?<=[\d⁰¹²³⁴-⁹])|^) (?=(?:r|s|m|mm|kg|J|N|N/m|m/s)\b)| (?=×)|(?<=×) ")
 
 
 # ---- Markdown
@@ -39,7 +40,7 @@ def formula(text, options):
 
 def text(self, tokens, index, options, env):
     """Plain words; no line ends between a number and its unit, and v_n is set as a formula."""
-    words = UNIT.sub("\\1\u00a0", escape(tokens[index].content))
+    words = UNIT.sub("\u00a0", escape(tokens[index].content))
     return words.replace("v_n", "<i>v<sub>n</sub></i>")
 
 

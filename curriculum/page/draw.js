@@ -10,7 +10,6 @@ const px = (value) => Math.round(value * 100) / 100;
 // ---- numbers
 
 const RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
-export const whole = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, ",");
 export const tenTo = (exponent) =>
   `10${String(exponent).replace(/./g, (c) => RAISED["-0123456789".indexOf(c)])}`;
 
@@ -25,7 +24,7 @@ export function number(value, digits = 3) {
     return `${mantissa} × ${tenTo(Number(exponent))}`.replace("-", "−");
   }
   const long = size >= 10 ** (digits - 1);
-  return (value < 0 ? "−" : "") + (long ? whole(Math.round(size)) : size.toPrecision(digits));
+  return (value < 0 ? "−" : "") + (long ? Math.round(size).toLocaleString("en") : size.toPrecision(digits));
 }
 
 // A plain decimal: the shortest that reads back as the same number.

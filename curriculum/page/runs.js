@@ -21,7 +21,7 @@ export function column(heights, more = {}) {
 }
 
 // step(balls) of a model with these knobs, as contact.step_of has it.
-export function stepOf(model, knobs) {
+function stepOf(model, knobs) {
   const { dt, restitution = 0, stiffness, damping } = knobs;
   if (model === "implicit") {
     const softness = 1 / (stiffness * dt * dt + damping * dt);
@@ -44,8 +44,8 @@ function blank(n, dt, steps) {
 // One zero and one NaN, as contact.py writes them.
 const write = (run, row, balls) =>
   balls.forEach((ball, i) => {
-    for (const key of PARTS) run[key][row * run.n + i] = ball[key] === ball[key] ? ball[key] + 0
-      : NaN;
+    for (const key of PARTS)
+      run[key][row * run.n + i] = Number.isNaN(ball[key]) ? NaN : ball[key] + 0;
   });
 
 // The recording of a model; before each step push(balls) may set forces.
@@ -84,20 +84,17 @@ function recordExact(run, balls, restitution) {
 
 // ---- what is read of a run
 
-// The smallest gap [r] in a row, to the table or between two balls.
-export function gapIn({ n, x, y }, row, radius = R) {
-  let least = Infinity;
-  for (let i = row * n; i < (row + 1) * n; i++) {
-    least = Math.min(least, y[i] - radius);
-    for (let j = i + 1; j < (row + 1) * n; j++) {
-      const [dx, dy] = [x[i] - x[j], y[i] - y[j]];
-      least = Math.min(least, Math.sqrt(dx * dx + dy * dy) - 2 * radius);
+// The smallest gap [r] of every row, to the table or between two balls.
+export const gapsOf = ({ n, x, y, t }) =>
+  Array.from(t, (_, row) => {
+    let least = Infinity;
+    for (let i = row * n; i < (row + 1) * n; i++) {
+      least = Math.min(least, y[i] - R);
+      for (let j = i + 1; j < (row + 1) * n; j++)
+        least = Math.min(least, Math.sqrt((x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2) - 2 * R);
     }
-  }
-  return least / radius;
-}
-
-export const gapsOf = (run) => Array.from(run.t, (_, row) => gapIn(run, row));
+    return least / R;
+  });
 
 // The push of the table [m g] on balls of 1 kg, in the step that ends in a row: what changed their
 // momentum and was not gravity.
@@ -107,19 +104,11 @@ export function pushIn({ n, dt, vy }, row) {
   return Math.abs(sum) < 1e-9 * G ? 0 : sum / n / G;
 }
 
-// The most energy above the start, in starts, of balls of 1 kg; NaN counts as without end.
-export function gainOf({ n, y, vx, vy, steps }) {
-  const energy = (row) => {
-    let sum = 0;
-    for (let i = row * n; i < (row + 1) * n; i++) sum += 0.5 * (vx[i] ** 2 + vy[i] ** 2) + G * y[i];
-    return sum;
-  };
-  let [start, most] = [energy(0), 0];
-  for (let row = 1; row <= steps; row++) {
-    const gained = energy(row) / start - 1;
-    if (!(gained <= most)) most = gained === gained ? gained : Infinity;
-  }
-  return most;
+// The most energy above the start, in starts, of a falling ball; NaN counts as without end.
+export function gainOf({ y, vy }) {
+  const energy = (row) => 0.5 * vy[row] ** 2 + G * y[row];
+  const most = vy.reduce((high, _, row) => (energy(row) <= high ? high : energy(row)), 0);
+  return Number.isNaN(most) ? Infinity : most / energy(0) - 1;
 }
 
 // A function that keeps its last results, by its arguments.

@@ -7,7 +7,8 @@
  *   start(given)    its own state, {name: number or text}; the slot in the text may set it
  *   draw(view)      {picture, words, values}: svg, one sentence, and the numbers that are drawn
  *   clock(view)     {end, rate}: own.time runs from 0 to `end`, `rate` s in a second
- *   buttons(view)   [[label, act, pressed]]
+ *   play(own)       what the button says that lets it run
+ *   buttons(view)   others, [[label, act, pressed]]
  *
  * The view has own, width, height, set(changes), and grab(what, shape): a shape around which one
  * can put a hand, where `what` is {label, value, low, high, step, at(x, y), also, release}. A
@@ -33,10 +34,9 @@ export const QUANTITIES = {
 const PLACES = 200; // of a slider whose steps are shares
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const LEAST = 358; // px: on a screen smaller than a phone's it is drawn so, and made smaller
-const WIDTH = 640; // px, of a still
 
 // The view of a figure that nobody touches; its state is its own with what the text sets.
-export function viewOf(figure, given, width = WIDTH) {
+export function viewOf(figure, given, width = 640) {
   const own = { ...data.defaults, time: 0, ...figure.start?.(given), ...given };
   return {
     own, text: { ...own }, width, running: false,
@@ -60,13 +60,12 @@ export const worded = (words) =>
 
 export const toSlider = ({ low, high, log }, value) =>
   (log ? Math.round((PLACES * Math.log(value / low)) / Math.log(high / low)) : value);
-const fromSlider = ({ low, high, log }, at) =>
-  (log ? Number((low * (high / low) ** (at / PLACES)).toPrecision(3)) : at);
 
 // Where the text's own value lies the slider takes it, to the last digit.
-export function fromPlace(name, text, at) {
-  const quantity = QUANTITIES[name];
-  return text === undefined || toSlider(quantity, text) !== at ? fromSlider(quantity, at) : text;
+export function fromPlace(quantity, text, at) {
+  const { low, high, log } = quantity;
+  if (text !== undefined && toSlider(quantity, text) === at) return text;
+  return log ? Number((low * (high / low) ** (at / PLACES)).toPrecision(3)) : at;
 }
 
 function slider(view, name) {
@@ -74,7 +73,7 @@ function slider(view, name) {
   const { low, high, step } = quantity.log ? { low: 0, high: PLACES, step: 1 } : quantity;
   const value = view.own[name];
   const put = ({ target }) =>
-    view.set({ [name]: fromPlace(name, view.text[name], Number(target.value)) });
+    view.set({ [name]: fromPlace(quantity, view.text[name], Number(target.value)) });
   const told = `${Number(value.toPrecision(4)).toLocaleString("en")} ${quantity.unit}`;
   return html`<label class="knob"><span>${quantity.label}</span><input type="range" min=${low}
     max=${high} step=${step} .value=${String(toSlider(quantity, value))} aria-valuetext=${told}
@@ -185,14 +184,16 @@ export function stage(box, figure, given, still) {
       return html`<button type="button" aria-pressed=${pressed ?? nothing} @click=${press}
         >${text}</button>`;
     };
-    const buttons = figure.buttons?.(view).map(button);
+    const play = figure.play && (view.running ? ["Stop", view.stop]
+      : [figure.play(view.own), () => view.play()]);
+    const buttons = [...(play ? [play] : []), ...(figure.buttons?.(view) ?? [])].map(button);
     render(html`<svg class="plot" viewBox="0 0 ${view.width} ${view.height}" role="group"
       aria-label=${figure.title}>${picture}</svg>
       <figcaption>${worded(figure.caption)}</figcaption><p class="words">${worded(words)}</p>
       <button type="button" class="back" title="As in the text" aria-label="As in the text"
       ?disabled=${same()} @click=${back}>↺</button>
       <div class="controls">${knobsOf(figure, view.own).map((name) => slider(view, name))}
-      ${buttons && html`<div class="buttons">${buttons}</div>`}</div>`, box);
+      <div class="buttons">${buttons}</div></div>`, box);
     for (const handle of box.querySelectorAll(".handle"))
       handle.setAttribute("aria-valuetext", words);
   }

@@ -32,7 +32,7 @@ function still([name, given]) {
       caption: textOf(worded(figure.caption)),
       heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
       knobs: knobsOf(figure, view.own).length,
-      buttons: figure.buttons ? 1 : 0,
+      buttons: figure.buttons || figure.play ? 1 : 0,
     };
   } catch (error) {
     throw new Error(`the figure ${name}: ${error.message}`);

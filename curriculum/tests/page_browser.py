@@ -123,11 +123,11 @@ HITS = f"""(async () => {{
   return wrong;
 }})()"""
 FIGURES = "() => [...document.querySelectorAll('.fig')].map(({ id }) => id)"
-# the middle of a figure's last handle that can be grabbed there, once it is in sight
-MIDDLE = f"""async (id) => {{
-  const [see, fig] = [{SEE}, document.getElementById(id)];
-  await see(id);
-  const all = [...fig.querySelectorAll(".handle")].reverse().map((handle) => {{
+# the middle of a figure's last handle that can be grabbed there, or first, once it is in sight
+MIDDLE = f"""async (id, first) => {{
+  const fig = await ({SEE})(id);
+  const handles = [...fig.querySelectorAll(".handle")];
+  const all = (first ? handles : handles.reverse()).map((handle) => {{
     const part = handle.querySelector(".knob-dot, circle");
     const {{ x, y, width, height }} = part.getBoundingClientRect();
     const middle = [x + width / 2, y + height / 2];

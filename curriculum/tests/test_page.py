@@ -110,23 +110,16 @@ def test_whatever_a_hand_presses_and_moves_changes_the_words_of_its_figure(where
 def test_a_ball_stays_under_the_mouse_and_the_page_under_a_finger(tab, phone):
     page_browser.resize(tab, 1280)
     grip = tab.locator("#fig-signs .handle").first
-    x, y = call(tab, MIDDLE_OF_FIRST, "fig-signs")
+    x, y = call(tab, page_browser.MIDDLE, "fig-signs", True)
     for _ in drag(tab, x, y, ((-40, 30),)):
         call(tab, WORDS, "fig-signs")
         box = grip.locator("circle").first.bounding_box()
         place = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
         assert place == pytest.approx((x - 40, y + 30), abs=2)
-    place = call(phone, MIDDLE_OF_FIRST, "fig-signs")
+    place = call(phone, page_browser.MIDDLE, "fig-signs", True)
     before = phone.evaluate("scrollY")
     for _ in drag(phone, *place, ((10, 20), (20, 60), (30, 90)), touch=True):
         assert phone.evaluate("scrollY") == before
-
-
-MIDDLE_OF_FIRST = f"""async (id) => {{
-  const fig = await ({SEE})(id);
-  const {{ x, y, width, height }} = fig.querySelector(".handle circle").getBoundingClientRect();
-  return [x + width / 2, y + height / 2];
-}}"""
 
 
 def test_keys_move_a_handle_and_a_slider_and_a_button_takes_both_back_to_the_text(visit):

@@ -60,8 +60,9 @@ def test_no_hand_and_no_knob_loses_a_handle_or_a_number_and_every_handle_says_wh
 
 
 def test_a_slider_takes_the_value_of_the_text_where_that_lies(v8):
-    assert v8("MADE.fromPlace('dt', 0.03, MADE.toSlider(MADE.QUANTITIES.dt, 0.03))") == 0.03
-    assert v8("MADE.fromPlace('dt', 0.03, MADE.toSlider(MADE.QUANTITIES.dt, 0.03) + 1)") != 0.03
+    for off in (0, 1):
+        place = f"MADE.toSlider(MADE.QUANTITIES.dt, 0.03) + {off}"
+        assert (v8(f"MADE.fromPlace(MADE.QUANTITIES.dt, 0.03, {place})") == 0.03) == (off == 0)
 
 
 # ---- what is drawn is what contact.py computes

@@ -118,8 +118,7 @@ export const figures = {
     caption: "A ramp beside the wall: the ball must get in before the table pushes.",
     hand: -0.5, knobs: ["stiffness"],
     clock: () => ({ end: SECONDS, rate: 0.25 }),
-    buttons: (view) =>
-      [view.running ? ["Stop", view.stop] : ["Let go", () => view.play(view.own.time)]],
+    play: () => "Let go",
   }),
   "corner-soft": corner("soft", rounded, {
     title: "soft rounds the corner off",

@@ -135,15 +135,15 @@ export const figure = {
     impedance: null, ...data.scenes[scene].own,
   }),
   clock: (view) => ({ end: lengthOf(view), rate: 1 / view.own.slower }),
+  play: () => "Let them fall",
   buttons: (view) => {
     const { own } = view;
     const step = () => {
       view.stop();
       own.time = Math.min(lengthOf(view), own.time + own.dt);
     };
-    const fall = view.running ? ["Stop", view.stop] : ["Let them fall", () => view.play()];
-    const pace = [`${own.slower} × slower`, () => (own.slower = PACE[own.slower])];
-    return [fall, ["One step", step], pace];
+    return [["One step", step],
+      [`${own.slower} × slower`, () => (own.slower = PACE[own.slower])]];
   },
   draw,
 };

@@ -13,42 +13,33 @@ const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be chosen
 const SEEN = 0.32; // m: who is further away has flown apart
 const FATES = ["holds still", "trembles", "flies apart"];
 
-function squeeze(dt, stiffness, late, x, seconds) {
-  const balls = column([R, R, R], { x, mass: MASS });
-  const knobs = { dt, stiffness, damping: DAMPING };
+// The run, how deep finger and cup are in one another, row by row [r], what happens in the end, and
+// `last`, the row up to which all can be seen.
+const squeezed = kept((dt, stiffness, late, seconds = SECONDS) => {
+  const balls = column([R, R, R], { x: AT, mass: MASS });
   const push = () => balls.forEach((ball, i) => (ball.fx = MOTOR[i]));
-  const steps = Math.ceil(seconds / dt - 1e-9);
-  return record(late ? "implicit" : "penalty", balls, knobs, steps, push);
-}
-
-// How deep finger and cup are in one another, row by row [r], what happens in the end, and `last`,
-// the row up to which all can be seen.
-function judged({ n, x, y, steps }) {
+  const [knobs, count] = [{ dt, stiffness, damping: DAMPING }, Math.ceil(seconds / dt - 1e-9)];
+  const run = record(late ? "implicit" : "penalty", balls, knobs, count, push);
+  const { n, x, y, steps } = run;
   const depths = Array.from({ length: steps + 1 }, (_, row) => {
     const [dx, dy] = [x[n * row + 1] - x[n * row], y[n * row + 1] - y[n * row]];
     return 2 - Math.sqrt(dx * dx + dy * dy) / R;
   });
-  const late = depths.slice(Math.floor(LATE * (steps + 1)));
-  const [most, least] = [Math.max(...late), Math.min(...late)];
+  const end = depths.slice(Math.floor(LATE * (steps + 1)));
+  const [most, least] = [Math.max(...end), Math.min(...end)];
   const gone = x.findIndex((each, k) => !(Math.abs(each) < SEEN && y[k] < SEEN));
   const fate = gone >= 0 ? 2 : most - least < 1e-5 ? 0 : 1;
   const last = gone < 0 ? steps : Math.floor(gone / n);
-  return { depths, deepest: most, trembling: most - least, fate, last };
-}
-
-const squeezed = kept((dt, k, late, ...x) => {
-  const run = squeeze(dt, k, late, x, SECONDS);
-  return { run, ...judged(run) };
+  return { run, depths, deepest: most, trembling: most - least, fate, last };
 });
 
-// What becomes of it over the field, a fate a cell.
+// What becomes of it over the field, a fate a cell; `share` of the way between two ends.
 const [COLUMNS, ROWS] = [18, 11];
 const share = ([low, high], at) => low * (high / low) ** at;
 const field = kept((late) =>
   Array.from({ length: COLUMNS * ROWS }, (_, cell) => {
-    const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)];
-    const dt = share(DT, (i + 0.5) / COLUMNS);
-    return judged(squeeze(dt, share(K, (j + 0.5) / ROWS), late, AT, 0.6)).fate;
+    const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)].map((k) => k + 0.5);
+    return squeezed(share(DT, i / COLUMNS), share(K, j / ROWS), late, 0.6).fate;
   }));
 
 // Fingers and cup over the table, and where the left one touches it.
@@ -96,7 +87,7 @@ function choices(view, top) {
     const [y0, y1] = [j + 1, j].map((k) => sy(share(K, k / ROWS)));
     return each ? rect(x0, y0, x1 - x0, y1 - y0, `fate-${each}`) : "";
   });
-  const limit = Array.from({ length: 40 }, (_, k) => share(K, k / 39))
+  const limit = Array.from({ length: 40 }, (_, at) => share(K, at / 39))
     .map((k) => [critical_dt(MASS[0], k, DAMPING), k])
     .filter(([dt]) => dt > DT[0] && dt < DT[1]).map(([dt, k]) => [sx(dt), sy(k)]);
   const what = {
@@ -114,12 +105,9 @@ function choices(view, top) {
   ];
 }
 
-const runOf = ({ own }) =>
-  squeezed(own.dt, own.stiffness, own.late, own.x0, own.x1, own.x2);
-
 function draw(view) {
   const { own, width } = view;
-  const run = runOf(view);
+  const run = squeezed(own.dt, own.stiffness, own.late);
   const { fate, deepest, trembling } = run;
   const begins = own.map && (own.time > 0 || fate === 2) ? 0 : LATE; // s
   const row = Math.min(run.last, Math.floor((begins + own.time) / own.dt));
@@ -144,22 +132,19 @@ function draw(view) {
   };
 }
 
-const toEnd = (view) => Math.min(SECONDS, runOf(view).last * view.own.dt);
-
 export const figure = {
   title: "A gripper that trembles",
   caption: "Two fingers squeeze a cup, in slow motion; the lens shows where the left touches it.",
   height: (width, { map } = {}) => (width < 480 ? 352 : 290) + (map ? 260 : 0),
-  start: () => ({ dt: 0.004, map: 0, late: 0, x0: AT[0], x1: AT[1], x2: AT[2] }),
-  clock: (view) =>
-    (view.own.map ? { end: toEnd(view), rate: 0.1 }
-      : { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true }),
-  buttons: (view) => {
-    const { own } = view;
-    const play = [own.map ? "Squeeze" : "Play", () => view.play()];
+  start: () => ({ dt: 0.004, map: 0, late: 0 }),
+  clock({ own: { dt, stiffness, late, map } }) {
+    if (!map) return { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true };
+    return { end: Math.min(SECONDS, squeezed(dt, stiffness, late).last * dt), rate: 0.1 };
+  },
+  play: ({ map }) => (map ? "Squeeze" : "Play"),
+  buttons: ({ own }) => {
     const change = () => Object.assign(own, { late: 1 - own.late, time: 0 });
-    const late = ["Force from the end of the step", change, String(Boolean(own.late))];
-    return [view.running ? ["Stop", view.stop] : play, ...(own.map ? [late] : [])];
+    return own.map ? [["Force from the end of the step", change, String(Boolean(own.late))]] : [];
   },
   draw,
 };

@@ -49,7 +49,7 @@ function draw(view) {
       depths.map((deep, i) =>
         rect(sx(0), at(i) - 0.6 * r, sx(Math.max(0, deep)) - sx(0), 0.8 * r, "bar-fill m-lcp")),
       law ? [path(law.map((deep, i) => [sx(deep), at(i) - 0.2 * r]), "law-line"),
-        label("the law", sx(law[1]) + 14, at(1) - 0.2 * r + 2)] : "",
+        label("the law", Math.min(sx(law[1]) + 14, width - 54), at(1) - 0.2 * r + 2)] : "",
       picture, line(sx(0), box.top, sx(0), box.bottom, "rule"),
     ],
     words: `The lowest of ${balls} balls is ${number(depths[0], 2)} r deep` +

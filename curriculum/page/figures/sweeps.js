@@ -63,11 +63,8 @@ export const figure = {
   height: () => 270,
   start: () => ({ time: COUNT, top: 0 }),
   clock: () => ({ end: LAST, rate: 2 }),
-  buttons: (view) => {
-    const { own } = view;
-    const next = () => (own.time = (Math.floor(own.time) + 1) % (LAST + 1));
-    return [view.running ? ["Stop", view.stop] : ["Play", () => view.play()],
-      ["One contact on", next]];
-  },
+  play: () => "Play",
+  buttons: ({ own }) =>
+    [["One contact on", () => (own.time = (Math.floor(own.time) + 1) % (LAST + 1))]],
   draw,
 };
