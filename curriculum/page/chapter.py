@@ -39,9 +39,9 @@ def formula(text, options):
 
 
 def text(self, tokens, index, options, env):
-    """Plain words; no line ends between a number and its unit, and v_n is set as a formula."""
+    """Plain words; no line ends between a number and its unit, and v_n is a formula, and a_n."""
     words = UNIT.sub("\u00a0", escape(tokens[index].content))
-    return words.replace("v_n", "<i>v<sub>n</sub></i>")
+    return re.sub(r"\b([av])_n\b", r"<i>\1<sub>n</sub></i>", words)
 
 
 def code_inline(self, tokens, index, options, env):
