@@ -14,27 +14,24 @@ function stored(act) {
 export function startBet(box) {
   const [answer, why] = [box.querySelector(".answer"), box.querySelector("textarea")];
   const choices = [...box.querySelectorAll("[data-choice]")];
-  let bet = stored((held) => JSON.parse(held.getItem(KEY + box.id))) ?? {};
-  const keep = (changes) => {
+  let bet = {};
+  function take(changes) {
     bet = { ...bet, ...changes };
     stored((held) => held.setItem(KEY + box.id, JSON.stringify(bet)));
-  };
-  function show() {
-    for (const each of choices) each.setAttribute("aria-pressed",
-      String(each.dataset.choice === bet.choice));
+    if (!bet.choice) return;
+    for (const each of choices)
+      each.setAttribute("aria-pressed", String(each.dataset.choice === bet.choice));
     const right = bet.choice === answer.dataset.right;
-    box.querySelector(".verdict").textContent = right ? "You bet on it, and it is so."
-      : "It comes out otherwise.";
+    box.querySelector(".verdict").textContent =
+      right ? "You bet on it, and it is so." : "It comes out otherwise.";
+    answer.open = true;
   }
-  if (bet.choice) show();
-  answer.open = Boolean(bet.choice);
+  take(stored((held) => JSON.parse(held.getItem(KEY + box.id))));
   why.value = bet.why ?? "";
-  why.addEventListener("input", () => keep({ why: why.value }));
+  why.addEventListener("input", () => take({ why: why.value }));
   for (const each of choices)
     each.addEventListener("click", () => {
-      keep({ choice: each.dataset.choice });
-      show();
-      answer.open = true;
+      take({ choice: each.dataset.choice });
       answer.querySelector("summary").focus({ preventScroll: true });
     });
 }
