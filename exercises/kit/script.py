@@ -14,8 +14,8 @@ from curriculum.commands import Parser, command, near, quoted
 from . import FACTS, ROOT
 
 ORDER = ("ex1", "ex3", "ex6", "ex2", "ex5", "ex9", "ex10", "ex7", "ex8", "ex4")  # the chapter's
-FOUND = sorted(name for name in os.listdir(ROOT / "exercises") if name.endswith(".py"))
-FOUND = {name.partition("_")[0]: f"exercises/{name}" for name in FOUND}
+NAMES = sorted(name for name in os.listdir(ROOT / "exercises") if name.endswith(".py"))
+FOUND = {name.partition("_")[0]: f"exercises/{name}" for name in NAMES}
 FILES = {name: FOUND[name] for name in ORDER if name in FOUND}
 STATES = "right", "wrong", "blank"  # in this order they are exit statuses
 LIMIT = 15  # s, chosen: right answers take about one
