@@ -47,9 +47,8 @@ def with_target(course, target):
 
 
 def test_a_sixth_model_is_run_recorded_drawn_compiled_and_on_the_page(course):
-    pytest.importorskip("rerun", reason="rerun-sdk is not installed")
-    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
-    pytest.importorskip("numba", reason="numba is not installed")
+    for package in ("rerun", "matplotlib", "numba", "py_mini_racer"):
+        pytest.importorskip(package, reason=f"{package} is not installed")
     with_target(course, "c.depth / dt")
     out = course / "out"
     done = python("contact.py", "--smoke", "--scene", "stack", "--plot", "--out", out, cwd=course)
@@ -65,7 +64,6 @@ def test_a_sixth_model_is_run_recorded_drawn_compiled_and_on_the_page(course):
         "print(plain.q.tobytes() == twin.q.tobytes(), plain.v.tobytes() == twin.v.tobytes())"
     )
     assert python("-c", same, cwd=course, PYTHONPATH="").stdout == "True True\n"
-    pytest.importorskip("py_mini_racer", reason="mini-racer is not installed")
     engine = "from curriculum.page.bundle import contact_js; print('sixth_step' in contact_js())"
     assert python("-c", engine, cwd=course, PYTHONPATH="").stdout == "True\n"
     words = "-m curriculum.seeds 0:3 --contact sixth --steps 50 --out".split()
@@ -75,10 +73,8 @@ def test_a_sixth_model_is_run_recorded_drawn_compiled_and_on_the_page(course):
 def test_a_step_that_no_loop_can_say_runs_plain_and_says_so(course):
     pytest.importorskip("numba", reason="numba is not installed")
     with_target(course, "max(0.0, *[c.depth / dt])")
-    words = (
-        "contact.py --scene pile --bodies 60 --steps 290 --contact sixth --no-rerun --out".split()
-    )
-    done = python(*words, course / "plain", cwd=course)
+    words = "--scene pile --bodies 60 --steps 290 --contact sixth --no-rerun --out".split()
+    done = python("contact.py", *words, course / "plain", cwd=course)
     assert done.returncode == 0 and "sixth" in done.stdout
     assert done.stderr.startswith("sixth runs in plain loops: contact.py:")
     assert "*[c.depth / dt]: no loop can say it; write loops" in done.stderr
