@@ -74,7 +74,7 @@ function slider(view, name) {
   const value = view.own[name];
   const put = ({ target }) =>
     view.set({ [name]: fromPlace(quantity, view.text[name], Number(target.value)) });
-  const told = `${Number(value.toPrecision(4)).toLocaleString("en")} ${quantity.unit}`;
+  const told = `${value.toLocaleString("en", { maximumSignificantDigits: 4 })} ${quantity.unit}`;
   return html`<label class="knob"><span>${quantity.label}</span><input type="range" min=${low}
     max=${high} step=${step} .value=${String(toSlider(quantity, value))} aria-valuetext=${told}
     @input=${put}><output>${told}</output></label>`;
@@ -107,6 +107,7 @@ function grabbing(view, box) {
       const place = [at(...from(event))].flat();
       held = { pointer: event.pointerId, off: place.map((v, k) => now()[k] - v) };
       view.stop();
+      view.held = true;
     };
     const drag = (event) => {
       if (held?.pointer !== event.pointerId) return;
@@ -115,6 +116,7 @@ function grabbing(view, box) {
     const letGo = (event) => {
       if (held?.pointer !== event.pointerId) return;
       held = null;
+      view.held = false;
       release?.();
     };
     const key = (event) => {

@@ -1,5 +1,5 @@
 /* The models side by side over one table, and below it their gaps over time. It is still until it
- * is pressed; its scale never changes. Values: the time shown [s], the models' rows and gaps [r]
+ * is pressed; its scale stays while a hand holds a ball. Values: the time shown [s], the models' rows and gaps [r]
  * then, and the highest place in the picture [m]. */
 import { arrow, axis, ball, circle, label, line, number, plot, steps, table } from "../draw.js";
 import { within } from "../draw.js";
@@ -105,7 +105,9 @@ function draw(view) {
     ...heightsIn(each, Math.round(from / own.dt)),
     ...heightsIn(each, 0).map((y) => (from > 0 ? Math.min(y, 0.45) : y)),
   ]));
-  const top = within(0.45, reach + 1.2 * R, HIGHEST + R);
+  if (!view.held || view.shownFrom !== from) // in a hand the scale stays, so that balls follow it
+    [view.top, view.shownFrom] = [within(0.45, reach + 1.2 * R, HIGHEST + R), from];
+  const { top } = view;
   const scale = Math.min((floor - 6) / top, (0.42 * wide) / R); // px for 1 m
   const told = all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row])}`);
   return {
