@@ -47,7 +47,7 @@ function draw(view) {
   const rests = far <= NONE;
   const gains = gained > 1e-9 ? `gains ${number(gained, 4)} times its energy` : "gains no energy";
   const deep = `it comes to rest ${number(G / stiffness / R, 2)} r deep`;
-  const ends = explodes ? "it explodes" : rests ? deep : "it never rests";
+  const ends = explodes ? "it explodes" : rests ? deep : "it still moves at the end";
   return {
     picture: [
       picture, limit(critical, "with its damper", right ? "end" : "start", "rule"),

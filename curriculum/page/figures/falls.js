@@ -1,6 +1,6 @@
 /* The models side by side over one table, and below it their gaps over time. It is still until it
- * is pressed; its scale stays while a hand holds a ball. Values: the time shown [s], the models' rows and gaps [r]
- * then, and the highest place in the picture [m]. */
+ * is pressed; its scale stays while a hand holds a ball. Values: the time shown [s], the models'
+ * rows and gaps [r] then, and the highest place in the picture [m]. */
 import { arrow, axis, ball, circle, label, line, number, plot, steps, table } from "../draw.js";
 import { within } from "../draw.js";
 import { data } from "../data.js";
