@@ -880,7 +880,7 @@ class Settings(NamedTuple):
 
     stiffness: float = 1e4  # k of penalty [N/m]
     baumgarte: float = 0.2  # beta of lcp: the share of an overlap that one step removes
-    iters: int = 20  # of lcp and leapfrog: sweeps a solve, at most; an impact has 10 times as many
+    iters: int = 20  # of lcp and leapfrog: sweeps a solve, at most; of an impact up to 10 x
     warm: float = 0.0  # of lcp: the share of a step's impulses that the next begins with
     solref: tuple | None = None  # of soft: time constant [s], damping ratio; see soft_defaults
     solimp: tuple | None = None  # of soft: how hard, at which depth; see impedance
