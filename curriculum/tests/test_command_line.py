@@ -80,7 +80,6 @@ def test_bad_input_is_one_line_that_says_what_was_given_and_what_is_allowed(
     ("--no-such-flag", "--no-such-flag"), ("--out ''", "--out: given ''; allowed: "),
     ("drop", "--scene drop"), ("--out=--", "--out"), ("drop bounce", "given drop bounce"),
     ("--scene pile --steps 10000000 --bodies 10000", "not enough memory; allowed: fewer --steps"),
-    ("--scene pile --steps 10 --bodies 10000 --contact exact", "not enough memory; allowed: "),
 ])  # fmt: skip
 def test_flags_that_contradict_one_another_or_ask_too_much_are_refused(flags, part, capsys):
     assert part in refused(main(capsys, *shlex.split(flags)))

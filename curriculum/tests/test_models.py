@@ -12,6 +12,7 @@ from curriculum.bench import measure, problems
 from curriculum.exact import simulate_exact
 from curriculum.stress import mujoco_match
 from curriculum.stress.properties import judge
+from curriculum.stress.trial import run_twin
 
 R, G, DT = contact.RADIUS, 9.81, 0.002
 
@@ -153,7 +154,7 @@ def leapfrog_error(name, substeps=1, iters=20, start=0):
     """The worst error [r] in a problem of the benchmark, with so many substeps in 2 ms."""
     problem = problems.BY_NAME[name]
     scene, looks, dt = problem.build(start), problem.steps(DT), DT / substeps
-    run = run_model("leapfrog", scene, dt, looks * substeps, Settings(iters=iters))
+    run = run_twin("leapfrog", scene, dt, looks * substeps, Settings(iters=iters))
     q, _ = problem.truth(scene, np.arange(looks + 1) * DT)
     return np.sqrt(((run.q[::substeps] - q) ** 2).sum(1)).max() / R
 
@@ -198,7 +199,7 @@ NARROW = contact.scene_of(X, Y, MASS, [0.17, 0.17, 0.13, 0.15], [0, 0, 9, 0], re
 
 @pytest.mark.parametrize("dt, steps", [(0.0021, 333), (0.016, 43)])
 def test_a_bounce_that_drives_into_others_gains_nothing(dt, steps):
-    run = run_model("leapfrog", NARROW, dt, steps, Settings(iters=1000))
+    run = run_twin("leapfrog", NARROW, dt, steps, Settings(iters=1000))
     total = contact.energy(run.q, run.v, NARROW.mass)
     assert total.max() <= total[0] * (1.0 + 1e-12)
 

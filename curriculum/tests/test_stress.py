@@ -1,6 +1,7 @@
 """The stress test sees nothing where nothing is, has tight bounds, and counts."""
 
 import csv
+import itertools
 from importlib import import_module
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 import contact
 from curriculum import stored
-from curriculum.stress import heaps, jobs, maps, mujoco_match, scenes
+from curriculum.stress import jobs, maps, scenes
 from curriculum.stress.properties import PROPERTIES, compare, unlike
 from curriculum.stress.trial import Trial
 
@@ -16,12 +17,17 @@ command = import_module("curriculum.stress.__main__")  # after these: what they 
 
 
 @pytest.fixture(scope="module")
-def judged():
-    """What judging small scenes, maps, matches and heaps comes to: {property: its row}."""
-    todo = jobs.scene_jobs(range(250), small=True)
-    todo += [*maps.map_jobs(True)][::3] + [*mujoco_match.match_jobs(True)][::2]
-    todo += heaps.heap_jobs(3)
-    return {row["property"]: row for row in jobs.added_up(map(jobs.run, todo))[0]}
+def found():
+    """{section: what its jobs give} of small scenes, and of the quick run."""
+    todo = jobs.all_jobs(quick=True) | {"scenes": jobs.scene_jobs(range(250), small=True)}
+    return {section: [jobs.run(job) for job in each] for section, each in todo.items()}
+
+
+@pytest.fixture(scope="module")
+def judged(found):
+    """What they come to: {property: its row}."""
+    rows = jobs.added_up(itertools.chain(*found.values()))[0]
+    return {row["property"]: row for row in rows}
 
 
 def test_no_claim_is_violated_by_the_code_as_it_stands(judged):
@@ -108,12 +114,10 @@ def test_scenes_are_judged_and_said_again(capsys):
     assert all(f"{name}: " in said for name in PROPERTIES) and "comparisons" in said
 
 
-def test_a_run_writes_tables_a_page_and_a_map(tmp_path, capsys):
+def test_a_run_writes_tables_a_page_and_a_map(found, tmp_path, capsys):
     pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     from curriculum.stress import report
 
-    todo = jobs.all_jobs(quick=True).items()
-    found = {name: [jobs.run(job) for job in each[-40:]] for name, each in todo}
     assert report.write(found, stored.origin("stress", kept=False), tmp_path) == 0
     page = (tmp_path / "README.md").read_text("utf-8")
     assert ", no violations." in page and page.count("\n") <= 150
