@@ -554,6 +554,8 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
     Not mended: unfinished sweeps let a stack sag; an impact slower than what gravity adds in a step
     does not bounce; after as many moments as MOST_PUSHES allows, the last takes the rest of a step.
     """
+    for ball in balls:
+        ball.ax = ball.ay = 0.0  # what hold set in the last step is gone
     contacts = detect_contacts(balls, step_reach(balls, dt))
     for c in contacts:
         radii = c.a.radius + c.b.radius
@@ -561,11 +563,12 @@ def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
         c.struck = 0.0
         c.least = 1e-6 if restitution > 0.0 else -GRAVITY  # m/s^2; see lasts
         look(c, 0.0)
-    find_held(balls, contacts, dt)
-    if may_strike(contacts, dt):
+    if restitution > 0.0:  # with e = 0 nobody asks who is held; see lasts
+        find_held(balls, contacts, dt)
+    if may_strike(contacts, dt, restitution):
         take_impacts(balls, contacts, dt, restitution, iters)
     for c in contacts:
-        if lasts(c, dt):
+        if lasts(c, dt) or (restitution == 0.0 and c.struck == 0.0):
             look(c, nearest(c, dt))
         c.target = c.depth / dt
         c.lam = 0.0
@@ -605,7 +608,6 @@ def find_held(balls, contacts, dt):
     """Find which balls are held: 2 if fixed or on the floor, 1 if only on balls that are held."""
     for ball in balls:
         ball.held = 0.0 if ball.inv_mass > 0.0 else 2.0
-        ball.ax = ball.ay = 0.0  # what hold set in the last step is gone
     more = True
     while more:
         more = False
@@ -626,10 +628,10 @@ def gravity_on(c):
 def lasts(c, dt):
     """Whether c lasts: it would touch no faster than gravity alone makes it in a step.
 
-    Gravity must press it; or, with e = 0, both balls lie; or they touch at rest.
+    With e = 0 that is all, since nothing would bounce. With e > 0 gravity must press it, or it
+    touches at rest.
     """
-    lie = c.a.held > 0.0 and c.b.held > 0.0
-    g_n = max(gravity_on(c), c.least if lie else 1e-6)  # m/s^2
+    g_n = max(c.least, gravity_on(c))  # m/s^2
     slow = dt * g_n + 1e-9  # m/s
     return c.speed * c.speed + 2.0 * g_n * max(0.0, c.gap) <= slow * slow
 
@@ -652,10 +654,11 @@ def nearest(c, dt):
 MOST_PUSHES = 2000.0  # at contacts, times iters: what the impacts of a step may cost (a choice)
 
 
-def may_strike(contacts, dt):
-    """Whether a contact that does not last could close within this step."""
+def may_strike(contacts, dt, restitution):
+    """Whether what does not last could close within this step; with e = 0, if it is fast."""
     for c in contacts:
-        if c.gap + dt * (c.speed + dt * GRAVITY) < 0.0 and not lasts(c, dt):
+        slow = restitution == 0.0 and c.speed > dt * GRAVITY
+        if c.gap + dt * (c.speed + dt * GRAVITY) < 0.0 and not slow and not lasts(c, dt):
             return True
     return False
 
