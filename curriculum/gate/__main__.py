@@ -7,7 +7,7 @@ Regions are included once; slots, flags and names in `code` are of what is there
 by reference, what holds a sentence is true, and results are of today's code. Whether a sentence is
 true of the code only a reader can say. meta.yaml keeps what each passage spoke of when it was last
 read: the hashes of its regions, its numbers. Where one of them is another today, or new, the gate
-asks to read the passage again. region_hashes are of the code when all passages were last read.
+asks to read the passage again. region_hashes are those of the code when that was last written.
 """
 
 import hashlib
@@ -15,8 +15,8 @@ import re
 import shlex
 import sys
 from collections import Counter
+from itertools import chain
 from pathlib import Path
-from typing import NamedTuple
 
 from curriculum.commands import Parser, needs, write_whole
 
@@ -25,9 +25,9 @@ with needs("dev"):
 
     import contact
     from curriculum import stored
-    from curriculum.gate.chapter import CHAPTER, INCLUDE, INLINE, faults, split
-    from curriculum.gate.references import REFERENCE, TextError, hold, load_meta, prepare, shown
-    from curriculum.lesson.regions import DOCSTRING, ROOT, blank, line_at, read_text, split_all
+    from curriculum.gate.chapter import CHAPTER, INCLUDE, INLINE, PLAIN, Part, faults, split
+    from curriculum.gate.references import REFERENCE, TextError, load_meta, prepare, shown
+    from curriculum.lesson.regions import DOCSTRING, ROOT, blank, read_text, split_all
 
 GATE = "python -m curriculum.gate"
 TEXTS = (CHAPTER, "README.md")
@@ -43,7 +43,7 @@ SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 NOT_PROSE = re.compile(
     rf"""
     {INLINE.pattern}
-    |\{{\{{\?(?s:.*?)\}}\}}|\{{\{{[^\n]*?\}}\}}
+    |{REFERENCE.pattern}
     |\]\([^)]*\)|https?://\S+
     |^\[[^]]*\]:[^\n]*|\[\[\d+\]\](?=\(\#references\))
     |\b(?:chapters?|phase|version|tag|python|numpy)[ ]
@@ -56,43 +56,32 @@ NOT_PROSE = re.compile(
 TYPED = re.compile(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*")  # a token that begins with a digit
 
 
-class Passage(NamedTuple):
-    """What a reader reads in one go: a heading of chapter or README with its text, an exercise, the
-    captions of a figure, or the opening words of contact.py (the signs) and exact.py (the promise).
-
-    `name` is what one types when one has read it; `line` the one on which it begins.
-    """
-
-    name: str
-    file: str
-    line: int
-    text: str
-
-    def line_of(self, index) -> int:
-        """The line of its file that holds text[index]."""
-        return self.line + line_at(self.text, index) - 1
-
-    def sources(self, regions) -> dict:
-        """{source: hash}: the regions that it includes or names, and its own words in code."""
-        included, named = INCLUDE.findall(self.text), " ".join(SPAN.findall(self.text))
-        words = set(re.findall(r"\w+", named))
-        own = not self.file.startswith(("exercises/", *TEXTS))
-        found = {"its words": hashlib.sha256(self.text.encode()).hexdigest()} if own else {}
-        found |= {r.source: r.sha for r in regions if r.source in included or r.defines & words}
-        return {source: sha[:12] for source, sha in found.items()}
+def sources(passage, regions) -> dict:
+    """{source: hash}: the regions that it includes or names, and its own words in code."""
+    included, named = INCLUDE.findall(passage.text), " ".join(SPAN.findall(passage.text))
+    words = set(re.findall(r"\w+", named))
+    own = not passage.file.startswith(("exercises/", *TEXTS))
+    found = {"its words": hashlib.sha256(passage.text.encode()).hexdigest()} if own else {}
+    found |= {r.source: r.sha for r in regions if r.source in included or r.defines & words}
+    return {source: sha[:12] for source, sha in found.items()}
 
 
 def passages():
-    """All of them, in the order of their files."""
+    """What a reader reads in one go: a heading of chapter or README with its text, an exercise, the
+    captions of a figure, or the opening words of contact.py (the signs) and exact.py (the promise).
+
+    Each has the name that one types when one has read it.
+    """
     for file in TEXTS:
         yield from sections(file)
     for file in files("exercises/ex*.py"):
-        yield Passage(Path(file).stem.split("_")[0], file, 1, read_text(file))
+        yield Part("passage", Path(file).stem.split("_")[0], 1, read_text(file), file)
     for file in ("contact.py", "curriculum/exact.py"):
-        yield Passage(Path(file).name, file, 1, DOCSTRING.match(read_text(file))[0])
+        opening = DOCSTRING.match(read_text(file))[0]
+        yield Part("passage", Path(file).name, 1, opening, file)
     for file in files(FIGURES):
         captions = "\n".join(caption[0] for caption in CAPTION.finditer(read_text(file)))
-        yield Passage(f"figures/{Path(file).stem}", file, 1, captions)
+        yield Part("passage", f"figures/{Path(file).stem}", 1, captions, file)
 
 
 def sections(file) -> list:
@@ -101,7 +90,7 @@ def sections(file) -> list:
     for part in split(blank(MADE, read_text(file))):
         if part.kind == "heading":
             name = part.name if file == CHAPTER else f"{file}: {part.name}"
-            found.append(Passage(name, file, part.line, ""))
+            found.append(Part("passage", name, part.line, "", file))
         if found:
             found[-1] = found[-1]._replace(text=found[-1].text + part.text)
     return found
@@ -124,7 +113,8 @@ class Gate:
             if each.name in self.passages:
                 self.say(each.file, each.line, f"a second heading {each.name}", "rename one")
             self.passages[each.name] = each
-        self.now = {p.name: p.sources(self.regions.values()) for p in self.passages.values()}
+        known = self.regions.values()
+        self.now = {name: sources(each, known) for name, each in self.passages.items()}
 
     def say(self, file, line, what, repair):
         """Note a problem."""
@@ -132,7 +122,8 @@ class Gate:
 
     def check_marks(self):
         """What the chapter includes, and its slots name, is there, and nothing lacks a place."""
-        known: dict = {("region", r.source): (r.file, r.line - 1) for r in self.regions.values()}
+        known: dict = {("puzzle", ""): None, ("wallclock", ""): None}  # they need no place
+        known |= {("region", r.source): (r.file, r.line - 1) for r in self.regions.values()}
         for file in files("exercises/ex*.py"):
             known["exercise", Path(file).stem.split("_")[0]] = file, 1
         for file in files(FIGURES):
@@ -141,19 +132,20 @@ class Gate:
         for kind, folder in stored.FOLDERS.items():
             drawn = files(f"{folder}/*.svg")  # some of them have a place, others have none
             known |= {(kind, Path(file).stem.removeprefix("error-")): None for file in drawn}
-        shown = Counter()
-        for kind, name, line, _ in self.chapter:
-            mark = kind, name.partition("?")[0]  # behind it a figure's settings
-            shown[mark] += 1
-            if kind in ("region", "figure", "exercise", *stored.FOLDERS) and mark not in known:
+        placed = Counter()
+        for part in (part for part in self.chapter if part.kind not in PLAIN):
+            mark = kind, name = part.kind, part.name.partition("?")[0]  # behind it are settings
+            placed[mark] += 1
+            if mark not in known:
                 names = ", ".join(name for each, name in known if each == kind)
-                self.say(CHAPTER, line, f"there is no {kind} {mark[1]}", f"name one of {names}")
-            elif shown[mark] > 1 and mark in known and kind != "figure":
-                self.say(CHAPTER, line, f"{kind} {name} stands here again", "delete one of the two")
-        for line, what, repair in faults(self.chapter):
-            self.say(CHAPTER, line, what, repair)
+                self.say(CHAPTER, part.line, f"there is no {kind} {name}", f"name one of {names}")
+            elif placed[mark] > 1 and kind not in ("figure", "puzzle"):
+                what = f"{kind} {name} stands here again"
+                self.say(CHAPTER, part.line, what, "delete one of the two")
+        for fault in faults(self.chapter):
+            self.say(CHAPTER, *fault)
         for mark, place in known.items():
-            if place and not shown[mark]:
+            if place and not placed[mark]:
                 self.say(*place, f"{' '.join(mark)} has no place in {CHAPTER}", "give it one")
 
     def check_names(self):
@@ -165,61 +157,58 @@ class Gate:
             for match in SPAN.finditer(each.text) if each.file.startswith("curriculum") else ():
                 for name in {*re.findall(r"^[A-Za-z_]\w+$|--[a-z]\w*", match[1])} - known:
                     what = f"`{name}` is in no code"
-                    self.say(each.file, each.line_of(match.start()), what, "name what is there")
+                    self.say(each.file, each.line_of(match), what, "name what is there")
 
     def check_numbers(self):
         """None is typed into the chapter's prose, every reference can be made, what holds a
         sentence is true, and each run is quoted. What numbers are goes into `now`."""
-        for _, _, first, text in (p for p in self.chapter if p.kind in ("text", "heading")):
-            for token in TYPED.finditer(blank(NOT_PROSE, text)):
-                line, number = first + line_at(text, token.start()) - 1, token[0].rstrip(".,")
+        for part in (part for part in self.chapter if part.kind in PLAIN[:2]):
+            for token in TYPED.finditer(blank(NOT_PROSE, part.text)):
+                number = token[0].rstrip(".,")
                 repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
-                self.say(CHAPTER, line, f"a typed number, {number}", repair)
+                self.say(CHAPTER, part.line_of(token), f"a typed number, {number}", repair)
         quoting = [each for each in self.passages.values() if each.file in TEXTS]
         prepare(text := "".join(each.text for each in quoting))
-        found = [(each, match) for each in quoting for match in REFERENCE.finditer(each.text)]
-        for passage, match in found:
-            claim, asked = match.groups()
-            try:
-                number = shown(asked) if asked else hold(claim)
-                if asked and not asked.startswith("="):
-                    self.now[passage.name][asked] = number
-            except TextError as error:
-                line = passage.line_of(match.start(match.lastindex))
-                self.say(passage.file, line, error, "correct the text, or name what is known")
+        for passage in quoting:
+            for match in REFERENCE.finditer(passage.text):
+                try:
+                    number = shown(match[1])
+                    if not match[1].startswith(("?", "=")):
+                        self.now[passage.name][match[1]] = number
+                except TextError as error:
+                    repair = "correct the text, or name what is known"
+                    self.say(passage.file, passage.line_of(match, 1), error, repair)
         for name in [*self.meta["runs"]][1:]:
             if f"{name}:" not in text:
                 self.say("meta.yaml", 1, f"run {name} is quoted nowhere", "take it out")
 
-    def unread(self, read) -> dict:
+    def unread(self) -> dict:
         """{name of a passage: what is not as somebody has read it, in words}."""
-        unread: dict = {}
+        unread = {}
         for name, sources in self.now.items():
-            was = read.get(name, {})
-            for source, now in sources.items():
-                if source not in was:
-                    unread.setdefault(name, []).append(f"nobody has read {source} there")
-                elif was[source] != now:
-                    number = f"{{{{{source}}}}}" in self.passages[name].text
-                    words = f"was {was[source]} and is {now}" if number else "changed"
-                    unread.setdefault(name, []).append(f"{source} {words}")
+            was = self.meta["read"].get(name, {})
+            moved = [
+                f"{source} was {was.get(source, 'never read')} and is {now}"
+                for source, now in sources.items()
+                if was.get(source) != now
+            ]
+            if moved:
+                unread[name] = ", ".join(moved)
         return unread
 
     def record(self, names=()) -> dict:
         """What meta.yaml ought to keep when somebody has read these passages, too."""
         read = self.meta["read"] | {name: self.now[name] for name in names}
-        hashes = {region.name: region.sha for region in self.regions.values()}
         return {
-            "region_hashes": self.meta["region_hashes"] if self.unread(read) else hashes,
+            "region_hashes": {region.name: region.sha for region in self.regions.values()},
             "read": {name: read[name] for name in self.passages if read.get(name)},
         }
 
     def check_read(self):
         """All passages are read as they are, and nothing is kept of what is gone."""
-        for name, moved in self.unread(self.meta["read"]).items():
-            each = self.passages[name]
-            what = f"read {name!r} again: {', '.join(moved)}"
-            self.say(each.file, each.line, what, f"{GATE} --read {shlex.quote(name)}")
+        for name, moved in self.unread().items():
+            each, repair = self.passages[name], f"{GATE} --read {shlex.quote(name)}"
+            self.say(each.file, each.line, f"read {name!r} again: {moved}", repair)
         for key, right in self.record().items():
             kept = self.meta[key]
             if wrong := [n for n in {**kept, **right} if kept.get(n) != right.get(n)]:
@@ -228,21 +217,17 @@ class Gate:
 
     def check_results(self):
         """Results and rows of the ledger are of today's code; all that are not make one problem."""
-        stale = [  # what, its file, the command that measures it again, what changed
-            (f"{name} {part}", f"{folder}/made.json", about["command"], moved)
-            for name, folder in stored.FOLDERS.items()
-            for part, about in stored.load(folder)[1].items()
-            if (moved := stored.changed(about["code"]))
+        measured = [  # where it is kept, what measures it again, what changed since then
+            (f"{folder}/made.json", about["command"], stored.changed(about["code"]))
+            for folder in stored.FOLDERS.values()
+            for about in stored.load(folder)[1].values()
         ]
         for row in filter(stored.stale, stored.ledger()):
-            tier = row["tier"]
-            stale.append(
-                (f"the wall-clock of {tier}", "wallclock.csv", f"{stored.COMMAND} {tier}", [])
-            )
-        if stale:
-            parts, places, commands, moved = zip(*stale)
-            sources = ", ".join([*dict.fromkeys(sum(moved, []))][:6]) or "the code"
-            what = f"{sources} changed since these were measured: {', '.join(parts)}"
+            measured.append(("wallclock.csv", f"{stored.COMMAND} {row['tier']}", stored.TIMED))
+        if stale := [each for each in measured if each[2]]:
+            places, commands, moved = zip(*stale)
+            changed = ", ".join([*dict.fromkeys(chain(*moved))][:6])
+            what = f"measured on other code; since then these changed: {changed}"
             again = "; ".join(dict.fromkeys(commands))
             self.say(places[0], 1, what, f"whoever merges types {again}")
 
@@ -256,7 +241,7 @@ def check() -> int:
     gate.check_read()
     gate.check_results()
     print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")
-    if len(unread := gate.unread(gate.meta["read"])) > 1:
+    if len(unread := gate.unread()) > 1:
         print(f"\nwhen all of them are read: {GATE} --read {shlex.join(unread)}")
     return 1 if gate.problems else 0
 

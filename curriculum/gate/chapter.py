@@ -18,13 +18,12 @@ from curriculum.lesson.regions import NAME, blank, line_at
 
 CHAPTER = "curriculum/prose/chapter.md"
 INCLUDE = re.compile(rf"\[include-by-region: ([\w./-]+\.py#{NAME})\]")
-SLOTS = "figure|exercise|bench|stress"
-MARKS = f"{SLOTS}|wallclock|puzzle"
+MARKS = "figure|exercise|bench|stress|wallclock|puzzle"
 PART = re.compile(
     rf"""
     (?:^(?P<fence>```|~~~)[^\n]*\n(?P<code>(?s:.*?))^(?P=fence)[ ]*
     |^\#{{1,6}}[ ]+(?P<heading>.*)
-    |^<!--[ ](?:(?P<kind>{SLOTS}):[ ](?P<slot>\S+)|(?P<mark>wallclock|puzzle))[ ]-->
+    |^<!--[ ](?P<kind>{MARKS})(?::[ ](?P<slot>\S+))?[ ]-->
     |^<!--(?P<comment>(?s:.*?))-->[ ]*
     )(?:\n+|\Z)
     """,
@@ -33,13 +32,14 @@ PART = re.compile(
 LIKE_A_MARK = re.compile(rf"include-by-region|<!--\s*(?:(?:{MARKS})\b|[\w-]+(?::\s*\S+)?\s*-->)")
 INLINE = re.compile(r"(`+)[^`]+\1|\$\$.+?\$\$|\$[^$\n]+\$|<https?://[^>\s]+>", re.DOTALL)
 HTML = re.compile(r"<[A-Za-z/!?][^\n]*")
+PLAIN = ("text", "heading", "code", "comment")
 AS_IT_IS = "write [include-by-region: FILE#NAME] in a fence, or <!-- figure: NAME -->"
 
 
 class Part(NamedTuple):
-    """A piece of the chapter; all their texts together are the chapter.
+    """A piece of the chapter, or of another file; those of a file together are the file.
 
-    kind: "text", "heading", "code" (a fence), "comment", "region", or what a slot is called.
+    kind: one of PLAIN ("code" is a fence), "region", what a slot is called, or "passage".
     name: of a region FILE#NAME, of a slot what stands behind its colon, else the words within.
     """
 
@@ -47,6 +47,11 @@ class Part(NamedTuple):
     name: str
     line: int
     text: str
+    file: str = CHAPTER
+
+    def line_of(self, match, group=0) -> int:
+        """The line of its file on which a match in its text, or a group of it, begins."""
+        return self.line + line_at(self.text, match.start(group)) - 1
 
 
 def split(text) -> list:
@@ -68,20 +73,19 @@ def kind_of(match) -> tuple:
     for kind in ("heading", "comment"):
         if match[kind] is not None:
             return kind, match[kind].strip()
-    return match["kind"] or match["mark"], match["slot"] or ""
+    return match["kind"], match["slot"] or ""
 
 
 def faults(parts):
     """What cannot be meant, as (line, what, what to write)."""
-    for kind, _, line, text in parts:
-        if kind in ("text", "heading", "code", "comment"):
-            for match in LIKE_A_MARK.finditer(text):
+    for part in parts:
+        if part.kind in PLAIN:
+            for match in LIKE_A_MARK.finditer(part.text):
                 what = "an include not alone in its fence, or a slot that is not well formed"
-                yield line + line_at(text, match.start()) - 1, what, AS_IT_IS
-        if kind in ("text", "heading"):
-            for match in HTML.finditer(blank(LIKE_A_MARK, blank(INLINE, text))):
-                what = f"raw HTML, {match[0][:50]!r}"
-                yield line + line_at(text, match.start()) - 1, what, "write Markdown"
+                yield part.line_of(match), what, AS_IT_IS
+        if part.kind in PLAIN[:2]:
+            for match in HTML.finditer(blank(LIKE_A_MARK, blank(INLINE, part.text))):
+                yield part.line_of(match), f"raw HTML, {match[0][:50]!r}", "write Markdown"
 
 
 def read(text) -> list:

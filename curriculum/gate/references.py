@@ -1,10 +1,10 @@
 """Numbers by reference: {{FORMULA|FORMAT}} becomes a number of a fresh run.
 
     {{quality.penalty.rest_penetration_frac|.5f}}   metrics.json of the reference run
-    {{drop-dt-0.03:quality.lcp.energy_excess|.2g}}  of another run that meta.yaml names
     {{contact.CONTACT_MARGIN}}  {{contact.Settings.iters}}    a constant, a default
-    {{stress:TABLE.FIRST_CELL.COLUMN}}  {{bench:made.piles.date}}     results, by row and column
-    {{fact:jump.before}}                            a small measured fact, curriculum/gate/facts.py
+    {{drop-dt-0.03:quality.lcp.energy_excess|.2g}}  of another run that meta.yaml names
+    {{jump:before}}                                 a small measured fact, curriculum/gate/facts.py
+    {{stress:made.all.date}}  {{bench:piles.0.engine}}    of stored results, tables by row
     {{(a.b - c.d) / e.f|.1f}}                       + - * / and brackets, with blanks around signs
     {{= 1972 | year of the paper}}                  a typed number, with the reason why
 
@@ -24,7 +24,7 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -36,7 +36,8 @@ from curriculum.commands import write_whole
 from curriculum.gate.facts import FACTS
 from curriculum.lesson.regions import ROOT, read_text
 
-REFERENCE = re.compile(r"\s*\{\{\?\s*((?s:.*?))\s*\}\}|\{\{(.*?)\}\}")  # a claim, or what is shown
+# A claim may go over several lines, and the blanks before it belong to it.
+REFERENCE = re.compile(r"(?:\s*(?=\{\{\?))?\{\{(\?(?s:.*?)|(?-s:.*?))\}\}")
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FORMULA = re.compile(r"[\d.e+\-*/()<=>\s]+")  # of numbers and signs alone
@@ -91,19 +92,19 @@ def run_contact(flags) -> dict:
 
 
 @cache
-def known(source, fact="") -> dict:
-    """{"a.b.3": number or text} of what a source holds: a run, a fact, contact.py, results."""
-    if source == "contact":
-        tree = vars(contact) | {"Settings": contact.Settings()._asdict()}
-    elif source == "fact":
-        tree = {fact: cached(f"fact-{fact}", None, pick(FACTS, fact, f"fact:{fact}"))}
-    elif source in stored.FOLDERS:
+def known(source) -> dict:
+    """{"a.b.3": number or text} of what stands before a colon; before none, of the reference run
+    and of contact.py."""
+    runs = load_meta()["runs"]
+    if source in stored.FOLDERS:
         tables, made = stored.load(stored.FOLDERS[source])
-        rows = {k: {str([*row.values()][0]): row for row in t} for k, t in tables.items()}
-        tree = {"made": made} | rows
+        tree = tables | {"made": made}
+    elif source:
+        makers = FACTS | {name: partial(run_contact, flags) for name, flags in runs.items()}
+        tree = cached(source, runs.get(source), pick(makers, source, source))
     else:
-        flags = pick(load_meta()["runs"], source, source)
-        tree = cached(f"run-{source}", flags, lambda: run_contact(flags))
+        constants = vars(contact) | {"Settings": contact.Settings()._asdict()}
+        tree = known(next(iter(runs))) | {"contact": constants}
     return dict(leaves(tree))
 
 
@@ -118,39 +119,32 @@ def prepare(text):
 def operand(name):
     """What one name stands for: a number or a text."""
     source, _, key = name.rpartition(":")
-    if name.startswith("contact."):
-        source, _, key = name.partition(".")
-    fact = key.partition(".")[0] if source == "fact" else ""
-    return pick(known(source or next(iter(load_meta()["runs"])), fact), key, name)
+    return pick(known(source), key, name)
 
 
 def reckon(formula) -> tuple:
     """What a formula is, as Python reckons, and the formula in numbers."""
-
-    def number(match):
-        value = operand(match[0])
-        if type(value) not in (int, float):
-            raise TextError(f"{match[0]!r} is {str(value)[:40]!r}, no number")
-        return f"({value!r})"
-
     if OPERAND.fullmatch(formula):
         return operand(formula), formula  # which may be a text
-    numbers = OPERAND.sub(number, " ".join(formula.split()))
+    numbers = OPERAND.sub(lambda match: f"({operand(match[0])!r})", " ".join(formula.split()))
     if not FORMULA.fullmatch(numbers):
-        raise TextError(f"{formula!r} has other signs than + - * / ( ) < <= > >= ==")
+        raise TextError(f"{formula!r} is not of numbers and + - * / ( ) < <= > >= ==: {numbers}")
     try:
         return eval(numbers), numbers
-    except (NameError, SyntaxError, TypeError, ZeroDivisionError) as error:
+    except (ArithmeticError, NameError, SyntaxError, TypeError) as error:
         raise TextError(f"{formula!r} cannot be reckoned: {error}") from None
 
 
 def shown(reference) -> str:
-    """What a reader sees in place of {{reference}}. Raises TextError."""
+    """What a reader sees in place of {{reference}}, nothing of a claim. Raises TextError."""
     formula, _, form = (part.strip() for part in reference.partition("|"))
-    if formula.startswith("=") and form:
-        return formula[1:].strip()
+    if formula.startswith("?"):
+        return hold(formula[1:].strip())
     if formula.startswith("="):
-        raise TextError(f"{formula!r}: a typed number needs a reason: {{{{= NUMBER | REASON}}}}")
+        if not form:
+            what = "a typed number needs a reason: {{= NUMBER | REASON}}"
+            raise TextError(f"{formula!r}: {what}")
+        return formula[1:].strip()
     value, _ = reckon(formula)
     if type(value) not in (int, float, str):
         raise TextError(f"{formula!r} is {value}, no number")
@@ -163,18 +157,19 @@ def shown(reference) -> str:
     return text if isinstance(value, str) else typeset(text)
 
 
-def hold(claim) -> None:
-    """Raise TextError where a claim is not true. It may have several signs: 1 < a < 2."""
+def hold(claim) -> str:
+    """Nothing, where a claim is true. It may have several signs: 1 < a < 2."""
     true, numbers = reckon(claim)
     if true is not True:
         what = "does not hold" if true is False else "is not 'FORMULA < FORMULA'"
         raise TextError(f"{claim!r} {what}: {numbers}")
+    return ""
 
 
 def fill(text) -> str:
     """The text with every reference replaced."""
     prepare(text)
-    return REFERENCE.sub(lambda match: shown(match[2]) if match[2] else "", text)
+    return REFERENCE.sub(lambda match: shown(match[1]), text)
 
 
 def typeset(number: str) -> str:
@@ -186,11 +181,13 @@ def typeset(number: str) -> str:
 
 def leaves(tree, path=""):
     """Pairs ("a.b.3", value) of all that stands in dicts, lists and tuples."""
-    tree = dict(enumerate(tree)) if isinstance(tree, (list, tuple)) else tree
-    if not isinstance(tree, dict):
-        yield path[1:], tree
-    for name, each in tree.items() if isinstance(tree, dict) else ():
-        yield from leaves(each, f"{path}.{name}")
+    if isinstance(tree, (list, tuple)):
+        tree = dict(enumerate(tree))
+    if isinstance(tree, dict):
+        for name, each in tree.items():
+            yield from leaves(each, f"{path}{name}.")
+    else:
+        yield path[:-1], tree
 
 
 def pick(table, name, asked):

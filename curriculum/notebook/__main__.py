@@ -107,7 +107,7 @@ def cells_of(text):
     own = {name: source.strip() for name, source in zip(OWN[1::2], OWN[2::2])}
     cells, prose, same = [], "", Counter()
     carry = f'FOLDER = """\n{folder()}"""\n{own.pop("start")}'
-    for kind, name, _, written in read(text):
+    for kind, name, _, written, _ in read(text):
         if kind == "heading" and name == REST:
             break
         made = PLACES[kind](name) if kind in PLACES else []

@@ -92,7 +92,7 @@ def blocks(text):
     values are its id and what asked() gives of its slot."""
     md, env, out, seen = parser(), {}, [], Counter()
     md.parse(text, env)  # for the addresses of links, which stand at its end
-    for kind, name, _, written in read(text):
+    for kind, name, _, written, _ in read(text):
         if kind in ("text", "heading"):
             out += rendered(md, written, env)
         elif kind == "code":

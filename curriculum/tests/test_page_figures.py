@@ -259,9 +259,8 @@ def test_the_impedance_is_that_of_contact_py(draw):
 
 def test_the_rod_has_the_three_answers_of_its_law_and_the_one_of_the_relaxed_law(draw):
     right = facts.friction()
-    values = draw("rod", {"mu": 2}, {"push": right["half"]["push"]})["values"]
-    pushes = [right[name]["push"] for name in ("leaves", "slides", "sticks")]
-    assert values["coulomb"] == pytest.approx(pushes)
-    assert values["relaxed"] == pytest.approx(right["leaves"]["convex"])
-    assert values["v_n"] == pytest.approx(right["half"]["v_n"])
+    values = draw("rod", {"mu": 2}, {"push": right["slides"] / 2})["values"]
+    assert values["coulomb"] == pytest.approx([0.0, right["slides"], right["jams"]])
+    assert values["relaxed"] == pytest.approx(right["jams"])
+    assert values["v_n"] == pytest.approx(right["rises"] / 2)
     assert len(draw("rod", {"mu": 1.7})["values"]["coulomb"]) == 1
