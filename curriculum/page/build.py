@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 import contact
 from curriculum import stored
-from curriculum.gate.references import fill, load_meta
+from curriculum.gate.references import fill
 from curriculum.lesson.regions import ROOT, read_all
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
@@ -22,7 +22,6 @@ from curriculum.show import picture
 
 SCENES = ("drop", "bounce", "stack")  # of the figures: balls in one column
 ABOUT = {"error": "Run time against error: ", "penalty": "Stability: "}  # pictures by first word
-SCALE = 1.6  # of the pictures of bench and stress: their text of 10 px shall be read beside ours
 EARLY = 'document.documentElement.className = "js"'  # before the first paint
 COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb"
 
@@ -71,8 +70,8 @@ def drawn_by(kind, name):
     return {
         "alt": ABOUT.get(path.name.partition("-")[0], "") + what,
         "src": Markup(f"data:image/svg+xml,{held}"),
-        "width": round(SCALE * float(box[1])),
-        "height": round(SCALE * float(box[2])),
+        "width": box[1],
+        "height": box[2],
     }
 
 
@@ -105,7 +104,7 @@ def environment(**held):
     ]
     made.globals.update(colab=colab, faces=faces, models=[*contact.MODELS])
     made.globals.update(stored=stored, picture=picture, drawn_by=drawn_by, **held)
-    made.globals.update(panel=panel, bookkeeping=BOOKKEEPING)
+    made.globals.update(panel=panel, bookkeeping=BOOKKEEPING, folded=chapter.FOLDED)
     return made
 
 
@@ -114,7 +113,8 @@ def build(text=None):
     where it can't be shown as it is."""
     text = (ROOT / chapter.CHAPTER).read_text("utf-8") if text is None else text
     exercises, regions, data = all_exercises(), read_all(), page_data()
-    parts = chapter.blocks(fill(text))
+    end = ("heading", (2, "colophon", "Colophon")), ("colophon", ())
+    parts = [*chapter.blocks(fill(text)), *end]
     for kind, (name, *_) in ((kind, values) for kind, values in parts if values):
         known = {"exercise": exercises, "region": regions}.get(kind, [name])
         if name not in known:
@@ -136,5 +136,4 @@ def build(text=None):
         heading=Markup(re.sub(r"^\d+(\.\d+)*[:.]?\s*", "", title)),
         contents=contents,
         body=body,
-        objectives=[chapter.inline(item) for item in load_meta()["objectives"]],
     )

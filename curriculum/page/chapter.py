@@ -20,6 +20,7 @@ from curriculum.gate.chapter import CHAPTER, read
 from curriculum.page import fonts
 
 # the blanks within a number and between it and its unit
+FOLDED = ("references", "the-rest-of-the-file", "colophon")  # sections, on a phone
 UNIT = re.compile(r"(?:(?<=[\d⁰¹²³⁴-⁹])|^) (?=(?:r|s|m|mm|kg|J|N|N/m|m/s)\b)| (?=×)|(?<=×) ")
 
 
@@ -113,14 +114,18 @@ def rendered(md, text, env):
     """Markdown as a list of ("html", (text,)) and ("heading", (level, id, text))."""
     out = []
     for node in SyntaxTreeNode(md.parse(text, env)).children:
+        for number, item in enumerate(node.children if node.type == "ordered_list" else (), 1):
+            item.attrs["id"] = f"{env.get('under')}-{number}"
         shown = md.renderer.render(node.to_tokens(), md.options, env)
         if node.type == "heading":
             inner = re.sub(r"^<h\d[^>]*>|</h\d>\s*$", "", shown)
-            out.append(("heading", (int(node.tag[1]), node.attrs["id"], Markup(inner))))
+            env["under"] = node.attrs["id"]
+            out.append(("heading", (int(node.tag[1]), env["under"], Markup(inner))))
         elif node.type == "table":
             held = shown.replace("<th></th>", "<td></td>")
             out.append(("html", (Markup(f'<div class="scroll">{held}</div>'),)))
         else:
+            shown = re.sub(r'(?<="#references)">\[(\d+)\]', r'-\1">[\1]', shown)
             out.append(("html", (Markup(shown),)))
     return out
 
@@ -132,10 +137,12 @@ def assemble(parts, macros):
     """(HTML, [(level, id, text)] of its headings). The macro of a part's kind gives its HTML."""
     titles = [values for kind, values in parts if kind == "heading"]
     contents = [(*w, Markup(re.sub(r"</?(code|a|math)[^>]*>", "", title))) for *w, title in titles]
-    html, folded = [], False
-    for kind, values in parts:
-        if folded and kind in ("heading", "exercise"):
+    html, until = [], ()  # until: the kinds at which what is folded ends
+    for kind, values in [*parts, ("heading", (0, "", ""))]:
+        if kind in until:
             html.append("</details>")
-        folded = kind == "puzzle" or (folded and kind not in ("heading", "exercise"))
+            until = ()
+        if kind == "puzzle" or (kind == "heading" and values[1] in FOLDED):
+            until = ("heading", "exercise") if kind == "puzzle" else ("heading",)
         html.append(getattr(macros, kind)(*values))
     return Markup("\n".join(html)), contents

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from curriculum.page.build import build
-from curriculum.page.chapter import blocks
 from curriculum.page.exercises import all_exercises, measured
 from curriculum.tests import page_browser
 from curriculum.tests.page_browser import SEE, WORDS, call, drag, visiting
@@ -67,16 +66,12 @@ def test_page_is_below_900_kb_and_the_same_bytes_twice(url):
         ("<!-- figure: cliff?speed=3 -->", "speed sets nothing; known: .*stiffness"),
         ("<!-- figure: cliff?dt=3 -->", "dt=3; allowed: from 0.0005 to 0.064"),
         ("<!-- exercise: ex99 -->", "no exercise ex99"),
+        ("$\\clubsuit$", "font lacks"),
     ],
 )
-def test_what_a_figure_cannot_show_is_refused(text, named):
+def test_what_the_page_cannot_show_is_refused(text, named):
     with pytest.raises(ValueError, match=named):
         build(f"# Title\n\n{text}\n")
-
-
-def test_a_formula_that_the_font_cannot_show_is_refused():
-    with pytest.raises(ValueError, match="font lacks"):
-        blocks("$\\clubsuit$")
 
 
 # ---- figures under hands
@@ -139,38 +134,32 @@ def test_keys_move_a_handle_and_a_slider_and_a_button_takes_both_back_to_the_tex
         assert call(page, WORDS, "fig-cliff") == first and back.is_disabled()
 
 
+def places(page, shape):
+    """Where a shape, once its figure is in sight, is within a second: how far apart, px."""
+    call(page, SEE, shape.split()[0].removeprefix("#"))
+    seen = []
+    for _ in range(10):
+        page.wait_for_timeout(100)
+        box = page.locator(shape).first.bounding_box()
+        seen.append(box["x"] + box["y"])
+    return max(seen) - min(seen)
+
+
 def test_the_hero_trembles_by_itself_stops_and_stays_still_where_motion_is_not_wanted(visit):
-    edge = "document.querySelector('#fig-gripper .magnified.m-fixed').getAttribute('cx')"
-    for motion, moves in (("no-preference", True), ("reduce", False)):
-        with visit(motion=motion) as page:
-            call(page, SEE, "fig-gripper")
-            seen = set()
-            for _ in range(12):
-                seen.add(page.evaluate(edge))
-                page.wait_for_timeout(100)
-            assert (len(seen) > 2) == moves
-            if moves:
-                places = [float(each) for each in seen]
-                assert max(places) - min(places) > 10  # px: one sees it
-                page.locator("#fig-gripper .buttons button").first.click()
-                page.wait_for_timeout(200)
-                held = page.evaluate(edge)
-                page.wait_for_timeout(300)
-                assert page.evaluate(edge) == held
+    finger = "#fig-gripper .magnified.m-fixed"
+    with visit(motion="reduce") as page:
+        assert places(page, finger) == 0
+    with visit(motion="no-preference") as page:
+        assert places(page, finger) > 10  # one sees it
+        page.locator("#fig-gripper .buttons button").first.click()
+        assert places(page, finger) == 0
 
 
 def test_balls_fall_when_they_are_let_fall_and_no_sooner(visit):
     with visit(motion="no-preference") as page:
-        name = page.locator("[data-figure=falls]:not([data-given*=until])").first.get_attribute(
-            "id"
-        )
-        call(page, SEE, name)
-        before = call(page, WORDS, name)
-        page.wait_for_timeout(400)
-        assert call(page, WORDS, name) == before
-        page.locator(f"#{name} .buttons button").first.click()
-        page.wait_for_timeout(600)
-        assert call(page, WORDS, name) != before
+        assert places(page, "#fig-falls-2 .ball") == 0
+        page.locator("#fig-falls-2 .buttons button").first.click()
+        assert places(page, "#fig-falls-2 .ball") > 10
 
 
 # ---- bets, paper, screens
@@ -220,7 +209,20 @@ def test_a_phone_shows_no_formula_below_16_px_and_no_figure_higher_than_itself(p
     assert min(phone.evaluate(sizes)) >= 16
     heights = """() => [...document.querySelectorAll(".fig")].map((fig) => fig.offsetHeight)"""
     assert max(phone.evaluate(heights)) <= 844
-    assert phone.evaluate("document.documentElement.scrollHeight") < 52 * 844
+    wide = """() => [...document.querySelectorAll(".scroll, .math.block, .generated img")]
+      .filter((box) => box.scrollWidth > box.clientWidth || box.offsetWidth > 390)
+      .map((box) => box.textContent || box.alt)"""
+    assert phone.evaluate(wide) == []
+    assert phone.evaluate("document.documentElement.scrollHeight") < 41 * 844
+
+
+@pytest.mark.parametrize("where", ["phone", "fox"])
+def test_a_citation_leads_to_its_reference_folded_or_not(where, request):
+    page = request.getfixturevalue(where)
+    call(page, """() => document.querySelector("a[href='#references-7']").click()""")
+    entry = """() => [...document.querySelectorAll("#references-7")]
+      .map((entry) => entry.checkVisibility() && entry.textContent)"""
+    assert "Rattle" in call(page, entry)[0]
 
 
 def test_what_a_figure_can_be_told_stands_beside_its_text_by_keyboard(visit):
