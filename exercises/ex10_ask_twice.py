@@ -19,14 +19,13 @@ Around your other two functions is lcp_step, taken apart:
 
 exact judges it. Then read off the order of your step: the error of the slide, off/r, falls like dt
 to which power? Write it as ORDER.
-
-    python exercises/ex10_ask_twice.py      # add --hint 1 (to 8: two a function, three of the last)
-    python checks.py -k ex10
 """
 
 import math  # noqa: F401  you will want it
 
 from kit import script
+
+script.main(__name__)
 
 
 def time_to_impact(gap, v_n, a_n):
@@ -56,5 +55,3 @@ def after_the_move(lam, then, now):
 
 
 ORDER = None  # of your slide's error, as a power of dt
-
-script.main(__name__)

@@ -19,15 +19,12 @@ Where does it lie when it has come to rest?
 
 One sentence: when the ball lies still, how does each model arrive at a push of m g?
 
-Write your letter as PREDICTION and this sentence as WHY, and only then run
-
-    python exercises/ex1_predict_contact.py     # add --hint 1 (2, 3) for a question that helps
-    python checks.py -k ex1_
+Write your letter as PREDICTION and this sentence as WHY, and only then run this file.
 """
 
 from kit import script
 
+script.main(__name__)
+
 PREDICTION = None  # "A", "B" or "C"
 WHY = ""  # your sentence
-
-script.main(__name__)

@@ -17,15 +17,12 @@ At dt = 0.03 s, which of them gain energy many times over?
 
 One sentence: in each model, what happens between two looks at the depth?
 
-Write your letter as PREDICTION and this sentence as WHY, and only then run
-
-    python exercises/ex3_dt_stability.py        # add --hint 1 (2, 3) for a question that helps
-    python checks.py -k ex3
+Write your letter as PREDICTION and this sentence as WHY, and only then run this file.
 """
 
 from kit import script
 
+script.main(__name__)
+
 PREDICTION = None  # "A", "B" or "C"
 WHY = ""  # your sentence
-
-script.main(__name__)

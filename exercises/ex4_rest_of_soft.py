@@ -11,15 +11,13 @@ and the share 1 - d goes to what the ball would do without the table. How deep d
 end, in radii r = 0.1 m?
 
 Work it out on paper: at rest nothing accelerates. In which term does the mass stand? Write DEPTH,
-to three digits, and only then look at gap/r of the second command:
+to three digits, and only then look at gap/r of contact.py with these flags:
 
-    python exercises/ex4_rest_of_soft.py        # add --hint 1 (2, 3) for a question that helps
-    python contact.py --contact soft --mass 3 --solref 0.05 1 --solimp 0.8 0.8 0.001 0.5 2
-    python checks.py -k ex4
+    --contact soft --mass 3 --solref 0.05 1 --solimp 0.8 0.8 0.001 0.5 2
 """
 
 from kit import script
 
-DEPTH = None  # r, from your paper
-
 script.main(__name__)
+
+DEPTH = None  # r, from your paper

@@ -12,12 +12,11 @@ read it; now write it without looking. A contact c gives you
     c.m_eff     the mass [kg] that a push has to move
     c.lam       the impulse [N s] given so far, 0 at first; keep it up to date
     c.push(p)   gives body a the impulse p [N s] along the normal, and body b the opposite one
-
-    python exercises/ex5_solve_contacts.py      # add --hint 1 (2, 3) for a question that helps
-    python checks.py -k ex5                     # random stacks, against contact.py's answers
 """
 
 from kit import script
+
+script.main(__name__)
 
 
 def solve_contacts(contacts, iters):
@@ -28,6 +27,3 @@ def solve_contacts(contacts, iters):
     lam of the contacts and the velocities of their bodies. Returns nothing.
     """
     return ...  # TODO: your loop, in place of this line
-
-
-script.main(__name__)

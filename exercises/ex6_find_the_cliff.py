@@ -9,15 +9,14 @@ A ball deep in the table of penalty, away from its balance by `depth` [m] and mo
 matrix. It can be taken again and again as long as no eigenvalue of it is larger than 1. Write the
 matrix, then find the longest step by any search you like; a formula stands beside your answer.
 
-    python exercises/ex6_find_the_cliff.py      # add --hint 1 (2; 3, 4: the search) for a question
-    python checks.py -k ex6
-
 Gravity only moves the place of balance, so leave it out. The step is semi-implicit Euler: the new
 velocity first, from force k depth - c v_n, and then the depth with the new velocity.
 """
 
 import numpy as np  # noqa: F401  np.linalg.eigvals(matrix) is what you need
 from kit import script
+
+script.main(__name__)
 
 
 def step_matrix(mass, stiffness, damping, dt):
@@ -34,6 +33,3 @@ def longest_step(mass, stiffness, damping):
     Above 1 in size, that is: eigenvalues may be negative or complex. damping > 0.
     """
     return ...  # TODO: blank 2
-
-
-script.main(__name__)

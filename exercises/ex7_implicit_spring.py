@@ -12,17 +12,13 @@ the depth and the speed *after* it instead, with the same spring and the same da
 where v_n is the speed after the step. You do not know it yet, but you have a sweep that finds v_n
 and lam together: solve_contacts looks for lam >= 0 such that v_n + softness lam - target is zero
 where it pushes. Which softness and which target make that the equation above?
-
-    python exercises/ex7_implicit_spring.py     # add --hint 1 (2, 3) for a question that helps
-    python checks.py -k ex7
 """
 
 from kit import script
+
+script.main(__name__)
 
 
 def implicit_spring(depth, stiffness, damping, dt):
     """(softness [1/kg], target [m/s]) of a contact that overlaps by `depth` [m] before the step."""
     return ...  # TODO: softness and target
-
-
-script.main(__name__)

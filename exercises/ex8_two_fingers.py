@@ -11,12 +11,11 @@ a step from 0.5 to 20 ms so that in the end nothing overlaps by more than a thou
 and the overlap of the last quarter varies (std) by less than a hundredth of that. There is more
 than one way. Before you try numbers, estimate: what do 20 N do to a spring, and how light is the
 lightest thing that hangs on it?
-
-    python exercises/ex8_two_fingers.py         # add --hint 1 (2, 3) for a question that helps
-    python checks.py -k ex8
 """
 
 from kit import script
+
+script.main(__name__)
 
 MODEL = None  # "penalty", "implicit" (the spring of exercise 7) or "soft"
 DT = 0.004  # s
@@ -26,5 +25,3 @@ DAMPING = 80.0  # N s/m, of penalty and implicit
 
 SOLREF = (0.02, 1.0)  # of soft: time constant [s] and damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # of soft: the impedance, see contact.impedance
-
-script.main(__name__)

@@ -15,14 +15,14 @@ Five troubles that you have met, and four knobs. Each knob is turned alone, from
 In BETS put for every ? one of: - it becomes less, at most half; + more, at least double; = neither.
 Then a number, on paper. A tower of seven balls stands under lcp; a step has a single sweep, from
 the floor upwards, and opens half of an overlap. How deep is the lowest ball in the floor at rest,
-in radii r = 0.1 m? Write it as SAG, to three digits, then look at gap/r of the second command:
+in radii r = 0.1 m? Write it as SAG, to three digits, then look at gap/r of contact.py with
 
-    python exercises/ex9_which_knob.py      # add --hint 1 (to 5) for a question that helps
-    python contact.py --scene stack --bodies 7 --contact lcp --dt 0.001 --iters 1 --baumgarte 0.5
-    python checks.py -k ex9
+    --scene stack --bodies 7 --contact lcp --dt 0.001 --iters 1 --baumgarte 0.5
 """
 
 from kit import script
+
+script.main(__name__)
 
 BETS = """
               k x 4    dt / 4    sweeps x 4    beta x 4
@@ -33,5 +33,3 @@ BETS = """
     trembling   ?        ?           ?            ?
 """
 SAG = None  # r, from your paper
-
-script.main(__name__)

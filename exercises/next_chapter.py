@@ -1,7 +1,4 @@
-"""The next chapter begins here: a finger pushes three balls along, each against 2 N of drag.
-
-python exercises/next_chapter.py    # by every model: their x [m], the force on the finger [N]
-"""
+"""The next chapter begins here: a finger pushes three balls along, each against 2 N of drag."""
 
 import math
 
@@ -9,12 +6,12 @@ from kit import ROOT  # noqa: F401  which finds contact.py
 
 import contact
 
-DT, STEPS, X = 0.002, 2500, [-0.5, -0.2, 0.1, 0.4]
-SCENE = contact.scene_of(X, 0.1, [math.inf, 1.0, 1.0, 1.0], vx=[0.3, 0.0, 0.0, 0.0])
+DT, MASS, X = 0.002, [math.inf, 1.0, 1.0, 1.0], [-0.5, -0.2, 0.1, 0.4]
+SCENE = contact.scene_of(X, 0.1, MASS, vx=[0.3, 0.0, 0.0, 0.0])
 
 
 def push(model):
-    """The run of a model, and in each of its steps the force on the finger [N]."""
+    """Print where all are in the end, x [m], and the force on the finger [N], by that model."""
     step, force = contact.step_of(model, SCENE, DT, contact.Settings()), []
 
     def driven(balls):
@@ -25,10 +22,9 @@ def push(model):
     def see(k, contacts):  # lam is the impulse on ball a along n; only the finger touches no floor
         force.append(sum(c.lam * c.nx for c in contacts if c.a.mass == math.inf) / DT)
 
-    return contact.simulate(driven, SCENE, DT, STEPS, see=see), force
+    run = contact.simulate(driven, SCENE, DT, 2500, see=see)
+    print(f"{model:<9} {run.q[-1, 0].round(3)}  {sum(force[-500:]) / 500:.4f} N")
 
 
-if __name__ == "__main__":
-    for name in contact.STEPPED:
-        run, forces = push(name)
-        print(f"{name:<9} {run.q[-1, 0].round(3)}  {sum(forces[-500:]) / 500:.4f} N")
+for model in contact.STEPPED:
+    push(model)

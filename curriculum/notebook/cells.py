@@ -20,6 +20,7 @@ sys.modules["contact"] = sys.modules["__main__"]    # whatever you change below 
 __file__ = os.path.join(COURSE, "contact.py")
 with open(__file__, encoding="utf-8") as file:
     exec(file.read().replace('__name__ == "__main__"', "False"))
+from IPython.core.magic import register_cell_magic
 from IPython.display import SVG
 
 
@@ -29,14 +30,15 @@ def show_run(*flags):
     return SVG(filename=os.path.join(COURSE, "outputs", "contact.svg"))
 
 
-def exercise(file, *words):
-    """Try what the cell above wrote, and print what came of it."""
+@register_cell_magic
+def exercise(words, text):
+    """Try what the cell says, and print what came of it."""
+    file, *flags = words.split()
+    with open(os.path.join(COURSE, file), "w", encoding="utf-8") as written:
+        written.write("\n" + text)    # so that its lines have the cell's numbers
     here = {"cwd": COURSE, "env": os.environ | {"IN_A_NOTEBOOK": "1"}, "stdin": subprocess.DEVNULL}
-    done = subprocess.run([sys.executable, file, *words], capture_output=True, text=True, **here)
-    said = (done.stdout + done.stderr).replace(file, "the cell above")
-    said = re.sub(r"line (\d+)", lambda m: f"line {int(m[1]) + 1}", said)    # %%writefile is 1
-    lines = said.replace("--hint", "hint").splitlines()
-    print("\n".join(line for line in lines if not line.startswith("next,")))
+    done = subprocess.run([sys.executable, file, *flags], capture_output=True, text=True, **here)
+    print(done.stdout + done.stderr)
 
 # %% ex1
 show_run("--scene", "drop")

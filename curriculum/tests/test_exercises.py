@@ -6,7 +6,6 @@ Needs numpy and pytest and nothing else, as a learner has them.
 import inspect
 import math
 import re
-import shlex
 import shutil
 import subprocess
 import sys
@@ -29,6 +28,7 @@ SOLUTIONS = {name: (ROOT / f"exercises/solutions/{name}.py").read_text("utf-8") 
 ASKED = {name: bets.asked(GIVEN[name].__doc__) for name in ("ex1", "ex3")}
 OF = {blank: name for name, each in FACTS.items() for blank in each.get("blanks", ())}
 RIGHT = {name: bets.RIGHT[name] for name in OF}
+CALL = "script.main(__name__)"
 
 
 def exercise(name="ex2", **written):
@@ -66,8 +66,7 @@ def copy(tmp_path):
             assert text.count(old) == 1, (name, old)
             text = text.replace(old, new)
         if not changes:
-            head, end = text.split("from kit import script\n")[0], "script.main(__name__)\n"
-            text = f"{head}{SOLUTIONS[name]}\nfrom kit import script\n{end}"
+            text = f"{text.split(CALL)[0]}{CALL}\n\n{SOLUTIONS[name]}"
         path.write_text(text, "utf-8")
 
     return folder, fill
@@ -77,7 +76,7 @@ def run(folder, *words):
     return python(*words, cwd=folder, **NO_PLUGINS)
 
 
-def test_a_script_prints_its_task_or_a_hint_anywhere_and_without_docstrings(tmp_path):
+def test_a_script_prints_its_task_a_hint_or_a_solution_anywhere_and_without_docstrings(tmp_path):
     for name, whole in (("ex1", True), ("ex2", False)):
         result = run(tmp_path, "-OO", ROOT / FILES[name])
         task = GIVEN[name].__doc__.strip()
@@ -87,25 +86,27 @@ def test_a_script_prints_its_task_or_a_hint_anywhere_and_without_docstrings(tmp_
     assert result.stdout == f"hint 3 of 4: {FACTS['ex2']['hints'][2]}\n"
     result = run(tmp_path, ROOT / FILES["ex2"], "--hint", 0)
     assert result.returncode == 2 and "error: argument --hint: invalid choice" in result.stderr
+    result = run(tmp_path, ROOT / FILES["ex4"], "--solution")
+    assert result.returncode == 0 and result.stdout.startswith(SOLUTIONS["ex4"])
+    assert "rests 0.04905 r deep" in result.stdout
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_an_exercise_asks_and_gives_nothing_away_and_its_solution_says_how_it_is_run(name):
+def test_an_exercise_asks_and_gives_nothing_away(name):
     text = (ROOT / FILES[name]).read_text("utf-8")
     for giveaway in ("m g / k", "max(", "clamp", "sqrt", "0.25", "1409", "0.0036", "0.00118"):
         assert giveaway not in text
     head = r'(# .*\n)+"""Exercise \d+, [\w ]+ \(\d+ minutes\): .+[.?]\n'
-    assert re.match(head, text) and "--hint" in text
+    assert re.match(head, text) and f"\n{CALL}\n" in text
     for hint in FACTS[name]["hints"]:
         assert "?" in hint and not re.search(r"[=*/]|max\(", hint)
-    assert f"`python {FILES[name]} --solution`" in SOLUTIONS[name].splitlines()[0]
 
 
 def test_a_learners_way_through_all_ten(copy, tmp_path):
     """Each script says what is next, by a command that works as it is printed, in an odd folder."""
     folder, fill = copy
-    printed = run(folder, "checks.py").stdout
-    assert "10 skipped" in printed and all(f"{each}: " in printed for each in FILES)
+    any_run = "contact.py", "--steps", 5, "--no-rerun", "--out", tmp_path
+    printed = run(folder, *any_run).stdout
     for name in FILES:
         command = printed.splitlines()[-1].removeprefix("next, an exercise: ")
         assert FILES[name] in command
@@ -117,8 +118,7 @@ def test_a_learners_way_through_all_ten(copy, tmp_path):
         assert f"solutions/{name}.py" in printed
     result = run(folder, "checks.py")
     assert result.returncode == 0 and "10 passed" in result.stdout
-    asked = run(folder, "contact.py", "--steps", 5, "--no-rerun", "--out", tmp_path)
-    for text in (printed, result.stdout, asked.stdout):
+    for text in (printed, result.stdout, run(folder, *any_run).stdout):
         assert text.splitlines()[-1].startswith("all exercises are done")
 
 
@@ -127,7 +127,7 @@ def test_what_is_wrong_or_broken_fails_its_own_check_and_says_why(copy):
     fill("ex1", ("PREDICTION = None", "PREDICTION = C"))
     fill("ex2", ("return ...  # TODO: blank 2", 'print("sum", lam + dlam); return lam + dlam'))
     fill("ex3", ("PREDICTION = None", "PREDICTED = 'B'"))
-    fill("ex4", ("script.main(__name__)", "script.main("))
+    fill("ex4", (CALL, "script.main("))
     fill("ex5", ("def solve_contacts", "def solve"))
     fill("ex8", ("MODEL = None", "MODEL = 'lcp'"))
     fill("ex10", ("return ...  # TODO: blank 2", "return 0.5, gap / dtt"))
@@ -149,8 +149,7 @@ def test_what_is_wrong_or_broken_fails_its_own_check_and_says_why(copy):
         assert words in result.stdout, words
     assert "Traceback" not in result.stdout
     result = run(folder, FILES["ex1"])
-    assert result.returncode and "needs quotes" in result.stderr
-    assert "Traceback" not in result.stderr
+    assert result.returncode == 1 and "needs quotes" in result.stdout and not result.stderr
 
 
 SCAN = """dt = 1e-4
@@ -159,16 +158,12 @@ while max(np.linalg.eigvals(step_matrix(mass, stiffness, damping, dt)).real) <= 
 ENDS = [  # what a learner's function does, what is said
     ("import os; os.system('clear; echo hi'); return max(0, lam + dlam)", "is right"),
     ("import sys; print('[]', file=sys.__stdout__); return max(0, lam + dlam)", "is right"),
-    ("print('hi'); return max(0, lam + dlam)", "first of its inputs it\n  printed   hi"),
+    ("print('hi'); return max(0, lam + dlam)", "project_impulse is right\n  printed   hi"),
     ("import sys; sys.stdout.close(); return 1", "is wrong on"),
     ("import threading, time; threading.Thread(target=time.sleep, args=[99]).start()\n"
      "return max(0, lam + dlam)", "is right"),
-    ("import subprocess as s, sys; s.Popen([sys.executable, '-c', 'import time; time.sleep(9)'])"
-     "\nreturn max(0, lam + dlam)", "is right"),
-    ("import os; os._exit(7)", "raised SystemExit: 7\n  line 13: import os; os._exit(7)"),
+    ("import os; os._exit(7)", "ended its process (exit status 7), see "),
     ("import os; os.abort()", "ended its process (exit status "),
-    ("import os, signal; os.kill(os.getpid(), 9)", "ended its process (exit status "),
-    ("raise KeyboardInterrupt", "raised KeyboardInterrupt"),
     ("return input()", "raised EOFError"),
     ("return project_impulse(lam, dlam)", "raised RecursionError"),
     ("import sys; sys.setrecursionlimit(10**9); return project_impulse(lam, dlam)",
@@ -185,7 +180,7 @@ def test_however_a_learners_code_ends_it_is_said_in_words(
 ):
     if "append" in body and sys.platform != "linux":
         pytest.skip("only here memory can be limited")
-    limit = 2 if body.endswith("pass") else 5 if SCAN in body else 60
+    limit = 2 if body.endswith("pass") else 60
     smaller = f"judge.MOST_MEMORY, judge.MOST_EVENTS, judge.LIMIT = 2**31, 10**5, {limit}; judge."
     monkeypatch.setattr(script, "START", script.START.replace("judge.", smaller))
     monkeypatch.setattr(script, "LIMIT", limit)
@@ -196,8 +191,8 @@ def test_however_a_learners_code_ends_it_is_said_in_words(
     state, said = script.judged(name, file)
     assert words in said and "Traceback" not in said, said
     assert capfd.readouterr() == ("", "")
-    if state == "wrong":
-        assert re.search(r"line \d\d|wrong on", said), "it has its line"
+    if state == "wrong" and limit == 60:  # a process that begins slowly has no line yet
+        assert re.search(r"line ([2-9]|\d\d)|wrong on", said), "it has its line"
 
 
 def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are():
@@ -227,12 +222,6 @@ def test_without_pytest_or_numpy_one_line_says_how_to_get_it():
         assert re.search(rf"{lacks}.*: .*(pip install|uv run --with) {lacks}", result.stderr)
 
 
-def test_a_solution_is_shown_at_work_by_its_flag():
-    result = run(ROOT, FILES["ex4"], "--solution")
-    assert result.returncode == 0 and result.stdout.startswith(SOLUTIONS["ex4"])
-    assert "rests 0.04905 r deep" in result.stdout
-
-
 # What a learner writes: right in every form, wrong and named
 
 
@@ -245,7 +234,7 @@ return low"""
 SWEEP = "for _ in range(iters):\n    for c in contacts:\n        "
 VISIT = "add = (c.target - c.v_n()) * c.m_eff; p = max(-c.lam, add); c.lam += p; c.push(p)"
 TYPED = [  # a function, what a learner writes in it, what is said: "" where it is right
-    ("penalty_normal_force", "return float('nan')", "where to look: "),
+    ("penalty_normal_force", "return float('nan')", "a question that helps: "),
     ("penalty_normal_force", "f = stiffness * depth - damping * v_n\nreturn f * (f > 0)", ""),
     ("project_impulse", "return 0.5 * (lam + dlam + abs(lam + dlam))", ""),
     ("project_impulse", "lam + dlam", "returned None, and not numbers; does it end with `return`?"),
@@ -352,10 +341,7 @@ HARD = (0.9999, 0.9999, 0.001, 0.5, 2.0)
     ({"MODEL": "hard"}, "MODEL: given 'hard'; allowed: penalty, implicit, soft"),
     ({"MODEL": "lcp"}, "lcp, leapfrog and exact are not asked for: their contacts are rigid"),
     ({"DT": 0.0001}, "given DT = 0.0001, STIFFNESS = 10000; allowed: DT from 0.0005 to"),
-    ({"DT": "fast"}, "dt: given ['fast']; allowed: one number"),
     ({"DAMPING": math.nan}, "damping: given nan; allowed: a number from 0 to"),
-    ({"SOLREF": 0.005}, "solref: given ['0.005']; allowed: "),
-    ({"SOLIMP": (0.9, 0.95)}, "solimp: given "),
 ])  # fmt: skip
 def test_the_gripper_is_judged_by_what_it_does(choice, part):
     given = {name: value for name, value in vars(GIVEN["ex8"]).items() if name.isupper()}
@@ -368,25 +354,22 @@ def test_the_gripper_is_judged_by_what_it_does(choice, part):
 
 @pytest.mark.parametrize("name", ASKED)
 def test_a_bet_waits_for_choice_and_reason_and_then_there_is_a_word_on_every_choice(name):
-    choices, right = ASKED[name]["choices"], bets.answer(name, bets.measure(name))
-
-    def bet(prediction, why):
-        return bets.judge_bet(name, exercise(name, PREDICTION=prediction, WHY=why))
-
+    choices, right = ASKED[name]["choices"], bets.SOLVED[name].PREDICTION
     for prediction, why, part in (
         (None, "", "no prediction yet"),
         ("D", "so it has to be", "PREDICTION is 'D'; write one of 'A', 'B', 'C' in "),
         ("A", "because", "WHY is 'because'; write a sentence of four words or more in "),
     ):
-        state, words = bet(prediction, why)
+        state, words = bets.judge_bet(name, exercise(name, PREDICTION=prediction, WHY=why))
         assert state == "blank" and part in words
     assert words.endswith(f". {ASKED[name]['why']}") and "?" in ASKED[name]["why"]
     for mine in ("A", " b) ", "C"):
-        state, text = bet(mine, "so it has to be")
-        text = " ".join(text.split())
+        made = exercise(name, PREDICTION=mine, WHY="so it has to be")
+        state, words = bets.judge_bet(name, made)
+        text = " ".join(words.split())
         assert state == "right" and ("That is what happens." in text) == (mine == right)
-        assert text.index(f"Why {right}:") < text.index("Why not"), "the right one first"
-        assert all(f"Why {c}:" in text if c == right else f"Why not {c}:" in text for c in choices)
+        assert re.findall(r"Why (not )?([ABC]):", text)[0] == ("", right), "the right one first"
+        assert sorted(re.findall(r"Why not ([ABC]):", text)) == sorted(set(choices) - {right})
         assert "{" not in text and choices[right] in text and [*choices] == ["A", "B", "C"]
 
 
@@ -398,19 +381,26 @@ def test_twenty_bets_are_counted():
         assert state == "right" and f"holds in {count} of 20;" in words
 
 
-RIGHT_WORDS = {"ex1": "four times as deep", "ex3": "the light ball, and the heavy one gains none"}
 PHYSICS = {"k": 1e4, "g": 9.81, "K": 1.0 / (0.95 * 0.02) ** 2}
 
 
+def test_the_right_letters_are_what_is_measured_and_no_mark_lies_near_its_border():
+    found = SimpleNamespace(**bets.measure("ex1"))
+    assert "four times as deep" in ASKED["ex1"]["choices"][bets.SOLVED["ex1"].PREDICTION]
+    assert found.penalty_at_rest == pytest.approx(4.0 * found.penalty_shown_at_rest, rel=0.01)
+    assert found.lcp_at_rest < 1e-6
+    found = SimpleNamespace(**bets.measure("ex3"))
+    words = "the light ball, and the heavy one gains none"
+    assert words in ASKED["ex3"]["choices"][bets.SOLVED["ex3"].PREDICTION]
+    assert found.penalty_light > 10.0 and found.penalty_heavy < 1.0
+    assert found.lcp_light < 1.0 and found.lcp_heavy < 1.0
+    shares = [x for row in bets.measure_knobs()[0].values() for x in row]
+    assert all(x < 0.4 or 0.95 < x < 1.05 or x > 4.0 for x in shares)
+
+
 @pytest.mark.parametrize("name", [*ASKED, "ex9"])
-def test_keys_formulas_and_numbers_are_those_measured(name):
+def test_formulas_and_numbers_of_reasons_are_those_measured(name):
     measured = bets.measure(name) if name in ASKED else bets.measure_knobs()[1]
-    if name in ASKED:
-        assert RIGHT_WORDS[name] in ASKED[name]["choices"][bets.answer(name, measured)]
-        assert "README's first line" in FACTS[name]["shown"].format(**measured)
-    else:  # no share lies near the borders of what a mark means
-        shares = [x for row in bets.measure_knobs()[0].values() for x in row]
-        assert all(x < 0.4 or 0.95 < x < 1.05 or x > 4.0 for x in shares)
     depth, mass = {"ex1": ("penalty_at_rest", 4.0), "ex9": ("sink", 1.0)}.get(name, ("limit", 0))
     values = PHYSICS | {"depth": 0.1 * measured[depth], "m": mass}
     for text in FACTS[name]["reasons"].values():
@@ -433,10 +423,9 @@ def test_what_is_bet_on_is_what_is_run_and_what_no_command_has_shown():
         rows = FACTS[name]["measured"].items()
         rows = {(x["mass"], x["y"], x["dt"]) for label, x in rows if "shown" not in label}
         assert rows == balls
-    files = "README.md", "contact.py", *FILES.values()
-    texts = "\n".join((ROOT / file).read_text("utf-8") for file in files)
-    for command in re.findall(r"contact\.py (--[^`\n#]*)", texts):
-        assert "--mass" not in command or "--contact soft" in command
+    for file in ("README.md", "contact.py"):
+        commands = re.findall(r"contact\.py (--[^`\n#]*)", (ROOT / file).read_text("utf-8"))
+        assert commands and not any("--mass" in command for command in commands)
 
 
 @pytest.mark.parametrize("name", ["ex4", "ex9", "ex10"])
@@ -446,7 +435,7 @@ def test_a_number_is_what_paper_gives_and_each_slip_of_it_is_named(name):
     for given, state, words in (
         (law, "right", ""), (-law, "right", ""), (f" {law:.3g}", "right", ""),
         (None, "blank", f"no {facts['name']} yet"), ("deep", "blank", "given 'deep'; write a num"),
-        (0.5432, "wrong", "and it is another; "), (math.nan, "wrong", "given nan"),
+        (0.5432, "wrong", "and it is another\n  a question"), (math.nan, "wrong", "given nan"),
         *((eval(text), "wrong", f"likely: {meaning}") for text, meaning in facts["slips"].items()),
     ):  # fmt: skip
         found = bets.judge_number(name, exercise(name, **{facts["name"]: given}))
@@ -455,8 +444,9 @@ def test_a_number_is_what_paper_gives_and_each_slip_of_it_is_named(name):
 
 @pytest.mark.parametrize("name, model", [("ex4", "soft"), ("ex9", "lcp")])
 def test_a_number_is_what_its_command_prints(name, model, tmp_path):
-    (command,) = re.findall(r"^    python (contact.py .*)$", GIVEN[name].__doc__, re.MULTILINE)
-    printed = python(*shlex.split(command), "--no-rerun", "--out", tmp_path).stdout.splitlines()
+    (flags,) = re.findall(r"^    (--.*)$", GIVEN[name].__doc__, re.MULTILINE)
+    words = "contact.py", *flags.split(), "--no-rerun", "--out", tmp_path
+    printed = python(*words).stdout.splitlines()
     heads, row = (next(x for x in printed if word in x).split() for word in ("gap/r", model))
     law = bets.RIGHT[FACTS[name]["number"]["name"]]
     assert float(row[1 + heads.index("gap/r")]) == pytest.approx(-law, rel=5e-3)

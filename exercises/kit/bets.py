@@ -10,12 +10,11 @@ import contact
 from curriculum.commands import near
 
 from . import FACTS, ROOT, load
-from .script import task_of
+from .script import ask, task_of
 
 USUAL, MODELS = contact.Settings(), ("penalty", "lcp")  # the models of which one bets
-RIGHT = {}  # the right answers, by their names
-for path in sorted((ROOT / "exercises/solutions").glob("ex*.py")):
-    RIGHT |= vars(load(path))
+SOLVED = {name: load(ROOT / f"exercises/solutions/{name}.py") for name in FACTS}
+RIGHT = {what: right for each in SOLVED.values() for what, right in vars(each).items()}
 
 
 def columns(corner, heads, rows, form):
@@ -34,14 +33,12 @@ def quality(key, model, scene, dt, steps=2000, settings=USUAL):
 def measure(name):
     """The numbers of a bet, {MODEL_LABEL: number}, and what its reasons quote beside them."""
     facts = FACTS[name]
-    numbers = {
-        f"{model}_{label}": quality(
-            row["key"], model, contact.scene_of(0.0, row["y"], row["mass"]), row["dt"]
-        )
-        for label, row in facts["measured"].items()
-        for model in MODELS
-    }
-    return numbers | {key: eval(text, vars(contact)) for key, text in facts["also"].items()}
+    numbers = {key: eval(text, vars(contact)) for key, text in facts["also"].items()}
+    for label, row in facts["measured"].items():
+        scene = contact.scene_of(0.0, row["y"], row["mass"])
+        for model in MODELS:
+            numbers[f"{model}_{label}"] = quality(row["key"], model, scene, row["dt"])
+    return numbers
 
 
 def table(name, numbers):
@@ -52,16 +49,9 @@ def table(name, numbers):
     return columns(facts["corner"], heads.values(), rows, facts["form"])
 
 
-def answer(name, numbers):
-    """The one letter whose claim holds for what was measured."""
-    claims = FACTS[name]["key"].items()
-    (right,) = [letter for letter, claim in claims if eval(claim, {"abs": abs}, numbers)]
-    return right
-
-
 def asked(text):
     """What the docstring of a bet says: {task, question, choices {letter: choice}, why}."""
-    _title, *task, question, choices, why, _then, _commands = text.strip().split("\n\n")
+    _title, *task, question, choices, why, _then = text.strip().split("\n\n")
     found = re.findall(r"^    ([A-Z])  (.*(?:\n     .*)*)", choices, re.MULTILINE)
     return {
         "task": "\n\n".join(task),
@@ -78,15 +68,15 @@ def judge_bet(name, exercise):
     choices, mine = bet["choices"], str(given).strip(" \t\n.)(").upper()
     if mine not in choices:
         made = "no prediction yet" if given is None else f"PREDICTION is {given!r}"
-        return "blank", f"{made}; write one of {', '.join(map(repr, choices))} in {file}"
+        write = f"write one of {', '.join(map(repr, choices))} in {file}"
+        return "blank", f"{made}; {write}{ask(exercise.__file__, 1)}"
     if len(why.split()) < 4:
         wanted = f"write a sentence of four words or more in {file}. {bet['why']}"
         return "blank", f"no reason yet: WHY is {why!r}; {wanted}"
-    numbers, facts = measure(name), FACTS[name]
-    right = answer(name, numbers)
+    numbers, facts, right = measure(name), FACTS[name], SOLVED[name].PREDICTION
     so = "That is what happens." if mine == right else f"What happens is {right}: {choices[right]}"
     lines = [f"You predicted {mine}: {choices[mine]}", f"Because: {why.strip()}", "", so]
-    for choice in sorted(choices, key=lambda choice: choice != right):  # the right one first
+    for choice in (right, *(choice for choice in choices if choice != right)):
         word = "Why" if choice == right else "Why not"
         lines += ["", f"{word} {choice}: {facts['reasons'][choice].format(**numbers)}"]
     lines += ["", facts["shown"].format(**numbers)]
@@ -98,13 +88,7 @@ def judge_bet(name, exercise):
 
 
 KNOBS = {"k x 4": "stiffness", "dt / 4": "dt", "sweeps x 4": "iters", "beta x 4": "baumgarte"}
-TROUBLES = {  # model, scene, balls, dt [s], steps, measure, seeds
-    "sink": ("penalty", "drop", 1, 0.002, 2000, "rest_penetration_frac", 1),
-    "dive": ("lcp", "drop", 1, 0.002, 600, "max_penetration_frac", 9),
-    "hop": ("lcp", "drop", 1, 0.002, 600, "rebound_frac", 9),
-    "sag": ("lcp", "stack", 10, 0.002, 1000, "rest_penetration_frac", 1),
-    "trembling": ("penalty", "stack", 3, 0.006, 2000, "rest_jitter", 1),
-}
+TROUBLES = FACTS["ex9"]["troubles"]  # model, scene, balls, dt [s], steps, measure, seeds
 
 
 def trouble_of(trouble, knob=None):
@@ -141,8 +125,9 @@ def judge_knobs(name, exercise):
     for trouble in TROUBLES:
         given = mine.get(trouble, ["nothing"])
         if len(given) != len(KNOBS) or set(given) - set("-=+"):
+            hint = ask(exercise.__file__, 1)
             row = f"BETS in {near(exercise.__file__)}, row {trouble}: given {' '.join(given)}"
-            return "blank", f"{row}, allowed: four marks, each - (less), = or + (more)"
+            return "blank", f"{row}, allowed: four marks, each - (less), = or + (more){hint}"
     rows, hits, words = {}, 0, ""
     shares, quoted = measure_knobs()
     for trouble, row in shares.items():
@@ -160,18 +145,18 @@ def judge_knobs(name, exercise):
 
 def judge_number(name, exercise):
     """(state, words) of a number from paper; its slips are other formulas."""
-    facts, file = FACTS[name]["number"], near(exercise.__file__)
-    what, within = facts["name"], facts["within"]
+    facts = FACTS[name]["number"]
+    what, within, hint = facts["name"], facts["within"], ask(exercise.__file__, facts["hint"])
     given, true = getattr(exercise, what, None), RIGHT[what]
     try:
         mine = abs(float(given))  # the table says an overlap with a minus
     except (TypeError, ValueError, OverflowError):
         said = f"no {what} yet" if given is None else f"{what}: given {given!r}"
-        return "blank", f"{said}; write a number in {file}, {facts['unit']}"
+        file = near(exercise.__file__)
+        return "blank", f"{said}; write a number in {file}, {facts['unit']}{hint}"
     if math.isclose(mine, true, rel_tol=within):
         return "right", facts["right"].format(true)
     for text, meaning in facts["slips"].items():
         if math.isclose(mine, eval(text), rel_tol=within):  # our own text
             return "wrong", f"{what}: given {given}; likely: {meaning}"
-    ask = f"{file} --hint {facts['hint']} asks a question"
-    return "wrong", f"{what}: given {given}, and it is another; {ask}"
+    return "wrong", f"{what}: given {given}, and it is another{hint}"

@@ -19,23 +19,23 @@ from curriculum.commands import near
 
 from . import FACTS, load
 from .bets import RIGHT, judge_bet, judge_knobs, judge_number
-from .script import LIMIT, said_of, unreadable
+from .script import LIMIT, ask, said_of, unreadable
 from .trials import SHOWN, judge_gripper, solver
 
 MOST_MEMORY = 2**32  # bytes, chosen
 MOST_EVENTS = 3_000_000  # calls and returns on one input, chosen: about a second
 BLANKS = {name: facts for each in FACTS.values() for name, facts in each.get("blanks", {}).items()}
-PARTS = {  # exercise: what it asks for beside functions
-    **dict.fromkeys(("ex1", "ex3"), [judge_bet]),
-    **dict.fromkeys(("ex4", "ex10"), [judge_number]),
-    **{"ex8": [judge_gripper], "ex9": [judge_knobs, judge_number]},
+PARTS = {  # what an exercise may ask for beside functions, by the facts that it has for that
+    "measured": judge_bet,
+    "advice": judge_gripper,
+    "troubles": judge_knobs,
+    "number": judge_number,
 }
 
 
 def child():
     """The other process: try, write what was found into the report, and be gone."""
     name, file, path = sys.argv[2:]
-    leave, os._exit = os._exit, sys.exit  # which has its line
     with open(path, "w", encoding="utf-8") as report:
         print(f'trying {name}: "{file}", line 1', file=report, flush=True)
         faulthandler.enable(report, all_threads=False)
@@ -49,17 +49,17 @@ def child():
         except BaseException as error:
             found = "wrong", unreadable(file, error)
         print(json.dumps(found), file=report)
-    leave(0)  # whatever threads are left
+    os._exit(0)  # whatever threads are left
 
 
 def judged(name, exercise, report=None):
     """The state of an exercise, and what is said of all that it asks for."""
-    states, said, file = {}, [], near(exercise.__file__)
+    states, said, file = {}, [], exercise.__file__
     for blank in FACTS[name].get("blanks", ()):
         function, after = getattr(exercise, blank, None), BLANKS[blank].get("after")
         code = getattr(inspect.unwrap(function), "__code__", None)
         if not code:
-            return "wrong", f"{blank} is no longer a function of yours in {file}"
+            return "wrong", f"{blank} is no longer a function of yours in {near(file)}"
         place = f'"{code.co_filename}", line {code.co_firstlineno}'
         print(f"trying {blank}: {place}", file=report, flush=True)
         states[blank], words = judge(function, blank, file)
@@ -72,8 +72,8 @@ def judged(name, exercise, report=None):
                 states[blank], words = "wrong", f"a trial of {blank} stopped: {said_of(error)}"
         said.append(words)
     if set(states.values()) <= {"right"}:
-        for part in PARTS.get(name, ()):
-            states[part], words = part(name, exercise)
+        for part in (part for part in PARTS if part in FACTS[name]):
+            states[part], words = PARTS[part](name, exercise)
             said.append(words)
     return min(states.values(), key=("wrong", "blank", "right").index), "\n".join(said)
 
@@ -193,20 +193,19 @@ def likely(name, found, expected):
 @np.errstate(all="ignore")
 def judge(function, name, file):
     """("blank", "wrong" or "right", why in words): a learner's function on all inputs."""
-    ask = f"{file} --hint {BLANKS[name]['hint']} asks a question"
+    hint = ask(file, BLANKS[name]["hint"])
     try:
         found, prints = zip(*(tried(function, name, case) for case in inputs(name)))
     except ValueError as error:
         return "wrong", str(error)
     if any(got is None for got in found):
         line = max(line for *_, line in inspect.unwrap(function).__code__.co_lines() if line)
-        return "blank", f"{name} is still a blank: write what line {line} returns; {ask}"
+        return "blank", f"{name} is still a blank: write what line {line} returns{hint}"
     expected, within = on_all_inputs(name), BLANKS[name].get("within", 1e-9)
     cases = list(zip(inputs(name), found, expected, prints))
     wrong = [case for case in cases if not agree(*case[1:3], within)]
     if not wrong:
-        said = f"{name} is right; on the first of its inputs it", *prints[0]
-        return "right", "\n".join(said) if prints[0] else f"{name} is right"
+        return "right", "\n".join((f"{name} is right", *prints[0]))
     case, got, right, printed = min(wrong, key=lambda case: len(str(case[0])))
     known = likely(name, found, expected)
     return "wrong", "\n".join((
@@ -214,8 +213,7 @@ def judge(function, name, file):
         f"  {name}({', '.join(f'{key}={value}' for key, value in case.items())})",
         *compared(BLANKS[name].get("labels") or labels(**case), got, right),
         *printed,
-        f"  likely: {known}" if known else f"  where to look: {ask}",
-    ))  # fmt: skip
+    )) + (f"\n  likely: {known}" if known else hint)  # fmt: skip
 
 
 def compared(labels, got, right):

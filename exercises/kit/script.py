@@ -1,11 +1,11 @@
 """An exercise's command line, what checks.py asks of it, and what comes next."""
 
-import ast
 import json
 import linecache
 import os
 import re
 import sys
+import traceback
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -24,10 +24,12 @@ BLANK = re.compile(r"^    return \.\.\.|^[A-Z]+ = None|  \?  ", re.MULTILINE)
 
 
 def main(started):
-    """The command line of an exercise that is started, not imported. Ends with its exit status."""
+    """The command line of an exercise that is started, not imported. Ends with its exit status.
+
+    It stands above what the learner writes, which so runs in another process alone (judged).
+    """
     if started != "__main__":
         return
-    sys.excepthook = OTHERWISE
     file = Path(sys.modules[started].__file__)
     name = file.stem.partition("_")[0]  # ex1 of ex1_predict_contact.py
     if name not in FACTS:
@@ -42,13 +44,13 @@ def main(started):
     args = parser.parse_args()
     if args.hint:
         print(f"hint {args.hint} of {len(hints)}: {hints[args.hint - 1]}")
-        return
+        sys.exit(0)
     if args.solution:
         print(solution.read_text("utf-8"))
     state, words = judged(name, solution if args.solution else file)
     if state == "blank" and "IN_A_NOTEBOOK" not in os.environ:  # a bet whole; of a task, its title
         task = task_of(name).strip()
-        print(task if "key" in FACTS[name] else task.split("\n")[0], end="\n\n")
+        print(task if "measured" in FACTS[name] else task.split("\n")[0], end="\n\n")
     print(words)
     if state == "right" and not args.solution:
         print(f"\nanother right answer: {near(str(solution))}\n\n{practise()}")
@@ -57,17 +59,16 @@ def main(started):
 
 def task_of(name):
     """The docstring of an exercise, read from its file: Python may leave it out (-OO)."""
-    return ast.get_docstring(ast.parse((ROOT / FILES[name]).read_text("utf-8")), clean=False)
+    return (ROOT / FILES[name]).read_text("utf-8").split('"""')[1]
 
 
 def said_of(error):
     """An error in words, with the last line of the learner's own file that it came through."""
-    trace, line = error.__traceback__, ""
-    while trace:
-        file, number = trace.tb_frame.f_code.co_filename, trace.tb_lineno
+    line = ""
+    for frame, number in traceback.walk_tb(error.__traceback__):
+        file = frame.f_code.co_filename
         if re.fullmatch(r"ex\d+\w*\.py", Path(file).name):
             line = f"\n  line {number}: {linecache.getline(file, number).strip()}"
-        trace = trace.tb_next
     return f"{type(error).__name__}: {error}{line}"
 
 
@@ -75,11 +76,6 @@ def unreadable(file, error):
     """What is said of a file that is no Python, or stops while it is read."""
     quotes = f", {error.name} needs quotes around it" if type(error) is NameError else ""
     return f"{near(str(file))} cannot be read{quotes}: {said_of(error)}"
-
-
-OTHERWISE = sys.excepthook
-if re.match(r"ex\d+_", Path(sys.argv[0]).name):  # an exercise that stops before main
-    sys.excepthook = lambda _, error, trace: print(unreadable(sys.argv[0], error), file=sys.stderr)
 
 
 def judged(name, file):
@@ -100,26 +96,34 @@ def judged(name, file):
     if status == 0 and text.endswith("]\n"):
         return json.loads(text.splitlines()[-1])
     begun, _, stack = text.partition("most recent call first")
-    found = [re.findall(rf'{re.escape(Path(file).name)}", line (\d+)', x) for x in (stack, begun)]
-    line = (found[0][:1] or found[1][-1:] or [1])[0]
-    what, place = begun.split("trying ")[-1].split(":")[0], f"{near(str(file))}, line {line}"
+    lines = re.compile(rf'{re.escape(Path(file).name)}", line (\d+)').findall
+    line = [*lines(stack), *reversed(lines(begun)), 1][0]  # innermost, or last begun
+    what = begun.split("trying ")[-1].split(":")[0]
+    ended = f"ended its process (exit status {status}), see"
     if "Timeout" in begun:
-        return (
-            "wrong",
-            f"{what} takes too long, or does not end: stopped after {LIMIT} s in {place}",
-        )
-    return "wrong", f"{what} ended its process (exit status {status}), see {place}"
+        ended = f"takes too long, or does not end: stopped after {LIMIT} s in"
+    return "wrong", f"{what} {ended} {near(str(file))}, line {line}"
 
 
 # What comes next: any command may ask, and it needs no numpy
+
+
+def start(file):
+    """The line that starts an exercise here, as README says it; in a notebook a cell's first."""
+    by = ("uv", "run") if "UV" in os.environ else (sys.executable,)
+    return quoted(*(("%%exercise",) if "IN_A_NOTEBOOK" in os.environ else by), ROOT / file)
+
+
+def ask(file, hint):
+    """The line that sends a learner to a hint."""
+    return f"\n  a question that helps: {start(file)} --hint {hint}"
 
 
 def practise():
     """The line that names the next exercise that is not begun, or what comes after them."""
     for file in FILES.values():
         if BLANK.search((ROOT / file).read_text("utf-8", "replace")):
-            by = ("uv", "run") if "UV" in os.environ else (sys.executable,)  # as README says it
-            return f"next, an exercise: {quoted(*by, ROOT / file)}"
+            return f"next, an exercise: {start(file)}"
     return "all exercises are done; next, the questions at the end of the chapter"
 
 

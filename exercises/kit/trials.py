@@ -13,6 +13,7 @@ from curriculum.implicit import implicit_step
 
 from . import FACTS
 from .bets import RIGHT
+from .script import ask
 
 DROP, STACK = contact.build_scene("drop"), contact.build_scene("stack")
 GROOVE = contact.scene_of([0.0, -0.105, 0.105], [0.8, 0.1, 0.1], [1.0, math.inf, math.inf])
@@ -122,33 +123,30 @@ SHOWN = {  # blank: what shows it at work; of two that work together, the second
 
 
 def gripper(exercise):
-    """Its step, by the model and the numbers chosen. Raises ValueError for what is not allowed."""
-    knobs = {"dt": (), "stiffness": (), "damping": (), "solref": (2,), "solimp": (5,)}
-    values = [contact.within(k, getattr(exercise, k.upper()), shape) for k, shape in knobs.items()]
-    dt, k, c, solref, solimp = values
+    """(scene, step) by the model and the numbers chosen. ValueError for what is not allowed."""
+    cup = contact.scene_of([-0.205, 0.0, 0.205], 0.1, [0.2, 1, 0.2], damping=exercise.DAMPING)
+    settings = contact.Settings(exercise.STIFFNESS, solref=exercise.SOLREF, solimp=exercise.SOLIMP)
+    model, dt, k = exercise.MODEL, exercise.DT, exercise.STIFFNESS
+    contact.checked("soft", cup, dt, 1, settings)
     if not 0.0005 <= dt <= 0.02 or not k >= 1.0:
         allowed = "DT from 0.0005 to 0.02 s, STIFFNESS from 1 N/m"
         raise ValueError(f"given DT = {dt:g}, STIFFNESS = {k:g}; allowed: {allowed}")
-    spring = {"stiffness": k, "damping": c}
-    solref, solimp = contact.soft_defaults(0.0, dt, solref, solimp)
-    implicit = partial(RIGHT["implicit_spring"], dt=dt, **spring)
-    steps = {
-        "penalty": partial(contact.penalty_step, dt=dt, **spring),
-        "implicit": partial(implicit_step, dt=dt, spring=implicit),
-        "soft": partial(contact.soft_step, dt=dt, solref=solref, solimp=solimp),
-    }
-    if str(exercise.MODEL) not in steps:
-        rigid = f". {FACTS['ex8']['rigid']}" if str(exercise.MODEL) in contact.MODELS else ""
-        raise ValueError(f"MODEL: given {exercise.MODEL!r}; allowed: {', '.join(steps)}{rigid}")
-    return steps[exercise.MODEL]
+    if model == "implicit":
+        spring = partial(RIGHT["implicit_spring"], stiffness=k, damping=cup.damping, dt=dt)
+        return cup, partial(implicit_step, dt=dt, spring=spring)
+    if model not in ("penalty", "soft"):
+        rigid = f". {FACTS['ex8']['rigid']}" if model in [*contact.MODELS] else ""
+        raise ValueError(f"MODEL: given {model!r}; allowed: penalty, implicit, soft{rigid}")
+    return cup, contact.step_of(model, cup, dt, settings)
 
 
 def judge_gripper(name, exercise):
     """(state, words) of what is chosen in exercise 8, by what the gripper does."""
     if exercise.MODEL is None:
-        return "blank", f"no choice yet: set MODEL in {near(exercise.__file__)}"
+        file = exercise.__file__
+        return "blank", f"no choice yet: set MODEL in {near(file)}{ask(file, 1)}"
     try:
-        step = gripper(exercise)
+        cup, step = gripper(exercise)
     except ValueError as error:
         return "wrong", str(error)
 
@@ -157,7 +155,6 @@ def judge_gripper(name, exercise):
             ball.fx, ball.fy = force, 0.0
         return step(balls)
 
-    cup = contact.scene_of([-0.205, 0.0, 0.205], 0.1, [0.2, 1.0, 0.2])
     dt, k, c = exercise.DT, exercise.STIFFNESS, exercise.DAMPING
     run = contact.simulate(squeezed, cup, dt, math.ceil(1.0 / dt - 1e-9))
     found = contact.contact_quality(run, cup, dt)

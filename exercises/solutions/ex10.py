@@ -1,5 +1,3 @@
-"""Exercise 10, a right answer: `python exercises/ex10_ask_twice.py --solution` runs it."""
-
 import math
 
 

@@ -1,6 +1,3 @@
-"""Exercise 2, a right answer: `python exercises/ex2_completion_contact.py --solution` runs it."""
-
-
 def penalty_normal_force(depth, v_n, stiffness, damping):
     return max(0.0, stiffness * depth - damping * v_n)
 

@@ -1,7 +1,3 @@
-"""Exercise 4, a right answer: `python exercises/ex4_rest_of_soft.py --solution` runs it.
-
-At rest the mixture is zero: (1 - d) g = d K d depth, with K = 1 / (d1 timeconst dampratio)^2.
-Here d = d1 = 0.8 at every depth, so d^2 K = 1 / timeconst^2, and no mass is left.
-"""
-
+# At rest the mixture is zero: (1 - d) g = d K d depth, with K = 1 / (d1 timeconst dampratio)^2.
+# Here d = d1 = 0.8 at every depth, so d^2 K = 1 / timeconst^2, and no mass is left.
 DEPTH = (1.0 - 0.8) * 9.81 * 0.05**2 / 0.1

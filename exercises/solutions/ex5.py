@@ -1,6 +1,3 @@
-"""Exercise 5, a right answer: `python exercises/ex5_solve_contacts.py --solution` runs it."""
-
-
 def solve_contacts(contacts, iters):
     for _ in range(iters):
         for c in contacts:

@@ -1,5 +1,3 @@
-"""Exercise 6, a right answer: `python exercises/ex6_find_the_cliff.py --solution` runs it."""
-
 import numpy as np
 
 

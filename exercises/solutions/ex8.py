@@ -1,9 +1,5 @@
-"""Exercise 8, a right answer: `python exercises/ex8_two_fingers.py --solution` runs it.
-
-20 N press a spring of 3e5 N/m in by 0.07 mm, less than a thousandth of a radius. By its explicit
-step it would want steps below 1 ms; implicit takes 4.
-"""
-
+# 20 N press a spring of 3e5 N/m in by 0.07 mm, less than a thousandth of a radius. By its explicit
+# step it would want steps below 1 ms; implicit takes 4.
 MODEL = "implicit"
 DT = 0.004
 STIFFNESS = 3e5

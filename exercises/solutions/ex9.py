@@ -1,5 +1,3 @@
-"""Exercise 9, a right answer: `python exercises/ex9_which_knob.py --solution` runs it."""
-
 BETS = """
               k x 4    dt / 4    sweeps x 4    beta x 4
     sink        -        =           =            =

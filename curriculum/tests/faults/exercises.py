@@ -19,11 +19,11 @@ FAULTS = [
     (TRIALS, '"solve_contacts", solver(', '"penalty_step", solver(', T + "beside"),
     (BETS, "map(str.__eq__,", "map(str.__ne__,", T + "counted"),
     (BETS, 'replace("\\N{MINUS SIGN}", "-")', 'replace("~", "-")', T + "counted"),
-    (BETS, "key=lambda choice: choice != right", "key=lambda choice: choice == right",
-     T + "word_on_every"),
+    (BETS, "for choice in (right, *", "for choice in (*sorted(choices), *", T + "word_on_every"),
     (BETS, "if choice == right else", "if choice != right else", T + "word_on_every"),
     # what is said of a bet
-    (ANSWERS, "penalty_heavy < 1 and lcp_light < 1", "lcp_light > 1", T + "those_measured"),
+    (ANSWERS, '"at rest", "key": "rest_penetration_frac", "mass": 4.0',
+     '"at rest", "key": "rest_penetration_frac", "mass": 3.0', T + "right_letters"),
     (ANSWERS, "`k depth = m g`, here", "`k depth = m g / 2`, here", T + "those_measured"),
     (ANSWERS, "{penalty_deepest:.3f} r. lcp", "0.351 r. lcp", T + "those_measured"),
     (ANSWERS, '"10 kg", "key": "energy_excess", "mass": 10.0', '"10 kg", "key": "energy_excess", '
@@ -31,14 +31,14 @@ FAULTS = [
     # what waits, and however it ends
     (SCRIPT, "^    return", "^  return", T + "all_ten"),
     (SCRIPT, '"Timeout" in begun', '"Timed" in begun', T + "however"),
-    (SCRIPT, "(found[0][:1] or found[1][-1:]", "(found[0][:0] or found[1][:0]", T + "however"),
+    (SCRIPT, "[*lines(stack), *reversed(lines(begun)), 1]", "[1]", T + "however"),
     (JUDGE, "next(events) > MOST_EVENTS", "next(events) < 0", T + "however"),
     (JUDGE, "resource.setrlimit", "resource.getrlimit and len", T + "however"),
-    (JUDGE, "leave(0)  #", "pass  #", T + "however"),
+    (JUDGE, "os._exit(0)  #", "pass  #", T + "however"),
     # what names a slip
     (JUDGE, "agree(got, max(found), 1e-4)", "False", T + "types"),
     (JUDGE, "min(shares) > 0.45", "min(shares) > 1", T + "types"),
     (JUDGE, 'if name == "longest_step" and', "if False and", T + "however"),
-    (JUDGE, "{known}", "{ask}", T + "slip"),
-    (JUDGE, 'if prints[0] else f"', 'if not prints[0] else f"', T + "however"),
+    (JUDGE, "likely: {known}", "likely: {hint}", T + "slip"),
+    (JUDGE, ', *prints[0])', ',)', T + "however"),
 ]  # fmt: skip
