@@ -19,9 +19,11 @@ import contact
 from curriculum.gate.chapter import CHAPTER, read
 from curriculum.page import fonts
 
-# the blanks within a number and between it and its unit
 FOLDED = ("references", "the-rest-of-the-file", "colophon")  # sections, on a phone
-UNIT = re.compile(r"(?:(?<=[\d⁰¹²³⁴-⁹])|^) (?=(?:r|s|m|mm|kg|J|N|N/m|m/s)\b)| (?=×)|(?<=×) ")
+# the blanks within a number and between it and its unit
+UNIT = re.compile(
+    r"(?:(?<=[\d⁰¹²³⁴-⁹])|^) (?=(?:r|s|m|mm|kg|J|N|N/m|m/s)\b)|(?<=\bN) (?=s\b)| (?=×)|(?<=×) "
+)
 
 
 # ---- Markdown
