@@ -21,7 +21,6 @@ from curriculum.page.panels import BOOKKEEPING, panel
 from curriculum.show import picture
 
 SCENES = ("drop", "bounce", "stack")  # of the figures: balls in one column
-ABOUT = {"error": "Run time against error: ", "penalty": "Stability: "}  # pictures by first word
 EARLY = 'document.documentElement.className = "js"'  # before the first paint
 COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb"
 
@@ -66,9 +65,8 @@ def drawn_by(kind, name):
     box = re.search(r'<svg\b[^>]*?\bviewBox="\S+ \S+ ([\d.]+) ([\d.]+)"', text, re.DOTALL)
     title = re.search(r"<title[^>]*>(.*?)</title>", text, re.DOTALL)
     held = quote(" ".join(text.split()), safe=" <>=/:;,'()")  # a quarter shorter than base64
-    what = title[1].strip() if title else name.replace("-", " ")
     return {
-        "alt": ABOUT.get(path.name.partition("-")[0], "") + what,
+        "alt": title[1].strip() if title else name.replace("-", " "),
         "src": Markup(f"data:image/svg+xml,{held}"),
         "width": box[1],
         "height": box[2],

@@ -6,7 +6,6 @@ from curriculum.page.chapter import inline, markdown
 from exercises.kit import FACTS, bets, script
 
 TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")
-measured = bets.measure  # the numbers of a bet
 
 
 def task_of(text):
@@ -24,7 +23,7 @@ def exercise(name, file):
     number, minutes, told = parts.groups()
     facts, bet = FACTS[name], {"choices": {}}
     if "measured" in facts:
-        numbers, bet = measured(name), bets.asked(words)
+        numbers, bet = bets.measure(name), bets.asked(words)
         task = bet["task"]
         bet["answer"] = bets.SOLVED[name].PREDICTION
         bet["reasons"] = {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()}
