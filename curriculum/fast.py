@@ -19,7 +19,6 @@ from curriculum.lesson import rows, to_loops
 from curriculum.lesson.compiled import Loops
 
 STATES = 200_000  # positions of balls that are filled in one go, before progress() hears of it
-PUSHED = np.dtype([("rank", np.int64), ("lam", float)])
 _, _, BY_HAND = Path(rows.__file__).read_text("utf-8").partition("\n# What is compiled")
 BY_HAND = f"import math\nimport numpy as np\nfrom {rows.__name__} import World\n{BY_HAND}"
 GAPS = Loops("gaps", BY_HAND)
@@ -45,7 +44,7 @@ def table(names, source) -> np.dtype:
     return np.dtype([(name, np.uint32 if name in "ab" else float) for name in used])
 
 
-def make_balls(scene, source=BY_HAND) -> np.ndarray:
+def make_balls(scene, source) -> np.ndarray:
     """The balls of a scene, for these loops; then the floor."""
     balls = np.zeros(len(scene.mass) + 1, table((*to_loops.BALL, "listed_x", "listed_y"), source))
     columns = dict(zip(("x", "y", "vx", "vy"), (*scene.q0, *scene.v0)))
@@ -61,19 +60,17 @@ class Stepper:
     def __init__(self, model, scene, dt, settings):
         step = contact.step_of(model, scene, dt, settings)
         self.knobs = tuple(step.keywords.values())
+        self.skip = settings.skip
         self.spreads = model == "lcp" and step.keywords["warm"] == 0.0  # any order does
         self.loops, self.listed = loops_of(step.func.__name__), -math.inf
         source = self.loops.source
-        tables = (
-            np.empty(0, table(to_loops.CONTACT, source)),
-            np.empty((2, 0), np.uint32),
-            np.empty(0, PUSHED),
-        )
-        self.world = rows.World(make_balls(scene, source), *tables, np.zeros(2, np.int64))
+        contacts, pairs = np.empty(0, table(to_loops.CONTACT, source)), np.empty((2, 0), np.uint32)
+        tables = make_balls(scene, source), contacts, pairs, np.empty((0, 2)), np.zeros(2, np.int64)
+        self.world = rows.World(*tables)
 
     def take(self, states) -> None:
-        """Take len(states) - 1 steps, and write the states to states[1:]."""
-        given = states, self.world, self.listed, self.spreads, self.knobs
+        """Take len(states) - 1 steps from states[0], that of now, and write them to states[1:]."""
+        given = states, self.world, self.listed, self.spreads, self.skip, self.knobs
         self.world, self.listed = self.loops.load({"take_steps": given}).take_steps(*given)
 
 

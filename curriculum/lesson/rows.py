@@ -16,7 +16,7 @@ class World(NamedTuple):
     balls: np.ndarray  # the last is the floor
     contacts: np.ndarray
     pairs: np.ndarray  # (2, M): balls that may touch in this step, in contact.py's order
-    pushed: np.ndarray  # the impulses of the last step, in the order of its contacts
+    pushed: np.ndarray  # (M, 2): rank and impulse of the last step's contacts, in their order
     count: np.ndarray  # type: ignore[assignment]  # how many contacts, and how many impulses
 
 
@@ -38,10 +38,10 @@ def warm_start(W, contacts, share):
     k, known = 0, W.count[1]
     for c in contacts:
         here = rank(W, c)
-        while k < known and W.pushed[k].rank < here:
+        while k < known and W.pushed[k, 0] < here:
             k += 1
-        found = k < known and W.pushed[k].rank == here
-        W.contacts[c].lam = share * (W.pushed[k].lam if found else 0.0)
+        found = k < known and W.pushed[k, 0] == here
+        W.contacts[c].lam = share * (W.pushed[k, 1] if found else 0.0)
         contact_push(W, c, W.contacts[c].lam)
 
 
@@ -55,35 +55,23 @@ def remember(W, balls, contacts):
     """Keep the impulses for the next step."""
     W.count[1] = len(contacts)
     for k, c in enumerate(contacts):
-        W.pushed[k].rank, W.pushed[k].lam = rank(W, c), W.contacts[c].lam
+        W.pushed[k, 0], W.pushed[k, 1] = rank(W, c), W.contacts[c].lam
 
 
-def shadows(x, y, radius):
-    """Where the balls' shadows on the axis of the wider spread begin, and where they end.
-
-    A shadow is as long as its own ball is wide, so one large ball costs no more than itself; above
-    is room for rounding.
-    """
-    place = y if np.ptp(y) > np.ptp(x) else x
-    low, high = place - radius, place + (1.0 + 1e-9) * radius + 1e-15 * np.abs(place)
-    return low, high
-
-
-def list_pairs(balls, reach):
+def list_pairs(x, y, radius, reach):
     """The pairs (2, M) of balls whose gap is at most `reach` [m] now: first < second, in order.
 
-    A ball with a position that is not finite is in no pair: it touches nothing.
+    Near balls are found by their shadows on the axis of the wider spread. A shadow is as long as
+    its own ball is wide, so one large ball costs no more than itself; above is room for `reach` and
+    for rounding. A ball with a position that is not finite is in no pair: it touches nothing.
     """
-    for ball in balls:
-        ball.listed_x, ball.listed_y = ball.x, ball.y
-    x, y, radius = balls.x[:-1], balls.y[:-1], balls.radius[:-1]
-    low, high = shadows(x, y, radius)
-    order = np.argsort(low)
-    reach, count, keys = (1.0 + 1e-9) * reach, len(balls), []
-    for k in range(len(order)):
+    place, reach = y if np.ptp(y) > np.ptp(x) else x, (1.0 + 1e-9) * reach
+    low, high = place - radius, place + (1.0 + 1e-9) * radius + 1e-15 * np.abs(place) + reach
+    order, count, keys = np.argsort(low), len(x), []
+    for k in range(count):
         i = order[k]
         for j in order[k + 1 :]:
-            if low[j] > high[i] + reach:
+            if low[j] > high[i]:
                 break
             dx, dy = x[i] - x[j], y[i] - y[j]
             limit = (1.0 + 1e-9) * (radius[i] + radius[j]) + reach
@@ -109,64 +97,101 @@ def spread_out(pairs, count):
     return pairs[:, np.sort(rounds * size + np.arange(size)) % size]
 
 
-def farthest_move(balls):
-    """How far [m] the farthest ball has moved since the pairs were listed; 0 for one nowhere."""
+def farthest_move(x, y, old_x, old_y):
+    """How far [m] the farthest ball has moved; 0 for one nowhere."""
     farthest = 0.0
-    for ball in balls:
-        dx, dy = ball.x - ball.listed_x, ball.y - ball.listed_y
+    for k in range(len(x)):
+        dx, dy = x[k] - old_x[k], y[k] - old_y[k]
         farthest = larger(farthest, dx * dx + dy * dy)
     return math.sqrt(farthest)
 
 
 def with_pairs(W, reach, spreads):
     """The tables with the pairs that are near now, and with room for their contacts."""
-    pairs = list_pairs(W.balls, reach)
+    balls = W.balls[:-1]
+    balls.listed_x[:], balls.listed_y[:] = balls.x, balls.y
+    pairs = list_pairs(balls.x, balls.y, balls.radius, reach)
     if spreads:
         pairs = spread_out(pairs, len(W.balls))
     most = max(len(W.contacts), len(W.balls) + pairs.shape[1])
-    pushed = np.empty(most, W.pushed.dtype)
+    pushed = np.empty((most, 2))
     pushed[: W.count[1]] = W.pushed[: W.count[1]]
     return World(W.balls, np.empty(most, W.contacts.dtype), pairs, pushed, W.count)
 
 
-def take_steps(states, W, listed, spreads, knobs):
+def take_steps(states, W, listed, spreads, skip, knobs):
     """Take len(states) - 1 steps, and write the states to states[1:].
 
-    The world's pairs had gaps of at most `listed` [m]. Returns these two at the end.
+    The world's pairs had gaps of at most `listed` [m]. Returns these two at the end. With `skip`,
+    once state and impulses are those of an earlier step, what follows is a copy, as in simulate. A
+    step is compared with one other, the last mark; marks grow rarer (Brent 1980).
     """
-    balls, skin = np.arange(len(W.balls) - 1).astype(np.uint32), np.median(W.balls.radius[:-1])
-    for k in range(1, len(states)):
+    balls, table = np.arange(len(W.balls) - 1).astype(np.uint32), W.balls
+    skin, marked = np.median(table.radius[:-1]), W.pushed[: W.count[1]].copy()
+    k, mark, steps = 0, 0, len(states) - 1
+    while k < steps:
+        k += 1
         reach = step_reach(W, balls, knobs[0])  # no model looks farther
-        if not farthest_move(W.balls) <= 0.499 * (listed - reach):  # two may have come so near
+        moved = farthest_move(table.x, table.y, table.listed_x, table.listed_y)
+        if not moved <= 0.499 * (listed - reach):  # two may have come so near
             listed = reach + skin
             W = with_pairs(W, listed, spreads)
         W.count[0] = 0
         take_step(W, balls, *knobs)
         for i in balls:
-            ball = W.balls[i]
+            ball = table[i]
             states[k, 0, i], states[k, 1, i] = ball.x, ball.y
             states[k, 2, i], states[k, 3, i] = ball.vx, ball.vy
+        pushed = W.pushed[: W.count[1]]
+        if skip and same(states[k], states[mark]) and same(pushed, marked):
+            period = k - mark
+            for later in range(k + 1, steps + 1):
+                states[later] = states[later - period]
+            k += (steps - k) // period * period  # then the world is in this state again
+        elif k > 64 + 1.25 * mark:
+            mark, marked = k, pushed.copy()
     return W, listed
+
+
+def same(numbers, others):
+    """Whether two arrays hold the same bits."""
+    if len(numbers) != len(others):
+        return False
+    for one, other in zip(numbers.view(np.int64).flat, others.view(np.int64).flat):
+        if one != other:
+            return False
+    return True
 
 
 def find_gaps(q, radius):
     """The smallest gap to the floor or between two balls in each state q (S, 2, N).
 
-    Balls whose shadows are farther apart than the smallest gap so far need no look, unless a
-    position is not finite: a gap of two may be no number then, and so is the smallest.
+    Pairs that are not listed were farther apart than `reach`, and may have come nearer by what two
+    balls have moved. Where that leaves it open which pair is nearest, they are listed anew.
     """
-    gaps, order = np.empty(len(q)), np.arange(len(radius))
+    gaps, reach, listed = np.empty(len(q)), -math.inf, q[0]
+    order = np.argsort(q[0, 0])
+    pairs = np.stack((order[1:], order[:-1])).astype(np.uint32)  # some, for a first bound
     for k in range(len(q)):
-        x, y = q[k, 0], q[k, 1]
-        finite, gap = np.isfinite(q[k]).all(), (y - radius).min()
-        low, high = shadows(x, y, radius)
-        order = order[np.argsort(low[order])]  # fast, since few balls change places
-        for n in range(len(order)):
-            i = order[n]
-            for j in order[n + 1 :]:
-                if finite and low[j] > high[i] + gap + 1e-9 * abs(gap):
-                    break
-                dx, dy, radii = x[i] - x[j], y[i] - y[j], radius[i] + radius[j]
-                gap = np.minimum(gap, math.sqrt(dx * dx + dy * dy) - radii)
+        x, y = q[k]
+        gap = gap_of(x, y, radius, pairs)
+        if not np.isfinite(q[k]).all():  # a gap may be no number, and then the smallest is none
+            for lag in range(1, len(x)):
+                some = np.stack((np.arange(lag, len(x)), np.arange(len(x) - lag)))
+                gap = np.minimum(gap, gap_of(x, y, radius, some))
+        elif not gap < 0.999 * reach - 2.0 * farthest_move(x, y, listed[0], listed[1]):
+            reach, listed = max(gap, 0.0) + np.median(radius), q[k]
+            pairs = list_pairs(x, y, radius, reach)
+            gap = gap_of(x, y, radius, pairs)
         gaps[k] = gap
     return gaps
+
+
+def gap_of(x, y, radius, pairs):
+    """The smallest gap to the floor or between two balls of `pairs` (2, M)."""
+    gap = (y - radius).min()
+    for k in range(pairs.shape[1]):
+        i, j = pairs[0, k], pairs[1, k]
+        dx, dy = x[i] - x[j], y[i] - y[j]
+        gap = np.minimum(gap, math.sqrt(dx * dx + dy * dy) - (radius[i] + radius[j]))
+    return gap
