@@ -14,7 +14,6 @@ two, measures little, and writes to outputs/bench-quick, which nothing quotes.
 import os
 import subprocess
 import sys
-from operator import itemgetter
 
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
@@ -27,39 +26,41 @@ with needs("bench"):
 
 FULL, QUICK = stored.ROOT / stored.FOLDERS["bench"], stored.ROOT / "outputs" / "bench-quick"
 CODE = "curriculum/bench/measure.py", "curriculum/bench/settings.csv"  # and what they import
-who = itemgetter("engine", "setting")  # of a row
 
 
 def take(part, quick, only, folder):
-    """Measure a part, or the settings of it that are named, and write its file."""
-    order, groups = [c[:2] for c in engines.EVERYBODY], list(report.problems.BY_NAME)
-    wanted = [c[:2] for c in engines.EVERYBODY if not only or only in c.name]
-    if not wanted:
-        raise ValueError(f"--only {only}: no setting in settings.csv has this name")
+    """Measure a part, or the settings of it whose names contain `only`, and write its file."""
+    if not any(only in name for name in engines.BY_NAME):
+        raise ValueError(f"--only {only}: no setting in settings.csv that runs here has this name")
     command = f"python -m curriculum.bench {part}" + f" --only {only!r}" * bool(only)
     code = ("contact.py", "curriculum/bench/commands.csv") if part == "processes" else ()
     about = stored.origin(command, *CODE, *code, kept=folder == FULL)
     about["versions"] |= engines.versions()
     sections, made = stored.load(folder)
-    stay = [row for row in sections.get(part, ()) if only and who(row) in set(order) - set(wanted)]
-    found = measure.PARTS[part](quick, lambda c: c[:2] in wanted, stay)
-    if not found:
-        raise ValueError(f"{part}: nothing of {only or 'it'} runs here")
-
-    def place(row):  # that it has in a whole measurement
-        return row.get("bodies") or groups.index(row["problem"]), order.index(who(row))
-
-    rows = sorted(stay + found, key=place) if only else found
-    if not only:
+    if only:
+        known, groups = list(engines.EVERYBODY), list(report.problems.BY_NAME)
+        stay = [row for row in sections.get(part, ()) if name(row) in known]
+        stay = [row for row in stay if only not in name(row)]
+        rows = stay + measure.PARTS[part](quick, only, stay)
+        rows.sort(key=lambda row: known.index(name(row)))
+        rows.sort(key=lambda row: row.get("bodies") or groups.index(row["problem"]))
+    else:
+        rows = measure.PARTS[part](quick, only, [])
         made = {key: value for key, value in made.items() if key.split()[0] != part}
-    stored.save(folder / f"{part}.csv", rows)
-    write_json(folder / "made.json", made | {f"{part} {only or ''}".strip(): about})
+    if rows:
+        stored.save(folder / f"{part}.csv", rows)
+        write_json(folder / "made.json", made | {f"{part} {only}".strip(): about})
+
+
+def name(row):
+    """Of a row's setting."""
+    return f"{row['engine']} {row['setting'] or ''}".strip()
 
 
 def main(argv=None):
     parser = Parser(prog="python -m curriculum.bench", description=__doc__)
     parser.add_argument("part", nargs="?", default="all", choices=("all", *measure.PARTS, "draw"))
-    parser.add_argument("--only", help="settings whose name contains this")
+    parser.add_argument("--only", default="", help="settings whose name contains this")
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
     args = parser.parse_args(argv)
     folder = QUICK if args.quick else FULL

@@ -1,9 +1,10 @@
 """Who competes: other engines, and our models, as sessions that step the scenes of contact.py.
 
 **To send a better setting, add one line to settings.csv**: the engine, its options as they are
-typed, and the problems that it is for (names, "all", "-name" for all but this one, or a group of
-GROUPS; piles/4: the piles, with four substeps in a step of 2 ms). The benchmark runs every line and
-names the best. Options are the arguments of a session's __init__, or contact.py's own flags.
+typed, the problems that it is for (names, "all", "-name" for all but this one, or a group of
+GROUPS), the numbers of substeps in 2 ms that it is measured with (none: it chooses its own steps),
+and those for the piles. The benchmark runs every line and names the best. Options are the arguments
+of a session's __init__, or contact.py's own flags.
 
 Every engine is optional. The same for all: balls that cannot rotate, no friction, one thread, the
 scene's masses, radii and restitution, and a floor along y = 0. A ball of infinite mass is one that
@@ -340,9 +341,14 @@ class Drake(Session):
         logging.getLogger("drake").setLevel(logging.ERROR)
         self.scene, self.dt, self.time, self.dense = scene, dt, 0, scheme and not cut
         self.moving = np.flatnonzero(np.isfinite(scene.mass))
-        builder = drake.DiagramBuilder()
-        plant, _ = drake.AddMultibodyPlantSceneGraph(builder, time_step=0.0 if scheme else dt)
-        self.plant, skin = plant, self.skin(scene, stiffness, dissipation, dt)
+        builder, lossy = drake.DiagramBuilder(), float(scene.restitution < 1.0)
+        skin = dict(hunt_crossley_dissipation=lossy * dissipation, relaxation_time=lossy * dt)
+        skin |= dict(point_stiffness=2.0 * stiffness)  # of two surfaces in series: half of it
+        skin = drake.DefaultProximityProperties(dynamic_friction=0, static_friction=0, **skin)
+        every = drake.SceneGraphConfig(default_proximity_properties=skin)
+        points = drake.MultibodyPlantConfig(time_step=0 if scheme else dt, contact_model="point")
+        self.plant, _ = drake.AddMultibodyPlant(points, every, builder)
+        plant = self.plant
         plant.mutable_gravity_field().set_gravity_vector([0.0, -GRAVITY, 0.0])
         floor = drake.RigidTransform(drake.HalfSpace.MakePose([0.0, 1.0, 0.0], np.zeros(3)))
         shapes = [(plant.world_body(), floor, drake.HalfSpace(), "floor")]
@@ -355,8 +361,7 @@ class Drake(Session):
                 plant.AddJoint(drake.PlanarJoint(f"joint {k}", *frames))
             shapes.append((body, pose, drake.Sphere(radius), f"ball {k}"))
         for shape in shapes:
-            plant.RegisterCollisionGeometry(*shape, skin)
-        plant.set_contact_model(drake.ContactModel.kPoint)
+            plant.RegisterCollisionGeometry(*shape, drake.ProximityProperties())
         plant.Finalize()
         self.simulator = drake.Simulator(builder.Build())
         self.context = plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
@@ -366,18 +371,6 @@ class Drake(Session):
             drake.ResetIntegratorFromFlags(self.simulator, scheme, 0.1)
             self.simulator.get_mutable_integrator().set_target_accuracy(accuracy)
         self.simulator.Initialize()
-
-    @staticmethod
-    def skin(scene, stiffness, dissipation, dt):
-        """Stiffness and dissipation of every surface: none for e = 1, strong for e = 0."""
-        import pydrake.all as drake
-
-        skin, lossy = drake.ProximityProperties(), float(scene.restitution < 1.0)
-        friction = drake.CoulombFriction(0.0, 0.0)
-        both = 2.0 * stiffness  # two surfaces in series: half of it
-        drake.AddContactMaterial(lossy * dissipation, both, friction, skin)
-        skin.AddProperty("material", "relaxation_time", lossy * dt)
-        return skin
 
     def go(self, n):
         self.time += n * self.substeps
@@ -445,7 +438,9 @@ class Setting(NamedTuple):
 
     engine: str  # a key of ENGINES, or a model
     options: str | None  # as they stand in the file
-    problems: str
+    problems: str | None
+    substeps: tuple  # in 2 ms; none where it chooses its own, and dt is how often it is looked at
+    piles: tuple  # substeps in a step of the piles
 
     @property
     def name(self):
@@ -459,30 +454,13 @@ class Setting(NamedTuple):
 
     @property
     def inner(self):
-        """Substeps that the engine takes by itself in each step."""
-        return self.knobs.get("inner", 1)
-
-    @property
-    def adaptive(self):
-        """Whether it chooses its own steps: dt is only how often it is looked at."""
-        return self.engine in ("exact", "events") or "scheme" in self.knobs
-
-    @property
-    def rare(self):
-        """Whether one start and one process have to be enough."""
-        slow = self.knobs.get("scheme") in (None, "radau3")
-        return self.engine == "siconos" or self.engine == "drake" and slow
+        """Substeps that it takes by itself in each step; leapfrog solves twice."""
+        return self.knobs.get("inner", 2 if self.engine == "leapfrog" else 1)
 
     def runs(self, problem):
-        """Whether it is for a problem, or for the piles (any of piles/1, piles/4, ...)."""
-        words = " ".join(GROUPS.get(word, word) for word in self.problems.split()).split()
-        listed = problem in (word.partition("/")[0] for word in words)
-        return listed or problem != "piles" and "all" in words and f"-{problem}" not in words
-
-    @property
-    def cuts(self):
-        """Substeps that it takes for a step of the piles."""
-        return int(self.problems.partition("piles/")[2].split(" ")[0] or 1)
+        """Whether it is for a problem."""
+        words = " ".join(GROUPS.get(word, word) for word in (self.problems or "").split()).split()
+        return ("all" in words or problem in words) and f"-{problem}" not in words
 
     def build(self, scene, dt, substeps=1):
         """A session that is looked at every dt [s], after so many steps."""
@@ -495,6 +473,13 @@ class Setting(NamedTuple):
         return session
 
 
-EVERYBODY = [Setting(**row) for row in stored.load(HERE)[0]["settings"]]
-BY_NAME = {setting.name: setting for setting in EVERYBODY if setting.problems[:5] != "piles"}
-PILES = [setting for setting in EVERYBODY if setting.runs("piles")]
+def listed():
+    """Every setting of settings.csv, whether it can run here or not."""
+    for *row, substeps, piles in map(dict.values, stored.load(HERE)[0]["settings"]):
+        counts = (tuple(map(int, str(cell or "").split())) for cell in (substeps, piles))
+        yield Setting(*row, *counts)
+
+
+EVERYBODY = {setting.name: setting for setting in listed()}
+BY_NAME = {name: setting for name, setting in EVERYBODY.items() if not missing(setting.engine)}
+PILES = [(setting, substeps) for setting in BY_NAME.values() for substeps in setting.piles]

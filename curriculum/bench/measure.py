@@ -25,7 +25,7 @@ WORK, BUDGETS = (1, 4, 16), (3, 10, 100)  # substeps in 2 ms; us a ball in 2 ms
 PROCESSES = 3
 ENOUGH = 0.03  # s: once the runs of a point have taken so long, it is not timed again
 DT = 0.002  # s, the step of contact.py's own default run
-STEPS = *((DT, n) for n in (1, 2, 4, 8, 16)), *((dt, 1) for dt in (0.004, 0.008, 0.016))
+LONGER = 0.004, 0.008, 0.016  # s: steps that are looked at once each
 MOVING = {p.name: int(np.isfinite(p.build(0).mass).sum()) for p in problems.PROBLEMS}  # balls
 WATCHED, TURN, TURNS = 250, 50, 3  # steps at the end; timed steps in one go; how many goes
 AT_REST, DEPTHS = 1e-3, (1e-3, 1e-4)  # m/s, r
@@ -33,34 +33,23 @@ SIZES, SETTLE = {12: 4, 100: 10, 1000: 25}, 6000  # balls: side by side; steps t
 MANY, COPIES, AGAIN = 10_000, 10, 1500  # made of settled copies; steps to settle again
 
 
-def points(quick, wanted, known):
-    """A row a point, of the settings that are wanted."""
-    jobs = list(cells(quick, wanted))
+def points(quick, only, known):
+    """A row a point, of the settings whose names contain `only`."""
+    jobs = list(cells(quick, only))
     rows = parallel.run_jobs(errors_of, jobs, "errors")
-    rare = {job for job in jobs if engines.BY_NAME[job[1]].rare}
-    times = timing.in_fresh_processes(time_of, jobs, 1 if quick else PROCESSES, "run times", rare)
+    times = timing.in_fresh_processes(time_of, jobs, 1 if quick else PROCESSES, "run times")
     return [row | timing.spread("ms", each) for row, each in zip(rows, times)]
 
 
-def cells(quick, wanted):
+def cells(quick, only):
     """(problem, setting, dt, substeps, starts) of every point, by names."""
-    steps = ((DT, 1), (DT, 4)) if quick else STEPS
     for name in ("drop", "slide") if quick else problems.BY_NAME:
+        starts = 1 if quick else problems.BY_NAME[name].starts
         for c in engines.BY_NAME.values():
-            here = c.runs(name) and wanted(c) and not engines.missing(c.engine)
-            starts = 1 if c.rare or quick else problems.BY_NAME[name].starts
-            if here and not (quick and c.engine in ("drake", "siconos")):
-                taken = [each for each in steps if takes(c, *each)]
-                yield from ((name, c.name, *each, starts) for each in taken)
-
-
-def takes(c, dt, substeps):
-    """Whether a setting runs so: whoever is adaptive once; 2 and 8 only who counts twice."""
-    if c.adaptive:
-        return (dt, substeps) == STEPS[0]
-    slow = c.rare and substeps > 4 or c.knobs.get("iters", 0) * substeps > 8000  # and never best
-    some = substeps in (4, 16) or c.engine == "leapfrog"
-    return substeps == 1 or some and not slow and substeps * c.inner <= WORK[-1]
+            if c.runs(name) and only in c.name and not (quick and c.engine in ("drake", "siconos")):
+                steps = [(DT, n) for n in c.substeps or (1,) if n in (1, 4) or not quick]
+                steps += [(dt, 1) for dt in LONGER if c.substeps and not quick]
+                yield from ((name, c.name, *each, starts) for each in steps)
 
 
 def errors_of(job):
@@ -85,7 +74,7 @@ def work_of(c, session, looks):
     """Substeps a look; of Drake under error control those that it took, in the mean."""
     if "scheme" in c.knobs:
         return session.simulator.get_integrator().get_num_steps_taken() / looks
-    return session.substeps * c.inner * (2 if c.engine == "leapfrog" else 1)
+    return session.substeps * c.inner
 
 
 def time_of(job, timed=timing.timed):
@@ -113,9 +102,10 @@ def allowed(p, budget=None, work=WORK[-1]):
     return p["ms"] <= 1e-3 * budget * MOVING[p["problem"]] * looks
 
 
-def contest(rows, **limit):
-    """{problem: {engine: its most accurate point}} of those that are allowed to compete."""
-    return best((p for p in rows if allowed(p, **limit)), "problem", rank)
+def contest(rows, who, **limit):
+    """{problem: the most accurate point} of these engines, of those that are allowed to compete."""
+    may = (p for p in rows if p["engine"] in who and allowed(p, **limit))
+    return best(may, "problem", rank)
 
 
 def rank(p):
@@ -124,11 +114,10 @@ def rank(p):
 
 
 def best(rows, group, rank):
-    """{row[group]: {engine: its best row}}, by what rank(row) makes least."""
+    """{row[group]: its best row}, by what rank(row) makes least."""
     found = {}
     for row in rows:
-        rivals = found.setdefault(row[group], {})
-        rivals[row["engine"]] = min(rivals.get(row["engine"], row), row, key=rank)
+        found[row[group]] = min(found.get(row[group], row), row, key=rank)
     return found
 
 
@@ -155,17 +144,16 @@ def shaft(count, q=None):
     return contact.scene_of(np.append(x, sides), np.concatenate((y, wall, wall)), mass)
 
 
-def piles(quick, wanted, known):
+def piles(quick, only, known):
     """A row a setting and size; known: the rows that stay, of whom some may have won."""
     rows, states = [], {}
     for count in (12,) if quick else (*SIZES, MANY):
-        chosen = winners(known + rows) if count == MANY else range(len(engines.PILES))
-        chosen = [k for k in chosen if wanted(engines.PILES[k])][:: 4 if quick else 1]
-        chosen = [k for k in chosen if not engines.missing(engines.PILES[k].engine)]
-        jobs, label = [(count, k, states.get(k)) for k in chosen], f"{count} balls"
+        chosen = winners(known + rows) if count == MANY else engines.PILES
+        chosen = [each for each in chosen if only in each[0].name][:: 4 if quick else 1]
+        jobs, label = [(count, *each, states.get(each)) for each in chosen], f"{count} balls"
         settled = parallel.run_jobs(settle, jobs, f"{label} settle")
-        states.update((k, found[:2]) for k, found in zip(chosen, settled))
-        jobs, often = [(count, k, states[k]) for k in chosen], PROCESSES - (count == MANY)
+        states.update((each, found[:2]) for each, found in zip(chosen, settled))
+        jobs, often = [(count, *each, states[each]) for each in chosen], PROCESSES - (count == MANY)
         times = timing.in_fresh_processes(fall_and_rest, jobs, 1 if quick else often, label)
         for (_, _, row), found in zip(settled, times):
             falling, resting = zip(*found)
@@ -176,9 +164,8 @@ def piles(quick, wanted, known):
 
 def settle(job):
     """q, v of the settled pile, and its row but for times; the speed is watched to the end."""
-    count, k, start = job
-    scene, c = shaft(count, start and np.array(start[0])), engines.PILES[k]
-    session = c.build(scene, DT, c.cuts)
+    count, c, substeps, start = job
+    session = c.build(shaft(count, start and np.array(start[0])), DT, substeps)
     session.go((AGAIN if count == MANY else SETTLE) - WATCHED)
     speeds, (before, _) = [], session.state()
     for _ in range(WATCHED // TURN):
@@ -187,7 +174,7 @@ def settle(job):
         speeds.append(np.hypot(*(q - before)).max() / (TURN * DT))
         before = q.copy()
     speed = float(np.max(speeds))  # the longest way of a ball from look to look; NaN is no rest
-    row = dict(bodies=count, engine=c.engine, setting=c.options, substeps=c.cuts, speed=speed)
+    row = dict(bodies=count, engine=c.engine, setting=c.options, substeps=substeps, speed=speed)
     return q, v, row | dict(at_rest=int(speed < AT_REST)) | depths(q)
 
 
@@ -205,44 +192,46 @@ def depths(q):
 
 def fall_and_rest(job, timed=timing.timed):
     """Microseconds a step, from the lattice and from the settled state."""
-    count, k, (q, v) = job
+    count, c, substeps, (q, v) = job
     scene, found = shaft(count), []
     for start in (scene, scene._replace(q0=np.array(q, float), v0=np.array(v, float))):
-        session = engines.PILES[k].build(start, DT, engines.PILES[k].cuts)
+        session = c.build(start, DT, substeps)
         session.go(100)
         seconds = [timed(partial(session.go, TURN))[0] for _ in range(TURNS)]
         found.append(1e6 * statistics.median(seconds) / TURN)
     return found
 
 
-def fastest(rows, depth):
-    """{balls: {engine: its fastest row}} of what rests within a mean depth [r]."""
-    may = (row for row in rows if row["at_rest"] and row["mean_depth"] <= depth)
-    return best(may, "bodies", itemgetter("resting"))
+def fastest(rows, depth, who):
+    """{balls: the fastest row} of these engines, of what rests within a mean depth [r]."""
+    may = (row for row in rows if row["engine"] in who and row["at_rest"])
+    return best((row for row in may if row["mean_depth"] <= depth), "bodies", itemgetter("resting"))
 
 
 def winners(rows):
-    """The numbers of the settings that are worth running with 10,000 balls."""
-    found = [row for depth in DEPTHS for row in fastest(rows, depth).get(1000, {}).values()]
-    chosen = {(row["engine"], row["setting"], row["substeps"]) for row in found}
-    return [k for k, c in enumerate(engines.PILES) if (*c[:2], c.cuts) in chosen]
+    """Those of PILES that are worth running with 10,000 balls."""
+    chosen = set()
+    for depth in DEPTHS:
+        for engine in engines.LABELS:
+            if row := fastest(rows, depth, [engine]).get(1000):
+                chosen.add((engine, row["setting"], row["substeps"]))
+    return [(c, substeps) for c, substeps in engines.PILES if (*c[:2], substeps) in chosen]
 
 
-def processes(quick, wanted, known):
+def processes(quick, only, known):
     """Seconds of whole processes, as commands.csv has them: of contact.py, of importing what it
-    needs, and of compiling. The first round warms the caches; the first ever runs but once."""
-    commands, found = stored.load(engines.HERE)[0]["commands"], {}
-    with tempfile.TemporaryDirectory() as out, tempfile.TemporaryDirectory() as cold:
+    needs, and of compiling. The first of each finds empty caches, and fills them."""
+    commands = stored.load(engines.HERE)[0]["commands"]
+    found = [[] for _ in commands]
+    with tempfile.TemporaryDirectory() as folder:
         for number in range(3 if quick else 16):
-            for row in random.Random(number).sample(commands, len(commands)):
-                first = row["process"].endswith("the first ever")
-                if not first or number == 0 and not quick:
-                    words = [word.format(out=out, cold=cold) for word in row["words"].split(" | ")]
-                    command, folder = [sys.executable, *words], cold if first else out
-                    seconds = timing.whole_process(command, folder)
-                    found.setdefault(row["process"], []).append(seconds)
-    rows = ((name, found[name][len(found[name]) > 1 :]) for name in sorted(found))
-    return [dict(process=name) | timing.spread("seconds", seconds) for name, seconds in rows]
+            for k in random.Random(number).sample(range(len(commands)), len(commands)):
+                out = f"{folder}/{k}"
+                words = commands[k]["words"].format(out=out).split(" | ")
+                found[k].append(timing.whole_process([sys.executable, *words], out))
+    names = [dict(process=row["process"]) for row in commands]
+    return [name | timing.spread("seconds", seconds) | dict(first=first)
+            for name, (first, *seconds) in zip(names, found)]  # fmt: skip
 
 
 PARTS = {"points": points, "piles": piles, "processes": processes}

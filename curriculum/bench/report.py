@@ -40,11 +40,6 @@ def resting(row):
     return f"{called}{cut}: {number(row['resting'])} µs"
 
 
-def best_of(found, side, key=measure.rank):
-    """The best row of these engines, of {engine: row}; None where there is none."""
-    return min((row for name, row in found.items() if name in side), key=key, default=None)
-
-
 def loses(one, other):
     """Whether an error is larger than another, in three digits; of two that are measured."""
     return bool(one and other) and measure.rank(one)[0] > measure.rank(other)[0]
@@ -56,50 +51,48 @@ def limits(points):
     Where it is beaten: {problem: (leapfrog's point, the better one)}.
     """
     for words, limit in CONTESTS.items():
-        found = contest(points, **limit)
-        lost = [{name: (each.get("leapfrog"), best_of(each, side)) for name, each in found.items()}
-                for side in (PEERS, [RIVAL])]  # fmt: skip
-        lost = [{name: pair for name, pair in each.items() if loses(*pair)} for each in lost]
-        yield words, sum("leapfrog" in each for each in found.values()), *lost
+        sides = ["leapfrog"], PEERS, [RIVAL]
+        mine, *others = (contest(points, side, **limit) for side in sides)
+        yield words, len(mine), *({name: (mine[name], other) for name, other in each.items()
+                                   if loses(mine.get(name), other)} for each in others)  # fmt: skip
 
 
 def races(rows):
     """(balls, depth, our fastest row, leapfrog's, the fastest other engine's) of piles at rest."""
-    key = itemgetter("resting")
     for depth in DEPTHS:
-        for count, found in measure.fastest(rows, depth).items():
-            ours, other = (best_of(found, side, key) for side in (MODELS, ENGINES))
-            yield count, depth, ours, found.get("leapfrog"), other
+        sides = [measure.fastest(rows, depth, who) for who in (MODELS, ["leapfrog"], ENGINES)]
+        for count in sorted(set().union(*sides)):
+            yield count, depth, *(side.get(count) for side in sides)
 
 
 def claims(points, piles, processes):
     """The numbers of claims.md and page.md: leapfrog and exact beside named opponents, losses too;
     piles at rest; what compiled loops cost at first; how far times differ between processes."""
     there = {p["engine"] for p in points}
-    *first, last = [LABELS[name] for name in PEERS if name in there] or ["nobody"]
+    *others, last = [LABELS[name] for name in PEERS if name in there] or ["nobody"]
     where = [f"in {fields - len(lost)} of {fields} with at most {words}"
              + f" (not {', '.join(lost)})" * bool(lost)
              for words, fields, lost, _ in limits(points) if fields]  # fmt: skip
-    found = contest(points)
-    both = [each for each in found.values() if {"exact", RIVAL} <= set(each)]
-    ratios = [each[RIVAL]["ms"] / each["exact"]["ms"] for each in both]
-    lost = [name for name, each in found.items() if loses(each.get("leapfrog"), each.get(RIVAL))]
-    errors = ([each[RIVAL][key] for each in both] for key in ("error", "error_max"))
+    exact, rival, leapfrog = (contest(points, [name]) for name in ("exact", RIVAL, "leapfrog"))
+    both = [(exact[name], rival[name]) for name in exact if name in rival]
+    lost = [name for name, p in rival.items() if loses(leapfrog.get(name), p)]
+    errors = ([p[key] for _, p in both] for key in ("error", "error_max"))
     usual, worst = (number(max(each, default=None)) for each in errors)
     spans = sorted(100.0 * (p["ms_max"] / p["ms_min"] - 1.0) for p in points if p["ms"]) or [0.0]
     taken = {row["process"]: row["seconds"] for row in processes}
+    first = {row["process"]: row["first"] for row in processes}
     return dict(
-        peers=f"{', '.join(first)} and {last}",
+        peers=f"{', '.join(others)} and {last}",
         where=", ".join(where),
-        rival=f"{len(lost)} of {len(found)} ({', '.join(lost)})",
-        longer=reach(ratios),
+        rival=f"{len(lost)} of {len(leapfrog)} ({', '.join(lost)})",
+        longer=reach([p["ms"] / mine["ms"] for mine, p in both]),
         usual_error=usual,
         worst_error=worst,
         phases=PHASES,
         our_piles=shares(piles, 2),
         leapfrog_piles=shares(piles, 3),
         numba=number(taken.get("one compiled step", 0.0) - taken.get("import numpy", 0.0)),
-        first=number(taken.get("one compiled step, the first ever")),
+        first=number(first.get("one compiled step")),
         many=MANY,
         usual_span=number(spans[len(spans) // 2]),
         widest_span=number(spans[-1]),
@@ -119,49 +112,35 @@ def shares(piles, which):
 
 
 def take(points, piles):
-    """Rows of the README's table: what one types, and gets, and would get elsewhere.
-
-    A row that another one of the table beats in both error and time is not shown.
-    """
-    chosen, best = list(wanted((*points, *piles))), contest(points)
-    for want, row in chosen:
+    """Rows of the README's table: what one types, and gets, and would get elsewhere."""
+    rival, peers = contest(points, [RIVAL]), contest(points, PEERS)
+    same = itemgetter("engine", "setting", "substeps")
+    rows = {(p["problem"], *same(p)): p for p in points if p["dt"] == DT}
+    rows |= {(row["bodies"], *same(row)): row for row in piles}
+    for want in stored.load(HERE)[0]["take"]:
         typed = "<br>".join(f"`{line}`" for line in want["type"].splitlines())
-        if "bodies" in row:
+        row = rows.get((want["problem"], *same(want)))
+        if row in points:
+            others = cell(rival.get(row["problem"])), cell(peers.get(row["problem"]), True)
+            yield [want["wish"], typed, cell(row), *others]
+        elif row:
             depth = min(d for d in DEPTHS if row["mean_depth"] <= d)
-            other = next(race[4] for race in races(piles) if race[:2] == (row["bodies"], depth))
+            other = measure.fastest(piles, depth, ENGINES).get(row["bodies"])
             mine = f"at most {depth:g} r deep, {number(row['resting'])} µs a step"
             yield [want["wish"], typed, mine, "-", resting(other)]
-        elif not any(beats(other, row) for _, other in chosen):
-            found = best[row["problem"]]
-            others = cell(found.get(RIVAL)), cell(best_of(found, PEERS), True)
-            yield [want["wish"], typed, cell(row), *others]
-
-
-def wanted(rows):
-    """(a line of take.csv, the row that was measured of it)"""
-    same = "engine", "setting", "substeps"
-    for want in stored.load(HERE)[0]["take"]:
-        for row in rows:
-            if all(row[key] == want[key] for key in same) and row.get("dt", DT) == DT:
-                if want["problem"] == row.get("problem", row.get("bodies")):
-                    yield want, row
-
-
-def beats(one, other):
-    """Whether a point is better than another one of the same problem in both error and time."""
-    better = (one.get("error") or 0.0) < (other["error"] or 0.0)  # the reference has no error
-    return one.get("problem") == other["problem"] and better and one["ms"] < other["ms"]
 
 
 def winners(rows):
     """A row a problem: error and time of each; the winner of leapfrog and the best other bold."""
-    for name, found in contest(rows).items():
-        other = best_of(found, PEERS)
-        cells = [cell(found.get(who)) for who in ("exact", RIVAL, "leapfrog", "lcp")]
-        cells.append(cell(other, True))
-        won = 4 if loses(found.get("leapfrog"), other) else 2
+    sides = ["exact"], [RIVAL], ["leapfrog"], ["lcp"], PEERS
+    best = [contest(rows, side) for side in sides]
+    for name, problem in problems.BY_NAME.items():
+        found = [each.get(name) for each in best]
+        cells = [cell(p, p is found[-1]) for p in found]
+        won = 4 if loses(found[2], found[4]) else 2
         cells[won] = f"**{cells[won]}**"
-        yield [f"{name}: {problems.BY_NAME[name].title}", *cells]
+        if any(found):
+            yield [f"{name}: {problem.title}", *cells]
 
 
 def losses(rows):
@@ -176,10 +155,10 @@ def losses(rows):
 def falling(rows):
     """A row an engine: how long a step takes while a pile falls, by its fastest setting."""
     for engine in dict.fromkeys(row["engine"] for row in rows):
-        mine = [row for row in rows if row["engine"] == engine]
-        times = ([row["falling"] for row in mine if row["bodies"] == count]
-                 for count in (*measure.SIZES, measure.MANY))  # fmt: skip
-        yield [LABELS[engine], *(number(min(each, default=None)) for each in times)]
+        mine = (row for row in rows if row["engine"] == engine)
+        found = measure.best(mine, "bodies", itemgetter("falling"))
+        counts = *measure.SIZES, measure.MANY
+        yield [LABELS[engine], *(number(found.get(count, {}).get("falling")) for count in counts)]
 
 
 def lines(rows):
@@ -217,64 +196,32 @@ def front(dots):
     return [dot for k, dot in enumerate(dots) if all(dot[1] < y for _, y in dots[:k])]
 
 
-def figure_of(dots, columns, title, explained, x, y, cross=(), **look):
-    """A figure of {engine: [(x, y)]} on logarithmic axes with these words; and its axis."""
-    words = dict(title=title, explained=explained)
-    figure, (axis,) = picture.figure(height=3.4, below=0.2 * columns, **words)
-    for engine, each in dots.items():
-        picture.line(axis, *zip(*each), engine, LABELS[engine], **look)
-    for at in cross:
-        axis.axhline(at, color=picture.PALE, lw=0.8)
-        axis.axvline(at, color=picture.PALE, lw=0.8)
-    axis.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
-    picture.legend_below(axis, columns=columns, down=0.2)
-    return figure, axis
-
-
 def error_figure(rows, problem):
     """Time against error: the front of all settings and steps of each engine."""
-    dots = {engine: front((max(p["error"], LEAST), p["ms"]) for p in rows
-                          if (p["engine"], p["problem"], p["diverged"]) == (engine, problem, 0)
-                          and p["error"] is not None) for engine in LABELS}  # fmt: skip
-    figure, axis = figure_of(
-        {engine: each for engine, each in dots.items() if each}, 4,
-        f"{problem.capitalize()}: {problems.BY_NAME[problem].title}",
-        "Left and down is better. A line joins what no other setting or step of the same engine "
-        "beats in both error and time.",
-        "worst position error [r]",
-        f"time for {problems.BY_NAME[problem].duration:g} s of motion [ms]",
-    )  # fmt: skip
+    figure, (axis,) = picture.figure(
+        title=f"{problem.capitalize()}: {problems.BY_NAME[problem].title}",
+        explained="Left and down is better. A line joins what no other setting or step of the same "
+        "engine beats in both error and time.",
+        below=0.8,
+    )
+    for engine, label in LABELS.items():
+        dots = front((max(p["error"], LEAST), p["ms"]) for p in rows
+                     if (p["engine"], p["problem"], p["diverged"]) == (engine, problem, 0)
+                     and p["error"] is not None)  # fmt: skip
+        if dots:
+            picture.line(axis, *zip(*dots), engine, label)
+    time = f"time for {problems.BY_NAME[problem].duration:g} s of motion [ms]"
+    axis.set(xscale="log", yscale="log", xlabel="worst position error [r]", ylabel=time)
+    picture.legend_below(axis, columns=4, down=0.2)
     axis.set_xlim(None, min(axis.get_xlim()[1], 30.0))
-    return figure
-
-
-def ratio_figure(rows):
-    """Time over error of leapfrog and exact beside the best other engine's, a dot a problem."""
-    dots = {}
-    for model in ("exact", "leapfrog"):
-        for name, found in contest(rows).items():
-            mine, other = found.get(model), best_of(found, PEERS)
-            if mine and other and mine["error"] is not None:
-                error = max(mine["error"], LEAST) / other["error"]
-                dots.setdefault(model, {})[error, mine["ms"] / other["ms"]] = name
-    figure, axis = figure_of(
-        dots, 2, "Beside the best other engine, at most 16 substeps in 2 ms",
-        "A dot is a problem: error and time, as shares of the most accurate other engine's. Left "
-        "and down of the cross both are smaller.",
-        "error / the best other's", "time / the best other's", [1.0], ls="",
-    )  # fmt: skip
-    for dot, name in (item for each in dots.values() for item in each.items()):
-        axis.annotate(name, dot, (4, 2), textcoords="offset points", fontsize=7)
     return figure
 
 
 def write(folder, sections, made):
     """README.md and the figures into the results folder. Raises ImportError without matplotlib."""
     files, rows = {"README.md": written("page.md", sections, made)}, sections.get("points", ())
-    figures = {"ratios.svg": ratio_figure(rows)} if rows else {}
-    figures |= {f"error-{name}.svg": error_figure(rows, name) for name in DRAWN
-                if any(p["problem"] == name for p in rows)}  # fmt: skip
     about = {"measured": made.get("points")}
-    files |= {name: picture.svg(figure, about) for name, figure in figures.items()}
+    for name in {p["problem"] for p in rows} & {*DRAWN}:
+        files[f"error-{name}.svg"] = picture.svg(error_figure(rows, name), about)
     for name, content in files.items():
         write_whole(folder / name, content)

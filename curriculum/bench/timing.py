@@ -34,15 +34,11 @@ def spread(name, values) -> dict:
     return {name: statistics.median(values), f"{name}_min": min(values), f"{name}_max": max(values)}
 
 
-def in_fresh_processes(work, jobs, processes, label, rare=()):
-    """[[work(job) in each process] for job in jobs], each process in its own random order.
-
-    A rare job runs in the first process only.
-    """
+def in_fresh_processes(work, jobs, processes, label):
+    """[[work(job) in each process] for job in jobs], each process in its own random order."""
     found, report = [[] for _ in jobs], bar(processes * len(jobs), label)
     for number in range(processes):
         order = random.Random(number).sample(range(len(jobs)), len(jobs))
-        order = [k for k in order if number == 0 or jobs[k] not in rare]
         with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
             results = pool.map(work, [jobs[k] for k in order])
             for done, (k, result) in enumerate(zip(order, results), number * len(jobs) + 1):
