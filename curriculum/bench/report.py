@@ -19,7 +19,7 @@ RIVAL = "events"
 PEERS = [name for name in ENGINES if name != RIVAL]
 LEAST = 1e-16  # r: an error of exactly zero is drawn here
 DRAWN = "slide", "bounce", "pile"  # the problems with a picture of their own
-CONTESTS = {f"{work} substep{'s' * (work > 1)} in 2 ms": dict(work=work) for work in WORK}
+CONTESTS = {f"{work} substeps in 2 ms": dict(work=work) for work in WORK}
 CONTESTS |= {f"{us} µs a ball and 2 ms": dict(budget=us) for us in BUDGETS}
 
 
@@ -72,7 +72,7 @@ def claims(points, piles, processes):
     *others, last = [LABELS[name] for name in PEERS if name in there] or ["nobody"]
     where = [f"in {fields - len(lost)} of {fields} with at most {words}"
              + f" (not {', '.join(lost)})" * bool(lost)
-             for words, fields, lost, _ in limits(points) if fields]  # fmt: skip
+             for words, fields, lost, _ in limits(points)]  # fmt: skip
     exact, rival, leapfrog = (contest(points, [name]) for name in ("exact", RIVAL, "leapfrog"))
     both = [(exact[name], rival[name]) for name in exact if name in rival]
     lost = [name for name, p in rival.items() if loses(leapfrog.get(name), p)]
@@ -148,8 +148,7 @@ def losses(rows):
     for words, fields, *sides in limits(rows):
         texts = ["; ".join(f"{name} ({number(mine['error'])} r, {cell(peer, True)})"
                            for name, (mine, peer) in lost.items()) for lost in sides]  # fmt: skip
-        none = "nowhere" if fields else "a step of it counts two"
-        yield [words, fields, *(text or none for text in texts)]
+        yield [words, fields, *(text or "nowhere" for text in texts)]
 
 
 def falling(rows):
