@@ -10,12 +10,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, ProcessPoolExecutor
+from concurrent import futures
 from contextlib import contextmanager
-from functools import partial
 from itertools import islice
 from multiprocessing import parent_process
-from queue import SimpleQueue
 
 from curriculum import commands
 
@@ -52,33 +50,20 @@ def as_they_come(
         progress(done)
 
 
-def spread(submit, look, function, numbered) -> Iterator[tuple]:
+def spread(pool, look, function, numbered) -> Iterator[tuple]:
     """(place, function(job)) of each (place, job), as they are done; look() where nothing comes."""
-    done: SimpleQueue = SimpleQueue()
-    waiting = {}
-
-    def ask(most):
-        for place, job in islice(numbered, most):
+    waiting: dict = {}
+    while True:
+        for place, job in islice(numbered, AHEAD - len(waiting)):
             with unheard():  # or a process that is started now would speak at Ctrl-C
-                future = submit(function, job)
-            waiting[future] = place
-            future.add_done_callback(done.put)
-
-    ask(AHEAD)
-    while waiting:
-        future = None
-        try:
-            future = done.get(timeout=PATIENCE)
-            result = future.result(PATIENCE)
-        except Exception as error:
-            if type(error).__name__ not in ("Empty", "TimeoutError"):  # Python 3.10 has three
-                raise
+                waiting[pool.submit(function, job)] = place
+        if not waiting:
+            return
+        done, _ = futures.wait(waiting, PATIENCE, futures.FIRST_COMPLETED)
+        if not done:
             look()
-            if future:  # a cluster lost the result on its way, and works it out again
-                done.put(future)
-            continue
-        yield waiting.pop(future), result
-        ask(1)
+        for future in done:
+            yield waiting.pop(future), future.result()
 
 
 def bar(total: int, label: str) -> Callable[[int], None]:
@@ -128,10 +113,10 @@ def follow_parent():
 
 def on_cores(workers, function, numbered) -> Iterator[tuple]:
     """Spread the jobs over so many processes."""
-    pool = ProcessPoolExecutor(workers, initializer=follow_parent)
+    pool = futures.ProcessPoolExecutor(workers, initializer=follow_parent)
     try:
-        yield from spread(pool.submit, lambda: None, function, numbered)
-    except BrokenExecutor:
+        yield from spread(pool, lambda: None, function, numbered)
+    except futures.BrokenExecutor:
         raise ConnectionError("a process of the pool is gone") from None
     finally:
         pool.shutdown(cancel_futures=True)
@@ -167,8 +152,8 @@ def on_machines(scheduler: str, function, numbered) -> Iterator[tuple]:
 
     with client:
         try:
-            yield from spread(partial(client.submit, pure=False), look, there, numbered)
-        except (CancelledError, CommClosedError):
+            yield from spread(client.get_executor(pure=False), look, there, numbered)
+        except (futures.CancelledError, CommClosedError):
             raise ConnectionError(f"{given} is gone") from None
         except KilledWorker as error:
             raise ConnectionError(f"{given} lost four workers at one job ({error})") from None
