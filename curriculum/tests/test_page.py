@@ -184,7 +184,7 @@ def test_print_has_figures_and_answers_and_nothing_to_press(visit):
 
 def test_without_scripts_text_figures_and_answers_are_there(visit):
     with visit(javascript=False) as page:
-        assert not page.locator(".needs-js").filter(visible=True).count()
+        assert not page.locator(".needs-js, .controls").filter(visible=True).count()
         for name in ("corner", "falls", "rod"):
             assert page.locator(f"#fig-{name} svg path").first.is_visible()
         page.locator("#ex1 .answer summary").click()
