@@ -51,25 +51,12 @@ def judged(name, text):
 
 @pytest.fixture
 def copy(tmp_path):
-    """A learner's copy, in a folder with a space and a quote, and a function that fills it in."""
+    """A learner's copy of what the exercises need, in a folder with a space and a quote."""
     folder = tmp_path / "my robot's course"
     leave = shutil.ignore_patterns(
         ".*", "__pycache__", "outputs", "tests", "bench", "page", "fast.py"
     )
-    shutil.copytree(ROOT, folder, ignore=leave)
-
-    def fill(name, *changes):
-        """The right answer, or (old, new) of the file."""
-        path = folder / FILES[name]
-        text = path.read_text("utf-8")
-        for old, new in changes:
-            assert text.count(old) == 1, (name, old)
-            text = text.replace(old, new)
-        if not changes:
-            text = f"{text.split(CALL)[0]}{CALL}\n\n{SOLUTIONS[name]}"
-        path.write_text(text, "utf-8")
-
-    return folder, fill
+    return shutil.copytree(ROOT, folder, ignore=leave)
 
 
 def run(folder, *words):
@@ -104,51 +91,51 @@ def test_an_exercise_asks_and_gives_nothing_away(name):
 
 def test_a_learners_way_through_all_ten(copy, tmp_path):
     """Each script says what is next, by a command that works as it is printed, in an odd folder."""
-    folder, fill = copy
     any_run = "contact.py", "--steps", 5, "--no-rerun", "--out", tmp_path
-    printed = run(folder, *any_run).stdout
-    for name in FILES:
+    printed = run(copy, *any_run).stdout
+    for name, file in FILES.items():
         command = printed.splitlines()[-1].removeprefix("next, an exercise: ")
-        assert FILES[name] in command
-        shutil.copy(folder / FILES[name], f"{folder / FILES[name]}~")  # as editors leave one
-        fill(name)
-        printed = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True)
+        assert file in command
+        shutil.copy(copy / file, f"{copy / file}~")  # as editors leave one
+        task = (copy / file).read_text("utf-8").split(CALL)[0]
+        (copy / file).write_text(f"{task}{CALL}\n\n{SOLUTIONS[name]}", "utf-8")
+        printed = subprocess.run(command, shell=True, cwd=copy, capture_output=True, text=True)
         assert printed.returncode == 0 and not printed.stderr, printed
         printed = printed.stdout
         assert f"solutions/{name}.py" in printed
-    result = run(folder, "checks.py")
+    result = run(copy, "checks.py")
     assert result.returncode == 0 and "10 passed" in result.stdout
-    for text in (printed, result.stdout, run(folder, *any_run).stdout):
+    for text in (printed, result.stdout, run(copy, *any_run).stdout):
         assert text.splitlines()[-1].startswith("all exercises are done")
 
 
+WRITTEN = [  # an exercise, what stands there, what a learner makes of it, what is said of that LINE
+    ("ex1", "PREDICTION = None", "PREDICTION = C",
+     "cannot be read, C needs quotes around it: NameError: name 'C' is not defined\n  line LINE: "),
+    ("ex2", "...  # TODO: blank 2", "lam + dlam", "likely: nothing keeps the table from pulling"),
+    ("ex3", "PREDICTION = None", "PREDICTED = 'B'", "ex3: no prediction yet"),
+    ("ex4", CALL, CALL[:-1], "cannot be read: SyntaxError: "),
+    ("ex5", "def solve_contacts", "def solve", "solve_contacts is no longer a function of yours"),
+    ("ex7", "return ...  #", "return ... #", "is still a blank: write what line LINE returns"),
+    ("ex8", "MODEL = None", "MODEL = 'lcp'", "lcp, leapfrog and exact are not asked for"),
+    ("ex9", " = None  # r", " = 1  # r", "row sink: given ? ? ? ?, allowed: four marks, each - ("),
+    ("ex10", "return ...  # TODO: blank 2", "return 0.5, gap / dtt",
+     "raised NameError: name 'dtt' is not defined\n  line LINE: return 0.5, gap / dtt"),
+]  # fmt: skip
+
+
 def test_what_is_wrong_or_broken_fails_its_own_check_and_says_why(copy):
-    folder, fill = copy
-    fill("ex1", ("PREDICTION = None", "PREDICTION = C"))
-    fill("ex2", ("return ...  # TODO: blank 2", 'print("sum", lam + dlam); return lam + dlam'))
-    fill("ex3", ("PREDICTION = None", "PREDICTED = 'B'"))
-    fill("ex4", (CALL, "script.main("))
-    fill("ex5", ("def solve_contacts", "def solve"))
-    fill("ex8", ("MODEL = None", "MODEL = 'lcp'"))
-    fill("ex10", ("return ...  # TODO: blank 2", "return 0.5, gap / dtt"))
-    blank, slip = (
-        1 + (folder / FILES[name]).read_text("utf-8").split(text)[0].count("\n")
-        for name, text in (("ex7", "return ..."), ("ex10", "return 0.5"))
-    )
-    result = run(folder, "checks.py")
-    assert result.returncode == 1 and "6 failed, 4 skipped" in result.stdout
-    assert all(f"{name}: " in result.stdout for name in ("ex3", "ex6", "ex7", "ex9"))
-    for words in (
-        "cannot be read, C needs quotes around it: NameError: name 'C' is not defined",
-        ": PREDICTION = C", "ex3: no prediction yet", "SyntaxError",
-        "likely: nothing keeps the table from pulling", "printed   sum -0.3",
-        "solve_contacts is no longer a function of yours", f"write what line {blank} returns",
-        "row sink: given ? ? ? ?, allowed: four", "their contacts are rigid",
-        f"raised NameError: name 'dtt' is not defined\n  line {slip}: return 0.5, gap / dtt",
-    ):  # fmt: skip
-        assert words in result.stdout, words
+    words = []
+    for name, old, new, said in WRITTEN:
+        above, below = (copy / FILES[name]).read_text("utf-8").split(old)
+        (copy / FILES[name]).write_text(above + new + below, "utf-8")
+        words.append(said.replace("LINE", str(1 + above.count("\n"))))
+    result = run(copy, "checks.py")
+    assert result.returncode == 1 and "7 failed, 3 skipped" in result.stdout
+    for said in words:
+        assert said in result.stdout, said
     assert "Traceback" not in result.stdout
-    result = run(folder, FILES["ex1"])
+    result = run(copy, FILES["ex1"])
     assert result.returncode == 1 and "needs quotes" in result.stdout and not result.stderr
 
 
