@@ -85,16 +85,15 @@ def test_flags_that_contradict_one_another_or_ask_too_much_are_refused(flags, pa
     assert part in refused(main(capsys, *shlex.split(flags)))
 
 
-ALONE = [
-    "--scene drop", "--scene bounce --no-rerun", "--scene stack --bodies 4 --no-rerun",
-    "--smoke --stiffness 5000 --damping 20 --mass 2 --restitution 0.5 --baumgarte 0.4 --no-rerun",
-    "--contact soft --solref 0.01 1 --solimp 0.5 0.9 0.002 0.5 3 --steps 300 --no-rerun",
-    "--contact exact --scene stack --restitution 0.8 --no-rerun", "--help", "--scene pool",
-    "--contact lcp --warm 0.9 --iters 3 --no-skip --dt 0.03 --steps 300 --no-rerun",
-]  # fmt: skip
+KNOBS = (
+    "--dt 0.004 --mass 2 --restitution 0.5 --damping 20 --stiffness 5e3 --baumgarte 0.4 --iters 3 "
+    "--warm 0.5 --solref 0.03 0.8 --solimp 0.5 0.9 0.002 0.4 3 --no-rerun"
+)
 
 
-@pytest.mark.parametrize("flags", ALONE)
+@pytest.mark.parametrize("flags", [
+    "--scene drop", f"--smoke --scene stack --bodies 4 {KNOBS}", "--help", "--scene pool",
+])  # fmt: skip
 def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(
     flags, only, tmp_path, monkeypatch, capsys
 ):
@@ -125,8 +124,7 @@ WAYS = [
     ("out/contact.rrd/", {}, "CONTACT --steps 5 --out out", 2, "metrics: out", ".*cannot write .*"),
     ("outputs", {}, "CONTACT --smoke --no-rerun", 2, "stability: pen", ".*the report is whole.*"),
     ("x", {}, "CONTACT --smoke --no-rerun --out x/y", 2, "stability: pen", ".*cannot write to x.*"),
-    ("", PLAIN, "-O CONTACT --steps 1e1 --no-rerun", 0, ": 10 steps", ""),
-    ("", PLAIN, "-OO CONTACT --steps 1e1 --plot", 0, PICTURE, ""),
+    ("", PLAIN, "-OO CONTACT --steps 1e1 --plot --no-rerun", 0, f": 10 steps(?s:.*){PICTURE}", ""),
     ("", PLAIN, "-O checks.py -k ex2", 0, "ex2: ", ""),
     ("", PLAIN, "-OO exercises/ex2_completion_contact.py", 2, "two lines that make a contact", ""),
     ("", {"PYTHONIOENCODING": "ascii"}, "CONTACT --steps 5 --no-rerun --out é", 0, "xe9", ""),
@@ -186,10 +184,8 @@ def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
         assert main(capsys, *f"--scene bounce --no-rerun {own} --out {tmp_path}".split())[0] == 0
         written.append((tmp_path / "metrics.json").read_bytes())
     assert written[0] == written[1]
-    flags = "--scene stack --bodies 4 --seed 5 --mass 2 --restitution 0.5 --damping 20 --dt 0.004"
-    knobs = "--stiffness 5e3 --baumgarte 0.4 --iters 3 --warm 0.5 --solref 0.03 0.8"
-    words = f"{flags} --steps 150 {knobs} --solimp 0.5 0.9 0.002 0.4 3 --no-rerun".split()
-    assert main(capsys, *words, "--out", tmp_path)[0] == 0
+    words = f"--scene stack --bodies 4 --seed 5 --steps 150 {KNOBS} --out {tmp_path}"
+    assert main(capsys, *words.split())[0] == 0
     scene = contact.build_scene("stack", 5, 4, 0.5, 20.0, 2.0)
     settings = contact.Settings(5e3, 0.4, 3, 0.5, (0.03, 0.8), (0.5, 0.9, 0.002, 0.4, 3.0))
     runs = {m: contact.run_model(m, scene, 0.004, 150, settings) for m in contact.MODELS}
@@ -215,12 +211,11 @@ TOGETHER = (
 ENDS = [f"{flag} {value}" for flag, tried in FLAGS.items() for value in tried]
 
 
-@pytest.mark.parametrize("scene", ["drop", "stack"])
-def test_flags_at_their_ends_give_a_right_report_or_one_line(scene, tmp_path, capsys):
+def test_flags_at_their_ends_give_a_right_report_or_one_line(tmp_path, capsys):
     """A warning is an error in these tests."""
     for flags in (*ENDS, *TOGETHER):
         few = () if "--steps" in flags else ("--steps", 60)
-        words = "--scene", scene, *flags.split(), *few, "--no-rerun", "--out", tmp_path
+        words = "--scene", "stack", *flags.split(), *few, "--no-rerun", "--out", tmp_path
         status, out, err = main(capsys, *words)
         if status:
             refused((status, out, err))
@@ -231,18 +226,15 @@ def test_flags_at_their_ends_give_a_right_report_or_one_line(scene, tmp_path, ca
             assert not (line.endswith(" ok") and (row["blew_up"] or row["through"])), (flags, line)
 
 
-@pytest.mark.parametrize("fault, kind", [
-    ("import nmpy", ModuleNotFoundError), ("from curriculum import no_such_name", ImportError),
-    ("1 / 0", ZeroDivisionError),
-])  # fmt: skip
-def test_what_is_missing_is_none_and_what_is_broken_is_raised(fault, kind, tmp_path, monkeypatch):
+@pytest.mark.parametrize("fault", ["import nmpy", "from curriculum import no_such_name"])
+def test_what_is_missing_is_none_and_what_is_broken_is_raised(fault, tmp_path, monkeypatch):
     assert contact.beside("missing") is None
     (tmp_path / "curriculum").mkdir()
     (tmp_path / "curriculum/faulty.py").write_text(fault)
     monkeypatch.setattr(contact, "__file__", str(tmp_path / "contact.py"))
     monkeypatch.setattr(curriculum, "__path__", [str(tmp_path / "curriculum")])
     monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path)])
-    with pytest.raises(kind):
+    with pytest.raises(ImportError):
         contact.beside("faulty")
 
 
@@ -274,16 +266,8 @@ def test_ctrl_c_and_sigterm_while_a_command_imports_are_one_word(command, tmp_pa
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 def test_ctrl_c_ends_a_run_with_one_word_and_leaves_no_file(tmp_path):
     start = "import runpy; print('ready', flush=True); runpy.run_path('contact.py', {}, '__main__')"
-    words = [
-        sys.executable,
-        "-c",
-        start,
-        "--no-skip",
-        "--steps",
-        "1000000",
-        "--out",
-        tmp_path / "o",
-    ]
+    flags = f"--no-skip --steps 1000000 --out {tmp_path}/o".split()
+    words = [sys.executable, "-c", start, *flags]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as process:
         assert process.stdout.readline() == "ready\n"
@@ -294,9 +278,9 @@ def test_ctrl_c_ends_a_run_with_one_word_and_leaves_no_file(tmp_path):
 
 
 @pytest.mark.parametrize("words, unbuffered", [
-    ("contact.py --steps 5 --no-rerun --out OUT", ""), ("checks.py -k ex2", ""),
-    ("contact.py --steps 5 --no-rerun --out OUT", "1"), ("checks.py -k ex2", "1"),
-    ("-m curriculum.seeds 0:1 --steps 5 --out OUT", ""), ("-m curriculum.page -h", ""),
+    ("contact.py --steps 5 --no-rerun --out OUT", ""), ("-m curriculum.page -h", ""),
+    ("contact.py --steps 5 --no-rerun --out OUT", "1"), ("checks.py -k ex2", ""),
+    ("-m curriculum.seeds 0:1 --steps 5 --out OUT", ""),
     ("exercises/ex1_predict_contact.py --hint 1", ""),
 ])  # fmt: skip
 def test_a_pipe_that_nobody_reads_ends_it_without_a_word_and_a_full_disk_with_a_line(
