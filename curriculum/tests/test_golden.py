@@ -18,16 +18,10 @@ from curriculum.commands import Parser, write_whole
 
 PINNED = Path(__file__).with_name("golden.json")
 COMMANDS = (
-    "--scene drop",
-    "--scene bounce",
-    "--scene stack",
-    "--scene pile --steps 200",
-    "--contact exact",
-    "--contact penalty --dt 0.03",
-    "--smoke",
-    "--smoke --scene bounce",
-    "--smoke --scene stack",
-)
+    "--scene drop", "--scene bounce", "--scene stack", "--scene pile --steps 200",
+    "--contact exact", "--contact penalty --dt 0.03",
+    "--smoke", "--smoke --scene bounce", "--smoke --scene stack",
+)  # fmt: skip
 SAMPLES = (0, 150, 300, 600)  # of the recorded states, the last one at 1.2 s
 
 

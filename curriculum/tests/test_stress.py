@@ -50,19 +50,6 @@ def test_runs_that_differ_in_the_last_bit_are_unlike():
     assert unlike(run, other)[0].any() and not unlike(run, run)[0].any()
 
 
-def test_scenes_have_all_that_is_hard():
-    specs = [scenes.numbered_spec(number) for number in range(400)]
-    assert {spec["layout"] for spec in specs} == {layout.__name__ for layout in scenes.LAYOUTS}
-    finite = [[m for m in spec["mass"] if m < float("inf")] for spec in specs]
-    assert any(len(mass) < len(spec["mass"]) for mass, spec in zip(finite, specs)), "fixed balls"
-    assert max(max(mass) / min(mass) for mass in finite if mass) > 500
-    assert max(max(spec["radius"]) / min(spec["radius"]) for spec in specs) > 50
-    assert max(abs(v) for spec in specs for v in spec["vx"]) > 10, "thrown"
-    assert {1, 30} <= {len(spec["x"]) for spec in specs}
-    assert scenes.numbered_spec(17) == scenes.numbered_spec(17)
-    assert all(len(scenes.numbered_spec(k, small=True)["x"]) <= 4 for k in range(50))
-
-
 def test_what_is_off_and_where_is_counted_and_said():
     row = [0, 0.0, None]
     compare(row, "x", np.array([1.0, 3.0, np.nan, 9.0]), 2.0, np.array([True, True, True, False]))

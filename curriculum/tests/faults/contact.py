@@ -1,7 +1,8 @@
 """Faults for contact.py: (file, what stands there, what is planted, the tests that name it)."""
 
 MODELS, LINE = "test_models.py -k ", "test_command_line.py -k "
-SLIDE, MOMENT, STEP = MODELS + "second_order", MODELS + "own_moment", MODELS + "with_one_step"
+SLIDE, STEP = MODELS + "second_order", MODELS + "with_one_step"
+SEES = "test_stress.py -k no_claim"
 C = "contact.py"
 FAULTS = [
     # leapfrog: what lasts is asked twice
@@ -15,8 +16,8 @@ FAULTS = [
     (C, "            look(c, nearest(c, dt))\n", "            pass\n", "test_stress.py"),
     (C, "or fast == 0.0:", "or fast < 0.0:", MODELS + "too_slow_for"),
     # an impact has its own moment
-    (C, "if may_strike(contacts, dt):", "if False:", STEP),
-    (C, "(lower.held > 0.0 and", "(lower.held >= 0.0 and", MODELS + "both_fall"),
+    (C, "if may_strike(contacts, dt, restitution):", "if False:", STEP),
+    (C, "(lower.held > 0.0 and", "(lower.held >= 0.0 and", MODELS + "with_restitution_1"),
     (C, "1e-6 if restitution > 0.0 else -GRAVITY", "1e-6", MODELS + "at_rest_none"),
     (C, "until = dt if last else when", "until = dt", MODELS + "own_moments"),
     (C, "min(10 * iters, left)", "10 * iters", MODELS + "at_rest_none"),
@@ -32,11 +33,11 @@ FAULTS = [
     # the other models
     (C, "(rows[k].tobytes(), *pushed)", "(rows[k].tobytes(),)", "test_fast.py -k stand_still"),
     ("curriculum/lesson/rows.py", " and same(pushed, marked)", "", "test_fast.py -k stand_still"),
-    (C, "if bias > 0.0:  # an overlap", "if bias >= 0.0:  # an overlap", MODELS + "on_the_table"),
+    (C, "if bias > 0.0:  # an overlap", "if bias >= 0.0:  # an overlap", SEES),
     (C, "max(0.0, stiffness * depth - damping * v_n)", "abs(stiffness * depth - damping * v_n)",
      "test_golden.py -k penalty"),
     (C, "max(power, 1.0)", "power", MODELS + "mujocos_bounds"),
-    (C, "if width <= 1e-15:", "if width <= -1.0:", MODELS + "impedance"),
+    (C, "if width <= 1e-15:", "if width <= -1.0:", MODELS + "mujoco_in"),
     (C, "MOST_SWEEPS = 10_000", "MOST_SWEEPS = 1_000", MODELS + "unequal_columns"),
     (C, "TOGETHER = 1.0 + 1e-12", "TOGETHER = 1.0 + 1e-3", "test_exact.py"),
     # skips and measures
