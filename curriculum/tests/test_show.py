@@ -7,12 +7,10 @@ import os
 import re
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import time
 from collections import defaultdict
-from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -230,11 +228,8 @@ def test_a_cluster_without_workers_or_with_other_code_is_one_line_and_what_is_do
 ):
     distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
     monkeypatch.setattr(parallel, "PATIENCE", 0.1)
-    with socket.create_server(("127.0.0.1", 0)) as mute, monkeypatch.context() as soon:
-        there, connect = mute.getsockname(), socket.create_connection
-        soon.setattr(socket, "create_connection", lambda place, _: connect(place, 0.1))
-        words = *FIVE, str(tmp_path), "--scheduler", f"127.0.0.1:{there[1]}"
-        assert "which does not answer (timed out)" in one_line(capsys, *words)
+    nobody = *FIVE, str(tmp_path), "--scheduler", "127.0.0.1:1"
+    assert "which does not answer (" in one_line(capsys, *nobody)
     shutil.copytree(ROOT, tmp_path / "other", ignore=shutil.ignore_patterns(".*", "tests"))
     fast = tmp_path / "other/curriculum/fast.py"
     fast.write_text(f"{fast.read_text('utf-8')}\n\nMORE = 1\n", "utf-8")
@@ -243,11 +238,8 @@ def test_a_cluster_without_workers_or_with_other_code_is_one_line_and_what_is_do
         assert "has no workers; start some: dask worker" in one_line(capsys, *words)
         start = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard"]
         start += [none.scheduler_address, "--no-nanny", "--nthreads", "1"]
-        why = {
-            ".": "its PYTHONPATH must have the fold",
-            "other": "another curriculum/fast.py is there",
-        }
-        for folder, text in why.items():
+        why = (".", "its PYTHONPATH must have"), ("other", "another curriculum/fast.py is there")
+        for folder, text in why:
             worker = subprocess.Popen(start, cwd=tmp_path / folder, stderr=subprocess.DEVNULL)
             try:
                 distributed.Client(none).wait_for_workers(1)
@@ -351,17 +343,6 @@ def test_seeds_refuses_bad_input_in_one_line(words, capsys):
 
 def test_work_is_spread_over_processes_in_the_order_of_the_jobs():
     assert parallel.run_jobs(abs, range(-50, 0), "jobs", workers=2) == list(range(50, 0, -1))
-
-
-def test_without_a_terminal_a_line_a_minute_says_how_far_it_is(monkeypatch, capsys):
-    now = iter((0.0, 30.0, 61.0, 90.0, 122.0, 200.0))
-    monkeypatch.setattr(parallel, "time", SimpleNamespace(monotonic=lambda: next(now)))
-    progress = parallel.bar(5_000, "seeds")
-    for done in (1000, 2000, 3000, 4000, 5000):
-        progress(done)
-    lines = [line.strip() for line in capsys.readouterr().err.splitlines()]
-    ahead = {2: 92, 4: 30}
-    assert lines == [f"seeds: {k},000 of 5,000, about {s} s to go" for k, s in ahead.items()]
 
 
 def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):
