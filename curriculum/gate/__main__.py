@@ -25,7 +25,7 @@ with needs("dev"):
 
     import contact
     from curriculum import stored
-    from curriculum.gate.chapter import CHAPTER, INCLUDE, INLINE, PLAIN, Part, faults, split
+    from curriculum.gate.chapter import CHAPTER, INCLUDE, INLINE, PLAIN, PROSE, Part, faults, split
     from curriculum.gate.references import REFERENCE, TextError, load_meta, prepare, shown
     from curriculum.lesson.regions import DOCSTRING, ROOT, blank, read_text, split_all
 
@@ -39,17 +39,11 @@ CAPTION = re.compile(
 MADE = re.compile(r"<!-- generated: .*?<!-- end -->", re.DOTALL)  # by a command
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 # Where numbers may be typed in text: code and formulas, references, links, numbers of headings and
-# lists, versions with two dots, and what follows some words.
+# lists, and what follows some words.
 NOT_PROSE = re.compile(
     rf"""
-    {INLINE.pattern}
-    |{REFERENCE.pattern}
-    |\]\([^)]*\)|https?://\S+
-    |^\[[^]]*\]:[^\n]*|\[\[\d+\]\](?=\(\#references\))
-    |\b(?:chapters?|phase|version|tag|python|numpy)[ ]
-        \d+(?:\.\d+)*(?:(?:,|,?[ ]and|[ ]to)[ ]\d+\.\d+)*
-    |(?<![\w.])\d+(?:\.\d+){{2,}}
-    |^\#+[ ]+\d[\d.]*|^[ >]*\d+[.)][ ]
+    {INLINE.pattern}|{REFERENCE.pattern}|\]\([^)]*\)|https?://\S+|\[\[\d+\]\](?=\(\#references\))
+    |\b(?:chapter|version|tag|python)[ ]\d+(?:\.\d+)+|^\#+[ ]+[\d.]+|^\d+\.[ ]
     """,
     re.DOTALL | re.MULTILINE | re.IGNORECASE | re.VERBOSE,
 )
@@ -162,7 +156,7 @@ class Gate:
     def check_numbers(self):
         """None is typed into the chapter's prose, every reference can be made, what holds a
         sentence is true, and each run is quoted. What numbers are goes into `now`."""
-        for part in (part for part in self.chapter if part.kind in PLAIN[:2]):
+        for part in (part for part in self.chapter if part.kind in PROSE):
             for token in TYPED.finditer(blank(NOT_PROSE, part.text)):
                 number = token[0].rstrip(".,")
                 repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"

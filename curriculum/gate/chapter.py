@@ -32,7 +32,8 @@ PART = re.compile(
 LIKE_A_MARK = re.compile(rf"include-by-region|<!--\s*(?:(?:{MARKS})\b|[\w-]+(?::\s*\S+)?\s*-->)")
 INLINE = re.compile(r"(`+)[^`]+\1|\$\$.+?\$\$|\$[^$\n]+\$|<https?://[^>\s]+>", re.DOTALL)
 HTML = re.compile(r"<[A-Za-z/!?][^\n]*")
-PLAIN = ("text", "heading", "code", "comment")
+PROSE = ("text", "heading")
+PLAIN = (*PROSE, "code", "comment")
 AS_IT_IS = "write [include-by-region: FILE#NAME] in a fence, or <!-- figure: NAME -->"
 
 
@@ -83,7 +84,7 @@ def faults(parts):
             for match in LIKE_A_MARK.finditer(part.text):
                 what = "an include not alone in its fence, or a slot that is not well formed"
                 yield part.line_of(match), what, AS_IT_IS
-        if part.kind in PLAIN[:2]:
+        if part.kind in PROSE:
             for match in HTML.finditer(blank(LIKE_A_MARK, blank(INLINE, part.text))):
                 yield part.line_of(match), f"raw HTML, {match[0][:50]!r}", "write Markdown"
 

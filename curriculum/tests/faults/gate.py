@@ -21,7 +21,7 @@ FAULTS = [
     (GATE, "if kept.get(n) != right.get(n)]", "if n not in right]", READ),
     (GATE, " or r.defines & words", "", READ),
     (GATE, "if own else {}", "if False else {}", ERRORS),
-    (CHAPTER, "HTML.finditer(blank(LIKE_A_MARK, blank(INLINE, text)))", "()", ERRORS),
+    (CHAPTER, "HTML.finditer(blank(LIKE_A_MARK, blank(INLINE, part.text)))", "()", ERRORS),
     (REFERENCES, "[inputs, made_by(), ", "[inputs, ", KEPT),
     (REFERENCES, 'version("numpy"), sys.version', "sys.version", KEPT),
     (REFERENCES, "if true is not True:", "if False:", "test_gate.py -k test_a_reference_becomes"),
