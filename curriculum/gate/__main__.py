@@ -1,4 +1,4 @@
-"""The gate: what chapter and README say, against what the code is and does.
+"""The gate: what the chapter says, against what the code is and does.
 
     python -m curriculum.gate                   # check, write nothing; exit 1 and a line a problem
     python -m curriculum.gate --read "HEADING"  # you have read these, as they are now
@@ -30,13 +30,11 @@ with needs("dev"):
     from curriculum.lesson.regions import DOCSTRING, ROOT, blank, read_text, split_all
 
 GATE = "python -m curriculum.gate"
-TEXTS = (CHAPTER, "README.md")
 FIGURES = "curriculum/page/figures/*.js"
 KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line each
 CAPTION = re.compile(
     r"""\b(?:title|caption):\s*(?:("|`)(?:(?!\1)[^\\]|\\.)*\1[\s+]*)+""", re.DOTALL
 )
-MADE = re.compile(r"<!-- generated: .*?<!-- end -->", re.DOTALL)  # by a command
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 # Where numbers may be typed in text: code and formulas, references, links, numbers of headings and
 # lists, and what follows some words.
@@ -54,20 +52,25 @@ def sources(passage, regions) -> dict:
     """{source: hash}: the regions that it includes or names, and its own words in code."""
     included, named = INCLUDE.findall(passage.text), " ".join(SPAN.findall(passage.text))
     words = set(re.findall(r"\w+", named))
-    own = not passage.file.startswith(("exercises/", *TEXTS))
+    own = not passage.file.startswith(("exercises/", CHAPTER))
     found = {"its words": hashlib.sha256(passage.text.encode()).hexdigest()} if own else {}
     found |= {r.source: r.sha for r in regions if r.source in included or r.defines & words}
     return {source: sha[:12] for source, sha in found.items()}
 
 
 def passages():
-    """What a reader reads in one go: a heading of chapter or README with its text, an exercise, the
+    """What a reader reads in one go: a heading of the chapter with its text, an exercise, the
     captions of a figure, or the opening words of contact.py (the signs) and exact.py (the promise).
 
     Each has the name that one types when one has read it.
     """
-    for file in TEXTS:
-        yield from sections(file)
+    headings = []
+    for part in split(read_text(CHAPTER)):
+        if part.kind == "heading":
+            headings.append(Part("passage", part.name, part.line, ""))
+        if headings:
+            headings[-1] = headings[-1]._replace(text=headings[-1].text + part.text)
+    yield from headings
     for file in files("exercises/ex*.py"):
         yield Part("passage", Path(file).stem.split("_")[0], 1, read_text(file), file)
     for file in ("contact.py", "curriculum/exact.py"):
@@ -76,18 +79,6 @@ def passages():
     for file in files(FIGURES):
         captions = "\n".join(caption[0] for caption in CAPTION.finditer(read_text(file)))
         yield Part("passage", f"figures/{Path(file).stem}", 1, captions, file)
-
-
-def sections(file) -> list:
-    """The headings of a text, each with what stands under it; what a command wrote is left out."""
-    found = []
-    for part in split(blank(MADE, read_text(file))):
-        if part.kind == "heading":
-            name = part.name if file == CHAPTER else f"{file}: {part.name}"
-            found.append(Part("passage", name, part.line, "", file))
-        if found:
-            found[-1] = found[-1]._replace(text=found[-1].text + part.text)
-    return found
 
 
 def files(*patterns) -> list:
@@ -161,7 +152,7 @@ class Gate:
                 number = token[0].rstrip(".,")
                 repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
                 self.say(CHAPTER, part.line_of(token), f"a typed number, {number}", repair)
-        quoting = [each for each in self.passages.values() if each.file in TEXTS]
+        quoting = [each for each in self.passages.values() if each.file == CHAPTER]
         prepare(text := "".join(each.text for each in quoting))
         for passage in quoting:
             for match in REFERENCE.finditer(passage.text):

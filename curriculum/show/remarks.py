@@ -26,20 +26,17 @@ def print_remarks(args, runs: dict[str, contact.Run], scene: contact.Scene) -> N
 
 def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
     """Lines on the lowest ball's landing and bounces, from the parabolas between two states."""
-    k = int(scene.q0[1].argmin())
+    k, g = int(scene.q0[1].argmin()), contact.GRAVITY
     gap, vy = run.q[:, 1, k] - scene.radius[k], run.v[:, 1, k]
-    dt, g = float(run.t[1]) if len(run.t) > 1 else 0.0, contact.GRAVITY
-    struck = [j for j in range(len(gap) - 1) if vy[j + 1] - vy[j] - g * dt > 1e-9]
     who = "the ball" if len(scene.mass) == 1 else "the lowest ball"
-    if not struck:
+    after = contact.time_to_impact(float(gap[0]), float(vy[0]), g)  # until then all fall alike
+    if after > run.t[-1]:
         yield f"exact: {who} does not land within these steps"
         return
-    after = contact.time_to_impact(float(gap[struck[0]]), float(vy[struck[0]]), g)
-    speed = -(vy[struck[0]] + after * g)
-    yield f"exact: {who} lands after {run.t[struck[0]] + after:.6g} s, at {speed:.6g} m/s"
-    turns = struck[0] + np.flatnonzero((vy[struck[0] : -1] > 0.0) & (vy[struck[0] + 1 :] <= 0.0))
-    tops = gap[turns] - vy[turns] ** 2 / (2 * g)  # of the flights, between two states
-    if len(tops):
+    yield f"exact: {who} lands after {after:.6g} s, at {-(vy[0] + after * g):.6g} m/s"
+    turns = np.flatnonzero((vy[:-1] > 0.0) & (vy[1:] <= 0.0))
+    if len(turns):
+        tops = gap[turns] - vy[turns] ** 2 / (2 * g)
         heights = ", ".join(f"{top:.4g}" for top in tops[:APEXES])
         yield f"exact: its bounces rise to {heights} m" + (" ..." if len(tops) > APEXES else "")
     else:
