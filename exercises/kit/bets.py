@@ -14,7 +14,7 @@ from .script import ask, task_of
 
 USUAL, MODELS = contact.Settings(), ("penalty", "lcp")  # the models of which one bets
 SOLVED = {name: load(ROOT / f"exercises/solutions/{name}.py") for name in FACTS}
-RIGHT = {what: right for each in SOLVED.values() for what, right in vars(each).items()}
+RIGHT = {what: right for each in SOLVED.values() for what, right in vars(each).items()}  # by name
 
 
 def columns(corner, heads, rows, form):
