@@ -1,8 +1,8 @@
 /* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors.
- * With map=1 time step and stiffness can be chosen in a field of what becomes of it, and the
+ * With map=1 time step and stiffness can be chosen in a map of what becomes of it, and the
  * spring's force be taken from the end of the step. Values: what it does, how deep the left finger
  * is in the cup at the worst and by how much that trembles in the last quarter [r]. */
-import { ball, circle, clipped, label, line, number, path, plot, rect, svg } from "../draw.js";
+import { area, ball, circle, clipped, label, line, number, plot, rect, svg } from "../draw.js";
 import { table, tens, through, timeSteps, within } from "../draw.js";
 import { critical_dt } from "../contact.js";
 import { column, kept, R, record } from "../runs.js";
@@ -33,29 +33,40 @@ const squeezed = kept((dt, stiffness, late, seconds = SECONDS) => {
   return { run, depths, deepest: most, trembling: most - least, fate, last };
 });
 
-// What becomes of it over the field, a fate a cell; `share` of the way between two ends.
-const [COLUMNS, ROWS] = [18, 11];
-const share = ([low, high], at) => low * (high / low) ** at;
-const field = kept((late) =>
-  Array.from({ length: COLUMNS * ROWS }, (_, cell) => {
-    const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)].map((k) => k + 0.5);
-    return squeezed(share(DT, i / COLUMNS), share(K, j / ROWS), late, 0.6).fate;
+// Where the map's parts begin: [stiffness, time steps from which on it trembles and flies apart],
+// found by halving, near the critical step of a finger.
+const borders = kept((late) =>
+  Array.from({ length: 12 }, (_, at) => {
+    const stiffness = K[0] * (K[1] / K[0]) ** (at / 11);
+    const critical = critical_dt(MASS[0], stiffness, DAMPING);
+    const fate = (dt) => squeezed(dt, stiffness, late, 0.6).fate;
+    const from = (worse, low) => {
+      let [good, bad] = [low, 2 * critical];
+      if (fate(bad) < worse) return Infinity;
+      while (bad > 1.04 * good) {
+        const middle = 0.5 * (good + bad);
+        [good, bad] = fate(middle) < worse ? [middle, bad] : [good, middle];
+      }
+      return bad;
+    };
+    const trembles = from(1, 0.9 * critical);
+    return [stiffness, trembles, trembles < Infinity ? from(2, 0.97 * trembles) : Infinity];
   }));
 
 // Fingers and cup over the table, and where the left one touches it.
-function picture({ n, x, y }, row, { width, floor }) {
+function picture({ n, x, y }, row, width, middle) {
   const scale = (width / 2 - 4) / (SEEN + R); // px for 1 m
-  const r = R * scale;
+  const [r, floor] = [R * scale, middle + R * scale];
   const places = Array.from({ length: n }, (_, i) =>
     [width / 2 + x[n * row + i] * scale, floor - Math.max(R, y[n * row + i]) * scale]);
   const [[leftX, leftY], [cupX, cupY], [rightX, rightY]] = places;
-  return { touch: [(leftX + cupX) / 2, cupY], drawn: [
+  return { touch: [(leftX + cupX) / 2, cupY], drawn: clipped(0, 0, width, floor + 24,
     table(0, floor, width, 24),
     rect(0, leftY - 0.3 * r, leftX, 0.6 * r, "arm"),
     rect(rightX, rightY - 0.3 * r, width - rightX, 0.6 * r, "arm"),
     places.map(([px, py], i) => ball(i === 1 ? "penalty" : "fixed", px, py, r, "plainly ball")),
     svg`<ellipse cx=${cupX} cy=${cupY - 0.72 * r} rx=${0.62 * r} ry=${0.15 * r} class="cup"/>`,
-  ] };
+  ) };
 }
 
 /* Where the left finger touches the cup, enlarged so much that the overlap fills it: the cup's edge
@@ -76,34 +87,30 @@ function lens(x, y, size, { depths, fate, ...late }, row) {
   ];
 }
 
-function choices(view, top) {
+function map(view, top) {
   const { own } = view;
   const { sx, sy, box, picture } = plot(view, {
     top, x: timeSteps(...DT), y: { ...tens(4, 6, "stiffness k (N/m)"), domain: K },
   });
-  const cells = field(own.late).map((each, cell) => {
-    const [i, j] = [cell % COLUMNS, Math.floor(cell / COLUMNS)];
-    const [x0, x1] = [i, i + 1].map((k) => sx(share(DT, k / COLUMNS)));
-    const [y0, y1] = [j + 1, j].map((k) => sy(share(K, k / ROWS)));
-    return each ? rect(x0, y0, x1 - x0, y1 - y0, `fate-${each}`) : "";
-  });
-  const limit = Array.from({ length: 40 }, (_, at) => share(K, at / 39))
-    .map((k) => [critical_dt(MASS[0], k, DAMPING), k])
-    .filter(([dt]) => dt > DT[0] && dt < DT[1]).map(([dt, k]) => [sx(dt), sy(k)]);
+  const parts = [1, 2].map((fate) =>
+    area([[box.right, box.bottom], ...borders(own.late).map((border) =>
+      [sx(Math.min(DT[1], border[fate])), sy(border[0])]), [box.right, box.top]], `fate-${fate}`));
   const what = {
     label: "time step and stiffness", value: ["dt", "stiffness"], low: [DT[0], K[0]],
     high: [DT[1], K[1]], step: [0.0002, 2000], at: (x, y) => [sx.back(x), sy.back(y)],
     also: { time: 0 }, release: () => view.play(0),
   };
   const names = own.late ? [["holds", 0.2, 0.4]]
-    : [["holds", 0.08, 0.86], ["trembles", 0.6, 0.8], ["flies apart", 0.7, 0.25]];
+    : [["holds", 0.08, 0.86], ["trembles", 0.58, 0.86], ["flies apart", 0.7, 0.25]];
   return [
-    cells, picture, own.late ? "" : path(limit, "rule"),
+    parts, picture,
     names.map(([name, across, down]) => label(name, box.left + across * (box.right - box.left),
       box.top + down * (box.bottom - box.top))),
     view.point(sx(own.dt), sy(own.stiffness), what),
   ];
 }
+
+const sizeOf = (width) => Math.min(124, 0.2 * width); // px, of the lens
 
 function draw(view) {
   const { own, width } = view;
@@ -111,23 +118,18 @@ function draw(view) {
   const { fate, deepest, trembling } = run;
   const begins = own.map && (own.time > 0 || fate === 2) ? 0 : LATE; // s
   const row = Math.min(run.last, Math.floor((begins + own.time) / own.dt));
-  const narrow = width < 480;
-  const place = narrow ? { width, floor: 104 } : { width: 0.56 * width, floor: 180 };
-  const { drawn, touch } = picture(run.run, row, place);
-  const [x, y, size] = narrow ? [width / 2, 236, 90]
-    : [0.79 * width, 138, Math.min(124, 0.2 * width)];
-  const moves = fate === 1 ? `, by ${number(trembling, 2)} r` : "";
-  const told = fate === 2 ? "it flies apart"
-    : `it ${FATES[fate]}${moves}; finger and cup overlap by ${number(deepest, 2)} r`;
-  const [ms, k] = [1000 * own.dt, own.stiffness].map((each) => number(each, 2));
+  const size = sizeOf(width);
+  const [x, y] = [width - size - 8, size + 12];
+  const { drawn, touch } = picture(run.run, row, x - size - 16, y);
+  const told = fate === 2 ? FATES[2]
+    : `${FATES[fate]}${fate ? `, by ${number(trembling, 2)} r` : ""}; finger and cup overlap by ` +
+      `${number(deepest, 2)} r`;
   return {
     picture: [
-      clipped(0, 0, place.width, place.floor + 24, drawn),
-      line(...touch, x - (narrow ? 0 : size), y - (narrow ? size : 0), "grid"),
-      lens(x, y, size, run, row),
-      own.map ? choices(view, narrow ? 360 : 300) : "",
+      drawn, line(...touch, x - size, y, "grid"), lens(x, y, size, run, row),
+      own.map ? map(view, 2 * size + 50) : "",
     ],
-    words: `dt = ${ms} ms, k = ${k} N/m${own.late ? ", force from the end" : ""}: ${told}.`,
+    words: `${number(1000 * own.dt, 2)} ms, ${number(own.stiffness, 2)} N/m: it ${told}.`,
     values: { does: FATES[fate], deepest, trembling, row },
   };
 }
@@ -135,16 +137,16 @@ function draw(view) {
 export const figure = {
   title: "A gripper that trembles",
   caption: "Two fingers squeeze a cup, in slow motion; the lens shows where the left touches it.",
-  height: (width, { map } = {}) => (width < 480 ? 352 : 290) + (map ? 260 : 0),
+  height: (width, { map: shown } = {}) => 2 * sizeOf(width) + (shown ? 302 : 42),
   start: () => ({ dt: 0.004, map: 0, late: 0 }),
-  clock({ own: { dt, stiffness, late, map } }) {
-    if (!map) return { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true };
+  clock({ own: { dt, stiffness, late, map: shown } }) {
+    if (!shown) return { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true };
     return { end: Math.min(SECONDS, squeezed(dt, stiffness, late).last * dt), rate: 0.1 };
   },
-  play: ({ map }) => (map ? "Squeeze" : "Play"),
+  play: (own) => (own.map ? "Squeeze" : "Play"),
   buttons: ({ own }) => {
     const change = () => Object.assign(own, { late: 1 - own.late, time: 0 });
-    return own.map ? [["Force from the end of the step", change, String(Boolean(own.late))]] : [];
+    return own.map ? [["Force from the step’s end", change, String(Boolean(own.late))]] : [];
   },
   draw,
 };
