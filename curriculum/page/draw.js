@@ -87,10 +87,10 @@ export const table = (x, y, width, height) => [
   line(x, y, x + width, y, "table-top"),
 ];
 
-// An arrow from (x, y) by (dx, dy).
+// An arrow from (x, y) by (dx, dy), none where it would be a dot.
 export function arrow(kind, x, y, dx, dy) {
   const size = Math.hypot(dx, dy);
-  if (!(size > 0.5)) return "";
+  if (!(size > 4)) return "";
   const [head, turn] = [Math.min(9, size), (Math.atan2(dy, dx) * 180) / Math.PI];
   return svg`<path class="arrow ${kind}"
     transform="translate(${px(x)} ${px(y)}) rotate(${px(turn)})"
@@ -174,7 +174,9 @@ export function plot(view, { left = 0, top = 0, x, y, lines = [], zero, ...more 
     const places = points.slice(0, end < 0 ? points.length : end).map(([at, value]) =>
       [sx(at), within(box.top - 40, sy(value), box.bottom + 40)]);
     return [path(places, `line m-${model} ${kind}`),
-      marks.filter((k) => k < places.length).map((k) => mark(model, ...places[k]))];
+      marks.map((k) => places[k] ?? [0, -Infinity])
+        .filter(([, at]) => at >= box.top && at <= box.bottom)
+        .map((place) => mark(model, ...place))];
   });
   const picture = [
     across, along, line(box.left, box.bottom, box.right, box.bottom, "axis"),

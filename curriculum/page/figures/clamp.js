@@ -43,9 +43,8 @@ function draw(view) {
       groove(right, "the sum stays ≥ 0", x), groove(wrong, "each change ≥ 0", 3 * x),
       view.point(x - scale * vx, y + scale * vy, what),
     ],
-    words: `It comes with ${number(vx, 2)} m/s to the right and ${number(-vy, 2)} m/s down. ` +
-      `After 20 sweeps it moves at ${said(right)} with the one clamp, with the other at ` +
-      `${said(wrong)}.`,
+    words: `It comes at ${number(vx, 2)} m/s to the right, ${number(-vy, 2)} m/s down, and leaves ` +
+      `at ${said(right)}, or ${said(wrong)}.`,
     values: { sum: right.speed, each: wrong.speed },
   };
 }

@@ -34,8 +34,8 @@ function draw(view) {
       label(share, x + r + 26, floor - HARD - 10, "middle"),
       picture, mark("soft", sx(depth), sy(d), 7), knob("depth", "the depth", 0.05),
     ],
-    words: `${number(depth * WIDTH * 1000, 2)} mm deep, the contact gives ${share} of the ` +
-      "acceleration that a hard one would give.",
+    words: `${number(depth * WIDTH * 1000, 2)} mm deep, it gives ${share} of the acceleration ` +
+      "that a hard contact gives.",
     values: { depth, d },
   };
 }

@@ -77,7 +77,7 @@ function draw(view) {
   };
   const pushed = Math.abs(end.gap - sum) > 1e-9;
   const [tall, moves] = [gap, unit * free].map((each) => number(each, 2));
-  const does = pushed ? `pushes: the step ends at ${number(end.gap, 2)} r` : "does not push";
+  const does = pushed ? `pushes it to ${number(end.gap, 2)} r` : "does not push";
   return {
     picture: [
       clipped(0, 0, left, top - 20, table(0, floor, left, GROUND),
@@ -90,8 +90,8 @@ function draw(view) {
       view.point(x + r + 14, tip, fly), plane, picture,
       table(0, base, width, 42), strip,
     ],
-    words: `Gap ${tall} r and dt v_n ${moves} r make ${number(sum, 2)} r` +
-      `${sum < 0 ? ", inside" : ""}. ${model} ${does}, with ${number(end.v, 2)} m/s.`,
+    words: `Gap ${tall} r + dt v_n ${moves} r = ${number(sum, 2)} r` +
+      `${sum < 0 ? ", inside" : ""}: ${model} ${does}.`,
     values: { gap, moves: unit * free, sum, end, pushed, parts },
   };
 }

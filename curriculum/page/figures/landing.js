@@ -52,9 +52,9 @@ function draw(view) {
     label: "the ball: how deep it is found", value: "share", low: 0, high: 0.99, step: 0.05,
     at: (_, y) => -y / FALL,
   };
-  const hops = bounces ? `: bounce ${number(bounce)} m/s, bias ${number(bias)} m/s. The larger ` +
-    `lifts it ${number(larger.high)} r, their sum (dotted) ${number(sum.high)} r.`
-    : `; it hops ${number(larger.high, 2)} r high.`;
+  const told = [bounce, bias, larger.high, sum.high].map((each) => number(each, 2));
+  const hops = bounces ? `: bounce ${told[0]}, bias ${told[1]} m/s. The larger lifts it ` +
+    `${told[2]} r, both ${told[3]} r.` : ` and hops ${told[2]} r high.`;
   return {
     picture: [
       clipped(0, 0, left, height, table(0, floor, left, GROUND),
@@ -63,8 +63,7 @@ function draw(view) {
         wish("bounce", bounce, -1), wish("bias", bias, 1)),
       view.grab(what, ball("lcp", x, floor + depth * px - r, r)), picture,
     ],
-    words: `It lands ${number(100 * share, 2)} % of a step after a look and is found ` +
-      `${number(depth, 2)} r deep${hops}`,
+    words: `Found ${number(depth, 2)} r deep${hops}`,
     values: { depth, bounce, bias, larger: larger.high, sum: sum.high },
   };
 }

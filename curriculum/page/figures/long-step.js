@@ -27,9 +27,7 @@ function draw(view) {
   const ways = [0, 1].map((which) =>
     Array.from({ length: 241 }, (_, k) => at(pairOf(own, (k / 120) * critical)[which])));
   const least = Math.min(...pairs.map(([real]) => real));
-  const fate = size < 1 - 1e-9 ? "die away" : size > 1 + 1e-9 ? "grow" : "stay as large";
-  const real = least < 0 ? "two, and one throws it from side to side" : "two, and it creeps back";
-  const kind = pairs[0][1] > 0 ? "a pair, as the ball rings" : real;
+  const kind = pairs[0][1] > 0 ? "rings" : least < 0 ? "is thrown to and fro" : "creeps back";
   const tick = (text, toX, toY, anchor = "start") => label(text, toX, toY, anchor, "tick");
   return {
     picture: [
@@ -44,8 +42,8 @@ function draw(view) {
       least < FARTHEST
         ? [arrow("weight", 40, y - 24, -30, 0), label(number(least), 46, y - 19)] : "",
     ],
-    words: `dt = ${number(1000 * own.dt)} ms: ${kind}; the larger has size ${number(size)}, so ` +
-      `the steps ${fate}. They grow from ${number(1000 * critical)} ms on.`,
+    words: `With ${number(1000 * own.dt)} ms it ${kind}, each step × ${number(size)}. From ` +
+      `${number(1000 * critical)} ms on that grows.`,
     values: { pairs, size, critical },
   };
 }

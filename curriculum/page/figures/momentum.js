@@ -76,8 +76,8 @@ function draw(view) {
       way(walked, "lcp"), way(rolled, "leapfrog"), mark("lcp", ...place(end), 7),
       view.point(...place(begin), from),
     ],
-    words: `From ${list(begin)} m g dt the sweeps come to ${list(end)}, within a thousandth ` +
-      `after ${sweeps[0]}; with momentum after ${sweeps[1]}.`,
+    words: `From ${list(begin)} m g dt to ${list(end)}: ${sweeps[0]} sweeps, with momentum ` +
+      `${sweeps[1]}.`,
     values: { end, rolled: rolled[SWEEPS], sweeps },
   };
 }

@@ -40,8 +40,7 @@ function draw(view) {
     left, x: axis([0, most], `overlap in ${power ? `${tenTo(power)} r` : "r"}`, ...ticks),
     y: axis([0, 1], ""),
   });
-  const says = law ? `the law says ${number(law[0], 2)} r`
-    : "there is no law: nothing opens an overlap";
+  const says = law ? `the law says ${number(law[0], 2)} r` : "nothing opens an overlap";
   return {
     picture: [
       table(0, floor, left, 30), line(left / 2 + r, floor, left + 20, floor, "grid"),
@@ -52,7 +51,7 @@ function draw(view) {
         label("the law", Math.min(sx(law[1]) + 14, width - 54), at(1) - 0.2 * r + 2)] : "",
       picture, line(sx(0), box.top, sx(0), box.bottom, "rule"),
     ],
-    words: `The lowest of ${balls} balls is ${number(depths[0], 2)} r deep` +
+    words: `The lowest of ${balls} is ${number(depths[0], 2)} r deep` +
       `${rests ? "" : ", and still moves"}; ${says}.`,
     values: { depths, law, rests },
   };

@@ -7,8 +7,6 @@ import { column, R } from "../runs.js";
 const [GROUND, ARROW] = [26, 0.1]; // px of table; m in the picture for 1 m/s
 const [SIDE, LOW, TOP, FAST] = [0.45, 0.03, 0.34, 1.5]; // m, m/s: how far one can drag
 
-const wayOf = (v) => (v > 1e-12 ? "separating" : v < -1e-12 ? "closing" : "neither");
-
 function draw(view) {
   const { x, y, vx, vy } = view.own; // of ball a; ball b lies still in the middle
   const { width, height } = view;
@@ -17,8 +15,8 @@ function draw(view) {
   const all = detect_contacts(column([y, R], { x: [x, 0], vx: [vx, 0], vy: [vy, 0] }), Infinity);
   const contacts = [all[0], all[2]].map((c) =>
     ({ nx: c.nx, ny: c.ny, depth: c.depth / R, v_n: c.v_n() }));
-  const told = contacts.map(({ depth, v_n }, k) => `Contact of a and ${k ? "b" : "table"}: ` +
-    `depth ${number(depth)} r, v_n ${number(v_n)} m/s, ${wayOf(v_n)}.`);
+  const told = contacts.map(({ depth, v_n }, k) =>
+    `${k ? "Ball b" : "Table"}: depth ${number(depth, 2)} r, v_n ${number(v_n, 2)} m/s.`);
   const normals = contacts.map(({ nx, ny }, k) => {
     const [fromX, fromY] = k ? place(nx * R, R + ny * R) : place(x, 0);
     const [dx, dy] = [0.7 * R * scale * nx, -0.7 * R * scale * ny];

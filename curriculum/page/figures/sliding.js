@@ -61,9 +61,8 @@ function draw(view) {
         label(`slope ${k + 1}`, sx(step) + 4, sy(error) + 20, "start", "tick")),
       now.map((error, k) => mark(BOTH[k], sx(dt), sy(error), 8)),
     ],
-    words: `With steps of ${number(1000 * dt)} ms the ball that slides from ` +
-      `${number((lean * 180) / Math.PI, 2)}° is off by ${number(now[0], 2)} r with lcp and by ` +
-      `${number(now[1], 2)} r with leapfrog.`,
+    words: `From ${number((lean * 180) / Math.PI, 2)}° in steps of ${number(1000 * dt)} ms, lcp ` +
+      `is off by ${number(now[0], 2)} r, leapfrog by ${number(now[1], 2)} r.`,
     values: { lcp: now[0], leapfrog: now[1], all },
   };
 }

@@ -6,7 +6,7 @@ import { kept, visits } from "../runs.js";
 
 const [COUNT, PX, SWEEPS, UNIT] = [3, 34, 20, 24]; // UNIT: px of an arrow for a speed of g dt
 const LAST = COUNT * SWEEPS;
-const NAMES = ["ball 1 on the table", "ball 2 on ball 1", "ball 3 on ball 2"];
+const NAMES = ["ball 1 on the table", "ball 2 on 1", "ball 3 on 2"];
 
 // In m g dt and g dt: all balls have fallen for one step, the uppermost has a speed besides.
 const course = kept((top) => visits([1, 1, 1], [0, 0, 0], [-1, -1, top - 1], LAST));
@@ -38,9 +38,9 @@ function draw(view) {
     label: "the uppermost ball’s speed before the sweeps", value: "top", low: -1, high: 3,
     step: 0.1, at: (_, y) => -y / UNIT,
   };
-  const change = `${wanted < 0 ? "less" : "more"} by ${number(Math.abs(wanted), 2)}`;
+  const change = `${number(Math.abs(wanted), 2)} ${wanted < 0 ? "less" : "more"}`;
   const end = clamped ? ", clamped at 0" : "";
-  const told = contact === null ? "Gravity has acted and no contact has pushed"
+  const told = contact === null ? "No contact has pushed yet"
     : `Sweep ${Math.ceil(at / COUNT)}, ${NAMES[contact]}: ${change}${end}`;
   return {
     picture: [
@@ -51,7 +51,7 @@ function draw(view) {
       contact === null ? "" : circle(x, heightOf(contact), 8, "event m-lcp"),
       lam.map(bar), picture, line(sx(0), box.top, sx(0), box.bottom, "rule"),
     ],
-    words: `${told}. The contacts carry ${lam.map((one) => number(one)).join(", ")} m g dt.`,
+    words: `${told}. They carry ${lam.map((one) => number(one, 2)).join(", ")} m g dt.`,
     values: { at, lam, clamped },
   };
 }
