@@ -1,7 +1,7 @@
 /* The stage: it puts a figure into the page, hands it drags, keys and time. A figure is a plain
  * object in figures/NAME.js and touches no document:
  *
- *   title, caption  its name; one sentence that says what it shows
+ *   title, caption  its name; one sentence that says what it shows, or caption(start) gives it
  *   height(width)   px of its drawing
  *   knobs           names of QUANTITIES that stand as sliders below it; or knobs(own) gives them
  *   start(given)    its own state, {name: number or text}; the slot in the text may set it
@@ -11,10 +11,11 @@
  *   buttons(view)   others, [[label, act, pressed]]
  *
  * The view has own, width, height, set(changes), and grab(what, shape): a shape around which one
- * can put a hand, where `what` is {label, value, low, high, step, at(x, y), also, release}. A
+ * can put a hand, where `what` is {label, value, low, high, step, at(x, y), also, seen, release}. A
  * value is a name of the figure's state, or two of them; at gives what belongs to a place, `also`
- * is set with it. view.point is the same with a knob at (x, y). What a handle has done, the
- * figure's words say, to a screen reader, too. */
+ * is set with it, and seen() is the value that one sees, where that is not the state's. view.point
+ * is the same with a knob at (x, y). What a handle has done, the figure's words say, to a screen
+ * reader, too: in at most two lines on a phone, so that nothing below them moves. */
 import { html, nothing, render, svg } from "./lit.js";
 import { circle, within } from "./draw.js";
 import { data } from "./data.js";
@@ -48,7 +49,9 @@ export function viewOf(figure, given, width = 640) {
   };
 }
 
-export const knobsOf = ({ knobs = [] }, own) => (typeof knobs === "function" ? knobs(own) : knobs);
+const asked = (what, state) => (typeof what === "function" ? what(state) : what);
+export const knobsOf = ({ knobs = [] }, { own }) => asked(knobs, own);
+export const captionOf = ({ caption }, { text }) => worded(asked(caption, text));
 
 // Words in which v_n stands as a formula, and no line ends between a number and its unit.
 export const worded = (words) =>
@@ -85,29 +88,28 @@ function slider(view, name) {
 /* What is grabbed: its state is changed by where the hand is, from where it was taken hold of, so
  * that nothing jumps; by the arrow keys, `step` at a time and ten times that with shift. */
 function grabbing(view, box) {
-  let held = null;
+  let held = null; // by which pointer, and how far from the value's own place
   const from = ({ clientX, clientY }) => {
     const { left, top, width } = box.querySelector("svg").getBoundingClientRect();
     return [clientX - left, clientY - top].map((at) => (at * view.width) / width);
   };
-  return (what, shape) => {
-    const { label, low, high, step, at, also, release } = what;
-    const names = [what.value].flat();
-    const [lows, highs, size] = [[low].flat(), [high].flat(), [step].flat()];
-    const now = () => names.map((name) => view.own[name]);
+  return ({ label, value, low, high, step, at, also, seen, release }, shape) => {
+    const [names, lows, highs, sizes] = [value, low, high, step].map((each) => [each].flat());
+    const now = () => (seen ? [seen()] : names.map((name) => view.own[name]));
     const put = (wanted) => {
-      const fine = wanted.map((v, k) => Number(within(lows[k], v, highs[k]).toPrecision(5)));
-      view.set({ ...also, ...Object.fromEntries(names.map((name, k) => [name, fine[k]])) });
+      const fine = names.map((name, k) =>
+        [name, Number(within(lows[k], wanted[k], highs[k]).toPrecision(5))]);
+      view.set({ ...also, ...Object.fromEntries(fine) });
     };
     const seize = (event) => {
       if (event.button > 0 || held) return;
       event.preventDefault();
       event.currentTarget.focus({ preventScroll: true });
       event.currentTarget.setPointerCapture(event.pointerId);
-      const place = [at(...from(event))].flat();
-      held = { pointer: event.pointerId, off: place.map((v, k) => now()[k] - v) };
+      const [place, first] = [[at(...from(event))].flat(), now()];
+      held = { pointer: event.pointerId, off: first.map((v, k) => v - place[k]) };
       view.stop();
-      view.held = true;
+      put(first);
     };
     const drag = (event) => {
       if (held?.pointer !== event.pointerId) return;
@@ -116,17 +118,16 @@ function grabbing(view, box) {
     const letGo = (event) => {
       if (held?.pointer !== event.pointerId) return;
       held = null;
-      view.held = false;
       release?.();
     };
     const key = (event) => {
-      const by = ARROWS[event.key]?.map((each) => each * (event.shiftKey ? 10 : 1));
+      const [across, up] = ARROWS[event.key] ?? [0, 0];
       const lets = release && (event.key === "Enter" || event.key === " ");
-      if (!(by || lets) || event.ctrlKey || event.altKey || event.metaKey) return;
+      if (!(across || up || lets) || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
       if (lets) return release();
-      const by1 = (k) => (names.length > 1 ? by[k] : by[0] + by[1]);
-      put(now().map((v, k) => v + by1(k) * size[k % size.length]));
+      const by = names.length > 1 ? [across, up] : [across + up];
+      put(now().map((v, k) => v + by[k] * (event.shiftKey ? 10 : 1) * sizes[k % sizes.length]));
     };
     const stay = (event) => event.preventDefault(); // no finger moves the page
     return svg`<g class="handle" role="slider" tabindex="0" aria-label=${label}
@@ -151,21 +152,17 @@ export function stage(box, figure, given, still) {
   };
   view.play = (from = view.own.time) => {
     const { end } = figure.clock(view);
-    if (still) return view.set({ time: end });
-    view.own.time = from >= end ? 0 : from;
+    view.running = !still;
     last = performance.now();
-    if (!view.running) requestAnimationFrame(tick);
-    view.running = true;
-    view.set({});
+    view.set({ time: still ? end : from >= end ? 0 : from });
   };
-  function tick(now) {
-    if (!view.running) return;
+  // the time that has passed since the last picture
+  function goOn(now) {
     const { end, rate, loops } = figure.clock(view);
     const time = view.own.time + (rate * within(0, now - last, 100)) / 1000;
     last = now;
-    view.running = near && (loops || time < end);
+    view.running = loops || time < end;
     view.set({ time: loops ? time % end : Math.min(end, time) });
-    if (view.running) requestAnimationFrame(tick);
   }
   const same = () => Object.keys(view.text).every((name) => view.own[name] === view.text[name]
     || (name === "time" && figure.clock?.(view).loops));
@@ -174,9 +171,12 @@ export function stage(box, figure, given, still) {
     view.stop();
   };
 
-  function draw() {
+  function draw(now) {
     frame = 0;
     if (!near) return;
+    if (!begun) box.replaceChildren(); // the still
+    begun = true;
+    if (view.running) goOn(now);
     const { picture, words } = figure.draw(view);
     const button = ([text, act, pressed]) => {
       const press = () => {
@@ -191,10 +191,10 @@ export function stage(box, figure, given, still) {
     const buttons = [...(play ? [play] : []), ...(figure.buttons?.(view) ?? [])].map(button);
     render(html`<svg class="plot" viewBox="0 0 ${view.width} ${view.height}" role="group"
       aria-label=${figure.title}>${picture}</svg>
-      <figcaption>${worded(figure.caption)}</figcaption><p class="words">${worded(words)}</p>
+      <figcaption>${captionOf(figure, view)}</figcaption><p class="words">${worded(words)}</p>
       <button type="button" class="back" title="As in the text" aria-label="As in the text"
       ?disabled=${same()} @click=${back}>↺</button>
-      <div class="controls">${knobsOf(figure, view.own).map((name) => slider(view, name))}
+      <div class="controls">${knobsOf(figure, view).map((name) => slider(view, name))}
       <div class="buttons">${buttons}</div></div>`, box);
     for (const handle of box.querySelectorAll(".handle"))
       handle.setAttribute("aria-valuetext", words);
@@ -203,14 +203,10 @@ export function stage(box, figure, given, still) {
     view.width = Math.max(LEAST, width);
     view.set({});
   }).observe(box);
-  // a figure far from the window keeps its still, and does not run
+  // a figure far from the window keeps its still, or waits: what runs goes on when it is back
   new IntersectionObserver((seen) => {
     near = seen[seen.length - 1].isIntersecting;
-    if (!near) return view.stop();
-    if (!begun) box.replaceChildren(); // the still
-    begun = true;
-    draw();
-    if (figure.clock?.(view).alone && !still) view.play();
+    if (near && !begun && figure.clock?.(view).alone && !still) view.play();
+    else if (near) view.set({});
   }, { rootMargin: "300px" }).observe(box);
-  return view;
 }

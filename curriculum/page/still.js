@@ -1,7 +1,7 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
 import { figures } from "./figures.js";
 import { textOf } from "./lit.js";
-import { fromPlace, knobsOf, QUANTITIES, toSlider, viewOf, worded } from "./stage.js";
+import { captionOf, fromPlace, knobsOf, QUANTITIES, toSlider, viewOf, worded } from "./stage.js";
 
 const [WIDE, NARROW] = [640, 358]; // px
 
@@ -29,9 +29,9 @@ function still([name, given]) {
       title: figure.title,
       svg: textOf(picture),
       words: textOf(worded(words)),
-      caption: textOf(worded(figure.caption)),
+      caption: textOf(captionOf(figure, view)),
       heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
-      knobs: knobsOf(figure, view.own).length,
+      knobs: knobsOf(figure, view).length,
       buttons: figure.buttons || figure.play ? 1 : 0,
     };
   } catch (error) {

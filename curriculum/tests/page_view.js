@@ -11,13 +11,14 @@ const drawn = (name, given = {}, own = {}, width = 640) => {
   const { picture, words, values } = figure.draw(view);
   return { svg: told(picture), words, values, handles, height: view.height, own: view.own };
 };
+const MOST = 92; // letters of a figure's words
 const several = (value) => (Array.isArray(value) ? value : [value]);
 
 // What goes wrong where hands and knobs go to all their ends: handles that leave, texts that are
 // none.
 const lost = (name, given, width) => {
   const [found, first] = [new Set(), drawn(name, given, {}, width)];
-  const ends = MADE.knobsOf(MADE.figures[name], first.own).flatMap((knob) =>
+  const ends = MADE.knobsOf(MADE.figures[name], first).flatMap((knob) =>
     ["low", "high"].map((end) => ({ [knob]: MADE.QUANTITIES[knob][end] })));
   const places = first.handles.flatMap(({ value, low, high }) => [low, high].map((end) =>
     Object.fromEntries(several(value).map((key, k) => [key, several(end)[k] ?? end]))));
@@ -27,6 +28,9 @@ const lost = (name, given, width) => {
     const said = JSON.stringify(own);
     if (/NaN|undefined|null|Infinity|not a number/.test(svg + words))
       found.add(`no number at ${said}`);
+    if (words.length > MOST) found.add(`words that need a third line on a phone: ${words}`);
+    for (const [, x, y] of svg.matchAll(/<path d="M(\S+) ([^L"]+)[^>]* class="mark /g))
+      if (!(x >= -9 && x <= width + 9 && y >= -9 && y <= height)) found.add(`a mark at ${said}`);
     for (const { shape, label } of handles) {
       const [, x, y] = shape.match(/cx="(\S+)" cy="(\S+)"/) ?? [];
       if (!(x >= 0 && x <= width && y >= -1 && y <= height + 1)) found.add(`${label} at ${said}`);

@@ -102,6 +102,27 @@ def test_whatever_a_hand_presses_and_moves_changes_the_words_of_its_figure(where
         assert call(page, "() => scrollY") == top, name
 
 
+@pytest.mark.parametrize("width", [1280, 560, 390])
+def test_no_figure_moves_what_is_below_it_when_it_comes_alive_or_is_used(visit, width):
+    height = "(id) => document.getElementById(id).offsetHeight"
+    with visit(width=width) as page:
+        names = call(page, page_browser.FIGURES)
+        before = {name: call(page, height, name) for name in names}
+        for name in names:
+            call(page, SEE, name)
+            heights = [call(page, height, name)]
+            for button in page.locator(f"#{name} .buttons button").all()[-1:]:
+                button.click()
+                call(page, WORDS, name)
+                heights.append(call(page, height, name))
+            for handle in page.locator(f"#{name} .handle").all():
+                for key in ("ArrowUp", "ArrowLeft", "ArrowDown", "ArrowDown"):
+                    handle.press(f"Shift+{key}")
+                    call(page, WORDS, name)
+                    heights.append(call(page, height, name))
+            assert {*heights} == {before[name]}, name
+
+
 def test_a_ball_stays_under_the_mouse(tab):
     page_browser.resize(tab, 1280)
     x, y = call(tab, page_browser.MIDDLE, "fig-signs", True)
@@ -110,6 +131,22 @@ def test_a_ball_stays_under_the_mouse(tab):
         box = tab.locator("#fig-signs .handle circle").first.bounding_box()
         place = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
         assert place == pytest.approx((x - 40, y + 30), abs=2)
+
+
+@pytest.mark.parametrize("name, moves", [("fig-falls-2", 20), ("fig-sponge", 0)])
+def test_who_seizes_a_ball_in_its_flight_holds_it_where_it_is_seen(visit, name, moves):
+    with visit() as page:
+        call(page, SEE, name)
+        if name == "fig-sponge":
+            page.locator(f"#{name} .buttons button").click()  # it lies at the end of its fall
+        x, y = call(page, page_browser.MIDDLE, name, True)
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x, y - moves)
+        call(page, WORDS, name)
+        box = page.locator(f"#{name} .handle circle").first.bounding_box()
+        assert box["y"] + box["height"] / 2 == pytest.approx(y - moves, abs=2)
+        page.mouse.up()
 
 
 def test_keys_move_a_handle_and_a_slider_and_a_button_takes_both_back_to_the_text(visit):
@@ -145,6 +182,8 @@ def test_the_hero_trembles_by_itself_stops_and_stays_still_where_motion_is_not_w
     with visit(motion="no-preference") as page:
         assert places(page, finger) > 10  # one sees it
         page.locator("#fig-gripper .buttons button").first.click()
+        assert places(page, finger) == 0
+        call(page, SEE, "fig-rod")
         assert places(page, finger) == 0
 
 

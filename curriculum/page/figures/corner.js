@@ -17,7 +17,8 @@ function corner(model, law, { shown = WIDE, hand = 0.5, ...about }) {
   function draw(view) {
     const { own, width, height } = view;
     const { gap: gapOf, curve, most = shown.most, free, below } = law(own);
-    const pressed = Math.max(0, -own.hand) * Math.min(shown.most, most); // m g
+    const hardest = Math.min(shown.most, most);
+    const pressed = Math.max(0, -own.hand) * hardest; // m g
     const start = pressed > 0 ? gapOf(pressed) : own.hand * shown.high;
     const held = own.time === 0;
     const [gap, load] = held ? [start, pressed] : free(start, own.time);
@@ -33,6 +34,7 @@ function corner(model, law, { shown = WIDE, hand = 0.5, ...about }) {
     const what = {
       label: "the ball: lift it or press it", value: "hand", low: -1, high: 1, step: 0.05,
       at: (_, to) => -to / r, also: { time: 0 }, release: free && (() => view.play(0)),
+      seen: () => (own.time === 0 ? own.hand : gap > 0 ? gap / shown.high : -load / hardest),
     };
     const long = 10 + 3 * Math.sqrt(held ? load : 1);
     const above = held && own.hand > 0 ? line(x, y, x, 0)

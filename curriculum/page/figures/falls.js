@@ -1,13 +1,14 @@
 /* The models side by side over one table, and below it their gaps over time. It is still until it
- * is pressed; its scale stays while a hand holds a ball. Values: the time shown [s], the models'
- * rows and gaps [r] then, and the highest place in the picture [m]. */
-import { arrow, axis, ball, circle, label, line, number, plot, steps, table } from "../draw.js";
-import { within } from "../draw.js";
+ * is pressed, and keeps its scale. Values: the time shown [s], the models' rows and gaps [r] then,
+ * and the highest place in the picture [m]. */
+import { arrow, axis, ball, circle, label, line, number, plain, plot, steps } from "../draw.js";
+import { table, within } from "../draw.js";
 import { data } from "../data.js";
-import { column, gapsOf, kept, MODELS, pushIn, R, record } from "../runs.js";
+import { column, G, gapsOf, kept, MODELS, pushIn, R, record } from "../runs.js";
 
-const [GROUND, BELOW, HIGHEST] = [26, 76, 1.25]; // px, px; m
+const [GROUND, BELOW, LOWEST] = [26, 76, 0.45]; // px, px; m: a picture is at least so high
 const PACE = { 6: 30, 30: 1, 1: 6 }; // how many times slower, and what the button makes of it
+const SCENES = { drop: "A ball falls", bounce: "A ball bounces", stack: "Three balls stand" };
 
 const run = kept((model, heights, knobs, count) => {
   const made = record(model, column(heights), knobs, count);
@@ -24,6 +25,7 @@ function knobsOf(own, model) {
   return { dt, ...Object.fromEntries(data.uses[model].map((name) => [name, all[name]])) };
 }
 
+// The runs of all models, and the times between which they are shown [s].
 function runsOf(own) {
   const { scene, models, dt, lift, until } = own;
   const heights = data.scenes[scene].start.map((y) => y + lift);
@@ -35,35 +37,43 @@ function runsOf(own) {
   return { all, from: 0, to: Math.max(1, landing - 1) * dt };
 }
 
-const heightsIn = ({ made: { n, y } }, row) => Array.from(y.subarray(row * n, (row + 1) * n));
+// How high the picture is [m]: as the balls are where it begins, with some room to lift them.
+function topOf({ scene, from, until }) {
+  const { start } = data.scenes[scene];
+  const begins = Math.max(...start) - (until ? 0 : (G / 2) * from ** 2);
+  return Math.max(LOWEST, begins + 1.2 * R * start.length);
+}
 
 function placeWords(gap) {
-  if (!Number.isFinite(gap)) return "nowhere";
+  if (!Number.isFinite(gap)) return "gone";
   if (Math.abs(gap) < 5e-5) return "touching";
-  return `${number(Math.abs(gap), 2)} r ${gap < 0 ? "in" : "up"}`;
+  return `${number(gap, 2)} r`;
 }
 
 // A model's balls, held by the hand; from above what a picture holds, an arrow and how high.
-function lane(view, each, row, k, { floor, scale, wide, top }) {
-  const [x, start] = [wide * (k + 0.5), data.scenes[view.own.scene].start];
-  const [r, kind] = [Math.max(5, R * scale), each.model];
-  const shown = heightsIn(each, row).map((height) => {
+function lane(view, { model, made, gaps }, row, k, { floor, scale, wide, top }) {
+  const { own } = view;
+  const [x, start] = [wide * (k + 0.5), data.scenes[own.scene].start];
+  const r = Math.max(5, R * scale);
+  const heights = Array.from(made.y.subarray(row * made.n, (row + 1) * made.n));
+  const shown = heights.map((height) => {
     if (height < top + R)
-      return ball(kind, x, Math.min(floor + r, floor - height * scale), r);
+      return ball(model, x, Math.min(floor + r, floor - height * scale), r);
     const far = Number.isFinite(height) ? `${number(height, 2)} m` : "out of sight";
     return [circle(x, 44, 26, "halo"), arrow("weight", x, 54, 0, -30),
       label(far, x, 70, "middle", "tick")];
   });
-  const push = Math.min(40, 14 * Math.sqrt(Math.max(0, pushIn(each.made, row))));
+  const push = Math.min(40, 14 * Math.sqrt(Math.max(0, pushIn(made, row))));
   const what = {
-    label: `${kind}: the balls`, value: "lift", low: 1.05 * R - start[0],
-    high: HIGHEST - start[start.length - 1], step: 0.02, at: (_, y) => (floor - y) / scale,
+    label: `${model}: the balls`, value: "lift", low: 1.05 * R - start[0],
+    high: top - R - start[start.length - 1], step: 0.02, at: (_, y) => (floor - y) / scale,
+    seen: () => (own.from + own.time > 0 && heights[0] < top ? heights[0] - start[0] : own.lift),
     also: { from: 0, time: 0 }, release: () => view.play(0),
   };
   return [
-    view.grab(what, shown), arrow(`push m-${kind}`, x, floor + GROUND - 3, 0, -push),
-    label(kind, x, floor + GROUND + 20, "middle"),
-    label(placeWords(each.gaps[row]), x, floor + GROUND + 40, "middle", "tick"),
+    view.grab(what, shown), arrow(`push m-${model}`, x, floor + GROUND - 3, 0, -push),
+    label(model, x, floor + GROUND + 20, "middle"),
+    label(placeWords(gaps[row]), x, floor + GROUND + 40, "middle", "tick"),
   ];
 }
 
@@ -77,7 +87,7 @@ function chartOf(view, { all, from, to }, top, time) {
   const seen = lines.flatMap(({ points }) => points.map(([, gap]) => gap)).filter(Number.isFinite);
   const low = seen.reduce((a, b) => Math.min(a, b), -0.05);
   const high = seen.reduce((a, b) => Math.max(a, b), 0);
-  const most = Math.min(high, Math.max(2, -2 * low), (HIGHEST - R) / R);
+  const most = Math.min(high, Math.max(2, -2 * low), 12);
   const domain = [Math.max(low, -10) - 0.06 * (most - low), most + 0.06 * (most - low)];
   const { sx, box, picture } = plot(view, {
     top, zero: true, lines,
@@ -100,14 +110,7 @@ function draw(view) {
   const row = Math.min(Math.round(time / own.dt), all[0].made.steps);
   const wide = width / all.length;
   const chartTop = Math.round(0.56 * height);
-  const floor = chartTop - BELOW;
-  const reach = Math.max(...all.flatMap((each) => [
-    ...heightsIn(each, Math.round(from / own.dt)),
-    ...heightsIn(each, 0).map((y) => (from > 0 ? Math.min(y, 0.45) : y)),
-  ]));
-  if (!view.held || view.shownFrom !== from) // in a hand the scale stays, so that balls follow it
-    [view.top, view.shownFrom] = [within(0.45, reach + 1.2 * R, HIGHEST + R), from];
-  const { top } = view;
+  const [floor, top] = [chartTop - BELOW, topOf(view.text)];
   const scale = Math.min((floor - 6) / top, (0.42 * wide) / R); // px for 1 m
   const told = all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row])}`);
   return {
@@ -129,7 +132,9 @@ const lengthOf = ({ own }) => {
 
 export const figure = {
   title: "The models over one table",
-  caption: "Lift the balls and let them go, or drag the time along the curves.",
+  caption: ({ scene, from, to, until, dt }) => `${SCENES[scene]}: ${until
+    ? "lift it and let it go, or drag the time along the curves, up to the landing"
+    : `from ${from} to ${to} s, in steps of ${plain(1000 * dt)} ms`}.`,
   height: (width) => (width < 480 ? 400 : 460),
   knobs: ({ knobs }) => knobs.split(","),
   start: ({ scene = "drop" }) => ({
@@ -144,7 +149,7 @@ export const figure = {
       view.stop();
       own.time = Math.min(lengthOf(view), own.time + own.dt);
     };
-    return [["One step", step],
+    return [["Step", step],
       [`${own.slower} × slower`, () => (own.slower = PACE[own.slower])]];
   },
   draw,
