@@ -13,11 +13,10 @@ const PARTS = ["x", "y", "vx", "vy"];
 
 // Balls at these heights [m]; `more`: x, vx, vy, mass or radius, a number or one for each.
 export function column(heights, more = {}) {
-  const at = (name, usual, i) => [more[name] ?? usual].flat()[Array.isArray(more[name]) ? i : 0];
-  return heights.map((y, i) => {
-    const [x, vx, vy] = ["x", "vx", "vy"].map((name) => at(name, 0, i));
-    return new Ball(x, y, vx, vy, at("mass", 1, i), at("radius", R, i));
-  });
+  const all = { x: 0, vx: 0, vy: 0, mass: 1, radius: R, ...more };
+  const at = (name, i) => (Array.isArray(all[name]) ? all[name][i] : all[name]);
+  return heights.map((y, i) =>
+    new Ball(at("x", i), y, at("vx", i), at("vy", i), at("mass", i), at("radius", i)));
 }
 
 // step(balls) of a model with these knobs, as contact.step_of has it.

@@ -18,12 +18,8 @@ const run = kept((model, heights, knobs, count) => {
 });
 
 // The knobs that a model's run depends on, and no others: so what else is dragged costs nothing.
-function knobsOf(own, model) {
-  const { dt, impedance } = own;
-  const solimp = impedance ? [Math.max(0, 2 * impedance - 1), impedance, 0.001, 0.5, 2] : null;
-  const all = { ...own, solimp, solref: null };
-  return { dt, ...Object.fromEntries(data.uses[model].map((name) => [name, all[name]])) };
-}
+const knobsOf = (own, model) =>
+  Object.fromEntries(["dt", ...data.uses[model]].map((name) => [name, own[name]]));
 
 // The runs of all models, and the times between which they are shown [s].
 function runsOf(own) {
@@ -139,7 +135,7 @@ export const figure = {
   knobs: ({ knobs }) => knobs.split(","),
   start: ({ scene = "drop" }) => ({
     scene, models: "penalty,lcp", from: 0.3, to: 1.2, until: "", lift: 0, knobs: "dt", slower: 6,
-    impedance: null, ...data.scenes[scene].own,
+    ...data.scenes[scene].own,
   }),
   clock: (view) => ({ end: lengthOf(view), rate: 1 / view.own.slower }),
   play: () => "Let them fall",

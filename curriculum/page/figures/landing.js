@@ -35,7 +35,7 @@ function draw(view) {
   const [px, r, x] = [FALL / fall, Math.min(42, 0.22 * left), left / 2]; // px: for a gap of 1 r
   const top = 1.15 * Math.max(0.5 * fall, larger.high, bounces ? sum.high : 0);
   const lines = [{ model: "lcp", points: larger.points, kind: "plainly" }];
-  if (bounces) lines.push({ model: "lcp", points: sum.points, kind: "thin dotted" });
+  if (bounces) lines.push({ model: "lcp", points: sum.points, kind: "dotted" });
   const { picture } = plot(view, {
     left: left + 8,
     x: axis([0, seconds], "time (s)", ...steps(0, seconds, 3)),

@@ -37,7 +37,7 @@ function draw(view) {
       tick("size 1", x + 0.74 * unit, y - 0.78 * unit), tick("1", x + unit + 6, y + 20),
       tick("−1", x - unit - 6, y + 20, "end"), tick("0", x - 6, y + 20, "end"),
       tick("real", x + 1.6 * unit, y - 8, "end"), tick("imaginary", x + 6, y - 1.12 * unit),
-      ways.map((each) => path(each, "rule dashed thin")),
+      ways.map((each) => path(each, "rule dashed")),
       pairs.map((pair) => mark("penalty", ...at(pair), 8)),
       least < FARTHEST
         ? [arrow("weight", 40, y - 24, -30, 0), label(number(least), 46, y - 19)] : "",

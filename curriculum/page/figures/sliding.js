@@ -37,7 +37,7 @@ function draw(view) {
   const left = Math.round(0.34 * width);
   const { sx, sy, picture } = plot(view, {
     left, x: timeSteps(STEPS[0], 0.064), y: tens(-6, 1, "error / r", 2),
-    lines: [...slopes.map((points) => ({ model: "fixed", points, kind: "thin dotted" })),
+    lines: [...slopes.map((points) => ({ model: "fixed", points, kind: "dotted" })),
       ...all.map((points, k) => ({ model: BOTH[k], points, marks: [1, 3, 5] }))],
   });
   const scale = Math.min(44, left / 4.6); // px for 1 r
