@@ -206,7 +206,8 @@ export function stage(box, figure, given, still) {
   // a figure far from the window keeps its still, or waits: what runs goes on when it is back
   new IntersectionObserver((seen) => {
     near = seen[seen.length - 1].isIntersecting;
-    if (near && !begun && figure.clock?.(view).alone && !still) view.play();
-    else if (near) view.set({});
+    if (!near) return;
+    if (!begun && figure.clock?.(view).alone && !still) view.play();
+    draw(performance.now());
   }, { rootMargin: "300px" }).observe(box);
 }

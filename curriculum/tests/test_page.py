@@ -142,10 +142,10 @@ def test_who_seizes_a_ball_in_its_flight_holds_it_where_it_is_seen(visit, name, 
         x, y = call(page, page_browser.MIDDLE, name, True)
         page.mouse.move(x, y)
         page.mouse.down()
-        page.mouse.move(x, y - moves)
+        page.mouse.move(x, y + moves)
         call(page, WORDS, name)
         box = page.locator(f"#{name} .handle circle").first.bounding_box()
-        assert box["y"] + box["height"] / 2 == pytest.approx(y - moves, abs=2)
+        assert box["y"] + box["height"] / 2 == pytest.approx(y + moves, abs=2)
         page.mouse.up()
 
 
