@@ -16,7 +16,6 @@ from pathlib import Path
 import pytest
 
 import contact
-import curriculum
 from curriculum.tests.helpers import CONTACT, NO_PLUGINS, ROOT, python
 
 FOLDER_ONLY = ("recording:", "next,", "no recording:", "exact: ")  # lines that the folder adds
@@ -160,23 +159,6 @@ def test_no_step_one_step_and_two_steps_of_every_scene_work(scene, steps, tmp_pa
     assert (tmp_path / "contact.rrd").stat().st_size > 0
 
 
-def test_figures_stand_under_their_headings_and_every_heading_is_explained(tmp_path, capsys):
-    _, out, _ = main(capsys, "--dt", "0.03", "--no-rerun", "--out", tmp_path)
-    lines, metrics = out.splitlines(), strict_json(tmp_path / "metrics.json")["quality"]
-    heading, *rows = lines[1 : 2 + len(contact.MODELS)]
-    titles, ends = heading.split(), [match.end() for match in re.finditer(r"\S+", heading)]
-    for row, model in zip(rows, contact.MODELS):
-        assert row.split()[0] == model and len(row) == len(heading) <= 80
-        for title, end in zip(titles, ends):
-            shown = float(row[:end].split()[-1].replace(",", ""))
-            assert shown == pytest.approx(metrics[model][contact.COLUMNS[title][0]], rel=0.06)
-    for title, (key, meaning) in contact.COLUMNS.items():
-        explained = f"  {title:<11}{meaning}" in lines
-        assert explained == (title in titles) == any(row[key] for row in metrics.values())
-    assert len(titles) > 6 and "state: EXPLODED at step 98: penalty" in lines
-    assert "state: rests: lcp, soft, leapfrog, exact" in lines
-
-
 def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
     """-1 asks for the scene's own restitution and damping, as it is published."""
     written = []
@@ -224,18 +206,6 @@ def test_flags_at_their_ends_give_a_right_report_or_one_line(tmp_path, capsys):
         for model, row in strict_json(tmp_path / "metrics.json")["quality"].items():
             (line,) = re.findall(rf"state: .*\b{model}\b.*", out)
             assert not (line.endswith(" ok") and (row["blew_up"] or row["through"])), (flags, line)
-
-
-@pytest.mark.parametrize("fault", ["import nmpy", "from curriculum import no_such_name"])
-def test_what_is_missing_is_none_and_what_is_broken_is_raised(fault, tmp_path, monkeypatch):
-    assert contact.beside("missing") is None
-    (tmp_path / "curriculum").mkdir()
-    (tmp_path / "curriculum/faulty.py").write_text(fault)
-    monkeypatch.setattr(contact, "__file__", str(tmp_path / "contact.py"))
-    monkeypatch.setattr(curriculum, "__path__", [str(tmp_path / "curriculum")])
-    monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path)])
-    with pytest.raises(ImportError):
-        contact.beside("faulty")
 
 
 def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
