@@ -546,10 +546,9 @@ OPENS = 0.03  # of the two radii (a choice): the most of an overlap that a step 
 def leapfrog_step(balls, dt, restitution, iters) -> list[Contact]:
     """One step [s]: impacts; half of gravity, where, move; half of gravity, how fast.
 
-    An impact is asked once, at its own moment. A contact that lasts is asked twice: where may it
-    go, gap + dt v_n >= 0; and after the move, if it pushed, how fast, v_n >= 0. lam is kept
-    in between, so the push that opened an overlap is taken back, and throws nobody. Without
-    contacts that is leapfrog, exact on a parabola; with lasting ones, RATTLE (Andersen 1983).
+    An impact is asked once, at its own moment; what lasts, twice: where, gap + dt v_n >= 0; and
+    after the move, if it pushed, how fast, v_n >= 0. lam is kept between: what opened an overlap is
+    taken back. Without contacts this is leapfrog; with lasting ones, RATTLE (Andersen 1983).
 
     Not mended: unfinished sweeps let a stack sag; an impact slower than what gravity adds in a step
     does not bounce; after as many moments as MOST_PUSHES allows, the last takes the rest of a step.
