@@ -12,9 +12,9 @@ summary, seeds.json, is the same bytes wherever, in whatever order and parts the
 
 import argparse
 import math
-import sqlite3
+import statistics
 import sys
-import zlib
+from collections import defaultdict
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
@@ -25,7 +25,8 @@ from curriculum.commands import Parser, near, write_json
 
 PROG = "python -m curriculum.seeds"
 KEYS = [key for key, _ in contact.COLUMNS.values()]
-COLUMNS = ("line", "seed INTEGER", "model", "ending", *(f"{key} REAL" for key in KEYS))
+HEAD = ",".join(("made by", "seed", "model", "ending", *KEYS, "whole"))
+fail = Parser(prog=PROG).error
 
 
 def seed_range(text):
@@ -45,54 +46,74 @@ def parse(argv):
     mine, rest = parser.parse_known_args(argv)
     for flag in ("--seed", "--plot", "--rerun"):
         if any(word.split("=")[0] == flag for word in rest):
-            parser.error(f"{flag} is for one run: leave it out")
+            fail(f"{flag} is for one run: leave it out")
     if mine.scheduler == "":
-        parser.error("argument --scheduler: given ''; allowed: host:port")
+        fail("argument --scheduler: given ''; allowed: host:port")
     return mine.seeds, mine.scheduler, contact.parse_flags(rest)
 
 
 def main(argv=None):
     """Run what is missing, print the table, write seeds.json. Returns the exit status."""
     seeds, scheduler, args = parse(argv)
-    fail = Parser(prog=PROG).error
     models = list(contact.MODELS) if args.contact == "all" else [args.contact]
     path = Path(args.out, "seeds.csv")
     try:
-        rows = Rows(path, made_by(args))
-        run_missing(rows, args, seeds, len(models), scheduler)
-        if clash := rows.clash():
-            fail(f"{near(str(path))}: {clash}; take the rows of one machine out")
-        summaries = {model: rows.summary(model, seeds) for model in models}
-        summaries = contact.rounded({model: each for model, each in summaries.items() if each})
-        kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps, "rows": summaries}
+        run_missing(path, args, seeds, models, scheduler)
+        rows, _ = read(path, made_by(args), seeds)
+        found = {model: summary(rows[model]) for model in models}
+        found = contact.rounded({model: ways for model, ways in found.items() if ways})
+        kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps, "rows": found}
         write_json(path.with_suffix(".json"), kept | {"seeds": [seeds[0], seeds[-1] + 1]})
-    except (ImportError, OSError, sqlite3.Error) as error:
+    except (ImportError, OSError) as error:
         kept = f"what is done is kept in {near(str(path))}: the same command goes on from there"
         fail(f"{said(error)}; {kept}")
     print(f"scene {args.scene}, seeds {seeds[0]} to {seeds[-1]}:", end=" ")
     print(f"{args.steps} steps of {args.dt:g} s")
-    table = {
-        f"{model} {way}": row for model, ways in summaries.items() for way, row in ways.items()
-    }
+    table = {f"{model} {way}": row for model, ways in found.items() for way, row in ways.items()}
     contact.print_table(table, lambda row: ending(row, len(seeds)))
-    for model, ways in summaries.items():
+    for model, ways in found.items():
         print(f"{model}, seeds of its lowest and highest:", extremes(ways) or "-")
     print("seeds:", path.with_suffix(".json"))
     return 0
 
 
-def run_missing(rows, args, seeds, models, scheduler):
-    """Run the seeds that are not in the file, and add each as soon as it is done."""
-    todo = sum(1 for _ in rows.missing(seeds, models))
-    if rows.others or 0 < todo < len(seeds):
-        note = f"{near(str(rows.path))}: {len(seeds) - todo:,} of {len(seeds):,} seeds are there"
-        others = f"; {rows.others:,} rows of other flags or other code are left alone"
-        print(note + others * (rows.others > 0), file=sys.stderr)
+def run_missing(path, args, seeds, models, scheduler):
+    """Run the seeds that the file lacks, and add the rows of each as soon as it is done.
+
+    A blank line stands where it went on, so that a row that was cut spoils no other.
+    """
+    rows, others = read(path, made_by(args), seeds)
+    done = set.intersection(*(set(rows[model]) for model in models))
+    todo = len(seeds) - len(done)
+    if others or 0 < todo < len(seeds):
+        note = f"{near(str(path))}: {len(done):,} of {len(seeds):,} seeds are there"
+        alone = f"; {others:,} rows of other flags or other code are left alone"
+        print(note + alone * (others > 0), file=sys.stderr)
     if todo:
-        job, missing = partial(qualities, args, code()), rows.missing(seeds, models)
-        with rows.opened() as file:
-            for _, new in parallel.as_they_come(job, missing, todo, "seeds", None, scheduler):
-                rows.add(file, new)
+        missing = (seed for seed in seeds if seed not in done)
+        job = partial(rows_of, args, code())
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("a", buffering=1, encoding="utf-8", newline="\n") as file:
+            file.write("\n" if file.tell() else f"{HEAD}\n")
+            for _, text in parallel.as_they_come(job, missing, todo, "seeds", None, scheduler):
+                file.write(text)
+
+
+def read(path, mark, seeds):
+    """{model: {seed: (how it ended, *measures)}} of these seeds, of a file's whole rows that have
+    this mark, and how many have another one. A million rows take 500 MB."""
+    rows, others = defaultdict(dict), 0
+    lines = path.open(encoding="utf-8", errors="replace") if path.is_file() else ()
+    for line in lines:
+        if not line.endswith(",yes\n"):
+            continue  # a head, or a row that was cut
+        first, seed, model, end, *values, _ = line.split(",")
+        row = end, *(float(value) if value else None for value in values)
+        others += first != mark
+        if first == mark and int(seed) in seeds and rows[model].setdefault(int(seed), row) != row:
+            twice = f"two results of seed {seed} by {model}; take the rows of one machine out"
+            fail(f"{near(str(path))}: {twice}")
+    return rows, others
 
 
 @cache
@@ -108,109 +129,49 @@ def made_by(args):
     return stored.digest([flags, code()])
 
 
-def qualities(args, known, seed):
-    """[[seed, model, how it ended, measures]] of one seed; another process may run it."""
+def rows_of(args, known, seed):
+    """The rows of one seed, a line a model; another process may run it."""
     if other := {name.partition("#")[0] for name in known if code().get(name) != known[name]}:
         raise ImportError(f"another {', '.join(sorted(other))} is there; give all the same")
     _, without, quality = contact.run_all(args, contact.chosen_scene(args, seed))
     ends = {model: (f"no: {why}", {}) for model, why in without.items()}
     ends |= {model: (contact.ending(row), row) for model, row in quality.items()}
-    return [[seed, m, end, *(finite(row.get(k)) for k in KEYS)] for m, (end, row) in ends.items()]
+    text = ""
+    for model, (end, row) in ends.items():
+        cells = (cell(row.get(key)) for key in KEYS)
+        line = made_by(args), str(seed), model, end.replace(",", ";"), *cells, "yes"
+        text += ",".join(line) + "\n"
+    return text
 
 
-def finite(value):
-    """A measure, where infinity stands for what is not finite."""
-    return math.inf if value is not None and not math.isfinite(value) else value
+def cell(value):
+    """A measure as text: empty where it is unknown, and inf for all that is not finite."""
+    if value is None:
+        return ""
+    return str(value if math.isfinite(value) else math.inf)
 
 
-class Rows:
-    """The rows of a file that have this mark, in a table on the disk, so that memory stays flat.
+def summary(rows):
+    """{"median": row, "lowest": row, "highest": row} of a model's rows; {} if it has no run.
 
-    others: how many have another one. cut: whether the last row is not whole.
+    A row counts the runs, those that exploded, and others that went through something; a key
+    that a run lacks is None. seeds: by which seed it is the lowest or the highest.
     """
-
-    def __init__(self, path, mark):
-        self.path, self.mark, self.others, line = path, mark, 0, ""
-        self.table = sqlite3.connect("", isolation_level=None)  # a file that goes at the end
-        names = ", ".join((*COLUMNS, "UNIQUE (seed, model, line)"))
-        self.table.execute(f"CREATE TABLE rows ({names})")
-        if path.is_file():  # /dev/zero would never end
-            self.table.execute("BEGIN")
-            with path.open(encoding="utf-8", errors="replace") as file:
-                for line in file:
-                    self.take(line)
-            self.table.execute("COMMIT")
-        self.cut = not line.endswith("\n")
-
-    def take(self, line):
-        """A line of the file, if it is whole, which its sum says, and has the mark."""
-        text, _, digest = line.rstrip("\n").rpartition(",")
-        whole, (mark, *cells) = digest == summed(text), text.split(",")
-        self.others += whole and mark != self.mark
-        if whole and mark == self.mark:
-            seed, model, end, *values = cells
-            row = text, int(seed), model, end, *(float(v) if v else None for v in values)
-            marks = ", ".join("?" * len(row))
-            self.table.execute(f"INSERT OR IGNORE INTO rows VALUES ({marks})", row)
-
-    def opened(self):
-        """The file, to be written to at its end."""
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        file = self.path.open("a", encoding="utf-8", newline="\n")
-        names = ",".join(("made by", "seed", "model", "ending", *KEYS, "sum"))
-        file.write("\n" * self.cut if file.tell() else f"{names}\n")
-        return file
-
-    def add(self, file, rows):
-        """Write the rows of a seed, all at once, and take them."""
-        for row in rows:
-            cells = ("" if cell is None else str(cell).replace(",", ";") for cell in row)
-            text = ",".join((self.mark, *cells))
-            line = f"{text},{summed(text)}\n"
-            file.write(line)
-            self.take(line)
-        file.flush()
-
-    def missing(self, seeds, models):
-        """Those of the seeds that have not the rows of so many models."""
-        for seed in seeds:
-            found = self.table.execute("SELECT count(*) FROM rows WHERE seed = ?", (seed,))
-            if found.fetchone()[0] < models:
-                yield seed
-
-    def clash(self):
-        """Two results of one seed, of machines that differ, in words; or ""."""
-        twice = "SELECT seed, model FROM rows GROUP BY seed, model HAVING count(*) > 1"
-        found = self.table.execute(twice)
-        return next((f"two results of seed {seed} by {model}" for seed, model in found), "")
-
-    def summary(self, model, seeds):
-        """{"median": row, "lowest": row, "highest": row} of a model's runs; None if it has none.
-
-        A row counts the runs, those that exploded, and others that went through something; a key
-        that a run lacks is None. seeds: by which seed it is the lowest or the highest.
-        """
-
-        def ask(what, order=""):
-            where = "model = ? AND seed BETWEEN ? AND ? AND ending NOT LIKE 'no: %'"
-            asked = f"SELECT {what} FROM rows WHERE {where} {order}"
-            return self.table.execute(asked, (model, seeds[0], seeds[-1]))
-
-        ended = "count(*), total(ending LIKE 'EXPLODED%'), total(ending LIKE 'through%')"
-        counts = dict(zip(("runs", "blew_up", "through"), map(int, ask(ended).fetchone())))
-        runs, ways = counts["runs"], {"median": counts | dict.fromkeys(KEYS)}
-        ways |= {way: counts | {"seeds": {}} for way in ("lowest", "highest")}
-        places = 0, (runs - 1) // 2, runs // 2, runs - 1
-        for key in KEYS if runs else ():
-            ordered = enumerate(ask(f"{key}, seed", f"ORDER BY {key}, seed"))
-            at = {place: row for place, row in ordered if place in places}
-            low, (below, _), (above, _), high = (at[place] for place in places)
-            if whole := low[0] is not None:  # one that is unknown would stand first
-                ways["median"][key] = (below + above) / 2.0
-            for way, (value, seed) in ("lowest", low), ("highest", high):
-                ways[way] |= {key: value if whole else None}
-                ways[way]["seeds"] |= {key: seed if whole else None}
-        return ways if runs else None
+    runs = {seed: row for seed, row in rows.items() if not row[0].startswith("no: ")}
+    if not runs:
+        return {}
+    ends = [end for end, *_ in runs.values()]
+    counts = {"runs": len(runs)}
+    counts["blew_up"] = sum(end.startswith("EXPLODED") for end in ends)
+    counts["through"] = sum(end.startswith("through") for end in ends)
+    median, lowest, highest = {**counts}, counts | {"seeds": {}}, counts | {"seeds": {}}
+    for place, key in enumerate(KEYS, 1):
+        found = [(row[place], seed) for seed, row in runs.items()]
+        known = all(value is not None for value, _ in found)
+        median[key] = statistics.median(value for value, _ in found) if known else None
+        for way, end in (lowest, min), (highest, max):
+            way[key], way["seeds"][key] = end(found) if known else (None, None)
+    return {"median": median, "lowest": lowest, "highest": highest}
 
 
 def extremes(ways):
@@ -226,11 +187,6 @@ def ending(row, count):
     lost = count - row["runs"]
     ends = {"EXPLODED": row["blew_up"], "went through": row["through"], "could not be run": lost}
     return ", ".join(f"{n} of {count} {end}" for end, n in ends.items() if n) or "ok"
-
-
-def summed(text):
-    """The sum of a row's text, as eight hexadecimal digits."""
-    return f"{zlib.crc32(text.encode()):08x}"
 
 
 if __name__ == "__main__":
