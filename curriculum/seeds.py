@@ -12,12 +12,13 @@ summary, seeds.json, is the same bytes wherever, in whatever order and parts the
 
 import argparse
 import math
-import statistics
 import sys
-from collections import defaultdict
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
+from tempfile import TemporaryFile
+
+import numpy as np
 
 import contact
 from curriculum import parallel, said, stored
@@ -26,14 +27,16 @@ from curriculum.commands import Parser, near, write_json
 PROG = "python -m curriculum.seeds"
 KEYS = [key for key, _ in contact.COLUMNS.values()]
 HEAD = ",".join(("made by", "seed", "model", "ending", *KEYS, "whole"))
+ENDINGS = None, "no: ", "EXPLODED", "through", ""  # what how a run ended begins with
 fail = Parser(prog=PROG).error
 
 
 def seed_range(text):
     """An argparse type: the seeds of "A:B", from A to B - 1."""
     first, _, last = text.partition(":")
-    if not (first.isdecimal() and last.isdecimal() and int(first) < int(last) <= 10**18):
-        allowed = "A:B, whole numbers up to 1e18, A < B, such as 0:20 for 0 to 19"
+    numbers = first.isdecimal() and last.isdecimal() and int(last) <= 10**18
+    if not (numbers and 0 < int(last) - int(first) <= 10**9):
+        allowed = "A:B, whole numbers, A < B <= 1e18, at most 1e9 seeds, such as 0:20 for 0 to 19"
         raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
     return range(int(first), int(last))
 
@@ -59,8 +62,8 @@ def main(argv=None):
     path = Path(args.out, "seeds.csv")
     try:
         run_missing(path, args, seeds, models, scheduler)
-        rows, _ = read(path, made_by(args), seeds)
-        found = {model: summary(rows[model]) for model in models}
+        rows, _ = read(path, made_by(args), seeds, models)
+        found = {model: summary(each, seeds) for model, each in zip(models, rows)}
         found = contact.rounded({model: ways for model, ways in found.items() if ways})
         kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps, "rows": found}
         write_json(path.with_suffix(".json"), kept | {"seeds": [seeds[0], seeds[-1] + 1]})
@@ -82,15 +85,15 @@ def run_missing(path, args, seeds, models, scheduler):
 
     A blank line stands where it went on, so that a row that was cut spoils no other.
     """
-    rows, others = read(path, made_by(args), seeds)
-    done = set.intersection(*(set(rows[model]) for model in models))
-    todo = len(seeds) - len(done)
+    rows, others = read(path, made_by(args), seeds, models)
+    done = (rows[..., 0] > 0.0).all(axis=0)
+    todo = len(seeds) - int(done.sum())
     if others or 0 < todo < len(seeds):
-        note = f"{near(str(path))}: {len(done):,} of {len(seeds):,} seeds are there"
+        note = f"{near(str(path))}: {len(seeds) - todo:,} of {len(seeds):,} seeds are there"
         alone = f"; {others:,} rows of other flags or other code are left alone"
         print(note + alone * (others > 0), file=sys.stderr)
     if todo:
-        missing = (seed for seed in seeds if seed not in done)
+        missing = (seed for seed, there in zip(seeds, done) if not there)
         job = partial(rows_of, args, code())
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a", buffering=1, encoding="utf-8", newline="\n") as file:
@@ -99,20 +102,26 @@ def run_missing(path, args, seeds, models, scheduler):
                 file.write(text)
 
 
-def read(path, mark, seeds):
-    """{model: {seed: (how it ended, *measures)}} of these seeds, of a file's whole rows that have
-    this mark, and how many have another one. A million rows take 500 MB."""
-    rows, others = defaultdict(dict), 0
-    lines = path.open(encoding="utf-8", errors="replace") if path.is_file() else ()
-    for line in lines:
+def read(path, mark, seeds, models):
+    """The whole rows of these seeds in a file that have this mark, and how many have another one.
+
+    The first is (models, seeds, 1 + KEYS), on the disk, so that memory stays flat. Column 0 says
+    how a run ended, as a place in ENDINGS; 0: there is no row. NaN is what a run does not know.
+    """
+    shape, others = (len(models), len(seeds), 1 + len(KEYS)), 0
+    rows = np.memmap(TemporaryFile(), float, shape=shape)
+    for line in path.open(encoding="utf-8", errors="replace") if path.is_file() else ():
         if not line.endswith(",yes\n"):
             continue  # a head, or a row that was cut
         first, seed, model, end, *values, _ = line.split(",")
-        row = end, *(float(value) if value else None for value in values)
         others += first != mark
-        if first == mark and int(seed) in seeds and rows[model].setdefault(int(seed), row) != row:
-            twice = f"two results of seed {seed} by {model}; take the rows of one machine out"
-            fail(f"{near(str(path))}: {twice}")
+        if first == mark and int(seed) in seeds and model in models:
+            row = [ended(end), *(float(value or "nan") for value in values)]
+            there = rows[models.index(model), int(seed) - seeds[0]]
+            if there[0] > 0.0 and not np.array_equal(there, row, equal_nan=True):
+                twice = f"two results of seed {seed} by {model}; take the rows of one machine out"
+                fail(f"{near(str(path))}: {twice}")
+            there[:] = row
     return rows, others
 
 
@@ -151,26 +160,32 @@ def cell(value):
     return str(value if math.isfinite(value) else math.inf)
 
 
-def summary(rows):
+def ended(end):
+    """The place in ENDINGS of how a run ended."""
+    return next(place for place, words in enumerate(ENDINGS) if place and end.startswith(words))
+
+
+def summary(rows, seeds):
     """{"median": row, "lowest": row, "highest": row} of a model's rows; {} if it has no run.
 
     A row counts the runs, those that exploded, and others that went through something; a key
     that a run lacks is None. seeds: by which seed it is the lowest or the highest.
     """
-    runs = {seed: row for seed, row in rows.items() if not row[0].startswith("no: ")}
-    if not runs:
+    ran = np.flatnonzero(rows[:, 0] > ended("no: "))
+    if not len(ran):
         return {}
-    ends = [end for end, *_ in runs.values()]
-    counts = {"runs": len(runs)}
-    counts["blew_up"] = sum(end.startswith("EXPLODED") for end in ends)
-    counts["through"] = sum(end.startswith("through") for end in ends)
+    counts = {"runs": len(ran)}
+    counts["blew_up"] = int((rows[:, 0] == ended("EXPLODED")).sum())
+    counts["through"] = int((rows[:, 0] == ended("through")).sum())
     median, lowest, highest = {**counts}, counts | {"seeds": {}}, counts | {"seeds": {}}
     for place, key in enumerate(KEYS, 1):
-        found = [(row[place], seed) for seed, row in runs.items()]
-        known = all(value is not None for value, _ in found)
-        median[key] = statistics.median(value for value, _ in found) if known else None
-        for way, end in (lowest, min), (highest, max):
-            way[key], way["seeds"][key] = end(found) if known else (None, None)
+        values = rows[ran, place]
+        order = np.argsort(values, kind="stable")  # of equal ones the first seed is the lowest
+        known = not np.isnan(values).any()
+        median[key] = float(np.median(values)) if known else None
+        for way, at in (lowest, order[0]), (highest, order[-1]):
+            way[key] = float(values[at]) if known else None
+            way["seeds"][key] = seeds[int(ran[at])] if known else None
     return {"median": median, "lowest": lowest, "highest": highest}
 
 

@@ -255,7 +255,7 @@ def test_parts_cut_rows_and_rows_of_other_flags_give_the_summary_of_one_whole_ru
     there = merged.read_bytes()
     assert there.startswith(b"".join(files)[:-2]), "and what was there stays"
     row = there.splitlines()[-1].decode()
-    merged.write_bytes(there + row.replace("rests", "moves").encode() + b"\n")
+    merged.write_bytes(there + f"{row.rsplit(',', 2)[0]},9.0,yes\n".encode())
     twice = f"two results of seed {row.split(',')[1]} by lcp; take the rows of one machine out"
     assert twice in one_line(capsys, *FIVE, str(merged.parent))
 
@@ -285,12 +285,11 @@ def test_a_night_of_seeds_that_is_stopped_keeps_its_rows_and_leaves_no_process(n
 
 
 def test_seeds_count_what_exploded_went_through_or_could_not_be_run():
-    rest = [1.0] * (len(seeds.KEYS) - 2)
-    rows = {  # how it ended, and measures
-        0: ("EXPLODED at step 7", math.inf, 1.0, *rest), 1: ("through a ball", 1.0, 1.0, *rest),
-        2: ("rests", 1.0, None, *rest), 3: ("no: crushed; at once", None, None, *rest),
-    }  # fmt: skip
-    ways = seeds.summary(rows)
+    ends = "EXPLODED at step 7", "through a ball", "rests", "no: crushed; at once"
+    rows = np.ones((4, 1 + len(seeds.KEYS)))
+    rows[:, 0] = [seeds.ended(end) for end in ends]
+    rows[0, 1], rows[2, 2] = math.inf, math.nan
+    ways = seeds.summary(rows, range(4))
     words = "1 of 4 EXPLODED, 1 of 4 went through, 1 of 4 could not be run"
     assert {seeds.ending(row, 4) for row in ways.values()} == {words}
     first, second = ([row[key] for row in ways.values()] for key in seeds.KEYS[:2])
@@ -298,7 +297,7 @@ def test_seeds_count_what_exploded_went_through_or_could_not_be_run():
 
 
 @pytest.mark.parametrize("words", [
-    "3", "4:4", "5:2", "0:1.5", "a:b", "0:1e9", "0:9999999999999999999", "0:5 --seed 3",
+    "3", "4:4", "5:2", "0:1.5", "a:b", "0:1e9", "0:9999999999999999999", "0:1000000001", "0:5 --seed 3",
     "0:5 --scheduler=", "0:5 --plot", "0:5 --dt 0", "0:5 --mass=--", "0:5 --scheduler=--",
 ])  # fmt: skip
 def test_seeds_refuses_bad_input_in_one_line(words, capsys):
