@@ -19,7 +19,7 @@ from curriculum.commands import near
 
 from . import FACTS, load
 from .bets import RIGHT, judge_bet, judge_knobs, judge_number
-from .script import LIMIT, ask, said_of, unreadable
+from .script import LIMIT, ask, said_of
 from .trials import SHOWN, judge_gripper, solver
 
 MOST_MEMORY = 2**32  # bytes, chosen
@@ -46,8 +46,10 @@ def child():
             resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
         try:
             found = judged(name, load(file), report)
-        except BaseException as error:
-            found = "wrong", unreadable(file, error)
+        except BaseException as error:  # while the file is read, or in a trial
+            letter = type(error) is NameError and "blanks" not in FACTS[name]
+            quotes = f", {error.name} needs quotes around it" if letter else ""
+            found = "wrong", f"{near(file)} cannot be run{quotes}: {said_of(error)}"
         print(json.dumps(found), file=report)
     os._exit(0)  # whatever threads are left
 
@@ -66,10 +68,7 @@ def judged(name, exercise, report=None):
         if states[blank] == "wrong" and states.get(after, "right") != "right":
             states[blank], words = "blank", f"{blank} is tried once {after} is right"
         if blank in SHOWN and set(states.values()) == {"right"}:
-            try:
-                words += f"\n\n{SHOWN[blank](exercise)}"
-            except (Exception, SystemExit) as error:
-                states[blank], words = "wrong", f"a trial of {blank} stopped: {said_of(error)}"
+            words += f"\n\n{SHOWN[blank](exercise)}"
         said.append(words)
     if set(states.values()) <= {"right"}:
         for part in (part for part in PARTS if part in FACTS[name]):

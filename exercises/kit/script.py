@@ -14,9 +14,8 @@ from curriculum.commands import Parser, command, near, quoted
 from . import FACTS, ROOT
 
 ORDER = ("ex1", "ex3", "ex6", "ex2", "ex5", "ex9", "ex10", "ex7", "ex8", "ex4")  # the chapter's
-NAMES = sorted(name for name in os.listdir(ROOT / "exercises") if name.endswith(".py"))
-FOUND = {name.partition("_")[0]: f"exercises/{name}" for name in NAMES}
-FILES = {name: FOUND[name] for name in ORDER if name in FOUND}
+FOUND = sorted(name for name in os.listdir(ROOT / "exercises") if name.endswith(".py"))
+FILES = {ex: f"exercises/{name}" for ex in ORDER for name in FOUND if name.startswith(f"{ex}_")}
 STATES = "right", "wrong", "blank"  # in this order they are exit statuses
 LIMIT = 30  # s, chosen: right answers take about one, and more than 15 on a very busy machine
 START = "import sys; sys.path.insert(0, sys.argv[1]); from kit import judge; judge.child()"
@@ -70,12 +69,6 @@ def said_of(error):
         if re.fullmatch(r"ex\d+\w*\.py", Path(file).name):
             line = f"\n  line {number}: {linecache.getline(file, number).strip()}"
     return f"{type(error).__name__}: {error}{line}"
-
-
-def unreadable(file, error):
-    """What is said of a file that is no Python, or stops while it is read."""
-    quotes = f", {error.name} needs quotes around it" if type(error) is NameError else ""
-    return f"{near(str(file))} cannot be read{quotes}: {said_of(error)}"
 
 
 def judged(name, file):
@@ -134,10 +127,7 @@ def print_next(args, argv: list[str]) -> None:
     """
     recording = os.path.join(args.out, "contact.rrd")
     if args.rerun and os.path.exists(recording):
-        viewer = Path(sys.executable).with_name("rerun.exe" if os.name == "nt" else "rerun")
-        by = ("uv", "run", "rerun") if "UV" in os.environ else (viewer,)
-        there = quoted(*by, recording) if by[0] == "uv" or viewer.exists() else None
-        print(f"next, watch it: {there or command('-m', 'rerun', recording)}")
+        print(f"next, watch it: {command('-m', 'rerun', recording)}")
     elif not args.plot and find_spec("matplotlib"):
         print(f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}")
     print(practise())
