@@ -30,7 +30,7 @@ FAULTS = [
     # what waits, and however it ends
     (SCRIPT, "^    return", "^  return", T + "all_ten"),
     (SCRIPT, '"Timeout" in begun', '"Timed" in begun', T + "'types and pass'"),
-    (SCRIPT, "[*lines(stack), *reversed(lines(begun)), 1]", "[1]", T + "'types and pass'"),
+    (SCRIPT, "[*lines(stack), *reversed(lines(begun)), 1]", "[1]", T + "'types and abort'"),
     (JUDGE, "next(events) > MOST_EVENTS", "next(events) < 0", T + "longest"),
     (JUDGE, "resource.setrlimit", "resource.getrlimit and len", T + "'types and append'"),
     (JUDGE, "os._exit(0)  #", "pass  #", T + "'types and time_to'"),
