@@ -3,14 +3,13 @@
     python -m curriculum.notebook [--out FILE]
 
 Prose with its numbers; the regions of contact.py as cells, so that a change is felt in every cell
-below; runs with their curves (cells.py) where the chapter has its figures; the exercises as cells
-to edit. Its first cell carries the course's folder with it and needs numpy and matplotlib, which it
-installs where they are missing. Same inputs, same bytes.
+below; some runs with their curves, where the chapter has a figure; the exercises as cells to edit.
+Its first cell (start.py) carries the course's folder with it and needs numpy and matplotlib, which
+it installs where they are missing. Same inputs, same bytes.
 """
 
 import base64
 import io
-import re
 import sys
 import textwrap
 import zipfile
@@ -31,11 +30,11 @@ CARRIED = """contact.py checks.py exercises/*.py exercises/*/*.py exercises/kit/
 curriculum/__init__.py curriculum/commands.py curriculum/exact.py curriculum/implicit.py
 curriculum/show/__init__.py curriculum/show/picture.py curriculum/show/figures.mplstyle
 curriculum/bench/results/error-slide.svg curriculum/stress/results/penalty-map.svg""".split()
-SAID = {  # what only the page can do: what to do here
-    r"Take it, lift it,\s+throw it\.": "Run the cell below.",
-    r"\b[Dd]rag the (\w+)": r"change the \1 in a cell",
+RUNS = {  # after the exercise or the figure of that name
+    "ex1": 'show_run("--scene", "drop")',
+    "cliff": 'show_run("--dt", "0.03")',
+    "sag": 'show_run("--scene", "stack", "--bodies", "10")',
 }
-OWN = re.split(r"(?m)^# %% (\S+)\n", Path(__file__).with_name("cells.py").read_text("utf-8"))
 KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
 METADATA = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
 FOLDED = {"jupyter": {"source_hidden": True}, "cellView": "form"}
@@ -48,14 +47,16 @@ you: you are to bet first.*"""
 REST = "The rest of the file"  # of the chapter: the notebook's first cell has it
 
 
-def folder():
-    """The files that the notebook carries, as a zip in base64, 76 characters a line."""
+def start():
+    """The first cell: what the notebook carries, a zip in base64, then start.py."""
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w") as packed:
         for path in (path for each in CARRIED for path in sorted(ROOT.glob(each))):
             name = zipfile.ZipInfo(path.relative_to(ROOT).as_posix())  # dated 1980: same bytes
             packed.writestr(name, path.read_bytes(), zipfile.ZIP_DEFLATED)
-    return base64.encodebytes(made.getvalue()).decode()
+    folder = base64.encodebytes(made.getvalue()).decode()
+    _, _, code = Path(__file__).with_name("start.py").read_text("utf-8").split("\n", 2)
+    return new_code_cell(f'FOLDER = """\n{folder}"""\n{code.strip()}', metadata=FOLDED)
 
 
 def region(source):
@@ -75,8 +76,7 @@ def exercise(name):
 
 def picture(name):
     """A picture of a report."""
-    (path,) = ROOT.glob(f"curriculum/*/results/*{name}.svg")
-    file = path.relative_to(ROOT).as_posix()
+    (file,) = (each for each in CARRIED if each.endswith(f"{name}.svg"))
     return new_code_cell(f'SVG(filename=os.path.join(COURSE, "{file}"))')
 
 
@@ -85,27 +85,21 @@ PLACES = {"region": region, "exercise": exercise, "bench": picture, "stress": pi
 
 def cells_of(text):
     """The chapter's cells, in order: title, introduction and start, then all the others."""
-    own = {name: new_code_cell(source.strip()) for name, source in zip(OWN[1::2], OWN[2::2])}
-    start = own.pop("start")
-    start.source, start.metadata = f'FOLDER = """\n{folder()}"""\n{start.source}', FOLDED
     cells = []
     for kind, name, _, written, _ in read(text):
         if kind == "heading" and name == REST:
             break
         if kind in PLACES:
             cells.append(PLACES[kind](name))
-        if kind in ("exercise", "figure") and (name := name.partition("?")[0]) in own:
-            cells.append(own.pop(name))
+        if name in RUNS:
+            cells.append(new_code_cell(RUNS[name]))
         if kind == "heading" or kind in ("text", "code") and cells[-1].cell_type == "code":
             cells.append(new_markdown_cell())
         if kind in ("heading", "text", "code"):
             cells[-1].source += written
-    cells[1:1] = [new_markdown_cell(INTRODUCTION), start]
+    cells[1:1] = [new_markdown_cell(INTRODUCTION), start()]
     for number, cell in enumerate(cells):
-        cell.id = f"cell-{number}"
-        if cell.cell_type == "markdown":
-            for page, here in SAID.items():
-                cell.source = re.sub(page, here, cell.source.strip())
+        cell.id, cell.source = f"cell-{number}", cell.source.strip()
     return cells
 
 
@@ -116,21 +110,19 @@ def build():
 
 
 def main():
-    """Build and write. Returns the exit status: 0 written, 1 the notebook can't be built."""
+    """Build and write. A chapter that cannot be shown ends it with a line and status 1."""
     parser = Parser(prog="python -m curriculum.notebook", description=__doc__.split("\n")[0])
     parser.add_argument("--out", default="outputs/contact.ipynb", metavar="FILE")
     out = parser.parse_args().out
     try:
         text = build()
-        write_whole(out, text)
-    except (OSError, ValueError) as error:
-        print(error, file=sys.stderr)
-        return 1
+    except ValueError as error:
+        sys.exit(str(error))
+    write_whole(out, text)
     print(f"{out}: {len(text.encode()) / 1000:.0f} kB")
     start = command("-m", "jupyterlab", out, bring=("--extra", "notebook"))
     print(f"open it: {start}\nor upload it to colab.research.google.com")
-    return 0
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    main()

@@ -12,7 +12,7 @@ import pytest
 import zmq
 
 import contact
-from curriculum.gate.chapter import CHAPTER, read
+from curriculum.gate.chapter import CHAPTER
 from curriculum.lesson import regions
 from curriculum.notebook import __main__ as notebook
 from curriculum.tests.helpers import python
@@ -67,16 +67,13 @@ def test_two_builds_are_the_same_bytes_whatever_the_hash_seed(text):
 
 
 def test_what_the_chapter_shows_of_contact_is_a_cell_and_no_mark_of_the_page_is_left(text):
-    cells, known = nbformat.reads(text, as_version=4).cells, regions.read_all()
-    code, prose = (
-        "\n".join(c.source for c in cells if c.cell_type == k) for k in ("code", "markdown")
-    )
-    parts = read((regions.ROOT / CHAPTER).read_text("utf-8"))
-    rest = [part.name for part in parts].index(notebook.REST)
-    shown = [part.name.split("#") for part in parts[:rest] if part.kind == "region"]
-    pieces = [known[name].code for file, name in shown if file == "contact.py"]
-    for piece in [*notebook.OWN[2::2], *pieces]:
-        assert piece.strip() in code
+    kinds = {"code": "", "markdown": ""}
+    for cell in nbformat.reads(text, as_version=4).cells:
+        kinds[cell.cell_type] += f"{cell.source}\n"
+    code, prose = kinds.values()
+    chapter, _, _ = (regions.ROOT / CHAPTER).read_text("utf-8").partition(f"# {notebook.REST}")
+    for name in re.findall(r"include-by-region: contact\.py#([\w-]+)", chapter):
+        assert regions.read_all()[name].code.strip() in code
     assert not re.search(r"\{\{|<!--|include-by-region", prose)
     said = r"[Tt]ake it, lift|throw it\.|\b[Dd]rag (it|the (?!ball back))|[Cc]lick"
     assert not re.search(said, prose), "only the page can do that"
@@ -84,11 +81,11 @@ def test_what_the_chapter_shows_of_contact_is_a_cell_and_no_mark_of_the_page_is_
 
 def test_it_runs_beside_no_project_and_finds_what_contact_finds(ran, tmp_path):
     found = json.loads(ran[-1][1])
-    words = ["--scene", "stack", "--bodies", "10", "--no-rerun", "--out", str(tmp_path)]
-    assert contact.main(words) == 0  # the last run that the notebook shows
+    last = re.findall('"(.+?)"', notebook.RUNS["sag"])
+    assert contact.main([*last, "--no-rerun", "--out", str(tmp_path)]) == 0
     assert found["quality"] == json.loads((tmp_path / "metrics.json").read_text())["quality"]
     assert found["fallen"] == "the floor", "a region changed in its cell is not felt below"
-    for part in ('show_run("--scene", "drop")', 'show_run("--dt"', "error-slide.svg"):
+    for part in (*notebook.RUNS.values(), "error-slide.svg"):
         (outputs,) = [outputs for source, _, outputs in ran if part in source]
         assert "image/svg+xml" in outputs[-1].data, part
 

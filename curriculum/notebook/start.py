@@ -1,12 +1,5 @@
-"""The cells that only the notebook has: its set-up, and runs with their pictures.
-
-Each cell begins with a line `# %% NAME`. It comes where the chapter has the first figure of that
-name, or after the exercise; `start` comes first. Names that are not defined here are contact.py's.
-"""
 # ruff: noqa: E401, E402, F401, F821, I001
 # fmt: off
-
-# %% start
 #@title Run me first: the course's folder is unpacked beside the notebook, and contact.py is read
 import base64, importlib.util, io, os, subprocess, sys, zipfile
 
@@ -39,12 +32,3 @@ def exercise(words, text):
     here = {"cwd": COURSE, "env": os.environ | {"IN_A_NOTEBOOK": "1"}, "stdin": subprocess.DEVNULL}
     done = subprocess.run([sys.executable, file, *flags], capture_output=True, text=True, **here)
     print(done.stdout + done.stderr)
-
-# %% ex1
-show_run("--scene", "drop")
-
-# %% cliff
-show_run("--dt", "0.03")
-
-# %% sag
-show_run("--scene", "stack", "--bodies", "10")
