@@ -6,10 +6,8 @@ import os
 import re
 import shlex
 import shutil
-import signal
 import subprocess
 import sys
-import time
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -149,16 +147,6 @@ def test_whatever_is_in_the_way_it_says_so_in_a_line_and_gives_what_it_can(
     assert re.fullmatch(complains, done.stderr.removesuffix("\n")), done.stderr
 
 
-@pytest.mark.parametrize("scene", contact.SCENES)
-@pytest.mark.parametrize("steps", [0, 1, 2])
-def test_no_step_one_step_and_two_steps_of_every_scene_work(scene, steps, tmp_path, capsys):
-    status, out, err = main(capsys, "--scene", scene, "--steps", steps, "--out", tmp_path)
-    assert (status, err) == (0, "")
-    metrics = strict_json(tmp_path / "metrics.json")
-    assert set(metrics["quality"]) == set(contact.MODELS) and metrics["steps"] == steps
-    assert (tmp_path / "contact.rrd").stat().st_size > 0
-
-
 def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
     """-1 asks for the scene's own restitution and damping, as it is published."""
     written = []
@@ -177,7 +165,7 @@ def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
         assert quality[model] == pytest.approx(expected, abs=1e-11)
 
 
-REALS, WHOLE = "0 1e-300 1e-9 1 1e9 1e308 nan".split(), "0 2 99999999999999999999 2.5".split()
+REALS, WHOLE = "0 1e-300 1e-9 1 1e9 1e308 nan".split(), "0 1 2 99999999999999999999 2.5".split()
 EDGES = ("0.02", "1e-300", "1e308", "-1e308", "0"), ("1", "1e-162", "1e308", "0", "-50")
 FLAGS = {
     **dict.fromkeys(["--dt", "--stiffness", "--damping", "--mass"], REALS),
@@ -188,16 +176,16 @@ FLAGS = {
 }
 TOGETHER = (
     "--dt 0.03 --stiffness 1e9 --mass 1e-9", "--mass 1e9 --stiffness 1e-9 --dt 1",
-    "--restitution 1 --baumgarte 1 --dt 1 --iters 1",
+    "--restitution 1 --baumgarte 1 --dt 1 --iters 1", "--scene pile --steps 0",
 )  # fmt: skip
 ENDS = [f"{flag} {value}" for flag, tried in FLAGS.items() for value in tried]
 
 
 def test_flags_at_their_ends_give_a_right_report_or_one_line(tmp_path, capsys):
-    """A warning is an error in these tests."""
+    """A warning is an error in these tests. Few steps, down to none, are recorded, too."""
     for flags in (*ENDS, *TOGETHER):
-        few = () if "--steps" in flags else ("--steps", 60)
-        words = "--scene", "stack", *flags.split(), *few, "--no-rerun", "--out", tmp_path
+        few = () if "--steps" in flags else ("--steps", 60, "--no-rerun")
+        words = "--scene", "stack", *flags.split(), *few, "--out", tmp_path
         status, out, err = main(capsys, *words)
         if status:
             refused((status, out, err))
@@ -206,15 +194,6 @@ def test_flags_at_their_ends_give_a_right_report_or_one_line(tmp_path, capsys):
         for model, row in strict_json(tmp_path / "metrics.json")["quality"].items():
             (line,) = re.findall(rf"state: .*\b{model}\b.*", out)
             assert not (line.endswith(" ok") and (row["blew_up"] or row["through"])), (flags, line)
-
-
-def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
-    code = (
-        "import sys, contact; contact.main(['--no-rerun', '--out', sys.argv[1]]); "
-        "print(sorted({'rerun', 'matplotlib', 'numba', 'tqdm', 'dask'} & set(sys.modules)))"
-    )
-    done = python("-c", code, tmp_path)
-    assert done.stdout.splitlines()[-1] == "[]", done.stderr
 
 
 COMMANDS = (
@@ -231,20 +210,6 @@ def test_ctrl_c_and_sigterm_while_a_command_imports_are_one_word(command, tmp_pa
         (tmp_path / "numpy.py").write_text(stop)
         done = python(*command.split(), PYTHONPATH=str(tmp_path))
         assert (done.returncode, done.stdout, done.stderr) == (status, "", "stopped\n"), name
-
-
-@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
-def test_ctrl_c_ends_a_run_with_one_word_and_leaves_no_file(tmp_path):
-    start = "import runpy; print('ready', flush=True); runpy.run_path('contact.py', {}, '__main__')"
-    flags = f"--no-skip --steps 1000000 --out {tmp_path}/o".split()
-    words = [sys.executable, "-c", start, *flags]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as process:
-        assert process.stdout.readline() == "ready\n"
-        time.sleep(1.0)  # into the steps
-        os.killpg(process.pid, signal.SIGINT)  # what a terminal does
-        assert process.communicate(timeout=30) == ("", "stopped\n")
-    assert process.returncode == 130 and not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("words, unbuffered", [
