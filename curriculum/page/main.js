@@ -1,4 +1,4 @@
-/* The start: figures, bets, and what is folded on a phone and open on paper. */
+/* The start: figures, bets, and what is folded on a phone. */
 import { startBet } from "./bets.js";
 import { figures } from "./figures.js";
 import { stage } from "./stage.js";
@@ -19,14 +19,4 @@ const fold = () => {
 };
 narrow.addEventListener("change", fold);
 fold();
-
-// On paper all of it is open, and the answers of bets, too.
-let opened = [];
-window.addEventListener("beforeprint", () => {
-  opened = document.querySelectorAll(":is(.folds, .answer):not([open])");
-  for (const each of opened) each.open = true;
-});
-window.addEventListener("afterprint", () => {
-  for (const each of opened) each.open = false;
-});
 document.documentElement.dataset.ready = "yes";
