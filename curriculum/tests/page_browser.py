@@ -1,42 +1,25 @@
 """Real browsers for the page: Debian's Chromium and Firefox."""
 
 import contextlib
+import itertools
 import json
 import os
 import re
 import shutil
 import subprocess
-import tempfile
-from pathlib import Path
 
 import pytest
 
-QUIET = {  # of Firefox: no request of its own
-    "remote.active-protocols": 1,
-    "datareporting.policy.dataSubmissionEnabled": False,
-    "app.update.enabled": False,
-    "app.normandy.enabled": False,
-    "browser.aboutwelcome.enabled": False,
-    "network.captive-portal-service.enabled": False,
-    "network.connectivity-service.enabled": False,
-    "ui.prefersReducedMotion": 1,
-}
 WAIT = 60  # s: longer than a busy machine needs for any command
 
 
 def program(*names):
-    """The path of the first program of these names that is installed, or None."""
-    return next(filter(None, map(shutil.which, names)), None)
-
-
-CHROMIUM = program("chromium", "chromium-browser", "google-chrome")
-
-
-def lack(what, package):
-    """What a missing browser is: a fault where everything shall be tested, else a test less."""
-    (pytest.fail if os.environ.get("CI") else pytest.skip)(
-        f"no {what} here: apt-get install {package}"
-    )
+    """The path of a browser; one that lacks is a fault where all is tested, else a test less."""
+    found = next(filter(None, map(shutil.which, names)), None)
+    if not found:
+        lack = pytest.fail if os.environ.get("CI") else pytest.skip
+        lack(f"{names[0]} is missing here: apt-get install {names[0]}")
+    return found
 
 
 @contextlib.contextmanager
@@ -44,8 +27,9 @@ def running():
     """A Chromium, driven by Playwright, closed at the end."""
     from playwright.sync_api import sync_playwright
 
+    path = program("chromium", "chromium-browser", "google-chrome")
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--disable-gpu"])
+        browser = playwright.chromium.launch(executable_path=path, args=["--disable-gpu"])
         yield browser
         browser.close()
 
@@ -53,50 +37,102 @@ def running():
 @pytest.fixture(scope="session")
 def browser():
     """A Chromium."""
-    if not CHROMIUM:
-        lack("Chromium", "chromium")
     with running() as found:
         yield found
 
 
 @contextlib.contextmanager
-def visiting(browser, url, width=1280, height=900, motion="reduce", javascript=True, **options):
+def visiting(browser, url, width=1280, height=900, **options):
     """A fresh profile on the page. Fails if it complains, throws, or asks for more than itself."""
-    context = browser.new_context(
-        viewport={"width": width, "height": height},
-        reduced_motion=motion,
-        java_script_enabled=javascript,
-        **options,
-    )
+    options = {"viewport": {"width": width, "height": height}, "reduced_motion": "reduce"} | options
+    context = browser.new_context(**options)
     page = context.new_page()
-    page.set_default_timeout(60_000)  # ms: a busy machine takes long to load a page
+    page.set_default_timeout(1000 * WAIT)
     trouble, own = [], ("data:", "blob:", re.split("[?#]", url)[0])
-
-    def listen(message):
-        if message.type in ("error", "warning"):
-            trouble.append(f"console: {message.text}")
-
-    page.on("console", listen)
+    page.on("console", lambda told: told.type in ("error", "warning") and trouble.append(told.text))
     page.on("pageerror", lambda error: trouble.append(f"error: {error}"))
     page.on("request", lambda asked: asked.url.startswith(own) or trouble.append(asked.url[:100]))
     page.goto(url)
-    if javascript:
+    if options.get("java_script_enabled", True):
         page.wait_for_selector("[data-ready]", state="attached")
     yield page
     context.close()
     assert not trouble, trouble
 
 
-@contextlib.contextmanager
-def opened(file, query="", **options):
-    """An HTML file in a Chromium of its own, for those who are no tests."""
-    with running() as chromium:
-        with visiting(chromium, file.resolve().as_uri() + query, **options) as page:
-            yield page
+class Tab:
+    """One tab of a running Firefox, over WebDriver BiDi, with the methods of a Playwright page:
+    Playwright drives a Firefox of its own, and no other."""
 
+    def __init__(self, socket):
+        self.socket, self.numbers, self.trouble, self.mouse = socket, itertools.count(), [], self
+        self.call("session.new", capabilities={})
+        self.call("session.subscribe", events=["log.entryAdded"])
+        self.context = self.call("browsingContext.create", type="tab")["context"]
+
+    def call(self, method, **params):
+        """A command's result; what the page logs meanwhile is kept."""
+        number = next(self.numbers)
+        self.socket.send(json.dumps({"id": number, "method": method, "params": params}))
+        while (answer := json.loads(self.socket.recv(timeout=WAIT))).get("id") != number:
+            entry = answer.get("params", {})
+            if entry.get("level") in ("error", "warn"):
+                self.trouble.append(entry["text"])
+        assert answer["type"] != "error", f"{method}: {answer.get('message')}"
+        return answer["result"]
+
+    def set_viewport_size(self, size):
+        self.call("browsingContext.setViewport", context=self.context, viewport=size)
+
+    def goto(self, url):
+        self.call("browsingContext.navigate", context=self.context, url=url, wait="complete")
+
+    def evaluate(self, script, given=None):
+        """The value of a JavaScript expression, or of such a function, as JSON carries it."""
+        value = f"(it instanceof Function ? it({json.dumps(given)}) : it)"
+        told = f"(async (it) => JSON.stringify(await {value}) ?? 'null')({script})"
+        where = {"target": {"context": self.context}, "awaitPromise": True}
+        answer = self.call("script.evaluate", expression=told, **where)
+        assert answer["type"] != "exception", answer.get("exceptionDetails", {}).get("text")
+        return json.loads(answer["result"]["value"])
+
+    def act(self, kind, **more):
+        source = {"type": "pointer", "id": "mouse", "actions": [{"type": kind, **more}]}
+        self.call("input.performActions", context=self.context, actions=[source])
+
+    def move(self, x, y, **_):
+        self.act("pointerMove", x=round(x), y=round(y))
+
+    def down(self):
+        self.act("pointerDown", button=0)
+
+    def up(self):
+        self.act("pointerUp", button=0)
+
+
+@pytest.fixture(scope="session")
+def gecko(tmp_path_factory):
+    """A tab of a Firefox with a fresh profile."""
+    from websockets.sync.client import connect
+
+    profile = tmp_path_factory.mktemp("firefox")
+    (profile / "user.js").write_text('user_pref("ui.prefersReducedMotion", 1);', "utf-8")
+    command = [program("firefox-esr", "firefox"), "--headless", "--no-remote"]
+    command += ["--profile", profile, "--remote-debugging-port", "0"]
+    pipes = {"stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL, "text": True}
+    with subprocess.Popen(command, **pipes) as process:
+        try:
+            found = (re.search(r"ws://[\d.:]+", line) for line in process.stderr)
+            with connect(f"{next(filter(None, found))[0]}/session", max_size=None) as socket:
+                yield Tab(socket)
+        finally:
+            process.terminate()
+
+
+# ---- what tests do in either browser
 
 FRAMES = "for (let k = 0; k < 3; k++) await new Promise(requestAnimationFrame);"
-# a figure in the middle of the window, alive
+# a figure in the middle of the window, alive; what lies in the middle of a part of it, and where
 SEE = f"""async (id) => {{
   const fig = document.getElementById(id);
   fig.scrollIntoView({{ block: "center" }});
@@ -105,35 +141,34 @@ SEE = f"""async (id) => {{
   {FRAMES}
   return fig;
 }}"""
-# in every figure: what lies at the middle of each button, knob and handle, if not that
-HITS = f"""(async () => {{
-  const [wrong, see] = [[], {SEE}];
+MIDDLE = """(node) => {
+  const part = node.querySelector(".knob-dot, circle") ?? node;
+  const { x, y, width, height } = part.getBoundingClientRect();
+  const place = [x + width / 2, y + height / 2];
+  return { place, top: document.elementFromPoint(...place) };
+}"""
+# in every figure: what lies on each button, knob and handle, if not that or another handle
+HITS = f"""async () => {{
+  const [wrong, see, middle] = [[], {SEE}, {MIDDLE}];
   for (const {{ id }} of document.querySelectorAll(".fig")) {{
     const fig = await see(id);
     for (const node of fig.querySelectorAll(".handle, button:not(:disabled), input")) {{
-      const part = node.querySelector(".knob-dot, circle") ?? node;
-      part.scrollIntoView({{ block: "center" }});
-      const box = part.getBoundingClientRect();
-      const at = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
-      const other = node.matches(".handle") && at?.closest(".handle");
-      if (!node.contains(at) && !(other && fig.contains(other)))
-        wrong.push([id, node.outerHTML.slice(0, 90), at?.outerHTML.slice(0, 90)]);
+      (node.querySelector(".knob-dot, circle") ?? node).scrollIntoView({{ block: "center" }});
+      const {{ top }} = middle(node);
+      const other = node.matches(".handle") && top?.closest(".handle");
+      if (!node.contains(top) && !(other && fig.contains(other)))
+        wrong.push([id, node.outerHTML.slice(0, 90), top?.outerHTML.slice(0, 90)]);
     }}
   }}
   return wrong;
-}})()"""
+}}"""
 FIGURES = "() => [...document.querySelectorAll('.fig')].map(({ id }) => id)"
-# the middle of a figure's last handle that can be grabbed there, or first, once it is in sight
-MIDDLE = f"""async (id, first) => {{
+# where the handles of a figure in sight lie that can be grabbed there
+MIDDLES = f"""async (id) => {{
   const fig = await ({SEE})(id);
-  const handles = [...fig.querySelectorAll(".handle")];
-  const all = (first ? handles : handles.reverse()).map((handle) => {{
-    const part = handle.querySelector(".knob-dot, circle");
-    const {{ x, y, width, height }} = part.getBoundingClientRect();
-    const middle = [x + width / 2, y + height / 2];
-    return handle.contains(document.elementFromPoint(...middle)) && middle;
-  }});
-  return all.find(Boolean) ?? null;
+  return [...fig.querySelectorAll(".handle")]
+    .map((handle) => [handle, ({MIDDLE})(handle)])
+    .filter(([handle, {{ top }}]) => handle.contains(top)).map(([, {{ place }}]) => place);
 }}"""
 WORDS = f"""async (id) => {{
   {FRAMES}
@@ -142,124 +177,22 @@ WORDS = f"""async (id) => {{
 MOVES = ((-12, 12), (24, -24), (70, -60), (-70, 60))  # px: to and fro, for what stands at an end
 
 
-def call(page, function, *given):
-    """What a JavaScript function gives, in either browser."""
-    return page.evaluate(f"({function})({', '.join(map(json.dumps, given))})")
+def drag(page, x, y, moves=MOVES):
+    """Press at a place, and draw what lies there to and fro; a move at a time."""
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for dx, dy in moves:
+        page.mouse.move(x + dx, y + dy, steps=2)
+        yield
+    page.mouse.up()
 
 
-def pointer_of(page, touch):
-    """A function that does "Down", "Move" or "Up" at a place, with the mouse or with a finger."""
-    if isinstance(page, Tab):
-        return page.pointer
-    if not touch:
-
-        def mouse(kind, x, y):
-            page.mouse.move(x, y, steps=2)
-            if kind != "Move":
-                getattr(page.mouse, kind.lower())()
-
-        return mouse
+def swipe(page, x, y, moves=MOVES):
+    """The same with a finger, since Playwright's own can only tap."""
     session = page.context.new_cdp_session(page)
-
-    def finger(kind, x, y):
-        kind = {"Down": "Start", "Up": "End"}.get(kind, kind)
-        at = [] if kind == "End" else [{"x": x, "y": y}]
-        session.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": at})
+    kinds = ["touchStart", *["touchMove"] * len(moves), "touchEnd"]
+    for kind, (dx, dy) in zip(kinds, [(0, 0), *moves, (0, 0)]):
+        points = [{"x": x + dx, "y": y + dy}] if kind != "touchEnd" else []
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
         page.wait_for_timeout(30)
-
-    return finger
-
-
-def drag(page, x, y, moves=MOVES, touch=False):
-    """Press at a place of either browser, and draw what lies there to and fro; a move at a time."""
-    does = pointer_of(page, touch)
-    does("Down", x, y)
-    to = x, y
-    try:
-        for dx, dy in moves:
-            to = x + dx, y + dy
-            does("Move", *to)
-            yield
-    finally:
-        does("Up", *to)
-
-
-class Tab:
-    """One tab of a running Firefox, over WebDriver BiDi: no driver program is needed."""
-
-    def __init__(self, socket):
-        self.socket, self.last, self.trouble = socket, 0, []
-        self.call("session.new", capabilities={})
-        self.call("session.subscribe", events=["log.entryAdded"])
-        self.context = self.call("browsingContext.create", type="tab")["context"]
-
-    def call(self, method, **params):
-        """A command's result; what the page logs meanwhile is kept."""
-        self.last += 1
-        self.socket.send(json.dumps({"id": self.last, "method": method, "params": params}))
-        while True:
-            answer = json.loads(self.socket.recv(timeout=WAIT))
-            if answer.get("method") == "log.entryAdded":
-                entry = answer["params"]
-                if entry["level"] in ("error", "warn"):
-                    self.trouble.append(entry["text"])
-            elif answer.get("id") == self.last:
-                assert answer["type"] != "error", f"{method}: {answer.get('message')}"
-                return answer["result"]
-
-    def resize(self, width, height=800):
-        size = {"width": width, "height": height}
-        self.call("browsingContext.setViewport", context=self.context, viewport=size)
-
-    def visit(self, url):
-        self.resize(1280)
-        self.call("browsingContext.navigate", context=self.context, url=url, wait="complete")
-
-    def evaluate(self, script):
-        """The value of a JavaScript expression, as JSON carries it."""
-        told = f"Promise.resolve({script}).then((value) => JSON.stringify(value))"
-        target = {"context": self.context}
-        answer = self.call("script.evaluate", expression=told, target=target, awaitPromise=True)
-        assert answer["type"] != "exception", answer.get("exceptionDetails", {}).get("text")
-        return json.loads(answer["result"]["value"]) if "value" in answer["result"] else None
-
-    def pointer(self, kind, x, y):
-        """Move the mouse to a place, and there press it ("Down") or release it ("Up")."""
-        actions = [{"type": "pointerMove", "x": round(x), "y": round(y)}]
-        if kind != "Move":
-            actions.append({"type": f"pointer{kind}", "button": 0})
-        source = {"type": "pointer", "id": "mouse", "actions": actions}
-        self.call("input.performActions", context=self.context, actions=[source])
-
-
-def resize(page, width):
-    """Make the window of either browser so wide."""
-    if isinstance(page, Tab):
-        page.resize(width)
-    else:
-        page.set_viewport_size({"width": width, "height": 800})
-
-
-@pytest.fixture(scope="session")
-def gecko():
-    """A tab of a Firefox with a fresh profile."""
-    from websockets.sync.client import connect
-
-    firefox = program("firefox-esr", "firefox")
-    if not firefox:
-        lack("Firefox", "firefox-esr")
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        lines = [f"user_pref({json.dumps(k)}, {json.dumps(v)});" for k, v in QUIET.items()]
-        Path(profile, "user.js").write_text("\n".join(lines), encoding="utf-8")
-        command = [firefox, "--headless", "--no-remote", "--profile", profile]
-        command += ["--remote-debugging-port", "0"]
-        pipes = {"stderr": subprocess.PIPE, "stdout": subprocess.DEVNULL, "text": True}
-        process = subprocess.Popen(command, **pipes)
-        try:
-            found = (re.search(r"ws://[\d.:]+", line) for line in process.stderr)
-            with connect(f"{next(filter(None, found))[0]}/session", max_size=None) as socket:
-                yield Tab(socket)
-        finally:
-            process.terminate()
-            process.wait(WAIT)
-            process.stderr.close()
+        yield
