@@ -6,6 +6,7 @@ import json
 import os
 import re
 from urllib.parse import quote
+from xml.etree import ElementTree
 
 import jinja2
 from markupsafe import Markup
@@ -62,15 +63,11 @@ def drawn_by(kind, name):
     if path is None:
         raise ValueError(f"{chapter.CHAPTER}: {kind} has drawn no picture {name}")
     text = path.read_text("utf-8")
-    box = re.search(r'<svg\b[^>]*?\bviewBox="\S+ \S+ ([\d.]+) ([\d.]+)"', text, re.DOTALL)
-    title = re.search(r"<title[^>]*>(.*?)</title>", text, re.DOTALL)
+    root = ElementTree.fromstring(text)
+    _, _, width, height = root.get("viewBox").split()
     held = quote(" ".join(text.split()), safe=" <>=/:;,'()")  # a quarter shorter than base64
-    return {
-        "alt": title[1].strip() if title else name.replace("-", " "),
-        "src": Markup(f"data:image/svg+xml,{held}"),
-        "width": box[1],
-        "height": box[2],
-    }
+    source = Markup(f"data:image/svg+xml,{held}")
+    return {"alt": root.findtext("{*}title"), "src": source, "width": width, "height": height}
 
 
 # ---- the page

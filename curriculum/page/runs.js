@@ -83,16 +83,15 @@ function recordExact(run, balls, restitution) {
 
 // ---- what is read of a run
 
+// x, y, vx or vy of all balls in a row.
+export const inRow = (run, part, row) =>
+  Array.from(run[part].subarray(run.n * row, run.n * (row + 1)));
+
 // The smallest gap [r] of every row, to the table or between two balls.
-export const gapsOf = ({ n, x, y, t }) =>
-  Array.from(t, (_, row) => {
-    let least = Infinity;
-    for (let i = row * n; i < (row + 1) * n; i++) {
-      least = Math.min(least, y[i] - R);
-      for (let j = i + 1; j < (row + 1) * n; j++)
-        least = Math.min(least, Math.sqrt((x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2) - 2 * R);
-    }
-    return least / R;
+export const gapsOf = (run) =>
+  Array.from(run.t, (_, row) => {
+    const balls = column(inRow(run, "y", row), { x: inRow(run, "x", row) });
+    return -Math.max(...detect_contacts(balls, Infinity).map(({ depth }) => depth)) / R;
   });
 
 // The push of the table [m g] on balls of 1 kg, in the step that ends in a row: what changed their

@@ -4,7 +4,7 @@
 import { arrow, axis, ball, circle, label, line, number, plain, plot, steps } from "../draw.js";
 import { table, within } from "../draw.js";
 import { data } from "../data.js";
-import { column, G, gapsOf, kept, MODELS, pushIn, R, record } from "../runs.js";
+import { column, G, gapsOf, inRow, kept, MODELS, pushIn, R, record } from "../runs.js";
 
 const [GROUND, BELOW, LOWEST] = [26, 76, 0.45]; // px, px; m: a picture is at least so high
 const PACE = { 6: 30, 30: 1, 1: 6 }; // how many times slower, and what the button makes of it
@@ -42,7 +42,7 @@ function topOf({ scene, from, until }) {
 
 function placeWords(gap) {
   if (!Number.isFinite(gap)) return "gone";
-  if (Math.abs(gap) < 5e-5) return "touching";
+  if (Math.abs(gap) < 5e-5) return "touches";
   return `${number(gap, 2)} r`;
 }
 
@@ -51,7 +51,7 @@ function lane(view, { model, made, gaps }, row, k, { floor, scale, wide, top }) 
   const { own } = view;
   const [x, start] = [wide * (k + 0.5), data.scenes[own.scene].start];
   const r = Math.max(5, R * scale);
-  const heights = Array.from(made.y.subarray(row * made.n, (row + 1) * made.n));
+  const heights = inRow(made, "y", row);
   const shown = heights.map((height) => {
     if (height < top + R)
       return ball(model, x, Math.min(floor + r, floor - height * scale), r);

@@ -52,9 +52,10 @@ function draw(view) {
     label: "the ball: how deep it is found", value: "share", low: 0, high: 0.99, step: 0.05,
     at: (_, y) => -y / FALL,
   };
-  const told = [bounce, bias, larger.high, sum.high].map((each) => number(each, 2));
-  const hops = bounces ? `: bounce ${told[0]}, bias ${told[1]} m/s. The larger lifts it ` +
-    `${told[2]} r, both ${told[3]} r.` : ` and hops ${told[2]} r high.`;
+  const told = [depth, bounce, bias, larger.high, sum.high].map((each) => number(each, 2));
+  const words = bounces ? `${told[0]} r deep: bounce ${told[1]}, bias ${told[2]} m/s. The larger ` +
+    `lifts it ${told[3]} r, both ${told[4]} r.`
+    : `Found ${told[0]} r deep and hops ${told[3]} r high.`;
   return {
     picture: [
       clipped(0, 0, left, height, table(0, floor, left, GROUND),
@@ -63,7 +64,7 @@ function draw(view) {
         wish("bounce", bounce, -1), wish("bias", bias, 1)),
       view.grab(what, ball("lcp", x, floor + depth * px - r, r)), picture,
     ],
-    words: `Found ${number(depth, 2)} r deep${hops}`,
+    words,
     values: { depth, bounce, bias, larger: larger.high, sum: sum.high },
   };
 }

@@ -1,7 +1,7 @@
 /* What unfinished sweeps leave: a column at rest under lcp sags as on springs. The overlap of every
  * contact is a bar, the law a line. Values: overlaps and law from below [r], whether it rests. */
 import { axis, ball, label, line, number, path, plot, rect, steps, table, tenTo } from "../draw.js";
-import { column, G, kept, R, record } from "../runs.js";
+import { column, G, inRow, kept, R, record } from "../runs.js";
 
 const ROWS = 300; // steps until all is at rest: the run starts where the law has it
 
@@ -15,7 +15,7 @@ const sags = kept((count, knobs) => {
   const law = knobs.baumgarte > 0 ? lawOf(count, knobs) : Array(count).fill(0);
   const run = record("lcp", column(law.map((deep) => (top += (2 - deep) * R) - R)), knobs, ROWS);
   const depthsIn = (row) => {
-    const ys = Array.from(run.y.subarray(row * count, (row + 1) * count));
+    const ys = inRow(run, "y", row);
     return ys.map((y, i) => (i ? 2 - (y - ys[i - 1]) / R : 1 - y / R));
   };
   const [before, depths] = [depthsIn(ROWS - 9), depthsIn(ROWS)];
