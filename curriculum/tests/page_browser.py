@@ -132,7 +132,7 @@ def gecko(tmp_path_factory):
 # ---- what tests do in either browser
 
 FRAMES = "for (let k = 0; k < 3; k++) await new Promise(requestAnimationFrame);"
-# a figure in the middle of the window, alive; what lies in the middle of a part of it, and where
+# a figure in the middle of the window, alive
 SEE = f"""async (id) => {{
   const fig = document.getElementById(id);
   fig.scrollIntoView({{ block: "center" }});
@@ -141,34 +141,13 @@ SEE = f"""async (id) => {{
   {FRAMES}
   return fig;
 }}"""
-MIDDLE = """(node) => {
-  const part = node.querySelector(".knob-dot, circle") ?? node;
-  const { x, y, width, height } = part.getBoundingClientRect();
-  const place = [x + width / 2, y + height / 2];
-  return { place, top: document.elementFromPoint(...place) };
-}"""
-# in every figure: what lies on each button, knob and handle, if not that or another handle
-HITS = f"""async () => {{
-  const [wrong, see, middle] = [[], {SEE}, {MIDDLE}];
-  for (const {{ id }} of document.querySelectorAll(".fig")) {{
-    const fig = await see(id);
-    for (const node of fig.querySelectorAll(".handle, button:not(:disabled), input")) {{
-      (node.querySelector(".knob-dot, circle") ?? node).scrollIntoView({{ block: "center" }});
-      const {{ top }} = middle(node);
-      const other = node.matches(".handle") && top?.closest(".handle");
-      if (!node.contains(top) && !(other && fig.contains(other)))
-        wrong.push([id, node.outerHTML.slice(0, 90), top?.outerHTML.slice(0, 90)]);
-    }}
-  }}
-  return wrong;
-}}"""
-FIGURES = "() => [...document.querySelectorAll('.fig')].map(({ id }) => id)"
-# where the handles of a figure in sight lie that can be grabbed there
-MIDDLES = f"""async (id) => {{
-  const fig = await ({SEE})(id);
-  return [...fig.querySelectorAll(".handle")]
-    .map((handle) => [handle, ({MIDDLE})(handle)])
-    .filter(([handle, {{ top }}]) => handle.contains(top)).map(([, {{ place }}]) => place);
+FIGURES = "[...document.querySelectorAll('.fig')].map(({ id }) => id)"
+# the middle of a figure's last handle, once it is in sight
+MIDDLE = f"""async (id) => {{
+  const handle = [...(await ({SEE})(id)).querySelectorAll(".handle")].pop();
+  if (!handle) return null;
+  const {{ x, y, width, height }} = handle.querySelector("circle").getBoundingClientRect();
+  return [x + width / 2, y + height / 2];
 }}"""
 WORDS = f"""async (id) => {{
   {FRAMES}

@@ -11,7 +11,7 @@ const drawn = (name, given = {}, own = {}, width = 640) => {
   const { picture, words, values } = figure.draw(view);
   return { svg: told(picture), words, values, handles, height: view.height, own: view.own };
 };
-const MOST = 92; // letters of a figure's words
+const MOST = 89; // letters of a figure's words
 const several = (value) => (Array.isArray(value) ? value : [value]);
 
 // What goes wrong where hands and knobs go to all their ends: handles that leave, texts that are
@@ -37,17 +37,4 @@ const lost = (name, given, width) => {
     }
   }
   return [...found];
-};
-
-// Handles of which the words say the same wherever the arrow keys take them.
-const mute = (name, given) => {
-  const { handles, own } = drawn(name, given);
-  return handles.filter(({ value, step }) => {
-    const said = [-3, 0, 3].map((by) => {
-      const moved = several(value).map((key, k) =>
-        [key, own[key] + by * (several(step)[k] ?? step)]);
-      return drawn(name, given, Object.fromEntries(moved)).words;
-    });
-    return new Set(said).size < 2;
-  }).map(({ label }) => label);
 };

@@ -1,9 +1,9 @@
 """The steps of contact.py as JavaScript: the same bits, in V8 and in Firefox."""
 
-import functools
 import itertools
 import json
 import re
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -41,14 +41,11 @@ def run_of(model, scene, dt, settings, steps):
         return contact.simulate(contact.step_of(model, scene, dt, settings), scene, dt, steps)
     k, c = settings.stiffness, scene.damping
     softness = 1.0 / (k * dt * dt + c * dt)
-
-    def step(balls):
-        implicit_step(balls, dt, lambda depth: (softness, dt * k * depth * softness))
-
-    return contact.simulate(step, scene, dt, steps)
+    spring = {"spring": lambda depth: (softness, dt * k * depth * softness)}
+    return contact.simulate(partial(implicit_step, dt=dt, **spring), scene, dt, steps)
 
 
-@functools.cache
+@cache
 def cases():
     """[(what runs.js is told, the run of contact.py)] of random scenes."""
     found, usual = [], contact.Settings()
