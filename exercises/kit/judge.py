@@ -20,7 +20,7 @@ from curriculum.commands import near
 from . import FACTS, load
 from .bets import RIGHT, judge_bet, judge_knobs, judge_number
 from .script import LIMIT, ask, said_of
-from .trials import SHOWN, judge_gripper, solver
+from .trials import SHOWN, judge_gripper
 
 MOST_MEMORY = 2**32  # bytes, chosen
 MOST_EVENTS = 3_000_000  # calls and returns on one input, chosen: about a second
@@ -67,10 +67,9 @@ def judged(name, exercise, report=None):
         states[blank], words = judge(function, blank, file)
         if states[blank] == "wrong" and states.get(after, "right") != "right":
             states[blank], words = "blank", f"{blank} is tried once {after} is right"
-        if blank in SHOWN and set(states.values()) == {"right"}:
-            words += f"\n\n{SHOWN[blank](exercise)}"
         said.append(words)
     if set(states.values()) <= {"right"}:
+        said += [f"\n{SHOWN[name](exercise)}"] if name in SHOWN else []
         for part in (part for part in PARTS if part in FACTS[name]):
             states[part], words = PARTS[part](name, exercise)
             said.append(words)
@@ -161,6 +160,15 @@ def agree(got, right, within=1e-3):
     """Whether two rows of numbers, NaN among them, agree within that share of their size."""
     allowed = within * np.abs(right[np.isfinite(right)]).max(initial=0.0) + 1e-14
     return got.shape == right.shape and np.allclose(got, right, 0.0, allowed, equal_nan=True)
+
+
+def solver(*changes):
+    """The right solve_contacts, with (old, new) exchanged."""
+    text, names = inspect.getsource(RIGHT["solve_contacts"]), {}
+    for old, new in zip(changes[::2], changes[1::2]):
+        text = text.replace(old, new)
+    exec(text, names)
+    return names["solve_contacts"]
 
 
 def slipped(name, slip):

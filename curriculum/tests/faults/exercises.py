@@ -15,7 +15,6 @@ FAULTS = [
     (TRIALS, "contact.critical_dt(1.0, k, c)", "contact.critical_dt(2.0, k, c)", T + "beside"),
     (TRIALS, "contact.critical_dt(0.1, k, c)", "contact.critical_dt(0.2, k, c)", T + "ex8"),
     (TRIALS, "partial(asking_twice, exercise", "partial(asking_twice, contact", T + "asking"),
-    (TRIALS, '"solve_contacts", solver(', '"penalty_step", solver(', T + "beside"),
     (BETS, "map(str.__eq__,", "map(str.__ne__,", T + "'types and BETS'"),
     (BETS, 'replace("\\N{MINUS SIGN}", "-")', 'replace("~", "-")', T + "'types and BETS'"),
     (BETS, "for choice in (right, *", "for choice in (*sorted(choices), *", T + "PREDICTION"),
