@@ -50,11 +50,12 @@ def table(name, numbers):
 
 
 def asked(text):
-    """What the docstring of a bet says: {task, choices {letter: choice}, why}."""
-    _title, *task, _question, choices, why, _then = text.strip().split("\n\n")
+    """What the docstring of a bet says: {task, question, choices {letter: choice}, why}."""
+    _title, *task, question, choices, why, _then = text.strip().split("\n\n")
     found = re.findall(r"^    ([A-Z])  (.*(?:\n     .*)*)", choices, re.MULTILINE)
     return {
         "task": "\n\n".join(task),
+        "question": " ".join(question.split()),  # which the page asks
         "choices": {letter: " ".join(words.split()) for letter, words in found},
         "why": " ".join(why.split()),  # what the sentence should say
     }
