@@ -10,6 +10,7 @@ where a fault survives, where what it replaces does not stand there exactly once
 fail without it.
 """
 
+import ast
 import datetime
 import importlib
 import os
@@ -61,7 +62,9 @@ def plant(row):
     text = path.read_text("utf-8") if path.exists() else ""
     if text.count(old) != 1:
         return f"{fault}: stands {text.count(old)} times there"
-    path.write_text(text.replace(old, new), "utf-8")
+    planted = text.replace(old, new)
+    ast.parse(planted)  # what is no Python is seen by any test
+    path.write_text(planted, "utf-8")
     try:
         return "" if ended(tests)[0] in (1, 2) else f"{fault}: not seen by {tests}"
     finally:
@@ -69,7 +72,7 @@ def plant(row):
 
 
 def main(argv=None):
-    """Print what was planted and seen, by room, and every survivor. Returns the exit status."""
+    """Print every survivor as it is found, then how many were planted. Returns the exit status."""
     parser = Parser(prog="python -m curriculum.tests.plant", description=__doc__)
     parser.add_argument("rooms", nargs="*", metavar="ROOM", help=f"of {', '.join(TABLES)} (all)")
     parser.add_argument("--most", type=partial(number, int, 1, 1e4), help="so many, by the date")
@@ -81,15 +84,15 @@ def main(argv=None):
     if args.most:
         today = random.Random(str(datetime.date.today()))
         rows = today.sample(rows, min(args.most, len(rows)))
+    checks = [partial(sound, tests) for tests in dict.fromkeys(row[-1] for row in rows)]
+    checks += [partial(plant, row) for row in rows]
+    wrong = 0
     with tempfile.TemporaryDirectory() as home:
         with ThreadPoolExecutor(os.cpu_count(), initializer=begin, initargs=(home,)) as pool:
-            wrong = [*filter(None, pool.map(sound, dict.fromkeys(row[-1] for row in rows)))]
-            ends = list(pool.map(plant, rows))
-    for room in dict.fromkeys(row[0] for row in rows):
-        mine = [end for row, end in zip(rows, ends) if row[0] == room]
-        print(f"{room}: {len(mine)} planted, {mine.count('')} seen")
-    wrong += filter(None, ends)
-    print(*wrong, f"{ends.count('')} passed, {len(ends) - ends.count('')} failed", sep="\n")
+            for words in filter(None, pool.map(lambda check: check(), checks)):
+                print(words, flush=True)
+                wrong += 1
+    print(f"{len(rows)} planted, {wrong} wrong")
     return 1 if wrong else 0
 
 

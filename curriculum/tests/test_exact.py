@@ -47,13 +47,24 @@ def test_a_dropped_ball_follows_its_parabolas(e, end):
             assert off < (2e-13 if end < 5 else 1e-11)
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_balls_over_one_another_run_as_in_contact_py(seed):
-    """Two programs that share nothing: thrown up and down, of unequal mass, at any e."""
-    rng, t = np.random.default_rng(seed), np.linspace(0.0, 1.0, 101)
+def thrown(seed):
+    """Three balls over one another, of unequal mass, thrown up and down."""
+    rng = np.random.default_rng(seed)
     y = R + np.cumsum(rng.uniform(0.25, 0.5, 3)) - 0.2
     scene = scene_of([0.0] * 3, y, rng.uniform(0.5, 2.0, 3), restitution=(0.0, 0.5, 1.0)[seed % 3])
     scene.v0[1] = rng.uniform(-2.0, 1.0, 3)
+    return scene
+
+
+UNEQUAL = build_scene("stack", 2, 6)._replace(mass=np.array((0.01, 9.0, 0.02, 8.0, 0.01, 9.0)))
+# the floor strikes the lower one 0.1 ms after the other has
+AT_ONCE = scene_of(0.0, [1.0, 1.25], vy=[0.0, -0.05 / 0.42825], restitution=1.0)
+
+
+@pytest.mark.parametrize("scene", [*map(thrown, range(6)), UNEQUAL, AT_ONCE])
+def test_balls_over_one_another_run_as_in_contact_py(scene):
+    """Two programs that share nothing; for unequal masses contact.py's takes over 1,000 sweeps."""
+    t = np.linspace(0.0, 1.0, 101)
     for here, there in zip(run(scene, t), exact_run(scene, t)):
         assert here == pytest.approx(there, abs=1e-10)
 
@@ -75,7 +86,7 @@ def test_a_ball_that_slides_off_another_leaves_it_at_two_thirds(start, end):
     assert np.abs(q[:, :, 1] - slide_motion(start, reach, R, floor, t)[0]).max() < 1e-10 * R
 
 
-def test_a_pyramid_of_three_slides_apart_releases_and_lands_as_its_energy_says():
+def test_a_pyramid_of_three_slides_apart_until_its_force_ends_as_its_energy_says():
     """With s the sine of the slope, s' s' = G (s0 - s) (1 - s s) / (R (1 + s s)); the lower balls
     are fastest, and the force ends, at s^3 + 3 s = 2 s0."""
     s0 = np.sqrt(0.75)
@@ -85,35 +96,22 @@ def test_a_pyramid_of_three_slides_apart_releases_and_lands_as_its_energy_says()
         return np.sqrt(G * (s0 - s) * (1.0 - s * s) / (R * (1.0 + s * s)))
 
     time = quad(lambda u: 2.0 * u / rate(s0 - u * u), 0.0, np.sqrt(s0 - end), epsabs=1e-13)[0]
-    fall, aside = 2.0 * R * rate(end), 2.0 * R * end / np.sqrt(1.0 - end * end) * rate(end)
-    lands = (np.sqrt(fall**2 + 4.0 * G * R * end) - fall) / G
-    t = time + np.array((0.0, 0.3 * lands, 0.999 * lands, lands + 0.1))
-    q, _ = run(scene_of([-R, R, 0.0], [R, R, R + 2.0 * R * s0]), np.append(0.0, t))
-    s = np.minimum(t - time, lands)
-    top = R + 2.0 * R * end - fall * s - 0.5 * G * s * s
-    right = 2.0 * R * np.sqrt(1.0 - end * end) + aside * (t - time)
+    q, _ = run(scene_of([-R, R, 0.0], [R, R, R + 2.0 * R * s0]), [0.0, time])
+    aside = 2.0 * R * np.sqrt(1.0 - end * end)
+    right = [-aside, aside, 0.0], [R, R, R + 2.0 * R * end]
     assert np.degrees(np.arcsin(end)) == pytest.approx(31.885, abs=1e-3)
-    assert np.abs(q[1:, 1, 2] - top).max() < 1e-10 * R
-    assert np.abs(q[1:, 0] - np.array((-right, right, 0.0 * right)).T).max() < 1e-10 * R
+    assert np.abs(q[1] - right).max() < 1e-10 * R
 
 
 @pytest.mark.parametrize(
     "digits, hits, room", [(0, 3, 0.3), (1, 31, 1e-12), (2, 314, 1e-12), (3, 3141, 0.3)]
 )  # room: of 1e-12 m gaps get ten times smaller than what would touch at rest
 def test_blocks_count_the_digits_of_pi(digits, hits, room):
-    """A ball of 100^digits comes at 1 m/s, one of 1 waits, a fixed one is the wall (Galperin 2003).
-
-    Energy 1 and a count of n turn the pair of (sqrt(m) v1, sqrt(M) v2) by n times the angle
-    2 arctan(1 / 10^digits), with a mirror for each impact: that is where both speeds end.
-    """
-    root, seen = 10.0**digits, []
-    x = [0.0, 2.0 * R + room, 4.0 * R + 2.0 * room]
-    scene = scene_of(x, R, [INF, 1.0, root**2], vx=[0.0, 0.0, -1.0], restitution=1.0)
-    _, v = simulate_exact(scene, np.array((0.0, 13.0 * room)), GRAVITY, seen.append)
+    """A ball of 100^digits comes, one of 1 waits, a fixed one is the wall (Galperin 2003)."""
+    seen, x = [], [0.0, 2.0 * R + room, 4.0 * R + 2.0 * room]
+    scene = scene_of(x, R, [INF, 1.0, 100.0**digits], vx=[0.0, 0.0, -1.0], restitution=1.0)
+    simulate_exact(scene, np.array((0.0, 13.0 * room)), GRAVITY, seen.append)
     assert len(seen) == hits + 1  # an event for each, and the start
-    angle = (hits + 1) // 2 * 2.0 * np.arctan(1.0 / root)
-    assert v[1, 0, 2] == pytest.approx(-np.cos(angle), abs=1e-10)
-    assert abs(v[1, 0, 1]) == pytest.approx(abs(root * np.sin(angle)), rel=1e-8)
 
 
 def test_the_answer_does_not_depend_on_when_it_is_sampled():
@@ -150,11 +148,6 @@ def test_a_heap_in_a_box_comes_to_rest_and_stays_for_hours():
     x, y = [-R, -R, 0.95, 0.95, *x], [R, 3.0 * R, R, 3.0 * R, *(y + rng.uniform(0, 0.02, 6))]
     q, v = run(scene_of(x, y, [INF] * 4 + [1.0] * 6), [0.0, 60.0, 1e4])
     assert np.array_equal(q[1], q[2]) and not v[1:].any()
-
-
-def test_fixed_balls_alone_and_no_ball_in_reach_make_no_event():
-    q, v = run(scene_of([0.0, 0.1], R, INF), [0.0, 1.0])
-    assert np.array_equal(q[0], q[1]) and not v.any()
 
 
 def test_balls_that_overlap_at_the_start_move_apart_and_their_centre_stays():
@@ -226,11 +219,3 @@ def test_the_reason_is_that_of_the_one_that_got_further():
     scene = build_scene("bounce", restitution=1.0 - 1e-12)
     with pytest.raises(RuntimeError, match="more than 20,000 impacts by 1[0-9]{4}"):
         run_model("exact", scene, 1.0, 20_000)
-
-
-def test_two_impacts_a_billionth_of_their_time_apart_are_two():
-    balls = [contact.Ball(0.0, y, 0.0, -1.0, 1.0, 0.1) for y in (1.1, 1.1 * (1.0 + 1e-9))]
-    pairs = [contact.Contact(ball, contact.FLOOR, 0.0, 1.0, 0.1 - ball.y) for ball in balls]
-    span, touching = contact.next_impact(pairs, [contact.GRAVITY] * 2)
-    assert span == contact.time_to_impact(1.0, -1.0, contact.GRAVITY)
-    assert touching == pairs[:1] and 0.0 < -pairs[1].depth < 1e-8

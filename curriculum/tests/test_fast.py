@@ -2,7 +2,6 @@
 
 import math
 import os
-import re
 import shutil
 
 import numpy as np
@@ -10,7 +9,6 @@ import pytest
 
 import contact
 from curriculum.bench.measure import shaft
-from curriculum.lesson import to_loops
 from curriculum.stress import scenes
 from curriculum.tests.helpers import ROOT, python
 
@@ -21,22 +19,16 @@ WILD = (math.nan, math.inf, -math.inf, 1e200, -1e308, 1e-200, -0.0)
 
 def check_same(model, scene, dt, steps, **knobs):
     """Both ways give the same bytes, or both stop at the same error. Returns what the twin gave."""
-    chosen, found = contact.Settings(**knobs), []
-    for way in (plainly, fast.run_model):
+    chosen, found, run = contact.Settings(**knobs), [], None
+    for take, gap in ((plainly, contact.smallest_gap), (fast.run_model, fast.smallest_gap)):
         try:
-            found.append(way(model, scene, dt, steps, chosen))
+            run = take(model, scene, dt, steps, chosen)
+            rows = *run, np.nan_to_num(gap(run.q, scene.radius), nan=-1.0)
+            found.append([each.tobytes() for each in rows])
         except ArithmeticError as error:
             found.append(type(error))
-    one, other = found
-    if isinstance(one, type) or isinstance(other, type):
-        assert one is other
-        return None
-    for name, left, right in zip("tqv", one, other):
-        differ = (left.view(np.int64) != right.view(np.int64)).reshape(len(left), -1).any(1)
-        assert not differ.any(), f"{name} of {model} first differs at step {differ.argmax()}"
-    gaps = [way(other.q, scene.radius) for way in (fast.smallest_gap, contact.smallest_gap)]
-    np.testing.assert_array_equal(*gaps)
-    return other
+    assert found[0] == found[1]
+    return run
 
 
 def plainly(model, scene, dt, steps, chosen):
@@ -62,26 +54,24 @@ def test_the_twin_has_the_bytes_of_the_plain_loops(model):
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_balls_rest(model):
+def test_the_twin_has_the_bytes_of_the_plain_loops_until_all_rest_and_under_a_large_ball(model):
     for name in ("drop", "bounce", "stack"):
-        check_same(model, contact.build_scene(name, 3), 0.002, 1200, warm=0.8)
-        check_same(model, contact.build_scene(name, 3), 0.002, 1200, baumgarte=1.0)
-    check_same(model, contact.build_scene("pile", 1, 24, restitution=0.4), 0.004, 150)
+        for knobs in ({"warm": 0.8}, {"baumgarte": 1.0}):
+            check_same(model, contact.build_scene(name, 3), 0.002, 1200, **knobs)
+    pile, walls = contact.build_scene("pile", 1, 24, restitution=0.4), shaft(12)
+    added = ((walls.q0[0], 0.3), (walls.q0[1], 11.5), (walls.mass, 1e3), (walls.radius, 10.0))
+    crushed = contact.scene_of(*(np.append(row, of_it) for row, of_it in added))
+    crushed.v0[1, -1] = -5.0
+    for scene in (pile, crushed):
+        check_same(model, scene, 0.004, 120)
 
 
-@pytest.mark.parametrize("model, mass, y, dt, iters, baumgarte, warm", [
-    ("lcp", [6.2, 3.6, 0.3], [0.1, 0.299, 0.498], 0.002, 5, 1.0, 0.5),
-    ("lcp", [0.7, 0.2], [0.1, 0.299], 0.01, 2, 0.5, 0.5),
-    ("soft", [1.5, 5.8, 2.7], [0.1, 0.299, 0.498], 0.01, 2, 0.5, 0.8),
-])  # fmt: skip
-def test_balls_that_stand_still_go_on_while_their_impulses_change(
-    model, mass, y, dt, iters, baumgarte, warm
-):
-    scene = contact.scene_of(0.0, y, mass)
-    chosen = contact.Settings(iters=iters, baumgarte=baumgarte, warm=warm)
-    twin = fast.run_model(model, scene, dt, 400, chosen)
-    plain = contact.run_model(model, scene, dt, 400, chosen)  # with skips
-    assert plain.q.tobytes() == twin.q.tobytes() and plain.v.tobytes() == twin.v.tobytes()
+def test_balls_that_stand_still_go_on_while_their_impulses_change():
+    scene = contact.scene_of(0.0, [0.1, 0.299], [0.7, 0.2])
+    chosen = contact.Settings(iters=2, baumgarte=0.5, warm=0.5)
+    ways = plainly, fast.run_model, contact.run_model  # the last two skip
+    runs = [way("lcp", scene, 0.01, 400, chosen) for way in ways]
+    assert len({run.q.tobytes() + run.v.tobytes() for run in runs}) == 1
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -92,29 +82,6 @@ def test_the_twin_sees_two_balls_meet_that_were_as_far_apart_as_its_list_looks(m
         slow = contact.scene_of([0.0, 0.2 + gap], 0.1, vx=[0.025, -0.025])
         run = check_same(model, slow, 0.002, 1040)
         assert run.v[-1, 0, 0] < 0.02, "they met"
-
-
-@pytest.mark.parametrize("model", MODELS)
-def test_the_twin_has_the_bytes_of_the_plain_loops_between_walls_and_under_a_large_ball(model):
-    walls = shaft(12)
-    added = ((walls.q0[0], 0.3), (walls.q0[1], 11.5), (walls.mass, 1e3), (walls.radius, 10.0))
-    crushed = contact.scene_of(*(np.append(row, of_it) for row, of_it in added))
-    crushed.v0[1, -1] = -5.0
-    mass, radius = [math.inf, math.inf, 0.7], [0.17, 0.17, 0.13]
-    gap = contact.scene_of([-0.3, 0.3, 0], [0.5, 0.5, 0.51], mass, radius, [0, 0, 9], 0, 0.9)
-    for scene in (walls, crushed, gap):
-        check_same(model, scene, 0.004, 120)
-
-
-def test_a_pile_comes_to_rest_from_a_warm_start_and_lies_less_deep():
-    speed, depth = {}, {}
-    scene = shaft(100)
-    for warm in (0.0, 0.8):
-        _, q, v = fast.run_model("lcp", scene, 0.002, 6000, contact.Settings(warm=warm))
-        speed[warm] = np.sqrt((v[-1] ** 2).sum(0)).max()
-        depth[warm] = -fast.smallest_gap(q[-1:], scene.radius)[0]
-    assert max(speed.values()) < 1e-3
-    assert 0.0 < depth[0.8] < 0.6 * depth[0.0]
 
 
 def test_a_run_taken_on_in_parts_has_the_bytes_of_the_whole():
@@ -186,24 +153,3 @@ def test_other_source_and_other_constants_are_other_loops(monkeypatch):
     monkeypatch.setattr(contact, "GRAVITY", -1.62)
     assert "GRAVITY = -1.62" in fast.loops_of("lcp_step").source
     assert len(names | {fast.loops_of("lcp_step").name, fast.loops_of("soft_step").name}) == 3
-
-
-SIXTH = (
-    "def sixth_step(balls, dt):\n    contacts = detect_contacts(balls)\n    {}\n    return contacts"
-)
-
-
-@pytest.mark.parametrize("line, words", [
-    ("top = max(ball.y for ball in balls)", "(ball.y for ball in balls)"),
-    ("struck = {c.a for c in contacts}", "{c.a for c in contacts}"),
-    ("balls.sort()", "balls.sort()"),
-    ("balls[0].colour = 1.0", "balls[0].colour"),
-])  # fmt: skip
-def test_what_no_loop_can_say_is_refused_with_its_line_and_what_to_write_instead(
-    line, words, tmp_path
-):
-    lesson, file = (ROOT / "contact.py").read_text("utf-8"), tmp_path / "contact.py"
-    file.write_text(lesson + SIXTH.format(line), "utf-8")
-    place = f"contact.py:{lesson.count(chr(10)) + 3}: {words}: no loop can say it; write loops"
-    with pytest.raises(to_loops.Refused, match=re.escape(place)):
-        to_loops.loops("sixth_step", file)

@@ -1,5 +1,6 @@
 """What the five models promise: published figures, formulas, the engine; see test_stress, too."""
 
+import cProfile
 import math
 from itertools import product
 
@@ -7,9 +8,8 @@ import numpy as np
 import pytest
 
 import contact
-from contact import STEPPED, Ball, Contact, Settings, build_scene, contact_quality, run_model
-from curriculum.bench import measure, problems
-from curriculum.exact import simulate_exact
+from contact import STEPPED, Ball, Settings, build_scene, contact_quality, run_model
+from curriculum.bench import problems
 from curriculum.stress import mujoco_match
 from curriculum.stress.properties import judge
 from curriculum.stress.trial import run_twin
@@ -26,32 +26,20 @@ def quality(name, model, dt=DT, steps=2000, knobs=None, **scene):
 # --- the published figures -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name, seed, dt, key, printed", [  # of penalty, of lcp: as printed
-    ("drop", 0, DT, "max_penetration_frac", ("0.251329183485", "0.056743325071")),
-    ("drop", 1, DT, "max_penetration_frac", (None, "0.022433")),
-    ("drop", 2, DT, "max_penetration_frac", (None, "0.038544")),
-    ("drop", 0, DT, "rest_penetration_frac", ("0.00981", "0")),
-    ("drop", 0, 0.03, "energy_excess", ("1.409e+03", "0")),
-    ("bounce", 0, DT, "energy_excess", ("0.00576", "0")),
-    ("bounce", 0, 0.005, "energy_excess", ("0.148", "0")),
-    ("bounce", 0, DT, "rest_jitter", ("0.0557", None)),
-    ("stack", 0, DT, "max_penetration_frac", ("0.059486", "5.0095e-06")),
-    ("stack", 0, DT, "rest_penetration_frac", ("0.02943", "4.1611e-06")),
+@pytest.mark.parametrize("model, name, dt, key, printed", [
+    ("penalty", "drop", DT, "max_penetration_frac", "0.251329183485"),
+    ("penalty", "drop", 0.03, "energy_excess", "1409"),
+    ("penalty", "bounce", DT, "energy_excess", "0.00576"),
+    ("penalty", "bounce", DT, "rest_jitter", "0.0557"),
+    ("penalty", "stack", DT, "max_penetration_frac", "0.059486"),
+    ("lcp", "drop", DT, "max_penetration_frac", "0.056743325071"),
+    ("lcp", "drop", 0.03, "energy_excess", "0"),
+    ("lcp", "stack", DT, "max_penetration_frac", "5.0095e-06"),
+    ("lcp", "stack", DT, "rest_penetration_frac", "4.1611e-06"),
 ])  # fmt: skip
-def test_published_figures_come_out_to_all_their_digits(name, seed, dt, key, printed):
-    for model, text in zip(("penalty", "lcp"), printed):
-        if text is not None:
-            digits = len(text.partition("e")[0].replace(".", "").lstrip("0")) or 1
-            got = quality(name, model, dt, seed=seed)[key]
-            assert f"{got:.{digits}g}" == f"{float(text):.{digits}g}", (model, got)
-
-
-@pytest.mark.parametrize("name, penalty", [("drop", 0.008), ("bounce", 0.016)])
-def test_largest_steps_without_an_explosion_are_the_published_ones(name, penalty):
-    known = {model: quality(name, model) for model in contact.GRID_MODELS}
-    args = contact.parse_flags(["--scene", name])
-    grid = contact.measure_stability(args, build_scene(name), known)
-    assert (grid["penalty"], grid["lcp"], grid["leapfrog"]) == (penalty, 0.064, 0.064)
+def test_published_figures_come_out_to_all_their_digits(model, name, dt, key, printed):
+    digits = len(printed.partition("e")[0].replace(".", "").lstrip("0")) or 1
+    assert f"{quality(name, model, dt)[key]:.{digits}g}" == printed
 
 
 # --- formulas ------------------------------------------------------------------------------------
@@ -85,12 +73,6 @@ def test_critical_dt_also_without_a_spring_with_a_damper_that_feeds_and_of_what_
     assert [contact.critical_dt(*each) for each in given] == [0.025, math.inf, 0.0, math.inf]
 
 
-def test_no_seed_starts_a_stack_or_pile_inside_the_floor():
-    for seed in range(50):
-        for scene in (build_scene("stack", seed), build_scene("pile", seed, 30)):
-            assert contact.smallest_gap(scene.q0[None], scene.radius)[0] > -1e-15
-
-
 # --- leapfrog ------------------------------------------------------------------------------------
 
 
@@ -114,7 +96,7 @@ def test_leapfrog_is_of_second_order_where_balls_slide(e):
     """A ball slides off a fixed one: quarter the step, and a sixteenth of the error is left."""
     scene = problems.BY_NAME["slide"].build(0)._replace(restitution=e)
     times = np.arange(problems.BY_NAME["slide"].steps(DT) + 1) * DT
-    truth = simulate_exact(scene, times, contact.GRAVITY)[0]
+    truth = problems.judged(scene, times)[0]
     errors = []
     for substeps in (1, 4):
         run = run_model("leapfrog", scene, DT / substeps, (len(times) - 1) * substeps)
@@ -132,82 +114,41 @@ def test_leapfrog_opens_an_overlap_and_throws_nobody():
     assert np.hypot(*run.v.swapaxes(0, 1)).max() < 8.0
 
 
-def test_a_ball_that_lands_on_one_at_rest_bounces_at_any_time_of_a_step():
-    """So slowly that it meets the other only because that one, on the floor, cannot fall away."""
-    for y in np.linspace(0.35, 0.353, 20):
-        mass, radius = [0.7, 2.0], [0.11, 0.12]
-        scene = contact.scene_of(0.0, [0.11, y], mass, radius, 0, [0, -1], restitution=0.9)
-        run = run_model("leapfrog", scene, 0.003, 50, Settings(iters=1000))
-        assert np.abs(run.q - run_model("exact", scene, 0.003, 50).q).max() < 1e-11
+IMPACTS = {  # what a ball strikes; at restitution 1, if no other is given
+    "a slow ball": dict(x=[0, 0.21], y=0.1, vx=[0.1, 0]),
+    "a slow ball, in the air": dict(x=[0, 0.21], y=9.0, vx=[0.1, 0]),
+    "a wall that comes": dict(x=[0, 0.21], y=0.1, mass=[1, math.inf], vx=[0, -0.1]),
+    "a row with gaps of a millimetre": dict(
+        x=[0, 0.201, 0.402, 0.603, 0.804], y=0.1, vx=[2, 0, 0, 0, 0]
+    ),
+    "a fixed ball overhead": dict(x=0, y=[0.5, 1.2], mass=[1, math.inf], vy=[5, 0]),
+    "a ball that falls, too": dict(x=0, y=[1.0, 1.2001], vy=[0, -0.01]),
+    "a ball that it nears too slowly for a square": dict(
+        x=[0, 0.20001], y=0.1, vx=[1e-170, 0], restitution=0.0
+    ),
+    "the floor, as another does in that step": dict(x=[0, 5], y=[0.4, 0.403], restitution=0.5),
+    "a ball at rest, which the floor holds": dict(
+        x=0, y=[0.11, 0.352], mass=[0.7, 2.0], radius=[0.11, 0.12], vy=[0, -1], restitution=0.9
+    ),
+}
 
 
-SWAPS = {  # what strikes what at restitution 1; the horizontal speeds at the end
-    "a slow ball": (dict(x=[0, 0.25], y=0.1, vx=[0.1, 0]), [0.0, 0.1]),
-    "a slow ball, in the air": (dict(x=[0, 0.25], y=9.0, vx=[0.1, 0]), [0.0, 0.1]),
-    "a wall": (dict(x=[0, 0.25], y=0.1, mass=[1, math.inf], vx=[0.1, 0]), [-0.1, 0.0]),
-    "a wall that comes": (dict(x=[0, 0.3], y=0.1, mass=[1, math.inf], vx=[0, -0.1]), [-0.2, -0.1]),
-    "a row with gaps of a millimetre": (
-        dict(x=[0, 0.201, 0.402, 0.603, 0.804], y=0.1, vx=[2, 0, 0, 0, 0]), [0, 0, 0, 0, 2.0]),
-}  # fmt: skip
+@pytest.mark.parametrize("dt", [0.001, 0.002, 0.003, 0.016])
+@pytest.mark.parametrize("struck", IMPACTS)
+def test_every_impact_of_leapfrog_has_its_own_moment(struck, dt):
+    """However slow it is, and whenever in a step it comes: all go where exact has them."""
+    scene, steps = contact.scene_of(**{"restitution": 1.0} | IMPACTS[struck]), int(0.3 / dt)
+    run = run_model("leapfrog", scene, dt, steps, Settings(iters=1000))
+    assert np.abs(run.q - run_model("exact", scene, dt, steps).q).max() < 1e-11
 
 
-@pytest.mark.parametrize("dt", [0.001, 0.002, 0.016])
-@pytest.mark.parametrize("name", SWAPS)
-def test_every_impact_of_leapfrog_has_its_own_moment(name, dt):
-    balls, right = SWAPS[name]
-    run = run_model("leapfrog", contact.scene_of(**balls, restitution=1.0), dt, int(1.2 / dt))
-    assert run.v[-1, 0] == pytest.approx(right, abs=1e-12)
-
-
-def test_balls_that_land_in_one_step_land_at_their_own_moments():
-    scene = contact.scene_of([0.0, 5.0], [0.5, 0.503], restitution=0.5)
-    run, right = (run_model(model, scene, 0.004, 90) for model in ("leapfrog", "exact"))
-    assert np.abs(run.q - right.q).max() < 1e-12
-
-
-@pytest.mark.parametrize("dt", [0.002, 0.016])
-@pytest.mark.parametrize("y, mass, vy, seconds", [
-    ([0.5, 1.2], [1, math.inf], [5, 0], 4.8),  # up and down under a fixed one
-    ([1.0, 1.2001], 1, [0, -0.01], 0.3),  # both fall, and meet however slowly
-])  # fmt: skip
-def test_leapfrog_keeps_the_energy_of_what_bounces_with_restitution_1(y, mass, vy, seconds, dt):
-    scene = contact.scene_of(0.0, y, mass, vy=vy, restitution=1.0)
-    run = run_model("leapfrog", scene, dt, int(seconds / dt))
-    total = contact.energy(run.q, run.v, scene.mass)
-    assert np.abs(total / total[0] - 1.0).max() < 1e-9
-
-
-def test_impacts_cost_a_pile_a_bounded_number_of_pushes_and_at_rest_none(monkeypatch):
-    strike, pushes = contact.strike_at, [0]
-
-    def counted(balls, contacts, *rest):
-        sweeps = strike(balls, contacts, *rest)
-        pushes[-1] += sweeps * len(contacts)
-        return sweeps
-
-    falls = build_scene("pile", bodies=150, restitution=0.5)
-    for scene, steps, most in (falls, 300, 46_000), (measure.shaft(12), 3000, 0):
-        run = run_model("leapfrog", scene, DT, steps)
-        later = scene._replace(q0=run.q[-1], v0=run.v[-1])
-        with monkeypatch.context() as patched:
-            patched.setattr(contact, "strike_at", counted)
-            run_model("leapfrog", later, DT, 5, see=lambda *_: pushes.append(0))
-        assert max(pushes) <= most and len(pushes) == 6
-        pushes[:] = [0]
-
-
-@pytest.mark.parametrize("vx", [1e-170, -1e-170, 0.0])
-def test_leapfrog_takes_a_ball_that_is_too_slow_for_a_square(vx):
-    scene = contact.scene_of([0.0, 0.20001], 0.1, [1.0, 2.0], vx=[vx, 0.0])
-    assert np.isfinite(run_model("leapfrog", scene, 0.003, 50, Settings(skip=False)).q).all()
-
-
-def test_exact_settles_unequal_columns_in_more_than_a_thousand_sweeps():
-    masses = np.array([0.01, 9.0, 0.02, 8.0, 0.01, 9.0])
-    heavy = build_scene("stack", 2, 6)._replace(mass=masses)
-    times = np.arange(300) * 0.003
-    q, _ = contact.exact_run(heavy, times)
-    assert np.abs(q - simulate_exact(heavy, times, contact.GRAVITY)[0]).max() < 1e-11
+def test_impacts_cost_a_pile_a_bounded_number_of_pushes():
+    scene = build_scene("pile", bodies=150, restitution=0.5)
+    run = run_model("leapfrog", scene, DT, 300)
+    later, profile = scene._replace(q0=run.q[-1], v0=run.v[-1]), cProfile.Profile()
+    profile.runcall(run_model, "leapfrog", later, DT, 5, Settings(skip=False))
+    calls = {getattr(each.code, "co_name", ""): each.callcount for each in profile.getstats()}
+    assert 100_000 < calls["push"] < 220_000
 
 
 def test_momentum_finds_what_plain_sweeps_find_in_a_tenth_of_them():
@@ -219,25 +160,6 @@ def test_momentum_finds_what_plain_sweeps_find_in_a_tenth_of_them():
         counts.append(solve(contacts, 9999, 1e-9 * G * DT))
         assert [c.lam for c in contacts][0] == pytest.approx(20 * G * DT, rel=1e-4)
     assert 0 < 10 * counts[1] < counts[0]
-
-
-# --- the sweep -----------------------------------------------------------------------------------
-
-
-def test_sweeps_end_where_corrections_are_below_the_tolerance():
-    """One ball on another shall leave the floor at 1 m/s: sweep k corrects by 2^(1-k) m/s."""
-
-    def solved(iters, tolerance):
-        low, high = (Ball(0.0, y, 0.0, 0.0, 1.0, R) for y in (0.1, 0.3))
-        ground, pair = Contact(low, contact.FLOOR, 0, 1, 0), Contact(high, low, 0, 1, 0)
-        ground.target = 1.0
-        return contact.solve_contacts([ground, pair], iters, tolerance), ground.lam, pair.lam
-
-    for sweeps in (1, 3, 10):
-        share = 1.0 - 2.0**-sweeps
-        assert solved(sweeps, 0.0) == (0, 2.0 * share, share)
-        assert solved(1000, 2.0 ** (1 - sweeps)) == (sweeps, 2.0 * share, share)
-    assert 50 < solved(1000, 0.0)[0] < 60 and solved(1000, 0.0)[1:] == (2.0, 1.0)
 
 
 # --- soft ----------------------------------------------------------------------------------------
@@ -264,41 +186,35 @@ def test_soft_is_mujoco_in_each_step_and_in_a_whole_run(case):
 
 def same_bytes_both_ways(model, scene, dt, steps, **knobs):
     """Whether the run with skips has the bytes of the run without."""
-    both = (Settings(**knobs, skip=skip) for skip in (True, False))
-    runs = (run_model(model, scene, dt, steps, each) for each in both)
+    step, kicks = contact.step_of(model, scene, dt, Settings(**knobs)), contact.MODELS[model].kicks
+    runs = (contact.simulate(step, scene, dt, steps, skip, None, kicks) for skip in (0, 1))
     return all(a.tobytes() == b.tobytes() for a, b in zip(*runs))
 
 
 @pytest.mark.parametrize("name", ["drop", "bounce", "stack"])
 @pytest.mark.parametrize("model", STEPPED)
 def test_a_skip_never_changes_a_bit(name, model):
-    for dt in (1e-9, 1e-4, *(DT * factor for factor in contact.DT_GRID)):
-        assert same_bytes_both_ways(model, build_scene(name, 3), dt, 300), dt
-    for dt in (10.0, 1e3):
-        assert same_bytes_both_ways(model, build_scene(name, 3), dt, 9), dt
+    scene = build_scene(name, 3)
+    for dt in (1e-9, 1e-4, *(DT * factor for factor in contact.DT_GRID), 10.0, 1e3):
+        assert same_bytes_both_ways(model, scene, dt, 300 if dt < 1.0 else 9), dt
     for knobs in ({"baumgarte": 1.0, "stiffness": 0.0, "iters": 1}, {"solref": (-1e4, -50.0)}):
-        assert same_bytes_both_ways(model, build_scene(name), DT, 400, **knobs), knobs
-    bouncing = build_scene("stack", 1, 4, restitution=0.3, damping=0.0)
-    assert same_bytes_both_ways(model, bouncing, DT, 300)
+        assert same_bytes_both_ways(model, scene, DT, 400, **knobs), knobs
 
 
+@pytest.mark.parametrize("x, y, vx", [
+    ([-2.0, 2.31], 50.0, [150.0, -150.0]),  # a step later they would be past each other
+    ([0.0, 1.0], [0.5, math.nan], 0.0),
+])  # fmt: skip
 @pytest.mark.parametrize("model", STEPPED)
-def test_a_flight_ends_at_a_contact_that_one_state_alone_shows(model):
-    """So fast that without the contact the balls would be past each other a step later."""
-    scene = contact.scene_of([-2.0, 2.31], 50.0, vx=[150.0, -150.0], restitution=0.5, damping=0.0)
-    assert same_bytes_both_ways(model, scene, DT, 40)
-    assert run_model(model, scene, DT, 40).v[-1, 0, 0] != 150.0, "they met"
+def test_a_flight_ends_at_a_contact_also_beside_a_ball_that_is_nowhere(model, x, y, vx):
+    scene = contact.scene_of(x, y, vx=vx, restitution=0.5)
+    assert same_bytes_both_ways(model, scene, DT, 400)
 
 
-@pytest.mark.parametrize("wild", [math.nan, math.inf, 1e200])
-@pytest.mark.parametrize("model", STEPPED)
-def test_a_ball_that_is_nowhere_does_not_let_another_fall_through_the_floor(model, wild):
-    scene = contact.scene_of([0.0, 1.0], [0.5, wild], damping=80.0)
-    step = contact.step_of(model, scene, DT, Settings())
-    kicks = contact.MODELS[model].kicks
-    plain, fast = (contact.simulate(step, scene, DT, 400, skip, None, kicks) for skip in (0, 1))
-    assert plain.q.tobytes() == fast.q.tobytes() and plain.v.tobytes() == fast.v.tobytes()
-    assert fast.q[-1, 1, 0] > 0.09
+def test_flight_and_rest_cost_no_steps():
+    taken = []
+    run_model("lcp", build_scene("drop"), DT, 2000, progress=taken.append)
+    assert taken[0] > 200 and taken[-1] < 500
 
 
 @pytest.mark.parametrize("field, values", {
@@ -307,23 +223,18 @@ def test_a_ball_that_is_nowhere_does_not_let_another_fall_through_the_floor(mode
     "mass": ([0.0], [math.nan], [1j], []), "restitution": (-1.0, 1.1, [0.5, 0.5]),
     "stiffness": (-1.0, math.nan, math.inf), "baumgarte": (-0.1, 2.0, math.nan),
     "iters": (0, -3, 20.5, "20"), "warm": (-1.0, 2.0, math.nan),
+    "dt": (0.0, -1.0, math.nan, math.inf), "steps": (-1,),
     "solref": ((0.02, 0.0), (-1.0, 1.0), (math.nan, 1.0), (0.02,), 1),
     "solimp": ((0.9, 0.95, math.nan, 0.5, 2.0), (0.9, 0.95, -1.0, 0.5, 2.0), (1e6,) * 5),
 }.items())  # fmt: skip
-def test_a_field_or_a_knob_that_makes_no_sense_is_refused_by_its_name(field, values):
+def test_what_makes_no_sense_is_refused_by_its_name(field, values):
     for model, value in product(contact.MODELS, values):
-        given, knob = {field: value}, field in Settings._fields
+        given = {"dt": DT, "steps": 5} | {field: value}
+        dt, steps = given.pop("dt"), given.pop("steps")
+        knob = field in Settings._fields
         scene = build_scene("drop")._replace(**{} if knob else given)
         with pytest.raises(ValueError, match=f"{field}: given .*; allowed: "):
-            run_model(model, scene, DT, 5, Settings(**given if knob else {}))
-
-
-def test_no_step_and_no_number_of_steps_are_refused():
-    for dt in (0.0, -1.0, math.nan, math.inf):
-        with pytest.raises(ValueError, match="dt: given .*; allowed: "):
-            run_model("lcp", build_scene("drop"), dt, 5)
-    with pytest.raises(ValueError, match="steps: given -1; allowed: a whole number"):
-        run_model("lcp", build_scene("drop"), DT, -1)
+            run_model(model, scene, dt, steps, Settings(**given if knob else {}))
 
 
 @pytest.mark.parametrize("model", contact.MODELS)
@@ -345,36 +256,17 @@ def test_jitter_sees_what_trembles_what_hops_and_nothing_else():
 
 @pytest.mark.parametrize("model", STEPPED)
 def test_who_sees_the_contacts_hears_of_every_push(model):
-    """lam of all contacts along their normals is what the balls' momentum changes by, but g dt."""
+    """What the floor's contacts say that they gave is what all momenta changed by, but g dt."""
     scene, pushes = build_scene("stack", bodies=2, restitution=0.5), []
 
     def see(k, contacts):
         assert k == len(pushes)
-        floor, pair = (
-            sum(c.lam for c in contacts if (c.b is contact.FLOOR) == low) for low in (True, False)
-        )
-        pushes.append((floor - pair, pair))
+        pushes.append(sum(c.lam for c in contacts if c.b is contact.FLOOR))
 
     run = run_model(model, scene, DT, 300, see=see)
-    gained = np.diff(run.v[:, 1], axis=0) + G * DT
+    gained = np.diff(run.v[:, 1].sum(1)) + 2 * G * DT
     assert np.abs(pushes - gained).max() < 1e-12
     assert run.q.tobytes() == run_model(model, scene, DT, 300).q.tobytes()
-
-
-@pytest.mark.parametrize("period, start", [(1, 5), (2, 0), (3, 17), (30, 100)])
-def test_a_cycle_of_any_period_is_recognised_and_copied(period, start):
-    """A made-up step with a known answer: up by one until `start`, then round and round."""
-    calls = []
-
-    def step(balls):
-        k = int(balls[0].vx) + 1
-        balls[0].vx = float(k if k < start + period else start)
-        calls.append(k)
-
-    scene = build_scene("drop")._replace(q0=np.array([[0.0], [0.05]]))
-    run = contact.simulate(step, scene, DT, 500, skip=True)
-    want = [k if k < start else start + (k - start) % period for k in range(501)]
-    assert run.v[:, 0, 0].tolist() == want and len(calls) <= start + period + 1
 
 
 # --- measures, on recordings made by hand --------------------------------------------------------
@@ -399,12 +291,9 @@ def test_measures_of_recordings_made_by_hand():
     assert contact_quality(recording([1.0, -0.01]), scene, 0.01)["through"] == "the floor"
 
 
-@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
-def test_measures_are_in_radii_of_the_smallest_ball(order):
-    scene = contact.scene_of([0.0, 2.0], [0.05, 0.5], radius=[0.06, 0.2])
-    q, v = scene.q0[:, order], scene.v0[:, order]
-    run = contact.Run(np.arange(3) * 0.01, *np.array([[q] * 3, [v] * 3]))
-    row = contact_quality(run, scene._replace(q0=q, radius=scene.radius[order]), 0.01)
+def test_measures_are_in_radii_of_the_smallest_ball():
+    scene = contact.scene_of([2.0, 0.0], [0.5, 0.05], radius=[0.2, 0.06])
+    row = contact_quality(run_model("lcp", scene, DT, 0), scene, DT)
     assert row["rest_penetration_frac"] == pytest.approx(0.01 / 0.06)
 
 
@@ -418,15 +307,12 @@ def test_measures_are_in_radii_of_the_smallest_ball(order):
 def test_who_went_through_is_judged_pair_by_pair_and_also_between_two_states(
     places, radius, through
 ):
-    scene = contact.scene_of([0.0, 0.3, 3.0], 1.0, [1, 1, math.inf], [*radius, 0.5])
-    q = np.array([[[x, 0.3, 3.0], [1.0, 1.0, 1.0]] for x in places])
+    """Two fixed balls in one another, which start so, went through nothing."""
+    mass, radius = [1.0, 1.0, math.inf, math.inf], [*radius, 0.5, 0.5]
+    scene = contact.scene_of([0.0, 0.3, 3.0, 3.1], 1.0, mass, radius)
+    q = np.array([[[x, 0.3, 3.0, 3.1], [1.0] * 4] for x in places])
     run = contact.Run(0.01 * np.arange(3), q, np.zeros_like(q))
     assert contact_quality(run, scene, 0.01)["through"] == through
-
-
-def test_fixed_balls_in_one_another_went_through_nothing():
-    scene = contact.scene_of([0.0, 0.05, 1.0], [1.0, 1.0, 0.1], [math.inf, math.inf, 1.0])
-    assert contact_quality(run_model("exact", scene, DT, 5), scene, DT)["through"] is None
 
 
 def test_the_first_contact_is_seen_in_a_velocity_that_changes_by_a_millionth():
@@ -438,8 +324,9 @@ def test_the_first_contact_is_seen_in_a_velocity_that_changes_by_a_millionth():
 
 
 def test_a_ball_at_the_top_of_its_flight_is_not_at_rest_and_one_that_creeps_is():
+    """It turns round in the middle of its last step, so that it seems not to have moved."""
     t, scene = 0.004 * np.arange(5), build_scene("drop")
-    flies = recording(1.0 - 0.5 * G * (t - t[3]) ** 2, 5)._replace(t=t)
+    flies = recording(1.0 - 0.5 * G * (t - 0.014) ** 2, 5)._replace(t=t)
     lies = recording([R, R + 1e-7, R + 2e-7])._replace(t=t[:3])
     assert not contact.at_rest(flies, scene) and contact.at_rest(lies, scene)
 
@@ -456,20 +343,3 @@ def test_a_run_explodes_when_it_gains_ten_times_its_start_also_from_below_zero()
     assert contact.blow_up_step(np.array([-2.0, 17.9, 18.0])) == 2
     assert contact.blow_up_step(np.array([2.0, 21.9])) is None
     assert contact.blow_up_step(np.array([2.0, math.nan])) == 1
-
-
-def test_the_smallest_gap_is_that_of_the_closest_pair_or_of_the_floor():
-    q, radius = np.random.default_rng(1).uniform(0.0, 2.0, (20, 2, 7)), 0.1 * np.ones(7)
-    for state, gap in zip(q, contact.smallest_gap(q, radius)):
-        balls = [Ball(*xy, 0.0, 0.0, 1.0, 0.1) for xy in state.T.tolist()]
-        depths = [c.depth for c in contact.detect_contacts(balls, margin=9.0)]
-        assert gap == pytest.approx(-max(depths), abs=1e-15)
-
-
-def test_a_normal_lies_along_the_centres_however_near_they_are():
-    balls = [contact.Ball(x, 5.0, 0.0, 0.0, 1.0, 0.1) for x in (1e-15, 0.0)]
-    (c,) = contact.detect_contacts(balls)
-    assert (c.nx, c.ny) == (1.0, 0.0)
-    balls[0].x = 0.0
-    (c,) = contact.detect_contacts(balls)
-    assert (c.nx, c.ny) == (0.0, 1.0), "centres in one place have no direction: up"

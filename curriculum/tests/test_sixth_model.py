@@ -70,11 +70,15 @@ def test_a_sixth_model_is_run_recorded_drawn_compiled_and_on_the_page(course):
     assert "sixth" in python(*words, course / "seeds", cwd=course, PYTHONPATH="").stdout
 
 
-def test_a_step_that_no_loop_can_say_runs_plain_and_says_so(course):
+@pytest.mark.parametrize("target, words", [
+    ("max(0.0, *[c.depth / dt])", "*[c.depth / dt]"),
+    ("c.depth / dt + 0 * balls.count(c)", "balls.count(c)"),
+])  # fmt: skip
+def test_a_step_that_no_loop_can_say_runs_plain_and_says_so(course, target, words):
     pytest.importorskip("numba", reason="numba is not installed")
-    with_target(course, "max(0.0, *[c.depth / dt])")
-    words = "--scene pile --bodies 60 --steps 290 --contact sixth --no-rerun --out".split()
-    done = python("contact.py", *words, course / "plain", cwd=course)
+    with_target(course, target)
+    flags = "--scene pile --bodies 60 --steps 290 --contact sixth --no-rerun --out".split()
+    done = python("contact.py", *flags, course / "plain", cwd=course)
     assert done.returncode == 0 and "sixth" in done.stdout
     assert done.stderr.startswith("sixth runs in plain loops: contact.py:")
-    assert "*[c.depth / dt]: no loop can say it; write loops" in done.stderr
+    assert f"{words}: no loop can say it; write loops" in done.stderr

@@ -2,6 +2,7 @@
 
 MODELS, LINE = "test_models.py -k ", "test_command_line.py -k "
 SLIDE, STEP = MODELS + "second_order", MODELS + "with_one_step"
+OWN, BOUNDED = MODELS + "own_moment", MODELS + "bounded_number"
 SEES = "test_stress.py -k no_claim"
 C = "contact.py"
 FAULTS = [
@@ -14,18 +15,15 @@ FAULTS = [
     (C, "radii - max(0.0, c.depth - OPENS * radii)", "radii", MODELS + "throws_nobody"),
     (C, "closed = [c for c in contacts if c.lam > 0.0]", "closed = contacts", STEP),
     (C, "            look(c, nearest(c, dt))\n", "            pass\n", "test_stress.py"),
-    (C, "or fast == 0.0:", "or fast < 0.0:", MODELS + "too_slow_for"),
+    (C, "or fast == 0.0:", "or fast < 0.0:", OWN),
     # an impact has its own moment
     (C, "if may_strike(contacts, dt, restitution):", "if False:", STEP),
-    (C, "(lower.held > 0.0 and", "(lower.held >= 0.0 and", MODELS + "with_restitution_1"),
-    (C, "1e-6 if restitution > 0.0 else -GRAVITY", "1e-6", MODELS + "at_rest_none"),
-    (C, "until = dt if last else when", "until = dt", MODELS + "own_moments"),
-    (C, "min(10 * iters, left)", "10 * iters", MODELS + "at_rest_none"),
-    (C, "            ball.since = when\n", "            ball.since = 0.0\n",
-     MODELS + "at_rest_none"),
-    (C, "            ball.y -= when * (ball.vy - ball.vy_before)\n", "", STEP),
-    (C, "        ball.ay = 2.0 / dt * (ball.vy - ball.vy_before)\n", "", STEP),
-    (C, "        c.lam += c.struck\n", "", MODELS + "who_sees"),
+    (C, "(lower.held > 0.0 and", "(lower.held >= 0.0 and", OWN),
+    (C, "1e-6 if restitution > 0.0 else -GRAVITY", "1e-6", "test_golden.py -k leapfrog"),
+    (C, "until = dt if last else when", "until = dt", OWN),
+    (C, "min(10 * iters, left)", "10 * iters", BOUNDED),
+    (C, "            ball.since = when\n", "            ball.since = 0.0\n", BOUNDED),
+    (C, "c.lam += c.struck", "c.lam += 0.0", MODELS + "who_sees"),
     # the sweeps
     (C, "        if onward < 0.0:\n            t = 1.0\n", "", MODELS + "momentum"),
     (C, "c.start = max(0.0, c.lam + share * (c.lam - c.before))",
@@ -38,11 +36,11 @@ FAULTS = [
      "test_golden.py -k penalty"),
     (C, "max(power, 1.0)", "power", MODELS + "mujocos_bounds"),
     (C, "if width <= 1e-15:", "if width <= -1.0:", MODELS + "mujoco_in"),
-    (C, "MOST_SWEEPS = 10_000", "MOST_SWEEPS = 1_000", MODELS + "unequal_columns"),
-    (C, "TOGETHER = 1.0 + 1e-12", "TOGETHER = 1.0 + 1e-3", "test_exact.py"),
+    (C, "MOST_SWEEPS = 10_000", "MOST_SWEEPS = 1_000", "test_exact.py -k over_one_another"),
+    (C, "TOGETHER = 1.0 + 1e-12", "TOGETHER = 1.0 + 1e-3", "test_exact.py -k over_one_another"),
     # skips and measures
     (C, "first + 1 + np.arange(steps - k) % (k", "first + np.arange(steps - k) % (k",
-     MODELS + "cycle"),
+     MODELS + "skip_never"),
     (C, "near = np.flatnonzero(~safe)",
      "near = np.flatnonzero((gap < reach_of(fastest, dt)) | (gap < CONTACT_MARGIN))",
      MODELS + "is_nowhere"),
@@ -52,10 +50,9 @@ FAULTS = [
      MODELS + "smallest_ball"),
     (C, "way = np.diff(q, axis=0, append=q[-1:])", "way = 0.0 * q", MODELS + "pair_by_pair"),
     (C, "if (inside & (free[lag:] | free[:-lag])).any():", "if inside.any():",
-     MODELS + "in_one_another"),
+     MODELS + "pair_by_pair"),
     (C, "EXPLODED = 10.0", "EXPLODED = 11.0", MODELS + "ten_times"),
-    (C, "falling = np.abs(last[1] - first[1]).max(initial=0.0) >= -0.5",
-     "falling = False and -0.5 <", MODELS + "top_of_its_flight"),
+    (C, ".max(initial=0.0) >= -0.5 *", ".max(initial=0.0) >= -1.5 *", MODELS + "top_of_its_flight"),
     (C, "    if mass == math.inf:\n        return math.inf\n", "", MODELS + "critical_dt_also"),
     # the command line
     (C, 'if re.fullmatch("--[a-z]+=--", word)', 'if re.fullmatch("--[a-z]+=---", word)',

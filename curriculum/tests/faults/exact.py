@@ -11,15 +11,11 @@ FAULTS = [
     (E, "NOISE = 1e-12", "NOISE = 1e-8", ANY),
     (E, "NOISE = 1e-12", "NOISE = 1e-17", ANY),
     (E, "still | (self.gap[near] <= 1e-4 * opened)", "still | (self.gap[near] <= 1.0)", BLOCKS),
-    (E, "track=1e4", "track=0.0", BLOCKS),
     (E, "np.minimum(4.0 * self.bits, 1e-9 * gap)", "4.0 * self.bits", ANY),
     (E, "min((1e-16 / size)", "min((1e-9 / size)", T + "'slides or pyramid'"),
-    (E, "step <= 1e-15 * t", "step <= 1e-9 * t", ANY),
     # the pivots
     (E, "closes = ~active & (", "closes = active & (", PIVOT),
     (E, "active[pulls[share == share.min()]]", "active[pulls[share == share.max()]]", PIVOT),
-    (E, "way if endless else solve", "solve", PIVOT),
-    (E, "lam = np.maximum(trial, 0.0)", "lam = 1.000001 * np.maximum(trial, 0.0)", PIVOT),
     # impacts and what rests
     (E, "target = -self.e * v_n\n", "target = -self.e * np.abs(v_n)\n", ANY),
     (E, "self.slip(touching, self.v) ** 2 / self.reach[touching]", "0.0 * self.reach[touching]",
