@@ -8,11 +8,6 @@ from exercises.kit import FACTS, bets, script
 TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")
 
 
-def task_of(text):
-    """A docstring as HTML: indented lines stay as they are."""
-    return markdown(re.sub(r"(?m)(^[^ \n].*\n)(?=    )", r"\1\n", text.strip()))
-
-
 def exercise(name, file):
     """An exercise as the template wants it. Raises ValueError where its docstring has no title."""
     words = script.task_of(name)
@@ -28,13 +23,14 @@ def exercise(name, file):
         bet["answer"] = bets.SOLVED[name].PREDICTION
         bet["reasons"] = {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()}
         bet["table"] = [re.split(r"\s{2,}", x) for x in bets.table(name, numbers).splitlines()]
+    indented = re.sub(r"(?m)(^[^ \n].*\n)(?=    )", r"\1\n", task.strip())  # stays as it is
     return bet | {
         "id": name,
         "title": f"Exercise {number}: {told}",
         "minutes": minutes,
         "command": f"python {file}",
         "hints": [inline(hint) for hint in facts["hints"]],
-        "task": task_of(task),
+        "task": markdown(indented),
     }
 
 
