@@ -30,7 +30,6 @@ from curriculum.commands import Parser, write_whole
 from curriculum.lesson.regions import ROOT, read_text, split
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
-DIGITS = 6  # significant digits that a table keeps
 PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
 ALWAYS = ("curriculum/exact.py", "curriculum/fast.py")  # what contact.py asks for by `beside`
 MAKES = re.compile(r"curriculum/(bench|stress|lesson|exact|fast|implicit|core)\b")  # numbers
@@ -117,7 +116,7 @@ def save(path, rows) -> None:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(rows[0])
     for row in rows:
-        cells = [f"{x:.{DIGITS}g}" if isinstance(x, float) else x for x in row.values()]
+        cells = [f"{x:.6g}" if isinstance(x, float) else x for x in row.values()]
         writer.writerow(["" if cell in ("nan", "inf", "-inf") else cell for cell in cells])
     write_whole(path, text.getvalue())
 
@@ -155,10 +154,9 @@ def git(*words) -> str:
     return done.stdout.strip()
 
 
-def table(head, rows) -> str:
-    """A Markdown table."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in lines)
+def lines(rows) -> str:
+    """The rows of a Markdown table."""
+    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in rows)
 
 
 def footer(about: dict) -> str:
@@ -185,8 +183,6 @@ def ledger() -> list:
 
 def taken(row) -> str:
     """A row's time as text, with two digits: in seconds below a minute."""
-    if row["status"] == "PENDING":
-        return "not yet measured"
     minutes = float(row["wallclock_min"])
     return f"{minutes:.2g} min" if minutes >= 1 else f"{60 * minutes:.2g} s"
 
@@ -198,8 +194,8 @@ def stale(row) -> bool:
 
 def measured(about, seconds) -> dict:
     """A row of the ledger: how it came to be, and what each run took [s]; the first warms up."""
-    minutes, code = statistics.median(seconds[1:]) / 60, digest(stamp(*TIMED))
-    facts = "ch3.5-contact", about["command"].split()[-1], f"{minutes:.3g}", code
+    minutes, tier = statistics.median(seconds[1:]) / 60, about["command"].split()[-1]
+    facts = "ch3.5-contact", tier, f"{minutes:.3g}", digest(stamp(*TIMED))
     return dict(zip(ledger()[0], (*facts, about["commit"], about["date"], "MEASURED")))
 
 

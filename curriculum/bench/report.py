@@ -160,11 +160,6 @@ def falling(rows):
         yield [LABELS[engine], *(number(found.get(count, {}).get("falling")) for count in counts)]
 
 
-def lines(rows):
-    """The rows of a Markdown table."""
-    return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in rows)
-
-
 def written(name, sections, made):
     """page.md or readme.md with everything filled in."""
     points, piles, processes = (sections.get(part, ()) for part in measure.PARTS)
@@ -173,18 +168,19 @@ def written(name, sections, made):
     facts = claims(points, piles, processes)
     template, words = ((HERE / file).read_text("utf-8") for file in (name, "claims.md"))
     facts |= zip(("claims", "piles", "compiled"), words.format(**facts).strip().split("\n\n"))
+    spent = map(dict.values, processes)
     raced = ([f"{n:,}", f"{depth:g}", *map(resting, each)] for n, depth, *each in races(piles))
     return template.format(
         **facts,
         work=WORK[-1],
         stepped=", ".join(STEPPED),
         machine=f"{about.get('cores')} cores of {about.get('cpu')}, with {', '.join(there)}",
-        take=lines(take(points, piles)),
-        winners=lines(winners(points)),
-        losses=lines(losses(points)),
-        races=lines(raced),
-        falling=lines(falling(piles)),
-        processes=lines([name, *map(number, each)] for name, *each in map(dict.values, processes)),
+        take=stored.lines(take(points, piles)),
+        winners=stored.lines(winners(points)),
+        losses=stored.lines(losses(points)),
+        races=stored.lines(raced),
+        falling=stored.lines(falling(piles)),
+        processes=stored.lines([name, *map(number, each)] for name, *each in spent),
         origins="\n".join(f"- {part}: {stored.footer(each)}" for part, each in made.items()),
     )
 

@@ -14,7 +14,6 @@ import hashlib
 import re
 import shlex
 import sys
-from collections import Counter
 from itertools import chain
 from pathlib import Path
 
@@ -67,18 +66,17 @@ def passages():
     headings = []
     for part in split(read_text(CHAPTER)):
         if part.kind == "heading":
-            headings.append(Part("passage", part.name, part.line, ""))
+            headings.append(part._replace(text=""))
         if headings:
             headings[-1] = headings[-1]._replace(text=headings[-1].text + part.text)
     yield from headings
     for file in files("exercises/ex*.py"):
-        yield Part("passage", Path(file).stem.split("_")[0], 1, read_text(file), file)
+        yield Part("exercise", Path(file).stem.split("_")[0], 1, read_text(file), file)
     for file in ("contact.py", "curriculum/exact.py"):
-        opening = DOCSTRING.match(read_text(file))[0]
-        yield Part("passage", Path(file).name, 1, opening, file)
+        yield Part("opening", Path(file).name, 1, DOCSTRING.match(read_text(file))[0], file)
     for file in files(FIGURES):
         captions = "\n".join(caption[0] for caption in CAPTION.finditer(read_text(file)))
-        yield Part("passage", f"figures/{Path(file).stem}", 1, captions, file)
+        yield Part("figure", f"figures/{Path(file).stem}", 1, captions, file)
 
 
 def files(*patterns) -> list:
@@ -92,14 +90,12 @@ class Gate:
 
     def __init__(self):
         self.chapter, self.meta = split(read_text(CHAPTER)), load_meta()
-        self.regions, self.problems = split_all()
-        self.passages: dict = {}
+        (self.regions, self.problems), self.passages, self.now = split_all(), {}, {}
         for each in filter(lambda each: each.text, passages()):
             if each.name in self.passages:
                 self.say(each.file, each.line, f"a second heading {each.name}", "rename one")
             self.passages[each.name] = each
-        known = self.regions.values()
-        self.now = {name: sources(each, known) for name, each in self.passages.items()}
+            self.now[each.name] = sources(each, self.regions.values())
 
     def say(self, file, line, what, repair):
         """Note a problem."""
@@ -109,28 +105,27 @@ class Gate:
         """What the chapter includes, and its slots name, is there, and nothing lacks a place."""
         known: dict = {("puzzle", ""): None, ("wallclock", ""): None}  # they need no place
         known |= {("region", r.source): (r.file, r.line - 1) for r in self.regions.values()}
-        for file in files("exercises/ex*.py"):
-            known["exercise", Path(file).stem.split("_")[0]] = file, 1
+        for each in self.passages.values():
+            if each.kind == "exercise":
+                known["exercise", each.name] = each.file, 1
         for file in files(FIGURES):
             several = KEY.findall(read_text(file).partition("export const figures = {")[2])
             known |= {("figure", name): (file, 1) for name in several or [Path(file).stem]}
         for kind, folder in stored.FOLDERS.items():
             drawn = files(f"{folder}/*.svg")  # some of them have a place, others have none
             known |= {(kind, Path(file).stem.removeprefix("error-")): None for file in drawn}
-        placed = Counter()
+        placed = set()
         for part in (part for part in self.chapter if part.kind not in PLAIN):
             mark = kind, name = part.kind, part.name.partition("?")[0]  # behind it are settings
-            placed[mark] += 1
             if mark not in known:
                 names = ", ".join(name for each, name in known if each == kind)
                 self.say(CHAPTER, part.line, f"there is no {kind} {name}", f"name one of {names}")
-            elif placed[mark] > 1 and kind not in ("figure", "puzzle"):
-                what = f"{kind} {name} stands here again"
-                self.say(CHAPTER, part.line, what, "delete one of the two")
-        for fault in faults(self.chapter):
-            self.say(CHAPTER, *fault)
+            elif mark in placed and kind not in ("figure", "puzzle"):
+                self.say(CHAPTER, part.line, f"a second {kind} {name}", "delete one of the two")
+            placed.add(mark)
+        self.problems += faults(self.chapter)
         for mark, place in known.items():
-            if place and not placed[mark]:
+            if place and mark not in placed:
                 self.say(*place, f"{' '.join(mark)} has no place in {CHAPTER}", "give it one")
 
     def check_names(self):
@@ -152,34 +147,19 @@ class Gate:
                 number = token[0].rstrip(".,")
                 repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
                 self.say(CHAPTER, part.line_of(token), f"a typed number, {number}", repair)
-        quoting = [each for each in self.passages.values() if each.file == CHAPTER]
-        prepare(text := "".join(each.text for each in quoting))
-        for passage in quoting:
-            for match in REFERENCE.finditer(passage.text):
+        prepare(text := read_text(CHAPTER))
+        for each in self.passages.values():
+            for match in REFERENCE.finditer(each.text) if each.file == CHAPTER else ():
                 try:
                     number = shown(match[1])
                     if not match[1].startswith(("?", "=")):
-                        self.now[passage.name][match[1]] = number
+                        self.now[each.name][match[1]] = number
                 except TextError as error:
                     repair = "correct the text, or name what is known"
-                    self.say(passage.file, passage.line_of(match, 1), error, repair)
+                    self.say(CHAPTER, each.line_of(match, 1), error, repair)
         for name in [*self.meta["runs"]][1:]:
             if f"{name}:" not in text:
                 self.say("meta.yaml", 1, f"run {name} is quoted nowhere", "take it out")
-
-    def unread(self) -> dict:
-        """{name of a passage: what is not as somebody has read it, in words}."""
-        unread = {}
-        for name, sources in self.now.items():
-            was = self.meta["read"].get(name, {})
-            moved = [
-                f"{source} was {was.get(source, 'never read')} and is {now}"
-                for source, now in sources.items()
-                if was.get(source) != now
-            ]
-            if moved:
-                unread[name] = ", ".join(moved)
-        return unread
 
     def record(self, names=()) -> dict:
         """What meta.yaml ought to keep when somebody has read these passages, too."""
@@ -189,16 +169,27 @@ class Gate:
             "read": {name: read[name] for name in self.passages if read.get(name)},
         }
 
-    def check_read(self):
-        """All passages are read as they are, and nothing is kept of what is gone."""
-        for name, moved in self.unread().items():
-            each, repair = self.passages[name], f"{GATE} --read {shlex.quote(name)}"
-            self.say(each.file, each.line, f"read {name!r} again: {moved}", repair)
+    def check_read(self) -> list:
+        """All passages are read as they are, and nothing is kept of what is gone. Returns the
+        names of those that somebody has to read."""
+        unread = []
+        for name, sources in self.now.items():
+            was, each = self.meta["read"].get(name, {}), self.passages[name]
+            moved = ", ".join(
+                f"{source} was {was.get(source, 'never read')} and is {now}"
+                for source, now in sources.items()
+                if was.get(source) != now
+            )
+            if moved:
+                unread.append(name)
+                what = f"read {name!r} again: {moved}"
+                self.say(each.file, each.line, what, f"{GATE} --read {shlex.quote(name)}")
         for key, right in self.record().items():
             kept = self.meta[key]
             if wrong := [n for n in {**kept, **right} if kept.get(n) != right.get(n)]:
                 what = f"its {key} keeps what is gone, or other, of {', '.join(wrong)}"
                 self.say("meta.yaml", 1, what, f"{GATE} --read")
+        return unread
 
     def check_results(self):
         """Results and rows of the ledger are of today's code; all that are not make one problem."""
@@ -223,10 +214,10 @@ def check() -> int:
     gate.check_marks()
     gate.check_names()
     gate.check_numbers()
-    gate.check_read()
+    unread = gate.check_read()
     gate.check_results()
     print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")
-    if len(unread := gate.unread()) > 1:
+    if len(unread) > 1:
         print(f"\nwhen all of them are read: {GATE} --read {shlex.join(unread)}")
     return 1 if gate.problems else 0
 
@@ -256,11 +247,9 @@ def main(argv=None) -> int:
     names = parser.parse_args(argv).read
     try:
         return check() if names is None else read(names)
-    except SyntaxError as error:
-        print(f"{error.filename}:{error.lineno}: not Python: {error.msg}", file=sys.stderr)
     except (OSError, TextError) as error:
         print(error, file=sys.stderr)
-    return 2
+        return 2
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ INLINE = re.compile(r"(`+)[^`]+\1|\$\$.+?\$\$|\$[^$\n]+\$|<https?://[^>\s]+>", r
 HTML = re.compile(r"<[A-Za-z/!?][^\n]*")
 PROSE = ("text", "heading")
 PLAIN = (*PROSE, "code", "comment")
-AS_IT_IS = "write [include-by-region: FILE#NAME] in a fence, or <!-- figure: NAME -->"
+AS_IT_IS = "write [include-by-region: FILE#NAME] alone in a fence, or <!-- figure: NAME -->"
 
 
 class Part(NamedTuple):
@@ -78,20 +78,20 @@ def kind_of(match) -> tuple:
 
 
 def faults(parts):
-    """What cannot be meant, as (line, what, what to write)."""
-    for part in parts:
-        if part.kind in PLAIN:
-            for match in LIKE_A_MARK.finditer(part.text):
-                what = "an include not alone in its fence, or a slot that is not well formed"
-                yield part.line_of(match), what, AS_IT_IS
-        if part.kind in PROSE:
-            for match in HTML.finditer(blank(LIKE_A_MARK, blank(INLINE, part.text))):
-                yield part.line_of(match), f"raw HTML, {match[0][:50]!r}", "write Markdown"
+    """What cannot be meant, a line each."""
+    for part in (part for part in parts if part.kind in PLAIN):
+        for match in LIKE_A_MARK.finditer(part.text):
+            place = f"{CHAPTER}:{part.line_of(match)}"
+            yield f"{place}: no include or slot that is well formed; repair: {AS_IT_IS}"
+        prose = blank(LIKE_A_MARK, blank(INLINE, part.text)) if part.kind in PROSE else ""
+        for match in HTML.finditer(prose):
+            place = f"{CHAPTER}:{part.line_of(match)}"
+            yield f"{place}: raw HTML, {match[0].strip()[:50]!r}; repair: write Markdown"
 
 
 def read(text) -> list:
     """The parts of the chapter. Raises ValueError, a line a fault."""
     parts = split(text)
-    if wrong := [f"{CHAPTER}:{line}: {what}; repair: {mend}" for line, what, mend in faults(parts)]:
-        raise ValueError("\n".join(wrong))
+    if wrong := "\n".join(faults(parts)):
+        raise ValueError(wrong)
     return parts

@@ -6,6 +6,7 @@ Each returns {name: number}; the text quotes one as {{jump:before}}.
 import inspect
 import math
 from functools import partial
+from itertools import product
 
 import numpy as np
 
@@ -38,13 +39,11 @@ def sweeps():
     """
     values, enough = {}, -1e-6 * contact.GRAVITY * DT
     ways = {"plain": contact.solve_contacts, "momentum": contact.solve_with_momentum}
-    for count in (20, 40):
-        heights = [0.1 + 0.2 * k for k in range(count)]
-        for way, solve in ways.items():
-            balls = contact.make_balls(contact.scene_of([0.0] * count, heights))
-            contact.accelerate(balls, DT)
-            contacts = contact.detect_contacts(balls, margin=1e-6)
-            values[f"{way}_{count}"] = solve(contacts, contact.MOST_SWEEPS, enough)
+    for (way, solve), count in product(ways.items(), (20, 40)):
+        balls = contact.make_balls(contact.scene_of(0.0, 0.1 + 0.2 * np.arange(count)))
+        contact.accelerate(balls, DT)
+        contacts = contact.detect_contacts(balls, margin=1e-6)
+        values[f"{way}_{count}"] = solve(contacts, contact.MOST_SWEEPS, enough)
     return values
 
 
@@ -67,12 +66,11 @@ def landing():
 
 def jump():
     """What soft adds to v_n = -1 m/s in one step, a picometre before the touch and after it."""
-    starts = {"before": contact.RADIUS + 1e-12, "after": contact.RADIUS - 1e-12}
-    scenes = {when: contact.scene_of(0.0, y, vy=-1.0) for when, y in starts.items()}
-    return {
-        when: contact.run_model("soft", scene, DT, 1).v[1, 1, 0] + 1.0
-        for when, scene in scenes.items()
-    }
+    values = {}
+    for when, gap in (("before", 1e-12), ("after", -1e-12)):
+        scene = contact.scene_of(0.0, contact.RADIUS + gap, vy=-1.0)
+        values[when] = contact.run_model("soft", scene, DT, 1).v[1, 1, 0] + 1.0
+    return values
 
 
 def blocks():
@@ -82,9 +80,8 @@ def blocks():
     """
     values = {}
     for heavy in (100, 10_000):
-        mass = [math.inf, 1.0, heavy]
-        start = {"vx": [0.0, 0.0, -1.0], "restitution": 1.0}
-        scene = contact.scene_of([0.0, 1.0, 2.0], [0.1] * 3, mass, **start)
+        start = {"mass": [math.inf, 1.0, heavy], "vx": [0.0, 0.0, -1.0], "restitution": 1.0}
+        scene = contact.scene_of([0.0, 1.0, 2.0], 0.1, **start)
         vx = contact.run_model("exact", scene, 2e-5, 350_000).v[:, 0, 1]
         values[f"heavy_{heavy}"] = int((np.abs(np.diff(vx)) > 1e-9).sum())
     return values
@@ -128,10 +125,9 @@ def slide():
     vx = contact.run_model("exact", scene, 0.01, 60).v[-1, 0, 1]
     leaves = (vx * vx / (-contact.GRAVITY * 0.2)) ** (1 / 3)
     values = {"leaves": float(leaves / math.cos(math.radians(20.0)))}
-    for model in ("lcp", "leapfrog"):
-        for dt in (0.002, 0.001):
-            run = contact.run_model(model, scene, dt, round(0.48 / dt))
-            values[f"{model}.{dt}"] = _off(run, scene, dt)
+    for model, dt in product(("lcp", "leapfrog"), (0.002, 0.001)):
+        run = contact.run_model(model, scene, dt, round(0.48 / dt))
+        values[f"{model}.{dt}"] = _off(run, scene, dt)
     return values
 
 
@@ -168,7 +164,5 @@ def core():
     return values
 
 
-FACTS = {
-    each.__name__: each
-    for each in (implicit_spring, soft_heavy, sweeps, landing, jump, blocks, friction, slide, core)
-}
+ALL = implicit_spring, soft_heavy, sweeps, landing, jump, blocks, friction, slide, core
+FACTS = {each.__name__: each for each in ALL}

@@ -40,7 +40,6 @@ from curriculum.lesson.regions import ROOT, read_text
 REFERENCE = re.compile(r"(?:\s*(?=\{\{\?))?\{\{(\?(?s:.*?)|(?-s:.*?))\}\}")
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-FORMULA = re.compile(r"[\d.e+\-*/()<=>\s]+")  # of numbers and signs alone
 MADE_BY = "contact.py", "curriculum/seeds.py", "curriculum/gate/facts.py"  # and what they import
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
@@ -80,15 +79,14 @@ def cached(name: str, inputs, make):
 
 def run_contact(flags) -> dict:
     """What `python contact.py FLAGS` measures, or many seeds where the first flag is A:B."""
-    words = [str(flag) for flag in flags]
-    many = ":" in "".join(words[:1])
-    start, file = (["-m", "curriculum.seeds"], "seeds") if many else (["contact.py"], "metrics")
+    start = ["-m", "curriculum.seeds"] if ":" in str(flags[:1]) else ["contact.py"]
+    words = [*start, *map(str, flags)]
     with tempfile.TemporaryDirectory() as out:
-        command = [sys.executable, "-B", *start, *words, "--no-rerun", "--out", out]
+        command = [sys.executable, "-B", *words, "--no-rerun", "--out", out]
         run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
         if run.returncode:
-            raise TextError(f"{' '.join(start + words)} fails: {run.stderr.strip()[-300:]}")
-        return json.loads((Path(out) / f"{file}.json").read_text("utf-8"))
+            raise TextError(f"{' '.join(words)} fails: {run.stderr.strip()[-300:]}")
+        return json.loads(next(Path(out).glob("*.json")).read_text("utf-8"))
 
 
 @cache
@@ -116,54 +114,34 @@ def prepare(text):
         list(pool.map(known, wanted))
 
 
-def operand(name):
-    """What one name stands for: a number or a text."""
-    source, _, key = name.rpartition(":")
-    return pick(known(source), key, name)
-
-
-def reckon(formula) -> tuple:
-    """What a formula is, as Python reckons, and the formula in numbers."""
-    if OPERAND.fullmatch(formula):
-        return operand(formula), formula  # which may be a text
-    numbers = OPERAND.sub(lambda match: f"({operand(match[0])!r})", " ".join(formula.split()))
-    if not FORMULA.fullmatch(numbers):
-        raise TextError(f"{formula!r} is not of numbers and + - * / ( ) < <= > >= ==: {numbers}")
-    try:
-        return eval(numbers), numbers
-    except (ArithmeticError, NameError, SyntaxError, TypeError) as error:
-        raise TextError(f"{formula!r} cannot be reckoned: {error}") from None
+def operand(match) -> str:
+    """What a name in a formula stands for, as Python writes it."""
+    source, _, key = match[0].rpartition(":")
+    return f"({pick(known(source), key, match[0])!r})"
 
 
 def shown(reference) -> str:
-    """What a reader sees in place of {{reference}}, nothing of a claim. Raises TextError."""
-    formula, _, form = (part.strip() for part in reference.partition("|"))
-    if formula.startswith("?"):
-        return hold(formula[1:].strip())
+    """What a reader sees in place of {{reference}}: of a claim nothing. Raises TextError."""
+    formula, _, form = (part.strip() for part in " ".join(reference.split()).partition("|"))
     if formula.startswith("="):
         if not form:
-            what = "a typed number needs a reason: {{= NUMBER | REASON}}"
-            raise TextError(f"{formula!r}: {what}")
+            raise TextError(f"{formula!r} needs a reason: {{{{= NUMBER | REASON}}}}")
         return formula[1:].strip()
-    value, _ = reckon(formula)
+    numbers = OPERAND.sub(operand, formula.lstrip("? "))
+    try:
+        value = eval(numbers, {"__builtins__": {}})
+        text = format(value, form)
+    except (ArithmeticError, NameError, SyntaxError, TypeError, ValueError) as error:
+        raise TextError(f"{reference!r} cannot be made of {numbers}: {error}") from None
+    if formula.startswith("?"):  # it may have several signs: 1 < a < 2
+        if value is not True:
+            raise TextError(f"{formula!r} does not hold: {numbers}")
+        return ""
     if type(value) not in (int, float, str):
         raise TextError(f"{formula!r} is {value}, no number")
     if isinstance(value, float) and not form:
         raise TextError(f"{formula!r} is a fraction and needs a format, such as |.3f")
-    try:
-        text = format(value, form)
-    except ValueError as error:
-        raise TextError(f"{form!r} is no format of {formula!r}: {error}") from None
     return text if isinstance(value, str) else typeset(text)
-
-
-def hold(claim) -> str:
-    """Nothing, where a claim is true. It may have several signs: 1 < a < 2."""
-    true, numbers = reckon(claim)
-    if true is not True:
-        what = "does not hold" if true is False else "is not 'FORMULA < FORMULA'"
-        raise TextError(f"{claim!r} {what}: {numbers}")
-    return ""
 
 
 def fill(text) -> str:

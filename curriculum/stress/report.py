@@ -87,12 +87,11 @@ def readme(tables):
 def page(tables, made):
     """README.md of the results."""
     wrong = [f"**{r['property']}: {r['first']}**" for r in tables["judged"] if r["violations"]]
-    head = ["property", "judged", "comparisons", "off / bound"]
     return PAGE.read_text("utf-8").format(
         summary="\n\n".join([summary(tables), *wrong]),
-        energy=stored.table(list(tables["energy"][0]), map(dict.values, tables["energy"])),
+        energy=stored.lines(map(dict.values, tables["energy"])),
         limits="\n".join(f"- {row['what']}: {row['scenes']:,}" for row in tables["limits"]),
-        judged=stored.table(head, map(cells, tables["judged"])),
+        judged=stored.lines(map(cells, tables["judged"])),
         footer=stored.footer(made["all"]),
     )
 

@@ -102,31 +102,26 @@ def test_project_that_was_read_passes_and_nothing_is_written(project):
 
 OLD = {"command": "python -m curriculum.bench piles", "code": {"contact.py#sweep": "0" * 12}}
 ERRORS = [  # file, what stands there, what takes its place, the problems that it makes
-    (CHAPTER, "r deep,", "r deep, 0.25 r,", ["{}:5: a typed number, 0.25"]),
-    (CHAPTER, "seen from", "{{= 3}} seen from", ["{}:5: '= 3': a typed number needs a reason: "]),
     (CHAPTER, "rest_penetration_frac|.5f", "depth|.5f", ["{}:5: 'quality.penalty.depth' is not"]),
     (CHAPTER, "[drops]", "[drops ½ r]", ["{}:6: a typed number, ½"]),
     (CHAPTER, "frac > quality.lcp", "frac < quality.lcp",
-     ["{}:7: 'quality.penalty.rest_penetration_frac < quality.lcp.rest_penetration_frac' doe"]),
-    (CHAPTER, "`solve_contacts`", "`solve_contact`", ["{}:13: `solve_contact` is in no code"]),
+     ["{}:7: '? quality.penalty.rest_penetration_frac < quality.lcp.rest_penetration_frac' d"]),
     (CHAPTER, "--iters 1", "--iter 1", ["{}:13: `--iter` is in no code"]),
-    (CHAPTER, "not typed.", "not typed, {{no,\n0.5}}", ["{}:14: a typed number, 0.5"]),
     (CHAPTER, "figure: clamp", "figure: clamps?dt=1",
-     ["{}:15: there is no figure clamps", f"{CLAMP}:1: figure clamp has no place in {CHAPTER}"]),
+     ["{}:14: there is no figure clamps", f"{CLAMP}:1: figure clamp has no place in {CHAPTER}"]),
     (CHAPTER, "exercise: ex1", "exercise ex1",
-     ["{}:16: an include not alone in its fence, or a slot that is not well formed",
+     ["{}:15: no include or slot that is well formed",
       f"{EXERCISE}:1: exercise ex1 has no place in {CHAPTER}"]),
     (CHAPTER, "are not typed", "<b>are</b> not typed", ["{}:13: raw HTML, '<b>are</b> not"]),
-    (CHAPTER, "## Code", "<!-- tells: ex1 -->\n\n## Code", ["{}:22: an include not alone in its"]),
     (CHAPTER, "contact.py#flight]", "contact.py#fligt]",
      ["{}:#: there is no region contact.py#fligt", "contact.py:#: region contact.py#flight ha"]),
     (CHAPTER, "contact.py#quality]", "contact.py#quality] and more",
-     ["{}:#: an include not alone", "contact.py:#: region contact.py#quality "]),
+     ["{}:#: no include or slot", "contact.py:#: region contact.py#quality "]),
     (CHAPTER, "contact.py#measure]", "contact.py#sweep]",
-     ["{}:#: region contact.py#sweep stands here again", "contact.py:#: region contact.py#measur"]),
+     ["{}:#: a second region contact.py#sweep", "contact.py:#: region contact.py#measur"]),
     (CHAPTER, "# Chapter\n", "# A sweep\n", ["{}:11: a second heading A sweep"]),
-    (CLAMP, "It pushes by", "It pulls by", ["{}:1: read 'figures/clamp' again: its words was "]),
-    (CLAMP, "`push`", "`pulls_by`", ["{}:1: `pulls_by` is in no code"]),
+    (CLAMP, "It pushes by `push`", "It pulls by `pulls_by`",
+     ["{}:1: `pulls_by` is in no code", "{}:1: read 'figures/clamp' again: its words was "]),
     ("contact.py", "n . (v_a - v_b)", "n . (v_b - v_a)", ["{}:1: read 'contact.py' again: its wo"]),
     ("contact.py", "CONTACT_MARGIN = 1e-3", "CONTACT_MARGIN = 2e-3",
      [f"{CHAPTER}:3: read 'A sponge' again: stiffness|.0f was never read and is 10000, contact.CON"
@@ -207,17 +202,14 @@ def test_what_is_quoted_is_kept_until_its_code_changes(project):
 BENCH, STRESS = "curriculum/bench/measure.py", "curriculum/stress/jobs.py"
 CODE = r"(?m)^(import \w+)$", r"\1\n\nchanged = 1"
 CHANGES = [  # file, what stands there, another thing; whose results are stale then
-    ("curriculum/exact.py", r"\Z", "# a word\n", []),
     ("curriculum/exact.py", '"""', '"""Another word. ', []),
     ("curriculum/exact.py", r"(?m)^(def \w+\(.*:)$", r"\1  # a word", []),
     ("curriculum/exact.py", *CODE, [BENCH, STRESS]),
-    ("curriculum/fast.py", *CODE, [BENCH, STRESS]),
     ("curriculum/bench/problems.py", *CODE, [BENCH]),
     ("curriculum/stress/heaps.py", *CODE, [STRESS]),
     ("contact.py", r"3 \* len\(depth\) // 4", "2 * len(depth) // 4", [STRESS]),  # a measure
     ("contact.py", r"lam = max\(0.0, c.lam", "lam = max(0.1, c.lam", [BENCH, STRESS]),
     ("contact.py", "lcp: share of an overlap", "lcp: part of an overlap", []),  # help
-    ("contact.py", "has 800 steps: leave", "has 900 steps: leave", []),  # an error of a flag
 ]
 
 
@@ -243,26 +235,21 @@ def test_a_row_of_the_ledger_has_the_median_of_all_runs_but_the_first():
 MADE_OF = {  # reference: what a reader sees, or what is said where it cannot be made
     "scene": "drop",
     "drop-dt-0.03:dt|.3f": "0.030",
-    "1 + contact.RADIUS * 2|.4f": "1.2000",
     "(1 - contact.RADIUS) / 1e-2|.2f": "90.00",
     "0 - contact.RADIUS / 1000|.1e": "−1.0\N{NO-BREAK SPACE}×\N{NO-BREAK SPACE}10⁻⁴",
     "= 1972 | year of the paper": "1972",
-    "contact.Settings.iters": "20",
+    "= 1972": "needs a reason: {{= NUMBER | REASON}}",
     "contact.RADIUS": "is a fraction and needs a format",
-    "contact.SOLREF.1|.2q": "'.2q' is no format of 'contact.SOLREF.1'",
+    "contact.SOLREF.1|.2q": "cannot be made of (1.0): Unknown format code 'q'",
     "quality.lcp.rest|.2f": "no 'quality.lcp.rest'; known there: quality.lcp.rests, ",
-    "contact.GRAVITIES": "no 'contact.GRAVITIES'; known there: contact.GRAVITY, ",
     "quality.lcp.rests": "is True, no number",
     "steps / 0|.1f": "division by zero",
-    "steps + scene": "is not of numbers and + - * / ( ) < <= > >= ==: (2000) + ('drop')",
-    "steps +": "cannot be reckoned",
+    "steps + scene": "cannot be made of (2000) + ('drop'): unsupported",
+    "steps +": "invalid syntax",
     "jumps:key": "'jumps' is not there: no 'jumps'; known there: jump, ",
-    "? contact.RADIUS > 2 * contact.CONTACT_MARGIN": "",
-    "? 2e3 <= steps < 1 + steps": "",
-    "? steps ==\n2000": "",
-    "? contact.RADIUS <= contact.CONTACT_MARGIN": "does not hold: (0.1) <= (0.001)",
+    "? 2e3 <= steps <\n1 + steps": "",
     "? 1 < steps < 2e3": "does not hold: 1 < (2000) < 2e3",
-    "? contact.RADIUS": "is not 'FORMULA < FORMULA'",
+    "? contact.RADIUS": "does not hold: (0.1)",
 }
 
 
