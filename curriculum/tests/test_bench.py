@@ -1,6 +1,5 @@
 """The benchmark judges rightly: references, engines, cells worked out by hand, invented rows."""
 
-import gc
 import math
 import shlex
 import sys
@@ -69,86 +68,58 @@ def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setti
 
 
 @pytest.mark.parametrize("setting", [s for s in OTHERS if s.runs("drop")], ids=named)
-def test_an_engine_rests_awake_keeps_momentum_and_holds_what_is_fixed(setting):
+def test_an_engine_rests_awake_and_keeps_momentum(setting):
     q, v = setting.build(contact.scene_of(0.0, 1.0, vx=1e-5), 0.002).states(1000)
     slow = setting.engine in ("drake", "siconos") or setting.knobs.get("push") == 0  # to push out
     assert abs(q[-1, 1, 0] - R) < (0.2 if slow else 0.02) * R and abs(v[-1]).max() < 1e-2
     assert v[-1, 0, 0] == pytest.approx(1e-5, rel=1e-3), "awake, it slides on for ever"
-
     scene = contact.scene_of([-0.2, 0.2], 5.0, [3.0, 1.0], [0.1, 0.05], vx=[1.0, -1.0])
-    q, v = setting.build(scene, 0.001).states(250)
+    _, v = setting.build(scene, 0.001).states(250)
     assert scene.mass @ v[-1, 0] == pytest.approx(2.0, abs=1e-3)
-    if setting.name != "mujoco":  # as shipped it takes a tenth of a second for it
-        loose = setting.engine == "siconos" or "dissipation" in setting.knobs
-        within = 2e-2 if loose else 1e-3
-        assert v[-1, 0] == pytest.approx([0.5, 0.5], abs=within)
-        assert q[-1, 0, 1] - q[-1, 0, 0] == pytest.approx(0.15, abs=min(within, 2e-3))
-
-    scene = problems.BY_NAME["slide"].build(4)
-    q, v = setting.build(scene, 0.001).states(300)
-    assert np.allclose(q[:, :, 0], scene.q0[:, 0], atol=1e-7)
-    error, _ = problems.quality(problems.answer("slide", 4, 0.001)[:301], q, v, scene.mass)
-    loose = setting.name == "rapier inner=4"  # as shipped it uses contacts of some steps ago
-    assert error < (0.5 if loose else 0.2)
 
 
-def bouncing():
-    """(setting, e, how near): Drake's convex solver gains or loses much."""
-    for s in OTHERS:
-        if s.engine == "drake" and s.runs("elastic"):
-            yield s, 1.0, 0.03 if s.problems == "elastic" else 4.0
-        elif s.engine not in ("drake", "mujoco") or s.knobs.get("push") == 0:
-            yield s, 0.7, 0.15
+KEPT = stored.load(bench.FULL)[0]["points"]
+HERE = [p for p in KEPT if bench.name(p) in engines.BY_NAME]  # of the engines that are installed
+BEST = [p for engine in engines.ENGINES for p in measure.contest(HERE, [engine]).values()]
 
 
-@pytest.mark.parametrize("setting, e, within", bouncing(), ids=named)
-def test_an_engine_bounces_with_the_restitution_of_the_scene(setting, e, within):
-    _, v = setting.build(contact.build_scene("bounce", restitution=e), 0.001).states(700)
-    impact = int(np.argmax(np.diff(v[:, 1, 0]) > 1.0))
-    assert v[impact + 3, 1, 0] == pytest.approx(-e * v[impact, 1, 0], abs=within)
+@pytest.mark.parametrize("best", BEST, ids=lambda p: f"{p['engine']} {p['problem']}")
+def test_an_engines_best_setting_of_a_problem_is_as_near_as_the_page_says(best):
+    """Within a factor of three, as of another version: restitution, stiffness, what is fixed."""
+    job = best["problem"], bench.name(best), best["dt"], best["substeps"], 1
+    row = measure.errors_of(job)
+    assert row["error"] <= 3.0 * best["error_max"] + 1e-12 and row["diverged"] == 0
+    assert row["work"] == pytest.approx(best["work"], rel=0.5)
+    assert best["error"] < 0.1 or best["problem"] == "elastic", "with e = 1 little adds up"
 
 
-@pytest.mark.skipif(engines.missing("drake"), reason="needs Drake")
-def test_a_ball_sinks_by_m_g_over_k_into_drakes_floor_and_its_own_steps_are_counted():
-    scene = contact.scene_of(0.0, 0.13, 0.7, 0.13)
-    height = engines.BY_NAME["drake stiffness=1e8"].build(scene, 0.002).trace(500)[-1][0]
-    assert 0.13 - height == pytest.approx(0.7 * g / 1e8, rel=0.02)
-    for accuracy, least, most in (("1e-7 stiffness=1e10", 4, 16), ("1e-9 stiffness=1e12", 30, 99)):
-        name = f"drake scheme=cenic accuracy={accuracy}"
-        assert least <= measure.errors_of(("slide", name, 0.002, 1, 1))["work"] <= most
-
-
-@pytest.mark.skipif(engines.missing("pymunk"), reason="pymunk is missing")
-def test_the_engine_of_pymunk_alone_goes_where_a_users_step_goes():
-    setting, scene = engines.BY_NAME["pymunk iterations=10"], problems.BY_NAME["pile"].build(0)
-    bare, users = (setting.build(scene, 0.002) for _ in range(2))
-    users.step = partial(users.space.step, 0.002)
-    assert np.array_equal(bare.states(400), users.states(400))
-
-
-def test_a_point_is_what_one_works_out_by_hand_in_medians_over_its_starts(monkeypatch):
+def test_a_point_is_what_one_works_out_by_hand_in_medians_over_its_starts():
     drop, row = problems.BY_NAME["drop"], measure.errors_of(("drop", LANDS, 0.002, 4, 5))
     first, *_, last = sorted(math.sqrt(2 * (drop.build(k).q0[1, 0] - R) / g) for k in range(5))
     least, most = 0.98 * g * 0.0005 * first / 2, 4 * g * 0.0005 * last  # half a substep, a dive
     assert least <= row["error"] * R < row["error_max"] * R <= most
     assert (row["setting"], row["work"], row["diverged"]) == ("iters=20", 4, 0)
-    found = iter([(9.0, True), (1.0, False), (2.0, False)] * 2)
-    monkeypatch.setattr(problems, "quality", lambda *run: next(found))
-    row = measure.errors_of(("drop", LANDS, 0.002, 4, 3))
-    assert (row["error"], row["error_max"], row["diverged"]) == (2.0, 9.0, 1)
     row = measure.errors_of(("spread", "exact", 0.002, 1, 3))
     assert row["error"] is None, "the reference has no error of its own"
 
 
-def test_times_are_medians_of_runs_after_a_short_one():
-    looks = []
+def test_times_are_medians_of_runs_after_a_short_one_and_of_piles_from_both_starts():
+    calls = []
 
     def clock(call):
-        looks.extend(call.args)
-        return [99.0, 9.0, 1.0, 2.0][len(looks) - 1] / 1e3, call()
+        calls.append(call)
+        return [99.0, 9.0, 1.0, 2.0][(len(calls) - 1) % 4] / 1e3, call()
 
     assert measure.time_of(("drop", LANDS, 0.002, 1, 5), clock) == 2.0
-    assert looks == [50, 2000, 2000, 2000]
+    assert [call.args[0] for call in calls] == [50, 2000, 2000, 2000]
+    lcp, scene = engines.BY_NAME["lcp iters=4 baumgarte=1"], measure.shaft(12)
+    settled = scene._replace(q0=scene.q0 + 1.0)
+    calls.clear()
+    job = 12, lcp, 4, (settled.q0, settled.v0)
+    assert measure.fall_and_rest(job, clock) == pytest.approx([9e3 / 50] * 2)
+    for call, start in zip(calls, [scene] * 3 + [settled] * 3):  # 250 looks, 4 steps each
+        run = contact.run_model("lcp", start, 0.0005, 1000, call.func.__self__.settings)
+        assert np.array_equal(call.func.__self__.state(), (run.q[-1], run.v[-1]))
 
 
 def test_all_engines_get_the_same_substeps_and_leapfrogs_two_solves_count_twice():
@@ -160,20 +131,15 @@ def test_all_engines_get_the_same_substeps_and_leapfrogs_two_solves_count_twice(
     assert all({1, 4, 16} <= work and max(work) in (16, 64) for work in found.values())
 
 
-def point(engine, error, ms, dt=0.002, work=16, setting=None, diverged=0):
-    row = dict(problem="drop", engine=engine, setting=setting, substeps=1, dt=dt, work=work)
+def point(engine, error, ms, setting=None, diverged=0):
+    row = dict(problem="drop", engine=engine, setting=setting, substeps=1, dt=0.002, work=16)
     row |= dict(diverged=diverged, error=error, error_max=error)
     return row | timing.spread("ms", [ms])
 
 
-def test_the_best_is_the_most_accurate_that_may_compete():
-    points = [point("lcp", *each) for each in ((0.03, 1.0), (0.01, 30.0), (0.0100001, 25.0))]
-    points += [point("lcp", 0.001, 9.0, work=64), point("lcp", 0.0001, 9.0, diverged=1)]
-    points += [point("lcp", None, 9.0), point("lcp", 0.02, 9.0, dt=0.004)]
-    assert measure.contest(points, ["lcp"])["drop"] == points[2]
-    assert measure.contest(points, ["lcp"], budget=10)["drop"]["error"] == 0.001  # any work
-    assert measure.contest(points[:3], ["lcp"], budget=10)["drop"]["error"] == 0.03
-    assert measure.contest(points, ["lcp"], work=1) == measure.contest(points, ["soft"]) == {}
+def test_what_exploded_does_not_compete():
+    points = [point("lcp", 0.02, 1.0), point("lcp", 0.001, 1.0, diverged=1)]
+    assert measure.contest(points, ["lcp"]) == {"drop": points[0]}
 
 
 @pytest.mark.parametrize("mine, rival", [(0.1, 0.2), (0.2, 0.1)])
@@ -211,14 +177,10 @@ def test_what_the_readme_tells_one_to_type_is_the_run_that_was_measured(row):
     assert np.array_equal(run.q[::cuts], expected)
 
 
-@pytest.mark.parametrize("count", [12, 100, 1000, 10_000])
-def test_a_shaft_starts_without_contact_between_walls_that_nothing_moves(count):
-    scene = measure.shaft(count)
+def test_ten_thousand_balls_start_without_contact():
+    scene = measure.shaft(10_000)
     assert fast.smallest_gap(scene.q0[None], scene.radius)[0] > 0.04 * R
-    balls, walls = (scene.q0[:, np.isinf(scene.mass) == fixed] for fixed in (False, True))
-    assert balls.shape[1] == count and walls[1].max() > balls[1].max()
-    assert np.ptp(walls[0]) > np.ptp(balls[0]) + 2.0 * R
-    assert walls[0].min() + walls[0].max() == pytest.approx(0.0), "as float32 wants it"
+    assert scene.q0[0].min() + scene.q0[0].max() == pytest.approx(0.0), "as float32 wants it"
 
 
 @pytest.mark.parametrize("setting, substeps", engines.PILES, ids=named)
@@ -233,51 +195,13 @@ def test_depths_are_those_of_the_contacts():
     assert found == pytest.approx(dict(mean_depth=0.15, worst_depth=0.2))
 
 
-def test_a_pile_is_timed_a_step_from_the_lattice_and_from_its_settled_state():
-    lcp = engines.BY_NAME["lcp iters=4 baumgarte=1"]
-    scene, sessions = measure.shaft(12), []
-    settled = scene._replace(q0=scene.q0 + 1.0)
-
-    def clock(call):
-        sessions.append(call.func.__self__)
-        assert call.args == (50,)
-        return [3.0, 1.0, 2.0][len(sessions) % 3], call()
-
-    job = 12, lcp, 4, (settled.q0, settled.v0)
-    assert measure.fall_and_rest(job, clock) == [2e6 / 50, 2e6 / 50] and len(sessions) == 6
-    for session, start in zip(sessions, [scene] * 3 + [settled] * 3):  # 250 looks, 4 steps each
-        run = contact.run_model("lcp", start, 0.0005, 1000, session.settings)
-        assert np.array_equal(session.state(), (run.q[-1], run.v[-1]))
-
-
-def pile_row(engine, us, depth, setting=None, at_rest=1, bodies=12):
-    row = dict(bodies=bodies, engine=engine, setting=setting, substeps=1, speed=0.0)
-    row |= dict(at_rest=at_rest, mean_depth=depth, worst_depth=depth)
-    return row | timing.spread("falling", [us]) | timing.spread("resting", [us])
-
-
-def test_only_what_rests_within_the_depth_is_compared_and_wins():
-    rows = [pile_row("lcp", 30.0, 5e-5), pile_row("lcp", 5.0, 5e-4)]
-    rows += [pile_row("lcp", 1.0, 5e-5, at_rest=0), pile_row("leapfrog", 20.0, 5e-4)]
-    rows += [pile_row("box2d3", 40.0, 9e-5), pile_row("pymunk", 3.0, 2e-3)]
-    fair, strict = (12, 1e-3, rows[1], *rows[3:5]), (12, 1e-4, rows[0], None, rows[4])
-    assert list(report.races(rows)) == [fair, strict]
-    words = report.written("claims.md", {"piles": rows}, {})
-    assert "takes 0.125 to 0.75 (12 balls, 0.0001 r)" in words and "takes 0.5 to 0.5" in words
-    first = next(each for each in engines.PILES if each[0].engine == "box2d3")
-    row = pile_row("box2d3", 9.0, 0.99e-3, first[0].options, bodies=1000)
-    assert measure.winners([row]) == [first], "it runs with ten thousand"
-
-
 def test_time_is_that_of_the_processor_in_fresh_processes_that_do_not_fail(tmp_path):
     jobs = "1", "__import__('os').getpid()"
     one, (first, second) = timing.in_fresh_processes(eval, jobs, 2, "test")
     assert one == [1, 1] and first != second
     assert timing.timed(lambda: time.sleep(0.2))[0] < 0.1, "waiting costs nothing"
-    assert timing.timed(gc.isenabled)[1] is False and gc.isenabled()
     with pytest.raises(RuntimeError, match="fails: [^$]*no_such"):
         timing.whole_process([sys.executable, "-c", "import no_such"], str(tmp_path))
-    assert timing.spread("s", [4, 1, 2]) == dict(s=2, s_min=1, s_max=4)
 
 
 def test_rows_come_back_as_measured_and_one_engine_alone_leaves_all_others(tmp_path, monkeypatch):
@@ -292,12 +216,10 @@ def test_rows_come_back_as_measured_and_one_engine_alone_leaves_all_others(tmp_p
     monkeypatch.setitem(measure.PARTS, "points", partial(measured, error=8.0))
     bench.take("points", True, LANDS, tmp_path)
     sections, made = stored.load(tmp_path)
-    new = [LANDS in f"{row['engine']} {row['setting']}" for row in whole]
+    new = [LANDS in bench.name(row) for row in whole]
     changed = [row | dict(error=8.0, error_max=8.0) if one else row for row, one in zip(whole, new)]
     assert sum(new) == 3 and sections["points"] == changed
     assert sorted(made) == ["points", f"points {LANDS}"]
-    bench.take("points", True, "", tmp_path)
-    assert sorted(stored.load(tmp_path)[1]) == ["points"]
     with pytest.raises(ValueError, match="--only no_such: no setting"):
         bench.take("points", True, "no_such", tmp_path)
 

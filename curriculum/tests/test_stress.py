@@ -1,6 +1,5 @@
 """The stress test sees nothing where nothing is, has tight bounds, and counts."""
 
-import csv
 import itertools
 from importlib import import_module
 
@@ -9,7 +8,7 @@ import pytest
 
 import contact
 from curriculum import stored
-from curriculum.stress import jobs, maps, scenes
+from curriculum.stress import jobs, maps, report, scenes
 from curriculum.stress.properties import PROPERTIES, compare, unlike
 from curriculum.stress.trial import Trial
 
@@ -84,42 +83,27 @@ def test_at_the_critical_dt_the_map_turns_from_settling_to_not():
     assert settles == [dt for dt in row.dts if dt < contact.critical_dt(1.0, 1e4, 80.0)]
 
 
-@pytest.mark.parametrize("flags, words", [
-    ("--workers 0", "allowed"), ("--scene big:3", "allowed"), ("--scene 5-3", "from 5"),
-    ("--warp", "--warp"),
-])  # fmt: skip
-def test_bad_flags_are_refused_in_one_line(flags, words, capsys):
-    with pytest.raises(SystemExit) as stop:
-        command.main(flags.split())
-    said = capsys.readouterr().err
-    assert stop.value.code == 2 and said.count("\n") == 1 and words in said
-
-
-def test_scenes_are_judged_and_said_again(capsys):
+def test_scenes_are_judged_and_said_and_what_is_no_scene_is_refused(capsys):
     assert command.main(["--scene", "small:3-4"]) == 0
     said = capsys.readouterr().out
     assert all(f"{name}: " in said for name in PROPERTIES) and "comparisons" in said
+    for scene, words in (("big:3", "allowed"), ("5-3", "from 5")):
+        with pytest.raises(SystemExit) as stop:
+            command.main(["--scene", scene])
+        said = capsys.readouterr().err
+        assert stop.value.code == 2 and said.count("\n") == 1 and words in said
 
 
-def test_a_run_writes_tables_a_page_and_a_map(found, tmp_path, capsys):
-    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
-    from curriculum.stress import report
-
+def test_a_run_writes_tables_a_page_and_a_map(found, tmp_path):
     assert report.write(found, stored.origin("stress", kept=False), tmp_path) == 0
     page = (tmp_path / "README.md").read_text("utf-8")
-    assert ", no violations." in page and page.count("\n") <= 150
-    assert "| 2 ms | heap | leapfrog | 0 |" in page
+    assert ", no violations." in page and "| 2 ms | heap | leapfrog | 0 |" in page
     assert all(" ".join(f.__doc__.split("\n\n")[0].split()) in page for f in PROPERTIES.values())
     assert "settles at m g / k" in (tmp_path / "penalty-map.svg").read_text("utf-8")
-    rows = list(csv.DictReader((tmp_path / "penalty.csv").read_text("utf-8").splitlines()))
-    assert {letter for row in rows for letter in row["outcomes"]} <= set(maps.OUTCOMES)
-    capsys.readouterr()
 
 
 def test_page_and_block_are_made_of_the_tables_that_are_kept():
-    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
-    from curriculum.stress import report
-
     tables, made = stored.load(report.FOLDER)
-    assert (report.RESULTS / "README.md").read_text("utf-8") == report.page(tables, made)
+    page = (report.RESULTS / "README.md").read_text("utf-8")
+    assert page == report.page(tables, made) and page.count("\n") <= 150
     assert report.readme(tables) in (stored.ROOT / "README.md").read_text("utf-8")
