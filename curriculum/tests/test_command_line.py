@@ -166,12 +166,11 @@ def test_the_report_measures_the_run_that_the_flags_ask_for(tmp_path, capsys):
 
 
 REALS, WHOLE = "0 1e-300 1e-9 1 1e9 1e308 nan".split(), "0 1 2 99999999999999999999 2.5".split()
-EDGES = ("0.02", "1e-300", "1e308", "-1e308", "0"), ("1", "1e-162", "1e308", "0", "-50")
 FLAGS = {
     **dict.fromkeys(["--dt", "--stiffness", "--damping", "--mass"], REALS),
     **dict.fromkeys(["--baumgarte", "--restitution", "--warm"], REALS),
     **dict.fromkeys(["--iters", "--steps", "--bodies", "--seed"], WHOLE),
-    "--solref": [f"{first} {second}" for first in EDGES[0] for second in EDGES[1]][::2],
+    "--solref": ["0.02 1", "0.02 1e308", "1e308 1", "1e-6 1e-6", "-1e308 -50", "-1e308 0", "0 0"],
     "--solimp": ["0 0 0 0 1", "0.9 0.95 1e-320 0.5 2"],
 }
 TOGETHER = (
