@@ -18,9 +18,8 @@ from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryFile
 
-import numpy as np
-
 import contact
+from contact import np  # which says how to install it where it is missing
 from curriculum import parallel, said, stored
 from curriculum.commands import Parser, near, write_json
 

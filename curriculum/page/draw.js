@@ -100,7 +100,9 @@ export function arrow(kind, x, y, dx, dy) {
 // What is seen through a lens of `size` px around (x, y).
 export const through = (x, y, size, ...inside) =>
   svg`<g style="clip-path: circle(${px(size)}px at ${px(x)}px ${px(y)}px) view-box">
-    ${circle(x, y, size, "lens-ground")}${inside}</g>${circle(x, y, size, "lens-rim")}`;
+    ${circle(x, y, size, "lens-ground")}
+    ${clipped(x - size, y - size, 2 * size, 2 * size, inside)}</g>
+    ${circle(x, y, size, "lens-rim")}`; // clipped, or a large circle makes Firefox's page wider
 
 // ---- charts
 

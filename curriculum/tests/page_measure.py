@@ -8,7 +8,7 @@ PICTURE = "page-live.png"  # of the README
 def photograph(file, folder):
     """Save PICTURE in a folder: the figure with all models, just after the landing; its path."""
     address, more = file.resolve().as_uri(), {"width": 720, "device_scale_factor": 2}
-    with running() as browser, visiting(browser, address, **more) as page:
+    with running() as start, visiting(start("chromium"), address, **more) as page:
         shown = page.locator("[data-figure=falls][data-given*=soft][data-given*=exact]").last
         shown.scroll_into_view_if_needed()
         time = shown.get_by_label("the time shown")

@@ -94,9 +94,8 @@ def test_v8_computes_what_steps_to_the_last_bit_and_exact_to_1e_10_r():
     engine.close()
 
 
-def test_firefox_does_so_too(gecko):
-    gecko.goto("about:blank")
-    judge(gecko.evaluate(script()))
+def test_firefox_does_so_too(firefox):
+    judge(firefox.new_page().evaluate(script()))
 
 
 def test_what_has_no_javascript_is_refused_by_its_line(tmp_path):
