@@ -12,6 +12,8 @@ summary, seeds.json, is the same bytes wherever, in whatever order and parts the
 
 import argparse
 import math
+import os
+import re
 import sys
 from functools import cache, partial
 from importlib.metadata import version
@@ -26,6 +28,8 @@ from curriculum.commands import Parser, near, write_json
 PROG = "python -m curriculum.seeds"
 KEYS = [key for key, _ in contact.COLUMNS.values()]
 HEAD = ",".join(("made by", "seed", "model", "ending", *KEYS, "whole"))
+NUMBER = r"(?:inf|-?\d+(?:\.\d+)?(?:e[+-]\d+)?)?"  # of a cell, as Python writes it
+WHOLE = re.compile(rf"\w+,\d+,\w+,[^,]*(?:,{NUMBER}){{{len(KEYS)}}},yes\n").fullmatch
 ENDINGS = None, "no: ", "EXPLODED", "through", ""  # what how a run ended begins with
 fail = Parser(prog=PROG).error
 
@@ -108,10 +112,13 @@ def read(path, mark, seeds, models):
     how a run ended, as a place in ENDINGS; 0: there is no row. NaN is what a run does not know.
     """
     shape, others = (len(models), len(seeds), 1 + len(KEYS)), 0
-    rows = np.memmap(TemporaryFile(), float, shape=shape)
+    with TemporaryFile() as file:
+        if hasattr(os, "posix_fallocate"):  # else a disk that is full ends it by a bus error
+            os.posix_fallocate(file.fileno(), 0, 8 * math.prod(shape))
+        rows = np.memmap(file, float, shape=shape)
     for line in path.open(encoding="utf-8", errors="replace") if path.is_file() else ():
-        if not line.endswith(",yes\n"):
-            continue  # a head, or a row that was cut
+        if not WHOLE(line):
+            continue  # a head, or a row that was cut or that something fell into
         first, seed, model, end, *values, _ = line.split(",")
         others += first != mark
         if first == mark and int(seed) in seeds and model in models:

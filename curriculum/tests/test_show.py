@@ -237,6 +237,7 @@ def test_parts_cut_rows_and_rows_of_other_flags_give_the_summary_of_one_whole_ru
     merged = tmp_path / "d/seeds.csv"
     merged.parent.mkdir()
     files = [(tmp_path / name / "seeds.csv").read_bytes() for name in "cab"]
+    files.insert(1, b"a note,yes\n" + files[1].splitlines()[1][:-8] + b"\0\0\0,yes\n")  # no rows
     merged.write_bytes(b"".join(files)[:-2])  # the last row is cut short
     capsys.readouterr()
     assert summed_up(merged.parent) == whole
