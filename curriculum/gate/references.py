@@ -131,7 +131,7 @@ def shown(reference) -> str:
     try:
         value = eval(numbers, {"__builtins__": {}})
         text = format(value, form)
-    except (ArithmeticError, NameError, SyntaxError, TypeError, ValueError) as error:
+    except Exception as error:  # Python's own eval may raise any
         raise TextError(f"{reference!r} cannot be made of {numbers}: {error}") from None
     if formula.startswith("?"):  # it may have several signs: 1 < a < 2
         if value is not True:

@@ -246,6 +246,7 @@ MADE_OF = {  # reference: what a reader sees, or what is said where it cannot be
     "steps / 0|.1f": "division by zero",
     "steps + scene": "cannot be made of (2000) + ('drop'): unsupported",
     "steps +": "invalid syntax",
+    "steps .real_|.1f": "has no attribute",
     "jumps:key": "'jumps' is not there: no 'jumps'; known there: jump, ",
     "? 2e3 <= steps <\n1 + steps": "",
     "? 1 < steps < 2e3": "does not hold: 1 < (2000) < 2e3",
