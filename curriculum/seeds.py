@@ -18,7 +18,7 @@ import sys
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
-from tempfile import TemporaryFile
+from tempfile import TemporaryFile, gettempdir
 
 import contact
 from contact import np  # which says how to install it where it is missing
@@ -113,8 +113,11 @@ def read(path, mark, seeds, models):
     """
     shape, others = (len(models), len(seeds), 1 + len(KEYS)), 0
     with TemporaryFile() as file:
-        if hasattr(os, "posix_fallocate"):  # else a disk that is full ends it by a bus error
-            os.posix_fallocate(file.fileno(), 0, 8 * math.prod(shape))
+        try:  # a disk that fills up later would end it by a bus error
+            if hasattr(os, "posix_fallocate"):
+                os.posix_fallocate(file.fileno(), 0, 8 * math.prod(shape))
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, gettempdir()) from None
         rows = np.memmap(file, float, shape=shape)
     for line in path.open(encoding="utf-8", errors="replace") if path.is_file() else ():
         if not WHOLE(line):

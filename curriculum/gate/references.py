@@ -50,9 +50,12 @@ class TextError(ValueError):
 
 @cache
 def load_meta() -> dict:
-    """meta.yaml. Raises TextError, which says where, when it is not YAML."""
+    """meta.yaml. Raises TextError, which says where, when it is not YAML or lacks its runs."""
     try:
-        return {"region_hashes": {}, "read": {}} | yaml.safe_load(read_text("meta.yaml"))
+        meta = yaml.safe_load(read_text("meta.yaml")) or {}
+        return {"region_hashes": {}, "read": {}, "runs": meta["runs"]} | meta
+    except (KeyError, TypeError):
+        raise TextError("meta.yaml:1: it names no runs; repair: git checkout meta.yaml") from None
     except yaml.YAMLError as error:
         raise TextError(f"meta.yaml is not YAML: {' '.join(str(error).split())}") from None
 

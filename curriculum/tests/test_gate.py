@@ -160,6 +160,9 @@ def test_each_error_of_a_text_is_named_in_a_line_with_its_place_and_nothing_else
     assert (done.returncode, lines) == (1, [])
     refused = run_gate(project, "--read", "Code")
     assert refused.returncode == 2 and "does not belong there" in refused.stderr
+    for text, why in ("- [", " is not YAML: "), ("", ":1: it names no runs; repair: "):
+        (project / "meta.yaml").write_text(text)
+        assert run_gate(project).stderr.startswith(f"meta.yaml{why}")
 
 
 def test_a_changed_region_names_each_passage_that_speaks_of_it_until_it_is_read(project):

@@ -38,7 +38,7 @@ def main(started):
     most = f"print hint N, 1 to {len(hints)}, and do nothing else"
     numbers = range(1, len(hints) + 1)
     parser.add_argument("--hint", type=int, choices=numbers, metavar="N", help=most)
-    words = "print a right answer, and show it at work"
+    words = "print a right answer, and try it"
     parser.add_argument("--solution", action="store_true", help=words)
     args = parser.parse_args()
     if args.hint:
@@ -58,7 +58,8 @@ def main(started):
 
 def task_of(name):
     """The docstring of an exercise, read from its file: Python may leave it out (-OO)."""
-    return (ROOT / FILES[name]).read_text("utf-8").split('"""')[1]
+    _, _, text = (ROOT / FILES[name]).read_text("utf-8").partition('"""')
+    return text.partition('"""')[0]
 
 
 def said_of(error):
