@@ -97,12 +97,13 @@ def test_all_can_be_reached_is_told_when_moved_and_moves_nothing_below_it(visit,
             assert page.evaluate(height, name) == before[name], name
             for part in page.locator(f"#{name} :is(.handle, input, .buttons button)").all():
                 part.click(trial=True)  # a click would reach it
-                said = {page.evaluate(WORDS, name)}
+                words, said = page.evaluate(WORDS, name), None
                 for key in ("Shift+ArrowUp", "Shift+ArrowLeft", "Enter"):
-                    part.press(key)
-                    said.add(page.evaluate(WORDS, name))
-                    assert page.evaluate(height, name) == before[name], name
-                assert len(said) > 1 or part.get_attribute("role") != "slider", name
+                    if said in (None, words):  # it stood at its end, or is a button
+                        part.press(key)
+                        said = page.evaluate(WORDS, name)
+                        assert page.evaluate(height, name) == before[name], name
+                assert said != words or part.get_attribute("role") != "slider", name
 
 
 def middle(shape):
