@@ -9,6 +9,7 @@
 What is not done yet is skipped. What is wrong fails, with what was expected and the likely slip.
 """
 
+import re
 import sys
 from pathlib import Path
 
@@ -23,6 +24,12 @@ try:
     import pytest
 except ModuleNotFoundError:
     sys.exit(f"checks.py: {to_install('pytest')}")
+
+KNOWN = ", ".join(Path(file).stem for file in FILES.values())
+WRONG = [name for name in re.findall(r"ex\d+\w*", " ".join(sys.argv[1:])) if name not in KNOWN]
+if WRONG and __name__ != "__main__":
+    words = f"-k {' '.join(WRONG)}: no such exercise; there are {KNOWN}"
+    raise pytest.Collector.CollectError(words)
 
 
 @pytest.mark.parametrize("name", FILES, ids=lambda name: Path(FILES[name]).stem)

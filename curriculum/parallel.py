@@ -103,8 +103,12 @@ def unheard():
 
 def follow_parent():
     """End this process as soon as the one that started it is gone, however that ended."""
-    wait = parent_process().join
-    threading.Thread(target=lambda: (wait(), os._exit(1)), daemon=True).start()
+
+    def follow():
+        parent_process().join()
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
 
 
 def on_cores(workers, function, numbered) -> Iterator[tuple]:

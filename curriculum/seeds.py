@@ -30,7 +30,7 @@ KEYS = [key for key, _ in contact.COLUMNS.values()]
 HEAD = ",".join(("made by", "seed", "model", "ending", *KEYS, "whole"))
 NUMBER = r"(?:inf|-?\d+(?:\.\d+)?(?:e[+-]\d+)?)?"  # of a cell, as Python writes it
 WHOLE = re.compile(rf"\w+,\d+,\w+,[^,]*(?:,{NUMBER}){{{len(KEYS)}}},yes\n").fullmatch
-ENDINGS = None, "no: ", "EXPLODED", "through", ""  # what how a run ended begins with
+ENDINGS = None, "no: ", "EXPLODED", "through", ""  # the words begin so; "": it came to its end
 fail = Parser(prog=PROG).error
 
 

@@ -6,8 +6,10 @@ import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -195,6 +197,15 @@ def test_flags_at_their_ends_give_a_right_report_or_one_line(tmp_path, capsys):
             assert not (line.endswith(" ok") and (row["blew_up"] or row["through"])), (flags, line)
 
 
+def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
+    code = (
+        "import sys, contact; contact.main(['--no-rerun', '--out', sys.argv[1]]); "
+        "print(sorted({'rerun', 'matplotlib', 'numba', 'tqdm', 'dask'} & set(sys.modules)))"
+    )
+    done = python("-c", code, tmp_path)
+    assert done.stdout.splitlines()[-1] == "[]", done.stderr
+
+
 COMMANDS = (
     "contact.py", "checks.py", "exercises/ex1_predict_contact.py",
     *(f"-m curriculum.{name}" for name in "seeds gate page notebook bench stress".split()),
@@ -209,6 +220,20 @@ def test_ctrl_c_and_sigterm_while_a_command_imports_are_one_word(command, tmp_pa
         (tmp_path / "numpy.py").write_text(stop)
         done = python(*command.split(), PYTHONPATH=str(tmp_path))
         assert (done.returncode, done.stdout, done.stderr) == (status, "", "stopped\n"), name
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
+def test_ctrl_c_ends_a_run_with_one_word_and_leaves_no_file(tmp_path):
+    start = "import runpy; print('ready', flush=True); runpy.run_path('contact.py', {}, '__main__')"
+    flags = f"--no-skip --steps 1000000 --out {tmp_path}/o".split()
+    words = [sys.executable, "-c", start, *flags]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as process:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(1.0)  # into the steps
+        os.killpg(process.pid, signal.SIGINT)  # what a terminal does
+        assert process.communicate(timeout=600) == ("", "stopped\n")
+    assert process.returncode == 130 and not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("words, unbuffered", [

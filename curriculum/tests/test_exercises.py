@@ -100,6 +100,25 @@ def test_commands_and_their_order_are_those_of_the_readme_and_the_chapter(monkey
         assert f"`{command}`" in readme and ("uv run exercises" in command) == uv
 
 
+def test_how_to_watch_a_run_is_said_as_in_the_readme(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    for name in ("rerun", "rerun.exe", "contact.rrd"):
+        (tmp_path / name).touch()
+    for uv, start in ((False, r"\S+/rerun(\.exe)?"), (True, "uv run rerun")):
+        monkeypatch.setenv("UV", "uv") if uv else monkeypatch.delenv("UV", raising=False)
+        script.print_next(SimpleNamespace(rerun=True, out=str(tmp_path)), [])
+        watch = capsys.readouterr().out.splitlines()[0].replace("\\", "/")
+        assert re.fullmatch(rf"next, watch it: {start} \S+/contact\.rrd", watch), watch
+
+
+def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are():
+    for words in (["checks.py", "-k", "ex2 or ex11"], ["-m", "pytest", "checks.py", "-kex11"]):
+        result = run(ROOT, *words)
+        printed = result.stdout + result.stderr
+        assert result.returncode and "-k ex11: no such exercise; there are ex1_predict" in printed
+        assert "Traceback" not in printed
+
+
 def test_without_pytest_or_numpy_one_line_says_how_to_get_it():
     for lacks, file in (("pytest", "checks.py"), ("numpy", FILES["ex1"])):
         start = f"import sys, runpy; sys.modules[{lacks!r}] = None; sys.path[0] = 'exercises'; "

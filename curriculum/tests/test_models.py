@@ -9,7 +9,7 @@ import pytest
 
 import contact
 from contact import STEPPED, Ball, Settings, build_scene, contact_quality, run_model
-from curriculum.bench import problems
+from curriculum.bench import measure, problems
 from curriculum.stress import mujoco_match
 from curriculum.stress.properties import judge
 from curriculum.stress.trial import run_twin
@@ -71,6 +71,21 @@ def test_at_the_critical_dt_an_eigenvalue_of_the_step_leaves_the_unit_circle(dam
 def test_critical_dt_also_without_a_spring_with_a_damper_that_feeds_and_of_what_nothing_moves():
     given = (1.0, 0.0, 80.0), (1.0, 0.0, 0.0), (1.0, 1e4, -1.0), (math.inf, 1e4, 80.0)
     assert [contact.critical_dt(*each) for each in given] == [0.025, math.inf, 0.0, math.inf]
+
+
+def test_no_seed_starts_a_stack_or_pile_inside_the_floor():
+    for seed in range(50):
+        for scene in (build_scene("stack", seed), build_scene("pile", seed, 30)):
+            assert contact.smallest_gap(scene.q0[None], scene.radius)[0] > -1e-15
+
+
+def test_a_normal_lies_along_the_centres_however_near_they_are():
+    balls = [contact.Ball(x, 5.0, 0.0, 0.0, 1.0, 0.1) for x in (1e-15, 0.0)]
+    (c,) = contact.detect_contacts(balls)
+    assert (c.nx, c.ny) == (1.0, 0.0)
+    balls[0].x = 0.0
+    (c,) = contact.detect_contacts(balls)
+    assert (c.nx, c.ny) == (0.0, 1.0), "centres in one place have no direction: up"
 
 
 # --- leapfrog ------------------------------------------------------------------------------------
@@ -142,13 +157,19 @@ def test_every_impact_of_leapfrog_has_its_own_moment(struck, dt):
     assert np.abs(run.q - run_model("exact", scene, dt, steps).q).max() < 1e-11
 
 
-def test_impacts_cost_a_pile_a_bounded_number_of_pushes():
-    scene = build_scene("pile", bodies=150, restitution=0.5)
-    run = run_model("leapfrog", scene, DT, 300)
-    later, profile = scene._replace(q0=run.q[-1], v0=run.v[-1]), cProfile.Profile()
+def calls_later(scene, steps):
+    """{function: how often five steps of leapfrog call it}, so many steps after the start."""
+    run, profile = run_model("leapfrog", scene, DT, steps), cProfile.Profile()
+    later = scene._replace(q0=run.q[-1], v0=run.v[-1])
     profile.runcall(run_model, "leapfrog", later, DT, 5, Settings(skip=False))
-    calls = {getattr(each.code, "co_name", ""): each.callcount for each in profile.getstats()}
-    assert 100_000 < calls["push"] < 220_000
+    return {getattr(each.code, "co_name", ""): each.callcount for each in profile.getstats()}
+
+
+def test_impacts_cost_a_pile_a_bounded_number_of_pushes_and_at_rest_none():
+    falls = calls_later(build_scene("pile", bodies=150, restitution=0.5), 300)
+    assert 100_000 < falls["push"] < 220_000
+    rests = calls_later(measure.shaft(12), 3000)
+    assert 5_000 < rests["push"] < 12_000, "20 sweeps, twice a step"
 
 
 def test_momentum_finds_what_plain_sweeps_find_in_a_tenth_of_them():

@@ -113,7 +113,12 @@ def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(stack)
     assert landing == [max(t, landing[0]) for t in recording["/world/lcp/balls"]["sim_time"]]
     for model in ("penalty", "lcp", "soft"):  # on the row that is shown then
         pushed = recording[f"/world/{model}/pushes"]["Arrows2D:vectors"]
-        assert -pushed[landing.count(landing[0]) - 1][0][1] > 0.1, "a landing has its arrow"
+        assert -pushed[landing.count(landing[0]) - 1][0][1] > RADIUS[0], "more than the weight's"
+    views = [each[0] for each in recording["views"]["VisualBounds2D:range"]]
+    (left, right), (top, _) = min((view["x_range"], view["y_range"]) for view in views)
+    for run in runs.values():  # all of it is in view
+        assert left < run.q[:, 0].min() - 0.12 and run.q[:, 0].max() + 0.12 < right
+        assert top < -run.q[:, 1].max() - 0.12
     panel = {key[19:]: each for key, each in recording["views"].items() if "TimePanel" in key}
     assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["landing"]])
     (ranges,) = {str(each) for each in recording["views"]["VisibleTimeRanges:ranges"]}

@@ -128,7 +128,10 @@ def print_next(args, argv: list[str]) -> None:
     """
     recording = os.path.join(args.out, "contact.rrd")
     if args.rerun and os.path.exists(recording):
-        print(f"next, watch it: {command('-m', 'rerun', recording)}")
+        viewer = Path(sys.executable).with_name("rerun.exe" if os.name == "nt" else "rerun")
+        by = ("uv", "run", "rerun") if "UV" in os.environ else (viewer,)
+        there = quoted(*by, recording) if by[0] == "uv" or viewer.exists() else None
+        print(f"next, watch it: {there or command('-m', 'rerun', recording)}")
     elif not args.plot and find_spec("matplotlib"):
         print(f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}")
     print(practise())

@@ -18,6 +18,7 @@ FAULTS = [
     (C, "or fast == 0.0:", "or fast < 0.0:", OWN),
     # an impact has its own moment
     (C, "if may_strike(contacts, dt, restitution):", "if False:", STEP),
+    (C, "if may_strike(contacts, dt, restitution):", "if True:", BOUNDED),
     (C, "(lower.held > 0.0 and", "(lower.held >= 0.0 and", OWN),
     (C, "1e-6 if restitution > 0.0 else -GRAVITY", "1e-6", "test_golden.py -k leapfrog"),
     (C, "until = dt if last else when", "until = dt", OWN),
