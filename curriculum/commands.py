@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import json
+import math
 import os
 import shlex
 import sys
@@ -28,6 +29,18 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message):
         self.exit(2, f"{self.prog}: error: {message}\n")
+
+
+def number(kind, low, high, text):
+    """The number of that kind, from low to high, that a flag gives."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= high or (kind is int and value % 1 > 0):
+        words = f"given {text[:40]!r}; allowed: {kind.__name__} from {low:g} to {high:g}"
+        raise argparse.ArgumentTypeError(words)
+    return kind(value)
 
 
 def near(word):

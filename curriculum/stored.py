@@ -3,9 +3,7 @@
 A folder of results holds tables, NAME.csv, and made.json: {part: how it came to be}, as origin()
 says. A stamp is {source: hash}; a source is a file, or a region of contact.py, contact.py#sweep. It
 is taken of the syntax: comments, docstrings and form do not count. The ledger, wallclock.csv, has
-the time of a whole default run, the median of nine; its config_hash is that of a stamp.
-
-    python -m curriculum.stored cpu-laptop   # time `python contact.py` here, write that row
+the time of a whole default run by machine; its config_hash is that of a stamp.
 """
 
 import ast
@@ -16,17 +14,14 @@ import json
 import os
 import platform
 import re
-import statistics
 import subprocess
-import sys
-import tempfile
 from datetime import date
 from functools import lru_cache
 from importlib import metadata
 from modulefinder import ModuleFinder
 from pathlib import Path
 
-from curriculum.commands import Parser, write_whole
+from curriculum.commands import write_whole
 from curriculum.lesson.regions import ROOT, read_text, split
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
@@ -36,7 +31,7 @@ MAKES = re.compile(r"curriculum/(bench|stress|lesson|exact|fast|implicit|core)\b
 USES = re.compile(r"\bcontact\.(\w+)|from contact import (.*)")
 OF_PYTHON = re.compile(r"\w+=\[\], |(, )?\w+=\[\]|, (ctx=\w+\(\)|kind='u')")  # which one dumps it
 LEDGER = ROOT / "wallclock.csv"
-COMMAND = "python -m curriculum.stored"
+TIMES = "python -m curriculum.bench processes --tier"  # and what the ledger calls the machine
 TIMED = ("contact.py", "curriculum/show/picture.py", "curriculum/show/recording.py")
 
 
@@ -192,33 +187,9 @@ def stale(row) -> bool:
     return row["config_hash"] not in ("", digest(stamp(*TIMED)))
 
 
-def measured(about, seconds) -> dict:
-    """A row of the ledger: how it came to be, and what each run took [s]; the first warms up."""
-    minutes, tier = statistics.median(seconds[1:]) / 60, about["command"].split()[-1]
-    facts = "ch3.5-contact", tier, f"{minutes:.3g}", digest(stamp(*TIMED))
-    return dict(zip(ledger()[0], (*facts, about["commit"], about["date"], "MEASURED")))
-
-
-def main(argv=None) -> int:
-    """Measure a tier's row, write and show it. Returns the exit status."""
-    parser = Parser(prog=COMMAND, description=__doc__.split("\n")[0])
-    parser.add_argument("tier", help="what the ledger calls this machine, such as cpu-laptop")
-    tier, rows = parser.parse_args(argv).tier, {row["tier"]: row for row in ledger()}
-    from curriculum.bench.timing import whole_process
-
-    try:
-        about = origin(f"{COMMAND} {tier}", *TIMED)
-        with tempfile.TemporaryDirectory() as out:
-            command = [sys.executable, "contact.py", "--out", out]
-            rows[tier] = measured(about, [whole_process(command, out) for _ in range(10)])
-            if not list(Path(out).glob("*.rrd")):
-                raise ValueError("no recording: pip install rerun-sdk")
-    except ValueError as error:
-        parser.error(str(error))
+def enter(tier: str, about: dict, seconds: float) -> None:
+    """Write a row of the ledger: what a whole run takes on the machine that it calls `tier`."""
+    rows = {row["tier"]: row for row in ledger()}
+    facts = "ch3.5-contact", tier, f"{seconds / 60:.3g}", digest(stamp(*TIMED))
+    rows[tier] = dict(zip(ledger()[0], (*facts, about["commit"], about["date"], "MEASURED")))
     save(LEDGER, list(rows.values()))
-    print(f"{tier}: {taken(rows[tier])}")
-    return 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -3,7 +3,8 @@
     python -m curriculum.bench              everything below, one after the other (25 minutes)
     python -m curriculum.bench points       run time against error, where the answer is known
     python -m curriculum.bench piles        time a step of 12 to 10,000 balls, at equal depth
-    python -m curriculum.bench processes    what whole processes take
+    python -m curriculum.bench processes    what whole processes take; --tier cpu-laptop enters
+                                            contact.py's in wallclock.csv
     python -m curriculum.bench draw         page and figures again, from the results alone
 
 Results are CSV files in curriculum/bench/results. --only rapier, or --only "lcp iters=20", measures
@@ -28,7 +29,7 @@ FULL, QUICK = stored.ROOT / stored.FOLDERS["bench"], stored.ROOT / "outputs" / "
 CODE = "curriculum/bench/measure.py", "curriculum/bench/settings.csv"  # and what they import
 
 
-def take(part, quick, only, folder):
+def take(part, quick, only, folder, tier=None):
     """Measure a part, or the settings of it whose names contain `only`, and write its file."""
     if not any(only in name for name in engines.BY_NAME):
         raise ValueError(f"--only {only}: no setting in settings.csv that runs here has this name")
@@ -47,6 +48,8 @@ def take(part, quick, only, folder):
     else:
         rows = measure.PARTS[part](quick, only, [])
         made = {key: value for key, value in made.items() if key.split()[0] != part}
+    if tier and part == "processes" and folder == FULL:
+        stored.enter(tier, about, rows[0]["seconds"])
     if rows:
         stored.save(folder / f"{part}.csv", rows)
         write_json(folder / "made.json", made | {f"{part} {only}".strip(): about})
@@ -61,6 +64,7 @@ def main(argv=None):
     parser = Parser(prog="python -m curriculum.bench", description=__doc__)
     parser.add_argument("part", nargs="?", default="all", choices=("all", *measure.PARTS, "draw"))
     parser.add_argument("--only", default="", help="settings whose name contains this")
+    parser.add_argument("--tier", metavar="NAME", help="what the ledger calls this machine")
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
     args = parser.parse_args(argv)
     folder = QUICK if args.quick else FULL
@@ -71,7 +75,7 @@ def main(argv=None):
         if parts:  # or loops would be compiled while they are timed
             subprocess.run([sys.executable, "-m", "curriculum.lesson"], cwd=stored.ROOT, check=True)
         for name in parts:
-            take(name, args.quick, args.only, folder)
+            take(name, args.quick, args.only, folder, args.tier)
         sections, made = stored.load(folder)
         report.write(folder, sections, made)
         if folder == FULL:

@@ -164,9 +164,13 @@ class Gate:
     def record(self, names=()) -> dict:
         """What meta.yaml ought to keep when somebody has read these passages, too."""
         read = self.meta["read"] | {name: self.now[name] for name in names}
+        spoken = {  # of what each passage still speaks of
+            name: {source: was for source, was in read.get(name, {}).items() if source in now}
+            for name, now in self.now.items()
+        }
         return {
             "region_hashes": {region.name: region.sha for region in self.regions.values()},
-            "read": {name: read[name] for name in self.passages if read.get(name)},
+            "read": {name: kept for name, kept in spoken.items() if kept},
         }
 
     def check_read(self) -> list:
@@ -199,7 +203,7 @@ class Gate:
             for about in stored.load(folder)[1].values()
         ]
         for row in filter(stored.stale, stored.ledger()):
-            measured.append(("wallclock.csv", f"{stored.COMMAND} {row['tier']}", stored.TIMED))
+            measured.append(("wallclock.csv", f"{stored.TIMES} {row['tier']}", stored.TIMED))
         if stale := [each for each in measured if each[2]]:
             places, commands, moved = zip(*stale)
             changed = ", ".join([*dict.fromkeys(chain(*moved))][:6])

@@ -44,7 +44,11 @@ def page_data():
         },
         "radius": contact.RADIUS,
         "defaults": knobs
-        | {"dt": contact.parse_flags([]).dt, "damping": 80.0, "restitution": 0.0}
+        | {
+            "dt": contact.parse_flags([]).dt,
+            "damping": scenes["drop"].damping,
+            "restitution": scenes["drop"].restitution,
+        }
         | {"impedance": contact.SOLIMP[1]},
     }
 

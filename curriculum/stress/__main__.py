@@ -15,10 +15,9 @@ from functools import partial
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-from curriculum.commands import Parser, needs
+from curriculum.commands import Parser, needs, number
 
 with needs("dev"):
-    from contact import number
     from curriculum import parallel
     from curriculum.stress import jobs
 

@@ -25,8 +25,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
-from contact import number
-from curriculum.commands import ROOT, Parser
+from curriculum.commands import ROOT, Parser, number
 
 TABLES = {path.stem: path for path in sorted(Path(__file__).with_name("faults").glob("*.py"))}
 own = threading.local()  # a copy of the tree for each thread

@@ -166,7 +166,7 @@ def test_what_the_readme_tells_one_to_type_is_the_run_that_was_measured(row):
     if typed.startswith("python contact.py "):
         args = contact.parse_flags(shlex.split(typed)[2:])
         scene = contact.chosen_scene(args, args.seed)
-        run = contact.run_flags(args, scene, args.contact, args.dt)
+        run = contact.run_flags(args, scene, args.contact, args.dt, args.steps)
     else:
         known = {}
         exec(typed.replace("24000", "16"), known)

@@ -138,7 +138,8 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
      + "ch3.5-contact,cpu,0.01,0123456789ab,1234567,2026-01-02,MEASURED\n",
      [f"{MADE}:1: measured on other code; since then these changed: contact.py#sweep, contact.py, "
       "curriculum/show/picture.py, curriculum/show/recording.py; repair: whoever merges types "
-      "python -m curriculum.bench piles; python -m curriculum.stored cpu"]),
+      "python -m curriculum.bench piles; python -m curriculum.bench processes --tier cpu",
+      "meta.yaml:1: its read keeps what is gone, or other, of A sponge, Code, figures/clamp; rep"]),
 ]  # fmt: skip
 
 
@@ -227,10 +228,13 @@ def test_results_are_stale_when_what_made_them_changed_and_not_for_words(
     assert [room for room in kept if stored.changed(kept[room])] == stale
 
 
-def test_a_row_of_the_ledger_has_the_median_of_all_runs_but_the_first():
-    about = {"command": "python -m curriculum.stored cpu", "commit": "1234567", "date": "today"}
-    row = stored.measured(about, [900.0, *[30.0, 12.0, 18.0] * 3])
-    assert row.keys() == stored.ledger()[0].keys() and row["tier"] == "cpu"
+def test_a_row_of_the_ledger_has_the_time_and_code_of_a_run(monkeypatch, tmp_path):
+    before = stored.ledger()
+    monkeypatch.setattr(stored, "LEDGER", tmp_path / "wallclock.csv")
+    stored.save(stored.LEDGER, before)
+    stored.enter("cpu", {"commit": "1234567", "date": "today"}, 18.0)
+    *others, row = stored.ledger()
+    assert others == before and row.keys() == before[0].keys() and row["tier"] == "cpu"
     assert row["wallclock_min"] == "0.3" and stored.taken(row) == "18 s" and not stored.stale(row)
     assert stored.taken(row | {"wallclock_min": "1.5"}) == "1.5 min", "the unit that reads best"
 

@@ -4,6 +4,7 @@
  * its parts [[gap [r], v_n [m/s]]]. */
 import { area, arrow, axis, ball, circle, clipped, label, line, number, plot } from "../draw.js";
 import { table } from "../draw.js";
+import { data } from "../data.js";
 import { column, G, kept, R, record } from "../runs.js";
 
 const [DOWN, UP] = [-5, 2]; // m/s; a gap is counted in what 1 m/s closes in a step
@@ -13,7 +14,7 @@ const PARTS = { lcp: ["before", "kick", "push", "move"],
 
 // One step from a gap [r] with a speed [m/s]: gap and speed at its end.
 const stepped = kept((model, gap, v, dt, baumgarte) => {
-  const knobs = { dt, baumgarte, iters: 20, warm: 0 };
+  const knobs = { ...data.defaults, dt, baumgarte };
   const run = record(model, column([(1 + gap) * R], { vy: v }), knobs, 1);
   return { gap: run.y[1] / R - 1, v: run.vy[1] };
 }, 400);

@@ -17,7 +17,7 @@ function flight(gap, vy, knobs, seconds) {
 }
 
 const landing = kept((share, dt, baumgarte, restitution) => {
-  const knobs = { dt, baumgarte, restitution, iters: 20, warm: 0 };
+  const knobs = { ...data.defaults, dt, baumgarte, restitution };
   const [seconds, fall] = [restitution > 0 ? 0.9 : 0.3, (ARRIVES * dt) / R];
   const larger = flight(share * fall, -ARRIVES, knobs, seconds);
   const depth = -Math.min(0, ...larger.points.slice(0, 4).map(([, gap]) => gap));

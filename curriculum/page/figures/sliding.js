@@ -2,6 +2,7 @@
  * order and with leapfrog of second. Values: the errors at the chosen step [r], and those of all
  * steps. */
 import { axis, ball, label, mark, number, path, plot, tens, timeSteps } from "../draw.js";
+import { data } from "../data.js";
 import { column, kept, R, record } from "../runs.js";
 
 const BOTH = ["lcp", "leapfrog"];
@@ -12,7 +13,7 @@ const STEPS = Array.from({ length: 7 }, (_, k) => 0.0005 * 2 ** k); // s
 const placesOf = kept((model, lean, dt) => {
   const [x, y] = [2 * R * Math.sin(lean), 2 * R * Math.cos(lean)];
   const balls = column([HEIGHT, HEIGHT + y], { x: [0, x], mass: [Infinity, 1] });
-  const knobs = { dt, baumgarte: 0.2, iters: 20, warm: 0 };
+  const knobs = { ...data.defaults, dt };
   const run = record(model, balls, knobs, Math.floor(SECONDS / dt + 1e-9));
   return Array.from(run.t, (_, k) => [run.x[2 * k + 1] / R, (run.y[2 * k + 1] - HEIGHT) / R]);
 });
