@@ -92,7 +92,7 @@ def needs(extra):
         sys.exit(2)
 
 
-def write_whole(path, content):
+def write_atomic(path, content):
     """Replace the file at `path`, whole or not at all. Makes missing folders.
 
     content: str or bytes.
@@ -120,4 +120,4 @@ def write_whole(path, content):
 
 def write_json(path, data):
     """Write strict JSON, whole or not at all. Raises ValueError on NaN and infinity."""
-    write_whole(path, json.dumps(data, indent=1, sort_keys=True, allow_nan=False) + "\n")
+    write_atomic(path, json.dumps(data, indent=1, sort_keys=True, allow_nan=False) + "\n")

@@ -34,16 +34,17 @@ from functools import cache
 
 import numpy as np
 
-from contact import MOST_IMPACTS  # of events, the limit of contact.py's own exact_run
+from contact import MAX_IMPACTS  # of events, the limit of contact.py's own exact_run
 
 try:
-    from curriculum.lesson.compiled import Loops
+    from curriculum.compiled.cache import Loops
 except ImportError:  # no numba
     Loops = None  # type: ignore[assignment, misc]
 
 ORDER = 20  # of the series of balls that slide; a longer one lasts longer and costs more
 TOUCH = 1e-12  # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
 LAST = 1e-13  # of a radius: a bounce that would rise less is the last of its series
+MANY = 400  # pairs: of more, 50 are asked first, then who can meet by the time that these tell
 NOISE = 1e-12  # of g, of sqrt(g r), of the largest: less is rounding, which leaves 1e-15
 GRAZE = 3e-8  # of the slip: a ball between two others may close as slowly as that
 RATIO = 100.0  # of masses: above it, where 0 < e < 1, light balls rattle under heavy ones
@@ -58,15 +59,19 @@ def inverse(W):
     """
     unit = 1.0 / np.sqrt(np.diag(W))
     unit = unit * unit.reshape(-1, 1)  # makes the diagonal 1, whatever the masses
+    scaled = W * unit
+    found, linked = np.eye(len(W)), np.flatnonzero((W != 0.0).sum(0) > 1)
     try:
-        found = np.linalg.inv(W * unit)
+        part = np.linalg.inv(scaled[linked][:, linked])
+        for k in range(len(linked)):
+            found[linked[k], linked] = part[k]
         if not (np.abs(np.diag(found)) >= 1e10).any():  # no contact depends on others
             return found * unit, np.zeros_like(W)
     except Exception:
         pass
-    size, axes = np.linalg.eigh(W * unit)
-    moves = size > NOISE * size[-1]
-    idle, size = axes * ~moves, np.where(moves, size, math.inf)
+    size, axes = np.linalg.eigh(scaled)
+    stays = size <= NOISE * size[-1]
+    size[stays], idle = math.inf, axes * stays
     return axes / size @ axes.T.copy() * unit, idle @ idle.T.copy() * unit
 
 
@@ -94,9 +99,9 @@ def solve_lcp(W, b, slack=0.0):
         if len(pulls):
             way = trial if endless else trial - lam
             share = lam[pulls] / -way[pulls]
-            lam = np.where(active, lam + share.min() * way, 0.0)
+            lam = (lam + share.min() * way) * active
             active[pulls[share == share.min()]] = False
-        elif endless and (trial * unit).max() > np.where(trial > 0.0, slack, 0.0).max():
+        elif endless and (trial * unit).max() > (slack * (trial > 0.0)).max():
             raise RuntimeError("exact: a ball is crushed between two that nothing moves")
         elif endless:
             b = b + trial * np.diag(W)
@@ -114,7 +119,8 @@ def push_all(W, b, on, small):
     solve, idle = inverse(W[on][:, on])
     trial, way = np.zeros(len(b)), idle @ -b[on]
     endless = (np.abs(way) > small[on]).any()
-    trial[on] = way if endless else solve @ -b[on]
+    for k, push in zip(on, way if endless else solve @ -b[on]):
+        trial[k] = push
     return trial, endless
 
 
@@ -134,7 +140,8 @@ class Motion:
         radius = np.append(scene.radius, 0.0)
         pairs = np.array(np.triu_indices(count + 1, 1))
         pairs = pairs[:, w[pairs].sum(0) > 0.0]
-        self.sides = np.eye(count + 1)[:, :-1][pairs[0]] - np.eye(count + 1)[:, :-1][pairs[1]]
+        self.pairs, (a, b) = pairs, np.eye(count + 1)[pairs, :-1]
+        self.sides = a - b
         self.reach, self.share = radius[pairs].sum(0), w[pairs].sum(0)  # r_a + r_b; 1 / m_eff
         self.radius, self.floor = radius[pairs[0]], pairs[1] == count
         self.q, self.v = np.array((scene.q0, scene.v0), float).reshape(2, -1)
@@ -154,11 +161,13 @@ class Motion:
         A light ball between two others bounces until its gaps fall below the rounding of q. So
         next_event tracks gaps, and a tiny one touches only if it was wider.
         """
-        x, y = self.q.reshape(2, -1) @ self.sides.T
+        q = np.append(self.q.reshape(2, -1), ((0.0,), (0.0,)), 1)
+        x, y = q[:, self.pairs[0]] - q[:, self.pairs[1]]
         self.found = np.where(self.floor, y, np.sqrt(x * x + y * y)) - self.reach
         self.bits = np.spacing(np.abs(self.q).max())
         self.small = TOUCH * self.radius + 4.0 * self.bits
-        self.gap = np.where(np.abs(self.found) < track * self.small, self.gap, self.found)
+        tracked = (np.abs(self.found) < track * self.small) & (self.gap < math.inf)
+        self.gap = np.where(tracked, self.gap, self.found)
 
     def rows(self, chosen):
         """J of the chosen contacts; the normal is up at the floor, and where centres are one."""
@@ -212,7 +221,7 @@ class Motion:
             W = J * self.w @ J.T
             turns = GRAZE * np.abs(self.slip(touching, self.v)) / np.sqrt(self.share[touching])
             on = np.flatnonzero(self.by.solve_lcp(W, v_n - target, turns))
-            self.v = self.match(self.v, J[on], self.by.inverse(W[on][:, on])[0], target[on])
+            self.v = self.match(self.v, J[on], self.by.inverse(W[on[:, None], on])[0], target[on])
             v_n = np.maximum(J @ self.v, np.minimum(target, 0.0))  # what was forgiven is 0
         return v_n
 
@@ -239,7 +248,7 @@ class Motion:
         self.rests[touching] = True
         on = np.flatnonzero(pushes > NOISE * self.g)
         J, turn = J[on], turn[on]
-        solve = self.by.inverse(W[on][:, on])[0]
+        solve = self.by.inverse(W[on[:, None], on])[0]
         a, self.v = self.match(self.fall, J, solve, -turn), self.match(self.v, J, solve, 0.0)
         beside = np.tile(self.sides[touching[on]].any(0), 2)  # else a heap at rest creeps
         a[beside & (np.abs(a) <= NOISE * self.g)] = 0.0
@@ -267,17 +276,30 @@ class Motion:
         Rounding is no event: a gap at rest counts as half of TOUCH open, another as wider by its
         last digits.
         """
+
+        def within(time):  # pairs that can meet until then
+            far, rates = time < math.inf, np.abs(Q[1:])
+            ways = time ** np.arange(1, len(Q)) @ rates if far else rates[0]
+            ways = np.append(ways.reshape(2, -1).sum(0), 0.0)
+            ways = ways[self.pairs[0]] + ways[self.pairs[1]]
+            reach = np.maximum(ways, 1e4 * self.small) if far else math.inf
+            return np.flatnonzero(free & (self.gap <= reach)), ways
+
+        def ask(near):
+            gap, reach, floor = np.maximum(self.gap[near], 0.0), self.reach[near], self.floor[near]
+            rounds = np.minimum(4.0 * self.bits, 1e-9 * gap)
+            wider = np.where(self.rests[near], 0.5 * self.small[near], rounds)
+            d = Q.reshape(len(Q), 2, -1) @ self.sides[near].T
+            return self.by.next_fall(d, gap, reach, floor, wider, lam, horizon)
+
         free = np.ones(len(self.gap), bool)
         free[which] = False
-        if horizon < math.inf:  # who is out of reach until then
-            moves = horizon ** np.arange(1, len(Q)) @ np.abs(Q[1:])
-            free &= self.gap <= np.abs(self.sides) @ moves.reshape(2, -1).sum(0)
-        near = np.flatnonzero(free)
-        gap, reach, floor = np.maximum(self.gap[near], 0.0), self.reach[near], self.floor[near]
-        rounds = np.minimum(4.0 * self.bits, 1e-9 * gap)
-        wider = np.where(self.rests[near], 0.5 * self.small[near], rounds)
-        d = Q.reshape(len(Q), 2, -1) @ self.sides[near].T
-        span, self.gap[near] = self.by.next_fall(d, gap, reach, floor, wider, lam, horizon)
+        near, ways = within(horizon)
+        if len(near) > MANY:
+            near, _ = within(ask(near[np.argsort((self.gap / ways)[near])[:50]])[0])
+        span, gap = ask(near)
+        self.gap = np.full(len(self.gap), math.inf)  # what nobody asked is found anew
+        self.gap[which], self.gap[near] = 0.0, gap
         self.since += span
         return span
 
@@ -298,23 +320,29 @@ def slide_series(Q, a, w, J, sides, reach, floor, solve):
         W lam_k + n_0 . (a_k,a - a_k,b) + turn_k = 0,
         turn_k = (k + 1) (k + 2) reach / 2 sum_{m=1}^{k+1} n_m . n_{k+2-m}
     """
-    lam, n = np.zeros((len(Q), 1, len(J))), np.zeros((len(Q), 2, len(J)))
-    turns = sides.T * np.where(floor, 0.0, 1.0 / reach)
-    n[0] = Q[0].reshape(2, -1) @ turns
-    n[0, 1] += floor
+    lam, n = np.zeros((len(Q), len(J))), np.zeros((len(Q), 2, len(J)))
+    turns = sides.T * (~floor / reach)
+    np.dot(Q[0].reshape(2, -1), turns, n[0])
+    np.add(n[0, 1], floor, n[0, 1])
     away, push, pushes = -solve, J * w, sides * w[: sides.shape[1]]
     for k in range(len(Q) - 2):
-        n[k + 1] = Q[k + 1].reshape(2, -1) @ turns
+        np.dot(Q[k + 1].reshape(2, -1), turns, n[k + 1])
         if k > 0:
-            a = ((n[k:0:-1] * lam[:k]).sum(0) @ pushes).reshape(-1)
+            pull = n[1] * lam[k - 1]
+            for m in range(k - 1):
+                pull += n[k - m] * lam[m]
+            a = (pull @ pushes).reshape(-1)
+        turn = np.zeros(len(J))
+        for m in range(1, k + 2):
+            turn += n[m, 0] * n[k + 2 - m, 0] + n[m, 1] * n[k + 2 - m, 1]
         factor = (k + 1.0) * (k + 2.0)
-        turn = 0.5 * factor * reach * (n[1 : k + 2] * n[k + 1 : 0 : -1]).sum(0).sum(0)
+        turn *= 0.5 * factor * reach
         for _ in range(2):  # once more, for the last digits
             force = away @ (J @ a + turn)
-            lam[k, 0] += force
+            np.add(lam[k], force, lam[k])
             a = a + force @ push
-        Q[k + 2] = a / factor
-    return lam[:, 0]
+        np.divide(a, factor, Q[k + 2])
+    return lam
 
 
 # --- endregion ---
@@ -327,27 +355,32 @@ def next_fall(d, gap, reach, floor, wider, lam, horizon):
     d (terms, 2, K) are the series of q_a - q_b; gaps are known better. P falls: y - r, or d . d -
     reach^2. What is likely to be soon comes first: most others cannot, even if nothing lifted them.
     """
-    count, P = len(gap), np.zeros((max(len(d), 5), len(gap)))  # 5: a parabola's square is whole
+    count, P, free = len(gap), np.zeros((max(len(d), 5), len(gap))), 1.0 - floor  # a square has 5
     for k in range(len(d)):
-        P[k : k + len(d)] += (d[k] * d[: len(P) - k]).sum(1)
-    P[:, floor] = 0.0
-    P[: len(d)] += np.where(floor, d[:, 1], 0.0)
-    P[0] = np.where(floor, gap, gap * (gap + 2.0 * reach))
+        np.add(P[k], floor * d[k, 1], P[k])
+        for m in range(min(len(d), len(P) - k)):
+            np.add(P[k + m], free * (d[k, 0] * d[m, 0] + d[k, 1] * d[m, 1]), P[k + m])
+    np.multiply(gap, floor + free * (gap + 2.0 * reach), P[0])
     falls = np.concatenate((P.T, lam.T))
-    falls[:count, 0] += np.where(floor, wider, wider * (wider + 2.0 * reach))
-    span, first = horizon, len(falls)
-    soon = np.argsort(falls[:, 0] / np.maximum(-falls[:, 1], 1e-9))[:1]
+    if len(falls) == 0:
+        return horizon, gap
+    more = wider * (floor + free * (wider + 2.0 * reach))
+    np.add(falls[:count, 0], more, falls[:count, 0])
+    when = falls[:, 0] / np.maximum(-falls[:, 1], 1e-9)
+    span, first, soon = horizon, len(falls), np.flatnonzero(when == when.min())
     for _ in range(2):
         for k in soon:
             t = first_fall(falls[k], span)
             if t < span:
                 span, first = t, k
-        sinks = np.minimum(falls[:, 1:], 0.0) @ min(span, 1e15) ** np.arange(1.0, falls.shape[1])
-        soon = np.flatnonzero(falls[:, 0] + sinks <= 0.0)
+        sunk = falls[:, 0]
+        for k in range(1, falls.shape[1]):
+            sunk = sunk + np.minimum(falls[:, k], 0.0) * min(span, 1e15) ** k
+        soon = np.flatnonzero(sunk <= 0.0)
     gap = P[-1]
     for row in P[-2::-1]:
         gap = gap * span + row
-    gap = np.where(floor, gap, gap / (reach + np.sqrt(reach**2 + gap)))
+    gap = gap / (floor + free * (reach + np.sqrt(reach**2 + free * gap)))
     gap[first : first + 1] = 0.0
     return span, gap
 
@@ -413,7 +446,7 @@ def sample(Q, times):
 
 
 @np.errstate(all="ignore")
-def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MOST_IMPACTS) -> np.ndarray:
+def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MAX_IMPACTS) -> np.ndarray:
     """q, v (2, S, 2, N) [m, m/s] of a contact.Scene at `times` (S,) [s], rising from 0.
 
     Gravity [m/s^2] is along y, negative. At the moment of an event v is that after all rounds of

@@ -67,7 +67,7 @@ def main(argv=None):
         run_missing(path, args, seeds, models, scheduler)
         rows, _ = read(path, made_by(args), seeds, models)
         found = {model: summary(each, seeds) for model, each in zip(models, rows)}
-        found = contact.rounded({model: ways for model, ways in found.items() if ways})
+        found = contact.json_safe({model: ways for model, ways in found.items() if ways})
         kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps, "rows": found}
         write_json(path.with_suffix(".json"), kept | {"seeds": [seeds[0], seeds[-1] + 1]})
     except (ImportError, OSError) as error:
@@ -153,7 +153,7 @@ def rows_of(args, known, seed):
         raise ImportError(f"another {', '.join(sorted(other))} is there; give all the same")
     _, without, quality = contact.run_all(args, contact.chosen_scene(args, seed))
     ends = {model: (f"no: {why}", {}) for model, why in without.items()}
-    ends |= {model: (contact.ending(row), row) for model, row in quality.items()}
+    ends |= {model: (contact.final_state(row), row) for model, row in quality.items()}
     text = ""
     for model, (end, row) in ends.items():
         cells = (cell(row.get(key)) for key in KEYS)
@@ -202,7 +202,11 @@ def extremes(ways):
     """By which seeds the measures of a model are the lowest and the highest, where they differ."""
     low, high = ways["lowest"], ways["highest"]
     columns = [(title, key) for title, (key, _) in contact.COLUMNS.items()]
-    differ = [(t, k) for t, k in columns if contact.shown(low[k]) != contact.shown(high[k])]
+    differ = [
+        (t, k)
+        for t, k in columns
+        if contact.format_number(low[k]) != contact.format_number(high[k])
+    ]
     return ", ".join(f"{t} {low['seeds'][k]} and {high['seeds'][k]}" for t, k in differ)
 
 

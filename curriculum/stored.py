@@ -21,13 +21,16 @@ from importlib import metadata
 from modulefinder import ModuleFinder
 from pathlib import Path
 
-from curriculum.commands import write_whole
-from curriculum.lesson.regions import ROOT, read_text, split
+from curriculum.commands import write_atomic
+from curriculum.source import ROOT, read_text, split
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
-ALWAYS = ("curriculum/exact.py", "curriculum/fast.py")  # what contact.py asks for by `beside`
-MAKES = re.compile(r"curriculum/(bench|stress|lesson|exact|fast|implicit|core)\b")  # numbers
+ALWAYS = (
+    "curriculum/exact.py",
+    "curriculum/compiled/run.py",
+)  # contact.py's optional
+MAKES = re.compile(r"curriculum/(bench|stress|compiled|exact|variants|page/to_js)\b")  # numbers
 USES = re.compile(r"\bcontact\.(\w+)|from contact import (.*)")
 OF_PYTHON = re.compile(r"\w+=\[\], |(, )?\w+=\[\]|, (ctx=\w+\(\)|kind='u')")  # which one dumps it
 LEDGER = ROOT / "wallclock.csv"
@@ -54,7 +57,7 @@ def digest(value) -> str:
 
 @lru_cache
 def digits(source, text) -> str:
-    """The hash of a source's text. In NUMBERS of contact.py, words are help and do not count."""
+    """The hash of a source's text. In LIMITS of contact.py, words are help and do not count."""
     if source.endswith(".csv"):
         return digest(text)
     tree = ast.parse(text, source)
@@ -113,7 +116,7 @@ def save(path, rows) -> None:
     for row in rows:
         cells = [f"{x:.6g}" if isinstance(x, float) else x for x in row.values()]
         writer.writerow(["" if cell in ("nan", "inf", "-inf") else cell for cell in cells])
-    write_whole(path, text.getvalue())
+    write_atomic(path, text.getvalue())
 
 
 def origin(command: str, *files, kept=True) -> dict:
@@ -168,7 +171,7 @@ def write_block(name: str, markdown: str) -> None:
     """Put the Markdown of "bench" or "stress" into the project's README, between its markers."""
     block = re.compile(rf"(<!-- generated: {name} by .*? -->\n).*?(?=<!-- end -->)", re.DOTALL)
     text = block.sub(lambda match: f"{match[1]}{markdown.strip()}\n", read_text("README.md"))
-    write_whole(ROOT / "README.md", text)
+    write_atomic(ROOT / "README.md", text)
 
 
 def ledger() -> list:

@@ -11,7 +11,7 @@ read it; now write it without looking. A contact c gives you
     c.v_n()     the normal velocity [m/s] that it has right now, positive when the two bodies part
     c.m_eff     the mass [kg] that a push has to move
     c.lam       the impulse [N s] given so far, 0 at first; keep it up to date
-    c.push(p)   gives body a the impulse p [N s] along the normal, and body b the opposite one
+    c.apply_impulse(p)   gives body a the impulse p [N s] along the normal, body b the opposite
 """
 
 from kit import script

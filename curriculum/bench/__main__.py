@@ -73,7 +73,9 @@ def main(argv=None):
         parts.remove("processes")  # which are no settings
     try:
         if parts:  # or loops would be compiled while they are timed
-            subprocess.run([sys.executable, "-m", "curriculum.lesson"], cwd=stored.ROOT, check=True)
+            subprocess.run(
+                [sys.executable, "-m", "curriculum.compiled"], cwd=stored.ROOT, check=True
+            )
         for name in parts:
             take(name, args.quick, args.only, folder, args.tier)
         sections, made = stored.load(folder)

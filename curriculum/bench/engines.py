@@ -92,13 +92,15 @@ class Ours(Whole):
     def states(self, n):
         model, scene, dt = self.given
         steps = contact.MODELS[model].step
-        home = contact.beside("fast", needed=True) if steps else contact
+        home = contact.optional_module("compiled.run", needed=True) if steps else contact
         run = home.run_model(model, scene, dt, n * self.substeps, self.settings)
         return run.q[:: self.substeps], run.v[:: self.substeps]
 
     def go(self, n):
         if self.motion is None:
-            self.motion = contact.beside("fast", needed=True).Stepper(*self.given, self.settings)
+            self.motion = contact.optional_module("compiled.run", needed=True).Stepper(
+                *self.given, self.settings
+            )
             self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))
         steps = n * self.substeps
         for first in range(0, steps, BLOCK):

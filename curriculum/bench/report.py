@@ -5,14 +5,13 @@ The words stand in page.md, readme.md and claims.md, the numbers come from the C
 
 from operator import itemgetter
 
-from contact import MANY, MODELS, STEPPED
-from contact import shown as number
+from contact import COMPILE_FROM, MODELS, STEPPED, format_number
 from curriculum import stored
 from curriculum.bench import measure, problems
 from curriculum.bench.engines import ENGINES, HERE, LABELS
 from curriculum.bench.events import PHASES
 from curriculum.bench.measure import BUDGETS, DEPTHS, DT, WORK, contest
-from curriculum.commands import write_whole
+from curriculum.commands import write_atomic
 from curriculum.show import picture
 
 RIVAL = "events"
@@ -27,8 +26,8 @@ def cell(p, named=False):
     """Error and time of a point, for a reader, and whose it is."""
     if p is None:
         return "-"
-    error = "reference" if p["error"] is None else f"{number(p['error'])} r"
-    return f"{LABELS[p['engine']] + ' ' if named else ''}{error}, {number(p['ms'])} ms"
+    error = "reference" if p["error"] is None else f"{format_number(p['error'])} r"
+    return f"{LABELS[p['engine']] + ' ' if named else ''}{error}, {format_number(p['ms'])} ms"
 
 
 def resting(row):
@@ -37,7 +36,7 @@ def resting(row):
         return "-"
     cut = f", {row['substeps']} x" if row["substeps"] > 1 else ""
     called = f"{LABELS[row['engine']]} {row['setting'] or ''}".strip()
-    return f"{called}{cut}: {number(row['resting'])} µs"
+    return f"{called}{cut}: {format_number(row['resting'])} µs"
 
 
 def loses(one, other):
@@ -77,7 +76,7 @@ def claims(points, piles, processes):
     both = [(exact[name], rival[name]) for name in exact if name in rival]
     lost = [name for name, p in rival.items() if loses(leapfrog.get(name), p)]
     errors = ([p[key] for _, p in both] for key in ("error", "error_max"))
-    usual, worst = (number(max(each, default=None)) for each in errors)
+    usual, worst = (format_number(max(each, default=None)) for each in errors)
     spans = sorted(100.0 * (p["ms_max"] / p["ms_min"] - 1.0) for p in points if p["ms"]) or [0.0]
     taken = {row["process"]: row["seconds"] for row in processes}
     first = {row["process"]: row["first"] for row in processes}
@@ -91,17 +90,19 @@ def claims(points, piles, processes):
         phases=PHASES,
         our_piles=shares(piles, 2),
         leapfrog_piles=shares(piles, 3),
-        numba=number(taken.get("one compiled step", 0.0) - taken.get("import numpy", 0.0)),
-        first=number(first.get("one compiled step")),
-        many=MANY,
-        usual_span=number(spans[len(spans) // 2]),
-        widest_span=number(spans[-1]),
+        numba=format_number(taken.get("one compiled step", 0.0) - taken.get("import numpy", 0.0)),
+        first=format_number(first.get("one compiled step")),
+        many=COMPILE_FROM,
+        usual_span=format_number(spans[len(spans) // 2]),
+        widest_span=format_number(spans[-1]),
     )
 
 
 def reach(values):
     """From the least to the greatest, as text."""
-    return f"{number(min(values, default=None))} to {number(max(values, default=None))}"
+    return (
+        f"{format_number(min(values, default=None))} to {format_number(max(values, default=None))}"
+    )
 
 
 def shares(piles, which):
@@ -126,7 +127,7 @@ def take(points, piles):
         elif row:
             depth = min(d for d in DEPTHS if row["mean_depth"] <= d)
             other = measure.fastest(piles, depth, ENGINES).get(row["bodies"])
-            mine = f"at most {depth:g} r deep, {number(row['resting'])} µs a step"
+            mine = f"at most {depth:g} r deep, {format_number(row['resting'])} µs a step"
             yield [want["wish"], typed, mine, "-", resting(other)]
 
 
@@ -146,7 +147,7 @@ def winners(rows):
 def losses(rows):
     """A row for each limit: where leapfrog is beaten by another engine, and by the rival."""
     for words, fields, *sides in limits(rows):
-        texts = ["; ".join(f"{name} ({number(mine['error'])} r, {cell(peer, True)})"
+        texts = ["; ".join(f"{name} ({format_number(mine['error'])} r, {cell(peer, True)})"
                            for name, (mine, peer) in lost.items()) for lost in sides]  # fmt: skip
         yield [words, fields, *(text or "nowhere" for text in texts)]
 
@@ -157,7 +158,10 @@ def falling(rows):
         mine = (row for row in rows if row["engine"] == engine)
         found = measure.best(mine, "bodies", itemgetter("falling"))
         counts = *measure.SIZES, measure.MANY
-        yield [LABELS[engine], *(number(found.get(count, {}).get("falling")) for count in counts)]
+        yield [
+            LABELS[engine],
+            *(format_number(found.get(count, {}).get("falling")) for count in counts),
+        ]
 
 
 def written(name, sections, made):
@@ -180,7 +184,7 @@ def written(name, sections, made):
         losses=stored.lines(losses(points)),
         races=stored.lines(raced),
         falling=stored.lines(falling(piles)),
-        processes=stored.lines([name, *map(number, each)] for name, *each in spent),
+        processes=stored.lines([name, *map(format_number, each)] for name, *each in spent),
         origins="\n".join(f"- {part}: {stored.footer(each)}" for part, each in made.items()),
     )
 
@@ -219,4 +223,4 @@ def write(folder, sections, made):
     for name in {p["problem"] for p in rows} & {*DRAWN}:
         files[f"error-{name}.svg"] = picture.svg(error_figure(rows, name), about)
     for name, content in files.items():
-        write_whole(folder / name, content)
+        write_atomic(folder / name, content)

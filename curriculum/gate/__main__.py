@@ -17,7 +17,7 @@ import sys
 from itertools import chain
 from pathlib import Path
 
-from curriculum.commands import Parser, needs, write_whole
+from curriculum.commands import Parser, needs, write_atomic
 
 with needs("dev"):
     import yaml
@@ -26,7 +26,7 @@ with needs("dev"):
     from curriculum import stored
     from curriculum.gate.chapter import CHAPTER, INCLUDE, INLINE, PLAIN, PROSE, Part, faults, split
     from curriculum.gate.references import REFERENCE, TextError, load_meta, prepare, shown
-    from curriculum.lesson.regions import DOCSTRING, ROOT, blank, read_text, split_all
+    from curriculum.source import DOCSTRING, ROOT, blank, read_text, split_all
 
 GATE = "python -m curriculum.gate"
 FIGURES = "curriculum/page/figures/*.js"
@@ -239,7 +239,7 @@ def read(names) -> int:
         flow = None if key == "read" else False  # a line each
         form = {"sort_keys": False, "allow_unicode": True, "width": 10**6}
         text += yaml.safe_dump({key: kept}, default_flow_style=flow, **form)
-    write_whole(ROOT / "meta.yaml", text)
+    write_atomic(ROOT / "meta.yaml", text)
     print(f"recorded in meta.yaml as read: {', '.join(names) or 'nothing more'}")
     return 0
 

@@ -14,7 +14,7 @@ Other comments, on lines of their own, vanish. There is no HTML.
 import re
 from typing import NamedTuple
 
-from curriculum.lesson.regions import NAME, blank, line_at
+from curriculum.source import NAME, blank, line_at
 
 CHAPTER = "curriculum/prose/chapter.md"
 INCLUDE = re.compile(rf"\[include-by-region: ([\w./-]+\.py#{NAME})\]")

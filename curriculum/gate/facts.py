@@ -11,8 +11,7 @@ from itertools import product
 import numpy as np
 
 import contact
-from curriculum.core import core_step, turn
-from curriculum.implicit import implicit_step
+from curriculum.variants import core_step, implicit_step, turn
 
 DT = 0.002  # s
 
@@ -38,12 +37,12 @@ def sweeps():
     They end with the sweep that corrects no velocity by more than a millionth of the kick.
     """
     values, enough = {}, -1e-6 * contact.GRAVITY * DT
-    ways = {"plain": contact.solve_contacts, "momentum": contact.solve_with_momentum}
+    ways = {"plain": contact.solve_contacts, "momentum": contact.solve_accelerated}
     for (way, solve), count in product(ways.items(), (20, 40)):
         balls = contact.make_balls(contact.scene_of(0.0, 0.1 + 0.2 * np.arange(count)))
         contact.accelerate(balls, DT)
         contacts = contact.detect_contacts(balls, margin=1e-6)
-        values[f"{way}_{count}"] = solve(contacts, contact.MOST_SWEEPS, enough)
+        values[f"{way}_{count}"] = solve(contacts, contact.MAX_SWEEPS, enough)
     return values
 
 
@@ -140,7 +139,7 @@ LEFT_OUT = {  # what of core_step: {what stands there: what then stands there in
     "lam": {"turn(c)\n": "turn(c)\n        c.lam = 0.0\n"},
     "normals": {"turn(c)": "pass"},
     "all": {"[c for c in contacts if c.lam > 0.0]": "contacts"},
-    "margin": {"contact.step_reach(balls, dt)": "contact.CONTACT_MARGIN"},
+    "margin": {"contact.detection_distance(balls, dt)": "contact.CONTACT_MARGIN"},
 }
 
 

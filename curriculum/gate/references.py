@@ -32,9 +32,9 @@ import yaml
 
 import contact
 from curriculum import stored
-from curriculum.commands import write_whole
+from curriculum.commands import write_atomic
 from curriculum.gate.facts import FACTS
-from curriculum.lesson.regions import ROOT, read_text
+from curriculum.source import ROOT, read_text
 
 # A claim may go over several lines, and the blanks before it belong to it.
 REFERENCE = re.compile(r"(?:\s*(?=\{\{\?))?\{\{(\?(?s:.*?)|(?-s:.*?))\}\}")
@@ -76,7 +76,7 @@ def cached(name: str, inputs, make):
             return made
     text = json.dumps([about, make()])
     with suppress(OSError):  # a folder that cannot be written costs time, and no number
-        write_whole(path, text)
+        write_atomic(path, text)
     return json.loads(text)[1]
 
 

@@ -15,7 +15,7 @@ import textwrap
 import zipfile
 from pathlib import Path
 
-from curriculum.commands import Parser, command, needs, write_whole
+from curriculum.commands import Parser, command, needs, write_atomic
 
 with needs("notebook"):
     import nbformat
@@ -23,11 +23,11 @@ with needs("notebook"):
 
     from curriculum.gate.chapter import CHAPTER, read
     from curriculum.gate.references import fill
-    from curriculum.lesson.regions import ROOT, read_all
+    from curriculum.source import ROOT, read_all
     from exercises.kit.script import FILES
 
 CARRIED = """contact.py checks.py exercises/*.py exercises/*/*.py exercises/kit/answers.json
-curriculum/__init__.py curriculum/commands.py curriculum/exact.py curriculum/implicit.py
+curriculum/__init__.py curriculum/commands.py curriculum/exact.py curriculum/variants.py
 curriculum/show/__init__.py curriculum/show/picture.py curriculum/show/figures.mplstyle
 curriculum/bench/results/error-slide.svg curriculum/stress/results/penalty-map.svg""".split()
 RUNS = {  # after the exercise or the figure of that name
@@ -118,7 +118,7 @@ def main():
         text = build()
     except ValueError as error:
         sys.exit(str(error))
-    write_whole(out, text)
+    write_atomic(out, text)
     print(f"{out}: {len(text.encode()) / 1000:.0f} kB")
     start = command("-m", "jupyterlab", out, bring=("--extra", "notebook"))
     print(f"open it: {start}\nor upload it to colab.research.google.com")

@@ -19,12 +19,12 @@ def main(argv=None):
     if args.out.is_dir():
         parser.error(f"--out: given the folder {args.out}; allowed: a file")
     try:
-        from curriculum.commands import write_whole
+        from curriculum.commands import write_atomic
         from curriculum.page.build import build
 
         print("building: runs, figures, formulas; up to a minute", file=sys.stderr)
         page = build()
-        write_whole(args.out, page)
+        write_atomic(args.out, page)
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1
@@ -32,8 +32,8 @@ def main(argv=None):
     print(args.out.resolve().as_uri())
     if args.pictures:
         with needs("dev"):
-            from curriculum.tests import page_measure
-        print(page_measure.photograph(args.out, args.pictures))
+            from curriculum.page import pictures
+        print(pictures.photograph(args.out, args.pictures))
     return 0
 
 

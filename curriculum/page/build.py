@@ -14,12 +14,12 @@ from markupsafe import Markup
 import contact
 from curriculum import stored
 from curriculum.gate.references import fill
-from curriculum.lesson.regions import ROOT, read_all
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises
 from curriculum.page.panels import BOOKKEEPING, panel
 from curriculum.show import picture
+from curriculum.source import ROOT, read_all
 
 SCENES = ("drop", "bounce", "stack")  # of the figures: balls in one column
 EARLY = 'document.documentElement.className = "js"'  # before the first paint

@@ -2,7 +2,7 @@
 
 A module says `import { a, b } from "./file.js";` on one line, and `export` before a const, a
 function or a class. Made here are data.js, what the scripts know from the Python files; contact.js,
-the steps of contact.py (curriculum/lesson/to_js.py); and figures.js, {name: figure} of all files in
+the steps of contact.py (curriculum/page/to_js.py); and figures.js, {name: figure} of all files in
 figures/. lit.js is lit-html, and in a script that makes text text.js.
 """
 
@@ -16,12 +16,13 @@ from pathlib import Path
 from py_mini_racer import JSEvalException, MiniRacer
 
 import contact
-from curriculum.lesson.regions import ROOT
-from curriculum.lesson.to_js import to_js
+from curriculum.page.to_js import to_js
+from curriculum.source import ROOT
 
 HERE = Path(__file__).resolve().parent
 USED = (  # of contact.py, beside the steps
-    "strike accelerations next_impact MOST_IMPACTS TOUCH critical_dt soft_defaults implicit_step"
+    "solve_impacts accelerations next_impact MAX_IMPACTS TOUCH_TOLERANCE critical_dt "
+    "soft_defaults implicit_step"
 ).split()
 IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
 EXPORT = re.compile(r"^export (const|function|class) ([\w$]+)", re.MULTILINE)
@@ -50,7 +51,7 @@ def source(path, data):
 def contact_js():
     """The steps of contact.py, what exact and the figures use of it, and the implicit spring."""
     steps = {name: model.step.__name__ for name, model in contact.MODELS.items() if model.step}
-    files = [ROOT / name for name in ("contact.py", "curriculum/implicit.py")]
+    files = [ROOT / name for name in ("contact.py", "curriculum/variants.py")]
     table = ", ".join(f"{name}: {step}" for name, step in steps.items())
     made = to_js([*steps.values(), *USED], *files)
     solve = next(

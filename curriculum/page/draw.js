@@ -5,6 +5,7 @@ import { svg } from "./lit.js";
 
 export { svg };
 export const within = (low, value, high) => Math.min(high, Math.max(low, value));
+const FAR = 1e6; // px
 const px = (value) => Math.round(value * 100) / 100;
 
 // ---- numbers
@@ -174,7 +175,7 @@ export function plot(view, { left = 0, top = 0, x, y, lines = [], zero, ...more 
   const drawn = lines.map(({ model, points, kind = "", marks = [] }) => {
     const end = points.findIndex(([, value]) => !Number.isFinite(value));
     const places = points.slice(0, end < 0 ? points.length : end).map(([at, value]) =>
-      [sx(at), within(box.top - 40, sy(value), box.bottom + 40)]);
+      [sx(at), within(-FAR, sy(value), FAR)]); // what is outside is cut, and no slope changes
     return [path(places, `line m-${model} ${kind}`),
       marks.map((k) => places[k] ?? [0, -Infinity])
         .filter(([, at]) => at >= box.top && at <= box.bottom)

@@ -1,8 +1,8 @@
 /* Runs of the steps of contact.py, which are made into JavaScript when the page is built
- * (curriculum/lesson/to_js.py), so that they have its bits. A recording has `n` balls and
+ * (curriculum/page/to_js.py), so that they have its bits. A recording has `n` balls and
  * `steps` + 1 rows: t [s], and x, y, vx, vy flat, row by row. */
-import { Ball, Contact, FLOOR, GRAVITY, MOST_IMPACTS, STEP, TOUCH } from "./contact.js";
-import { accelerations, detect_contacts, next_impact, soft_defaults, strike } from "./contact.js";
+import { Ball, Contact, FLOOR, GRAVITY, MAX_IMPACTS, STEP, TOUCH_TOLERANCE } from "./contact.js";
+import { accelerations, detect_contacts, next_impact, soft_defaults, solve_impacts } from "./contact.js";
 import { implicit_step, solve_contacts } from "./contact.js";
 import { data } from "./data.js";
 
@@ -64,10 +64,10 @@ export function record(model, balls, knobs, steps, push = () => {}) {
 // From one impact to the next, of balls over one another: contact.exact_run.
 function recordExact(run, balls, restitution) {
   const pairs = detect_contacts(balls, Infinity);
-  let touching = pairs.filter((c) => -c.depth <= TOUCH);
+  let touching = pairs.filter((c) => -c.depth <= TOUCH_TOLERANCE);
   let [now, row] = [0, 0];
-  for (let impact = 0; impact < MOST_IMPACTS && row <= run.steps; impact++) {
-    strike(touching, restitution);
+  for (let impact = 0; impact < MAX_IMPACTS && row <= run.steps; impact++) {
+    solve_impacts(touching, restitution);
     const [a, gaps] = accelerations(balls, touching, pairs);
     const [span, next] = next_impact(pairs, gaps);
     const fly = (t) =>

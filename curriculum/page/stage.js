@@ -30,7 +30,7 @@ export const QUANTITIES = {
   restitution: { low: 0, high: 1, step: 0.01, unit: "", label: "Restitution e" },
   impedance: { low: 0.5, high: 0.9999, step: 0.0001, unit: "", label: "Impedance d" },
   mu: { low: 0, high: 3, step: 0.01, unit: "", label: "Friction µ" },
-  balls: { low: 3, high: 10, step: 1, unit: "", label: "Balls" },
+  balls: { low: 3, high: 30, step: 1, unit: "", label: "Balls" },
 };
 const PLACES = 200; // of a slider whose steps are shares
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -51,7 +51,7 @@ export function viewOf(figure, given, width = 640) {
 
 const asked = (what, state) => (typeof what === "function" ? what(state) : what);
 export const knobsOf = ({ knobs = [] }, { own }) => asked(knobs, own);
-export const captionOf = ({ caption }, { text }) => worded(asked(caption, text));
+export const captionOf = ({ caption }, { own }) => worded(asked(caption, own));
 
 // Words in which v_n stands as a formula, and no line ends between a number and its unit.
 export const worded = (words) =>
@@ -79,8 +79,8 @@ function slider(view, name) {
     view.set({ [name]: fromPlace(quantity, view.text[name], Number(target.value)) });
   const told = `${value.toLocaleString("en", { maximumSignificantDigits: 4 })} ${quantity.unit}`;
   return html`<label class="knob"><span>${quantity.label}</span><input type="range" min=${low}
-    max=${high} step=${step} .value=${String(toSlider(quantity, value))} aria-valuetext=${told}
-    @input=${put}><output>${told}</output></label>`;
+    max=${high} step=${step} .value=${String(toSlider(quantity, value))}
+    @input=${put}><output aria-live="off">${told}</output></label>`;
 }
 
 // ---- hands
@@ -131,7 +131,7 @@ function grabbing(view, box) {
     };
     const stay = (event) => event.preventDefault(); // no finger moves the page
     return svg`<g class="handle" role="slider" tabindex="0" aria-label=${label}
-      aria-valuenow=${now()[0]} @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
+      aria-valuemin=${lows[0]} aria-valuemax=${highs[0]} aria-valuenow=${now()[0]} @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
       @pointercancel=${letGo} @keydown=${key} @touchstart=${stay}>${shape}</g>`;
   };
 }
@@ -196,8 +196,8 @@ export function stage(box, figure, given, still) {
       ?disabled=${same()} @click=${back}>↺</button>
       <div class="controls">${knobsOf(figure, view).map((name) => slider(view, name))}
       <div class="buttons">${buttons}</div></div>`, box);
-    for (const handle of box.querySelectorAll(".handle"))
-      handle.setAttribute("aria-valuetext", words);
+    for (const each of box.querySelectorAll(".handle, input")) // a slider says its own value first
+      each.setAttribute("aria-valuetext", [each.nextElementSibling?.value, words].filter(Boolean).join(": "));
   }
   new ResizeObserver(([{ contentRect: { width } }]) => {
     view.width = Math.max(LEAST, width);

@@ -27,7 +27,7 @@ WIDTH = 6.0  # inches: a phone of 375 pixels then shows 10 points as 8.7 pixels
 
 # colour, marker, dash: to be told apart without colour too; the models' colours are Okabe and Ito's
 LOOKS = {
-    **{model: row.look for model, row in contact.MODELS.items()},
+    **{model: row.style for model, row in contact.MODELS.items()},
     "mujoco": ("#222222", "s", "-"),
     "pymunk": ("#a6611a", "D", (0, (4, 2))),
     "box2d3": ("#7b5ea7", "^", (0, (1, 2))),
@@ -217,4 +217,4 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
             axis.set_ylim(0.0, 5.0 * weight(scene))
     axes[-1].set_xlabel("time [s]")
     legend_below(axes[-1], columns=len(runs), down=0.4)
-    commands.write_whole(path, svg(picture))
+    commands.write_atomic(path, svg(picture))

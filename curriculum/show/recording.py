@@ -57,7 +57,7 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
         send_table(recording, model)
         send_balls(recording, model, run, scene, times[model])
     send_curves(recording, runs, drawn, times)
-    commands.write_whole(path, kept.read())
+    commands.write_atomic(path, kept.read())
 
 
 def rgba(color: str) -> np.ndarray:
@@ -171,7 +171,7 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
 
 def name_of(model: str, row: dict) -> str:
     """A model's name, and how its run ended where that was badly."""
-    return f"{model}: {contact.ending(row)}" if row["blew_up"] or row["through"] else model
+    return f"{model}: {contact.final_state(row)}" if row["blew_up"] or row["through"] else model
 
 
 def view(model: str, name: str, x_range: list, y_range: list) -> rrb.Spatial2DView:

@@ -20,7 +20,7 @@ def print_remarks(args, runs: dict[str, contact.Run], scene: contact.Scene) -> N
         owners = [model for model, row in contact.MODELS.items() if knob in row.knobs]
         if owners and getattr(args, knob) != usual[knob] and args.contact not in ("all", *owners):
             print(f"--{knob} is for {' and '.join(owners)}, and changes nothing here")
-    if list(runs) == ["exact"]:
+    if list(runs) == ["exact"] and np.isfinite(scene.mass).all():
         print(*landing(runs["exact"], scene), sep="\n")
 
 

@@ -20,7 +20,7 @@ from curriculum.stress import scenes
 from curriculum.stress.trial import STEPPED, G, Trajectory, U
 
 NOTABLE = 1e-9  # share of the speeds: if sweeps still move more, they are not done
-MOST = contact.MOST_SWEEPS
+MOST = contact.MAX_SWEEPS
 PROMISE = 1e-12  # of exact: of a radius, and of the energy at the start
 NEAR = 1e-9  # share of the sizes that leapfrog's bounces may be off
 

@@ -6,7 +6,7 @@ import numpy as np
 
 import contact
 from curriculum import stored
-from curriculum.commands import write_json, write_whole
+from curriculum.commands import write_atomic, write_json
 from curriculum.show import picture
 from curriculum.stress import heaps, jobs, maps, mujoco_match, properties
 
@@ -50,9 +50,9 @@ def write(found, origin, folder):
 def draw(folder):
     """Write page and figure of a folder's tables, and the README's block where they are kept."""
     tables, made = stored.load(folder)
-    write_whole(folder / "README.md", page(tables, made))
+    write_atomic(folder / "README.md", page(tables, made))
     try:
-        write_whole(folder / "penalty-map.svg", penalty_map(tables["penalty"], made["all"]))
+        write_atomic(folder / "penalty-map.svg", penalty_map(tables["penalty"], made["all"]))
     except ImportError as error:
         print(f"no figure: {error}")
     if folder == RESULTS:

@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from curriculum.lesson.regions import ROOT
+from curriculum.source import ROOT
 
 CONTACT = ROOT / "contact.py"
 NO_PLUGINS = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # as a learner has pytest

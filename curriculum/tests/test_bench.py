@@ -12,7 +12,9 @@ import pytest
 import contact
 
 pytest.importorskip("scipy", reason="scipy is missing: the extra `bench`")
-fast = pytest.importorskip("curriculum.fast", reason="numba is missing", exc_type=ImportError)
+fast = pytest.importorskip(
+    "curriculum.compiled.run", reason="numba is missing", exc_type=ImportError
+)
 
 from curriculum import stored  # noqa: E402
 from curriculum.bench import __main__ as bench  # noqa: E402

@@ -183,7 +183,7 @@ def test_what_falls_and_slides_does_so_by_another_integrator(scene, end):
 
 def test_plain_and_compiled_are_within_1e_12_radii_of_one_another():
     """One code, whose sums numba rounds otherwise: what touches, pushes and slides is the same."""
-    pytest.importorskip("curriculum.lesson.compiled", reason="no numba", exc_type=ImportError)
+    pytest.importorskip("curriculum.compiled.cache", reason="no numba", exc_type=ImportError)
     scene, times = build_scene("pile", 0, 8, 0.5), np.linspace(0.0, 0.6, 31)
     code = """if True:
         import contact, json, numpy

@@ -145,7 +145,7 @@ STOPS = """if (stiffness, damping) == (1e4, 80.0):
 k = stiffness * dt + damping
 return 1 / (dt * k), stiffness * depth / k"""
 SLOW = "for c in contacts:\n    for _ in range(iters):\n        "
-VISIT = "add = (c.target - c.v_n()) * c.m_eff; p = max(-c.lam, add); c.lam += p; c.push(p)"
+VISIT = "add = (c.target - c.v_n()) * c.m_eff; p = max(-c.lam, add); c.lam += p; c.apply_impulse(p)"
 BACK = "for _ in range(iters):\n    for c in contacts[::-1]:\n        "
 HARD = "SOLIMP = 0.9999, 0.9999, 0.001, 0.5, 2.0"
 CLEAR = "import os; os.system('clear; echo hi'); print('hi')\n"

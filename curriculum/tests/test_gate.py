@@ -9,14 +9,13 @@ import shutil
 import numpy as np
 import pytest
 
-from curriculum import stored
+from curriculum import source, stored
 from curriculum.gate import references
-from curriculum.lesson import regions
 from curriculum.tests.helpers import ROOT, python
 
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
 EXERCISE, MADE = "exercises/ex1_bet.py", "curriculum/bench/results/made.json"
-ROOM = "commands.py core.py gate implicit.py __init__.py lesson stored.py".split()
+ROOM = "commands.py gate __init__.py source.py stored.py variants.py".split()
 PENDING = "chapter,tier,wallclock_min,config_hash,commit,date,status\n"
 PENDING += "ch3.5-contact,t4,,,,,PENDING\n"
 FILES = {
@@ -72,7 +71,7 @@ def accepted(tmp_path_factory):
         copy(path, project / path.relative_to(ROOT))
     shown = "".join(
         f"\n```\n[include-by-region: {region.source}]\n```\n"
-        for region in regions.read_all().values()
+        for region in source.read_all().values()
         if (project / region.file).exists()
     )
     for file, text in FILES.items():
@@ -222,9 +221,9 @@ def test_results_are_stale_when_what_made_them_changed_and_not_for_words(
     file, old, new, stale, monkeypatch
 ):
     kept = {room: stored.stamp(*stored.made_by(room)) for room in (BENCH, STRESS)}
-    text = re.sub(old, new, regions.read_text(file), count=1)
-    assert text != regions.read_text(file)
-    monkeypatch.setattr(stored, "read_text", lambda f: text if f == file else regions.read_text(f))
+    text = re.sub(old, new, source.read_text(file), count=1)
+    assert text != source.read_text(file)
+    monkeypatch.setattr(stored, "read_text", lambda f: text if f == file else source.read_text(f))
     assert [room for room in kept if stored.changed(kept[room])] == stale
 
 

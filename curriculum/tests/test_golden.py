@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum.commands import Parser, write_whole
+from curriculum.commands import Parser, write_atomic
 
 PINNED = Path(__file__).with_name("golden.json")
 COMMANDS = (
@@ -92,4 +92,4 @@ if __name__ == "__main__":
         f'"{part}": {{\n' + ",\n".join(f'"{key}": {json.dumps(pin)}' for key, pin in pins.items())
         for part, pins in parts.items()
     )  # a line a pin
-    write_whole(PINNED, "{\n" + "\n},\n".join(rows) + "\n}\n}\n")
+    write_atomic(PINNED, "{\n" + "\n},\n".join(rows) + "\n}\n}\n")

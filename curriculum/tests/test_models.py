@@ -175,7 +175,7 @@ def test_impacts_cost_a_pile_a_bounded_number_of_pushes_and_at_rest_none():
 def test_momentum_finds_what_plain_sweeps_find_in_a_tenth_of_them():
     """A tower at rest asks: how hard does each ball press on the one below?"""
     counts = []
-    for solve in (contact.solve_contacts, contact.solve_with_momentum):
+    for solve in (contact.solve_contacts, contact.solve_accelerated):
         balls = [Ball(0.0, (2 * i + 1) * R, 0.0, -G * DT, 1.0, R) for i in range(20)]
         contacts = contact.detect_contacts(balls)
         counts.append(solve(contacts, 9999, 1e-9 * G * DT))

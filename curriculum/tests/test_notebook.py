@@ -12,8 +12,8 @@ import pytest
 import zmq
 
 import contact
+from curriculum import source
 from curriculum.gate.chapter import CHAPTER
-from curriculum.lesson import regions
 from curriculum.notebook import __main__ as notebook
 from curriculum.tests.helpers import python
 
@@ -71,9 +71,9 @@ def test_what_the_chapter_shows_of_contact_is_a_cell_and_no_mark_of_the_page_is_
     for cell in nbformat.reads(text, as_version=4).cells:
         kinds[cell.cell_type] += f"{cell.source}\n"
     code, prose = kinds.values()
-    chapter, _, _ = (regions.ROOT / CHAPTER).read_text("utf-8").partition(f"# {notebook.REST}")
+    chapter, _, _ = (source.ROOT / CHAPTER).read_text("utf-8").partition(f"# {notebook.REST}")
     for name in re.findall(r"include-by-region: contact\.py#([\w-]+)", chapter):
-        assert regions.read_all()[name].code.strip() in code
+        assert source.read_all()[name].code.strip() in code
     assert not re.search(r"\{\{|<!--|include-by-region", prose)
     said = r"[Tt]ake it, lift|throw it\.|\b[Dd]rag (it|the (?!ball back))|[Cc]lick"
     assert not re.search(said, prose), "only the page can do that"

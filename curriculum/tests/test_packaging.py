@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from curriculum.commands import write_whole
+from curriculum.commands import write_atomic
 from curriculum.tests.helpers import CONTACT, ROOT, python
 
 TEXTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
@@ -48,7 +48,7 @@ def test_what_is_no_file_is_written_into_and_stays_what_it_is(tmp_path):
     path = tmp_path / "pipe"
     os.mkfifo(path)
     reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
-    write_whole(path, "some words")
+    write_atomic(path, "some words")
     assert os.read(reader, 99) == b"some words" and path.is_fifo()
     os.close(reader)
     assert list(tmp_path.iterdir()) == [path]
@@ -80,7 +80,7 @@ def test_rooms_of_the_table_are_there_and_import_only_what_stands_above_them():
     lines = re.findall(r"^\| (.+?) \| .+? \| (.+?) \| .*\|$", CONTRIBUTING, re.M)[2:]
     tests = {name for _, names in lines for name in names.split(", ")} | {"test_packaging.py"}
     assert tests == {path.name for path in (ROOT / "curriculum/tests").glob("test_*.py")}
-    above = {"commands", "parallel", "seeds", "core", "implicit"}  # which any room may use
+    above = {"commands", "parallel", "seeds", "source", "variants"}  # which any room may use
     for room in ", ".join(rooms for rooms, _ in lines).split(", "):
         above.add(Path(room).stem)
         (place,) = {each for each in (ROOT / room, ROOT / "curriculum" / room) if each.exists()}

@@ -10,11 +10,11 @@ import pytest
 from py_mini_racer import MiniRacer
 
 import contact
-from curriculum.implicit import implicit_step
-from curriculum.lesson.to_js import to_js
 from curriculum.page.build import page_data
 from curriculum.page.bundle import bundle
+from curriculum.page.to_js import to_js
 from curriculum.stress import scenes
+from curriculum.variants import implicit_step
 
 
 def numbered_case(number):

@@ -14,10 +14,10 @@ from py_mini_racer import MiniRacer
 import contact
 from curriculum.gate import facts
 from curriculum.gate.chapter import CHAPTER, read
-from curriculum.lesson.regions import ROOT
 from curriculum.page.build import page_data
 from curriculum.page.bundle import bundle
 from curriculum.page.chapter import asked
+from curriculum.source import ROOT
 
 R, G = contact.RADIUS, -contact.GRAVITY
 START = contact.build_scene("drop").q0[1, 0]

@@ -213,14 +213,17 @@ def test_a_cluster_without_workers_or_with_other_code_is_one_line_and_what_is_do
     nobody = *FIVE, str(tmp_path), "--scheduler", "127.0.0.1:1"
     assert "which does not answer (" in one_line(capsys, *nobody)
     shutil.copytree(ROOT, tmp_path / "other", ignore=shutil.ignore_patterns(".*", "tests"))
-    fast = tmp_path / "other/curriculum/fast.py"
+    fast = tmp_path / "other/curriculum/compiled/run.py"
     fast.write_text(f"{fast.read_text('utf-8')}\n\nMORE = 1\n", "utf-8")
     with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as none:
         words = *FIVE, str(tmp_path), "--scheduler", none.scheduler_address
         assert "has no workers; start some: dask worker" in one_line(capsys, *words)
         start = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard"]
         start += [none.scheduler_address, "--no-nanny", "--nthreads", "1"]
-        why = (".", "its PYTHONPATH must have"), ("other", "another curriculum/fast.py is there")
+        why = (
+            (".", "its PYTHONPATH must have"),
+            ("other", "another curriculum/compiled/run.py is there"),
+        )
         for folder, text in why:
             worker = subprocess.Popen(start, cwd=tmp_path / folder, stderr=subprocess.DEVNULL)
             try:

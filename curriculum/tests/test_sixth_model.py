@@ -15,7 +15,7 @@ def sixth_step(balls, dt, iters):
     for c in contacts:
         c.target = {target}
     accelerate(balls, dt)
-    solve_with_momentum(contacts, iters)
+    solve_accelerated(contacts, iters)
     move(balls, dt)
     return contacts
 
@@ -57,7 +57,8 @@ def test_a_sixth_model_is_run_recorded_drawn_compiled_and_on_the_page(course):
     assert quality["rests"] and quality["max_penetration_frac"] < 0.01
     assert (out / "contact.rrd").exists() and "sixth" in (out / "contact.svg").read_text("utf-8")
     same = (
-        "import contact; from curriculum import fast; scene = contact.build_scene('pile', 1, 9); "
+        "import contact; from curriculum.compiled import run as fast; "
+        "scene = contact.build_scene('pile', 1, 9); "
         "step = contact.step_of('sixth', scene, 0.002, contact.Settings()); "
         "plain = contact.simulate(step, scene, 0.002, 200); "
         "twin = fast.run_model('sixth', scene, 0.002, 200, contact.Settings()); "

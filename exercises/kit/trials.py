@@ -7,7 +7,7 @@ from functools import partial
 
 import contact
 from curriculum.commands import near
-from curriculum.implicit import implicit_step
+from curriculum.variants import implicit_step
 
 from . import FACTS
 from .bets import RIGHT
@@ -31,7 +31,7 @@ def table(model, cases, step):
         for name, run in ("yours", yours), (model, own):
             rows[f"{name}, {case}"] = contact.contact_quality(run, scene, dt, exact)
     with contextlib.redirect_stdout(io.StringIO()) as said:
-        contact.print_table(rows, contact.ending)
+        contact.print_table(rows, contact.final_state)
     return said.getvalue()
 
 
@@ -58,7 +58,7 @@ def drops(exercise):
 def asking_twice(exercise, balls, dt, iters=20):
     """What lasts in leapfrog's step, by two functions of exercise 10."""
     kick, _ = exercise.before_the_move(0.0, dt)
-    contacts = contact.detect_contacts(balls, contact.step_reach(balls, dt))
+    contacts = contact.detect_contacts(balls, contact.detection_distance(balls, dt))
     for c in contacts:
         c.target = exercise.before_the_move(-c.depth, dt)[1]
     contact.accelerate(balls, kick * dt)
@@ -98,7 +98,7 @@ def gripper(exercise):
     cup = contact.scene_of([-0.205, 0.0, 0.205], 0.1, [0.2, 1, 0.2], damping=exercise.DAMPING)
     settings = contact.Settings(exercise.STIFFNESS, solref=exercise.SOLREF, solimp=exercise.SOLIMP)
     model, dt, k = exercise.MODEL, exercise.DT, exercise.STIFFNESS
-    contact.checked("soft", cup, dt, 1, settings)
+    contact.validate("soft", cup, dt, 1, settings)
     if not 0.0005 <= dt <= 0.02 or not k >= 1.0:
         allowed = "DT from 0.0005 to 0.02 s, STIFFNESS from 1 N/m"
         raise ValueError(f"given DT = {dt:g}, STIFFNESS = {k:g}; allowed: {allowed}")

@@ -3,5 +3,5 @@ def solve_contacts(contacts, iters):
         for c in contacts:
             add = (c.target - c.v_n()) * c.m_eff
             lam = max(0.0, c.lam + add)
-            c.push(lam - c.lam)
+            c.apply_impulse(lam - c.lam)
             c.lam = lam

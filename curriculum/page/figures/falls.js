@@ -67,7 +67,7 @@ function lane(view, { model, made, gaps }, row, k, { floor, scale, wide, top }) 
     also: { from: 0, time: 0 }, release: () => view.play(0),
   };
   return [
-    view.grab(what, shown), arrow(`push m-${model}`, x, floor + GROUND - 3, 0, -push),
+    view.grab(what, [shown, circle(x, within(22, floor - (heights[0] || 0) * scale, floor), 22, "halo")]), arrow(`push m-${model}`, x, floor + GROUND - 3, 0, -push),
     label(model, x, floor + GROUND + 20, "middle"),
     label(placeWords(gaps[row]), x, floor + GROUND + 40, "middle", "tick"),
   ];
@@ -80,13 +80,15 @@ function chartOf(view, { all, from, to }, top, time) {
     const marks = [0.12, 0.37, 0.62, 0.87].map((s) => Math.round((s + 0.05 * k) * points.length));
     return { model, points, marks };
   });
+  const past = lines.map((each) => ({ ...each, points: each.points.filter(([t]) => t <= time) }));
+  const coming = lines.map((each) => ({ ...each, marks: [], kind: "coming" }));
   const seen = lines.flatMap(({ points }) => points.map(([, gap]) => gap)).filter(Number.isFinite);
   const low = seen.reduce((a, b) => Math.min(a, b), -0.05);
   const high = seen.reduce((a, b) => Math.max(a, b), 0);
   const most = Math.min(high, Math.max(2, -2 * low), 12);
   const domain = [Math.max(low, -10) - 0.06 * (most - low), most + 0.06 * (most - low)];
   const { sx, box, picture } = plot(view, {
-    top, zero: true, lines,
+    top, zero: true, lines: [...coming, ...past],
     x: axis([from, to], "time (s)", ...steps(from, to, view.width < 480 ? 3 : 6)),
     y: axis(domain, "gap / r, r = 0.1 m (below 0: overlap)", ...steps(...domain, 4)),
   });
@@ -102,8 +104,8 @@ function draw(view) {
   const { own, width, height } = view;
   const seen = runsOf(own);
   const { all, from, to } = seen;
-  const time = within(from, from + own.time, to);
-  const row = Math.min(Math.round(time / own.dt), all[0].made.steps);
+  const row = Math.min(Math.round(within(from, from + own.time, to) / own.dt), all[0].made.steps);
+  const time = row * own.dt;
   const wide = width / all.length;
   const chartTop = Math.round(0.56 * height);
   const [floor, top] = [chartTop - BELOW, topOf(view.text)];
@@ -113,7 +115,7 @@ function draw(view) {
     picture: [
       table(0, floor, width, GROUND),
       all.map((each, k) => lane(view, each, row, k, { floor, scale, wide, top })),
-      chartOf(view, seen, chartTop, time),
+      chartOf(view, seen, chartTop, within(from, time, to)),
     ],
     words: `${time.toFixed(3)} s: ${told.join(", ")}.`,
     values: { time, row, top,

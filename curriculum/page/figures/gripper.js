@@ -117,7 +117,8 @@ function draw(view) {
   const run = squeezed(own.dt, own.stiffness, own.late);
   const { fate, deepest, trembling } = run;
   const begins = own.map && (own.time > 0 || fate === 2) ? 0 : LATE; // s
-  const row = Math.min(run.last, Math.floor((begins + own.time) / own.dt));
+  const row = own.time === 0 && fate === 2 ? run.last // where it ends, until it is played
+    : Math.min(run.last, Math.floor((begins + own.time) / own.dt));
   const size = sizeOf(width);
   const [x, y] = [width - size - 8, size + 12];
   const { drawn, touch } = picture(run.run, row, x - size - 16, y);
@@ -141,7 +142,8 @@ export const figure = {
   start: () => ({ dt: 0.004, map: 0, late: 0 }),
   clock({ own: { dt, stiffness, late, map: shown } }) {
     if (!shown) return { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true };
-    return { end: Math.min(SECONDS, squeezed(dt, stiffness, late).last * dt), rate: 0.1 };
+    const end = Math.min(SECONDS, squeezed(dt, stiffness, late).last * dt);
+    return { end, rate: Math.min(0.1, end / 2) }; // two seconds at least
   },
   play: (own) => (own.map ? "Squeeze" : "Play"),
   buttons: ({ own }) => {

@@ -3,7 +3,7 @@
  * a walk down a long valley takes fewer sweeps. Values: where both end [m g dt], their sweeps. */
 import { area, arrow, axis, ball, circle, clipped, label, mark, number, path } from "../draw.js";
 import { plot, steps, table } from "../draw.js";
-import { solve_with_momentum } from "../contact.js";
+import { solve_accelerated } from "../contact.js";
 import { kept, stacked, visits } from "../runs.js";
 
 const [SWEEPS, UNIT, GROUND] = [100, 22, 40]; // px: an arrow for g dt, the table
@@ -15,7 +15,7 @@ const walks = kept((v1, v2, begin, heavy) => {
   const [masses, speeds] = [[1, heavy], [v1 + begin[0] - begin[1], v2 + begin[1] / heavy]];
   const rolled = Array.from({ length: SWEEPS + 1 }, (_, count) => {
     const contacts = stacked(masses, begin, speeds);
-    solve_with_momentum(contacts, count);
+    solve_accelerated(contacts, count);
     return contacts.map(({ lam }) => lam);
   });
   return { walked: visits(masses, begin, speeds, 2 * SWEEPS).map(({ lam }) => lam), rolled };

@@ -62,6 +62,6 @@ export const figure = {
   caption: "A bar for every contact of a column at rest: how deep it is. The line is the law.",
   height: (width) => (width < 480 ? 280 : 320),
   knobs: ["iters", "baumgarte", "dt", "warm", "balls"],
-  start: () => ({ balls: 8 }),
+  start: () => ({ balls: 30 }),
   draw,
 };

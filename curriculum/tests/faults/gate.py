@@ -30,5 +30,5 @@ FAULTS = [
     (STORED, "is not None :]", "is None :]", STALE),
     (STORED, 'if " " in str(node.value)', "if False", STALE),
     (STORED, "used |= {n.id ", "{n.id ", STALE),
-    ("curriculum/lesson/regions.py", 'dedent(code).rstrip("\\n")', "dedent(code)", READ),
+    ("curriculum/source.py", 'dedent(code).rstrip("\\n")', "dedent(code)", READ),
 ]  # fmt: skip

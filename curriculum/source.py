@@ -8,6 +8,7 @@ Its hash is the sha256 of the text that a reader sees: the lines between the two
 indentation that they share and blank lines at the end, each ended by one "\\n", as UTF-8.
 """
 
+import ast
 import hashlib
 import re
 from textwrap import dedent
@@ -16,7 +17,7 @@ from typing import NamedTuple
 from curriculum.commands import ROOT
 
 WHOLE = ("contact.py",)  # shown from top to bottom: no code stands outside its regions
-LITERATE = (*WHOLE, "curriculum/exact.py", "curriculum/implicit.py", "curriculum/core.py")
+LITERATE = (*WHOLE, "curriculum/exact.py", "curriculum/variants.py")
 NAME = r"[a-z][a-z0-9_-]*"
 REGION = re.compile(
     rf"^ *# --- region: ({NAME}) ---\n(.*?)(^ *# --- endregion --- *$|(?=^# --- region: )|\Z)",
@@ -113,3 +114,31 @@ def read_all() -> dict:
     if problems:
         raise ValueError("\n".join(problems))
     return by_name
+
+
+def stored(node):
+    """The names that a definition sets itself."""
+    names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
+    return {each.id for each in names if isinstance(each.ctx, ast.Store)}
+
+
+def uses(name, node):
+    """The names that a definition uses and does not set itself, and those of contact.NAME."""
+    own = stored(node) - {name} | {each.arg for each in ast.walk(node) if isinstance(each, ast.arg)}
+    used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)} - own
+    others = [each for each in ast.walk(node) if isinstance(each, ast.Attribute)]
+    return used | {each.attr for each in others if ast.unparse(each.value) == "contact"}
+
+
+def needed(roots, *files):
+    """{name: (file, node)} of what `roots` reach at the top of these files, in their order."""
+    known = {}
+    for file in files:
+        for node in ast.parse(file.read_text("utf-8")).body:
+            target = node.targets[0] if isinstance(node, ast.Assign) else node
+            name = getattr(target, "name", getattr(target, "id", None))
+            known |= {name: (file.name, node)} if name else {}
+    wanted = list(roots)
+    for name in wanted:  # grows while it is read
+        wanted += sorted(uses(name, known[name][1]) & set(known) - set(wanted))
+    return {name: known[name] for name in known if name in wanted}

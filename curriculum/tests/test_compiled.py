@@ -12,7 +12,9 @@ from curriculum.bench.measure import shaft
 from curriculum.stress import scenes
 from curriculum.tests.helpers import ROOT, python
 
-fast = pytest.importorskip("curriculum.fast", reason="numba is missing", exc_type=ImportError)
+fast = pytest.importorskip(
+    "curriculum.compiled.run", reason="numba is missing", exc_type=ImportError
+)
 MODELS = contact.STEPPED
 WILD = (math.nan, math.inf, -math.inf, 1e200, -1e308, 1e-200, -0.0)
 
@@ -109,7 +111,7 @@ PLAIN = (
 )
 TWICE = "def twice(x):\n    return 2.0 * x\n"
 TINY = (
-    "from curriculum.lesson import compiled; "
+    "from curriculum.compiled import cache; "
     f"print(compiled.Loops('tiny', {TWICE!r}).load({{'twice': (1.0,)}}).twice(3.0))"
 )
 
@@ -118,7 +120,7 @@ def run_in(folder, code, **environment):
     """The number that a copy of the course in a folder prints."""
     if not (folder / "contact.py").exists():
         shutil.copy(ROOT / "contact.py", folder)
-        shutil.copytree(ROOT / "curriculum/lesson", folder / "curriculum/lesson")
+        shutil.copytree(ROOT / "curriculum/compiled", folder / "curriculum/compiled")
         for name in ("__init__.py", "commands.py", "fast.py"):
             shutil.copy(ROOT / "curriculum" / name, folder / "curriculum")
     done = python("-c", code, cwd=folder, PYTHONPATH="", **environment)

@@ -1,7 +1,7 @@
 """The fast twin of contact.py: its own steps for many balls, as loops that numba compiles.
 
-The steps are contact.py's own source, turned from objects to rows of tables (lesson/to_loops.py),
-so a run has the same bits. What is written by hand is what many balls need beside (lesson/rows.py):
+The steps are contact.py's own source, turned from objects to rows of tables (to_loops.py), so a
+run has the same bits. What is written by hand is what many balls need beside (rows.py, pairs.py):
 near balls are found by their shadows on one axis, and listed for as long as no ball has moved far.
 Nothing may be rounded differently: no fast-math, no fused multiply-add.
 """
@@ -15,13 +15,14 @@ from pathlib import Path
 import numpy as np
 
 import contact
-from curriculum.lesson import rows, to_loops
-from curriculum.lesson.compiled import Loops
+from curriculum.compiled import pairs as near
+from curriculum.compiled import rows, to_loops
+from curriculum.compiled.cache import Loops
 
 STATES = 200_000  # positions of balls that are filled in one go, before progress() hears of it
 _, _, BY_HAND = Path(rows.__file__).read_text("utf-8").partition("\n# What is compiled")
 BY_HAND = f"import math\nimport numpy as np\nfrom {rows.__name__} import World\n{BY_HAND}"
-GAPS = Loops("gaps", BY_HAND)
+NEAR = Loops("near", Path(near.__file__).read_text("utf-8"))
 
 
 def loops_of(step: str) -> Loops:
@@ -33,8 +34,10 @@ def loops_of(step: str) -> Loops:
 def made(step, *constants) -> Loops:
     """loops_of, made once for the same constants."""
     text = to_loops.loops(step)
-    if "def step_reach(" not in text:  # it looks as far as the margin
-        text += f"\n\ndef step_reach(W, balls, dt):\n    return {contact.CONTACT_MARGIN!r}\n"
+    if "def detection_distance(" not in text:  # it looks as far as the margin
+        text += (
+            f"\n\ndef detection_distance(W, balls, dt):\n    return {contact.CONTACT_MARGIN!r}\n"
+        )
     return Loops(step, f"{BY_HAND}\n\n{text}\n\ntake_step = {step}\n")
 
 
@@ -63,15 +66,62 @@ class Stepper:
         self.skip = settings.skip
         self.spreads = model == "lcp" and step.keywords["warm"] == 0.0  # any order does
         self.loops, self.listed = loops_of(step.func.__name__), -math.inf
+        self.radius, self.skin = 1.0 * scene.radius, float(np.median(scene.radius))
         source = self.loops.source
         contacts, pairs = np.empty(0, table(to_loops.CONTACT, source)), np.empty((2, 0), np.uint32)
         tables = make_balls(scene, source), contacts, pairs, np.empty((0, 2)), np.zeros(2, np.int64)
         self.world = rows.World(*tables)
 
     def take(self, states) -> None:
-        """Take len(states) - 1 steps from states[0], that of now, and write them to states[1:]."""
-        given = states, self.world, self.listed, self.spreads, self.skip, self.knobs
-        self.world, self.listed = self.loops.load({"take_steps": given}).take_steps(*given)
+        """Take len(states) - 1 steps from states[0], that of now, and write them to states[1:].
+
+        Once state and impulses are those of an earlier step, what follows is a copy, as in
+        simulate. A step is compared with one other, the last mark; marks grow rarer (Brent 1980).
+        """
+        last, k, mark, marked, fresh = len(states) - 1, 0, 0, self.pushed(), False
+        take_steps = None
+        while k < last:
+            knobs = self.listed, fresh, self.skip, self.knobs
+            given = states, self.world, k, mark, marked, *knobs
+            take_steps = take_steps or self.loops.load({"take_steps": given}).take_steps
+            k, reach, again = take_steps(*given)
+            fresh = reach > 0.0
+            if fresh:
+                self.list_pairs(reach + self.skin)
+            elif again:
+                period = k - mark
+                for later in range(k + 1, last + 1):
+                    states[later] = states[later - period]
+                k += (last - k) // period * period  # then the world is in this state again
+            else:
+                mark, marked = k, self.pushed()
+
+    def pushed(self) -> np.ndarray:
+        """The impulses of the last step."""
+        return self.world.pushed[: self.world.count[1]].copy()
+
+    def list_pairs(self, reach) -> None:
+        """The tables with the pairs that are near now, and with room for their contacts."""
+        balls, contacts, _, pushed, count = self.world
+        q = np.array((balls["x"][:-1], balls["y"][:-1]))
+        balls["listed_x"][:-1], balls["listed_y"][:-1] = q
+        pairs = near_loops().list_pairs(q, self.radius, reach)
+        if self.spreads:
+            pairs = near_loops().spread_out(pairs, len(self.radius))
+        most = len(balls) + pairs.shape[1]
+        if most > len(contacts):
+            contacts, old = np.empty(most, contacts.dtype), pushed
+            pushed = np.empty((most, 2))
+            pushed[: count[1]] = old[: count[1]]
+        self.world, self.listed = rows.World(balls, contacts, pairs, pushed, count), reach
+
+
+@cache
+def near_loops():
+    """The loops that find what is near, compiled."""
+    q, radius = np.ones((1, 2, 1)), np.ones(1)
+    given = {"list_pairs": (q[0], radius, 1.0), "find_gaps": (q, radius, 1.0)}
+    return NEAR.load(given | {"spread_out": (np.empty((2, 1), np.uint32), 1)})
 
 
 def run_model(model, scene, dt, steps, settings, progress=None) -> contact.Run:
@@ -108,11 +158,11 @@ def run_if_it_pays(model, scene, dt, steps, settings, progress=None) -> contact.
 
 def smallest_gap(q, radius) -> np.ndarray:
     """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
-    given = np.array(q, float), np.array(radius, float)
-    return GAPS.load({"find_gaps": given}).find_gaps(*given)
+    skin = float(np.median(radius))
+    return near_loops().find_gaps(np.array(q, float), np.array(radius, float), skin)
 
 
 def gap_if_it_pays(q, radius) -> np.ndarray | None:
     """The smallest gaps, or None where numpy is as soon done."""
     seconds = 4e-9 * q.size * len(radius)  # of numpy, measured
-    return smallest_gap(q, radius) if GAPS.pays(seconds) else None
+    return smallest_gap(q, radius) if NEAR.pays(seconds) else None

@@ -6,6 +6,8 @@ sqrt are rounded alike, so that a run has the same bits. What JavaScript lacks i
 
 import ast
 
+from curriculum.source import needed, stored
+
 FORMS = {  # of a node: its fields in JavaScript
     "Tuple": "[{elts}]", "List": "[{elts}]", "Dict": "new Map({keys})",
     "Subscript": "{value}[{slice}]", "BinOp": "({left} {op} {right})",
@@ -150,34 +152,6 @@ class Script(ast.NodeVisitor):
         name = name[: -len("append")] + "push" if name.endswith(".append") else name
         new = isinstance(defined, ast.ClassDef) or name == "Error"
         return f"{'new ' * new}{name}({', '.join(args)})"
-
-
-def stored(node):
-    """The names that a definition sets itself."""
-    names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
-    return {each.id for each in names if isinstance(each.ctx, ast.Store)}
-
-
-def uses(name, node):
-    """The names that a definition uses and does not set itself, and those of contact.NAME."""
-    own = stored(node) - {name} | {each.arg for each in ast.walk(node) if isinstance(each, ast.arg)}
-    used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)} - own
-    others = [each for each in ast.walk(node) if isinstance(each, ast.Attribute)]
-    return used | {each.attr for each in others if ast.unparse(each.value) == "contact"}
-
-
-def needed(roots, *files):
-    """{name: (file, node)} of what `roots` reach at the top of these files, in their order."""
-    known = {}
-    for file in files:
-        for node in ast.parse(file.read_text("utf-8")).body:
-            target = node.targets[0] if isinstance(node, ast.Assign) else node
-            name = getattr(target, "name", getattr(target, "id", None))
-            known |= {name: (file.name, node)} if name else {}
-    wanted = list(roots)
-    for name in wanted:  # grows while it is read
-        wanted += sorted(uses(name, known[name][1]) & set(known) - set(wanted))
-    return {name: known[name] for name in known if name in wanted}
 
 
 def to_js(roots, *files):

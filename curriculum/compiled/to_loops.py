@@ -14,14 +14,16 @@ import math
 from pathlib import Path
 
 import contact
-from curriculum.lesson.to_js import needed
+from curriculum.page.to_js import needed
 
-BALL = [name for name in contact.Ball.__slots__ if name != "pushed"]
+BALL = [name for name in contact.Ball.__slots__ if name != "cached_lam"]
 CONTACT = list(contact.Contact.__slots__)
-METHOD = "contact_"  # c.push(x) becomes contact_push(W, c, x)
+FLOOR_ROW = "np.uint32(len(W.balls) - 1)"  # of the type of all rows
+TABLES = {"BALLS": "W.balls", "CONTACTS": "W.contacts", "FLOOR": FLOOR_ROW}
+METHOD = "contact_"  # c.apply_impulse(x) becomes contact_push(W, c, x)
 KNOWN = {"": "abs bool enumerate float int len range zip".split(), "math": dir(math)}
 EXTREMES = {"max": "larger", "min": "smaller"}
-GIVEN = ("warm_start", "remember")  # written by hand in rows.py, over a table of impulses
+GIVEN = ("warm_start", "store_impulses")  # written by hand in rows.py, over a table of impulses
 REFUSED = (ast.GeneratorExp, ast.SetComp, ast.DictComp, ast.Set, ast.Dict, ast.Lambda, ast.Starred,
            ast.NamedExpr, ast.With, ast.Try, ast.JoinedStr, ast.Global)  # fmt: skip
 INSTEAD = "write loops over balls and contacts, fields of Ball and Contact, functions of numbers"
@@ -48,10 +50,10 @@ class Rows(ast.NodeTransformer):
 
     def visit_FunctionDef(self, node):
         names = [arg.arg for arg in node.args.args]
-        head = "BALLS, CONTACTS, FLOOR = W.balls, W.contacts, len(W.balls) - 1"
+        head = ""
         if node.name == "__init__":  # of a contact: the next row
             node.name, names = "Contact", names[1:]
-            head += "\nself = np.uint32(W.count[0])\nW.count[0] += 1"
+            head = "self = np.uint32(W.count[0])\nW.count[0] += 1"
             node.body.append(ast.parse("return self").body[0])
         elif "self" in names:
             node.name = METHOD + node.name
@@ -60,7 +62,9 @@ class Rows(ast.NodeTransformer):
         self.lists = set()
         node.body[: 1 if ast.get_docstring(node) else 0] = []
         self.generic_visit(node)
-        node.body[:0] = ast.parse(head).body
+        used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)} & {*TABLES}
+        tables = [f"{name} = {TABLES[name]}\n" for name in TABLES if name in used]
+        node.body[:0] = ast.parse("".join(tables) + head).body
         return node
 
     def visit_Attribute(self, node):

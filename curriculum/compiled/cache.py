@@ -13,7 +13,7 @@ import sys
 import types
 from importlib.metadata import PackageNotFoundError, version
 
-from curriculum.commands import ROOT, to_install, write_whole
+from curriculum.commands import ROOT, to_install, write_atomic
 
 try:
     NUMBA = version("numba")  # itself it is imported where loops are loaded: that takes a while
@@ -52,10 +52,10 @@ class Loops:
                 print(f"compiling {self.name.rpartition('_')[0]}, once ...", file=sys.stderr)
             try:
                 if not path.exists():
-                    write_whole(path, self.source)
+                    write_atomic(path, self.source)
                 self.module = self.compile(examples, path)
                 if not self.kept.exists():
-                    write_whole(self.kept, "")
+                    write_atomic(self.kept, "")
             except ImportError:
                 raise
             except Exception:  # numba's own, pickle's, a full disk: forget what is kept
@@ -73,8 +73,11 @@ class Loops:
         exec(compile(self.source, module.__file__, "exec"), vars(module))
         for name, function in list(vars(module).items()):
             if isinstance(function, types.FunctionType):
-                keep = path is not None and name in examples
-                setattr(module, name, numba.njit(function, cache=keep, **self.options))
+                if name in examples:
+                    options = {"cache": path is not None}
+                else:  # Python does not call it
+                    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+                setattr(module, name, numba.njit(function, **options, **self.options))
         for name, given in examples.items():
             getattr(module, name).compile(tuple(map(numba.typeof, given)))
         return module

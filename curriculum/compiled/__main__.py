@@ -1,0 +1,25 @@
+"""Compile the loops for many balls and keep them on disk: `python -m curriculum.compiled`."""
+
+import sys
+
+from curriculum.commands import Parser, needs
+
+with needs("bench"):
+    import contact
+try:
+    from curriculum import exact
+    from curriculum.compiled import run
+except ImportError as error:  # no numba
+    print(f"python -m curriculum.compiled: {error}", file=sys.stderr)
+    sys.exit(2)
+
+if __name__ == "__main__":
+    Parser(prog="python -m curriculum.compiled", description=__doc__).parse_args()
+    scene = contact.build_scene("pile", bodies=3)
+    for model in contact.STEPPED:
+        run.run_model(model, scene, 0.002, 2, contact.Settings())
+        print(f"compiled: {model}", flush=True)
+    run.smallest_gap(scene.q0[None], scene.radius)
+    print("compiled: the smallest gap", flush=True)
+    exact.compile_loops()
+    print("compiled: exact")
