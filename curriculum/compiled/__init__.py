@@ -1,1 +1,1 @@
-"""The lesson's source, read by machines: its regions; its steps as loops and as JavaScript."""
+"""Many balls: the steps of contact.py as loops that numba compiles, and near pairs."""

@@ -7,7 +7,6 @@ from curriculum.commands import Parser, needs
 with needs("bench"):
     import contact
 try:
-    from curriculum import exact
     from curriculum.compiled import run
 except ImportError as error:  # no numba
     print(f"python -m curriculum.compiled: {error}", file=sys.stderr)
@@ -21,5 +20,5 @@ if __name__ == "__main__":
         print(f"compiled: {model}", flush=True)
     run.smallest_gap(scene.q0[None], scene.radius)
     print("compiled: the smallest gap", flush=True)
-    exact.compile_loops()
+    contact.optional_module("exact", needed=True).compile_loops()
     print("compiled: exact")

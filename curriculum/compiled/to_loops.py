@@ -14,7 +14,7 @@ import math
 from pathlib import Path
 
 import contact
-from curriculum.page.to_js import needed
+from curriculum.source import needed
 
 BALL = [name for name in contact.Ball.__slots__ if name != "cached_lam"]
 CONTACT = list(contact.Contact.__slots__)

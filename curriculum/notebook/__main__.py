@@ -21,8 +21,8 @@ with needs("notebook"):
     import nbformat
     from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-    from curriculum.gate.chapter import CHAPTER, read
-    from curriculum.gate.references import fill
+    from curriculum.prose.chapter import CHAPTER, read
+    from curriculum.prose.references import fill
     from curriculum.source import ROOT, read_all
     from exercises.kit.script import FILES
 

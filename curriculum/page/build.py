@@ -13,11 +13,11 @@ from markupsafe import Markup
 
 import contact
 from curriculum import stored
-from curriculum.gate.references import fill
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises
 from curriculum.page.panels import BOOKKEEPING, panel
+from curriculum.prose.references import fill
 from curriculum.show import picture
 from curriculum.source import ROOT, read_all
 

@@ -1,6 +1,6 @@
 """chapter.md as HTML, its slots filled.
 
-What the chapter holds beside plain Markdown, curriculum/gate/chapter.py says.
+What the chapter holds beside plain Markdown, curriculum/prose/chapter.py says.
 """
 
 import re
@@ -16,8 +16,8 @@ from mdit_py_plugins.anchors import anchors_plugin
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 import contact
-from curriculum.gate.chapter import CHAPTER, read
 from curriculum.page import fonts
+from curriculum.prose.chapter import CHAPTER, read
 
 FOLDED = ("references", "the-rest-of-the-file", "colophon")  # sections, on a phone
 # the blanks within a number and between it and its unit

@@ -1,6 +1,6 @@
 """The README's picture of the page."""
 
-from curriculum.tests.page_browser import running, visiting
+from curriculum.page.browser import running, visiting
 
 PICTURE = "page-live.png"  # of the README
 

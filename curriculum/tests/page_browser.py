@@ -1,54 +1,24 @@
-"""Real browsers for the page: Debian's Chromium and Firefox."""
+"""Browsers as fixtures, and what tests do in them."""
 
-import contextlib
 import os
-import re
-import shutil
 
 import pytest
 
-WAIT = 60  # s: longer than a busy machine needs for any command
-# what Firefox says of a formula that has not all arrived yet
-HALF = "Invalid markup: Incorrect number of children"
-
-
-def program(*names):
-    """The path of a browser; one that lacks is a fault where all is tested, else a test less."""
-    found = next(filter(None, map(shutil.which, names)), None)
-    if not found:
-        lack = pytest.fail if os.environ.get("CI") else pytest.skip
-        lack(f"{names[0]} is missing here: apt-get install {names[0]}")
-    return found
-
-
-PROGRAMS = {
-    "chromium": ("chromium", "chromium-browser", "google-chrome"),
-    "firefox": ("firefox-esr", "firefox"),
-}
-
-
-@contextlib.contextmanager
-def running():
-    """A function that starts a "chromium" or a "firefox", driven by Playwright until the end."""
-    from playwright.sync_api import sync_playwright
-
-    def start(kind):
-        path = program(*PROGRAMS[kind])
-        if kind == "chromium":
-            return playwright.chromium.launch(executable_path=path)
-        how = {"channel": "moz-firefox"}  # Mozilla's; of Playwright's own it takes reduced_motion
-        still = {"ui.prefersReducedMotion": 1}
-        return playwright.firefox.launch(executable_path=path, firefox_user_prefs=still, **how)
-
-    with sync_playwright() as playwright:
-        yield start
+from curriculum.page.browser import running
 
 
 @pytest.fixture(scope="session")
 def start():
-    """The function that starts a browser."""
+    """The function that starts a browser; one that lacks is a fault in CI, else a test less."""
     with running() as found:
-        yield found
+
+        def start_or_skip(kind):
+            try:
+                return found(kind)
+            except OSError as error:
+                (pytest.fail if os.environ.get("CI") else pytest.skip)(str(error))
+
+        yield start_or_skip
 
 
 @pytest.fixture(scope="session")
@@ -61,25 +31,6 @@ def browser(start):
 def firefox(start):
     """A Firefox."""
     return start("firefox")
-
-
-@contextlib.contextmanager
-def visiting(browser, url, width=1280, height=900, **options):
-    """A fresh profile on the page. Fails if it complains, throws, or asks for more than itself."""
-    options = {"viewport": {"width": width, "height": height}, "reduced_motion": "reduce"} | options
-    context = browser.new_context(**options)
-    page = context.new_page()
-    page.set_default_timeout(1000 * WAIT)
-    trouble, own = [], ("data:", "blob:", re.split("[?#]", url)[0])
-    page.on("console", lambda told: told.type in ("error", "warning") and trouble.append(told.text))
-    page.on("pageerror", lambda error: trouble.append(f"error: {error}"))
-    page.on("request", lambda asked: asked.url.startswith(own) or trouble.append(asked.url[:100]))
-    page.goto(url)
-    if options.get("java_script_enabled", True):
-        page.wait_for_selector("[data-ready]", state="attached")
-    yield page
-    context.close()
-    assert [each for each in trouble if HALF not in each] == []
 
 
 # ---- what tests do in either browser

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from curriculum import source, stored
-from curriculum.gate import references
+from curriculum.prose import references
 from curriculum.tests.helpers import ROOT, python
 
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
 EXERCISE, MADE = "exercises/ex1_bet.py", "curriculum/bench/results/made.json"
-ROOM = "commands.py gate __init__.py source.py stored.py variants.py".split()
+ROOM = "commands.py gate.py prose __init__.py source.py stored.py variants.py".split()
 PENDING = "chapter,tier,wallclock_min,config_hash,commit,date,status\n"
 PENDING += "ch3.5-contact,t4,,,,,PENDING\n"
 FILES = {
@@ -190,13 +190,13 @@ KEPT = ".cache/jump.json"
 LATER = [  # what is changed, one after the other, and what is quoted then
     (KEPT, '"before": -0.0196', '"before": -0.0296', JUMP, "−0.0296"),  # only who reads it knows
     (KEPT, f'"{np.__version__}"', '"1.0"', JUMP, "−0.0196"),
-    ("curriculum/gate/facts.py", "[1, 1, 0] + 1.0", "[1, 1, 0] + 2.0", JUMP, "0.9804"),
+    ("curriculum/prose/facts.py", "[1, 1, 0] + 1.0", "[1, 1, 0] + 2.0", JUMP, "0.9804"),
     ("contact.py", "GRAVITY = -9.81", "GRAVITY = -4.905", DEEP, "0.0049"),
 ]
 
 
 def test_what_is_quoted_is_kept_until_its_code_changes(project):
-    shown = "from curriculum.gate.references import shown; print(shown('{}|.4f'))"
+    shown = "from curriculum.prose.references import shown; print(shown('{}|.4f'))"
     for file, old, new, reference, quoted in LATER:
         edit(project / file, old, new)
         assert python("-c", shown.format(reference), cwd=project).stdout.strip() == quoted

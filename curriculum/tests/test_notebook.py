@@ -13,8 +13,8 @@ import zmq
 
 import contact
 from curriculum import source
-from curriculum.gate.chapter import CHAPTER
 from curriculum.notebook import __main__ as notebook
+from curriculum.prose.chapter import CHAPTER
 from curriculum.tests.helpers import python
 
 LAST = """\

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from curriculum.page.browser import visiting
 from curriculum.page.build import build
-from curriculum.tests.page_browser import FIGURES, MIDDLE, SEE, WORDS, drag, swipe, visiting
+from curriculum.tests.page_browser import FIGURES, MIDDLE, SEE, WORDS, drag, swipe
 
 PHONE = {"width": 390, "height": 844, "has_touch": True, "is_mobile": True}
 

@@ -12,11 +12,11 @@ import pytest
 from py_mini_racer import MiniRacer
 
 import contact
-from curriculum.gate import facts
-from curriculum.gate.chapter import CHAPTER, read
 from curriculum.page.build import page_data
 from curriculum.page.bundle import bundle
 from curriculum.page.chapter import asked
+from curriculum.prose import facts
+from curriculum.prose.chapter import CHAPTER, read
 from curriculum.source import ROOT
 
 R, G = contact.RADIUS, -contact.GRAVITY

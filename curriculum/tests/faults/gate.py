@@ -1,8 +1,8 @@
-"""Faults for curriculum/gate/, stored.py and the regions: (file, what stands there, what is
+"""Mutants of curriculum/gate.py, prose/, stored.py and source.py: (file, what stands there, what is
 planted, the tests that must name it)."""
 
-GATE, REFERENCES = "curriculum/gate/__main__.py", "curriculum/gate/references.py"
-CHAPTER, STORED = "curriculum/gate/chapter.py", "curriculum/stored.py"
+GATE, REFERENCES = "curriculum/gate.py", "curriculum/prose/references.py"
+CHAPTER, STORED = "curriculum/prose/chapter.py", "curriculum/stored.py"
 ERRORS = "test_gate.py -k test_each_error_of_a_text"
 READ = "test_gate.py -k test_a_changed_region"
 KEPT = "test_gate.py -k test_what_is_quoted_is_kept"

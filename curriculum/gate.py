@@ -24,8 +24,8 @@ with needs("dev"):
 
     import contact
     from curriculum import stored
-    from curriculum.gate.chapter import CHAPTER, INCLUDE, INLINE, PLAIN, PROSE, Part, faults, split
-    from curriculum.gate.references import REFERENCE, TextError, load_meta, prepare, shown
+    from curriculum.prose.chapter import CHAPTER, INCLUDE, INLINE, PLAIN, PROSE, Part, faults, split
+    from curriculum.prose.references import REFERENCE, TextError, load_meta, prepare, shown
     from curriculum.source import DOCSTRING, ROOT, blank, read_text, split_all
 
 GATE = "python -m curriculum.gate"

@@ -3,7 +3,7 @@
     {{quality.penalty.rest_penetration_frac|.5f}}   metrics.json of the reference run
     {{contact.CONTACT_MARGIN}}  {{contact.Settings.iters}}    a constant, a default
     {{drop-dt-0.03:quality.lcp.energy_excess|.2g}}  of another run that meta.yaml names
-    {{jump:before}}                                 a small measured fact, curriculum/gate/facts.py
+    {{jump:before}}                                 a small measured fact, curriculum/prose/facts.py
     {{stress:made.all.date}}  {{bench:piles.0.engine}}    of stored results, tables by row
     {{(a.b - c.d) / e.f|.1f}}                       + - * / and brackets, with blanks around signs
     {{= 1972 | year of the paper}}                  a typed number, with the reason why
@@ -33,14 +33,14 @@ import yaml
 import contact
 from curriculum import stored
 from curriculum.commands import write_atomic
-from curriculum.gate.facts import FACTS
+from curriculum.prose.facts import FACTS
 from curriculum.source import ROOT, read_text
 
 # A claim may go over several lines, and the blanks before it belong to it.
 REFERENCE = re.compile(r"(?:\s*(?=\{\{\?))?\{\{(\?(?s:.*?)|(?-s:.*?))\}\}")
 OPERAND = re.compile(r"(?<![\w.])[A-Za-z][^\s()]*")  # begins with a letter: 1e-9 is none
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-MADE_BY = "contact.py", "curriculum/seeds.py", "curriculum/gate/facts.py"  # and what they import
+MADE_BY = "contact.py", "curriculum/seeds.py", "curriculum/prose/facts.py"  # and what they import
 KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be deleted at any time
 
 

@@ -1,1 +1,0 @@
-"""What keeps text, code, numbers and results together: `python -m curriculum.gate`."""

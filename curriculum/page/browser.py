@@ -1,0 +1,56 @@
+"""Real browsers for the page's picture and tests: Debian's Chromium and Firefox, by Playwright."""
+
+import contextlib
+import re
+import shutil
+
+WAIT = 60  # s: longer than a busy machine needs for any command
+PROGRAMS = {
+    "chromium": ("chromium", "chromium-browser", "google-chrome"),
+    "firefox": ("firefox-esr", "firefox"),
+}
+# what Firefox says of a formula that has not all arrived yet
+HALF = "Invalid markup: Incorrect number of children"
+
+
+@contextlib.contextmanager
+def running():
+    """Give a function that starts a "chromium" or a "firefox", which runs until the end.
+
+    The function raises OSError, in one line, where that browser is not installed.
+    """
+
+    def start(kind):
+        path = next(filter(None, map(shutil.which, PROGRAMS[kind])), None)
+        if not path:
+            name = PROGRAMS[kind][0]
+            raise OSError(f"{name} is missing here: apt-get install {name}")
+        if kind == "chromium":
+            return playwright.chromium.launch(executable_path=path)
+        how = {"channel": "moz-firefox"}  # Mozilla's; of Playwright's own it takes reduced_motion
+        still = {"ui.prefersReducedMotion": 1}
+        return playwright.firefox.launch(executable_path=path, firefox_user_prefs=still, **how)
+
+    from playwright.sync_api import sync_playwright  # here, so that other tests do without it
+
+    with sync_playwright() as playwright:
+        yield start
+
+
+@contextlib.contextmanager
+def visiting(browser, url, width=1280, height=900, **options):
+    """Open the page in a fresh profile. Fails if it complains, throws, or asks for more."""
+    options = {"viewport": {"width": width, "height": height}, "reduced_motion": "reduce"} | options
+    context = browser.new_context(**options)
+    page = context.new_page()
+    page.set_default_timeout(1000 * WAIT)
+    trouble, own = [], ("data:", "blob:", re.split("[?#]", url)[0])
+    page.on("console", lambda told: told.type in ("error", "warning") and trouble.append(told.text))
+    page.on("pageerror", lambda error: trouble.append(f"error: {error}"))
+    page.on("request", lambda asked: asked.url.startswith(own) or trouble.append(asked.url[:100]))
+    page.goto(url)
+    if options.get("java_script_enabled", True):
+        page.wait_for_selector("[data-ready]", state="attached")
+    yield page
+    context.close()
+    assert [each for each in trouble if HALF not in each] == []

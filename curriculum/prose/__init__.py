@@ -1,0 +1,1 @@
+"""The chapter: its text, the marks and numbers in it, and what reads them."""
