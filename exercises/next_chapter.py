@@ -22,7 +22,7 @@ def push(model):
     def see(k, contacts):  # lam is the impulse on ball a along n; only the finger touches no floor
         force.append(sum(c.lam * c.nx for c in contacts if c.a.mass == math.inf) / DT)
 
-    run = contact.simulate(driven, SCENE, DT, 2500, see=see)
+    run = contact.simulate(driven, SCENE, DT, 2500, on_step=see)
     print(f"{model:<9} {run.q[-1, 0].round(3)}  {sum(force[-500:]) / 500:.4f} N")
 
 
