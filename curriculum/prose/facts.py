@@ -11,6 +11,7 @@ from itertools import product
 import numpy as np
 
 import contact
+from curriculum import predict
 from curriculum.variants import core_step, implicit_step, turn
 
 DT = 0.002  # s
@@ -61,6 +62,89 @@ def landing():
         "left": -gap[k + 1],
         "has": run.v[k + 1, 1, 0] + DT * contact.GRAVITY,
     }
+
+
+def paper():
+    """Errors by their formulas, at the default knobs: lengths in radii, angles in degrees."""
+    usual, dt = contact.Settings(), DT
+    speed, depth = landing()["speed"], landing()["depth"]
+    ball, step = (1.0, usual.stiffness, 80.0), (dt, usual.baumgarte)
+    lengths = {
+        "sink": predict.sink(*ball[:2]),
+        "stack": predict.sink(*ball[:2], count=3),
+        "undamped": speed * math.sqrt(ball[0] / ball[1]),
+        "dive": predict.dive_of_penalty(speed, *ball),
+        "late": predict.dive_of_lcp(speed, dt),
+        "hop": predict.hop(depth, *step),
+        "full_hop": predict.hop(depth, dt, 1.0),
+        "sag_30": predict.sag(29.0, 1.0, *step, usual.iters),
+        "sag_20_warm": predict.sag(19.0, 1.0, *step, usual.iters, warm=0.9),
+    }
+    angle = math.degrees(predict.flicker(predict.START, contact.SOLIMP[0]))
+    return {"flicker": angle} | {name: each / contact.RADIUS for name, each in lengths.items()}
+
+
+def landings():
+    """penalty's landings by step [s]: the largest speed of leaving over that of landing, of forty
+    starts, so that the ball lands anywhere in a step."""
+    values = {}
+    for dt in (0.01, 0.011, 0.0125):
+        shares = []
+        for y in np.linspace(0.98, 1.02, 40):
+            run = contact.run_model("penalty", contact.scene_of(0.0, y), dt, round(1.0 / dt))
+            gap, v = run.q[:, 1, 0] - contact.RADIUS, run.v[:, 1, 0]
+            lands = int((gap < 0.0).argmax())
+            leaves = lands + int((gap[lands:] > 0.0).argmax())
+            shares.append(v[leaves] / -v[lands] if leaves > lands else 0.0)
+        values[f"{dt}"] = max(shares)
+    return values
+
+
+def jaws():
+    """lcp's largest impulse [N s] between fixed jaws that leave a ball no room, by sweeps; how fast
+    it leaves [m/s]; and soft's impulse at each side."""
+
+    def held():
+        x, mass = (-0.15, 0.0, 0.15), (math.inf, 1.0, math.inf)
+        balls = contact.make_balls(contact.scene_of(x, 1.0, mass))
+        return balls[1], [c for c in contact.detect_contacts(balls) if c.m_eff > 0.0]
+
+    values = {}
+    for sweeps in (1, 20, 200, 2000):
+        ball, contacts = held()
+        for c in contacts:
+            c.target = contact.contact_target(c, 0.0, contact.Settings().baumgarte, DT)
+        contact.solve_contacts(contacts, sweeps)
+        values |= {f"lam_{sweeps}": max(c.lam for c in contacts), "leaves": abs(ball.vx)}
+    ball, contacts = held()
+    for c in contacts:
+        contact.soften(c, DT, *contact.soft_defaults(0.0, DT))
+    contact.solve_contacts(contacts, contact.MAX_SWEEPS)
+    return values | {"soft": contacts[0].lam, "soft_leaves": abs(ball.vx)}
+
+
+def row():
+    """Velocities [m/s] after a row of two balls is struck by a third at 1 m/s, e = 1, by exact:
+    where the two touch, and where they are a micrometre apart."""
+    values = {}
+    for name, apart in (("touching", 0.0), ("apart", 1e-6)):
+        start = {"vx": [1.0, 0.0, 0.0], "restitution": 1.0}
+        scene = contact.scene_of([-0.25, 0.0, 0.2 + apart], 5.0, **start)
+        values[name] = [
+            round(vx, 9) + 0.0 for vx in contact.run_model("exact", scene, DT, 60).v[-1, 0]
+        ]
+    return values
+
+
+def flicker():
+    """Where soft's force first leaves a ball that slides off a hill of 20 m [degrees]."""
+    cured = predict.first_without_force(DT, predict.START, solimp=(1e-4, *contact.SOLIMP[1:]))
+    first = predict.first_without_force(DT, predict.START)
+    leaves = math.degrees(math.acos(2.0 / 3.0 * math.cos(predict.START)))
+    names = "first", "cured", "leaves", "start"
+    return dict(
+        zip(names, (*map(math.degrees, (first, cured)), leaves, math.degrees(predict.START)))
+    )
 
 
 def jump():
@@ -163,5 +247,6 @@ def core():
     return values
 
 
-ALL = implicit_spring, soft_heavy, sweeps, landing, jump, blocks, friction, slide, core
+ALL = implicit_spring, soft_heavy, sweeps, landing, paper, landings, jaws, row, flicker, jump
+ALL += blocks, friction, slide, core
 FACTS = {each.__name__: each for each in ALL}
