@@ -84,15 +84,15 @@ def quality(model, scene, dt, seconds, **knobs):
 
 
 def first_without_force(dt, start, **knobs):
-    """Return the angle [rad] of the first step in which soft's hill does not push the ball."""
+    """Return the angle [rad] of the first step in which soft's hill does not push the ball, or pi."""
     far, force = contact.HILL + contact.RADIUS, []
     x, y = [0.0, far * math.sin(start)], [contact.HILL, contact.HILL + far * math.cos(start)]
     scene = contact.scene_of(x, y, [math.inf, 1.0], [contact.HILL, contact.RADIUS])
     step = contact.step_of("soft", scene, dt, contact.Settings(**knobs))
-    see = lambda k, contacts: force.append(sum(c.lam for c in contacts))  # noqa: E731
-    q = contact.simulate(step, scene, dt, round(4.0 / dt), see=see).q[:-1, :, 1]
+    note = lambda k, contacts: force.append(sum(c.lam for c in contacts))  # noqa: E731
+    q = contact.simulate(step, scene, dt, round(4.0 / dt), on_step=note).q[:-1, :, 1]
     off = np.flatnonzero(np.array(force[10:]) == 0.0) + 10  # it begins on the surface, unpressed
-    return math.atan2(q[off[0], 0], q[off[0], 1] - contact.HILL) if len(off) else math.inf
+    return math.atan2(q[off[0], 0], q[off[0], 1] - contact.HILL) if len(off) else math.pi
 
 
 def compare(mass, stiffness, damping, dt, bodies, radius, baumgarte, iters):

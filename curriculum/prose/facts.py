@@ -23,7 +23,7 @@ def implicit_spring():
     softness = 1.0 / (k * dt * dt + 80.0 * dt)
     spring = lambda depth: (softness, dt * k * depth * softness)  # noqa: E731
     run = contact.simulate(partial(implicit_step, dt=dt, spring=spring), scene, dt, 250, skip=True)
-    return contact.contact_quality(run, scene, dt)
+    return contact.contact_quality(run, scene, dt) | {"dt": dt}
 
 
 def soft_heavy():
@@ -181,8 +181,9 @@ def friction():
     W = np.eye(2) + 3.0 * np.array([[x * x, -x * y], [-x * y, y * y]])  # inertia 1/3 kg m^2
     rises, ahead = 0.4, 4.0
     jams, back = np.linalg.solve(W, [-rises, -ahead])
-    slides = rises / (2.0 * W[0, 1] - W[0, 0])
-    return {"rises": rises, "ahead": ahead, "slides": slides, "jams": jams, "rub": -back}
+    takes = 2.0 * W[0, 1] - W[0, 0]  # m/s that the end loses upwards for each N s, as it rubs
+    found = {"slides": rises / takes, "jams": jams, "rub": -back, "takes": takes}
+    return {"rises": rises, "ahead": ahead} | found
 
 
 def _on_a_ball():
