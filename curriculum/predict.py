@@ -84,7 +84,7 @@ def quality(model, scene, dt, seconds, **knobs):
 
 
 def first_without_force(dt, start, **knobs):
-    """Return the angle [rad] of the first step in which soft's hill does not push the ball, or pi."""
+    """Return the angle [rad] of the first step in which soft does not push, or pi if none."""
     far, force = contact.HILL + contact.RADIUS, []
     x, y = [0.0, far * math.sin(start)], [contact.HILL, contact.HILL + far * math.cos(start)]
     scene = contact.scene_of(x, y, [math.inf, 1.0], [contact.HILL, contact.RADIUS])
