@@ -25,7 +25,7 @@ from curriculum.commands import write_atomic
 from curriculum.source import ROOT, read_text, split
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
-PACKAGES = ("numpy", "numba", "rerun-sdk", "mujoco", "pymunk", "pyb2d3", "drake", "scipy")
+PACKAGES = "numpy numba rerun-sdk mujoco-core pymunk pyb2d3 drake dartpy scipy".split()
 ALWAYS = (
     "curriculum/exact.py",
     "curriculum/compiled/run.py",

@@ -1,11 +1,16 @@
 """The benchmark's command line.
 
-    python -m curriculum.bench              everything below, one after the other (25 minutes)
+    python -m curriculum.bench              everything below but try (25 minutes)
     python -m curriculum.bench points       run time against error, where the answer is known
     python -m curriculum.bench piles        time a step of 12 to 10,000 balls, at equal depth
+    python -m curriculum.bench collapse     depth against time of a heap of 216 (SimBenchmark's 666)
     python -m curriculum.bench processes    what whole processes take; --tier cpu-laptop enters
                                             contact.py's in wallclock.csv
     python -m curriculum.bench draw         page and figures again, from the results alone
+    python -m curriculum.bench try bounce exact
+                                            error and time of one setting of one problem, now and
+                                            here; or depth and time of a pile: try 1000 "lcp iters=4
+                                            baumgarte=1" --substeps 4
 
 Results are CSV files in curriculum/bench/results. --only rapier, or --only "lcp iters=20", measures
 the settings whose name contains these words; all other rows stay. With --quick it takes a minute or
@@ -19,11 +24,12 @@ import sys
 for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
     os.environ[f"{_library}_NUM_THREADS"] = "1"
 
+import contact
 from curriculum import stored
 from curriculum.commands import Parser, needs, write_json
 
 with needs("bench"):
-    from curriculum.bench import engines, measure, report
+    from curriculum.bench import engines, measure, problems, report
 
 FULL, QUICK = stored.ROOT / stored.FOLDERS["bench"], stored.ROOT / "outputs" / "bench-quick"
 CODE = "curriculum/bench/measure.py", "curriculum/bench/settings.csv"  # and what they import
@@ -39,7 +45,7 @@ def take(part, quick, only, folder, tier=None):
     about["versions"] |= engines.versions()
     sections, made = stored.load(folder)
     if only:
-        known, groups = list(engines.EVERYBODY), list(report.problems.BY_NAME)
+        known, groups = list(engines.EVERYBODY), list(problems.BY_NAME)
         stay = [row for row in sections.get(part, ()) if name(row) in known]
         stay = [row for row in stay if only not in name(row)]
         rows = stay + measure.PARTS[part](quick, only, stay)
@@ -60,9 +66,33 @@ def name(row):
     return f"{row['engine']} {row['setting'] or ''}".strip()
 
 
+def try_one(problem, setting, substeps):
+    """Measure one setting of one problem, or of a pile of so many balls; say it in a line."""
+    c, sizes = engines.BY_NAME.get(setting), [*measure.SIZES, *problems.BY_NAME]
+    if c is None:
+        raise ValueError(f"try: given setting {setting!r}; allowed: {', '.join(engines.BY_NAME)}")
+    if problem not in map(str, sizes):
+        raise ValueError(f"try: given problem {problem!r}; allowed: {', '.join(map(str, sizes))}")
+    if problem.isdecimal():
+        q, v, row = measure.settle((int(problem), c, substeps, None))
+        _, step = measure.fall_and_rest((int(problem), c, substeps, (q, v)))
+        rest = "at rest" if row["at_rest"] else "not at rest"
+        depth = f"{contact.format_number(row['mean_depth'])} r deep in the mean"
+        return f"{problem} balls by {setting}: {rest}, {depth}, {step:.3g} µs of CPU a step"
+    about = problems.BY_NAME[problem]
+    job = problem, setting, measure.DT, substeps, about.starts
+    row, time = measure.errors_of(job), measure.time_of(job)
+    error = "the reference" if row["error"] is None else f"error {row['error']:.2g} r"
+    return f"{about.title}, by {setting}: {error} (median of {about.starts}), {time:.3g} ms of CPU"
+
+
 def main(argv=None):
     parser = Parser(prog="python -m curriculum.bench", description=__doc__)
-    parser.add_argument("part", nargs="?", default="all", choices=("all", *measure.PARTS, "draw"))
+    parser.add_argument(
+        "part", nargs="?", default="all", choices=("all", *measure.PARTS, "draw", "try")
+    )
+    parser.add_argument("what", nargs="*", help="of try: a problem or a number of balls; a setting")
+    parser.add_argument("--substeps", type=int, default=1, help="of try: in 2 ms (1)")
     parser.add_argument("--only", default="", help="settings whose name contains this")
     parser.add_argument("--tier", metavar="NAME", help="what the ledger calls this machine")
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
@@ -72,6 +102,10 @@ def main(argv=None):
     if args.only and "processes" in parts:
         parts.remove("processes")  # which are no settings
     try:
+        if len(args.what) != (2 if args.part == "try" else 0):
+            raise ValueError(f"{args.part}: given {args.what}; try takes a problem and a setting")
+        if args.part == "try":
+            return print(try_one(*args.what, args.substeps))
         if parts:  # or loops would be compiled while they are timed
             subprocess.run(
                 [sys.executable, "-m", "curriculum.compiled"], cwd=stored.ROOT, check=True

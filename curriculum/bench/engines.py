@@ -3,8 +3,8 @@
 **To send a better setting, add one line to settings.csv**: the engine, its options as they are
 typed, the problems that it is for (names, "all", "-name" for all but this one, or a group of
 GROUPS), the numbers of substeps in 2 ms that it is measured with (none: it chooses its own steps),
-and those for the piles. The benchmark runs every line and names the best. Options are the arguments
-of a session's __init__, or contact.py's own flags.
+those for the piles, and the most balls of a pile (none: any). The benchmark runs every line and
+names the best. Options are the arguments of a session's __init__, or contact.py's own flags.
 
 Every engine is optional. The same for all: balls that cannot rotate, no friction, one thread, the
 scene's masses, radii and restitution, and a floor along y = 0. A ball of infinite mass is one that
@@ -31,7 +31,7 @@ HERE = Path(__file__).parent
 BLOCK = 200  # steps that one of our models takes in one go
 GRAVITY = 9.81  # m/s^2, downwards
 FLOOR = 1000.0  # m, half the length of the floor, where an engine wants an end to it
-MANY = 60  # balls: from here on MuJoCo gets CG and a sparse Jacobian
+MANY = 60  # balls: from here on MuJoCo gets 4 GB of memory, pymunk a spatial hash
 GROUPS = {
     "shared": "stack pile heavy_100 heavy_1000 tower spread pile_bounce cradle",
     "resting": "drop slide stack heavy_100 heavy_1000 tower spread glance",  # e = 0, no lottery
@@ -166,7 +166,7 @@ def spring(scene, dt, push=None, timeconst=None, ratio=1.0, d=0.9999):
 class Mujoco(Session):
     """Spring and damper made implicit and convex. texts: solref and solimp, in place of options."""
 
-    def __init__(self, scene, dt, texts=None, xml="", **options):
+    def __init__(self, scene, dt, texts=None, solver="Newton", xml="", **options):
         import mujoco
         from mujoco import rollout
 
@@ -174,10 +174,9 @@ class Mujoco(Session):
         mujoco.set_mju_user_warning(lambda text: None)  # its default writes a log file
         solref, solimp = texts or spring(scene, dt, **options)
         many = len(scene.mass) >= MANY
-        chosen = 'solver="CG" jacobian="sparse"' if many else xml
         self.model = mujoco.MjModel.from_xml_string(
             f'<mujoco><size memory="{"4G" if many else "-1"}"/>'
-            f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" {chosen}>'
+            f'<option timestep="{dt!r}" gravity="0 0 -{GRAVITY}" solver="{solver}" {xml}>'
             f'<flag autoreset="disable"/></option>'
             f'<default><geom condim="1" solref="{solref}" solimp="{solimp}"/></default><worldbody>'
             f'<geom type="plane" size="0 0 1"/>{"".join(map(self.body, balls_of(scene)))}'
@@ -403,12 +402,63 @@ class Drake(Session):
         return [self.with_the_fixed(*np.split(row, 2)) for row in rows]
 
 
+class Dart(Session):
+    """DART: velocities by Dantzig's method for the LCP; a share of the overlap is pushed out."""
+
+    def __init__(self, scene, dt):
+        import dartpy as dart
+
+        self.dart, self.scene, self.balls = dart, scene, []
+        self.moving = np.flatnonzero(np.isfinite(scene.mass))
+        self.world = world = dart.simulation.World()
+        world.setGravity([0.0, -GRAVITY, 0.0])
+        world.setTimeStep(dt)
+        world.getConstraintSolver().setCollisionDetector(dart.collision.DARTCollisionDetector())
+        self.put(dart.dynamics.BoxShape([2.0 * FLOOR, 2.0, 2.0 * FLOOR]), (0.0, -1.0))
+        for place, velocity, mass, radius, fixed in balls_of(scene):
+            ball = self.put(dart.dynamics.SphereShape(radius), place, None if fixed else mass)
+            if not fixed:
+                ball.setVelocities([*velocity, 0.0])
+                self.balls.append(ball)
+        self.step = world.step
+
+    def put(self, shape, place, mass=None):
+        """Add a body that cannot rotate, or without a mass one that is fixed; return it."""
+        skeleton = self.dart.dynamics.Skeleton()
+        if mass is None:
+            _, body = skeleton.createWeldJointAndBodyNodePair()
+        else:
+            _, body = skeleton.createTranslationalJointAndBodyNodePair()
+        skin = body.createShapeNode(shape)
+        skin.createCollisionAspect()
+        skin.createDynamicsAspect()
+        skin.getDynamicsAspect().setFrictionCoeff(0.0)
+        # the engine multiplies the two bodies' coefficients
+        skin.getDynamicsAspect().setRestitutionCoeff(math.sqrt(self.scene.restitution))
+        if mass is None:
+            skin.setRelativeTranslation([*place, 0.0])
+        else:
+            body.setMass(mass)
+            skeleton.setPositions([*place, 0.0])
+        self.world.addSkeleton(skeleton)
+        return skeleton
+
+    def heights(self):
+        return [ball.getPositions()[1] for ball in self.balls]
+
+    def state(self):
+        q = [ball.getPositions()[:2] for ball in self.balls]
+        v = [ball.getVelocities()[:2] for ball in self.balls]
+        return self.with_the_fixed(np.array(q), np.array(v))
+
+
 ENGINES = {  # label, package, session
-    "mujoco": ("MuJoCo", "mujoco", Mujoco),
+    "mujoco": ("MuJoCo", "mujoco-core", Mujoco),
     "pymunk": ("pymunk", "pymunk", Pymunk),
     "box2d3": ("Box2D 3", "pyb2d3", Box2d3),
     "rapier": ("Rapier", "rapier3d", Rapier),
     "drake": ("Drake", "drake", Drake),
+    "dart": ("DART", "dartpy", Dart),
     "siconos": ("Siconos", "python3-siconos", Siconos),
     "events": ("event-driven", "scipy", Events),
 }
@@ -443,6 +493,7 @@ class Setting(NamedTuple):
     problems: str | None
     substeps: tuple  # in 2 ms; none where it chooses its own, and dt is how often it is looked at
     piles: tuple  # substeps in a step of the piles
+    most: int | None = None  # balls of a pile; a larger one would take hours
 
     @property
     def name(self):
@@ -477,9 +528,9 @@ class Setting(NamedTuple):
 
 def listed():
     """Every setting of settings.csv, whether it can run here or not."""
-    for *row, substeps, piles in map(dict.values, stored.load(HERE)[0]["settings"]):
+    for *row, substeps, piles, most in map(dict.values, stored.load(HERE)[0]["settings"]):
         counts = (tuple(map(int, str(cell or "").split())) for cell in (substeps, piles))
-        yield Setting(*row, *counts)
+        yield Setting(*row, *counts, most)
 
 
 EVERYBODY = {setting.name: setting for setting in listed()}

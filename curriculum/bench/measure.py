@@ -1,8 +1,8 @@
-"""What is measured: run time against error, piles between walls, whole processes.
+"""What is measured: run time against error, piles between walls, a heap that collapses, processes.
 
-How stands in page.md. A point is one problem and setting, looked at every dt, after so many
-substeps. Errors are medians over the starts; times are CPU times, medians over fresh processes,
-every height read at each look. Piles fall from the same lattice and settle untimed. Then they are
+page.md says how. A point is one problem and setting, sampled every dt, after so many substeps.
+Errors are medians over the starts; times are CPU times, medians over fresh processes, with every
+height read at each sample. Piles fall from the same lattice and settle untimed. Then they are
 timed in fresh processes: from the lattice, and from their own settled state.
 """
 
@@ -27,6 +27,7 @@ ENOUGH = 0.03  # s: once the runs of a point have taken so long, it is not timed
 DT = 0.002  # s, the step of contact.py's own default run
 LONGER = 0.004, 0.008, 0.016  # s: steps that are looked at once each
 MOVING = {p.name: int(np.isfinite(p.build(0).mass).sum()) for p in problems.PROBLEMS}  # balls
+HEAP, COLLAPSE = (18, 12), 2000  # balls side by side and over one another; steps
 WATCHED, TURN, TURNS = 250, 50, 3  # steps at the end; timed steps in one go; how many goes
 AT_REST, DEPTHS = 1e-3, (1e-3, 1e-4)  # m/s, r
 SIZES, SETTLE = {12: 4, 100: 10, 1000: 25}, 6000  # balls: side by side; steps to settle
@@ -149,7 +150,8 @@ def piles(quick, only, known):
     rows, states = [], {}
     for count in (12,) if quick else (*SIZES, MANY):
         chosen = winners(known + rows) if count == MANY else engines.PILES
-        chosen = [each for each in chosen if only in each[0].name][:: 4 if quick else 1]
+        chosen = [each for each in chosen if only in each[0].name and fits(each[0], count)]
+        chosen = chosen[:: 4 if quick else 1]
         jobs, label = [(count, *each, states.get(each)) for each in chosen], f"{count} balls"
         settled = parallel.run_jobs(settle, jobs, f"{label} settle")
         states.update((each, found[:2]) for each, found in zip(chosen, settled))
@@ -160,6 +162,11 @@ def piles(quick, only, known):
             spreads = timing.spread("falling", falling) | timing.spread("resting", resting)
             rows.append(row | spreads)
     return rows
+
+
+def fits(c, count):
+    """Whether a setting is measured with so many balls."""
+    return count <= (c.most or count)
 
 
 def settle(job):
@@ -202,10 +209,55 @@ def fall_and_rest(job, timed=timing.timed):
     return found
 
 
-def fastest(rows, depth, who):
-    """{balls: the fastest row} of these engines, of what rests within a mean depth [r]."""
-    may = (row for row in rows if row["engine"] in who and row["at_rest"])
-    return best((row for row in may if row["mean_depth"] <= depth), "bodies", itemgetter("resting"))
+def heap():
+    """SimBenchmark's 666, in the plane: a block of 216 balls of 10 kg that falls 1 m and collapses.
+
+    There they are 6 x 6 x 6; here 18 x 12, with its spacing, height and nudge. No friction, e = 0.
+    """
+    wide, high = HEAP
+    x, y = np.meshgrid(0.21 * (np.arange(wide) - 0.5 * (wide - 1)), 1.101 + 0.21 * np.arange(high))
+    nudge = np.random.default_rng(42).uniform(-1e-3, 1e-3, (2, wide * high))
+    return contact.scene_of(x.ravel() + nudge[0], y.ravel() + nudge[1], 10.0)
+
+
+def collapse(quick, only, known):
+    """A row a setting of the piles: how deep the heap's balls overlap, and what a step takes."""
+    count = math.prod(HEAP)
+    chosen = [each for each in engines.PILES if only in each[0].name and fits(each[0], count)]
+    jobs = [(*each, COLLAPSE // 20 if quick else COLLAPSE) for each in chosen[:: 8 if quick else 1]]
+    rows = parallel.run_jobs(sink_of, jobs, f"{count} balls collapse")
+    times = timing.in_fresh_processes(time_of_heap, jobs, 1 if quick else PROCESSES, "their times")
+    return [row | timing.spread("falling", each) for row, each in zip(rows, times)]
+
+
+def sink_of(job):
+    """A heap's row but for times: the mean over all samples of the mean overlap, and the worst."""
+    (c, substeps, steps), found = job, []
+    session = c.build(heap(), DT, substeps)
+    for _ in range(steps // 10):
+        session.go(10)
+        found.append(depths(session.state()[0]))
+    row = dict(bodies=math.prod(HEAP), engine=c.engine, setting=c.options, substeps=substeps)
+    if None in (each["mean_depth"] for each in found):
+        return row | dict(mean_depth=None, worst_depth=None)
+    mean = statistics.mean(each["mean_depth"] for each in found)
+    return row | dict(mean_depth=mean, worst_depth=max(each["worst_depth"] for each in found))
+
+
+def time_of_heap(job, timed=timing.timed):
+    """Microseconds a step of the heap, from its start to its end."""
+    c, substeps, steps = job
+    session = c.build(heap(), DT, substeps)
+    session.go(1)
+    return 1e6 * timed(partial(session.go, steps - 1))[0] / (steps - 1)
+
+
+def fastest(rows, depth, who, time="resting"):
+    """{balls: the fastest row} of these engines, of what rests within a mean depth [r]; rows that
+    say nothing of rest are of a heap in motion."""
+    may = (row for row in rows if row["engine"] in who and row.get("at_rest", 1))
+    deep = (row for row in may if row["mean_depth"] is not None and row["mean_depth"] <= depth)
+    return best(deep, "bodies", itemgetter(time))
 
 
 def winners(rows):
@@ -234,4 +286,4 @@ def processes(quick, only, known):
             for name, (first, *seconds) in zip(names, found)]  # fmt: skip
 
 
-PARTS = {"points": points, "piles": piles, "processes": processes}
+PARTS = {"points": points, "piles": piles, "collapse": collapse, "processes": processes}

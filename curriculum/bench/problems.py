@@ -93,17 +93,11 @@ def column(scene, t):
     return np.stack([0.0 * y, y], axis=1), np.stack([0.0 * y, speed[:, None] + 0.0 * y], axis=1)
 
 
-def slide_scene(start):
-    """A ball at rest on a fixed one, off the top by an angle that the start chooses."""
-    theta = 0.1 + 0.02 * start
-    x, y = 2.0 * R * math.sin(theta), R + 2.0 * R * math.cos(theta)
-    return contact.scene_of([0.0, x], [R, y], [math.inf, 1.0])
-
-
 def slide(scene, t):
     """The motion of a ball off a fixed one."""
     x, y = scene.q0[:, 1]
-    q, v = slide_motion(math.atan2(x, y - R), 2.0 * R, R, R, t)
+    hill, radius = scene.radius
+    q, v = slide_motion(math.atan2(x, y - hill), hill + radius, radius, hill, t)
     held = np.broadcast_to(scene.q0[:, 0], q.shape)
     return np.stack([held, q], axis=2), np.stack([0.0 * v, v], axis=2)
 
@@ -153,15 +147,15 @@ def built(name, bodies=None, e=None):
 PROBLEMS = (
     Problem("drop", "one ball, no rebound", 4.0, built("drop"), column),
     Problem("bounce", "one ball, restitution 0.7", 4.0, built("bounce"), column),
-    Problem("stack", "three balls over one another", 4.0, built("stack"), column),
-    Problem("slide", "a ball off a fixed ball", 0.7, slide_scene, slide),
+    Problem("stack", "a stack of three", 4.0, built("stack"), column),
+    Problem("slide", "a ball slides off a fixed one of 20 m", 4.6, built("slide"), slide),
     Problem("pile", "eight balls fall on one another", 1.0, built("pile", 8), judged, 20),
     Problem("elastic", "one ball, restitution 1", 20.0, built("bounce", e=1.0), column, 3),
     Problem("heavy_100", "100 kg on 1 kg, no rebound", 2.0, partial(heavy, 100.0), column, 3),
     Problem("heavy_1000", "1,000 kg on 1 kg, no rebound", 2.0, partial(heavy, 1000.0), column, 3),
-    Problem("tower", "twenty balls over one another", 2.0, built("stack", 20), column, 3),
-    Problem("spread", "a ball pushes two apart", 0.3, spread_scene, judged),
-    Problem("glance", "a ball falls on the side of a fixed one", 0.6, glance_scene, judged),
+    Problem("tower", "a stack of twenty", 2.0, built("stack", 20), column, 3),
+    Problem("spread", "a ball pushes two others apart", 0.3, spread_scene, judged),
+    Problem("glance", "a ball glances off a fixed one", 0.6, glance_scene, judged),
     Problem("cradle", "five balls in a row, restitution 1", 1.0, cradle_scene, cradle),
     Problem("pile_bounce", "eight balls, restitution 0.5", 0.5, built("pile", 8, 0.5), judged, 20),
 )

@@ -14,29 +14,37 @@ from curriculum.bench.measure import BUDGETS, DEPTHS, DT, WORK, contest
 from curriculum.commands import write_atomic
 from curriculum.show import picture
 
-RIVAL = "events"
-PEERS = [name for name in ENGINES if name != RIVAL]
+REFERENCE = "events"  # the event-driven code, which takes nothing from contact.py
+PEERS = [name for name in ENGINES if name != REFERENCE]
 LEAST = 1e-16  # r: an error of exactly zero is drawn here
 DRAWN = "slide", "bounce", "pile"  # the problems with a picture of their own
+SHOWN = "exact", REFERENCE, "leapfrog", "lcp"  # each with a column of its own
 CONTESTS = {f"{work} substeps in 2 ms": dict(work=work) for work in WORK}
 CONTESTS |= {f"{us} µs a ball and 2 ms": dict(budget=us) for us in BUDGETS}
 
 
-def cell(p, named=False):
-    """Error and time of a point, for a reader, and whose it is."""
-    if p is None:
-        return "-"
-    error = "reference" if p["error"] is None else f"{format_number(p['error'])} r"
-    return f"{LABELS[p['engine']] + ' ' if named else ''}{error}, {format_number(p['ms'])} ms"
+def error_of(p):
+    """The error [r] of a point, for a reader."""
+    return "-" if p is None else "reference" if p["error"] is None else format_number(p["error"])
 
 
-def resting(row):
-    """Engine, setting as one types it, and time of a step of a pile at rest."""
+def time_of(p):
+    """The time [ms] of a point, for a reader."""
+    return "-" if p is None else format_number(p["ms"])
+
+
+def peer(p):
+    """Name, error [r] and time [ms] of another engine's point: three cells."""
+    return [LABELS[p["engine"]] if p else "-", error_of(p), time_of(p)]
+
+
+def step_of(row, time):
+    """Engine, setting as one types it, and time of a step of a pile: two cells."""
     if row is None:
-        return "-"
-    cut = f", {row['substeps']} x" if row["substeps"] > 1 else ""
+        return ["-", "-"]
+    cut = f", {row['substeps']} substeps" if row["substeps"] > 1 else ""
     called = f"{LABELS[row['engine']]} {row['setting'] or ''}".strip()
-    return f"{called}{cut}: {format_number(row['resting'])} µs"
+    return [called + cut, format_number(row[time])]
 
 
 def loses(one, other):
@@ -45,21 +53,21 @@ def loses(one, other):
 
 
 def limits(points):
-    """(limit, number of problems, where leapfrog is beaten by an engine, and by the rival)
+    """(limit, number of problems, where leapfrog is beaten by an engine, and by the reference)
 
     Where it is beaten: {problem: (leapfrog's point, the better one)}.
     """
     for words, limit in CONTESTS.items():
-        sides = ["leapfrog"], PEERS, [RIVAL]
+        sides = ["leapfrog"], PEERS, [REFERENCE]
         mine, *others = (contest(points, side, **limit) for side in sides)
         yield words, len(mine), *({name: (mine[name], other) for name, other in each.items()
                                    if loses(mine.get(name), other)} for each in others)  # fmt: skip
 
 
-def races(rows):
-    """(balls, depth, our fastest row, leapfrog's, the fastest other engine's) of piles at rest."""
-    for depth in DEPTHS:
-        sides = [measure.fastest(rows, depth, who) for who in (MODELS, ["leapfrog"], ENGINES)]
+def races(rows, depths, time):
+    """(balls, depth, our fastest row, leapfrog's, the fastest other engine's) of piles."""
+    for depth in depths:
+        sides = [measure.fastest(rows, depth, w, time) for w in (MODELS, ["leapfrog"], ENGINES)]
         for count in sorted(set().union(*sides)):
             yield count, depth, *(side.get(count) for side in sides)
 
@@ -69,10 +77,7 @@ def claims(points, piles, processes):
     piles at rest; what compiled loops cost at first; how far times differ between processes."""
     there = {p["engine"] for p in points}
     *others, last = [LABELS[name] for name in PEERS if name in there] or ["nobody"]
-    where = [f"in {fields - len(lost)} of {fields} with at most {words}"
-             + f" (not {', '.join(lost)})" * bool(lost)
-             for words, fields, lost, _ in limits(points)]  # fmt: skip
-    exact, rival, leapfrog = (contest(points, [name]) for name in ("exact", RIVAL, "leapfrog"))
+    exact, rival, leapfrog = (contest(points, [name]) for name in ("exact", REFERENCE, "leapfrog"))
     both = [(exact[name], rival[name]) for name in exact if name in rival]
     lost = [name for name, p in rival.items() if loses(leapfrog.get(name), p)]
     errors = ([p[key] for _, p in both] for key in ("error", "error_max"))
@@ -82,14 +87,14 @@ def claims(points, piles, processes):
     first = {row["process"]: row["first"] for row in processes}
     return dict(
         peers=f"{', '.join(others)} and {last}",
-        where=", ".join(where),
+        where=where(points),
         rival=f"{len(lost)} of {len(leapfrog)} ({', '.join(lost)})",
-        longer=reach([p["ms"] / mine["ms"] for mine, p in both]),
+        longer=span([p["ms"] / mine["ms"] for mine, p in both]),
         usual_error=usual,
         worst_error=worst,
         phases=PHASES,
-        our_piles=shares(piles, 2),
-        leapfrog_piles=shares(piles, 3),
+        our_piles=ratios(piles, 2),
+        leapfrog_piles=ratios(piles, 3),
         numba=format_number(taken.get("one compiled step", 0.0) - taken.get("import numpy", 0.0)),
         first=format_number(first.get("one compiled step")),
         many=COMPILE_FROM,
@@ -98,58 +103,75 @@ def claims(points, piles, processes):
     )
 
 
-def reach(values):
+def where(points):
+    """In how many problems leapfrog is as accurate as the best engine, or more, at each limit."""
+    found = {}
+    for words, fields, lost, _ in limits(points):
+        but = f" (not {', '.join(lost)})" * bool(lost)
+        found.setdefault(f"in {fields - len(lost)} of {fields} problems{but}", []).append(words)
+    return "; ".join(f"{result} with at most {', '.join(each)}" for result, each in found.items())
+
+
+def span(values):
     """From the least to the greatest, as text."""
-    return (
-        f"{format_number(min(values, default=None))} to {format_number(max(values, default=None))}"
-    )
+    least, greatest = (format_number(pick(values, default=None)) for pick in (min, max))
+    return f"{least} to {greatest}"
 
 
-def shares(piles, which):
-    """Times of a pile at rest over those of the fastest other engine, and where it is greatest."""
-    ratios = {race[which]["resting"] / race[4]["resting"]: f"{race[0]:,} balls, {race[1]:g} r"
-              for race in races(piles) if race[which] and race[4]}  # fmt: skip
-    return f"{reach(ratios)} ({ratios.get(max(ratios, default=None))})"
+def ratios(piles, which):
+    """How many times as long the fastest other engine takes as ours, for piles at rest; and where
+    that is least."""
+    found = {race[4]["resting"] / race[which]["resting"]: f"{race[0]:,} balls, {race[1]:g} r"
+             for race in races(piles, DEPTHS, "resting") if race[which] and race[4]}  # fmt: skip
+    return f"{span(found)} times (least: {found.get(min(found, default=None))})"
 
 
 def take(points, piles):
-    """Rows of the README's table: what one types, and gets, and would get elsewhere."""
-    rival, peers = contest(points, [RIVAL]), contest(points, PEERS)
-    same = itemgetter("engine", "setting", "substeps")
+    """Rows of the README's table: which model, how one types it, and what it gives, beside the
+    best other engine."""
+    peers, same = contest(points, PEERS), itemgetter("engine", "setting", "substeps")
     rows = {(p["problem"], *same(p)): p for p in points if p["dt"] == DT}
     rows |= {(row["bodies"], *same(row)): row for row in piles}
     for want in stored.load(HERE)[0]["take"]:
-        typed = "<br>".join(f"`{line}`" for line in want["type"].splitlines())
         row = rows.get((want["problem"], *same(want)))
+        called = f"{want['engine']} {want['setting'] or ''}".strip()
+        cells = [want["wish"], f"`{called}`", f"`{typed(want, called)}`"]
         if row in points:
-            others = cell(rival.get(row["problem"])), cell(peers.get(row["problem"]), True)
-            yield [want["wish"], typed, cell(row), *others]
+            yield [*cells, error_of(row), time_of(row), *peer(peers.get(row["problem"]))]
         elif row:
             depth = min(d for d in DEPTHS if row["mean_depth"] <= d)
             other = measure.fastest(piles, depth, ENGINES).get(row["bodies"])
-            mine = f"at most {depth:g} r deep, {format_number(row['resting'])} µs a step"
-            yield [want["wish"], typed, mine, "-", resting(other)]
+            name, time = step_of(other, "resting")
+            mine = f"{depth:g}, mean depth", f"{format_number(row['resting'])} µs a step"
+            yield [*cells, *mine, name, f"{depth:g}", f"{time} µs a step"]
 
 
-def winners(rows):
-    """A row a problem: error and time of each; the winner of leapfrog and the best other bold."""
-    sides = ["exact"], [RIVAL], ["leapfrog"], ["lcp"], PEERS
-    best = [contest(rows, side) for side in sides]
+def typed(want, called):
+    """The command that measures a row of the README's table again."""
+    more = f" --substeps {want['substeps']}" if want["substeps"] > 1 else ""
+    setting = f'"{called}"' if " " in called else called
+    return f"python -m curriculum.bench try {want['problem']} {setting}{more}"
+
+
+def winners(rows, cell):
+    """A row a problem: a cell of each side, the better of leapfrog and the best other bold."""
+    best = [contest(rows, side) for side in (*([name] for name in SHOWN), PEERS)]
     for name, problem in problems.BY_NAME.items():
         found = [each.get(name) for each in best]
-        cells = [cell(p, p is found[-1]) for p in found]
-        won = 4 if loses(found[2], found[4]) else 2
-        cells[won] = f"**{cells[won]}**"
+        cells = [cell(p) for p in found]
+        if cell is error_of:
+            won = 4 if loses(found[2], found[4]) else 2
+            cells[won] = f"**{cells[won]}**"
         if any(found):
-            yield [f"{name}: {problem.title}", *cells]
+            yield [f"{name}: {problem.title}", *cells[:4], peer(found[-1])[0], cells[4]]
 
 
 def losses(rows):
-    """A row for each limit: where leapfrog is beaten by another engine, and by the rival."""
-    for words, fields, *sides in limits(rows):
-        texts = ["; ".join(f"{name} ({format_number(mine['error'])} r, {cell(peer, True)})"
-                           for name, (mine, peer) in lost.items()) for lost in sides]  # fmt: skip
-        yield [words, fields, *(text or "nowhere" for text in texts)]
+    """A row for each limit and problem where leapfrog is beaten, and by whom."""
+    for words, _, *sides in limits(rows):
+        for lost in sides:
+            for name, (mine, other) in lost.items():
+                yield [words, name, error_of(mine), time_of(mine), *peer(other)]
 
 
 def falling(rows):
@@ -166,27 +188,34 @@ def falling(rows):
 
 def written(name, sections, made):
     """page.md or readme.md with everything filled in."""
-    points, piles, processes = (sections.get(part, ()) for part in measure.PARTS)
+    points, piles, heap, processes = (sections.get(part, ()) for part in measure.PARTS)
     about = made.get("points", {"versions": {}})
     there = (f"{row[1]} {about['versions'].get(row[1], 'not there')}" for row in ENGINES.values())
     facts = claims(points, piles, processes)
     template, words = ((HERE / file).read_text("utf-8") for file in (name, "claims.md"))
     facts |= zip(("claims", "piles", "compiled"), words.format(**facts).strip().split("\n\n"))
     spent = map(dict.values, processes)
-    raced = ([f"{n:,}", f"{depth:g}", *map(resting, each)] for n, depth, *each in races(piles))
     return template.format(
         **facts,
         work=WORK[-1],
         stepped=", ".join(STEPPED),
         machine=f"{about.get('cores')} cores of {about.get('cpu')}, with {', '.join(there)}",
         take=stored.lines(take(points, piles)),
-        winners=stored.lines(winners(points)),
+        errors=stored.lines(winners(points, error_of)),
+        times=stored.lines(winners(points, time_of)),
         losses=stored.lines(losses(points)),
-        races=stored.lines(raced),
+        races=stored.lines(raced(piles, DEPTHS, "resting")),
+        heap=stored.lines(raced(heap, (1e-2, *DEPTHS), "falling")),
         falling=stored.lines(falling(piles)),
         processes=stored.lines([name, *map(format_number, each)] for name, *each in spent),
         origins="\n".join(f"- {part}: {stored.footer(each)}" for part, each in made.items()),
     )
+
+
+def raced(rows, depths, time):
+    """Rows of a table of races: setting and time of each side."""
+    for count, depth, *each in races(rows, depths, time):
+        yield [f"{count:,}", f"{depth:g}", *(cell for row in each for cell in step_of(row, time))]
 
 
 def front(dots):

@@ -1,6 +1,7 @@
 """The benchmark judges rightly: references, engines, cells worked out by hand, invented rows."""
 
 import math
+import re
 import shlex
 import sys
 import time
@@ -148,35 +149,58 @@ def test_what_exploded_does_not_compete():
 def test_who_wins_and_loses_is_as_the_numbers_say(mine, rival):
     rows = [point("exact", 1e-12, 1.0), point("leapfrog", mine, 5.0), point("pymunk", rival, 5.0)]
     rows.append(point("events", 1e-9, 30.0))
-    (cells,) = report.winners(rows)
-    assert [cell.startswith("**") for cell in cells[3::2]] == [mine < rival, rival < mine]
-    words = report.written("claims.md", {"points": rows}, {})
-    assert ("in 1 of 1 with at most 16" in words) == (mine < rival)
-    assert ("16 substeps in 2 ms (not drop)" in words) == (rival < mine)
-    assert "more accurate than leapfrog in 1 of 1 (drop). It takes 30 to 30 times" in words
-    lost = {row[0]: row[2] for row in report.losses(rows)}["16 substeps in 2 ms"]
-    assert lost == ("nowhere" if mine < rival else "drop (0.2 r, pymunk 0.1 r, 5 ms)")
+    (cells,) = report.winners(rows, report.error_of)
+    assert [cells[3].startswith("**"), cells[6].startswith("**")] == [mine < rival, rival < mine]
+    words = " ".join(report.written("claims.md", {"points": rows}, {}).split())
+    assert ("in 1 of 1 problems with at most 16 " in words) == (mine < rival)
+    assert ("in 0 of 1 problems (not drop) with at most 16 " in words) == (rival < mine)
+    assert "more accurate than leapfrog in 1 of 1 (drop) and takes 30 to 30 times" in words
+    lost = [row[1:] for row in report.losses(rows) if row[0] == "16 substeps in 2 ms"]
+    reference = ["drop", f"{mine:g}", "5", "event-driven", "1.0e-09", "30"]
+    assert lost == [["drop", "0.2", "5", "pymunk", "0.1", "5"]] * (rival < mine) + [reference]
 
 
 TAKEN = stored.load(engines.HERE)[0]["take"]
 
 
 @pytest.mark.parametrize("row", TAKEN, ids=lambda row: f"{row['engine']} {row['problem']}")
-def test_what_the_readme_tells_one_to_type_is_the_run_that_was_measured(row):
-    """As typed: a command line of contact.py, or two lines of Python; of the pile four looks."""
-    problem, typed, cuts = problems.BY_NAME.get(row["problem"]), row["type"], row["substeps"]
-    if typed.startswith("python contact.py "):
-        args = contact.parse_flags(shlex.split(typed)[2:])
-        scene = contact.chosen_scene(args, args.seed)
-        run = contact.run_flags(args, scene, args.contact, args.dt, args.steps)
+def test_what_the_readme_tells_one_to_type_prints_the_error_that_the_row_promises(row, capsys):
+    """The error of kept results within a factor of three; the 1,000 balls are 12 here."""
+    _, _, _, part, *words = shlex.split(report.typed(row, bench.name(row)))
+    assert part == "try" and words[0] == str(row["problem"])
+    pile = isinstance(row["problem"], int)
+    bench.main([part, *("12" if word == "1000" else word for word in words)])
+    printed = capsys.readouterr().out
+    if pile:
+        assert (
+            "at rest" in printed and 0.0 < float(re.search("rest, (.*) r deep", printed)[1]) < 1e-3
+        )
     else:
-        known = {}
-        exec(typed.replace("24000", "16"), known)
-        run = known["run"]
-    setting = engines.BY_NAME[bench.name(row)]
-    session = setting.build(problem.build(0) if problem else measure.shaft(1000), 0.002, cuts)
-    expected, _ = session.states(problem.steps(0.002) if problem else 4)
-    assert np.array_equal(run.q[::cuts], expected)
+        (kept,) = (p for p in KEPT if bench.name(p) == bench.name(row) and p["dt"] == measure.DT
+                   and all(p[key] == row[key] for key in ("problem", "substeps")))  # fmt: skip
+        found = re.search("error (.*) r ", printed)
+        assert (kept["error"] is None) == (found is None) and "ms of CPU" in printed
+        assert found is None or float(found[1]) <= 3.0 * kept["error_max"] + 1e-12
+
+
+def test_try_names_what_is_allowed(capsys):
+    for words, part in (("slid exact", "allowed: 12, 100, 1000, drop"), ("drop exakt", "leapfrog"),
+                        ("drop", "try takes a problem and a setting")):  # fmt: skip
+        with pytest.raises(SystemExit, match="2"):
+            bench.main(["try", *words.split()])
+        assert part in capsys.readouterr().err
+
+
+def test_the_heap_is_that_of_simbenchmark_in_a_plane():
+    scene, lcp = measure.heap(), engines.BY_NAME["lcp iters=4 baumgarte=1"]
+    assert len(scene.mass) == 6 * 6 * 6 and set(scene.mass) == {10.0} and scene.restitution == 0.0
+    assert fast.smallest_gap(scene.q0[None], scene.radius)[0] > 0.0
+    assert scene.q0[1].min() == pytest.approx(1.101, abs=1e-3)
+    row = measure.sink_of((lcp, 1, 600))
+    assert 1e-6 < row["mean_depth"] < row["worst_depth"] < 0.2 and row["bodies"] == 216
+    assert measure.time_of_heap((lcp, 1, 50)) > 1.0
+    rows = [row | dict(falling=t, mean_depth=d) for t, d in ((9.0, 1e-4), (3.0, 1e-2), (1.0, None))]
+    assert measure.fastest(rows, 1e-3, ["lcp"], "falling")[216]["falling"] == 9.0
 
 
 def test_ten_thousand_balls_start_without_contact():
