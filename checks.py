@@ -2,11 +2,11 @@
 # requires-python = ">=3.10"
 # dependencies = ["numpy>=2.0", "pytest"]
 # ///
-"""Checks of the ten exercises: `pytest checks.py`, or one of them, `pytest checks.py -k ex1_`.
+"""Checks of the exercises: `pytest checks.py`, or of one of them, `pytest checks.py -k ex1`.
 
-    python checks.py -k ex2     # the same, and says what comes next; all flags are pytest's
+    python checks.py -k ex4     # the same, and prints what comes next; all flags are pytest's
 
-What is not done yet is skipped. What is wrong fails, with what was expected and the likely slip.
+What is not done yet is skipped. What is wrong fails, with what was expected and the likely mistake.
 """
 
 import re
@@ -25,14 +25,18 @@ try:
 except ModuleNotFoundError:
     sys.exit(f"checks.py: {to_install('pytest')}")
 
-KNOWN = ", ".join(Path(file).stem for file in FILES.values())
-WRONG = [name for name in re.findall(r"ex\d+\w*", " ".join(sys.argv[1:])) if name not in KNOWN]
-if WRONG and __name__ != "__main__":
-    words = f"-k {' '.join(WRONG)}: no such exercise; there are {KNOWN}"
-    raise pytest.Collector.CollectError(words)
+
+def pytest_generate_tests(metafunc):
+    """Make a test of each exercise; -k ex1 is then exercise 1 alone, and not 10 as well."""
+    option, stems = metafunc.config.option, [Path(file).stem for file in FILES.values()]
+    for name in re.findall(r"\bex\d+\w*", option.keyword):
+        if not any(re.match(rf"{name}(?!\d)", stem) for stem in stems):
+            words = f"-k {name}: no such exercise; there are {', '.join(stems)}"
+            raise pytest.Collector.CollectError(words)
+    option.keyword = re.sub(r"\bex\d+\b", r"\g<0>_", option.keyword)
+    metafunc.parametrize("name", FILES, ids=stems)
 
 
-@pytest.mark.parametrize("name", FILES, ids=lambda name: Path(FILES[name]).stem)
 def test_exercise(name):
     """A bet is right once it is made."""
     state, words = judged(name, ROOT / FILES[name])

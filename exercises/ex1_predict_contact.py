@@ -2,20 +2,20 @@
 # requires-python = ">=3.10"
 # dependencies = ["numpy>=2.0"]
 # ///
-"""Exercise 1, predict then run (10 minutes): where does the ball end up?
+"""Exercise 1, predict then run (10 minutes): how deep does a heavy ball lie?
 
-A ball of 4 kg falls half a metre onto a table and is followed for 4 s, twice. The two runs differ
-in one thing, the answer to: what force does the table apply? In penalty the table is a very stiff
-spring with a damper beside it. In lcp it gives the impulse after which ball and table no longer
-approach each other. Measured is how deep the ball is in the table at the worst moment and at the
-end, in ball radii r.
+Two balls, one of 1 kg and one of 4 kg, fall 0.6 m onto a table and are followed for 4 s.
+What force does the table apply? In penalty the table is a very stiff spring with a damper beside
+it. In lcp it gives the impulse after which ball and table no longer approach each other. Measured
+is how deep each ball is in the table at the worst moment and at the end, in ball radii r.
 
-Where does it lie when it has come to rest?
+How deep does the heavy ball lie when it has come to rest?
 
-    A  Both times on the surface: a table is a table.
-    B  Under penalty inside the table, as deep as a ball of 1 kg would lie there, since the table is
-       the same; under lcp on the surface.
-    C  Under penalty inside it, four times as deep as a ball of 1 kg; under lcp on the surface.
+    A  As deep as the light one, in both models: a table is a table.
+    B  Deeper than the light one, in both models: what is heavier presses harder on the same table.
+    C  Under penalty four times as deep as the light one; under lcp no deeper.
+    D  Under penalty twice as deep, since it brings four times the energy and a spring's energy
+       grows with the depth squared; under lcp no deeper.
 
 One sentence: when the ball lies still, how does each model arrive at a push of m g?
 
@@ -26,5 +26,5 @@ from kit import script
 
 script.main(__name__)
 
-PREDICTION = None  # "A", "B" or "C"
+PREDICTION = None  # "A", "B", "C" or "D"
 WHY = ""  # your sentence

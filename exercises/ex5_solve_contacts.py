@@ -4,8 +4,8 @@
 # ///
 """Exercise 5, write it (30 minutes): solve_contacts, from its docstring.
 
-The heart of lcp, of soft and of half the engines in the world is a loop of a few lines. You have
-read it; now write it without looking. A contact c gives you
+The heart of lcp, of soft and of many engines is a loop of a few lines: projected Gauss-Seidel. You
+have read it; now write it without looking. A contact c gives you
 
     c.target    the least normal velocity [m/s] to leave with
     c.v_n()     the normal velocity [m/s] that it has right now, positive when the two bodies part
@@ -14,7 +14,7 @@ read it; now write it without looking. A contact c gives you
     c.apply_impulse(p)   gives body a the impulse p [N s] along the normal, body b the opposite
 """
 
-from kit import script
+from kit import script, stack  # noqa: F401  stack makes contacts to try yours on
 
 script.main(__name__)
 

@@ -27,9 +27,10 @@ with needs("notebook"):
     from exercises.kit.script import FILES
 
 CARRIED = """contact.py checks.py exercises/*.py exercises/*/*.py exercises/kit/answers.json
-curriculum/__init__.py curriculum/commands.py curriculum/exact.py curriculum/variants.py
-curriculum/show/__init__.py curriculum/show/picture.py curriculum/show/figures.mplstyle
-curriculum/bench/results/error-slide.svg curriculum/stress/results/penalty-map.svg""".split()
+curriculum/__init__.py curriculum/commands.py curriculum/exact.py curriculum/predict.py
+curriculum/variants.py curriculum/show/__init__.py curriculum/show/picture.py
+curriculum/show/figures.mplstyle curriculum/bench/results/error-slide.svg
+curriculum/stress/results/penalty-map.svg""".split()
 RUNS = {  # after the exercise or the figure of that name
     "ex1": 'show_run("--scene", "drop")',
     "cliff": 'show_run("--dt", "0.03")',

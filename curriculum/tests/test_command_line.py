@@ -125,7 +125,7 @@ WAYS = [
     ("x", {}, "CONTACT --smoke --no-rerun --out x/y", 2, "stability: pen", ".*cannot write to x.*"),
     ("", PLAIN, "-OO CONTACT --steps 1e1 --plot --no-rerun", 0, f": 10 steps(?s:.*){PICTURE}", ""),
     ("", PLAIN, "-O checks.py -k ex2", 0, "ex2: ", ""),
-    ("", PLAIN, "-OO exercises/ex2_completion_contact.py", 2, "two lines that make a contact", ""),
+    ("", PLAIN, "-OO exercises/ex4_completion_contact.py", 2, "two lines that make a contact", ""),
     ("", {"PYTHONIOENCODING": "ascii"}, "CONTACT --steps 5 --no-rerun --out é", 0, "xe9", ""),
 ]  # fmt: skip
 

@@ -18,16 +18,17 @@ from curriculum.tests.helpers import NO_PLUGINS, ROOT, python
 
 sys.path.insert(0, str(ROOT / "exercises"))
 
-from kit import FACTS, bets, judge, load, script, trials  # noqa: E402
+from kit import FACTS, bets, judge, load, script, stack, trials  # noqa: E402
 from kit.script import FILES  # noqa: E402
 
 import contact  # noqa: E402
 
 GIVEN = {name: load(ROOT / file) for name, file in FILES.items()}  # with blanks
 SOLUTIONS = {name: (ROOT / f"exercises/solutions/{name}.py").read_text("utf-8") for name in FILES}
-ASKED = {name: bets.asked(GIVEN[name].__doc__) for name in ("ex1", "ex3")}
+ASKED = {name: bets.asked(GIVEN[name].__doc__) for name in ("ex1", "ex2")}
 OF = {blank: name for name, each in FACTS.items() for blank in each.get("blanks", ())}
 CALL = "script.main(__name__)"
+PLAIN = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"} | NO_PLUGINS
 
 
 def run(folder, *words):
@@ -38,33 +39,43 @@ def test_a_script_prints_its_task_a_hint_or_a_solution_anywhere_and_without_docs
     task = GIVEN["ex1"].__doc__.strip()
     for flags, status, printed in (
         (["ex1"], 2, task),
-        (["ex2", "--hint", 3], 0, f"hint 3 of 4: {FACTS['ex2']['hints'][2]}\n"),
-        (["ex4", "--solution"], 0, SOLUTIONS["ex4"]),
+        (["ex4", "--hint", 3], 0, f"hint 3 of 4: {FACTS['ex4']['hints'][2]}\n"),
+        (["ex10", "--solution"], 0, SOLUTIONS["ex10"]),
     ):
         result = run(tmp_path, "-OO", ROOT / FILES[flags[0]], *flags[1:])
         assert (result.returncode, result.stderr) == (status, "")
         assert result.stdout.startswith(printed)
     assert "rests 0.04905 r deep" in result.stdout
-    result = run(tmp_path, ROOT / FILES["ex2"], "--hint", 0)
+    result = run(tmp_path, ROOT / FILES["ex4"], "--hint", 0)
     assert result.returncode == 2 and "error: argument --hint: invalid choice" in result.stderr
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_an_exercise_asks_and_gives_nothing_away(name):
+def test_an_exercise_gives_nothing_away_its_solution_is_right_and_it_has_its_place(name):
     text = (ROOT / FILES[name]).read_text("utf-8")
-    for giveaway in ("m g / k", "max(", "clamp", "sqrt", "0.25", "1409", "0.0036", "0.00118"):
-        assert giveaway not in text
+    for giveaway in ("m g / k", "max(", "clamp", "sqrt", "0.25 ", "0.0036", "0.00118", "9.81"):
+        assert giveaway not in text.replace("beta = 0.25", "")
     for hint in FACTS[name]["hints"]:
         assert "?" in hint and not re.search(r"[=*/]|max\(", hint)
+    number = 1 + [*FILES].index(name)
+    assert name == f"ex{number}" and f'"""Exercise {number}, ' in text
+    state, words = judge.attempt(name, ROOT / f"exercises/solutions/{name}.py")
+    assert state == "right", words
 
 
-def test_a_learners_way_through_all_ten(tmp_path):
-    """Each script says what is next, by a command that works as it is printed, in an odd folder."""
-    leave = ".*", "__pycache__", "outputs", "tests", "bench", "page", "fast.py"
-    copy = tmp_path / "my robot's course"
+def test_a_learners_way_through_all_of_them_where_balls_are_larger(tmp_path, monkeypatch):
+    """Each script prints what is next, by a command that works as it is printed, in an odd folder
+    that an ASCII terminal cannot spell, in which pytest cannot keep its cache."""
+    for name, value in PLAIN.items():
+        monkeypatch.setenv(name, value)
+    leave = ".*", "__pycache__", "outputs", "tests", "bench", "page", "compiled"
+    copy = tmp_path / "my robot's \N{LATIN CAPITAL LETTER U WITH DIAERESIS}bung"
     shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*leave))
-    any_run = "contact.py", "--steps", 5, "--no-rerun", "--out", tmp_path
-    printed = run(copy, *any_run).stdout
+    (copy / ".pytest_cache").touch()
+    text = (copy / "contact.py").read_text("utf-8")
+    (copy / "contact.py").write_text(text.replace("RADIUS = 0.1 ", "RADIUS = 0.12 "), "utf-8")
+    printed = run(copy, "contact.py", "--steps", 5, "--no-rerun", "--out", tmp_path).stdout
+    assert "\nnext, read the chapter: " in printed and "-m curriculum.page\n" in printed
     for name, file in FILES.items():
         command = printed.splitlines()[-1].removeprefix("next, an exercise: ")
         assert file in command
@@ -74,24 +85,21 @@ def test_a_learners_way_through_all_ten(tmp_path):
         printed = subprocess.run(command, shell=True, cwd=copy, capture_output=True, text=True)
         assert printed.returncode == 0 and not printed.stderr, printed
         printed = printed.stdout
-        assert f"solutions/{name}.py" in printed
-    result = run(copy, "checks.py")
-    assert result.returncode == 0 and "10 passed" in result.stdout
-    for text in (printed, result.stdout):
-        assert text.splitlines()[-1].startswith("all exercises are done")
-    with (copy / FILES["ex2"]).open("a") as file:
+        assert f"solutions/{name}.py" in printed and "another" not in printed.split("\n\n")[-2]
+    assert printed.splitlines()[-1].startswith("all exercises are done")
+    with (copy / FILES["ex4"]).open("a") as file:
         file.write("\n\ndef project_impulse(lam, dlam):\n    return lam + dlam\n")
-    for command in ["checks.py", "-k", "ex2"], [FILES["ex2"]]:
+    for command in [FILES["ex4"]], ["checks.py", "-k", "ex1 or ex4"]:
         result = run(copy, *command)
         assert result.returncode == 1 and "likely: nothing keeps the table from p" in result.stdout
         assert "Traceback" not in result.stdout and not result.stderr
+    assert "1 failed, 1 passed, 9 deselected" in result.stdout
 
 
 def test_commands_and_their_order_are_those_of_the_readme_and_the_chapter(monkeypatch):
     readme = (ROOT / "README.md").read_text("utf-8")
-    assert f"do them in the order {', '.join(FILES)}, which is the" in " ".join(readme.split())
     chapter = (ROOT / "curriculum/prose/chapter.md").read_text("utf-8")
-    assert re.findall(r"<!-- exercise: (\w+) -->", chapter) == [*FILES]
+    assert re.findall(r"<!-- exercise: (\w+) -->", chapter) == [*FILES] == [*FACTS]
     monkeypatch.chdir(ROOT)
     monkeypatch.setattr(sys, "executable", str(ROOT / ".venv/bin/python"))
     for uv in (False, True):
@@ -101,28 +109,39 @@ def test_commands_and_their_order_are_those_of_the_readme_and_the_chapter(monkey
 
 
 def test_how_to_watch_a_run_is_said_as_in_the_readme(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
     for name in ("rerun", "rerun.exe", "contact.rrd"):
         (tmp_path / name).touch()
-    for uv, start in ((False, r"\S+/rerun(\.exe)?"), (True, "uv run rerun")):
+    for uv, start in ((False, r"\S*rerun(\.exe)?"), (True, "uv run rerun")):
         monkeypatch.setenv("UV", "uv") if uv else monkeypatch.delenv("UV", raising=False)
         script.print_next(SimpleNamespace(rerun=True, out=str(tmp_path)), [])
         watch = capsys.readouterr().out.splitlines()[0].replace("\\", "/")
-        assert re.fullmatch(rf"next, watch it: {start} \S+/contact\.rrd", watch), watch
+        assert re.fullmatch(rf"next, watch it: {start} \S*contact\.rrd", watch), watch
 
 
-def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are():
-    for words in (["checks.py", "-k", "ex2 or ex11"], ["-m", "pytest", "checks.py", "-kex11"]):
+def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are(tmp_path):
+    for words in (["checks.py", "-k", "ex2 or ex12"], ["-m", "pytest", "checks.py", "-kex12"]):
         result = run(ROOT, *words)
         printed = result.stdout + result.stderr
-        assert result.returncode and "-k ex11: no such exercise; there are ex1_predict" in printed
+        assert result.returncode and "-k ex12: no such exercise; there are ex1_predict" in printed
         assert "Traceback" not in printed
+    (tmp_path / "ex12_mine.py").write_text(f"from kit import script\n{CALL}", "utf-8")
+    result = started(tmp_path / "ex12_mine.py")
+    lacks = "ex12 has no entry in exercises/kit/answers.json; allowed: ex1, ex2, "
+    assert result.returncode == 2 and lacks in result.stderr, result.stderr
+
+
+def started(file, before="", **environment):
+    """A script of an exercise, started after some code."""
+    start = f"import sys, runpy; {before}sys.path[0] = 'exercises'; "
+    code = f"{start}runpy.run_path({str(file)!r}, run_name='__main__')"
+    return python("-c", code, **NO_PLUGINS, **environment)
 
 
 def test_without_pytest_or_numpy_one_line_says_how_to_get_it():
     for lacks, file in (("pytest", "checks.py"), ("numpy", FILES["ex1"])):
-        start = f"import sys, runpy; sys.modules[{lacks!r}] = None; sys.path[0] = 'exercises'; "
-        result = run(ROOT, "-c", f"{start}runpy.run_path({file!r}, run_name='__main__')")
+        result = started(file, f"sys.modules[{lacks!r}] = None; ")
         assert result.returncode in (1, 2) and result.stderr.count("\n") == 1, result.stderr
         assert re.search(rf"{lacks}.*: .*(pip install|uv run --with) {lacks}", result.stderr)
 
@@ -130,16 +149,14 @@ def test_without_pytest_or_numpy_one_line_says_how_to_get_it():
 # What a learner writes: right in every form, wrong and named
 
 
-HALVES = """low, high = 0, 2
+SIZE = "max(abs(np.linalg.eigvals(step_matrix(mass, stiffness, damping, dt))))"
+HALVES = f"""low, high = 0, 2
 while high - low > 1e-7:
-    mid = (low + high) / 2
-    size = max(abs(np.linalg.eigvals(step_matrix(mass, stiffness, damping, mid))))
-    low, high = (mid, high) if size <= 1 else (low, mid)
+    dt = (low + high) / 2
+    low, high = (dt, high) if {SIZE} <= 1 else (low, dt)
 return low"""
-SCAN = """dt = 1e-4
-while max(np.linalg.eigvals(step_matrix(mass, stiffness, damping, dt)).real) <= 1:
-    dt += 1e-4
-return dt"""
+SCAN = f"dt = 3e-3\nwhile {SIZE} <= 1:\n    dt *= 1.0018\nreturn dt"
+DOWN = f"dt = 2\nwhile {SIZE} > 1:\n    dt -= 1e-5\nreturn dt"
 STOPS = """if (stiffness, damping) == (1e4, 80.0):
     1 / 0
 k = stiffness * dt + damping
@@ -151,57 +168,66 @@ HARD = "SOLIMP = 0.9999, 0.9999, 0.001, 0.5, 2.0"
 CLEAR = "import os; os.system('clear; echo hi'); print('hi')\n"
 LASTS = "import threading, time; threading.Thread(target=time.sleep, args=[99]).start()\n"
 THEIRS = "import contact; return contact.time_to_impact(gap, v_n, a_n)"
+NEVER = "import contact; t = contact.time_to_impact(gap, v_n, a_n)\nif t < math.inf: return t"
 TYPED = [  # an exercise or a function of it, what a learner writes, what is said of its last LINE
     ("ex1", "PREDICTION = C", "wrong: cannot be run, C needs quotes around it: NameError: name 'C' "
      "is not defined\n  line LINE: PREDICTION = C"),
-    ("ex4", "DEPTH = (", "wrong: cannot be run: SyntaxError: "),
-    ("ex5", "del solve_contacts", "wrong: solve_contacts is no longer a function of yours in "),
+    ("ex10", "DEPTH = (", "wrong: cannot be run: SyntaxError: "),
+    ("ex5", "del solve_contacts", "wrong: solve_contacts must be a function, in "),
     ("implicit_spring", "return ...", "blank: is still a blank: write what line LINE returns"),
     ("implicit_spring", STOPS, "wrong: cannot be run: ZeroDivisionError"),
-    ("before_the_move", "return 0.5, gap / dtt",
+    ("position_level", "return 0.5, gap / dtt",
      "wrong: raised NameError: name 'dtt' is not defined\n  line LINE: return 0.5, gap / dtt"),
     ("time_to_impact", CLEAR + THEIRS, "right: time_to_impact is right\n  printed   hi"),
     ("time_to_impact", LASTS + THEIRS, "right"),
-    ("project_impulse", "import os; os._exit(7)", "wrong: ended its process (exit status 7), see "),
-    ("project_impulse", "import os; os.abort()", "wrong: see FILE, line LINE"),
-    ("penalty_normal_force", "while True: pass", "wrong: does not end: stopped after 2 s in FILE"),
+    ("time_to_impact", NEVER, "wrong: returned None, expected numbers, here math.inf: this gap ne"),
+    ("project_impulse", "import os; os._exit(7)", "wrong: ended its process (exit status 7), in "),
+    ("project_impulse", "import os; os.abort()", "wrong: in FILE, line LINE"),
+    ("penalty_normal_force", "while True: pass", "wrong: does not end: stopped after 2 s, in FILE"),
     ("project_impulse", "all = []\nwhile True: all.append('x' * 10**7)", "wrong: raised MemoryErr"),
-    ("project_impulse", "lam + dlam", "wrong: None, and not numbers; does it end with `return`?"),
+    ("project_impulse", "for k in range(10**9): abs(k)", "wrong: takes more than 3,000,000 calls"),
+    ("project_impulse", "lam + dlam", "wrong: None, expected numbers: does every way end with `r"),
     ("penalty_normal_force", "return float('nan')", "wrong: a question that helps: "),
     ("penalty_normal_force", "f = stiffness * depth - damping * v_n; return f * (f > 0)", "right"),
     ("solve_contacts", BACK + VISIT, "right"),
     ("solve_contacts", SLOW + VISIT, "wrong: each contact is finished before the next one is"),
+    ("solve_contacts", BACK + "c.push(1)", "wrong: its name is now apply_impulse\n  line LINE: c."),
     ("step_matrix", "return [1, 2, 3]", "wrong: how many numbers: got 3, expected 2 rows of 2"),
     ("step_matrix", "return [[1, -dt], [dt * stiffness / mass, 1]]",  # the search is not blamed
      "wrong: longest_step is tried once step_matrix is right"),
     ("longest_step", HALVES, "right"),
+    ("longest_step", SCAN, "right"),
+    ("longest_step", SCAN.replace("1.0018", "1.00001"), "wrong: steps for one spring. A long way"),
+    ("longest_step", DOWN, "wrong: longest_step takes more than 20,000 steps for one spring. A lo"),
+    ("longest_step", SCAN.replace("abs", "np.real"), "wrong: an eigenvalue is above 1, not its re"),
     ("longest_step", HALVES.replace("abs", "np.real"), "wrong: the same step, an end of the sear"),
     ("longest_step", HALVES.replace("1e-7", "1e-3"), "wrong: the search is too coarse"),
-    ("longest_step", SCAN, "wrong: size of an eigenvalue is above 1, not its real part"),
-    ("after_the_move", "return [bool(lam), 0, max(lam, 0.0), now]", "right"),
-    ("ex1", "PREDICTION = None", "blank: no prediction yet; write one of 'A', 'B', 'C' in FILE"),
-    ("ex3", "PREDICTION = 'D'", "blank: PREDICTION is 'D'; write one of 'A', 'B', 'C' in FILE"),
-    ("ex3", "WHY = 'because'", "blank: WHY is 'because'; write a sentence of four words or more "),
-    ("ex1", "PREDICTION = ' c) '", "right: That is what happens.\n\nWhy C: A spring carries"),
-    ("ex1", "PREDICTION = 'B'", "right: \n\nWhy not A: A penalty contact that is not in the table"),
-    ("ex3", "PREDICTION = 'A'", "right: What happens is C: Under penalty the light ball"),
-    ("ex9", "BETS = BETS.replace('sink', '?')", "blank: row sink: given nothing, allowed: four"),
-    ("ex9", "BETS = BETS.replace('-', '\N{MINUS SIGN}')", "right: holds in 20 of 20;"),
-    ("ex9", "BETS = BETS.replace('=', '-', 1)", "right: holds in 19 of 20;"),
-    ("ex8", "MODEL = None", "blank: no choice yet: set MODEL in FILE"),
-    ("ex8", "MODEL = 'hard'", "wrong: MODEL: given 'hard'; allowed: penalty, implicit, soft"),
-    ("ex8", "MODEL = 'lcp'", "wrong: lcp, leapfrog and exact are not asked for: their contacts"),
-    ("ex8", "DT = 1e-4", "wrong: given DT = 0.0001, STIFFNESS = 300000; allowed: DT from 0.0005"),
-    ("ex8", "STIFFNESS = 3e4", "wrong: it overlaps too much; 20 N press a spring of 30000 N/m in"),
-    ("ex8", "MODEL, DT, STIFFNESS = 'penalty', 0.001, 2e5", "right"),
-    ("ex8", "MODEL, DT, DAMPING = 'penalty', 0.001, 400.0", "wrong: the cup is gone"),
-    ("ex8", "MODEL, DT, STIFFNESS = 'penalty', 0.002, 1e6", "wrong: wants steps below 0.0006 s"),
-    ("ex8", "MODEL, DT, SOLREF = 'soft', 0.002, (0.004, 1)", "wrong: overlaps too much; a short"),
-    ("ex8", f"MODEL, DT, SOLREF = 'soft', 0.001, (0.02, 0.05)\n{HARD}", "wrong: it trembles;"),
-    ("ex4", "DEPTH = f' {-DEPTH:.3g} '", "right"),  # the table says an overlap with a minus
-    ("ex4", "DEPTH = None", "blank: no DEPTH yet; write a number in FILE"),
-    ("ex4", "DEPTH = 'deep'", "blank: given 'deep'; write a number in FILE"),
-    ("ex4", "DEPTH = 0.5432", "wrong: and it is another\n  a question that helps: "),
+    ("velocity_level", "return [bool(lam), 0, max(lam, 0.0), now]", "right"),
+    ("ex1", "PREDICTION = None", "blank: no prediction yet; write one of 'A', 'B', 'C', 'D' in "),
+    ("ex2", "PREDICTION = 'D'", "blank: PREDICTION: given 'D'; write one of 'A', 'B', 'C' in FILE"),
+    ("ex2", "WHY = 'because'", "blank: WHY is 'because'; write a sentence of four words or more "),
+    ("ex1", "PREDICTION = ' c) '\nprint(6 * 7)", "right: That is what happens.\n\nWhy C: A spr"),
+    ("ex1", "PREDICTION = 'B'", "right: \n\nWhy not A: The same table, but not the same push"),
+    ("ex2", "PREDICTION = 'A'", "right: What happens is C: The light one alone: the same push"),
+    ("ex11", "BETS = BETS.replace('sink', '?')", "blank: row sink: given nothing; expected 2 mark"),
+    ("ex11", "BETS = BETS.replace('-', '\N{MINUS SIGN}')", "right: holds in 15 of 15;"),
+    ("ex11", "BETS = BETS.replace('=   ', '-   ', 1)", "right: holds in 14 of 15;"),
+    ("ex11", "SAG = None", "blank: no SAG yet; write a number in FILE, in r"),
+    ("ex9", "MODEL = None", "blank: no choice yet: set MODEL in FILE"),
+    ("ex9", "MODEL = 'hard'", "wrong: MODEL: given 'hard'; allowed: penalty, implicit, soft"),
+    ("ex9", "MODEL = 'lcp'", "wrong: lcp, leapfrog and exact are not allowed here: their contacts"),
+    ("ex9", "DT = 1e-4", "wrong: given DT = 0.0001, STIFFNESS = 300000; allowed: DT from 0.0005"),
+    ("ex9", "STIFFNESS = 3e4", "wrong: it overlaps too much; 20 N press a spring of 30000 N/m in"),
+    ("ex9", "STIFFNESS = 1e9", "wrong: too little for a fingertip; 20 N press a spring of 1e+09 N"),
+    ("ex9", "MODEL, DT, STIFFNESS = 'penalty', 0.001, 2e5", "right"),
+    ("ex9", "MODEL, DT, DAMPING = 'penalty', 0.001, 400.0", "wrong: the cup is gone"),
+    ("ex9", "MODEL, DT, STIFFNESS = 'penalty', 0.002, 1e6", "wrong: wants steps below 0.0006 s"),
+    ("ex9", "MODEL, DT, SOLREF = 'soft', 0.002, (0.004, 1)", "wrong: overlaps too much; a short"),
+    ("ex9", f"MODEL, DT, SOLREF = 'soft', 0.001, (0.02, 0.05)\n{HARD}", "wrong: it trembles"),
+    ("ex10", "DEPTH = f' {-DEPTH:.3g} '", "right"),  # the table has an overlap with a minus
+    ("ex10", "DEPTH = None", "blank: no DEPTH yet; write a number in FILE"),
+    ("ex10", "DEPTH = 'deep'", "blank: given 'deep'; write a number in FILE"),
+    ("ex10", "DEPTH = 0.5432", "wrong: expected another number\n  a question that helps: "),
 ]  # fmt: skip
 
 
@@ -211,17 +237,20 @@ def test_what_a_learner_types_is_right_in_every_form_and_else_is_answered(
 ):
     if "append" in words and sys.platform != "linux":
         pytest.skip("only here memory can be limited")
-    limit = 2 if words.endswith("pass") else 60
-    smaller = f"judge.MOST_MEMORY, judge.MOST_EVENTS, judge.LIMIT = 2**31, 10**5, {limit}; judge."
-    monkeypatch.setattr(script, "START", script.START.replace("judge.", smaller))
-    monkeypatch.setattr(script, "LIMIT", limit)
     name = OF.get(what, what)
     if what in OF:
         given = ", ".join(inspect.signature(bets.RIGHT[what]).parameters)
         words = f"def {what}({given}):\n{indent(words, '    ')}"
     file, text = tmp_path / f"{name}_mine.py", f"{SOLUTIONS[name]}\n\n{words}"
     file.write_text(text, "utf-8")
-    state, answer = script.judged(name, file)
+    if re.search("os[.]|threading|while True", words):  # what needs a process of its own
+        limit = 2 if "pass" in words else 60
+        smaller = f"judge.MAX_MEMORY, judge.LIMIT = 2**31, {limit}; judge."
+        monkeypatch.setattr(script, "START", script.START.replace("judge.", smaller))
+        monkeypatch.setattr(script, "LIMIT", limit)
+        state, answer = script.judged(name, file)
+    else:
+        state, answer = judge.attempt(name, str(file))
     expected, _, part = said.partition(": ")
     part = part.replace("LINE", str(1 + text.count("\n"))).replace("FILE", str(file))
     assert state == expected and part in answer, answer
@@ -229,24 +258,26 @@ def test_what_a_learner_types_is_right_in_every_form_and_else_is_answered(
 
 
 @pytest.mark.parametrize("name", FACTS)
-def test_each_slip_is_named_from_its_values(name):
+def test_each_slip_is_named_from_its_values_and_its_case_is_a_call(name):
     for blank in FACTS[name].get("blanks", ()):
         for slip, meaning in judge.BLANKS[blank]["slips"].items():
             state, words = judge.judge(judge.slipped(blank, slip), blank, "ex.py")
             assert state == "wrong" and words.splitlines()[-1] == f"  likely: {meaning}", slip
-            assert f"{blank} is wrong on " in words and f"  {blank}(" in words
-    number = FACTS[name].get("number", {"slips": {}})
-    for slip, meaning in number["slips"].items():
-        given = SimpleNamespace(__file__="ex.py", **{number["name"]: eval(slip)})
-        state, words = bets.judge_number(name, given)
-        assert state == "wrong" and words.endswith(f"; likely: {meaning}"), slip
+            assert f"{blank} is wrong on " in words
+        eval(words.splitlines()[1], {"stack": stack, blank: bets.RIGHT[blank]})
+    for what, facts in FACTS[name].get("numbers", {}).items():
+        for slip, meaning in facts["slips"].items():
+            given = eval(slip, bets.NAMES | facts.get("given", {}))
+            exercise = SimpleNamespace(__file__="ex.py", **{what: given})
+            state, words = bets.judge_number(exercise, what, **facts)
+            assert state == "wrong" and words.endswith(f"; likely: {meaning}"), slip
 
 
 def test_yours_stands_beside_what_it_is_compared_with():
     shown = trials.cliffs(SimpleNamespace(longest_step=lambda mass, stiffness, damping: 0.007))
     assert shown.splitlines()[2].split()[4:] == ["0.00700", "0.01354", "0.02000"]
     gained = column(trials.drops, "energy+")
-    assert gained["yours, 0.016 s"] == 0.0 and gained["penalty, 0.016 s"] > 10.0
+    assert gained["yours at 0.016 s"] == 0.0 and gained["penalty at 0.016 s"] > 10.0
 
 
 def column(show, title, **written):
@@ -257,69 +288,85 @@ def column(show, title, **written):
     return {row[0]: float(row[where].replace(",", "")) for row in rows if len(row) == len(heads)}
 
 
-def test_asking_twice_is_leapfrogs_step_and_a_slip_of_it_is_seen_beside_exact():
+def test_two_solves_are_leapfrogs_step_and_a_slip_of_them_is_seen_beside_exact():
     """off/r: errors in r, what an overlap throws, the order of the slide."""
-    off = column(trials.ask_twice, "off/r")
-    assert off["yours, drop"] < 1e-12 and off["yours, stack"] < 1e-5 and off["yours, inside"] < 0.6
-    order = math.log(off["yours, slide"] / off["yours, slide, dt / 4"], 4)
-    assert order == pytest.approx(2.0, rel=FACTS["ex10"]["number"]["within"])
-    off = column(trials.ask_twice, "off/r", after_the_move=lambda lam, then, now: (lam, 0, 0, now))
-    assert off["yours, inside"] > 100
+    off = column(trials.compare_solves, "off/r")
+    assert off["yours on drop"] < 1e-12 and off["yours on stack"] < 1e-5
+    assert off["yours on overlap"] < 0.6
+    order = math.log(off["yours on slide"] / off["yours on slide at dt / 4"], 4)
+    assert order == pytest.approx(2.0, rel=FACTS["ex6"]["numbers"]["ORDER"]["within"])
+    off = column(trials.compare_solves, "off/r", velocity_level=lambda lam, a, b: (lam, 0, 0, b))
+    assert off["yours on overlap"] > 100
 
 
 # Bets, and numbers from paper
 
 
 def test_the_right_letters_are_what_is_measured_and_no_mark_lies_near_its_border():
-    found = SimpleNamespace(**bets.measure("ex1"), **bets.measure("ex3"))
+    found = SimpleNamespace(**bets.measure("ex1"), **bets.measure("ex2"))
     assert "four times as deep" in ASKED["ex1"]["choices"][bets.SOLVED["ex1"].PREDICTION]
-    assert found.penalty_at_rest == pytest.approx(4.0 * found.penalty_shown_at_rest, rel=0.01)
-    assert found.lcp_at_rest < 1e-6
-    words = "the light ball, and the heavy one gains none"
-    assert words in ASKED["ex3"]["choices"][bets.SOLVED["ex3"].PREDICTION]
+    assert found.penalty_at_rest == pytest.approx(4.0 * found.penalty_light_at_rest, rel=0.01)
+    assert max(found.lcp_at_rest, found.lcp_light_at_rest) < 1e-6
+    assert "The light one alone" in ASKED["ex2"]["choices"][bets.SOLVED["ex2"].PREDICTION]
     assert found.penalty_light > 10.0
     assert max(found.penalty_heavy, found.lcp_light, found.lcp_heavy) < 1.0
-    shares = [x for row in bets.measure_knobs()[0].values() for x in row]
+    shares = [x for row in bets.measure_knobs()[0].values() for x in row.values()]
     assert all(x < 0.4 or 0.95 < x < 1.05 or x > 4.0 for x in shares)
 
 
-@pytest.mark.parametrize("name", [*ASKED, "ex9"])
+@pytest.mark.parametrize("name", [*ASKED, "ex11"])
 def test_formulas_and_numbers_of_reasons_are_those_measured(name):
     measured = bets.measure(name) if name in ASKED else bets.measure_knobs()[1]
-    depth, mass = {"ex1": ("penalty_at_rest", 4.0), "ex9": ("sink", 1.0)}.get(name, ("limit", 0))
-    values = {"k": 1e4, "g": 9.81, "depth": 0.1 * measured[depth], "m": mass}
+    depth, mass = {"ex1": ("penalty_at_rest", 4.0), "ex11": ("sink", 1.0)}.get(name, ("limit", 0))
+    values = {"k": 1e4, "g": 9.81, "depth": contact.RADIUS * measured[depth], "m": mass}
     for text in FACTS[name]["reasons"].values():
         for formula in re.findall(r"`([^`]+=[^`]+)`", text):
             code = re.sub(r"(?<=[\w)]) (?=[\w(])", " * ", formula.replace("^", "**"))
             left, right = (eval(side, {}, values) for side in code.split("="))
             assert left == pytest.approx(right, rel=1e-4), formula
-        quoted = set(re.findall(r"\d+", re.sub(r"\{[^}]*\}|`[^`]*`", "", text)))
-        assert quoted <= {"1"}, f"a number that nobody measured in: {text}"
+        assert not re.search(r"\d", re.sub(r"\{[^}]*\}|`[^`]*`|d0", "", text)), text
         text.format(**measured)
 
 
-def test_what_is_bet_on_is_what_is_run_and_what_no_command_has_shown():
-    """The docstrings' balls and steps; README, docstrings and set-up drop 1 kg."""
+def test_what_is_asked_is_what_is_run_and_what_no_command_has_shown():
+    """The docstrings' numbers; README, docstrings and set-up drop 1 kg."""
     for name, words, balls in (
-        ("ex1", "4 kg.*half a metre.*4 s", {(4.0, 0.65, 0.002)}),
-        ("ex3", "0.1 kg.*10 kg.*0.03 s", {(0.1, 0.65, 0.03), (10.0, 0.65, 0.03)}),
+        ("ex1", "1 kg.*4 kg.*0.6 m.*4 s", {(1.0, 0.6, 0.002), (4.0, 0.6, 0.002)}),
+        ("ex2", "0.1 kg.*10 kg.*half a metre.*0.03 s", {(0.1, 0.5, 0.03), (10.0, 0.5, 0.03)}),
     ):
         assert re.search(words, GIVEN[name].__doc__, re.DOTALL)
-        rows = [row for row in FACTS[name]["measured"].values() if row["mass"] != 1.0]
-        assert {(row["mass"], row["y"], row["dt"]) for row in rows} == balls
+        rows = FACTS[name]["measured"].values()
+        assert {(row["mass"], row["fall"], row["dt"]) for row in rows} == balls
     for file in ("README.md", "contact.py"):
         commands = re.findall(r"contact\.py (--[^`\n#]*)", (ROOT / file).read_text("utf-8"))
         assert commands and not any("--mass" in command for command in commands)
+    for name in ("ex10", "ex11"):
+        for facts in FACTS[name]["numbers"].values():
+            for value in facts["given"].values():
+                assert re.search(rf"\b{value:g}\b", GIVEN[name].__doc__)
+    fingers = f"{bets.CUP:g} kg.*{bets.FINGER:g} kg.*{bets.FORCE:g} N"
+    assert re.search(fingers, GIVEN["ex9"].__doc__, re.DOTALL)
+    assert (GIVEN["ex9"].SOLREF, GIVEN["ex9"].SOLIMP) == (contact.SOLREF, contact.SOLIMP)
+    assert f"at most {judge.MAX_STEPS:,}" in GIVEN["ex3"].__doc__
+    assert f"than {judge.MAX_STEPS:,} steps" in judge.SEARCHES["slow"]
 
 
-@pytest.mark.parametrize("name, model", [("ex4", "soft"), ("ex9", "lcp")])
-def test_a_number_is_what_its_command_prints(name, model, tmp_path):
-    (flags,) = re.findall(r"^    (--.*)$", GIVEN[name].__doc__, re.MULTILINE)
+@pytest.mark.parametrize("name, model, what, title", [
+    ("ex10", "soft", "DEPTH", "gap/r"), ("ex11", "lcp", "HOP", "hop/r"),
+])  # fmt: skip
+def test_a_number_is_what_its_command_prints(name, model, what, title, tmp_path):
+    (flags,) = re.findall(r"^ +(--.*)$", GIVEN[name].__doc__, re.MULTILINE)
     words = "contact.py", *flags.split(), "--no-rerun", "--out", tmp_path
     printed = python(*words).stdout.splitlines()
-    heads, row = (next(x for x in printed if word in x).split() for word in ("gap/r", model))
-    law = bets.RIGHT[FACTS[name]["number"]["name"]]
-    assert float(row[1 + heads.index("gap/r")]) == pytest.approx(-law, rel=5e-3)
+    heads, row = (next(x for x in printed if word in x).split() for word in (title, model))
+    found = abs(float(row[1 + heads.index(title)]))
+    assert found == pytest.approx(bets.RIGHT[what], rel=5e-3 if what == "DEPTH" else 0.02)
+
+
+def test_the_sag_of_the_gripper_is_its_law():
+    for dt, beta, cup in ((0.003, 0.25, 2.5), (0.001, 0.5, 1.0), (0.004, 0.3, 3.5)):
+        law = bets.FORCE * dt * dt / (beta * cup) / contact.RADIUS
+        assert bets.sag_of_gripper(dt, beta, cup) == pytest.approx(law, rel=1e-6)
 
 
 def test_the_finger_of_the_next_chapter_feels_what_it_pushes():
@@ -334,7 +381,7 @@ def test_the_finger_of_the_next_chapter_feels_what_it_pushes():
 
 GIVEAWAYS = {
     "ex1": r"\bsinks?\b|rests? (a little )?inside|m g ?/ ?k|\brings?\b|\bhops?\b|\bdives?\b",
-    "ex3": r"\b(penalty|spring)\b.{0,80}(explod|blows? up)|critical (time )?step|unstable|"
+    "ex2": r"\b(penalty|spring)\b.{0,80}(explod|blows? up)|critical (time )?step|unstable|"
     r"stays bounded|\bcliff\b",
 }
 

@@ -47,7 +47,7 @@ def ran(text, tmp_path_factory):
         if cell.source.startswith("%%exercise exercises/ex1_"):
             made = cell.source.replace("PREDICTION = None", 'PREDICTION = "A"')
             cell.source = made.replace('WHY = ""', 'WHY = "a table is a table, I think"')
-        cell.source = re.sub(r"(%%exercise .*ex8.*)", r"\1 --hint 2", cell.source)
+        cell.source = re.sub(r"(%%exercise .*ex9.*)", r"\1 --hint 2", cell.source)
         cell.source = re.sub(r"return \.\.\.  # TODO: softness.*", "return dtt", cell.source)
     with pytest.MonkeyPatch.context() as shell, tempfile.TemporaryDirectory() as sockets:
         shell.delenv("MPLBACKEND", raising=False)  # a kernel shows pictures unless told otherwise
@@ -93,11 +93,11 @@ def test_it_runs_beside_no_project_and_finds_what_contact_finds(ran, tmp_path):
 def test_each_exercise_is_tried_in_its_cell_in_words_of_a_notebook(ran):
     cells = {source.split("_")[0]: (source, text) for source, text, _ in ran if "%%ex" in source}
     tried = {name.removeprefix("%%exercise exercises/"): text for name, (_, text) in cells.items()}
-    assert len(tried) == 10 and "Traceback" not in "".join(tried.values())
-    bet, hint, (source, _) = tried.pop("ex1"), tried.pop("ex8"), cells["%%exercise exercises/ex7"]
-    assert "0.51" in bet and "next, an exercise: %%exercise exercises/ex3_" in bet
+    assert len(tried) == 11 and "Traceback" not in "".join(tried.values())
+    bet, hint, (source, _) = tried.pop("ex1"), tried.pop("ex9"), cells["%%exercise exercises/ex8"]
+    assert "0.54" in bet and "next, an exercise: %%exercise exercises/ex2_" in bet
     assert hint.startswith("hint 2 of 3: ")
     line = 1 + source.split("return dtt")[0].count("\n")
-    assert f"name 'dtt' is not defined\n  line {line}: return dtt" in tried.pop("ex7")
+    assert f"name 'dtt' is not defined\n  line {line}: return dtt" in tried.pop("ex8")
     for text in tried.values():
         assert re.search(WAITS, text) and "helps: %%exercise exercises/ex" in text, text

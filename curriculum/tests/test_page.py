@@ -168,7 +168,7 @@ def test_the_hero_alone_moves_unasked_stops_and_is_still_where_motion_is_not_wan
 
 def test_a_bet_hides_its_answer_in_its_own_box_and_a_click_opens_it_for_good(visit):
     with visit() as page:
-        for name in ("ex1", "ex3"):
+        for name in ("ex1", "ex2"):
             answer = page.locator(f"#{name} .answer")
             assert not answer.locator("table, p").filter(visible=True).count()
             right = answer.get_attribute("data-right")
@@ -178,7 +178,7 @@ def test_a_bet_hides_its_answer_in_its_own_box_and_a_click_opens_it_for_good(vis
         page.reload()
         page.wait_for_selector("[data-ready]", state="attached")
         assert page.locator("#ex1-why").input_value() == "the spring must be pressed"
-        assert page.locator("#ex3 .answer table").is_visible()
+        assert page.locator("#ex2 .answer table").is_visible()
 
 
 def test_print_has_figures_and_answers_and_nothing_to_press(visit):

@@ -1,9 +1,10 @@
-"""An exercise's command line, what checks.py asks of it, and what comes next."""
+"""An exercise's command line, what checks.py calls, and which exercise comes next."""
 
 import json
 import linecache
 import os
 import re
+import signal
 import sys
 import traceback
 from importlib.util import find_spec
@@ -13,33 +14,36 @@ from curriculum.commands import Parser, command, near, quoted
 
 from . import FACTS, ROOT
 
-ORDER = ("ex1", "ex3", "ex6", "ex2", "ex5", "ex9", "ex10", "ex7", "ex8", "ex4")  # the chapter's
 FOUND = sorted(name for name in os.listdir(ROOT / "exercises") if name.endswith(".py"))
-FILES = {ex: f"exercises/{name}" for ex in ORDER for name in FOUND if name.startswith(f"{ex}_")}
+FILES = {ex: f"exercises/{name}" for ex in FACTS for name in FOUND if name.startswith(f"{ex}_")}
 STATES = "right", "wrong", "blank"  # in this order they are exit statuses
-LIMIT = 30  # s, chosen: right answers take about one, and more than 15 on a very busy machine
+LIMIT = 30  # s of CPU time, chosen: right answers take about one
+TIMER = getattr(signal, "SIGPROF", None)  # it measures CPU time; Windows has only a clock
 START = "import sys; sys.path.insert(0, sys.argv[1]); from kit import judge; judge.child()"
 BLANK = re.compile(r"^    return \.\.\.|^[A-Z]+ = None|  \?  ", re.MULTILINE)
+RENAMED = {"push": "apply_impulse"}  # names that learners may remember
 
 
 def main(started):
-    """The command line of an exercise that is started, not imported. Ends with its exit status.
+    """Run the command line of an exercise that is started, not imported; exit with its status.
 
     It stands above what the learner writes: that runs in a process of its own and nowhere else.
     """
     if started != "__main__":
         return
+    for stream in filter(None, (sys.stdout, sys.stderr)):
+        stream.reconfigure(errors="backslashreplace")  # a path may not fit the terminal's encoding
     file = Path(sys.modules[started].__file__)
     name = file.stem.partition("_")[0]  # ex1 of ex1_predict_contact.py
-    if name not in FACTS:
-        sys.exit(f"{file.name}: an exercise's name begins with its number, as in {FILES['ex2']}")
-    hints, solution = FACTS[name]["hints"], ROOT / f"exercises/solutions/{name}.py"
     parser = Parser(description=f"Exercise {name}.")
+    if name not in FACTS:
+        lacks = "has no entry in exercises/kit/answers.json"
+        parser.error(f"{name} {lacks}; allowed: {', '.join(FACTS)}")
+    hints, solution = FACTS[name]["hints"], ROOT / f"exercises/solutions/{name}.py"
     most = f"print hint N, 1 to {len(hints)}, and do nothing else"
     numbers = range(1, len(hints) + 1)
     parser.add_argument("--hint", type=int, choices=numbers, metavar="N", help=most)
-    words = "print a right answer, and try it"
-    parser.add_argument("--solution", action="store_true", help=words)
+    parser.add_argument("--solution", action="store_true", help="print a right answer, and try it")
     args = parser.parse_args()
     if args.hint:
         print(f"hint {args.hint} of {len(hints)}: {hints[args.hint - 1]}")
@@ -52,28 +56,30 @@ def main(started):
         print(task if "measured" in FACTS[name] else task.split("\n")[0], end="\n\n")
     print(words)
     if state == "right" and not args.solution:
-        print(f"\nanother right answer: {near(str(solution))}\n\n{practise()}")
+        print(f"\na solution to compare with: {near(str(solution))}\n\n{practise()}")
     sys.exit(STATES.index(state))
 
 
 def task_of(name):
-    """The docstring of an exercise, read from its file: Python may leave it out (-OO)."""
+    """Return the docstring of an exercise, read from its file: Python may leave it out (-OO)."""
     _, _, text = (ROOT / FILES[name]).read_text("utf-8").partition('"""')
     return text.partition('"""')[0]
 
 
 def said_of(error):
-    """An error in words, with the last line of the learner's own file that it came through."""
-    line = ""
+    """Return an error in words, with the last line of the learner's file that it came through."""
+    words, line = f"{type(error).__name__}: {error}", ""
+    if isinstance(error, AttributeError) and error.name in RENAMED:
+        words += f"; its name is now {RENAMED[error.name]}"
     for frame, number in traceback.walk_tb(error.__traceback__):
         file = frame.f_code.co_filename
         if re.fullmatch(r"ex\d+\w*\.py", Path(file).name):
             line = f"\n  line {number}: {linecache.getline(file, number).strip()}"
-    return f"{type(error).__name__}: {error}{line}"
+    return words + line
 
 
 def judged(name, file):
-    """("blank", "wrong" or "right", what is said of all that the exercise asks for).
+    """Return ("blank", "wrong" or "right", what is said of all that the exercise asks for).
 
     Whatever the learner's code does, it does it in another process, which writes a report.
     """
@@ -81,51 +87,58 @@ def judged(name, file):
     import subprocess
     import tempfile
 
-    silent = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
     with tempfile.TemporaryDirectory() as folder:
-        report = Path(folder, "report")
+        report, errors = Path(folder, "report"), Path(folder, "errors")
         words = [sys.executable, "-B", "-c", START, ROOT / "exercises", name, file, report]
-        status = subprocess.run(words, **silent).returncode
-        text = report.read_text("utf-8", "replace")
+        with open(errors, "wb") as stderr:
+            pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": stderr}
+            status = subprocess.run(words, **pipes).returncode
+        if not report.exists():  # the kit itself lacks something
+            last = errors.read_text("utf-8", "replace").strip().splitlines()[-1]
+            return "wrong", f"{name} cannot be tried: {last}"
+        text = report.read_text("utf-8", "surrogateescape")
     if status == 0 and text.endswith("]\n"):
         return json.loads(text.splitlines()[-1])
     begun, _, stack = text.partition("most recent call first")
     lines = re.compile(rf'{re.escape(Path(file).name)}", line (\d+)').findall
     line = [*lines(stack), *reversed(lines(begun)), 1][0]  # innermost, or last begun
     what = begun.split("trying ")[-1].split(":")[0]
-    ended = f"ended its process (exit status {status}), see"
-    if "Timeout" in begun:
-        ended = f"takes too long, or does not end: stopped after {LIMIT} s in"
-    return "wrong", f"{what} {ended} {near(str(file))}, line {line}"
+    ended = f"ended its process (exit status {status})"
+    if "Timeout" in begun or (TIMER and status == -TIMER):
+        ended = f"takes too long, or does not end: stopped after {LIMIT} s"
+    return "wrong", f"{what} {ended}, in {near(str(file))}, line {line}"
 
 
-# What comes next: any command may ask, and it needs no numpy
+# Which exercise comes next: any command may print it, and it needs no numpy
 
 
 def start(file):
-    """The line that starts an exercise here, as README says it; in a notebook a cell's first."""
+    """Return the line that starts an exercise here, as README has it; in a notebook a cell's."""
     by = ("uv", "run") if "UV" in os.environ else (sys.executable,)
     return quoted(*(("%%exercise",) if "IN_A_NOTEBOOK" in os.environ else by), ROOT / file)
 
 
 def ask(file, hint):
-    """The line that sends a learner to a hint."""
+    """Return the line that sends a learner to a hint."""
     return f"\n  a question that helps: {start(file)} --hint {hint}"
 
 
 def practise():
-    """The line that names the next exercise that is not begun, or what comes after them."""
+    """Return the line that names the next exercise that is not begun, or what follows them."""
     for file in FILES.values():
         if BLANK.search((ROOT / file).read_text("utf-8", "replace")):
             return f"next, an exercise: {start(file)}"
-    return "all exercises are done; next, the questions at the end of the chapter"
+    return f"all exercises are done; next, the next chapter: {start('exercises/next_chapter.py')}"
 
 
 def print_next(args, argv: list[str]) -> None:
-    """Print the last lines of a run: how to see it, and the next exercise that is not begun.
+    """Print the last lines of a run: how to read on, how to see it, and the next exercise.
 
     args: the flags as contact.parse_flags gives them; argv: the words they were read from.
     """
+    if Path.cwd() == ROOT:  # from where python -m finds it
+        page = command("-m", "curriculum.page", bring=("--extra", "page"))
+        print(f"next, read the chapter: {page}")
     recording = os.path.join(args.out, "contact.rrd")
     if args.rerun and os.path.exists(recording):
         viewer = Path(sys.executable).with_name("rerun.exe" if os.name == "nt" else "rerun")

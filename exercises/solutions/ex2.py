@@ -1,6 +1,2 @@
-def penalty_normal_force(depth, v_n, stiffness, damping):
-    return max(0.0, stiffness * depth - damping * v_n)
-
-
-def project_impulse(lam, dlam):
-    return max(0.0, lam + dlam)  # the sum, not the change
+PREDICTION = "C"
+WHY = "penalty's force stays as it was for a whole step; lcp's velocity is right at its end"

@@ -1,3 +1,6 @@
-# At rest the mixture is zero: (1 - d) g = d K d depth, with K = 1 / (d1 timeconst dampratio)^2.
-# Here d = d1 = 0.8 at every depth, so d^2 K = 1 / timeconst^2, and no mass is left.
-DEPTH = (1.0 - 0.8) * 9.81 * 0.05**2 / 0.1
+def penalty_normal_force(depth, v_n, stiffness, damping):
+    return max(0.0, stiffness * depth - damping * v_n)
+
+
+def project_impulse(lam, dlam):
+    return max(0.0, lam + dlam)  # the sum, not the change

@@ -1,8 +1,5 @@
-# 20 N press a spring of 3e5 N/m in by 0.07 mm, less than a thousandth of a radius. By its explicit
-# step it would want steps below 1 ms; implicit takes 4.
-MODEL = "implicit"
-DT = 0.004
-STIFFNESS = 3e5
-DAMPING = 80.0
-SOLREF = (0.02, 1.0)
-SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)
+# lam = dt k depth - (k dt^2 + c dt) v_n; divided by what stands before v_n:
+# v_n + lam / (k dt^2 + c dt) - dt k depth / (k dt^2 + c dt) = 0.
+def implicit_spring(depth, stiffness, damping, dt):
+    softness = 1.0 / (stiffness * dt * dt + damping * dt)
+    return softness, dt * stiffness * depth * softness

@@ -1,10 +1,8 @@
-BETS = """
-              k x 4    dt / 4    sweeps x 4    beta x 4
-    sink        -        =           =            =
-    dive        =        -           =            =
-    hop         =        -           =            +
-    sag         =        -           -            -
-    trembling   +        -           =            =
-"""
-# six balls lie on the lowest: each step its sweep pushes 6 m g dt, while beta depth / dt opens
-SAG = 6 * 9.81 * 0.001**2 / 0.5 / 0.1
+# 20 N press a spring of 3e5 N/m in by 0.07 mm, less than a thousandth of a radius. By its explicit
+# step it would want steps below 1 ms; implicit takes 4.
+MODEL = "implicit"
+DT = 0.004
+STIFFNESS = 3e5
+DAMPING = 80.0
+SOLREF = (0.02, 1.0)
+SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)

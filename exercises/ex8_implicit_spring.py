@@ -2,7 +2,7 @@
 # requires-python = ">=3.10"
 # dependencies = ["numpy>=2.0"]
 # ///
-"""Exercise 7, find out (25 minutes): the spring that knows where it is going.
+"""Exercise 8, find out (25 minutes): the implicit spring.
 
 penalty takes the force that belongs to the depth *before* the step. Take the one that belongs to
 the depth and the speed *after* it instead, with the same spring and the same damper:
@@ -20,5 +20,5 @@ script.main(__name__)
 
 
 def implicit_spring(depth, stiffness, damping, dt):
-    """(softness [1/kg], target [m/s]) of a contact that overlaps by `depth` [m] before the step."""
+    """Return (softness [1/kg], target [m/s]) for an overlap `depth` [m] before the step."""
     return ...  # TODO: softness and target

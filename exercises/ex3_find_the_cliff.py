@@ -2,12 +2,12 @@
 # requires-python = ">=3.10"
 # dependencies = ["numpy>=2.0"]
 # ///
-"""Exercise 6, find out (25 minutes): where is the cliff?
+"""Exercise 3, find out (25 minutes): where is the cliff?
 
 A ball deep in the table of penalty, away from its balance by `depth` [m] and moving with `v_n`
 [m/s], has another depth and velocity after one step. Both are sums of the old ones, so a step is a
-matrix. It can be taken again and again as long as no eigenvalue of it is larger than 1. Write the
-matrix, then find the longest step by any search you like; a formula stands beside your answer.
+matrix. The motion stays bounded as long as no eigenvalue is larger than 1. Write the matrix, then
+find the longest step by a search that tries at most 20,000; a formula stands beside your answer.
 
 Gravity only moves the place of balance, so leave it out. The step is semi-implicit Euler: the new
 velocity first, from force k depth - c v_n, and then the depth with the new velocity.
@@ -20,7 +20,7 @@ script.main(__name__)
 
 
 def step_matrix(mass, stiffness, damping, dt):
-    """Two rows of two numbers that take (depth, v_n) to the (depth, v_n) one step `dt` [s] later.
+    """Return the matrix, two rows of two numbers, of (depth, v_n) over a step `dt` [s].
 
     v_n > 0 is upwards, out of the table, so it makes the depth smaller.
     """
@@ -28,7 +28,7 @@ def step_matrix(mass, stiffness, damping, dt):
 
 
 def longest_step(mass, stiffness, damping):
-    """The longest step dt [s], to a thousandth of itself, whose matrix has no eigenvalue above 1.
+    """Return the longest dt [s], to a thousandth of it, whose matrix has no eigenvalue above 1.
 
     Above 1 in size, that is: eigenvalues may be negative or complex. damping > 0.
     """
