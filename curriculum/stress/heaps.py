@@ -37,10 +37,14 @@ class Heap:
         """Random numbers of this heap."""
         return np.random.default_rng([20261125, self.number, what])
 
+    def e(self, bounce):
+        """The restitution that a key of BOUNCES means; of "drawn" this heap's own."""
+        e = BOUNCES[bounce]
+        return self.rng(9).uniform() if e is None else e
+
     def scene(self, kind, bounce):
         """The scene of that kind; bounce: of BOUNCES."""
-        e, rng = BOUNCES[bounce], self.rng(KINDS.index(kind))
-        e = self.rng(9).uniform() if e is None else e
+        e, rng = self.e(bounce), self.rng(KINDS.index(kind))
         while True:
             scene = getattr(scenes, kind.split()[0])(rng, *map(int, kind.split()[2:]))
             if contact.smallest_gap(scene.q0[None], scene.radius)[0] > 0.0:
@@ -61,7 +65,8 @@ def leapfrog_gains_no_energy(heap):
     for model, dt, kind, bounce in itertools.product(MODELS, STEPS, KINDS, BOUNCES):
         total = heap.run(model, dt, kind, bounce)[2]
         if model == "leapfrog":
-            yield f"{kind}, e {bounce}, {dt} s", total[1:].max(), KEPT
+            words = f"{kind}, e = {heap.e(bounce):.3g}, dt = {1e3 * dt:g} ms: relative energy gain"
+            yield words, total[1:].max(), KEPT
 
 
 def leapfrog_loses_none_where_all_bounces(heap):
@@ -74,16 +79,29 @@ def leapfrog_loses_none_where_all_bounces(heap):
         if kind != "ceiling":
             scene, run, total = heap.run("leapfrog", 0.002, kind, "1")
             slow = Trajectory(scene, 0.002, run).slowest() < 2.0 * G * 0.002
-            yield kind, -np.diff(total), KEPT, ~(slow[1:] | slow[:-1])
+            yield (
+                f"{kind}, e = 1, dt = 2 ms: relative energy loss",
+                -np.diff(total),
+                KEPT,
+                ~(slow[1:] | slow[:-1]),
+            )
 
 
 def energy_rows(cases):
     """A row for each step, kind and model: how many gained, and with e = 1 lost, and the most."""
-    columns = [(f"e {bounce}", bounce, 0) for bounce in BOUNCES] + [("e 1, lost", "1", 1)]
+    columns = [(bounce, bounce, 0) for bounce in BOUNCES] + [("lost", "1", 1)]
     for dt, kind, model in itertools.product(STEPS, KINDS, MODELS):
         row = {"dt": f"{1e3 * dt:g} ms", "scenes": kind, "model": model}
         for name, bounce, which in columns:
             found = np.array([case[model, dt, kind, bounce][which] for case in cases])
-            many = int((found > KEPT).sum())
-            row[name] = f"{many:,}: {found.max():.1g}" if many else "0"
+            row[f"gained {name}"] = many = int((found > KEPT).sum())
+            row[f"largest {name}"] = float(f"{found.max():.1g}") if many else 0.0
         yield row | {"runs": len(cases) * len(BOUNCES)}
+
+
+def cells(rows, which):
+    """Rows of a table of how many runs gained energy, or of the largest gain."""
+    for row in rows:
+        found = [f"{value:,g}" for name, value in row.items() if name.split()[0] == which]
+        more = [f"{row['runs']:,}"] * (which == "gained")
+        yield [row["dt"], row["scenes"], row["model"], *found, *more]

@@ -53,7 +53,8 @@ def compare(row, words, off, allowed, where=True):
     wrong = where & ~(off <= allowed)
     if wrong.any() and row[2] is None:
         place = tuple(np.argwhere(wrong)[0].tolist())
-        row[2] = f"{words}: off by {off[place]:.3g}, allowed {allowed[place]:.3g} at {place}"
+        where = f", at {place}" if place else ""
+        row[2] = f"{words}: {off[place]:.3g}, bound {allowed[place]:.3g}{where}"
 
 
 def unlike(run, other):

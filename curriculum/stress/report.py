@@ -60,46 +60,63 @@ def draw(folder):
     print(f"report: {folder / 'README.md'}")
     wrong = [row for row in tables["judged"] if row["violations"]]
     for row in wrong:
-        print(f"VIOLATION: {row['property']}: {row['violations']:,}, first of {row['first']}")
+        print(failed(row))
     return len(wrong)
 
 
 def summary(tables):
-    """How much was judged, and how many violations there are, in one sentence."""
+    """How much was checked, and how many checks failed, in one sentence."""
     total, wrong = (sum(row[name] for row in tables["judged"]) for name in ("judged", "violations"))
     ran = {row["model"]: row["scenes"] for row in tables["models"]}
-    fewer = [f", `{m}` in the {n:,} that it promises" for m, n in ran.items() if n < ran["penalty"]]
+    all_of = ran["penalty"]
+    fewer = [f", `{m}` on the {n:,} within its limits" for m, n in ran.items() if n < all_of]
     runs = sum(row["runs"] for row in tables["energy"])
     return (
-        f"{ran['penalty']:,} random scenes by every model{''.join(fewer)}; {runs:,} runs of heaps, "
-        "gaps, ceilings and columns; `penalty` over step and stiffness; `soft` beside MuJoCo: "
-        f"{total:,} judgements, {wrong or 'no'} violation{'s' * (wrong != 1)}."
+        f"Every model on {all_of:,} random scenes{''.join(fewer)}; {runs:,} runs of heaps, "
+        "narrow gaps, ceilings and columns; `penalty` over step and stiffness; `soft` beside "
+        f"MuJoCo: {total:,} checks, {wrong or 'none'} failed."
     )
 
 
 def readme(tables):
     """The stress block of the project's README: one figure and one sentence."""
     figure = f"![What penalty does over step and stiffness]({FOLDER}/penalty-map.svg)"
-    link = f"[Every property, map and limit]({FOLDER}/README.md)."
+    link = f"[All properties and limits]({FOLDER}/README.md)."
     return f"{figure}\n\n{summary(tables)} {link}"
 
 
 def page(tables, made):
     """README.md of the results."""
-    wrong = [f"**{r['property']}: {r['first']}**" for r in tables["judged"] if r["violations"]]
+    wrong = [f"**{failed(row)}**" for row in tables["judged"] if row["violations"]]
     return PAGE.read_text("utf-8").format(
         summary="\n\n".join([summary(tables), *wrong]),
-        energy=stored.lines(map(dict.values, tables["energy"])),
-        limits="\n".join(f"- {row['what']}: {row['scenes']:,}" for row in tables["limits"]),
+        gained=stored.lines(heaps.cells(tables["energy"], "gained")),
+        largest=stored.lines(heaps.cells(tables["energy"], "largest")),
+        limits=stored.lines([row["what"], f"{row['scenes']:,}"] for row in tables["limits"]),
         judged=stored.lines(map(cells, tables["judged"])),
         footer=stored.footer(made["all"]),
     )
 
 
+def failed(row):
+    """What a property says, how often it failed, and the first time: scene, error, bound."""
+    sentence = stated(row["property"]).partition(". ")[0].rstrip(".")
+    return f'Failed {row["violations"]:,} times: "{sentence}". First: {row["first"]}'
+
+
+def stated(name):
+    """What a property says: the first paragraph of its docstring."""
+    return " ".join(STATED[name].__doc__.split("\n\n")[0].split())
+
+
 def cells(row):
-    """What a property says, and how much of it was judged."""
-    words = " ".join(STATED[row["property"]].__doc__.split("\n\n")[0].split())
-    return [words, f"{row['judged']:,}", f"{row['comparisons']:,}", f"{row['share'] or 0:.1g}"]
+    """What a property says, and how often it was checked."""
+    return [
+        stated(row["property"]),
+        f"{row['judged']:,}",
+        f"{row['comparisons']:,}",
+        f"{row['share'] or 0:.1g}",
+    ]
 
 
 def penalty_map(rows, made):

@@ -52,7 +52,7 @@ def test_runs_that_differ_in_the_last_bit_are_unlike():
 def test_what_is_off_and_where_is_counted_and_said():
     row = [0, 0.0, None]
     compare(row, "x", np.array([1.0, 3.0, np.nan, 9.0]), 2.0, np.array([True, True, True, False]))
-    assert row == [3, np.inf, "x: off by 3, allowed 2 at (1,)"]
+    assert row == [3, np.inf, "x: 3, bound 2, at (1,)"]
 
 
 def test_counts_add_up_and_what_judges_nothing_is_a_violation():
@@ -74,7 +74,7 @@ def test_a_number_that_is_off_is_a_violation_and_a_flight_says_nothing_of_contac
     del flight.motions
     found = jobs.properties.judge(flight, *PROPERTIES.values())
     said = found["momenta_are_gravitys_and_what_contacts_report"][2]
-    assert said.startswith("lcp, moves [m]: off by 1e-09")
+    assert said.startswith("lcp, moves [m]: 1e-09, bound ")
 
 
 def test_at_the_critical_dt_the_map_turns_from_settling_to_not():
@@ -97,7 +97,7 @@ def test_scenes_are_judged_and_said_and_what_is_no_scene_is_refused(capsys):
 def test_a_run_writes_tables_a_page_and_a_map(found, tmp_path):
     assert report.write(found, stored.origin("stress", kept=False), tmp_path) == 0
     page = (tmp_path / "README.md").read_text("utf-8")
-    assert ", no violations." in page and "| 2 ms | heap | leapfrog | 0 |" in page
+    assert " checks, none failed." in page and "| 2 ms | heap | leapfrog | 0 |" in page
     assert all(" ".join(f.__doc__.split("\n\n")[0].split()) in page for f in PROPERTIES.values())
     assert "settles at m g / k" in (tmp_path / "penalty-map.svg").read_text("utf-8")
 
