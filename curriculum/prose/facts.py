@@ -156,20 +156,6 @@ def jump():
     return values
 
 
-def blocks():
-    """How often exact changes the light block's speed, between a wall and one `heavy` times it.
-
-    Samples are 0.02 ms apart, so that no two impacts fall between them.
-    """
-    values = {}
-    for heavy in (100, 10_000):
-        start = {"mass": [math.inf, 1.0, heavy], "vx": [0.0, 0.0, -1.0], "restitution": 1.0}
-        scene = contact.scene_of([0.0, 1.0, 2.0], 0.1, **start)
-        vx = contact.run_model("exact", scene, 2e-5, 350_000).v[:, 0, 1]
-        values[f"heavy_{heavy}"] = int((np.abs(np.diff(vx)) > 1e-9).sum())
-    return values
-
-
 def friction():
     """Pushes [N s] of Coulomb's law at the one contact of a rod that rubs along the floor.
 
@@ -249,5 +235,5 @@ def core():
 
 
 ALL = implicit_spring, soft_heavy, sweeps, landing, paper, landings, jaws, row, flicker, jump
-ALL += blocks, friction, slide, core
+ALL += friction, slide, core
 FACTS = {each.__name__: each for each in ALL}

@@ -15,7 +15,7 @@ from curriculum.tests.helpers import ROOT, python
 
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
 EXERCISE, MADE = "exercises/ex1_bet.py", "curriculum/bench/results/made.json"
-ROOM = "commands.py gate.py prose __init__.py source.py stored.py variants.py".split()
+ROOM = "commands.py gate.py predict.py prose __init__.py source.py stored.py variants.py".split()
 PENDING = "chapter,tier,wallclock_min,config_hash,commit,date,status\n"
 PENDING += "ch3.5-contact,t4,,,,,PENDING\n"
 FILES = {
