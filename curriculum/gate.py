@@ -132,7 +132,7 @@ class Gate:
         """Names in `code` and flags, of chapter and captions, are in some code or in meta.yaml."""
         code = files("*.py", "exercises/**/*.py", "curriculum/*.py", "curriculum/[!t]*/*.py")
         known = set(re.findall(r"--[a-z]\w*|\w+", "".join(map(read_text, [*code, "meta.yaml"]))))
-        contact.add_flags(lambda flag, **_: known.add(flag))
+        known |= {flag for each in contact.make_parser()._actions for flag in each.option_strings}
         for each in self.passages.values():
             for match in SPAN.finditer(each.text) if each.file.startswith("curriculum") else ():
                 for name in {*re.findall(r"^[A-Za-z_]\w+$|--[a-z]\w*", match[1])} - known:

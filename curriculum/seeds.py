@@ -61,7 +61,7 @@ def parse(argv):
 def main(argv=None):
     """Run what is missing, print the table, write seeds.json. Returns the exit status."""
     seeds, scheduler, args = parse(argv)
-    models = list(contact.MODELS) if args.contact == "all" else [args.contact]
+    models = contact.asked_for(args, 0)[3]
     path = Path(args.out, "seeds.csv")
     try:
         run_missing(path, args, seeds, models, scheduler)
@@ -151,7 +151,7 @@ def rows_of(args, known, seed):
     """The rows of one seed, a line a model; another process may run it."""
     if other := {name.partition("#")[0] for name in known if code().get(name) != known[name]}:
         raise ImportError(f"another {', '.join(sorted(other))} is there; give all the same")
-    _, without, quality = contact.run_all(args, contact.chosen_scene(args, seed))
+    _, without, quality = contact.run_models(*contact.asked_for(args, seed))
     ends = {model: (f"no: {why}", {}) for model, why in without.items()}
     ends |= {model: (contact.final_state(row), row) for model, row in quality.items()}
     text = ""

@@ -92,13 +92,13 @@ class Ours(Whole):
     def states(self, n):
         model, scene, dt = self.given
         steps = contact.MODELS[model].step
-        home = contact.optional_module("compiled.run", needed=True) if steps else contact
+        home = contact.optional_module("compiled.run") if steps else contact
         run = home.run_model(model, scene, dt, n * self.substeps, self.settings)
         return run.q[:: self.substeps], run.v[:: self.substeps]
 
     def go(self, n):
         if self.motion is None:
-            self.motion = contact.optional_module("compiled.run", needed=True).Stepper(
+            self.motion = contact.optional_module("compiled.run").Stepper(
                 *self.given, self.settings
             )
             self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))

@@ -29,12 +29,11 @@ COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb
 def page_data():
     """What the scripts know from the Python files, the module data.js."""
     usual, scenes = contact.Settings(), {name: contact.build_scene(name) for name in SCENES}
-    taken = {m: row.step.__code__.co_argcount - 2 for m, row in contact.MODELS.items() if row.step}
     knobs = {name: getattr(usual, name) for name in "stiffness iters baumgarte warm".split()}
     return {
         "models": list(contact.MODELS),
-        "uses": {model: row.knobs for model, row in contact.MODELS.items()},
-        "taken": {model: contact.MODELS[model].knobs[:count] for model, count in taken.items()},
+        "uses": {model: row.knobs + row.also for model, row in contact.MODELS.items()},
+        "taken": {model: contact.MODELS[model].knobs for model in contact.STEPPED},
         "scenes": {
             name: {
                 "start": scene.q0[1].tolist(),

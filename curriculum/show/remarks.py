@@ -1,4 +1,4 @@
-"""What a run's table does not say: flags that change nothing, and what exact did."""
+"""What a run's table does not say: flags without effect, and what exact did."""
 
 from collections.abc import Iterator
 
@@ -10,17 +10,29 @@ from exercises.kit.script import print_next  # noqa: F401  which contact.py asks
 APEXES = 5  # heights of bounces that are printed
 
 
-def print_remarks(args, runs: dict[str, contact.Run], scene: contact.Scene) -> None:
-    """Print a line on each flag that changes nothing here, and of exact alone what it did.
+def print_unused(args) -> None:
+    """Print a line on each flag that has no effect on the model that was chosen.
 
-    args: the flags as contact.parse_flags gives them; runs {model: Run}.
+    args: the flags as contact.parse_flags gives them.
     """
-    usual = contact.Settings()._asdict() | dict.fromkeys(("damping", "restitution"), -1.0)
-    for knob in usual:
-        owners = [model for model, row in contact.MODELS.items() if knob in row.knobs]
-        if owners and getattr(args, knob) != usual[knob] and args.contact not in ("all", *owners):
-            print(f"--{knob} is for {' and '.join(owners)}, and changes nothing here")
-    if list(runs) == ["exact"] and np.isfinite(scene.mass).all():
+    default = contact.Settings()._asdict() | {"damping": None, "restitution": None}
+    for knob in default:
+        owners = [name for name, row in contact.MODELS.items() if knob in row.knobs + row.also]
+        if owners and getattr(args, knob) != default[knob] and args.contact not in ("all", *owners):
+            print(f"--{knob} is for {' and '.join(owners)}, and has no effect here")
+
+
+def print_exact(runs: dict[str, contact.Run], scene: contact.Scene) -> None:
+    """Print what exact did, where no table says it: overlaps at the start; of it alone, landings.
+
+    runs: {model: Run}.
+    """
+    if "exact" not in runs:
+        return
+    moved = np.abs(runs["exact"].q[0] - scene.q0).max() / scene.radius.min()
+    if moved > 1e-9:
+        print(f"exact: balls overlap at the start, and were moved apart by up to {moved:.3g} r")
+    if len(runs) == 1 and np.isfinite(scene.mass).all():
         print(*landing(runs["exact"], scene), sep="\n")
 
 
