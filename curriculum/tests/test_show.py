@@ -322,4 +322,4 @@ def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):
     (see,) = [line for line in lines if line.startswith("next, see it: ")]
     subprocess.run(see.split(": ", 1)[1], shell=True, cwd=ROOT, check=True, capture_output=True)
     assert (folder / "contact.svg").exists()
-    assert sum(str(sys.executable) in line or ".venv" in line for line in lines) == 2
+    assert sum(str(sys.executable) in line or ".venv" in line for line in lines) == 3
