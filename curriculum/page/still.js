@@ -6,7 +6,9 @@ import { asked, fits, QUANTITIES, viewOf, worded } from "./stage.js";
 const [WIDE, NARROW] = [640, 358]; // px
 
 // What a slot may set: what the figure has, in its range.
-function check(figure, view, given) {
+function check(figure, given) {
+  const view = viewOf(figure, {});
+  figure.draw(view); // which tells the ranges of its handles
   for (const [name, value] of Object.entries(given)) {
     if (!(name in view.own))
       throw new Error(`${name} sets nothing; known: ${Object.keys(view.own).join(", ")}`);
@@ -21,7 +23,7 @@ function still([name, given]) {
   if (!figure)
     throw new Error(`there is no figure ${name}; known: ${Object.keys(figures).join(", ")}`);
   try {
-    check(figure, viewOf(figure, {}), given);
+    check(figure, given);
     const view = viewOf(figure, given, WIDE);
     const { picture, words } = figure.draw(view);
     return {
