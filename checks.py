@@ -4,9 +4,8 @@
 # ///
 """Checks of the exercises: `pytest checks.py`, or of one of them, `pytest checks.py -k ex1`.
 
-    python checks.py -k ex4     # the same, and prints what comes next; all flags are pytest's
-
-What is not done yet is skipped. What is wrong fails, with what was expected and the likely mistake.
+`python checks.py -k ex1` prints what comes next, too. What is not done yet is skipped, what is
+wrong fails, with what was expected and the likely mistake.
 """
 
 import re

@@ -9,8 +9,8 @@ A ball deep in the table of penalty, away from its balance by `depth` [m] and mo
 matrix. The motion stays bounded as long as no eigenvalue is larger than 1. Write the matrix, then
 find the longest step by a search that tries at most 20,000; a formula stands beside your answer.
 
-Gravity only moves the place of balance, so leave it out. The step is semi-implicit Euler: the new
-velocity first, from force k depth - c v_n, and then the depth with the new velocity.
+The step is semi-implicit Euler: first the velocity, from force k depth - c v_n, then the depth, by
+the new velocity. Gravity only moves the place of balance, so leave it out.
 """
 
 import numpy as np  # noqa: F401  np.linalg.eigvals(matrix) is what you need

@@ -5,10 +5,8 @@
 """Exercise 4, fill in (20 minutes): the two lines that make a contact one-sided.
 
 penalty and lcp each have one line that lets a contact push and never pull. Detection, normals,
-masses and time stepping are given, in contact.py; the two lines are yours. The signs are those of
-the table at the top of contact.py.
-
-Out of scope: friction, and several contacts at once (your second line is called for each in turn).
+masses and time stepping are given, in contact.py, and your second line is called for one contact
+after the other. The signs are those of the table at the top of contact.py.
 """
 
 from kit import script

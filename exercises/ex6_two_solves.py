@@ -6,19 +6,18 @@
 
 lcp solves once a step, so one velocity decides where a ball goes and how fast it is afterwards. To
 get out of the table, it must move; to rest, it must not. So solve twice: at position level before
-the move, where gap + dt v_n >= 0, and at velocity level after it, where v_n >= 0. Around your two
-functions is lcp_step, taken apart:
+the move, where gap + dt v_n >= 0, and at velocity level after it, where v_n >= 0. The step around
+your two functions, in the order of lcp_step:
 
     detect all contacts that a step may close
     kick, least = position_level(gap, dt)           for each contact, from its gap
     that share of gravity's kick, sweeps for these least speeds; lam is what they gave
-    move
-    the rest of the kick
+    move, and the rest of the kick
     active, least, lam, normal = velocity_level(...)    for each contact again
     sweeps once more, over the active contacts, each starting from its lam
 
-Your step is compared with exact. Then read off its order: the error of the slide, off/r, falls like
-dt to which power? Write it as ORDER.
+It is compared with exact. Then read off its order: the error of the slide, off/r, falls like dt to
+which power? Write it as ORDER.
 """
 
 from kit import script

@@ -19,9 +19,7 @@ script.main(__name__)
 
 MODEL = None  # "penalty", "implicit" (the spring of exercise 8) or "soft"
 DT = 0.004  # s
-
 STIFFNESS = 1e4  # N/m, of penalty and implicit
 DAMPING = 80.0  # N s/m, of penalty and implicit
-
 SOLREF = (0.02, 1.0)  # of soft: time constant [s] and damping ratio
 SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # of soft: the impedance, see contact.impedance

@@ -7,7 +7,7 @@ from kit import ROOT  # noqa: F401  which finds contact.py
 import contact
 
 DT, MASS, X = 0.002, [math.inf, 1.0, 1.0, 1.0], [-0.5, -0.2, 0.1, 0.4]
-SCENE = contact.scene_of(X, 0.1, MASS, vx=[0.3, 0.0, 0.0, 0.0])
+SCENE = contact.scene_of(X, contact.RADIUS, MASS, vx=[0.3, 0.0, 0.0, 0.0])
 
 
 def push(model):

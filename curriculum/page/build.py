@@ -42,7 +42,6 @@ def page_data():
             for name, scene in scenes.items()
         },
         "radius": contact.RADIUS,
-        "solimp": contact.SOLIMP,
         "defaults": knobs
         | {
             "dt": contact.parse_flags([]).dt,

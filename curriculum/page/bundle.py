@@ -22,11 +22,12 @@ from curriculum.source import ROOT
 HERE = Path(__file__).resolve().parent
 USED = (  # of contact.py, beside the steps
     "solve_impacts accelerations next_impact MAX_IMPACTS TOUCH_TOLERANCE critical_dt "
-    "soft_defaults implicit_step contact_target CONTACT_MARGIN time_to_impact"
+    "soft_defaults implicit_step"
 ).split()
 IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
 EXPORT = re.compile(r"^export (const|function|class) ([\w$]+)", re.MULTILINE)
 LISTED = re.compile(r"\bexport\s*\{([^}]+)\};")  # as lit-html says what it exports
+CLAMP = "$.max(0.0, (c.lam + (missing * c.m_eff)))", "(c.lam + $.max(0.0, (missing * c.m_eff)))"
 
 
 def source(path, data):
@@ -53,7 +54,15 @@ def contact_js():
     files = [ROOT / name for name in ("contact.py", "curriculum/variants.py")]
     table = ", ".join(f"{name}: {step}" for name, step in steps.items())
     made = to_js([*steps.values(), *USED], *files)
-    table = f"export const STEP = {{ {table} }};\n"
+    solve = next(
+        each for each in made.split("export ") if each.startswith("function solve_contacts(")
+    )
+    if CLAMP[0] not in solve:
+        raise ValueError(
+            f"contact.py: solve_contacts has no line {CLAMP[0]}, which a figure changes"
+        )
+    wrong = solve.replace(*CLAMP).replace("solve_contacts", "solve_contacts_each", 1)
+    table = f"export const STEP = {{ {table} }};\nexport {wrong}\n"
     return f'import {{ $ }} from "./python.js";\n{made}{table}'
 
 

@@ -1,19 +1,18 @@
 /* The still pictures that a reader without scripts sees, drawn when the page is built. */
 import { figures } from "./figures.js";
 import { textOf } from "./lit.js";
-import { asked, fits, QUANTITIES, viewOf, worded } from "./stage.js";
+import { captionOf, fromPlace, knobsOf, QUANTITIES, toSlider, viewOf, worded } from "./stage.js";
 
 const [WIDE, NARROW] = [640, 358]; // px
 
 // What a slot may set: what the figure has, in its range.
-function check(figure, given) {
-  const view = viewOf(figure, {});
-  figure.draw(view); // which tells the ranges of its handles
+function check(own, given) {
   for (const [name, value] of Object.entries(given)) {
-    if (!(name in view.own))
-      throw new Error(`${name} sets nothing; known: ${Object.keys(view.own).join(", ")}`);
-    if (name in view.ranges && !fits(figure, view, name, value))
-      throw new Error(`${name}=${value}; allowed: from ${view.ranges[name].join(" to ")}`);
+    const { low = value, high = value } = QUANTITIES[name] ?? {};
+    if (!(name in own))
+      throw new Error(`${name} sets nothing; known: ${Object.keys(own).join(", ")}`);
+    if (!(value >= low && value <= high))
+      throw new Error(`${name}=${value}; allowed: from ${low} to ${high}`);
   }
 }
 
@@ -23,17 +22,17 @@ function still([name, given]) {
   if (!figure)
     throw new Error(`there is no figure ${name}; known: ${Object.keys(figures).join(", ")}`);
   try {
-    check(figure, given);
+    check(viewOf(figure, {}).own, given);
     const view = viewOf(figure, given, WIDE);
     const { picture, words } = figure.draw(view);
     return {
-      title: asked(figure.title, view.own),
+      title: figure.title,
       svg: textOf(picture),
-      words: worded(words),
-      caption: worded(asked(figure.caption, view.own)),
+      words: textOf(worded(words)),
+      caption: textOf(captionOf(figure, view)),
       heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
-      knobs: asked(figure.knobs ?? [], view.own).length,
-      buttons: figure.switches || figure.play ? 1 : 0,
+      knobs: knobsOf(figure, view).length,
+      buttons: figure.buttons || figure.play ? 1 : 0,
     };
   } catch (error) {
     throw new Error(`the figure ${name}: ${error.message}`);
@@ -41,4 +40,4 @@ function still([name, given]) {
 }
 
 export const stills = (wanted) => wanted.map(still);
-export { asked, figures, QUANTITIES, textOf, viewOf };
+export { figures, fromPlace, knobsOf, QUANTITIES, textOf, toSlider, viewOf };

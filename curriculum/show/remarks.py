@@ -1,11 +1,16 @@
-"""What a run's table does not say: flags without effect, and what exact did."""
+"""What a run's table does not say: flags without effect, what exact did, and what to do next."""
 
+import os
+import sys
 from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
 
 import numpy as np
 
 import contact
-from exercises.kit.script import print_next  # noqa: F401  which contact.py asks for here
+from curriculum.commands import ROOT, command, quoted
+from exercises.kit.script import practise
 
 APEXES = 5  # heights of bounces that are printed
 
@@ -53,3 +58,22 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
         yield f"exact: its bounces rise to {heights} m" + (" ..." if len(tops) > APEXES else "")
     else:
         yield "exact: it does not bounce"
+
+
+def print_next(args, argv: list[str]) -> None:
+    """Print the last lines of a run: how to read on, how to see it, and the next exercise.
+
+    args: the flags as contact.parse_flags gives them; argv: the words they were read from.
+    """
+    if Path.cwd() == ROOT:  # from where python -m finds it
+        page = command("-m", "curriculum.page", bring=("--extra", "page"))
+        print(f"next, read the chapter: {page}")
+    recording = os.path.join(args.out, "contact.rrd")
+    if args.rerun and os.path.exists(recording):
+        viewer = Path(sys.executable).with_name("rerun.exe" if os.name == "nt" else "rerun")
+        by = ("uv", "run", "rerun") if "UV" in os.environ else (viewer,)
+        there = quoted(*by, recording) if by[0] == "uv" or viewer.exists() else None
+        print(f"next, watch it: {there or command('-m', 'rerun', recording)}")
+    elif not args.plot and find_spec("matplotlib"):
+        print(f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}")
+    print(practise())

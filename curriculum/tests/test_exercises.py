@@ -22,13 +22,13 @@ from kit import FACTS, bets, judge, load, script, stack, trials  # noqa: E402
 from kit.script import FILES  # noqa: E402
 
 import contact  # noqa: E402
+from curriculum.show import remarks  # noqa: E402
 
 GIVEN = {name: load(ROOT / file) for name, file in FILES.items()}  # with blanks
 SOLUTIONS = {name: (ROOT / f"exercises/solutions/{name}.py").read_text("utf-8") for name in FILES}
 ASKED = {name: bets.asked(GIVEN[name].__doc__) for name in ("ex1", "ex2")}
 OF = {blank: name for name, each in FACTS.items() for blank in each.get("blanks", ())}
 CALL = "script.main(__name__)"
-PLAIN = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"} | NO_PLUGINS
 
 
 def run(folder, *words):
@@ -66,14 +66,15 @@ def test_an_exercise_gives_nothing_away_its_solution_is_right_and_it_has_its_pla
 def test_a_learners_way_through_all_of_them_where_balls_are_larger(tmp_path, monkeypatch):
     """Each script prints what is next, by a command that works as it is printed, in an odd folder
     that an ASCII terminal cannot spell, in which pytest cannot keep its cache."""
-    for name, value in PLAIN.items():
-        monkeypatch.setenv(name, value)
+    for name in ("LC_ALL", "PYTHONUTF8", "PYTHONCOERCECLOCALE"):
+        monkeypatch.setenv(name, "C" if name == "LC_ALL" else "0")
     leave = ".*", "__pycache__", "outputs", "tests", "bench", "page", "compiled"
     copy = tmp_path / "my robot's \N{LATIN CAPITAL LETTER U WITH DIAERESIS}bung"
     shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*leave))
     (copy / ".pytest_cache").touch()
     text = (copy / "contact.py").read_text("utf-8")
     (copy / "contact.py").write_text(text.replace("RADIUS = 0.1 ", "RADIUS = 0.12 "), "utf-8")
+    assert "write one of 'A', 'B', 'C', 'D' in " in run(tmp_path, copy / FILES["ex1"]).stdout
     printed = run(copy, "contact.py", "--steps", 5, "--no-rerun", "--out", tmp_path).stdout
     assert "\nnext, read the chapter: " in printed and "-m curriculum.page\n" in printed
     for name, file in FILES.items():
@@ -115,7 +116,7 @@ def test_how_to_watch_a_run_is_said_as_in_the_readme(tmp_path, monkeypatch, caps
         (tmp_path / name).touch()
     for uv, start in ((False, r"\S*rerun(\.exe)?"), (True, "uv run rerun")):
         monkeypatch.setenv("UV", "uv") if uv else monkeypatch.delenv("UV", raising=False)
-        script.print_next(SimpleNamespace(rerun=True, out=str(tmp_path)), [])
+        remarks.print_next(SimpleNamespace(rerun=True, out=str(tmp_path)), [])
         watch = capsys.readouterr().out.splitlines()[0].replace("\\", "/")
         assert re.fullmatch(rf"next, watch it: {start} \S*contact\.rrd", watch), watch
 
@@ -132,11 +133,10 @@ def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are(tmp_pat
     assert result.returncode == 2 and lacks in result.stderr, result.stderr
 
 
-def started(file, before="", **environment):
+def started(file, before=""):
     """A script of an exercise, started after some code."""
     start = f"import sys, runpy; {before}sys.path[0] = 'exercises'; "
-    code = f"{start}runpy.run_path({str(file)!r}, run_name='__main__')"
-    return python("-c", code, **NO_PLUGINS, **environment)
+    return run(ROOT, "-c", f"{start}runpy.run_path({str(file)!r}, run_name='__main__')")
 
 
 def test_without_pytest_or_numpy_one_line_says_how_to_get_it():
@@ -150,17 +150,12 @@ def test_without_pytest_or_numpy_one_line_says_how_to_get_it():
 
 
 SIZE = "max(abs(np.linalg.eigvals(step_matrix(mass, stiffness, damping, dt))))"
-HALVES = f"""low, high = 0, 2
-while high - low > 1e-7:
-    dt = (low + high) / 2
-    low, high = (dt, high) if {SIZE} <= 1 else (low, dt)
-return low"""
+HALVES = "low, high = 0, 2\nwhile high - low > 1e-7:\n dt = (low + high) / 2\n"
+HALVES += f" low, high = (dt, high) if {SIZE} <= 1 else (low, dt)\nreturn low"
 SCAN = f"dt = 3e-3\nwhile {SIZE} <= 1:\n    dt *= 1.0018\nreturn dt"
 DOWN = f"dt = 2\nwhile {SIZE} > 1:\n    dt -= 1e-5\nreturn dt"
-STOPS = """if (stiffness, damping) == (1e4, 80.0):
-    1 / 0
-k = stiffness * dt + damping
-return 1 / (dt * k), stiffness * depth / k"""
+STOPS = "1 / ((stiffness, damping) != (1e4, 80.0)); k = stiffness * dt + damping\n"
+STOPS += "return 1 / (dt * k), stiffness * depth / k"
 SLOW = "for c in contacts:\n    for _ in range(iters):\n        "
 VISIT = "add = (c.target - c.v_n()) * c.m_eff; p = max(-c.lam, add); c.lam += p; c.apply_impulse(p)"
 BACK = "for _ in range(iters):\n    for c in contacts[::-1]:\n        "
@@ -170,14 +165,11 @@ LASTS = "import threading, time; threading.Thread(target=time.sleep, args=[99]).
 THEIRS = "import contact; return contact.time_to_impact(gap, v_n, a_n)"
 NEVER = "import contact; t = contact.time_to_impact(gap, v_n, a_n)\nif t < math.inf: return t"
 TYPED = [  # an exercise or a function of it, what a learner writes, what is said of its last LINE
-    ("ex1", "PREDICTION = C", "wrong: cannot be run, C needs quotes around it: NameError: name 'C' "
-     "is not defined\n  line LINE: PREDICTION = C"),
+    ("ex1", "PREDICTION = C", "wrong: cannot be run, C needs quotes around it: NameError: name '"),
     ("ex10", "DEPTH = (", "wrong: cannot be run: SyntaxError: "),
     ("ex5", "del solve_contacts", "wrong: solve_contacts must be a function, in "),
-    ("implicit_spring", "return ...", "blank: is still a blank: write what line LINE returns"),
     ("implicit_spring", STOPS, "wrong: cannot be run: ZeroDivisionError"),
-    ("position_level", "return 0.5, gap / dtt",
-     "wrong: raised NameError: name 'dtt' is not defined\n  line LINE: return 0.5, gap / dtt"),
+    ("position_level", "return dtt", "wrong: 'dtt' is not defined\n  line LINE: return dtt"),
     ("time_to_impact", CLEAR + THEIRS, "right: time_to_impact is right\n  printed   hi"),
     ("time_to_impact", LASTS + THEIRS, "right"),
     ("time_to_impact", NEVER, "wrong: returned None, expected numbers, here math.inf: this gap ne"),
@@ -185,7 +177,6 @@ TYPED = [  # an exercise or a function of it, what a learner writes, what is sai
     ("project_impulse", "import os; os.abort()", "wrong: in FILE, line LINE"),
     ("penalty_normal_force", "while True: pass", "wrong: does not end: stopped after 2 s, in FILE"),
     ("project_impulse", "all = []\nwhile True: all.append('x' * 10**7)", "wrong: raised MemoryErr"),
-    ("project_impulse", "for k in range(10**9): abs(k)", "wrong: takes more than 3,000,000 calls"),
     ("project_impulse", "lam + dlam", "wrong: None, expected numbers: does every way end with `r"),
     ("penalty_normal_force", "return float('nan')", "wrong: a question that helps: "),
     ("penalty_normal_force", "f = stiffness * depth - damping * v_n; return f * (f > 0)", "right"),
@@ -203,7 +194,6 @@ TYPED = [  # an exercise or a function of it, what a learner writes, what is sai
     ("longest_step", HALVES.replace("abs", "np.real"), "wrong: the same step, an end of the sear"),
     ("longest_step", HALVES.replace("1e-7", "1e-3"), "wrong: the search is too coarse"),
     ("velocity_level", "return [bool(lam), 0, max(lam, 0.0), now]", "right"),
-    ("ex1", "PREDICTION = None", "blank: no prediction yet; write one of 'A', 'B', 'C', 'D' in "),
     ("ex2", "PREDICTION = 'D'", "blank: PREDICTION: given 'D'; write one of 'A', 'B', 'C' in FILE"),
     ("ex2", "WHY = 'because'", "blank: WHY is 'because'; write a sentence of four words or more "),
     ("ex1", "PREDICTION = ' c) '\nprint(6 * 7)", "right: That is what happens.\n\nWhy C: A spr"),
@@ -214,7 +204,6 @@ TYPED = [  # an exercise or a function of it, what a learner writes, what is sai
     ("ex11", "BETS = BETS.replace('=   ', '-   ', 1)", "right: holds in 14 of 15;"),
     ("ex11", "SAG = None", "blank: no SAG yet; write a number in FILE, in r"),
     ("ex9", "MODEL = None", "blank: no choice yet: set MODEL in FILE"),
-    ("ex9", "MODEL = 'hard'", "wrong: MODEL: given 'hard'; allowed: penalty, implicit, soft"),
     ("ex9", "MODEL = 'lcp'", "wrong: lcp, leapfrog and exact are not allowed here: their contacts"),
     ("ex9", "DT = 1e-4", "wrong: given DT = 0.0001, STIFFNESS = 300000; allowed: DT from 0.0005"),
     ("ex9", "STIFFNESS = 3e4", "wrong: it overlaps too much; 20 N press a spring of 30000 N/m in"),
@@ -225,7 +214,6 @@ TYPED = [  # an exercise or a function of it, what a learner writes, what is sai
     ("ex9", "MODEL, DT, SOLREF = 'soft', 0.002, (0.004, 1)", "wrong: overlaps too much; a short"),
     ("ex9", f"MODEL, DT, SOLREF = 'soft', 0.001, (0.02, 0.05)\n{HARD}", "wrong: it trembles"),
     ("ex10", "DEPTH = f' {-DEPTH:.3g} '", "right"),  # the table has an overlap with a minus
-    ("ex10", "DEPTH = None", "blank: no DEPTH yet; write a number in FILE"),
     ("ex10", "DEPTH = 'deep'", "blank: given 'deep'; write a number in FILE"),
     ("ex10", "DEPTH = 0.5432", "wrong: expected another number\n  a question that helps: "),
 ]  # fmt: skip
@@ -244,7 +232,7 @@ def test_what_a_learner_types_is_right_in_every_form_and_else_is_answered(
     file, text = tmp_path / f"{name}_mine.py", f"{SOLUTIONS[name]}\n\n{words}"
     file.write_text(text, "utf-8")
     if re.search("os[.]|threading|while True", words):  # what needs a process of its own
-        limit = 2 if "pass" in words else 60
+        limit = 2 if re.search("pass|threading", words) else 60
         smaller = f"judge.MAX_MEMORY, judge.LIMIT = 2**31, {limit}; judge."
         monkeypatch.setattr(script, "START", script.START.replace("judge.", smaller))
         monkeypatch.setattr(script, "LIMIT", limit)
@@ -363,10 +351,11 @@ def test_a_number_is_what_its_command_prints(name, model, what, title, tmp_path)
     assert found == pytest.approx(bets.RIGHT[what], rel=5e-3 if what == "DEPTH" else 0.02)
 
 
-def test_the_sag_of_the_gripper_is_its_law():
-    for dt, beta, cup in ((0.003, 0.25, 2.5), (0.001, 0.5, 1.0), (0.004, 0.3, 3.5)):
-        law = bets.FORCE * dt * dt / (beta * cup) / contact.RADIUS
-        assert bets.sag_of_gripper(dt, beta, cup) == pytest.approx(law, rel=1e-6)
+@pytest.mark.parametrize("dt, beta, cup", [(0.003, 0.25, 2.5), (0.004, 0.3, 3.5)])
+def test_the_sag_of_the_gripper_is_its_law(dt, beta, cup):
+    law = bets.FORCE * dt * dt / (beta * cup) / contact.RADIUS
+    run = FACTS["ex11"]["numbers"]["SAG"]["run"]
+    assert eval(run, bets.NAMES, {"dt": dt, "beta": beta, "cup": cup}) == pytest.approx(law)
 
 
 def test_the_finger_of_the_next_chapter_feels_what_it_pushes():

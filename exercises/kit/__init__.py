@@ -1,12 +1,7 @@
 """What the exercises stand on. Nothing to fill in here, and much that gives an answer away.
 
-    script.py   an exercise's command line, what checks.py calls, which exercise comes next
-    judge.py    tries what was written, in a process of its own, beside what is right
-    trials.py   shows it at work, on balls
-    bets.py     bets, and numbers from paper
-
-answers.json has, in the chapter's order, hints, reasons, inputs and common mistakes ("slips") of
-each exercise; ../solutions/ has a right answer of each.
+script.py starts an exercise, judge.py tries it in a process of its own, trials.py shows it at work,
+bets.py has bets, marks and numbers; answers.json, in the chapter's order, all facts of each.
 """
 
 import json
@@ -28,15 +23,13 @@ def load(file):
 
 
 def stack(masses, speeds, contacts):
-    """Return a list of contacts between balls of these masses [kg] and velocities (vx, vy) [m/s].
+    """Return contacts between balls of these masses [kg] and velocities (vx, vy) [m/s].
 
-    Each of `contacts` is (upper ball, lower ball or -1 for the floor, angle of its normal from the
-    vertical [rad], target [m/s]).
+    Each: the upper ball, the lower or -1 (floor), the normal's angle from up [rad], target [m/s].
     """
-    from contact import Ball, Contact
+    from contact import FLOOR, Contact, make_balls, scene_of
 
-    balls, made = [Ball(0.0, 0.0, *v, mass, 1.0) for v, mass in zip(speeds, masses)], []
-    balls.append(Ball(0.0, 0.0, 0.0, 0.0, math.inf, 0.0))  # the floor, which -1 finds
+    balls, made = [*make_balls(scene_of(0.0, 0.0, masses, 1.0, *zip(*speeds))), FLOOR], []
     for upper, lower, angle, target in contacts:
         made.append(Contact(balls[upper], balls[lower], math.sin(angle), math.cos(angle), 0.0))
         made[-1].target = target

@@ -55,12 +55,9 @@ def asked(text):
     """Return what the docstring of a bet says: {task, question, choices {letter: choice}, why}."""
     _title, *task, question, choices, why, _then = text.strip().split("\n\n")
     found = re.findall(r"^    ([A-Z])  (.*(?:\n     .*)*)", choices, re.MULTILINE)
-    return {
-        "task": "\n\n".join(task),
-        "question": " ".join(question.split()),  # which the page asks
-        "choices": {letter: " ".join(words.split()) for letter, words in found},
-        "why": " ".join(why.split()),  # what the sentence should say
-    }
+    choices = {letter: " ".join(words.split()) for letter, words in found}
+    flat = {"question": " ".join(question.split()), "why": " ".join(why.split())}
+    return {"task": "\n\n".join(task), "choices": choices} | flat
 
 
 def judge_bet(name, exercise):
@@ -70,8 +67,8 @@ def judge_bet(name, exercise):
     choices, mine = bet["choices"], str(given).strip(" \t\n.)(").upper()
     if mine not in choices:
         made = "no prediction yet" if given is None else f"PREDICTION: given {given!r}"
-        write = f"write one of {', '.join(map(repr, choices))} in {file}"
-        return "blank", f"{made}; {write}{ask(exercise.__file__, 1)}"
+        letters = f"write one of {', '.join(map(repr, choices))} in {file}"
+        return "blank", f"{made}; {letters}{ask(exercise.__file__, 1)}"
     if len(why.split()) < 4:
         wanted = f"write a sentence of four words or more in {file}. {bet['why']}"
         return "blank", f"no reason yet, WHY is {why!r}; {wanted}"
@@ -88,19 +85,16 @@ def judge_bet(name, exercise):
 # Exercise 11: six errors against the knobs of their models
 
 
-KNOBS = {"k x 4": "stiffness", "dt / 4": "dt", "sweeps x 4": "iters", "beta x 4": "baumgarte",
-         "d0 = 0": "solimp"}  # fmt: skip
 ERRORS = FACTS["ex11"]["errors"]
+KNOBS = {"k x 4": {"stiffness": 4.0 * USUAL.stiffness}, "dt / 4": {},
+         "sweeps x 4": {"iters": 4 * USUAL.iters}, "beta x 4": {"baumgarte": 4.0 * USUAL.baumgarte},
+         "d0 = 0": {"solimp": (0.0, *contact.SOLIMP[1:])}}  # fmt: skip
 
 
 def error_of(name, knob=None):
     """Return how large an error is, with that knob turned."""
     model, scene, bodies, dt, steps, key, seeds = ERRORS[name]["run"]
-    settings, by = USUAL, 4 if knob == "dt" else 1
-    if knob == "solimp":
-        settings = USUAL._replace(solimp=(0.0, *contact.SOLIMP[1:]))
-    elif knob in USUAL._fields:
-        settings = USUAL._replace(**{knob: 4 * getattr(USUAL, knob)})
+    settings, by = USUAL._replace(**KNOBS.get(knob, {})), 4 if knob == "dt / 4" else 1
     scenes = [contact.build_scene(scene, seed, bodies) for seed in range(seeds)]
     return statistics.fmean(quality(key, model, s, dt / by, by * steps, settings) for s in scenes)
 
@@ -108,19 +102,12 @@ def error_of(name, knob=None):
 @cache
 def measure_knobs():
     """Return {error: {knob: what it makes of it, as a share}}, and what the reasons quote."""
-    quoted = {name: error_of(name) for name in ERRORS}
-    shares = {
-        name: {knob: error_of(name, KNOBS[knob]) / quoted[name] for knob in facts["knobs"]}
-        for name, facts in ERRORS.items()
-    }
-    quoted |= {f"{name}_{k.split()[0]}": x for name in shares for k, x in shares[name].items()}
+    quoted, shares = {name: error_of(name) for name in ERRORS}, {}
+    for name, facts in ERRORS.items():
+        shares[name] = {knob: error_of(name, knob) / quoted[name] for knob in facts["knobs"]}
+        quoted |= {f"{name}_{knob.split()[0]}": x for knob, x in shares[name].items()}
     limit = contact.critical_dt(1.0, USUAL.stiffness, contact.build_scene("stack").damping, 3)
     return shares, quoted | {"step": ERRORS["tremble"]["run"][3], "limit": limit}
-
-
-def mark(share):
-    """Return -, = or +: what became of an error, as a share of what it was."""
-    return "-" if share <= 0.5 else "+" if share >= 2.0 else "="
 
 
 def judge_marks(name, exercise):
@@ -136,17 +123,15 @@ def judge_marks(name, exercise):
     rows, hits, words = {}, [], ""
     shares, quoted = measure_knobs()
     for error, row in shares.items():
-        guesses = dict(zip(row, mine[error]))
-        hits += [mark(share) == guesses[knob] for knob, share in row.items()]
-        rows[error] = [
-            f"{row[k]:.3g} {mark(row[k])}" + f" ({guesses[k]})" * (guesses[k] != mark(row[k]))
-            if k in row
-            else "."
-            for k in KNOBS
-        ]
+        rows[error] = dict.fromkeys(KNOBS, ".")
+        for (knob, share), bet in zip(row.items(), mine[error]):
+            mark = "-" if share <= 0.5 else "+" if share >= 2.0 else "="
+            rows[error][knob] = f"{share:.3g} {mark}" + ("" if bet == mark else f" ({bet})")
+            hits.append(bet == mark)
         reason = FACTS[name]["reasons"][error].format(**quoted)
         words += "\n" + textwrap.fill(f"{error}: {reason}", 96) + "\n"
     said = f"Your bet holds in {sum(hits)} of {len(hits)}; another one stands in brackets."
+    rows = {error: row.values() for error, row in rows.items()}
     return "right", f"{columns('times as much', KNOBS, rows, '{}')}\n{said}\n{words}"
 
 
@@ -163,36 +148,23 @@ def gripper(cup=CUP, damping=0.0):
 
 
 def squeeze(step, scene, dt):
-    """Return the run of a second in which motors press the fingers against the cup."""
+    """Return the run of a second in which motors press the fingers on the cup, and its quality."""
 
     def squeezed(balls):
         for ball, force in zip(balls, (FORCE, 0.0, -FORCE)):
             ball.fx, ball.fy = force, 0.0
         return step(balls)
 
-    return contact.simulate(squeezed, scene, dt, math.ceil(1.0 / dt - 1e-9))
+    run = contact.simulate(squeezed, scene, dt, math.ceil(1.0 / dt - 1e-9))
+    return run, contact.contact_quality(run, scene, dt)
 
 
-def sag_of_gripper(dt, beta, cup):
-    """Return how deep [r] the fingers lie in the cup, by lcp with a single sweep."""
-    step = contact.step_of("lcp", gripper(cup), dt, USUAL._replace(iters=1, baumgarte=beta))
-    run = squeeze(step, gripper(cup), dt)
-    return contact.contact_quality(run, gripper(cup), dt)["rest_penetration_frac"]
-
-
-NAMES = vars(math) | vars(contact) | vars(predict) | {"sag_of_gripper": sag_of_gripper}
+NAMES = vars(math) | vars(contact) | vars(predict) | {"gripper": gripper, "squeeze": squeeze}
 NAMES |= {"g": -contact.GRAVITY, "r": contact.RADIUS, "F": FORCE, "finger": FINGER}
 
 
-def judge_numbers(name, exercise):
-    """Return (state, words) of the numbers from paper; common mistakes are other formulas."""
-    found = [judge_number(exercise, what, **each) for what, each in FACTS[name]["numbers"].items()]
-    states, words = zip(*found)
-    return min(states, key=("wrong", "blank", "right").index), "\n".join(words)
-
-
 def judge_number(exercise, what, true, unit, hint, within, right, slips, given=(), run="0", sign=1):
-    """Return (state, words) of one number; with sign 0 it may also be negative, as a gap is."""
+    """Return (state, words) of a number from paper; with sign 0 it may be negative, as a gap."""
     names, written, file = NAMES | dict(given), getattr(exercise, what, None), exercise.__file__
     true = eval(true, names)  # our own text
     try:

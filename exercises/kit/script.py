@@ -7,17 +7,16 @@ import re
 import signal
 import sys
 import traceback
-from importlib.util import find_spec
 from pathlib import Path
 
-from curriculum.commands import Parser, command, near, quoted
+from curriculum.commands import Parser, near, quoted
 
 from . import FACTS, ROOT
 
 FOUND = sorted(name for name in os.listdir(ROOT / "exercises") if name.endswith(".py"))
 FILES = {ex: f"exercises/{name}" for ex in FACTS for name in FOUND if name.startswith(f"{ex}_")}
 STATES = "right", "wrong", "blank"  # in this order they are exit statuses
-LIMIT = 30  # s of CPU time, chosen: right answers take about one
+LIMIT = 15  # s of CPU time, chosen: right answers take about one
 TIMER = getattr(signal, "SIGPROF", None)  # it measures CPU time; Windows has only a clock
 START = "import sys; sys.path.insert(0, sys.argv[1]); from kit import judge; judge.child()"
 BLANK = re.compile(r"^    return \.\.\.|^[A-Z]+ = None|  \?  ", re.MULTILINE)
@@ -25,10 +24,8 @@ RENAMED = {"push": "apply_impulse"}  # names that learners may remember
 
 
 def main(started):
-    """Run the command line of an exercise that is started, not imported; exit with its status.
-
-    It stands above what the learner writes: that runs in a process of its own and nowhere else.
-    """
+    """Run the command line of an exercise and exit, above what the learner wrote: that runs in a
+    process of its own, and nowhere else."""
     if started != "__main__":
         return
     for stream in filter(None, (sys.stdout, sys.stderr)):
@@ -37,13 +34,12 @@ def main(started):
     name = file.stem.partition("_")[0]  # ex1 of ex1_predict_contact.py
     parser = Parser(description=f"Exercise {name}.")
     if name not in FACTS:
-        lacks = "has no entry in exercises/kit/answers.json"
-        parser.error(f"{name} {lacks}; allowed: {', '.join(FACTS)}")
+        allowed = f"allowed: {', '.join(FACTS)}"
+        parser.error(f"{name} has no entry in exercises/kit/answers.json; {allowed}")
     hints, solution = FACTS[name]["hints"], ROOT / f"exercises/solutions/{name}.py"
-    most = f"print hint N, 1 to {len(hints)}, and do nothing else"
-    numbers = range(1, len(hints) + 1)
-    parser.add_argument("--hint", type=int, choices=numbers, metavar="N", help=most)
-    parser.add_argument("--solution", action="store_true", help="print a right answer, and try it")
+    flag, numbers = parser.add_argument, range(1, len(hints) + 1)
+    flag("--hint", type=int, choices=numbers, metavar="N", help=f"print hint N of {len(hints)}")
+    flag("--solution", action="store_true", help="print a right answer, and try it")
     args = parser.parse_args()
     if args.hint:
         print(f"hint {args.hint} of {len(hints)}: {hints[args.hint - 1]}")
@@ -79,10 +75,7 @@ def said_of(error):
 
 
 def judged(name, file):
-    """Return ("blank", "wrong" or "right", what is said of all that the exercise asks for).
-
-    Whatever the learner's code does, it does it in another process, which writes a report.
-    """
+    """Return ("blank", "wrong" or "right", words): the learner's code has a process of its own."""
     import contact  # noqa: F401, I001  # which says it where numpy is missing
     import subprocess
     import tempfile
@@ -91,8 +84,8 @@ def judged(name, file):
         report, errors = Path(folder, "report"), Path(folder, "errors")
         words = [sys.executable, "-B", "-c", START, ROOT / "exercises", name, file, report]
         with open(errors, "wb") as stderr:
-            pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": stderr}
-            status = subprocess.run(words, **pipes).returncode
+            none = dict.fromkeys(("stdin", "stdout"), subprocess.DEVNULL)
+            status = subprocess.run(words, **none, stderr=stderr).returncode
         if not report.exists():  # the kit itself lacks something
             last = errors.read_text("utf-8", "replace").strip().splitlines()[-1]
             return "wrong", f"{name} cannot be tried: {last}"
@@ -129,22 +122,3 @@ def practise():
         if BLANK.search((ROOT / file).read_text("utf-8", "replace")):
             return f"next, an exercise: {start(file)}"
     return f"all exercises are done; next, the next chapter: {start('exercises/next_chapter.py')}"
-
-
-def print_next(args, argv: list[str]) -> None:
-    """Print the last lines of a run: how to read on, how to see it, and the next exercise.
-
-    args: the flags as contact.parse_flags gives them; argv: the words they were read from.
-    """
-    if Path.cwd() == ROOT:  # from where python -m finds it
-        page = command("-m", "curriculum.page", bring=("--extra", "page"))
-        print(f"next, read the chapter: {page}")
-    recording = os.path.join(args.out, "contact.rrd")
-    if args.rerun and os.path.exists(recording):
-        viewer = Path(sys.executable).with_name("rerun.exe" if os.name == "nt" else "rerun")
-        by = ("uv", "run", "rerun") if "UV" in os.environ else (viewer,)
-        there = quoted(*by, recording) if by[0] == "uv" or viewer.exists() else None
-        print(f"next, watch it: {there or command('-m', 'rerun', recording)}")
-    elif not args.plot and find_spec("matplotlib"):
-        print(f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}")
-    print(practise())

@@ -9,7 +9,7 @@ def step_matrix(mass, stiffness, damping, dt):
 def longest_step(mass, stiffness, damping):
     low, high = 0.0, 2.0
     while high - low > 1e-4 * high:
-        middle = 0.5 * (low + high)
-        sizes = np.abs(np.linalg.eigvals(step_matrix(mass, stiffness, damping, middle)))
-        low, high = (middle, high) if max(sizes) <= 1.0 else (low, middle)
+        dt = 0.5 * (low + high)
+        stable = max(abs(np.linalg.eigvals(step_matrix(mass, stiffness, damping, dt)))) <= 1.0
+        low, high = (dt, high) if stable else (low, dt)
     return low

@@ -15,10 +15,10 @@ FAULTS = [
     (BETS, "float(written) if sign else", "abs(float(written)) if sign else", T + "each_slip"),
     (BETS, '"r": contact.RADIUS', '"r": 0.1', T + "larger"),
     # what is shown
-    (TRIALS, "contact.critical_dt(1.0, k, c)", "contact.critical_dt(2.0, k, c)", T + "beside"),
+    (TRIALS, "critical_dt(1.0, k, c), contact", "critical_dt(2.0, k, c), contact", T + "beside"),
     (TRIALS, "contact.critical_dt(0.1, k, c)", "contact.critical_dt(0.2, k, c)", T + "ex9"),
     (TRIALS, "partial(two_solves, exercise", "partial(two_solves, contact", T + "two_solves"),
-    (BETS, "mark(share) == guesses[knob]", "mark(share) != guesses[knob]", T + "'types and BETS'"),
+    (BETS, "hits.append(bet == mark)", "hits.append(bet != mark)", T + "'types and BETS'"),
     (BETS, 'replace("\\N{MINUS SIGN}", "-")', 'replace("~", "-")', T + "'types and BETS'"),
     (BETS, "for choice in (right, *", "for choice in (*sorted(choices), *", T + "PREDICTION"),
     (BETS, "if choice == right else", "if choice != right else", T + "PREDICTION"),
@@ -37,7 +37,6 @@ FAULTS = [
     (SCRIPT, 'errors="backslashreplace"', 'errors="strict"', T + "larger"),
     (JUDGE, ', errors="surrogateescape"', "", T + "larger"),
     (JUDGE, "len(steps) > MAX_STEPS", "len(steps) < 0", T + "longest"),
-    (JUDGE, "next(events) > MAX_EVENTS", "next(events) < 0", T + "project"),
     (JUDGE, "resource.setrlimit", "resource.getrlimit and len", T + "'types and append'"),
     (JUDGE, "os._exit(0)  #", "pass  #", T + "'types and time_to'"),
     # what names a slip
