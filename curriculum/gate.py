@@ -1,13 +1,13 @@
-"""The gate: what the chapter says, against what the code is and does.
+"""The gate: check the chapter against the code and its numbers.
 
     python -m curriculum.gate                   # check, write nothing; exit 1 and a line a problem
-    python -m curriculum.gate --read "HEADING"  # you have read these, as they are now
+    python -m curriculum.gate --read "HEADING"  # you have reviewed these, as they are now
 
-Regions are included once; slots, flags and names in `code` are of what is there; numbers are quoted
-by reference, what holds a sentence is true, and results are of today's code. Whether a sentence is
-true of the code only a reader can say. meta.yaml keeps what each passage spoke of when it was last
-read: the hashes of its regions, its numbers. Where one of them is another today, or new, the gate
-asks to read the passage again. region_hashes are those of the code when that was last written.
+It checks that every region is included once; that slots, their settings, flags and names in `code`
+exist; that numbers are quoted by reference, ratios in words held by a claim; that results are of
+today's code. Whether a sentence is true only a reader can say: meta.yaml keeps what each passage
+depended on at its last review, its numbers and the hashes of its code: of the text of what it
+shows, of the syntax of what it names. When one has changed, or is new, the gate asks for a review.
 """
 
 import hashlib
@@ -24,17 +24,21 @@ with needs("dev"):
 
     import contact
     from curriculum import stored
+    from curriculum.page.build import slot_errors
     from curriculum.prose.chapter import CHAPTER, INCLUDE, INLINE, PLAIN, PROSE, Part, faults, split
+    from curriculum.prose.ratios import loose_ratios
     from curriculum.prose.references import REFERENCE, TextError, load_meta, prepare, shown
     from curriculum.source import DOCSTRING, ROOT, blank, read_text, split_all
 
 GATE = "python -m curriculum.gate"
-FIGURES = "curriculum/page/figures/*.js"
+FIGURES, META, TEXTS = "curriculum/page/figures/*.js", "meta.yaml", ("README.md", "CONTRIBUTING.md")
 KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line each
-CAPTION = re.compile(
-    r"""\b(?:title|caption):\s*(?:("|`)(?:(?!\1)[^\\]|\\.)*\1[\s+]*)+""", re.DOTALL
-)
+CAPTION = re.compile(r"^( *)(?:title|caption):.*\n(?:\1 +.*\n)*", re.MULTILINE)
+STRING = re.compile(r"\"[^\"]*\"|`[^`]*`")  # of a caption, once what it computes is blank
+COMPUTED = re.compile(r"\$\{[^{}]*\}")
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
+NAMED = re.compile(r"--[a-z][\w-]*|(?<![\w/.-])[A-Za-z]\w*_\w+|^[A-Za-z_]\w+$|\b[a-z]\w+(?=\()")
+NO_CODE = re.compile(r'"""(?s:.*?)"""|#.*')
 # Where numbers may be typed in text: code and formulas, references, links, numbers of headings and
 # lists, and what follows some words.
 NOT_PROSE = re.compile(
@@ -47,18 +51,8 @@ NOT_PROSE = re.compile(
 TYPED = re.compile(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*")  # a token that begins with a digit
 
 
-def sources(passage, regions) -> dict:
-    """{source: hash}: the regions that it includes or names, and its own words in code."""
-    included, named = INCLUDE.findall(passage.text), " ".join(SPAN.findall(passage.text))
-    words = set(re.findall(r"\w+", named))
-    own = not passage.file.startswith(("exercises/", CHAPTER))
-    found = {"its words": hashlib.sha256(passage.text.encode()).hexdigest()} if own else {}
-    found |= {r.source: r.sha for r in regions if r.source in included or r.defines & words}
-    return {source: sha[:12] for source, sha in found.items()}
-
-
 def passages():
-    """What a reader reads in one go: a heading of the chapter with its text, an exercise, the
+    """Yield what a reader reads in one go: a heading of the chapter with its text, an exercise, the
     captions of a figure, or the opening words of contact.py (the signs) and exact.py (the promise).
 
     Each has the name that one types when one has read it.
@@ -80,29 +74,47 @@ def passages():
 
 
 def files(*patterns) -> list:
-    """The project's files of these patterns, as they are named in git."""
+    """Return the project's files of these patterns, as they are named in git."""
     paths = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
     return [path.relative_to(ROOT).as_posix() for path in paths]
 
 
 class Gate:
-    """One pass over the project: `problems` are lines, `now` the sources of each passage."""
+    """One pass over the project.
+
+    problems: lines. shows, names: {passage: {source: hash, or reference: number}}, of the text of
+    the regions that it includes; of the rest that it depends on, code by its syntax.
+    """
 
     def __init__(self):
         self.chapter, self.meta = split(read_text(CHAPTER)), load_meta()
-        (self.regions, self.problems), self.passages, self.now = split_all(), {}, {}
+        (self.regions, self.problems), self.passages = split_all(), {}
+        self.shows, self.names = {}, {}
         for each in filter(lambda each: each.text, passages()):
             if each.name in self.passages:
                 self.say(each.file, each.line, f"a second heading {each.name}", "rename one")
             self.passages[each.name] = each
-            self.now[each.name] = sources(each, self.regions.values())
+            self.depend(each)
 
     def say(self, file, line, what, repair):
         """Note a problem."""
         self.problems.append(f"{file}:{line}: {what}; repair: {repair}")
 
+    def depend(self, each):
+        """Note the code that a passage shows or names, and its own words where it is in code."""
+        words = set(re.findall(r"\w+", " ".join(SPAN.findall(each.text))))
+        included = INCLUDE.findall(each.text)
+        shows, names = self.shows.setdefault(each.name, {}), self.names.setdefault(each.name, {})
+        if not each.file.startswith(("exercises/", CHAPTER)):
+            names["its words"] = hashlib.sha256(each.text.encode()).hexdigest()[:12]
+        for region in self.regions.values():
+            if region.source in included:
+                shows[region.source] = region.sha
+            elif region.defines & words:
+                names[region.source] = stored.digits(region.source, region.code)
+
     def check_marks(self):
-        """What the chapter includes, and its slots name, is there, and nothing lacks a place."""
+        """Includes and slots name what exists, once, and all that exists has a place."""
         known: dict = {("puzzle", ""): None, ("wallclock", ""): None}  # they need no place
         known |= {("region", r.source): (r.file, r.line - 1) for r in self.regions.values()}
         for each in self.passages.values():
@@ -114,7 +126,7 @@ class Gate:
         for kind, folder in stored.FOLDERS.items():
             drawn = files(f"{folder}/*.svg")  # some of them have a place, others have none
             known |= {(kind, Path(file).stem.removeprefix("error-")): None for file in drawn}
-        placed = set()
+        placed, slots = set(), []
         for part in (part for part in self.chapter if part.kind not in PLAIN):
             mark = kind, name = part.kind, part.name.partition("?")[0]  # behind it are settings
             if mark not in known:
@@ -122,77 +134,115 @@ class Gate:
                 self.say(CHAPTER, part.line, f"there is no {kind} {name}", f"name one of {names}")
             elif mark in placed and kind not in ("figure", "puzzle"):
                 self.say(CHAPTER, part.line, f"a second {kind} {name}", "delete one of the two")
+            elif kind == "figure":
+                slots.append(part)
             placed.add(mark)
+        self.check_slots(slots)
         self.problems += faults(self.chapter)
         for mark, place in known.items():
             if place and mark not in placed:
                 self.say(*place, f"{' '.join(mark)} has no place in {CHAPTER}", "give it one")
 
-    def check_names(self):
-        """Names in `code` and flags, of chapter and captions, are in some code or in meta.yaml."""
-        code = files("*.py", "exercises/**/*.py", "curriculum/*.py", "curriculum/[!t]*/*.py")
-        known = set(re.findall(r"--[a-z]\w*|\w+", "".join(map(read_text, [*code, "meta.yaml"]))))
-        known |= {flag for each in contact.make_parser()._actions for flag in each.option_strings}
-        for each in self.passages.values():
-            for match in SPAN.finditer(each.text) if each.file.startswith("curriculum") else ():
-                for name in {*re.findall(r"^[A-Za-z_]\w+$|--[a-z]\w*", match[1])} - known:
-                    what = f"`{name}` is in no code"
-                    self.say(each.file, each.line_of(match), what, "name what is there")
+    def check_slots(self, slots):
+        """Every figure can be drawn as its slot sets it: the page's own code tries it."""
+        try:
+            for part, error in zip(slots, slot_errors([part.name for part in slots])):
+                if error:
+                    self.say(CHAPTER, part.line, error, "set what is allowed")
+        except ValueError as error:  # of a step that has no JavaScript, or a slip in a module
+            self.problems.append(f"{error}; repair: python -m curriculum.page must build")
 
-    def check_numbers(self):
-        """None is typed into the chapter's prose, every reference can be made, what holds a
-        sentence is true, and each run is quoted. What numbers are goes into `now`."""
+    def check_names(self):
+        """Names and flags in `code` are in code (comments and docstrings are none), or in the list
+        of MuJoCo's names in meta.yaml; and each of that list is in the chapter."""
+        code = files("*.py", "exercises/**/*.py", "curriculum/*.py", "curriculum/[!t]*/*.py")
+        known = {Path(file).stem for file in files("curriculum/**/*.py")}
+        known |= {flag for each in contact.make_parser()._actions for flag in each.option_strings}
+        for file in code:
+            known.update(re.findall(r"--[a-z]\w*|\w+", NO_CODE.sub("", read_text(file))))
+        reading = self.meta.get("reading", {})
+        known |= {*reading.get("names", ()), *chain(*reading.get("files", {}).values())}
+        texts = [part._replace(file=file) for file in TEXTS for part in split(read_text(file))]
+        for each in (*self.passages.values(), *(part for part in texts if part.kind in PROSE)):
+            for match in SPAN.finditer(each.text):
+                for name in {*NAMED.findall(match[1])} - known:
+                    repair = f"name what exists, or list it in {META}, reading"
+                    self.say(each.file, each.line_of(match), f"`{name}` is in no code", repair)
+        for name in reading.get("names", ()):
+            if not re.search(rf"\b{name}\b", read_text(CHAPTER)):
+                self.say(META, 1, f"reading: {name} is not in the chapter", "take it out")
+
+    def check_typed(self):
+        """Prose and captions type no number, and claims hold the ratios in words beside them."""
         for part in (part for part in self.chapter if part.kind in PROSE):
             for token in TYPED.finditer(blank(NOT_PROSE, part.text)):
                 number = token[0].rstrip(".,")
                 repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
                 self.say(CHAPTER, part.line_of(token), f"a typed number, {number}", repair)
+            for match, number in loose_ratios(part.text):
+                what = f"no claim of its sentence holds {match[0]!r}"
+                repair = f"add {{{{? LOW < FORMULA < HIGH}}}} around {number:.4g}"
+                repair += f", or write {{{{= {match[0]} | REASON}}}}"
+                self.say(CHAPTER, part.line_of(match), what, repair)
+        for each in (each for each in self.passages.values() if each.kind == "figure"):
+            text = each.text
+            while COMPUTED.search(text):  # from the innermost out
+                text = blank(COMPUTED, text)
+            for token in TYPED.finditer(" ".join(STRING.findall(text))):
+                what = f"a typed number in a caption, {token[0]}"
+                self.say(each.file, each.line, what, "compute it: `${...}`")
+
+    def check_numbers(self):
+        """References can be made, claims are true, each run is quoted. Notes the numbers."""
         prepare(text := read_text(CHAPTER))
         for each in self.passages.values():
             for match in REFERENCE.finditer(each.text) if each.file == CHAPTER else ():
                 try:
                     number = shown(match[1])
                     if not match[1].startswith(("?", "=")):
-                        self.now[each.name][match[1]] = number
+                        self.names[each.name][match[1]] = number
                 except TextError as error:
                     repair = "correct the text, or name what is known"
                     self.say(CHAPTER, each.line_of(match, 1), error, repair)
         for name in [*self.meta["runs"]][1:]:
             if f"{name}:" not in text:
-                self.say("meta.yaml", 1, f"run {name} is quoted nowhere", "take it out")
+                self.say(META, 1, f"run {name} is quoted nowhere", "take it out")
 
-    def record(self, names=()) -> dict:
-        """What meta.yaml ought to keep when somebody has read these passages, too."""
-        read = self.meta["read"] | {name: self.now[name] for name in names}
-        spoken = {  # of what each passage still speaks of
-            name: {source: was for source, was in read.get(name, {}).items() if source in now}
-            for name, now in self.now.items()
-        }
-        return {
-            "region_hashes": {region.name: region.sha for region in self.regions.values()},
-            "read": {name: kept for name, kept in spoken.items() if kept},
-        }
+    def record(self, names=()) -> tuple:
+        """Return region_hashes and read, as meta.yaml keeps them once these passages are reviewed.
+
+        A region's hash is the one that the passage which includes it was reviewed with.
+        """
+        hashes, read = {}, {}
+        for name, shows in self.shows.items():
+            for source, now in shows.items():
+                region = source.partition("#")[2]
+                was = self.meta["region_hashes"].get(region)
+                hashes[region] = now if name in names else was
+            now, was = self.names[name], self.meta["read"].get(name, {})
+            read[name] = now if name in names else {k: was[k] for k in was if k in now}
+        in_order = {name: hashes[name] for name in self.regions if hashes.get(name)}
+        return in_order, {name: kept for name, kept in read.items() if kept}
 
     def check_read(self) -> list:
-        """All passages are read as they are, and nothing is kept of what is gone. Returns the
-        names of those that somebody has to read."""
-        unread = []
-        for name, sources in self.now.items():
-            was, each = self.meta["read"].get(name, {}), self.passages[name]
+        """Return the names of the passages that somebody has to review."""
+        unread, (hashes, read) = [], self.record()
+        for name, each in self.passages.items():
+            was = {source: hashes.get(source.partition("#")[2]) for source in self.shows[name]}
+            was |= read.get(name, {})
             moved = ", ".join(
-                f"{source} was {was.get(source, 'never read')} and is {now}"
-                for source, now in sources.items()
+                f"{source} was {(was.get(source) or 'never read')[:12]} and is {now[:12]}"
+                for source, now in (self.shows[name] | self.names[name]).items()
                 if was.get(source) != now
             )
             if moved:
                 unread.append(name)
                 what = f"read {name!r} again: {moved}"
                 self.say(each.file, each.line, what, f"{GATE} --read {shlex.quote(name)}")
-        for key, right in self.record().items():
-            kept = self.meta[key]
-            if wrong := [n for n in {**kept, **right} if kept.get(n) != right.get(n)]:
-                what = f"its {key} keeps what is gone, or other, of {', '.join(wrong)}"
-                self.say("meta.yaml", 1, what, f"{GATE} --read")
+        for key, right in (("region_hashes", hashes), ("read", read)):
+            if gone := [name for name, kept in self.meta[key].items() if right.get(name) != kept]:
+                what = f"its {key} keeps what is gone of {', '.join(gone)}"
+                self.say(META, 1, what, f"{GATE} --read")
         return unread
 
     def check_results(self):
@@ -200,7 +250,7 @@ class Gate:
         measured = [  # where it is kept, what measures it again, what changed since then
             (f"{folder}/made.json", about["command"], stored.changed(about["code"]))
             for folder in stored.FOLDERS.values()
-            for about in stored.load(folder)[1].values()
+            for about in stored.made(folder).values()
         ]
         for row in filter(stored.stale, stored.ledger()):
             measured.append(("wallclock.csv", f"{stored.TIMES} {row['tier']}", stored.TIMED))
@@ -209,15 +259,14 @@ class Gate:
             changed = ", ".join([*dict.fromkeys(chain(*moved))][:6])
             what = f"measured on other code; since then these changed: {changed}"
             again = "; ".join(dict.fromkeys(commands))
-            self.say(places[0], 1, what, f"whoever merges types {again}")
+            self.say(places[0], 1, what, f"the maintainer runs {again}")
 
 
 def check() -> int:
-    """Print every problem, and the command that says that all is read."""
+    """Print every problem, and the command that says that all is reviewed."""
     gate = Gate()
-    gate.check_marks()
-    gate.check_names()
-    gate.check_numbers()
+    for each in (gate.check_marks, gate.check_names, gate.check_typed, gate.check_numbers):
+        each()
     unread = gate.check_read()
     gate.check_results()
     print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")
@@ -227,27 +276,26 @@ def check() -> int:
 
 
 def read(names) -> int:
-    """Record that somebody has read these passages, as they are now."""
+    """Record that somebody has reviewed these passages, as they are now."""
     gate = Gate()
     unknown = [name for name in names if name not in gate.passages]
     if gate.problems or unknown:
         wrong = f"given {', '.join(unknown)}; allowed: {', '.join(gate.passages)}"
         raise TextError("\n".join(gate.problems) or wrong)
     gate.check_numbers()
-    text = read_text("meta.yaml").partition("\nregion_hashes:")[0].rstrip() + "\n\n"
-    for key, kept in gate.record(names).items():
-        flow = None if key == "read" else False  # a line each
-        form = {"sort_keys": False, "allow_unicode": True, "width": 10**6}
-        text += yaml.safe_dump({key: kept}, default_flow_style=flow, **form)
-    write_atomic(ROOT / "meta.yaml", text)
-    print(f"recorded in meta.yaml as read: {', '.join(names) or 'nothing more'}")
+    text = read_text(META).partition("\nregion_hashes:")[0].rstrip() + "\n\n"
+    form = {"sort_keys": False, "allow_unicode": True, "width": 10**6}
+    for key, kept, flow in zip(("region_hashes", "read"), gate.record(names), (False, None)):
+        text += yaml.safe_dump({key: kept}, default_flow_style=flow, **form)  # a line each
+    write_atomic(ROOT / META, text)
+    print(f"recorded in {META} as read: {', '.join(names) or 'nothing more'}")
     return 0
 
 
 def main(argv=None) -> int:
     """Check or record. Returns the exit status: 0 in order, 1 not, 2 could not be done."""
     parser = Parser(prog=GATE, description=__doc__)
-    parser.add_argument("--read", metavar="HEADING", nargs="*", help="what you have read")
+    parser.add_argument("--read", metavar="HEADING", nargs="*", help="what you have reviewed")
     names = parser.parse_args(argv).read
     try:
         return check() if names is None else read(names)

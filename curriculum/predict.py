@@ -8,9 +8,8 @@ A formula takes and returns SI units: lengths in m, angles in rad. The command p
 import math
 from functools import partial
 
-import numpy as np
-
 import contact
+from contact import np  # which says how to install it where it is missing
 from curriculum.commands import Parser, number
 
 G = -contact.GRAVITY  # m/s^2

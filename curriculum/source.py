@@ -62,6 +62,16 @@ def blank(pattern, text):
     return pattern.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
 
 
+def replace_once(text, old, new, place):
+    """Return the text with `old` replaced. Raises ValueError unless it stands there exactly once.
+
+    place: what the text is called in the error, as in "contact.py: '...' stands there 2 times".
+    """
+    if (count := text.count(old)) != 1:
+        raise ValueError(f"{place}: {old!r} stands there {count} times; allowed: once")
+    return text.replace(old, new)
+
+
 def line_at(text, index) -> int:
     """The number of the line that holds text[index]."""
     return text.count("\n", 0, index) + 1

@@ -16,7 +16,7 @@ import platform
 import re
 import subprocess
 from datetime import date
-from functools import lru_cache
+from functools import cache
 from importlib import metadata
 from modulefinder import ModuleFinder
 from pathlib import Path
@@ -55,7 +55,7 @@ def digest(value) -> str:
     return hashlib.sha256(json.dumps(value).encode()).hexdigest()[:12]
 
 
-@lru_cache
+@cache
 def digits(source, text) -> str:
     """The hash of a source's text. In LIMITS of contact.py, words are help and do not count."""
     if source.endswith(".csv"):
@@ -97,9 +97,15 @@ def load(folder) -> tuple:
     for path in sorted(Path(ROOT, folder).glob("*.csv")):
         rows = csv.DictReader(path.read_text("utf-8").splitlines(True))
         tables[path.stem] = [{name: value(cell) for name, cell in row.items()} for row in rows]
-    return tables, json.loads(read_text(f"{folder}/made.json") or "{}")
+    return tables, made(folder)
 
 
+def made(folder) -> dict:
+    """{part: how it came to be} of a folder of results, its made.json."""
+    return json.loads(read_text(f"{folder}/made.json") or "{}")
+
+
+@cache
 def value(cell):
     """What a cell of a table holds."""
     try:

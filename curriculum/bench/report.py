@@ -198,7 +198,7 @@ def written(name, sections, made):
     return template.format(
         **facts,
         work=WORK[-1],
-        stepped=", ".join(STEPPED),
+        stepped=", ".join(m for m in STEPPED if any(p["engine"] == m for p in points)),
         machine=f"{about.get('cores')} cores of {about.get('cpu')}, with {', '.join(there)}",
         take=stored.lines(take(points, piles)),
         errors=stored.lines(winners(points, error_of)),

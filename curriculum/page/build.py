@@ -29,7 +29,7 @@ COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb
 def page_data():
     """What the scripts know from the Python files, the module data.js."""
     usual, scenes = contact.Settings(), {name: contact.build_scene(name) for name in SCENES}
-    knobs = {name: getattr(usual, name) for name in "stiffness iters baumgarte warm".split()}
+    knobs = {name: value for name, value in usual._asdict().items() if type(value) in (int, float)}
     return {
         "models": list(contact.MODELS),
         "uses": {model: row.knobs + row.also for model, row in contact.MODELS.items()},
@@ -50,6 +50,11 @@ def page_data():
         }
         | {"impedance": contact.SOLIMP[1]},
     }
+
+
+def slot_errors(slots):
+    """Return what is wrong with each slot NAME?quantity=value of a figure, or ""."""
+    return evaluate("still.js", page_data(), f"errors({json.dumps([*map(chapter.asked, slots)])})")
 
 
 # ---- what stands in the slots

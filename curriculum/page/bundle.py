@@ -17,7 +17,7 @@ from py_mini_racer import JSEvalException, MiniRacer
 
 import contact
 from curriculum.page.to_js import to_js
-from curriculum.source import ROOT
+from curriculum.source import ROOT, replace_once
 
 HERE = Path(__file__).resolve().parent
 USED = (  # of contact.py, beside the steps
@@ -57,11 +57,8 @@ def contact_js():
     solve = next(
         each for each in made.split("export ") if each.startswith("function solve_contacts(")
     )
-    if CLAMP[0] not in solve:
-        raise ValueError(
-            f"contact.py: solve_contacts has no line {CLAMP[0]}, which a figure changes"
-        )
-    wrong = solve.replace(*CLAMP).replace("solve_contacts", "solve_contacts_each", 1)
+    wrong = replace_once(solve, *CLAMP, "contact.py, solve_contacts in JavaScript")
+    wrong = wrong.replace("solve_contacts", "solve_contacts_each", 1)
     table = f"export const STEP = {{ {table} }};\nexport {wrong}\n"
     return f'import {{ $ }} from "./python.js";\n{made}{table}'
 

@@ -1,10 +1,12 @@
 """What several test files share."""
 
 import os
+import shlex
+import shutil
 import subprocess
 import sys
 
-from curriculum.source import ROOT
+from curriculum.source import ROOT, read_all, replace_once
 
 CONTACT = ROOT / "contact.py"
 NO_PLUGINS = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # as a learner has pytest
@@ -15,3 +17,66 @@ def python(*words, cwd=ROOT, **environment):
     words = [sys.executable, *map(str, words)]
     how = {"cwd": cwd, "env": os.environ | environment, "timeout": 1800}  # for what hangs alone
     return subprocess.run(words, capture_output=True, text=True, **how)
+
+
+def clone(folder, but="/results/"):
+    """Copy the files that git tracks into a folder, except those below `but`; return the folder."""
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True).stdout
+    there = [path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*") if path.is_file()]
+    names = listed.splitlines() or [name for name in there if ".cache/" not in name]  # in a clone
+    for name in (name for name in names if but not in name and (ROOT / name).exists()):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, folder / name)
+    return folder
+
+
+def edit(path, old, new):
+    """Replace a text that stands once in a file."""
+    path.write_text(replace_once(path.read_text("utf-8"), old, new, path.name), "utf-8")
+
+
+SHORT = """# Chapter
+
+## A sponge
+
+The ball rests {{quality.penalty.rest_penetration_frac|.5f}} r deep, seen from a margin of
+{{contact.CONTACT_MARGIN * 1000|.0f}} mm, and [drops](#x) by {{jump:before|.4f}} m/s.
+{{? quality.penalty.rest_penetration_frac > quality.lcp.rest_penetration_frac}} It stays there.
+<!-- no 9 is
+typed here -->
+
+## A sweep
+
+One sweep of `solve_contacts` pushes, as with `--iters 1`. Python 3.10 and $k = 10$ are not typed.
+SLOTS
+```
+# 7, no heading
+```
+
+## Code
+"""
+
+
+def shorten(folder, slots):
+    """Give a clone a short chapter with these slots and every region, one run, and no times."""
+    shown = [f"\n```\n[include-by-region: {each.source}]\n```\n" for each in read_all().values()]
+    text = SHORT.replace("SLOTS", slots) + "".join(shown)
+    (folder / "curriculum/prose/chapter.md").write_text(text, "utf-8")
+    (folder / "meta.yaml").write_text("runs:\n  drop: []\n", "utf-8")
+    (folder / "wallclock.csv").write_text(
+        "chapter,tier,wallclock_min,config_hash,commit,date,status\nch3.5-contact,t4,,,,,PENDING\n"
+    )
+
+
+def gate(folder, *flags):
+    """`python -m curriculum.gate FLAGS` in a clone."""
+    return python("-m", "curriculum.gate", *flags, cwd=folder)
+
+
+def review(folder):
+    """Run the gate, and record as reviewed what it asks for; return the names."""
+    *_, last = gate(folder).stdout.splitlines()
+    names = shlex.split(last.partition(" --read ")[2])
+    done = gate(folder, "--read", *names)
+    assert names and done.returncode == 0, last + done.stderr
+    return names

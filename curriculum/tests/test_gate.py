@@ -1,4 +1,4 @@
-"""The gate on a small project of its own: the real contact.py, a short chapter."""
+"""The gate on a small project: the real code, a short chapter, one figure and one exercise."""
 
 import hashlib
 import json
@@ -10,75 +10,34 @@ import numpy as np
 import pytest
 
 from curriculum import source, stored
-from curriculum.prose import references
-from curriculum.tests.helpers import ROOT, python
+from curriculum.prose import ratios, references
+from curriculum.tests.helpers import clone, edit, gate, python, review, shorten
 
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
 EXERCISE, MADE = "exercises/ex1_bet.py", "curriculum/bench/results/made.json"
-ROOM = "commands.py gate.py predict.py prose __init__.py source.py stored.py variants.py".split()
-PENDING = "chapter,tier,wallclock_min,config_hash,commit,date,status\n"
-PENDING += "ch3.5-contact,t4,,,,,PENDING\n"
-FILES = {
-    CHAPTER: """# Chapter
-
-## A sponge
-
-The ball rests {{quality.penalty.rest_penetration_frac|.5f}} r deep, seen from a margin of
-{{contact.CONTACT_MARGIN * 1000|.0f}} mm, and [drops](#x) by {{jump:before|.4f}} m/s.
-{{? quality.penalty.rest_penetration_frac > quality.lcp.rest_penetration_frac}}
-<!-- no 9 is
-typed here -->
-
-## A sweep
-
-One sweep of `solve_contacts` pushes, as with `--iters 1`. Python 3.10 and $k = 10$ are not typed.
-<!-- figure: clamp -->
-<!-- exercise: ex1 -->
-
-```
-# 7, no heading
-```
-
-## Code
-""",
-    "meta.yaml": "runs:\n  drop: []\n",
-    "wallclock.csv": PENDING,
-    EXERCISE: '"""How often does `solve_contacts` sweep?"""\n',
-    CLAMP: 'const x = 1;\nexport const figure = { caption: "It pushes by `push`." };\n',
-}
-READ = ["A sponge", "A sweep", "Code", "ex1", "contact.py", "figures/clamp"]
-
-
-def run_gate(project, *flags):
-    """`python -m curriculum.gate FLAGS` in a project."""
-    return python("-m", "curriculum.gate", *flags, cwd=project)
-
-
-def edit(path, old, new):
-    """Replace a text that stands once in a file."""
-    text = path.read_text("utf-8")
-    assert text.count(old) == 1, (path, old, text.count(old))
-    path.write_text(text.replace(old, new), "utf-8")
+FIGURE = r"""const x = 1;
+export const figure = {
+  title: "A push",
+  caption: ({ dt }) => `It pushes by \`push\` in ${1000 * dt} ms.`,
+  height: () => 9,
+  draw: () => ({ picture: [], words: "", values: { x } }),
+};
+"""
+READ = ["A sponge", "A sweep", "Code", "ex1", "contact.py", "exact.py", "figures/clamp"]
 
 
 @pytest.fixture(scope="module")
 def accepted(tmp_path_factory):
     """A project that is in order; its runs are cached."""
-    project = tmp_path_factory.mktemp("project")
-    for path in (ROOT / "contact.py", *(ROOT / "curriculum" / each for each in ROOM)):
-        copy = shutil.copytree if path.is_dir() else shutil.copy
-        (project / path.relative_to(ROOT)).parent.mkdir(exist_ok=True)
-        copy(path, project / path.relative_to(ROOT))
-    shown = "".join(
-        f"\n```\n[include-by-region: {region.source}]\n```\n"
-        for region in source.read_all().values()
-        if (project / region.file).exists()
+    project = clone(tmp_path_factory.mktemp("project"))
+    for path in (*project.glob("exercises/ex*.py"), *project.glob("curriculum/page/figures/*")):
+        path.unlink()
+    (project / EXERCISE).write_text('"""How often does `solve_contacts` sweep?"""\n', "utf-8")
+    (project / CLAMP).write_text(FIGURE, "utf-8")
+    shorten(
+        project, "<!-- figure: clamp -->\n<!-- figure: clamp?dt=0.01 -->\n<!-- exercise: ex1 -->\n"
     )
-    for file, text in FILES.items():
-        (project / file).parent.mkdir(parents=True, exist_ok=True)
-        (project / file).write_text(text + shown * (file == CHAPTER), "utf-8")
-    assert run_gate(project).stdout.endswith(f" --read {shlex.join(READ)}\n")
-    assert run_gate(project, "--read", *READ).returncode == 0
+    assert review(project) == READ
     return project
 
 
@@ -91,54 +50,61 @@ def project(accepted, tmp_path):
 def test_project_that_was_read_passes_and_nothing_is_written(project):
     edit(project / CLAMP, "x = 1", "x = 2")  # which no reader sees
     before = {path: path.read_bytes() for path in project.rglob("*.[!p]*") if path.is_file()}
-    done = run_gate(project)
+    done = gate(project)
     assert (done.returncode, done.stdout) == (0, "text, code, numbers and results agree\n")
     assert before == {path: path.read_bytes() for path in before}
     edit(project / "meta.yaml", "\n  sweep:", "\n  swept:")
-    wrong = "meta.yaml:1: its region_hashes keeps what is gone, or other, of swept, sweep; repair: "
-    assert run_gate(project).stdout.startswith(wrong)
+    swept = gate(project).stdout
+    assert "contact.py#sweep was never read and is " in swept
+    assert "meta.yaml:1: its region_hashes keeps what is gone of swept; repair: " in swept
 
 
 OLD = {"command": "python -m curriculum.bench piles", "code": {"contact.py#sweep": "0" * 12}}
+READING = "reading: {names: [efc_R, solPGS], files: {}}\nruns:\n  long: [--steps, 3]\n"
+LEDGER = "ch3.5-contact,cpu,0.01,0123456789ab,1234567,2026-01-02,MEASURED\n"
 ERRORS = [  # file, what stands there, what takes its place, the problems that it makes
     (CHAPTER, "rest_penetration_frac|.5f", "depth|.5f", ["{}:5: 'quality.penalty.depth' is not"]),
     (CHAPTER, "[drops]", "[drops ½ r]", ["{}:6: a typed number, ½"]),
     (CHAPTER, "frac > quality.lcp", "frac < quality.lcp",
      ["{}:7: '? quality.penalty.rest_penetration_frac < quality.lcp.rest_penetration_frac' d"]),
-    (CHAPTER, "--iters 1", "--iter 1", ["{}:13: `--iter` is in no code"]),
-    (CHAPTER, "figure: clamp", "figure: clamps?dt=1",
-     ["{}:14: there is no figure clamps", f"{CLAMP}:1: figure clamp has no place in {CHAPTER}"]),
+    (CHAPTER, "It stays there.", "It falls {{dt * 2|.3f}} s, twice as\nlong as `solPGS`.",
+     ["{}:7: no claim of its sentence holds 'twice'; repair: add {{? LOW < FORMULA < HIGH"]),
+    (CHAPTER, "--iters 1", "--iter 1", ["{}:14: `--iter` is in no code"]),
+    (CHAPTER, "One sweep", "A `swept` sweep", ["{}:14: `swept` is in no code; repair: na"]),
+    (CHAPTER, "figure: clamp -->", "figure: clamps -->", ["{}:15: there is no figure clamps"]),
+    (CHAPTER, "clamp?dt=0.01", "clamp?dt=1&model=lcpp",
+     ["{}:16: the figure clamp: dt=1; allowed: from 0.0005 to 0.064; repair: set what is allowed"]),
     (CHAPTER, "exercise: ex1", "exercise ex1",
-     ["{}:15: no include or slot that is well formed",
+     ["{}:17: no include or slot that is well formed",
       f"{EXERCISE}:1: exercise ex1 has no place in {CHAPTER}"]),
-    (CHAPTER, "are not typed", "<b>are</b> not typed", ["{}:13: raw HTML, '<b>are</b> not"]),
+    (CHAPTER, "are not typed", "<b>are</b> not typed", ["{}:14: raw HTML, '<b>are</b> not"]),
     (CHAPTER, "contact.py#flight]", "contact.py#fligt]",
      ["{}:#: there is no region contact.py#fligt", "contact.py:#: region contact.py#flight ha"]),
     (CHAPTER, "contact.py#quality]", "contact.py#quality] and more",
      ["{}:#: no include or slot", "contact.py:#: region contact.py#quality "]),
     (CHAPTER, "contact.py#measure]", "contact.py#sweep]",
      ["{}:#: a second region contact.py#sweep", "contact.py:#: region contact.py#measur"]),
-    (CHAPTER, "# Chapter\n", "# A sweep\n", ["{}:11: a second heading A sweep"]),
-    (CLAMP, "It pushes by `push`", "It pulls by `pulls_by`",
-     ["{}:1: `pulls_by` is in no code", "{}:1: read 'figures/clamp' again: its words was "]),
+    (CHAPTER, "# Chapter\n", "# A sweep\n", ["{}:12: a second heading A sweep"]),
+    (CLAMP, "It pushes by", "It pulls 3 times by",
+     ["{}:1: a typed number in a caption, 3; repair: compute it: `${...}`",
+      "{}:1: read 'figures/clamp' again: its words was "]),
+    ("CONTRIBUTING.md", "# Contributing\n", "`went_through()`\n", ["{}:1: `went_through` is in "]),
     ("contact.py", "n . (v_a - v_b)", "n . (v_b - v_a)", ["{}:1: read 'contact.py' again: its wo"]),
     ("contact.py", "CONTACT_MARGIN = 1e-3", "CONTACT_MARGIN = 2e-3",
-     [f"{CHAPTER}:3: read 'A sponge' again: stiffness|.0f was never read and is 10000, contact.CON"
-      "TACT_MARGIN * 1000|.0f was 1 and is 2; repair: python -m curriculum.gate --read 'A sponge'",
-      f"{CHAPTER}:#: read 'Code' again: contact.py#contacts was ",
-      "meta.yaml:1: its region_hashes keeps what is gone, or other, of contacts, scenes; re"]),
-    (CHAPTER, "seen from a margin", "of {{stiffness|.0f}} N/m, seen from a margin", []),
-    ("contact.py", "RADIUS = 0.1  # m", "# --- region lost ---\nRADIUS = 0.1  # m",
+     [f"{CHAPTER}:3: read 'A sponge' again: contact.CONTACT_MARGIN * 1000|.0f was 1 and is 2, dt * "
+      "2|.3f was never read and is 0.004; repair: python -m curriculum.gate --read 'A sponge'",
+      f"{CHAPTER}:#: read 'Code' again: contact.py#contacts was "]),
+    ("contact.py", "RADIUS = 0.1  # m", "# --- region lost ---\nRADIUS = 0.1  # m, not swept",
      ["{}:#: '# --- region lost ---' does not belong there"]),
     ("contact.py", "# --- region: setup ---", "lost = 1\n# --- region: setup ---",
      ["{}:#: code outside any region: 'lost = 1'"]),
-    ("meta.yaml", "  drop: []", "  drop: []\n  long: [--steps, 3]", ["{}:1: run long is quoted "]),
-    ("wallclock.csv", PENDING, PENDING
-     + "ch3.5-contact,cpu,0.01,0123456789ab,1234567,2026-01-02,MEASURED\n",
+    ("meta.yaml", "runs:\n", READING, ["{}:1: run drop is quoted ", "{}:1: reading: efc_R is not"]),
+    ("meta.yaml", "\nread:", "\nread:\n  Gone: {long: 1}",
+     ["{}:1: its region_hashes keeps what is gone of ", "{}:1: its read keeps what is gone of "]),
+    ("wallclock.csv", "PENDING\n", "PENDING\n" + LEDGER,
      [f"{MADE}:1: measured on other code; since then these changed: contact.py#sweep, contact.py, "
-      "curriculum/show/picture.py, curriculum/show/recording.py; repair: whoever merges types "
-      "python -m curriculum.bench piles; python -m curriculum.bench processes --tier cpu",
-      "meta.yaml:1: its read keeps what is gone, or other, of A sponge, Code, figures/clamp; rep"]),
+      "curriculum/show/picture.py, curriculum/show/recording.py; repair: the maintainer runs "
+      "python -m curriculum.bench piles; python -m curriculum.bench processes --tier cpu"]),
 ]  # fmt: skip
 
 
@@ -150,7 +116,7 @@ def test_each_error_of_a_text_is_named_in_a_line_with_its_place_and_nothing_else
         expected += [problem.replace("{}", file) for problem in problems]
     (project / MADE).parent.mkdir(parents=True)
     (project / MADE).write_text(json.dumps({"piles": OLD}))
-    done = run_gate(project)
+    done = gate(project)
     lines = [line for line in done.stdout.splitlines() if "; repair: " in line]
     for problem in expected:
         pattern = re.escape(problem).replace(r":\#:", r":\d+:")
@@ -158,31 +124,53 @@ def test_each_error_of_a_text_is_named_in_a_line_with_its_place_and_nothing_else
         assert len(hits) == 1, (problem, done.stdout + done.stderr)
         lines.remove(hits[0])
     assert (done.returncode, lines) == (1, [])
-    refused = run_gate(project, "--read", "Code")
+    refused = gate(project, "--read", "Code")
     assert refused.returncode == 2 and "does not belong there" in refused.stderr
     for text, why in ("- [", " is not YAML: "), ("", ":1: it names no runs; repair: "):
         (project / "meta.yaml").write_text(text)
-        assert run_gate(project).stderr.startswith(f"meta.yaml{why}")
+        assert gate(project).stderr.startswith(f"meta.yaml{why}")
 
 
-def test_a_changed_region_names_each_passage_that_speaks_of_it_until_it_is_read(project):
+RATIOS = {  # a text, and the ratios that no claim of its sentence holds
+    "It dives a quarter {{? 0.24 < a.b < 0.26}} in.": [],
+    "It dives a third. {{? 0.24 < a.b < 0.26}} {{? a.b == 4}} And half of that.": ["a third"],
+    "It is a Hundred times {{? a.b == 100 * c.d}} as large as {{c.d|.2f}}.": [],
+    "Four\ntimes {{c.d|.2f}} m. Half the step: {{c.d}} m": ["Four\ntimes", "Half"],
+    "| half the step | {{c.d|.2f}} |": [],
+    "Asked twice, half the error, in theory.": [],
+    "It holds {{= half | of the step}} the step, {{c.d}}.": [],
+    "As `half`, $half$ or {{half:c.d}} says, two thirds {{? a.b < 2 / 3}}.": [],
+}
+
+
+@pytest.mark.parametrize("text", RATIOS)
+def test_a_ratio_in_words_is_held_by_a_claim_of_its_sentence(text):
+    assert [match[0] for match, _ in ratios.loose_ratios(text)] == RATIOS[text]
+
+
+def test_a_changed_region_names_each_passage_that_shows_or_names_it_until_it_is_read(project):
+    """A word is for who shows it; the syntax for who names it, too."""
     text = (project / "contact.py").read_text("utf-8").partition("# --- region: sweep ---\n")[2]
     code = text.partition("# --- region: ")[0].rstrip("\n") + "\n"
     edit(project / "contact.py", code, code + "# a better word\n")
-    lines, speak = run_gate(project).stdout.splitlines(), ["A sweep", "Code", "ex1"]
+    says = r".*: read {!r} again: contact.py#sweep was \w+ and is \w+; repair: .* --read {}"
+    (line,) = gate(project).stdout.splitlines()
+    assert re.fullmatch(says.format("Code", "Code"), line)
+    edit(project / "contact.py", "# a better word\n", "more = 1\n")
+    lines, speak = gate(project).stdout.splitlines(), ["A sweep", "Code", "ex1"]
     for line, name in zip(lines, speak):
-        says = rf".*: read {name!r} again: contact.py#sweep was \w+ and is \w+; repair: .* --read "
-        assert re.fullmatch(says + re.escape(shlex.quote(name)), line)
+        assert re.fullmatch(says.format(name, re.escape(shlex.quote(name))), line)
     every = f"when all of them are read: python -m curriculum.gate --read {shlex.join(speak)}"
-    assert "other, of sweep; repair: " in lines[3] and lines[4:] == ["", every]
-    refused = run_gate(project, "--read", "nowhere")
+    assert lines[3:] == ["", every]
+    refused = gate(project, "--read", "nowhere")
     assert refused.returncode == 2
     assert refused.stderr.startswith("given nowhere; allowed: Chapter, A ")
-    sha = hashlib.sha256(f"{code}# a better word\n".encode()).hexdigest()
-    for names, waits in ((["A sweep", "ex1"], 1), (["Code"], 0)):
-        assert run_gate(project, "--read", *names).returncode == 0
-        assert run_gate(project).returncode == waits
-        assert f"\n  sweep: {sha}\n" in (project / "meta.yaml").read_text("utf-8")
+    assert gate(project, "--read", "A sweep", "ex1").returncode == 0
+    (line,) = gate(project).stdout.splitlines()
+    assert re.fullmatch(says.format("Code", "Code"), line)
+    assert gate(project, "--read", "Code").returncode == 0 == gate(project).returncode
+    sha = hashlib.sha256(f"{code}more = 1\n".encode()).hexdigest()
+    assert f"\n  sweep: {sha}\n" in (project / "meta.yaml").read_text("utf-8")
 
 
 JUMP, DEEP = "jump:before", "quality.penalty.rest_penetration_frac"

@@ -135,6 +135,7 @@ export const figure = {
     : `from ${from} to ${to} s, in steps of ${plain(1000 * dt)} ms`}.`,
   height: (width) => (width < 480 ? 400 : 460),
   knobs: ({ knobs }) => knobs.split(","),
+  choices: { until: ["", "landing"] },
   start: ({ scene = "drop" }) => ({
     scene, models: "penalty,lcp", from: 0.3, to: 1.2, until: "", lift: 0, knobs: "dt", slower: 6,
     ...data.scenes[scene].own,

@@ -103,6 +103,7 @@ export const figure = {
     + "Below: the parts of the step.",
   height: () => 400,
   knobs: ({ model }) => (model === "lcp" ? ["baumgarte"] : []),
+  choices: { model: Object.keys(PARTS) },
   start: () => ({ gap: 0.008, v: -2, model: "lcp" }),
   buttons: ({ own }) => ["lcp", "leapfrog"].map((model) =>
     [model, () => (own.model = model), String(own.model === model)]),
