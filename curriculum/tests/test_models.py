@@ -167,9 +167,9 @@ def calls_later(scene, steps):
 
 def test_impacts_cost_a_pile_a_bounded_number_of_pushes_and_at_rest_none():
     falls = calls_later(build_scene("pile", bodies=150, restitution=0.5), 300)
-    assert 100_000 < falls["push"] < 220_000
+    assert 100_000 < falls["apply_impulse"] < 220_000
     rests = calls_later(measure.shaft(12), 3000)
-    assert 5_000 < rests["push"] < 12_000, "20 sweeps, twice a step"
+    assert 5_000 < rests["apply_impulse"] < 12_000, "20 sweeps, twice a step"
 
 
 def test_momentum_finds_what_plain_sweeps_find_in_a_tenth_of_them():
@@ -288,6 +288,16 @@ def test_who_sees_the_contacts_hears_of_every_push(model):
     gained = np.diff(run.v[:, 1].sum(1)) + 2 * G * DT
     assert np.abs(pushes - gained).max() < 1e-12
     assert run.q.tobytes() == run_model(model, scene, DT, 300).q.tobytes()
+
+
+@pytest.mark.parametrize("model", STEPPED)
+def test_a_force_acts_for_one_step(model):
+    (ball,) = balls = contact.make_balls(build_scene("drop", mass=2))
+    step = contact.step_of(model, build_scene("drop"), DT, Settings())
+    ball.fx = 3.0
+    step(balls)
+    step(balls)
+    assert ball.vx == pytest.approx(3.0 * DT / 2.0) and ball.fx == ball.fy == 0.0
 
 
 # --- measures, on recordings made by hand --------------------------------------------------------
