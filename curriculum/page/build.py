@@ -42,6 +42,7 @@ def page_data():
             for name, scene in scenes.items()
         },
         "radius": contact.RADIUS,
+        "solimp": contact.SOLIMP,
         "defaults": knobs
         | {
             "dt": contact.parse_flags([]).dt,

@@ -17,17 +17,16 @@ from py_mini_racer import JSEvalException, MiniRacer
 
 import contact
 from curriculum.page.to_js import to_js
-from curriculum.source import ROOT, replace_once
+from curriculum.source import ROOT
 
 HERE = Path(__file__).resolve().parent
 USED = (  # of contact.py, beside the steps
     "solve_impacts accelerations next_impact MAX_IMPACTS TOUCH_TOLERANCE critical_dt "
-    "soft_defaults implicit_step"
+    "soft_defaults implicit_step contact_target CONTACT_MARGIN time_to_impact"
 ).split()
 IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
 EXPORT = re.compile(r"^export (const|function|class) ([\w$]+)", re.MULTILINE)
 LISTED = re.compile(r"\bexport\s*\{([^}]+)\};")  # as lit-html says what it exports
-CLAMP = "$.max(0.0, (c.lam + (missing * c.m_eff)))", "(c.lam + $.max(0.0, (missing * c.m_eff)))"
 
 
 def source(path, data):
@@ -54,12 +53,7 @@ def contact_js():
     files = [ROOT / name for name in ("contact.py", "curriculum/variants.py")]
     table = ", ".join(f"{name}: {step}" for name, step in steps.items())
     made = to_js([*steps.values(), *USED], *files)
-    solve = next(
-        each for each in made.split("export ") if each.startswith("function solve_contacts(")
-    )
-    wrong = replace_once(solve, *CLAMP, "contact.py, solve_contacts in JavaScript")
-    wrong = wrong.replace("solve_contacts", "solve_contacts_each", 1)
-    table = f"export const STEP = {{ {table} }};\nexport {wrong}\n"
+    table = f"export const STEP = {{ {table} }};\n"
     return f'import {{ $ }} from "./python.js";\n{made}{table}'
 
 

@@ -1,12 +1,26 @@
-/* The start: figures, bets, and what is folded on a phone. */
-import { startBet } from "./bets.js";
+/* The start: figures, settings in the address, bets, and what is folded on a phone. */
+import { forgetBets, startBet } from "./bets.js";
 import { figures } from "./figures.js";
 import { stage } from "./stage.js";
 
 const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-for (const box of document.querySelectorAll("[data-figure]"))
-  stage(box, figures[box.dataset.figure], JSON.parse(box.dataset.given), still);
+const takes = Object.fromEntries([...document.querySelectorAll("[data-figure]")].map((box) =>
+  [box.id, stage(box, figures[box.dataset.figure], JSON.parse(box.dataset.given), still)]));
+
+// What an address sets, #fig-cliff?dt=0.014: numbers, and the names of switches.
+function follow() {
+  const [id, query] = decodeURIComponent(location.hash.slice(1)).split("?");
+  if (!takes[id] || !query) return;
+  takes[id](Object.fromEntries([...new URLSearchParams(query)].map(([name, text]) =>
+    [name, text.trim() && Number.isFinite(Number(text)) ? Number(text) : text])));
+  document.getElementById(id).scrollIntoView({ block: "center" });
+}
+window.addEventListener("hashchange", follow);
+if (!history.state) follow();
+for (const [id, set] of Object.entries(history.state ?? {})) takes[id]?.(set); // after a reload
+
 document.querySelectorAll(".exercise:has(.bet)").forEach(startBet);
+document.querySelector(".forget").addEventListener("click", forgetBets);
 
 // On a phone folded: code, which is wider than the screen, and what asks for a terminal.
 const folds = [...document.querySelectorAll("details.folds")];

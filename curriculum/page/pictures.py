@@ -12,11 +12,9 @@ def photograph(file, folder):
         shown = page.locator("[data-figure=falls][data-given*=soft][data-given*=exact]").last
         shown.scroll_into_view_if_needed()
         time = shown.get_by_label("the time shown")
-        for _ in range(3):  # ten steps each
-            time.press("Shift+ArrowRight")
+        for key in ("End", *["Shift+ArrowLeft"] * 15):
+            time.press(key)
         time.blur()
         page.wait_for_timeout(300)
-        box = shown.locator("svg.plot").bounding_box()
-        box |= {"y": box["y"] + 0.22 * box["height"], "height": 0.78 * box["height"]}
-        page.screenshot(path=folder / PICTURE, clip=box)
+        page.screenshot(path=folder / PICTURE, clip=shown.locator("svg.plot").bounding_box())
     return folder / PICTURE

@@ -1,9 +1,8 @@
 /* Runs of the steps of contact.py, which are made into JavaScript when the page is built
  * (curriculum/page/to_js.py), so that they have its bits. A recording has `n` balls and
  * `steps` + 1 rows: t [s], and x, y, vx, vy flat, row by row. */
-import { Ball, Contact, FLOOR, GRAVITY, MAX_IMPACTS, STEP, TOUCH_TOLERANCE } from "./contact.js";
-import { accelerations, detect_contacts, next_impact, soft_defaults, solve_impacts } from "./contact.js";
-import { implicit_step, solve_contacts } from "./contact.js";
+import { accelerations, Ball, detect_contacts, GRAVITY, implicit_step, MAX_IMPACTS } from "./contact.js";
+import { next_impact, soft_defaults, solve_impacts, STEP, TOUCH_TOLERANCE } from "./contact.js";
 import { data } from "./data.js";
 
 export const MODELS = data.models;
@@ -87,11 +86,19 @@ function recordExact(run, balls, restitution) {
 export const inRow = (run, part, row) =>
   Array.from(run[part].subarray(run.n * row, run.n * (row + 1)));
 
-// The smallest gap [r] of every row, to the table or between two balls.
+// Of every row the smallest gap [r], and whose it is: that of ball `upper` to `lower`, or the table.
 export const gapsOf = (run) =>
   Array.from(run.t, (_, row) => {
-    const balls = column(inRow(run, "y", row), { x: inRow(run, "x", row) });
-    return -Math.max(...detect_contacts(balls, Infinity).map(({ depth }) => depth)) / R;
+    const [xs, ys] = [inRow(run, "x", row), inRow(run, "y", row)];
+    let least = { gap: Infinity };
+    const see = (gap, upper, lower) => {
+      if (!(gap >= least.gap)) least = { gap, upper, lower };
+    };
+    ys.forEach((y, i) => {
+      see(y / R - 1, i + 1, 0);
+      for (let k = 0; k < i; k++) see(Math.hypot(xs[i] - xs[k], y - ys[k]) / R - 2, i + 1, k + 1);
+    });
+    return least;
   });
 
 // The push of the table [m g] on balls of 1 kg, in the step that ends in a row: what changed their
@@ -100,13 +107,6 @@ export function pushIn({ n, dt, vy }, row) {
   let sum = 0;
   for (let i = row * n; row > 0 && i < (row + 1) * n; i++) sum += (vy[i] - vy[i - n]) / dt + G;
   return Math.abs(sum) < 1e-9 * G ? 0 : sum / n / G;
-}
-
-// The most energy above the start, in starts, of a falling ball; NaN counts as without end.
-export function gainOf({ y, vy }) {
-  const energy = (row) => 0.5 * vy[row] ** 2 + G * y[row];
-  const most = vy.reduce((high, _, row) => (energy(row) <= high ? high : energy(row)), 0);
-  return Number.isNaN(most) ? Infinity : most / energy(0) - 1;
 }
 
 // A function that keeps its last results, by its arguments.
@@ -120,28 +120,4 @@ export function kept(compute, most = 20) {
     }
     return held.get(key);
   };
-}
-
-// ---- a column swept contact after contact
-
-// The contacts of balls of these masses over one another, from below, with impulses and speeds.
-export function stacked(masses, lam, vy) {
-  const balls = column(masses.map((_, i) => (2 * i + 1) * R), { mass: masses, vy });
-  return balls.map((ball, i) =>
-    Object.assign(new Contact(ball, i ? balls[i - 1] : FLOOR, 0, 1, 0), { lam: lam[i] }));
-}
-
-/* What single visits do, from below and again: [{contact, wanted, lam, vy}], where `wanted` is the
- * change before the clamp; first what they start with. */
-export function visits(masses, lam, vy, count) {
-  const contacts = stacked(masses, lam, vy);
-  const now = () => ({ lam: contacts.map((c) => c.lam), vy: contacts.map(({ a }) => a.vy) });
-  const seen = [{ contact: null, wanted: 0, ...now() }];
-  for (let at = 0; at < count; at++) {
-    const contact = at % contacts.length;
-    const wanted = -contacts[contact].v_n() * contacts[contact].m_eff;
-    solve_contacts([contacts[contact]], 1);
-    seen.push({ contact, wanted, ...now() });
-  }
-  return seen;
 }

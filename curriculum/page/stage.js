@@ -1,14 +1,15 @@
-/* The stage: it puts a figure into the page, hands it drags, keys and time. A figure is a plain
- * object in figures/NAME.js and touches no document:
+/* The stage: it puts a figure into the page, hands it drags, keys and time, and keeps what was set.
+ * A figure is a plain object in figures/NAME.js and touches no document:
  *
- *   title, caption  its name; one sentence that says what it shows, or caption(start) gives it
+ *   title, caption  its name; one sentence that says what it shows; either text or f(own)
  *   height(width)   px of its drawing
- *   knobs           names of QUANTITIES that stand as sliders below it; or knobs(own) gives them
+ *   knobs           names of QUANTITIES that stand as sliders below it, at most two; or f(own)
  *   start(given)    its own state, {name: number or text}; the slot in the text may set it
  *   draw(view)      {picture, words, values}: svg, one sentence, and the numbers that are drawn
- *   clock(view)     {end, rate}: own.time runs from 0 to `end`, `rate` s in a second
+ *   clock(view)     {end, rate, step}: own.time runs from 0 to `end`, `rate` s in a second; with
+ *                   loops it begins again, with alone it starts unasked
  *   play(own)       what the button says that lets it run
- *   buttons(view)   others, [[label, act, pressed]]
+ *   switches(own)   buttons [[label, name, value]]: own[name] becomes value, or 0 if it was that
  *
  * The view has own, width, height, set(changes), and grab(what, shape): a shape around which one
  * can put a hand, where `what` is {label, value, low, high, step, at(x, y), also, seen, release}. A
@@ -17,30 +18,31 @@
  * is the same with a knob at (x, y). What a handle has done, the figure's words say, to a screen
  * reader, too: in at most two lines on a phone, so that nothing below them moves. */
 import { html, nothing, render, svg } from "./lit.js";
-import { circle, within } from "./draw.js";
+import { circle, plain, within } from "./draw.js";
 import { data } from "./data.js";
 
 export const QUANTITIES = {
-  dt: { low: 0.0005, high: 0.064, log: true, unit: "s", label: "Time step dt" },
+  dt: { low: 0.0005, high: 0.064, log: true, times: 1000, unit: "ms", label: "Time step dt" },
   stiffness: { low: 100, high: 1e6, log: true, unit: "N/m", label: "Stiffness k" },
   damping: { low: 0, high: 300, step: 1, unit: "N s/m", label: "Damping c" },
-  baumgarte: { low: 0, high: 1, step: 0.01, unit: "", label: "Share β" },
   iters: { low: 1, high: 100, step: 1, unit: "", label: "Sweeps" },
   warm: { low: 0, high: 1, step: 0.05, unit: "", label: "Warm start" },
-  restitution: { low: 0, high: 1, step: 0.01, unit: "", label: "Restitution e" },
   impedance: { low: 0.5, high: 0.9999, step: 0.0001, unit: "", label: "Impedance d" },
+  d0: { low: 0, high: 0.95, step: 0.01, unit: "", label: "Impedance d₀" },
   mu: { low: 0, high: 3, step: 0.01, unit: "", label: "Friction µ" },
-  balls: { low: 3, high: 30, step: 1, unit: "", label: "Balls" },
 };
 const PLACES = 200; // of a slider whose steps are shares
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
+  Home: [-Infinity, 0], End: [Infinity, 0] };
 const LEAST = 358; // px: on a screen smaller than a phone's it is drawn so, and made smaller
 
 // The view of a figure that nobody touches; its state is its own with what the text sets.
 export function viewOf(figure, given, width = 640) {
   const own = { ...data.defaults, time: 0, ...figure.start?.(given), ...given };
+  const ranges = Object.fromEntries(asked(figure.knobs ?? [], own).map((name) =>
+    [name, [QUANTITIES[name].low, QUANTITIES[name].high]]));
   return {
-    own, text: { ...own }, width, running: false,
+    own, text: { ...own }, ranges, width, running: false,
     get height() { return figure.height(this.width, own); },
     grab: (_, shape) => shape,
     point(x, y, what) {
@@ -49,45 +51,43 @@ export function viewOf(figure, given, width = 640) {
   };
 }
 
-const asked = (what, state) => (typeof what === "function" ? what(state) : what);
-export const knobsOf = ({ knobs = [] }, { own }) => asked(knobs, own);
-export const captionOf = ({ caption }, { own }) => worded(asked(caption, own));
+export const asked = (what, own) => (typeof what === "function" ? what(own) : what);
 
-// Words in which v_n stands as a formula, and no line ends between a number and its unit.
+// No line ends between a number and its unit.
 export const worded = (words) =>
   words.replace(/ × |(?<=[\d⁰-⁹]) (?=%|(?:r|m?s|m?m|N|kg|m\/s|N\/m)\b)/g, (blank) =>
-    blank.replaceAll(" ", "\u00a0")).split("v_n")
-    .map((part, k) => (k ? html`<i>v<sub>n</sub></i>${part}` : part));
+    blank.replaceAll(" ", "\u00a0"));
+
+// ---- what a link, or this tab before a reload, may set: switches, and numbers in their range
+
+export function fits(figure, { own, ranges }, name, value) {
+  const switches = figure.switches?.(own) ?? [];
+  if (switches.some(([, key]) => key === name))
+    return value === 0 || switches.some(([, key, to]) => key === name && to === value);
+  const [low, high] = ranges[name] ?? [];
+  return value >= low && value <= high;
+}
 
 // ---- sliders
 
-export const toSlider = ({ low, high, log }, value) =>
-  (log ? Math.round((PLACES * Math.log(value / low)) / Math.log(high / low)) : value);
-
-// Where the text's own value lies the slider takes it, to the last digit.
-export function fromPlace(quantity, text, at) {
-  const { low, high, log } = quantity;
-  if (text !== undefined && toSlider(quantity, text) === at) return text;
-  return log ? Number((low * (high / low) ** (at / PLACES)).toPrecision(3)) : at;
-}
-
 function slider(view, name) {
-  const quantity = QUANTITIES[name];
-  const { low, high, step } = quantity.log ? { low: 0, high: PLACES, step: 1 } : quantity;
-  const value = view.own[name];
-  const put = ({ target }) =>
-    view.set({ [name]: fromPlace(quantity, view.text[name], Number(target.value)) });
-  const told = `${value.toLocaleString("en", { maximumSignificantDigits: 4 })} ${quantity.unit}`;
-  return html`<label class="knob"><span>${quantity.label}</span><input type="range" min=${low}
-    max=${high} step=${step} .value=${String(toSlider(quantity, value))}
-    @input=${put}><output aria-live="off">${told}</output></label>`;
+  const { low, high, step, log, unit, times = 1, label } = QUANTITIES[name];
+  const [value, ratio] = [view.own[name], high / low];
+  const place = log ? Math.round((PLACES * Math.log(value / low)) / Math.log(ratio)) : value;
+  const put = ({ target }) => view.set({ [name]: log
+    ? Number((low * ratio ** (target.value / PLACES)).toPrecision(3)) : Number(target.value) });
+  const told = `${(value * times).toLocaleString("en", { maximumSignificantDigits: 4 })}\u00a0${unit}`;
+  return html`<label class="knob"><span>${label}</span><input type="range" min=${log ? 0 : low}
+    max=${log ? PLACES : high} step=${log ? 1 : step} .value=${String(place)} @input=${put}
+    ><output aria-live="off">${told}</output></label>`;
 }
 
 // ---- hands
 
 /* What is grabbed: its state is changed by where the hand is, from where it was taken hold of, so
- * that nothing jumps; by the arrow keys, `step` at a time and ten times that with shift. */
-function grabbing(view, box) {
+ * that nothing jumps; by the arrow keys, `step` at a time and ten times that with shift. Of two
+ * values each is a slider of its own to a screen reader. */
+function hands(view, box) {
   let held = null; // by which pointer, and how far from the value's own place
   const from = ({ clientX, clientY }) => {
     const { left, top, width } = box.querySelector("svg").getBoundingClientRect();
@@ -95,6 +95,7 @@ function grabbing(view, box) {
   };
   return ({ label, value, low, high, step, at, also, seen, release }, shape) => {
     const [names, lows, highs, sizes] = [value, low, high, step].map((each) => [each].flat());
+    names.forEach((name, k) => (view.ranges[name] = [lows[k], highs[k]]));
     const now = () => (seen ? [seen()] : names.map((name) => view.own[name]));
     const put = (wanted) => {
       const fine = names.map((name, k) =>
@@ -104,7 +105,7 @@ function grabbing(view, box) {
     const seize = (event) => {
       if (event.button > 0 || held) return;
       event.preventDefault();
-      event.currentTarget.focus({ preventScroll: true });
+      event.currentTarget.querySelector("[tabindex]").focus({ preventScroll: true });
       event.currentTarget.setPointerCapture(event.pointerId);
       const [place, first] = [[at(...from(event))].flat(), now()];
       held = { pointer: event.pointerId, off: first.map((v, k) => v - place[k]) };
@@ -130,31 +131,46 @@ function grabbing(view, box) {
       put(now().map((v, k) => v + by[k] * (event.shiftKey ? 10 : 1) * sizes[k % sizes.length]));
     };
     const stay = (event) => event.preventDefault(); // no finger moves the page
-    return svg`<g class="handle" role="slider" tabindex="0" aria-label=${label}
-      aria-valuemin=${lows[0]} aria-valuemax=${highs[0]} aria-valuenow=${now()[0]} @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
-      @pointercancel=${letGo} @keydown=${key} @touchstart=${stay}>${shape}</g>`;
+    const sliders = names.map((_, k) => svg`<g role="slider" tabindex="0" aria-valuemin=${lows[k]}
+      aria-label=${label + (names.length > 1 ? [", across", ", up"][k] : "")} aria-valuemax=${highs[k]}
+      aria-valuenow=${now()[k]} @keydown=${key}>${k ? "" : shape}</g>`);
+    return svg`<g class="handle" @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
+      @pointercancel=${letGo} @touchstart=${stay}>${sliders}</g>`;
   };
 }
 
 // ---- the stage
 
+// Put a figure into its box. Returns take({name: value}), which sets it as in the text, but for these.
 export function stage(box, figure, given, still) {
   const view = viewOf(figure, given);
-  let [frame, near, begun, last] = [0, false, false, 0];
-  view.grab = grabbing(view, box);
+  let [frame, near, begun, last, soon] = [0, false, false, 0, 0];
+  const ask = () => (frame ||= requestAnimationFrame(draw));
+  const same = (name) => view.own[name] === view.text[name] || !(name in view.text)
+    || (name === "time" && figure.clock?.(view).loops);
+  // the address leads here, with all that differs from the text; a reload finds the other figures'
+  function remember() {
+    const set = Object.fromEntries(Object.entries(view.own).filter(([name, value]) =>
+      !same(name) && fits(figure, view, name, value)));
+    const query = new URLSearchParams(set).toString();
+    history.replaceState({ ...history.state, [box.id]: set }, "", `#${box.id}${query && `?${query}`}`);
+  }
+  view.grab = hands(view, box);
   view.set = (changes) => {
     Object.assign(view.own, changes);
-    frame ||= requestAnimationFrame(draw);
+    clearTimeout(soon);
+    soon = setTimeout(remember, 300); // browsers count how often the address changes
+    ask();
   };
   view.stop = () => {
     view.running = false;
-    view.set({});
+    ask();
   };
   view.play = (from = view.own.time) => {
-    const { end } = figure.clock(view);
-    view.running = !still;
+    view.running = true;
     last = performance.now();
-    view.set({ time: still ? end : from >= end ? 0 : from });
+    view.own.time = from >= figure.clock(view).end ? 0 : from;
+    ask();
   };
   // the time that has passed since the last picture
   function goOn(now) {
@@ -162,14 +178,34 @@ export function stage(box, figure, given, still) {
     const time = view.own.time + (rate * within(0, now - last, 100)) / 1000;
     last = now;
     view.running = loops || time < end;
-    view.set({ time: loops ? time % end : Math.min(end, time) });
+    view.own.time = loops ? time % end : Math.min(end, time);
+    if (view.running) ask();
   }
-  const same = () => Object.keys(view.text).every((name) => view.own[name] === view.text[name]
-    || (name === "time" && figure.clock?.(view).loops));
-  const back = () => {
+  const take = (set) => {
     Object.assign(view.own, view.text);
+    figure.draw(view); // which tells the ranges of its handles
+    for (const [name, value] of Object.entries(set))
+      if (fits(figure, view, name, value)) view.own[name] = value;
     view.stop();
   };
+  const button = (text, act, pressed) => html`<button type="button" aria-pressed=${pressed ?? nothing}
+    @click=${act}>${text}</button>`;
+  function buttons() {
+    const { own } = view;
+    const all = (figure.switches?.(own) ?? []).map(([text, name, value]) => {
+      const on = own[name] === value;
+      const next = on && typeof value === "number" ? 0 : value;
+      return button(text, () => view.set({ [name]: next, time: 0 }), String(on));
+    });
+    if (!figure.play) return all;
+    const { end, step } = figure.clock(view);
+    const on = () => {
+      view.stop();
+      view.set({ time: Math.min(end, own.time + step) });
+    };
+    return [view.running ? button("Stop", view.stop) : button(figure.play(own), () => view.play()),
+      step ? button("Step", on) : "", ...all];
+  }
 
   function draw(now) {
     frame = 0;
@@ -177,31 +213,23 @@ export function stage(box, figure, given, still) {
     if (!begun) box.replaceChildren(); // the still
     begun = true;
     if (view.running) goOn(now);
+    const { own } = view;
     const { picture, words } = figure.draw(view);
-    const button = ([text, act, pressed]) => {
-      const press = () => {
-        act(view);
-        view.set({});
-      };
-      return html`<button type="button" aria-pressed=${pressed ?? nothing} @click=${press}
-        >${text}</button>`;
-    };
-    const play = figure.play && (view.running ? ["Stop", view.stop]
-      : [figure.play(view.own), () => view.play()]);
-    const buttons = [...(play ? [play] : []), ...(figure.buttons?.(view) ?? [])].map(button);
     render(html`<svg class="plot" viewBox="0 0 ${view.width} ${view.height}" role="group"
-      aria-label=${figure.title}>${picture}</svg>
-      <figcaption>${captionOf(figure, view)}</figcaption><p class="words">${worded(words)}</p>
+      aria-label=${asked(figure.title, own)}>${picture}</svg>
+      <figcaption>${worded(asked(figure.caption, own))}</figcaption>
+      <p class="words">${worded(words)}</p>
       <button type="button" class="back" title="As in the text" aria-label="As in the text"
-      ?disabled=${same()} @click=${back}>↺</button>
-      <div class="controls">${knobsOf(figure, view).map((name) => slider(view, name))}
-      <div class="buttons">${buttons}</div></div>`, box);
-    for (const each of box.querySelectorAll(".handle, input")) // a slider says its own value first
-      each.setAttribute("aria-valuetext", [each.nextElementSibling?.value, words].filter(Boolean).join(": "));
+      ?disabled=${Object.keys(own).every(same)} @click=${() => (take({}), remember())}>↺</button>
+      <div class="controls">${asked(figure.knobs ?? [], own).map((name) => slider(view, name))}
+      <div class="buttons">${buttons()}</div></div>`, box);
+    for (const each of box.querySelectorAll("[role=slider], input")) // its own value, then the words
+      each.setAttribute("aria-valuetext",
+        `${each.nextElementSibling?.value ?? plain(Number(each.ariaValueNow))}: ${words}`);
   }
   new ResizeObserver(([{ contentRect: { width } }]) => {
     view.width = Math.max(LEAST, width);
-    view.set({});
+    ask();
   }).observe(box);
   // a figure far from the window keeps its still, or waits: what runs goes on when it is back
   new IntersectionObserver((seen) => {
@@ -210,4 +238,5 @@ export function stage(box, figure, given, still) {
     if (!begun && figure.clock?.(view).alone && !still) view.play();
     draw(performance.now());
   }, { rootMargin: "300px" }).observe(box);
+  return take;
 }

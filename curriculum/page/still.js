@@ -2,7 +2,7 @@
 import { data } from "./data.js";
 import { figures } from "./figures.js";
 import { textOf } from "./lit.js";
-import { captionOf, fromPlace, knobsOf, QUANTITIES, toSlider, viewOf, worded } from "./stage.js";
+import { asked, fits, QUANTITIES, viewOf, worded } from "./stage.js";
 
 const [WIDE, NARROW] = [640, 358]; // px
 const CHOICES = { // words that a slot may set, where the figure has no choices of its own
@@ -11,17 +11,15 @@ const CHOICES = { // words that a slot may set, where the figure has no choices 
 };
 
 // What a slot may set: what the figure has, in its range or among its choices.
-function check({ choices }, own, given) {
+function check(figure, view, given) {
   for (const [name, value] of Object.entries(given)) {
-    const { low = -Infinity, high = Infinity } = QUANTITIES[name] ?? {};
-    const known = choices?.[name] ?? CHOICES[name];
-    const allowed = known?.filter(Boolean).join(", ")
-      ?? (name in QUANTITIES ? `from ${low} to ${high}` : "a number");
-    if (!(name in own))
-      throw new Error(`${name} sets nothing; known: ${Object.keys(own).join(", ")}`);
-    if (known ? !String(value).split(",").every((word) => known.includes(word))
-      : typeof own[name] === "number" && !(value >= low && value <= high))
-      throw new Error(`${name}=${value}; allowed: ${allowed}`);
+    const known = figure.choices?.[name] ?? CHOICES[name];
+    if (!(name in view.own))
+      throw new Error(`${name} sets nothing; known: ${Object.keys(view.own).join(", ")}`);
+    if (known && !String(value).split(",").every((word) => known.includes(word)))
+      throw new Error(`${name}=${value}; allowed: ${known.filter(Boolean).join(", ")}`);
+    if (name in view.ranges && !fits(figure, view, name, value))
+      throw new Error(`${name}=${value}; allowed: from ${view.ranges[name].join(" to ")}`);
   }
 }
 
@@ -31,17 +29,17 @@ function still([name, given]) {
   if (!figure)
     throw new Error(`there is no figure ${name}; known: ${Object.keys(figures).join(", ")}`);
   try {
-    check(figure, viewOf(figure, {}).own, given);
+    check(figure, viewOf(figure, {}), given);
     const view = viewOf(figure, given, WIDE);
     const { picture, words } = figure.draw(view);
     return {
-      title: figure.title,
+      title: asked(figure.title, view.own),
       svg: textOf(picture),
-      words: textOf(worded(words)),
-      caption: textOf(captionOf(figure, view)),
+      words: worded(words),
+      caption: worded(asked(figure.caption, view.own)),
       heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
-      knobs: knobsOf(figure, view).length,
-      buttons: figure.buttons || figure.play ? 1 : 0,
+      knobs: asked(figure.knobs ?? [], view.own).length,
+      buttons: figure.switches || figure.play ? 1 : 0,
     };
   } catch (error) {
     throw new Error(`the figure ${name}: ${error.message}`);
@@ -59,4 +57,4 @@ function errorOf(slot) {
 
 export const errors = (slots) => slots.map(errorOf); // "" where a slot can be drawn
 export const stills = (wanted) => wanted.map(still);
-export { figures, fromPlace, knobsOf, QUANTITIES, textOf, toSlider, viewOf };
+export { asked, figures, QUANTITIES, textOf, viewOf };

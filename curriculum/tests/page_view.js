@@ -1,15 +1,16 @@
 /* The figures without a page, for tests: MADE is still.js, bundled. */
-const told = (shape) => MADE.textOf(shape);
 const drawn = (name, given = {}, own = {}, width = 640) => {
   const [figure, handles] = [MADE.figures[name], []];
   const view = MADE.viewOf(figure, given, width);
   Object.assign(view.own, own);
   view.grab = (what, shape) => {
-    handles.push({ ...what, shape: told(shape) });
+    handles.push({ ...what, shape: MADE.textOf(shape) });
     return shape;
   };
   const { picture, words, values } = figure.draw(view);
-  return { svg: told(picture), words, values, handles, height: view.height, own: view.own };
+  return { svg: MADE.textOf(picture), words, values, handles, height: view.height, own: view.own,
+    caption: MADE.asked(figure.caption, view.own), knobs: MADE.asked(figure.knobs ?? [], view.own),
+    end: figure.clock?.(view).end };
 };
 const MOST = 89; // letters of a figure's words
 const several = (value) => (Array.isArray(value) ? value : [value]);
@@ -18,7 +19,7 @@ const several = (value) => (Array.isArray(value) ? value : [value]);
 // none.
 const lost = (name, given, width) => {
   const [found, first] = [new Set(), drawn(name, given, {}, width)];
-  const ends = MADE.knobsOf(MADE.figures[name], first).flatMap((knob) =>
+  const ends = first.knobs.flatMap((knob) =>
     ["low", "high"].map((end) => ({ [knob]: MADE.QUANTITIES[knob][end] })));
   const places = first.handles.flatMap(({ value, low, high }) => [low, high].map((end) =>
     Object.fromEntries(several(value).map((key, k) => [key, several(end)[k] ?? end]))));
@@ -29,7 +30,7 @@ const lost = (name, given, width) => {
     if (/NaN|undefined|null|Infinity|not a number/.test(svg + words))
       found.add(`no number at ${said}`);
     if (words.length > MOST) found.add(`words that need a third line on a phone: ${words}`);
-    for (const [, x, y] of svg.matchAll(/<path d="M(\S+) ([^L"]+)[^>]* class="mark /g))
+    for (const [, x, y] of svg.matchAll(/<circle cx="(\S+)" cy="(\S+)" r="\S+" class="mark /g))
       if (!(x >= -9 && x <= width + 9 && y >= -9 && y <= height)) found.add(`a mark at ${said}`);
     for (const { shape, label } of handles) {
       const [, x, y] = shape.match(/cx="(\S+)" cy="(\S+)"/) ?? [];

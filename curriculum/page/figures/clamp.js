@@ -1,11 +1,21 @@
 /* The clamp is on the sum of the changes: a ball falls into a groove, where one contact must take
- * some push back; beside it contact.py's sweep with one line changed, which clamps each change.
- * Values: with which speed the ball leaves either [m/s]. */
+ * some push back; beside it a wrong sweep, which clamps each change. Values: with which speed the
+ * ball leaves either [m/s]. */
 import { arrow, ball, label, number } from "../draw.js";
-import { Ball, Contact, solve_contacts, solve_contacts_each } from "../contact.js";
+import { Ball, Contact, solve_contacts } from "../contact.js";
 import { R } from "../runs.js";
 
 const SIDES = [-1, 1];
+
+// WRONG, to show what it does: what was pushed too much, no later sweep takes back.
+function solve_wrongly(contacts, iters) {
+  for (let sweep = 0; sweep < iters; sweep++)
+    for (const c of contacts) {
+      const change = Math.max(0, -c.v_n() * c.m_eff); // and not max(0, c.lam + ...) - c.lam
+      c.apply_impulse(change);
+      c.lam += change;
+    }
+}
 
 // The ball after 20 sweeps in a groove of two held balls, and the impulses.
 function leaves(vx, vy, solve) {
@@ -17,10 +27,10 @@ function leaves(vx, vy, solve) {
 }
 
 function draw(view) {
-  const { vx, vy } = view.own;
-  const [right, wrong] = [solve_contacts, solve_contacts_each].map((each) => leaves(vx, vy, each));
-  const [r, x] = [Math.min(50, view.width / 9.5), view.width / 4];
-  const [y, scale] = [view.height - 3.3 * r, 1.7 * r]; // px of an arrow for 1 m/s
+  const { own: { vx, vy }, width, height } = view;
+  const [right, wrong] = [solve_contacts, solve_wrongly].map((each) => leaves(vx, vy, each));
+  const [r, x] = [Math.min(50, width / 9.5), width / 4];
+  const [y, scale] = [height - 3.3 * r, 1.7 * r]; // px of an arrow for 1 m/s
   const said = ({ speed }) => `${number(speed < 1e-3 ? 0 : speed, 2)} m/s`;
   const groove = (after, title, middle) => [
     label(title, middle, 18, "middle", "axis-name"),
@@ -32,7 +42,7 @@ function draw(view) {
       return arrow("push m-lcp", middle + side * 0.6 * r - dx, y + 0.8 * r - dy, dx, dy);
     }),
     after.speed > 1e-3 ? arrow("weight", middle, y, scale * after.vx, -scale * after.vy) : "",
-    label(`leaves: ${said(after)}`, middle, view.height - 6, "middle"),
+    label(`leaves: ${said(after)}`, middle, height - 6, "middle"),
   ];
   const what = {
     label: "where the ball comes from", value: ["vx", "vy"], low: [-1.2, -1.3],

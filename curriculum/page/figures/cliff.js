@@ -1,68 +1,104 @@
-/* The cliff: past the critical step the dropped ball of penalty never rests, and soon explodes. A
- * run is judged over the same seconds at every step. Values: how far it still moves in the last
- * quarter [r], the energy that it gained [starts], the critical step [s]. */
-import { axis, label, line, mark, number, plot, tenTo, timeSteps, within } from "../draw.js";
+/* The cliff. Above, one step of a pressed spring multiplies depth and speed by a matrix: its two
+ * eigenvalues beside the circle of size one. Below, how far a ball still moves that was lifted by
+ * a ten thousandth of its depth at rest: past the critical step it never rests. Values: the eigenvalues
+ * [real, imaginary], their size, the critical step [s], how far it moves in the end [r], and what
+ * energy a dropped ball gains [starts]. */
+import { arrow, axis, circle, label, line, mark, ms, number, path, plot, range } from "../draw.js";
+import { timeSteps, within } from "../draw.js";
 import { critical_dt } from "../contact.js";
 import { data } from "../data.js";
-import { column, G, gainOf, kept, R, record } from "../runs.js";
+import { column, G, kept, R, record } from "../runs.js";
 
-const [LOW, HIGH, SECONDS, STEPS] = [0.0005, 0.064, 4, 2000]; // s; steps, as contact.py takes
+const [LOW, HIGH, COUNT, SECONDS] = [0.0005, 0.064, 1000, 4]; // s, s, steps, s
 const [NONE, FARTHEST] = [1e-6, 1e9]; // r: less is drawn as zero, more as nowhere
+const LEFTMOST = -2.4; // an eigenvalue further to the left is only said
 
-// A drop of at least so many seconds, and so many steps: how far the ball still moves in the last
-// quarter [r], and what energy it gained.
-const dropped = kept((dt, stiffness, damping) => {
-  const count = Math.max(STEPS, Math.round(SECONDS / dt));
-  const start = column(data.scenes.drop.start);
-  const run = record("penalty", start, { dt, stiffness, damping }, count);
-  const late = run.y.subarray(-Math.round(run.y.length / 4));
-  const ends = [Math.max, Math.min].map((pick) => late.reduce((a, b) => pick(a, b)));
-  const far = (ends[0] - ends[1]) / R;
-  const gained = gainOf(run);
-  return { gained, far: Number.isFinite(far) ? within(NONE, far, FARTHEST) : FARTHEST };
+// The eigenvalues [real, imaginary] of the step's matrix, for a ball of 1 kg.
+function pairOf({ stiffness: k, damping: c }, dt) {
+  const [[a, b], [e, d]] = [[1 - k * dt * dt, -dt * (1 - c * dt)], [k * dt, 1 - c * dt]];
+  const [square, middle] = [((a - d) / 2) ** 2 + b * e, (a + d) / 2];
+  const root = Math.sqrt(Math.abs(square));
+  return [root, -root].map((part) => (square < 0 ? [middle, part] : [middle + part, 0]));
+}
+
+// How far such a ball moves in the last quarter of COUNT steps [r].
+const moves = kept((dt, stiffness, damping) => {
+  const start = column([R - ((1 - 1e-4) * G) / stiffness]);
+  const { y } = record("penalty", start, { dt, stiffness, damping }, COUNT);
+  const late = y.subarray(-COUNT / 4);
+  const far = (late.reduce((a, b) => Math.max(a, b)) - late.reduce((a, b) => Math.min(a, b))) / R;
+  return Number.isFinite(far) ? within(NONE, far, FARTHEST) : FARTHEST;
 }, 200);
 
-function draw(view) {
-  const { dt, stiffness, damping } = view.own;
-  const { far, gained } = dropped(dt, stiffness, damping);
-  const points = Array.from({ length: 40 }, (_, k) => {
-    const each = LOW * (HIGH / LOW) ** (k / 39);
-    return [each, dropped(each, stiffness, damping).far];
-  });
-  const [critical, popular] = [damping, 0].map((each) => critical_dt(1, stiffness, each));
-  const ticks = [[NONE, "0"], 0.001, 1, 1000, [1e6, tenTo(6)]];
-  const { sx, sy, box, picture, knob } = plot(view, {
-    x: timeSteps(LOW, HIGH),
-    y: { ...axis([NONE, FARTHEST], "still moving at the end / r", ...ticks), log: true },
-    lines: [{ model: "penalty", points, kind: "plainly" }],
-  });
-  const limit = (at, name, side, kind) => [
-    line(sx(at), box.top, sx(at), box.bottom, kind),
-    label(`${name}: ${number(1000 * at)} ms`, sx(at) + (side === "end" ? -6 : 6), box.top + 14,
-      side),
+// The energy that a dropped ball gains, in starts; NaN counts as without end.
+const gains = kept((dt, stiffness, damping) => {
+  const count = Math.max(2000, Math.round(SECONDS / dt)); // as many as contact.py takes
+  const { y, vy } = record("penalty", column(data.scenes.drop.start), { dt, stiffness, damping }, count);
+  const energy = (row) => 0.5 * vy[row] ** 2 + G * y[row];
+  const most = vy.reduce((high, _, row) => (energy(row) <= high ? high : energy(row)), 0);
+  return Number.isNaN(most) ? Infinity : most / energy(0) - 1;
+});
+
+function circleOf({ own, width }, pairs, height) {
+  const unit = Math.min(width / 4.6, (height - 26) / 2.1);
+  const [x, y] = [width - 1.5 * unit, 0.5 * height];
+  const at = ([real, imaginary]) => [x + within(LEFTMOST, real, 1.3) * unit, y - imaginary * unit];
+  // the way of both, from a step of nothing to twice the critical one
+  const ways = [0, 1].map((which) => range(121, (k) =>
+    at(pairOf(own, (k / 60) * critical_dt(1, own.stiffness, own.damping))[which])));
+  const tick = (text, toX, toY, anchor = "start") => label(text, toX, toY, anchor, "tick");
+  const least = Math.min(...pairs.map(([real]) => real));
+  return [
+    line(x + LEFTMOST * unit, y, x + 1.4 * unit, y, "axis"),
+    line(x, y - 1.1 * unit, x, y + 1.1 * unit, "grid"),
+    circle(x, y, unit, "region-ring"),
+    tick("size 1", x + 0.74 * unit, y - 0.78 * unit), tick("1", x + unit + 6, y + 20),
+    tick("−1", x - unit - 6, y + 20, "end"), tick("0", x - 6, y + 20, "end"),
+    label("eigenvalues of a step", 0, 14, "start", "axis-name"),
+    ways.map((each) => path(each, "rule dashed")),
+    pairs.map((pair) => mark("penalty", ...at(pair), 7)),
+    least < LEFTMOST ? [arrow("weight", 40, y - 24, -30, 0), label(number(least), 46, y - 19)] : "",
   ];
-  const right = critical > 0.006;
-  const both = right && popular < 0.025 && view.width >= 480; // there its name has room
-  const explodes = !(gained < 10);
-  const rests = far <= NONE;
-  const gains = gained > 1e-9 ? `gains ${number(gained, 4)} times its energy` : "gains no energy";
-  const deep = `it comes to rest ${number(G / stiffness / R, 2)} r deep`;
-  const ends = explodes ? "it explodes" : rests ? deep : "it still moves at the end";
+}
+
+function draw(view) {
+  const { own: { dt, stiffness, damping }, width, height } = view;
+  const critical = critical_dt(1, stiffness, damping);
+  const pairs = pairOf(view.own, dt);
+  const size = Math.max(...pairs.map((pair) => Math.hypot(...pair)));
+  const [far, gained] = [moves(dt, stiffness, damping), gains(dt, stiffness, damping)];
+  const dts = [...range(22, (k) => LOW * (HIGH / LOW) ** (k / 21)), 0.985 * critical, 1.015 * critical]
+    .filter((each) => each >= LOW && each <= HIGH).sort((a, b) => a - b);
+  const top = Math.round(0.42 * height);
+  const ticks = [[NONE, "<10⁻⁶"], 0.001, 1, 1000, [1e6, "10⁶"]];
+  const { sx, sy, box, picture, knob } = plot(view, {
+    top, x: timeSteps(LOW, HIGH),
+    y: { ...axis([NONE, FARTHEST], "still moving after 1,000 steps / r", ...ticks), log: true },
+    lines: [{ model: "penalty", points: dts.map((each) => [each, moves(each, stiffness, damping)]),
+      kind: "plainly" }],
+  });
+  const right = sx(critical) > 0.5 * width;
+  const kind = pairs[0][1] > 0 ? "rings" : Math.min(pairs[0][0], pairs[1][0]) < 0
+    ? "jumps to and fro" : "creeps back";
+  const drop = gained > 1e-9 ? `gains ${number(gained)} times its energy` : "gains no energy";
   return {
     picture: [
-      picture, limit(critical, "with its damper", right ? "end" : "start", "rule"),
-      both ? limit(popular, "2√(m/k)", "start", "rule dashed") : "",
-      mark("penalty", sx(dt), sy(far), 8), knob("dt", "the time step", 0.0002),
+      circleOf(view, pairs, top - 12), picture,
+      line(sx(critical), box.top, sx(critical), box.bottom, "rule"),
+      label(`critical: ${ms(critical)}`, sx(critical) + (right ? -6 : 6), box.top + 14,
+        right ? "end" : "start"),
+      mark("penalty", sx(dt), sy(far), 7), knob("dt", "the time step", 0.0002),
     ],
-    words: `At dt = ${number(1000 * dt)} ms the ball ${gains}; ${ends}.`,
-    values: { far, gained, critical, explodes, rests },
+    words: `${ms(dt)}: it ${kind}, × ${number(size)} a step. A drop ${drop}.`,
+    values: { pairs, size, critical, far, gained },
   };
 }
 
 export const figure = {
-  title: "The cliff",
-  caption: "How far the dropped ball still moves. Past the critical step it never rests.",
-  height: (width) => (width < 480 ? 260 : 300),
-  knobs: ["dt", "stiffness", "damping"],
+  title: "The cliff: eigenvalues, and what they do",
+  caption: "Make the step longer: the pair meets, parts, and one leaves the circle at −1. Just there "
+    + "a ball at rest begins to move.",
+  height: (width) => (width < 480 ? 430 : 500),
+  knobs: ["stiffness", "damping"],
   draw,
 };

@@ -1,62 +1,65 @@
-/* The models side by side over one table, and below it their gaps over time. It is still until it
- * is pressed, and keeps its scale. Values: the time shown [s], the models' rows and gaps [r] then,
- * and the highest place in the picture [m]. */
-import { arrow, axis, ball, circle, label, line, number, plain, plot, steps } from "../draw.js";
+/* The models side by side over one table, and below it their gaps over time: dark up to now, faint
+ * where one has seen what comes. A stack's overlaps are drawn enlarged. It is still until it is
+ * pressed, and keeps its scale. Values: the time shown [s], the models' gaps [r] then, and the
+ * highest place in the picture [m]. */
+import { arrow, axis, ball, circle, label, line, ms, number, plain, plot } from "../draw.js";
 import { table, within } from "../draw.js";
 import { data } from "../data.js";
 import { column, G, gapsOf, inRow, kept, MODELS, pushIn, R, record } from "../runs.js";
 
 const [GROUND, BELOW, LOWEST] = [26, 76, 0.45]; // px, px; m: a picture is at least so high
-const PACE = { 6: 30, 30: 1, 1: 6 }; // how many times slower, and what the button makes of it
 const SCENES = { drop: "A ball falls", bounce: "A ball bounces", stack: "Three balls stand" };
 
 const run = kept((model, heights, knobs, count) => {
   const made = record(model, column(heights), knobs, count);
-  const gaps = gapsOf(made);
-  const landing = gaps.findIndex((gap) => gap <= 0);
-  return { model, made, gaps, landing: landing < 0 ? count : landing };
+  return { model, made, gaps: gapsOf(made) };
 });
 
 // The knobs that a model's run depends on, and no others: so what else is dragged costs nothing.
 const knobsOf = (own, model) =>
   Object.fromEntries(["dt", ...data.uses[model]].map((name) => [name, own[name]]));
 
-// The runs of all models, and the times between which they are shown [s].
+// The runs of all models, and the time up to which they are shown [s].
 function runsOf(own) {
-  const { scene, models, dt, lift, until } = own;
-  const heights = data.scenes[scene].start.map((y) => y + lift);
-  const last = Math.max(own.to, own.from + 8 * dt);
-  const all = MODELS.filter((model) => models.split(",").includes(model)).map((model) =>
-    run(model, heights, knobsOf(own, model), Math.ceil(last / dt)));
-  if (!until) return { all, from: own.from, to: last };
-  const landing = Math.min(...all.map((each) => each.landing));
-  return { all, from: 0, to: Math.max(1, landing - 1) * dt };
+  const heights = data.scenes[own.scene].start.map((y) => y + own.lift);
+  const to = Math.max(own.to, own.from + 8 * own.dt);
+  const wanted = own.models.split(",");
+  return { to, all: MODELS.filter((model) => wanted.includes(model)).map((model) =>
+    run(model, heights, knobsOf(own, model), Math.ceil(to / own.dt))) };
 }
 
 // How high the picture is [m]: as the balls are where it begins, with some room to lift them.
-function topOf({ scene, from, until }) {
+function topOf({ scene, from }) {
   const { start } = data.scenes[scene];
-  const begins = Math.max(...start) - (until ? 0 : (G / 2) * from ** 2);
-  return Math.max(LOWEST, begins + 1.2 * R * start.length);
+  return Math.max(LOWEST, Math.max(...start) - (G / 2) * from ** 2 + 1.2 * R * start.length);
 }
 
-function placeWords(gap) {
+function placeWords({ gap, upper, lower }, many) {
   if (!Number.isFinite(gap)) return "gone";
-  if (Math.abs(gap) < 5e-5) return "touches";
-  return `${number(gap, 2)} r`;
+  const whose = many ? `, ball ${upper} ${lower ? `on ${lower}` : "on the table"}` : "";
+  return `${Math.abs(gap) < 5e-5 ? "touches" : `${number(gap, 2)} r`}${whose}`;
 }
 
-// A model's balls, held by the hand; from above what a picture holds, an arrow and how high.
-function lane(view, { model, made, gaps }, row, k, { floor, scale, wide, top }) {
+// How many times larger a stack's overlaps are drawn, so that they fit.
+function enlarged({ scene }, all) {
+  const deepest = Math.max(0, ...all.flatMap(({ gaps }) => gaps.map(({ gap }) => -gap || 0)));
+  return scene === "stack" ? [20, 5, 2].find((times) => times * deepest < 1.8) ?? 1 : 1;
+}
+
+// A model's balls, held by the hand; from above what the picture holds, an arrow and how high.
+function lane(view, { model, made, gaps }, row, x, { floor, scale, larger, top }) {
   const { own } = view;
-  const [x, start] = [wide * (k + 0.5), data.scenes[own.scene].start];
+  const start = data.scenes[own.scene].start;
   const r = Math.max(5, R * scale);
   const heights = inRow(made, "y", row);
+  let [below, drawn] = [-R, -R]; // of the ball below: where it is, where it is drawn
   const shown = heights.map((height) => {
-    if (height < top + R)
-      return ball(model, x, Math.min(floor + r, floor - height * scale), r);
+    const apart = height - below - 2 * R;
+    drawn += 2 * R + (apart < 0 ? larger * apart : apart);
+    below = height;
+    if (drawn < top + R) return ball(model, x, Math.min(floor + r, floor - drawn * scale), r);
     const far = Number.isFinite(height) ? `${number(height, 2)} m` : "out of sight";
-    return [circle(x, 44, 26, "halo"), arrow("weight", x, 54, 0, -30),
+    return [circle(x, 44, 22, "halo"), arrow("weight", x, 54, 0, -30),
       label(far, x, 70, "middle", "tick")];
   });
   const push = Math.min(40, 14 * Math.sqrt(Math.max(0, pushIn(made, row))));
@@ -66,90 +69,80 @@ function lane(view, { model, made, gaps }, row, k, { floor, scale, wide, top }) 
     seen: () => (own.from + own.time > 0 && heights[0] < top ? heights[0] - start[0] : own.lift),
     also: { from: 0, time: 0 }, release: () => view.play(0),
   };
+  const halo = circle(x, within(22, floor - (heights[0] || 0) * scale, floor), 22, "halo");
   return [
-    view.grab(what, [shown, circle(x, within(22, floor - (heights[0] || 0) * scale, floor), 22, "halo")]), arrow(`push m-${model}`, x, floor + GROUND - 3, 0, -push),
-    label(model, x, floor + GROUND + 20, "middle"),
-    label(placeWords(gaps[row]), x, floor + GROUND + 40, "middle", "tick"),
+    view.grab(what, [shown, r < 22 ? halo : ""]),
+    arrow(`push m-${model}`, x, floor + GROUND - 3, 0, -push),
+    line(x - 24, floor + GROUND + 5, x + 24, floor + GROUND + 5, `line m-${model}`),
+    label(model, x, floor + GROUND + 24, "middle"),
+    label(placeWords(gaps[row]), x, floor + GROUND + 44, "middle", "tick"),
   ];
 }
 
-function chartOf(view, { all, from, to }, top, time) {
-  const lines = all.map(({ model, made, gaps }, k) => {
-    const [first, last] = [from, to].map((t) => Math.round(t / made.dt));
-    const points = gaps.slice(first, last + 1).map((gap, i) => [made.t[first + i], gap]);
-    const marks = [0.12, 0.37, 0.62, 0.87].map((s) => Math.round((s + 0.05 * k) * points.length));
-    return { model, points, marks };
-  });
-  const past = lines.map((each) => ({ ...each, points: each.points.filter(([t]) => t <= time) }));
-  const coming = lines.map((each) => ({ ...each, marks: [], kind: "coming" }));
-  const seen = lines.flatMap(({ points }) => points.map(([, gap]) => gap)).filter(Number.isFinite);
+function chartOf(view, { all, to }, top, time) {
+  const { own } = view;
+  const seen = all.flatMap(({ gaps }) => gaps.slice(Math.round(own.from / own.dt))
+    .map(({ gap }) => gap)).filter(Number.isFinite);
   const low = seen.reduce((a, b) => Math.min(a, b), -0.05);
   const high = seen.reduce((a, b) => Math.max(a, b), 0);
   const most = Math.min(high, Math.max(2, -2 * low), 12);
-  const domain = [Math.max(low, -10) - 0.06 * (most - low), most + 0.06 * (most - low)];
-  const { sx, box, picture } = plot(view, {
-    top, zero: true, lines: [...coming, ...past],
-    x: axis([from, to], "time (s)", ...steps(from, to, view.width < 480 ? 3 : 6)),
-    y: axis(domain, "gap / r, r = 0.1 m (below 0: overlap)", ...steps(...domain, 4)),
-  });
-  const what = {
-    label: "the time shown", value: "time", low: 0, high: to - from, step: view.own.dt,
-    at: (x) => sx.back(x) - from,
+  const margin = 0.06 * (most - low);
+  const axes = {
+    x: axis([own.from, to], "time (s)"),
+    y: axis([Math.max(low, -10) - margin, most + margin], "gap / r, r = 0.1 m (below 0: overlap)"),
   };
-  const x = sx(time);
-  return [picture, line(x, box.top, x, box.bottom, "rule"), view.point(x, box.bottom - 2, what)];
+  const { sx, box } = plot(view, { top, ...axes });
+  const lines = all.map(({ model, made, gaps }) => ({
+    model, points: gaps.map(({ gap }, row) => [made.t[row], gap]).slice(Math.round(own.from / own.dt)),
+    layers: [["whole", box.right], ["coming", sx(view.seen)], ["", sx(time)]],
+  }));
+  const what = {
+    label: "the time shown", value: "time", low: 0, high: to - own.from, step: own.dt,
+    at: (x) => sx.back(x) - own.from,
+  };
+  return [plot(view, { top, zero: true, lines, ...axes }).picture,
+    line(sx(time), box.top, sx(time), box.bottom, "rule"),
+    view.point(sx(time), box.bottom - 2, what)];
 }
 
 function draw(view) {
   const { own, width, height } = view;
-  const seen = runsOf(own);
-  const { all, from, to } = seen;
-  const row = Math.min(Math.round(within(from, from + own.time, to) / own.dt), all[0].made.steps);
+  const { all, to } = runsOf(own);
+  const row = Math.min(Math.round(within(own.from, own.from + own.time, to) / own.dt),
+    all[0].made.steps);
   const time = row * own.dt;
-  const wide = width / all.length;
+  view.seen = Math.max(view.seen ?? 0, time); // what comes is not told before it has been played
   const chartTop = Math.round(0.56 * height);
-  const [floor, top] = [chartTop - BELOW, topOf(view.text)];
+  const [wide, floor, top] = [width / all.length, chartTop - BELOW, topOf(view.text)];
   const scale = Math.min((floor - 6) / top, (0.42 * wide) / R); // px for 1 m
-  const told = all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row])}`);
+  const larger = enlarged(own, all);
+  const many = data.scenes[own.scene].start.length > 1;
   return {
     picture: [
       table(0, floor, width, GROUND),
-      all.map((each, k) => lane(view, each, row, k, { floor, scale, wide, top })),
-      chartOf(view, seen, chartTop, within(from, time, to)),
+      all.map((each, k) => lane(view, each, row, wide * (k + 0.5), { floor, scale, larger, top })),
+      larger > 1 ? label(`overlaps × ${larger}`, 4, 16, "start", "tick") : "",
+      chartOf(view, { all, to }, chartTop, within(own.from, time, to)),
     ],
-    words: `${time.toFixed(3)} s: ${told.join(", ")}.`,
-    values: { time, row, top,
-      gaps: Object.fromEntries(all.map(({ model, gaps }) => [model, gaps[row]])) },
+    words: `${time.toFixed(3)} s: ` +
+      `${all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row], many)}`).join(", ")}.`,
+    values: { time, top, gaps: Object.fromEntries(all.map(({ model, gaps }) => [model, gaps[row].gap])) },
   };
 }
 
-const lengthOf = ({ own }) => {
-  const { from, to } = runsOf(own);
-  return to - from;
-};
+const slower = ({ from, to }) => (to - from > 2 ? 1 : to - from > 0.5 ? 6 : 30);
 
 export const figure = {
-  title: "The models over one table",
-  caption: ({ scene, from, to, until, dt }) => `${SCENES[scene]}: ${until
-    ? "lift it and let it go, or drag the time along the curves, up to the landing"
-    : `from ${from} to ${to} s, in steps of ${plain(1000 * dt)} ms`}.`,
-  height: (width) => (width < 480 ? 400 : 460),
+  title: ({ scene, models }) => `${SCENES[scene]}: ${models.replaceAll(",", ", ")}`,
+  caption: ({ scene, from, to, dt }) =>
+    `${SCENES[scene]}, from ${plain(from)} to ${plain(to)} s, in steps of ${ms(dt)}.`,
+  height: (width) => (width < 480 ? 400 : 480),
   knobs: ({ knobs }) => knobs.split(","),
-  choices: { until: ["", "landing"] },
   start: ({ scene = "drop" }) => ({
-    scene, models: "penalty,lcp", from: 0.3, to: 1.2, until: "", lift: 0, knobs: "dt", slower: 6,
+    scene, models: "penalty,lcp", from: 0.4, to: 1.2, lift: 0, knobs: "dt",
     ...data.scenes[scene].own,
   }),
-  clock: (view) => ({ end: lengthOf(view), rate: 1 / view.own.slower }),
-  play: () => "Let them fall",
-  buttons: (view) => {
-    const { own } = view;
-    const step = () => {
-      view.stop();
-      own.time = Math.min(lengthOf(view), own.time + own.dt);
-    };
-    return [["Step", step],
-      [`${own.slower} × slower`, () => (own.slower = PACE[own.slower])]];
-  },
+  clock: ({ own }) => ({ end: runsOf(own).to - own.from, rate: 1 / slower(own) }),
+  play: (own) => `Let go${slower(own) > 1 ? `, speed 1/${slower(own)}` : ""}`,
   draw,
 };

@@ -1,154 +1,111 @@
-/* Two fingers squeeze a cup, as in exercise 8: three balls by penalty, of which two have motors.
- * With map=1 time step and stiffness can be chosen in a map of what becomes of it, and the
- * spring's force be taken from the end of the step. Values: what it does, how deep the left finger
- * is in the cup at the worst and by how much that trembles in the last quarter [r]. */
-import { area, ball, circle, clipped, label, line, number, plot, rect, svg } from "../draw.js";
-import { table, tens, through, timeSteps, within } from "../draw.js";
-import { critical_dt } from "../contact.js";
+/* A gripper whose fingers tremble, as in exercise 8, drawn so that one sees it: three balls by
+ * penalty, of which two have motors, each LARGER times as far from its mean place as it is. Below
+ * it all time steps, in three parts: it holds, trembles, flies apart. With switch=1 the spring's
+ * force may be taken from the end of the step. Values: what it does, how deep the left finger is in
+ * the cup, by how much that trembles [r], and where the parts begin [s]. */
+import { ball, label, line, ms, number, range, rect, svg, table, within } from "../draw.js";
 import { column, kept, R, record } from "../runs.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
-const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s; what is judged comes after this share
-const [DT, K] = [[0.0005, 0.008], [3000, 1e6]]; // s, N/m: what can be chosen
-const SEEN = 0.32; // m: who is further away has flown apart
+const [SECONDS, LATE] = [1, 0.75]; // s; judged is what comes after this share
+const endsOf = ({ switch: shown }) => (shown ? [0.0002, 0.016] : [0.002, 0.008]); // s
+const [LARGER, FAR, DAMPING] = [80, 0.5, 80]; // times; m: farther away it has flown apart; N s/m
 const FATES = ["holds still", "trembles", "flies apart"];
 
-// The run, how deep finger and cup are in one another, row by row [r], what happens in the end, and
-// `last`, the row up to which all can be seen.
-const squeezed = kept((dt, stiffness, late, seconds = SECONDS) => {
+const squeezed = kept((dt, stiffness, late) => {
   const balls = column([R, R, R], { x: AT, mass: MASS });
-  const push = () => balls.forEach((ball, i) => (ball.fx = MOTOR[i]));
-  const [knobs, count] = [{ dt, stiffness, damping: DAMPING }, Math.ceil(seconds / dt - 1e-9)];
-  const run = record(late ? "implicit" : "penalty", balls, knobs, count, push);
-  const { n, x, y, steps } = run;
-  const depths = Array.from({ length: steps + 1 }, (_, row) => {
-    const [dx, dy] = [x[n * row + 1] - x[n * row], y[n * row + 1] - y[n * row]];
-    return 2 - Math.sqrt(dx * dx + dy * dy) / R;
+  const push = () => balls.forEach((each, i) => (each.fx = MOTOR[i]));
+  const knobs = { dt, stiffness, damping: DAMPING };
+  const { x, y, steps } = record(late ? "implicit" : "penalty", balls, knobs,
+    Math.ceil(SECONDS / dt - 1e-9), push);
+  const from = Math.floor(LATE * steps);
+  const rows = range(steps - from, (k) => [0, 1, 2].map((i) => x[3 * (from + k) + i]));
+  const means = [0, 1, 2].map((i) => rows.reduce((sum, row) => sum + row[i], 0) / rows.length);
+  const depths = rows.map((_, k) => {
+    const at = 3 * (from + k);
+    return 2 - Math.hypot(x[at + 1] - x[at], y[at + 1] - y[at]) / R;
   });
-  const end = depths.slice(Math.floor(LATE * (steps + 1)));
-  const [most, least] = [Math.max(...end), Math.min(...end)];
-  const gone = x.findIndex((each, k) => !(Math.abs(each) < SEEN && y[k] < SEEN));
-  const fate = gone >= 0 ? 2 : most - least < 1e-5 ? 0 : 1;
-  const last = gone < 0 ? steps : Math.floor(gone / n);
-  return { run, depths, deepest: most, trembling: most - least, fate, last };
+  const [deepest, least] = [Math.max(...depths), Math.min(...depths)];
+  const gone = x.findIndex((each, k) => !(Math.abs(each) < FAR && y[k] < FAR));
+  const fate = gone >= 0 ? 2 : deepest - least < 1e-5 ? 0 : 1;
+  const flight = range(Math.ceil(gone / 3), (row) => [x, y].map((all) => all.slice(3 * row, 3 * row + 3)));
+  return { rows, means, deepest, trembling: deepest - least, fate, flight };
+}, 60);
+
+// Where it begins to be as bad as this fate, found by halving [s].
+const begins = kept((fate, stiffness, late, good, bad) => {
+  if (squeezed(good, stiffness, late).fate >= fate) return good;
+  if (squeezed(bad, stiffness, late).fate < fate) return bad;
+  while (bad > 1.02 * good) {
+    const middle = Math.sqrt(good * bad);
+    [good, bad] = squeezed(middle, stiffness, late).fate < fate ? [middle, bad] : [good, middle];
+  }
+  return bad;
 });
 
-// Where the map's parts begin: [stiffness, time steps from which on it trembles and flies apart],
-// found by halving, near the critical step of a finger.
-const borders = kept((late) =>
-  Array.from({ length: 12 }, (_, at) => {
-    const stiffness = K[0] * (K[1] / K[0]) ** (at / 11);
-    const critical = critical_dt(MASS[0], stiffness, DAMPING);
-    const fate = (dt) => squeezed(dt, stiffness, late, 0.6).fate;
-    const from = (worse, low) => {
-      let [good, bad] = [low, 2 * critical];
-      if (fate(bad) < worse) return Infinity;
-      while (bad > 1.04 * good) {
-        const middle = 0.5 * (good + bad);
-        [good, bad] = fate(middle) < worse ? [middle, bad] : [good, middle];
-      }
-      return bad;
-    };
-    const trembles = from(1, 0.9 * critical);
-    return [stiffness, trembles, trembles < Infinity ? from(2, 0.97 * trembles) : Infinity];
-  }));
-
-// Fingers and cup over the table, and where the left one touches it.
-function picture({ n, x, y }, row, width, middle) {
-  const scale = (width / 2 - 4) / (SEEN + R); // px for 1 m
-  const [r, floor] = [R * scale, middle + R * scale];
-  const places = Array.from({ length: n }, (_, i) =>
-    [width / 2 + x[n * row + i] * scale, floor - Math.max(R, y[n * row + i]) * scale]);
-  const [[leftX, leftY], [cupX, cupY], [rightX, rightY]] = places;
-  return { touch: [(leftX + cupX) / 2, cupY], drawn: clipped(0, 0, width, floor + 24,
-    table(0, floor, width, 24),
-    rect(0, leftY - 0.3 * r, leftX, 0.6 * r, "arm"),
-    rect(rightX, rightY - 0.3 * r, width - rightX, 0.6 * r, "arm"),
-    places.map(([px, py], i) => ball(i === 1 ? "penalty" : "fixed", px, py, r, "plainly ball")),
-    svg`<ellipse cx=${cupX} cy=${cupY - 0.72 * r} rx=${0.62 * r} ry=${0.15 * r} class="cup"/>`,
-  ) };
+// Where the three are drawn [m], [[x, y]]: between two rows on the straight way that the step takes.
+function placesOf({ rows, means, fate, flight }, time, dt) {
+  const [row, share] = [Math.floor(time / dt), (time / dt) % 1];
+  if (fate < 2) {
+    const [now, next] = [rows[row % rows.length], rows[(row + 1) % rows.length]];
+    return means.map((mean, i) => [mean + LARGER * (now[i] + share * (next[i] - now[i]) - mean), R]);
+  }
+  const [now, next] = [row, row + 1].map((k) => flight[Math.min(k, flight.length - 1)]);
+  const at = (part, i) => now[part][i] + share * (next[part][i] - now[part][i]);
+  return means.map((_, i) => [at(0, i), Math.max(R, at(1, i))]);
 }
-
-/* Where the left finger touches the cup, enlarged so much that the overlap fills it: the cup's edge
- * stays, the finger's trembles, and the trail of its last places stays with it. */
-function lens(x, y, size, { depths, fate, ...late }, row) {
-  const { deepest, trembling } = fate === 2 ? { deepest: 0.15, trembling: 0 } : late;
-  const times = Math.min(0.9 / Math.max(deepest, 1e-6),
-    0.5 / Math.max(trembling, 1e-9)) * size; // px for 1 r
-  const edge = x - 0.5 * Math.min(0.9 * size, deepest * times);
-  const tip = (k) => edge + within(-size, depths[k] * times, 2 * size);
-  const big = 40 * size;
-  const before = [8, 6, 4, 2].filter((back) => row >= back).map((back) =>
-    line(tip(row - back), y - size, tip(row - back), y + size, "trail"));
-  return [
-    through(x, y, size, circle(edge + big, y, big, "magnified m-penalty"),
-      circle(tip(row) - big, y, big, "magnified m-fixed"), before),
-    label(`× ${number(times / 40, 2)}`, x, y + size + 20, "middle", "tick"),
-  ];
-}
-
-function map(view, top) {
-  const { own } = view;
-  const { sx, sy, box, picture } = plot(view, {
-    top, x: timeSteps(...DT), y: { ...tens(4, 6, "stiffness k (N/m)"), domain: K },
-  });
-  const parts = [1, 2].map((fate) =>
-    area([[box.right, box.bottom], ...borders(own.late).map((border) =>
-      [sx(Math.min(DT[1], border[fate])), sy(border[0])]), [box.right, box.top]], `fate-${fate}`));
-  const what = {
-    label: "time step and stiffness", value: ["dt", "stiffness"], low: [DT[0], K[0]],
-    high: [DT[1], K[1]], step: [0.0002, 2000], at: (x, y) => [sx.back(x), sy.back(y)],
-    also: { time: 0 }, release: () => view.play(0),
-  };
-  const names = own.late ? [["holds", 0.2, 0.4]]
-    : [["holds", 0.08, 0.86], ["trembles", 0.58, 0.86], ["flies apart", 0.7, 0.25]];
-  return [
-    parts, picture,
-    names.map(([name, across, down]) => label(name, box.left + across * (box.right - box.left),
-      box.top + down * (box.bottom - box.top))),
-    view.point(sx(own.dt), sy(own.stiffness), what),
-  ];
-}
-
-const sizeOf = (width) => Math.min(124, 0.2 * width); // px, of the lens
 
 function draw(view) {
-  const { own, width } = view;
-  const run = squeezed(own.dt, own.stiffness, own.late);
-  const { fate, deepest, trembling } = run;
-  const begins = own.map && (own.time > 0 || fate === 2) ? 0 : LATE; // s
-  const row = own.time === 0 && fate === 2 ? run.last // where it ends, until it is played
-    : Math.min(run.last, Math.floor((begins + own.time) / own.dt));
-  const size = sizeOf(width);
-  const [x, y] = [width - size - 8, size + 12];
-  const { drawn, touch } = picture(run.run, row, x - size - 16, y);
-  const told = fate === 2 ? FATES[2]
-    : `${FATES[fate]}${fate ? `, by ${number(trembling, 2)} r` : ""}; finger and cup overlap by ` +
-      `${number(deepest, 2)} r`;
+  const { own: { dt, stiffness, late, time }, width, height } = view;
+  const [low, high] = endsOf(view.own);
+  const seen = squeezed(dt, stiffness, late);
+  const { deepest, trembling, fate } = seen;
+  const [floor, top, middle] = [height - 104, height - 60, width / 2];
+  const scale = Math.min((floor - 24) / (2.2 * R), width / 8.6 / R); // px for 1 m
+  const r = R * scale;
+  const places = placesOf(seen, time, dt).map(([x, y]) => [middle + x * scale, floor - y * scale]);
+  const finger = ([x, y]) => [
+    rect(x - 0.25 * r, 14, 0.5 * r, y - 14, "arm"), ball("fixed", x, y, r, "body"),
+  ];
+  const at = (step) => 12 + ((width - 24) * Math.log(step / low)) / Math.log(high / low);
+  const parts = [low, ...[1, 2].map((k) => begins(k, stiffness, late, low, high)), high];
+  const what = { label: "the time step", value: "dt", low, high, step: 0.0001,
+    at: (x) => low * (high / low) ** within(0, (x - 12) / (width - 24), 1) };
   return {
     picture: [
-      drawn, line(...touch, x - size, y, "grid"), lens(x, y, size, run, row),
-      own.map ? map(view, 2 * size + 50) : "",
+      table(0, floor, width, 20),
+      [places[0], places[2]].map(finger), rect(middle - 4.2 * r, 4, 8.4 * r, 14, "arm"),
+      ball("penalty", ...places[1], r),
+      svg`<ellipse cx=${places[1][0]} cy=${places[1][1] - 0.72 * r} rx=${0.62 * r} ry=${0.15 * r}
+        class="cup"/>`,
+      FATES.map((name, k) => {
+        const [from, to] = [at(parts[k]), at(parts[k + 1])];
+        return [rect(from, top, to - from, 18, `fate-${k}`), k === fate || to - from > 6 * name.length
+          ? label(name, (from + to) / 2, top + 38, "middle", k === fate ? "strong" : "tick") : ""];
+      }),
+      [0.0002, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016].map((each) => (each < low || each > high ? ""
+        : label(ms(each), within(26, at(each), width - 26), top + 58, "middle", "tick"))),
+      line(at(dt), top - 8, at(dt), top + 18, "rule"), view.point(at(dt), top + 9, what),
     ],
-    words: `${number(1000 * own.dt, 2)} ms, ${number(own.stiffness, 2)} N/m: it ${told}.`,
-    values: { does: FATES[fate], deepest, trembling, row },
+    words: `In steps of ${ms(dt)} it ${FATES[fate]}` +
+      `${fate === 1 ? `, by ${number(trembling, 2)} r, drawn ${LARGER} times larger` : ""}.`,
+    values: { does: FATES[fate], deepest, trembling, parts },
   };
 }
 
 export const figure = {
   title: "A gripper that trembles",
-  caption: "Two fingers squeeze a cup, in slow motion; the lens shows where the left touches it.",
-  height: (width, { map: shown } = {}) => 2 * sizeOf(width) + (shown ? 302 : 42),
-  start: () => ({ dt: 0.004, map: 0, late: 0 }),
-  clock({ own: { dt, stiffness, late, map: shown } }) {
-    if (!shown) return { end: SECONDS - LATE, rate: 0.04, loops: true, alone: true };
-    const end = Math.min(SECONDS, squeezed(dt, stiffness, late).last * dt);
-    return { end, rate: Math.min(0.1, end / 2) }; // two seconds at least
+  caption: ({ stiffness }) => `Two fingers squeeze a cup, in slow motion: ` +
+    `${stiffness.toLocaleString("en")} N/m. Drag the step.`,
+  height: (width) => (width < 480 ? 240 : 280),
+  knobs: ({ switch: shown }) => (shown ? ["stiffness"] : []),
+  start: () => ({ dt: 0.004, late: 0, switch: 0 }),
+  clock({ own: { dt, stiffness, late } }) {
+    const { fate, flight } = squeezed(dt, stiffness, late);
+    const end = fate < 2 ? 0.25 : dt * flight.length;
+    return { end, rate: fate < 2 ? 0.02 : end / 2, loops: true, alone: true };
   },
-  play: (own) => (own.map ? "Squeeze" : "Play"),
-  buttons: ({ own }) => {
-    const change = () => Object.assign(own, { late: 1 - own.late, time: 0 });
-    return own.map ? [["Force from the step’s end", change, String(Boolean(own.late))]] : [];
-  },
+  play: () => "Play",
+  switches: ({ switch: shown }) => (shown ? [["Force from the step’s end", "late", 1]] : []),
   draw,
 };

@@ -3,7 +3,7 @@
  * slides and where it sticks. The law (no pull, no overlap, no push without touch) holds where the
  * line crosses zero, and at no push at all. Values: those answers [N s], the one of the relaxed
  * law, and v_n at the chosen push [m/s]. */
-import { arrow, axis, circle, clipped, line, mark, number, plot, steps, table } from "../draw.js";
+import { arrow, axis, circle, clipped, line, mark, number, plot, table } from "../draw.js";
 import { within } from "../draw.js";
 
 // A rod of 1 kg and 2 m: its end, seen from the middle [m], which without a push rises and slides
@@ -45,7 +45,7 @@ function draw(view) {
   const domain = [Math.min(-0.35, ...ends) - 0.05, Math.max(0.6, ...ends) + 0.05];
   const { sx, sy, picture, knob } = plot(view, {
     left: left + 8, x: axis([0, MOST], "push of the table (N s)", 0, 0.5, 1),
-    y: axis(domain, "v_n of the end (m/s)", ...steps(...domain)), zero: true,
+    y: axis(domain, "vₙ of the end (m/s)"), zero: true,
     lines: [{ model: "exact", points, kind: "plainly" }],
   });
   const [x, scale] = [0.68 * left, Math.min(0.6 * left, (floor - 16) / 1.9)]; // px; px for 1 m

@@ -1,19 +1,18 @@
 /* What unfinished sweeps leave: a column at rest under lcp sags as on springs. The overlap of every
  * contact is a bar, the law a line. Values: overlaps and law from below [r], whether it rests. */
-import { axis, ball, label, line, number, path, plot, rect, steps, table, tenTo } from "../draw.js";
+import { axis, ball, bare, label, line, number, path, plot, range, rect, table } from "../draw.js";
 import { column, G, inRow, kept, R, record } from "../runs.js";
 
 const ROWS = 300; // steps until all is at rest: the run starts where the law has it
 
 // The law: how deep each of so many balls is pressed into what is below it [r].
-const lawOf = (count, { dt, iters, baumgarte, warm }) =>
-  Array.from({ length: count }, (_, i) =>
-    Math.min(1, (((1 - warm) / (baumgarte * iters)) * (count - 1 - i) * G * dt * dt) / R));
+const lawOf = (count, { dt, iters, baumgarte, warm }) => range(count, (i) =>
+  Math.min(1, (((1 - warm) / (baumgarte * iters)) * (count - 1 - i) * G * dt * dt) / R));
 
 const sags = kept((count, knobs) => {
   let top = 0;
-  const law = knobs.baumgarte > 0 ? lawOf(count, knobs) : Array(count).fill(0);
-  const run = record("lcp", column(law.map((deep) => (top += (2 - deep) * R) - R)), knobs, ROWS);
+  const heights = lawOf(count, knobs).map((deep) => (top += (2 - deep) * R) - R);
+  const run = record("lcp", column(heights), { ...knobs, restitution: 0 }, ROWS);
   const depthsIn = (row) => {
     const ys = inRow(run, "y", row);
     return ys.map((y, i) => (i ? 2 - (y - ys[i - 1]) / R : 1 - y / R));
@@ -24,44 +23,37 @@ const sags = kept((count, knobs) => {
 });
 
 function draw(view) {
-  const { own, width, height } = view;
-  const { balls, dt, iters, baumgarte, warm } = own;
-  const { depths, rests } = sags(balls, { dt, iters, baumgarte, warm, restitution: 0 });
-  const law = baumgarte > 0 && warm < 1 ? lawOf(balls, own) : null;
-  const most = Math.max(1e-9, ...depths, ...(law ?? [])) * 1.12;
-  const power = Math.floor(Math.log10(most));
-  const ticks = steps(0, most, 4).map((v) =>
-    [v, number(v / 10 ** power, 2).replace(/\.?0+$/, "") || "0"]);
-  const left = Math.round(0.24 * width);
+  const { own: { balls, dt, iters, baumgarte, warm }, width, height } = view;
+  const knobs = { dt, iters, baumgarte, warm };
+  const [{ depths, rests }, law] = [sags(balls, knobs), lawOf(balls, knobs)];
+  const [left, floor] = [Math.round(0.24 * width), height - 46];
   const r = Math.min(30, (height - 60) / (2 * balls), 0.4 * left);
-  const floor = height - 46;
   const at = (i) => floor - 2 * i * r; // of a contact
+  const most = Math.max(1e-9, ...depths, ...law) * 1.12;
   const { sx, box, picture } = plot(view, {
-    left, x: axis([0, most], `overlap in ${power ? `${tenTo(power)} r` : "r"}`, ...ticks),
-    y: axis([0, 1], ""),
+    left, x: axis([0, 1000 * most], "overlap (thousandths of r)"), y: bare,
   });
-  const says = law ? `the law says ${number(law[0], 2)} r` : "nothing opens an overlap";
   return {
     picture: [
       table(0, floor, left, 30), line(left / 2 + r, floor, left + 20, floor, "grid"),
       depths.map((_, i) => ball("lcp", left / 2, at(i) - r, r)),
-      depths.map((deep, i) =>
-        rect(sx(0), at(i) - 0.6 * r, sx(Math.max(0, deep)) - sx(0), 0.8 * r, "bar-fill m-lcp")),
-      law ? [path(law.map((deep, i) => [sx(deep), at(i) - 0.2 * r]), "law-line"),
-        label("the law", Math.min(sx(law[1]) + 14, width - 54), at(1) - 0.2 * r + 2)] : "",
+      depths.map((deep, i) => rect(sx(0), at(i) - 0.6 * r,
+        sx(1000 * Math.max(0, deep)) - sx(0), 0.8 * r, "bar-fill m-lcp")),
+      path(law.map((deep, i) => [sx(1000 * deep), at(i) - 0.2 * r]), "law-line"),
+      label("the law", Math.min(sx(1000 * law[1]) + 14, width - 54), at(1) - 0.2 * r + 2),
       picture, line(sx(0), box.top, sx(0), box.bottom, "rule"),
     ],
     words: `The lowest of ${balls} is ${number(depths[0], 2)} r deep` +
-      `${rests ? "" : ", and still moves"}; ${says}.`,
+      `${rests ? "" : ", and still moves"}; the law says ${number(law[0], 2)} r.`,
     values: { depths, law, rests },
   };
 }
 
 export const figure = {
   title: "What unfinished sweeps leave",
-  caption: "A bar for every contact of a column at rest: how deep it is. The line is the law.",
+  caption: "A bar for every contact of a column at rest: how deep it is. The dashed line is the law.",
   height: (width) => (width < 480 ? 280 : 320),
-  knobs: ["iters", "baumgarte", "dt", "warm", "balls"],
-  start: () => ({ balls: 30 }),
+  knobs: ({ knobs }) => knobs.split(","),
+  start: () => ({ balls: 30, knobs: "iters,dt" }),
   draw,
 };

@@ -1,5 +1,5 @@
-/* The signs of a contact: normal, depth and v_n, of ball a with ball b and with the table. Values:
- * of both contacts n, depth [r] and v_n [m/s]. */
+/* The signs of a contact: normal, depth and vₙ, of ball a with ball b and with the table. Values:
+ * of both contacts n, depth [r] and vₙ [m/s]. */
 import { arrow, ball, label, number, table, within } from "../draw.js";
 import { detect_contacts } from "../contact.js";
 import { column, R } from "../runs.js";
@@ -16,7 +16,7 @@ function draw(view) {
   const contacts = [all[0], all[2]].map((c) =>
     ({ nx: c.nx, ny: c.ny, depth: c.depth / R, v_n: c.v_n() }));
   const told = contacts.map(({ depth, v_n }, k) =>
-    `${k ? "Ball b" : "Table"}: depth ${number(depth, 2)} r, v_n ${number(v_n, 2)} m/s.`);
+    `${k ? "Ball b" : "Table"}: depth ${number(depth, 2)} r, vₙ ${number(v_n, 2)} m/s.`);
   const normals = contacts.map(({ nx, ny }, k) => {
     const [fromX, fromY] = k ? place(nx * R, R + ny * R) : place(x, 0);
     const [dx, dy] = [0.7 * R * scale * nx, -0.7 * R * scale * ny];
@@ -38,7 +38,7 @@ function draw(view) {
       table(0, floor, width, GROUND),
       ball("fixed", bx, by, r, "body"), label("b", bx, by + 5, "middle", "on-ball"),
       view.grab(there, [ball("exact", ax, ay, r, "ball plainly"),
-        label("a", ax, ay - 0.5 * r, "middle", "on-ball")]),
+        label("a", ax, ay + 5, "middle", "on-ball")]),
       normals, arrow("weight", ax, ay, ARROW * vx * scale, -ARROW * vy * scale),
       view.point(within(10, tipX, width - 10), within(10, tipY, height - 10), fast),
     ],
@@ -49,7 +49,7 @@ function draw(view) {
 
 export const figure = {
   title: "The signs of a contact",
-  caption: "The normal n points to a, depth is positive in an overlap, v_n while they separate.",
+  caption: "The normal n points to a, depth is positive in an overlap, vₙ while they separate.",
   height: (width) => (width < 480 ? 200 : 280),
   start: () => ({ x: 0.24, y: 0.3, vx: 0.3, vy: -1.2 }),
   draw,

@@ -1,13 +1,14 @@
 /* A ball slides off a held one: the worst error of its place over the step, with lcp of first
  * order and with leapfrog of second. Values: the errors at the chosen step [r], and those of all
  * steps. */
-import { axis, ball, label, mark, number, path, plot, tens, timeSteps } from "../draw.js";
+import { ball, clipped, label, logAxis, mark, ms, number, path, plot, range } from "../draw.js";
+import { timeSteps } from "../draw.js";
 import { data } from "../data.js";
 import { column, kept, R, record } from "../runs.js";
 
 const BOTH = ["lcp", "leapfrog"];
-const [SECONDS, FINE, HEIGHT] = [0.5, 1e-4, 5]; // s, s, m: so high that it meets no table
-const STEPS = Array.from({ length: 7 }, (_, k) => 0.0005 * 2 ** k); // s
+const [SECONDS, FINE, HEIGHT] = [0.48, 1e-4, 5]; // s, s, m: so high that it meets no table
+const STEPS = range(7, (k) => 0.0005 * 2 ** k); // s
 
 // The places of the sliding ball, from the middle of the held one [r].
 const placesOf = kept((model, lean, dt) => {
@@ -27,28 +28,23 @@ const errorOf = kept((model, lean, dt) => {
     return Math.hypot(x - x1 - s * (x2 - x1), y - y1 - s * (y2 - y1));
   };
   return Math.max(...placesOf(model, lean, dt).map(off));
-});
+}, 40);
 
 function draw(view) {
   const { own: { dt, lean }, width, height } = view;
   const all = BOTH.map((model) => STEPS.map((step) => [step, errorOf(model, lean, step)]));
   const now = BOTH.map((model) => errorOf(model, lean, dt));
   const slopes = all.map(([[, first]], k) =>
-    STEPS.map((step) => [step, 0.45 * first * (step / STEPS[0]) ** (k + 1)]));
+    STEPS.map((step) => [step, 0.4 * first * (step / STEPS[0]) ** (k + 1)]));
   const left = Math.round(0.34 * width);
-  const { sx, sy, picture } = plot(view, {
-    left, x: timeSteps(STEPS[0], 0.064), y: tens(-6, 1, "error / r", 2),
+  const { sx, sy, picture, knob } = plot(view, {
+    left, x: timeSteps(STEPS[0], STEPS[6]), y: logAxis([1e-6, 10], "error / r", 2),
     lines: [...slopes.map((points) => ({ model: "fixed", points, kind: "dotted" })),
-      ...all.map((points, k) => ({ model: BOTH[k], points, marks: [1, 3, 5] }))],
+      ...all.map((points, k) => ({ model: BOTH[k], points }))],
   });
   const scale = Math.min(44, left / 4.6); // px for 1 r
   const [x, y] = [1.15 * scale, 3.4 * scale];
   const place = ([toX, toY]) => [x + toX * scale, y - toY * scale];
-  const slid = BOTH.map((model) => {
-    const seen = placesOf(model, lean, dt).map(place)
-      .filter(([to, down]) => to < left - scale && down < height - scale);
-    return [path(seen, `line m-${model}`), ball(model, ...seen[seen.length - 1], scale, "ghost")];
-  });
   const what = {
     label: "the sliding ball: where it starts", value: "lean", low: 0.05, high: 0.8, step: 0.02,
     at: (toX, toY) => Math.atan2(toX - x, Math.max(1, y - toY)),
@@ -56,14 +52,18 @@ function draw(view) {
   const top = place([2 * Math.sin(lean), 2 * Math.cos(lean)]);
   return {
     picture: [
-      ball("fixed", x, y, scale, "body"), slid,
-      view.grab(what, ball("leapfrog", ...top, scale, "ball plainly")), picture,
-      slopes.map(([, [step, error]], k) =>
-        label(`slope ${k + 1}`, sx(step) + 4, sy(error) + 20, "start", "tick")),
-      now.map((error, k) => mark(BOTH[k], sx(dt), sy(error), 8)),
+      ball("fixed", x, y, scale, "body"),
+      clipped(0, 0, left - 8, height, BOTH.map((model) =>
+        path(placesOf(model, lean, dt).map(place), `line way m-${model}`))),
+      view.grab(what, ball("leapfrog", ...top, scale)), picture,
+      slopes.map(([, , , [step, error]], k) =>
+        label(`slope ${k + 1}`, sx(step) + 4, sy(error) + 18, "start", "tick")),
+      all.map((points, k) => label(BOTH[k], sx(STEPS[0]) + 10, sy(points[0][1]) - 14)),
+      now.map((error, k) => mark(BOTH[k], sx(dt), sy(error), 7)),
+      knob("dt", "the time step", 0.0005),
     ],
-    words: `From ${number((lean * 180) / Math.PI, 2)}° in steps of ${number(1000 * dt)} ms, lcp ` +
-      `is off by ${number(now[0], 2)} r, leapfrog by ${number(now[1], 2)} r.`,
+    words: `From ${number((lean * 180) / Math.PI, 2)}° in steps of ${ms(dt)}, lcp is off by ` +
+      `${number(now[0], 2)} r, leapfrog by ${number(now[1], 2)} r.`,
     values: { lcp: now[0], leapfrog: now[1], all },
   };
 }
@@ -72,7 +72,6 @@ export const figure = {
   title: "Sliding: the error over the step",
   caption: "Half the step: lcp’s error is half as large, leapfrog’s a quarter.",
   height: (width) => (width < 480 ? 290 : 340),
-  knobs: ["dt"],
-  start: () => ({ lean: 0.35 }),
+  start: () => ({ lean: Math.PI / 9 }), // 20 degrees, as in the text
   draw,
 };
