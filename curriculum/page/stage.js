@@ -44,7 +44,11 @@ export function viewOf(figure, given, width = 640) {
   return {
     own, text: { ...own }, ranges, width, running: false,
     get height() { return figure.height(this.width, own); },
-    grab: (_, shape) => shape,
+    grab({ value, low, high }, shape) {
+      [value].flat().forEach((name, k) =>
+        (ranges[name] = [[low].flat()[k], [high].flat()[k]]));
+      return shape;
+    },
     point(x, y, what) {
       return this.grab(what, [circle(x, y, 22, "halo"), circle(x, y, 8, "knob-dot")]);
     },
@@ -95,7 +99,6 @@ function hands(view, box) {
   };
   return ({ label, value, low, high, step, at, also, seen, release }, shape) => {
     const [names, lows, highs, sizes] = [value, low, high, step].map((each) => [each].flat());
-    names.forEach((name, k) => (view.ranges[name] = [lows[k], highs[k]]));
     const now = () => (seen ? [seen()] : names.map((name) => view.own[name]));
     const put = (wanted) => {
       const fine = names.map((name, k) =>
@@ -155,7 +158,8 @@ export function stage(box, figure, given, still) {
     const query = new URLSearchParams(set).toString();
     history.replaceState({ ...history.state, [box.id]: set }, "", `#${box.id}${query && `?${query}`}`);
   }
-  view.grab = hands(view, box);
+  const [hand, { grab }] = [hands(view, box), view];
+  view.grab = (what, shape) => hand(what, grab(what, shape));
   view.set = (changes) => {
     Object.assign(view.own, changes);
     clearTimeout(soon);

@@ -11,7 +11,9 @@ const CHOICES = { // words that a slot may set, where the figure has no choices 
 };
 
 // What a slot may set: what the figure has, in its range or among its choices.
-function check(figure, view, given) {
+function check(figure, given) {
+  const view = viewOf(figure, {});
+  figure.draw(view); // which tells the ranges of its handles
   for (const [name, value] of Object.entries(given)) {
     const known = figure.choices?.[name] ?? CHOICES[name];
     if (!(name in view.own))
@@ -29,7 +31,7 @@ function still([name, given]) {
   if (!figure)
     throw new Error(`there is no figure ${name}; known: ${Object.keys(figures).join(", ")}`);
   try {
-    check(figure, viewOf(figure, {}), given);
+    check(figure, given);
     const view = viewOf(figure, given, WIDE);
     const { picture, words } = figure.draw(view);
     return {

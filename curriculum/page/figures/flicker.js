@@ -51,9 +51,8 @@ function draw(view) {
       line(sx(formula / DEGREE), box.top, sx(formula / DEGREE), box.bottom, "rule"),
       label(`${number(formula / DEGREE)}°`, sx(formula / DEGREE) + 6, box.top + 12),
     ],
-    words: `From ${number(formula / DEGREE)}° on the hill asks for less than d₀ gives. ` +
-      `${first === null ? "Every step has a force." : `The first step without force comes at ${
-        number(first)}°.`}`,
+    words: `From ${number(formula / DEGREE)}° on the hill asks for less than d₀ gives; ` +
+      `${first === null ? "no step lacks a force." : `the first gap comes at ${number(first)}°.`}`,
     values: { formula: formula / DEGREE, first, share },
   };
 }
