@@ -12,22 +12,24 @@ TEXT = (ROOT / "README.md").read_text("utf-8")
 
 
 def set_up(system):
-    """The two lines of pip, windows or uv in the block below "Run it"."""
+    """The two lines of pip, windows or uv in the block below "Installation and first run"."""
     heading = {"pip": "Linux", "windows": "Windows", "uv": "anywhere with uv"}[system]
-    block = TEXT.partition("\n## Run it\n")[2].partition("\n## ")[0]
+    block = TEXT.partition("\n## Installation and first run\n")[2].partition("\n## ")[0]
     lines = re.search(rf"^# {heading}.*\n(.+)\n(.+)\n(?=#|```)", block, re.M)
     if not lines:
-        raise SystemExit(f"README.md, Run it: two lines are expected below # {heading}")
+        raise SystemExit(
+            f"README.md, Installation and first run: two lines are expected below # {heading}"
+        )
     return lines.groups()
 
 
 def rows():
-    """[(what, the pip command, the uv command)] of the table below "What to do next"."""
-    table = TEXT.partition("\n## What to do next\n")[2].partition("\n| --- | --- | --- |\n")[2]
+    """[(what, the pip command, the uv command)] of the table below "Learning path"."""
+    table = TEXT.partition("\n## Learning path\n")[2].partition("\n| --- | --- | --- |\n")[2]
     lines = table.split("\n\n")[0].splitlines()
     cells = [re.fullmatch(r"\| (.+?) \| `(.+?)` \| `(.+?)` \|", line) for line in lines]
     if len(cells) < 5 or not all(cells):
-        raise SystemExit(f"README.md, What to do next: five rows or more of two commands; {lines}")
+        raise SystemExit(f"README.md, Learning path: five rows or more of two commands; {lines}")
     return [each.groups() for each in cells]
 
 

@@ -52,7 +52,7 @@ def fresh(folder):
 
 
 def row(folder, what, command):
-    """One row of "What to do next", with its expected exit status; page and notebook are kept."""
+    """One row of "Learning path", with its expected exit status; page and notebook are kept."""
     for start in OPENS_A_WINDOW:
         command = command.replace(start, f"{start}rrd verify ")
     check(what, command, folder, 2 if "/ex1_" in command else 0)  # a bet that is not made yet

@@ -1,0 +1,130 @@
+"""README's table of symptoms: commands show and cure what they say; MuJoCo's settings do, too."""
+
+import math
+import re
+import shlex
+
+import numpy as np
+import pytest
+
+import contact
+from curriculum.tests.helpers import ROOT
+
+README = (ROOT / "README.md").read_text("utf-8")
+TABLE = README.partition("\n## Symptoms\n")[2].partition("\n## ")[0]
+ROWS = [row.split(" | ") for row in re.findall(r"^\| (.+) \|$", TABLE, re.M)[2:]]
+SHOWN = re.compile(r"`python contact\.py (.+?)`: (?:(\w+) )?(\S+/\S+) (-?[\d.]+)")  # a column
+ENDED = re.compile(r"`python contact\.py (.+?)`: ()((?:EXPLODED|rests|through).*)()")  # or how
+CELLS = [(row[0], cell) for row in ROWS for cell in row[2:4]]
+COSINE = math.cos(0.1)
+BALL, BOX = 'type="sphere" size="0.1"', 'type="box" size="0.1 0.1 0.1"'
+
+
+def test_nine_symptoms_have_a_cause_two_commands_and_a_setting_each():
+    assert len(ROWS) == 9 and all(len(row) == 5 for row in ROWS)
+    assert all(read(cell) for _, cell in CELLS), "a command, then a column and its value"
+
+
+def read(cell):
+    """(flags, model, column, value) of a cell; or (flags, "", how the run ended, "")."""
+    found = SHOWN.fullmatch(cell) or ENDED.fullmatch(cell)
+    return found and found.groups()
+
+
+@pytest.mark.parametrize("symptom, cell", CELLS, ids=lambda each: each[:20])
+def test_a_command_prints_what_the_row_says(symptom, cell, tmp_path, capsys):
+    flags, model, column, value = read(cell)
+    argv = [*shlex.split(flags), "--no-rerun", "--out", str(tmp_path)]
+    assert contact.main(argv) == 0
+    printed = capsys.readouterr().out
+    model = model or contact.parse_flags(argv).contact
+    if not value:
+        assert re.search(rf"^state: {column}.*: {model}$", printed, re.M)
+        return
+    titles, *rows = (line.split() for line in printed.splitlines() if line.strip())
+    titles = next((line for line in rows if column in line), [])
+    row = next((line[1:] for line in rows if line[0] == model), [])
+    found = float(row[titles.index(column)]) if column in titles else 0.0  # of zeros is left out
+    assert found == pytest.approx(float(value), rel=0.05, abs=1e-9)
+
+
+def mujoco_model(shape=BALL, body="", dt=0.002, solref="0.02 1", solimp="0.9 0.95 0.001", **more):
+    """MuJoCo's model of one ball or box of 1 kg over the floor, and its data. z: its height [m]."""
+    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed: the extra `bench`")
+    z, mass, flag = more.pop("z", 1.0), more.pop("mass", 1.0), more.pop("flag", "")
+    options = "".join(f' {name}="{text}"' for name, text in more.items())
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{dt}"{options}>{flag}</option><default><geom condim="1" '
+        f'solref="{solref}" solimp="{solimp}"/></default><worldbody>'
+        f'<geom type="plane" size="0 0 1"/>{body}<body pos="0 0 {z}"><freejoint/>'
+        f'<geom {shape} mass="{mass}"/></body></worldbody></mujoco>'
+    )
+    return mujoco, model, mujoco.MjData(model)
+
+
+def setting(name, part=0):
+    """The value of an attribute that the README's column of MuJoCo names."""
+    return re.findall(rf'{name}="([^"]+)"', " ".join(row[4] for row in ROWS))[part]
+
+
+@pytest.mark.parametrize("e", (0.3, 0.5, 0.7, 0.9, 1.0))
+@pytest.mark.parametrize("integrator", ("Euler", "implicitfast"))
+@pytest.mark.parametrize("shape", (BALL, BOX))
+def test_mujoco_bounces_with_the_restitution_that_the_setting_names(shape, integrator, e):
+    for dt in (0.002, 0.0005):
+        text = re.search(r'solref="(0 -\(1\+e\)/dt)" solimp="([^"]+)"', README)
+        damping = text[1].replace("-(1+e)/dt", repr(-(1.0 + e) / dt))
+        how = dict(solref=damping, solimp=text[2], integrator=integrator, dt=dt)
+        mujoco, model, data = mujoco_model(shape, **how)
+        before = 0.0
+        while data.qvel[2] <= 0.0:
+            before = data.qvel[2]
+            mujoco.mj_step(model, data)
+        assert data.qvel[2] / -before == pytest.approx(e, abs=2e-4)
+
+
+def test_what_restitution_costs_in_mujoco_is_a_slow_sinking():
+    how = dict(solref=f"0 {-1.7 / 0.002}", solimp="0.9999 0.9999 0.001", z=0.1)
+    mujoco, model, data = mujoco_model(**how)
+    mujoco.mj_step(model, data, nstep=30_000)  # a minute
+    assert 0.1 - data.qpos[2] == pytest.approx(1e-4, rel=0.2)
+
+
+@pytest.mark.parametrize("mass", (1.0, 100.0))
+def test_mujocos_depth_at_rest_depends_on_its_settings_and_not_on_the_mass(mass):
+    for how in ({}, {"solref": setting("solref")}, {"solimp": setting("solimp")}):
+        mujoco, model, data = mujoco_model(mass=mass, z=0.1, **how)
+        mujoco.mj_step(model, data, nstep=3000)
+        depth, solref, solimp = 0.1 - data.qpos[2], model.geom_solref[0], model.geom_solimp[0]
+        d = contact.impedance(depth, tuple(solimp))
+        K = 1.0 / (solimp[1] * solref[0] * solref[1]) ** 2
+        assert (1.0 - d) * 9.81 == pytest.approx(d * d * K * depth, rel=1e-4)
+        assert depth == pytest.approx(3.67e-4, rel=0.01) if not how else depth < 1.2e-4
+
+
+def test_mujoco_finds_a_fast_contact_by_the_flag_speculative():
+    lowest = []
+    for flag in ("", re.search(r"`(<flag speculative=.+?/>)`", README)[1]):
+        mujoco, model, data = mujoco_model(dt=0.064, flag=flag)
+        heights = []
+        for _ in range(60):
+            mujoco.mj_step(model, data)
+            heights.append(data.qpos[2])
+        lowest.append(min(heights))
+    assert lowest[0] < 0.0 < 0.08 < lowest[1], "its centre comes below the floor, or not"
+
+
+def test_mujocos_force_flickers_and_the_setting_that_begins_at_0_cures_it():
+    found = []
+    for solimp in ("0.9 0.95 0.001", setting("solimp", -1)):
+        hill = '<geom type="sphere" size="20" pos="0 0 20"/>'
+        mujoco, model, data = mujoco_model(body=hill, solimp=solimp)
+        data.qpos[:3] = 20.1 * math.sin(0.1), 0.0, 20.0 + 20.1 * COSINE
+        forces, angles = [], []
+        for _ in range(1900):
+            mujoco.mj_step(model, data)
+            forces.append(sum(data.efc_force[: data.nefc]))
+            angles.append(math.atan2(data.qpos[0], data.qpos[2] - 20.0))
+        late, truth = slice(1500, None), 9.81 * (3.0 * np.cos(angles) - 2.0 * COSINE)
+        found.append(np.std((np.array(forces) - truth)[late]) / truth[late].mean())
+    assert found[0] > 0.25 and found[1] < 0.02
