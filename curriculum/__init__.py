@@ -5,6 +5,7 @@ reads on (`| head -1`); and what a disk, a folder or a file refuses is one line,
 """
 
 import atexit
+import builtins
 import contextlib
 import glob
 import os
@@ -59,7 +60,8 @@ def print_the_rest():
 
 # "-m" stands there while the module is looked for; our scripts lie in two folders
 _main = os.path.realpath(getattr(sys.modules["__main__"], "__file__", None) or "/")
-if sys.argv[0] == "-m" or os.path.dirname(_main) in (HOME, os.path.join(HOME, "exercises")):
+_ours = sys.argv[0] == "-m" or os.path.dirname(_main) in (HOME, os.path.join(HOME, "exercises"))
+if _ours and not hasattr(builtins, "__IPYTHON__"):  # whose %run goes on after a script
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
     sys.excepthook = refused

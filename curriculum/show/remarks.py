@@ -1,4 +1,5 @@
-"""What a run's table does not say: flags without effect, what exact did, and what to do next."""
+"""What a run's table does not say: flags without effect, what exact did, soft's contact as MuJoCo
+writes it, and what to do next."""
 
 import os
 import sys
@@ -27,18 +28,18 @@ def print_unused(args) -> None:
             print(f"--{knob} is for {' and '.join(owners)}, and has no effect here")
 
 
-def print_exact(runs: dict[str, contact.Run], scene: contact.Scene) -> None:
-    """Print what exact did, where no table says it: overlaps at the start; of it alone, landings.
-
-    runs: {model: Run}.
-    """
-    if "exact" not in runs:
-        return
-    moved = np.abs(runs["exact"].q[0] - scene.q0).max() / scene.radius.min()
-    if moved > 1e-9:
-        print(f"exact: balls overlap at the start, and were moved apart by up to {moved:.3g} r")
-    if len(runs) == 1 and np.isfinite(scene.mass).all():
+def print_alone(runs: dict[str, contact.Run], scene: contact.Scene, dt, settings) -> None:
+    """Print what exact or soft did, where no table says it. runs: {model: Run}."""
+    if "exact" in runs:
+        moved = np.abs(runs["exact"].q[0] - scene.q0).max() / scene.radius.min()
+        if moved > 1e-9:
+            print(f"exact: balls overlap at the start, and were moved apart by up to {moved:.3g} r")
+    if list(runs) == ["exact"] and np.isfinite(scene.mass).all():
         print(*landing(runs["exact"], scene), sep="\n")
+    if list(runs) == ["soft"]:
+        knobs = contact.soft_defaults(scene.restitution, dt, settings.solref, settings.solimp)
+        solref, solimp = (" ".join(map(repr, values)) for values in knobs)
+        print(f'in MJCF: <option timestep="{dt!r}"/>, <geom solref="{solref}" solimp="{solimp}"/>')
 
 
 def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
