@@ -14,7 +14,7 @@ from curriculum.commands import Parser, number
 
 G = -contact.GRAVITY  # m/s^2
 FALLS = np.linspace(0.88, 0.92, 40)  # m: how far a ball falls; a landing depends on it
-START = math.radians(6.0)  # from the top of the hill, where the sliding ball starts
+START = 0.1  # rad from the top of the hill: where the sliding ball starts
 FLAGS = {  # what the command begins with, lowest and highest value
     "mass": (1.0, 1e-3, 1e3), "stiffness": (1e4, 1.0, 1e9), "damping": (80.0, 0.0, 1e6),
     "dt": (0.002, 1e-4, 1.0), "bodies": (3, 1, 30), "radius": (contact.RADIUS, 1e-3, 10.0),
@@ -86,16 +86,20 @@ def quality(model, scene, dt, seconds, **knobs):
     return contact.contact_quality(made, scene, dt)
 
 
-def first_without_force(dt, start, **knobs):
-    """Return the angle [rad] of the first step in which soft does not push, or pi if none."""
-    far, force = contact.HILL + contact.RADIUS, []
-    x, y = [0.0, far * math.sin(start)], [contact.HILL, contact.HILL + far * math.cos(start)]
-    scene = contact.scene_of(x, y, [math.inf, 1.0], [contact.HILL, contact.RADIUS])
+def first_without_force(dt, start, hill=contact.HILL, **knobs):
+    """Return the angle [rad] of the first step in which soft does not push, or pi if none.
+
+    The hill has a radius of `hill` [m]; a ball slides for about as long as it takes to leave it.
+    """
+    far, force = hill + contact.RADIUS, []
+    x, y = [0.0, far * math.sin(start)], [hill, hill + far * math.cos(start)]
+    scene = contact.scene_of(x, y, [math.inf, 1.0], [hill, contact.RADIUS])
     step = contact.step_of("soft", scene, dt, contact.Settings(**knobs))
     note = lambda k, contacts: force.append(sum(c.lam for c in contacts))  # noqa: E731
-    q = contact.simulate(step, scene, dt, round(4.0 / dt), on_step=note).q[:-1, :, 1]
+    steps = round(4.0 * math.sqrt(hill / contact.HILL) / dt)
+    q = contact.simulate(step, scene, dt, steps, on_step=note).q[:-1, :, 1]
     off = np.flatnonzero(np.array(force[10:]) == 0.0) + 10  # it begins on the surface, unpressed
-    return math.atan2(q[off[0], 0], q[off[0], 1] - contact.HILL) if len(off) else math.pi
+    return math.atan2(q[off[0], 0], q[off[0], 1] - hill) if len(off) else math.pi
 
 
 def compare(mass, stiffness, damping, dt, bodies, radius, baumgarte, iters):

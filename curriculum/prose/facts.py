@@ -138,14 +138,17 @@ def row():
 
 
 def flicker():
-    """Where soft's force first leaves a ball that slides off a hill of 20 m [degrees]."""
-    cured = predict.first_without_force(DT, predict.START, solimp=(1e-4, *contact.SOLIMP[1:]))
-    first = predict.first_without_force(DT, predict.START)
-    leaves = math.degrees(math.acos(2.0 / 3.0 * math.cos(predict.START)))
-    names = "first", "cured", "leaves", "start"
-    return dict(
-        zip(names, (*map(math.degrees, (first, cured)), leaves, math.degrees(predict.START)))
-    )
+    """Angles [degrees] of a ball that slides off a hill of 20 m, or of 1 m: its start, where soft's
+    force first leaves it, where that is with d0 = 0, and where it leaves the hill."""
+    first = partial(predict.first_without_force, DT, predict.START)
+    angles = {
+        "start": predict.START,
+        "small": first(hill=1.0),
+        "first": first(),
+        "cured": first(solimp=(1e-4, *contact.SOLIMP[1:])),
+        "leaves": math.acos(2.0 / 3.0 * math.cos(predict.START)),
+    }
+    return {name: math.degrees(angle) for name, angle in angles.items()}
 
 
 def jump():
