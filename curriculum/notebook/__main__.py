@@ -92,8 +92,8 @@ def cells_of(text):
             break
         if kind in PLACES:
             cells.append(PLACES[kind](name))
-        if name in RUNS:
-            cells.append(new_code_cell(RUNS[name]))
+        if (slot := name.partition("?")[0]) in RUNS:
+            cells.append(new_code_cell(RUNS[slot]))
         if kind == "heading" or kind in ("text", "code") and cells[-1].cell_type == "code":
             cells.append(new_markdown_cell())
         if kind in ("heading", "text", "code"):
