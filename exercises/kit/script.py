@@ -67,6 +67,8 @@ def said_of(error):
     words, line = f"{type(error).__name__}: {error}", ""
     if isinstance(error, AttributeError) and error.name in RENAMED:
         words += f"; its name is now {RENAMED[error.name]}"
+    if isinstance(error, TypeError) and "'method'" in words:
+        words += "; a function is called with ()"
     for frame, number in traceback.walk_tb(error.__traceback__):
         file = frame.f_code.co_filename
         if re.fullmatch(r"ex\d+\w*\.py", Path(file).name):
