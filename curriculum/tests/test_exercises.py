@@ -182,7 +182,7 @@ TYPED = [  # an exercise or a function of it, what a learner writes, what is sai
     ("penalty_normal_force", "f = stiffness * depth - damping * v_n; return f * (f > 0)", "right"),
     ("solve_contacts", BACK + VISIT, "right"),
     ("solve_contacts", SLOW + VISIT, "wrong: each contact is finished before the next one is"),
-    ("solve_contacts", BACK + "c.v_n - 1", "wrong: 'method' and 'int'; a function is called with ()"),
+    ("solve_contacts", BACK + "c.v_n - 1", "wrong: 'int'; a function is called with ()"),
     ("solve_contacts", BACK + "c.push(1)", "wrong: its name is now apply_impulse\n  line LINE: c."),
     ("step_matrix", "return [1, 2, 3]", "wrong: how many numbers: got 3, expected 2 rows of 2"),
     ("step_matrix", "return [[1, -dt], [dt * stiffness / mass, 1]]",  # the search is not blamed
