@@ -13,14 +13,15 @@ import sys
 import types
 from importlib.metadata import PackageNotFoundError, version
 
+from contact import MissingPackage
 from curriculum.commands import ROOT, to_install, write_atomic
 
 try:
     NUMBA = version("numba")  # itself it is imported where loops are loaded: that takes a while
 except PackageNotFoundError:
-    raise ImportError(to_install("numba")) from None  # without a name: it says itself what it needs
+    raise MissingPackage(to_install("numba")) from None
 if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":  # contact.py's own loops are faster
-    raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
+    raise MissingPackage("numba is told not to compile (NUMBA_DISABLE_JIT)")
 
 FOLDER = ROOT / ".cache" / "loops"
 SECONDS = 8.0  # about what it takes to compile the loops of one model

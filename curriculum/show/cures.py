@@ -34,7 +34,8 @@ def find_fault(model, job, runs, quality) -> tuple[str, str]:
     """Return what contact.find_cause does, and of a run without a fault: a sag, sink, flicker."""
     (scene, dt, _, _, settings), row, law = job, quality[model], ""
     kind, text = contact.find_cause(model, runs[model], scene, dt, settings, row)
-    overlap = row["rest_penetration_frac"] if row["rests"] and not kind else 0.0
+    lies = not kind and (row["rests"] or "settles" in text)
+    overlap = row["rest_penetration_frac"] if lies else 0.0
     if overlap > 1e-3 and model in ("lcp", "leapfrog"):
         if model == "lcp":
             law = ": a stack sags by (M / m) g dt^2 / (beta K)"
