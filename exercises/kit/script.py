@@ -28,8 +28,9 @@ def main(started):
     process of its own, and nowhere else."""
     if started != "__main__":
         return
-    for stream in filter(None, (sys.stdout, sys.stderr)):
-        stream.reconfigure(errors="backslashreplace")  # a path may not fit the terminal's encoding
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # a path may not fit the terminal's encoding
+            stream.reconfigure(errors="backslashreplace")
     file = Path(sys.modules[started].__file__)
     name = file.stem.partition("_")[0]  # ex1 of ex1_predict_contact.py
     parser = Parser(description=f"Exercise {name}.")
