@@ -105,9 +105,6 @@ def judged(name, file):
     return "wrong", f"{what} {ended}, in {near(str(file))}, line {line}"
 
 
-# Which exercise comes next: any command may print it, and it needs no numpy
-
-
 def start(file):
     """Return the line that starts an exercise here, as README has it; in a notebook a cell's."""
     by = ("uv", "run") if "UV" in os.environ else (sys.executable,)
