@@ -17,13 +17,13 @@ def add_cures(notes: dict, job: tuple, runs: dict, quality: dict, args=None) -> 
 
     job: scene, dt, steps, models, settings; args: the command line that asked for them.
     """
-    tried: dict = {}  # a cure that several models share is run once
-    for model in runs:
-        kind, text = find_fault(model, job, runs, quality)
+    faults = {model: find_fault(model, job, runs, quality) for model in runs}
+    tried = {model: {"contact": model} for model in runs if not faults[model][0]}
+    for model, (kind, text) in faults.items():
         notes[model] = [f"because: {text}"] if text else []
         for changes in cures(kind, model, *job) if kind else ():
-            key = changes.get("contact", model), *changes.items()
-            if key not in tried:
+            key = changes.get("contact") or (model, *changes.items())
+            if key not in tried:  # several models may share a cure
                 tried[key] = cured(changes, model, kind, job)
             if tried[key]:
                 notes[model].append(f"try: {typed(args, model, kind, tried[key])}")
