@@ -34,10 +34,11 @@ GATE = "python -m curriculum.gate"
 FIGURES, META, TEXTS = "curriculum/page/figures/*.js", "meta.yaml", ("README.md", "CONTRIBUTING.md")
 KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line each
 CAPTION = re.compile(r"^( *)(?:title|caption):.*\n(?:\1 +.*\n)*", re.MULTILINE)
-STRING = re.compile(r"\"[^\"]*\"|`[^`]*`")  # of a caption, once what it computes is blank
+STRING = re.compile(r"\"[^\"]*\"|`[^`]*`")
 COMPUTED = re.compile(r"\$\{[^{}]*\}")
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
-NAMED = re.compile(r"--[a-z][\w-]*|(?<![\w/.-])[A-Za-z]\w*_\w+|^[A-Za-z_]\w+$|\b[a-z]\w+(?=\()")
+NAMED = re.compile(r"--[a-z][\w-]*|(?<![\w/.-])[A-Za-z]\w*_\w+|\b[a-z]\w+(?=\()")
+WORD = re.compile(r"^[A-Za-z_]\w+$")  # alone it is a name in a passage, and elsewhere may be none
 NO_CODE = re.compile(r'"""(?s:.*?)"""|#.*')
 # Where numbers may be typed in text: code and formulas, references, links, numbers of headings and
 # lists, and what follows some words.
@@ -70,6 +71,7 @@ def passages():
         yield Part("opening", Path(file).name, 1, DOCSTRING.match(read_text(file))[0], file)
     for file in files(FIGURES):
         captions = "\n".join(caption[0] for caption in CAPTION.finditer(read_text(file)))
+        captions = STRING.sub(lambda m: m[0] if m[0][0] == '"' else f'"{m[0][1:-1]}"', captions)
         yield Part("figure", f"figures/{Path(file).stem}", 1, captions, file)
 
 
@@ -165,7 +167,8 @@ class Gate:
         texts = [part._replace(file=file) for file in TEXTS for part in split(read_text(file))]
         for each in (*self.passages.values(), *(part for part in texts if part.kind in PROSE)):
             for match in SPAN.finditer(each.text):
-                for name in {*NAMED.findall(match[1])} - known:
+                named = NAMED.findall(match[1]) + WORD.findall(match[1]) * (each.name in self.names)
+                for name in {*named} - known:
                     repair = f"name what exists, or list it in {META}, reading"
                     self.say(each.file, each.line_of(match), f"`{name}` is in no code", repair)
         for name in reading.get("names", ()):

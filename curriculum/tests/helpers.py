@@ -62,6 +62,7 @@ def shorten(folder, slots):
     shown = [f"\n```\n[include-by-region: {each.source}]\n```\n" for each in read_all().values()]
     text = SHORT.replace("SLOTS", slots) + "".join(shown)
     (folder / "curriculum/prose/chapter.md").write_text(text, "utf-8")
+    (folder / "README.md").write_text("# Contact\n", "utf-8")
     (folder / "meta.yaml").write_text("runs:\n  drop: []\n", "utf-8")
     (folder / "wallclock.csv").write_text(
         "chapter,tier,wallclock_min,config_hash,commit,date,status\nch3.5-contact,t4,,,,,PENDING\n"
@@ -74,9 +75,8 @@ def gate(folder, *flags):
 
 
 def review(folder):
-    """Run the gate, and record as reviewed what it asks for; return the names."""
-    *_, last = gate(folder).stdout.splitlines()
-    names = shlex.split(last.partition(" --read ")[2])
-    done = gate(folder, "--read", *names)
-    assert names and done.returncode == 0, last + done.stderr
-    return names
+    """Run the gate, and record as reviewed what it asks for; return the lines of the problems."""
+    *lines, _, every = gate(folder).stdout.splitlines()
+    done = gate(folder, "--read", *shlex.split(every.partition(" --read ")[2]))
+    assert done.returncode == 0, every + done.stderr
+    return lines

@@ -14,7 +14,7 @@ RATIO = "test_gate.py -k test_a_ratio_in_words"
 FAULTS = [
     (GATE, r"[\d¼½¾⅓⅔⅛]", r"[\d]", ERRORS),
     (GATE, r"|\]\([^)]*\)|", r"|\[[^]]*\]\([^)]*\)|", ERRORS),
-    (GATE, r"|^[A-Za-z_]\w+$", "", ERRORS),
+    (GATE, " + WORD.findall(match[1])", "", ERRORS),
     (GATE, r"|\b[a-z]\w+(?=\()", "", ERRORS),
     (GATE, 'NO_CODE.sub("", read_text(file))', "read_text(file)", ERRORS),
     (GATE, "while COMPUTED.search(text):", "while False:", ERRORS),
