@@ -15,11 +15,8 @@ from curriculum.commands import Parser, number
 G = -contact.GRAVITY  # m/s^2
 FALLS = np.linspace(0.88, 0.92, 40)  # m: how far a ball falls; a landing depends on it
 START = 0.1  # rad from the top of the hill: where the sliding ball starts
-FLAGS = {  # what the command begins with, lowest and highest value
-    "mass": (1.0, 1e-3, 1e3), "stiffness": (1e4, 1.0, 1e9), "damping": (80.0, 0.0, 1e6),
-    "dt": (0.002, 1e-4, 1.0), "bodies": (3, 1, 30), "radius": (contact.RADIUS, 1e-3, 10.0),
-    "baumgarte": (contact.Settings().baumgarte, 0.01, 1.0), "iters": (1, 1, 100),
-}  # fmt: skip
+USUAL = dict(mass=1.0, stiffness=1e4, damping=80.0, dt=0.002, bodies=3, radius=contact.RADIUS)
+USUAL |= {"baumgarte": contact.Settings().baumgarte, "iters": 1}  # what the command begins with
 HOLDS = """\
 dive: of a step well below the critical one; of lcp at worst. sag: iters 1, or up to bodies^2 / 40
 flicker: later in a run, since the ball must first come out of its depth. The others: always"""
@@ -119,22 +116,16 @@ def compare(mass, stiffness, damping, dt, bodies, radius, baumgarte, iters):
     steps = [limit * (1.0 + 0.01 * percent) for percent in range(-5, 6)]
     moving = (each for each in steps if not spring(column, each, 4000 * each)["rests"])
     deep = highest["max_penetration_frac"] * radius
-    lengths = {
-        "sink": (sink(mass, stiffness), drop["rest_penetration_frac"]),
-        "dive of penalty": (
-            dive_of_penalty(speed, mass, stiffness, damping), drop["max_penetration_frac"]
-        ),
-        "dive of lcp": (
-            dive_of_lcp(speed, dt), max(each["max_penetration_frac"] for each in landings)
-        ),
-        "hop": (hop(deep, dt, baumgarte), highest["rebound_frac"]),
-        "sag": (
-            sag((bodies - 1) * mass, mass, dt, baumgarte, iters),
-            lcp(column, seconds=8.0)["rest_penetration_frac"],
-        ),
-    }  # fmt: skip
+    dives = dive_of_penalty(speed, mass, stiffness, damping), dive_of_lcp(speed, dt)
+    deepest = max(each["max_penetration_frac"] for each in landings)
+    sags = sag((bodies - 1) * mass, mass, dt, baumgarte, iters), lcp(column, seconds=8.0)
     angles = flicker(START, contact.SOLIMP[0]), first_without_force(dt, START)
-    return {error: (paper / radius, run, "r") for error, (paper, run) in lengths.items()} | {
+    return {
+        "sink": (sink(mass, stiffness) / radius, drop["rest_penetration_frac"], "r"),
+        "dive of penalty": (dives[0] / radius, drop["max_penetration_frac"], "r"),
+        "dive of lcp": (dives[1] / radius, deepest, "r"),
+        "hop": (hop(deep, dt, baumgarte) / radius, highest["rebound_frac"], "r"),
+        "sag": (sags[0] / radius, sags[1]["rest_penetration_frac"], "r"),
         "tremble": (limit, next(moving, math.inf), "s"),
         "flicker": (*map(math.degrees, angles), "degrees"),
     }
@@ -143,8 +134,9 @@ def compare(mass, stiffness, damping, dt, bodies, radius, baumgarte, iters):
 def main(argv=None):
     """Print the comparison. Returns the exit status."""
     parser = Parser(prog="python -m curriculum.predict", description=__doc__)
-    for name, (usual, low, high) in FLAGS.items():
-        kind = partial(number, type(usual), low, high)
+    for name, usual in USUAL.items():
+        low = 1e-4 if type(usual) is float else 1  # s, m, ...; in smaller steps a run takes hours
+        kind = partial(number, type(usual), low, min(contact.LIMITS[name][2], 1e9))
         parser.add_argument(f"--{name}", type=kind, default=usual, help=f"({usual:g})")
     rows = compare(**vars(parser.parse_args(argv)))
     print(f"{'':<16}{'paper':>12}{'run':>12}")

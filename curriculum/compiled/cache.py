@@ -1,9 +1,8 @@
-"""Loops compiled by numba, kept on disk, and taken only where that pays.
+"""Compile loops by numba, and keep them on disk, in .cache/loops beside contact.py.
 
 The source of the loops is a file in a folder of its own, named by the hash of all that decides what
-is compiled. So what was compiled for another contact.py is never taken, two processes may write at
-once, and whatever stands in the way of the folder (read-only, full, cut, no home) costs the keeping
-or the compiling, and never the run: the plain loops do it.
+is compiled. So loops of another contact.py are never loaded, two processes may write at once, and a
+folder that cannot be used (read-only, full, cut, no home) costs the keeping, never the run.
 """
 
 import hashlib
@@ -13,58 +12,65 @@ import sys
 import types
 from importlib.metadata import PackageNotFoundError, version
 
+from contact import MissingPackage
 from curriculum.commands import ROOT, to_install, write_atomic
 
 try:
-    NUMBA = version("numba")  # itself it is imported where loops are loaded: that takes a while
+    NUMBA = version("numba")  # numba itself takes a while, so it is imported where loops are loaded
 except PackageNotFoundError:
-    raise ImportError(to_install("numba")) from None  # without a name: it says itself what it needs
+    raise MissingPackage(to_install("numba")) from None
 if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":  # contact.py's own loops are faster
-    raise ImportError("numba is told not to compile (NUMBA_DISABLE_JIT)")
+    raise MissingPackage("numba is told not to compile (NUMBA_DISABLE_JIT)")
 
 FOLDER = ROOT / ".cache" / "loops"
-SECONDS = 8.0  # about what it takes to compile the loops of one model
+SECONDS_A_LINE = 0.013  # of CPU: what compiling takes by the lines of the source, measured
 
 
 class Loops:
-    """The functions of a source, to be compiled, each with numba's options."""
+    """A module of loops, given as source, that numba compiles; options are numba's."""
 
     def __init__(self, name: str, source: str, **options):
         decided_by = f"{source}{options}{sys.version}{NUMBA}"
         self.name = f"{name}_{hashlib.sha256(decided_by.encode()).hexdigest()[:16]}"
         self.source, self.options = source, options
+        self.seconds = SECONDS_A_LINE * source.count("\n")
         self.folder = FOLDER / self.name
-        self.kept = self.folder / "kept"  # stands there once all is compiled and on disk
+        self.complete = self.folder / "complete"  # a file, once all is compiled and on disk
         self.module: types.ModuleType | None = None
 
     def pays(self, seconds: float) -> bool:
-        """Whether to take them for a run that plain loops would need so many seconds for."""
-        return self.module is not None or self.kept.exists() or seconds > SECONDS
+        """Return whether to use them for a run that takes so many seconds without them.
+
+        It does where they are loaded or on disk, or compiled sooner than the run is done.
+        """
+        ready = self.module is not None or self.complete.exists()
+        return ready or seconds > self.seconds
 
     def load(self, examples: dict) -> types.ModuleType:
-        """The module, compiled for {function that Python calls: arguments like these}.
+        """Return the module, compiled for {function that Python calls: arguments like these}.
 
-        Slow the first time. Raises ImportError where numba cannot be imported.
+        Says on stderr that it compiles. Raises ImportError where numba is missing.
         """
         path = self.folder / f"{self.name}.py"
         if self.module is None:
-            if not self.kept.exists() and sys.stderr and sys.stderr.isatty():
-                print(f"compiling {self.name.rpartition('_')[0]}, once ...", file=sys.stderr)
+            if not self.complete.exists() and sys.stderr:
+                name = self.name.rpartition("_")[0]
+                print(f"compiling {name}, once ({self.seconds:.0f} s) ...", file=sys.stderr)
             try:
                 if not path.exists():
                     write_atomic(path, self.source)
                 self.module = self.compile(examples, path)
-                if not self.kept.exists():
-                    write_atomic(self.kept, "")
+                if not self.complete.exists():
+                    write_atomic(self.complete, "")
             except ImportError:
                 raise
-            except Exception:  # numba's own, pickle's, a full disk: forget what is kept
+            except Exception:  # numba's own, pickle's, a full disk: forget what is on disk
                 shutil.rmtree(self.folder, ignore_errors=True)
                 self.module = self.module or self.compile(examples)
         return self.module
 
     def compile(self, examples, path=None) -> types.ModuleType:
-        """The module with its functions compiled, kept beside `path` if there is one."""
+        """Return the module with its functions compiled, kept beside `path` if there is one."""
         import numba
 
         module = types.ModuleType(self.name)

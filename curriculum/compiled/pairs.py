@@ -1,6 +1,7 @@
-"""Which balls are near, and the smallest gap: loops that know no model, so compiled once for all.
+"""The broad phase: loops that list near pairs and find the smallest gap, compiled for all models.
 
-q (2, N) are positions [m], radius (N,), pairs (2, M).
+Positions q (2, N) and a cutoff are in m, radius is (N,), pairs (3, M): first ball < second, and a
+row for the keys of a sort. No model stands here, so these loops are compiled once.
 """
 
 import math
@@ -8,141 +9,154 @@ import math
 import numpy as np
 
 
-def in_order(keys):
-    """The rows of keys (N,), none of them NaN, by size (Shell 1959)."""
-    order, step = np.arange(len(keys)), len(keys)
-    while step > 1:
-        step = max(1, step * 4 // 9)
-        for k in range(step, len(keys)):
-            row, at = order[k], k
-            while at >= step and keys[order[at - step]] > keys[row]:
-                order[at] = order[at - step]
-                at -= step
-            order[at] = row
-    return order
+def list_pairs(q, radius, cutoff, order):
+    """Return the pairs of balls whose gap is at most the cutoff, by first, then by second ball.
 
-
-def sort_pairs(pairs, keys, most):
-    """The pairs by keys (M,), whole numbers below `most`; those of one key stay as they stand."""
-    place, found = np.zeros(most + 1, np.int64), np.empty((2, len(keys)), np.uint32)
-    for key in keys:
-        place[key + 1] += 1
-    for k in range(most):
-        place[k + 1] += place[k]
-    for k in range(len(keys)):
-        found[0, place[keys[k]]], found[1, place[keys[k]]] = pairs[0, k], pairs[1, k]
-        place[keys[k]] += 1
-    return found
-
-
-def list_pairs(q, radius, reach):
-    """The pairs (2, M) of balls whose gap is at most `reach` [m] now: first < second, in order.
-
-    Near balls are found by their shadows on the axis of the wider spread. A shadow is as long as
-    its own ball is wide, so one large ball costs no more than itself; above is room for `reach` and
-    for rounding. A ball with a position that is not finite is in no pair: it touches nothing.
+    Sort and sweep (Baraff 1992): each ball covers an interval on the axis of the wider spread, and
+    only balls whose intervals overlap are compared. An interval is as long as its own ball is wide,
+    so one large ball costs no more than itself; above is room for the cutoff and for rounding.
+    order (N,): that of the last call is nearly right, so it is soon sorted, in place. A ball whose
+    position is not finite is in no pair.
     """
-    x, y, count, size, reach = q[0], q[1], len(radius), 0, (1.0 + 1e-9) * reach
-    place = y if spread(y) > spread(x) else x
-    low, high, pairs = np.empty(count), np.empty(count), np.empty((2, 4 * count), np.uint32)
+    count, axis = len(radius), 1 if spread(q[1]) > spread(q[0]) else 0
+    low, room, size = np.empty(count), 0, 4 * count
     for k in range(count):
-        low[k] = place[k] - radius[k] if abs(place[k]) < math.inf else math.inf
-        high[k] = place[k] + (1.0 + 1e-9) * radius[k] + 1e-15 * abs(place[k]) + reach
-    order = in_order(low)
-    for k in range(count):
-        i = order[k]
-        for at in range(k + 1, count):
-            j = order[at]
-            if low[j] > high[i]:
-                break
-            dx, dy = x[i] - x[j], y[i] - y[j]
-            limit = (1.0 + 1e-9) * (radius[i] + radius[j]) + reach
-            if dx * dx + dy * dy <= limit * limit:
-                if size == pairs.shape[1]:
-                    few, pairs = pairs, np.empty((2, 2 * size), np.uint32)
-                    for old in range(size):
-                        pairs[0, old], pairs[1, old] = few[0, old], few[1, old]
-                pairs[0, size], pairs[1, size] = min(i, j), max(i, j)
-                size += 1
-    pairs = sort_pairs(pairs, pairs[1, :size], count)
-    return sort_pairs(pairs, pairs[0], count)
+        place = q[axis, order[k]]
+        low[k] = place - radius[order[k]] if abs(place) < math.inf else math.inf
+    sort_balls(low, order)
+    pairs = np.empty((3, 0), np.uint32)
+    while size > room:  # once, and again where there are more than expected
+        room, size, pairs = size, 0, np.empty((3, size), np.uint32)
+        for k in range(count):
+            i = order[k]
+            x, y, reach = q[0, i], q[1, i], (1.0 + 1e-9) * (radius[i] + cutoff)
+            high = q[axis, i] + reach + 1e-15 * abs(q[axis, i])
+            for at in range(k + 1, count):
+                if low[at] > high:
+                    break
+                j = order[at]
+                dx, dy, limit = x - q[0, j], y - q[1, j], reach + (1.0 + 1e-9) * radius[j]
+                if dx * dx + dy * dy <= limit * limit:
+                    if size < room:
+                        pairs[0, size], pairs[1, size] = (i, j) if i < j else (j, i)
+                    size += 1
+    pairs = sort_pairs(pairs, pairs[1], size, count)
+    return sort_pairs(pairs, pairs[0], size, count)
 
 
 def spread(x):
-    """How far apart the outermost are."""
+    """Return the distance [m] of the outermost two of x (N,)."""
     least = most = x[0]
     for each in x:
-        least, most = min(least, each), max(most, each)
+        least = each if each < least else least
+        most = each if each > most else most
     return most - least
 
 
-def spread_out(pairs, count):
-    """The pairs reordered so that neighbours share no ball: a processor overlaps their work.
+def sort_balls(keys, order):
+    """Sort keys (N,), none of them NaN, and the order (N,) along with them (Shell 1959)."""
+    step = len(keys)
+    while step > 1:
+        step = (4 * step + 5) // 9
+        for k in range(step, len(keys)):
+            key, ball, at = keys[k], order[k], k
+            while at >= step and keys[at - step] > key:
+                keys[at], order[at] = keys[at - step], order[at - step]
+                at -= step
+            keys[at], order[at] = key, ball
 
-    Pairs that share a ball keep their order, and what others do to each other's balls is nothing,
-    so no bit changes where sweeps alone read the contacts.
-    """
-    size = pairs.shape[1]
-    rounds = np.empty(size, np.uint32)
-    next_round = np.zeros(count, np.uint32)  # of each ball
+
+def sort_pairs(pairs, keys, size, most):
+    """Return the first `size` pairs, sorted by their keys, whole numbers below `most` (stable)."""
+    place, found = np.zeros(most + 1, np.int64), np.empty((3, size), np.uint32)
     for k in range(size):
-        i, j = pairs[0, k], pairs[1, k]
-        rounds[k] = max(next_round[i], next_round[j])
-        next_round[i] = next_round[j] = rounds[k] + 1
-    return sort_pairs(pairs, rounds, size)
+        place[keys[k] + 1] += 1
+    for k in range(most):
+        place[k + 1] += place[k]
+    for k in range(size):
+        at = place[keys[k]]
+        place[keys[k]] = at + 1
+        found[0, at], found[1, at] = pairs[0, k], pairs[1, k]
+    return found
 
 
-def find_gaps(q, radius, skin):
-    """The smallest gap to the floor or between two balls in each state q (S, 2, N).
+def spread_out(pairs, count):
+    """Reorder the pairs so that neighbours share no ball: a processor overlaps their work.
 
-    Pairs that are not listed were farther apart than `reach`, and may have come nearer by what two
-    balls have moved. Where that leaves it open which pair is nearest, they are listed anew, by
-    `skin` [m] farther.
+    Pairs that share a ball keep their order, and other pairs do not change each other's balls, so
+    no bit changes where only sweeps read the contacts.
     """
-    gaps, reach, listed = np.empty(len(q)), -math.inf, q[0]
-    order = in_order(q[0, 0])
-    pairs = np.empty((2, len(radius) - 1), np.uint32)
-    for k in range(len(radius) - 1):  # some, for a first bound
-        pairs[0, k], pairs[1, k] = order[k + 1], order[k]
+    next_round = np.zeros(count + 1, np.int64)  # of each ball
+    for k in range(pairs.shape[1]):
+        i, j = pairs[0, k], pairs[1, k]
+        pairs[2, k] = next_round[i] if next_round[i] > next_round[j] else next_round[j]
+        next_round[i] = next_round[j] = pairs[2, k] + 1
+    return sort_pairs(pairs, pairs[2], pairs.shape[1], pairs.shape[1])
+
+
+def largest_approach(q, listed):
+    """Return by how much [m] a gap may have shrunk since the balls were at `listed`.
+
+    It is the diagonal of the smallest box that holds all displacements: 0 where all fall alike. A
+    ball whose position is or was not finite has no displacement.
+    """
+    left, right, down, up = math.inf, -math.inf, math.inf, -math.inf
+    for i in range(listed.shape[1]):
+        dx, dy = q[0, i] - listed[0, i], q[1, i] - listed[1, i]
+        left, right = (dx if dx < left else left), (dx if dx > right else right)
+        down, up = (dy if dy < down else down), (dy if dy > up else up)
+    width, height = (right - left if left < right else 0.0), (up - down if down < up else 0.0)
+    return math.sqrt(width * width + height * height)
+
+
+def find_gaps(q, radius, skin, order, pairs):
+    """Return the smallest gap to the floor or between two balls in each state q (S, 2, N).
+
+    Pairs that are not listed had gaps above the cutoff. Where one may have become the smallest,
+    pairs are listed anew, to a cutoff that is wider by the skin [m] (Verlet 1967). Any `pairs` will
+    do at first.
+    """
+    gaps, cutoff, listed = np.empty(len(q)), -math.inf, q[0]
     for k in range(len(q)):
-        gap, moved = gap_of(q[k], radius, pairs), farthest_move(q[k], listed)
-        if not moved < math.inf:  # a gap may be no number, and then the smallest is none
+        if not is_finite(q[k]):  # a gap may be NaN, and then the smallest is
+            gaps[k] = math.inf
             for i in range(len(radius)):
+                gaps[k] = least(gaps[k], q[k, 1, i] - radius[i])
                 for j in range(i):
-                    gap = least(gap, gap_between(q[k], radius, i, j))
-        elif not gap < 0.999 * reach - 2.0 * moved:
-            reach, listed = max(gap, 0.0) + skin, q[k]
-            pairs = list_pairs(q[k], radius, reach)
-            gap = gap_of(q[k], radius, pairs)
-        gaps[k] = gap
+                    gaps[k] = least(gaps[k], gap_between(q[k], radius, i, j))
+            continue
+        gaps[k] = smallest_of(q[k], radius, pairs)
+        if not gaps[k] < 0.999 * cutoff - 1.001 * largest_approach(q[k], listed):
+            cutoff, listed = (gaps[k] if gaps[k] > 0.0 else 0.0) + skin, q[k]
+            pairs = list_pairs(q[k], radius, cutoff, order)
+            gaps[k] = smallest_of(q[k], radius, pairs)
     return gaps
 
 
-def farthest_move(q, listed):
-    """How far [m] the farthest ball has moved; inf or NaN where one was or is nowhere."""
-    farthest = 0.0
-    for k in range(q.shape[1]):
-        dx, dy = q[0, k] - listed[0, k], q[1, k] - listed[1, k]
-        farthest = -least(-farthest, -(dx * dx + dy * dy))
-    return math.sqrt(farthest)
+def is_finite(q):
+    """Return whether all positions are finite."""
+    for i in range(q.shape[1]):
+        if not (abs(q[0, i]) < math.inf and abs(q[1, i]) < math.inf):
+            return False
+    return True
 
 
-def gap_of(q, radius, pairs):
-    """The smallest gap to the floor or between two balls of `pairs` (2, M)."""
+def smallest_of(q, radius, pairs):
+    """Return the smallest gap [m] to the floor, or between two balls of the pairs."""
     gap = math.inf
-    for k in range(len(radius)):
-        gap = least(gap, q[1, k] - radius[k])
+    for i in range(len(radius)):
+        gap = least(gap, q[1, i] - radius[i])
     for k in range(pairs.shape[1]):
         gap = least(gap, gap_between(q, radius, pairs[0, k], pairs[1, k]))
     return gap
 
 
 def gap_between(q, radius, i, j):
-    """The gap between two balls."""
+    """Return the gap [m] between two balls."""
     dx, dy = q[0, i] - q[0, j], q[1, i] - q[1, j]
     return math.sqrt(dx * dx + dy * dy) - (radius[i] + radius[j])
 
 
 def least(first, second):
-    """The smaller of two numbers; NaN if one is."""
+    """Return the smaller of two numbers; NaN if one is."""
     return second if second < first or second != second else first

@@ -4,7 +4,6 @@ This text stands before the loops that to_loops makes, and both are compiled tog
 Balls and contacts are rows of tables; the last ball is the floor.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +14,8 @@ class World(NamedTuple):
 
     balls: np.ndarray  # the last is the floor
     contacts: np.ndarray
-    pairs: np.ndarray  # (2, M): balls that may touch in this step, in contact.py's order
-    pushed: np.ndarray  # (M, 2): rank and impulse of the last step's contacts, in their order
+    pairs: np.ndarray  # (3, M): balls that may touch in this step, in contact.py's order
+    impulses: np.ndarray  # (M, 2): rank and impulse of the last step's contacts, in their order
     count: np.ndarray  # type: ignore[assignment]  # how many contacts, and how many impulses
 
 
@@ -38,10 +37,10 @@ def warm_start(W, contacts, share):
     k, known = 0, W.count[1]
     for c in contacts:
         here = rank(W, c)
-        while k < known and W.pushed[k, 0] < here:
+        while k < known and W.impulses[k, 0] < here:
             k += 1
-        found = k < known and W.pushed[k, 0] == here
-        W.contacts[c].lam = share * (W.pushed[k, 1] if found else 0.0)
+        found = k < known and W.impulses[k, 0] == here
+        W.contacts[c].lam = share * (W.impulses[k, 1] if found else 0.0)
         contact_apply_impulse(W, c, W.contacts[c].lam)
 
 
@@ -55,50 +54,41 @@ def store_impulses(W, balls, contacts):
     """Keep the impulses for the next step."""
     W.count[1] = len(contacts)
     for k, c in enumerate(contacts):
-        W.pushed[k, 0], W.pushed[k, 1] = rank(W, c), W.contacts[c].lam
+        W.impulses[k, 0], W.impulses[k, 1] = rank(W, c), W.contacts[c].lam
 
 
-def farthest_move(table):
-    """How far [m] the farthest ball has moved since pairs were listed; 0 for one nowhere."""
-    farthest = 0.0
-    for ball in table[:-1]:
-        dx, dy = ball.x - ball.listed_x, ball.y - ball.listed_y
-        farthest = larger(farthest, dx * dx + dy * dy)
-    return math.sqrt(farthest)
+def take_steps(states, bits, W, balls, k, mark, marked, listed, cutoff, skip, knobs):
+    """Take steps from states[k] on, and write the states. Returns k, distance, repeats. It stops
 
-
-def take_steps(states, W, k, mark, marked, listed, fresh, skip, knobs):
-    """Take steps from states[k] on, and write the states; returns k, reach, again. It stops
-
-    before a step whose pairs are to be listed anew, to be seen from `reach` [m] > 0 (they had gaps
-    of at most `listed`; `fresh`: just now), with `skip` after one that gives again the state and
-    impulses at the mark, when the next mark is due, or at the end.
+    before a step that must detect gaps up to a `distance` [m] > 0 where the list of pairs may lack
+    one (they had gaps up to the cutoff when the balls were at `listed`); with `skip`, after one
+    that repeats the state and the impulses at the mark; when the next mark is due; or at the end.
     """
-    balls, table, pushed = np.arange(len(W.balls) - 1).astype(np.uint32), W.balls, W.pushed
-    while k < len(states) - 1:
-        reach = detection_distance(W, balls, knobs[0])  # no model looks farther
-        if not (fresh or farthest_move(table) <= 0.499 * (listed - reach)):
-            return k, reach, False  # two may have come so near
-        k, fresh = k + 1, False
+    distance, repeats = 0.0, False
+    while k < len(states) - 1 and k <= 64 + 1.25 * mark and not repeats:
+        distance = detection_distance(W, balls, knobs[0])  # no model looks farther
+        if largest_approach(states[k], listed) > 0.998 * (cutoff - distance):
+            break
+        k, distance = k + 1, 0.0
         W.count[0] = 0
         take_step(W, balls, *knobs)
         for i in balls:
-            ball = table[i]
+            ball = W.balls[i]
             states[k, 0, i], states[k, 1, i] = ball.x, ball.y
             states[k, 2, i], states[k, 3, i] = ball.vx, ball.vy
-        if skip and W.count[1] == len(marked) and same(states[k], states[mark]):
-            if same(pushed[: W.count[1]], marked):
-                return k, 0.0, True
-        if k > 64 + 1.25 * mark:
-            break
-    return k, 0.0, False
+        repeats = skip and is_repeated(W, bits, k, mark, marked)
+    return k, distance, repeats
 
 
-def same(numbers, others):
-    """Whether two tables of as many rows hold the same bits."""
-    numbers, others = numbers.view(np.int64), others.view(np.int64)
-    for k in range(numbers.shape[0]):
-        for i in range(numbers.shape[1]):
-            if numbers[k, i] != others[k, i]:
+def is_repeated(W, bits, k, mark, marked):
+    """Return whether states k and mark, and the impulses of now and then, are the same bits."""
+    if W.count[1] != len(marked):
+        return False
+    for row in range(bits.shape[1]):
+        for i in range(bits.shape[2]):
+            if bits[k, row, i] != bits[mark, row, i]:
                 return False
+    for c in range(len(marked)):  # no impulse is -0, and NaN is equal to nothing
+        if W.impulses[c, 0] != marked[c, 0] or W.impulses[c, 1] != marked[c, 1]:
+            return False
     return True

@@ -1,55 +1,58 @@
-"""The fast twin of contact.py: its own steps for many balls, as loops that numba compiles.
+"""Run many balls by compiled loops: the same bits as contact.py's own steps, sooner.
 
-The steps are contact.py's own source, turned from objects to rows of tables (to_loops.py), so a
-run has the same bits. What is written by hand is what many balls need beside (rows.py, pairs.py):
-near balls are found by their shadows on one axis, and listed for as long as no ball has moved far.
-Nothing may be rounded differently: no fast-math, no fused multiply-add.
+The steps are contact.py's source, turned from objects to rows of tables (to_loops.py). Written by
+hand is only what many balls need beside them: a list of near pairs that serves many steps
+(pairs.py), the impulses of the last step, and the loop over the steps (rows.py). cache.py compiles
+and keeps them. Nothing may be rounded differently: no fast-math, no fused multiply-add.
 """
 
 import math
 import re
 import sys
 from functools import cache
+from inspect import getsource
 from pathlib import Path
 
 import numpy as np
 
 import contact
-from curriculum.compiled import pairs as near
-from curriculum.compiled import rows, to_loops
+from curriculum.compiled import pairs, rows, to_loops
 from curriculum.compiled.cache import Loops
 
-STATES = 200_000  # positions of balls that are filled in one go, before progress() hears of it
+STATES = 200_000  # positions of balls that are filled in one go, before progress() is called
 _, _, BY_HAND = Path(rows.__file__).read_text("utf-8").partition("\n# What is compiled")
-BY_HAND = f"import math\nimport numpy as np\nfrom {rows.__name__} import World\n{BY_HAND}"
-NEAR = Loops("near", Path(near.__file__).read_text("utf-8"))
+IMPORTS = f"import math\nimport numpy as np\nfrom {rows.__name__} import World\n"
+PAIRS = Loops("pairs", Path(pairs.__file__).read_text("utf-8"))
 
 
 def loops_of(step: str) -> Loops:
-    """The loops of a step of contact.py, with its constants of now."""
-    return made(step, *(each for each in vars(contact).items() if type(each[1]) in (int, float)))
+    """Return the loops of a step of contact.py, with the values that its constants have now."""
+    return loops_with(
+        step, *(each for each in vars(contact).items() if type(each[1]) in (int, float))
+    )
 
 
 @cache
-def made(step, *constants) -> Loops:
-    """loops_of, made once for the same constants."""
+def loops_with(step, *constants) -> Loops:
+    """Return loops_of(step), made once for the same constants."""
     text = to_loops.loops(step)
-    if "def detection_distance(" not in text:  # it looks as far as the margin
+    if "def detection_distance(" not in text:  # it detects gaps up to the margin
         text += (
             f"\n\ndef detection_distance(W, balls, dt):\n    return {contact.CONTACT_MARGIN!r}\n"
         )
-    return Loops(step, f"{BY_HAND}\n\n{text}\n\ntake_step = {step}\n")
+    parts = IMPORTS, BY_HAND, getsource(pairs.largest_approach), text, f"take_step = {step}\n"
+    return Loops(step, "\n\n".join(parts))
 
 
 def table(names, source) -> np.dtype:
-    """A row of those of the names that the loops use."""
+    """Return the type of a row with those of the names that the loops use."""
     used = [name for name in names if re.search(rf"\.{name}\b", source)]
     return np.dtype([(name, np.uint32 if name in "ab" else float) for name in used])
 
 
 def make_balls(scene, source) -> np.ndarray:
-    """The balls of a scene, for these loops; then the floor."""
-    balls = np.zeros(len(scene.mass) + 1, table((*to_loops.BALL, "listed_x", "listed_y"), source))
+    """Return a table of a scene's balls, and last the floor, for these loops."""
+    balls = np.zeros(len(scene.mass) + 1, table(to_loops.BALL, source))
     columns = dict(zip(("x", "y", "vx", "vy"), (*scene.q0, *scene.v0)))
     columns |= {"mass": scene.mass, "radius": scene.radius, "inv_mass": 1.0 / scene.mass}
     for name in {*columns} & {*balls.dtype.names}:
@@ -58,19 +61,20 @@ def make_balls(scene, source) -> np.ndarray:
 
 
 class Stepper:
-    """A run by a model that steps, which can be taken on by some steps at a time."""
+    """A run by a model that steps, which can be continued by some steps at a time."""
 
     def __init__(self, model, scene, dt, settings):
         step = contact.step_of(model, scene, dt, settings)
-        self.knobs = tuple(step.keywords.values())
-        self.skip = settings.skip
+        self.knobs = tuple(same_type(name, value) for name, value in step.keywords.items())
+        self.skip = bool(settings.skip)
         self.spreads = model == "lcp" and step.keywords["warm"] == 0.0  # any order does
-        self.loops, self.listed = loops_of(step.func.__name__), -math.inf
-        self.radius, self.skin = 1.0 * scene.radius, float(np.median(scene.radius))
-        source = self.loops.source
-        contacts, pairs = np.empty(0, table(to_loops.CONTACT, source)), np.empty((2, 0), np.uint32)
+        self.loops = loops_of(step.func.__name__)
+        source, self.radius = self.loops.source, np.array(scene.radius, float, order="C")
+        contacts, pairs = np.empty(0, table(to_loops.CONTACT, source)), np.empty((3, 0), np.uint32)
         tables = make_balls(scene, source), contacts, pairs, np.empty((0, 2)), np.zeros(2, np.int64)
-        self.world = rows.World(*tables)
+        self.world, self.balls = rows.World(*tables), np.arange(len(self.radius), dtype=np.uint32)
+        self.cutoff, self.skin = -math.inf, float(np.median(self.radius))
+        self.listed, self.order = np.empty((2, len(self.radius))), np.arange(len(self.radius))
 
     def take(self, states) -> None:
         """Take len(states) - 1 steps from states[0], that of now, and write them to states[1:].
@@ -78,50 +82,55 @@ class Stepper:
         Once state and impulses are those of an earlier step, what follows is a copy, as in
         simulate. A step is compared with one other, the last mark; marks grow rarer (Brent 1980).
         """
-        last, k, mark, marked, fresh = len(states) - 1, 0, 0, self.pushed(), False
-        take_steps = None
+        last, k, mark, marked = len(states) - 1, 0, 0, self.impulses()
+        bits, take_steps = states.view(np.int64), None
         while k < last:
-            knobs = self.listed, fresh, self.skip, self.knobs
-            given = states, self.world, k, mark, marked, *knobs
+            now = self.world, self.balls, k, mark, marked, self.listed, self.cutoff
+            given = states, bits, *now, self.skip, self.knobs
             take_steps = take_steps or self.loops.load({"take_steps": given}).take_steps
-            k, reach, again = take_steps(*given)
-            fresh = reach > 0.0
-            if fresh:
-                self.list_pairs(reach + self.skin)
-            elif again:
+            k, distance, repeats = take_steps(*given)
+            if distance > 0.0:
+                self.list_pairs(states[k, :2].copy(), distance + self.skin)
+            elif repeats:
                 period = k - mark
                 for later in range(k + 1, last + 1):
                     states[later] = states[later - period]
                 k += (last - k) // period * period  # then the world is in this state again
             else:
-                mark, marked = k, self.pushed()
+                mark, marked = k, self.impulses()
 
-    def pushed(self) -> np.ndarray:
-        """The impulses of the last step."""
-        return self.world.pushed[: self.world.count[1]].copy()
+    def impulses(self) -> np.ndarray:
+        """Return those of the last step."""
+        return self.world.impulses[: self.world.count[1]].copy()
 
-    def list_pairs(self, reach) -> None:
-        """The tables with the pairs that are near now, and with room for their contacts."""
-        balls, contacts, _, pushed, count = self.world
-        q = np.array((balls["x"][:-1], balls["y"][:-1]))
-        balls["listed_x"][:-1], balls["listed_y"][:-1] = q
-        pairs = near_loops().list_pairs(q, self.radius, reach)
+    def list_pairs(self, q, cutoff) -> None:
+        """List the pairs anew, with room for their contacts."""
+        balls, contacts, _, impulses, count = self.world
+        self.listed, self.cutoff = q, cutoff
+        pairs = pair_loops().list_pairs(q, self.radius, cutoff, self.order)
         if self.spreads:
-            pairs = near_loops().spread_out(pairs, len(self.radius))
+            pairs = pair_loops().spread_out(pairs, len(self.radius))
         most = len(balls) + pairs.shape[1]
         if most > len(contacts):
-            contacts, old = np.empty(most, contacts.dtype), pushed
-            pushed = np.empty((most, 2))
-            pushed[: count[1]] = old[: count[1]]
-        self.world, self.listed = rows.World(balls, contacts, pairs, pushed, count), reach
+            contacts, old = np.empty(most + most // 4, contacts.dtype), impulses
+            impulses = np.empty((len(contacts), 2))
+            impulses[: count[1]] = old[: count[1]]
+        self.world = rows.World(balls, contacts, pairs, impulses, count)
+
+
+def same_type(name, value):
+    """Return the value of a setting in the type that it always has: others are compiled anew."""
+    kind = contact.LIMITS[name][0]
+    return tuple(map(kind, value)) if name in contact.SEVERAL else kind(value)
 
 
 @cache
-def near_loops():
-    """The loops that find what is near, compiled."""
-    q, radius = np.ones((1, 2, 1)), np.ones(1)
-    given = {"list_pairs": (q[0], radius, 1.0), "find_gaps": (q, radius, 1.0)}
-    return NEAR.load(given | {"spread_out": (np.empty((2, 1), np.uint32), 1)})
+def pair_loops():
+    """Return the module of pairs.py, compiled."""
+    q, radius, order = np.ones((1, 2, 1)), np.ones(1), np.arange(1)
+    some = np.empty((3, 1), np.uint32)
+    given = {"list_pairs": (q[0], radius, 1.0, order), "spread_out": (some, 1)}
+    return PAIRS.load(given | {"find_gaps": (q, radius, 1.0, order, some)})
 
 
 def run_model(model, scene, dt, steps, settings, progress=None) -> contact.Run:
@@ -157,12 +166,14 @@ def run_if_it_pays(model, scene, dt, steps, settings, progress=None) -> contact.
 
 
 def smallest_gap(q, radius) -> np.ndarray:
-    """The smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
-    skin = float(np.median(radius))
-    return near_loops().find_gaps(np.array(q, float), np.array(radius, float), skin)
+    """Return the smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
+    q, radius = (np.array(each, float, order="C") for each in (q, radius))
+    order = np.argsort(q[0, 0])
+    some = np.array((order[1:], order[:-1], order[1:]), np.uint32)  # for a first bound
+    return pair_loops().find_gaps(q, radius, float(np.median(radius)), order, some)
 
 
 def gap_if_it_pays(q, radius) -> np.ndarray | None:
-    """The smallest gaps, or None where numpy is as soon done."""
+    """Return the smallest gaps, or None where numpy is as soon done."""
     seconds = 4e-9 * q.size * len(radius)  # of numpy, measured
-    return smallest_gap(q, radius) if NEAR.pays(seconds) else None
+    return smallest_gap(q, radius) if PAIRS.pays(seconds) else None

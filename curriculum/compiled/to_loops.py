@@ -29,6 +29,17 @@ REFUSED = (ast.GeneratorExp, ast.SetComp, ast.DictComp, ast.Set, ast.Dict, ast.L
 INSTEAD = "write loops over balls and contacts, fields of Ball and Contact, functions of numbers"
 
 
+CHOSEN = """
+{name}_rows = np.empty(len({rows}), np.uint32)
+{name}_count = 0
+for {row} in {rows}:
+    if {test}:
+        {name}_rows[{name}_count] = {row}
+        {name}_count += 1
+{name} = {name}_rows[:{name}_count]
+"""  # name = [row for row in rows if test]
+
+
 class Refused(ValueError):
     """A step that cannot be made into loops; says where, and what to write instead."""
 
@@ -38,7 +49,7 @@ class Refused(ValueError):
 
 
 class Rows(ast.NodeTransformer):
-    """Objects to rows of tables. `ours`: names of functions and methods that are given W."""
+    """Objects to rows of tables. ours: {function or method that is given W: its parameters}."""
 
     def __init__(self, ours):
         self.ours = ours
@@ -57,7 +68,7 @@ class Rows(ast.NodeTransformer):
             node.body.append(ast.parse("return self").body[0])
         elif "self" in names:
             node.name = METHOD + node.name
-        node.args.args = [ast.arg(name) for name in ("W", *names)]
+        node.args.args, node.args.defaults = [ast.arg(name) for name in ("W", *names)], []
         node.returns = None
         self.lists = set()
         node.body[: 1 if ast.get_docstring(node) else 0] = []
@@ -85,6 +96,13 @@ class Rows(ast.NodeTransformer):
     def visit_Assign(self, node):
         if ast.unparse(node.value) == "[]":
             self.lists.add(node.targets[0].id)
+        elif isinstance(node.value, ast.ListComp) and len(node.value.generators) == 1:
+            each = node.value.generators[0]
+            if ast.unparse(node.value.elt) == ast.unparse(each.target):
+                parts = each.target, self.visit(each.iter), *map(self.visit, each.ifs)
+                row, rows, *tests = map(ast.unparse, parts)
+                words = dict(name=node.targets[0].id, row=row, rows=rows)
+                return ast.parse(CHOSEN.format(**words, test=" and ".join(tests or ["True"]))).body
         return self.generic_visit(node)
 
     def visit_ListComp(self, node):
@@ -103,7 +121,9 @@ class Rows(ast.NodeTransformer):
         node.args, node.keywords = [[*map(self.visit, at)] for at in (node.args, node.keywords)]
         if name in self.ours:
             self_ = [self.visit(node.func.value)] if owner else []
-            node.args = [ast.Name("W"), *self_, *node.args]
+            given = dict(zip(self.ours[name], node.args)) | {k.arg: k.value for k in node.keywords}
+            values = (self.ours[name] | given).values()  # all of them, in their order
+            node.args, node.keywords = [ast.Name("W"), *self_, *values], []
             node.func = ast.Name(METHOD * len(self_) + name)
         elif name in EXTREMES and not owner:  # two by two
             function = ast.Name(EXTREMES[name])
@@ -111,6 +131,13 @@ class Rows(ast.NodeTransformer):
         elif name not in KNOWN.get(owner, ["append"]):
             raise Refused(node)
         return node
+
+
+def parameters(function):
+    """Return {parameter: its default or None} of a function or a method, without self."""
+    names = [each.arg for each in function.args.args if each.arg != "self"]
+    defaults = function.args.defaults
+    return dict(zip(names, [None] * (len(names) - len(defaults)) + defaults))
 
 
 def as_array(node):
@@ -123,13 +150,15 @@ def loops(step: str, file=Path(contact.__file__)) -> str:
 
     Raises Refused, with the line of contact.py and what to write instead.
     """
-    numbers, functions = [], []
+    numbers, functions = [], {}
     for name, (_, node) in needed([step], file).items():
-        if isinstance(node, ast.FunctionDef) and name not in GIVEN:
-            functions.append(node)
+        if isinstance(node, ast.FunctionDef):
+            functions[name] = node
         elif name == "Contact":
-            functions += [each for each in node.body if isinstance(each, ast.FunctionDef)]
+            methods = [each for each in node.body if isinstance(each, ast.FunctionDef)]
+            functions |= {each.name.replace("__init__", name): each for each in methods}
         elif type(getattr(contact, name, None)) in (int, float):
             numbers.append(f"{name} = {getattr(contact, name)!r}")
-    rows = Rows({*GIVEN, "Contact", *(node.name for node in functions)})
-    return "\n".join(numbers + [f"\n\n{ast.unparse(rows.visit(each))}" for each in functions])
+    rows = Rows({name: parameters(node) for name, node in functions.items()})
+    texts = [ast.unparse(rows.visit(functions[name])) for name in functions if name not in GIVEN]
+    return "\n".join(numbers + [f"\n\n{text}" for text in texts])

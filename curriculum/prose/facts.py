@@ -49,15 +49,14 @@ def sweeps():
 
 
 def landing():
-    """lcp's landing in the drop: a step's gap, the next one's depth, what is left of it after one
-    more [m]; speeds [m/s], of the fall by paper and pencil, and upwards: asked for, had at last."""
+    """lcp's landing in the drop: its depth, what is left of it after one more step [m]; speeds
+    [m/s], of the fall on paper, and upwards: asked for, had at last."""
     scene = contact.build_scene("drop")
     run = contact.run_model("lcp", scene, DT, 400)
     gap = run.q[:, 1, 0] - contact.RADIUS
     k = int((gap < 0.0).argmax())
     return {
         "speed": math.sqrt(-2.0 * contact.GRAVITY * gap[0]),
-        "gap": gap[k - 1],
         "depth": -gap[k],
         "asked": -gap[k] * contact.Settings().baumgarte / DT,
         "left": -gap[k + 1],

@@ -17,13 +17,13 @@ def add_cures(notes: dict, job: tuple, runs: dict, quality: dict, args=None) -> 
 
     job: scene, dt, steps, models, settings; args: the command line that asked for them.
     """
-    tried: dict = {}  # a cure that several models share is run once
-    for model in runs:
-        kind, text = find_fault(model, job, runs, quality)
+    faults = {model: find_fault(model, job, runs, quality) for model in runs}
+    tried = {model: {"contact": model} for model in runs if not faults[model][0]}
+    for model, (kind, text) in faults.items():
         notes[model] = [f"because: {text}"] if text else []
         for changes in cures(kind, model, *job) if kind else ():
-            key = changes.get("contact", model), *changes.items()
-            if key not in tried:
+            key = changes.get("contact") or (model, *changes.items())
+            if key not in tried:  # several models may share a cure
                 tried[key] = cured(changes, model, kind, job)
             if tried[key]:
                 notes[model].append(f"try: {typed(args, model, kind, tried[key])}")
@@ -34,7 +34,8 @@ def find_fault(model, job, runs, quality) -> tuple[str, str]:
     """Return what contact.find_cause does, and of a run without a fault: a sag, sink, flicker."""
     (scene, dt, _, _, settings), row, law = job, quality[model], ""
     kind, text = contact.find_cause(model, runs[model], scene, dt, settings, row)
-    overlap = row["rest_penetration_frac"] if row["rests"] and not kind else 0.0
+    lies = not kind and (row["rests"] or "settles" in text)
+    overlap = row["rest_penetration_frac"] if lies else 0.0
     if overlap > 1e-3 and model in ("lcp", "leapfrog"):
         if model == "lcp":
             law = ": a stack sags by (M / m) g dt^2 / (beta K)"

@@ -57,12 +57,12 @@ IN_THE_DARK = {
 
 
 def pyplot() -> ModuleType:
-    """matplotlib.pyplot, set up for these figures; an ImportError that says how to install it."""
+    """Import matplotlib.pyplot, set up for these figures. Raises contact.MissingPackage."""
     os.environ["MPLBACKEND"] = "svg"  # whatever stood there; it may be none of matplotlib's
     try:
         import matplotlib
     except ImportError:
-        raise ImportError(commands.to_install("matplotlib")) from None
+        raise contact.MissingPackage(commands.to_install("matplotlib")) from None
     matplotlib.use("svg")
     from matplotlib import pyplot as plt
 
@@ -166,14 +166,15 @@ def weight(scene: contact.Scene) -> float:
 def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
     """What is plotted of runs {model: Run}, {title: {model: values (S,)}}."""
     drawn: dict = {}
+    free = np.isfinite(scene.mass)
     for model, run in runs.items():
         gap = contact.smallest_gap(run.q, scene.radius)
         total = contact.energy(run.q, run.v, scene.mass)
         force = contact_impulses(run, scene)[:, 1].sum(-1) / np.diff(run.t[:2]).sum()
         lines = {
-            "height [m], mean": run.q[:, 1].mean(-1),
+            "height [m], mean": run.q[:, 1, free].mean(-1),
             "gap [r], below 0 it is an overlap": gap / scene.radius.min(),
-            f"force of floor [N], weight {weight(scene):.3g} N": force,
+            f"force of contacts, upwards [N], weight {weight(scene):.3g} N": force,
             "energy above start [J]": total - total[0],
             "rises of energy [J]": np.maximum(np.diff(total, prepend=total[0]), 0.0).cumsum(),
         }
@@ -202,7 +203,7 @@ def worth_seeing(runs: dict, scene: contact.Scene) -> tuple[float, float]:
 def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str) -> None:
     """Draw the curves of runs {model: Run} from the landing to rest, a panel each, as SVG.
 
-    Takes what recording.write takes. Raises ImportError where matplotlib is missing.
+    Takes what recording.write takes. Raises contact.MissingPackage where matplotlib is missing.
     """
     drawn, (first, last) = curves(runs, scene), worth_seeing(runs, scene)
     first -= 0.03 * max(last - first, 0.0)

@@ -1,7 +1,7 @@
 """Runs as a rerun recording: a view of balls for every model, curves beside them.
 
 rerun's 2-D views have y down and no option, so y is negated here and nowhere else.
-Raises ImportError on import where rerun is missing.
+Raises contact.MissingPackage on import where rerun is missing.
 """
 
 from functools import partial
@@ -16,7 +16,7 @@ try:
     import rerun as rr
     import rerun.blueprint as rrb
 except ImportError:
-    raise ImportError(commands.to_install("rerun-sdk")) from None
+    raise contact.MissingPackage(commands.to_install("rerun-sdk")) from None
 
 PUSH = "#f0e442"  # colour of the arrows
 GROUND, LINE = "#3a3f4a", "#ffffff"
@@ -39,18 +39,18 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
     quality: {model: contact_quality} of the runs. Whole columns are sent, in rerun's strict mode.
     The timelines are step, sim_time, and landing, which it opens on: sim_time, but all that is
     before the first push at its start. The entities are about, world/MODEL/{ground,table,balls,
-    pushes} and CURVE/MODEL.
+    pushes,foot} and CURVE/MODEL; foot only where one ball moves, on a fixed one.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
     drawn, seconds = curves(runs, scene), worth_seeing(runs, scene)
     times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
     if not rr.is_enabled(recording):
-        raise ImportError("rerun is switched off by the variable RERUN")
+        raise contact.MissingPackage("rerun is switched off by the variable RERUN")
     # rerun's own file would wait for ever where a disk is full
     kept = recording.binary_stream()  # type: ignore[misc]
     blueprint = layout(runs, scene, drawn, seconds, quality)
-    recording.send_blueprint(blueprint, make_active=False, make_default=True)
+    recording.send_blueprint(blueprint, make_active=True, make_default=True)
     words = ABOUT.format(title=title, first=seconds[0])
     recording.log("about", rr.TextDocument(words, media_type=rr.MediaType.MARKDOWN), static=True)
     for model, run in runs.items():
@@ -93,16 +93,33 @@ def send_table(recording, model):
 def send_balls(recording, model, run, scene, times):
     """The balls, where the run had them, and the push on each as an arrow from its centre."""
     count, rows = len(scene.radius), [len(scene.radius)] * len(run.t)
-    color = np.repeat(rgba(COLORS[model]), count)
+    color = np.where(np.isfinite(scene.mass), rgba(COLORS[model]), rgba(GROUND))
     look = rr.Points2D.from_fields(radii=scene.radius, colors=color, draw_order=20.0)
     columns = rr.Points2D.columns(positions=flat(run.q)).partition(rows)
     send(recording, f"world/{model}/balls", look, times, columns)
+    if (foot := foot_of(run, scene)) is not None:
+        place = np.stack((foot[:, 0], -foot[:, 1], 0.0 * run.t), axis=-1)
+        columns = rr.Transform3D.columns(translation=place)
+        recording.send_columns(f"world/{model}/foot", times, columns)
     if count > MOST_ARROWS:
         return
     color = np.repeat(rgba(PUSH), count)
     look = rr.Arrows2D.from_fields(radii=0.06 * scene.radius, colors=color, draw_order=30.0)
     arrows = rr.Arrows2D.columns(origins=flat(run.q), vectors=flat(arrow_vectors(run, scene)))
     send(recording, f"world/{model}/pushes", look, times, arrows.partition(rows))
+
+
+@np.errstate(all="ignore")
+def foot_of(run: contact.Run, scene: contact.Scene) -> np.ndarray | None:
+    """Where the only ball that moves touches the fixed one below it (S, 2) [m], to be followed."""
+    ball, *others = np.flatnonzero(np.isfinite(scene.mass))
+    if others or len(scene.mass) == 1:
+        return None
+    way = np.delete(run.q, ball, axis=2) - run.q[..., ball, None]  # to the centres of fixed balls
+    far = np.hypot(*way.swapaxes(0, 1))
+    nearest = (far - np.delete(scene.radius, ball))[0].argmin()
+    unit = (way / far[:, None])[..., nearest]
+    return np.nan_to_num(run.q[..., ball] + scene.radius[ball] * unit)
 
 
 def send(recording, entity: str, look, times, columns) -> None:
@@ -147,19 +164,22 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     magnified; on the right what it is, and the plots.
 
     Every run has views of its own, so balls that roll far never cross into another run's. Piles
-    have them one below the other.
+    have them one below the other. Where one ball moves on a fixed one, they go with its foot.
     """
-    large = float(scene.radius.max())
-    x, y = scene.q0
+    free = np.isfinite(scene.mass)
+    large, (x, y) = float(scene.radius[free].max()), scene.q0[:, free]
+    followed = foot_of(next(iter(runs.values())), scene) is not None
+    if followed:
+        x, y = np.zeros(1), np.full(1, 5.0 * large)
     middle, half, pile = 0.5 * (x.min() + x.max()), 0.5 * np.ptp(x), np.ptp(x) > 0.0
     wide, top = 1.6 * half + 1.6 * large, y.max() + 2.0 * large
-    sides = [middle - wide, middle + wide], [-top, 0.1 * top]
-    lanes = [view(model, name_of(model, row), *sides) for model, row in quality.items()]
+    sides = [middle - wide, middle + wide], [-top, (0.3 if followed else 0.1) * top]
+    lanes = [view(model, name_of(model, row), *sides, followed) for model, row in quality.items()]
     high = 3.0 if pile else MAGNIFIED  # radii; of a pile it is the middle
     reach = high * large
     up = 0.9 if pile else 0.6
     near = [middle - 1.2 * reach, middle + 1.2 * reach], [-up * reach, 0.4 * reach]
-    small = rrb.Horizontal(*[view(model, f"{high:g} r", *near) for model in runs])
+    small = rrb.Horizontal(*[view(model, f"{high:g} r", *near, followed) for model in runs])
     lanes = rrb.Vertical(*lanes) if pile else rrb.Horizontal(*lanes)  # type: ignore[assignment]
     left = rrb.Vertical(lanes, small, row_shares=[7 if pile else 5, 2])  # type: ignore[arg-type]
     about = rrb.TextDocumentView(origin="about", name="about")
@@ -174,10 +194,12 @@ def name_of(model: str, row: dict) -> str:
     return f"{model}: {contact.final_state(row)}" if row["blew_up"] or row["through"] else model
 
 
-def view(model: str, name: str, x_range: list, y_range: list) -> rrb.Spatial2DView:
-    """A view of what a model's balls do in these ranges of x and of -y [m]."""
+def view(model: str, name: str, x_range: list, y_range: list, followed) -> rrb.Spatial2DView:
+    """A view of what a model's balls do in these ranges of x and of -y [m], from its foot."""
+    world = f"world/{model}"
+    origin = f"{world}/foot" if followed else world
     bounds = rrb.VisualBounds2D(x_range=x_range, y_range=y_range)
-    return rrb.Spatial2DView(origin=f"world/{model}", name=name, visual_bounds=bounds)
+    return rrb.Spatial2DView(origin=origin, contents=f"{world}/**", name=name, visual_bounds=bounds)
 
 
 def plot(title: str, most: float, first: float, last: float) -> rrb.TimeSeriesView:

@@ -11,6 +11,7 @@ import numpy as np
 
 import contact
 from curriculum.commands import ROOT, command, quoted
+from curriculum.show.cures import add_cures
 from exercises.kit.script import practise
 
 APEXES = 5  # heights of bounces that are printed
@@ -28,8 +29,13 @@ def print_unused(args) -> None:
             print(f"--{knob} is for {' and '.join(owners)}, and has no effect here")
 
 
-def print_alone(runs: dict[str, contact.Run], scene: contact.Scene, dt, settings) -> None:
-    """Print what exact or soft did, where no table says it. runs: {model: Run}."""
+def add_remarks(notes: dict, job: tuple, runs: dict, quality: dict, args=None) -> None:
+    """Print what exact or soft did, where no table says it; add to notes what else is wrong.
+
+    job: scene, dt, steps, models, settings; args: the command line that asked for it, if one did.
+    Of runs {model: Run}, notes are {model: [line]} and quality is {model: contact_quality}.
+    """
+    scene, dt, _, _, settings = job
     if "exact" in runs:
         moved = np.abs(runs["exact"].q[0] - scene.q0).max() / scene.radius.min()
         if moved > 1e-9:
@@ -40,6 +46,7 @@ def print_alone(runs: dict[str, contact.Run], scene: contact.Scene, dt, settings
         knobs = contact.soft_defaults(scene.restitution, dt, settings.solref, settings.solimp)
         solref, solimp = (" ".join(map(repr, values)) for values in knobs)
         print(f'in MJCF: <option timestep="{dt!r}"/>, <geom solref="{solref}" solimp="{solimp}"/>')
+    add_cures(notes, job, runs, quality, args)
 
 
 def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
@@ -62,10 +69,11 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
 
 
 def print_next(args, argv: list[str]) -> None:
-    """Print the last lines of a run: how to read on, how to see it, and the next exercise.
+    """Print the last lines of a run: unused flags, how to read on, to see it, the next exercise.
 
     args: the flags as contact.parse_flags gives them; argv: the words they were read from.
     """
+    print_unused(args)
     if Path.cwd() == ROOT:  # from where python -m finds it
         page = command("-m", "curriculum.page", bring=("--extra", "page"))
         print(f"next, read the chapter: {page}")

@@ -61,7 +61,7 @@ class Heap:
 
 
 def leapfrog_gains_no_energy(heap):
-    """leapfrog, e from 0 to 1, at 2 and 16 ms: of what starts apart nothing ever gains energy."""
+    """leapfrog, e from 0 to 1, dt = 2 and 16 ms: no run that starts apart gains energy."""
     for model, dt, kind, bounce in itertools.product(MODELS, STEPS, KINDS, BOUNCES):
         total = heap.run(model, dt, kind, bounce)[2]
         if model == "leapfrog":
@@ -70,7 +70,7 @@ def leapfrog_gains_no_energy(heap):
 
 
 def leapfrog_loses_none_where_all_bounces(heap):
-    """leapfrog, e = 1, at 2 ms: no step loses energy in which nothing lasts.
+    """leapfrog, e = 1, dt = 2 ms: no step without resting contacts loses energy.
 
     Judged where no contact closes slower than gravity makes it in two steps, neither before nor
     after; and not under a ceiling, where more impacts meet in a step than leapfrog tells apart.

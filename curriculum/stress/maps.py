@@ -58,7 +58,7 @@ class PenaltyRow:
 
 
 def penalty_settles_as_its_critical_dt_says(row):
-    """penalty: above its critical dt no dropped ball settles."""
+    """penalty: above the critical step no dropped ball comes to rest."""
     critical = contact.critical_dt(1.0, row.stiffness, row.damping)
     outcomes = "".join(map(row.outcome, row.dts))
     found = {"damping": row.damping, "stiffness": row.stiffness, "critical": critical}

@@ -83,8 +83,8 @@ def finite_or_said_to_have_exploded(trial):
 
 
 def a_skip_changes_no_bit(trial):
-    """The compiled twin gives the bits of contact.py's plain steps; of one or two balls so do its
-    skips, also beside a ball that is NaN.
+    """Compiled loops are bitwise identical to contact.py's plain steps. With one or two balls so is
+    step skipping, also beside a ball whose position is NaN.
     """
     few = len(trial.scene.mass) <= 2
     odd = [beside_one_that_overflows(trial)] if few else []
@@ -95,8 +95,8 @@ def a_skip_changes_no_bit(trial):
 
 
 def a_run_goes_on_from_any_of_its_states(trial):
-    """penalty, leapfrog, and lcp cold: the latter half of a run, begun anew, has the same bits. A
-    step knows nothing but the state.
+    """penalty, leapfrog, and lcp without warm starting: a run that is restarted from its state at
+    half time is bitwise identical. A step depends on nothing but the state.
     """
     half = trial.spec["steps"] // 2
     for model in ("penalty", "leapfrog", "lcp")[: 2 + (trial.spec["warm"] == 0.0)]:
@@ -108,10 +108,10 @@ def a_run_goes_on_from_any_of_its_states(trial):
 
 
 def momenta_are_gravitys_and_what_contacts_report(trial):
-    """penalty, lcp, soft: the contacts that a step returns have lam >= 0 and, along the normals,
-    equal and opposite, explain all that momenta show beside gravity; by penalty lam is max(0, k
-    depth - c v_n) dt; and balls move by dt v. Bound: 8 U a push, of the momenta that the energies
-    allow, and of lam.
+    """penalty, lcp, soft: momentum balance. The impulses of a step have lam >= 0; equal and
+    opposite along the normals, they and gravity are the whole change of momentum; penalty's lam is
+    max(0, k depth - c v_n) dt; and balls move by dt v. Bound: 8 U per impulse, of the momenta that
+    the energies allow, and of lam.
     """
     sweeps = {"penalty": 1, "lcp": trial.spec["iters"], "soft": 1000}
     for model, many in sweeps.items():
@@ -168,10 +168,10 @@ def norm(motion, k, v):
 
 
 def enough_sweeps_solve_lcp(trial):
-    """lcp, few balls: after 10,000 sweeps lam >= 0, v_n >= target, and one of them an equality: by
-    Moreau (1988) there is no other answer. The target is the chapter's, in its own words. Bound: a
-    hundred times what the latter half of these sweeps still moves, which is not derived; 1e-13 of
-    the speeds, chosen, is for rounding.
+    """lcp, few balls: 10,000 sweeps solve the complementarity problem, lam >= 0, v_n >= target and
+    one of them an equality, whose velocities are unique (Moreau 1988). The target is implemented
+    again from the chapter. Bound: a hundred times the change in the second half of the sweeps,
+    which is not derived, and 1e-13 of the speeds for rounding (a choice).
     """
     motion = trial.motions["lcp"]
     for k in sampled(motion) if len(trial.scene.mass) <= 4 else ():
@@ -210,15 +210,16 @@ def lcp_target(gap, v_n, spec):
 
 
 def leapfrog_is_exact_until_something_lasts(trial):
-    """leapfrog, few balls that start apart: they go where exact has them, every impact at its own
-    moment, until a contact closes slower than gravity makes it in four steps. Bound: 1e-9 of the
-    lengths and speeds, chosen; and with e = 0, what rounding makes of a graze.
+    """leapfrog, few balls that start apart: positions and velocities are exact's until an approach
+    speed falls below 4 g dt. Bound: 1e-9 of the lengths and speeds (a choice); with e = 0 also the
+    rounding error of a grazing impact.
 
-    An impact with e = 0 leaves v_n = 0, so it lasts to the end of its step, along the normal of the
-    moment when the two are nearest: a root of (d.v)^2 - v^2 (d^2 - reach^2), which is 0 but for
-    rounding. d is known to 3 U |q|, so that square to 6 U |q| reach v^2, the moment to sqrt(6 U |q|
-    reach) / v, and the normal, which turns by v / reach, to sqrt(6 U |q| / reach): that share of v.
-    Beside a fixed ball gravity moves the moment, too, in second order of the step: not judged.
+    An impact with e = 0 leaves v_n = 0, so it is a resting contact to the end of its step, along
+    the normal at the time of closest approach: a root of (d.v)^2 - v^2 (d^2 - reach^2), which is 0
+    but for rounding. d is known to 3 U |q|, so that square to 6 U |q| reach v^2, the moment to
+    sqrt(6 U |q| reach) / v, and the normal, which turns by v / reach, to sqrt(6 U |q| / reach):
+    that share of v. Beside a fixed ball gravity moves the moment, too, in second order of the step:
+    not judged.
     """
     scene, elastic = trial.scene, trial.spec["restitution"] > 0.0
     fair = elastic or np.isfinite(scene.mass).all()
@@ -237,15 +238,15 @@ def leapfrog_is_exact_until_something_lasts(trial):
 
 
 def exact_never_overlaps(trial):
-    """exact: no overlap at any sample above 1e-12 of the largest radius."""
+    """exact: no sample has an overlap above 1e-12 of the largest radius."""
     if trial.exact and trial.exact.struck().any():
         gap = contact.smallest_gap(trial.exact.q[1:], trial.scene.radius)
         yield "overlap [m]", np.maximum(-gap, 0.0), PROMISE * trial.scene.radius.max()
 
 
 def exact_keeps_its_energy(trial):
-    """exact: no energy above 1e-12 of the start's is ever gained, with e = 1 none is lost, and
-    where nothing is fixed sum m v_x stays, to 1e-12 of what the energy allows.
+    """exact: no run gains more than 1e-12 of the start's energy, none loses as much at e = 1, and
+    without fixed balls the horizontal momentum is constant to 1e-12 of what the energy allows.
     """
     motion = trial.exact
     if motion and not motion.fixed.all():

@@ -101,7 +101,7 @@ def page(tables, made):
 def failed(row):
     """What a property says, how often it failed, and the first time: scene, error, bound."""
     sentence = stated(row["property"]).partition(". ")[0].rstrip(".")
-    return f'Failed {row["violations"]:,} times: "{sentence}". First: {row["first"]}'
+    return f'Failed: "{sentence}", {row["violations"]:,} x. First: {row["first"]}'
 
 
 def stated(name):

@@ -13,13 +13,12 @@ import pytest
 import contact
 
 pytest.importorskip("scipy", reason="scipy is missing: the extra `bench`")
-fast = pytest.importorskip(
-    "curriculum.compiled.run", reason="numba is missing", exc_type=ImportError
-)
+pytest.importorskip("numba", reason="numba is missing")
 
 from curriculum import stored  # noqa: E402
 from curriculum.bench import __main__ as bench  # noqa: E402
 from curriculum.bench import engines, measure, problems, report, timing  # noqa: E402
+from curriculum.compiled import run as fast  # noqa: E402
 
 R, g = contact.RADIUS, 9.81
 ALL = [setting for setting in engines.BY_NAME.values() if setting.problems]

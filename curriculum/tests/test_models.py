@@ -284,7 +284,7 @@ def test_who_sees_the_contacts_hears_of_every_push(model):
         assert k == len(pushes)
         pushes.append(sum(c.lam for c in contacts if c.b is contact.FLOOR))
 
-    run = run_model(model, scene, DT, 300, see=see)
+    run = run_model(model, scene, DT, 300, on_step=see)
     gained = np.diff(run.v[:, 1].sum(1)) + 2 * G * DT
     assert np.abs(pushes - gained).max() < 1e-12
     assert run.q.tobytes() == run_model(model, scene, DT, 300).q.tobytes()

@@ -486,7 +486,7 @@ def test_picture_flicker_has_its_line_at_the_formula_and_no_force_only_beyond_it
         0.002,
         500,
         settings,
-        see=lambda k, held: lam.append(sum(c.lam for c in held)),
+        on_step=lambda k, held: lam.append(sum(c.lam for c in held)),
     )
     right = np.array(lam) / 0.002 / G
     assert force[:300, 1] == pytest.approx(right[50:350], abs=0.02)

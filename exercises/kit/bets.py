@@ -82,9 +82,6 @@ def judge_bet(name, exercise):
     return "right", f"{table(name, numbers)}\n\n{verdict}"
 
 
-# Exercise 11: six errors against the knobs of their models
-
-
 ERRORS = FACTS["ex11"]["errors"]
 KNOBS = {"k x 4": {"stiffness": 4.0 * USUAL.stiffness}, "dt / 4": {},
          "sweeps x 4": {"iters": 4 * USUAL.iters}, "beta x 4": {"baumgarte": 4.0 * USUAL.baumgarte},
@@ -133,9 +130,6 @@ def judge_marks(name, exercise):
     said = f"Your bet holds in {sum(hits)} of {len(hits)}; another one stands in brackets."
     rows = {error: row.values() for error, row in rows.items()}
     return "right", f"{columns('times as much', KNOBS, rows, '{}')}\n{said}\n{words}"
-
-
-# Numbers from paper, and the gripper
 
 
 FINGER, CUP, FORCE = 0.2, 1.0, 20.0  # kg, kg, N

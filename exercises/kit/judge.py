@@ -87,9 +87,6 @@ def judged(name, exercise, report):
     return min(states.values(), key=("wrong", "blank", "right").index), "\n".join(said)
 
 
-# What goes in
-
-
 @cache
 def inputs(name):
     """Return the inputs of a function, [{argument: value}]: those given, then random ones."""
@@ -145,9 +142,6 @@ def run_search(function, case):
 
 
 RUNS = {"solve_contacts": run_stack, "longest_step": run_search}
-
-
-# What comes out, beside what is right
 
 
 def tried(function, name, case):

@@ -28,8 +28,9 @@ def main(started):
     process of its own, and nowhere else."""
     if started != "__main__":
         return
-    for stream in filter(None, (sys.stdout, sys.stderr)):
-        stream.reconfigure(errors="backslashreplace")  # a path may not fit the terminal's encoding
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # a path may not fit the terminal's encoding
+            stream.reconfigure(errors="backslashreplace")
     file = Path(sys.modules[started].__file__)
     name = file.stem.partition("_")[0]  # ex1 of ex1_predict_contact.py
     parser = Parser(description=f"Exercise {name}.")
@@ -102,9 +103,6 @@ def judged(name, file):
     if "Timeout" in begun or (TIMER and status == -TIMER):
         ended = f"takes too long, or does not end: stopped after {LIMIT} s"
     return "wrong", f"{what} {ended}, in {near(str(file))}, line {line}"
-
-
-# Which exercise comes next: any command may print it, and it needs no numpy
 
 
 def start(file):

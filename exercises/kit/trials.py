@@ -85,9 +85,6 @@ def compare_solves(exercise):
 SHOWN = {"ex3": cliffs, "ex6": compare_solves, "ex8": drops}
 
 
-# The gripper of exercise 9
-
-
 def chosen_step(exercise, cup, model, dt, k):
     """Return the step that is chosen in exercise 9. ValueError for what is not allowed."""
     settings = contact.Settings(k, solref=exercise.SOLREF, solimp=exercise.SOLIMP)
