@@ -114,7 +114,7 @@ def test_how_to_watch_a_run_is_said_as_in_the_readme(tmp_path, monkeypatch, caps
         (tmp_path / name).touch()
     for uv, start in ((False, r"\S*rerun(\.exe)?"), (True, "uv run rerun")):
         monkeypatch.setenv("UV", "uv") if uv else monkeypatch.delenv("UV", raising=False)
-        remarks.print_next(SimpleNamespace(rerun=True, out=str(tmp_path)), [])
+        remarks.print_next(contact.parse_flags(["--out", str(tmp_path)]), [])
         watch = capsys.readouterr().out.splitlines()[0].replace("\\", "/")
         assert re.fullmatch(rf"next, watch it: {start} \S*contact\.rrd", watch), watch
 
