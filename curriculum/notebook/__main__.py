@@ -2,8 +2,9 @@
 
     python -m curriculum.notebook [--out FILE]
 
-Prose with its numbers; the regions of contact.py as cells, so that a change is felt in every cell
-below; some runs with their curves, where the chapter has a figure; the exercises as cells to edit.
+Prose with its numbers; the regions of contact.py as cells, so that every cell below uses what one
+changes there, exercises too; some runs with their curves, where the chapter has a figure; the
+exercises as cells to edit.
 Its first cell (start.py) carries the course's folder with it and needs numpy and matplotlib, which
 it installs where they are missing. Same inputs, same bytes.
 """
@@ -41,10 +42,10 @@ METADATA = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
 FOLDED = {"jupyter": {"source_hidden": True}, "cellView": "form"}
 INTRODUCTION = """\
 *This is the chapter as a notebook. Run the cells from the top. The first one puts contact.py and
-the exercises into the folder `contact_chapter` beside this notebook. What you change in a cell of
-contact.py is felt in every cell below it. An exercise is a cell to edit: run it, and it is tried;
-with `--hint 1` at the end of its first line it asks a question that helps. No cell has been run for
-you: you are to bet first.*"""
+the exercises into the folder `contact_chapter` beside this notebook. Every cell below a cell
+of contact.py uses what you change there, exercises too. An exercise is a cell to edit: run it, and
+it is tried; with `--hint 1` at the end of its first line it asks a question that helps. No cell has
+been run for you: you are to bet first.*"""
 REST = "The rest of the file"  # of the chapter: the notebook's first cell has it
 
 

@@ -1,7 +1,7 @@
 # ruff: noqa: E401, E402, F401, F821, I001
 # fmt: off
 #@title Run me first: the course's folder is unpacked beside the notebook, and contact.py is read
-import base64, importlib.util, io, os, subprocess, sys, zipfile
+import base64, importlib.util, io, os, re, subprocess, sys, zipfile
 
 absent = [name for name in ("numpy", "matplotlib") if importlib.util.find_spec(name) is None]
 if absent:
@@ -12,7 +12,8 @@ sys.path.insert(0, COURSE)
 sys.modules["contact"] = sys.modules["__main__"]    # whatever you change below is used everywhere
 __file__ = os.path.join(COURSE, "contact.py")
 with open(__file__, encoding="utf-8") as file:
-    exec(file.read().replace('__name__ == "__main__"', "False"))
+    LESSON = file.read()
+exec(LESSON.replace('__name__ == "__main__"', "False"))
 from IPython.core.magic import register_cell_magic
 from IPython.display import SVG
 
@@ -23,9 +24,22 @@ def show_run(*flags):
     return SVG(filename=os.path.join(COURSE, "outputs", "contact.svg"))
 
 
+def write_lesson():
+    """Write contact.py with each region as its cell was last run, for other processes."""
+    text = LESSON
+    for cell in In:
+        if found := re.match(r"# contact\.py, region (.+)\n", cell):
+            code = cell[found.end():].rstrip() + "\n\n\n"
+            region = rf"(?ms)(^# --- region: {found[1]} ---\n).*?(?=^# --- region: |\Z)"
+            text = re.sub(region, lambda match: match[1] + code, text)
+    with open(__file__, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
 @register_cell_magic
 def exercise(words, text):
     """Try what the cell says, and print what came of it."""
+    write_lesson()
     file, *flags = words.split()
     with open(os.path.join(COURSE, file), "w", encoding="utf-8") as written:
         written.write("\n" + text)    # so that its lines have the cell's numbers

@@ -21,11 +21,14 @@ LAST = """\
 import json
 with open(os.path.join(COURSE, "outputs/metrics.json")) as file:
     found = json.load(file)
-def penalty_normal_force(depth, v_n, stiffness, damping):
-    return 0.0
 fallen = run_model("penalty", build_scene("drop"), 0.002, 2000)
 found["fallen"] = contact_quality(fallen, build_scene("drop"), 0.002)["through"]
 print(json.dumps(found))
+"""
+PROBE = """\
+%%exercise exercises/ex99_probe.py
+import kit, contact
+print(contact.penalty_normal_force(1.0, 0.0, 1.0, 0.0))
 """
 WAITS = "is still a blank|no prediction yet|given \\? \\?|no choice yet|yet; write a number"
 
@@ -40,9 +43,13 @@ def text(tmp_path_factory):
 @pytest.fixture(scope="module")
 def ran(text, tmp_path_factory):
     """[(source, what it printed, what it showed)] of the cells, run in an empty folder with a bet
-    made in its cell, and one cell more."""
+    made in its cell; then the region penalty without its force, and two cells below it."""
     book, folder = nbformat.reads(text, as_version=4), tmp_path_factory.mktemp("notebook")
-    book.cells.append(nbformat.v4.new_code_cell(LAST))
+    (penalty,) = (
+        c.source for c in book.cells if c.source.startswith("# contact.py, region penalty")
+    )
+    changed = source.replace_once(penalty, "return max(0.0, ", "return 0.0 * max(0.0, ", "penalty")
+    book.cells += map(nbformat.v4.new_code_cell, (changed, PROBE, LAST))
     for cell in book.cells:
         if cell.source.startswith("%%exercise exercises/ex1_"):
             made = cell.source.replace("PREDICTION = None", 'PREDICTION = "A"')
@@ -84,7 +91,8 @@ def test_it_runs_beside_no_project_and_finds_what_contact_finds(ran, tmp_path):
     last = re.findall('"(.+?)"', notebook.RUNS["sag"])
     assert contact.main([*last, "--no-rerun", "--out", str(tmp_path)]) == 0
     assert found["quality"] == json.loads((tmp_path / "metrics.json").read_text())["quality"]
-    assert found["fallen"] == "the floor", "a region changed in its cell is not felt below"
+    assert found["fallen"] == "the floor", "a cell below does not use a region as it was changed"
+    assert ran[-2][1] == "0.0\n\n", "an exercise below does not"
     for part in (*notebook.RUNS.values(), "error-slide.svg"):
         (outputs,) = [outputs for source, _, outputs in ran if part in source]
         assert "image/svg+xml" in outputs[-1].data, part
@@ -93,7 +101,7 @@ def test_it_runs_beside_no_project_and_finds_what_contact_finds(ran, tmp_path):
 def test_each_exercise_is_tried_in_its_cell_in_words_of_a_notebook(ran):
     cells = {source.split("_")[0]: (source, text) for source, text, _ in ran if "%%ex" in source}
     tried = {name.removeprefix("%%exercise exercises/"): text for name, (_, text) in cells.items()}
-    assert len(tried) == 11 and "Traceback" not in "".join(tried.values())
+    assert tried.pop("ex99") and len(tried) == 11 and "Traceback" not in "".join(tried.values())
     bet, hint, (source, _) = tried.pop("ex1"), tried.pop("ex9"), cells["%%exercise exercises/ex8"]
     assert "0.54" in bet and "next, an exercise: %%exercise exercises/ex2_" in bet
     assert hint.startswith("hint 2 of 3: ")
