@@ -29,9 +29,9 @@ def write_lesson():
     text = LESSON
     for cell in In:
         if found := re.match(r"# contact\.py, region (.+)\n", cell):
-            code = cell[found.end():].rstrip() + "\n\n\n"
-            region = rf"(?ms)(^# --- region: {found[1]} ---\n).*?(?=^# --- region: |\Z)"
-            text = re.sub(region, lambda match: match[1] + code, text)
+            code = cell[found.end():].rstrip().replace("\\", r"\\") + "\n\n\n"
+            start = rf"(?ms)(?<=^# --- region: {found[1]} ---\n)"
+            text = re.sub(rf"{start}.*?(?=^# --- region: |\Z)", code, text)
     with open(__file__, "w", encoding="utf-8") as file:
         file.write(text)
 

@@ -1,10 +1,17 @@
 """The gate on a small project: the real code, a short chapter, one figure and one exercise."""
 
+import glob
 import hashlib
 import json
+import os
 import re
 import shlex
 import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -192,6 +199,30 @@ def test_what_is_quoted_is_kept_until_its_code_changes(project):
     for file, old, new, reference, quoted in LATER:
         edit(project / file, old, new)
         assert python("-c", shown.format(reference), cwd=project).stdout.strip() == quoted
+
+
+def children(process):
+    """The processes that this one has started, by its threads; "" for none."""
+    listed = glob.glob(f"/proc/{process}/task/*/children")
+    return "".join(Path(each).read_text() for each in listed)
+
+
+@pytest.mark.skipif(not glob.glob("/proc/self/task/*/children"), reason="no list of children here")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_gate_that_is_stopped_leaves_no_run_behind(project, number):
+    edit(project / "meta.yaml", "drop: []", "drop: [--no-skip, --steps, 10000000]")
+    how = {"cwd": project, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
+    with subprocess.Popen([sys.executable, "-m", "curriculum.gate"], **how) as process:
+        while not children(process.pid):
+            assert process.poll() is None
+            time.sleep(0.01)
+        process.send_signal(number)  # to the gate alone
+        err = process.communicate(timeout=600)[1]
+    assert (process.returncode, err) == (128 + number, "stopped\n")
+    with pytest.raises(ProcessLookupError):
+        for _ in range(6000):  # a run would take much longer
+            os.killpg(process.pid, 0)
+            time.sleep(0.01)
 
 
 BENCH, STRESS = "curriculum/bench/measure.py", "curriculum/stress/jobs.py"

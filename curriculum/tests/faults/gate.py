@@ -39,5 +39,7 @@ FAULTS = [
     (STORED, "is not None :]", "is None :]", STALE),
     (STORED, 'if " " in str(node.value)', "if False", STALE),
     (STORED, "used |= {n.id ", "{n.id ", STALE),
+    ("curriculum/__init__.py", "os.kill(int(child), signal.SIGKILL)", "pass",
+     "test_gate.py -k leaves_no_run_behind"),
     ("curriculum/source.py", 'dedent(code).rstrip("\\n")', "dedent(code)", READ),
 ]  # fmt: skip
