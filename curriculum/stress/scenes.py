@@ -151,3 +151,15 @@ def column(rng, count):
     y, mass = np.cumsum(2.0 * radius + gap) - radius, 10.0 ** rng.uniform(-1.0, 1.0, count)
     vy = rng.choice([0.0, 2.0]) * rng.uniform(-1.0, 1.0, count)
     return contact.scene_of(np.zeros(count), y, mass, radius, 0.0, vy)
+
+
+def mirror(rng):
+    """Balls, some fixed, and their images in x = 0, with a ball between them: their impacts tie."""
+    count = int(rng.integers(1, 5))
+    radius, mass = rng.uniform(0.05, 0.15, count), 10.0 ** rng.uniform(-1.0, 1.0, count)
+    x, y = rng.uniform(0.0, 0.6, count), rng.uniform(0.1, 1.2, count)
+    mass[rng.random(count) < 0.3] = np.inf
+    vx, vy = rng.choice([0.0, 1.0, 3.0]) * np.isfinite(mass) * rng.standard_normal((2, count))
+    axis = 0.0, rng.uniform(0.2, 1.5), 1.0, 0.1, 0.0, 0.0
+    rows = zip((x, y, mass, radius, vx, vy), (-x, y, mass, radius, -vx, vy), axis)
+    return contact.scene_of(*([*one, *image, middle] for one, image, middle in rows))
