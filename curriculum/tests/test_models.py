@@ -165,11 +165,13 @@ def calls_later(scene, steps):
     return {getattr(each.code, "co_name", ""): each.callcount for each in profile.getstats()}
 
 
-def test_impacts_cost_a_pile_a_bounded_number_of_pushes_and_at_rest_none():
+def test_impacts_cost_a_bounded_number_of_pushes_and_at_rest_none():
     falls = calls_later(build_scene("pile", bodies=150, restitution=0.5), 300)
     assert 100_000 < falls["apply_impulse"] < 220_000
     rests = calls_later(measure.shaft(12), 3000)
     assert 5_000 < rests["apply_impulse"] < 12_000, "20 sweeps, twice a step"
+    crushed = contact.scene_of(0, [0.1, 0.301], [1, math.inf], vy=[0, -0.2], restitution=0.5)
+    assert 5_000 < calls_later(crushed, 20)["apply_impulse"] < 30_000
 
 
 def test_momentum_finds_what_plain_sweeps_find_in_a_tenth_of_them():

@@ -25,6 +25,7 @@ FAULTS = [
     (C, "latest = dt if final else toi + WINDOW * dt", "latest = dt", OWN),
     (C, "min(10 * iters, sweeps_left)", "10 * iters", BOUNDED),
     (C, "earliest_impact(contacts, toi, dt)", "earliest_impact(contacts, 0.0, dt)", BOUNDED),
+    (C, "sweeps_left *= 0.5", "sweeps_left *= 1.0", BOUNDED),
     (C, "c.lam += c.impact_lam", "c.lam += 0.0", MODELS + "who_sees"),
     # the sweeps
     (C, "        if agreement < 0.0:\n            t = 1.0\n", "", MODELS + "momentum"),
