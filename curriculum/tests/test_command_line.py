@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import re
 import shlex
 import shutil
@@ -116,7 +117,8 @@ def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(
     how = {"PYTHONPATH": only("numpy"), "PYTHONHASHSEED": "97"}
     alone = python("-S", "contact.py", *flags.split(), cwd=tmp_path, **how)
     assert sorted(of_both(alone.stdout)) == sorted(of_both(out))
-    assert {*re.findall("because: .*", alone.stdout)} <= {*re.findall("because: .*", out)}
+    causes, more = (re.findall("because: (?!nothing).*", each) for each in (alone.stdout, out))
+    assert {*causes} <= {*more}
     assert (alone.returncode, alone.stderr) == (status, err)
     written = [path.read_bytes() for path in tmp_path.rglob("metrics.json")]
     assert len(written) == 2 * (status == 0 and flags != "--help") and len({*written}) <= 1
@@ -186,9 +188,22 @@ TOGETHER = (
 ENDS = [f"{flag} {value}" for flag, tried in FLAGS.items() for value in tried]
 
 
-def test_flags_at_their_ends_give_a_right_report_or_one_line(tmp_path, capsys):
+def inside(name):
+    """Seven values of a flag from its lowest to its highest, each as many times the last one."""
+    kind, low, high = contact.LIMITS[name][:3]
+    low = low or (1 if kind is int else min(1e-9, high / 1e3))
+    return [kind(low * (high / low) ** (k / 6)) for k in range(7)]
+
+
+WALKED = "dt mass stiffness damping baumgarte restitution warm iters seed".split()
+WALK = [f"--{name} {value}" for name in WALKED for value in inside(name)]
+
+
+def test_flags_inside_and_at_the_ends_of_their_ranges_give_a_right_report_or_one_line(
+    tmp_path, capsys
+):
     """A warning is an error in these tests. Few steps, down to none, are recorded, too."""
-    for flags in (*ENDS, *TOGETHER):
+    for flags in (*ENDS, *WALK, *TOGETHER):
         few = () if "--steps" in flags else ("--steps", 60, "--no-rerun")
         words = "--scene", "stack", *flags.split(), *few, "--out", tmp_path
         status, out, err = main(capsys, *words)
@@ -198,7 +213,8 @@ def test_flags_at_their_ends_give_a_right_report_or_one_line(tmp_path, capsys):
         assert err == "", flags
         for model, row in strict_json(tmp_path / "metrics.json")["quality"].items():
             (line,) = re.findall(rf"state: .*\b{model}\b.*", out)
-            assert not (line.endswith(" ok") and (row["blew_up"] or row["through"])), (flags, line)
+            through = row["through"] is not None and not row["blew_up"]
+            assert ("EXPLODED" in line, "through" in line) == (row["blew_up"], through), flags
 
 
 def test_no_rerun_never_imports_rerun_nor_anything_else_that_is_slow(tmp_path):
@@ -269,6 +285,77 @@ def test_a_pipe_that_nobody_reads_ends_it_without_a_word_and_a_full_disk_with_a_
     if os.name != "nt" and words.startswith("contact"):  # no output at all is no error
         done = subprocess.run(f"{shlex.join(typed)} >&-", shell=True, **how)
         assert (done.returncode, done.stderr) == (0, "")
+
+
+# flags, how the run of their model ended, and why; where something is wrong a cure is printed
+CAUSES = [
+    ("--contact penalty --dt 0.03", "EXPLODED at step 98", "critical step of a ball, 0.01354 s"),
+    ("--contact penalty --dt 0.0135", "rests after a gain of 329 % energy", "a step late"),
+    ("--contact penalty --stiffness 60", "through the floor", "the spring is too weak"),
+    ("--contact penalty --stiffness 1e3", "rests", "only where it is compressed, 0.0981 r"),
+    ("--scene stack --contact penalty --dt 0.006", "moves", "the fastest swing, 0.005682 s"),
+    ("--scene bounce --contact penalty", "moves after a hop of 9.07 r", "the damper is weak"),
+    ("--contact lcp --dt 0.064", "through the floor", "once a step, in which a ball moves 2.81 r"),
+    ("--contact lcp --baumgarte 1", "rests after a hop of 4.07 r", "beta depth / dt, is kept"),
+    ("--contact lcp --baumgarte 0", "rests", "beta = 0: no share of an overlap is opened"),
+    ("--scene stack --bodies 30 --contact lcp --steps 4000", "rests", "20 sweeps do not converge"),
+    ("--contact soft --solref 0.02 0.1", "moves after a hop of 4.38 r", "the damper is weak"),
+    ("--contact soft --solref -1e6 -100", "moves after a gain", "of this solref, 0.001902 s"),
+    ("--scene slide", "moves", "a contact begins with impedance d0 = 0.9"),
+    ("--scene slide --contact leapfrog", "moves", "nothing is wrong: it still slides at 4 s"),
+    ("--smoke --scene bounce --contact lcp", "moves", "nothing is wrong: it still bounces"),
+    ("--contact exact --steps 5", "moves", "nothing is wrong: it still falls at 0.01 s"),
+]
+ODD = "drop bounce stack slide pile".split(), "penalty lcp soft leapfrog".split()
+
+
+def ended(out, model):
+    """How the run of a model ended, and the lines on why and what to try, "" without one."""
+    lines = [*out.splitlines(), "", ""]
+    (k,) = (k for k, line in enumerate(lines) if re.match(rf"state: .*\b{model}\b", line))
+    why = lines[k + 1].partition("because: ")[2]
+    return lines[k][7:].rpartition(":")[0], why, lines[k + 2].partition("try: ")[2] if why else ""
+
+
+def is_cured(capsys, flags, out, model):
+    """Whether the command that the report names, typed as it stands, ends without a fault."""
+    state, why, cure = ended(out, model)
+    if not why or why.startswith("nothing is wrong"):
+        return state in ("rests", "moves") and not cure
+    typed = shlex.split(cure)
+    assert Path(typed[1]).resolve() == CONTACT, (flags, state, why)
+    named = typed[typed.index("--contact") + 1] if "--contact" in typed else model
+    state, why, _ = ended(main(capsys, *typed[2:])[1], named)
+    return state in ("rests", "moves") and (not why or why.startswith("nothing is wrong"))
+
+
+@pytest.mark.parametrize("flags, state, why", CAUSES)
+def test_a_verdict_names_its_cause_and_a_command_that_cures_it(flags, state, why, tmp_path, capsys):
+    _, out, _ = main(capsys, *flags.split(), "--no-rerun", "--out", tmp_path)
+    model = re.search("--contact (\\w+)|$", flags)[1] or "soft"
+    found = ended(out, model)
+    assert re.match(state, found[0]) and why in found[1], found
+    assert is_cured(capsys, flags, out, model), found
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_every_cure_that_is_printed_cures(seed, tmp_path, capsys):
+    """Of flags that nobody would choose, each drawn over its range as a report may have it."""
+    rng = random.Random(seed)
+    flags = (
+        f"--scene {rng.choice(ODD[0])} --contact {rng.choice(ODD[1])} --seed {rng.randrange(9)} "
+    )
+    flags += f"--dt {10 ** rng.uniform(-3.0, -0.5):.3g} --steps {rng.randrange(40, 900)} "
+    flags += rng.choice(["", f"--mass {10 ** rng.uniform(-2, 2):.3g} "])
+    flags += rng.choice(["", f"--stiffness {10 ** rng.uniform(1, 7):.3g} "])
+    flags += rng.choice(["", f"--restitution {rng.random():.2f} ", "--restitution 1 "])
+    flags += rng.choice(["", f"--damping {10 ** rng.uniform(0, 3):.3g} ", "--damping 0 "])
+    flags += rng.choice(["", f"--baumgarte {rng.random():.2f} --iters {rng.randrange(1, 40)} "])
+    flags += rng.choice(
+        ["", "--solref 0.02 0.1 ", "--solref -1e5 -50 ", "--solimp 0 0.9 0.01 0.5 2 "]
+    )
+    _, out, _ = main(capsys, *flags.split(), "--no-rerun", "--out", tmp_path)
+    assert is_cured(capsys, flags, out, flags.split()[3]), (flags, out)
 
 
 # fmt: off
