@@ -189,7 +189,9 @@ def falling(rows):
 def written(name, sections, made):
     """page.md or readme.md with everything filled in."""
     points, piles, heap, processes = (sections.get(part, ()) for part in measure.PARTS)
-    about = made.get("points", {"versions": {}})
+    about = dict(made.get("points", {}), versions={})
+    for each in made.values():
+        about["versions"] |= each["versions"]
     there = (f"{row[1]} {about['versions'].get(row[1], 'not there')}" for row in ENGINES.values())
     facts = claims(points, piles, processes)
     template, words = ((HERE / file).read_text("utf-8") for file in (name, "claims.md"))

@@ -92,7 +92,8 @@ def test_what_restitution_costs_in_mujoco_is_a_slow_sinking():
 
 @pytest.mark.parametrize("mass", (1.0, 100.0))
 def test_mujocos_depth_at_rest_depends_on_its_settings_and_not_on_the_mass(mass):
-    for how in ({}, {"solref": setting("solref")}, {"solimp": setting("solimp")}):
+    for how in ({}, {"solref": "0.01 1"}, {"solimp": "0.99 0.99 0.001"}):
+        assert all(f'{name}="{text}"' in README for name, text in how.items())
         mujoco, model, data = mujoco_model(mass=mass, z=0.1, **how)
         mujoco.mj_step(model, data, nstep=3000)
         depth, solref, solimp = 0.1 - data.qpos[2], model.geom_solref[0], model.geom_solimp[0]
@@ -100,6 +101,18 @@ def test_mujocos_depth_at_rest_depends_on_its_settings_and_not_on_the_mass(mass)
         K = 1.0 / (solimp[1] * solref[0] * solref[1]) ** 2
         assert (1.0 - d) * 9.81 == pytest.approx(d * d * K * depth, rel=1e-4)
         assert depth == pytest.approx(3.67e-4, rel=0.01) if not how else depth < 1.2e-4
+
+
+def test_a_damping_ratio_above_1_keeps_mujoco_from_throwing_an_overlapping_ball():
+    highest = []
+    for solref in re.findall(r'solref="(0\.004 \d)"', README):
+        mujoco, model, data = mujoco_model(solref=solref, z=0.07)
+        heights = []
+        for _ in range(1000):
+            mujoco.mj_step(model, data)
+            heights.append(data.qpos[2])
+        highest.append((max(heights) - 0.1) / 0.1)
+    assert highest[0] == pytest.approx(7.0, abs=0.2) and highest[1] < 0.0
 
 
 def test_mujoco_finds_a_fast_contact_by_the_flag_speculative():
