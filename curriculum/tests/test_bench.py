@@ -72,7 +72,9 @@ def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setti
 @pytest.mark.parametrize("setting", [s for s in OTHERS if s.runs("drop")], ids=named)
 def test_an_engine_rests_awake_and_keeps_momentum(setting):
     q, v = setting.build(contact.scene_of(0.0, 1.0, vx=1e-5), 0.002).states(1000)
-    slow = setting.engine in ("drake", "siconos") or setting.knobs.get("push") == 0  # to push out
+    slow = (
+        setting.engine in ("drake", "siconos", "dart") or setting.knobs.get("push") == 0
+    )  # to push out
     assert abs(q[-1, 1, 0] - R) < (0.2 if slow else 0.02) * R and abs(v[-1]).max() < 1e-2
     assert v[-1, 0, 0] == pytest.approx(1e-5, rel=1e-3), "awake, it slides on for ever"
     scene = contact.scene_of([-0.2, 0.2], 5.0, [3.0, 1.0], [0.1, 0.05], vx=[1.0, -1.0])
