@@ -125,7 +125,8 @@ def build(text=None):
     figures = {id: figure for (id, *_), figure in zip(slots, drawn)}
     templates = environment(figures=figures, exercises=exercises, regions=regions)
     macros = templates.get_template("parts.html.j2").module
-    body, ((_, _, title), *contents) = chapter.assemble(parts, macros)
+    titles = {id: figure["title"] for id, figure in figures.items()}
+    body, ((_, _, title), *contents) = chapter.assemble(parts, macros, titles)
     script = bundle("main.js", data)
     return templates.get_template("page.html.j2").render(
         allowed=[named(EARLY), named(script)],

@@ -135,10 +135,18 @@ def rendered(md, text, env):
 # ---- the whole
 
 
-def assemble(parts, macros):
-    """(HTML, [(level, id, text)] of its headings). The macro of a part's kind gives its HTML."""
-    titles = [values for kind, values in parts if kind == "heading"]
-    contents = [(*w, Markup(re.sub(r"</?(code|a|math)[^>]*>", "", title))) for *w, title in titles]
+def assemble(parts, macros, titles):
+    """(HTML, [(level, id, text)] of its headings, and of its figures, which have these titles).
+
+    The macro of a part's kind gives its HTML.
+    """
+    contents = []
+    for kind, values in parts:
+        if kind == "heading":
+            plain = re.sub(r"</?(code|a|math)[^>]*>", "", values[2])
+            contents.append((*values[:2], Markup(plain)))
+        elif kind == "figure":
+            contents.append((3, f"fig-{values[0]}", f"Figure: {titles[values[0]]}"))
     html, until = [], ()  # until: the kinds at which what is folded ends
     for kind, values in [*parts, ("heading", (0, "", ""))]:
         if kind in until:

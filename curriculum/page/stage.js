@@ -4,6 +4,7 @@
  *   title, caption  its name; one sentence that says what it shows; either text or f(own)
  *   height(width)   px of its drawing
  *   knobs           names of QUANTITIES that stand as sliders below it, at most two; or f(own)
+ *   room            how many of them may come; or as many as there are
  *   start(given)    its own state, {name: number or text}; the slot in the text may set it
  *   draw(view)      {picture, words, values}: svg, one sentence, and the numbers that are drawn
  *   clock(view)     {end, rate, step}: own.time runs from 0 to `end`, `rate` s in a second; with
@@ -68,8 +69,7 @@ export function fits(figure, { own, ranges }, name, value) {
   const switches = figure.switches?.(own) ?? [];
   if (switches.some(([, key]) => key === name))
     return value === 0 || switches.some(([, key, to]) => key === name && to === value);
-  const [low, high] = ranges[name] ?? [];
-  return value >= low && value <= high;
+  return Object.hasOwn(ranges, name) && value >= ranges[name][0] && value <= ranges[name][1];
 }
 
 // ---- sliders

@@ -40,7 +40,7 @@ function still([name, given]) {
       words: worded(words),
       caption: worded(asked(figure.caption, view.own)),
       heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
-      knobs: asked(figure.knobs ?? [], view.own).length,
+      knobs: figure.room ?? asked(figure.knobs ?? [], view.own).length,
       buttons: figure.switches || figure.play ? 1 : 0,
     };
   } catch (error) {

@@ -35,7 +35,7 @@ def firefox(start):
 
 # ---- what tests do in either browser
 
-FRAMES = "for (let k = 0; k < 3; k++) await new Promise(requestAnimationFrame);"
+FRAMES = "for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);"
 # a figure in the middle of the window, alive
 SEE = f"""async (id) => {{
   const fig = document.getElementById(id);
@@ -53,11 +53,13 @@ MIDDLE = f"""async (id) => {{
   const {{ x, y, width, height }} = handle.querySelector("circle").getBoundingClientRect();
   return [x + width / 2, y + height / 2];
 }}"""
-WORDS = f"""async (id) => {{
+# what a figure says, and how high it and all before it are
+STATE = f"""async (id) => {{
   {FRAMES}
-  return document.querySelector(`#${{id}} .words`).textContent;
+  const fig = document.getElementById(id);
+  return [fig.querySelector(".words").textContent, fig.offsetHeight, fig.offsetTop, scrollY];
 }}"""
-MOVES = ((-12, 12), (24, -24), (70, -60), (-70, 60))  # px: to and fro, for what stands at an end
+MOVES = ((24, -24), (70, -60), (-70, 60))  # px: to and fro, for what stands at an end
 
 
 def drag(page, x, y, moves=MOVES):

@@ -79,6 +79,7 @@ export const figure = {
   caption: ({ model }) => CAPTIONS[model],
   height: (width) => (width < 480 ? 260 : 300),
   knobs: ({ model }) => ({ penalty: ["stiffness"], soft: ["impedance"] })[model] ?? [],
+  room: 1,
   start: ({ model = "exact" }) => ({ model, hand: model === "exact" ? 0.5 : -0.5 }),
   switches: () => Object.keys(LAWS).map((model) => [model, "model", model]),
   draw,

@@ -19,12 +19,13 @@ const run = kept((model, heights, knobs, count) => {
 const knobsOf = (own, model) =>
   Object.fromEntries(["dt", ...data.uses[model]].map((name) => [name, own[name]]));
 
-// The runs of all models, and the time up to which they are shown [s].
+// The runs of all models, and the times between which they are shown [s].
 function runsOf(own) {
   const heights = data.scenes[own.scene].start.map((y) => y + own.lift);
-  const to = Math.max(own.to, own.from + 8 * own.dt);
+  const from = own.lift ? 0 : own.from; // who lifts them sees all of the fall
+  const to = Math.max(own.to, from + 8 * own.dt);
   const wanted = own.models.split(",");
-  return { to, all: MODELS.filter((model) => wanted.includes(model)).map((model) =>
+  return { from, to, all: MODELS.filter((model) => wanted.includes(model)).map((model) =>
     run(model, heights, knobsOf(own, model), Math.ceil(to / own.dt))) };
 }
 
@@ -47,7 +48,7 @@ function enlarged({ scene }, all) {
 }
 
 // A model's balls, held by the hand; from above what the picture holds, an arrow and how high.
-function lane(view, { model, made, gaps }, row, x, { floor, scale, larger, top }) {
+function lane(view, { model, made, gaps }, row, x, { from, floor, scale, larger, top }) {
   const { own } = view;
   const start = data.scenes[own.scene].start;
   const r = Math.max(5, R * scale);
@@ -66,8 +67,8 @@ function lane(view, { model, made, gaps }, row, x, { floor, scale, larger, top }
   const what = {
     label: `${model}: the balls`, value: "lift", low: 1.05 * R - start[0],
     high: top - R - start[start.length - 1], step: 0.02, at: (_, y) => (floor - y) / scale,
-    seen: () => (own.from + own.time > 0 && heights[0] < top ? heights[0] - start[0] : own.lift),
-    also: { from: 0, time: 0 }, release: () => view.play(0),
+    seen: () => (from + own.time > 0 && heights[0] < top ? heights[0] - start[0] : own.lift),
+    also: { time: 0 }, release: () => view.play(0),
   };
   const halo = circle(x, within(22, floor - (heights[0] || 0) * scale, floor), 22, "halo");
   return [
@@ -79,26 +80,26 @@ function lane(view, { model, made, gaps }, row, x, { floor, scale, larger, top }
   ];
 }
 
-function chartOf(view, { all, to }, top, time) {
+function chartOf(view, { all, from, to }, top, time) {
   const { own } = view;
-  const seen = all.flatMap(({ gaps }) => gaps.slice(Math.round(own.from / own.dt))
+  const seen = all.flatMap(({ gaps }) => gaps.slice(Math.round(from / own.dt))
     .map(({ gap }) => gap)).filter(Number.isFinite);
   const low = seen.reduce((a, b) => Math.min(a, b), -0.05);
   const high = seen.reduce((a, b) => Math.max(a, b), 0);
   const most = Math.min(high, Math.max(2, -2 * low), 12);
   const margin = 0.06 * (most - low);
   const axes = {
-    x: axis([own.from, to], "time (s)"),
+    x: axis([from, to], "time (s)"),
     y: axis([Math.max(low, -10) - margin, most + margin], "gap / r, r = 0.1 m (below 0: overlap)"),
   };
   const { sx, box } = plot(view, { top, ...axes });
   const lines = all.map(({ model, made, gaps }) => ({
-    model, points: gaps.map(({ gap }, row) => [made.t[row], gap]).slice(Math.round(own.from / own.dt)),
+    model, points: gaps.map(({ gap }, row) => [made.t[row], gap]).slice(Math.round(from / own.dt)),
     layers: [["whole", box.right], ["coming", sx(view.seen)], ["", sx(time)]],
   }));
   const what = {
-    label: "the time shown", value: "time", low: 0, high: to - own.from, step: own.dt,
-    at: (x) => sx.back(x) - own.from,
+    label: "the time shown", value: "time", low: 0, high: to - from, step: own.dt,
+    at: (x) => sx.back(x) - from,
   };
   return [plot(view, { top, zero: true, lines, ...axes }).picture,
     line(sx(time), box.top, sx(time), box.bottom, "rule"),
@@ -107,8 +108,8 @@ function chartOf(view, { all, to }, top, time) {
 
 function draw(view) {
   const { own, width, height } = view;
-  const { all, to } = runsOf(own);
-  const row = Math.min(Math.round(within(own.from, own.from + own.time, to) / own.dt),
+  const { all, from, to } = runsOf(own);
+  const row = Math.min(Math.round(within(from, from + own.time, to) / own.dt),
     all[0].made.steps);
   const time = row * own.dt;
   view.seen = Math.max(view.seen ?? 0, time); // what comes is not told before it has been played
@@ -120,9 +121,9 @@ function draw(view) {
   return {
     picture: [
       table(0, floor, width, GROUND),
-      all.map((each, k) => lane(view, each, row, wide * (k + 0.5), { floor, scale, larger, top })),
+      all.map((each, k) => lane(view, each, row, wide * (k + 0.5), { from, floor, scale, larger, top })),
       larger > 1 ? label(`overlaps × ${larger}`, 4, 16, "start", "tick") : "",
-      chartOf(view, { all, to }, chartTop, within(own.from, time, to)),
+      chartOf(view, { all, from, to }, chartTop, within(from, time, to)),
     ],
     words: `${time.toFixed(3)} s: ` +
       `${all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row], many)}`).join(", ")}.`,
@@ -134,15 +135,18 @@ const slower = ({ from, to }) => (to - from > 2 ? 1 : to - from > 0.5 ? 6 : 30);
 
 export const figure = {
   title: ({ scene, models }) => `${SCENES[scene]}: ${models.replaceAll(",", ", ")}`,
-  caption: ({ scene, from, to, dt }) =>
-    `${SCENES[scene]}, from ${plain(from)} to ${plain(to)} s, in steps of ${ms(dt)}.`,
+  caption: ({ scene, lift, from, to, dt }) =>
+    `${SCENES[scene]}, from ${lift ? 0 : plain(from)} to ${plain(to)} s, in steps of ${ms(dt)}.`,
   height: (width) => (width < 480 ? 400 : 480),
   knobs: ({ knobs }) => knobs.split(","),
   start: ({ scene = "drop" }) => ({
     scene, models: "penalty,lcp", from: 0.4, to: 1.2, lift: 0, knobs: "dt",
     ...data.scenes[scene].own,
   }),
-  clock: ({ own }) => ({ end: runsOf(own).to - own.from, rate: 1 / slower(own) }),
+  clock({ own }) {
+    const { from, to } = runsOf(own);
+    return { end: to - from, rate: 1 / slower(own) };
+  },
   play: (own) => `Let go${slower(own) > 1 ? `, speed 1/${slower(own)}` : ""}`,
   draw,
 };

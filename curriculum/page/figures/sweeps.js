@@ -106,7 +106,7 @@ export const figure = {
       + "up: no push goes below zero."),
   height: (width) => (width < 480 ? 280 : 340),
   start: ({ momentum = 0 }) =>
-    ({ momentum, v2: -1, begin1: 0.02, begin2: 0.86, time: momentum ? 44 : 1 }),
+    ({ momentum, v2: -1, begin1: 0.02, begin2: 0.86, time: momentum ? 44 : 2 }),
   clock: ({ own }) => ({ end: own.momentum ? 2 * SWEEPS : 24, rate: own.momentum ? 20 : 2, step: 1 + own.momentum }),
   play: () => "Play",
   draw,
