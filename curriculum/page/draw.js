@@ -48,7 +48,6 @@ export const rect = (x, y, width, height, kind) =>
     class=${kind}/>`;
 const way = (points) => (points.length ? `M${points.map((p) => p.map(px).join(" ")).join("L")}` : "");
 export const path = (points, kind) => svg`<path d=${way(points)} class=${kind}/>`;
-export const area = (points, kind) => svg`<path d=${`${way(points)}Z`} class=${kind}/>`;
 export const ball = (model, x, y, r, kind = "ball") => circle(x, y, r, `${kind} m-${model}`);
 export const mark = (model, x, y, r = 6) => circle(x, y, r, `mark m-${model}`);
 
@@ -62,6 +61,17 @@ export const table = (x, y, width, height) => [
   rect(x, y, width, height, "ground"), rect(x, y, width, height, "hatch"),
   line(x, y, x + width, y, "table-top"),
 ];
+
+/* The left part of a figure: the table, from `under` px above its end on, and over it a ball in the
+ * middle of x, of which at(gap) is the height, its gap [r] drawn `larger` times; drawn(...inside). */
+export function lane({ width, height }, { share = 0.32, under = 74, larger = 1 }) {
+  const [left, floor] = [Math.round(share * width), Math.round(height - under)];
+  const r = Math.min(70, 0.28 * left);
+  const said = larger > 1 ? label(`gaps × ${larger}`, 4, 16, "start", "tick") : "";
+  const drawn = (...inside) =>
+    clipped(0, 0, left, height, table(0, floor, left, under), said, inside);
+  return { left: left + 10, x: 0.45 * left, r, floor, larger, drawn, at: (gap) => floor - (gap * larger + 1) * r };
+}
 
 // An arrow from (x, y) by (dx, dy), none where it would be a dot.
 export function arrow(kind, x, y, dx, dy) {
@@ -143,10 +153,11 @@ export function plot(view, { left = 0, top = 0, height = view.height, x, y, line
   });
   const inside = (right, drawn) =>
     clipped(box.left, box.top - 3, right - box.left, box.bottom - box.top + 6, drawn);
-  const drawn = lines.map(({ model, points, kind = "", layers = [[kind, box.right]] }) => {
+  const drawn = lines.map(({ model, points, kind = "", layers = [[kind, x.domain[1]]] }) => {
     const end = points.findIndex(([, value]) => !Number.isFinite(value));
     const places = points.slice(0, end < 0 ? points.length : end).map(([at, v]) => [sx(at), sy(v)]);
-    return layers.filter(([, until]) => until > box.left).map(([each, until]) => inside(until, path(places, `line m-${model} ${each}`)));
+    return layers.filter(([, until]) => until > x.domain[0]).map(([each, until]) =>
+      inside(sx(until), path(places, `line m-${model} ${each}`)));
   });
   const picture = [
     across, along, line(box.left, box.bottom, box.right, box.bottom, "axis"),

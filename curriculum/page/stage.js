@@ -57,6 +57,7 @@ export function viewOf(figure, given, width = 640) {
 }
 
 export const asked = (what, own) => (typeof what === "function" ? what(own) : what);
+export const captionOf = ({ caption }, { own }) => worded(asked(caption, own));
 
 // No line ends between a number and its unit.
 export const worded = (words) =>
@@ -221,7 +222,7 @@ export function stage(box, figure, given, still) {
     const { picture, words } = figure.draw(view);
     render(html`<svg class="plot" viewBox="0 0 ${view.width} ${view.height}" role="group"
       aria-label=${asked(figure.title, own)}>${picture}</svg>
-      <figcaption>${worded(asked(figure.caption, own))}</figcaption>
+      <figcaption>${captionOf(figure, view)}</figcaption>
       <p class="words">${worded(words)}</p>
       <button type="button" class="back" title="As in the text" aria-label="As in the text"
       ?disabled=${Object.keys(own).every(same)} @click=${() => (take({}), remember())}>↺</button>

@@ -2,7 +2,7 @@
 import { data } from "./data.js";
 import { figures } from "./figures.js";
 import { textOf } from "./lit.js";
-import { asked, fits, QUANTITIES, viewOf, worded } from "./stage.js";
+import { asked, captionOf, fits, QUANTITIES, viewOf, worded } from "./stage.js";
 
 const [WIDE, NARROW] = [640, 358]; // px
 const CHOICES = { // words that a slot may set, where the figure has no choices of its own
@@ -15,11 +15,12 @@ function check(figure, given) {
   const view = viewOf(figure, {});
   figure.draw(view); // which tells the ranges of its handles
   for (const [name, value] of Object.entries(given)) {
-    const known = figure.choices?.[name] ?? CHOICES[name];
+    const choices = (figure.switches?.(view.own) ?? []).filter(([, key]) => key === name);
+    const known = choices.length ? ["0", ...choices.map(([, , to]) => `${to}`)] : CHOICES[name];
     if (!(name in view.own))
       throw new Error(`${name} sets nothing; known: ${Object.keys(view.own).join(", ")}`);
     if (known && !String(value).split(",").every((word) => known.includes(word)))
-      throw new Error(`${name}=${value}; allowed: ${known.filter(Boolean).join(", ")}`);
+      throw new Error(`${name}=${value}; allowed: ${known.filter((each) => each !== "0").join(", ")}`);
     if (name in view.ranges && !fits(figure, view, name, value))
       throw new Error(`${name}=${value}; allowed: from ${view.ranges[name].join(" to ")}`);
   }
@@ -38,7 +39,7 @@ function still([name, given]) {
       title: asked(figure.title, view.own),
       svg: textOf(picture),
       words: worded(words),
-      caption: worded(asked(figure.caption, view.own)),
+      caption: captionOf(figure, view),
       heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
       knobs: figure.room ?? asked(figure.knobs ?? [], view.own).length,
       buttons: figure.switches || figure.play ? 1 : 0,
@@ -59,4 +60,4 @@ function errorOf(slot) {
 
 export const errors = (slots) => slots.map(errorOf); // "" where a slot can be drawn
 export const stills = (wanted) => wanted.map(still);
-export { asked, figures, QUANTITIES, textOf, viewOf };
+export { asked, captionOf, figures, QUANTITIES, textOf, viewOf };

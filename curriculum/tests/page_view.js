@@ -7,9 +7,9 @@ const drawn = (name, given = {}, own = {}, width = 640) => {
     handles.push({ ...what, shape: MADE.textOf(shape) });
     return shape;
   };
-  const { picture, words, values } = figure.draw(view);
-  return { svg: MADE.textOf(picture), words, values, handles, height: view.height, own: view.own,
-    caption: MADE.asked(figure.caption, view.own), knobs: MADE.asked(figure.knobs ?? [], view.own),
+  const { picture, words } = figure.draw(view);
+  return { svg: MADE.textOf(picture), words, handles, height: view.height, own: view.own,
+    caption: MADE.captionOf(figure, view), knobs: MADE.asked(figure.knobs ?? [], view.own),
     end: figure.clock?.(view).end };
 };
 const MOST = 89; // letters of a figure's words

@@ -1,7 +1,6 @@
 """The page in real browsers: what a reader sees and does."""
 
 import itertools
-import json
 import re
 from pathlib import Path
 

@@ -64,7 +64,7 @@ def script():
     """A script whose value is x, y, vx, vy by runs.js of all cases."""
     return f"""(() => {{
       const {{ column, record }} = {bundle("runs.js", page_data())};
-      const hex = (numbers) => Array.from(new Uint8Array(numbers.buffer),
+      const hex = (numbers) => Array.from(new Uint8Array(new Float64Array(numbers).buffer),
         (byte) => byte.toString(16).padStart(2, "0")).join("");
       return {json.dumps([told for told, _ in cases()])}.map(([model, all, knobs, steps]) => {{
         const run = record(model, column(all.y, all), knobs, steps);

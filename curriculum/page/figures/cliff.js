@@ -1,8 +1,6 @@
 /* The cliff. Above, one step of a pressed spring multiplies depth and speed by a matrix: its two
  * eigenvalues beside the circle of size one. Below, how far a ball still moves that was lifted by
- * a ten thousandth of its depth at rest: past the critical step it never rests. Values: the eigenvalues
- * [real, imaginary], their size, the critical step [s], how far it moves in the end [r], and what
- * energy a dropped ball gains [starts]. */
+ * a ten thousandth of its depth at rest: past the critical step it never rests. */
 import { arrow, axis, circle, label, line, mark, ms, number, path, plot, range } from "../draw.js";
 import { timeSteps, within } from "../draw.js";
 import { critical_dt } from "../contact.js";
@@ -21,12 +19,12 @@ function pairOf({ stiffness: k, damping: c }, dt) {
   return [root, -root].map((part) => (square < 0 ? [middle, part] : [middle + part, 0]));
 }
 
-// How far such a ball moves in the last quarter of COUNT steps [r].
+// How far the lifted ball moves in the last quarter of COUNT steps [r].
 const moves = kept((dt, stiffness, damping) => {
   const start = column([R - ((1 - 1e-4) * G) / stiffness]);
   const { y } = record("penalty", start, { dt, stiffness, damping }, COUNT);
-  const late = y.subarray(-COUNT / 4);
-  const far = (late.reduce((a, b) => Math.max(a, b)) - late.reduce((a, b) => Math.min(a, b))) / R;
+  const late = y.slice(-COUNT / 4);
+  const far = (Math.max(...late) - Math.min(...late)) / R;
   return Number.isFinite(far) ? within(NONE, far, FARTHEST) : FARTHEST;
 }, 200);
 
@@ -39,24 +37,21 @@ const gains = kept((dt, stiffness, damping) => {
   return Number.isNaN(most) ? Infinity : most / energy(0) - 1;
 });
 
-function circleOf({ own, width }, pairs, height) {
+function circleOf({ own, width }, pairs, critical, height) {
   const unit = Math.min(width / 4.6, (height - 26) / 2.1);
   const [x, y] = [width - 1.5 * unit, 0.5 * height];
   const at = ([real, imaginary]) => [x + within(LEFTMOST, real, 1.3) * unit, y - imaginary * unit];
   // the way of both, from a step of nothing to twice the critical one
-  const ways = [0, 1].map((which) => range(121, (k) =>
-    at(pairOf(own, (k / 60) * critical_dt(1, own.stiffness, own.damping))[which])));
+  const ways = [0, 1].map((which) => range(121, (k) => at(pairOf(own, (k / 60) * critical)[which])));
   const tick = (text, toX, toY, anchor = "start") => label(text, toX, toY, anchor, "tick");
   const least = Math.min(...pairs.map(([real]) => real));
   return [
     line(x + LEFTMOST * unit, y, x + 1.4 * unit, y, "axis"),
-    line(x, y - 1.1 * unit, x, y + 1.1 * unit, "grid"),
-    circle(x, y, unit, "region-ring"),
+    line(x, y - 1.1 * unit, x, y + 1.1 * unit, "grid"), circle(x, y, unit, "region-ring"),
     tick("size 1", x + 0.74 * unit, y - 0.78 * unit), tick("1", x + unit + 6, y + 20),
     tick("−1", x - unit - 6, y + 20, "end"), tick("0", x - 6, y + 20, "end"),
     label("eigenvalues of a step", 0, 14, "start", "axis-name"),
-    ways.map((each) => path(each, "rule dashed")),
-    pairs.map((pair) => mark("penalty", ...at(pair), 7)),
+    ways.map((each) => path(each, "rule dashed")), pairs.map((pair) => mark("penalty", ...at(pair), 7)),
     least < LEFTMOST ? [arrow("weight", 40, y - 24, -30, 0), label(number(least), 46, y - 19)] : "",
   ];
 }
@@ -65,32 +60,29 @@ function draw(view) {
   const { own: { dt, stiffness, damping }, width, height } = view;
   const critical = critical_dt(1, stiffness, damping);
   const pairs = pairOf(view.own, dt);
-  const size = Math.max(...pairs.map((pair) => Math.hypot(...pair)));
-  const [far, gained] = [moves(dt, stiffness, damping), gains(dt, stiffness, damping)];
+  const gained = gains(dt, stiffness, damping);
   const dts = [...range(22, (k) => LOW * (HIGH / LOW) ** (k / 21)), 0.985 * critical, 1.015 * critical]
     .filter((each) => each >= LOW && each <= HIGH).sort((a, b) => a - b);
   const top = Math.round(0.42 * height);
-  const ticks = [[NONE, "<10⁻⁶"], 0.001, 1, 1000, [1e6, "10⁶"]];
   const { sx, sy, box, picture, knob } = plot(view, {
     top, x: timeSteps(LOW, HIGH),
-    y: { ...axis([NONE, FARTHEST], "still moving after 1,000 steps / r", ...ticks), log: true },
-    lines: [{ model: "penalty", points: dts.map((each) => [each, moves(each, stiffness, damping)]),
-      kind: "plainly" }],
+    y: { ...axis([NONE, FARTHEST], `still moving after ${COUNT.toLocaleString("en")} steps / r`,
+      [NONE, "<10⁻⁶"], 0.001, 1, 1000, [1e6, "10⁶"]), log: true },
+    lines: [{ model: "penalty", kind: "plainly",
+      points: dts.map((each) => [each, moves(each, stiffness, damping)]) }],
   });
-  const right = sx(critical) > 0.5 * width;
-  const kind = pairs[0][1] > 0 ? "rings" : Math.min(pairs[0][0], pairs[1][0]) < 0
-    ? "jumps to and fro" : "creeps back";
-  const drop = gained > 1e-9 ? `gains ${number(gained)} times its energy` : "gains no energy";
+  const side = sx(critical) > 0.5 * width ? -1 : 1;
+  const kind = pairs[0][1] > 0 ? "rings" : pairs[1][0] < 0 ? "jumps to and fro" : "creeps back";
+  const size = Math.max(...pairs.map((pair) => Math.hypot(...pair)));
   return {
     picture: [
-      circleOf(view, pairs, top - 12), picture,
+      circleOf(view, pairs, critical, top - 12), picture,
       line(sx(critical), box.top, sx(critical), box.bottom, "rule"),
-      label(`critical: ${ms(critical)}`, sx(critical) + (right ? -6 : 6), box.top + 14,
-        right ? "end" : "start"),
-      mark("penalty", sx(dt), sy(far), 7), knob("dt", "the time step", 0.0002),
+      label(`critical: ${ms(critical)}`, sx(critical) + 6 * side, box.top + 14, side < 0 ? "end" : "start"),
+      mark("penalty", sx(dt), sy(moves(dt, stiffness, damping)), 7), knob("dt", "the time step", 0.0002),
     ],
-    words: `${ms(dt)}: it ${kind}, × ${number(size)} a step. A drop ${drop}.`,
-    values: { pairs, size, critical, far, gained },
+    words: `${ms(dt)}: it ${kind}, × ${number(size)} a step. A drop gains ` +
+      `${gained > 1e-9 ? `${number(gained)} times its energy` : "no energy"}.`,
   };
 }
 

@@ -1,7 +1,6 @@
 /* The models side by side over one table, and below it their gaps over time: dark up to now, faint
  * where one has seen what comes. A stack's overlaps are drawn enlarged. It is still until it is
- * pressed, and keeps its scale. Values: the time shown [s], the models' gaps [r] then, and the
- * highest place in the picture [m]. */
+ * pressed, and keeps its scale. */
 import { arrow, axis, ball, circle, label, line, ms, number, plain, plot } from "../draw.js";
 import { table, within } from "../draw.js";
 import { data } from "../data.js";
@@ -15,18 +14,17 @@ const run = kept((model, heights, knobs, count) => {
   return { model, made, gaps: gapsOf(made) };
 });
 
-// The knobs that a model's run depends on, and no others: so what else is dragged costs nothing.
-const knobsOf = (own, model) =>
-  Object.fromEntries(["dt", ...data.uses[model]].map((name) => [name, own[name]]));
-
-// The runs of all models, and the times between which they are shown [s].
+// The runs of all models, and the times between which they are shown [s]. A run has those knobs that
+// it depends on, and no others: so what else is dragged costs nothing.
 function runsOf(own) {
   const heights = data.scenes[own.scene].start.map((y) => y + own.lift);
   const from = own.lift ? 0 : own.from; // who lifts them sees all of the fall
   const to = Math.max(own.to, from + 8 * own.dt);
-  const wanted = own.models.split(",");
-  return { from, to, all: MODELS.filter((model) => wanted.includes(model)).map((model) =>
-    run(model, heights, knobsOf(own, model), Math.ceil(to / own.dt))) };
+  const knobsOf = (model) =>
+    Object.fromEntries(["dt", ...data.uses[model]].map((name) => [name, own[name]]));
+  const wanted = MODELS.filter((model) => own.models.split(",").includes(model));
+  return { from, to,
+    all: wanted.map((model) => run(model, heights, knobsOf(model), Math.ceil(to / own.dt))) };
 }
 
 // How high the picture is [m]: as the balls are where it begins, with some room to lift them.
@@ -63,13 +61,13 @@ function lane(view, { model, made, gaps }, row, x, { from, floor, scale, larger,
     return [circle(x, 44, 22, "halo"), arrow("weight", x, 54, 0, -30),
       label(far, x, 70, "middle", "tick")];
   });
-  const push = Math.min(40, 14 * Math.sqrt(Math.max(0, pushIn(made, row))));
   const what = {
     label: `${model}: the balls`, value: "lift", low: 1.05 * R - start[0],
     high: top - R - start[start.length - 1], step: 0.02, at: (_, y) => (floor - y) / scale,
     seen: () => (from + own.time > 0 && heights[0] < top ? heights[0] - start[0] : own.lift),
     also: { time: 0 }, release: () => view.play(0),
   };
+  const push = Math.min(40, 14 * Math.sqrt(Math.max(0, pushIn(made, row))));
   const halo = circle(x, within(22, floor - (heights[0] || 0) * scale, floor), 22, "halo");
   return [
     view.grab(what, [shown, r < 22 ? halo : ""]),
@@ -81,53 +79,44 @@ function lane(view, { model, made, gaps }, row, x, { from, floor, scale, larger,
 }
 
 function chartOf(view, { all, from, to }, top, time) {
-  const { own } = view;
-  const seen = all.flatMap(({ gaps }) => gaps.slice(Math.round(from / own.dt))
-    .map(({ gap }) => gap)).filter(Number.isFinite);
+  const first = Math.round(from / view.own.dt);
+  const seen = all.flatMap(({ gaps }) => gaps.slice(first).map(({ gap }) => gap)).filter(Number.isFinite);
   const low = seen.reduce((a, b) => Math.min(a, b), -0.05);
-  const high = seen.reduce((a, b) => Math.max(a, b), 0);
-  const most = Math.min(high, Math.max(2, -2 * low), 12);
+  const most = Math.min(seen.reduce((a, b) => Math.max(a, b), 0), Math.max(2, -2 * low), 12);
   const margin = 0.06 * (most - low);
-  const axes = {
-    x: axis([from, to], "time (s)"),
+  const { sx, box, picture } = plot(view, {
+    top, zero: true, x: axis([from, to], "time (s)"),
     y: axis([Math.max(low, -10) - margin, most + margin], "gap / r, r = 0.1 m (below 0: overlap)"),
-  };
-  const { sx, box } = plot(view, { top, ...axes });
-  const lines = all.map(({ model, made, gaps }) => ({
-    model, points: gaps.map(({ gap }, row) => [made.t[row], gap]).slice(Math.round(from / own.dt)),
-    layers: [["whole", box.right], ["coming", sx(view.seen)], ["", sx(time)]],
-  }));
-  const what = {
-    label: "the time shown", value: "time", low: 0, high: to - from, step: own.dt,
-    at: (x) => sx.back(x) - from,
-  };
-  return [plot(view, { top, zero: true, lines, ...axes }).picture,
-    line(sx(time), box.top, sx(time), box.bottom, "rule"),
-    view.point(sx(time), box.bottom - 2, what)];
+    lines: all.map(({ model, made, gaps }) => ({
+      model, points: gaps.slice(first).map(({ gap }, k) => [made.t[first + k], gap]),
+      layers: [["whole", to], ["coming", view.seen], ["", time]],
+    })),
+  });
+  const what = { label: "the time shown", value: "time", low: 0, high: to - from,
+    step: view.own.dt, at: (x) => sx.back(x) - from };
+  const x = sx(time);
+  return [picture, line(x, box.top, x, box.bottom, "rule"), view.point(x, box.bottom - 2, what)];
 }
 
 function draw(view) {
   const { own, width, height } = view;
   const { all, from, to } = runsOf(own);
-  const row = Math.min(Math.round(within(from, from + own.time, to) / own.dt),
-    all[0].made.steps);
+  const row = Math.min(Math.round(within(from, from + own.time, to) / own.dt), all[0].made.steps);
   const time = row * own.dt;
   view.seen = Math.max(view.seen ?? 0, time); // what comes is not told before it has been played
   const chartTop = Math.round(0.56 * height);
   const [wide, floor, top] = [width / all.length, chartTop - BELOW, topOf(view.text)];
   const scale = Math.min((floor - 6) / top, (0.42 * wide) / R); // px for 1 m
-  const larger = enlarged(own, all);
-  const many = data.scenes[own.scene].start.length > 1;
+  const [larger, many] = [enlarged(own, all), own.scene === "stack"];
+  const told = all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row], many)}`);
   return {
     picture: [
-      table(0, floor, width, GROUND),
-      all.map((each, k) => lane(view, each, row, wide * (k + 0.5), { from, floor, scale, larger, top })),
+      table(0, floor, width, GROUND), all.map((each, k) =>
+        lane(view, each, row, wide * (k + 0.5), { from, floor, scale, larger, top })),
       larger > 1 ? label(`overlaps × ${larger}`, 4, 16, "start", "tick") : "",
       chartOf(view, { all, from, to }, chartTop, within(from, time, to)),
     ],
-    words: `${time.toFixed(3)} s: ` +
-      `${all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row], many)}`).join(", ")}.`,
-    values: { time, top, gaps: Object.fromEntries(all.map(({ model, gaps }) => [model, gaps[row].gap])) },
+    words: `${time.toFixed(3)} s: ${told.join(", ")}.`,
   };
 }
 
@@ -140,8 +129,7 @@ export const figure = {
   height: (width) => (width < 480 ? 400 : 480),
   knobs: ({ knobs }) => knobs.split(","),
   start: ({ scene = "drop" }) => ({
-    scene, models: "penalty,lcp", from: 0.4, to: 1.2, lift: 0, knobs: "dt",
-    ...data.scenes[scene].own,
+    scene, models: "penalty,lcp", from: 0.4, to: 1.2, lift: 0, knobs: "dt", ...data.scenes[scene].own,
   }),
   clock({ own }) {
     const { from, to } = runsOf(own);

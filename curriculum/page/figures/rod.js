@@ -1,10 +1,8 @@
 /* What friction breaks: a rod's lower end slides along the table, ahead of its middle. The speed at
  * which the end parts from the table, over how hard the table pushes: two straight pieces, where it
  * slides and where it sticks. The law (no pull, no overlap, no push without touch) holds where the
- * line crosses zero, and at no push at all. Values: those answers [N s], the one of the relaxed
- * law, and v_n at the chosen push [m/s]. */
-import { arrow, axis, circle, clipped, line, mark, number, plot, table } from "../draw.js";
-import { within } from "../draw.js";
+ * line crosses zero, and at no push at all. */
+import { arrow, axis, circle, clipped, line, mark, number, plot, table, within } from "../draw.js";
 
 // A rod of 1 kg and 2 m: its end, seen from the middle [m], which without a push rises and slides
 // with FREE [m/s]; W: what an impulse at the end changes of that [1/kg].
@@ -14,8 +12,7 @@ const [MOST, FAR] = [1.3, 2.6]; // N s: that are seen, and below which answers a
 
 // v_n and v_t at a push p: friction is mu p against the motion, or as much as stops it.
 function after(p, mu) {
-  const sticks = (FREE[1] + W[1][0] * p) / W[1][1];
-  const rub = -Math.min(mu * p, sticks);
+  const rub = -Math.min(mu * p, (FREE[1] + W[1][0] * p) / W[1][1]);
   return [0, 1].map((k) => FREE[k] + W[k][0] * p + W[k][1] * rub);
 }
 
@@ -34,19 +31,16 @@ const crossings = (f, bends) =>
 
 function draw(view) {
   const { own: { mu, push }, width, height } = view;
-  const law = (p) => after(p, mu)[0];
-  const bends = bendsOf(mu);
+  const [law, bends] = [(p) => after(p, mu)[0], bendsOf(mu)];
   const coulomb = [0, ...crossings(law, bends)];
   const [relaxed = 0] = crossings((p) => law(p) - mu * after(p, mu)[1], bends);
   const [v_n, v_t] = after(push, mu);
   const [left, floor] = [Math.round(0.36 * width), height - 60];
-  const points = bends.map((p) => [p, law(p)]);
   const ends = [...bends.slice(1, -1), MOST].map((p) => law(Math.min(p, MOST)));
-  const domain = [Math.min(-0.35, ...ends) - 0.05, Math.max(0.6, ...ends) + 0.05];
   const { sx, sy, picture, knob } = plot(view, {
-    left: left + 8, x: axis([0, MOST], "push of the table (N s)", 0, 0.5, 1),
-    y: axis(domain, "vₙ of the end (m/s)"), zero: true,
-    lines: [{ model: "exact", points, kind: "plainly" }],
+    left: left + 8, x: axis([0, MOST], "push of the table (N s)", 0, 0.5, 1), zero: true,
+    y: axis([Math.min(-0.35, ...ends) - 0.05, Math.max(0.6, ...ends) + 0.05], "vₙ of the end (m/s)"),
+    lines: [{ model: "exact", points: bends.map((p) => [p, law(p)]), kind: "plainly" }],
   });
   const [x, scale] = [0.68 * left, Math.min(0.6 * left, (floor - 16) / 1.9)]; // px; px for 1 m
   const middle = [x - X * scale, floor + Y * scale];
@@ -55,8 +49,7 @@ function draw(view) {
   return {
     picture: [
       clipped(0, 0, left, height, table(0, floor, left, 60),
-        line(2 * middle[0] - x, 2 * middle[1] - floor, x, floor, "rod"),
-        circle(...middle, 4, "dot"),
+        line(2 * middle[0] - x, 2 * middle[1] - floor, x, floor, "rod"), circle(...middle, 4, "dot"),
         arrow("weight", x, floor, 14 * Math.min(4, v_t), -14 * 4 * v_n),
         arrow("push m-exact", x, floor + 58, 0, -44 * within(0, push, 1))),
       picture, coulomb.map((p) => circle(sx(p), sy(p ? 0 : FREE[0]), 9, "answer")),
@@ -64,7 +57,6 @@ function draw(view) {
     ],
     words: `The law: ${told} N s; relaxed: ${number(relaxed, 2)} N s. At ${number(push, 2)} N s ` +
       `the end ${does}, ${v_t > 1e-9 ? "slides" : "sticks"}.`,
-    values: { coulomb, relaxed, v_n, v_t },
   };
 }
 

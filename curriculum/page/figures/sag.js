@@ -1,5 +1,5 @@
 /* What unfinished sweeps leave: a column at rest under lcp sags as on springs. The overlap of every
- * contact is a bar, the law a line. Values: overlaps and law from below [r], whether it rests. */
+ * contact is a bar, the law a line. */
 import { axis, ball, bare, label, line, number, path, plot, range, rect, table } from "../draw.js";
 import { column, G, inRow, kept, R, record } from "../runs.js";
 
@@ -13,11 +13,10 @@ const sags = kept((count, knobs) => {
   let top = 0;
   const heights = lawOf(count, knobs).map((deep) => (top += (2 - deep) * R) - R);
   const run = record("lcp", column(heights), { ...knobs, restitution: 0 }, ROWS);
-  const depthsIn = (row) => {
+  const [before, depths] = [ROWS - 9, ROWS].map((row) => {
     const ys = inRow(run, "y", row);
     return ys.map((y, i) => (i ? 2 - (y - ys[i - 1]) / R : 1 - y / R));
-  };
-  const [before, depths] = [depthsIn(ROWS - 9), depthsIn(ROWS)];
+  });
   const still = (deep, i) => Math.abs(deep - before[i]) < 1e-3 * Math.abs(deep) + 1e-9;
   return { depths, rests: depths.every(still) };
 });
@@ -29,23 +28,21 @@ function draw(view) {
   const [left, floor] = [Math.round(0.24 * width), height - 46];
   const r = Math.min(30, (height - 60) / (2 * balls), 0.4 * left);
   const at = (i) => floor - 2 * i * r; // of a contact
-  const most = Math.max(1e-9, ...depths, ...law) * 1.12;
-  const { sx, box, picture } = plot(view, {
-    left, x: axis([0, 1000 * most], "overlap (thousandths of r)"), y: bare,
-  });
+  const most = 1.12 * Math.max(1e-9, ...depths, ...law);
+  const { sx, box, picture } = plot(view,
+    { left, x: axis([0, 1000 * most], "overlap (thousandths of r)"), y: bare });
+  const to = (deep) => sx(1000 * Math.max(0, deep));
   return {
     picture: [
       table(0, floor, left, 30), line(left / 2 + r, floor, left + 20, floor, "grid"),
-      depths.map((_, i) => ball("lcp", left / 2, at(i) - r, r)),
-      depths.map((deep, i) => rect(sx(0), at(i) - 0.6 * r,
-        sx(1000 * Math.max(0, deep)) - sx(0), 0.8 * r, "bar-fill m-lcp")),
-      path(law.map((deep, i) => [sx(1000 * deep), at(i) - 0.2 * r]), "law-line"),
-      label("the law", Math.min(sx(1000 * law[1]) + 14, width - 54), at(1) - 0.2 * r + 2),
+      depths.map((deep, i) => [ball("lcp", left / 2, at(i) - r, r),
+        rect(sx(0), at(i) - 0.6 * r, to(deep) - sx(0), 0.8 * r, "bar-fill m-lcp")]),
+      path(law.map((deep, i) => [to(deep), at(i) - 0.2 * r]), "law-line"),
+      label("the law", Math.min(to(law[1]) + 14, width - 54), at(1) - 0.2 * r + 2),
       picture, line(sx(0), box.top, sx(0), box.bottom, "rule"),
     ],
     words: `The lowest of ${balls} is ${number(depths[0], 2)} r deep` +
       `${rests ? "" : ", and still moves"}; the law says ${number(law[0], 2)} r.`,
-    values: { depths, law, rests },
   };
 }
 

@@ -1,6 +1,5 @@
 /* A ball slides off a held one: the worst error of its place over the step, with lcp of first
- * order and with leapfrog of second. Values: the errors at the chosen step [r], and those of all
- * steps. */
+ * order and with leapfrog of second. */
 import { ball, clipped, label, logAxis, mark, ms, number, path, plot, range } from "../draw.js";
 import { timeSteps } from "../draw.js";
 import { data } from "../data.js";
@@ -14,20 +13,18 @@ const STEPS = range(7, (k) => 0.0005 * 2 ** k); // s
 const placesOf = kept((model, lean, dt) => {
   const [x, y] = [2 * R * Math.sin(lean), 2 * R * Math.cos(lean)];
   const balls = column([HEIGHT, HEIGHT + y], { x: [0, x], mass: [Infinity, 1] });
-  const knobs = { ...data.defaults, dt };
-  const run = record(model, balls, knobs, Math.floor(SECONDS / dt + 1e-9));
-  return Array.from(run.t, (_, k) => [run.x[2 * k + 1] / R, (run.y[2 * k + 1] - HEIGHT) / R]);
+  const run = record(model, balls, { ...data.defaults, dt }, Math.floor(SECONDS / dt + 1e-9));
+  return run.t.map((_, k) => [run.x[2 * k + 1] / R, (run.y[2 * k + 1] - HEIGHT) / R]);
 });
 
 // Beside leapfrog with the finest steps: between two of those the ball is on a straight line.
 const errorOf = kept((model, lean, dt) => {
   const fine = placesOf("leapfrog", lean, FINE);
-  const off = ([x, y], row) => {
+  return Math.max(...placesOf(model, lean, dt).map(([x, y], row) => {
     const at = Math.min(fine.length - 1.001, (row * dt) / FINE);
     const [[x1, y1], [x2, y2], s] = [fine[Math.floor(at)], fine[Math.ceil(at)], at % 1];
     return Math.hypot(x - x1 - s * (x2 - x1), y - y1 - s * (y2 - y1));
-  };
-  return Math.max(...placesOf(model, lean, dt).map(off));
+  }));
 }, 40);
 
 function draw(view) {
@@ -45,26 +42,21 @@ function draw(view) {
   const scale = Math.min(44, left / 4.6); // px for 1 r
   const [x, y] = [1.15 * scale, 3.4 * scale];
   const place = ([toX, toY]) => [x + toX * scale, y - toY * scale];
-  const what = {
-    label: "the sliding ball: where it starts", value: "lean", low: 0.05, high: 0.8, step: 0.02,
-    at: (toX, toY) => Math.atan2(toX - x, Math.max(1, y - toY)),
-  };
-  const top = place([2 * Math.sin(lean), 2 * Math.cos(lean)]);
+  const what = { label: "the sliding ball: where it starts", value: "lean", low: 0.05, high: 0.8,
+    step: 0.02, at: (toX, toY) => Math.atan2(toX - x, Math.max(1, y - toY)) };
+  const start = place([2 * Math.sin(lean), 2 * Math.cos(lean)]);
   return {
     picture: [
-      ball("fixed", x, y, scale, "body"),
-      clipped(0, 0, left - 8, height, BOTH.map((model) =>
+      ball("fixed", x, y, scale, "body"), clipped(0, 0, left - 8, height, BOTH.map((model) =>
         path(placesOf(model, lean, dt).map(place), `line way m-${model}`))),
-      view.grab(what, ball("leapfrog", ...top, scale)), picture,
-      slopes.map(([, , , [step, error]], k) =>
-        label(`slope ${k + 1}`, sx(step) + 4, sy(error) + 18, "start", "tick")),
-      all.map((points, k) => label(BOTH[k], sx(STEPS[0]) + 10, sy(points[0][1]) - 14)),
-      now.map((error, k) => mark(BOTH[k], sx(dt), sy(error), 7)),
+      view.grab(what, ball("leapfrog", ...start, scale)), picture,
+      BOTH.map((model, k) => [
+        label(`slope ${k + 1}`, sx(STEPS[3]) + 4, sy(slopes[k][3][1]) + 18, "start", "tick"),
+        label(model, sx(STEPS[0]) + 10, sy(all[k][0][1]) - 14), mark(model, sx(dt), sy(now[k]), 7)]),
       knob("dt", "the time step", 0.0005),
     ],
     words: `From ${number((lean * 180) / Math.PI, 2)}° in steps of ${ms(dt)}, lcp is off by ` +
       `${number(now[0], 2)} r, leapfrog by ${number(now[1], 2)} r.`,
-    values: { lcp: now[0], leapfrog: now[1], all },
   };
 }
 

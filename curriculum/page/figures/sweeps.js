@@ -1,9 +1,8 @@
 /* The sweep as a walk: the impulses of two contacts are a plane, and each visit to a contact goes
  * along its own axis until that contact has its target, but not below zero: a staircase between two
  * lines. With momentum=1 the upper ball is ten times as heavy, the contours are those of the bowl
- * whose lowest point is looked for, and a second walk goes on a little after each sweep. Values:
- * the impulses of both walks now, and in the end [m g dt]. */
-import { area, arrow, axis, ball, clipped, label, mark, number, path, plot, range } from "../draw.js";
+ * whose lowest point is looked for, and a second walk goes on a little after each sweep. */
+import { arrow, axis, ball, clipped, label, mark, number, path, plot, range, rect } from "../draw.js";
 import { table } from "../draw.js";
 import { Contact, FLOOR, solve_accelerated, solve_contacts } from "../contact.js";
 import { column, kept, R } from "../runs.js";
@@ -12,28 +11,26 @@ const [SWEEPS, UNIT, GROUND] = [80, 26, 40]; // px: an arrow for g dt, the table
 const LEVELS = [0.02, 0.1, 0.3, 0.7, 1.4, 2.5, 4]; // of the contours, as shares of the picture
 const NAMES = ["ball 2 on 1", "ball 1 on the table"];
 
-// Contacts of two balls over one another, from below, with these impulses and speeds.
-function stacked(mass, lam, vy) {
-  const balls = column([R, 3 * R], { mass, vy });
-  return balls.map((each, i) =>
-    Object.assign(new Contact(each, i ? balls[0] : FLOOR, 0, 1, 0), { lam: lam[i] }));
-}
-
 // In m g dt and g dt: after each visit the impulses and speeds, and the impulses of a walk with
-// momentum after each sweep.
+// momentum after each sweep. The balls come with -1 and v2, and with these impulses to begin with.
 const walks = kept((v2, begin, heavy) => {
-  const [mass, vy] = [[1, heavy], [begin[0] - begin[1] - 1, v2 + begin[1] / heavy]];
-  const contacts = stacked(mass, begin, vy);
+  const start = () => {
+    const vy = [begin[0] - begin[1] - 1, v2 + begin[1] / heavy];
+    const balls = column([R, 3 * R], { mass: [1, heavy], vy });
+    return balls.map((each, i) =>
+      Object.assign(new Contact(each, i ? balls[0] : FLOOR, 0, 1, 0), { lam: begin[i] }));
+  };
+  const contacts = start();
   const plainly = range(2 * SWEEPS + 1, (visit) => {
     if (visit) solve_contacts([contacts[(visit + 1) % 2]], 1);
     return { lam: contacts.map((c) => c.lam), vy: contacts.map(({ a }) => a.vy) };
   });
   const rolled = range(SWEEPS + 1, (count) => {
-    const all = stacked(mass, begin, vy);
+    const all = start();
     solve_accelerated(all, count);
     return all.map(({ lam }) => lam);
   });
-  return { plainly, rolled };
+  return { plainly, rolled, end: plainly[2 * SWEEPS].lam };
 });
 
 // The contour of the bowl so high above its lowest point, where both balls are stopped.
@@ -45,69 +42,59 @@ const contourOf = (v2, heavy, height) =>
   });
 
 function draw(view) {
-  const { own: { v2, momentum, begin1, begin2, time }, width, height } = view;
+  const { own: { v2, momentum, time }, width, height } = view;
   const [heavy, most] = momentum ? [10, 35] : [1, 3]; // m g dt, that are seen
-  const begin = momentum ? [begin1 * most, begin2 * most] : [0, 0];
-  const { plainly, rolled } = walks(v2, begin, heavy);
+  const { plainly, rolled, end } = walks(v2, momentum ? [0.02 * most, 0.86 * most] : [0, 0], heavy);
   const at = Math.min(2 * SWEEPS, Math.floor(time + 1e-9));
-  const [{ lam, vy }, sweep] = [plainly[at], Math.ceil(at / 2)];
+  const [{ lam, vy }, sweep, one] = [plainly[at], Math.ceil(at / 2), at % 2 ? 0 : 1]; // one: visited
   const [left, floor] = [Math.round(0.28 * width), height - GROUND];
   const { sx, sy, box, picture } = plot(view, {
     left, x: axis([-0.1 * most, 1.25 * most], "table’s push / m g dt"),
     y: axis([-0.1 * most, 1.05 * most], "upper push / m g dt"),
   });
-  const place = ([x, y]) => [sx(x), sy(y)];
-  const [zero, far] = [place([0, 0]), [box.right, box.top]];
-  const negative = area([[box.left, far[1]], [zero[0], far[1]], zero, [far[0], zero[1]],
-    [far[0], box.bottom], [box.left, box.bottom]], "region");
+  const way = (points, kind) => path(points.map(([x, y]) => [sx(x), sy(y)]), kind);
   // where a contact has its target, and both balls move as one; or the bowl
-  const own = [[1, 1], [(1 + 1 / heavy), v2 + 1]].map(([steep, off], k) =>
-    path([0, 2 * most].map((up) => place([k ? steep * up + off : up + 1, up])), "rule dashed"));
-  const bowl = LEVELS.map((level) =>
-    path(contourOf(v2, heavy, level * most).map(place), "contour"));
+  const lines = momentum ? LEVELS.map((level) => way(contourOf(v2, heavy, level * most), "contour"))
+    : [[1, 1], [2, v2 + 1]].map(([steep, off]) =>
+      way([[off, 0], [2 * steep * most + off, 2 * most]], "rule dashed"));
   const r = Math.min(40, 0.3 * left);
-  const balls = vy.map((v, k) => [ball("lcp", left / 2, floor - (2 * k + 1) * r, r, "body"),
-    arrow("weight", left / 2, floor - (2 * k + 1) * r, 0, -UNIT * v)]);
-  const hold = {
-    label: "the upper ball’s speed before the sweeps", value: "v2", low: -2, high: 3, step: 0.1,
-    at: (_, to) => -to / UNIT,
-  };
-  const start = {
-    label: "where the sweeps start", value: ["begin1", "begin2"], low: [0, 0], high: [1, 1],
-    step: 0.02, at: (x, y) => [sx.back(x) / most, sy.back(y) / most],
-  };
-  const last = plainly[at && at - 1].lam[at % 2 ? 0 : 1];
-  const clamped = at > 0 && lam[at % 2 ? 0 : 1] === 0 && last === 0;
-  const off = (each) => number(Math.hypot(each[0] - end[0], each[1] - end[1]), 2);
-  const end = plainly[2 * SWEEPS].lam;
-  const told = at ? `Sweep ${sweep}, ${NAMES[at % 2]}${clamped ? ", clamped at 0" : ""}` : "No push yet";
+  const hold = { label: "the upper ball’s speed before the sweeps", value: "v2", low: -2,
+    high: momentum ? 0 : 3, step: 0.1, at: (_, y) => -y / UNIT };
+  const balls = vy.map((v, k) => {
+    const [y, shape] = [floor - (2 * k + 1) * r, ball("lcp", left / 2, floor - (2 * k + 1) * r, r)];
+    return [k ? view.grab(hold, shape) : shape, arrow("weight", left / 2, y, 0, -UNIT * v)];
+  });
+  const clamped = at > 0 && lam[one] === 0 && plainly[at - 1].lam[one] === 0;
+  const off = ([x, y]) => number(Math.hypot(x - end[0], y - end[1]), 2);
   return {
     picture: [
-      table(0, floor, left, GROUND), momentum ? balls : [balls[0], view.grab(hold, balls[1])],
-      momentum ? label(`${heavy} kg`, left / 2, floor - 4 * r - 8, "middle") : "",
-      picture, negative,
-      clipped(box.left, box.top, box.right - box.left, box.bottom - box.top, momentum ? bowl : own,
-        path(plainly.slice(0, at + 1).map((each) => place(each.lam)), "line m-lcp plainly"),
-        momentum ? path(rolled.slice(0, sweep + 1).map(place), "line m-leapfrog plainly") : ""),
-      momentum ? mark("leapfrog", ...place(rolled[sweep])) : "", mark("lcp", ...place(lam), 7),
-      momentum ? view.point(...place(begin), start) : "",
+      table(0, floor, left, GROUND), balls,
+      momentum ? label(`${heavy} kg`, left / 2, floor - 4 * r - 8, "middle") : "", picture,
+      rect(box.left, box.top, sx(0) - box.left, box.bottom - box.top, "region"),
+      rect(sx(0), sy(0), box.right - sx(0), box.bottom - sy(0), "region"),
+      clipped(box.left, box.top, box.right - box.left, box.bottom - box.top, lines,
+        way(plainly.slice(0, at + 1).map((each) => each.lam), "line m-lcp plainly"),
+        momentum ? way(rolled.slice(0, sweep + 1), "line m-leapfrog plainly") : ""),
+      momentum ? mark("leapfrog", sx(rolled[sweep][0]), sy(rolled[sweep][1])) : "",
+      mark("lcp", sx(lam[0]), sy(lam[1]), 7),
     ],
-    words: momentum ? `After ${sweep} sweeps: ${off(lam)} m g dt from the answer; with momentum ` +
-      `${off(rolled[sweep])}.` : `${told}: they carry ${lam.map((one) => number(one, 2)).join(" and ")} m g dt.`,
-    values: { lam, rolled: rolled[sweep], end, clamped },
+    words: momentum
+      ? `After ${sweep} sweeps: ${off(lam)} m g dt from the answer; with momentum ${off(rolled[sweep])}.`
+      : `${at ? `Sweep ${sweep}, ${NAMES[at % 2]}${clamped ? ", clamped at 0" : ""}` : "No push yet"}: ` +
+        `they carry ${lam.map((each) => number(each, 2)).join(" and ")} m g dt.`,
   };
 }
 
 export const figure = {
   title: ({ momentum }) => (momentum ? "The sweep walks down a bowl" : "The sweep, contact after contact"),
   caption: ({ momentum }) => (momentum
-    ? "Blue: a plain sweep after the other. Yellow: with momentum. Drag where they start."
+    ? "Blue: a plain sweep after the other. Yellow: with momentum. Drag the upper ball’s speed."
     : "Each visit brings one contact to its dashed line and disturbs the other. Drag the upper ball "
       + "up: no push goes below zero."),
   height: (width) => (width < 480 ? 280 : 340),
-  start: ({ momentum = 0 }) =>
-    ({ momentum, v2: -1, begin1: 0.02, begin2: 0.86, time: momentum ? 44 : 2 }),
-  clock: ({ own }) => ({ end: own.momentum ? 2 * SWEEPS : 24, rate: own.momentum ? 20 : 2, step: 1 + own.momentum }),
+  start: ({ momentum = 0 }) => ({ momentum, v2: -1, time: momentum ? 44 : 2 }),
+  clock: ({ own: { momentum } }) =>
+    ({ end: momentum ? 2 * SWEEPS : 24, rate: momentum ? 20 : 2, step: 1 + momentum }),
   play: () => "Play",
   draw,
 };
