@@ -80,8 +80,7 @@ function draw(view) {
 
 export const figure = {
   title: "A gripper that trembles",
-  caption: ({ stiffness }) => `Two fingers squeeze a cup, in slow motion: ` +
-    `${stiffness.toLocaleString("en")} N/m. Drag the step.`,
+  caption: "Two fingers squeeze a cup, in slow motion. Drag the time step.",
   height: (width) => (width < 480 ? 240 : 280),
   knobs: ({ switch: shown }) => (shown ? ["stiffness"] : []),
   start: () => ({ dt: 0.004, late: 0, switch: 0 }),

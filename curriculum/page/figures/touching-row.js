@@ -1,6 +1,6 @@
 /* A row of two balls is struck by a third, with e = 1: above they touch, so that it is one impact
  * of two contacts; below they are a micrometre apart, so that it is two impacts. */
-import { arrow, ball, label, number, table } from "../draw.js";
+import { arrow, ball, clipped, label, number, table } from "../draw.js";
 import { Ball, Contact, solve_impacts } from "../contact.js";
 import { R } from "../runs.js";
 
@@ -34,7 +34,7 @@ function draw(view) {
   });
   const told = after.map((each) => each.map((v) => number(v, 2)).join(", "));
   return {
-    picture: rows,
+    picture: clipped(0, 0, width, height, rows),
     words: since >= 0 ? `Touching: ${told[0]} m/s. A micrometre apart: ${told[1]} m/s.`
       : "The first ball comes at 1 m/s; the others lie still.",
   };
