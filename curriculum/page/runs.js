@@ -4,7 +4,6 @@
 import { accelerations, Ball, detect_contacts, GRAVITY, implicit_step, MAX_IMPACTS } from "./contact.js";
 import { next_impact, soft_defaults, solve_impacts, STEP, TOUCH_TOLERANCE } from "./contact.js";
 import { data } from "./data.js";
-import { range } from "./draw.js";
 
 export const MODELS = data.models;
 export const R = data.radius; // m
@@ -34,7 +33,8 @@ function stepOf(model, knobs) {
 
 // The recording of a model; before each step push(balls) may set forces.
 export function record(model, balls, knobs, steps, push = () => {}) {
-  const run = { n: balls.length, steps, dt: knobs.dt, t: range(steps + 1, (k) => knobs.dt * k) };
+  const { dt } = knobs;
+  const run = { n: balls.length, steps, dt, t: Array.from({ length: steps + 1 }, (_, k) => dt * k) };
   const lists = ["x", "y", "vx", "vy"].map((key) => [key, (run[key] = [])]);
   const write = (states) => { // one zero and one NaN, as contact.py writes them
     for (const state of states)

@@ -13,9 +13,10 @@
  *   switches(own)   buttons [[label, name, value]]: own[name] becomes value, or 0 if it was that
  *
  * The view has own, width, height, set(changes), and grab(what, shape): a shape around which one
- * can put a hand, where `what` is {label, value, low, high, step, at(x, y), also, seen, release}. A
+ * can put a hand, where `what` is {label, value, low, high, step, at(x, y), also, seen, release, twin}. A
  * value is a name of the figure's state, or two of them; at gives what belongs to a place, `also`
- * is set with it, and seen() is the value that one sees, where that is not the state's. view.point
+ * is set with it, and seen() is the value that one sees, where that is not the state's; a twin does
+ * what another handle does, and no key leads to it. view.point
  * is the same with a knob at (x, y). What a handle has done, the figure's words say, to a screen
  * reader, too: in at most two lines on a phone, so that nothing below them moves. */
 import { html, nothing, render, svg } from "./lit.js";
@@ -98,7 +99,7 @@ function hands(view, box) {
     const { left, top, width } = box.querySelector("svg").getBoundingClientRect();
     return [clientX - left, clientY - top].map((at) => (at * view.width) / width);
   };
-  return ({ label, value, low, high, step, at, also, seen, release }, shape) => {
+  return ({ label, value, low, high, step, at, also, seen, release, twin }, shape) => {
     const [names, lows, highs, sizes] = [value, low, high, step].map((each) => [each].flat());
     const now = () => (seen ? [seen()] : names.map((name) => view.own[name]));
     const put = (wanted) => {
@@ -135,9 +136,9 @@ function hands(view, box) {
       put(now().map((v, k) => v + by[k] * (event.shiftKey ? 10 : 1) * sizes[k % sizes.length]));
     };
     const stay = (event) => event.preventDefault(); // no finger moves the page
-    const sliders = names.map((_, k) => svg`<g role="slider" tabindex="0" aria-valuemin=${lows[k]}
+    const sliders = names.map((_, k) => svg`<g role="slider" tabindex=${twin ? -1 : 0} aria-valuemin=${lows[k]}
       aria-label=${label + (names.length > 1 ? [", across", ", up"][k] : "")} aria-valuemax=${highs[k]}
-      aria-valuenow=${now()[k]} @keydown=${key}>${k ? "" : shape}</g>`);
+      aria-valuenow=${within(lows[k], now()[k], highs[k])} @keydown=${key}>${k ? "" : shape}</g>`);
     return svg`<g class="handle" @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
       @pointercancel=${letGo} @touchstart=${stay}>${sliders}</g>`;
   };

@@ -46,7 +46,7 @@ function enlarged({ scene }, all) {
 }
 
 // A model's balls, held by the hand; from above what the picture holds, an arrow and how high.
-function lane(view, { model, made, gaps }, row, x, { from, floor, scale, larger, top }) {
+function lane(view, { model, made, gaps }, row, x, { twin, from, floor, scale, larger, top }) {
   const { own } = view;
   const start = data.scenes[own.scene].start;
   const r = Math.max(5, R * scale);
@@ -65,7 +65,7 @@ function lane(view, { model, made, gaps }, row, x, { from, floor, scale, larger,
     label: `${model}: the balls`, value: "lift", low: 1.05 * R - start[0],
     high: top - R - start[start.length - 1], step: 0.02, at: (_, y) => (floor - y) / scale,
     seen: () => (from + own.time > 0 && heights[0] < top ? heights[0] - start[0] : own.lift),
-    also: { time: 0 }, release: () => view.play(0),
+    also: { time: 0 }, release: () => view.play(0), twin,
   };
   const push = Math.min(40, 14 * Math.sqrt(Math.max(0, pushIn(made, row))));
   const halo = circle(x, within(22, floor - (heights[0] || 0) * scale, floor), 22, "halo");
@@ -112,7 +112,7 @@ function draw(view) {
   return {
     picture: [
       table(0, floor, width, GROUND), all.map((each, k) =>
-        lane(view, each, row, wide * (k + 0.5), { from, floor, scale, larger, top })),
+        lane(view, each, row, wide * (k + 0.5), { twin: k > 0, from, floor, scale, larger, top })),
       larger > 1 ? label(`overlaps × ${larger}`, 4, 16, "start", "tick") : "",
       chartOf(view, { all, from, to }, chartTop, within(from, time, to)),
     ],

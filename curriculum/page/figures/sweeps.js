@@ -55,8 +55,10 @@ function draw(view) {
   const way = (points, kind) => path(points.map(([x, y]) => [sx(x), sy(y)]), kind);
   // where a contact has its target, and both balls move as one; or the bowl
   const lines = momentum ? LEVELS.map((level) => way(contourOf(v2, heavy, level * most), "contour"))
-    : [[1, 1], [2, v2 + 1]].map(([steep, off]) =>
-      way([[off, 0], [2 * steep * most + off, 2 * most]], "rule dashed"));
+    : [[1, 1], [2, v2 + 1]].map(([steep, off]) => {
+      const up = Math.min(1.05 * most, (1.25 * most - off) / steep); // to the picture's edge
+      return way([[off, 0], [steep * up + off, up]], "rule dashed");
+    });
   const r = Math.min(40, 0.3 * left);
   const hold = { label: "the upper ball’s speed before the sweeps", value: "v2", low: -2,
     high: momentum ? 0 : 3, step: 0.1, at: (_, y) => -y / UNIT };

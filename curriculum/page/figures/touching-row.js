@@ -1,6 +1,6 @@
 /* A row of two balls is struck by a third, with e = 1: above they touch, so that it is one impact
  * of two contacts; below they are a micrometre apart, so that it is two impacts. */
-import { arrow, ball, clipped, label, number, table } from "../draw.js";
+import { arrow, ball, circle, clipped, label, number, table } from "../draw.js";
 import { Ball, Contact, solve_impacts } from "../contact.js";
 import { R } from "../runs.js";
 
@@ -29,7 +29,8 @@ function draw(view) {
         const now = since >= 0 ? v : Number(i === 0);
         const x = 0.5 * width + (2 * R * (i - 1) + now * since) * scale;
         const drawn = ball("exact", x, floor - r, r);
-        return [i || k ? drawn : view.grab(what, drawn), arrow("weight", x, floor - r, 1.6 * r * now, 0)];
+        const halo = r < 22 ? circle(x, floor - r, 22, "halo") : "";
+        return [i || k ? drawn : view.grab(what, [drawn, halo]), arrow("weight", x, floor - r, 1.6 * r * now, 0)];
       })];
   });
   const told = after.map((each) => each.map((v) => number(v, 2)).join(", "));
