@@ -63,6 +63,9 @@ def test_project_that_was_read_passes_and_nothing_is_written(project):
     done = gate(project)
     assert (done.returncode, done.stdout) == (0, "text, code, numbers and results agree\n")
     assert before == {path: path.read_bytes() for path in before}
+    edit(project / "wallclock.csv", "PENDING\n", "PENDING\n" + LEDGER)  # made by other code
+    assert [gate(project, *words).returncode for words in ((), ("--release",))] == [0, 1]
+    edit(project / "wallclock.csv", LEDGER, "")
     edit(project / "meta.yaml", "\n  sweep:", "\n  swept:")
     swept = gate(project).stdout
     assert "contact.py#sweep was never read and is " in swept
