@@ -77,12 +77,9 @@ def test_bad_input_is_one_line_that_says_what_was_given_and_what_is_allowed(
         err = refused(main(capsys, "--scene", "stack", *words))
         assert flag in err and value[:40] in err and re.search("allowed|choose from|no value", err)
     assert not any(tmp_path.iterdir())
-
-
-def test_each_flag_is_tried_with_what_it_refuses():
     actions = contact.make_parser()._actions
     takes = {each.option_strings[0] for each in actions if each.nargs != 0}
-    assert takes - {"--skip", "--rerun", "--out"} == {*BAD}, "a row of BAD is missing, or useless"
+    assert takes - {"--skip", "--rerun"} == {*BAD, "--out"}, "none is left out here"
 
 
 @pytest.mark.parametrize("flags, part", [
@@ -358,11 +355,43 @@ def test_every_cure_that_is_printed_cures(seed, tmp_path, capsys):
     assert is_cured(capsys, flags, out, flags.split()[3]), (flags, out)
 
 
+IN_IPYTHON = """
+import os, signal, sys, threading
+from IPython.core.interactiveshell import InteractiveShell
+shell = InteractiveShell.instance()
+state = lambda: (*map(signal.getsignal, (2, 15)), sys.excepthook, "contact" in sys.modules)
+run, before = f"contact.py --no-skip --no-rerun --out {sys.argv[1]} --steps ", state()
+shell.run_line_magic("run", run + "5")
+threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+shell.run_line_magic("run", run + "100000000")
+shell.run_cell("1 / 0")
+shell.run_cell("import contact; print(contact.__name__, contact.RADIUS)")
+del sys.modules["contact"]
+print("kept" if state() == before else f"changed: {before} {state()}")
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
+def test_ipython_runs_it_goes_on_after_an_interrupt_and_keeps_its_own_handlers(tmp_path):
+    pytest.importorskip("IPython", reason="IPython is not installed: the extra `notebook`")
+    done = python("-c", IN_IPYTHON, tmp_path / "out", IPYTHONDIR=str(tmp_path))
+    assert done.stdout.endswith("contact 0.1\nkept\n"), done.stdout + done.stderr
+    assert "stopped\n" in done.stderr and "ZeroDivisionError" in done.stdout + done.stderr
+    assert "AttributeError" not in done.stdout + done.stderr
+
+
+def test_help_begins_with_twenty_names_that_say_what_they_are():
+    assert 18 <= len(contact.__all__) <= 24 and len({*contact.__all__}) == len(contact.__all__)
+    for name in contact.__all__:
+        each = getattr(contact, name)
+        assert each.__doc__ or not callable(each), name
+
+
 # fmt: off
 LINES = [
     ("--contact exact --scene bounce", r"exact: its bounces rise to 0\.4437, 0\.2174, .* m \.\.\."),
     ("--contact lcp --stiffness 5", "--stiffness is for penalty, and has no effect here"),
-    ("--contact soft --iters 5", "--iters is for lcp.* leapfrog.*, and has no effect here"),
+    ("--contact soft --iters 5", "--iters is for lcp and leapfrog, and has no effect here"),
     ("--scene stack --dt 0.006 --contact penalty", "penalty .* 0.00252"),  # it trembles
     ("--dt 0.064", "state: through the floor: lcp, soft"),
     ("--dt 0.064", "stability: lcp .*, through the floor"),

@@ -141,6 +141,19 @@ def test_views_say_how_a_run_ended_show_the_table_magnified_and_no_explosion_wid
     assert -2.0 < ranges[0][0] < -1.12 and np.ptp(ranges[-1]) < 0.02  # the ball starts at 1 m
 
 
+def test_the_recording_of_the_slide_goes_with_the_ball(tmp_path):
+    scene, runs, quality = runs_of(contact.build_scene("slide"), 300, models=("soft", "exact"))
+    recording = recorded(tmp_path, scene, runs, quality)
+    (hill, ball), (large, small) = runs["soft"].q.transpose(2, 0, 1), scene.radius
+    foot = np.array(recording["/world/soft/foot"]["Transform3D:translation"], float)[:, 0]
+    foot = foot[:, :2] * [1.0, -1.0]
+    assert np.hypot(*(foot - ball).T) == pytest.approx(small, abs=1e-5)
+    assert np.abs(np.hypot(*(foot - hill).T) - large).max() < 0.02 * small, "and on the hill"
+    views = [each[0] for each in recording["views"]["VisualBounds2D:range"]]
+    assert max(np.ptp(view["y_range"]) for view in views) < 20 * small, "the ball is seen"
+    assert recording["/world/soft/balls"]["Points2D:colors"][0][0] != int("cc79a7ff", 16)
+
+
 def test_of_many_balls_arrows_are_left_out_and_a_run_that_overflows_is_recorded(tmp_path):
     pile = contact.build_scene("pile", bodies=40)
     recording = recorded(tmp_path, *runs_of(pile, 20, DT, ["lcp"]))
@@ -164,6 +177,80 @@ def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(
     assert [len(each) for each in looks] == [len(CURVES) + 1] * len(looks), "and in the legend"
     grey = {re.sub("#[0-9a-f]+|stroke-width: [^;]+", "", each[0]) for each in looks}
     assert len(grey) == len(looks), "without colour the dashes differ"
+
+
+OWN = dict(x=[0.0, 0.05, 0.4], y=[0.1, 0.35, 0.6], mass=[1, 5, 0.2], radius=[0.1, 0.1, 0.05])
+
+
+def test_a_scene_of_ones_own_is_reported_recorded_and_drawn_by_one_call(tmp_path, capsys):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
+    pytest.importorskip("rerun", reason="rerun is not installed")
+    scene = contact.scene_of(**OWN, vx=[0, 0, -1], restitution=0.3, name="mine")
+    metrics = contact.report_scene(scene, steps=300, out=tmp_path, picture=True)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "metrics.json", "contact.rrd", "contact.svg",
+    }  # fmt: skip
+    assert metrics == json.loads((tmp_path / "metrics.json").read_text("utf-8"))
+    assert metrics["quality"].keys() == contact.MODELS.keys() and not metrics["stability"]
+    assert capsys.readouterr().out.startswith("scene mine: 300 steps of 0.002 s\n")
+    contact.report_scene(scene, dt=0.1, steps=20, models=["penalty"])
+    cure = re.search("try: (.*)", capsys.readouterr().out)[1]
+    assert "EXPLODED" not in repr(eval(f"contact.report_scene(scene, **dict({cure}))"))
+
+
+@pytest.mark.parametrize("wrong", [{"settings": {"iters": 3}}, {"scene": "drop"}])
+def test_what_is_no_scene_or_no_settings_is_answered_in_words(wrong):
+    (name, given), *_ = wrong.items()
+    right = {"scene": contact.build_scene("drop"), "settings": contact.Settings()}
+    words = f"{name} must be a contact.{name.title()}, given {type(given).__name__} "
+    with pytest.raises(ValueError, match=re.escape(words)):
+        contact.run_model("lcp", dt=0.002, steps=5, **right | wrong)
+
+
+def test_a_ball_that_comes_round_once_a_step_is_not_at_rest():
+    scene, t = contact.build_scene("drop"), 0.016 * np.arange(4)
+    for vx, vy, rests in (1.25, 0.0, False), (0.0, 1.25, False), (0.0, -9.81 * 0.008, True):
+        v = np.broadcast_to([[vx], [vy]], (4, 2, 1))
+        assert contact.at_rest(contact.Run(t, np.full((4, 2, 1), 0.1), v), scene) == rests
+
+
+def test_force_is_right_unless_it_flickers_trembles_or_spikes():
+    slide = contact.build_scene("slide", seed=3)
+    exact = contact.run_model("exact", slide, 0.002, 2000)
+    for model, knobs, low, high in (
+        ("soft", {}, 0.25, 0.4), ("soft", {"solimp": (0.0, 0.95, 0.001, 0.5, 2.0)}, 0.0, 0.01),
+        ("lcp", {}, 0.0, 1e-4), ("leapfrog", {}, 0.0, 1e-4), ("penalty", {}, 0.0, 1e-4),
+    ):  # fmt: skip
+        run = contact.run_model(model, slide, 0.002, 2000, contact.Settings(**knobs))
+        assert low <= contact.contact_quality(run, slide, 0.002, exact)["force_error"] <= high
+    assert contact.contact_quality(run, slide, 0.002)["force_error"] is None
+    stack = contact.build_scene("stack")
+    runs = [contact.run_model(model, stack, 0.006, 2000) for model in ("penalty", "exact")]
+    assert contact.contact_quality(runs[0], stack, 0.006, runs[1])["force_error"] > 1.0
+    drop = contact.build_scene("drop")
+    runs = [contact.run_model(model, drop, 0.002, 100) for model in ("lcp", "exact")]
+    assert contact.contact_quality(runs[0], drop, 0.002, runs[1])["force_error"] < 1e-12
+
+
+@pytest.mark.parametrize("flags", [
+    "--scene drop", "--scene bounce --dt 0.004", "--solimp 0.5 0.9 0.002 0.4 3",
+    "--solref -5000 -100", "--scene pile --bodies 5 --steps 300", "--scene drop --restitution 0.5",
+])  # fmt: skip
+def test_what_soft_prints_gives_the_same_run_in_mujoco(flags, tmp_path, capsys):
+    pytest.importorskip("mujoco", reason="mujoco is not installed: the extra `bench`")
+    from curriculum.bench import engines
+    from curriculum.stress.mujoco_match import OPTIONS
+
+    argv = *flags.split(), "--contact", "soft", "--no-rerun", "--out", str(tmp_path)
+    assert contact.main(argv) == 0
+    line = re.search(r"^in MJCF: (<option .*/>), (<geom .*/>)$", capsys.readouterr().out, re.M)
+    option, geom = (ElementTree.fromstring(each).attrib for each in line.groups())
+    scene, dt, steps, _, settings = contact.asked_for(contact.parse_flags(argv), 0)
+    assert float(option["timestep"]) == dt
+    texts = geom["solref"], geom["solimp"]
+    q, _ = engines.Mujoco(scene, dt, texts, xml=OPTIONS).states(steps)
+    run = contact.run_model("soft", scene, dt, steps, settings)
+    assert np.abs(run.q - q).max() < 1e-10
 
 
 # Many seeds
