@@ -9,7 +9,6 @@ import contact
 from curriculum.commands import ROOT, command
 
 KNOBS = {knob for row in contact.MODELS.values() for knob in row.knobs} - {"restitution"}
-DEAREST = 1e7  # steps times balls squared of a run that is made to see whether it cures another
 
 
 def add_cures(notes: dict, job: tuple, runs: dict, quality: dict, args=None) -> None:
@@ -91,8 +90,8 @@ def cured(changes, model, kind, job):
     scene, dt, steps, _, settings = job
     name, step = changes.get("contact", model), changes.get("dt", dt)
     count = math.ceil(steps * dt / step)
-    if count * len(scene.mass) ** 2 > DEAREST:
-        return None
+    if count > steps and count * len(scene.mass) ** 2 > contact.COMPILE_FROM:
+        return None  # it would take too long to see
     knobs = {knob: value for knob, value in changes.items() if knob in contact.Settings._fields}
     scene = scene._replace(damping=changes.get("damping", scene.damping))
     names = [name, "exact"] if kind == "flicker" else [name]

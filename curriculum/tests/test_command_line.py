@@ -77,9 +77,12 @@ def test_bad_input_is_one_line_that_says_what_was_given_and_what_is_allowed(
         err = refused(main(capsys, "--scene", "stack", *words))
         assert flag in err and value[:40] in err and re.search("allowed|choose from|no value", err)
     assert not any(tmp_path.iterdir())
+
+
+def test_each_flag_is_tried_with_what_it_refuses():
     actions = contact.make_parser()._actions
     takes = {each.option_strings[0] for each in actions if each.nargs != 0}
-    assert takes - {"--skip", "--rerun"} == {*BAD, "--out"}, "none is left out here"
+    assert takes - {"--skip", "--rerun", "--out"} == {*BAD}, "a row of BAD is missing, or useless"
 
 
 @pytest.mark.parametrize("flags, part", [
@@ -391,7 +394,7 @@ def test_help_begins_with_twenty_names_that_say_what_they_are():
 LINES = [
     ("--contact exact --scene bounce", r"exact: its bounces rise to 0\.4437, 0\.2174, .* m \.\.\."),
     ("--contact lcp --stiffness 5", "--stiffness is for penalty, and has no effect here"),
-    ("--contact soft --iters 5", "--iters is for lcp and leapfrog, and has no effect here"),
+    ("--contact soft --iters 5", "--iters is for lcp.* leapfrog.*, and has no effect here"),
     ("--scene stack --dt 0.006 --contact penalty", "penalty .* 0.00252"),  # it trembles
     ("--dt 0.064", "state: through the floor: lcp, soft"),
     ("--dt 0.064", "stability: lcp .*, through the floor"),
