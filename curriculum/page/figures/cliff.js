@@ -88,7 +88,7 @@ function draw(view) {
 
 export const figure = {
   title: "The cliff: eigenvalues, and what they do",
-  caption: "Make the step longer: the pair meets, parts, and one leaves the circle at −1. Just there "
+  caption: "Make the step longer: the pair meets, parts, and one leaves the circle on the left. Just there "
     + "a ball at rest begins to move.",
   height: (width) => (width < 480 ? 430 : 500),
   knobs: ["stiffness", "damping"],
