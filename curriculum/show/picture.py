@@ -39,21 +39,11 @@ LOOKS = {
 }
 COLORS = {model: LOOKS[model][0] for model in contact.MODELS}
 IN_THE_DARK = {
-    INK: "#e6e6e6",
-    PALE: "#a8a8a8",
-    GRID: "#3a3f4a",
-    "#0072b2": "#56a8e0",
-    "#7b5ea7": "#b59ae0",
-    "#a6611a": "#cf8f4f",
-    "#b2182b": "#e8737f",
-    "#7f7f00": "#c2c24a",
-    "#1b7837": "#5cc47c",
-    "#333399": "#9a9af0",
-    "#d55e00": "#ef7a2a",
-    "#009e73": "#2fc79a",
-    "#cc79a7": "#e096bd",
-    "#e69f00": "#f5b83d",
-}
+    INK: "#e6e6e6", PALE: "#a8a8a8", GRID: "#3a3f4a", "#0072b2": "#56a8e0",
+    "#7b5ea7": "#b59ae0", "#a6611a": "#cf8f4f", "#b2182b": "#e8737f", "#7f7f00": "#c2c24a",
+    "#1b7837": "#5cc47c", "#333399": "#9a9af0", "#d55e00": "#ef7a2a", "#009e73": "#2fc79a",
+    "#cc79a7": "#e096bd", "#e69f00": "#f5b83d",
+}  # fmt: skip
 
 
 def pyplot() -> ModuleType:
