@@ -212,6 +212,10 @@ def test_a_ball_that_comes_round_once_a_step_is_not_at_rest():
     for vx, vy, rests in (1.25, 0.0, False), (0.0, 1.25, False), (0.0, -9.81 * 0.008, True):
         v = np.broadcast_to([[vx], [vy]], (4, 2, 1))
         assert contact.at_rest(contact.Run(t, np.full((4, 2, 1), 0.1), v), scene) == rests
+    late = t - 2.5 * 0.016  # it turns round in the middle of the last step, with half of g dt
+    q = np.stack((0.0 * t, 1.0 - 4.905 * late**2), axis=1)[..., None]
+    v = np.stack((0.0 * t, -9.81 * late), axis=1)[..., None]
+    assert not contact.at_rest(contact.Run(t, q, v), scene)
 
 
 def test_force_is_right_unless_it_flickers_trembles_or_spikes():
