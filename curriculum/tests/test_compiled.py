@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import contact
+from curriculum import exact
 from curriculum.bench.measure import shaft
 from curriculum.compiled import run as compiled
 from curriculum.stress import scenes
@@ -106,6 +107,51 @@ def test_run_model_gives_many_balls_to_compiled_loops_and_says_how_far_it_is():
     assert run.q.tobytes() == plainly("lcp", scene, 0.002, 130, contact.Settings()).q.tobytes()
 
 
+SETTINGS = (
+    {},
+    {"warm": 1, "baumgarte": 0, "iters": 5.0, "stiffness": 1000},
+    {"warm": 0.5, "solref": (0, -500), "skip": False},
+    {"solref": [0.02, 1], "solimp": [0, 0.99, 0.02, 0, 2], "skip": np.True_},
+)
+
+
+def test_once_all_is_compiled_no_run_compiles_anything(tmp_path):
+    """Of any model, scene, size, type of a number, layout of an array, or command line."""
+    done = python("-m", "curriculum.compiled")
+    assert done.returncode == 0, done.stderr
+    before = kept_files()
+    for name, count in {"drop": 1, "bounce": 1, "slide": 2, "stack": 1, "pile": 12}.items():
+        for e, knobs in zip((None, 1, 0.5, 0), SETTINGS):
+            scene = contact.build_scene(name, 1, count, restitution=e)
+            scene.q0.flags.writeable = scene.mass.flags.writeable = False
+            wide = scene._replace(
+                q0=np.asfortranarray(scene.q0), radius=np.broadcast_to(0.1, count)
+            )
+            for model in MODELS if count != 2 else ():
+                for given, dt in ((scene, 0.002), (wide, 1)):
+                    run = compiled.run_model(model, given, dt, 5, contact.Settings(**knobs))
+                    compiled.smallest_gap(np.asfortranarray(run.q), given.radius)
+            contact.run_model("exact", scene, 0.01, 30)
+    states = np.zeros((4, 4, 12))
+    states[0, :2] = scene.q0
+    compiled.Stepper("leapfrog", scene, np.float32(0.01), contact.Settings()).take(states)
+    for line in (
+        "--scene pile --bodies 30 --steps 1300 --restitution 1 --warm 1 --solref 0 -600",
+        "--scene pile --contact exact --steps 300",
+        "--scene stack --bodies 40 --dt 1e-4 --steps 700 --iters 3 --solimp 0 1 0.01 0 1",
+    ):
+        ended = python("contact.py", *line.split(), "--no-rerun", "--out", tmp_path)
+        assert ended.returncode == 0 and "compiling" not in ended.stderr, ended.stderr
+    assert kept_files() == before
+
+
+def kept_files():
+    """The files of the loops as contact.py and exact.py are now; numba adds one a signature."""
+    loops = [compiled.loops_of(contact.MODELS[model].step.__name__) for model in MODELS]
+    found = [each.folder.rglob("*.nb?") for each in (*loops, compiled.PAIRS, exact.loops())]
+    return {(path, path.stat().st_size) for files in found for path in files}
+
+
 PLAIN = (
     "import contact; "
     "print(contact.run_model('lcp', contact.build_scene('pile', 0, 40), 0.002, 700).q.sum())"
@@ -155,7 +201,5 @@ def test_other_source_and_other_constants_are_other_loops(monkeypatch):
     of = compiled.loops_of
     names = {of("lcp_step").name}
     monkeypatch.setattr(contact, "GRAVITY", -1.62)
-    assert "GRAVITY = -1.62" in compiled.loops_of("lcp_step").source
-    assert (
-        len(names | {compiled.loops_of("lcp_step").name, compiled.loops_of("soft_step").name}) == 3
-    )
+    assert "GRAVITY = -1.62" in of("lcp_step").source
+    assert len(names | {of("lcp_step").name, of("soft_step").name}) == 3
