@@ -1,4 +1,7 @@
-"""Compile the loops for many balls and keep them on disk: `python -m curriculum.compiled`."""
+"""Compile all loops for many balls and keep them on disk: `python -m curriculum.compiled`.
+
+It takes about half a minute, once for each contact.py; runs then start in a second.
+"""
 
 import sys
 

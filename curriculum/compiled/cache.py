@@ -23,17 +23,20 @@ if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":  # contact.py's own loops ar
     raise MissingPackage("numba is told not to compile (NUMBA_DISABLE_JIT)")
 
 FOLDER = ROOT / ".cache" / "loops"
-SECONDS_A_LINE = 0.013  # of CPU: what compiling takes by the lines of the source, measured
+SECONDS_A_LINE = 0.01  # of CPU: compiling scalar loops, by the lines of their source, measured
 
 
 class Loops:
-    """A module of loops, given as source, that numba compiles; options are numba's."""
+    """A module of loops, given as source, that numba compiles; options are numba's.
 
-    def __init__(self, name: str, source: str, **options):
+    seconds: about how long compiling takes, by the source's length if it is not known.
+    """
+
+    def __init__(self, name: str, source: str, seconds: float | None = None, **options):
         decided_by = f"{source}{options}{sys.version}{NUMBA}"
         self.name = f"{name}_{hashlib.sha256(decided_by.encode()).hexdigest()[:16]}"
         self.source, self.options = source, options
-        self.seconds = SECONDS_A_LINE * source.count("\n")
+        self.seconds = seconds or SECONDS_A_LINE * source.count("\n")
         self.folder = FOLDER / self.name
         self.complete = self.folder / "complete"  # a file, once all is compiled and on disk
         self.module: types.ModuleType | None = None
@@ -54,7 +57,7 @@ class Loops:
         path = self.folder / f"{self.name}.py"
         if self.module is None:
             if not self.complete.exists() and sys.stderr:
-                name = self.name.rpartition("_")[0]
+                name = self.name.rpartition("_")[0].removesuffix("_step")
                 print(f"compiling {name}, once ({self.seconds:.0f} s) ...", file=sys.stderr)
             try:
                 if not path.exists():

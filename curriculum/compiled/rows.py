@@ -1,4 +1,4 @@
-"""What many balls need beside contact.py's steps: near pairs, the last impulses, the smallest gap.
+"""What a model's loops need beside its step: impulses of the last step, and the loop over steps.
 
 This text stands before the loops that to_loops makes, and both are compiled together; see run.py.
 Balls and contacts are rows of tables; the last ball is the floor.

@@ -1,11 +1,11 @@
-"""contact.py's own functions as loops over tables, for numba: a step is written once.
+"""Translate contact.py's own functions to loops over tables, for numba: a step is written once.
 
 Balls and contacts become numbers of rows: where the lesson says `c.target` the loops say
 `CONTACTS[c].target`, `c.a.vx` is `BALLS[CONTACTS[c].a].vx`, and FLOOR is the last row of BALLS.
-Every function is given these tables first, in W; a method is a function. A list of contacts that is
-complete becomes an array; max and min are Python's own also where a value is NaN;
-itertools.combinations gives the pairs that are near instead of all, in the same order. All else
-stays as it stands.
+Every function is given these tables first, in W; a method is a function, and a call gives every
+parameter. A list of contacts that is complete becomes an array; max and min are Python's own also
+where a value is NaN; itertools.combinations gives the pairs that are near instead of all, in the
+same order. All else stays as it stands.
 """
 
 import ast
@@ -20,24 +20,13 @@ BALL = [name for name in contact.Ball.__slots__ if name != "cached_lam"]
 CONTACT = list(contact.Contact.__slots__)
 FLOOR_ROW = "np.uint32(len(W.balls) - 1)"  # of the type of all rows
 TABLES = {"BALLS": "W.balls", "CONTACTS": "W.contacts", "FLOOR": FLOOR_ROW}
-METHOD = "contact_"  # c.apply_impulse(x) becomes contact_push(W, c, x)
+METHOD = "contact_"  # c.apply_impulse(x) becomes contact_apply_impulse(W, c, x)
 KNOWN = {"": "abs bool enumerate float int len range zip".split(), "math": dir(math)}
 EXTREMES = {"max": "larger", "min": "smaller"}
 GIVEN = ("warm_start", "store_impulses")  # written by hand in rows.py, over a table of impulses
 REFUSED = (ast.GeneratorExp, ast.SetComp, ast.DictComp, ast.Set, ast.Dict, ast.Lambda, ast.Starred,
            ast.NamedExpr, ast.With, ast.Try, ast.JoinedStr, ast.Global)  # fmt: skip
 INSTEAD = "write loops over balls and contacts, fields of Ball and Contact, functions of numbers"
-
-
-CHOSEN = """
-{name}_rows = np.empty(len({rows}), np.uint32)
-{name}_count = 0
-for {row} in {rows}:
-    if {test}:
-        {name}_rows[{name}_count] = {row}
-        {name}_count += 1
-{name} = {name}_rows[:{name}_count]
-"""  # name = [row for row in rows if test]
 
 
 class Refused(ValueError):
@@ -96,13 +85,6 @@ class Rows(ast.NodeTransformer):
     def visit_Assign(self, node):
         if ast.unparse(node.value) == "[]":
             self.lists.add(node.targets[0].id)
-        elif isinstance(node.value, ast.ListComp) and len(node.value.generators) == 1:
-            each = node.value.generators[0]
-            if ast.unparse(node.value.elt) == ast.unparse(each.target):
-                parts = each.target, self.visit(each.iter), *map(self.visit, each.ifs)
-                row, rows, *tests = map(ast.unparse, parts)
-                words = dict(name=node.targets[0].id, row=row, rows=rows)
-                return ast.parse(CHOSEN.format(**words, test=" and ".join(tests or ["True"]))).body
         return self.generic_visit(node)
 
     def visit_ListComp(self, node):
@@ -141,12 +123,12 @@ def parameters(function):
 
 
 def as_array(node):
-    """The call that makes an array of a list."""
+    """Return the call that makes an array of a list."""
     return ast.Call(ast.Name("np.array"), [node], [])
 
 
 def loops(step: str, file=Path(contact.__file__)) -> str:
-    """Python source of a step and of all that it calls, as loops over tables; constants as numbers.
+    """Return a step and all that it calls as source of loops over tables, constants as numbers.
 
     Raises Refused, with the line of contact.py and what to write instead.
     """
