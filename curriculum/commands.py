@@ -1,4 +1,4 @@
-"""Commands as one types them here, what they lack, and files that are written whole."""
+"""Command lines: parsing, printing, missing packages; and atomic writes of files."""
 
 import argparse
 import contextlib
@@ -15,7 +15,7 @@ ROOT = Path(HOME)
 
 
 class Parser(argparse.ArgumentParser):
-    """A command's flags, which are written in full; what is wrong with them is said in one line."""
+    """An argument parser without abbreviations, whose errors are one line."""
 
     def __init__(self, **how):
         raw = argparse.RawDescriptionHelpFormatter
@@ -32,7 +32,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def number(kind, low, high, text):
-    """The number of that kind, from low to high, that a flag gives."""
+    """Return the number of that kind, from low to high, that a flag gives."""
     try:
         value = float(text)
     except ValueError:
@@ -44,22 +44,22 @@ def number(kind, low, high, text):
 
 
 def near(word):
-    """A path as one would type it here: relative below this folder; other words as they are."""
+    """Return a path relative to this folder if it is below it; other words unchanged."""
     below = os.path.isabs(word) and Path(word).is_relative_to(Path.cwd())
     return os.path.relpath(word) if below else word
 
 
 def command(*words, bring=()):
-    """A command for the Python that is running, quoted for this system's shell.
+    """Return a command for the Python that is running, quoted for this system's shell.
 
-    bring: uv's words for what is needed beside the project, such as ("--extra", "page").
+    bring: uv's words for further packages, such as ("--extra", "page").
     """
     uv = ("uv", "run", *bring, "python")
     return quoted(*(uv if "UV" in os.environ else (sys.executable,)), *words)  # uv run sets it
 
 
 def quoted(*words):
-    """The words as one line for this system's shell, paths as short as they can be."""
+    """Return the words as one line for this system's shell, with short paths."""
     words = [near(str(word)) for word in words]
     if os.name != "nt":
         return shlex.join(words)
@@ -69,7 +69,7 @@ def quoted(*words):
 
 
 def to_install(package, extra=None):
-    """One line that says how to install a missing package, or the extra that brings it."""
+    """Return a line that tells how to install a missing package, or the extra that has it."""
     wanted = ("-e", f"{near(str(ROOT))}[{extra}]") if extra else (package,)
     bring = ("--extra", extra) if extra else ("--with", package)
     words = sys.orig_argv[1:] if "UV" in os.environ else ("-m", "pip", "install", *wanted)
@@ -79,7 +79,7 @@ def to_install(package, extra=None):
 
 @contextlib.contextmanager
 def needs(extra):
-    """Within it, a package that is missing ends the program with the line that brings it."""
+    """Exit with a line on how to install it where a package is missing within."""
     try:
         import numpy  # noqa: F401  # first, or contact.py names it without the extra
 
@@ -93,11 +93,10 @@ def needs(extra):
 
 
 def write_atomic(path, content):
-    """Replace the file at `path`, whole or not at all. Makes missing folders.
+    """Replace the file at `path`, whole or not at all; make missing folders.
 
-    content: str or bytes.
-    What stands there and is no regular file (/dev/null, a pipe) is written into, not replaced.
-    Raises OSError that names the file.
+    content: str or bytes. What is no regular file (/dev/null, a pipe) is written into. Raises
+    OSError that names the file. contact.py has its own, since it runs without this folder.
     """
     data = content.encode() if isinstance(content, str) else content
     path = Path(os.path.realpath(path))

@@ -32,7 +32,6 @@ with needs("dev"):
 
 GATE = "python -m curriculum.gate"
 FIGURES, META, TEXTS = "curriculum/page/figures/*.js", "meta.yaml", ("README.md", "CONTRIBUTING.md")
-KEY = re.compile(r"^  \"?([\w-]+)\"?:", re.MULTILINE)  # of a table with a line each
 CAPTION = re.compile(r"^( *)(?:title|caption):.*\n(?:\1 +.*\n)*", re.MULTILINE)
 STRING = re.compile(r"\"[^\"]*\"|`[^`]*`")
 COMPUTED = re.compile(r"\$\{[^{}]*\}")
@@ -123,8 +122,7 @@ class Gate:
             if each.kind == "exercise":
                 known["exercise", each.name] = each.file, 1
         for file in files(FIGURES):
-            several = KEY.findall(read_text(file).partition("export const figures = {")[2])
-            known |= {("figure", name): (file, 1) for name in several or [Path(file).stem]}
+            known["figure", Path(file).stem] = file, 1
         for kind, folder in stored.FOLDERS.items():
             drawn = files(f"{folder}/*.svg")  # some of them have a place, others have none
             known |= {(kind, Path(file).stem.removeprefix("error-")): None for file in drawn}

@@ -42,23 +42,23 @@ class Region(NamedTuple):
 
     @property
     def source(self) -> str:
-        """What an include and a stamp call it."""
+        """Return its name in includes and stamps, FILE#NAME."""
         return f"{self.file}#{self.name}"
 
     @property
     def sha(self) -> str:
-        """64 hexadecimal digits."""
+        """Return the hash of its text, 64 hexadecimal digits."""
         return hashlib.sha256(self.code.encode("utf-8")).hexdigest()
 
     @property
     def defines(self) -> set:
-        """The functions, methods, classes and constants that the region defines."""
+        """Return the functions, methods, classes and constants that the region defines."""
         names = {name or constant for name, constant in DEFINITION.findall(self.code)}
         return {name for name in names if not name.startswith("__")}
 
 
 def blank(pattern, text):
-    """The text with every match replaced by blanks, so that lines and places stay."""
+    """Return the text with every match replaced by blanks, so that positions stay."""
     return pattern.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
 
 
@@ -73,12 +73,12 @@ def replace_once(text, old, new, place):
 
 
 def line_at(text, index) -> int:
-    """The number of the line that holds text[index]."""
+    """Return the number of the line that holds text[index]."""
     return text.count("\n", 0, index) + 1
 
 
 def split(text: str, file: str) -> tuple:
-    """([Region] in reading order, problems) of one file's text; each problem is one line."""
+    """Return ([Region] in reading order, problems) of a file's text; each problem is a line."""
     regions, wrong, markers = [], [], set()
     for match in REGION.finditer(text):
         name, code, end = match.groups()
@@ -98,13 +98,13 @@ def split(text: str, file: str) -> tuple:
 
 
 def read_text(file):
-    """The text of one of the project's files; empty where there is no such file."""
+    """Return the text of a file of the project; "" where there is none."""
     path = ROOT / file
     return path.read_text("utf-8") if path.is_file() else ""
 
 
 def split_all() -> tuple:
-    """({name: Region}, problems) over all literate files."""
+    """Return ({name: Region}, problems) over all literate files."""
     by_name: dict = {}
     problems = []
     for file in LITERATE:
@@ -119,7 +119,7 @@ def split_all() -> tuple:
 
 
 def read_all() -> dict:
-    """{name: Region} of all literate files. Raises ValueError, one problem a line."""
+    """Return {name: Region} of all literate files. Raises ValueError, a line a problem."""
     by_name, problems = split_all()
     if problems:
         raise ValueError("\n".join(problems))
@@ -127,13 +127,13 @@ def read_all() -> dict:
 
 
 def stored(node):
-    """The names that a definition sets itself."""
+    """Return the names that a definition assigns."""
     names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
     return {each.id for each in names if isinstance(each.ctx, ast.Store)}
 
 
 def uses(name, node):
-    """The names that a definition uses and does not set itself, and those of contact.NAME."""
+    """Return the names that a definition uses and does not assign, and NAME of contact.NAME."""
     own = stored(node) - {name} | {each.arg for each in ast.walk(node) if isinstance(each, ast.arg)}
     used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)} - own
     others = [each for each in ast.walk(node) if isinstance(each, ast.Attribute)]
@@ -141,7 +141,7 @@ def uses(name, node):
 
 
 def needed(roots, *files):
-    """{name: (file, node)} of what `roots` reach at the top of these files, in their order."""
+    """Return {name: (file, node)} of all that `roots` reach at the top of these files, in order."""
     known = {}
     for file in files:
         for node in ast.parse(file.read_text("utf-8")).body:

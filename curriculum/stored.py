@@ -1,9 +1,9 @@
-"""What was measured and is kept: tables, the machine, and a stamp of the code that made them.
+"""Stored results: tables, the machine that measured them, and hashes of the code that made them.
 
-A folder of results holds tables, NAME.csv, and made.json: {part: how it came to be}, as origin()
-says. A stamp is {source: hash}; a source is a file, or a region of contact.py, contact.py#sweep. It
-is taken of the syntax: comments, docstrings and form do not count. The ledger, wallclock.csv, has
-the time of a whole default run by machine; its config_hash is that of a stamp.
+A folder of results holds tables, NAME.csv, and made.json, {part: origin()}. A stamp is {source:
+hash}; a source is a file, or a region of contact.py, contact.py#sweep. The hash is one of the
+syntax: comments, docstrings and layout do not count. The ledger, wallclock.csv, has the time of a
+default run by machine; its config_hash is that of a stamp.
 """
 
 import ast
@@ -26,38 +26,35 @@ from curriculum.source import ROOT, read_text, split
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
 PACKAGES = "numpy numba rerun-sdk mujoco-core pymunk pyb2d3 drake dartpy scipy".split()
-ALWAYS = (
-    "curriculum/exact.py",
-    "curriculum/compiled/run.py",
-)  # contact.py's optional
+ALWAYS = "curriculum/exact.py", "curriculum/compiled/run.py"  # optional modules of contact.py
 MAKES = re.compile(r"curriculum/(bench|stress|compiled|exact|variants|page/to_js)\b")  # numbers
 USES = re.compile(r"\bcontact\.(\w+)|from contact import (.*)")
 OF_PYTHON = re.compile(r"\w+=\[\], |(, )?\w+=\[\]|, (ctx=\w+\(\)|kind='u')")  # which one dumps it
 LEDGER = ROOT / "wallclock.csv"
-TIMES = "python -m curriculum.bench processes --tier"  # and what the ledger calls the machine
+TIMES = "python -m curriculum.bench processes --tier"  # and the name of the machine
 TIMED = ("contact.py", "curriculum/show/picture.py", "curriculum/show/recording.py")
 
 
 def stamp(*sources) -> dict:
-    """{source: 12 hexadecimal digits} as they are today; what is not there is empty."""
+    """Return {source: 12 hexadecimal digits} of today's code; a missing file counts as empty."""
     code = {r.source: r.code for r in split(read_text("contact.py"), "contact.py")[0]}
     return {each: digits(each, code.get(each) or read_text(each)) for each in sources}
 
 
 def changed(kept: dict) -> list:
-    """The sources of a stamp that are not what they were."""
+    """Return the sources of a stamp whose code has changed since."""
     now = stamp(*kept)
     return [source for source, was in kept.items() if now[source] != was]
 
 
 def digest(value) -> str:
-    """12 hexadecimal digits of anything that JSON can hold."""
+    """Return 12 hexadecimal digits of any value that JSON can hold."""
     return hashlib.sha256(json.dumps(value).encode()).hexdigest()[:12]
 
 
 @cache
 def digits(source, text) -> str:
-    """The hash of a source's text. In LIMITS of contact.py, words are help and do not count."""
+    """Return the hash of a source's text. Help texts in LIMITS of contact.py do not count."""
     if source.endswith(".csv"):
         return digest(text)
     tree = ast.parse(text, source)
@@ -70,8 +67,8 @@ def digits(source, text) -> str:
 
 
 def made_by(*files) -> list:
-    """The sources of what these files measure: they, what makes numbers of what they import, and
-    the regions of contact.py that define what these use, or what those regions use."""
+    """Return the sources of what these files measure: the files, the modules that they import and
+    that make numbers, and the regions of contact.py that all these use, directly or not."""
     regions, _ = split(read_text("contact.py"), "contact.py")
     finder = ModuleFinder([str(ROOT)], excludes=["curriculum.stored"])
     sources = {file for file in (*files, *ALWAYS) if read_text(file)}
@@ -92,7 +89,7 @@ def made_by(*files) -> list:
 
 
 def load(folder) -> tuple:
-    """({NAME: [row]} of the tables of a folder, made.json). Numbers are numbers, "" is None."""
+    """Return ({NAME: [row]} of the tables of a folder, made.json). An empty cell is None."""
     tables = {}
     for path in sorted(Path(ROOT, folder).glob("*.csv")):
         rows = csv.DictReader(path.read_text("utf-8").splitlines(True))
@@ -101,13 +98,13 @@ def load(folder) -> tuple:
 
 
 def made(folder) -> dict:
-    """{part: how it came to be} of a folder of results, its made.json."""
+    """Return made.json of a folder of results, {part: origin()}."""
     return json.loads(read_text(f"{folder}/made.json") or "{}")
 
 
 @cache
 def value(cell):
-    """What a cell of a table holds."""
+    """Return the number or text of a cell."""
     try:
         return ast.literal_eval(cell)
     except (SyntaxError, ValueError):
@@ -115,7 +112,7 @@ def value(cell):
 
 
 def save(path, rows) -> None:
-    """Write rows, dicts with the same names, as a table; None and what is not finite is empty."""
+    """Write rows, dicts with the same keys, as a table; None and NaN or inf become empty cells."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(rows[0])
@@ -126,10 +123,10 @@ def save(path, rows) -> None:
 
 
 def origin(command: str, *files, kept=True) -> dict:
-    """How results come to be; to be asked before they are measured, and kept in made.json.
+    """Return the origin of results: command, date, commit, machine, versions and stamp.
 
-    command: what measures them again, as one types it. files: the modules that measure. Raises
-    ValueError where the results are to be kept, and the code is not that of a commit.
+    Call it before measuring. files: the modules that measure. Raises ValueError for results that
+    are to be stored (`kept`) while code is not committed.
     """
     info = re.search(r"model name\s*: (.+)", read_text("/proc/cpuinfo"))
     if kept and (dirty := git("status", "--porcelain", "--", "*.py", ":(glob)curriculum/*/*.csv")):
@@ -150,7 +147,7 @@ def origin(command: str, *files, kept=True) -> dict:
 
 
 def git(*words) -> str:
-    """What a git command prints; nothing where it fails or there is no git."""
+    """Return the output of a git command, or nothing where it fails or git is missing."""
     try:
         done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
     except OSError:
@@ -159,12 +156,12 @@ def git(*words) -> str:
 
 
 def lines(rows) -> str:
-    """The rows of a Markdown table."""
+    """Return the rows of a Markdown table."""
     return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in rows)
 
 
 def footer(about: dict) -> str:
-    """One paragraph for the end of a page: when and on what it was measured."""
+    """Return a paragraph for the end of a page: command, date, commit, machine, versions."""
     versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
     return (
         f"Measured by `{about['command']}` on {about['date']} at commit {about['commit']}, on "
@@ -174,30 +171,30 @@ def footer(about: dict) -> str:
 
 
 def write_block(name: str, markdown: str) -> None:
-    """Put the Markdown of "bench" or "stress" into the project's README, between its markers."""
+    """Write the Markdown of "bench" or "stress" into the README, between its markers."""
     block = re.compile(rf"(<!-- generated: {name} by .*? -->\n).*?(?=<!-- end -->)", re.DOTALL)
     text = block.sub(lambda match: f"{match[1]}{markdown.strip()}\n", read_text("README.md"))
     write_atomic(ROOT / "README.md", text)
 
 
 def ledger() -> list:
-    """The rows of the ledger, dicts of str."""
+    """Return the rows of the ledger, dicts of str."""
     return list(csv.DictReader(LEDGER.read_text("utf-8").splitlines()))
 
 
 def taken(row) -> str:
-    """A row's time as text, with two digits: in seconds below a minute."""
+    """Return a row's time as text with two digits, in seconds below a minute."""
     minutes = float(row["wallclock_min"])
     return f"{minutes:.2g} min" if minutes >= 1 else f"{60 * minutes:.2g} s"
 
 
 def stale(row) -> bool:
-    """Whether a row was measured on other code than today's."""
+    """Return whether a row was measured on other code than today's."""
     return row["config_hash"] not in ("", digest(stamp(*TIMED)))
 
 
 def enter(tier: str, about: dict, seconds: float) -> None:
-    """Write a row of the ledger: what a whole run takes on the machine that it calls `tier`."""
+    """Write a row of the ledger: the time of a default run on the machine named `tier`."""
     rows = {row["tier"]: row for row in ledger()}
     facts = "ch3.5-contact", tier, f"{seconds / 60:.3g}", digest(stamp(*TIMED))
     rows[tier] = dict(zip(ledger()[0], (*facts, about["commit"], about["date"], "MEASURED")))

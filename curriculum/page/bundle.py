@@ -30,7 +30,7 @@ LISTED = re.compile(r"\bexport\s*\{([^}]+)\};")  # as lit-html says what it expo
 
 
 def source(path, data):
-    """The text of the module at `path`, seen from this folder. A file exports figure or figures."""
+    """Return the text of the module at `path`, seen from this folder."""
     if path == "data.js":
         return f"export const data = {json.dumps(data, sort_keys=True)};\n"
     if path == "contact.js":
@@ -39,10 +39,10 @@ def source(path, data):
         return (HERE / path).read_text("utf-8")
     names = sorted(file.stem for file in (HERE / "figures").glob("*.js"))
     imports = [
-        f'import {{ figure as one{k}, figures as all{k} }} from "./figures/{name}.js";\n'
+        f'import {{ figure as figure{k} }} from "./figures/{name}.js";\n'
         for k, name in enumerate(names)
     ]
-    held = ", ".join(f'...(all{k} ?? {{ "{name}": one{k} }})' for k, name in enumerate(names))
+    held = ", ".join(f'"{name}": figure{k}' for k, name in enumerate(names))
     return "".join(imports) + f"export const figures = {{ {held} }};\n"
 
 

@@ -1,13 +1,12 @@
-"""Plant the faults of the tables, one at a time in a copy, and see that their tests name them.
+"""Run the mutants of the tables, one at a time in a clone: their tests must detect them.
 
-    python -m curriculum.tests.plant                    every fault of every room
-    python -m curriculum.tests.plant contact gate       those of two rooms
+    python -m curriculum.tests.plant                    every mutant of every table
+    python -m curriculum.tests.plant contact gate       those of two tables
     python -m curriculum.tests.plant --most 10          ten of them, chosen by the date
 
-A table is a module of curriculum/tests/faults/: FAULTS, rows of (file, what stands there, what is
-planted, the tests that must fail: a file of curriculum/tests and pytest's words). Exit status 1
-where a fault survives, where what it replaces does not stand there exactly once, or where its tests
-fail without it.
+A table is a module of curriculum/tests/faults/: FAULTS, rows of (file, original text, mutant text,
+the tests that must fail: a file of curriculum/tests and pytest's words). Exit status 1 where a
+mutant survives, its original text does not stand there exactly once, or its tests fail without it.
 """
 
 import ast
@@ -16,7 +15,6 @@ import importlib
 import os
 import random
 import shlex
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -25,22 +23,21 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
-from curriculum.commands import ROOT, Parser, number
+from curriculum.commands import Parser, number
+from curriculum.source import replace_once
+from curriculum.tests.helpers import clone
 
 TABLES = {path.stem: path for path in sorted(Path(__file__).with_name("faults").glob("*.py"))}
 own = threading.local()  # a copy of the tree for each thread
 
 
 def begin(home):
-    """Copy the files that git tracks, for this thread."""
-    own.folder = Path(tempfile.mkdtemp(dir=home))
-    for name in subprocess.check_output(["git", "ls-files"], cwd=ROOT, text=True).splitlines():
-        (own.folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, own.folder / name)
+    """Make a clone for this thread."""
+    own.folder = clone(Path(tempfile.mkdtemp(dir=home)), but="\0")
 
 
 def ended(tests):
-    """How these tests end here: pytest's status, its last lines."""
+    """Run these tests here; return pytest's status and its last lines."""
     file, *words = shlex.split(tests)
     pytest = [sys.executable, "-B", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
     command = [*pytest, f"curriculum/tests/{file}", *words]
@@ -49,32 +46,33 @@ def ended(tests):
 
 
 def sound(tests):
-    """ "" if these tests pass without a fault, else in words."""
+    """Return what is wrong with these tests without a mutant, or ""."""
     status, last = ended(tests)
     return f"{tests} ends with {status} without any fault:\n{last}" if status else ""
 
 
 def plant(row):
-    """ "" if its tests name a fault, else in words."""
+    """Return what is wrong where a mutant is not detected, or ""."""
     room, file, old, new, tests = row
     path, fault = own.folder / file, f"{room}: {file}: {old!r} -> {new!r}"
     text = path.read_text("utf-8") if path.exists() else ""
-    if text.count(old) != 1:
-        return f"{fault}: stands {text.count(old)} times there"
-    planted = text.replace(old, new)
+    try:
+        planted = replace_once(text, old, new, f"{room}: {file}")
+    except ValueError as error:
+        return str(error)
     if path.suffix == ".py":
-        ast.parse(planted)  # what is no Python is seen by any test
+        ast.parse(planted)  # any test would detect what is no Python
     path.write_text(planted, "utf-8")
     try:
-        return "" if ended(tests)[0] in (1, 2) else f"{fault}: not seen by {tests}"
+        return "" if ended(tests)[0] in (1, 2) else f"{fault}: not detected by {tests}"
     finally:
         path.write_text(text, "utf-8")
 
 
 def main(argv=None):
-    """Print every survivor as it is found, then how many were planted. Returns the exit status."""
+    """Print every survivor, then the number of mutants. Returns the exit status."""
     parser = Parser(prog="python -m curriculum.tests.plant", description=__doc__)
-    parser.add_argument("rooms", nargs="*", metavar="ROOM", help=f"of {', '.join(TABLES)} (all)")
+    parser.add_argument("rooms", nargs="*", metavar="TABLE", help=f"of {', '.join(TABLES)} (all)")
     parser.add_argument("--most", type=partial(number, int, 1, 1e4), help="so many, by the date")
     args = parser.parse_args(argv)
     if unknown := set(args.rooms) - set(TABLES):
