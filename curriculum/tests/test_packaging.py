@@ -1,5 +1,7 @@
 """What a user installs, and what the README tells him to type."""
 
+import ast
+import importlib
 import os
 import re
 from pathlib import Path
@@ -7,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from curriculum.commands import write_atomic
+from curriculum.source import read_text, replace_once
+from curriculum.tests import plant
 from curriculum.tests.helpers import CONTACT, ROOT, python
 
 TEXTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
@@ -52,6 +56,13 @@ def test_what_is_no_file_is_written_into_and_stays_what_it_is(tmp_path):
     assert os.read(reader, 99) == b"some words" and path.is_fifo()
     os.close(reader)
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("table", plant.TABLES)
+def test_what_a_mutant_replaces_stands_there_once(table):
+    for file, old, new, _ in importlib.import_module(f"curriculum.tests.faults.{table}").FAULTS:
+        text = replace_once(read_text(file), old, new, f"{table}: {file}")
+        assert not file.endswith(".py") or ast.parse(text)
 
 
 def test_links_of_the_texts_lead_somewhere():
