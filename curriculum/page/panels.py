@@ -13,7 +13,7 @@ from pygments.lexers import PythonLexer
 
 BOOKKEEPING = set(
     "setup scenes ball flight run limits measure quality stability flags table report main "
-    "slide-lcp slide-series".split()
+    "slide-lcp slide-series integrator critical-dt".split()
 )
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
