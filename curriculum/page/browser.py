@@ -11,6 +11,7 @@ PROGRAMS = {
 }
 # what Firefox says of a formula that has not all arrived yet
 HALF = "Invalid markup: Incorrect number of children"
+PACED = "Too many calls to Location or History"  # by a test's hand; the last of them counts
 
 
 @contextlib.contextmanager
@@ -53,4 +54,5 @@ def visiting(browser, url, width=1280, height=900, **options):
         page.wait_for_selector("[data-ready]", state="attached")
     yield page
     context.close()
-    assert [each for each in trouble if HALF not in each] == []
+    known = HALF, PACED
+    assert [each for each in trouble if not any(words in each for words in known)] == []
