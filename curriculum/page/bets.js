@@ -1,7 +1,6 @@
 /* Bets: a click makes one and opens its answer, in its own box; it stands until one takes it back.
  * Without a bet the answer opens at the second press. What was bet is kept in this browser. */
 const KEY = "contact-chapter:";
-const SUMMARY = "The answer";
 
 // What `act` gives of the browser's storage; without one a bet lasts as long as the page is open.
 function stored(act) {
@@ -13,52 +12,48 @@ function stored(act) {
 }
 
 export function startBet(box) {
-  const [answer, why, back] = [".answer", "textarea", ".take-back"].map((part) => box.querySelector(part));
-  const [summary, verdict] = [answer.querySelector("summary"), answer.querySelector(".verdict")];
+  const [answer, why, back, summary, verdict] = [".answer", "textarea", ".take-back",
+    ".answer summary", ".verdict"].map((part) => box.querySelector(part));
   const choices = [...box.querySelectorAll("[data-choice]")];
-  let [bet, warned] = [{}, false];
+  let [choice, warned] = [null, false];
   function show() {
     for (const each of choices) {
-      each.setAttribute("aria-pressed", String(each.dataset.choice === bet.choice));
-      each.disabled = Boolean(bet.choice) && each.dataset.choice !== bet.choice;
+      each.setAttribute("aria-pressed", String(each.dataset.choice === choice));
+      each.disabled = Boolean(choice) && each.dataset.choice !== choice;
     }
-    back.hidden = !bet.choice;
-    [summary.textContent, warned] = [SUMMARY, false];
-    verdict.textContent = !bet.choice ? "" : bet.choice === answer.dataset.right
+    [back.hidden, warned, summary.textContent] = [!choice, false, "The answer"];
+    verdict.textContent = !choice ? "" : choice === answer.dataset.right
       ? "You bet on it, and it is so." : "It comes out otherwise.";
   }
-  function take(changes) {
-    bet = { ...bet, ...changes };
-    stored((held) => held.setItem(KEY + box.id, JSON.stringify(bet)));
+  function take(wanted, opens = answer.open) {
+    [choice, answer.open] = [wanted, opens];
+    stored((held) => held.setItem(KEY + box.id, JSON.stringify({ choice, why: why.value })));
     show();
   }
-  const { choice, why: reason } = stored((held) => JSON.parse(held.getItem(KEY + box.id))) ?? {};
-  if (choices.some((each) => each.dataset.choice === choice)) bet.choice = choice;
-  if (typeof reason === "string") why.value = bet.why = reason;
+  const before = stored((held) => JSON.parse(held.getItem(KEY + box.id))) ?? {};
+  if (choices.some((each) => each.dataset.choice === before.choice)) choice = before.choice;
+  if (typeof before.why === "string") why.value = before.why;
   show();
-  why.addEventListener("input", () => take({ why: why.value }));
-  for (const each of choices)
-    each.addEventListener("click", () => {
-      if (bet.choice) return;
-      take({ choice: each.dataset.choice });
-      answer.open = true;
-      summary.focus({ preventScroll: true });
-    });
+  why.addEventListener("input", () => take(choice));
   back.addEventListener("click", () => {
-    take({ choice: undefined });
-    answer.open = false;
+    take(null, false);
     choices[0].focus();
   });
+  for (const each of choices)
+    each.addEventListener("click", () => {
+      if (choice) return;
+      take(each.dataset.choice, true);
+      summary.focus({ preventScroll: true });
+    });
   summary.addEventListener("click", (event) => {
-    if (bet.choice || warned || answer.open) return;
+    if (choice || warned || answer.open) return;
     event.preventDefault();
-    [summary.textContent, warned] = ["You have not bet yet. Press again to see the answer.", true];
+    [warned, summary.textContent] = [true, "You have not bet yet. Press again to see the answer."];
   });
 }
 
-export function forgetBets({ currentTarget }) {
+export function forgetBets() {
   stored((held) => Object.keys(held).filter((key) => key.startsWith(KEY))
     .forEach((key) => held.removeItem(key)));
-  currentTarget.textContent = "Forgotten";
-  setTimeout(() => location.reload(), 400);
+  location.reload();
 }

@@ -1,24 +1,21 @@
 /* The stage: it puts a figure into the page, hands it drags, keys and time, and keeps what was set.
- * A figure is a plain object in figures/NAME.js and touches no document:
+ * A figure is a plain object in figures/NAME.js and touches no document (each word, too, as f(own)):
  *
- *   title, caption  its name; one sentence that says what it shows; either text or f(own)
- *   height(width)   px of its drawing
- *   knobs           names of QUANTITIES that stand as sliders below it, at most two; or f(own)
- *   room            how many of them may come; or as many as there are
- *   start(given)    its own state, {name: number or text}; the slot in the text may set it
- *   draw(view)      {picture, words, values}: svg, one sentence, and the numbers that are drawn
- *   clock(view)     {end, rate, step}: own.time runs from 0 to `end`, `rate` s in a second; with
- *                   loops it begins again, with alone it starts unasked
- *   play(own)       what the button says that lets it run
- *   switches(own)   buttons [[label, name, value]]: own[name] becomes value, or 0 if it was that
+ *   title, caption    its name; one sentence that says what it shows
+ *   height(width)     px of its drawing
+ *   knobs, room       names of QUANTITIES, sliders below it, at most two; how many may come
+ *   start(given)      its own state, {name: number or text}; the slot in the text may set it
+ *   draw(view)        {picture, words}: svg, and one sentence, of two lines on a phone
+ *   clock(view)       {end, rate, step, loops, alone}: own.time runs from 0 to `end`, `rate` s in a
+ *                     second; with loops it begins again, with alone it starts unasked
+ *   play(own)         what the button says that lets it run
+ *   switches(own)     buttons [[label, name, value]]: own[name] becomes value, or 0 if it was that
  *
  * The view has own, width, height, set(changes), and grab(what, shape): a shape around which one
- * can put a hand, where `what` is {label, value, low, high, step, at(x, y), also, seen, release, twin}. A
- * value is a name of the figure's state, or two of them; at gives what belongs to a place, `also`
- * is set with it, and seen() is the value that one sees, where that is not the state's; a twin does
- * what another handle does, and no key leads to it. view.point
- * is the same with a knob at (x, y). What a handle has done, the figure's words say, to a screen
- * reader, too: in at most two lines on a phone, so that nothing below them moves. */
+ * can put a hand; `what` is {label, value, low, high, step, at(x, y), also, seen, release, twin}. A
+ * value is a name of the state, or two; at gives what belongs to a place, `also` is set with it, and
+ * seen() is the value that one sees, where that is not the state's; a twin does what another handle
+ * does, and no key leads to it. view.point is the same with a knob at (x, y). */
 import { html, nothing, render, svg } from "./lit.js";
 import { circle, plain, within } from "./draw.js";
 import { data } from "./data.js";
@@ -27,6 +24,7 @@ export const QUANTITIES = {
   dt: { low: 0.0005, high: 0.064, log: true, times: 1000, unit: "ms", label: "Time step dt" },
   stiffness: { low: 100, high: 1e6, log: true, unit: "N/m", label: "Stiffness k" },
   damping: { low: 0, high: 300, step: 1, unit: "N s/m", label: "Damping c" },
+  baumgarte: { low: 0, high: 1, step: 0.01, unit: "", label: "Share β" },
   iters: { low: 1, high: 100, step: 1, unit: "", label: "Sweeps" },
   warm: { low: 0, high: 1, step: 0.05, unit: "", label: "Warm start" },
   impedance: { low: 0.5, high: 0.9999, step: 0.0001, unit: "", label: "Impedance d" },
@@ -34,21 +32,29 @@ export const QUANTITIES = {
   mu: { low: 0, high: 3, step: 0.01, unit: "", label: "Friction µ" },
 };
 const PLACES = 200; // of a slider whose steps are shares
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
-  Home: [-Infinity, 0], End: [Infinity, 0] };
+const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
+  Home: [-Infinity, 0], End: [Infinity, 0], Enter: [0, 0], " ": [0, 0] };
 const LEAST = 358; // px: on a screen smaller than a phone's it is drawn so, and made smaller
+
+export const asked = (what, own) => (typeof what === "function" ? what(own) : what);
+export const captionOf = ({ caption }, { own }) => worded(asked(caption, own));
+export const knobsOf = ({ knobs = [] }, { own }) => asked(knobs, own);
+
+// No line ends between a number and its unit.
+export const worded = (words) =>
+  words.replace(/ × |(?<=[\d⁰-⁹]) (?=%|(?:r|m?s|m?m|N|kg|m\/s|N\/m)\b)/g, (blank) =>
+    blank.replaceAll(" ", "\u00a0"));
 
 // The view of a figure that nobody touches; its state is its own with what the text sets.
 export function viewOf(figure, given, width = 640) {
   const own = { ...data.defaults, time: 0, ...figure.start?.(given), ...given };
-  const ranges = Object.fromEntries(asked(figure.knobs ?? [], own).map((name) =>
+  const ranges = Object.fromEntries(knobsOf(figure, { own }).map((name) =>
     [name, [QUANTITIES[name].low, QUANTITIES[name].high]]));
   return {
     own, text: { ...own }, ranges, width, running: false,
-    get height() { return figure.height(this.width, own); },
+    get height() { return figure.height(this.width); },
     grab({ value, low, high }, shape) {
-      [value].flat().forEach((name, k) =>
-        (ranges[name] = [[low].flat()[k], [high].flat()[k]]));
+      [value].flat().forEach((name, k) => (ranges[name] = [[low].flat()[k], [high].flat()[k]]));
       return shape;
     },
     point(x, y, what) {
@@ -57,24 +63,12 @@ export function viewOf(figure, given, width = 640) {
   };
 }
 
-export const asked = (what, own) => (typeof what === "function" ? what(own) : what);
-export const captionOf = ({ caption }, { own }) => worded(asked(caption, own));
-
-// No line ends between a number and its unit.
-export const worded = (words) =>
-  words.replace(/ × |(?<=[\d⁰-⁹]) (?=%|(?:r|m?s|m?m|N|kg|m\/s|N\/m)\b)/g, (blank) =>
-    blank.replaceAll(" ", "\u00a0"));
-
-// ---- what a link, or this tab before a reload, may set: switches, and numbers in their range
-
+// Whether a link may set it, or a reload: a switch, or a number in its range.
 export function fits(figure, { own, ranges }, name, value) {
-  const switches = figure.switches?.(own) ?? [];
-  if (switches.some(([, key]) => key === name))
-    return value === 0 || switches.some(([, key, to]) => key === name && to === value);
+  const switches = (figure.switches?.(own) ?? []).filter(([, key]) => key === name);
+  if (switches.length) return value === 0 || switches.some(([, , to]) => to === value);
   return Object.hasOwn(ranges, name) && value >= ranges[name][0] && value <= ranges[name][1];
 }
-
-// ---- sliders
 
 function slider(view, name) {
   const { low, high, step, log, unit, times = 1, label } = QUANTITIES[name];
@@ -88,38 +82,32 @@ function slider(view, name) {
     ><output aria-live="off">${told}</output></label>`;
 }
 
-// ---- hands
-
 /* What is grabbed: its state is changed by where the hand is, from where it was taken hold of, so
  * that nothing jumps; by the arrow keys, `step` at a time and ten times that with shift. Of two
  * values each is a slider of its own to a screen reader. */
 function hands(view, box) {
   let held = null; // by which pointer, and how far from the value's own place
-  const from = ({ clientX, clientY }) => {
-    const { left, top, width } = box.querySelector("svg").getBoundingClientRect();
-    return [clientX - left, clientY - top].map((at) => (at * view.width) / width);
-  };
   return ({ label, value, low, high, step, at, also, seen, release, twin }, shape) => {
     const [names, lows, highs, sizes] = [value, low, high, step].map((each) => [each].flat());
     const now = () => (seen ? [seen()] : names.map((name) => view.own[name]));
-    const put = (wanted) => {
-      const fine = names.map((name, k) =>
-        [name, Number(within(lows[k], wanted[k], highs[k]).toPrecision(5))]);
-      view.set({ ...also, ...Object.fromEntries(fine) });
+    const put = (wanted) => view.set({ ...also, ...Object.fromEntries(names.map((name, k) =>
+      [name, Number(within(lows[k], wanted[k], highs[k]).toPrecision(5))])) });
+    const placeOf = ({ clientX, clientY }) => {
+      const { left, top, width } = box.querySelector("svg").getBoundingClientRect();
+      return [at(...[clientX - left, clientY - top].map((px) => (px * view.width) / width))].flat();
     };
     const seize = (event) => {
       if (event.button > 0 || held) return;
       event.preventDefault();
       event.currentTarget.querySelector("[tabindex]").focus({ preventScroll: true });
       event.currentTarget.setPointerCapture(event.pointerId);
-      const [place, first] = [[at(...from(event))].flat(), now()];
+      const [place, first] = [placeOf(event), now()];
       held = { pointer: event.pointerId, off: first.map((v, k) => v - place[k]) };
       view.stop();
       put(first);
     };
     const drag = (event) => {
-      if (held?.pointer !== event.pointerId) return;
-      put([at(...from(event))].flat().map((v, k) => v + held.off[k]));
+      if (held?.pointer === event.pointerId) put(placeOf(event).map((v, k) => v + held.off[k]));
     };
     const letGo = (event) => {
       if (held?.pointer !== event.pointerId) return;
@@ -127,35 +115,34 @@ function hands(view, box) {
       release?.();
     };
     const key = (event) => {
-      const [across, up] = ARROWS[event.key] ?? [0, 0];
-      const lets = release && (event.key === "Enter" || event.key === " ");
-      if (!(across || up || lets) || event.ctrlKey || event.altKey || event.metaKey) return;
+      const lets = event.key === "Enter" || event.key === " ";
+      if (!KEYS[event.key] || (lets && !release) || event.ctrlKey || event.altKey || event.metaKey)
+        return;
       event.preventDefault();
       if (lets) return release();
+      const [across, up] = KEYS[event.key];
       const by = names.length > 1 ? [across, up] : [across + up];
       put(now().map((v, k) => v + by[k] * (event.shiftKey ? 10 : 1) * sizes[k % sizes.length]));
     };
     const stay = (event) => event.preventDefault(); // no finger moves the page
-    const sliders = names.map((_, k) => svg`<g role="slider" tabindex=${twin ? -1 : 0} aria-valuemin=${lows[k]}
-      aria-label=${label + (names.length > 1 ? [", across", ", up"][k] : "")} aria-valuemax=${highs[k]}
-      aria-valuenow=${within(lows[k], now()[k], highs[k])} @keydown=${key}>${k ? "" : shape}</g>`);
+    const name = (k) => label + (names.length > 1 ? [", across", ", up"][k] : "");
     return svg`<g class="handle" @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
-      @pointercancel=${letGo} @touchstart=${stay}>${sliders}</g>`;
+      @pointercancel=${letGo} @touchstart=${stay}>${names.map((_, k) => svg`<g role="slider"
+      tabindex=${twin ? -1 : 0} aria-label=${name(k)} aria-valuemin=${lows[k]} aria-valuemax=${highs[k]}
+      aria-valuenow=${within(lows[k], now()[k], highs[k])} @keydown=${key}>${k ? "" : shape}</g>`)}</g>`;
   };
 }
-
-// ---- the stage
 
 // Put a figure into its box. Returns take({name: value}), which sets it as in the text, but for these.
 export function stage(box, figure, given, still) {
   const view = viewOf(figure, given);
+  const { own, text } = view;
   let [frame, near, begun, last, soon] = [0, false, false, 0, 0];
   const ask = () => (frame ||= requestAnimationFrame(draw));
-  const same = (name) => view.own[name] === view.text[name] || !(name in view.text)
-    || (name === "time" && figure.clock?.(view).loops);
+  const same = (name) => own[name] === text[name] || (name === "time" && figure.clock?.(view).loops);
   // the address leads here, with all that differs from the text; a reload finds the other figures'
   function remember() {
-    const set = Object.fromEntries(Object.entries(view.own).filter(([name, value]) =>
+    const set = Object.fromEntries(Object.entries(own).filter(([name, value]) =>
       !same(name) && fits(figure, view, name, value)));
     const query = new URLSearchParams(set).toString();
     history.replaceState({ ...history.state, [box.id]: set }, "", `#${box.id}${query && `?${query}`}`);
@@ -163,7 +150,7 @@ export function stage(box, figure, given, still) {
   const [hand, { grab }] = [hands(view, box), view];
   view.grab = (what, shape) => hand(what, grab(what, shape));
   view.set = (changes) => {
-    Object.assign(view.own, changes);
+    Object.assign(own, changes);
     clearTimeout(soon);
     soon = setTimeout(remember, 300); // browsers count how often the address changes
     ask();
@@ -172,43 +159,37 @@ export function stage(box, figure, given, still) {
     view.running = false;
     ask();
   };
-  view.play = (from = view.own.time) => {
-    view.running = true;
-    last = performance.now();
-    view.own.time = from >= figure.clock(view).end ? 0 : from;
+  view.play = (from = own.time) => {
+    [view.running, last] = [true, performance.now()];
+    own.time = from >= figure.clock(view).end ? 0 : from;
     ask();
   };
   // the time that has passed since the last picture
   function goOn(now) {
     const { end, rate, loops } = figure.clock(view);
-    const time = view.own.time + (rate * within(0, now - last, 100)) / 1000;
-    last = now;
-    view.running = loops || time < end;
-    view.own.time = loops ? time % end : Math.min(end, time);
+    const time = own.time + (rate * within(0, now - last, 100)) / 1000;
+    [last, view.running] = [now, loops || time < end];
+    own.time = loops ? time % end : Math.min(end, time);
     if (view.running) ask();
   }
-  const take = (set) => {
-    Object.assign(view.own, view.text);
+  function take(set) {
+    Object.assign(own, text);
     figure.draw(view); // which tells the ranges of its handles
     for (const [name, value] of Object.entries(set))
-      if (fits(figure, view, name, value)) view.own[name] = value;
+      if (fits(figure, view, name, value)) own[name] = value;
     view.stop();
-  };
-  const button = (text, act, pressed) => html`<button type="button" aria-pressed=${pressed ?? nothing}
-    @click=${act}>${text}</button>`;
+  }
+  const button = (words, act, pressed) => html`<button type="button" aria-pressed=${pressed ?? nothing}
+    @click=${act}>${words}</button>`;
   function buttons() {
-    const { own } = view;
-    const all = (figure.switches?.(own) ?? []).map(([text, name, value]) => {
+    const all = (figure.switches?.(own) ?? []).map(([words, name, value]) => {
       const on = own[name] === value;
       const next = on && typeof value === "number" ? 0 : value;
-      return button(text, () => view.set({ [name]: next, time: 0 }), String(on));
+      return button(words, () => view.set({ [name]: next, time: 0 }), String(on));
     });
     if (!figure.play) return all;
     const { end, step } = figure.clock(view);
-    const on = () => {
-      view.stop();
-      view.set({ time: Math.min(end, own.time + step) });
-    };
+    const on = () => view.stop(view.set({ time: Math.min(end, own.time + step) }));
     return [view.running ? button("Stop", view.stop) : button(figure.play(own), () => view.play()),
       step ? button("Step", on) : "", ...all];
   }
@@ -219,15 +200,13 @@ export function stage(box, figure, given, still) {
     if (!begun) box.replaceChildren(); // the still
     begun = true;
     if (view.running) goOn(now);
-    const { own } = view;
     const { picture, words } = figure.draw(view);
     render(html`<svg class="plot" viewBox="0 0 ${view.width} ${view.height}" role="group"
       aria-label=${asked(figure.title, own)}>${picture}</svg>
-      <figcaption>${captionOf(figure, view)}</figcaption>
-      <p class="words">${worded(words)}</p>
+      <figcaption>${captionOf(figure, view)}</figcaption><p class="words">${worded(words)}</p>
       <button type="button" class="back" title="As in the text" aria-label="As in the text"
-      ?disabled=${Object.keys(own).every(same)} @click=${() => (take({}), remember())}>↺</button>
-      <div class="controls">${asked(figure.knobs ?? [], own).map((name) => slider(view, name))}
+      ?disabled=${Object.keys(text).every(same)} @click=${() => remember(take({}))}>↺</button>
+      <div class="controls">${knobsOf(figure, view).map((name) => slider(view, name))}
       <div class="buttons">${buttons()}</div></div>`, box);
     for (const each of box.querySelectorAll("[role=slider], input")) // its own value, then the words
       each.setAttribute("aria-valuetext",

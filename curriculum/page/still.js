@@ -2,12 +2,11 @@
 import { data } from "./data.js";
 import { figures } from "./figures.js";
 import { textOf } from "./lit.js";
-import { asked, captionOf, fits, QUANTITIES, viewOf, worded } from "./stage.js";
+import { asked, captionOf, fits, knobsOf, QUANTITIES, viewOf, worded } from "./stage.js";
 
 const [WIDE, NARROW] = [640, 358]; // px
-const CHOICES = { // words that a slot may set, where the figure has no choices of its own
-  models: data.models, model: data.models, scene: Object.keys(data.scenes),
-  knobs: Object.keys(QUANTITIES),
+const CHOICES = { // words that a slot may set, where the figure has no switch of that name
+  models: data.models, scene: Object.keys(data.scenes), knobs: Object.keys(QUANTITIES),
 };
 
 // What a slot may set: what the figure has, in its range or among its choices.
@@ -15,12 +14,12 @@ function check(figure, given) {
   const view = viewOf(figure, {});
   figure.draw(view); // which tells the ranges of its handles
   for (const [name, value] of Object.entries(given)) {
-    const choices = (figure.switches?.(view.own) ?? []).filter(([, key]) => key === name);
-    const known = choices.length ? ["0", ...choices.map(([, , to]) => `${to}`)] : CHOICES[name];
+    const switches = (figure.switches?.(view.own) ?? []).filter(([, key]) => key === name);
+    const known = switches.length ? switches.map(([, , to]) => String(to)) : CHOICES[name];
     if (!(name in view.own))
       throw new Error(`${name} sets nothing; known: ${Object.keys(view.own).join(", ")}`);
-    if (known && !String(value).split(",").every((word) => known.includes(word)))
-      throw new Error(`${name}=${value}; allowed: ${known.filter((each) => each !== "0").join(", ")}`);
+    if (known && value !== 0 && !String(value).split(",").every((word) => known.includes(word)))
+      throw new Error(`${name}=${value}; allowed: ${known.join(", ")}`);
     if (name in view.ranges && !fits(figure, view, name, value))
       throw new Error(`${name}=${value}; allowed: from ${view.ranges[name].join(" to ")}`);
   }
@@ -35,29 +34,24 @@ function still([name, given]) {
     check(figure, given);
     const view = viewOf(figure, given, WIDE);
     const { picture, words } = figure.draw(view);
-    return {
-      title: asked(figure.title, view.own),
-      svg: textOf(picture),
-      words: worded(words),
-      caption: captionOf(figure, view),
-      heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
-      knobs: figure.room ?? asked(figure.knobs ?? [], view.own).length,
-      buttons: figure.switches || figure.play ? 1 : 0,
-    };
+    return { svg: textOf(picture), words: worded(words), caption: captionOf(figure, view),
+      title: asked(figure.title, view.own), heights: [WIDE, NARROW].map(figure.height),
+      knobs: figure.room ?? knobsOf(figure, view).length,
+      buttons: figure.switches || figure.play ? 1 : 0 };
   } catch (error) {
     throw new Error(`the figure ${name}: ${error.message}`);
   }
 }
 
+// "" where a slot can be drawn, or why not.
 function errorOf(slot) {
   try {
-    still(slot);
+    return still(slot) && "";
   } catch ({ message }) {
     return message;
   }
-  return "";
 }
 
-export const errors = (slots) => slots.map(errorOf); // "" where a slot can be drawn
-export const stills = (wanted) => wanted.map(still);
-export { asked, captionOf, figures, QUANTITIES, textOf, viewOf };
+export const errors = (slots) => slots.map(errorOf);
+export const stills = (slots) => slots.map(still);
+export { captionOf, figures, knobsOf, QUANTITIES, textOf, viewOf };

@@ -9,7 +9,7 @@ const drawn = (name, given = {}, own = {}, width = 640) => {
   };
   const { picture, words } = figure.draw(view);
   return { svg: MADE.textOf(picture), words, handles, height: view.height, own: view.own,
-    caption: MADE.captionOf(figure, view), knobs: MADE.asked(figure.knobs ?? [], view.own),
+    caption: MADE.captionOf(figure, view), knobs: MADE.knobsOf(figure, view),
     end: figure.clock?.(view).end };
 };
 const MOST = 89; // letters of a figure's words
