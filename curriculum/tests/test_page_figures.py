@@ -451,6 +451,8 @@ def test_picture_set_back_has_paths_that_meet_at_the_impact_and_ends_as_leapfrog
 
 
 def test_picture_touching_row_flies_on_with_the_velocities_of_exact(draw):
+    opens = draw("touching-row")
+    assert all(b["r"] <= b["cx"] <= 640 - b["r"] for b in opens.all("circle", "m-exact"))
     early, late = (draw("touching-row", {}, {"time": time}) for time in (0.6, 0.8))
     for k, gap in enumerate((0.0, 1e-6)):
         x = [0.0, 0.4, 0.6 + gap]

@@ -69,7 +69,7 @@ function draw(view) {
           k === fate || to - from > 6 * name.length
             ? label(name, (from + to) / 2, top + 38, "middle", k === fate ? "strong" : "tick") : ""];
       }),
-      [0.0002, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016].filter((each) => each >= low && each <= high)
+      [0.0002, 0.001, 0.002, 0.004, 0.016, ...(low > 0.001 ? [0.008] : [])].filter((each) => each >= low && each <= high)
         .map((each) => label(ms(each), within(26, at(each), width - 26), top + 58, "middle", "tick")),
       line(at(dt), top - 8, at(dt), top + 18, "rule"), view.point(at(dt), top + 9, what),
     ],

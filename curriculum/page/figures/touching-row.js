@@ -45,7 +45,7 @@ export const figure = {
   title: "A row of balls is struck",
   caption: "The same row, touching and not quite.",
   height: (width) => (width < 480 ? 220 : 260),
-  start: () => ({ from: 0.6, time: 2 }),
+  start: () => ({ from: 0.6, time: 0.6 - 2 * R + AFTER }),
   clock: ({ own }) => ({ end: own.from - 2 * R + AFTER, rate: 0.6 }),
   play: () => "Strike it",
   draw,
