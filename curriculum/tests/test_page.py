@@ -219,6 +219,7 @@ def test_a_bet_stands_until_it_is_taken_back_and_its_answer_opens_after_it_or_by
         answer, choices = box.locator(".answer"), box.locator("[data-choice]")
         right = answer.get_attribute("data-right")
         assert not answer.locator("table, p").filter(visible=True).count()
+        assert not box.locator(".take-back").is_visible()
         answer.locator("summary").click()
         assert "not bet" in answer.inner_text() and not answer.locator("table").is_visible()
         answer.locator("summary").click()
