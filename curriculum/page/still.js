@@ -6,7 +6,8 @@ import { asked, captionOf, fits, knobsOf, QUANTITIES, viewOf, worded } from "./s
 
 const [WIDE, NARROW] = [640, 358]; // px
 const CHOICES = { // words that a slot may set, where the figure has no switch of that name
-  models: data.models, scene: Object.keys(data.scenes), knobs: Object.keys(QUANTITIES),
+  models: data.models, model: data.models, scene: Object.keys(data.scenes),
+  knobs: Object.keys(QUANTITIES),
 };
 
 // What a slot may set: what the figure has, in its range or among its choices.
@@ -35,7 +36,8 @@ function still([name, given]) {
     const view = viewOf(figure, given, WIDE);
     const { picture, words } = figure.draw(view);
     return { svg: textOf(picture), words: worded(words), caption: captionOf(figure, view),
-      title: asked(figure.title, view.own), heights: [WIDE, NARROW].map(figure.height),
+      title: asked(figure.title, view.own),
+      heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
       knobs: figure.room ?? knobsOf(figure, view).length,
       buttons: figure.switches || figure.play ? 1 : 0 };
   } catch (error) {
