@@ -1,22 +1,21 @@
-"""Who competes: other engines, and our models, as sessions that step the scenes of contact.py.
+"""Other engines and contact.py's models, as sessions that step the scenes of contact.py.
 
 **To send a better setting, add one line to settings.csv**: the engine, its options as they are
 typed, the problems that it is for (names, "all", "-name" for all but this one, or a group of
 GROUPS), the numbers of substeps in 2 ms that it is measured with (none: it chooses its own steps),
-those for the piles, and the most balls of a pile (none: any). The benchmark runs every line and
-names the best. Options are the arguments of a session's __init__, or contact.py's own flags.
+those for the piles, and the most balls of a pile (none: any). Options are the arguments of a
+session's __init__, or contact.py's own flags.
 
 Every engine is optional. The same for all: balls that cannot rotate, no friction, one thread, the
-scene's masses, radii and restitution, and a floor along y = 0. A ball of infinite mass is one that
-nothing moves. No ball sleeps, and what is left of the last step, impulses or forces, begins the
-next one as shipped.
+scene's masses, radii and restitution, a floor along y = 0. A ball of infinite mass is fixed. No
+ball sleeps, and steps are warm-started as shipped.
 """
 
 import json
 import math
 import subprocess
 from ast import literal_eval
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
@@ -67,6 +66,11 @@ class Session:
         """q and v [m, m/s] at each of n looks, (n + 1, 2, N)."""
         return tuple(map(np.array, zip(*self.looks(self.state, n))))
 
+    @cached_property
+    def moving(self):
+        """The indices of the balls that are not fixed."""
+        return np.flatnonzero(np.isfinite(self.scene.mass))
+
     def with_the_fixed(self, *parts):
         """q and v of every ball, from flat lists: x, y and perhaps more for each one that moves."""
         found = self.scene.q0.copy(), self.scene.v0.copy()
@@ -86,8 +90,9 @@ class Ours(Whole):
     """A model of contact.py, by its compiled loops; no step is skipped. exact has no steps."""
 
     def __init__(self, scene, dt, model, **knobs):
-        self.given = model, scene, dt
-        self.settings, self.motion = contact.Settings(skip=False, **knobs), None
+        self.given, self.settings = (model, scene, dt), contact.Settings(skip=False, **knobs)
+        self.now = np.concatenate((scene.q0, scene.v0))
+        self.rows = np.empty((BLOCK + 1, *self.now.shape))
 
     def states(self, n):
         model, scene, dt = self.given
@@ -97,18 +102,21 @@ class Ours(Whole):
         return run.q[:: self.substeps], run.v[:: self.substeps]
 
     def go(self, n):
-        if self.motion is None:
-            self.motion = contact.optional_module("compiled.run").Stepper(
-                *self.given, self.settings
-            )
-            self.rows = np.empty((BLOCK + 1, 4, len(self.given[1].mass)))
         steps = n * self.substeps
         for first in range(0, steps, BLOCK):
-            self.last = min(BLOCK, steps - first)
-            self.motion.take(self.rows[: self.last + 1])
+            self.rows[0] = self.now
+            last = min(BLOCK, steps - first)
+            self.stepper.take(self.rows[: last + 1])
+            self.now = self.rows[last].copy()
+
+    @cached_property
+    def stepper(self):
+        """The compiled loops, which go on from where they are."""
+        home = contact.optional_module("compiled.run")
+        return home.Stepper(*self.given, self.settings)
 
     def state(self):
-        return np.split(self.rows[self.last].copy(), 2)
+        return np.split(self.now.copy(), 2)
 
 
 class Events(Whole):
@@ -184,7 +192,6 @@ class Mujoco(Session):
         )
         self.data = mujoco.MjData(self.model)
         self.step = partial(mujoco.mj_step, self.model, self.data)
-        self.moving = np.flatnonzero(np.isfinite(scene.mass))
         self.data.qpos[:] = scene.q0[:, self.moving].T.ravel()
         self.data.qvel[:] = scene.v0[:, self.moving].T.ravel()
 
@@ -341,7 +348,6 @@ class Drake(Session):
 
         logging.getLogger("drake").setLevel(logging.ERROR)
         self.scene, self.dt, self.time, self.dense = scene, dt, 0, scheme and not cut
-        self.moving = np.flatnonzero(np.isfinite(scene.mass))
         builder, lossy = drake.DiagramBuilder(), float(scene.restitution < 1.0)
         skin = dict(hunt_crossley_dissipation=lossy * dissipation, relaxation_time=lossy * dt)
         skin |= dict(point_stiffness=2.0 * stiffness)  # of two surfaces in series: half of it
@@ -409,7 +415,6 @@ class Dart(Session):
         import dartpy as dart
 
         self.dart, self.scene, self.balls = dart, scene, []
-        self.moving = np.flatnonzero(np.isfinite(scene.mass))
         self.world = world = dart.simulation.World()
         world.setGravity([0.0, -GRAVITY, 0.0])
         world.setTimeStep(dt)
@@ -425,21 +430,16 @@ class Dart(Session):
     def put(self, shape, place, mass=None):
         """Add a body that cannot rotate, or without a mass one that is fixed; return it."""
         skeleton = self.dart.dynamics.Skeleton()
-        if mass is None:
-            _, body = skeleton.createWeldJointAndBodyNodePair()
-        else:
-            _, body = skeleton.createTranslationalJointAndBodyNodePair()
+        _, body = skeleton.createTranslationalJointAndBodyNodePair()
         skin = body.createShapeNode(shape)
         skin.createCollisionAspect()
         skin.createDynamicsAspect()
         skin.getDynamicsAspect().setFrictionCoeff(0.0)
         # the engine multiplies the two bodies' coefficients
         skin.getDynamicsAspect().setRestitutionCoeff(math.sqrt(self.scene.restitution))
-        if mass is None:
-            skin.setRelativeTranslation([*place, 0.0])
-        else:
-            body.setMass(mass)
-            skeleton.setPositions([*place, 0.0])
+        body.setMass(mass or 1.0)
+        skeleton.setMobile(mass is not None)
+        skeleton.setPositions([*place, 0.0])
         self.world.addSkeleton(skeleton)
         return skeleton
 

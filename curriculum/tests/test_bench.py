@@ -126,6 +126,16 @@ def test_times_are_medians_of_runs_after_a_short_one_and_of_piles_from_both_star
         assert np.array_equal(call.func.__self__.state(), (run.q[-1], run.v[-1]))
 
 
+def test_a_model_goes_on_from_its_state_whatever_its_memory_holds():
+    scene = measure.shaft(12)
+    session = engines.BY_NAME["lcp iters=4 baumgarte=1"].build(scene, 0.002, 4)
+    for looks in (1, 60, 39):
+        session.rows[:] = math.nan
+        session.go(looks)
+    run = contact.run_model("lcp", scene, 0.0005, 400, session.settings)
+    assert np.array_equal(session.state(), (run.q[-1], run.v[-1]))
+
+
 def test_all_engines_get_the_same_substeps_and_leapfrogs_two_solves_count_twice():
     found = {}
     for c in (c for c in ALL if c.substeps):
