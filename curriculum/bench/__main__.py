@@ -44,16 +44,16 @@ def take(part, quick, only, folder, tier=None):
     about = stored.origin(command, *CODE, *code, kept=folder == FULL)
     about["versions"] |= engines.versions()
     sections, made = stored.load(folder)
+    stay, known, groups = [], list(engines.EVERYBODY), list(problems.BY_NAME)
     if only:
-        known, groups = list(engines.EVERYBODY), list(problems.BY_NAME)
         stay = [row for row in sections.get(part, ()) if name(row) in known]
         stay = [row for row in stay if only not in name(row)]
-        rows = stay + measure.PARTS[part](quick, only, stay)
+    rows = stay + measure.PARTS[part](quick, only, stay)
+    if only:
         rows.sort(key=lambda row: known.index(name(row)))
         rows.sort(key=lambda row: row.get("bodies") or groups.index(row["problem"]))
-    else:
-        rows = measure.PARTS[part](quick, only, [])
-        made = {key: value for key, value in made.items() if key.split()[0] != part}
+    made = {key: about for key, about in made.items()
+            if key.split()[0] != part or only not in key.removeprefix(part)}  # fmt: skip
     if tier and part == "processes" and folder == FULL:
         stored.enter(tier, about, rows[0]["seconds"])
     if rows:

@@ -357,8 +357,9 @@ class Drake(Session):
         self.plant, _ = drake.AddMultibodyPlant(points, every, builder)
         plant = self.plant
         plant.mutable_gravity_field().set_gravity_vector([0.0, -GRAVITY, 0.0])
+        put = partial(plant.RegisterCollisionGeometry, properties=drake.ProximityProperties())
         floor = drake.RigidTransform(drake.HalfSpace.MakePose([0.0, 1.0, 0.0], np.zeros(3)))
-        shapes = [(plant.world_body(), floor, drake.HalfSpace(), "floor")]
+        put(plant.world_body(), floor, drake.HalfSpace(), "floor")
         for k, (place, _, mass, radius, fixed) in enumerate(balls_of(scene)):
             body, pose = plant.world_body(), drake.RigidTransform([*place, 0.0])
             if not fixed:
@@ -366,14 +367,12 @@ class Drake(Session):
                 body, pose = plant.AddRigidBody(f"ball {k}", inertia), drake.RigidTransform()
                 frames = plant.world_frame(), body.body_frame()
                 plant.AddJoint(drake.PlanarJoint(f"joint {k}", *frames))
-            shapes.append((body, pose, drake.Sphere(radius), f"ball {k}"))
-        for shape in shapes:
-            plant.RegisterCollisionGeometry(*shape, drake.ProximityProperties())
+            put(body, pose, drake.Sphere(radius), f"ball {k}")
         plant.Finalize()
         self.simulator = drake.Simulator(builder.Build())
         self.context = plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
-        for put, given in ((plant.SetPositions, scene.q0), (plant.SetVelocities, scene.v0)):
-            put(self.context, np.pad(given[:, self.moving].T, ((0, 0), (0, 1))).ravel())  # x, y, 0
+        for to, given in ((plant.SetPositions, scene.q0), (plant.SetVelocities, scene.v0)):
+            to(self.context, np.pad(given[:, self.moving].T, ((0, 0), (0, 1))).ravel())  # x, y, 0
         if scheme:
             drake.ResetIntegratorFromFlags(self.simulator, scheme, 0.1)
             self.simulator.get_mutable_integrator().set_target_accuracy(accuracy)

@@ -150,8 +150,7 @@ def piles(quick, only, known):
     rows, states = [], {}
     for count in (12,) if quick else (*SIZES, MANY):
         chosen = winners(known + rows) if count == MANY else engines.PILES
-        chosen = [each for each in chosen if only in each[0].name and fits(each[0], count)]
-        chosen = chosen[:: 4 if quick else 1]
+        chosen = fitting(chosen, count, only)[:: 4 if quick else 1]
         jobs, label = [(count, *each, states.get(each)) for each in chosen], f"{count} balls"
         settled = parallel.run_jobs(settle, jobs, f"{label} settle")
         states.update((each, found[:2]) for each, found in zip(chosen, settled))
@@ -164,9 +163,9 @@ def piles(quick, only, known):
     return rows
 
 
-def fits(c, count):
-    """Whether a setting is measured with so many balls."""
-    return count <= (c.most or count)
+def fitting(chosen, count, only):
+    """Those (setting, substeps) whose names contain `only`, and that run so many balls."""
+    return [(c, n) for c, n in chosen if only in c.name and count <= (c.most or count)]
 
 
 def settle(job):
@@ -186,9 +185,11 @@ def settle(job):
 
 
 def depths(q):
-    """Mean and worst overlap [r] of the contacts that overlap in a pile's state q (2, N)."""
+    """Mean and worst overlap [r] of the contacts that overlap in a pile's state q (2, N); NaN if
+    that is not finite.
+    """
     if not np.isfinite(q).all():
-        return dict(mean_depth=None, worst_depth=None)
+        return dict(mean_depth=math.nan, worst_depth=math.nan)
     r = contact.RADIUS
     a, b = cKDTree(q.T).query_pairs(2.0 * r, output_type="ndarray").T
     found = np.append(r - q[1], 2.0 * r - np.hypot(*(q[:, a] - q[:, b]))) / r
@@ -223,8 +224,8 @@ def heap():
 def collapse(quick, only, known):
     """A row a setting of the piles: how deep the heap's balls overlap, and what a step takes."""
     count = math.prod(HEAP)
-    chosen = [each for each in engines.PILES if only in each[0].name and fits(each[0], count)]
-    jobs = [(*each, COLLAPSE // 20 if quick else COLLAPSE) for each in chosen[:: 8 if quick else 1]]
+    chosen = fitting(engines.PILES, count, only)[:: 8 if quick else 1]
+    jobs = [(*each, COLLAPSE // 20 if quick else COLLAPSE) for each in chosen]
     rows = parallel.run_jobs(sink_of, jobs, f"{count} balls collapse")
     times = timing.in_fresh_processes(time_of_heap, jobs, 1 if quick else PROCESSES, "their times")
     return [row | timing.spread("falling", each) for row, each in zip(rows, times)]
@@ -238,10 +239,8 @@ def sink_of(job):
         session.go(10)
         found.append(depths(session.state()[0]))
     row = dict(bodies=math.prod(HEAP), engine=c.engine, setting=c.options, substeps=substeps)
-    if None in (each["mean_depth"] for each in found):
-        return row | dict(mean_depth=None, worst_depth=None)
-    mean = statistics.mean(each["mean_depth"] for each in found)
-    return row | dict(mean_depth=mean, worst_depth=max(each["worst_depth"] for each in found))
+    mean, worst = np.array([list(each.values()) for each in found]).T
+    return row | dict(mean_depth=float(mean.mean()), worst_depth=float(worst.max()))
 
 
 def time_of_heap(job, timed=timing.timed):

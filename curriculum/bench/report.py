@@ -179,11 +179,8 @@ def falling(rows):
     for engine in dict.fromkeys(row["engine"] for row in rows):
         mine = (row for row in rows if row["engine"] == engine)
         found = measure.best(mine, "bodies", itemgetter("falling"))
-        counts = *measure.SIZES, measure.MANY
-        yield [
-            LABELS[engine],
-            *(format_number(found.get(count, {}).get("falling")) for count in counts),
-        ]
+        each = (found.get(count, {}) for count in (*measure.SIZES, measure.MANY))
+        yield [LABELS[engine], *(format_number(row.get("falling")) for row in each)]
 
 
 def written(name, sections, made):

@@ -25,11 +25,8 @@ KEPT = 1e-9  # share of the start's energy that may come or go, chosen
 
 def heap_jobs(count):
     """So many heaps."""
-    stated = (
-        leapfrog_gains_no_energy,
-        leapfrog_loses_none_where_all_bounces,
-        leapfrog_stays_symmetric,
-    )
+    energy = leapfrog_gains_no_energy, leapfrog_loses_none_where_all_bounces
+    stated = *energy, leapfrog_stays_symmetric
     return [(f"heap {number}", Heap(number), stated) for number in range(count)]
 
 
@@ -85,12 +82,8 @@ def leapfrog_loses_none_where_all_bounces(heap):
         if kind != "ceiling":
             scene, run, total = heap.run("leapfrog", 0.002, kind, "1")
             slow = Trajectory(scene, 0.002, run).slowest() < 2.0 * G * 0.002
-            yield (
-                f"{kind}, e = 1, dt = 2 ms: relative energy loss",
-                -np.diff(total),
-                KEPT,
-                ~(slow[1:] | slow[:-1]),
-            )
+            words = f"{kind}, e = 1, dt = 2 ms: relative energy loss"
+            yield words, -np.diff(total), KEPT, ~(slow[1:] | slow[:-1])
 
 
 def leapfrog_stays_symmetric(heap):
@@ -103,11 +96,8 @@ def leapfrog_stays_symmetric(heap):
         count = q.shape[2] // 2
         image = np.concatenate((q[:, :, count:-1], q[:, :, :count], q[:, :, -1:]), axis=2)
         image[:, 0] *= -1.0
-        yield (
-            f"mirror, e = {heap.e(bounce):.3g}, dt = {1e3 * dt:g} ms [m]",
-            np.abs(q - image),
-            MIRROR,
-        )
+        words = f"mirror, e = {heap.e(bounce):.3g}, dt = {1e3 * dt:g} ms: off its image [m]"
+        yield words, np.abs(q - image), MIRROR
 
 
 def energy_rows(cases):

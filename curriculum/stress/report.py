@@ -111,12 +111,8 @@ def stated(name):
 
 def cells(row):
     """What a property says, and how often it was checked."""
-    return [
-        stated(row["property"]),
-        f"{row['judged']:,}",
-        f"{row['comparisons']:,}",
-        f"{row['share'] or 0:.1g}",
-    ]
+    counts = (f"{row[name]:,}" for name in ("judged", "comparisons"))
+    return [stated(row["property"]), *counts, f"{row['share'] or 0:.1g}"]
 
 
 def penalty_map(rows, made):

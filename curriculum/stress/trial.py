@@ -11,9 +11,7 @@ import numpy as np
 import contact
 from curriculum.stress import scenes
 
-run_twin = (
-    contact.optional_module("compiled.run") or contact
-).run_model  # the same bits, as a property says
+run_twin = (contact.optional_module("compiled.run") or contact).run_model  # bitwise identical
 G = 9.81  # m/s^2, what every model must have, so it is not asked of contact.py
 U = 2.0**-53  # the largest relative rounding error of one operation
 STEPPED = contact.STEPPED
