@@ -251,7 +251,7 @@ class Gate:
         measured = [  # where it is kept, what measures it again, what changed since then
             (f"{folder}/made.json", about["command"], stored.changed(about["code"]))
             for folder in stored.FOLDERS.values()
-            for about in stored.made(folder).values()
+            for about in stored.load(folder)[1].values()
         ]
         for row in filter(stored.stale, stored.ledger()):
             measured.append(("wallclock.csv", f"{stored.TIMES} {row['tier']}", stored.TIMED))

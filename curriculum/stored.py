@@ -94,12 +94,7 @@ def load(folder) -> tuple:
     for path in sorted(Path(ROOT, folder).glob("*.csv")):
         rows = csv.DictReader(path.read_text("utf-8").splitlines(True))
         tables[path.stem] = [{name: value(cell) for name, cell in row.items()} for row in rows]
-    return tables, made(folder)
-
-
-def made(folder) -> dict:
-    """Return made.json of a folder of results, {part: origin()}."""
-    return json.loads(read_text(f"{folder}/made.json") or "{}")
+    return tables, json.loads(read_text(f"{folder}/made.json") or "{}")
 
 
 @cache

@@ -7,23 +7,23 @@ import contact
 
 # --- region: leapfrog-core ---
 def core_step(balls, dt, iters):
-    """One step [s] of leapfrog where nothing bounces: ask where, move, ask how fast."""
+    """Take one step [s] of leapfrog without rebounds: a position solve and a velocity solve."""
     contacts = contact.detect_contacts(balls, contact.detection_distance(balls, dt))
     for c in contacts:
         c.target = c.depth / dt  # gap + dt v_n >= 0
     contact.accelerate(balls, 0.5 * dt)
-    contact.solve_accelerated(contacts, iters)  # where
+    contact.solve_accelerated(contacts, iters)  # position level
     contact.move(balls, dt)
     contact.accelerate(balls, 0.5 * dt)
     closed = [c for c in contacts if c.lam > 0.0]
     for c in closed:
         turn(c)
         c.target = 0.0
-    contact.solve_accelerated(closed, iters)  # how fast
+    contact.solve_accelerated(closed, iters)  # velocity level
 
 
 def turn(c):
-    """Give contact c the normal of now."""
+    """Recompute the normal of contact c at the current positions."""
     if c.b is not contact.FLOOR:
         dx, dy = c.a.x - c.b.x, c.a.y - c.b.y
         distance = math.sqrt(dx * dx + dy * dy)
@@ -35,9 +35,9 @@ def turn(c):
 
 # --- region: implicit-spring ---
 def implicit_step(balls, dt, spring):
-    """One step [s] of penalty's spring, taken at the end of the step and not at its beginning.
+    """Take one step [s] of penalty's spring by implicit Euler: with the force of the step's end.
 
-    spring(depth) gives softness R and target; then it is lcp's step: the sweep knows R already.
+    spring(depth) returns softness R and target; the rest is lcp's step, whose sweep includes R.
     """
     contacts = contact.detect_contacts(balls, margin=0.0)
     for c in contacts:
