@@ -15,7 +15,6 @@ import os
 import re
 import textwrap
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 
@@ -46,30 +45,24 @@ IN_THE_DARK = {
 }  # fmt: skip
 
 
-def pyplot() -> ModuleType:
-    """Import matplotlib.pyplot, set up for these figures. Raises contact.MissingPackage."""
-    os.environ["MPLBACKEND"] = "svg"  # whatever stood there; it may be none of matplotlib's
-    try:
-        import matplotlib
-    except ImportError:
-        raise contact.MissingPackage(commands.to_install("matplotlib")) from None
-    matplotlib.use("svg")
-    from matplotlib import pyplot as plt
-
-    plt.style.use(Path(__file__).with_name("figures.mplstyle"))
-
-    return plt
-
-
 def figure(rows=1, title="", explained="", height=3.4, below=0.0) -> tuple:
     """A figure with its heading, and the list of its axes, one below the other.
 
-    height: inches of a panel. below: inches kept free under them, for a legend.
+    height: inches of a panel. below: inches kept free under them, for a legend. No backend is
+    chosen, so a notebook keeps its own. Raises contact.MissingPackage.
     """
+    os.environ["MPLBACKEND"] = "svg"  # whatever stood there; it may be none of matplotlib's
+    try:
+        from matplotlib import style
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise contact.MissingPackage(commands.to_install("matplotlib")) from None
+    style.use(Path(__file__).with_name("figures.mplstyle"))
     lines = textwrap.wrap(explained, 84)
     top, bottom = 0.7 + 0.17 * len(lines), 0.62 + below
     tall = top + bottom + rows * height
-    made, axes = pyplot().subplots(rows, figsize=(WIDTH, tall), squeeze=False)
+    made = Figure(figsize=(WIDTH, tall))
+    axes = made.subplots(rows, squeeze=False)
     made.subplots_adjust(top=1 - top / tall, bottom=bottom / tall)
     made.text(0.01, 1 - 0.26 / tall, title, fontsize=12, fontweight="bold")
     for k, words in enumerate(lines):
@@ -92,7 +85,7 @@ def legend_below(axis, columns: int, down: float) -> None:
 
 
 def svg(figure, section=None) -> str:
-    """The figure as SVG text, with the date and machine of its section under it, and closed."""
+    """The figure as SVG text, with the date and machine of its section under it."""
     if section is not None:
         about = section["measured"]
         note = f"{about['date']}, {about['cores']} cores of {about['cpu']}, {about['command']}"
@@ -103,7 +96,6 @@ def svg(figure, section=None) -> str:
     out, (title, explained) = io.StringIO(), figure.words
     about = {"Date": None, "Creator": None, "Title": title, "Description": explained}
     figure.savefig(out, format="svg", metadata=about)
-    pyplot().close(figure)
     return smaller(out.getvalue())
 
 

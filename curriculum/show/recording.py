@@ -174,11 +174,11 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     middle, half, pile = 0.5 * (x.min() + x.max()), 0.5 * np.ptp(x), np.ptp(x) > 0.0
     wide, top = 1.6 * half + 1.6 * large, y.max() + 2.0 * large
     sides = [middle - wide, middle + wide], [-top, (0.3 if followed else 0.1) * top]
-    lanes = [view(model, name_of(model, row), *sides, followed) for model, row in quality.items()]
-    high = 3.0 if pile else MAGNIFIED  # radii; of a pile it is the middle
-    reach = high * large
-    up = 0.9 if pile else 0.6
-    near = [middle - 1.2 * reach, middle + 1.2 * reach], [-up * reach, 0.4 * reach]
+    bad = {model: row for model, row in quality.items() if row["blew_up"] or row["through"]}
+    ended = {model: f"{model}: {contact.final_state(row)}" for model, row in bad.items()}
+    lanes = [view(model, ended.get(model, model), *sides, followed) for model in runs]
+    high, up = (3.0, 0.9) if pile else (MAGNIFIED, 0.6)  # radii; of a pile it is the middle
+    near = high * large * np.array([[-1.2, 1.2], [-up, 0.4]]) + [[middle], [0.0]]
     small = rrb.Horizontal(*[view(model, f"{high:g} r", *near, followed) for model in runs])
     lanes = rrb.Vertical(*lanes) if pile else rrb.Horizontal(*lanes)  # type: ignore[assignment]
     left = rrb.Vertical(lanes, small, row_shares=[7 if pile else 5, 2])  # type: ignore[arg-type]
@@ -187,11 +187,6 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     right = rrb.Vertical(about, *[plot(title, most, *seconds) for title in drawn])
     both = rrb.Horizontal(left, right, column_shares=[3, 2])
     return rrb.Blueprint(both, time_panel(), collapse_panels=True)
-
-
-def name_of(model: str, row: dict) -> str:
-    """A model's name, and how its run ended where that was badly."""
-    return f"{model}: {contact.final_state(row)}" if row["blew_up"] or row["through"] else model
 
 
 def view(model: str, name: str, x_range: list, y_range: list, followed) -> rrb.Spatial2DView:

@@ -4,7 +4,7 @@ MODELS, LINE = "test_models.py -k ", "test_command_line.py -k "
 SLIDE, STEP = MODELS + "second_order", MODELS + "with_one_step"
 OWN, BOUNDED = MODELS + "own_moment", MODELS + "bounded_number"
 SEES = "test_stress.py -k no_claim"
-C, CURES = "contact.py", "curriculum/show/cures.py"
+C, REMARKS = "contact.py", "curriculum/show/remarks.py"
 FAULTS = [
     # leapfrog: resting contacts are solved twice
     (C, "        update_contact(c, 0.0)  # the normal after the drift\n", "", SLIDE),
@@ -70,6 +70,6 @@ FAULTS = [
      LINE + "reader_would_ask"),
     (C, "if touches and dt > limit:", "if touches and dt > 2.0 * limit:", LINE + "verdict_names"),
     (C, "np.maximum(vy, -vy - kick).clip(0.0)", "0.0 * vy", "test_show.py -k once_a_step"),
-    (CURES, "if name not in runs or find_fault", "if name not in runs and find_fault",
+    (REMARKS, "if name not in runs or find_fault", "if name not in runs and find_fault",
      LINE + "cure_that_is_printed"),
 ]  # fmt: skip
