@@ -67,7 +67,7 @@ def figure(rows=1, title="", explained="", height=3.4, below=0.0) -> tuple:
     made.text(0.01, 1 - 0.26 / tall, title, fontsize=12, fontweight="bold")
     for k, words in enumerate(lines):
         made.text(0.01, 1 - (0.46 + 0.17 * k) / tall, words, fontsize=9, color=PALE)
-    made.words = title, explained
+    made.words = title, explained  # type: ignore[attr-defined]
     return made, list(axes.flat)
 
 

@@ -178,7 +178,8 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     ended = {model: f"{model}: {contact.final_state(row)}" for model, row in bad.items()}
     lanes = [view(model, ended.get(model, model), *sides, followed) for model in runs]
     high, up = (3.0, 0.9) if pile else (MAGNIFIED, 0.6)  # radii; of a pile it is the middle
-    near = high * large * np.array([[-1.2, 1.2], [-up, 0.4]]) + [[middle], [0.0]]
+    reach = high * large
+    near = [middle - 1.2 * reach, middle + 1.2 * reach], [-up * reach, 0.4 * reach]
     small = rrb.Horizontal(*[view(model, f"{high:g} r", *near, followed) for model in runs])
     lanes = rrb.Vertical(*lanes) if pile else rrb.Horizontal(*lanes)  # type: ignore[assignment]
     left = rrb.Vertical(lanes, small, row_shares=[7 if pile else 5, 2])  # type: ignore[arg-type]
