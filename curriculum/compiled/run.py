@@ -67,7 +67,8 @@ class Stepper:
         source, self.radius = self.loops.source, np.array(scene.radius, float, order="C")
         contacts, pairs = np.empty(0, table(to_loops.CONTACT, source)), np.empty((3, 0), np.uint32)
         tables = make_balls(scene, source), contacts, pairs, np.empty((0, 2)), np.zeros(2, np.int64)
-        self.world, self.balls = rows.World(*tables), np.arange(len(self.radius), dtype=np.uint32)
+        self.world = rows.World(*tables, np.zeros(1))
+        self.balls = np.arange(len(self.radius), dtype=np.uint32)
         self.cutoff, self.skin = -math.inf, float(np.median(self.radius))
         self.listed, self.order = np.empty((2, len(self.radius))), np.arange(len(self.radius))
 
@@ -100,17 +101,17 @@ class Stepper:
 
     def list_pairs(self, q, cutoff) -> None:
         """List the pairs anew, with room for their contacts."""
-        balls, contacts, _, impulses, count = self.world
+        balls, contacts, _, impulses, count, farthest = self.world
         self.listed, self.cutoff = q, cutoff
         pairs = pair_loops().list_pairs(q, self.radius, cutoff, self.order)
         if self.spreads:
             pairs = pair_loops().spread_out(pairs, len(self.radius))
-        most = len(balls) + pairs.shape[1]
+        most = 2 * (len(balls) + pairs.shape[1])  # a step may detect them twice; see add_contacts
         if most > len(contacts):
             contacts, old = np.empty(most + most // 4, contacts.dtype), impulses
             impulses = np.empty((len(contacts), 2))
             impulses[: count[1]] = old[: count[1]]
-        self.world = rows.World(balls, contacts, pairs, impulses, count)
+        self.world = rows.World(balls, contacts, pairs, impulses, count, farthest)
 
 
 def same_type(name, value):

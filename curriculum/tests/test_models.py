@@ -165,6 +165,25 @@ def calls_later(scene, steps):
     return {getattr(each.code, "co_name", ""): each.callcount for each in profile.getstats()}
 
 
+@pytest.mark.parametrize("gap", [0.0, 0.05, 0.06, 0.07])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_impacts_that_make_a_light_ball_much_faster_let_it_hit_what_was_far(side, gap):
+    squirted = contact.scene_of(  # two heavy balls close on a light one, over the floor
+        [-0.16, 0.16, 0.0], [0.4 + gap, 0.4 + gap, 0.39 + gap], [100, 100, 1], [R, R, R / 2],
+        [5, -5, 0], restitution=1.0,
+    )  # fmt: skip
+    row = [0.0, 0.201, 0.402, 0.603, 1.43 + gap]  # each a tenth of the last, and then a wall
+    chain = contact.scene_of(
+        np.array(row) * side, 50.0, [1000, 100, 10, 1, np.inf], R, [10 * side, 0, 0, 0, 0],
+        restitution=1.0,
+    )  # fmt: skip
+    for scene, steps in ((squirted, 2), (chain, 1)):
+        run, exact = (run_model(model, scene, 0.016, steps) for model in ("leapfrog", "exact"))
+        assert run.q == pytest.approx(exact.q, abs=1e-3)
+        twin = run_twin("leapfrog", scene, 0.016, steps, Settings())
+        assert np.array_equal(twin.q, run.q)
+
+
 def test_impacts_cost_a_bounded_number_of_pushes_and_at_rest_none():
     falls = calls_later(build_scene("pile", bodies=150, restitution=0.5), 300)
     assert 100_000 < falls["apply_impulse"] < 220_000
