@@ -1,6 +1,6 @@
-"""Facts that the chapter quotes and no run of contact.py prints: each a function, no arguments.
+"""Numbers that the chapter quotes and no run of contact.py prints.
 
-Each returns {name: number}; the text quotes one as {{jump:before}}.
+Each function returns {name: number}; the chapter quotes one as {{jump:before}}.
 """
 
 import inspect
@@ -19,7 +19,7 @@ DT = 0.002  # s
 
 
 def implicit_spring():
-    """The quality of the drop under the implicit spring, c = 80, at a step of 64 ms."""
+    """Measure the drop under the implicit spring, c = 80 N s/m, at a step of 64 ms."""
     scene, dt, k = contact.build_scene("drop"), 0.064, 1e4
     softness = 1.0 / (k * dt * dt + 80.0 * dt)
     spring = lambda depth: (softness, dt * k * depth * softness)  # noqa: E731
@@ -28,15 +28,15 @@ def implicit_spring():
 
 
 def soft_heavy():
-    """The quality of soft where the upper one of two balls is a hundred times as heavy."""
+    """Measure soft where the upper one of two balls is a hundred times as heavy."""
     scene = contact.scene_of([0.0, 0.0], [0.1055, 0.3055], mass=[1.0, 100.0])
     return contact.contact_quality(contact.run_model("soft", scene, DT, 2000), scene, DT)
 
 
 def sweeps():
-    """Sweeps, plain and with momentum, of towers at rest that got gravity's kick of a step.
+    """Count sweeps until they converge, plain and accelerated, for towers at rest after one kick.
 
-    They end with the sweep that corrects no velocity by more than a millionth of the kick.
+    Converged: the sweep corrects no velocity by more than a millionth of gravity's kick in a step.
     """
     values, enough = {}, -1e-6 * contact.GRAVITY * DT
     ways = {"plain": contact.solve_contacts, "momentum": contact.solve_accelerated}
@@ -49,8 +49,8 @@ def sweeps():
 
 
 def landing():
-    """lcp's landing in the drop: its depth, what is left of it after one more step [m]; speeds
-    [m/s], of the fall on paper, and upwards: asked for, had at last."""
+    """Measure lcp's landing in the drop: depth at touch and one step later [m]; speeds [m/s]: of
+    the fall by its formula, upwards as its target asks, and upwards after that step."""
     scene = contact.build_scene("drop")
     run = contact.run_model("lcp", scene, DT, 400)
     gap = run.q[:, 1, 0] - contact.RADIUS
@@ -65,7 +65,7 @@ def landing():
 
 
 def paper():
-    """Errors by their formulas, at the default knobs: lengths in radii, angles in degrees."""
+    """Compute errors by their formulas, at the default settings [r]; flicker [degrees]."""
     usual, dt = contact.Settings(), DT
     speed, depth = landing()["speed"], landing()["depth"]
     ball, step = (1.0, usual.stiffness, 80.0), (dt, usual.baumgarte)
@@ -85,8 +85,8 @@ def paper():
 
 
 def landings():
-    """penalty's landings by step [s]: the largest speed of leaving over that of landing, of forty
-    starts, so that the ball lands anywhere in a step."""
+    """Measure penalty's landings by step [s]: the largest ratio of the speeds after and before, of
+    forty starts, so that the ball lands anywhere in a step."""
     values = {}
     for dt in (0.01, 0.011, 0.0125):
         shares = []
@@ -101,8 +101,8 @@ def landings():
 
 
 def jaws():
-    """lcp's largest impulse [N s] between fixed jaws that leave a ball no room, by sweeps; how fast
-    it leaves [m/s]; and soft's impulse at each side."""
+    """Measure a ball that overlaps two fixed jaws: lcp's largest impulse [N s] by sweeps and its
+    speed after them [m/s]; the same of soft."""
 
     def held():
         x, mass = (-0.15, 0.0, 0.15), (math.inf, 1.0, math.inf)
@@ -124,21 +124,20 @@ def jaws():
 
 
 def row():
-    """Velocities [m/s] after a row of two balls is struck by a third at 1 m/s, e = 1, by exact:
-    where the two touch, and where they are a micrometre apart."""
+    """Measure velocities [m/s] after a ball hits a row of two at 1 m/s, e = 1, by exact: where the
+    two touch, and where they are a micrometre apart."""
     values = {}
     for name, apart in (("touching", 0.0), ("apart", 1e-6)):
         start = {"vx": [1.0, 0.0, 0.0], "restitution": 1.0}
         scene = contact.scene_of([-0.25, 0.0, 0.2 + apart], 5.0, **start)
-        values[name] = [
-            round(vx, 9) + 0.0 for vx in contact.run_model("exact", scene, DT, 60).v[-1, 0]
-        ]
+        run = contact.run_model("exact", scene, DT, 60)
+        values[name] = [round(vx, 9) + 0.0 for vx in run.v[-1, 0]]
     return values
 
 
 def flicker():
-    """Angles [degrees] of a ball that slides off a hill of 20 m, or of 1 m: its start, where soft's
-    force first leaves it, where that is with d0 = 0, and where it leaves the hill."""
+    """Measure angles [degrees] of a ball that slides off a hill of 20 m, or of 1 m: its start; the
+    first without soft's force, also with d0 = 1e-4; and where it leaves the hill."""
     first = partial(predict.first_without_force, DT, predict.START)
     angles = {
         "start": predict.START,
@@ -151,7 +150,7 @@ def flicker():
 
 
 def jump():
-    """What soft adds to v_n = -1 m/s in one step, a picometre before the touch and after it."""
+    """Measure what soft adds to v_n = -1 m/s in a step, a picometre before the touch and after."""
     values = {}
     for when, gap in (("before", 1e-12), ("after", -1e-12)):
         scene = contact.scene_of(0.0, contact.RADIUS + gap, vy=-1.0)
@@ -160,11 +159,11 @@ def jump():
 
 
 def friction():
-    """Pushes [N s] of Coulomb's law at the one contact of a rod that rubs along the floor.
+    """Compute the impulses [N s] of Coulomb's law at the contact of a rod that slides on the floor.
 
-    A rod of 1 kg and 2 m, its lower end ahead, mu = 2. Without the contact the end would rise at
-    0.4 m/s and slide at 4 m/s. So a step may give no push; one with which it slides on, and rubs mu
-    times as much; or one with which it jams, and rubs `rub`.
+    A rod of 1 kg and 2 m, its lower end ahead, mu = 2 (Painleve's paradox). Without contact the end
+    would rise at 0.4 m/s and slide at 4 m/s. Three solutions: no impulse; sliding, with friction mu
+    times as large; sticking, with the friction impulse `rub`.
     """
     x, y = math.sqrt(0.2), -math.sqrt(0.8)  # the end, seen from the middle [m]
     W = np.eye(2) + 3.0 * np.array([[x * x, -x * y], [-x * y, y * y]])  # inertia 1/3 kg m^2
@@ -176,21 +175,21 @@ def friction():
 
 
 def _on_a_ball():
-    """A ball that is about to slide off a fixed one, 20 degrees from its top."""
+    """Return the scene of a ball that slides off a fixed one, from 20 degrees beside its top."""
     lean = math.radians(20.0)
     x, y = [0.0, 0.2 * math.sin(lean)], [1.0, 1.0 + 0.2 * math.cos(lean)]
     return contact.scene_of(x, y, mass=[math.inf, 1.0])
 
 
 def _off(run, scene, dt):
-    """How far [r] the last ball is from where exact has it, at worst."""
+    """Return the largest position error [r] of the last ball, compared with exact."""
     right = contact.run_model("exact", scene, dt, len(run.t) - 1)
     return float(np.hypot(*(run.q - right.q)[:, :, -1].T).max()) / contact.RADIUS
 
 
 def slide():
-    """The error [r] of that ball over 0.48 s, by model and step [s]; and by exact, cos of the angle
-    at which it leaves the fixed ball, over cos at the start.
+    """Measure that ball's error [r] over 0.48 s, by model and step [s]; and by exact, the cosine of
+    the angle at which it leaves the fixed ball, over that at the start.
 
     It leaves where v^2 = g 2 r cos, and keeps its vx = v cos: so cos^3 = vx^2 / (g 2 r).
     """
@@ -204,7 +203,7 @@ def slide():
     return values
 
 
-LEFT_OUT = {  # what of core_step: {what stands there: what then stands there instead}
+LEFT_OUT = {  # part of core_step: {its code: the code in its place}
     "whole": {},
     "kick": {
         "0.5 * dt)\n    contact.solve": "dt)\n    contact.solve",
@@ -218,9 +217,9 @@ LEFT_OUT = {  # what of core_step: {what stands there: what then stands there in
 
 
 def core():
-    """What leapfrog's core is worth without one of its lines [r].
+    """Measure leapfrog's core without one of its parts [r].
 
-    drop, slide: the worst error; inside: how high a ball flies that starts 0.3 r in the table.
+    drop, slide: the largest error; inside: the rebound of a ball that starts 0.3 r deep.
     """
     values, drop, slides = {}, contact.build_scene("drop"), _on_a_ball()
     for name, changes in LEFT_OUT.items():
@@ -238,5 +237,4 @@ def core():
 
 
 ALL = implicit_spring, soft_heavy, sweeps, landing, paper, landings, jaws, row, flicker, jump
-ALL += friction, slide, core
-FACTS = {each.__name__: each for each in ALL}
+FACTS = {each.__name__: each for each in (*ALL, friction, slide, core)}
