@@ -17,7 +17,7 @@ unfinished: set = set()  # files that are being written
 
 
 def stop(number, frame):
-    """A signal's handler. A child that was forked has it, too, and ends without a word."""
+    """Handle a signal. A forked child has this handler, too, and ends silently."""
     if os.getpid() == OWNER:
         with contextlib.suppress(OSError):
             os.write(2, b"stopped\n")
@@ -32,13 +32,13 @@ def stop(number, frame):
 
 
 def said(error):
-    """An error without its number, and with the file that it is about."""
+    """Return an error's words without its number, with the file that it is about."""
     what = getattr(error, "strerror", None) or str(error)
     return f"{what}: {error.filename}" if getattr(error, "filename", None) else what
 
 
 def refused(kind, error, trace):
-    """sys.excepthook: what the system refuses is said in one line; a slip keeps its traceback."""
+    """Print an OSError in one line, as sys.excepthook; other errors keep their traceback."""
     if isinstance(error, BrokenPipeError):
         os._exit(141)
     if not isinstance(error, OSError):
@@ -49,7 +49,7 @@ def refused(kind, error, trace):
 
 
 def print_the_rest():
-    """At the end, since Python itself would say what it could not print in a traceback."""
+    """Flush at the end, because Python itself would print a traceback if that fails."""
     for number in (signal.SIGINT, signal.SIGTERM):  # too late: all is done
         signal.signal(number, signal.SIG_IGN)
     try:

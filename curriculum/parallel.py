@@ -21,7 +21,7 @@ AHEAD, PATIENCE = 1000, 15.0  # jobs that are asked for at a time; s without a r
 
 
 def run_jobs(function: Callable, jobs: Iterable, label: str, workers: int | None = None) -> list:
-    """[function(job) for job in jobs], worked out on all cores, in the order of the jobs."""
+    """Return [function(job) for job in jobs], computed on all cores, in the order of the jobs."""
     jobs = list(jobs)
     found = as_they_come(function, jobs, len(jobs), label, workers)
     return [result for _, result in sorted(found, key=lambda each: each[0])]
@@ -30,7 +30,7 @@ def run_jobs(function: Callable, jobs: Iterable, label: str, workers: int | None
 def as_they_come(
     function: Callable, jobs: Iterable, total: int, label: str, workers=None, scheduler=None
 ) -> Iterator[tuple]:
-    """(place of a job, function(job)) of each, as they are done, with a bar; AHEAD at a time.
+    """Yield (place of a job, function(job)) of each, as they finish, with a bar; AHEAD at a time.
 
     function: one that another process can import. workers: how many processes, all cores if None;
     one needs no process. scheduler: "host:port" of a running dask scheduler; its workers do the
@@ -51,7 +51,7 @@ def as_they_come(
 
 
 def spread(pool, look, function, numbered) -> Iterator[tuple]:
-    """(place, function(job)) of each (place, job), as they are done; look() where nothing comes."""
+    """Yield (place, function(job)) of each (place, job), as they finish; look() after a wait."""
     waiting: dict = {}
     while True:
         for place, job in islice(numbered, AHEAD - len(waiting)):
@@ -67,7 +67,7 @@ def spread(pool, look, function, numbered) -> Iterator[tuple]:
 
 
 def bar(total: int, label: str) -> Callable[[int], None]:
-    """progress(done), to be called with how many of `total` are done: how far it is, on stderr.
+    """Return progress(done), which prints on stderr how many of `total` are done.
 
     On a terminal every second, in a line that is wiped at the end; elsewhere a line a minute.
     Nothing in a process of the pool, since lines would mix.
@@ -92,7 +92,7 @@ def bar(total: int, label: str) -> Callable[[int], None]:
 
 @contextmanager
 def unheard():
-    """Within it, Ctrl-C waits; a process that is started here never hears of it."""
+    """Delay Ctrl-C within it; a process that is started here never receives it."""
     mask = getattr(signal, "pthread_sigmask", lambda how, signals: signals)  # Windows has none
     before = mask(signal.SIG_BLOCK, {signal.SIGINT})
     try:

@@ -62,7 +62,7 @@ def take(part, quick, only, folder, tier=None):
 
 
 def name(row):
-    """Of a row's setting."""
+    """Return the name of a row's setting."""
     return f"{row['engine']} {row['setting'] or ''}".strip()
 
 

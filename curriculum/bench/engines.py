@@ -50,7 +50,7 @@ class Session:
             step()
 
     def looks(self, read, n):
-        """read() at the start and at each of n looks."""
+        """Return what read() returns at the start and at each of n samples."""
         steps = self.step if self.substeps == 1 else partial(self.go, 1)
         rows = [read()]
         for _ in range(n):
@@ -59,20 +59,20 @@ class Session:
         return rows
 
     def trace(self, n):
-        """Every height at each of n looks: what a user needs from them."""
+        """Return every height at each of n samples, as a user needs them."""
         return self.looks(self.heights, n)
 
     def states(self, n):
-        """q and v [m, m/s] at each of n looks, (n + 1, 2, N)."""
+        """Return q and v [m, m/s] at each of n samples, (n + 1, 2, N)."""
         return tuple(map(np.array, zip(*self.looks(self.state, n))))
 
     @cached_property
     def moving(self):
-        """The indices of the balls that are not fixed."""
+        """Return the indices of the balls that are not fixed."""
         return np.flatnonzero(np.isfinite(self.scene.mass))
 
     def with_the_fixed(self, *parts):
-        """q and v of every ball, from flat lists: x, y and perhaps more for each one that moves."""
+        """Return q and v of every ball, from flat lists: x, y and more of each moving one."""
         found = self.scene.q0.copy(), self.scene.v0.copy()
         for whole, part in zip(found, parts):
             whole[:, self.moving] = part.reshape(len(self.moving), -1)[:, :2].T
@@ -111,7 +111,7 @@ class Ours(Whole):
 
     @cached_property
     def stepper(self):
-        """The compiled loops, which go on from where they are."""
+        """Return the compiled loops, which go on from where they are."""
         home = contact.optional_module("compiled.run")
         return home.Stepper(*self.given, self.settings)
 
@@ -148,7 +148,7 @@ class Siconos(Whole):
 
 
 def balls_of(scene, scale=1.0):
-    """(place, velocity, mass, radius, fixed) of every ball, in a world so many times as large.
+    """Return (place, velocity, mass, radius, fixed) of every ball, in a world scaled up.
 
     The mass of a fixed one is 1: no engine asks for it.
     """
@@ -159,7 +159,7 @@ def balls_of(scene, scale=1.0):
 
 
 def spring(scene, dt, push=None, timeconst=None, ratio=1.0, d=0.9999):
-    """MuJoCo's solref and solimp, as its option's text. Both negative: given directly.
+    """Return MuJoCo's solref and solimp, as its option's text. Both negative: given directly.
 
     MuJoCo divides stiffness and damping by d^2 and d: the speed turns into exactly -e times itself.
     """
@@ -206,7 +206,7 @@ class Mujoco(Session):
         self.mujoco.mj_step(self.model, self.data, nstep=n * self.substeps)
 
     def trace(self, n):
-        """MuJoCo's own rollout, a loop in C that keeps every state: time, positions, velocities."""
+        """Return heights by MuJoCo's own rollout, a loop in C that stores every state."""
         full = self.mujoco.mjtState.mjSTATE_FULLPHYSICS
         start = np.empty(self.mujoco.mj_stateSize(self.model, full))
         self.mujoco.mj_getState(self.model, self.data, start, full)
@@ -252,7 +252,7 @@ class Pymunk(Session):
         return [body.position[1] for body in self.bodies]
 
     def many_heights(self):
-        """All at once, by the engine's own batch call; the floor comes last."""
+        """Return all heights by the engine's own batch call; the floor comes last."""
         self.buffer.clear()
         self.batch.get_space_bodies(self.space, self.batch.BodyFields.POSITION, self.buffer)
         return np.frombuffer(self.buffer.float_buf())[1:-2:2].copy()
@@ -393,7 +393,7 @@ class Drake(Session):
         return self.with_the_fixed(plant.GetPositions(context), plant.GetVelocities(context))
 
     def looks(self, read, n):
-        """By the engine's dense output, unless it steps or is cut: heights, or states."""
+        """Return heights or states, by the engine's dense output unless it steps or is cut."""
         if not self.dense:
             return super().looks(read, n)
         integrator, look = self.simulator.get_mutable_integrator(), self.dt * self.substeps
@@ -466,7 +466,7 @@ LABELS = {name: name for name in contact.MODELS} | {name: row[0] for name, row i
 
 @cache
 def versions():
-    """{package: version} of every engine that is there."""
+    """Return {package: version} of every engine that is there."""
     packages = [package for _, package, _ in ENGINES.values()]
     found = {name: d.version for name in packages for d in metadata.distributions(name=name)}
     if Path("/usr/lib/python3/dist-packages/siconos").exists():  # which pip knows nothing of
@@ -476,7 +476,7 @@ def versions():
 
 
 def missing(engine):
-    """Whether an engine is not installed; a model is always there."""
+    """Return whether an engine is not installed; a model always is."""
     return engine in ENGINES and ENGINES[engine][1] not in versions()
 
 
@@ -500,22 +500,22 @@ class Setting(NamedTuple):
 
     @property
     def knobs(self):
-        """The options as a dict of numbers, tuples and words."""
+        """Return the options as a dict of numbers, tuples and words."""
         pairs = (word.split("=", 1) for word in (self.options or "").split())
         return {key: text if text.isidentifier() else literal_eval(text) for key, text in pairs}
 
     @property
     def inner(self):
-        """Substeps that it takes by itself in each step; leapfrog solves twice."""
+        """Return its substeps within each step; leapfrog solves twice."""
         return self.knobs.get("inner", 2 if self.engine == "leapfrog" else 1)
 
     def runs(self, problem):
-        """Whether it is for a problem."""
+        """Return whether it is for a problem."""
         words = " ".join(GROUPS.get(word, word) for word in (self.problems or "").split()).split()
         return ("all" in words or problem in words) and f"-{problem}" not in words
 
     def build(self, scene, dt, substeps=1):
-        """A session that is looked at every dt [s], after so many steps."""
+        """Return a session that is sampled every dt [s], after so many steps."""
         knobs, dt, engine = self.knobs, dt / substeps, self.engine
         ahead = knobs.pop("ahead", 0) * contact.GRAVITY * dt / self.inner / 2
         v0 = np.where(np.isfinite(scene.mass), scene.v0 + np.array([[0.0], [ahead]]), scene.v0)
@@ -526,7 +526,7 @@ class Setting(NamedTuple):
 
 
 def listed():
-    """Every setting of settings.csv, whether it can run here or not."""
+    """Yield every setting of settings.csv, whether it can run here or not."""
     for *row, substeps, piles, most in map(dict.values, stored.load(HERE)[0]["settings"]):
         counts = (tuple(map(int, str(cell or "").split())) for cell in (substeps, piles))
         yield Setting(*row, *counts, most)

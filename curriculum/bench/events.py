@@ -32,21 +32,21 @@ class World:
         self.g = np.where(np.arange(2 * len(mass)) % 2, -gravity, 0.0) * (self.w > 0.0)
 
     def apart(self, x, which):
-        """x of ball a less x of ball b (K, 2); of the floor only what is vertical counts."""
+        """Return x of ball a less x of ball b (K, 2); of the floor only what is vertical counts."""
         x = x.reshape(-1, 2)
         d = x[self.a[which]] - x[self.b[which]]
         d[self.floor[which], 0] = 0.0
         return d
 
     def length(self, d, which):
-        """Of d; of the floor's contacts with its sign, or who falls far through it is above it."""
+        """Return the length of d; of contacts with the floor signed, negative below it."""
         return np.where(self.floor[which], d[:, 1], np.hypot(d[:, 0], d[:, 1]))
 
     def gaps(self, q, which=slice(None)):
         return self.length(self.apart(q, which), which) - self.reach[which]
 
     def system(self, q, v, which):
-        """J, W, and the accelerations of the gaps of these contacts without any push."""
+        """Return J, W, and the accelerations of the gaps of these contacts without any push."""
         d, dv = self.apart(q, which), self.apart(v, which)
         length, k = self.length(d, which), np.arange(len(d))
         n = d / length[:, None]
@@ -57,7 +57,7 @@ class World:
         return J, (J * self.w) @ J.T, J @ self.g + turn
 
     def phase(self, t, end, y, holding, rtol, longest):
-        """The motion while these contacts hold, until an event or the end."""
+        """Return the motion while these contacts hold, until an event or the end."""
         half, others = len(y) // 2, np.setdiff1d(np.arange(len(self.a)), holding)
         start = np.minimum(self.gaps(y[:half], others), 0.0) - NUDGE
 
@@ -83,7 +83,7 @@ class World:
         return solve_ivp(slope, (t, end), y, "DOP853", events=(closes, parts), **how)
 
     def strike(self, q, v):
-        """Velocities after all impacts at one moment, and the contacts that hold then."""
+        """Return the velocities after all simultaneous impacts, and the contacts that hold then."""
         touching = np.flatnonzero(self.gaps(q) < TOUCH)
         if not len(touching):
             return v, touching
@@ -101,7 +101,7 @@ class World:
 
 
 def pushes(W, free):
-    """lam >= 0 with W lam + free >= 0, and one of the two 0 for each contact."""
+    """Return lam >= 0 with W lam + free >= 0, one of the two 0 for each contact."""
     if not len(free):
         return free
     root = np.linalg.cholesky(W + 1e-15 * np.trace(W) * np.eye(len(W)))
@@ -109,7 +109,7 @@ def pushes(W, free):
 
 
 def run(scene, times, gravity, rtol=1e-12, longest=0.01):
-    """q and v (T, 2, N) at these times. longest [s]: of a step, so that no gap is missed."""
+    """Return q and v (T, 2, N) at these times. longest [s]: of a step, so that no gap is missed."""
     world, rows, t = World(scene, gravity), [], 0.0
     y = np.concatenate([np.append(part.T.ravel(), (0.0, 0.0)) for part in (scene.q0, scene.v0)])
     for _ in range(PHASES):

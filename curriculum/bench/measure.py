@@ -35,7 +35,7 @@ MANY, COPIES, AGAIN = 10_000, 10, 1500  # made of settled copies; steps to settl
 
 
 def points(quick, only, known):
-    """A row a point, of the settings whose names contain `only`."""
+    """Measure a row for each point, of the settings whose names contain `only`."""
     jobs = list(cells(quick, only))
     rows = parallel.run_jobs(errors_of, jobs, "errors")
     times = timing.in_fresh_processes(time_of, jobs, 1 if quick else PROCESSES, "run times")
@@ -43,7 +43,7 @@ def points(quick, only, known):
 
 
 def cells(quick, only):
-    """(problem, setting, dt, substeps, starts) of every point, by names."""
+    """Yield (problem, setting, dt, substeps, starts) of every point, by names."""
     for name in ("drop", "slide") if quick else problems.BY_NAME:
         starts = 1 if quick else problems.BY_NAME[name].starts
         for c in engines.BY_NAME.values():
@@ -54,8 +54,8 @@ def cells(quick, only):
 
 
 def errors_of(job):
-    """A point's row but for its times: the median error of its starts, None of the reference; the
-    greatest one; of how many starts the energy exploded; the work."""
+    """Return a point's row without times: the median error of its starts, None of the reference;
+    the greatest one; of how many starts the energy exploded; the work."""
     name, contestant, dt, substeps, starts = job
     problem, c, found, work = problems.BY_NAME[name], engines.BY_NAME[contestant], [], []
     for start in range(starts):
@@ -72,14 +72,14 @@ def errors_of(job):
 
 
 def work_of(c, session, looks):
-    """Substeps a look; of Drake under error control those that it took, in the mean."""
+    """Return substeps a look; of Drake under error control those that it took, in the mean."""
     if "scheme" in c.knobs:
         return session.simulator.get_integrator().get_num_steps_taken() / looks
     return session.substeps * c.inner
 
 
 def time_of(job, timed=timing.timed):
-    """CPU ms of a point: the median of up to three runs, after a short one as a warm-up."""
+    """Return CPU ms of a point: the median of up to three runs, after a short one as a warm-up."""
     problem, name, dt, substeps, _ = job
     scene, steps = problems.BY_NAME[problem].build(0), problems.BY_NAME[problem].steps(dt)
     found = []
@@ -93,7 +93,7 @@ def time_of(job, timed=timing.timed):
 
 
 def allowed(p, budget=None, work=WORK[-1]):
-    """Whether a point competes: at equal work, or within so many us a ball in 2 ms. exact does,
+    """Return whether a point competes: at equal work, or within us a ball. exact does,
     also as the reference, which has no error."""
     if p["engine"] == "exact" or p["error"] is None or p["diverged"]:
         return p["engine"] == "exact"
@@ -104,18 +104,18 @@ def allowed(p, budget=None, work=WORK[-1]):
 
 
 def contest(rows, who, **limit):
-    """{problem: the most accurate point} of these engines, of those that are allowed to compete."""
+    """Return {problem: the most accurate point} of those of these engines that may compete."""
     may = (p for p in rows if p["engine"] in who and allowed(p, **limit))
     return best(may, "problem", rank)
 
 
 def rank(p):
-    """What decides between two settings: the error in three digits, then the time."""
+    """Return the key by which settings are compared: error in three digits, then time."""
     return float(f"{p['error'] or 0.0:.3g}"), p["ms"]
 
 
 def best(rows, group, rank):
-    """{row[group]: its best row}, by what rank(row) makes least."""
+    """Return {row[group]: the row of it for which rank(row) is least}."""
     found = {}
     for row in rows:
         found[row[group]] = min(found.get(row[group], row), row, key=rank)
@@ -123,7 +123,7 @@ def best(rows, group, rank):
 
 
 def shaft(count, q=None):
-    """Balls on a lattice between two walls of fixed balls, and the floor. The seed is fixed.
+    """Return balls on a lattice between two walls of fixed balls, and the floor. The seed is fixed.
 
     Of 10,000: ten copies of a thousand, which stand at q (2, N), each with its own walls; centred,
     for engines in float32.
@@ -146,7 +146,7 @@ def shaft(count, q=None):
 
 
 def piles(quick, only, known):
-    """A row a setting and size; known: the rows that stay, of whom some may have won."""
+    """Measure a row for each setting and size; known: rows that stay and may win."""
     rows, states = [], {}
     for count in (12,) if quick else (*SIZES, MANY):
         chosen = winners(known + rows) if count == MANY else engines.PILES
@@ -164,12 +164,12 @@ def piles(quick, only, known):
 
 
 def fitting(chosen, count, only):
-    """Those (setting, substeps) whose names contain `only`, and that run so many balls."""
+    """Return those (setting, substeps) whose names contain `only`, and that run so many balls."""
     return [(c, n) for c, n in chosen if only in c.name and count <= (c.most or count)]
 
 
 def settle(job):
-    """q, v of the settled pile, and its row but for times; the speed is watched to the end."""
+    """Return q, v of the settled pile, and its row without times; the speed is that at the end."""
     count, c, substeps, start = job
     session = c.build(shaft(count, start and np.array(start[0])), DT, substeps)
     session.go((AGAIN if count == MANY else SETTLE) - WATCHED)
@@ -185,9 +185,7 @@ def settle(job):
 
 
 def depths(q):
-    """Mean and worst overlap [r] of the contacts that overlap in a pile's state q (2, N); NaN if
-    that is not finite.
-    """
+    """Return mean and worst overlap [r] of the overlapping contacts of a state q (2, N), or NaN."""
     if not np.isfinite(q).all():
         return dict(mean_depth=math.nan, worst_depth=math.nan)
     r = contact.RADIUS
@@ -199,7 +197,7 @@ def depths(q):
 
 
 def fall_and_rest(job, timed=timing.timed):
-    """Microseconds a step, from the lattice and from the settled state."""
+    """Return microseconds a step, from the lattice and from the settled state."""
     count, c, substeps, (q, v) = job
     scene, found = shaft(count), []
     for start in (scene, scene._replace(q0=np.array(q, float), v0=np.array(v, float))):
@@ -211,7 +209,7 @@ def fall_and_rest(job, timed=timing.timed):
 
 
 def heap():
-    """SimBenchmark's 666, in the plane: a block of 216 balls of 10 kg that falls 1 m and collapses.
+    """Return SimBenchmark's 666 in the plane: 216 balls of 10 kg that fall 1 m and collapse.
 
     There they are 6 x 6 x 6; here 18 x 12, with its spacing, height and nudge. No friction, e = 0.
     """
@@ -222,7 +220,7 @@ def heap():
 
 
 def collapse(quick, only, known):
-    """A row a setting of the piles: how deep the heap's balls overlap, and what a step takes."""
+    """Measure a row for each setting of the piles: the heap's overlaps, and the time of a step."""
     count = math.prod(HEAP)
     chosen = fitting(engines.PILES, count, only)[:: 8 if quick else 1]
     jobs = [(*each, COLLAPSE // 20 if quick else COLLAPSE) for each in chosen]
@@ -232,7 +230,7 @@ def collapse(quick, only, known):
 
 
 def sink_of(job):
-    """A heap's row but for times: the mean over all samples of the mean overlap, and the worst."""
+    """Return a heap's row without times: the mean overlap, averaged over samples, and the worst."""
     (c, substeps, steps), found = job, []
     session = c.build(heap(), DT, substeps)
     for _ in range(steps // 10):
@@ -244,7 +242,7 @@ def sink_of(job):
 
 
 def time_of_heap(job, timed=timing.timed):
-    """Microseconds a step of the heap, from its start to its end."""
+    """Return microseconds a step of the heap, from its start to its end."""
     c, substeps, steps = job
     session = c.build(heap(), DT, substeps)
     session.go(1)
@@ -252,15 +250,15 @@ def time_of_heap(job, timed=timing.timed):
 
 
 def fastest(rows, depth, who, time="resting"):
-    """{balls: the fastest row} of these engines, of what rests within a mean depth [r]; rows that
-    say nothing of rest are of a heap in motion."""
+    """Return {balls: the fastest row} of these engines, of piles at rest within a mean depth [r],
+    or of a heap in motion."""
     may = (row for row in rows if row["engine"] in who and row.get("at_rest", 1))
     deep = (row for row in may if row["mean_depth"] is not None and row["mean_depth"] <= depth)
     return best(deep, "bodies", itemgetter(time))
 
 
 def winners(rows):
-    """Those of PILES that are worth running with 10,000 balls."""
+    """Return those of PILES that are worth running with 10,000 balls."""
     chosen = set()
     for depth in DEPTHS:
         for engine in engines.LABELS:
@@ -270,8 +268,8 @@ def winners(rows):
 
 
 def processes(quick, only, known):
-    """Seconds of whole processes, as commands.csv has them: of contact.py, of importing what it
-    needs, and of compiling. The first of each finds empty caches, and fills them."""
+    """Measure the seconds of whole processes, those of commands.csv: contact.py, imports, a step
+    that is compiled. The first of each finds empty caches, and fills them."""
     commands = stored.load(engines.HERE)[0]["commands"]
     found = [[] for _ in commands]
     with tempfile.TemporaryDirectory() as folder:

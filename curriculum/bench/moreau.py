@@ -14,7 +14,7 @@ from siconos.mechanics.collision.bodies import Disk, DiskDiskR, DiskPlanR
 
 
 def build(given):
-    """The simulation, its bodies, and what has to be kept alive beside them."""
+    """Return the simulation, its bodies, and objects that must stay alive."""
     model = kernel.NonSmoothDynamicalSystem(0.0, 1e9)
     law = kernel.NewtonImpactFrictionNSL(given["e"], 0.0, 0.0, 2)
     bodies, kept = [], [model, law]

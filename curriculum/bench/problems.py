@@ -25,7 +25,7 @@ FLIGHTS = 10_000  # after so many a bounce is over in the last bit, or the run
 
 
 def bounce_motion(gap, e, t):
-    """Gap [m] and vertical speed [m/s], like t [s], of a ball released `gap` [m] over the floor."""
+    """Return gap [m] and vertical speed [m/s] at t [s] of a ball released at a gap [m]."""
     t, t1 = np.asarray(t, dtype=float), math.sqrt(2.0 * gap / g)
     flights = 2.0 * e ** np.arange(1.0, FLIGHTS)
     impacts = t1 * (1.0 + np.append(0.0, np.cumsum(flights)))
@@ -38,7 +38,7 @@ def bounce_motion(gap, e, t):
 
 
 def slide_motion(theta0, length, radius, height, t):
-    """q, v, (len(t), 2), of a ball that starts at rest on a fixed one and slides off it.
+    """Return q, v, (len(t), 2), of a ball that starts at rest on a fixed one and slides off it.
 
     theta0: its angle from the vertical at the start; length: distance of the centres while they
     touch; height: of the fixed centre, which stands at x = 0. On the floor it loses its vertical
@@ -86,7 +86,7 @@ class Problem(NamedTuple):
 
 
 def column(scene, t):
-    """The motion of balls over one another, e = 0, or of one ball with any e."""
+    """Return the motion of balls over one another, e = 0, or of one ball with any e."""
     height = scene.q0[1]
     gap, speed = bounce_motion(float(height[0]) - R, scene.restitution, t)
     y = R * (2.0 * np.arange(len(height)) + 1.0) + gap[:, None]
@@ -94,7 +94,7 @@ def column(scene, t):
 
 
 def slide(scene, t):
-    """The motion of a ball off a fixed one."""
+    """Return the motion of a ball off a fixed one."""
     x, y = scene.q0[:, 1]
     hill, radius = scene.radius
     q, v = slide_motion(math.atan2(x, y - hill), hill + radius, radius, hill, t)
@@ -103,31 +103,31 @@ def slide(scene, t):
 
 
 def judged(scene, t):
-    """The motion by contact.py's own exact: no closed form is known."""
+    """Return the motion by contact.py's own exact: no closed form is known."""
     run = contact.run_model("exact", scene, t[1], len(t) - 1)
     return run.q, run.v
 
 
 def spread_scene(start):
-    """A ball at rest on two that lie on the table, a little apart, and give way."""
+    """Return a ball at rest on two that lie on the table, a little apart, and give way."""
     half = R + 0.004 + 0.003 * start
     return contact.scene_of([-half, half, 0.0], [R, R, R + math.sqrt(4 * R * R - half * half)])
 
 
 def glance_scene(start):
-    """A ball that falls on the side of a fixed one, at an angle that the start chooses."""
+    """Return a ball that falls on the side of a fixed one, at an angle that the start chooses."""
     return contact.scene_of([0.0, 0.05 + 0.007 * start], [R, 0.6], [math.inf, 1.0])
 
 
 def cradle_scene(start):
-    """Five balls in a row on the table, e = 1; the first is thrown at the others."""
+    """Return five balls in a row on the table, e = 1; the first is thrown at the others."""
     gaps = np.random.default_rng(start).uniform(0.001, 0.01, 4)
     x = np.concatenate(([0.0], np.cumsum(2 * R + gaps)))
     return contact.scene_of(x, R, vx=[2.0, 0.0, 0.0, 0.0, 0.0], restitution=1.0, damping=0.0)
 
 
 def cradle(scene, t):
-    """The motion of equal balls in a row, e = 1: each flies on through the others."""
+    """Return the motion of equal balls in a row, e = 1: each flies on through the others."""
     free = scene.q0[0] - 2 * R * np.arange(len(scene.mass)) + np.outer(t, scene.v0[0])
     order = np.argsort(free, axis=1, kind="stable")
     x = np.take_along_axis(free, order, 1) + 2 * R * np.arange(len(scene.mass))
@@ -136,7 +136,7 @@ def cradle(scene, t):
 
 
 def heavy(ratio, start):
-    """A ball of so many kg on a ball of one, a little above the floor."""
+    """Return a ball of so many kg on a ball of one, a little above the floor."""
     return contact.build_scene("stack", start, 2)._replace(mass=np.array((1.0, ratio)))
 
 
@@ -164,14 +164,14 @@ BY_NAME = {problem.name: problem for problem in PROBLEMS}
 
 @lru_cache(maxsize=256)  # starts and steps of a problem
 def answer(name, start, dt):
-    """q (T, 2, N) of a start of a problem, as it should be at each look."""
+    """Return q (T, 2, N) of a start of a problem, as it should be at each look."""
     problem = BY_NAME[name]
     return problem.truth(problem.build(start), np.arange(problem.steps(dt) + 1) * dt)[0]
 
 
 @np.errstate(all="ignore")
 def quality(truth, q, v, mass):
-    """How far a ball of a run q, v (T, 2, N) is from where it should be, worst ball, worst time
-    [r]; and whether the energy exploded."""
+    """Return the largest position error [r] of a run q, v (T, 2, N), of any ball at any time; and
+    whether the energy exploded."""
     distance = np.sqrt(((q - truth) ** 2).sum(axis=1)).max() / R
     return float(distance), contact.blow_up_step(contact.energy(q, v, mass)) is not None

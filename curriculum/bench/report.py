@@ -24,22 +24,22 @@ CONTESTS |= {f"{us} µs a ball and 2 ms": dict(budget=us) for us in BUDGETS}
 
 
 def error_of(p):
-    """The error [r] of a point, for a reader."""
+    """Return the error [r] of a point, for a reader."""
     return "-" if p is None else "reference" if p["error"] is None else format_number(p["error"])
 
 
 def time_of(p):
-    """The time [ms] of a point, for a reader."""
+    """Return the time [ms] of a point, for a reader."""
     return "-" if p is None else format_number(p["ms"])
 
 
 def peer(p):
-    """Name, error [r] and time [ms] of another engine's point: three cells."""
+    """Return name, error [r] and time [ms] of another engine's point: three cells."""
     return [LABELS[p["engine"]] if p else "-", error_of(p), time_of(p)]
 
 
 def step_of(row, time):
-    """Engine, setting as one types it, and time of a step of a pile: two cells."""
+    """Return engine and setting as typed, and the time of a step of a pile: two cells."""
     if row is None:
         return ["-", "-"]
     cut = f", {row['substeps']} substeps" if row["substeps"] > 1 else ""
@@ -48,12 +48,12 @@ def step_of(row, time):
 
 
 def loses(one, other):
-    """Whether an error is larger than another, in three digits; of two that are measured."""
+    """Return whether an error is larger than another, in three digits; of two that are measured."""
     return bool(one and other) and measure.rank(one)[0] > measure.rank(other)[0]
 
 
 def limits(points):
-    """(limit, number of problems, where leapfrog is beaten by an engine, and by the reference)
+    """Yield (limit, number of problems, where an engine beats leapfrog, where the reference does)
 
     Where it is beaten: {problem: (leapfrog's point, the better one)}.
     """
@@ -65,7 +65,7 @@ def limits(points):
 
 
 def races(rows, depths, time):
-    """(balls, depth, our fastest row, leapfrog's, the fastest other engine's) of piles."""
+    """Yield (balls, depth, our fastest row, leapfrog's, the fastest other engine's) of piles."""
     for depth in depths:
         sides = [measure.fastest(rows, depth, w, time) for w in (MODELS, ["leapfrog"], ENGINES)]
         for count in sorted(set().union(*sides)):
@@ -73,8 +73,8 @@ def races(rows, depths, time):
 
 
 def claims(points, piles, processes):
-    """The numbers of claims.md and page.md: leapfrog and exact beside named opponents, losses too;
-    piles at rest; what compiled loops cost at first; how far times differ between processes."""
+    """Return the numbers of claims.md and page.md: leapfrog and exact beside other engines, losses
+    too; piles at rest; the cost of compiling; how far times differ between processes."""
     there = {p["engine"] for p in points}
     *others, last = [LABELS[name] for name in PEERS if name in there] or ["nobody"]
     exact, rival, leapfrog = (contest(points, [name]) for name in ("exact", REFERENCE, "leapfrog"))
@@ -104,7 +104,7 @@ def claims(points, piles, processes):
 
 
 def where(points):
-    """In how many problems leapfrog is as accurate as the best engine, or more, at each limit."""
+    """Return in how many problems leapfrog is at least as accurate as each engine, by limit."""
     found = {}
     for words, fields, lost, _ in limits(points):
         but = f" (not {', '.join(lost)})" * bool(lost)
@@ -113,22 +113,22 @@ def where(points):
 
 
 def span(values):
-    """From the least to the greatest, as text."""
+    """Return the least and the greatest, as text."""
     least, greatest = (format_number(pick(values, default=None)) for pick in (min, max))
     return f"{least} to {greatest}"
 
 
 def ratios(piles, which):
-    """How many times as long the fastest other engine takes as ours, for piles at rest; and where
-    that is least."""
+    """Return how many times as long as ours the fastest other engine takes, for piles at rest, and
+    where that is least."""
     found = {race[4]["resting"] / race[which]["resting"]: f"{race[0]:,} balls, {race[1]:g} r"
              for race in races(piles, DEPTHS, "resting") if race[which] and race[4]}  # fmt: skip
     return f"{span(found)} times (least: {found.get(min(found, default=None))})"
 
 
 def take(points, piles):
-    """Rows of the README's table: which model, how one types it, and what it gives, beside the
-    best other engine."""
+    """Yield rows of the README's table: which model, how one types it, its error and time, and
+    those of the best other engine."""
     peers, same = contest(points, PEERS), itemgetter("engine", "setting", "substeps")
     rows = {(p["problem"], *same(p)): p for p in points if p["dt"] == DT}
     rows |= {(row["bodies"], *same(row)): row for row in piles}
@@ -147,14 +147,14 @@ def take(points, piles):
 
 
 def typed(want, called):
-    """The command that measures a row of the README's table again."""
+    """Return the command that measures a row of the README's table again."""
     more = f" --substeps {want['substeps']}" if want["substeps"] > 1 else ""
     setting = f'"{called}"' if " " in called else called
     return f"python -m curriculum.bench try {want['problem']} {setting}{more}"
 
 
 def winners(rows, cell):
-    """A row a problem: a cell of each side, the better of leapfrog and the best other bold."""
+    """Yield a row a problem: a cell of each side, the better of two in bold."""
     best = [contest(rows, side) for side in (*([name] for name in SHOWN), PEERS)]
     for name, problem in problems.BY_NAME.items():
         found = [each.get(name) for each in best]
@@ -167,7 +167,7 @@ def winners(rows, cell):
 
 
 def losses(rows):
-    """A row for each limit and problem where leapfrog is beaten, and by whom."""
+    """Yield a row for each limit and problem where leapfrog is beaten, and by whom."""
     for words, _, *sides in limits(rows):
         for lost in sides:
             for name, (mine, other) in lost.items():
@@ -175,7 +175,7 @@ def losses(rows):
 
 
 def falling(rows):
-    """A row an engine: how long a step takes while a pile falls, by its fastest setting."""
+    """Yield a row an engine: the time of a step while a pile falls, at its fastest setting."""
     for engine in dict.fromkeys(row["engine"] for row in rows):
         mine = (row for row in rows if row["engine"] == engine)
         found = measure.best(mine, "bodies", itemgetter("falling"))
@@ -184,7 +184,7 @@ def falling(rows):
 
 
 def written(name, sections, made):
-    """page.md or readme.md with everything filled in."""
+    """Return page.md or readme.md with everything filled in."""
     points, piles, heap, processes = (sections.get(part, ()) for part in measure.PARTS)
     about = dict(made.get("points", {}), versions={})
     for each in made.values():
@@ -212,19 +212,19 @@ def written(name, sections, made):
 
 
 def raced(rows, depths, time):
-    """Rows of a table of races: setting and time of each side."""
+    """Yield rows of a table of races: setting and time of each side."""
     for count, depth, *each in races(rows, depths, time):
         yield [f"{count:,}", f"{depth:g}", *(cell for row in each for cell in step_of(row, time))]
 
 
 def front(dots):
-    """The dots that no other one beats in both x and y."""
+    """Return the dots that no other one beats in both x and y."""
     dots = sorted(dots)
     return [dot for k, dot in enumerate(dots) if all(dot[1] < y for _, y in dots[:k])]
 
 
 def error_figure(rows, problem):
-    """Time against error: the front of all settings and steps of each engine."""
+    """Draw time against error: the front of all settings and steps of each engine."""
     figure, (axis,) = picture.figure(
         title=f"{problem.capitalize()}: {problems.BY_NAME[problem].title}",
         explained="Left and down is better. A line joins what no other setting or step of the same "
@@ -245,7 +245,7 @@ def error_figure(rows, problem):
 
 
 def write(folder, sections, made):
-    """README.md and the figures into the results folder. Raises ImportError without matplotlib."""
+    """Write README.md and figures into a folder. Raises ImportError without matplotlib."""
     files, rows = {"README.md": written("page.md", sections, made)}, sections.get("points", ())
     about = {"measured": made.get("points")}
     for name in {p["problem"] for p in rows} & {*DRAWN}:

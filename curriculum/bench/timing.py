@@ -19,7 +19,7 @@ from curriculum.parallel import bar
 
 
 def timed(call) -> tuple:
-    """CPU seconds of this process that call() takes, garbage collector held back; its result."""
+    """Return the CPU seconds that call() takes without garbage collector, and its result."""
     gc.disable()
     try:
         start = time.process_time()
@@ -30,12 +30,12 @@ def timed(call) -> tuple:
 
 
 def spread(name, values) -> dict:
-    """Median, least and greatest of a list, as the columns of a row."""
+    """Return median, least and greatest of a list, as the columns of a row."""
     return {name: statistics.median(values), f"{name}_min": min(values), f"{name}_max": max(values)}
 
 
 def in_fresh_processes(work, jobs, processes, label):
-    """[[work(job) in each process] for job in jobs], each process in its own random order."""
+    """Return [[work(job) in each process] for job in jobs], in a random order each."""
     found, report = [[] for _ in jobs], bar(processes * len(jobs), label)
     for number in range(processes):
         order = random.Random(number).sample(range(len(jobs)), len(jobs))
@@ -48,7 +48,7 @@ def in_fresh_processes(work, jobs, processes, label):
 
 
 def whole_process(command, folder) -> float:
-    """Seconds on the wall until a command has come to its end. Raises RuntimeError if it fails.
+    """Return the wall time [s] of a command. Raises RuntimeError if it fails.
 
     folder: where Python keeps what it compiles. An environment that forbids to keep any would have
     each process compile the course's modules again, but not numpy's.

@@ -23,7 +23,7 @@ with needs("dev"):
 
 
 def parse(argv):
-    """The checked command line."""
+    """Return the checked command line."""
     parser = Parser(prog="python -m curriculum.stress", description=__doc__)
     flag, count = parser.add_argument, partial(number, int, 1, 1e6)
     flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
@@ -34,7 +34,7 @@ def parse(argv):
 
 
 def chosen(text):
-    """The jobs of one scene, or of a row of them."""
+    """Return the jobs of one scene, or of a row of them."""
     first, _, last = text.removeprefix("small:").partition("-")
     first = number(int, 0, 1e9, first)
     last = number(int, first, 1e9, last) if last else first
@@ -60,7 +60,7 @@ def some_scenes(todo):
 
 
 def everything(args):
-    """A full or quick run, and its report. Returns the violations."""
+    """Run everything, or --quick, and write the report. Returns the violations."""
     from curriculum import stored
     from curriculum.stress import report
 

@@ -24,7 +24,7 @@ KEPT = 1e-9  # share of the start's energy that may come or go, chosen
 
 
 def heap_jobs(count):
-    """So many heaps."""
+    """Return the jobs of so many heaps."""
     energy = leapfrog_gains_no_energy, leapfrog_loses_none_where_all_bounces
     stated = *energy, leapfrog_stays_symmetric
     return [(f"heap {number}", Heap(number), stated) for number in range(count)]
@@ -37,16 +37,16 @@ class Heap:
         self.number, self.noted = number, {"energy": {}}
 
     def rng(self, what):
-        """Random numbers of this heap."""
+        """Return random numbers of this heap."""
         return np.random.default_rng([20261125, self.number, what])
 
     def e(self, bounce):
-        """The restitution that a key of BOUNCES means; of "drawn" this heap's own."""
+        """Return the restitution that a key of BOUNCES means; of "drawn" this heap's own."""
         e = BOUNCES[bounce]
         return self.rng(9).uniform() if e is None else e
 
     def scene(self, kind, bounce):
-        """The scene of that kind; bounce: of BOUNCES."""
+        """Return the scene of that kind; bounce: of BOUNCES."""
         e, rng = self.e(bounce), self.rng(KINDS.index(kind))
         while True:
             scene = getattr(scenes, kind.split()[0])(rng, *map(int, kind.split()[2:]))
@@ -54,7 +54,7 @@ class Heap:
                 return scene._replace(restitution=e)
 
     def run(self, model, dt, kind, bounce):
-        """(scene, run, its energies as shares of the first) of the scene of that kind."""
+        """Return (scene, run, its energies as shares of the first) of the scene of that kind."""
         scene = self.scene(kind, bounce)
         run = run_twin(model, scene, dt, STEPS[dt], contact.Settings(iters=1000))
         total = contact.energy(run.q, run.v, scene.mass)
@@ -101,7 +101,7 @@ def leapfrog_stays_symmetric(heap):
 
 
 def energy_rows(cases):
-    """A row for each step, kind and model: how many gained, and with e = 1 lost, and the most."""
+    """Yield a row a step, kind and model: how many gained, and with e = 1 lost, and the most."""
     columns = [(bounce, bounce, 0) for bounce in BOUNCES] + [("lost", "1", 1)]
     for dt, kind, model in itertools.product(STEPS, KINDS, MODELS):
         row = {"dt": f"{1e3 * dt:g} ms", "scenes": kind, "model": model}
@@ -113,7 +113,7 @@ def energy_rows(cases):
 
 
 def cells(rows, which):
-    """Rows of a table of how many runs gained energy, or of the largest gain."""
+    """Yield rows of a table of how many runs gained energy, or of the largest gain."""
     for row in rows:
         found = [f"{value:,g}" for name, value in row.items() if name.split()[0] == which]
         more = [f"{row['runs']:,}"] * (which == "gained")

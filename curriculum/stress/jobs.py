@@ -8,7 +8,7 @@ from curriculum.stress.trial import Trial
 
 
 def all_jobs(quick):
-    """{section: its jobs}; quick: about a hundredth of them."""
+    """Return {section: its jobs}; quick: about a hundredth of them."""
     large, small, many = (60, 100, 4) if quick else (8_000, 1_000, 1_000)
     return {
         "scenes": scene_jobs(range(large)) + scene_jobs(range(small), small=True),
@@ -19,12 +19,12 @@ def all_jobs(quick):
 
 
 def scene_jobs(numbers, small=False):
-    """Jobs for the random scenes with these numbers."""
+    """Return jobs for the random scenes with these numbers."""
     return [(f"{'small ' * small}scene {number}", (number, small), ()) for number in numbers]
 
 
 def run(job):
-    """(place, what judge says, what was noted) of a job."""
+    """Return (place, what judge says, what was noted) of a job."""
     place, subject, stated = job
     if not stated:
         subject = Trial(scenes.numbered_spec(*subject))
@@ -36,7 +36,7 @@ def run(job):
 
 
 def added_up(found):
-    """What the results of several jobs come to: (judged, notes).
+    """Return what the results of several jobs come to: (judged, notes).
 
     judged: a row for each property, with how many jobs it could judge, of how many numbers, how far
     off the worst was as a share of what is allowed, how many violations there are, and the first in

@@ -18,7 +18,7 @@ SECONDS = 4.0
 
 
 def map_jobs(quick):
-    """The rows of the map."""
+    """Yield the rows of the map."""
     dts, stiff = (8, 6) if quick else (40, 31)
     for c in (0.0, 80.0):
         for k in np.geomspace(1e2, 1e7, stiff).tolist():
@@ -27,7 +27,7 @@ def map_jobs(quick):
 
 
 def steps_of(count):
-    """So many time steps [s] of the map."""
+    """Return so many time steps [s] of the map."""
     return np.geomspace(3e-4, 0.3, count).tolist()
 
 
@@ -38,7 +38,7 @@ class PenaltyRow:
         self.damping, self.stiffness, self.dts, self.noted = damping, stiffness, dts, {}
 
     def outcome(self, dt):
-        """One letter of OUTCOMES for the drop, watched until it should have settled.
+        """Return one letter of OUTCOMES for the drop, watched until it should have settled.
 
         For eight times the slowest of: two decays of the damped spring, and the end of the bounces.
         """

@@ -28,7 +28,7 @@ class Case(NamedTuple):
 
 
 def cases():
-    """What has to match: every kind of scene, step, mass and setting.
+    """Yield the cases: every kind of scene, step, mass and setting.
 
     Balls that start exactly in touch are left out: they fall as one, the last bit of a gap decides
     whether there is a contact, and with d0 > 0 a contact begins with a jump of its force.
@@ -47,7 +47,7 @@ def cases():
 
 
 def match_jobs(quick):
-    """A job for every case; quick: every fourth. None where MuJoCo is not installed."""
+    """Yield a job for every case, --quick for every fourth; none without MuJoCo."""
     for case in list(cases())[:: 4 if quick else 1] if not engines.missing("mujoco") else ():
         yield f"{case.what}, dt {case.dt:g}", case, [soft_is_mujoco]
 

@@ -26,7 +26,7 @@ NEAR = 1e-9  # share of the sizes that leapfrog's bounces may be off
 
 
 def judge(subject, *properties):
-    """{property: [comparisons, off as a share of what is allowed at worst, words or None]}.
+    """Return {property: [comparisons, off as a share of what is allowed at worst, words or None]}.
 
     comparisons: how many numbers could have failed; 0 where the property says nothing of the
     subject. words: the first claim that does not hold. An error of the code under test is a
@@ -58,13 +58,13 @@ def compare(row, words, off, allowed, where=True):
 
 
 def unlike(run, other):
-    """The claim that two runs have the same bits: (1 for each number that differs, 0)."""
+    """Return the claim that two runs have the same bits: (1 for each number that differs, 0)."""
     a, b = (np.concatenate((each.q, each.v), axis=1) for each in (run, other))
     return ~((a == b) | (a != a) & (b != b)), 0.0
 
 
 def beside_one_that_overflows(trial):
-    """The changes that add a ball which overflows at once, and is NaN from then on."""
+    """Return the changes that add a ball which overflows at once, and is NaN from then on."""
     odd = {"x": 3.0, "y": -1e300, "vx": 0.0, "vy": 0.0, "mass": 1e-12, "radius": 0.1}
     return {name: [*trial.spec[name], value] for name, value in odd.items()}
 
@@ -137,7 +137,7 @@ def momenta_are_gravitys_and_what_contacts_report(trial):
 
 
 def sampled(motion):
-    """Up to two steps: that of the deepest overlap, and the last with contacts."""
+    """Return up to two steps: that of the deepest overlap, and the last with contacts."""
     if not len(motion.listed):
         return []
     deepest = int(motion.gaps[:-1].min(1).argmin())
@@ -145,8 +145,8 @@ def sampled(motion):
 
 
 def one_step(trial, motion, model, k, **changes):
-    """Step k of a model, taken alone: v (2, N) after it, and of each contact its row in the motion
-    and lam [N s].
+    """Take step k of a model alone. Returns v (2, N) after it, and the rows of its contacts in the
+    motion with their lam [N s].
     """
     spec = trial.spec | scenes.state(motion.q[k], motion.v[k]) | changes
     scene = scenes.to_scene(spec)
@@ -160,8 +160,8 @@ def one_step(trial, motion, model, k, **changes):
 
 
 def norm(motion, k, v):
-    """A bound on sqrt(m) v of every ball in step k, which ends with v: a solver comes nearer to its
-    answer with every push, so the energies bound the speeds.
+    """Return a bound on sqrt(m) v of every ball in step k, which ends with v: every push brings a
+    solver nearer to its answer, so the energies bound the speeds.
     """
     size = [math.sqrt((motion.mass * each * each).sum()) for each in (motion.v[k], v)]
     return size[0] + 2.0 * size[1] + motion.dt * G * math.sqrt(motion.mass.sum())
@@ -200,7 +200,7 @@ def enough_sweeps_solve_lcp(trial):
 
 
 def lcp_target(gap, v_n, spec):
-    """The v_n that each contact may leave with at least: the chapter's rule, in its own words."""
+    """Return the least v_n after the solve of each contact: the chapter's rule, written again."""
     e, beta, close = spec["restitution"], spec["baumgarte"], -gap / spec["dt"]
     bias, bounce = beta * close, -e * v_n
     if e == 0.0:

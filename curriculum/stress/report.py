@@ -20,7 +20,7 @@ STATED = vars(properties) | vars(maps) | vars(mujoco_match) | vars(heaps)  # by 
 
 
 def tables_of(found):
-    """{table: rows} of what the jobs of each section found."""
+    """Return {table: rows} of what the jobs of each section found."""
     judged, notes = [], {}
     for each in found.values():
         rows, noted = jobs.added_up(each)
@@ -65,7 +65,7 @@ def draw(folder):
 
 
 def summary(tables):
-    """How much was checked, and how many checks failed, in one sentence."""
+    """Return how much was checked, and how many checks failed, in one sentence."""
     total, wrong = (sum(row[name] for row in tables["judged"]) for name in ("judged", "violations"))
     ran = {row["model"]: row["scenes"] for row in tables["models"]}
     all_of = ran["penalty"]
@@ -79,14 +79,14 @@ def summary(tables):
 
 
 def readme(tables):
-    """The stress block of the project's README: one figure and one sentence."""
+    """Return the stress block of the project's README: one figure and one sentence."""
     figure = f"![What penalty does over step and stiffness]({FOLDER}/penalty-map.svg)"
     link = f"[All properties and limits]({FOLDER}/README.md)."
     return f"{figure}\n\n{summary(tables)} {link}"
 
 
 def page(tables, made):
-    """README.md of the results."""
+    """Return README.md of the results."""
     wrong = [f"**{failed(row)}**" for row in tables["judged"] if row["violations"]]
     return PAGE.read_text("utf-8").format(
         summary="\n\n".join([summary(tables), *wrong]),
@@ -99,24 +99,24 @@ def page(tables, made):
 
 
 def failed(row):
-    """What a property says, how often it failed, and the first time: scene, error, bound."""
+    """Return what a property says, how often it failed, and the first time: scene, error, bound."""
     sentence = stated(row["property"]).partition(". ")[0].rstrip(".")
     return f'Failed: "{sentence}", {row["violations"]:,} x. First: {row["first"]}'
 
 
 def stated(name):
-    """What a property says: the first paragraph of its docstring."""
+    """Return what a property says: the first paragraph of its docstring."""
     return " ".join(STATED[name].__doc__.split("\n\n")[0].split())
 
 
 def cells(row):
-    """What a property says, and how often it was checked."""
+    """Return what a property says, and how often it was checked."""
     counts = (f"{row[name]:,}" for name in ("judged", "comparisons"))
     return [stated(row["property"]), *counts, f"{row['share'] or 0:.1g}"]
 
 
 def penalty_map(rows, made):
-    """What the drop does over dt and stiffness, a panel for each damper, with the theory: SVG."""
+    """Draw the outcomes over dt and stiffness, a panel for each damper, with the theory: SVG."""
     figure, axes = picture.figure(
         rows=2,
         title="penalty: what a ball dropped 1 m does",
@@ -133,7 +133,7 @@ def penalty_map(rows, made):
 
 
 def draw_panel(axis, rows):
-    """The outcomes at one damping, and the critical dt."""
+    """Draw the outcomes at one damping, and the critical dt."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 

@@ -17,22 +17,22 @@ KNOBS = ("stiffness", "baumgarte", "iters", "solref", "warm")  # fields of conta
 
 
 def to_scene(spec):
-    """The contact.Scene of a spec."""
+    """Return the contact.Scene of a spec."""
     return contact.scene_of(**{name: spec[name] for name in (*BODY, "restitution", "damping")})
 
 
 def to_settings(spec, **more):
-    """The contact.Settings of a spec."""
+    """Return the contact.Settings of a spec."""
     return contact.Settings(**{name: spec[name] for name in KNOBS}, **more)
 
 
 def state(q, v):
-    """The entries of a spec that begins in this state."""
+    """Return the entries of a spec that begins in this state."""
     return dict(zip(BODY, [*q.tolist(), *v.tolist()]))
 
 
 def scattered(rng, radius):
-    """Centres over the table, no two balls nearer than a tenth of the largest radius."""
+    """Return centres over the table, no two balls nearer than a tenth of the largest radius."""
     count, r = len(radius), radius.max()
     side = math.ceil(math.sqrt(count)) + 1
     cell = rng.permutation(side * side)[:count]
@@ -41,7 +41,7 @@ def scattered(rng, radius):
 
 
 def touching(rng, radius):
-    """A pyramid of equal balls that touch one another and the table."""
+    """Return a pyramid of equal balls that touch one another and the table."""
     count = len(radius)
     radius[:] = r = 2.0 ** rng.integers(-5, -1)  # a power of two, so that rows touch exactly
     places, row, width = [], 0, math.ceil(math.sqrt(2 * count))
@@ -54,13 +54,13 @@ def touching(rng, radius):
 
 
 def tower(rng, radius):
-    """A column of balls, each on the one below, or all of them some way above it."""
+    """Return a column of balls, each on the one below, or all of them some way above it."""
     gaps = rng.uniform(0.01, 0.1, len(radius)) * rng.choice([0.0, 1.0])
     return np.zeros(len(radius)), np.cumsum(2 * radius + gaps) - radius
 
 
 def overlapping(rng, radius):
-    """Centres anywhere in a narrow box: some balls start in others, or in the table."""
+    """Return centres anywhere in a narrow box: some balls start in others, or in the table."""
     width = 2.0 * radius.max() * math.sqrt(len(radius))
     x, y = rng.uniform(0.0, width, (2, len(radius)))
     return x, y + rng.choice([0.0, width])  # half of them in the air
@@ -70,13 +70,13 @@ LAYOUTS = (scattered, scattered, touching, tower, overlapping)
 
 
 def pick(rng, *values):
-    """One of the values; a pair stands for any number between."""
+    """Return one of the values; a pair stands for any number between."""
     value = values[rng.integers(len(values))]
     return float(rng.uniform(*value)) if isinstance(value, tuple) else value
 
 
 def bodies(rng, count):
-    """Masses [kg] and radii [m] of that many balls: all alike, or up to 1 : 1000 and 1 : 100."""
+    """Return masses [kg] and radii [m] of `count` balls: equal, or up to 1 : 1000 and 1 : 100."""
     wide = pick(rng, 0.0, 0.0, 1.0, 1.5)
     mass = 10.0 ** rng.uniform(-wide, wide, count) if wide else np.ones(count)
     small = pick(rng, 0.0, 0.0, 0.8, 2.0)
@@ -85,7 +85,7 @@ def bodies(rng, count):
 
 
 def numbered_spec(number, small=False):
-    """The spec with this number, the same on every machine: up to thirty balls; small: up to four.
+    """Return the spec with this number, the same everywhere: up to thirty balls; small: four.
 
     Balls at rest and thrown, fixed ones among them, apart, in touch and overlapping.
     """
@@ -115,7 +115,7 @@ def numbered_spec(number, small=False):
 
 
 def heap(rng):
-    """2 to 12 balls over the table, at rest or thrown."""
+    """Return 2 to 12 balls over the table, at rest or thrown."""
     count = int(rng.integers(2, 13))
     radius, mass = 0.05 * 4.0 ** rng.random(count), 100.0 ** rng.random(count)
     wide, fast = rng.uniform(0.5, 2.0), rng.choice([0.0, 1.0, 3.0])
@@ -124,7 +124,7 @@ def heap(rng):
 
 
 def gap(rng):
-    """A ball of 1.3 kg that flies between two far heavier ones, which stand in any direction."""
+    """Return a ball of 1.3 kg that flies between two far heavier ones, in any direction."""
     radius, gap = rng.uniform(0.05, 0.3, 3), rng.uniform(0.001, 0.1)
     angle, pace = rng.uniform(0.0, np.pi), rng.uniform(-10.0, 10.0)
     along = np.array([np.cos(angle), np.sin(angle)])
@@ -136,7 +136,7 @@ def gap(rng):
 
 
 def ceiling(rng):
-    """A column of 1 to 4 balls, all at up to 20 m/s, between the floor and a fixed ball."""
+    """Return a column of 1 to 4 balls, all at up to 20 m/s, between the floor and a fixed ball."""
     count = int(rng.integers(2, 6))
     radius, gap = rng.uniform(0.05, 0.12, count), 10.0 ** rng.uniform(-6.0, -2.0, count)
     y = np.cumsum(2.0 * radius + gap) - radius
@@ -146,7 +146,7 @@ def ceiling(rng):
 
 
 def column(rng, count):
-    """That many balls over one another, which fall or were thrown; masses up to 100 : 1."""
+    """Return that many balls over one another, which fall or were thrown; masses up to 100 : 1."""
     radius, gap = rng.uniform(0.05, 0.2, count), 10.0 ** rng.uniform(-4.0, -0.3, count)
     y, mass = np.cumsum(2.0 * radius + gap) - radius, 10.0 ** rng.uniform(-1.0, 1.0, count)
     vy = rng.choice([0.0, 2.0]) * rng.uniform(-1.0, 1.0, count)
@@ -154,7 +154,7 @@ def column(rng, count):
 
 
 def mirror(rng):
-    """Balls, some fixed, and their images in x = 0, with a ball between them: their impacts tie."""
+    """Return balls, some fixed, and their images in x = 0, with one between: impacts tie."""
     count = int(rng.integers(1, 5))
     radius, mass = rng.uniform(0.05, 0.15, count), 10.0 ** rng.uniform(-1.0, 1.0, count)
     x, y = rng.uniform(0.0, 0.6, count), rng.uniform(0.1, 1.2, count)

@@ -29,7 +29,7 @@ class Trial:
         self.made, self.noted = {}, {}
 
     def run(self, model, way="twin", **changes):
-        """The run of a stepped model, with entries of the spec changed.
+        """Return the run of a stepped model, with entries of the spec changed.
 
         way: by the compiled "twin", by contact.py with "skips", or by its "plain" steps.
         """
@@ -42,12 +42,12 @@ class Trial:
 
     @cached_property
     def motions(self):
-        """{model: Trajectory} of the stepped models."""
+        """Return {model: Trajectory} of the stepped models."""
         return {m: Trajectory(self.scene, self.dt, self.run(m), m) for m in STEPPED}
 
     @cached_property
     def exact(self):
-        """Its Trajectory; None, and a note, where it promises nothing, or has too many EVENTS."""
+        """Return its Trajectory; None, and a note, where it has no promise, or too many EVENTS."""
         if self.start < -TOUCHING:
             self.noted["exact: starts in an overlap"] = {}
             return None
@@ -99,14 +99,14 @@ class Trajectory:
         self.falling = self.v[:-1] + dt * np.outer((0.0, -G), ~self.fixed)
 
     def along(self, v, normals):
-        """The velocity [m/s] of every contact along these normals."""
+        """Return the velocity [m/s] of every contact along these normals."""
         return ((v @ self.sides.T) * normals).sum(-2)
 
     def slowest(self):
-        """How fast [m/s] the slowest contact of every state closes or has opened, were it shut."""
+        """Return how fast [m/s] the slowest contact of every state closes or has opened."""
         speed = self.speeds**2 + 2.0 * G * np.maximum(self.gaps, 0.0)
         return np.sqrt(np.where(self.moves, speed, np.inf).min(1))
 
     def struck(self):
-        """In which steps some velocity shows more than gravity (S,)."""
+        """Return in which steps some velocity changes by more than gravity (S,)."""
         return (np.abs(self.v[1:] - self.falling) > 1e-9).any((1, 2))
