@@ -94,8 +94,8 @@ def take_steps(states, bits, W, balls, k, mark, marked, listed, cutoff, skip, kn
             break
         W.count[0], W.farthest[0] = 0, 0.0
         take_step(W, balls, *knobs)
-        if largest_approach(states[k], listed) > 0.998 * (cutoff - W.farthest[0]):
-            distance = W.farthest[0]
+        distance = W.farthest[0]
+        if distance > 0.0 and largest_approach(states[k], listed) > 0.998 * (cutoff - distance):
             for i in balls:  # take this step again
                 ball = W.balls[i]
                 ball.x, ball.y = states[k, 0, i], states[k, 1, i]
