@@ -1,313 +1,409 @@
-"""The exact model for balls that slide or lie beside one another (robotics course, chapter 3.5).
+"""exact where balls slide or lie side by side: event-driven in two dimensions (chapter 3.5).
 
-contact.py goes from event to event while all balls lie over one another. Here they lie anywhere.
-Between two events the same contacts push and the motion is smooth: a parabola in time, or a Taylor
-series where a ball slides over another. An event is a gap that closes, a force that falls to zero,
-or a series that comes to its end. At each:
+contact.py's own exact handles one vertical column. Here balls lie anywhere. Between two events the
+same contacts push and the motion is smooth: a parabola in time, or a power series where balls slide
+over one another. An event is a time of impact, a force that falls to zero, or the end of a series.
+At each event:
 
-    touch        picks the contacts that touch,
-    strike       gives impulses to those that close: an LCP in velocities,
-    support      gives forces to those that rest: the same LCP in accelerations,
-    slide        makes a series of the motion, only where a contact that pushes also slips,
-    next_event   finds the first gap that closes or force that ends.
+    find_touching      lists the closed contacts,
+    solve_impacts      gives impulses to closing contacts: an LCP at velocity level,
+    solve_resting      gives forces to resting contacts: the same LCP at acceleration level,
+    slide_series       expands the motion in time, only where an active contact slips,
+    next_event         finds the first gap that closes or force that ends.
 
-The promise. Over some seconds and metres it is within 1e-10 r of every closed form: drop, bounce,
+Accuracy. Over some seconds and metres it is within 1e-10 r of every closed form: drop, bounce,
 stack, the slide to its release, the pyramid, the blocks that count pi (3, 31, 314, 3141 impacts).
 Rounding grows with both: 2.4e-9 r from 1e6 m up. Piles of 3 to 24 balls with e from 0 to 0.9 are
 within 1e-8 r of an independent solver for as long as a start shifted by 1e-15 m stays within 1e-9
-r; so long plain and compiled, one code whose sums are rounded otherwise, are within 1e-12 r of one
-another. No overlap is above 1e-12 r. No energy is gained above 1e-12 of the start, and none is lost
-at e = 1. The answer is the same whenever it is sampled. Masses are within a ratio of 100 where
-0 < e < 1. Beyond that it stops with one clear error.
+r. No overlap is above 1e-12 r. No energy is gained above 1e-12 of the start, and none is lost at
+e = 1. The answer does not depend on the sampling times.
 
-    q, v, a      positions, velocities, accelerations: (2, N), a column a ball     m, m/s, m/s^2
-    w            1 / mass; 0 for a ball that nothing moves                         1/kg
-    a, b, n      a contact's two balls (b may be the floor) and its unit normal, from b to a
+Limits. Mass ratios up to 100 where 0 < e < 1; MAX_EVENTS events, which crowded balls with e > 0 use
+up within a second (Zeno behaviour). Beyond them it raises one RuntimeError.
+
+    q, v, a      positions, velocities, accelerations: (2 N,), all x, then all y   m, m/s, m/s^2
+                 the last of the N bodies is the floor
+    w            1 / mass; 0 for a fixed body                                      1/kg
+    a, b, n      a contact's two bodies and its unit normal, from b to a
     gap, v_n     distance of the surfaces, and its rate: > 0 separating            m, m/s
     lam          impulse or force of a contact, >= 0                               N s or N
+    J, W         J v is v_n (J: a row a contact); W = J M^-1 J', Delassus matrix   1, 1/kg
 """
 
-import inspect
 import math
-import sys
-from functools import cache
 
 import numpy as np
 
-from contact import MAX_IMPACTS  # of events, the limit of contact.py's own exact_run
+from curriculum.commands import one_thread
 
-try:
-    from curriculum.compiled.cache import Loops
-except ImportError:  # no numba
-    Loops = None  # type: ignore[assignment, misc]
-
-ORDER = 20  # of the series of balls that slide; a longer one lasts longer and costs more
-TOUCH = 1e-12  # of a radius: a smaller gap is none. Rounding is 1e-15, the promise 1e-10
-LAST = 1e-13  # of a radius: a bounce that would rise less is the last of its series
-MANY = 400  # pairs: of more, 50 are asked first, then who can meet by the time that these tell
-NOISE = 1e-12  # of g, of sqrt(g r), of the largest: less is rounding, which leaves 1e-15
-GRAZE = 3e-8  # of the slip: a ball between two others may close as slowly as that
-RATIO = 100.0  # of masses: above it, where 0 < e < 1, light balls rattle under heavy ones
+ORDER = 20  # of the power series at most; a longer one lasts longer and costs more
+MAX_EVENTS = 50_000  # in a run: about a minute with 40 balls
+TOUCH_TOLERANCE = 1e-12  # of a radius: a smaller gap is closed. Rounding is 1e-15, the goal 1e-10
+MIN_BOUNCE = 1e-13  # of a radius: a bounce that would rise less is the last of its series
+ROUNDING = 1e-12  # of g, of sqrt(g r), of the largest: less is rounding, which leaves 1e-15
+GRAZE = 3e-8  # of the slip: a ball between two fixed ones may close as slowly as that
+DEPENDENT = 1e-10  # of a contact's 1 / m_eff: with less of its own, it depends on other contacts
+MAX_MASS_RATIO = 100.0  # where 0 < e < 1; above it light balls bounce ever faster under heavy ones
 
 
 # --- region: slide-lcp ---
-def inverse(W):
-    """W^-1 of a Delassus matrix (K, K), and the projector on pushes with W lam = 0: no v_n changes.
+class Complementarity:
+    """The LCP of K contacts: lam >= 0, s = W lam + b >= 0, and lam s = 0 (Signorini).
 
-    Contacts that depend on one another, as under a slab, have such pushes, and W has no inverse.
-    Of the many lam that fit, the first matrix then gives the least.
+    A contact is active, s = 0, or it parts, lam = 0. x holds lam of the active contacts and s of
+    the others, z the zeros; the table gives x = table z + what b adds, and is W where none is
+    active. To pivot on a contact is to exchange its lam and s. A solution has x >= 0.
     """
-    unit = 1.0 / np.sqrt(np.diag(W))
-    unit = unit * unit.reshape(-1, 1)  # makes the diagonal 1, whatever the masses
-    scaled = W * unit
-    found, linked = np.eye(len(W)), np.flatnonzero((W != 0.0).sum(0) > 1)
-    try:
-        part = np.linalg.inv(scaled[linked][:, linked])
-        for k in range(len(linked)):
-            found[linked[k], linked] = part[k]
-        if not (np.abs(np.diag(found)) >= 1e10).any():  # no contact depends on others
-            return found * unit, np.zeros_like(W)
-    except Exception:
-        pass
-    size, axes = np.linalg.eigh(scaled)
-    stays = size <= NOISE * size[-1]
-    size[stays], idle = math.inf, axes * stays
-    return axes / size @ axes.T.copy() * unit, idle @ idle.T.copy() * unit
 
-
-def solve_lcp(W, b, slack=0.0):
-    """lam (K,) >= 0 with s = W lam + b >= 0 and lam s = 0, W (K, K), b (K,), by pivots.
-
-    A are the active contacts, those that may push; all of them at first, as at rest. Solve
-    W_AA trial_A = -b_A, so that s_A = 0. If some trial_k < 0, k would have to pull: go from lam
-    towards trial until the first are at 0, and take them out of A. Else lam = trial, and those with
-    s_k < 0, whose gap still closes, join A. Each time that no contact pulls, lam'W lam / 2 + b'lam
-    is lower than before, so no A comes twice (Lawson and Hanson 1974).
-
-    Where contacts of A depend on one another, there may be no such trial. Then some pushes change
-    no s, and lower that sum without end: go their way until the first contact is at 0. If none gets
-    there, a ball is crushed, unless all that closes is within slack sqrt(W_kk), which is forgiven.
-    """
-    if len(b) < 2:
-        return np.maximum(-b / np.diag(W), 0.0)
-    unit = np.sqrt(np.diag(W))
-    small = NOISE * np.abs(b / unit).max()
-    lam, active = np.zeros(len(b)), np.ones(len(b), np.bool_)
-    for _ in range(50 + 10 * len(b)):
-        trial, endless = push_all(W, b, np.flatnonzero(active), 1e3 * small / unit)
-        pulls = np.flatnonzero(trial * unit < -small)
-        if len(pulls):
-            way = trial if endless else trial - lam
-            share = lam[pulls] / -way[pulls]
-            lam = (lam + share.min() * way) * active
-            active[pulls[share == share.min()]] = False
-        elif endless and (trial * unit).max() > (slack * (trial > 0.0)).max():
-            raise RuntimeError("exact: a ball is crushed between two that nothing moves")
-        elif endless:
-            b = b + trial * np.diag(W)
+    def __init__(self, W, likely):
+        """Start with all contacts active, as at rest; if they are dependent, with the likely."""
+        unit = np.sqrt(W.diagonal())
+        self.scale = unit * unit[:, None]  # makes the diagonal 1, whatever the masses
+        self.table = self.W = W / self.scale
+        self.active = np.zeros(len(W), bool)
+        inverse = invert(self.table)
+        if inverse is not None:
+            self.table, self.active[:] = inverse, True
         else:
-            lam = np.maximum(trial, 0.0)
-            closes = ~active & ((W @ lam + b) / unit < -small)
-            if not closes.any():
-                return lam
-            active |= closes
-    raise RuntimeError("exact: contacts at one moment: their masses are too unequal")
+            self.table = pivot(self.table, self.active, np.flatnonzero(likely))
+
+    def solve(self, b, slack=lambda: 0.0):
+        """Return lam (K,), the active contacts, and the inverse of their part of W.
+
+        Principal pivoting: first on all x < 0 together (Kostreva 1978), as long as they become
+        fewer; then on one at a time, lam >= 0 throughout (Dantzig; for contacts Baraff 1994).
+        Raises RuntimeError if a ball is crushed, unless no contact closes by more than slack().
+        """
+        unit, table, active = np.sqrt(self.scale.diagonal()), self.table, self.active.copy()
+        b, fewest = b / unit, len(b) + 1
+        small = ROUNDING * np.abs(b).max(initial=0.0)
+        tolerance, fresh = np.full(len(b), small), np.abs(table.diagonal()).max(initial=0.0) < 1e4
+        for _ in range(50 + 10 * len(b)):
+            x = np.where(active, 0.0, b) - table @ np.where(active, b, 0.0)
+            wrong = (x < -tolerance).nonzero()[0]
+            if not len(wrong) and fresh:
+                on = active.nonzero()[0]
+                lam = np.where(active, np.maximum(x, 0.0), 0.0) / unit
+                return lam, on, table[on[:, None], on] / self.scale[on[:, None], on]
+            if not len(wrong):  # once more, without the rounding of all pivots so far
+                table, active = (
+                    pivot(self.W, out := np.zeros(len(b), bool), active.nonzero()[0]),
+                    out,
+                )
+                fresh = True
+                continue
+            chosen = wrong if len(wrong) < fewest else wrong[active[wrong]]
+            fewest = min(fewest, len(wrong))
+            if len(chosen):
+                table = pivot(table, active, chosen)
+                continue
+            k = x.argmin()
+            tolerance[k] *= 10.0  # so that rounding cannot bring it back for ever
+            table, free = activate(table, active, x, k)
+            if free is not None:  # pushes that change no s, and lower s_k for ever
+                way = free * (free @ b / (free @ free))
+                if (-way / unit).max() > max(
+                    (slack() * (free > 0.0)).max(), 1e3 * small / unit.min()
+                ):
+                    raise RuntimeError("exact: a ball is crushed between two fixed bodies")
+                b = b - way
+        raise RuntimeError(
+            "exact: the impulses or forces did not converge: the masses differ too much"
+        )
+
+    def keep(self, chosen):
+        """Leave out the other contacts."""
+        if chosen.all():
+            return
+        table = pivot(self.table, self.active, np.flatnonzero(self.active & ~chosen))
+        self.table, self.scale = table[chosen][:, chosen], self.scale[chosen][:, chosen]
+        self.active, self.W = self.active[chosen], self.W[chosen][:, chosen]
 
 
-def push_all(W, b, on, small):
-    """trial (K,) of solve_lcp, by the contacts `on`, and whether it is pushes without end."""
-    solve, idle = inverse(W[on][:, on])
-    trial, way = np.zeros(len(b)), idle @ -b[on]
-    endless = (np.abs(way) > small[on]).any()
-    for k, push in zip(on, way if endless else solve @ -b[on]):
-        trial[k] = push
-    return trial, endless
+def activate(table, active, x, k):
+    """Raise lam_k until s_k = 0; each contact whose lam falls to 0 on the way parts.
+
+    Return the table, and None; or, if nothing stops lam_k, the pushes that grow with it.
+    """
+    while not active[k]:
+        column = table[:, k]
+        way = np.where(active & (column < 0.0), x / -column, math.inf)
+        j = way.argmin()
+        if column[k] > DEPENDENT and -x[k] / column[k] <= way[j]:
+            j = k
+        elif way[j] < math.inf:
+            x += way[j] * column
+            x[j] = 0.0
+        else:
+            return table, np.where(np.arange(len(x)) == k, 1.0, active * column)
+        table = pivot(table, active, np.array((j,)))
+    return table, None
+
+
+def pivot(table, active, chosen):
+    """Return the table with lam and s of the chosen exchanged; as it was, if they are dependent."""
+    inverse = invert(table[chosen[:, None], chosen]) if len(chosen) else None
+    if inverse is None:
+        return table
+    rows, left = table[chosen], table[:, chosen] @ inverse
+    table = table - left @ rows
+    table[:, chosen], table[chosen] = left, -inverse @ rows
+    table[chosen[:, None], chosen] = inverse
+    active[chosen] = ~active[chosen]
+    return table
+
+
+def invert(W):
+    """Return W^-1, or None where a contact depends on others."""
+    if len(W) == 1:
+        return 1.0 / W if abs(W[0, 0]) > DEPENDENT else None
+    try:
+        inverse = np.linalg.inv(W)
+    except np.linalg.LinAlgError:
+        return None
+    return inverse if np.abs(inverse.diagonal()).max(initial=0.0) < 1.0 / DEPENDENT else None
 
 
 # --- endregion ---
 
 
 class Motion:
-    """Where all balls are at an event, and what each of the K contacts they can make did so far.
-
-    q, v, a are flat here, (2 N,): all x, then all y. J (C, 2 N) has n of each of C contacts at ball
-    a and -n at ball b: J v is v_n, and w J' lam is what pushes lam add to v. sides (K, N): 1, -1.
-    """
+    """The state of all bodies at an event, and what each of the C possible contacts did so far."""
 
     def __init__(self, scene, gravity):
-        """All contacts that the balls can ever make; two that nothing moves make none."""
-        count, w = len(scene.mass), 1.0 / np.append(scene.mass, math.inf)  # last: the floor
-        radius = np.append(scene.radius, 0.0)
-        pairs = np.array(np.triu_indices(count + 1, 1))
-        pairs = pairs[:, w[pairs].sum(0) > 0.0]
-        self.pairs, (a, b) = pairs, np.eye(count + 1)[pairs, :-1]
-        self.sides = a - b
-        self.reach, self.share = radius[pairs].sum(0), w[pairs].sum(0)  # r_a + r_b; 1 / m_eff
-        self.radius, self.floor = radius[pairs[0]], pairs[1] == count
-        self.q, self.v = np.array((scene.q0, scene.v0), float).reshape(2, -1)
-        self.w, self.radii = np.tile((w[:-1], radius[:-1]), 2)
-        self.e, self.g, self.gap = scene.restitution, -gravity, 0.0
+        """List all pairs that can touch: two fixed bodies cannot."""
+        count = len(scene.mass) + 1
+        w, radius = 1.0 / np.append(scene.mass, math.inf), np.append(scene.radius, 0.0)
+        pairs = np.array(np.triu_indices(count, 1))
+        self.pairs = pairs[:, w[pairs].sum(0) > 0.0]
+        self.floor = self.pairs[1] == count - 1
+        self.touch_distance, self.inv_m_eff = radius[self.pairs].sum(0), w[self.pairs].sum(0)
+        a, b = np.eye(count)[self.pairs]
+        self.sides, self.curves = a - b, 1.0 - self.floor  # 1 at body a, -1 at b; the floor is flat
+        state = np.array((scene.q0, scene.v0), float)
+        self.q, self.v = np.pad(state, ((0, 0), (0, 0), (0, 1))).reshape(2, -1)
+        self.w, self.e, self.g = np.tile(w, 2), scene.restitution, -gravity
         self.fall = np.where(self.w > 0.0, np.repeat((0.0, gravity), count), 0.0)
-        self.locate(track=0.0)
-        self.rests = np.zeros(len(self.gap), bool)  # it touched at the last event and did not part
-        self.since, self.parting = self.rests + math.inf, self.rests + 1.0  # [s]; |v_n| then [m/s]
-        self.speed = np.sqrt(self.g * self.radius)  # [m/s], the measure of a slow v_n
-        kept = loops() and loops().pays(0.0)  # on disk; no run knows how many events it will have
-        self.by = compile_loops() if kept else sys.modules[__name__]
+        self.radius, self.smallest = radius[self.pairs[0]], scene.radius.min()
+        self.slow = ROUNDING * np.sqrt(self.g * self.radius)  # m/s
+        self.rests = np.zeros(len(self.floor), bool)  # closed at the last event, and did not part
+        self.active = self.rests.copy()  # rests and pushes
+        self.tracked = self.rests + math.inf  # m, see next_event
+        self.since, self.parting = self.rests + math.inf, self.rests + 1.0  # s; |v_n| then, m/s
 
-    def locate(self, track=1e4):
-        """Take gaps (K,) from q, but keep those below `track` times the smallest.
+    def apart(self, rows):
+        """Rows (R, 2 N) at body a minus those at body b: (R, 2, C); at the floor only along y."""
+        each = rows.reshape(len(rows), 2, -1).take(self.pairs, 2)
+        d = each[:, :, 0] - each[:, :, 1]
+        d[:, 0] *= self.curves
+        return d
 
-        A light ball between two others bounces until its gaps fall below the rounding of q. So
-        next_event tracks gaps, and a tiny one touches only if it was wider.
+    def update_gaps(self):
+        """Compute normals and gaps from q, but keep a tracked gap below 1e4 times a closed one.
+
+        A light ball between two others bounces until its gaps fall below the rounding of q.
         """
-        q = np.append(self.q.reshape(2, -1), ((0.0,), (0.0,)), 1)
-        x, y = q[:, self.pairs[0]] - q[:, self.pairs[1]]
-        self.found = np.where(self.floor, y, np.sqrt(x * x + y * y)) - self.reach
+        d = self.apart(self.q[None])[0]
+        self.length = np.where(self.floor, d[1], np.hypot(d[0], d[1]))
+        self.n, self.found = d / self.length, self.length - self.touch_distance
         self.bits = np.spacing(np.abs(self.q).max())
-        self.small = TOUCH * self.radius + 4.0 * self.bits
-        tracked = (np.abs(self.found) < track * self.small) & (self.gap < math.inf)
-        self.gap = np.where(tracked, self.gap, self.found)
+        self.closed = TOUCH_TOLERANCE * self.radius + 4.0 * self.bits
+        self.gap = np.where(self.tracked < 1e4 * self.closed, self.tracked, self.found)
 
-    def rows(self, chosen):
-        """J of the chosen contacts; the normal is up at the floor, and where centres are one."""
-        sides = self.sides[chosen]
-        n = np.where(self.floor[chosen], ((0.0,), (1.0,)), self.q.reshape(2, -1) @ sides.T)
-        n[1] += ~n.any(0)
-        n /= np.sqrt((n * n).sum(0))
-        return (n.T[:, :, None] * sides[:, None]).reshape(len(chosen), len(self.q))
+    def jacobian(self, chosen):
+        """J (K, 2 N) of the chosen contacts."""
+        return np.concatenate((*self.n[:, chosen, None] * self.sides[chosen],), 1)
 
-    def slip(self, chosen, rows):
-        """The part of flat rows along the surface; 0 at the floor, which never turns."""
-        x, y, along_x, along_y = np.array((self.q, rows)).reshape(4, -1) @ self.sides[chosen].T
-        return np.where(self.floor[chosen], 0.0, (x * along_y - y * along_x) / self.reach[chosen])
+    def slip(self, chosen, J, row):
+        """The part of row along the surfaces; 0 at the floor."""
+        x, y = row.reshape(2, -1)
+        return J @ np.concatenate((y, -x)) * self.curves[chosen]
 
-    def match(self, rows, J, solve, target):
-        """Rows changed by the pushes that make J rows the target; twice, for the last digits."""
-        for _ in range(2):
-            rows = rows + self.w * ((solve @ (target - J @ rows)) @ J)
-        return rows
+    def project(self, row, J, solve, target):
+        """Return row + M^-1 J' lam with J row = target; twice, for the last digits."""
+        push = J * self.w
+        row = row + solve @ (target - J @ row) @ push
+        return row + solve @ (target - J @ row) @ push
 
-    def touch(self):
-        """Which contacts touch now, and their J."""
-        for _ in range(50):  # move apart what overlaps, as at a start; what a push closes is next
-            if not (self.found < -self.small).any():
-                break
+    def separate(self):
+        """Move overlapping bodies apart, as at a start; what this closes in the next round."""
+        for _ in range(50):
+            if not (self.found < -self.closed).any():
+                return
+            self.n[:, self.length == 0.0] = (0.0,), (1.0,)  # one centre: up
             near = np.flatnonzero(self.found <= -2.0 * self.found.min())
-            J = self.rows(near)
-            slack = 4.0 * self.bits / np.sqrt(self.share[near])
-            self.q += self.w * (self.by.solve_lcp(J * self.w @ J.T, self.found[near], slack) @ J)
-            self.locate(track=0.0)
-        near = np.flatnonzero(self.gap <= self.small)
-        J = self.rows(near)
+            J, slack = self.jacobian(near), 4.0 * self.bits / np.sqrt(self.inv_m_eff[near])
+            lcp = Complementarity(J * self.w @ J.T, np.zeros(len(near), bool))
+            self.q = self.q + lcp.solve(self.found[near], lambda slack=slack: slack)[0] @ J * self.w
+            self.tracked[:] = math.inf
+            self.update_gaps()
+
+    def find_touching(self):
+        """Return the closed contacts and their J. A tiny gap is closed only if it was wider."""
+        near = (self.gap <= self.closed).nonzero()[0]
+        J = self.jacobian(near)
         v_n = J @ self.v
-        opened = (self.parting[near] + np.abs(v_n)) * self.since[near]  # about how wide it has been
-        still = self.rests[near] & (v_n <= NOISE * self.speed[near])
-        on = still | (self.gap[near] <= 1e-4 * opened)
+        opened = (self.parting[near] + np.abs(v_n)) * self.since[near]  # m, about the widest
+        on = self.rests[near] & (v_n <= self.slow[near]) | (self.gap[near] <= 1e-4 * opened)
         return near[on], J[on]
 
-    def strike(self, touching, J):
-        """Impulses: where a contact pushes, v_n becomes -e v_n, at all contacts at once.
+    def solve_impacts(self, touching, J, lcp):
+        """Apply impulses: v_n of an active contact becomes -e v_n, all at once. Return v_n after.
 
-        That is an LCP in s = v_n after - target, target = -e v_n as in contact.py, or 0 where the
-        bounce would rise less than LAST radii. A ball that passes between two that nothing moves,
-        and touches both, closes until its normals have turned, by GRAZE^2 radii at most: that is
-        forgiven. Returns v_n after.
+        An LCP in s = v_n after - target; the target is 0 where the bounce would rise less than
+        MIN_BOUNCE. A ball that touches two fixed ones and passes between them closes until its
+        normals have turned, by GRAZE^2 radii at most: that is allowed.
         """
-        v_n, speed = J @ self.v, self.speed[touching]
-        if (v_n < -NOISE * speed).any():
-            target = -self.e * v_n
-            target[(v_n < 0.0) & (target < math.sqrt(2.0 * LAST) * speed)] = 0.0
-            W = J * self.w @ J.T
-            turns = GRAZE * np.abs(self.slip(touching, self.v)) / np.sqrt(self.share[touching])
-            on = np.flatnonzero(self.by.solve_lcp(W, v_n - target, turns))
-            self.v = self.match(self.v, J[on], self.by.inverse(W[on[:, None], on])[0], target[on])
-            v_n = np.maximum(J @ self.v, np.minimum(target, 0.0))  # what was forgiven is 0
-        return v_n
+        v_n, slow = J @ self.v, self.slow[touching]
+        if not (v_n < -slow).any():
+            return v_n
+        target = -self.e * v_n
+        target[(v_n < 0.0) & (target < math.sqrt(2.0 * MIN_BOUNCE) / ROUNDING * slow)] = 0.0
 
-    def support(self, touching, J, v_n):
-        """Forces for what rests: which contacts push, and all accelerations.
+        def turns():
+            return (
+                GRAZE * np.abs(self.slip(touching, J, self.v)) / np.sqrt(self.inv_m_eff[touching])
+            )
 
-        A resting gap may open and may not close: its second derivative n . a + slip^2 / reach is
-        >= 0, with 0 where it pushes. The second term is there because the normal turns. A contact
-        that parts rests all the same if its force brings it back before it rises LAST radii.
+        _, on, solve = lcp.solve(v_n - target, turns)
+        self.v = self.project(self.v, J[on], solve, target[on])
+        return np.maximum(J @ self.v, np.minimum(target, 0.0))  # 0 where it was allowed to close
+
+    def solve_resting(self, touching, J, lcp, v_n):
+        """Find the resting contacts and their forces. Return the active ones, J, their W^-1.
+
+        The gap of a resting contact may open and may not close: its acceleration n . a + turn is
+        >= 0, and 0 where it pushes; turn = slip^2 / touch_distance, since the normal turns. A
+        contact that parts rests all the same if its force closes it before it rises MIN_BOUNCE.
         """
-        self.gap[touching], self.since[touching], self.parting[touching] = 0.0, 0.0, np.abs(v_n)
-        rises = v_n**2 / (2.0 * LAST * self.radius[touching])  # LAST radii under this acceleration
-        needs = np.where(np.abs(v_n) > NOISE * self.speed[touching], rises, 0.0)
-        stays = needs <= self.g
-        while True:
-            touching, J, needs = touching[stays], J[stays], needs[stays]
-            turn = self.slip(touching, self.v) ** 2 / self.reach[touching]
-            W = J * self.w @ J.T
-            pushes = self.by.solve_lcp(W, J @ self.fall + turn, 0.0 * turn) * self.share[touching]
-            stays = needs <= pushes
-            if stays.all():
-                break
-        self.rests[:] = False
-        self.rests[touching] = True
-        on = np.flatnonzero(pushes > NOISE * self.g)
-        J, turn = J[on], turn[on]
-        solve = self.by.inverse(W[on[:, None], on])[0]
-        a, self.v = self.match(self.fall, J, solve, -turn), self.match(self.v, J, solve, 0.0)
-        beside = np.tile(self.sides[touching[on]].any(0), 2)  # else a heap at rest creeps
-        a[beside & (np.abs(a) <= NOISE * self.g)] = 0.0
-        self.v[beside & (np.abs(self.v) <= NOISE * np.sqrt(self.g * self.radii))] = 0.0
-        return touching[on], a
+        speed = np.abs(v_n)
+        self.gap[touching], self.since[touching], self.parting[touching] = 0.0, 0.0, speed
+        needed = speed**2 / (2.0 * MIN_BOUNCE * self.radius[touching])  # to rise no higher
+        needed[speed <= self.slow[touching]] = 0.0
+        stays, on = needed <= self.g, None
+        while on is None or not stays.all():
+            touching, J, needed = touching[stays], J[stays], needed[stays]
+            lcp.keep(stays)
+            turn = self.slip(touching, J, self.v) ** 2 / self.touch_distance[touching]
+            lam, on, solve = lcp.solve(J @ self.fall + turn)
+            pushes = lam * self.inv_m_eff[touching]  # m/s^2
+            stays = needed <= pushes
+        if (pushes[on] <= ROUNDING * self.g).any():
+            on = np.flatnonzero(pushes > ROUNDING * self.g)
+            solve = inverse_delassus(J[on], self.w)
+        self.rests[:] = self.active[:] = False
+        self.rests[touching] = self.active[touching[on]] = True
+        return touching[on], J[on], solve
 
-    def slide(self, held):
-        """While the held contacts push: q as a series, their forces, and how long [s] both last."""
-        J = self.rows(held)
-        solve = self.by.inverse(J * self.w @ J.T)[0]
-        self.q = self.match(self.q, J, solve, J @ self.q - self.found[held])
-        J = self.rows(held)
-        self.v = self.match(self.v, J, solve, 0.0)
-        Q = np.zeros((ORDER + 1, len(self.q)))
-        Q[0], Q[1] = self.q, self.v
-        given = self.fall, self.w, J, self.sides[held], self.reach[held], self.floor[held], solve
-        lam = self.by.slide_series(Q, *given)
-        lam[0] = np.maximum(lam[0], 0.0) + NOISE * self.g / self.share[held]
-        size = np.abs(Q[-2:] / self.radii).max(1)  # the last two terms stay below 1e-16 r
-        return Q, lam, min((1e-16 / size) ** (1.0 / np.array((ORDER - 1, ORDER))))
+    def solve_contacts(self):
+        """Resolve all impacts of this moment, then find the active contacts."""
+        self.separate()
+        touching, J = self.find_touching()
+        lcp = Complementarity(J * self.w @ J.T, self.active[touching])
+        return self.solve_resting(touching, J, lcp, self.solve_impacts(touching, J, lcp))
 
-    def next_event(self, Q, which, lam, horizon):
-        """How long [s] the series Q holds: until a gap closes, a force lam ends, or the horizon.
+    def accelerate(self, held, J, solve):
+        """Return a, and whether an active contact slips; take drift out of q and v.
 
-        Rounding is no event: a gap at rest counts as half of TOUCH open, another as wider by its
-        last digits.
+        What rounding leaves of v and a at rest becomes 0, or a heap creeps.
         """
+        apart = self.found[held]
+        if (np.abs(apart) > 2.0 * self.bits).any():
+            self.q = self.project(self.q, J, solve, J @ self.q - apart)
+        if (np.abs(J @ self.v) > 1e-3 * self.slow[held]).any():
+            self.v = self.project(self.v, J, solve, 0.0)
+        beside = J.any(0)
+        still = ROUNDING * math.sqrt(self.g * self.smallest)
+        self.v[beside & (np.abs(self.v) <= still)] = 0.0
+        turn = self.slip(held, J, self.v) ** 2 / self.touch_distance[held]
+        a = self.project(self.fall, J, solve, -turn)
+        a[beside & (np.abs(a) <= ROUNDING * self.g)] = 0.0
+        return a, turn.any() or self.slip(held, J, a).any()
 
-        def within(time):  # pairs that can meet until then
-            far, rates = time < math.inf, np.abs(Q[1:])
-            ways = time ** np.arange(1, len(Q)) @ rates if far else rates[0]
-            ways = np.append(ways.reshape(2, -1).sum(0), 0.0)
-            ways = ways[self.pairs[0]] + ways[self.pairs[1]]
-            reach = np.maximum(ways, 1e4 * self.small) if far else math.inf
-            return np.flatnonzero(free & (self.gap <= reach)), ways
+    def expand(self, held, J, solve):
+        """Return the motion from here on as a series Q in time, forces lam, how long [s] it holds,
+        and of each gap: value, with its rounding, rate, bend (half the acceleration), likely end.
+        """
+        a, slides = self.accelerate(held, J, solve)
+        gap = np.maximum(self.gap, 0.0)
+        rounds = np.where(self.rests, 0.5 * self.closed, np.minimum(4.0 * self.bits, 1e-9 * gap))
+        d = self.apart(np.array((self.v, 0.5 * a)))
+        rate, bend = (d * self.n).sum(1)
+        turn = (self.n[0] * d[0, 1] - self.n[1] * d[0, 0]) ** 2 / (2.0 * self.length)
+        soon = first_roots(gap + rounds, rate, bend + turn)
+        soon[self.active] = math.inf
+        gaps = gap, rounds, rate, bend, soon
+        if not slides:
+            return np.array((self.q, self.v, 0.5 * a)), np.zeros((3, 0)), math.inf, gaps
+        bodies = self.sides[held], self.touch_distance[held], self.floor[held]
+        size = self.smallest, math.sqrt(self.g * self.smallest)
+        enough = 1.2 * soon.min(initial=math.inf)
+        Q, lam, horizon = slide_series(
+            self.q, self.v, self.fall, self.w, J, *bodies, solve, size, enough
+        )
+        lam[0] = np.maximum(lam[0], 0.0) + ROUNDING * self.g / self.inv_m_eff[held]
+        return Q, lam, horizon, gaps
 
-        def ask(near):
-            gap, reach, floor = np.maximum(self.gap[near], 0.0), self.reach[near], self.floor[near]
-            rounds = np.minimum(4.0 * self.bits, 1e-9 * gap)
-            wider = np.where(self.rests[near], 0.5 * self.small[near], rounds)
-            d = Q.reshape(len(Q), 2, -1) @ self.sides[near].T
-            return self.by.next_fall(d, gap, reach, floor, wider, lam, horizon)
+    def next_event(self, Q, lam, horizon, gaps):
+        """Return when [s] the first gap closes or force ends, at most the horizon.
 
-        free = np.ones(len(self.gap), bool)
-        free[which] = False
-        near, ways = within(horizon)
-        if len(near) > MANY:
-            near, _ = within(ask(near[np.argsort((self.gap / ways)[near])[:50]])[0])
-        span, gap = ask(near)
-        self.gap = np.full(len(self.gap), math.inf)  # what nobody asked is found anew
-        self.gap[which], self.gap[near] = 0.0, gap
+        Rounding is no event: a resting gap counts as half of TOUCH_TOLERANCE wider, another by its
+        last digits. A gap falls no faster than along the normal of now; terms of Q above t^2 bend
+        it by `margin` at most. So few pairs need a search. Of these, tiny gaps are tracked.
+        """
+        gap, rounds, rate, bend, soon = gaps
+        margin = 3.0 * (horizon ** np.arange(3, len(Q)) @ np.abs(Q[3:])).max(initial=0.0)
+        span, first = horizon, -1
+        while first < 0 and len(soon) and soon[k := soon.argmin()] < horizon:
+            t, soon[k] = first_root(self.polynomial(k, Q, gap[k], rounds[k]), span), math.inf
+            span, first = (t, k) if t < span else (span, first)
+        far = min(span, 1e15)
+        lowest = gap + rounds - margin
+        lowest += far * (np.minimum(rate, 0.0) + far * np.minimum(bend, 0.0))
+        lowest[self.active] = math.inf
+        near = (lowest <= 1e4 * self.closed).nonzero()[0]
+        for k in near[(lowest[near] <= 0.0) & (near != first)]:
+            t = first_root(self.polynomial(k, Q, gap[k], rounds[k]), span)
+            span, first = (t, k) if t < span else (span, first)
+        least = lam[0] + far ** np.arange(1, len(lam)) @ np.minimum(lam[1:], 0.0)
+        for k in (least <= 0.0).nonzero()[0]:
+            t = first_root(lam[:, k].tolist(), span)
+            span, first = (t, -1) if t < span else (span, first)
+        self.tracked[:] = math.inf
+        self.tracked[near] = self.track(near, Q, gap[near], span)
+        self.tracked[self.active] = 0.0
+        if first >= 0:
+            self.tracked[first] = 0.0
         self.since += span
         return span
 
+    def polynomial(self, k, Q, gap, rounds):
+        """The series of pair k that falls through 0 with its gap: y - r, or d . d - reach^2."""
+        (a, b), reach = self.pairs[:, k], 2.0 * self.touch_distance[k]
+        half = Q.shape[1] // 2
+        y = Q[:, half + a] - Q[:, half + b]
+        if self.floor[k]:
+            return [float(gap + rounds), *y[1:].tolist()]
+        x = Q[:, a] - Q[:, b]
+        square = (np.convolve(x, x) + np.convolve(y, y))[1 : max(len(Q), 5)]
+        return [float(gap * (gap + reach) + rounds * (rounds + reach)), *square.tolist()]
+
+    def track(self, near, Q, gap, span):
+        """The gaps of these pairs after span, without cancellation: relative to what they were."""
+        sides, reach = self.sides[near].T, self.touch_distance[near]
+        start = Q[0].reshape(2, -1) @ sides
+        move = (span ** np.arange(1, len(Q)) @ Q[1:]).reshape(2, -1) @ sides
+        square = gap * (gap + 2.0 * reach) + (move * (2.0 * start + move)).sum(0)
+        return np.where(
+            self.floor[near], gap + move[1], square / (reach + np.sqrt(reach**2 + square))
+        )
+
 
 # --- region: slide-series ---
-def slide_series(Q, a, w, J, sides, reach, floor, solve):
-    """While K contacts push: fill in the series Q (terms, 2 N) of q in time. Returns that of the
-    forces lam (terms, K), the last two 0.
+def slide_series(q, v, a, w, J, sides, reach, floor, solve, size, enough):
+    """Expand q while K contacts are active. Return the series Q (terms, 2 N) of q in time [s], lam
+    (terms, K) of the forces, the last two 0, and how long the last two terms of Q stay below
+    1e-16 of size (m, m/s); they do so for `enough`, or there are ORDER + 1 terms.
 
     Q_k, n_k, lam_k are the factors of t^k. While a contact is closed its normal is
     (q_a - q_b) / reach, so n_k = (Q_k,a - Q_k,b) / reach. Newton's law at order k is
@@ -320,86 +416,63 @@ def slide_series(Q, a, w, J, sides, reach, floor, solve):
         W lam_k + n_0 . (a_k,a - a_k,b) + turn_k = 0,
         turn_k = (k + 1) (k + 2) reach / 2 sum_{m=1}^{k+1} n_m . n_{k+2-m}
     """
-    lam, n = np.zeros((len(Q), len(J))), np.zeros((len(Q), 2, len(J)))
-    turns = sides.T * (~floor / reach)
-    np.dot(Q[0].reshape(2, -1), turns, n[0])
-    np.add(n[0, 1], floor, n[0, 1])
-    away, push, pushes = -solve, J * w, sides * w[: sides.shape[1]]
-    for k in range(len(Q) - 2):
-        np.dot(Q[k + 1].reshape(2, -1), turns, n[k + 1])
+    Q, n = np.zeros((ORDER + 1, len(q))), np.zeros((ORDER + 1, 2, len(J)))
+    lam, lasts = np.zeros((ORDER + 1, len(J))), [0.0, 0.0]
+    turns, push, pushes = sides.T * (~floor / reach), J * w, sides * w[: sides.shape[1]]
+    Q[0], Q[1], W = q, v, push @ J.T
+    n[0] = q.reshape(2, -1) @ turns
+    n[0, 1] += floor
+    for k in range(ORDER - 1):
+        n[k + 1] = Q[k + 1].reshape(2, -1) @ turns
         if k > 0:
-            pull = n[1] * lam[k - 1]
-            for m in range(k - 1):
-                pull += n[k - m] * lam[m]
-            a = (pull @ pushes).reshape(-1)
-        turn = np.zeros(len(J))
-        for m in range(1, k + 2):
-            turn += n[m, 0] * n[k + 2 - m, 0] + n[m, 1] * n[k + 2 - m, 1]
+            a = (np.einsum("mic,mc->ic", n[k:0:-1], lam[:k]) @ pushes).ravel()
         factor = (k + 1.0) * (k + 2.0)
-        turn *= 0.5 * factor * reach
-        for _ in range(2):  # once more, for the last digits
-            force = away @ (J @ a + turn)
-            np.add(lam[k], force, lam[k])
-            a = a + force @ push
-        np.divide(a, factor, Q[k + 2])
-    return lam
+        turn = 0.5 * factor * reach * np.einsum("mic,mic->c", n[1 : k + 2], n[k + 1 : 0 : -1])
+        force = solve @ -(J @ a + turn)
+        lam[k] = force - solve @ (J @ a + turn + W @ force)  # once more, for the last digits
+        Q[k + 2] = (a + lam[k] @ push) / factor
+        change = max(math.sqrt(Q[k + 2] @ Q[k + 2]), 1e-300)
+        length, speed = 1e-16 * size[0] / change, 1e-16 * size[1] / change / (k + 2)
+        lasts.append(min(length ** (1.0 / (k + 2)), speed ** (1.0 / (k + 1))))
+        if min(lasts[-2:]) > enough:
+            break
+    return Q[: k + 3], lam[: k + 3], min(lasts[-2:])
 
 
 # --- endregion ---
 
 
-def next_fall(d, gap, reach, floor, wider, lam, horizon):
-    """When [s] the first of K gaps or of some forces lam (terms, L) falls through 0, and the gaps
-    then. `wider` [m] is added to the gaps while we look for it.
-
-    d (terms, 2, K) are the series of q_a - q_b; gaps are known better. P falls: y - r, or d . d -
-    reach^2. What is likely to be soon comes first: most others cannot, even if nothing lifted them.
-    """
-    count, P, free = len(gap), np.zeros((max(len(d), 5), len(gap))), 1.0 - floor  # a square has 5
-    for k in range(len(d)):
-        np.add(P[k], floor * d[k, 1], P[k])
-        for m in range(min(len(d), len(P) - k)):
-            np.add(P[k + m], free * (d[k, 0] * d[m, 0] + d[k, 1] * d[m, 1]), P[k + m])
-    np.multiply(gap, floor + free * (gap + 2.0 * reach), P[0])
-    falls = np.concatenate((P.T, lam.T))
-    if len(falls) == 0:
-        return horizon, gap
-    more = wider * (floor + free * (wider + 2.0 * reach))
-    np.add(falls[:count, 0], more, falls[:count, 0])
-    when = falls[:, 0] / np.maximum(-falls[:, 1], 1e-9)
-    span, first, soon = horizon, len(falls), np.flatnonzero(when == when.min())
-    for _ in range(2):
-        for k in soon:
-            t = first_fall(falls[k], span)
-            if t < span:
-                span, first = t, k
-        sunk = falls[:, 0]
-        for k in range(1, falls.shape[1]):
-            sunk = sunk + np.minimum(falls[:, k], 0.0) * min(span, 1e15) ** k
-        soon = np.flatnonzero(sunk <= 0.0)
-    gap = P[-1]
-    for row in P[-2::-1]:
-        gap = gap * span + row
-    gap = gap / (floor + free * (reach + np.sqrt(reach**2 + free * gap)))
-    gap[first : first + 1] = 0.0
-    return span, gap
+def inverse_delassus(J, w):
+    """W^-1 of contacts that do not depend on one another."""
+    W = J * w @ J.T
+    unit = np.sqrt(W.diagonal())
+    return np.linalg.inv(W / (unit * unit[:, None])) / (unit * unit[:, None])
 
 
-def first_fall(p, horizon):
+def first_roots(c, b, a):
+    """When [s] c + b t + a t^2, c >= 0, falls through 0 (all (C,)); inf where it does not."""
+    square = b * b - 4.0 * a * c
+    root = np.sqrt(square)
+    t = np.where(b < 0.0, 2.0 * c / (root - b), (b + root) / (-2.0 * a))
+    return np.where((square >= 0.0) & ((b < 0.0) | (a < 0.0)), t, math.inf)
+
+
+def first_root(p, horizon):
     """The first t <= horizon at which p[0] + p[1] t + ..., >= 0 at 0, falls through 0; else inf.
 
     Newton's method with the least curvature on the way to `end`, so that no step passes a root.
     It is the horizon at first, then nearer, and twice as far each time: a short way curves less.
     """
-    t, end = 0.0, horizon
+    t, end, p = 0.0, horizon, p + [0.0] * (5 - len(p))
     c, b, a = p[2], 3.0 * p[3], 6.0 * p[4]
+    high, bends = p[::-1], [0.5 * k * (k - 1) * abs(p[k]) for k in range(len(p) - 1, 4, -1)]
     for _ in range(200):
         value = slope = far = 0.0
-        for k in range(len(p) - 1, -1, -1):
+        for term in high:
             slope = slope * t + value
-            value = value * t + p[k]
-        for k in range(len(p) - 1, 4, -1):
-            far = (far + 0.5 * k * (k - 1) * abs(p[k])) * end
+            value = value * t + term
+        for term in bends:
+            far = (far + term) * end
         bend = c + t * (b + t * a)  # half the curvature: exact for parabolas, whose end may be inf
         if a > 0.0 and t < -0.5 * b / a < end:
             bend = c - 0.25 * b * b / a
@@ -419,24 +492,6 @@ def first_fall(p, horizon):
     return t  # next to no curvature: it is as good as there
 
 
-@cache
-def loops():
-    """The functions above as numba compiles them, or None without numba."""
-    these = inverse, solve_lcp, push_all, slide_series, next_fall, first_fall
-    head = f"import math\nimport numpy as np\nNOISE = {NOISE!r}\n"
-    source = "\n\n".join((head, *(inspect.getsource(each) for each in these)))
-    return Loops and Loops("exact", source, error_model="numpy")  # type: ignore[truthy-function]
-
-
-def compile_loops():
-    """Compile them and keep them on disk: about 20 s, the first time. Returns the module."""
-    flags, row, table = np.ones(1, bool), np.ones(1), np.ones((1, 1))
-    slide = table, row, row, table, table, row, flags, table
-    gaps = np.ones((1, 2, 1)), row, row, flags, row, table, math.inf
-    calls = {"inverse": (table,), "solve_lcp": (table, row, row)}
-    return loops().load(calls | {"slide_series": slide, "next_fall": gaps})
-
-
 def sample(Q, times):
     """q, v (2, S, 2 N) at times (S,) of the series Q, with the same bits at any S."""
     powers = np.vander(times, len(Q))  # small terms first
@@ -445,38 +500,46 @@ def sample(Q, times):
     return np.array([np.einsum("sk,kn->sn", *each) for each in both])
 
 
-@np.errstate(all="ignore")
-def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MAX_IMPACTS) -> np.ndarray:
-    """q, v (2, S, 2, N) [m, m/s] of a contact.Scene at `times` (S,) [s], rising from 0.
+def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MAX_EVENTS) -> np.ndarray:
+    """Return q, v (2, S, 2, N) [m, m/s] of a contact.Scene at `times` (S,) [s], rising from 0.
 
-    Gravity [m/s^2] is along y, negative. At the moment of an event v is that after all rounds of
-    impacts. progress(k) is called after each event with the samples done. Raises RuntimeError
-    beyond the promise, and after `most` events.
+    Gravity [m/s^2] is along y, negative. At the time of an event v is that after all impacts.
+    progress(k) is called after each event with the samples done. Raises RuntimeError beyond the
+    limits, and after `most` events.
     """
     e, mass = scene.restitution, 1.0 * scene.mass[np.isfinite(scene.mass)]
     ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
-    if 0.0 < e < 1.0 and ratio > RATIO:
-        why = f"masses {ratio:.4g} : 1 at restitution {e:g}; at most {RATIO:g} : 1 where 0 < e < 1"
-        raise RuntimeError(f"exact: {why}. Take closer masses, or restitution 0 or 1")
-    motion, out = Motion(scene, gravity), np.empty((2, len(times), scene.q0.size))
+    if 0.0 < e < 1.0 and ratio > MAX_MASS_RATIO:
+        why = f"masses {ratio:.4g} : 1 at restitution {e:g}; at most {MAX_MASS_RATIO:g} : 1"
+        raise RuntimeError(f"exact: {why} where 0 < e < 1. Take closer masses, or e = 0 or 1")
+    with np.errstate(all="ignore"), one_thread():
+        return follow(Motion(scene, gravity), np.asarray(times), progress, most)
+
+
+def follow(motion, times, progress, most):
+    """Go from event to event until the last time. Return q, v (2, S, 2, N)."""
+    out = np.empty((2, len(times), 2, len(motion.w) // 2))
     now, done, event = 0.0, 0, True
     for _ in range(most):
-        motion.locate()
+        motion.update_gaps()
         if event:
-            touching, J = motion.touch()
-            held, a = motion.support(touching, J, motion.strike(touching, J))
-            slides = motion.slip(held, motion.v).any() or motion.slip(held, a).any()
-        Q, lam, horizon = np.array((motion.q, motion.v, 0.5 * a)), np.empty((5, 0)), math.inf
-        if slides:
-            Q, lam, horizon = motion.slide(held)
-        span = motion.next_event(Q, held, lam, horizon)
+            held, J, solve = motion.solve_contacts()
+        else:
+            J = motion.jacobian(held)
+            solve = inverse_delassus(J, motion.w)
+        Q, lam, horizon, gaps = motion.expand(held, J, solve)
+        span = motion.next_event(Q, lam, horizon, gaps)
         event = span < horizon
         last = int(np.searchsorted(times, now + span))
-        states = sample(Q, np.append(times[done:last] - now, span))
-        out[:, done:last] = states[:, :-1]
+        if last > done:
+            states = sample(Q, times[done:last] - now)
+            out[:, done:last] = states.reshape(2, last - done, 2, -1)
         progress(done := last)
         if done == len(times):
-            return out.reshape(2, len(times), *scene.q0.shape)
-        (motion.q, motion.v), now = states[:, -1], now + span
-    why = f"more than {most:,} events by {now:.6g} s, balls rattle without end"
-    raise RuntimeError(f"exact: {why}. Take a shorter run, another restitution, or closer masses")
+            return out[..., :-1]
+        powers = span ** np.arange(len(Q))
+        rates = powers[1:-1] * np.arange(2, len(Q))
+        motion.q, motion.v = Q[0] + powers[1:] @ Q[1:], Q[1] + rates @ Q[2:]
+        now += span
+    why = f"{most:,} events by {now:.6g} s, as contacts close again ever sooner (Zeno behaviour)"
+    raise RuntimeError(f"exact: {why}. Take a shorter run, fewer balls, or another restitution")
