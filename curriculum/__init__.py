@@ -62,6 +62,8 @@ def print_the_rest():
 _main = os.path.realpath(getattr(sys.modules["__main__"], "__file__", None) or "/")
 _ours = sys.argv[0] == "-m" or os.path.dirname(_main) in (HOME, os.path.join(HOME, "exercises"))
 if _ours and not hasattr(builtins, "__IPYTHON__"):  # whose %run goes on after a script
+    for library in ("OMP", "OPENBLAS", "MKL"):  # before numpy loads: nothing here gains by two
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     signal.signal(signal.SIGINT, stop)
     signal.signal(signal.SIGTERM, stop)
     sys.excepthook = refused

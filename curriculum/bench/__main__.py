@@ -17,12 +17,8 @@ the settings whose name contains these words; all other rows stay. With --quick 
 two, measures little, and writes to outputs/bench-quick, which nothing quotes.
 """
 
-import os
 import subprocess
 import sys
-
-for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
-    os.environ[f"{_library}_NUM_THREADS"] = "1"
 
 import contact
 from curriculum import stored

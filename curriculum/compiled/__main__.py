@@ -23,5 +23,3 @@ if __name__ == "__main__":
         print(f"compiled: {model}", flush=True)
     run.smallest_gap(scene.q0[None], scene.radius)
     print("compiled: the smallest gap", flush=True)
-    contact.optional_module("exact").compile_loops()
-    print("compiled: exact")

@@ -8,12 +8,8 @@
 Exit status 0: no violation; 1: violations; 2: bad command line.
 """
 
-import os
 import sys
 from functools import partial
-
-for _library in ("OMP", "OPENBLAS", "MKL"):  # one thread each; said before numpy is loaded
-    os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
 from curriculum.commands import Parser, needs, number
 
