@@ -1,24 +1,22 @@
 """exact where balls slide or lie side by side: event-driven in two dimensions (chapter 3.5).
 
-contact.py's own exact handles one vertical column. Here balls lie anywhere. Between two events the
-same contacts push and the motion is smooth: a parabola in time, or a power series where balls slide
-over one another. An event is a time of impact, a force that falls to zero, or the end of a series.
-At each event:
+Between two events the same contacts push and the motion is smooth: a parabola in time, or a power
+series where balls slide over one another. An event is a time of impact, a force that falls to zero,
+or the end of a series. At each event:
 
-    find_touching      lists the closed contacts,
-    solve_impacts      gives impulses to closing contacts: an LCP at velocity level,
-    solve_resting      gives forces to resting contacts: the same LCP at acceleration level,
-    slide_series       expands the motion in time, only where an active contact slips,
-    next_event         finds the first gap that closes or force that ends.
+    find_touching    lists the closed contacts,
+    solve_impacts    gives impulses to those that close: an LCP at velocity level,
+    solve_resting    gives forces to resting contacts: the same LCP at acceleration level,
+    slide_series     expands the motion in time, only where an active contact slips,
+    next_event       finds the first gap that closes or force that ends.
 
-Accuracy. Over some seconds and metres it is within 1e-10 r of every closed form: drop, bounce,
-stack, the slide to its release, the pyramid, the blocks that count pi (3, 31, 314, 3141 impacts).
-Rounding grows with both: 2.4e-9 r from 1e6 m up. Piles of 3 to 24 balls with e from 0 to 0.9 are
-within 1e-8 r of an independent solver for as long as a start shifted by 1e-15 m stays within 1e-9
-r. No overlap is above 1e-12 r. No energy is gained above 1e-12 of the start, and none is lost at
-e = 1. The answer does not depend on the sampling times.
-
-Limits. Mass ratios up to 100 where 0 < e < 1; MAX_EVENTS events, which crowded balls with e > 0 use
+Accuracy. Over some seconds and metres within 1e-10 r of every closed form: drop, bounce, stack, the
+slide to its release, the pyramid, the blocks that count pi (3, 31, 314, 3141 impacts). Rounding
+grows with both: 2.4e-9 r from 1e6 m up. Piles of 3 to 24 balls with e from 0 to 0.9 are within 1e-8
+r of an independent solver for as long as a start shifted by 1e-15 m stays within 1e-9 r. No overlap
+is above 1e-12 r. No energy is gained above 1e-12 of the start, and none is lost at e = 1. The
+answer does not depend on the sampling times.
+Limits. Mass ratios up to 100 where 0 < e < 1; MAX_EVENTS events, which a crowd with e > 0 may use
 up within a second (Zeno behaviour). Beyond them it raises one RuntimeError.
 
     q, v, a      positions, velocities, accelerations: (2 N,), all x, then all y   m, m/s, m/s^2
@@ -60,38 +58,33 @@ class Complementarity:
         unit = np.sqrt(W.diagonal())
         self.scale = unit * unit[:, None]  # makes the diagonal 1, whatever the masses
         self.table = self.W = W / self.scale
-        self.active = np.zeros(len(W), bool)
-        inverse = invert(self.table)
-        if inverse is not None:
-            self.table, self.active[:] = inverse, True
+        self.active, inverse = np.zeros(len(W), bool), invert(self.W)
+        if inverse is None:
+            self.table = pivot(self.W, self.active, np.flatnonzero(likely))
         else:
-            self.table = pivot(self.table, self.active, np.flatnonzero(likely))
+            self.table, self.active[:] = inverse, True
+        self.exact = np.abs(self.table.diagonal()).max(initial=0.0) < 1e4  # to 1e-12, as pivots go
 
-    def solve(self, b, slack=lambda: 0.0):
+    def solve(self, b, slack=0.0):
         """Return lam (K,), the active contacts, and the inverse of their part of W.
 
         Principal pivoting: first on all x < 0 together (Kostreva 1978), as long as they become
         fewer; then on one at a time, lam >= 0 throughout (Dantzig; for contacts Baraff 1994).
-        Raises RuntimeError if a ball is crushed, unless no contact closes by more than slack().
+        Raises RuntimeError if a ball is crushed, unless all contacts close by slack (K,) at most.
         """
         unit, table, active = np.sqrt(self.scale.diagonal()), self.table, self.active.copy()
         b, fewest = b / unit, len(b) + 1
         small = ROUNDING * np.abs(b).max(initial=0.0)
-        tolerance, fresh = np.full(len(b), small), np.abs(table.diagonal()).max(initial=0.0) < 1e4
+        tolerance = np.full(len(b), small)
         for _ in range(50 + 10 * len(b)):
             x = np.where(active, 0.0, b) - table @ np.where(active, b, 0.0)
             wrong = (x < -tolerance).nonzero()[0]
-            if not len(wrong) and fresh:
+            if not len(wrong):
                 on = active.nonzero()[0]
-                lam = np.where(active, np.maximum(x, 0.0), 0.0) / unit
-                return lam, on, table[on[:, None], on] / self.scale[on[:, None], on]
-            if not len(wrong):  # once more, without the rounding of all pivots so far
-                table, active = (
-                    pivot(self.W, out := np.zeros(len(b), bool), active.nonzero()[0]),
-                    out,
-                )
-                fresh = True
-                continue
+                block, lam = (on[:, None], on), 0.0 * b
+                inverse = table[block] if self.exact else np.linalg.inv(self.W[block])
+                lam[on] = np.maximum(-inverse @ b[on], 0.0)
+                return lam / unit, on, inverse / self.scale[block]
             chosen = wrong if len(wrong) < fewest else wrong[active[wrong]]
             fewest = min(fewest, len(wrong))
             if len(chosen):
@@ -102,22 +95,19 @@ class Complementarity:
             table, free = activate(table, active, x, k)
             if free is not None:  # pushes that change no s, and lower s_k for ever
                 way = free * (free @ b / (free @ free))
-                if (-way / unit).max() > max(
-                    (slack() * (free > 0.0)).max(), 1e3 * small / unit.min()
-                ):
+                if (-way).max() > max((slack / unit * (free > 0.0)).max(), 1e3 * small):
                     raise RuntimeError("exact: a ball is crushed between two fixed bodies")
                 b = b - way
-        raise RuntimeError(
-            "exact: the impulses or forces did not converge: the masses differ too much"
-        )
+        raise RuntimeError("exact: the pivots did not converge: the masses differ too much")
 
     def keep(self, chosen):
         """Leave out the other contacts."""
         if chosen.all():
             return
         table = pivot(self.table, self.active, np.flatnonzero(self.active & ~chosen))
-        self.table, self.scale = table[chosen][:, chosen], self.scale[chosen][:, chosen]
-        self.active, self.W = self.active[chosen], self.W[chosen][:, chosen]
+        self.active = self.active[chosen]
+        each = (table, self.scale, self.W)
+        self.table, self.scale, self.W = (m[chosen][:, chosen] for m in each)
 
 
 def activate(table, active, x, k):
@@ -127,7 +117,7 @@ def activate(table, active, x, k):
     """
     while not active[k]:
         column = table[:, k]
-        way = np.where(active & (column < 0.0), x / -column, math.inf)
+        way = np.where(active & (column < 0.0), x / np.maximum(-column, 1e-300), math.inf)
         j = way.argmin()
         if column[k] > DEPENDENT and -x[k] / column[k] <= way[j]:
             j = k
@@ -157,6 +147,13 @@ def invert(W):
     """Return W^-1, or None where a contact depends on others."""
     if len(W) == 1:
         return 1.0 / W if abs(W[0, 0]) > DEPENDENT else None
+    if len(W) > 40:  # a ball alone on the floor has one contact, with 0 beside its diagonal
+        linked = np.flatnonzero((W != 0.0).sum(0) > 1)
+        if 2 * len(linked) < len(W):
+            inverse, part = np.diag(1.0 / W.diagonal()), invert(W[linked[:, None], linked])
+            if part is not None:
+                inverse[linked[:, None], linked] = part
+                return inverse if (inverse.diagonal() < 1.0 / DEPENDENT).all() else None
     try:
         inverse = np.linalg.inv(W)
     except np.linalg.LinAlgError:
@@ -184,7 +181,8 @@ class Motion:
         self.q, self.v = np.pad(state, ((0, 0), (0, 0), (0, 1))).reshape(2, -1)
         self.w, self.e, self.g = np.tile(w, 2), scene.restitution, -gravity
         self.fall = np.where(self.w > 0.0, np.repeat((0.0, gravity), count), 0.0)
-        self.radius, self.smallest = radius[self.pairs[0]], scene.radius.min()
+        self.radius, small = radius[self.pairs[0]], scene.radius.min()
+        self.size = small, math.sqrt(self.g * small)  # m, m/s
         self.slow = ROUNDING * np.sqrt(self.g * self.radius)  # m/s
         self.rests = np.zeros(len(self.floor), bool)  # closed at the last event, and did not part
         self.active = self.rests.copy()  # rests and pushes
@@ -225,6 +223,11 @@ class Motion:
         row = row + solve @ (target - J @ row) @ push
         return row + solve @ (target - J @ row) @ push
 
+    def delassus_inverse(self, J):
+        """W^-1 of contacts that do not depend on one another."""
+        lcp = Complementarity(J * self.w @ J.T, np.ones(len(J), bool))
+        return lcp.table / lcp.scale
+
     def separate(self):
         """Move overlapping bodies apart, as at a start; what this closes in the next round."""
         for _ in range(50):
@@ -232,9 +235,9 @@ class Motion:
                 return
             self.n[:, self.length == 0.0] = (0.0,), (1.0,)  # one centre: up
             near = np.flatnonzero(self.found <= -2.0 * self.found.min())
-            J, slack = self.jacobian(near), 4.0 * self.bits / np.sqrt(self.inv_m_eff[near])
+            J = self.jacobian(near)
             lcp = Complementarity(J * self.w @ J.T, np.zeros(len(near), bool))
-            self.q = self.q + lcp.solve(self.found[near], lambda slack=slack: slack)[0] @ J * self.w
+            self.q = self.q + lcp.solve(self.found[near], 4.0 * self.bits)[0] @ J * self.w
             self.tracked[:] = math.inf
             self.update_gaps()
 
@@ -260,11 +263,7 @@ class Motion:
         target = -self.e * v_n
         target[(v_n < 0.0) & (target < math.sqrt(2.0 * MIN_BOUNCE) / ROUNDING * slow)] = 0.0
 
-        def turns():
-            return (
-                GRAZE * np.abs(self.slip(touching, J, self.v)) / np.sqrt(self.inv_m_eff[touching])
-            )
-
+        turns = GRAZE * np.abs(self.slip(touching, J, self.v))
         _, on, solve = lcp.solve(v_n - target, turns)
         self.v = self.project(self.v, J[on], solve, target[on])
         return np.maximum(J @ self.v, np.minimum(target, 0.0))  # 0 where it was allowed to close
@@ -290,7 +289,7 @@ class Motion:
             stays = needed <= pushes
         if (pushes[on] <= ROUNDING * self.g).any():
             on = np.flatnonzero(pushes > ROUNDING * self.g)
-            solve = inverse_delassus(J[on], self.w)
+            solve = self.delassus_inverse(J[on])
         self.rests[:] = self.active[:] = False
         self.rests[touching] = self.active[touching[on]] = True
         return touching[on], J[on], solve
@@ -313,8 +312,7 @@ class Motion:
         if (np.abs(J @ self.v) > 1e-3 * self.slow[held]).any():
             self.v = self.project(self.v, J, solve, 0.0)
         beside = J.any(0)
-        still = ROUNDING * math.sqrt(self.g * self.smallest)
-        self.v[beside & (np.abs(self.v) <= still)] = 0.0
+        self.v[beside & (np.abs(self.v) <= ROUNDING * self.size[1])] = 0.0
         turn = self.slip(held, J, self.v) ** 2 / self.touch_distance[held]
         a = self.project(self.fall, J, solve, -turn)
         a[beside & (np.abs(a) <= ROUNDING * self.g)] = 0.0
@@ -336,11 +334,8 @@ class Motion:
         if not slides:
             return np.array((self.q, self.v, 0.5 * a)), np.zeros((3, 0)), math.inf, gaps
         bodies = self.sides[held], self.touch_distance[held], self.floor[held]
-        size = self.smallest, math.sqrt(self.g * self.smallest)
-        enough = 1.2 * soon.min(initial=math.inf)
-        Q, lam, horizon = slide_series(
-            self.q, self.v, self.fall, self.w, J, *bodies, solve, size, enough
-        )
+        given, enough = (self.q, self.v, self.fall, self.w, J), 1.2 * soon.min(initial=math.inf)
+        Q, lam, horizon = slide_series(*given, *bodies, solve, self.size, enough)
         lam[0] = np.maximum(lam[0], 0.0) + ROUNDING * self.g / self.inv_m_eff[held]
         return Q, lam, horizon, gaps
 
@@ -394,9 +389,8 @@ class Motion:
         start = Q[0].reshape(2, -1) @ sides
         move = (span ** np.arange(1, len(Q)) @ Q[1:]).reshape(2, -1) @ sides
         square = gap * (gap + 2.0 * reach) + (move * (2.0 * start + move)).sum(0)
-        return np.where(
-            self.floor[near], gap + move[1], square / (reach + np.sqrt(reach**2 + square))
-        )
+        around = square / (reach + np.sqrt(reach**2 + square))
+        return np.where(self.floor[near], gap + move[1], around)
 
 
 # --- region: slide-series ---
@@ -440,13 +434,6 @@ def slide_series(q, v, a, w, J, sides, reach, floor, solve, size, enough):
 
 
 # --- endregion ---
-
-
-def inverse_delassus(J, w):
-    """W^-1 of contacts that do not depend on one another."""
-    W = J * w @ J.T
-    unit = np.sqrt(W.diagonal())
-    return np.linalg.inv(W / (unit * unit[:, None])) / (unit * unit[:, None])
 
 
 def first_roots(c, b, a):
@@ -526,7 +513,7 @@ def follow(motion, times, progress, most):
             held, J, solve = motion.solve_contacts()
         else:
             J = motion.jacobian(held)
-            solve = inverse_delassus(J, motion.w)
+            solve = motion.delassus_inverse(J)
         Q, lam, horizon, gaps = motion.expand(held, J, solve)
         span = motion.next_event(Q, lam, horizon, gaps)
         event = span < horizon

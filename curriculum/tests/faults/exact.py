@@ -12,7 +12,7 @@ FAULTS = [
     (E, "(self.gap[near] <= 1e-4 * opened)", "(self.gap[near] <= 1.0)", BLOCKS),
     (E, "np.minimum(4.0 * self.bits, 1e-9 * gap)", "4.0 * self.bits", ANY),
     # the pivots
-    (E, "x / -column", "x / column", PIVOT),
+    (E, "x / np.maximum(-column, 1e-300)", "-x / np.maximum(-column, 1e-300)", PIVOT),
     (E, "left, -inverse @ rows", "left, inverse @ rows", PIVOT),
     # impacts and what rests
     (E, "target = -self.e * v_n\n", "target = -self.e * np.abs(v_n)\n", ANY),
