@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import contact
-from curriculum import exact
 from curriculum.bench.measure import shaft
 from curriculum.compiled import run as compiled
 from curriculum.stress import scenes
@@ -146,9 +145,9 @@ def test_once_all_is_compiled_no_run_compiles_anything(tmp_path):
 
 
 def kept_files():
-    """The files of the loops as contact.py and exact.py are now; numba adds one a signature."""
+    """The files of the loops as contact.py is now; numba adds one a signature."""
     loops = [compiled.loops_of(contact.MODELS[model].step.__name__) for model in MODELS]
-    found = [each.folder.rglob("*.nb?") for each in (*loops, compiled.PAIRS, exact.loops())]
+    found = [each.folder.rglob("*.nb?") for each in (*loops, compiled.PAIRS)]
     return {(path, path.stat().st_size) for files in found for path in files}
 
 
