@@ -417,6 +417,9 @@ class Dart(Session):
         self.world = world = dart.simulation.World()
         world.setGravity([0.0, -GRAVITY, 0.0])
         world.setTimeStep(dt)
+        awake = world.getDeactivationOptions()
+        awake.mEnabled = False
+        world.setDeactivationOptions(awake)
         world.getConstraintSolver().setCollisionDetector(dart.collision.DARTCollisionDetector())
         self.put(dart.dynamics.BoxShape([2.0 * FLOOR, 2.0, 2.0 * FLOOR]), (0.0, -1.0))
         for place, velocity, mass, radius, fixed in balls_of(scene):
