@@ -4,6 +4,7 @@ writes it, what to do next; what went wrong, and a change of flags that cures it
 
 import math
 import os
+import sys
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import contact
-from curriculum.commands import ROOT, command
+from curriculum.commands import ROOT, command, quoted
 from exercises.kit.script import practise
 
 APEXES = 5  # heights of bounces that are printed
@@ -90,7 +91,10 @@ def print_next(args, argv: list[str]) -> None:
         print(f"next, read the chapter: {page}")
     recording = os.path.join(args.out, "contact.rrd")
     if args.rerun and os.path.exists(recording):
-        print(f"next, watch it: {command('-m', 'rerun', recording)}")
+        viewer = Path(sys.executable).with_name("rerun.exe" if os.name == "nt" else "rerun")
+        by = ("uv", "run", "rerun") if "UV" in os.environ else (viewer,)
+        there = quoted(*by, recording) if by[0] == "uv" or viewer.exists() else None
+        print(f"next, watch it: {there or command('-m', 'rerun', recording)}")
     elif not args.plot and find_spec("matplotlib"):
         print(f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}")
     print(practise())
