@@ -165,7 +165,7 @@ def calls_later(scene, steps):
     return {getattr(each.code, "co_name", ""): each.callcount for each in profile.getstats()}
 
 
-@pytest.mark.parametrize("gap", [0.0, 0.05, 0.06, 0.07])
+@pytest.mark.parametrize("gap", [0.0, 0.05, 0.07, 0.2])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_impacts_that_make_a_light_ball_much_faster_let_it_hit_what_was_far(side, gap):
     squirted = contact.scene_of(  # two heavy balls close on a light one, over the floor
