@@ -1,4 +1,4 @@
-"""exact where balls slide or lie side by side: event-driven in two dimensions (chapter 3.5).
+"""exact in the plane, event-driven: all scenes that contact.exact_run leaves (chapter 3.5).
 
 Between two events the same contacts push and the motion is smooth: a parabola in time, or a power
 series where balls slide over one another. An event is a time of impact, a force that falls to zero,
@@ -7,25 +7,24 @@ or the end of a series. At each event:
     find_touching    lists the closed contacts,
     solve_impacts    gives impulses to those that close: an LCP at velocity level,
     solve_resting    gives forces to resting contacts: the same LCP at acceleration level,
-    slide_series     expands the motion in time, only where an active contact slips,
+    expand           gives the motion in time: a parabola, or slide_series where a contact slips,
     next_event       finds the first gap that closes or force that ends.
 
-Accuracy. Over some seconds and metres within 1e-10 r of every closed form: drop, bounce, stack, the
-slide to its release, the pyramid, the blocks that count pi (3, 31, 314, 3141 impacts). Rounding
-grows with both: 2.4e-9 r from 1e6 m up. Piles of 3 to 24 balls with e from 0 to 0.9 are within 1e-8
-r of an independent solver for as long as a start shifted by 1e-15 m stays within 1e-9 r. No overlap
-is above 1e-12 r. No energy is gained above 1e-12 of the start, and none is lost at e = 1. The
-answer does not depend on the sampling times.
-Limits. Mass ratios up to 100 where 0 < e < 1; MAX_EVENTS events, which a crowd with e > 0 may use
-up within a second (Zeno behaviour). Beyond them it raises one RuntimeError.
+Accuracy: over some seconds and metres within 1e-10 r of every closed form, and within 1e-8 r of an
+independent solver for as long as a start shifted by 1e-15 m stays within 1e-9 r (see the tests). No
+overlap is above 1e-12 r, and no energy is gained above 1e-12 of the start.
+Limits, each a RuntimeError: mass ratios above 100 where 0 < e < 1; MAX_EVENTS events, which a crowd
+with e > 0 may use up within a second (Zeno behaviour); a ball that is crushed; pivots that do not
+converge.
 
     q, v, a      positions, velocities, accelerations: (2 N,), all x, then all y   m, m/s, m/s^2
-                 the last of the N bodies is the floor
+                 N: the bodies of the scene and, the last of them, the floor
     w            1 / mass; 0 for a fixed body                                      1/kg
     a, b, n      a contact's two bodies and its unit normal, from b to a
     gap, v_n     distance of the surfaces, and its rate: > 0 separating            m, m/s
     lam          impulse or force of a contact, >= 0                               N s or N
     J, W         J v is v_n (J: a row a contact); W = J M^-1 J', Delassus matrix   1, 1/kg
+    held, solve  indices of the active contacts; W^-1 of these                     -, kg
 """
 
 import math
@@ -38,9 +37,9 @@ ORDER = 20  # of the power series at most; a longer one lasts longer and costs m
 MAX_EVENTS = 50_000  # in a run: about a minute with 40 balls
 TOUCH_TOLERANCE = 1e-12  # of a radius: a smaller gap is closed. Rounding is 1e-15, the goal 1e-10
 MIN_BOUNCE = 1e-13  # of a radius: a bounce that would rise less is the last of its series
-ROUNDING = 1e-12  # of g, of sqrt(g r), of the largest: less is rounding, which leaves 1e-15
+ROUNDING = 1e-12  # of g, of sqrt(g r), of the largest entry: less is rounding (1e-15)
 GRAZE = 3e-8  # of the slip: a ball between two fixed ones may close as slowly as that
-DEPENDENT = 1e-10  # of a contact's 1 / m_eff: with less of its own, it depends on other contacts
+DEPENDENT = 1e-10  # of a contact's 1 / m_eff: with a smaller pivot it depends linearly on others
 MAX_MASS_RATIO = 100.0  # where 0 < e < 1; above it light balls bounce ever faster under heavy ones
 
 
@@ -63,14 +62,16 @@ class Complementarity:
             self.table = pivot(self.W, self.active, np.flatnonzero(likely))
         else:
             self.table, self.active[:] = inverse, True
-        self.exact = np.abs(self.table.diagonal()).max(initial=0.0) < 1e4  # to 1e-12, as pivots go
+        # is the table right to 1e-12? else solve inverts anew
+        self.exact = np.abs(self.table.diagonal()).max(initial=0.0) < 1e4
 
     def solve(self, b, slack=0.0):
         """Return lam (K,), the active contacts, and the inverse of their part of W.
 
         Principal pivoting: first on all x < 0 together (Kostreva 1978), as long as they become
         fewer; then on one at a time, lam >= 0 throughout (Dantzig; for contacts Baraff 1994).
-        Raises RuntimeError if a ball is crushed, unless all contacts close by slack (K,) at most.
+        Raises RuntimeError if a ball is crushed, unless all contacts close by slack (K,), in the
+        unit of b, at most; and if the pivots do not converge.
         """
         unit, table, active = np.sqrt(self.scale.diagonal()), self.table, self.active.copy()
         b, fewest = b / unit, len(b) + 1
@@ -93,7 +94,7 @@ class Complementarity:
             k = x.argmin()
             tolerance[k] *= 10.0  # so that rounding cannot bring it back for ever
             table, free = activate(table, active, x, k)
-            if free is not None:  # pushes that change no s, and lower s_k for ever
+            if free is not None:  # pushes in the null space of W: s_k falls without end
                 way = free * (free @ b / (free @ free))
                 if (-way).max() > max((slack / unit * (free > 0.0)).max(), 1e3 * small):
                     raise RuntimeError("exact: a ball is crushed between two fixed bodies")
@@ -199,7 +200,8 @@ class Motion:
     def update_gaps(self):
         """Compute normals and gaps from q, but keep a tracked gap below 1e4 times a closed one.
 
-        A light ball between two others bounces until its gaps fall below the rounding of q.
+        A light ball between two others bounces until its gaps fall below the rounding of q. found:
+        the gap from q; bits: rounding of q; closed: the largest gap that counts as closed [m].
         """
         d = self.apart(self.q[None])[0]
         self.length = np.where(self.floor, d[1], np.hypot(d[0], d[1]))
@@ -213,7 +215,7 @@ class Motion:
         return np.concatenate((*self.n[:, chosen, None] * self.sides[chosen],), 1)
 
     def slip(self, chosen, J, row):
-        """The part of row along the surfaces; 0 at the floor."""
+        """The tangential part of row, relative velocities or accelerations; 0 at the floor."""
         x, y = row.reshape(2, -1)
         return J @ np.concatenate((y, -x)) * self.curves[chosen]
 
@@ -320,7 +322,8 @@ class Motion:
 
     def expand(self, held, J, solve):
         """Return the motion from here on as a series Q in time, forces lam, how long [s] it holds,
-        and of each gap: value, with its rounding, rate, bend (half the acceleration), likely end.
+        and of each gap: value, with its rounding, rate, bend (half the acceleration), and about
+        when it closes [s].
         """
         a, slides = self.accelerate(held, J, solve)
         gap = np.maximum(self.gap, 0.0)
@@ -373,7 +376,7 @@ class Motion:
         return span
 
     def polynomial(self, k, Q, gap, rounds):
-        """The series of pair k that falls through 0 with its gap: y - r, or d . d - reach^2."""
+        """A series that falls through 0 with the gap of pair k: y or d . d, less that at touch."""
         (a, b), reach = self.pairs[:, k], 2.0 * self.touch_distance[k]
         half = Q.shape[1] // 2
         y = Q[:, half + a] - Q[:, half + b]
