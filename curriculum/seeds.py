@@ -12,13 +12,11 @@ summary, seeds.json, is the same bytes wherever, in whatever order and parts the
 
 import argparse
 import math
-import os
 import re
 import sys
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
-from tempfile import TemporaryFile, gettempdir
 
 import contact
 from contact import np  # which says how to install it where it is missing
@@ -35,17 +33,17 @@ fail = Parser(prog=PROG).error
 
 
 def seed_range(text):
-    """An argparse type: the seeds of "A:B", from A to B - 1."""
+    """Return the seeds of "A:B", from A to B - 1; an argparse type."""
     first, _, last = text.partition(":")
     numbers = first.isdecimal() and last.isdecimal() and int(last) <= 10**18
-    if not (numbers and 0 < int(last) - int(first) <= 10**9):
-        allowed = "A:B, whole numbers, A < B <= 1e18, at most 1e9 seeds, such as 0:20 for 0 to 19"
+    if not (numbers and 0 < int(last) - int(first) <= 10**6):
+        allowed = "A:B, whole numbers, A < B <= 1e18, at most 1e6 seeds, such as 0:20 for 0 to 19"
         raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
     return range(int(first), int(last))
 
 
 def parse(argv):
-    """The seeds, the scheduler or None, and the other flags as contact.parse_flags gives them."""
+    """Return the seeds, the scheduler or None, and the other flags from contact.parse_flags."""
     parser = Parser(prog=PROG, description=__doc__)
     parser.add_argument("seeds", type=seed_range, metavar="A:B", help="from A to B - 1")
     parser.add_argument("--scheduler", metavar="HOST:PORT", help="run them on a dask cluster")
@@ -106,19 +104,12 @@ def run_missing(path, args, seeds, models, scheduler):
 
 
 def read(path, mark, seeds, models):
-    """The whole rows of these seeds in a file that have this mark, and how many have another one.
+    """Return the whole rows of these seeds in a file that have this mark, and how many have others.
 
-    The first is (models, seeds, 1 + KEYS), on the disk, so that memory stays flat. Column 0 says
-    how a run ended, as a place in ENDINGS; 0: there is no row. NaN is what a run does not know.
+    The rows are (models, seeds, 1 + KEYS). Column 0 is how a run ended, as a place in ENDINGS, and
+    0 where there is no row. NaN: the run has no such measure.
     """
-    shape, others = (len(models), len(seeds), 1 + len(KEYS)), 0
-    with TemporaryFile() as file:
-        try:  # a disk that fills up later would end it by a bus error
-            if hasattr(os, "posix_fallocate"):
-                os.posix_fallocate(file.fileno(), 0, 8 * math.prod(shape))
-        except OSError as error:
-            raise OSError(error.errno, error.strerror, gettempdir()) from None
-        rows = np.memmap(file, float, shape=shape)
+    rows, others = np.zeros((len(models), len(seeds), 1 + len(KEYS))), 0
     for line in path.open(encoding="utf-8", errors="replace") if path.is_file() else ():
         if not WHOLE(line):
             continue  # a head, or a row that was cut or that something fell into
@@ -136,19 +127,19 @@ def read(path, mark, seeds, models):
 
 @cache
 def code():
-    """{what a row depends on: its stamp or version}, of what this process has."""
+    """Return {what a row depends on: its hash or version} in this process."""
     return stored.stamp(*stored.made_by("curriculum/seeds.py")) | {"numpy": version("numpy")}
 
 
 def made_by(args):
-    """The mark of all rows of these flags, this code and this numpy."""
+    """Return the mark of all rows of these flags, this code and this numpy."""
     no_matter = "seed", "out", "rerun", "plot", "smoke", "skip", "device"
     flags = {name: value for name, value in sorted(vars(args).items()) if name not in no_matter}
     return stored.digest([flags, code()])
 
 
 def rows_of(args, known, seed):
-    """The rows of one seed, a line a model; another process may run it."""
+    """Run one seed, perhaps in another process. Returns its rows, a line a model."""
     if other := {name.partition("#")[0] for name in known if code().get(name) != known[name]}:
         raise ImportError(f"another {', '.join(sorted(other))} is there; give all the same")
     _, without, quality = contact.run_models(*contact.asked_for(args, seed))
@@ -163,19 +154,19 @@ def rows_of(args, known, seed):
 
 
 def cell(value):
-    """A measure as text: empty where it is unknown, and inf for all that is not finite."""
+    """Return a measure as text: empty for None, and inf for all that is not finite."""
     if value is None:
         return ""
     return str(value if math.isfinite(value) else math.inf)
 
 
 def ended(end):
-    """The place in ENDINGS of how a run ended."""
+    """Return the place in ENDINGS of how a run ended."""
     return next(place for place, words in enumerate(ENDINGS) if place and end.startswith(words))
 
 
 def summary(rows, seeds):
-    """{"median": row, "lowest": row, "highest": row} of a model's rows; {} if it has no run.
+    """Return {"median": row, "lowest": row, "highest": row} of a model's rows; {} without a run.
 
     A row counts the runs, those that exploded, and others that went through something; a key
     that a run lacks is None. seeds: by which seed it is the lowest or the highest.
@@ -199,19 +190,15 @@ def summary(rows, seeds):
 
 
 def extremes(ways):
-    """By which seeds the measures of a model are the lowest and the highest, where they differ."""
+    """Return the seeds of the lowest and the highest measures of a model, where these differ."""
     low, high = ways["lowest"], ways["highest"]
-    columns = [(title, key) for title, (key, _) in contact.COLUMNS.items()]
-    differ = [
-        (t, k)
-        for t, k in columns
-        if contact.format_number(low[k]) != contact.format_number(high[k])
-    ]
+    differ = [(title, key) for title, (key, _) in contact.COLUMNS.items()
+              if contact.format_number(low[key]) != contact.format_number(high[key])]  # fmt: skip
     return ", ".join(f"{t} {low['seeds'][k]} and {high['seeds'][k]}" for t, k in differ)
 
 
 def ending(row, count):
-    """How the runs of a row ended."""
+    """Return in words how the runs of a row ended."""
     lost = count - row["runs"]
     ends = {"EXPLODED": row["blew_up"], "went through": row["through"], "could not be run": lost}
     return ", ".join(f"{n} of {count} {end}" for end, n in ends.items() if n) or "ok"

@@ -1,4 +1,4 @@
-"""The chapter's Markdown, read once: its parts, for the gate, the page, the notebook and the tests.
+"""Split the chapter's Markdown into parts, for the gate, the page, the notebook and the tests.
 
 Beside plain Markdown it may hold
 - an include, a fence with the one line [include-by-region: FILE#NAME]: the code of a region;
@@ -51,12 +51,12 @@ class Part(NamedTuple):
     file: str = CHAPTER
 
     def line_of(self, match, group=0) -> int:
-        """The line of its file on which a match in its text, or a group of it, begins."""
+        """Return the line of its file on which a match in its text, or a group of it, begins."""
         return self.line + line_at(self.text, match.start(group)) - 1
 
 
 def split(text) -> list:
-    """The parts of a text, in order."""
+    """Return the parts of a text, in order."""
     parts, done = [], 0
     for match in PART.finditer(text):
         if before := text[done : match.start()]:
@@ -67,7 +67,7 @@ def split(text) -> list:
 
 
 def kind_of(match) -> tuple:
-    """(kind, name) of a match of PART."""
+    """Return (kind, name) of a match of PART."""
     if match["fence"]:
         include = INCLUDE.fullmatch(match["code"].strip())
         return ("region", include[1]) if include else ("code", match["code"])
@@ -78,7 +78,7 @@ def kind_of(match) -> tuple:
 
 
 def faults(parts):
-    """What cannot be meant, a line each."""
+    """Yield a line for each malformed mark, and for raw HTML."""
     for part in (part for part in parts if part.kind in PLAIN):
         for match in LIKE_A_MARK.finditer(part.text):
             place = f"{CHAPTER}:{part.line_of(match)}"
@@ -90,7 +90,7 @@ def faults(parts):
 
 
 def read(text) -> list:
-    """The parts of the chapter. Raises ValueError, a line a fault."""
+    """Return the parts of the chapter. Raises ValueError, a line a fault."""
     parts = split(text)
     if wrong := "\n".join(faults(parts)):
         raise ValueError(wrong)

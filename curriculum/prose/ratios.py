@@ -1,4 +1,4 @@
-"""Ratios in words, "a quarter" or "eight times", which a claim beside them must hold."""
+"""Find ratios in words, "a quarter" or "eight times", without a claim beside them."""
 
 import math
 import re

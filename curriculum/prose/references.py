@@ -45,12 +45,12 @@ KEPT = ROOT / ".cache"  # what the code gave; git ignores it, and it may be dele
 
 
 class TextError(ValueError):
-    """What somebody wrote and can mend, in one line. Any other error is our own."""
+    """An error of the text, in one line. Any other error is one of the code."""
 
 
 @cache
 def load_meta() -> dict:
-    """meta.yaml. Raises TextError, which says where, when it is not YAML or lacks its runs."""
+    """Return meta.yaml. Raises TextError, with the place, if it is not YAML or lacks its runs."""
     try:
         meta = yaml.safe_load(read_text("meta.yaml")) or {}
         return {"region_hashes": {}, "read": {}, "runs": meta["runs"]} | meta
@@ -62,12 +62,12 @@ def load_meta() -> dict:
 
 @cache
 def made_by() -> dict:
-    """The stamp of the code that makes numbers."""
+    """Return the hashes of the code that computes numbers."""
     return stored.stamp(*stored.made_by(*MADE_BY))
 
 
 def cached(name: str, inputs, make):
-    """make()'s result (JSON), made anew where `inputs` or the code changed since the last time."""
+    """Return make()'s result (JSON), computed again only if `inputs` or the code changed."""
     about = [inputs, made_by(), version("numpy"), sys.version]
     path = KEPT / f"{name}.json"
     with suppress(OSError, ValueError):
@@ -81,7 +81,7 @@ def cached(name: str, inputs, make):
 
 
 def run_contact(flags) -> dict:
-    """What `python contact.py FLAGS` measures, or many seeds where the first flag is A:B."""
+    """Return what `python contact.py FLAGS` measures, or many seeds if the first flag is A:B."""
     start = ["-m", "curriculum.seeds"] if ":" in str(flags[:1]) else ["contact.py"]
     words = [*start, *map(str, flags)]
     with tempfile.TemporaryDirectory() as out:
@@ -94,8 +94,8 @@ def run_contact(flags) -> dict:
 
 @cache
 def known(source) -> dict:
-    """{"a.b.3": number or text} of what stands before a colon; before none, of the reference run
-    and of contact.py."""
+    """Return {"a.b.3": number or text} of a source, the word before a colon; of "", the reference
+    run and contact.py."""
     runs = load_meta()["runs"]
     if source in stored.FOLDERS:
         tables, made = stored.load(stored.FOLDERS[source])
@@ -110,7 +110,7 @@ def known(source) -> dict:
 
 
 def prepare(text):
-    """Make the runs that a text names, on all cores. What is asked for is made once."""
+    """Run what a text names, each run once, on all cores."""
     wanted = [name for name in load_meta()["runs"] if f"{name}:" in text]
     made_by()  # and kept: Python 3.11 cannot parse in two threads at once
     with ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -118,13 +118,13 @@ def prepare(text):
 
 
 def operand(match) -> str:
-    """What a name in a formula stands for, as Python writes it."""
+    """Return the value of a name in a formula, as Python writes it."""
     source, _, key = match[0].rpartition(":")
     return f"({pick(known(source), key, match[0])!r})"
 
 
 def shown(reference) -> str:
-    """What a reader sees in place of {{reference}}: of a claim nothing. Raises TextError."""
+    """Return the text of {{reference}} on the page, "" for a claim. Raises TextError."""
     formula, _, form = (part.strip() for part in " ".join(reference.split()).partition("|"))
     if formula.startswith("="):
         if not form:
@@ -148,20 +148,20 @@ def shown(reference) -> str:
 
 
 def fill(text) -> str:
-    """The text with every reference replaced."""
+    """Return the text with every reference replaced."""
     prepare(text)
     return REFERENCE.sub(lambda match: shown(match[1]), text)
 
 
 def typeset(number: str) -> str:
-    """A number as print has it: -7e-05 as −7 × 10⁻⁵."""
+    """Return a number as it is printed: -7e-05 as −7 × 10⁻⁵."""
     mantissa, _, power = number.partition("e")
     raised = f"\u00a0×\u00a010{str(int(power)).translate(RAISED)}" if power else ""
     return mantissa.replace("-", "−") + raised
 
 
 def leaves(tree, path=""):
-    """Pairs ("a.b.3", value) of all that stands in dicts, lists and tuples."""
+    """Yield ("a.b.3", value) of every value in nested dicts, lists and tuples."""
     if isinstance(tree, (list, tuple)):
         tree = dict(enumerate(tree))
     if isinstance(tree, dict):
@@ -172,7 +172,7 @@ def leaves(tree, path=""):
 
 
 def pick(table, name, asked):
-    """What a table has under a name. Raises TextError, which says what is like it there."""
+    """Return table[name]. Raises TextError with similar names if there is none."""
     if name not in table:
         near = difflib.get_close_matches(name, table, n=5, cutoff=0.0)
         raise TextError(f"{asked!r} is not there: no {name!r}; known there: {', '.join(near)}")
