@@ -19,7 +19,7 @@ FAULTS = [
     (C, "or speed2 == 0.0:", "or speed2 < 0.0:", OWN),
     # each impact is resolved at its time of impact
     (C, "and not is_resting(c, dt)]):", "and False]):", STEP),
-    (C, "if len([c for c", "if 1 + len([c for c", BOUNDED),
+    (C, "[c for c in contacts if c.gap", "[0] + [c for c in contacts if c.gap", BOUNDED),
     (C, "or lower.supported > 0.0:", "or lower.supported >= 0.0:", OWN),
     (C, " c.load = 1e-6 if restitution > 0.0 else -GRAVITY", " c.load = 1e-6",
      "test_golden.py -k leapfrog"),
