@@ -161,7 +161,7 @@ export function stage(box, figure, given, still) {
   };
   view.play = (from = own.time) => {
     [view.running, last] = [true, performance.now()];
-    own.time = from >= figure.clock(view).end ? 0 : from;
+    own.time = from >= figure.clock(view).end || from === text.time ? 0 : from;
     ask();
   };
   // the time that has passed since the last picture

@@ -21,8 +21,8 @@ const lost = (name, given, width) => {
   const [found, first] = [new Set(), drawn(name, given, {}, width)];
   const ends = first.knobs.flatMap((knob) =>
     ["low", "high"].map((end) => ({ [knob]: MADE.QUANTITIES[knob][end] })));
-  const places = first.handles.flatMap(({ value, low, high }) => [low, high].map((end) =>
-    Object.fromEntries(several(value).map((key, k) => [key, several(end)[k] ?? end]))));
+  const places = first.handles.flatMap(({ value, low, high, also }) => [low, high].map((end) =>
+    ({ ...also, ...Object.fromEntries(several(value).map((key, k) => [key, several(end)[k] ?? end])) })));
   for (const own of [{}, ...places].flatMap((place) =>
     [{}, ...ends].map((end) => ({ ...place, ...end })))) {
     const { svg, words, handles, height } = drawn(name, given, own, width);

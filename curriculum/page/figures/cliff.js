@@ -9,6 +9,7 @@ import { column, G, kept, R, record } from "../runs.js";
 
 const [LOW, HIGH, COUNT, SECONDS] = [0.0005, 0.064, 1000, 4]; // s, s, steps, s
 const [NONE, FARTHEST] = [1e-6, 1e9]; // r: less is drawn as zero, more as nowhere
+const beside = (width) => width >= 480; // the circle stands beside the chart, or above it
 const LEFTMOST = -2.4; // an eigenvalue further to the left is only said
 
 // The eigenvalues [real, imaginary] of the step's matrix, for a ball of 1 kg.
@@ -37,9 +38,9 @@ const gains = kept((dt, stiffness, damping) => {
   return Number.isNaN(most) ? Infinity : most / energy(0) - 1;
 });
 
-function circleOf({ own, width }, pairs, critical, height) {
-  const unit = Math.min(width / 4.6, (height - 26) / 2.1);
-  const [x, y] = [width - 1.5 * unit, 0.5 * height];
+function circleOf(own, pairs, critical, width, height) {
+  const unit = Math.min(width / 4, (height - 26) / 2.1);
+  const [x, y] = [0.5 * (width + unit), 0.5 * height + 6];
   const at = ([real, imaginary]) => [x + within(LEFTMOST, real, 1.3) * unit, y - imaginary * unit];
   // the way of both, from a step of nothing to twice the critical one
   const ways = [0, 1].map((which) => range(121, (k) => at(pairOf(own, (k / 60) * critical)[which])));
@@ -63,9 +64,9 @@ function draw(view) {
   const gained = gains(dt, stiffness, damping);
   const dts = [...range(22, (k) => LOW * (HIGH / LOW) ** (k / 21)), 0.985 * critical, 1.015 * critical]
     .filter((each) => each >= LOW && each <= HIGH).sort((a, b) => a - b);
-  const top = Math.round(0.42 * height);
+  const [left, top] = beside(width) ? [Math.round(0.42 * width), 0] : [0, Math.round(0.42 * height)];
   const { sx, sy, box, picture, knob } = plot(view, {
-    top, x: timeSteps(LOW, HIGH),
+    left, top, x: timeSteps(LOW, HIGH),
     y: { ...axis([NONE, FARTHEST], `still moving after ${COUNT.toLocaleString("en")} steps / r`,
       [NONE, "<10⁻⁶"], 0.001, 1, 1000, [1e6, "10⁶"]), log: true },
     lines: [{ model: "penalty", kind: "plainly",
@@ -76,7 +77,7 @@ function draw(view) {
   const size = Math.max(...pairs.map((pair) => Math.hypot(...pair)));
   return {
     picture: [
-      circleOf(view, pairs, critical, top - 12), picture,
+      circleOf(view.own, pairs, critical, left || width, top || height), picture,
       line(sx(critical), box.top, sx(critical), box.bottom, "rule"),
       label(`critical: ${ms(critical)}`, sx(critical) + 6 * side, box.top + 14, side < 0 ? "end" : "start"),
       mark("penalty", sx(dt), sy(moves(dt, stiffness, damping)), 7), knob("dt", "the time step", 0.0002),
@@ -90,7 +91,7 @@ export const figure = {
   title: "The cliff: eigenvalues, and what they do",
   caption: "Make the step longer: the pair meets, parts, and one leaves the circle on the left. Just there "
     + "a ball at rest begins to move.",
-  height: (width) => (width < 480 ? 430 : 500),
+  height: (width) => (beside(width) ? 300 : 430),
   knobs: ["stiffness", "damping"],
   draw,
 };

@@ -20,10 +20,10 @@ function stepped(model, own) {
   const near = -contact.depth < (model === "lcp" ? CONTACT_MARGIN : 0);
   const run = record(model, [one], { ...own, restitution: 0 }, 1);
   const [end, lam] = [run.y[1] / R - 1, run.vy[1] - fall];
-  const asked = (impulse) => gap + ((contact.target - contact.softness * impulse) * dt) / R;
-  const line = !near || model === "penalty" ? [[HIGH, lam], [LOW, lam]]
-    : [[HIGH, 0], [asked(0), 0], [asked(2 * MOST), 2 * MOST]];
-  return { model, end, lam, line };
+  const asks = (impulse) => gap + ((contact.target - contact.softness * impulse) * dt) / R;
+  const level = !near || model === "penalty";
+  const line = level ? [[HIGH, lam], [LOW, lam]] : [[HIGH, 0], [asks(0), 0], [asks(2 * MOST), 2 * MOST]];
+  return { model, end, lam, line, name: level ? [HIGH, lam] : [asks(0.95 * MOST), 0.95 * MOST] };
 }
 
 const short = (value) => plain(Number(value.toFixed(3)));
@@ -47,12 +47,10 @@ function draw(view) {
       drawn(found.map(({ model, end }) => ball(model, x, at(end), r, "ghost")),
         arrow("weight", x + r + 12, at(gap) + r, 0, at(free) - at(gap))),
       view.grab(what, ball("fixed", x, at(gap), r)), picture,
-      label("the step", Math.min(sx(free + (4.4 * dt) / R), box.right) - 12, sy(4.6), "end", "tick"),
-      found.map(({ model, end, lam }) => {
-        const side = model === "soft" ? -1 : 1;
-        return [mark(model, sx(end), sy(lam), 7), label(model, sx(end) + 12 * side,
-          sy(lam) + 4 + 14 * side, side > 0 ? "start" : "end")];
-      }),
+      label("the step", Math.min(sx(free + (3.9 * dt) / R) + 10, box.right - 56), sy(3.9), "start", "tick"),
+      found.map(({ model, end, lam, name: [at, high] }, k) => [mark(model, sx(end), sy(lam), 7),
+        at === HIGH
+        ? label(model, box.right, sy(high) - 8 - 18 * k, "end") : label(model, sx(at) + 8, sy(high))]),
       knob("free", "where the ball would end without a push", 0.005),
     ],
     words: `From ${short(gap)} r to ${short(free)} r; with a push: ` +

@@ -103,7 +103,8 @@ function draw(view) {
   const { all, from, to } = runsOf(own);
   const row = Math.min(Math.round(within(from, from + own.time, to) / own.dt), all[0].made.steps);
   const time = row * own.dt;
-  view.seen = Math.max(view.seen ?? 0, time); // what comes is not told before it has been played
+  // what comes is not told before it has been played, unless the text shows some of it
+  view.seen = Math.max(view.seen ?? (view.text.time > 0 ? to : 0), time);
   const chartTop = Math.round(0.56 * height);
   const [wide, floor, top] = [width / all.length, chartTop - BELOW, topOf(view.text)];
   const scale = Math.min((floor - 6) / top, (0.42 * wide) / R); // px for 1 m

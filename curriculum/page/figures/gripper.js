@@ -9,7 +9,7 @@ const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // 
 const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s; what comes after this share is judged
 const [LARGER, FAR] = [80, 0.5]; // times; m: what is farther away has flown apart
 const FATES = ["holds still", "trembles", "flies apart"];
-const endsOf = ({ switch: shown }) => (shown ? [0.0002, 0.016] : [0.002, 0.008]); // s
+const endsOf = ({ switch: shown }) => (shown ? [0.0005, 0.016] : [0.002, 0.008]); // s
 
 // What becomes of it, by how much finger and cup tremble [r], and the states [x, y] that are shown:
 // the late ones, larger, or the flight.
@@ -52,7 +52,7 @@ function draw(view) {
   const places = range(3, (i) => [0, 1].map((k) => now[k][i] + share * (next[k][i] - now[k][i])))
     .map(([x, y]) => [middle + x * scale, floor - Math.max(R, y) * scale]);
   const finger = ([x, y]) =>
-    [rect(x - 0.25 * r, 14, 0.5 * r, y - 14, "arm"), ball("fixed", x, y, r, "body")];
+    [rect(x - r, 14, 2 * r, y - 14, "arm"), ball("fixed", x, y, r, "body")];
   const [cupX, cupY] = places[1];
   const at = (step) => 12 + ((width - 24) * Math.log(step / low)) / Math.log(high / low);
   const parts = [low, ...[1, 2].map((k) => begins(k, stiffness, late, low, high)), high];
@@ -69,7 +69,7 @@ function draw(view) {
           k === fate || to - from > 6 * name.length
             ? label(name, (from + to) / 2, top + 38, "middle", k === fate ? "strong" : "tick") : ""];
       }),
-      [0.0002, 0.001, 0.002, 0.004, 0.016, ...(low > 0.001 ? [0.008] : [])].filter((each) => each >= low && each <= high)
+      [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016].filter((each) => each >= low && each <= high)
         .map((each) => label(ms(each), within(26, at(each), width - 26), top + 58, "middle", "tick")),
       line(at(dt), top - 8, at(dt), top + 18, "rule"), view.point(at(dt), top + 9, what),
     ],

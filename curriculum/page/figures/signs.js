@@ -16,7 +16,7 @@ function draw(view) {
     const [fromX, fromY] = k ? place(nx * R, R + ny * R) : place(x, 0);
     const [dx, dy] = [0.7 * R * scale * nx, -0.7 * R * scale * ny];
     return [arrow("push m-exact", fromX, fromY, dx, dy),
-      label("n", fromX + dx + 10, fromY + dy + 5, "start", "axis-name")];
+      label("n", fromX + 1.35 * dx, fromY + 1.35 * dy + 5, "middle", "axis-name")];
   });
   const [[ax, ay], [bx, by], r] = [place(x, y), place(0, R), R * scale];
   const [tipX, tipY] = place(x + ARROW * vx, y + ARROW * vy);

@@ -3,10 +3,10 @@
 import { ball, clipped, label, logAxis, mark, ms, number, path, plot, range } from "../draw.js";
 import { timeSteps } from "../draw.js";
 import { data } from "../data.js";
-import { column, kept, R, record } from "../runs.js";
+import { column, G, kept, R, record } from "../runs.js";
 
 const BOTH = ["lcp", "leapfrog"];
-const [SECONDS, FINE, HEIGHT] = [0.48, 1e-4, 5]; // s, s, m: so high that it meets no table
+const [SECONDS, FINE, HEIGHT] = [0.48, 2e-4, 5]; // s, s, m: so high that it meets no table
 const STEPS = range(7, (k) => 0.0005 * 2 ** k); // s
 
 // The places of the sliding ball, from the middle of the held one [r].
@@ -17,9 +17,29 @@ const placesOf = kept((model, lean, dt) => {
   return run.t.map((_, k) => [run.x[2 * k + 1] / R, (run.y[2 * k + 1] - HEIGHT) / R]);
 });
 
-// Beside leapfrog with the finest steps: between two of those the ball is on a straight line.
+// The right places, FINE apart: on the held ball those of a pendulum, upside down; from the angle
+// where it would have to be pulled, those of a free flight.
+const truth = kept((lean) => {
+  let [angle, turns, x, y, vx, vy] = [lean, 0];
+  const kick = () => (turns += 0.5 * FINE * (G / (2 * R)) * Math.sin(angle));
+  return range(SECONDS / FINE + 1, () => {
+    if (Math.cos(angle) > (2 / 3) * Math.cos(lean)) {
+      [x, y] = [2 * Math.sin(angle), 2 * Math.cos(angle)];
+      [vx, vy] = [turns * y, -turns * x];
+      kick();
+      angle += FINE * turns;
+      kick();
+    } else {
+      [x, y] = [x + FINE * vx, y + FINE * (vy - (0.5 * FINE * G) / R)];
+      vy -= (FINE * G) / R;
+    }
+    return [x, y];
+  });
+});
+
+// Between two of those places the ball is on a straight line.
 const errorOf = kept((model, lean, dt) => {
-  const fine = placesOf("leapfrog", lean, FINE);
+  const fine = truth(lean);
   return Math.max(...placesOf(model, lean, dt).map(([x, y], row) => {
     const at = Math.min(fine.length - 1.001, (row * dt) / FINE);
     const [[x1, y1], [x2, y2], s] = [fine[Math.floor(at)], fine[Math.ceil(at)], at % 1];
