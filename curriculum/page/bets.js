@@ -1,8 +1,8 @@
-/* Bets: a click makes one and opens its answer, in its own box; it stands until one takes it back.
- * Without a bet the answer opens at the second press. What was bet is kept in this browser. */
+/* Bets: a click makes one and opens its answer; it stands until one takes it back. Without a bet the
+ * answer opens at the second press. What was bet is kept in this browser. */
 const KEY = "contact-chapter:";
 
-// What `act` gives of the browser's storage; without one a bet lasts as long as the page is open.
+// What `act` gives of the browser's storage, if there is one.
 function stored(act) {
   try {
     return act(localStorage);
@@ -12,8 +12,8 @@ function stored(act) {
 }
 
 export function startBet(box) {
-  const [answer, why, back, summary, verdict] = [".answer", "textarea", ".take-back",
-    ".answer summary", ".verdict"].map((part) => box.querySelector(part));
+  const [answer, back, summary, verdict] = [".answer", ".take-back", ".answer summary", ".verdict"]
+    .map((part) => box.querySelector(part));
   const choices = [...box.querySelectorAll("[data-choice]")];
   let [choice, warned] = [null, false];
   function show() {
@@ -25,24 +25,22 @@ export function startBet(box) {
     verdict.textContent = !choice ? "" : choice === answer.dataset.right
       ? "You bet on it, and it is so." : "It comes out otherwise.";
   }
-  function take(wanted, opens = answer.open) {
-    [choice, answer.open] = [wanted, opens];
-    stored((held) => held.setItem(KEY + box.id, JSON.stringify({ choice, why: why.value })));
+  function take(wanted) {
+    [choice, answer.open] = [wanted, Boolean(wanted)];
+    stored((held) => held.setItem(KEY + box.id, wanted ?? ""));
     show();
   }
-  const before = stored((held) => JSON.parse(held.getItem(KEY + box.id))) ?? {};
-  if (choices.some((each) => each.dataset.choice === before.choice)) choice = before.choice;
-  if (typeof before.why === "string") why.value = before.why;
+  const before = stored((held) => held.getItem(KEY + box.id));
+  if (choices.some((each) => each.dataset.choice === before)) choice = before;
   show();
-  why.addEventListener("input", () => take(choice));
   back.addEventListener("click", () => {
-    take(null, false);
+    take(null);
     choices[0].focus();
   });
   for (const each of choices)
     each.addEventListener("click", () => {
       if (choice) return;
-      take(each.dataset.choice, true);
+      take(each.dataset.choice);
       summary.focus({ preventScroll: true });
     });
   summary.addEventListener("click", (event) => {

@@ -16,7 +16,7 @@ from curriculum import stored
 from curriculum.page import chapter, fonts
 from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises
-from curriculum.page.panels import BOOKKEEPING, panel
+from curriculum.page.panels import IDEAS, panel
 from curriculum.prose.references import fill
 from curriculum.show import picture
 from curriculum.source import ROOT, read_all
@@ -32,7 +32,6 @@ def page_data():
     knobs = {name: value for name, value in usual._asdict().items() if type(value) in (int, float)}
     return {
         "models": list(contact.MODELS),
-        "uses": {model: row.knobs + row.also for model, row in contact.MODELS.items()},
         "taken": {model: contact.MODELS[model].knobs for model in contact.STEPPED},
         "scenes": {
             name: {
@@ -103,7 +102,7 @@ def environment(**held):
     ]
     made.globals.update(colab=colab, faces=faces, models=[*contact.MODELS])
     made.globals.update(stored=stored, picture=picture, drawn_by=drawn_by, **held)
-    made.globals.update(panel=panel, bookkeeping=BOOKKEEPING, folded=chapter.FOLDED)
+    made.globals.update(panel=panel, ideas=IDEAS, folded=chapter.FOLDED)
     return made
 
 

@@ -1,24 +1,18 @@
-/* What every picture of the page shares: numbers as text, shapes, balls, arrows, charts. `svg` is
- * lit's in a browser and makes text when the page is built (text.js). Two things tell a model
- * apart, its colour and its dash: the CSS class m-NAME. */
+/* What the pictures share: numbers as text, shapes, balls, arrows, charts. The CSS class m-NAME gives
+ * a model its colour and its dash. */
 import { svg } from "./lit.js";
 
 export { svg };
 export const within = (low, value, high) => Math.min(high, Math.max(low, value));
 export const range = (count, each) => Array.from({ length: count }, (_, k) => each(k));
 const FAR = 1e6; // px: nothing is drawn farther out
-const px = (value) => Math.round(within(-FAR, value, FAR) * 100) / 100;
+const px = (value) => Math.round(within(-FAR, value, FAR) * 10) / 10;
 
-// ---- numbers
+export const tenTo = (exponent) =>
+  `10${String(exponent).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)])}`;
 
-const RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
-const tenTo = (exponent) =>
-  `10${String(exponent).replace(/./g, (c) => RAISED["-0123456789".indexOf(c)])}`;
-
-// A number as a reader wants it: three digits, powers of ten only where they help.
+// A number to three digits, with a power of ten only where it helps.
 export function number(value, digits = 3) {
-  if (Number.isNaN(value)) return "not a number";
-  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
   const size = Math.abs(value);
   if (size < 5e-13) return "0"; // contact.py prints twelve decimals; less is rounding
   if (size < 1e-3 || size >= 1e6) {
@@ -32,8 +26,6 @@ export function number(value, digits = 3) {
 // A plain decimal: the shortest that reads back as the same number.
 export const plain = (value) => String(Number(value.toPrecision(12))).replace("-", "−");
 export const ms = (seconds) => `${plain(Number((1000 * seconds).toPrecision(3)))} ms`;
-
-// ---- shapes
 
 // Text; a tick is read with its axis, and not by a screen reader, to which the words tell more.
 export const label = (text, x, y, anchor = "start", kind = "strong") =>
@@ -83,10 +75,8 @@ export function arrow(kind, x, y, dx, dy) {
     d="M0 0H${px(size - head)}m${head} 0l${-head} ${px(0.45 * head)}v${px(-0.9 * head)}z"/>`;
 }
 
-// ---- charts
-
 // From the domain of an axis to px; `back` leads from px to the domain.
-function scaleOf({ domain, log }, from, to) {
+export function scaleOf({ domain, log }, from, to) {
   const [first, last] = log ? domain.map(Math.log10) : domain;
   const straight = (v) => (log ? (v > 0 ? Math.max(first, Math.log10(v)) : first) : v);
   const scale = (v) => from + ((straight(v) - first) / (last - first)) * (to - from);
@@ -105,33 +95,21 @@ function steps(low, high, most = 5) {
   return range(Math.floor(high / every + 1e-9) - first + 1, (k) => (first + k) * every);
 }
 
-// An axis over a domain, with ticks at these values, or at round ones; [value, text] stays so.
+// An axis with ticks at these values, or [value, text], or at round ones.
 export const axis = (domain, name, ...at) => ({
   domain, label: name,
   ticks: (at.length ? at : steps(...domain)).map((each) => (Array.isArray(each) ? each : [each, plain(each)])),
 });
 
-export const bare = { domain: [0, 1], label: "", ticks: [] };
+export const logAxis = (...given) => ({ ...axis(...given), log: true });
 
-// The same for logarithms, with ticks at every so manieth power of ten.
-export function logAxis(domain, name, every = 1) {
-  const [low, high] = domain.map((end) => Math.round(Math.log10(end)));
-  const ticks = range(Math.floor((high - low) / every) + 1, (k) => low + k * every);
-  return { ...axis(domain, name, ...ticks.map((p) => [10 ** p, tenTo(p)])), log: true };
-}
+// An axis of time steps from 0.5 ms on, `count` doublings long.
+export const timeSteps = (count) => logAxis([0.0005, 0.0005 * 2 ** count], "time step dt (ms)",
+  ...range(count + 1, (k) => [0.0005 * 2 ** k, plain(0.5 * 2 ** k)]));
 
-// An axis of time steps.
-export const timeSteps = (...domain) => ({
-  ...axis(domain, "time step dt (ms)",
-    ...range(8, (k) => [0.0005 * 2 ** k, plain(0.5 * 2 ** k)])
-      .filter(([dt]) => dt >= domain[0] && dt <= domain[1])),
-  log: true,
-});
-
-/* A chart in a view's picture, from `left` and `top` to `height`: {picture, sx, sy, box, knob},
- * where knob(value, name, step) is a knob on the axis that sets a value of the state. x and y: axes;
- * lines: {model, points, kind}, each up to where a value is no number, with `layers` drawn several
- * times, as [kind, up to which x]; zero: whether a line shows where y is 0. */
+/* A chart from `left` and `top` on, {picture, sx, sy, box, knob}: knob(value, name, step) stands on
+ * the x axis and sets a value of the state. lines: {model, points, kind}, each up to where a value is
+ * no number; with `layers`, drawn as each [kind, up to which x]. zero: a line where y is 0. */
 export function plot(view, { left = 0, top = 0, height = view.height, x, y, lines = [], zero }) {
   const wide = Math.max(0, ...y.ticks.map(([, text]) => text.length));
   const box = {

@@ -1,6 +1,6 @@
 """The code that the page shows: of a docstring the first line, with the rest folded behind it.
 
-A region that is no idea of the chapter stands there folded as a whole.
+Regions that are no idea of the chapter stand there folded as a whole.
 """
 
 import ast
@@ -11,9 +11,9 @@ from pygments import highlight
 from pygments.formatters import HtmlFormatter
 from pygments.lexers import PythonLexer
 
-BOOKKEEPING = set(
-    "setup scenes ball flight run limits measure quality stability flags table report main "
-    "slide-lcp slide-series integrator critical-dt".split()
+IDEAS = set(
+    "contacts penalty sweep lcp-target lcp accelerated leapfrog-core exact-toi exact "
+    "implicit-spring".split()
 )
 # of Pygments' classes those that the style tells apart; the others would only make the page heavy
 STYLED = {"k", "kn", "kc", "ow", "c1", "sd", "s1", "s2", "sa", "si", "nf", "nc"}
@@ -32,7 +32,7 @@ def panel(region):
     for node in ast.walk(ast.parse(region.code)):
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and ast.get_docstring(node):
             first, last = node.body[0].lineno - 1, node.body[0].end_lineno
-            if last - first > 1:
+            if last - first > 4:
                 head, rest = lines[first].rstrip("\n"), "".join(lines[first + 1 : last])
                 block = f"<details><summary>{head}</summary>{rest}</details>"
                 lines[first:last] = [block, *[""] * (last - first - 1)]

@@ -1,11 +1,9 @@
-/* Runs of the steps of contact.py, which are made into JavaScript when the page is built
- * (curriculum/page/to_js.py), so that they have its bits. A recording has `n` balls, `steps` + 1
+/* Runs of contact.py's steps, made into JavaScript (to_js.py). A recording has `n` balls, `steps` + 1
  * times t [s], and lists x, y, vx, vy, row by row. */
 import { accelerations, Ball, detect_contacts, GRAVITY, implicit_step, MAX_IMPACTS } from "./contact.js";
 import { next_impact, soft_defaults, solve_impacts, STEP, TOUCH_TOLERANCE } from "./contact.js";
 import { data } from "./data.js";
 
-export const MODELS = data.models;
 export const R = data.radius; // m
 export const G = -GRAVITY; // m/s^2, and the weight in N of a ball of 1 kg
 
@@ -70,22 +68,20 @@ function followImpacts(balls, restitution, times, write) {
   }
 }
 
-// ---- what is read of a run
-
 // x, y, vx or vy of all balls in a row.
 export const inRow = (run, part, row) => run[part].slice(run.n * row, run.n * (row + 1));
 
-// Of every row the smallest gap [r], and whose it is: of ball `upper` to `lower`, or to the table, 0.
+// Of a column, in every row, the smallest gap [r]: of ball `upper` to `lower`, or to the table, 0.
 export const gapsOf = (run) =>
   run.t.map((_, row) => {
-    const [xs, ys] = [inRow(run, "x", row), inRow(run, "y", row)];
+    const ys = inRow(run, "y", row);
     let least = { gap: Infinity };
     const see = (gap, upper, lower) => {
       if (!(gap >= least.gap)) least = { gap, upper, lower };
     };
     ys.forEach((y, i) => {
       see(y / R - 1, i + 1, 0);
-      for (let k = 0; k < i; k++) see(Math.hypot(xs[i] - xs[k], y - ys[k]) / R - 2, i + 1, k + 1);
+      for (let k = 0; k < i; k++) see(Math.abs(y - ys[k]) / R - 2, i + 1, k + 1);
     });
     return least;
   });

@@ -1,5 +1,5 @@
-/* The stage: it puts a figure into the page, hands it drags, keys and time, and keeps what was set.
- * A figure is a plain object in figures/NAME.js and touches no document (each word, too, as f(own)):
+/* The stage puts a figure into the page, hands it drags, keys and time, and keeps what was set. A figure
+ * is a plain object in figures/NAME.js (its texts, too, as f(own)):
  *
  *   title, caption    its name; one sentence that says what it shows
  *   height(width)     px of its drawing
@@ -11,11 +11,10 @@
  *   play(own)         what the button says that lets it run
  *   switches(own)     buttons [[label, name, value]]: own[name] becomes value, or 0 if it was that
  *
- * The view has own, width, height, set(changes), and grab(what, shape): a shape around which one
- * can put a hand; `what` is {label, value, low, high, step, at(x, y), also, seen, release, twin}. A
- * value is a name of the state, or two; at gives what belongs to a place, `also` is set with it, and
- * seen() is the value that one sees, where that is not the state's; a twin does what another handle
- * does, and no key leads to it. view.point is the same with a knob at (x, y). */
+ * The view has own, width, height, set(changes), and grab({label, value, low, high, step, at, also,
+ * seen, release, twin}, shape), a shape that one can seize. A value is a name of the state, or two;
+ * at(x, y) gives it; `also` is set with it; seen() is what one sees, if that is not the state; no key
+ * leads to a twin of another handle. view.point is grab with a knob at (x, y). */
 import { html, nothing, render, svg } from "./lit.js";
 import { circle, plain, within } from "./draw.js";
 import { data } from "./data.js";
@@ -24,16 +23,14 @@ export const QUANTITIES = {
   dt: { low: 0.0005, high: 0.064, log: true, times: 1000, unit: "ms", label: "Time step dt" },
   stiffness: { low: 100, high: 1e6, log: true, unit: "N/m", label: "Stiffness k" },
   damping: { low: 0, high: 300, step: 1, unit: "N s/m", label: "Damping c" },
-  baumgarte: { low: 0, high: 1, step: 0.01, unit: "", label: "Share β" },
   iters: { low: 1, high: 100, step: 1, unit: "", label: "Sweeps" },
-  warm: { low: 0, high: 1, step: 0.05, unit: "", label: "Warm start" },
   impedance: { low: 0.5, high: 0.9999, step: 0.0001, unit: "", label: "Impedance d" },
   d0: { low: 0, high: 0.95, step: 0.01, unit: "", label: "Impedance d₀" },
   mu: { low: 0, high: 3, step: 0.01, unit: "", label: "Friction µ" },
 };
 const PLACES = 200; // of a slider whose steps are shares
 const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
-  Home: [-Infinity, 0], End: [Infinity, 0], Enter: [0, 0], " ": [0, 0] };
+  Home: [-Infinity, 0], End: [Infinity, 0] };
 const LEAST = 358; // px: on a screen smaller than a phone's it is drawn so, and made smaller
 
 export const asked = (what, own) => (typeof what === "function" ? what(own) : what);
@@ -82,13 +79,12 @@ function slider(view, name) {
     ><output aria-live="off">${told}</output></label>`;
 }
 
-/* What is grabbed: its state is changed by where the hand is, from where it was taken hold of, so
- * that nothing jumps; by the arrow keys, `step` at a time and ten times that with shift. Of two
- * values each is a slider of its own to a screen reader. */
+/* What is grabbed: a hand changes its state from where it took hold, so that nothing jumps; the arrow
+ * keys by `step`, or ten with shift. Of two values each is a slider to a screen reader. */
 function hands(view, box) {
   let held = null; // by which pointer, and how far from the value's own place
   return ({ label, value, low, high, step, at, also, seen, release, twin }, shape) => {
-    const [names, lows, highs, sizes] = [value, low, high, step].map((each) => [each].flat());
+    const [names, lows, highs] = [value, low, high].map((each) => [each].flat());
     const now = () => (seen ? [seen()] : names.map((name) => view.own[name]));
     const put = (wanted) => view.set({ ...also, ...Object.fromEntries(names.map((name, k) =>
       [name, Number(within(lows[k], wanted[k], highs[k]).toPrecision(5))])) });
@@ -115,14 +111,11 @@ function hands(view, box) {
       release?.();
     };
     const key = (event) => {
-      const lets = event.key === "Enter" || event.key === " ";
-      if (!KEYS[event.key] || (lets && !release) || event.ctrlKey || event.altKey || event.metaKey)
-        return;
+      if (!KEYS[event.key] || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
-      if (lets) return release();
       const [across, up] = KEYS[event.key];
       const by = names.length > 1 ? [across, up] : [across + up];
-      put(now().map((v, k) => v + by[k] * (event.shiftKey ? 10 : 1) * sizes[k % sizes.length]));
+      put(now().map((v, k) => v + by[k] * (event.shiftKey ? 10 : 1) * step));
     };
     const stay = (event) => event.preventDefault(); // no finger moves the page
     const name = (k) => label + (names.length > 1 ? [", across", ", up"][k] : "");
@@ -133,7 +126,7 @@ function hands(view, box) {
   };
 }
 
-// Put a figure into its box. Returns take({name: value}), which sets it as in the text, but for these.
+// Put a figure into its box. Returns take({name: value}): as in the text, but for these.
 export function stage(box, figure, given, still) {
   const view = viewOf(figure, given);
   const { own, text } = view;

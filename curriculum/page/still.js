@@ -39,7 +39,7 @@ function still([name, given]) {
       title: asked(figure.title, view.own),
       heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
       knobs: figure.room ?? knobsOf(figure, view).length,
-      buttons: figure.switches || figure.play ? 1 : 0 };
+      buttons: figure.play || figure.switches?.(view.own).length ? 1 : 0 };
   } catch (error) {
     throw new Error(`the figure ${name}: ${error.message}`);
   }

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from curriculum.tests.page_browser import browser, firefox, start  # noqa: F401
+from curriculum.tests.page_browser import start  # noqa: F401
 
 os.environ.pop("UV", None)  # `uv run pytest` sets it; commands are printed as for any other Python
 

@@ -16,21 +16,7 @@ from curriculum.page.to_js import to_js
 from curriculum.stress import scenes
 from curriculum.variants import implicit_step
 
-
-def numbered_case(number):
-    """A small scene of the stress run, thrown together so that it also begins in one another."""
-    spec = scenes.numbered_spec(number, small=True)
-    knobs = {name: spec[name] for name in scenes.KNOBS}
-    solimp = ((0.2, 0.9, 0.005, 0.4, 3.0), (0.0, 1.0, 0.01, 0.3, 2.0), None)[number % 3]
-    return scenes.to_scene(spec), spec["dt"], contact.Settings(**knobs, solimp=solimp)
-
-
-def as_told(model, scene, dt, settings, steps):
-    """The same as runs.js takes it."""
-    columns = dict(zip(("x", "y", "vx", "vy"), np.concatenate((scene.q0, scene.v0)).tolist()))
-    columns |= {"mass": scene.mass.tolist(), "radius": scene.radius.tolist()}
-    knobs = settings._asdict() | {"restitution": scene.restitution, "damping": scene.damping}
-    return [model, columns, knobs | {"dt": dt}, steps]
+SOLIMPS = ((0.2, 0.9, 0.005, 0.4, 3.0), (0.0, 1.0, 0.01, 0.3, 2.0), None)
 
 
 def run_of(model, scene, dt, settings, steps):
@@ -45,12 +31,22 @@ def run_of(model, scene, dt, settings, steps):
     return contact.simulate(partial(implicit_step, dt=dt, **spring), scene, dt, steps)
 
 
+def as_told(model, scene, dt, settings, steps):
+    """The same as runs.js takes it."""
+    columns = dict(zip(("x", "y", "vx", "vy"), np.concatenate((scene.q0, scene.v0)).tolist()))
+    columns |= {"mass": scene.mass.tolist(), "radius": scene.radius.tolist()}
+    knobs = settings._asdict() | {"restitution": scene.restitution, "damping": scene.damping}
+    return [model, columns, knobs | {"dt": dt}, steps]
+
+
 @cache
 def cases():
-    """[(what runs.js is told, the run of contact.py)] of random scenes."""
+    """[(what runs.js is told, the run of contact.py)] of random scenes, some in one another."""
     found, usual = [], contact.Settings()
     for number in range(40):
-        drawn = numbered_case(number)
+        spec = scenes.numbered_spec(number, small=True)
+        knobs = {name: spec[name] for name in scenes.KNOBS} | {"solimp": SOLIMPS[number % 3]}
+        drawn = scenes.to_scene(spec), spec["dt"], contact.Settings(**knobs)
         found += [(model, *drawn, 120) for model in (*contact.STEPPED, "implicit")]
     for vy in (2.0, [-1.7e308, 1e308]):  # they end in infinities and in no number
         fast = contact.scene_of([-0.1, 0.12], 0.3, [3, 0.2], [0.2, 0.17], [1e308, -1e308], vy)
@@ -60,9 +56,9 @@ def cases():
     return [(as_told(*case), run_of(*case)) for case in found]
 
 
-def script():
-    """A script whose value is x, y, vx, vy by runs.js of all cases."""
-    return f"""(() => {{
+def judge(evaluate):
+    """Every run has contact.py's bytes, where it is no number, too; exact is within 1e-10 r."""
+    found = evaluate(f"""(() => {{
       const {{ column, record }} = {bundle("runs.js", page_data())};
       const hex = (numbers) => Array.from(new Uint8Array(new Float64Array(numbers).buffer),
         (byte) => byte.toString(16).padStart(2, "0")).join("");
@@ -70,39 +66,34 @@ def script():
         const run = record(model, column(all.y, all), knobs, steps);
         return [run.x, run.y, run.vx, run.vy].map(hex);
       }});
-    }})()"""
-
-
-def judge(found):
-    """Every run has contact.py's bytes, where it is no number, too; exact is within 1e-10 r."""
+    }})()""")
     ends = {told[0] for told, run in cases() if np.isnan(run.q).any()}
     assert len(found) == len(cases()) and ends == set(contact.STEPPED)
     for ((model, *told), run), mine in zip(cases(), found):
-        theirs = [run.q[:, 0], run.q[:, 1], run.v[:, 0], run.v[:, 1]]
-        for text, column in zip(mine, theirs):
+        for text, right in zip(mine, (run.q[:, 0], run.q[:, 1], run.v[:, 0], run.v[:, 1])):
             held = bytes.fromhex(text)
             if model == "exact":
-                off = np.frombuffer(held) - column.ravel()
+                off = np.frombuffer(held) - right.ravel()
                 assert np.abs(off).max() <= 1e-10 * contact.RADIUS, told
             else:
-                assert held == column.tobytes(), (model, told)
+                assert held == right.tobytes(), (model, told)
 
 
 def test_v8_computes_what_steps_to_the_last_bit_and_exact_to_1e_10_r():
     engine = MiniRacer()
-    judge(json.loads(engine.eval(f"JSON.stringify({script()})")))
+    judge(lambda script: json.loads(engine.eval(f"JSON.stringify({script})")))
     engine.close()
 
 
-def test_firefox_does_so_too(firefox):
-    judge(firefox.new_page().evaluate(script()))
+def test_firefox_does_so_too(start):
+    judge(start("firefox").new_page().evaluate)
 
 
-def test_what_has_no_javascript_is_refused_by_its_line(tmp_path):
-    named = {"x = {1, 2}": "{1, 2}", "x = a // 2": "FloorDiv", "x = sum(a)": "sum(a)"}
-    for line, words in named.items():
-        file = tmp_path / "steps.py"
-        file.write_text(f"def step(a):\n    {line}\n    return a\n", "utf-8")
-        with pytest.raises(ValueError, match=re.escape("steps.py:2: ")) as told:
-            to_js(["step"], file)
-        assert words in str(told.value)
+@pytest.mark.parametrize(
+    "line, named", [("x = {1, 2}", "{1, 2}"), ("x = a // 2", "FloorDiv"), ("x = sum(a)", "sum(a)")]
+)
+def test_what_has_no_javascript_is_refused_by_its_line(tmp_path, line, named):
+    file = tmp_path / "steps.py"
+    file.write_text(f"def step(a):\n    {line}\n    return a\n", "utf-8")
+    with pytest.raises(ValueError, match=rf"steps\.py:2: .*{re.escape(named)}"):
+        to_js(["step"], file)

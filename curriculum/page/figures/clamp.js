@@ -1,5 +1,5 @@
-/* The clamp is on the sum of the changes: a ball falls into a groove, where one contact must take
- * some push back; beside it a wrong sweep, which clamps each change. */
+/* A ball falls into a groove, where one contact must take some push back: the clamp on the sum, and a
+ * wrong one, on each change. */
 import { arrow, ball, label, number } from "../draw.js";
 import { Ball, Contact, solve_contacts } from "../contact.js";
 import { R } from "../runs.js";

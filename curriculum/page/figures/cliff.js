@@ -1,16 +1,14 @@
-/* The cliff. Above, one step of a pressed spring multiplies depth and speed by a matrix: its two
- * eigenvalues beside the circle of size one. Below, how far a ball still moves that was lifted by
- * a ten thousandth of its depth at rest: past the critical step it never rests. */
-import { arrow, axis, circle, label, line, mark, ms, number, path, plot, range } from "../draw.js";
-import { timeSteps, within } from "../draw.js";
+/* The eigenvalues of a step of a pressed spring, beside the circle of size one; and how far a ball
+ * still moves that was lifted by a ten thousandth of its depth at rest. */
+import { circle, label, line, logAxis, mark, ms, number, path, plot, range } from "../draw.js";
+import { tenTo, timeSteps, within } from "../draw.js";
 import { critical_dt } from "../contact.js";
-import { data } from "../data.js";
 import { column, G, kept, R, record } from "../runs.js";
 
-const [LOW, HIGH, COUNT, SECONDS] = [0.0005, 0.064, 1000, 4]; // s, s, steps, s
+const [LOW, HIGH, COUNT] = [0.0005, 0.064, 1000]; // s, s, steps
 const [NONE, FARTHEST] = [1e-6, 1e9]; // r: less is drawn as zero, more as nowhere
-const beside = (width) => width >= 480; // the circle stands beside the chart, or above it
-const LEFTMOST = -2.4; // an eigenvalue further to the left is only said
+const LEFTMOST = -2.4; // an eigenvalue further to the left stands at the edge, with its number
+const isWide = (width) => width >= 480; // the circle stands beside the chart, or above it
 
 // The eigenvalues [real, imaginary] of the step's matrix, for a ball of 1 kg.
 function pairOf({ stiffness: k, damping: c }, dt) {
@@ -29,20 +27,11 @@ const moves = kept((dt, stiffness, damping) => {
   return Number.isFinite(far) ? within(NONE, far, FARTHEST) : FARTHEST;
 }, 200);
 
-// The energy that a dropped ball gains, in starts; NaN counts as without end.
-const gains = kept((dt, stiffness, damping) => {
-  const count = Math.max(2000, Math.round(SECONDS / dt)); // as many as contact.py takes
-  const { y, vy } = record("penalty", column(data.scenes.drop.start), { dt, stiffness, damping }, count);
-  const energy = (row) => 0.5 * vy[row] ** 2 + G * y[row];
-  const most = vy.reduce((high, _, row) => (energy(row) <= high ? high : energy(row)), 0);
-  return Number.isNaN(most) ? Infinity : most / energy(0) - 1;
-});
-
 function circleOf(own, pairs, critical, width, height) {
   const unit = Math.min(width / 4, (height - 26) / 2.1);
   const [x, y] = [0.5 * (width + unit), 0.5 * height + 6];
   const at = ([real, imaginary]) => [x + within(LEFTMOST, real, 1.3) * unit, y - imaginary * unit];
-  // the way of both, from a step of nothing to twice the critical one
+  // of both, from a step of nothing to twice the critical one
   const ways = [0, 1].map((which) => range(121, (k) => at(pairOf(own, (k / 60) * critical)[which])));
   const tick = (text, toX, toY, anchor = "start") => label(text, toX, toY, anchor, "tick");
   const least = Math.min(...pairs.map(([real]) => real));
@@ -53,7 +42,7 @@ function circleOf(own, pairs, critical, width, height) {
     tick("−1", x - unit - 6, y + 20, "end"), tick("0", x - 6, y + 20, "end"),
     label("eigenvalues of a step", 0, 14, "start", "axis-name"),
     ways.map((each) => path(each, "rule dashed")), pairs.map((pair) => mark("penalty", ...at(pair), 7)),
-    least < LEFTMOST ? [arrow("weight", 40, y - 24, -30, 0), label(number(least), 46, y - 19)] : "",
+    least < LEFTMOST ? label(number(least), x + LEFTMOST * unit, y - 14) : "",
   ];
 }
 
@@ -61,18 +50,17 @@ function draw(view) {
   const { own: { dt, stiffness, damping }, width, height } = view;
   const critical = critical_dt(1, stiffness, damping);
   const pairs = pairOf(view.own, dt);
-  const gained = gains(dt, stiffness, damping);
-  const dts = [...range(22, (k) => LOW * (HIGH / LOW) ** (k / 21)), 0.985 * critical, 1.015 * critical]
+  const dts = [...range(16, (k) => LOW * (HIGH / LOW) ** (k / 15)), 0.985 * critical, 1.015 * critical]
     .filter((each) => each >= LOW && each <= HIGH).sort((a, b) => a - b);
-  const [left, top] = beside(width) ? [Math.round(0.42 * width), 0] : [0, Math.round(0.42 * height)];
+  const [left, top] = isWide(width) ? [Math.round(0.42 * width), 0] : [0, Math.round(0.42 * height)];
   const { sx, sy, box, picture, knob } = plot(view, {
-    left, top, x: timeSteps(LOW, HIGH),
-    y: { ...axis([NONE, FARTHEST], `still moving after ${COUNT.toLocaleString("en")} steps / r`,
-      [NONE, "<10⁻⁶"], 0.001, 1, 1000, [1e6, "10⁶"]), log: true },
+    left, top, x: timeSteps(7),
+    y: logAxis([NONE, FARTHEST], `still moving after ${COUNT.toLocaleString("en")} steps / r`,
+      [NONE, "<10⁻⁶"], 0.001, 1, 1000, [1e6, tenTo(6)]),
     lines: [{ model: "penalty", kind: "plainly",
       points: dts.map((each) => [each, moves(each, stiffness, damping)]) }],
   });
-  const side = sx(critical) > 0.5 * width ? -1 : 1;
+  const side = sx(critical) > 0.5 * (left + width) ? -1 : 1;
   const kind = pairs[0][1] > 0 ? "rings" : pairs[1][0] < 0 ? "jumps to and fro" : "creeps back";
   const size = Math.max(...pairs.map((pair) => Math.hypot(...pair)));
   return {
@@ -82,8 +70,7 @@ function draw(view) {
       label(`critical: ${ms(critical)}`, sx(critical) + 6 * side, box.top + 14, side < 0 ? "end" : "start"),
       mark("penalty", sx(dt), sy(moves(dt, stiffness, damping)), 7), knob("dt", "the time step", 0.0002),
     ],
-    words: `${ms(dt)}: it ${kind}, × ${number(size)} a step. A drop gains ` +
-      `${gained > 1e-9 ? `${number(gained)} times its energy` : "no energy"}.`,
+    words: `In steps of ${ms(dt)} a pressed ball ${kind}: × ${number(size)} a step.`,
   };
 }
 
@@ -91,7 +78,7 @@ export const figure = {
   title: "The cliff: eigenvalues, and what they do",
   caption: "Make the step longer: the pair meets, parts, and one leaves the circle on the left. Just there "
     + "a ball at rest begins to move.",
-  height: (width) => (beside(width) ? 300 : 430),
+  height: (width) => (isWide(width) ? 300 : 410),
   knobs: ["stiffness", "damping"],
   draw,
 };

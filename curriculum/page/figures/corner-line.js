@@ -1,15 +1,14 @@
-/* The line of a step: the more impulse, the farther out the step ends. Each model asks for an
- * impulse in its own way, which is a line, too: lcp's stands upright where the step should end,
- * soft's leans, and penalty's is level, since its force was fixed where the step began. */
-import { arrow, axis, ball, label, lane, mark, plain, plot } from "../draw.js";
+/* The line of a step: the more impulse, the farther out it ends; and the line of what each model
+ * asks for: lcp's is upright, soft's leans, penalty's is level. */
+import { arrow, axis, ball, label, lane, mark, plain, plot, within } from "../draw.js";
 import { CONTACT_MARGIN, Contact, contact_target, FLOOR, soft_defaults, soften } from "../contact.js";
 import { column, G, R, record } from "../runs.js";
 
 const THREE = ["penalty", "lcp", "soft"];
 const [LOW, HIGH, MOST] = [-0.1, 0.06, 6]; // r, r, N s
 
-// One step of a model from a gap [r] that would end at `free`: where it ends, with which impulse,
-// and the line of what it asks for [[gap at the end, impulse]].
+// One step of a model: where it ends [r], with which impulse, the line of what it asks for, and where
+// on it its name stands [gap at the end, impulse].
 function stepped(model, own) {
   const { gap, free, dt, baumgarte } = own;
   const [kick, fall] = [dt * G, ((free - gap) * R) / dt]; // m/s: of gravity, after it
@@ -23,7 +22,8 @@ function stepped(model, own) {
   const asks = (impulse) => gap + ((contact.target - contact.softness * impulse) * dt) / R;
   const level = !near || model === "penalty";
   const line = level ? [[HIGH, lam], [LOW, lam]] : [[HIGH, 0], [asks(0), 0], [asks(2 * MOST), 2 * MOST]];
-  return { model, end, lam, line, name: level ? [HIGH, lam] : [asks(0.95 * MOST), 0.95 * MOST] };
+  return { model, end, lam, line, name: level ? [HIGH, lam]
+    : [within(LOW, asks(0.95 * MOST), HIGH - 0.02), 0.95 * MOST] };
 }
 
 const short = (value) => plain(Number(value.toFixed(3)));
@@ -49,8 +49,7 @@ function draw(view) {
       view.grab(what, ball("fixed", x, at(gap), r)), picture,
       label("the step", Math.min(sx(free + (3.9 * dt) / R) + 10, box.right - 56), sy(3.9), "start", "tick"),
       found.map(({ model, end, lam, name: [at, high] }, k) => [mark(model, sx(end), sy(lam), 7),
-        at === HIGH
-        ? label(model, box.right, sy(high) - 8 - 18 * k, "end") : label(model, sx(at) + 8, sy(high))]),
+        at < HIGH ? label(model, sx(at) + 8, sy(high)) : label(model, box.right, sy(high) - 8 - 18 * k, "end")]),
       knob("free", "where the ball would end without a push", 0.005),
     ],
     words: `From ${short(gap)} r to ${short(free)} r; with a push: ` +

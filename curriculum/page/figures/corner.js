@@ -1,5 +1,4 @@
-/* The corner: gap to the right, force upwards, what a model allows as a thick line, and the state
- * that runs along it while the ball is lifted or pressed into the table. */
+/* The corner: gap to the right, force upwards, what a model allows as a thick line. */
 import { arrow, axis, ball, label, lane, line, mark, number, plot, range } from "../draw.js";
 import { Contact, FLOOR, soft_defaults, soften } from "../contact.js";
 import { column, G, R } from "../runs.js";
@@ -14,32 +13,29 @@ function softLoad(deep, { impedance: d, dt }) {
   return contact.target / contact.softness / (G * dt);
 }
 
-// {gap(load), curve}: the gap [r] under a load [m g], the line that is allowed; what is shown of it,
-// and the hardest press in the picture.
+// What is shown of a law, the hardest press in the picture, and its line [[gap, load]].
 const LAWS = {
-  exact: () => ({ gap: () => 0, shown: WIDE, most: WIDE.most, curve: [[0, 0], [0, 2 * WIDE.most]] }),
+  exact: () => ({ shown: WIDE, most: WIDE.most, curve: [[0, 0], [0, 2 * WIDE.most]] }),
   penalty({ stiffness }) {
     const steep = (stiffness * R) / G; // weights a radius
-    return { gap: (load) => -load / steep, shown: WIDE, most: -WIDE.low * steep,
-      curve: [[0, 0], [(-2 * WIDE.most) / steep, 2 * WIDE.most]] };
+    return { shown: WIDE, most: -WIDE.low * steep, curve: [[0, 0], [(-2 * WIDE.most) / steep, 2 * WIDE.most]] };
   },
-  soft(own) {
-    const gap = (load, less = 0, more = 2) => { // found by halving
-      const middle = 0.5 * (less + more);
-      if (middle === less || middle === more) return -more;
-      return softLoad(middle, own) > load ? gap(load, less, middle) : gap(load, middle, more);
-    };
-    const depths = range(61, (k) => (k / 50) * NEAR.low);
-    return { gap, shown: NEAR, most: softLoad(-NEAR.low, own),
-      curve: depths.map((each) => [each, each && softLoad(-each, own)]) };
-  },
+  soft: (own) => ({ shown: NEAR, most: softLoad(-NEAR.low, own),
+    curve: range(61, (k) => (k / 50) * -NEAR.low).map((deep) => [-deep, deep && softLoad(deep, own)]) }),
 };
+
+// The gap under a load, on a law's line.
+function gapUnder(load, curve) {
+  const next = curve.findIndex(([, each]) => each >= load);
+  const [[x, y], [toX, toY]] = curve.slice(next - 1, next + 1);
+  return x + ((toX - x) * (load - y)) / (toY - y);
+}
 
 function draw(view) {
   const { own: { model, hand } } = view;
-  const { gap: gapOf, curve, shown, most } = LAWS[model](view.own);
+  const { curve, shown, most } = LAWS[model](view.own);
   const load = Math.max(0, -hand) * Math.min(shown.most, most); // m g
-  const gap = load > 0 ? gapOf(load) : Math.max(0, hand) * shown.high;
+  const gap = load > 0 ? gapUnder(load, curve) : Math.max(0, hand) * shown.high;
   const { left, x, r, floor, at, drawn } = lane(view, { share: 0.4, larger: shown.larger });
   const { sx, sy, picture } = plot(view, {
     left, x: axis([shown.low, shown.high], "gap / r", shown.low > -0.1 ? shown.low : 0, 0, shown.high / 2),
@@ -69,10 +65,10 @@ const CAPTIONS = {
 export const figure = {
   title: ({ model }) => `The corner: gap and force, ${model}`,
   caption: ({ model }) => CAPTIONS[model],
-  height: (width) => (width < 480 ? 260 : 300),
+  height: (width) => (width < 480 ? 240 : 300),
   knobs: ({ model }) => ({ penalty: ["stiffness"], soft: ["impedance"] })[model] ?? [],
   room: 1,
-  start: ({ model = "exact" }) => ({ model, hand: model === "exact" ? 0.5 : -0.5 }),
-  switches: () => Object.keys(LAWS).map((model) => [model, "model", model]),
+  start: ({ model }) => ({ model: "exact", hand: model ? -0.5 : 0.5, choice: model ? 0 : 1 }),
+  switches: ({ choice }) => (choice ? Object.keys(LAWS).map((model) => [model, "model", model]) : []),
   draw,
 };

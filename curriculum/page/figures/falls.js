@@ -1,12 +1,11 @@
-/* The models side by side over one table, and below it their gaps over time: dark up to now, faint
- * where one has seen what comes. A stack's overlaps are drawn enlarged. It is still until it is
- * pressed, and keeps its scale. */
+/* The models side by side over one table, and their gaps over time: dark up to now, faint where one
+ * has seen what comes. A stack's overlaps are drawn enlarged. */
 import { arrow, axis, ball, circle, label, line, ms, number, plain, plot } from "../draw.js";
 import { table, within } from "../draw.js";
 import { data } from "../data.js";
-import { column, G, gapsOf, inRow, kept, MODELS, pushIn, R, record } from "../runs.js";
+import { column, G, gapsOf, inRow, kept, pushIn, R, record } from "../runs.js";
 
-const [GROUND, BELOW, LOWEST] = [26, 76, 0.45]; // px, px; m: a picture is at least so high
+const [GROUND, BELOW, LOWEST] = [26, 56, 0.45]; // px, px; m: a picture is at least so high
 const SCENES = { drop: "A ball falls", bounce: "A ball bounces", stack: "Three balls stand" };
 
 const run = kept((model, heights, knobs, count) => {
@@ -14,20 +13,17 @@ const run = kept((model, heights, knobs, count) => {
   return { model, made, gaps: gapsOf(made) };
 });
 
-// The runs of all models, and the times between which they are shown [s]. A run has those knobs that
-// it depends on, and no others: so what else is dragged costs nothing.
+// The runs of the models, and the times between which they are shown [s].
 function runsOf(own) {
   const heights = data.scenes[own.scene].start.map((y) => y + own.lift);
   const from = own.lift ? 0 : own.from; // who lifts them sees all of the fall
   const to = Math.max(own.to, from + 8 * own.dt);
-  const knobsOf = (model) =>
-    Object.fromEntries(["dt", ...data.uses[model]].map((name) => [name, own[name]]));
-  const wanted = MODELS.filter((model) => own.models.split(",").includes(model));
-  return { from, to,
-    all: wanted.map((model) => run(model, heights, knobsOf(model), Math.ceil(to / own.dt))) };
+  const knobs = Object.fromEntries(Object.keys(data.defaults).map((name) => [name, own[name]]));
+  const runOf = (model) => run(model, heights, knobs, Math.ceil(to / own.dt));
+  return { from, to, all: own.models.split(",").map(runOf) };
 }
 
-// How high the picture is [m]: as the balls are where it begins, with some room to lift them.
+// How high the picture is [m], with some room to lift the balls.
 function topOf({ scene, from }) {
   const { start } = data.scenes[scene];
   return Math.max(LOWEST, Math.max(...start) - (G / 2) * from ** 2 + 1.2 * R * start.length);
@@ -39,14 +35,14 @@ function placeWords({ gap, upper, lower }, many) {
   return `${Math.abs(gap) < 5e-5 ? "touches" : `${number(gap, 2)} r`}${whose}`;
 }
 
-// How many times larger a stack's overlaps are drawn, so that they fit.
+// How many times larger a stack's overlaps are drawn.
 function enlarged({ scene }, all) {
   const deepest = Math.max(0, ...all.flatMap(({ gaps }) => gaps.map(({ gap }) => -gap || 0)));
   return scene === "stack" ? [20, 5, 2].find((times) => times * deepest < 1.8) ?? 1 : 1;
 }
 
-// A model's balls, held by the hand; from above what the picture holds, an arrow and how high.
-function lane(view, { model, made, gaps }, row, x, { twin, from, floor, scale, larger, top }) {
+// A model's balls; for one above the picture an arrow and how high it is.
+function lane(view, { model, made }, row, x, { twin, from, floor, scale, larger, top }) {
   const { own } = view;
   const start = data.scenes[own.scene].start;
   const r = Math.max(5, R * scale);
@@ -74,7 +70,6 @@ function lane(view, { model, made, gaps }, row, x, { twin, from, floor, scale, l
     arrow(`push m-${model}`, x, floor + GROUND - 3, 0, -push),
     line(x - 24, floor + GROUND + 5, x + 24, floor + GROUND + 5, `line m-${model}`),
     label(model, x, floor + GROUND + 24, "middle"),
-    label(placeWords(gaps[row]), x, floor + GROUND + 44, "middle", "tick"),
   ];
 }
 
@@ -89,7 +84,7 @@ function chartOf(view, { all, from, to }, top, time) {
     y: axis([Math.max(low, -10) - margin, most + margin], "gap / r, r = 0.1 m (below 0: overlap)"),
     lines: all.map(({ model, made, gaps }) => ({
       model, points: gaps.slice(first).map(({ gap }, k) => [made.t[first + k], gap]),
-      layers: [["whole", to], ["coming", view.seen], ["", time]],
+      layers: [["whole", view.seen < to ? to : from], ["coming", view.seen], ["", time]],
     })),
   });
   const what = { label: "the time shown", value: "time", low: 0, high: to - from,
@@ -127,7 +122,7 @@ export const figure = {
   title: ({ scene, models }) => `${SCENES[scene]}: ${models.replaceAll(",", ", ")}`,
   caption: ({ scene, lift, from, to, dt }) =>
     `${SCENES[scene]}, from ${lift ? 0 : plain(from)} to ${plain(to)} s, in steps of ${ms(dt)}.`,
-  height: (width) => (width < 480 ? 400 : 480),
+  height: (width) => (width < 480 ? 360 : 440),
   knobs: ({ knobs }) => knobs.split(","),
   start: ({ scene = "drop" }) => ({
     scene, models: "penalty,lcp", from: 0.4, to: 1.2, lift: 0, knobs: "dt", ...data.scenes[scene].own,

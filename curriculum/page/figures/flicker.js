@@ -1,6 +1,4 @@
-/* A ball slides off a round hill: the force that soft gives, step by step, over the angle, beside
- * the one that the hill asks for. Once the hill asks for less than d0 gives, the ball is thrown
- * off, falls back, and so on. */
+/* A ball slides off a round hill: the force that soft gives, step by step, and what the hill asks for. */
 import { axis, ball, circle, clipped, label, line, number, plot, range } from "../draw.js";
 import { data } from "../data.js";
 import { column, G, kept, R, record } from "../runs.js";

@@ -1,8 +1,6 @@
-/* A gripper whose fingers tremble, as in exercise 8, drawn so that one sees it: three balls by
- * penalty, of which two have motors, each LARGER times as far from its mean place as it is. Below
- * it all time steps, in three parts: it holds, trembles, flies apart. With switch=1 the spring's
- * force may be taken from the end of the step. */
-import { ball, label, line, ms, number, range, rect, svg, table, within } from "../draw.js";
+/* Three balls by penalty, two of which have motors, each drawn LARGER times as far from its mean place
+ * as it is; and what becomes of them at which step. With switch=1 the force may be the step's last. */
+import { ball, label, line, ms, number, range, rect, scaleOf, svg, table, within } from "../draw.js";
 import { column, inRow, kept, R, record } from "../runs.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
@@ -11,16 +9,14 @@ const [LARGER, FAR] = [80, 0.5]; // times; m: what is farther away has flown apa
 const FATES = ["holds still", "trembles", "flies apart"];
 const endsOf = ({ switch: shown }) => (shown ? [0.0005, 0.016] : [0.002, 0.008]); // s
 
-// What becomes of it, by how much finger and cup tremble [r], and the states [x, y] that are shown:
-// the late ones, larger, or the flight.
+// The fate, by how much finger and cup tremble [r], and the states [x, y] that are shown.
 const squeezed = kept((dt, stiffness, late) => {
   const balls = column([R, R, R], { x: AT, mass: MASS });
   const push = () => balls.forEach((each, i) => (each.fx = MOTOR[i]));
   const run = record(late ? "implicit" : "penalty", balls, { dt, stiffness, damping: DAMPING },
     Math.ceil(SECONDS / dt - 1e-9), push);
   const states = range(run.steps + 1, (row) => [inRow(run, "x", row), inRow(run, "y", row)]);
-  const gone = states.findIndex(([x, y]) =>
-    x.some((each, i) => !(Math.abs(each) < FAR && y[i] < FAR)));
+  const gone = states.findIndex((places) => places.flat().some((each) => !(Math.abs(each) < FAR)));
   if (gone >= 0) return { fate: 2, shown: states.slice(0, gone) };
   const rest = states.slice(Math.floor(LATE * states.length));
   const depths = rest.map(([x, y]) => 2 - Math.hypot(x[1] - x[0], y[1] - y[0]) / R);
@@ -30,7 +26,7 @@ const squeezed = kept((dt, stiffness, late) => {
   return { fate: trembling < 1e-5 ? 0 : 1, trembling, shown };
 }, 60);
 
-// Where it begins to be as bad as this fate, found by halving [s].
+// From which step on it is as bad as this fate, found by halving [s].
 const begins = kept((fate, stiffness, late, good, bad) => {
   if (squeezed(good, stiffness, late).fate >= fate) return good;
   if (squeezed(bad, stiffness, late).fate < fate) return bad;
@@ -51,26 +47,24 @@ function draw(view) {
   const [now, next] = [row, row + 1].map((k) => shown[k % shown.length]); // a step moves straight
   const places = range(3, (i) => [0, 1].map((k) => now[k][i] + share * (next[k][i] - now[k][i])))
     .map(([x, y]) => [middle + x * scale, floor - Math.max(R, y) * scale]);
-  const finger = ([x, y]) =>
-    [rect(x - r, 14, 2 * r, y - 14, "arm"), ball("fixed", x, y, r, "body")];
+  const finger = ([x, y]) => [rect(x - r, 14, 2 * r, y - 14, "body m-fixed"), ball("fixed", x, y, r, "body")];
   const [cupX, cupY] = places[1];
-  const at = (step) => 12 + ((width - 24) * Math.log(step / low)) / Math.log(high / low);
+  const at = scaleOf({ domain: [low, high], log: true }, 12, width - 12);
   const parts = [low, ...[1, 2].map((k) => begins(k, stiffness, late, low, high)), high];
-  const what = { label: "the time step", value: "dt", low, high, step: 0.0001,
-    at: (x) => low * (high / low) ** within(0, (x - 12) / (width - 24), 1) };
+  const what = { label: "the time step", value: "dt", low, high, step: 0.0001, at: at.back };
+  const ticks = range(1 + Math.round(Math.log2(high / low)), (k) => low * 2 ** k);
   return {
     picture: [
       table(0, floor, width, 20), finger(places[0]), finger(places[2]),
-      rect(middle - 4.2 * r, 4, 8.4 * r, 14, "arm"), ball("penalty", cupX, cupY, r),
-      svg`<ellipse cx=${cupX} cy=${cupY - 0.72 * r} rx=${0.62 * r} ry=${0.15 * r} class="cup"/>`,
+      rect(middle - 4.2 * r, 4, 8.4 * r, 14, "body m-fixed"), ball("penalty", cupX, cupY, r),
+      svg`<ellipse cx=${cupX} cy=${cupY - 0.72 * r} rx=${0.62 * r} ry=${0.15 * r} class="ground"/>`,
       FATES.map((name, k) => {
         const [from, to] = [at(parts[k]), at(parts[k + 1])];
         return [rect(from, top, to - from, 18, `fate-${k}`),
           k === fate || to - from > 6 * name.length
             ? label(name, (from + to) / 2, top + 38, "middle", k === fate ? "strong" : "tick") : ""];
       }),
-      [0.0005, 0.001, 0.002, 0.004, 0.008, 0.016].filter((each) => each >= low && each <= high)
-        .map((each) => label(ms(each), within(26, at(each), width - 26), top + 58, "middle", "tick")),
+      ticks.map((each) => label(ms(each), within(26, at(each), width - 26), top + 58, "middle", "tick")),
       line(at(dt), top - 8, at(dt), top + 18, "rule"), view.point(at(dt), top + 9, what),
     ],
     words: `In steps of ${ms(dt)} it ${FATES[fate]}` +

@@ -1,7 +1,5 @@
-/* What friction breaks: a rod's lower end slides along the table, ahead of its middle. The speed at
- * which the end parts from the table, over how hard the table pushes: two straight pieces, where it
- * slides and where it sticks. The law (no pull, no overlap, no push without touch) holds where the
- * line crosses zero, and at no push at all. */
+/* A rod's lower end slides along the table, ahead of its middle. How fast it parts from the table, over
+ * how hard the table pushes: the law holds where the line crosses zero, and at no push at all. */
 import { arrow, axis, circle, clipped, line, mark, number, plot, table, within } from "../draw.js";
 
 // A rod of 1 kg and 2 m: its end, seen from the middle [m], which without a push rises and slides

@@ -1,6 +1,5 @@
-/* What unfinished sweeps leave: a column at rest under lcp sags as on springs. The overlap of every
- * contact is a bar, the law a line. */
-import { axis, ball, bare, label, line, number, path, plot, range, rect, table } from "../draw.js";
+/* A column at rest under lcp sags as on springs: a bar for the overlap of every contact, and the law. */
+import { axis, ball, label, line, number, path, plot, range, rect, table } from "../draw.js";
 import { column, G, inRow, kept, R, record } from "../runs.js";
 
 const ROWS = 300; // steps until all is at rest: the run starts where the law has it
@@ -29,8 +28,8 @@ function draw(view) {
   const r = Math.min(30, (height - 60) / (2 * balls), 0.4 * left);
   const at = (i) => floor - 2 * i * r; // of a contact
   const most = 1.12 * Math.max(1e-9, ...depths, ...law);
-  const { sx, box, picture } = plot(view,
-    { left, x: axis([0, 1000 * most], "overlap (thousandths of r)"), y: bare });
+  const { sx, box, picture } = plot(view, { left,
+    x: axis([0, 1000 * most], "overlap (thousandths of r)"), y: { domain: [0, 1], label: "", ticks: [] } });
   const to = (deep) => sx(1000 * Math.max(0, deep));
   return {
     picture: [

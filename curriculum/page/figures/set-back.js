@@ -1,5 +1,4 @@
-/* An impact amid a step of leapfrog: the old path up to the impact, the new one from there, and the
- * new one drawn back to the start of the step, where the ball is set. */
+/* An impact amid a step of leapfrog: the old path, the new one, and the new one drawn back. */
 import { arrow, axis, ball, label, lane, line, mark, number, plot, range, within } from "../draw.js";
 import { time_to_impact } from "../contact.js";
 import { column, G, R, record } from "../runs.js";

@@ -1,7 +1,6 @@
-/* The sweep as a walk: the impulses of two contacts are a plane, and each visit to a contact goes
- * along its own axis until that contact has its target, but not below zero: a staircase between two
- * lines. With momentum=1 the upper ball is ten times as heavy, the contours are those of the bowl
- * whose lowest point is looked for, and a second walk goes on a little after each sweep. */
+/* The sweep as a walk in the plane of two impulses: each visit goes along one axis, until that contact
+ * has its target. With momentum=1 a heavy ball lies on top, in a long bowl, and a second walk has
+ * momentum. */
 import { arrow, axis, ball, clipped, label, mark, number, path, plot, range, rect } from "../draw.js";
 import { table } from "../draw.js";
 import { Contact, FLOOR, solve_accelerated, solve_contacts } from "../contact.js";
@@ -9,16 +8,13 @@ import { column, kept, R } from "../runs.js";
 
 const [SWEEPS, UNIT, GROUND] = [80, 26, 40]; // px: an arrow for g dt, the table
 const LEVELS = [0.02, 0.1, 0.3, 0.7, 1.4, 2.5, 4]; // of the contours, as shares of the picture
-const NAMES = ["ball 2 on 1", "ball 1 on the table"];
 
-// In m g dt and g dt: after each visit the impulses and speeds, and the impulses of a walk with
-// momentum after each sweep. The balls come with -1 and v2, and with these impulses to begin with.
-const walks = kept((v2, begin, heavy) => {
+// In m g dt and g dt: impulses and speeds after each visit, and the impulses of a walk with momentum
+// after each sweep.
+const walks = kept((v2, heavy) => {
   const start = () => {
-    const vy = [begin[0] - begin[1] - 1, v2 + begin[1] / heavy];
-    const balls = column([R, 3 * R], { mass: [1, heavy], vy });
-    return balls.map((each, i) =>
-      Object.assign(new Contact(each, i ? balls[0] : FLOOR, 0, 1, 0), { lam: begin[i] }));
+    const balls = column([R, 3 * R], { mass: [1, heavy], vy: [-1, v2] });
+    return balls.map((each, i) => new Contact(each, i ? balls[0] : FLOOR, 0, 1, 0));
   };
   const contacts = start();
   const plainly = range(2 * SWEEPS + 1, (visit) => {
@@ -43,10 +39,10 @@ const contourOf = (v2, heavy, height) =>
 
 function draw(view) {
   const { own: { v2, momentum, time }, width, height } = view;
-  const [heavy, most] = momentum ? [10, 35] : [1, 3]; // m g dt, that are seen
-  const { plainly, rolled, end } = walks(v2, momentum ? [0.02 * most, 0.86 * most] : [0, 0], heavy);
+  const [heavy, most] = momentum ? [10, 24] : [1, 3]; // kg, m g dt
+  const { plainly, rolled, end } = walks(v2, heavy);
   const at = Math.min(2 * SWEEPS, Math.floor(time + 1e-9));
-  const [{ lam, vy }, sweep, one] = [plainly[at], Math.ceil(at / 2), at % 2 ? 0 : 1]; // one: visited
+  const [{ lam, vy }, sweep] = [plainly[at], Math.ceil(at / 2)];
   const [left, floor] = [Math.round(0.28 * width), height - GROUND];
   const { sx, sy, box, picture } = plot(view, {
     left, x: axis([-0.1 * most, 1.25 * most], "table’s push / m g dt"),
@@ -66,7 +62,6 @@ function draw(view) {
     const [y, shape] = [floor - (2 * k + 1) * r, ball("lcp", left / 2, floor - (2 * k + 1) * r, r)];
     return [k ? view.grab(hold, shape) : shape, arrow("weight", left / 2, y, 0, -UNIT * v)];
   });
-  const clamped = at > 0 && lam[one] === 0 && plainly[at - 1].lam[one] === 0;
   const off = ([x, y]) => number(Math.hypot(x - end[0], y - end[1]), 2);
   return {
     picture: [
@@ -82,8 +77,7 @@ function draw(view) {
     ],
     words: momentum
       ? `After ${sweep} sweeps: ${off(lam)} m g dt from the answer; with momentum ${off(rolled[sweep])}.`
-      : `${at ? `Sweep ${sweep}, ${NAMES[at % 2]}${clamped ? ", clamped at 0" : ""}` : "No push yet"}: ` +
-        `they carry ${lam.map((each) => number(each, 2)).join(" and ")} m g dt.`,
+      : `After ${at} visits they carry ${lam.map((each) => number(each, 2)).join(" and ")} m g dt.`,
   };
 }
 
@@ -93,7 +87,7 @@ export const figure = {
     ? "Blue: a plain sweep after the other. Yellow: with momentum. Drag the upper ball’s speed."
     : "Each visit brings one contact to its dashed line and disturbs the other. Drag the upper ball "
       + "up: no push goes below zero."),
-  height: (width) => (width < 480 ? 280 : 340),
+  height: (width) => (width < 480 ? 260 : 340),
   start: ({ momentum = 0 }) => ({ momentum, v2: -1, time: momentum ? 44 : 2 }),
   clock: ({ own: { momentum } }) =>
     ({ end: momentum ? 2 * SWEEPS : 24, rate: momentum ? 20 : 2, step: 1 + momentum }),

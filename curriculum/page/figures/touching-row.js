@@ -1,10 +1,9 @@
-/* A row of two balls is struck by a third, with e = 1: above they touch, so that it is one impact
- * of two contacts; below they are a micrometre apart, so that it is two impacts. */
-import { arrow, ball, circle, clipped, label, number, table } from "../draw.js";
+/* A third ball strikes two, e = 1: where they touch it is one impact, a micrometre apart it is two. */
+import { arrow, ball, clipped, label, number, table } from "../draw.js";
 import { Ball, Contact, solve_impacts } from "../contact.js";
 import { R } from "../runs.js";
 
-const [AFTER, GROUND] = [0.8, 14]; // s that are shown after the impact; px
+const [BEFORE, AFTER, GROUND] = [0.4, 0.8, 14]; // s that are shown, px
 const ROWS = [["touching", [[0, 1]]], ["a micrometre apart", [[0], [1]]]]; // impacts in their order
 
 // The velocities of the three balls [m/s] after impacts, each of these contacts (0: balls 1 and 2).
@@ -16,21 +15,17 @@ function struck(impacts) {
 }
 
 function draw(view) {
-  const { own: { time, from }, width, height } = view;
-  const [scale, tall, since] = [width / 2.6, height / 2, time - from + 2 * R]; // px for 1 m, px, s
+  const { own: { time }, width, height } = view;
+  const [scale, tall, since] = [width / 2.6, height / 2, time - BEFORE]; // px for 1 m, px, s
   const r = R * scale;
   const after = ROWS.map(([, impacts]) => struck(impacts));
-  const what = { label: "the first ball: from where it comes", value: "from", low: 0.25, high: 0.9,
-    step: 0.05, at: (x) => (0.5 * width - x) / scale, also: { time: 0 }, release: () => view.play(0) };
   const rows = ROWS.map(([name], k) => {
     const floor = (k + 1) * tall - GROUND - 2;
     return [table(0, floor, width, GROUND), label(name, 4, floor - tall + GROUND + 26),
       after[k].map((v, i) => {
         const now = since >= 0 ? v : Number(i === 0);
         const x = 0.5 * width + (2 * R * (i - 1) + now * since) * scale;
-        const drawn = ball("exact", x, floor - r, r);
-        const halo = r < 22 ? circle(x, floor - r, 22, "halo") : "";
-        return [i || k ? drawn : view.grab(what, [drawn, halo]), arrow("weight", x, floor - r, 1.6 * r * now, 0)];
+        return [ball("exact", x, floor - r, r), arrow("weight", x, floor - r, 1.6 * r * now, 0)];
       })];
   });
   const told = after.map((each) => each.map((v) => number(v, 2)).join(", "));
@@ -45,8 +40,8 @@ export const figure = {
   title: "A row of balls is struck",
   caption: "The same row, touching and not quite.",
   height: (width) => (width < 480 ? 220 : 260),
-  start: () => ({ from: 0.6, time: 0.6 - 2 * R + AFTER }),
-  clock: ({ own }) => ({ end: own.from - 2 * R + AFTER, rate: 0.6 }),
+  start: () => ({ time: BEFORE + AFTER }),
+  clock: () => ({ end: BEFORE + AFTER, rate: 0.6 }),
   play: () => "Strike it",
   draw,
 };

@@ -34,7 +34,7 @@ FAULTS = [
     (
         f"{FIGURES}/cliff.js",
         "column([R - ((1 - 1e-4) * G) / stiffness])",
-        "column(data.scenes.drop.start)",
+        "column([R + 0.6])",
         PICTURE.format("cliff"),
     ),
 ]
