@@ -17,6 +17,7 @@ import readme
 WORK = Path(sys.argv[1])
 OPENS_A_WINDOW = (".venv/bin/rerun ", "uv run rerun ")  # so CI reads the recording instead
 NOT_A_NEWCOMERS = "UV VIRTUAL_ENV PYTHONPATH CONDA_PREFIX PYTHONDONTWRITEBYTECODE".split()
+PLAIN = "curriculum/tests/test_golden.py curriculum/tests/test_exercises.py"
 SET = "CI=true RERUN_STRICT=1 RERUN_ANALYTICS=0 MPLBACKEND=Agg PIP_NO_COMPILE=1"
 SHELL = {k: v for k, v in os.environ.items() if k not in NOT_A_NEWCOMERS}
 SHELL |= dict(each.split("=") for each in SET.split()) | {"UV_PYTHON": sys.executable}
@@ -27,28 +28,37 @@ def check(name, command, folder, expect=0, **more):
     """Run a line in bash, its input closed; print how it ended. Returns its output."""
     began = time.monotonic()
     words = ["bash", "-euo", "pipefail", "-c", command]
-    ended = subprocess.run(
+    with subprocess.Popen(
         words, cwd=WORK / folder, env=SHELL | more, stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
-    )  # fmt: skip
-    good = ended.returncode == expect and "Traceback" not in ended.stdout
-    lines = ended.stdout.rstrip().splitlines() or [""]
-    now = time.monotonic()
+    ) as process:  # fmt: skip
+        printed = process.stdout.read()
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    good = process.returncode == expect and "Traceback" not in printed
+    lines = printed.rstrip().splitlines() or [""]
+    now, cpu = time.monotonic(), used.ru_utime + used.ru_stime
     print(
-        f"{'ok    ' if good else 'FAILED'} exit {ended.returncode}, {now - began:5.1f} s, "
-        f"at {now - start:3.0f} s | {name}: {command}",
+        f"{'ok    ' if good else 'FAILED'} exit {process.returncode}, {now - began:5.1f} s, "
+        f"{cpu:5.1f} s of CPU, at {now - start:3.0f} s | {name}: {command}",
         *(f"       | {line}" for line in (lines[-1:] if good else lines[-60:])),
         sep="\n", flush=True,
     )  # fmt: skip
     done.append((1, 0) if good else (0, 1))
-    return ended.stdout
+    return printed
+
+
+def side_by_side(*lanes):
+    """Run functions at once; where one raises, the others come to their end first."""
+    with ThreadPoolExecutor() as pool:
+        list(pool.map(lambda lane: lane(), lanes))
 
 
 def fresh(folder):
     """A fresh clone of what is committed; changes in this folder are not tested."""
     subprocess.run(["git", "clone", "--quiet", readme.ROOT, WORK / folder], check=True)
-    (WORK / "numbers").mkdir(exist_ok=True)  # that the text quotes; kept by the hash of their code
-    (WORK / folder / ".cache").symlink_to(WORK / "numbers")
+    (WORK / "kept").mkdir(exist_ok=True)  # numbers and loops, by the hash of their code
+    (WORK / folder / ".cache").symlink_to(WORK / "kept")
 
 
 def row(folder, what, command):
@@ -61,39 +71,42 @@ def row(folder, what, command):
 
 
 def pip_column():
-    """The first set-up line; then every row in the environment that it made, and nothing else."""
-    folder = WORK / "pip"
+    """The lines of pip in their order, in one environment; then what an author runs in it."""
+    fresh("pip")
     check("README, pip: run", readme.set_up("pip")[0], "pip")
-    assert list(folder.glob("outputs/*/contact.rrd")), "the main job made no recording"
-    (folder / ".venv").rename(WORK / "first")
+    assert list(WORK.glob("pip/outputs/*/contact.rrd")), "the main job made no recording"
     for what, command, _ in readme.rows():
-        shutil.rmtree(folder / ".venv", ignore_errors=True)  # pip replaces files: links will do
-        shutil.copytree(WORK / "first", folder / ".venv", symlinks=True, copy_function=os.link)
         row("pip", what, command)
+    install, _, tests = readme.set_up("pip")[1].rpartition(" && ")
+    check("README, pip: test, set-up", install, "pip")
+    check("README, compiled ahead", ".venv/bin/python -m curriculum.compiled", "pip")
+    side_by_side(lambda: suite(tests), checks)
 
 
 def uv_column():
-    """The same by uv, each time from no environment at all; of its tests, that they are found."""
+    """The same by uv, each line from no environment at all; of its tests, that they are found."""
+    fresh("uv")
     first, test = readme.set_up("uv")
     found = "uv: test, found", "", f"{test} --collect-only -q"
     for what, _, command in (("uv: run", "", first), *readme.rows(), found):
         shutil.rmtree(WORK / "uv/.venv", ignore_errors=True)
         row("uv", what, command)
-    check("uv: page and notebook", "test -s ../uv-contact.html -a -s ../uv-contact.ipynb", "uv")
 
 
-def authors():
-    """What an author has, in the environment that the README's line makes; beside it, its tests."""
-    fresh("dev")
-    install, _, tests = readme.set_up("pip")[1].rpartition(" && ")
-    check("README, pip: test, set-up", install, "dev")
-    with ThreadPoolExecutor() as pool:  # side by side
-        list(pool.map(lambda lane: lane(), (lambda: suite(tests), checks)))
+def alone():
+    """contact.py in an empty folder with numpy alone; then what a learner installs."""
+    (WORK / "alone").mkdir()
+    shutil.copy(readme.ROOT / "contact.py", WORK / "alone")
+    run = "uv run --no-project --with numpy python contact.py --out $it --scene $it"
+    line = f"for it in drop bounce stack; do {run}; test -s $it/metrics.json; done"
+    check("contact.py alone in an empty folder", line, "alone")
+    fresh("bare")
+    check("numpy, rerun-sdk, pytest; --smoke twice", ".ci/python", "bare", TESTS=PLAIN)
 
 
 def suite(command):
     """The tests, by the README's own line; none may be skipped."""
-    printed = check("README, pip: test", command, "dev")
+    printed = check("README, pip: test", command, "pip")
     counts = re.findall(r"(\d+) (passed|failed|errors?|skipped)\b", printed[-200:])
     passed = sum(int(number) for number, word in counts if word == "passed")
     done.append((passed, sum(int(number) for number, _ in counts) - passed))
@@ -108,32 +121,20 @@ def checks():
         "types": "python -m mypy",
         "CONTRIBUTING": "pre-commit install && .venv/bin/pre-commit validate-config",
         "workflows": "zizmor --offline --quiet --min-severity medium .github",
+        "page": "python -m curriculum.page --out ../dev-contact.html",
+        "notebook": "python -m curriculum.notebook --out ../dev-contact.ipynb",
         "ten planted faults": "python -m curriculum.tests.plant --most 10",
         "quick benchmark": "python -m curriculum.bench --quick",
         "quick stress": "python -m curriculum.stress --quick",
     }.items():
-        check(name, f".venv/bin/{command}", "dev")
-
-
-def alone():
-    """contact.py in an empty folder with numpy alone; and with rerun and pytest, the tests."""
-    shutil.copy(readme.ROOT / "contact.py", WORK / "alone")
-    run = "uv run --no-project --with numpy python contact.py --out $it --scene $it"
-    line = f"for it in drop bounce stack; do {run}; test -s $it/metrics.json; done"
-    check("contact.py alone in an empty folder", line, "alone")
-    fresh("bare")
-    check("numpy, rerun-sdk, pytest; --smoke twice", ".ci/python", "bare", PYTHON=sys.executable)
+        check(name, f".venv/bin/{command}", "pip")
 
 
 def main():
     """All steps. Returns the exit status."""
-    (WORK / "alone").mkdir()
-    fresh("pip"), fresh("uv")
-    with ThreadPoolExecutor() as pool:  # where one raises, the others come to their end first
-        list(pool.map(lambda lane: lane(), (pip_column, uv_column, alone, authors)))
-    for name, file in {"page": "contact.html", "notebook": "contact.ipynb"}.items():
-        again = f".venv/bin/python -m curriculum.{name} --out {file} && cmp {file} ../pip-{file}"
-        check(f"the {name} is the one that the tests look at", again, "dev")
+    side_by_side(pip_column, lambda: (uv_column(), alone()))
+    same = "cmp pip-contact.$it uv-contact.$it && cmp pip-contact.$it dev-contact.$it"
+    check("each page, each notebook", f"for it in html ipynb; do {same} || exit; done", ".")
     passed, failed = (sum(each) for each in zip(*done))
     print(f"{time.monotonic() - start:.0f} s; lines of the README and of authors, and the tests:")
     print(f"{passed} passed, {failed} failed")
