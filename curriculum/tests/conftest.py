@@ -11,6 +11,7 @@ import pytest
 
 from curriculum.tests.page_browser import start  # noqa: F401
 
+SLOW = "test_page.py", "test_bench.py"
 os.environ.pop("UV", None)  # `uv run pytest` sets it; commands are printed as for any other Python
 
 
@@ -18,6 +19,34 @@ os.environ.pop("UV", None)  # `uv run pytest` sets it; commands are printed as f
 def pytest_xdist_auto_num_workers():
     """What `-n auto` starts: one more than there are cores, since tests of the page often wait."""
     return (os.cpu_count() or 1) + 1
+
+
+def pytest_configure(config):
+    """Let xdist take files in the order of their tests, in place of the largest number first."""
+    config.option.loadscopereorder = False
+
+
+def pytest_collection_modifyitems(items):
+    """Begin with the files that take longest, so that all workers end at about the same time."""
+    items.sort(key=lambda item: item.path.name not in SLOW)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiled_once(tmp_path_factory):
+    """Let one worker compile loops while the others wait, and then load them from disk."""
+    try:
+        from filelock import FileLock  # which pre-commit brings
+
+        from curriculum.compiled.cache import Loops
+    except ImportError:
+        return
+    load, shared = Loops.load, tmp_path_factory.getbasetemp().parent
+
+    def load_alone(loops, examples):
+        with FileLock(shared / f"{loops.name}.lock"):
+            return load(loops, examples)
+
+    Loops.load = load_alone
 
 
 @pytest.hookimpl(wrapper=True)

@@ -19,15 +19,10 @@ def python(*words, cwd=ROOT, **environment):
     return subprocess.run(words, capture_output=True, text=True, **how)
 
 
-def clone(folder, but="/results/"):
-    """Copy the files that git tracks into a folder, except those below `but`; return the folder."""
-    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True).stdout
-    there = [path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*") if path.is_file()]
-    names = listed.splitlines() or [name for name in there if ".cache/" not in name]  # in a clone
-    for name in (name for name in names if but not in name and (ROOT / name).exists()):
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, folder / name)
-    return folder
+def clone(folder, *leave):
+    """Copy the course into a folder, but for hidden files and those so named; return the folder."""
+    leave = shutil.ignore_patterns(".*", "__pycache__", "outputs", *leave)
+    return shutil.copytree(ROOT, folder, ignore=leave, dirs_exist_ok=True)
 
 
 def edit(path, old, new):

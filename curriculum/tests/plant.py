@@ -12,49 +12,50 @@ mutant survives, its original text does not stand there exactly once, or its tes
 import ast
 import datetime
 import importlib
-import os
 import random
 import shlex
 import subprocess
 import sys
 import tempfile
-import threading
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 from curriculum.commands import Parser, number
+from curriculum.parallel import run_jobs
 from curriculum.source import replace_once
-from curriculum.tests.helpers import clone
+from curriculum.tests.helpers import ROOT, clone
 
 TABLES = {path.stem: path for path in sorted(Path(__file__).with_name("faults").glob("*.py"))}
-own = threading.local()  # a copy of the tree for each thread
 
 
-def begin(home):
-    """Make a clone for this thread."""
-    own.folder = clone(Path(tempfile.mkdtemp(dir=home)), but="\0")
+@cache
+def course(home):
+    """Return a clone for this process; compiled loops, named by their source, are shared."""
+    folder, loops = clone(Path(tempfile.mkdtemp(dir=home))), ".cache/loops"
+    (ROOT / loops).mkdir(parents=True, exist_ok=True)
+    (folder / ".cache").mkdir()
+    (folder / loops).symlink_to(ROOT / loops)
+    return folder
 
 
-def ended(tests):
-    """Run these tests here; return pytest's status and its last lines."""
-    file, *words = shlex.split(tests)
+def ended(home, file, *words):
+    """Run these tests in the clone; return pytest's status and its last lines."""
     pytest = [sys.executable, "-B", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
     command = [*pytest, f"curriculum/tests/{file}", *words]
-    done = subprocess.run(command, cwd=own.folder, capture_output=True, text=True)
+    done = subprocess.run(command, cwd=course(home), capture_output=True, text=True)
     return done.returncode, done.stdout[-1500:]
 
 
-def sound(tests):
-    """Return what is wrong with these tests without a mutant, or ""."""
-    status, last = ended(tests)
-    return f"{tests} ends with {status} without any fault:\n{last}" if status else ""
+def sound(home, file, words):
+    """Return what is wrong with some tests of a file, by all their words, without a mutant."""
+    status, last = ended(home, file, *(["-k", " or ".join(words)] if all(words) else []))
+    return f"{file} ends with {status} without any fault:\n{last}" if status else ""
 
 
-def plant(row):
+def plant(home, row):
     """Return what is wrong where a mutant is not detected, or ""."""
     room, file, old, new, tests = row
-    path, fault = own.folder / file, f"{room}: {file}: {old!r} -> {new!r}"
+    path, fault = course(home) / file, f"{room}: {file}: {old!r} -> {new!r}"
     text = path.read_text("utf-8") if path.exists() else ""
     try:
         planted = replace_once(text, old, new, f"{room}: {file}")
@@ -64,9 +65,15 @@ def plant(row):
         ast.parse(planted)  # any test would detect what is no Python
     path.write_text(planted, "utf-8")
     try:
-        return "" if ended(tests)[0] in (1, 2) else f"{fault}: not detected by {tests}"
+        detected = ended(home, *shlex.split(tests))[0] in (1, 2)
+        return "" if detected else f"{fault}: not detected by {tests}"
     finally:
         path.write_text(text, "utf-8")
+
+
+def call(check):
+    """Return what a check returns."""
+    return check()
 
 
 def main(argv=None):
@@ -82,15 +89,14 @@ def main(argv=None):
     if args.most:
         today = random.Random(str(datetime.date.today()))
         rows = today.sample(rows, min(args.most, len(rows)))
-    checks = [partial(sound, tests) for tests in dict.fromkeys(row[-1] for row in rows)]
-    checks += [partial(plant, row) for row in rows]
-    wrong = 0
+    files: dict = {}
+    for file, _, words in (row[-1].partition(" -k ") for row in rows):
+        files.setdefault(file, set()).add(words.replace("'", ""))
     with tempfile.TemporaryDirectory() as home:
-        with ThreadPoolExecutor(os.cpu_count(), initializer=begin, initargs=(home,)) as pool:
-            for words in filter(None, pool.map(lambda check: check(), checks)):
-                print(words, flush=True)
-                wrong += 1
-    print(f"{len(rows)} planted, {wrong} wrong")
+        checks = [partial(sound, home, *each) for each in files.items()]
+        checks += [partial(plant, home, row) for row in rows]
+        wrong = [words for words in run_jobs(call, checks, "mutants") if words]
+    print(*wrong, f"{len(rows)} planted, {len(wrong)} wrong", sep="\n")
     return 1 if wrong else 0
 
 

@@ -38,7 +38,7 @@ READ = ["A sponge", "A sweep", "Code", "ex1", "contact.py", "exact.py", CAPTION]
 @pytest.fixture(scope="module")
 def accepted(tmp_path_factory):
     """A project that is in order; its runs are cached."""
-    project = clone(tmp_path_factory.mktemp("project"))
+    project = clone(tmp_path_factory.mktemp("project"), "results")
     for path in (*project.glob("exercises/ex*.py"), *project.glob("curriculum/page/figures/*")):
         path.unlink()
     (project / EXERCISE).write_text('"""How often does `solve_contacts` sweep?"""\n', "utf-8")

@@ -1,6 +1,7 @@
 """The six errors: what the chapter's formulas say of drawn settings, a run does."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,11 +15,8 @@ RNG = np.random.default_rng(72)
 def drawn():
     """A setting: any mass, radius and number of balls; a spring into which they sink by less than
     half a radius; a damper that lets it ring; a step, beta and a warm start; shares of the mass."""
-    mass, radius, bodies = (
-        10.0 ** RNG.uniform(-1.0, 1.5),
-        RNG.uniform(0.03, 0.3),
-        int(RNG.integers(2, 9)),
-    )
+    mass, radius = 10.0 ** RNG.uniform(-1.0, 1.5), RNG.uniform(0.03, 0.3)
+    bodies = int(RNG.integers(2, 9))
     stiffness = bodies * mass * predict.G / (RNG.uniform(0.02, 0.5) * radius)
     damping = 2.0 * RNG.uniform(0.05, 0.7) * math.sqrt(stiffness * mass)
     lcp = RNG.uniform((0.001, 0.15, 0.0), (0.006, 1.0, 0.5))
@@ -32,11 +30,10 @@ NEAR = {"rel": 0.03}
 @pytest.mark.parametrize("case", range(10))
 def test_penalty_sinks_dives_and_trembles_as_on_paper(case):
     mass, radius, bodies, stiffness, damping, *_ = SETTINGS[case]
+    spring = partial(predict.quality, "penalty", stiffness=stiffness)
     limit = predict.tremble(mass, stiffness, damping)
     scene = contact.scene_of(0.0, 1.0 + radius, mass, radius, damping=damping)
-    found = predict.quality(
-        "penalty", scene, limit / 60.0, 200.0 * limit + 1.0, stiffness=stiffness
-    )
+    found = spring(scene, limit / 60.0, 200.0 * limit + 1.0)
     speed = math.sqrt(2.0 * predict.G)
     dive = predict.dive_of_penalty(speed, mass, stiffness, damping) / radius
     assert found["max_penetration_frac"] == pytest.approx(dive, **NEAR)
@@ -45,7 +42,7 @@ def test_penalty_sinks_dives_and_trembles_as_on_paper(case):
     limit = predict.tremble(mass, stiffness, damping, bodies)
     for share, rests in ((0.985, True), (1.015, False)):
         step = share * limit
-        found = predict.quality("penalty", column, step, 20_000 * step, stiffness=stiffness)
+        found = spring(column, step, 20_000 * step)
         assert found["rests"] == rests, share
         if rests:
             sink = predict.sink(mass, stiffness, bodies) / radius
@@ -66,13 +63,12 @@ def test_lcp_dives_hops_and_sags_as_on_paper(case):
         assert found["rebound_frac"] == pytest.approx(hop, abs=still, **NEAR), fall
     assert 0.9 * most < max(dives) < 1.03 * most
     column = contact.scene_of(0.0, radius * (1.0 + 2.0 * np.arange(bodies)), mass, radius)
-    masses = mass * shares
+    masses, dt = mass * shares, 0.001
     knobs = {"baumgarte": beta, "iters": 1, "warm": warm}
-    found = predict.quality("lcp", column._replace(mass=masses), 0.001, 8.0, **knobs)
-    deepest = max(
-        predict.sag(masses[k + 1 :].sum(), masses[k], 0.001, beta, 1, warm) for k in range(bodies)
-    )
-    assert found["rest_penetration_frac"] == pytest.approx(deepest / radius, **NEAR)
+    found = predict.quality("lcp", column._replace(mass=masses), dt, 8.0, **knobs)
+    above = [masses[k + 1 :].sum() for k in range(bodies)]
+    sags = [predict.sag(load, own, dt, beta, 1, warm) for load, own in zip(above, masses)]
+    assert found["rest_penetration_frac"] == pytest.approx(max(sags) / radius, **NEAR)
 
 
 def test_a_tower_sags_by_the_law_within_a_tenth_up_to_a_fortieth_of_its_squared_height():

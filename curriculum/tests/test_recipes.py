@@ -98,7 +98,7 @@ OTHERS = ["setting of an engine", "release"]
 @pytest.fixture(scope="module")
 def course(tmp_path_factory):
     """(A clone with a short chapter and all recipes typed, reviewed; what the gate said)."""
-    folder = clone(tmp_path_factory.mktemp("course"))
+    folder = clone(tmp_path_factory.mktemp("course"), "results")
     slots = re.findall(r"^<!-- (?:figure|exercise): .*\n", read_text(CHAPTER), re.M)
     shorten(folder, "".join(slots))
     before = review(folder)

@@ -5,7 +5,6 @@ import math
 import multiprocessing
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -19,7 +18,7 @@ import pytest
 import contact
 from curriculum import parallel, seeds
 from curriculum.show import picture
-from curriculum.tests.helpers import CONTACT, ROOT, python
+from curriculum.tests.helpers import CONTACT, ROOT, clone, python
 
 DT, STEPS = 0.004, 300
 MASS, RADIUS = np.array([2.0, 1.3, 0.5]), np.array([0.12, 0.09, 0.08])  # from the lowest ball up
@@ -279,53 +278,47 @@ def one_line(capsys, *words):
     return lines[0]
 
 
-def test_seeds_give_median_and_range_and_a_dask_cluster_gives_the_same(tmp_path):
-    """A cluster of two workers, as it would be on two machines."""
-    distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
-    found = summed_up(tmp_path / "here")
-    cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0"}
-    with distributed.LocalCluster(**cluster) as two:
-        there = "0:5", "--scheduler", two.scheduler_address
-        assert summed_up(tmp_path / "there", *there) == found
+def test_seeds_give_median_and_range(tmp_path):
+    rows = json.loads(summed_up(tmp_path))["rows"]["lcp"]
     drops = (contact.build_scene("drop", seed) for seed in range(5))
     each = [runs_of(drop, dt=0.002, models=["lcp"])[2] for drop in drops]
     depths = [quality["lcp"]["max_penetration_frac"] for quality in each]
-    rows = json.loads(found)["rows"]["lcp"]
     for name, depth in zip(("lowest", "median", "highest"), sorted(depths)[::2]):
         assert abs(rows[name]["max_penetration_frac"] - depth) < 1e-12
         if name != "median":
             assert rows[name]["seeds"]["max_penetration_frac"] == depths.index(depth)
 
 
-def test_a_cluster_without_workers_or_with_other_code_is_one_line_and_what_is_done_is_kept(
-    tmp_path, capsys
-):
+def test_a_dask_cluster_gives_the_same_and_what_it_lacks_is_one_line(tmp_path, capsys):
+    """Nobody there, no workers, workers without the code or with other code, and then with ours."""
     distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
     nobody = *FIVE, str(tmp_path), "--scheduler", "127.0.0.1:1"
     assert "which does not answer (" in one_line(capsys, *nobody)
-    shutil.copytree(ROOT, tmp_path / "other", ignore=shutil.ignore_patterns(".*", "tests"))
-    fast = tmp_path / "other/curriculum/compiled/run.py"
+    fast = clone(tmp_path / "other", "tests") / "curriculum/compiled/run.py"
     fast.write_text(f"{fast.read_text('utf-8')}\n\nMORE = 1\n", "utf-8")
-    with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as none:
-        words = *FIVE, str(tmp_path), "--scheduler", none.scheduler_address
+    start = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard", "--no-nanny"]
+    how = {"stderr": subprocess.DEVNULL, "env": os.environ | {"PYTHONPATH": ""}}
+    lacks = {".": "its PYTHONPATH must have", "other": "another curriculum/compiled/run.py is"}
+    with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster:
+        there = "--scheduler", cluster.scheduler_address
+        start += [cluster.scheduler_address, "--nthreads", "1"]
+        words = *FIVE, str(tmp_path), *there
         assert "has no workers; start some: dask worker" in one_line(capsys, *words)
-        start = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard"]
-        start += [none.scheduler_address, "--no-nanny", "--nthreads", "1"]
-        why = (
-            (".", "its PYTHONPATH must have"),
-            ("other", "another curriculum/compiled/run.py is there"),
-        )
-        for folder, text in why:
-            worker = subprocess.Popen(start, cwd=tmp_path / folder, stderr=subprocess.DEVNULL)
+        for folder in (".", "other", ROOT):
+            worker = subprocess.Popen(start, cwd=tmp_path / folder, **how)
             try:
-                distributed.Client(none).wait_for_workers(1)
-                err = one_line(capsys, *words)
+                distributed.Client(cluster).wait_for_workers(1)
+                if folder in lacks:
+                    err = one_line(capsys, *words)
+                    assert f", process {worker.pid}: " in err and lacks[folder] in err
+                    kept = (tmp_path / "seeds.csv").read_text("utf-8").strip()
+                    assert kept == seeds.HEAD, "no row of other code"
+                else:
+                    assert summed_up(tmp_path / "there", "0:5", *there) == summed_up(tmp_path)
             finally:
                 worker.kill(), worker.wait()
-            assert f", process {worker.pid}: " in err and text in err
-            while none.scheduler.workers:
+            while cluster.scheduler.workers:
                 time.sleep(0.01)
-    assert (tmp_path / "seeds.csv").read_text("utf-8").strip() == seeds.HEAD, "no row of other code"
 
 
 def test_parts_cut_rows_and_rows_of_other_flags_give_the_summary_of_one_whole_run(tmp_path, capsys):

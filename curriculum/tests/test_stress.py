@@ -6,9 +6,8 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-import contact
 from curriculum import stored
-from curriculum.stress import jobs, maps, report, scenes
+from curriculum.stress import jobs, report, scenes
 from curriculum.stress.properties import PROPERTIES, compare, unlike
 from curriculum.stress.trial import Trial
 
@@ -76,12 +75,6 @@ def test_a_number_that_is_off_is_a_violation_and_a_flight_says_nothing_of_contac
     found = jobs.properties.judge(flight, *PROPERTIES.values())
     said = found["momenta_are_gravitys_and_what_contacts_report"][2]
     assert said.startswith("lcp, moves [m]: 1e-09, bound ")
-
-
-def test_at_the_critical_dt_the_map_turns_from_settling_to_not():
-    row = maps.PenaltyRow(80.0, 1e4, np.geomspace(1e-3, 0.1, 20))
-    settles = [dt for dt in row.dts if row.outcome(dt) == maps.SETTLES]
-    assert settles == [dt for dt in row.dts if dt < contact.critical_dt(1.0, 1e4, 80.0)]
 
 
 def test_scenes_are_judged_and_said_and_what_is_no_scene_is_refused(capsys):
