@@ -118,18 +118,27 @@ def test_how_to_watch_a_run_is_said_as_in_the_readme(tmp_path, monkeypatch, caps
         assert re.fullmatch(rf"next, watch it: {start} \S*contact\.rrd", watch), watch
 
 
-def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are():
+def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are(tmp_path):
     for words in (["checks.py", "-k", "ex2 or ex12"], ["-m", "pytest", "checks.py", "-kex12"]):
         result = run(ROOT, *words)
         printed = result.stdout + result.stderr
         assert result.returncode and "-k ex12: no such exercise; there are ex1_predict" in printed
         assert "Traceback" not in printed
+    (tmp_path / "ex12_mine.py").write_text(f"from kit import script\n{CALL}", "utf-8")
+    result = started(tmp_path / "ex12_mine.py")
+    lacks = "ex12 has no entry in exercises/kit/answers.json; allowed: ex1, ex2, "
+    assert result.returncode == 2 and lacks in result.stderr, result.stderr
+
+
+def started(file, before=""):
+    """A script of an exercise, started after some code."""
+    start = f"import sys, runpy; {before}sys.path[0] = 'exercises'; "
+    return run(ROOT, "-c", f"{start}runpy.run_path({str(file)!r}, run_name='__main__')")
 
 
 def test_without_pytest_or_numpy_one_line_says_how_to_get_it():
     for lacks, file in (("pytest", "checks.py"), ("numpy", FILES["ex1"])):
-        lack = f"import sys, runpy; sys.modules[{lacks!r}] = None; sys.path[0] = 'exercises'"
-        result = run(ROOT, "-c", f"{lack}; runpy.run_path({file!r}, run_name='__main__')")
+        result = started(file, f"sys.modules[{lacks!r}] = None; ")
         assert result.returncode in (1, 2) and result.stderr.count("\n") == 1, result.stderr
         assert re.search(rf"{lacks}.*: .*(pip install|uv run --with) {lacks}", result.stderr)
 
