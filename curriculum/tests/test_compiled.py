@@ -11,7 +11,7 @@ import contact
 from curriculum.bench.measure import shaft
 from curriculum.compiled import run as compiled
 from curriculum.stress import scenes
-from curriculum.tests.helpers import ROOT, python
+from curriculum.tests.helpers import clone, python
 
 pytest.importorskip("numba", reason="numba is missing")
 MODELS = contact.STEPPED
@@ -154,10 +154,7 @@ TINY = (
 def run_in(folder, code, **environment):
     """The number that a copy of the course in a folder prints."""
     if not (folder / "contact.py").exists():
-        shutil.copy(ROOT / "contact.py", folder)
-        shutil.copytree(ROOT / "curriculum/compiled", folder / "curriculum/compiled")
-        for name in ("__init__.py", "commands.py", "source.py"):
-            shutil.copy(ROOT / "curriculum" / name, folder / "curriculum")
+        clone(folder, "tests", "page", "results", "exercises")
     done = python("-c", code, cwd=folder, PYTHONPATH="", **environment)
     assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr[-2000:]
     return float(done.stdout)
