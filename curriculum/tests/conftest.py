@@ -31,24 +31,6 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: item.path.name not in SLOW)
 
 
-@pytest.fixture(scope="session", autouse=True)
-def compiled_once(tmp_path_factory):
-    """Let one worker compile loops while the others wait, and then load them from disk."""
-    try:
-        from filelock import FileLock  # which pre-commit brings
-
-        from curriculum.compiled.cache import Loops
-    except ImportError:
-        return
-    load, shared = Loops.load, tmp_path_factory.getbasetemp().parent
-
-    def load_alone(loops, examples):
-        with FileLock(shared / f"{loops.name}.lock"):
-            return load(loops, examples)
-
-    Loops.load = load_alone
-
-
 @pytest.hookimpl(wrapper=True)
 def pytest_make_collect_report(collector):
     """Turn "No module named 'yaml'" into a skip; a misspelt import of our own stays an error."""
