@@ -62,9 +62,14 @@ def mujoco_model(shape=BALL, body="", dt=0.002, solref="0.02 1", solimp="0.9 0.9
     return mujoco, model, mujoco.MjData(model)
 
 
-def setting(name, part=0):
-    """The value of an attribute that the README's column of MuJoCo names."""
-    return re.findall(rf'{name}="([^"]+)"', " ".join(row[4] for row in ROWS))[part]
+def heights(count, **how):
+    """The ball's height [m] after each of so many steps of MuJoCo; its model."""
+    mujoco, model, data = mujoco_model(**how)
+    found = []
+    for _ in range(count):
+        mujoco.mj_step(model, data)
+        found.append(data.qpos[2])
+    return found, model
 
 
 @pytest.mark.parametrize("e", (0.3, 0.5, 0.7, 0.9, 1.0))
@@ -72,9 +77,8 @@ def setting(name, part=0):
 @pytest.mark.parametrize("shape", (BALL, BOX))
 def test_mujoco_bounces_with_the_restitution_that_the_setting_names(shape, integrator, e):
     for dt in (0.002, 0.0005):
-        text = re.search(r'solref="(0 -\(1\+e\)/dt)" solimp="([^"]+)"', README)
-        damping = text[1].replace("-(1+e)/dt", repr(-(1.0 + e) / dt))
-        how = dict(solref=damping, solimp=text[2], integrator=integrator, dt=dt)
+        solimp = re.search(r'solref="0 -\(1\+e\)/dt" solimp="([^"]+)"', README)[1]
+        how = dict(solref=f"0 {-(1.0 + e) / dt!r}", solimp=solimp, integrator=integrator, dt=dt)
         mujoco, model, data = mujoco_model(shape, **how)
         before = 0.0
         while data.qvel[2] <= 0.0:
@@ -85,18 +89,16 @@ def test_mujoco_bounces_with_the_restitution_that_the_setting_names(shape, integ
 
 def test_what_restitution_costs_in_mujoco_is_a_slow_sinking():
     how = dict(solref=f"0 {-1.7 / 0.002}", solimp="0.9999 0.9999 0.001", z=0.1)
-    mujoco, model, data = mujoco_model(**how)
-    mujoco.mj_step(model, data, nstep=30_000)  # a minute
-    assert 0.1 - data.qpos[2] == pytest.approx(1e-4, rel=0.2)
+    found, _ = heights(30_000, **how)  # a minute
+    assert 0.1 - found[-1] == pytest.approx(1e-4, rel=0.2)
 
 
 @pytest.mark.parametrize("mass", (1.0, 100.0))
 def test_mujocos_depth_at_rest_depends_on_its_settings_and_not_on_the_mass(mass):
     for how in ({}, {"solref": "0.01 1"}, {"solimp": "0.99 0.99 0.001"}):
         assert all(f'{name}="{text}"' in README for name, text in how.items())
-        mujoco, model, data = mujoco_model(mass=mass, z=0.1, **how)
-        mujoco.mj_step(model, data, nstep=3000)
-        depth, solref, solimp = 0.1 - data.qpos[2], model.geom_solref[0], model.geom_solimp[0]
+        found, model = heights(3000, mass=mass, z=0.1, **how)
+        depth, solref, solimp = 0.1 - found[-1], model.geom_solref[0], model.geom_solimp[0]
         d = contact.impedance(depth, tuple(solimp))
         K = 1.0 / (solimp[1] * solref[0] * solref[1]) ** 2
         assert (1.0 - d) * 9.81 == pytest.approx(d * d * K * depth, rel=1e-4)
@@ -104,32 +106,21 @@ def test_mujocos_depth_at_rest_depends_on_its_settings_and_not_on_the_mass(mass)
 
 
 def test_a_damping_ratio_above_1_keeps_mujoco_from_throwing_an_overlapping_ball():
-    highest = []
-    for solref in re.findall(r'solref="(0\.004 \d)"', README):
-        mujoco, model, data = mujoco_model(solref=solref, z=0.07)
-        heights = []
-        for _ in range(1000):
-            mujoco.mj_step(model, data)
-            heights.append(data.qpos[2])
-        highest.append((max(heights) - 0.1) / 0.1)
-    assert highest[0] == pytest.approx(7.0, abs=0.2) and highest[1] < 0.0
+    pairs = re.findall(r'solref="(0\.004 \d)"', README)
+    thrown, kept = (max(heights(1000, solref=solref, z=0.07)[0]) for solref in pairs)
+    assert (thrown - 0.1) / 0.1 == pytest.approx(7.0, abs=0.2) and kept < 0.1
 
 
 def test_mujoco_finds_a_fast_contact_by_the_flag_speculative():
-    lowest = []
-    for flag in ("", re.search(r"`(<flag speculative=.+?/>)`", README)[1]):
-        mujoco, model, data = mujoco_model(dt=0.064, flag=flag)
-        heights = []
-        for _ in range(60):
-            mujoco.mj_step(model, data)
-            heights.append(data.qpos[2])
-        lowest.append(min(heights))
-    assert lowest[0] < 0.0 < 0.08 < lowest[1], "its centre comes below the floor, or not"
+    flag = re.search(r"`(<flag speculative=.+?/>)`", README)[1]
+    late, found = (min(heights(60, dt=0.064, flag=each)[0]) for each in ("", flag))
+    assert late < 0.0 < 0.08 < found, "its centre comes below the floor, or not"
 
 
 def test_mujocos_force_flickers_and_the_setting_that_begins_at_0_cures_it():
     found = []
-    for solimp in ("0.9 0.95 0.001", setting("solimp", -1)):
+    cure = re.findall('`solimp="([^"]+)"`', README)[-1]
+    for solimp in ("0.9 0.95 0.001", cure):
         hill = '<geom type="sphere" size="20" pos="0 0 20"/>'
         mujoco, model, data = mujoco_model(body=hill, solimp=solimp)
         data.qpos[:3] = 20.1 * math.sin(0.1), 0.0, 20.0 + 20.1 * COSINE

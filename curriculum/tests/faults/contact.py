@@ -61,8 +61,7 @@ FAULTS = [
     (C, "if (inside & (free[lag:] | free[:-lag])).any():", "if inside.any():",
      MODELS + "pair_by_pair"),
     (C, "EXPLODED = 10.0", "EXPLODED = 11.0", MODELS + "ten_times"),
-    (C, ".max(initial=0.0) >= kick", ".max(initial=0.0) >= 3.0 * kick",
-     "test_show.py -k once_a_step"),
+    (C, ".max(initial=0.0) >= kick", ".max(initial=0.0) >= 3.0 * kick", MODELS + "at_rest_is"),
     (C, "    if mass == math.inf:\n        return math.inf\n", "", MODELS + "critical_dt_also"),
     # the command line
     (C, 'if re.fullmatch("--[a-z]+=--", word)', 'if re.fullmatch("--[a-z]+=---", word)',
@@ -73,7 +72,7 @@ FAULTS = [
     (C, 'if row["through"]:\n        return f"through', 'if False:\n        return f"through',
      LINE + "reader_would_ask"),
     (C, "if touches and dt > limit:", "if touches and dt > 2.0 * limit:", LINE + "verdict_names"),
-    (C, "np.maximum(vy, -vy - kick).clip(0.0)", "0.0 * vy", "test_show.py -k once_a_step"),
+    (C, "np.maximum(vy, -vy - kick).clip(0.0)", "0.0 * vy", MODELS + "at_rest_is"),
     (REMARKS, "if name not in runs or find_fault", "if name not in runs and find_fault",
      LINE + "cure_that_is_printed"),
 ]  # fmt: skip
