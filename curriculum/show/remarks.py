@@ -13,17 +13,14 @@ import numpy as np
 
 import contact
 from curriculum.commands import ROOT, command, quoted
+from curriculum.show.picture import contact_impulses
 from exercises.kit.script import practise
 
-APEXES = 5  # heights of bounces that are printed
 KNOBS = {knob for row in contact.MODELS.values() for knob in row.knobs} - {"restitution"}
 
 
 def print_unused(args) -> None:
-    """Print a line on each flag that has no effect on the model that was chosen.
-
-    args: the flags as contact.parse_flags gives them.
-    """
+    """Print a line on each flag that has no effect on the model that was chosen."""
     default = contact.Settings()._asdict() | {"damping": None, "restitution": None}
     for knob in default:
         owners = [name for name, row in contact.MODELS.items() if knob in row.knobs + row.also]
@@ -74,8 +71,8 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
     turns = np.flatnonzero((vy[:-1] > 0.0) & (vy[1:] <= 0.0))
     if len(turns):
         tops = gap[turns] - vy[turns] ** 2 / (2 * g)
-        heights = ", ".join(f"{top:.4g}" for top in tops[:APEXES])
-        yield f"exact: its bounces rise to {heights} m" + (" ..." if len(tops) > APEXES else "")
+        heights = ", ".join(f"{top:.4g}" for top in tops[:5])
+        yield f"exact: its bounces rise to {heights} m" + (" ..." if len(tops) > 5 else "")
     else:
         yield "exact: it does not bounce"
 
@@ -115,22 +112,20 @@ def find_fault(model, job, runs, quality) -> tuple[str, str]:
     if overlap > 0.05:
         return "sink", f"a spring carries a weight only where it is compressed, {overlap:.3g} r"
     unsteady = model == "soft" and not kind and (row["force_error"] or 0.0) > 0.01
-    if unsteady and flickers(runs["soft"], runs["exact"]):
+    if unsteady and flickers(runs["soft"], runs["exact"], scene):
         d0 = (settings.solimp or contact.SOLIMP)[0]
         return "flicker", f"the force comes and goes: a contact begins with impedance d0 = {d0:g}"
     return kind, text
 
 
-def flickers(run: contact.Run, exact: contact.Run) -> bool:
+def flickers(run: contact.Run, exact: contact.Run, scene: contact.Scene) -> bool:
     """Return whether a ball's force is often 0 in the last quarter while exact's lasts."""
-    late, gravity = slice(3 * len(run.v) // 4, None), np.array([[0.0], [contact.GRAVITY]])
-    force, right = (
-        np.hypot(*(np.diff(each.v[late], axis=0) / run.t[1] - gravity).swapaxes(0, 1))
-        for each in (run, exact)
-    )
-    lasts = right > 0.1 * -contact.GRAVITY
+    late, weight = slice(3 * len(run.v) // 4, None), -contact.GRAVITY * scene.mass * run.t[1]
+    pushes = (contact_impulses(each, scene)[late] for each in (run, exact))
+    push, right = (np.hypot(*each.swapaxes(0, 1)) for each in pushes)
+    lasts = right > 0.1 * weight
     once = np.diff(lasts, axis=0).sum(0) <= 1  # it does not bounce
-    return bool((once & ((lasts & (force < 1e-6)).sum(0) > 2)).any())
+    return bool((once & ((lasts & (push < 1e-7 * weight)).sum(0) > 2)).any())
 
 
 def cures(kind, model, scene, dt, steps, models, settings) -> Iterator[dict]:

@@ -153,15 +153,11 @@ def test_a_figure_an_exercise_and_a_model_are_on_the_page(course):
     assert "Exercise 12: twice as fast" in page and '"relax": 0.5' in page
 
 
-def test_an_exercise_waits_is_solved_and_says_where_its_entry_lacks(course):
+def test_an_exercise_waits_and_is_solved(course):
     folder, _ = course
     waits, solved = (python(f"exercises/{EX}", *more, cwd=folder) for more in ((), ("--solution",)))
     assert waits.returncode == 2 and "doubled is still a blank" in waits.stdout
     assert solved.returncode == 0 and "doubled is right" in solved.stdout, solved.stdout
-    edit(folder / ANSWERS, '"ex12": ', '"ex13": ')
-    lacks = python(f"exercises/{EX}", cwd=folder)
-    edit(folder / ANSWERS, '"ex13": ', '"ex12": ')
-    assert "ex12 has no entry in exercises/kit/answers.json; allowed: ex13, ex1, " in lacks.stderr
 
 
 REFUSED = {"max(0.0, *[c.depth])": "*[c.depth]", "0.0 * balls.count(c)": "balls.count(c)"}

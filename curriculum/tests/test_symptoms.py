@@ -1,10 +1,11 @@
-"""README's table of symptoms: commands show and cure what they say; MuJoCo's settings do, too."""
+"""README's table of symptoms: commands show and cure what they say; MuJoCo's settings do, too.
 
-import math
+That MuJoCo's force flickers follows: soft's does, and soft is MuJoCo (test_models.py).
+"""
+
 import re
 import shlex
 
-import numpy as np
 import pytest
 
 import contact
@@ -16,7 +17,6 @@ ROWS = [row.split(" | ") for row in re.findall(r"^\| (.+) \|$", TABLE, re.M)[2:]
 SHOWN = re.compile(r"`python contact\.py (.+?)`: (?:(\w+) )?(\S+/\S+) (-?[\d.]+)")  # a column
 ENDED = re.compile(r"`python contact\.py (.+?)`: ()((?:EXPLODED|rests|through).*)()")  # or how
 CELLS = [(row[0], cell) for row in ROWS for cell in row[2:4]]
-COSINE = math.cos(0.1)
 BALL, BOX = 'type="sphere" size="0.1"', 'type="box" size="0.1 0.1 0.1"'
 
 
@@ -48,7 +48,7 @@ def test_a_command_prints_what_the_row_says(symptom, cell, tmp_path, capsys):
     assert found == pytest.approx(float(value), rel=0.05, abs=1e-9)
 
 
-def mujoco_model(shape=BALL, body="", dt=0.002, solref="0.02 1", solimp="0.9 0.95 0.001", **more):
+def mujoco_model(shape=BALL, dt=0.002, solref="0.02 1", solimp="0.9 0.95 0.001", **more):
     """MuJoCo's model of one ball or box of 1 kg over the floor, and its data. z: its height [m]."""
     mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed: the extra `bench`")
     z, mass, flag = more.pop("z", 1.0), more.pop("mass", 1.0), more.pop("flag", "")
@@ -56,7 +56,7 @@ def mujoco_model(shape=BALL, body="", dt=0.002, solref="0.02 1", solimp="0.9 0.9
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><option timestep="{dt}"{options}>{flag}</option><default><geom condim="1" '
         f'solref="{solref}" solimp="{solimp}"/></default><worldbody>'
-        f'<geom type="plane" size="0 0 1"/>{body}<body pos="0 0 {z}"><freejoint/>'
+        f'<geom type="plane" size="0 0 1"/><body pos="0 0 {z}"><freejoint/>'
         f'<geom {shape} mass="{mass}"/></body></worldbody></mujoco>'
     )
     return mujoco, model, mujoco.MjData(model)
@@ -115,20 +115,3 @@ def test_mujoco_finds_a_fast_contact_by_the_flag_speculative():
     flag = re.search(r"`(<flag speculative=.+?/>)`", README)[1]
     late, found = (min(heights(60, dt=0.064, flag=each)[0]) for each in ("", flag))
     assert late < 0.0 < 0.08 < found, "its centre comes below the floor, or not"
-
-
-def test_mujocos_force_flickers_and_the_setting_that_begins_at_0_cures_it():
-    found = []
-    cure = re.findall('`solimp="([^"]+)"`', README)[-1]
-    for solimp in ("0.9 0.95 0.001", cure):
-        hill = '<geom type="sphere" size="20" pos="0 0 20"/>'
-        mujoco, model, data = mujoco_model(body=hill, solimp=solimp)
-        data.qpos[:3] = 20.1 * math.sin(0.1), 0.0, 20.0 + 20.1 * COSINE
-        forces, angles = [], []
-        for _ in range(1900):
-            mujoco.mj_step(model, data)
-            forces.append(sum(data.efc_force[: data.nefc]))
-            angles.append(math.atan2(data.qpos[0], data.qpos[2] - 20.0))
-        late, truth = slice(1500, None), 9.81 * (3.0 * np.cos(angles) - 2.0 * COSINE)
-        found.append(np.std((np.array(forces) - truth)[late]) / truth[late].mean())
-    assert found[0] > 0.25 and found[1] < 0.02

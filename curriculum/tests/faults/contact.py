@@ -74,5 +74,5 @@ FAULTS = [
     (C, "if touches and dt > limit:", "if touches and dt > 2.0 * limit:", LINE + "verdict_names"),
     (C, "np.maximum(vy, -vy - kick).clip(0.0)", "0.0 * vy", MODELS + "at_rest_is"),
     (REMARKS, "if name not in runs or find_fault", "if name not in runs and find_fault",
-     LINE + "cure_that_is_printed"),
+     LINE + "verdict_names"),
 ]  # fmt: skip
