@@ -5,6 +5,9 @@ import shlex
 import shutil
 import subprocess
 import sys
+import time
+
+import pytest
 
 from curriculum.source import ROOT, read_all, replace_once
 
@@ -17,6 +20,24 @@ def python(*words, cwd=ROOT, **environment):
     words = [sys.executable, *map(str, words)]
     how = {"cwd": cwd, "env": os.environ | environment, "timeout": 1800}  # for what hangs alone
     return subprocess.run(words, capture_output=True, text=True, **how)
+
+
+def stopped(number, words, ready, terminal=False, cwd=ROOT):
+    """Start this Python and, once ready(process), send a signal to it, or as a terminal does to its
+    whole group. Return its status and what it printed, once no process of the group is left."""
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    words = [sys.executable, *map(str, words)]
+    with subprocess.Popen(words, cwd=cwd, start_new_session=True, **pipes) as process:
+        while not ready(process):
+            assert process.poll() is None
+            time.sleep(0.01)
+        (os.killpg if terminal else os.kill)(process.pid, number)
+        printed = process.communicate(timeout=600)
+    with pytest.raises(ProcessLookupError):
+        for _ in range(6000):  # a minute: what lives on would take longer
+            os.killpg(process.pid, 0)
+            time.sleep(0.01)
+    return process.returncode, *printed
 
 
 def clone(folder, *leave):

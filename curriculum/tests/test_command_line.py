@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 import contact
-from curriculum.tests.helpers import CONTACT, NO_PLUGINS, ROOT, python
+from curriculum.tests.helpers import CONTACT, NO_PLUGINS, ROOT, python, stopped
 
 FOLDER_ONLY = "recording:", "next,", "no recording:", "exact: ", "  try: ", "  because: "
 
@@ -228,15 +228,13 @@ def test_ctrl_c_and_sigterm_while_a_command_imports_are_one_word(command, tmp_pa
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 def test_ctrl_c_ends_a_run_with_one_word_and_leaves_no_file(tmp_path):
     start = "import runpy; print('ready', flush=True); runpy.run_path('contact.py', {}, '__main__')"
-    flags = f"--no-skip --steps 1000000 --out {tmp_path}/o".split()
-    words = [sys.executable, "-c", start, *flags]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    with subprocess.Popen(words, cwd=ROOT, start_new_session=True, **pipes) as process:
-        assert process.stdout.readline() == "ready\n"
-        time.sleep(1.0)  # into the steps
-        os.killpg(process.pid, signal.SIGINT)  # what a terminal does
-        assert process.communicate(timeout=600) == ("", "stopped\n")
-    assert process.returncode == 130 and not any(tmp_path.iterdir())
+
+    def in_its_steps(process):
+        return process.stdout.readline() and not time.sleep(1.0)
+
+    words = "-c", start, *f"--no-skip --steps 1000000 --out {tmp_path}/o".split()
+    done = stopped(signal.SIGINT, words, in_its_steps, terminal=True)
+    assert done == (130, "", "stopped\n") and not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("words, unbuffered", [

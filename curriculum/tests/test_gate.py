@@ -3,14 +3,10 @@
 import glob
 import hashlib
 import json
-import os
 import re
 import shlex
 import shutil
 import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +14,7 @@ import pytest
 
 from curriculum import source, stored
 from curriculum.prose import ratios, references
-from curriculum.tests.helpers import clone, edit, gate, python, review, shorten
+from curriculum.tests.helpers import clone, edit, gate, python, review, shorten, stopped
 
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
 EXERCISE, MADE = "exercises/ex1_bet.py", "curriculum/bench/results/made.json"
@@ -214,18 +210,9 @@ def children(process):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_gate_that_is_stopped_leaves_no_run_behind(project, number):
     edit(project / "meta.yaml", "drop: []", "drop: [--no-skip, --steps, 10000000]")
-    how = {"cwd": project, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
-    with subprocess.Popen([sys.executable, "-m", "curriculum.gate"], **how) as process:
-        while not children(process.pid):
-            assert process.poll() is None
-            time.sleep(0.01)
-        process.send_signal(number)  # to the gate alone
-        err = process.communicate(timeout=600)[1]
-    assert (process.returncode, err) == (128 + number, "stopped\n")
-    with pytest.raises(ProcessLookupError):
-        for _ in range(6000):  # a run would take much longer
-            os.killpg(process.pid, 0)
-            time.sleep(0.01)
+    runs = "-m", "curriculum.gate"
+    status, _, err = stopped(number, runs, lambda process: children(process.pid), cwd=project)
+    assert (status, err) == (128 + number, "stopped\n")
 
 
 BENCH, STRESS = "curriculum/bench/measure.py", "curriculum/stress/jobs.py"

@@ -18,7 +18,7 @@ import pytest
 import contact
 from curriculum import parallel, seeds
 from curriculum.show import picture
-from curriculum.tests.helpers import CONTACT, ROOT, clone, python
+from curriculum.tests.helpers import CONTACT, ROOT, clone, python, stopped
 
 DT, STEPS = 0.004, 300
 MASS, RADIUS = np.array([2.0, 1.3, 0.5]), np.array([0.12, 0.09, 0.08])  # from the lowest ball up
@@ -313,24 +313,13 @@ def test_parts_cut_rows_and_rows_of_other_flags_give_the_summary_of_one_whole_ru
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_a_night_of_seeds_that_is_stopped_keeps_its_rows_and_leaves_no_process(number, tmp_path):
-    words = "curriculum.seeds", "0:100000", "--no-skip", "--out", tmp_path
-    start = {"cwd": ROOT, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
-    with subprocess.Popen([sys.executable, "-m", *words], **start) as process:
-        rows = tmp_path / "seeds.csv"
-        while not rows.exists() or rows.read_bytes().count(b"\n") < 2:
-            assert process.poll() is None
-            time.sleep(0.01)
-        if number == signal.SIGINT:
-            os.killpg(process.pid, number)  # what a terminal does
-        else:
-            process.send_signal(number)
-        err = process.communicate(timeout=600)[1]
+    words = "-m", "curriculum.seeds", "0:100000", "--no-skip", "--out", tmp_path
+    rows, terminal = tmp_path / "seeds.csv", number == signal.SIGINT
+    status, _, err = stopped(
+        number, words, lambda _: rows.exists() and rows.read_bytes().count(b"\n") > 1, terminal
+    )
     ends = {signal.SIGINT: (130, "stopped\n"), signal.SIGTERM: (143, "stopped\n")}
-    assert (process.returncode, err) == ends.get(number, (-number, ""))
-    with pytest.raises(ProcessLookupError):
-        while True:  # until no worker is left
-            os.killpg(process.pid, 0)
-            time.sleep(0.01)
+    assert (status, err) == ends.get(number, (-number, ""))
     assert [path.name for path in tmp_path.iterdir()] == ["seeds.csv"]
 
 
