@@ -3,6 +3,7 @@
 import os
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -28,11 +29,15 @@ def stopped(number, words, ready, terminal=False, cwd=ROOT):
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     words = [sys.executable, *map(str, words)]
     with subprocess.Popen(words, cwd=cwd, start_new_session=True, **pipes) as process:
-        while not ready(process):
-            assert process.poll() is None
-            time.sleep(0.01)
-        (os.killpg if terminal else os.kill)(process.pid, number)
-        printed = process.communicate(timeout=600)
+        try:
+            while not ready(process):
+                assert process.poll() is None
+                time.sleep(0.01)
+            (os.killpg if terminal else os.kill)(process.pid, number)
+            printed = process.communicate(timeout=600)
+        except BaseException:
+            os.killpg(process.pid, signal.SIGKILL)  # or it would be waited for
+            raise
     with pytest.raises(ProcessLookupError):
         for _ in range(6000):  # a minute: what lives on would take longer
             os.killpg(process.pid, 0)
