@@ -82,7 +82,8 @@ def test_an_engine_rests_awake_and_keeps_momentum(setting):
 
 KEPT = stored.load(bench.FULL)[0]["points"]
 HERE = [p for p in KEPT if bench.name(p) in engines.BY_NAME]  # of the engines that are installed
-BEST = [p for engine in engines.ENGINES for p in measure.contest(HERE, [engine]).values()]
+ALL_BEST = [p for engine in engines.ENGINES for p in measure.contest(HERE, [engine]).values()]
+BEST = [p for p in ALL_BEST if p["ms"] < 2000.0]  # three of a hundred take longer, a third of all
 
 
 @pytest.mark.parametrize("best", BEST, ids=lambda p: f"{p['engine']} {p['problem']}")
