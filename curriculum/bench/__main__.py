@@ -1,6 +1,6 @@
 """The benchmark's command line.
 
-    python -m curriculum.bench              everything below but try (25 minutes)
+    python -m curriculum.bench              everything below but try (35 minutes)
     python -m curriculum.bench points       run time against error, where the answer is known
     python -m curriculum.bench piles        time a step of 12 to 10,000 balls, at equal depth
     python -m curriculum.bench collapse     depth against time of a heap of 216 (SimBenchmark's 666)
