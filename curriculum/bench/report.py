@@ -123,7 +123,9 @@ def ratios(piles, which):
     where that is least."""
     found = {race[4]["resting"] / race[which]["resting"]: f"{race[0]:,} balls, {race[1]:g} r"
              for race in races(piles, DEPTHS, "resting") if race[which] and race[4]}  # fmt: skip
-    return f"{span(found)} times (least: {found.get(min(found, default=None))})"
+    least, most = min(found, default=None), max(found, default=None)
+    low = f"1/{format_number(1.0 / least)}" if least and least < 1.0 else format_number(least)
+    return f"{low} to {format_number(most)} times (least: {found.get(least)})"
 
 
 def take(points, piles):
