@@ -317,13 +317,21 @@ def test_a_verdict_names_its_cause_and_a_command_that_cures_it(flags, state, why
 
 
 IN_IPYTHON = """
-import os, signal, sys, threading
+import os, signal, sys, threading, time
 from IPython.core.interactiveshell import InteractiveShell
 shell = InteractiveShell.instance()
 state = lambda: (*map(signal.getsignal, (2, 15)), sys.excepthook, "contact" in sys.modules)
 run, before = f"contact.py --no-skip --no-rerun --out {sys.argv[1]} --steps ", state()
 shell.run_line_magic("run", run + "5")
-threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+def interrupt(main=threading.get_ident()):  # once it takes steps
+    names = []
+    while "simulate" not in names:
+        time.sleep(0.01)
+        frame, names = sys._current_frames()[main], []
+        while frame:
+            frame, names = frame.f_back, [*names, frame.f_code.co_name]
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Thread(target=interrupt).start()
 shell.run_line_magic("run", run + "100000000")
 shell.run_cell("1 / 0")
 shell.run_cell("import contact; print(contact.__name__, contact.RADIUS)")
