@@ -5,6 +5,7 @@ import importlib.metadata
 import importlib.util
 import os
 import re
+import signal
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,8 @@ import pytest
 from curriculum.tests.page_browser import start  # noqa: F401
 
 SLOW = "test_page.py", "test_bench.py"
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's `&` leaves it so, to all children
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 os.environ.pop("UV", None)  # `uv run pytest` sets it; commands are printed as for any other Python
 
 
