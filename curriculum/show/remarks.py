@@ -105,7 +105,7 @@ def find_fault(model, job, runs, quality) -> tuple[str, str]:
     overlap = row["rest_penetration_frac"] if lies else 0.0
     if overlap > 1e-3 and model in ("lcp", "leapfrog"):
         if model == "lcp":
-            law = ": a stack sags by (M / m) g dt^2 / (beta K)"
+            law = ": a stack sags by (M / m) g dt^2 / (beta iters)"
             if settings.baumgarte == 0.0:
                 return "sweeps", "beta = 0: no share of an overlap is opened"
         return "sweeps", f"{settings.iters} sweeps do not converge{law}"
