@@ -319,8 +319,10 @@ def test_a_verdict_names_its_cause_and_a_command_that_cures_it(flags, state, why
 IN_IPYTHON = """
 import os, signal, sys, threading, time
 from IPython.core.interactiveshell import InteractiveShell
-shell = InteractiveShell.instance()
-state = lambda: (*map(signal.getsignal, (2, 15)), sys.excepthook, "contact" in sys.modules)
+shell, threads = InteractiveShell.instance(), "OPENBLAS_NUM_THREADS"
+os.environ.pop(threads, None)
+there = lambda: ("contact" in sys.modules, threads in os.environ)
+state = lambda: (*map(signal.getsignal, (2, 15)), sys.excepthook, *there())
 run, before = f"contact.py --no-skip --no-rerun --out {sys.argv[1]} --steps ", state()
 shell.run_line_magic("run", run + "5")
 def interrupt(main=threading.get_ident()):  # once it takes steps

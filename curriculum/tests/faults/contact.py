@@ -69,6 +69,7 @@ FAULTS = [
     (C, 'errors="backslashreplace"', 'errors="strict"', LINE + "whatever_is"),
     (C, "except KeyboardInterrupt:\n        print", "except EOFError:\n        print",
      LINE + "ipython"),
+    (C, "        del os.environ[THREADS]\n", "        pass\n", LINE + "ipython"),
     (C, 'if row["through"]:\n        return f"through', 'if False:\n        return f"through',
      LINE + "reader_would_ask"),
     (C, "if touches and dt > limit:", "if touches and dt > 2.0 * limit:", LINE + "verdict_names"),
