@@ -69,14 +69,18 @@ def row(folder, what, command):
 
 
 def pip_column():
-    """The lines of pip in their order, in one environment; then what an author runs in it."""
+    """The rows of pip in their order, in one environment."""
     fresh("pip")
     check("README, pip: run", readme.set_up("pip")[0], "pip")
     for what, command, _ in readme.rows():
         row("pip", what, command)
+
+
+def authors():
+    """What pip's line for tests installs, in a clone of its own; there the tests and the checks."""
+    fresh("dev")
     install, _, tests = readme.set_up("pip")[1].rpartition(" && ")
-    check("README, pip: test, set-up", install, "pip")
-    check("README, compiled ahead", ".venv/bin/python -m curriculum.compiled", "pip")
+    check("README, pip: test, set-up", install, "dev")
     side_by_side(lambda: suite(tests), checks)
 
 
@@ -102,8 +106,9 @@ def alone():
 
 
 def suite(command):
-    """The tests, by the README's own line; none may be skipped."""
-    printed = check("README, pip: test", command, "pip")
+    """The tests, by the README's own line, with what is compiled ahead; none may be skipped."""
+    check("README, compiled ahead", ".venv/bin/python -m curriculum.compiled", "dev")
+    printed = check("README, pip: test", command, "dev")
     counts = re.findall(r"(\d+) (passed|failed|errors?|skipped)\b", printed[-200:])
     passed = sum(int(number) for number, word in counts if word == "passed")
     done.append((passed, sum(int(number) for number, _ in counts) - passed))
@@ -124,12 +129,12 @@ def checks():
         "quick benchmark": "python -m curriculum.bench --quick",
         "quick stress": "python -m curriculum.stress --quick",
     }.items():
-        check(name, f".venv/bin/{command}", "pip")
+        check(name, f".venv/bin/{command}", "dev")
 
 
 def main():
     """All steps. Returns the exit status."""
-    side_by_side(pip_column, lambda: (uv_column(), alone()))
+    side_by_side(pip_column, lambda: (uv_column(), alone()), authors)
     same = "for it in html ipynb; do cmp {pip,uv}-contact.$it; cmp {pip,dev}-contact.$it; done"
     check("each page, each notebook", same, ".")
     passed, failed = (sum(each) for each in zip(*done))
