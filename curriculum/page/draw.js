@@ -114,7 +114,7 @@ export function plot(view, { left = 0, top = 0, height = view.height, x, y, line
   const wide = Math.max(0, ...y.ticks.map(([, text]) => text.length));
   const box = {
     left: left + Math.max(26, 12 + 8.4 * wide), right: view.width - 12,
-    top: top + (y.label ? 28 : 8), bottom: height - 46,
+    top: top + (y.label ? 28 : 8), bottom: height - (x.label ? 46 : 28),
   };
   const [sx, sy] = [scaleOf(x, box.left, box.right), scaleOf(y, box.bottom, box.top)];
   const across = y.ticks.map(([value, text]) => [

@@ -15,14 +15,16 @@ export function column(heights, more = {}) {
     new Ball(at("x", i), y, at("vx", i), at("vy", i), at("mass", i), at("radius", i)));
 }
 
+// Softness and target of a spring from after the step, (depth) => [1/kg, m/s].
+export function springOf({ dt, stiffness, damping }) {
+  const softness = 1 / (stiffness * dt * dt + damping * dt);
+  return (depth) => [softness, dt * stiffness * depth * softness];
+}
+
 // step(balls) of a model with these knobs, as contact.step_of has it.
 function stepOf(model, knobs) {
-  const { dt, restitution = 0, stiffness, damping, solref = null, solimp = null } = knobs;
-  if (model === "implicit") {
-    const softness = 1 / (stiffness * dt * dt + damping * dt);
-    const spring = (depth) => [softness, dt * stiffness * depth * softness];
-    return (balls) => implicit_step(balls, dt, spring);
-  }
+  const { dt, restitution = 0, solref = null, solimp = null } = knobs;
+  if (model === "implicit") return (balls) => implicit_step(balls, dt, springOf(knobs));
   const soft = soft_defaults(restitution, dt, solref, solimp);
   const values = { ...knobs, restitution, solref: soft[0], solimp: soft[1] };
   const taken = data.taken[model].map((name) => values[name]);

@@ -3,7 +3,8 @@
  *
  *   title, caption    its name; one sentence that says what it shows
  *   height(width)     px of its drawing
- *   knobs, room       names of QUANTITIES, sliders below it, at most two; how many may come
+ *   knobs, room       names of QUANTITIES, sliders below it, at most two, if its state names no others
+ *                     ("dt,mu"); how many may come
  *   start(given)      its own state, {name: number or text}; the slot in the text may set it
  *   draw(view)        {picture, words}: svg, and one sentence, of two lines on a phone
  *   clock(view)       {end, rate, step, loops, alone}: own.time runs from 0 to `end`, `rate` s in a
@@ -35,7 +36,7 @@ const LEAST = 358; // px: on a screen smaller than a phone's it is drawn so, and
 
 export const asked = (what, own) => (typeof what === "function" ? what(own) : what);
 export const captionOf = ({ caption }, { own }) => worded(asked(caption, own));
-export const knobsOf = ({ knobs = [] }, { own }) => asked(knobs, own);
+export const knobsOf = ({ knobs = [] }, { own }) => own.knobs?.split(",") ?? asked(knobs, own);
 
 // No line ends between a number and its unit.
 export const worded = (words) =>

@@ -6,7 +6,7 @@ import { asked, captionOf, fits, knobsOf, QUANTITIES, viewOf, worded } from "./s
 
 const [WIDE, NARROW] = [640, 358]; // px
 const CHOICES = { // words that a slot may set, where the figure has no switch of that name
-  models: data.models, model: data.models, scene: Object.keys(data.scenes),
+  models: [...data.models, "implicit"], model: data.models, scene: Object.keys(data.scenes),
   knobs: Object.keys(QUANTITIES),
 };
 

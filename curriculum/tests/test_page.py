@@ -178,7 +178,7 @@ def test_a_learners_way_at_the_desk(visit):
         pictures = page.locator(".fig, .generated").filter(visible=True).all()
         boxes = [each.bounding_box() for each in pictures]
         for above, below in itertools.pairwise(boxes):
-            assert below["y"] - above["y"] - above["height"] <= 1900, below
+            assert below["y"] - above["y"] - above["height"] <= 1600, below
         wake_all(page)
         stops = page.evaluate(STOPS)
         assert len(stops) <= 200

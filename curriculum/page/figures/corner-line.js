@@ -1,10 +1,9 @@
 /* The line of a step: the more impulse, the farther out it ends; and the line of what each model
- * asks for: lcp's is upright, soft's leans, penalty's is level. */
+ * asks for: lcp's is upright, soft's and that of the spring from after the step lean, penalty's is level. */
 import { arrow, axis, ball, label, lane, mark, plain, plot, within } from "../draw.js";
 import { CONTACT_MARGIN, Contact, contact_target, FLOOR, soft_defaults, soften } from "../contact.js";
-import { column, G, R, record } from "../runs.js";
+import { column, G, R, record, springOf } from "../runs.js";
 
-const THREE = ["penalty", "lcp", "soft"];
 const [LOW, HIGH, MOST] = [-0.1, 0.06, 6]; // r, r, N s
 
 // One step of a model: where it ends [r], with which impulse, the line of what it asks for, and where
@@ -16,6 +15,7 @@ function stepped(model, own) {
   const contact = new Contact(one, FLOOR, 0, 1, -gap * R);
   contact.target = contact_target(contact, 0, baumgarte, dt);
   if (model === "soft") soften(contact, dt, ...soft_defaults(0, dt));
+  if (model === "implicit") [contact.softness, contact.target] = springOf(own)(contact.depth);
   const near = -contact.depth < (model === "lcp" ? CONTACT_MARGIN : 0);
   const run = record(model, [one], { ...own, restitution: 0 }, 1);
   const [end, lam] = [run.y[1] / R - 1, run.vy[1] - fall];
@@ -30,7 +30,7 @@ const short = (value) => plain(Number(value.toFixed(3)));
 
 function draw(view) {
   const { own: { gap, free, dt } } = view;
-  const found = THREE.map((model) => stepped(model, view.own));
+  const found = view.own.models.split(",").map((model) => stepped(model, view.own));
   const { left, x, r, larger, at, drawn } = lane(view, { under: 90, larger: 8 });
   const { sx, sy, box, picture, knob } = plot(view, {
     left, x: axis([LOW, HIGH], "gap at the end of the step / r", -0.1, -0.05, 0, 0.05),
@@ -40,6 +40,11 @@ function draw(view) {
       ...found.map(({ model, line }) => ({ model, points: line })),
     ],
   });
+  const nameOf = ({ model, name: [at, high] }, k) => { // beside its line, on the left where there is room
+    if (at === HIGH) return label(model, box.right, sy(Math.min(high, MOST)) - 8 - 18 * k, "end");
+    const onLeft = at < 0 && sx(at) - box.left > 10 * model.length;
+    return label(model, sx(at) + (onLeft ? -8 : 8), sy(high), onLeft ? "end" : "start");
+  };
   const what = { label: "the ball: its gap before the step", value: "gap", low: LOW, high: HIGH,
     step: 0.005, at: (_, y) => -y / larger / r };
   return {
@@ -47,9 +52,9 @@ function draw(view) {
       drawn(found.map(({ model, end }) => ball(model, x, at(end), r, "ghost")),
         arrow("weight", x + r + 12, at(gap) + r, 0, at(free) - at(gap))),
       view.grab(what, ball("fixed", x, at(gap), r)), picture,
-      label("the step", Math.min(sx(free + (3.9 * dt) / R) + 10, box.right - 56), sy(3.9), "start", "tick"),
-      found.map(({ model, end, lam, name: [at, high] }, k) => [mark(model, sx(end), sy(lam), 7),
-        at < HIGH ? label(model, sx(at) + 8, sy(high)) : label(model, box.right, sy(high) - 8 - 18 * k, "end")]),
+      label("the step", Math.min(sx(free + (1.6 * dt) / R) + 10, box.right - 56), sy(1.6), "start", "tick"),
+      found.map(({ model, end, lam }) => // who is thrown out of the picture has no mark in it
+        (end <= HIGH && lam <= 1.07 * MOST ? mark(model, sx(end), sy(lam), 7) : "")), found.map(nameOf),
       knob("free", "where the ball would end without a push", 0.005),
     ],
     words: `From ${short(gap)} r to ${short(free)} r; with a push: ` +
@@ -61,6 +66,7 @@ export const figure = {
   title: "The line of a step",
   caption: "The more push, the farther out the step ends. Where its line crosses a model’s, it is solved.",
   height: (width) => (width < 480 ? 280 : 320),
-  start: () => ({ gap: -0.02, free: -0.07, baumgarte: 1 }),
+  knobs: ({ models }) => (models.includes("implicit") ? ["stiffness"] : []),
+  start: () => ({ models: "penalty,lcp,soft", gap: -0.02, free: -0.07, baumgarte: 1 }),
   draw,
 };

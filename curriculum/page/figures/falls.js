@@ -1,11 +1,11 @@
 /* The models side by side over one table, and their gaps over time: dark up to now, faint where one
  * has seen what comes. A stack's overlaps are drawn enlarged. */
-import { arrow, axis, ball, circle, label, line, ms, number, plain, plot } from "../draw.js";
+import { arrow, axis, ball, circle, clipped, label, line, ms, number, plain, plot } from "../draw.js";
 import { table, within } from "../draw.js";
 import { data } from "../data.js";
 import { column, G, gapsOf, inRow, kept, pushIn, R, record } from "../runs.js";
 
-const [GROUND, BELOW, LOWEST] = [26, 56, 0.45]; // px, px; m: a picture is at least so high
+const [GROUND, LOWEST] = [50, 0.4]; // px; m: a picture is at least so high
 const SCENES = { drop: "A ball falls", bounce: "A ball bounces", stack: "Three balls stand" };
 
 const run = kept((model, heights, knobs, count) => {
@@ -52,10 +52,10 @@ function lane(view, { model, made }, row, x, { twin, from, floor, scale, larger,
     const apart = height - below - 2 * R;
     drawn += 2 * R + (apart < 0 ? larger * apart : apart);
     below = height;
-    if (drawn < top + R) return ball(model, x, Math.min(floor + r, floor - drawn * scale), r);
+    if (drawn < top + R) return ball(model, x, Math.min(floor + GROUND, floor - drawn * scale), r);
     const far = Number.isFinite(height) ? `${number(height, 2)} m` : "out of sight";
-    return [circle(x, 44, 22, "halo"), arrow("weight", x, 54, 0, -30),
-      label(far, x, 70, "middle", "tick")];
+    return [circle(x, 52, 22, "halo"), arrow("weight", x, 62, 0, -30),
+      label(far, x, 78, "middle", "tick")];
   });
   const what = {
     label: `${model}: the balls`, value: "lift", low: 1.05 * R - start[0],
@@ -67,9 +67,8 @@ function lane(view, { model, made }, row, x, { twin, from, floor, scale, larger,
   const halo = circle(x, within(22, floor - (heights[0] || 0) * scale, floor), 22, "halo");
   return [
     view.grab(what, [shown, r < 22 ? halo : ""]),
-    arrow(`push m-${model}`, x, floor + GROUND - 3, 0, -push),
-    line(x - 24, floor + GROUND + 5, x + 24, floor + GROUND + 5, `line m-${model}`),
-    label(model, x, floor + GROUND + 24, "middle"),
+    arrow(`push m-${model}`, x, floor + GROUND / 2, 0, -push),
+    label(model, x, 15, "middle"), line(x - 24, 23, x + 24, 23, `line m-${model}`),
   ];
 }
 
@@ -80,8 +79,8 @@ function chartOf(view, { all, from, to }, top, time) {
   const most = Math.min(seen.reduce((a, b) => Math.max(a, b), 0), Math.max(2, -2 * low), 12);
   const margin = 0.06 * (most - low);
   const { sx, box, picture } = plot(view, {
-    top, zero: true, x: axis([from, to], "time (s)"),
-    y: axis([Math.max(low, -10) - margin, most + margin], "gap / r, r = 0.1 m (below 0: overlap)"),
+    top, zero: true, x: axis([from, to], ""),
+    y: axis([Math.max(low, -10) - margin, most + margin], "gap / r over time / s (r = 0.1 m; overlap < 0)"),
     lines: all.map(({ model, made, gaps }) => ({
       model, points: gaps.slice(first).map(({ gap }, k) => [made.t[first + k], gap]),
       layers: [["whole", view.seen < to ? to : from], ["coming", view.seen], ["", time]],
@@ -100,16 +99,16 @@ function draw(view) {
   const time = row * own.dt;
   // what comes is not told before it has been played, unless the text shows some of it
   view.seen = Math.max(view.seen ?? (view.text.time > 0 ? to : 0), time);
-  const chartTop = Math.round(0.56 * height);
-  const [wide, floor, top] = [width / all.length, chartTop - BELOW, topOf(view.text)];
+  const chartTop = Math.round(0.54 * height);
+  const [wide, floor, top] = [width / all.length, chartTop - GROUND, topOf(view.text)];
   const scale = Math.min((floor - 6) / top, (0.42 * wide) / R); // px for 1 m
   const [larger, many] = [enlarged(own, all), own.scene === "stack"];
   const told = all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row], many)}`);
   return {
     picture: [
-      table(0, floor, width, GROUND), all.map((each, k) =>
+      clipped(0, 0, width, chartTop, table(0, floor, width, GROUND), all.map((each, k) =>
         lane(view, each, row, wide * (k + 0.5), { twin: k > 0, from, floor, scale, larger, top })),
-      larger > 1 ? label(`overlaps × ${larger}`, 4, 16, "start", "tick") : "",
+      larger > 1 ? label(`overlaps × ${larger}`, 4, 42, "start", "tick") : ""),
       chartOf(view, { all, from, to }, chartTop, within(from, time, to)),
     ],
     words: `${time.toFixed(3)} s: ${told.join(", ")}.`,
@@ -123,7 +122,6 @@ export const figure = {
   caption: ({ scene, lift, from, to, dt }) =>
     `${SCENES[scene]}, from ${lift ? 0 : plain(from)} to ${plain(to)} s, in steps of ${ms(dt)}.`,
   height: (width) => (width < 480 ? 360 : 440),
-  knobs: ({ knobs }) => knobs.split(","),
   start: ({ scene = "drop" }) => ({
     scene, models: "penalty,lcp", from: 0.4, to: 1.2, lift: 0, knobs: "dt", ...data.scenes[scene].own,
   }),

@@ -1,6 +1,6 @@
 /* Three balls by penalty, two of which have motors, each drawn LARGER times as far from its mean place
  * as it is; and what becomes of them at which step. With switch=1 the force may be the step's last. */
-import { ball, label, line, ms, number, range, rect, scaleOf, svg, table, within } from "../draw.js";
+import { ball, label, line, ms, number, path, range, rect, scaleOf, svg, table, within } from "../draw.js";
 import { column, inRow, kept, R, record } from "../runs.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
@@ -42,12 +42,14 @@ function draw(view) {
   const [low, high] = endsOf(view.own);
   const { fate, trembling, shown } = squeezed(dt, stiffness, late);
   const [floor, top, middle] = [height - 104, height - 60, width / 2];
-  const scale = Math.min((floor - 24) / (2.2 * R), width / 8.6 / R); // px for 1 m
+  const scale = Math.min((floor - 24) / (2.5 * R), width / 8.6 / R); // px for 1 m
   const [r, row, share] = [R * scale, Math.floor(time / dt), (time / dt) % 1];
   const [now, next] = [row, row + 1].map((k) => shown[k % shown.length]); // a step moves straight
   const places = range(3, (i) => [0, 1].map((k) => now[k][i] + share * (next[k][i] - now[k][i])))
     .map(([x, y]) => [middle + x * scale, floor - Math.max(R, y) * scale]);
-  const finger = ([x, y]) => [rect(x - r, 14, 2 * r, y - 14, "body m-fixed"), ball("fixed", x, y, r, "body")];
+  const finger = ([x, y], side) => [ // from its hinge over its joint to its tip
+    path([[middle + 1.6 * side * r, 10], [x + 0.8 * side * r, 0.5 * (y - r)], [x, y]], "finger"),
+    ball("fixed", x, y, r, "body")];
   const [cupX, cupY] = places[1];
   const at = scaleOf({ domain: [low, high], log: true }, 12, width - 12);
   const parts = [low, ...[1, 2].map((k) => begins(k, stiffness, late, low, high)), high];
@@ -55,8 +57,8 @@ function draw(view) {
   const ticks = range(1 + Math.round(Math.log2(high / low)), (k) => low * 2 ** k);
   return {
     picture: [
-      table(0, floor, width, 20), finger(places[0]), finger(places[2]),
-      rect(middle - 4.2 * r, 4, 8.4 * r, 14, "body m-fixed"), ball("penalty", cupX, cupY, r),
+      table(0, floor, width, 20), finger(places[0], -1), finger(places[2], 1),
+      rect(middle - 2 * r, 2, 4 * r, 16, "body m-fixed"), ball("penalty", cupX, cupY, r),
       svg`<ellipse cx=${cupX} cy=${cupY - 0.72 * r} rx=${0.62 * r} ry=${0.15 * r} class="ground"/>`,
       FATES.map((name, k) => {
         const [from, to] = [at(parts[k]), at(parts[k + 1])];

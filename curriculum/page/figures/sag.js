@@ -24,20 +24,19 @@ function draw(view) {
   const { own: { balls, dt, iters, baumgarte, warm }, width, height } = view;
   const knobs = { dt, iters, baumgarte, warm };
   const [{ depths, rests }, law] = [sags(balls, knobs), lawOf(balls, knobs)];
-  const [left, floor] = [Math.round(0.24 * width), height - 46];
-  const r = Math.min(30, (height - 60) / (2 * balls), 0.4 * left);
+  const floor = height - 46;
+  const r = Math.min(30, (floor - 10) / (2 * balls));
   const at = (i) => floor - 2 * i * r; // of a contact
   const most = 1.12 * Math.max(1e-9, ...depths, ...law);
-  const { sx, box, picture } = plot(view, { left,
+  const { sx, box, picture } = plot(view, { left: 2 * r,
     x: axis([0, 1000 * most], "overlap (thousandths of r)"), y: { domain: [0, 1], label: "", ticks: [] } });
   const to = (deep) => sx(1000 * Math.max(0, deep));
   return {
     picture: [
-      table(0, floor, left, 30), line(left / 2 + r, floor, left + 20, floor, "grid"),
-      depths.map((deep, i) => [ball("lcp", left / 2, at(i) - r, r),
+      table(0, floor, box.left, 30), depths.map((deep, i) => [ball("lcp", box.left - r, at(i) - r, r),
         rect(sx(0), at(i) - 0.6 * r, to(deep) - sx(0), 0.8 * r, "bar-fill m-lcp")]),
       path(law.map((deep, i) => [to(deep), at(i) - 0.2 * r]), "law-line"),
-      label("the law", Math.min(to(law[1]) + 14, width - 54), at(1) - 0.2 * r + 2),
+      label("the law", Math.min(to(law[1]) + 14, width - 62), at(1) - 0.2 * r + 2),
       picture, line(sx(0), box.top, sx(0), box.bottom, "rule"),
     ],
     words: `The lowest of ${balls} is ${number(depths[0], 2)} r deep` +
@@ -48,8 +47,7 @@ function draw(view) {
 export const figure = {
   title: "What unfinished sweeps leave",
   caption: "A bar for every contact of a column at rest: how deep it is. The dashed line is the law.",
-  height: (width) => (width < 480 ? 280 : 320),
-  knobs: ({ knobs }) => knobs.split(","),
+  height: (width) => (width < 480 ? 280 : 360),
   start: () => ({ balls: 30, knobs: "iters,dt" }),
   draw,
 };
