@@ -73,8 +73,7 @@ def to_install(package, extra=None):
     wanted = ("-e", f"{near(str(ROOT))}[{extra}]") if extra else (package,)
     bring = ("--extra", extra) if extra else ("--with", package)
     words = sys.orig_argv[1:] if "UV" in os.environ else ("-m", "pip", "install", *wanted)
-    line = command(*words, bring=bring)
-    return f"{package} is missing; install it: {line}"
+    return f"{package} is missing; install it: {command(*words, bring=bring)}"
 
 
 @contextlib.contextmanager

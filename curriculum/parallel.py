@@ -9,7 +9,6 @@ import socket
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
 from concurrent import futures
 from contextlib import contextmanager
 from itertools import islice
@@ -20,16 +19,14 @@ from curriculum import commands
 AHEAD, PATIENCE = 1000, 15.0  # jobs that are asked for at a time; s without a result
 
 
-def run_jobs(function: Callable, jobs: Iterable, label: str, workers: int | None = None) -> list:
+def run_jobs(function, jobs, label, workers=None) -> list:
     """Return [function(job) for job in jobs], computed on all cores, in the order of the jobs."""
     jobs = list(jobs)
     found = as_they_come(function, jobs, len(jobs), label, workers)
     return [result for _, result in sorted(found, key=lambda each: each[0])]
 
 
-def as_they_come(
-    function: Callable, jobs: Iterable, total: int, label: str, workers=None, scheduler=None
-) -> Iterator[tuple]:
+def as_they_come(function, jobs, total, label, workers=None, scheduler=None):
     """Yield (place of a job, function(job)) of each, as they finish, with a bar; AHEAD at a time.
 
     function: one that another process can import. workers: how many processes, all cores if None;
@@ -39,7 +36,7 @@ def as_they_come(
     """
     progress, numbered = bar(total, label), enumerate(jobs)
     workers = min(total, workers or os.cpu_count() or 1)
-    if scheduler:
+    if scheduler is not None:
         found = on_machines(scheduler, function, numbered)
     elif workers > 1:
         found = on_cores(workers, function, numbered)
@@ -50,7 +47,7 @@ def as_they_come(
         progress(done)
 
 
-def spread(pool, look, function, numbered) -> Iterator[tuple]:
+def spread(pool, look, function, numbered):
     """Yield (place, function(job)) of each (place, job), as they finish; look() after a wait."""
     waiting: dict = {}
     while True:
@@ -66,7 +63,7 @@ def spread(pool, look, function, numbered) -> Iterator[tuple]:
             yield waiting.pop(future), future.result()
 
 
-def bar(total: int, label: str) -> Callable[[int], None]:
+def bar(total, label):
     """Return progress(done), which prints on stderr how many of `total` are done.
 
     On a terminal every second, in a line that is wiped at the end; elsewhere a line a minute.
@@ -111,7 +108,7 @@ def follow_parent():
     threading.Thread(target=follow, daemon=True).start()
 
 
-def on_cores(workers, function, numbered) -> Iterator[tuple]:
+def on_cores(workers, function, numbered):
     """Spread the jobs over so many processes."""
     pool = futures.ProcessPoolExecutor(workers, initializer=follow_parent)
     try:
@@ -122,7 +119,7 @@ def on_cores(workers, function, numbered) -> Iterator[tuple]:
         pool.shutdown(cancel_futures=True)
 
 
-def on_machines(scheduler: str, function, numbered) -> Iterator[tuple]:
+def on_machines(scheduler, function, numbered):
     """Spread the jobs over the workers of a dask scheduler; see as_they_come."""
     try:
         from dask.distributed import Client, KilledWorker
@@ -130,7 +127,7 @@ def on_machines(scheduler: str, function, numbered) -> Iterator[tuple]:
     except ImportError:
         raise ImportError(commands.to_install("dask[distributed]")) from None
     logging.disable()  # dask's tracebacks of what is lost: we say it in a line
-    given, data = f"given the scheduler {scheduler!r}, which", pickle.dumps(function)
+    given, data = f"given --scheduler {scheduler!r}, which", pickle.dumps(function)
     try:
         with socket.create_connection(get_address_host_port(scheduler), 10) as first:
             first.recv(1)  # a scheduler speaks first; with its dashboard a client waits for ever

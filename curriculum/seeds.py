@@ -51,8 +51,6 @@ def parse(argv):
     for flag in ("--seed", "--plot", "--rerun"):
         if any(word.split("=")[0] == flag for word in rest):
             fail(f"{flag} is for one run: leave it out")
-    if mine.scheduler == "":
-        fail("argument --scheduler: given ''; allowed: host:port")
     return mine.seeds, mine.scheduler, contact.parse_flags(rest)
 
 
