@@ -2,13 +2,8 @@
 
 Between two events the same contacts push and the motion is smooth: a parabola in time, or a power
 series where balls slide over one another. An event is a time of impact, a force that falls to zero,
-or the end of a series. At each event:
-
-    find_touching    lists the closed contacts,
-    solve_impacts    gives impulses to those that close: an LCP at velocity level,
-    solve_resting    gives forces to resting contacts: the same LCP at acceleration level,
-    expand           gives the motion in time: a parabola, or slide_series where a contact slips,
-    next_event       finds the first gap that closes or force that ends.
+or the end of a series. At each event an LCP at velocity level gives the impulses, and the same LCP
+at acceleration level the forces of the contacts that rest (Motion.solve_contacts).
 
 Accuracy: over some seconds and metres within 1e-10 r of every closed form, and within 1e-8 r of an
 independent solver for as long as a start shifted by 1e-15 m stays within 1e-9 r (see the tests). No
@@ -62,8 +57,7 @@ class Complementarity:
             self.table = pivot(self.W, self.active, np.flatnonzero(likely))
         else:
             self.table, self.active[:] = inverse, True
-        # is the table right to 1e-12? else solve inverts anew
-        self.exact = np.abs(self.table.diagonal()).max(initial=0.0) < 1e4
+        self.exact = np.abs(self.table.diagonal()).max(initial=0.0) < 1e4  # else inverted anew
 
     def solve(self, b, slack=0.0):
         """Return lam (K,), the active contacts, and the inverse of their part of W.
@@ -76,10 +70,9 @@ class Complementarity:
         unit, table, active = np.sqrt(self.scale.diagonal()), self.table, self.active.copy()
         b, fewest = b / unit, len(b) + 1
         small = ROUNDING * np.abs(b).max(initial=0.0)
-        tolerance = np.full(len(b), small)
         for _ in range(50 + 10 * len(b)):
             x = np.where(active, 0.0, b) - table @ np.where(active, b, 0.0)
-            wrong = (x < -tolerance).nonzero()[0]
+            wrong = (x < -small).nonzero()[0]
             if not len(wrong):
                 on = active.nonzero()[0]
                 block, lam = (on[:, None], on), 0.0 * b
@@ -92,7 +85,6 @@ class Complementarity:
                 table = pivot(table, active, chosen)
                 continue
             k = x.argmin()
-            tolerance[k] *= 10.0  # so that rounding cannot bring it back for ever
             table, free = activate(table, active, x, k)
             if free is not None:  # pushes in the null space of W: s_k falls without end
                 way = free * (free @ b / (free @ free))
@@ -103,8 +95,6 @@ class Complementarity:
 
     def keep(self, chosen):
         """Leave out the other contacts."""
-        if chosen.all():
-            return
         table = pivot(self.table, self.active, np.flatnonzero(self.active & ~chosen))
         self.active = self.active[chosen]
         each = (table, self.scale, self.W)
@@ -162,6 +152,46 @@ def invert(W):
     return inverse if np.abs(inverse.diagonal()).max(initial=0.0) < 1.0 / DEPENDENT else None
 
 
+# --- region: slide-series ---
+def slide_series(q, v, a, w, J, sides, reach, floor, solve, size, enough):
+    """Expand q while K contacts are active. Return the series Q (terms, 2 N) of q in time [s], lam
+    (terms, K) of the forces, the last two 0, and how long the last two terms of Q stay below
+    1e-16 of size (m, m/s); they do so for `enough`, or there are ORDER + 1 terms.
+
+    Q_k, n_k, lam_k are the factors of t^k. While a contact is closed its normal is
+    (q_a - q_b) / reach, so n_k = (Q_k,a - Q_k,b) / reach. Newton's law at order k is
+
+        (k + 1) (k + 2) Q_{k+2} = a_k + M^-1 n_0 lam_k,   a_k = g + M^-1 sum_{m<k} n_{k-m} lam_m
+
+    (g only in a_0). And n . n = 1, so sum_m n_m . n_{k+2-m} = 0, which holds Q_{k+2} twice.
+    Times (k + 1) (k + 2) reach / 2 it is linear in lam_k, at every order with the same matrix:
+
+        W lam_k + n_0 . (a_k,a - a_k,b) + turn_k = 0,
+        turn_k = (k + 1) (k + 2) reach / 2 sum_{m=1}^{k+1} n_m . n_{k+2-m}
+    """
+    Q, n = np.zeros((ORDER + 1, len(q))), np.zeros((ORDER + 1, 2, len(J)))
+    lam, lasts = np.zeros((ORDER + 1, len(J))), [0.0, 0.0]
+    turns, push, pushes = sides.T * (~floor / reach), J * w, sides * w[: sides.shape[1]]
+    Q[0], Q[1], W = q, v, push @ J.T
+    n[0] = q.reshape(2, -1) @ turns
+    n[0, 1] += floor
+    for k in range(ORDER - 1):
+        n[k + 1] = Q[k + 1].reshape(2, -1) @ turns
+        if k > 0:
+            a = (np.einsum("mic,mc->ic", n[k:0:-1], lam[:k]) @ pushes).ravel()
+        factor = (k + 1.0) * (k + 2.0)
+        turn = 0.5 * factor * reach * np.einsum("mic,mic->c", n[1 : k + 2], n[k + 1 : 0 : -1])
+        force = solve @ -(J @ a + turn)
+        lam[k] = force - solve @ (J @ a + turn + W @ force)  # once more, for the last digits
+        Q[k + 2] = (a + lam[k] @ push) / factor
+        change = max(math.sqrt(Q[k + 2] @ Q[k + 2]), 1e-300)
+        length, speed = 1e-16 * size[0] / change, 1e-16 * size[1] / change / (k + 2)
+        lasts.append(min(length ** (1.0 / (k + 2)), speed ** (1.0 / (k + 1))))
+        if min(lasts[-2:]) > enough:
+            break
+    return Q[: k + 3], lam[: k + 3], min(lasts[-2:])
+
+
 # --- endregion ---
 
 
@@ -169,7 +199,12 @@ class Motion:
     """The state of all bodies at an event, and what each of the C possible contacts did so far."""
 
     def __init__(self, scene, gravity):
-        """List all pairs that can touch: two fixed bodies cannot."""
+        """List all pairs that can touch: two fixed bodies cannot. Raises RuntimeError: masses."""
+        e, mass = scene.restitution, 1.0 * scene.mass[np.isfinite(scene.mass)]
+        ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
+        if 0.0 < e < 1.0 and ratio > MAX_MASS_RATIO:
+            why = f"masses {ratio:.4g} : 1 at restitution {e:g}; at most {MAX_MASS_RATIO:g} : 1"
+            raise RuntimeError(f"exact: {why} where 0 < e < 1. Take closer masses, or e = 0 or 1")
         count = len(scene.mass) + 1
         w, radius = 1.0 / np.append(scene.mass, math.inf), np.append(scene.radius, 0.0)
         pairs = np.array(np.triu_indices(count, 1))
@@ -180,7 +215,7 @@ class Motion:
         self.sides, self.curves = a - b, 1.0 - self.floor  # 1 at body a, -1 at b; the floor is flat
         state = np.array((scene.q0, scene.v0), float)
         self.q, self.v = np.pad(state, ((0, 0), (0, 0), (0, 1))).reshape(2, -1)
-        self.w, self.e, self.g = np.tile(w, 2), scene.restitution, -gravity
+        self.w, self.e, self.g = np.tile(w, 2), e, -gravity
         self.fall = np.where(self.w > 0.0, np.repeat((0.0, gravity), count), 0.0)
         self.radius, small = radius[self.pairs[0]], scene.radius.min()
         self.size = small, math.sqrt(self.g * small)  # m, m/s
@@ -243,15 +278,6 @@ class Motion:
             self.tracked[:] = math.inf
             self.update_gaps()
 
-    def find_touching(self):
-        """Return the closed contacts and their J. A tiny gap is closed only if it was wider."""
-        near = (self.gap <= self.closed).nonzero()[0]
-        J = self.jacobian(near)
-        v_n = J @ self.v
-        opened = (self.parting[near] + np.abs(v_n)) * self.since[near]  # m, about the widest
-        on = self.rests[near] & (v_n <= self.slow[near]) | (self.gap[near] <= 1e-4 * opened)
-        return near[on], J[on]
-
     def solve_impacts(self, touching, J, lcp):
         """Apply impulses: v_n of an active contact becomes -e v_n, all at once. Return v_n after.
 
@@ -264,7 +290,6 @@ class Motion:
             return v_n
         target = -self.e * v_n
         target[(v_n < 0.0) & (target < math.sqrt(2.0 * MIN_BOUNCE) / ROUNDING * slow)] = 0.0
-
         turns = GRAZE * np.abs(self.slip(touching, J, self.v))
         _, on, solve = lcp.solve(v_n - target, turns)
         self.v = self.project(self.v, J[on], solve, target[on])
@@ -299,21 +324,24 @@ class Motion:
     def solve_contacts(self):
         """Resolve all impacts of this moment, then find the active contacts."""
         self.separate()
-        touching, J = self.find_touching()
+        near = (self.gap <= self.closed).nonzero()[0]
+        J = self.jacobian(near)
+        v_n = J @ self.v
+        opened = (self.parting[near] + np.abs(v_n)) * self.since[near]  # m, about the widest
+        # a tiny gap is closed only if it was wider
+        on = self.rests[near] & (v_n <= self.slow[near]) | (self.gap[near] <= 1e-4 * opened)
+        touching, J = near[on], J[on]
         lcp = Complementarity(J * self.w @ J.T, self.active[touching])
         return self.solve_resting(touching, J, lcp, self.solve_impacts(touching, J, lcp))
 
     def accelerate(self, held, J, solve):
-        """Return a, and whether an active contact slips; take drift out of q and v.
-
-        What rounding leaves of v and a at rest becomes 0, or a heap creeps.
-        """
+        """Return a, and whether an active contact slips; take drift out of q and v."""
         apart = self.found[held]
         if (np.abs(apart) > 2.0 * self.bits).any():
             self.q = self.project(self.q, J, solve, J @ self.q - apart)
         if (np.abs(J @ self.v) > 1e-3 * self.slow[held]).any():
             self.v = self.project(self.v, J, solve, 0.0)
-        beside = J.any(0)
+        beside = J.any(0)  # what rounding leaves of v and a at rest becomes 0, or a heap creeps
         self.v[beside & (np.abs(self.v) <= ROUNDING * self.size[1])] = 0.0
         turn = self.slip(held, J, self.v) ** 2 / self.touch_distance[held]
         a = self.project(self.fall, J, solve, -turn)
@@ -331,8 +359,12 @@ class Motion:
         d = self.apart(np.array((self.v, 0.5 * a)))
         rate, bend = (d * self.n).sum(1)
         turn = (self.n[0] * d[0, 1] - self.n[1] * d[0, 0]) ** 2 / (2.0 * self.length)
-        soon = first_roots(gap + rounds, rate, bend + turn)
-        soon[self.active] = math.inf
+        c, curve = gap + rounds, bend + turn  # c + rate t + curve t^2 falls through 0 at soon
+        square = rate * rate - 4.0 * curve * c
+        root = np.sqrt(square)
+        soon = np.where(rate < 0.0, 2.0 * c / (root - rate), (rate + root) / (-2.0 * curve))
+        closes = (square >= 0.0) & ((rate < 0.0) | (curve < 0.0)) & ~self.active
+        soon[~closes] = math.inf
         gaps = gap, rounds, rate, bend, soon
         if not slides:
             return np.array((self.q, self.v, 0.5 * a)), np.zeros((3, 0)), math.inf, gaps
@@ -396,57 +428,6 @@ class Motion:
         return np.where(self.floor[near], gap + move[1], around)
 
 
-# --- region: slide-series ---
-def slide_series(q, v, a, w, J, sides, reach, floor, solve, size, enough):
-    """Expand q while K contacts are active. Return the series Q (terms, 2 N) of q in time [s], lam
-    (terms, K) of the forces, the last two 0, and how long the last two terms of Q stay below
-    1e-16 of size (m, m/s); they do so for `enough`, or there are ORDER + 1 terms.
-
-    Q_k, n_k, lam_k are the factors of t^k. While a contact is closed its normal is
-    (q_a - q_b) / reach, so n_k = (Q_k,a - Q_k,b) / reach. Newton's law at order k is
-
-        (k + 1) (k + 2) Q_{k+2} = a_k + M^-1 n_0 lam_k,   a_k = g + M^-1 sum_{m<k} n_{k-m} lam_m
-
-    (g only in a_0). And n . n = 1, so sum_m n_m . n_{k+2-m} = 0, which holds Q_{k+2} twice.
-    Times (k + 1) (k + 2) reach / 2 it is linear in lam_k, at every order with the same matrix:
-
-        W lam_k + n_0 . (a_k,a - a_k,b) + turn_k = 0,
-        turn_k = (k + 1) (k + 2) reach / 2 sum_{m=1}^{k+1} n_m . n_{k+2-m}
-    """
-    Q, n = np.zeros((ORDER + 1, len(q))), np.zeros((ORDER + 1, 2, len(J)))
-    lam, lasts = np.zeros((ORDER + 1, len(J))), [0.0, 0.0]
-    turns, push, pushes = sides.T * (~floor / reach), J * w, sides * w[: sides.shape[1]]
-    Q[0], Q[1], W = q, v, push @ J.T
-    n[0] = q.reshape(2, -1) @ turns
-    n[0, 1] += floor
-    for k in range(ORDER - 1):
-        n[k + 1] = Q[k + 1].reshape(2, -1) @ turns
-        if k > 0:
-            a = (np.einsum("mic,mc->ic", n[k:0:-1], lam[:k]) @ pushes).ravel()
-        factor = (k + 1.0) * (k + 2.0)
-        turn = 0.5 * factor * reach * np.einsum("mic,mic->c", n[1 : k + 2], n[k + 1 : 0 : -1])
-        force = solve @ -(J @ a + turn)
-        lam[k] = force - solve @ (J @ a + turn + W @ force)  # once more, for the last digits
-        Q[k + 2] = (a + lam[k] @ push) / factor
-        change = max(math.sqrt(Q[k + 2] @ Q[k + 2]), 1e-300)
-        length, speed = 1e-16 * size[0] / change, 1e-16 * size[1] / change / (k + 2)
-        lasts.append(min(length ** (1.0 / (k + 2)), speed ** (1.0 / (k + 1))))
-        if min(lasts[-2:]) > enough:
-            break
-    return Q[: k + 3], lam[: k + 3], min(lasts[-2:])
-
-
-# --- endregion ---
-
-
-def first_roots(c, b, a):
-    """When [s] c + b t + a t^2, c >= 0, falls through 0 (all (C,)); inf where it does not."""
-    square = b * b - 4.0 * a * c
-    root = np.sqrt(square)
-    t = np.where(b < 0.0, 2.0 * c / (root - b), (b + root) / (-2.0 * a))
-    return np.where((square >= 0.0) & ((b < 0.0) | (a < 0.0)), t, math.inf)
-
-
 def first_root(p, horizon):
     """The first t <= horizon at which p[0] + p[1] t + ..., >= 0 at 0, falls through 0; else inf.
 
@@ -482,14 +463,6 @@ def first_root(p, horizon):
     return t  # next to no curvature: it is as good as there
 
 
-def sample(Q, times):
-    """q, v (2, S, 2 N) at times (S,) of the series Q, with the same bits at any S."""
-    powers = np.vander(times, len(Q))  # small terms first
-    rates = np.arange(len(Q) - 1.0, 0.0, -1.0)[:, None] * Q[:0:-1]
-    both = (powers, Q[::-1]), (powers[:, 1:], rates)
-    return np.array([np.einsum("sk,kn->sn", *each) for each in both])
-
-
 def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MAX_EVENTS) -> np.ndarray:
     """Return q, v (2, S, 2, N) [m, m/s] of a contact.Scene at `times` (S,) [s], rising from 0.
 
@@ -497,39 +470,32 @@ def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MAX_EVEN
     progress(k) is called after each event with the samples done. Raises RuntimeError beyond the
     limits, and after `most` events.
     """
-    e, mass = scene.restitution, 1.0 * scene.mass[np.isfinite(scene.mass)]
-    ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
-    if 0.0 < e < 1.0 and ratio > MAX_MASS_RATIO:
-        why = f"masses {ratio:.4g} : 1 at restitution {e:g}; at most {MAX_MASS_RATIO:g} : 1"
-        raise RuntimeError(f"exact: {why} where 0 < e < 1. Take closer masses, or e = 0 or 1")
-    with np.errstate(all="ignore"), one_thread():
-        return follow(Motion(scene, gravity), np.asarray(times), progress, most)
-
-
-def follow(motion, times, progress, most):
-    """Go from event to event until the last time. Return q, v (2, S, 2, N)."""
-    out = np.empty((2, len(times), 2, len(motion.w) // 2))
+    motion, times = Motion(scene, gravity), np.asarray(times)
+    out = np.empty((2, len(times), len(motion.w)))
     now, done, event = 0.0, 0, True
-    for _ in range(most):
-        motion.update_gaps()
-        if event:
-            held, J, solve = motion.solve_contacts()
-        else:
-            J = motion.jacobian(held)
-            solve = motion.delassus_inverse(J)
-        Q, lam, horizon, gaps = motion.expand(held, J, solve)
-        span = motion.next_event(Q, lam, horizon, gaps)
-        event = span < horizon
-        last = int(np.searchsorted(times, now + span))
-        if last > done:
-            states = sample(Q, times[done:last] - now)
-            out[:, done:last] = states.reshape(2, last - done, 2, -1)
-        progress(done := last)
-        if done == len(times):
-            return out[..., :-1]
-        powers = span ** np.arange(len(Q))
-        rates = powers[1:-1] * np.arange(2, len(Q))
-        motion.q, motion.v = Q[0] + powers[1:] @ Q[1:], Q[1] + rates @ Q[2:]
-        now += span
+    with np.errstate(all="ignore"), one_thread():
+        for _ in range(most):
+            motion.update_gaps()
+            if event:
+                held, J, solve = motion.solve_contacts()
+            else:
+                J = motion.jacobian(held)
+                solve = motion.delassus_inverse(J)
+            Q, lam, horizon, gaps = motion.expand(held, J, solve)
+            span = motion.next_event(Q, lam, horizon, gaps)
+            event = span < horizon
+            last = int(np.searchsorted(times, now + span))
+            if last > done:
+                powers = np.vander(times[done:last] - now, len(Q))  # small terms first
+                rates = np.arange(len(Q) - 1.0, 0.0, -1.0)[:, None] * Q[:0:-1]
+                out[0, done:last] = np.einsum("sk,kn->sn", powers, Q[::-1])  # same bits at any S
+                out[1, done:last] = np.einsum("sk,kn->sn", powers[:, 1:], rates)
+            progress(done := last)
+            if done == len(times):
+                return out.reshape(2, done, 2, -1)[..., :-1]
+            powers = span ** np.arange(len(Q))
+            rates = powers[1:-1] * np.arange(2, len(Q))
+            motion.q, motion.v = Q[0] + powers[1:] @ Q[1:], Q[1] + rates @ Q[2:]
+            now += span
     why = f"{most:,} events by {now:.6g} s, as contacts close again ever sooner (Zeno behaviour)"
     raise RuntimeError(f"exact: {why}. Take a shorter run, fewer balls, or another restitution")

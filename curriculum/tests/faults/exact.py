@@ -25,6 +25,7 @@ FAULTS = [
      "for _ in range(0):\n            if not (self.found", T + "overlap_at_the_start"),
     # flights
     (E, "4.0 * max(value, 0.0) * bend", "2.0 * max(value, 0.0) * bend", HEAP),
-    (E, "np.vander(times, len(Q))", "np.vander(times * (1.0 + 1e-12), len(Q))", T + "parabolas"),
+    (E, "np.vander(times[done:last] - now", "np.vander((1.0 + 1e-12) * (times[done:last] - now)",
+     T + "parabolas"),
     (E, "turn = 0.5 * factor", "turn = 0.4 * factor", T + "'slides or pyramid'"),
 ]  # fmt: skip
