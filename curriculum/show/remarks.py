@@ -69,8 +69,9 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
         return
     yield f"exact: {who} lands after {after:.6g} s, at {-(vy[0] + after * g):.6g} m/s"
     turns = np.flatnonzero((vy[:-1] > 0.0) & (vy[1:] <= 0.0))
-    if len(turns):
-        tops = gap[turns] - vy[turns] ** 2 / (2 * g)
+    tops = gap[turns] - vy[turns] ** 2 / (2 * g)
+    tops = tops[tops > 1e-12 * scene.radius[k]]  # m; a ball at rest turns at the last digit of v
+    if len(tops):
         heights = ", ".join(f"{top:.4g}" for top in tops[:5])
         yield f"exact: its bounces rise to {heights} m" + (" ..." if len(tops) > 5 else "")
     else:
