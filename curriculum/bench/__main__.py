@@ -70,8 +70,8 @@ def try_one(problem, setting, substeps):
     if problem not in map(str, sizes):
         raise ValueError(f"try: given problem {problem!r}; allowed: {', '.join(map(str, sizes))}")
     if problem.isdecimal():
-        q, v, row = measure.settle((int(problem), c, substeps, None))
-        _, step = measure.fall_and_rest((int(problem), c, substeps, (q, v)))
+        *_, row = end = measure.settle((int(problem), c, substeps, None))
+        _, step = measure.fall_and_rest((int(problem), c, substeps, end))
         rest = "at rest" if row["at_rest"] else "not at rest"
         depth = f"{contact.format_number(row['mean_depth'])} r deep in the mean"
         return f"{problem} balls by {setting}: {rest}, {depth}, {step:.3g} µs of CPU a step"

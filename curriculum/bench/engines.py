@@ -25,6 +25,7 @@ import numpy as np
 import contact
 from curriculum import stored
 from curriculum.bench import events
+from curriculum.compiled import run as compiled
 
 HERE = Path(__file__).parent
 BLOCK = 200  # steps that one of our models takes in one go
@@ -90,33 +91,30 @@ class Ours(Whole):
     """A model of contact.py, by its compiled loops; no step is skipped. exact has no steps."""
 
     def __init__(self, scene, dt, model, **knobs):
-        self.given, self.settings = (model, scene, dt), contact.Settings(skip=False, **knobs)
-        self.now = np.concatenate((scene.q0, scene.v0))
-        self.rows = np.empty((BLOCK + 1, *self.now.shape))
+        self.given = model, scene, dt
+        self.settings = contact.Settings(skip=False, **knobs)
+        self.rows = np.empty((BLOCK + 1, 4, len(scene.mass)))  # the first is the state now
+        self.rows[0] = *scene.q0, *scene.v0
 
     def states(self, n):
-        model, scene, dt = self.given
-        steps = contact.MODELS[model].step
-        home = contact.optional_module("compiled.run") if steps else contact
-        run = home.run_model(model, scene, dt, n * self.substeps, self.settings)
+        home = compiled if contact.MODELS[self.given[0]].step else contact
+        run = home.run_model(*self.given, n * self.substeps, self.settings)
         return run.q[:: self.substeps], run.v[:: self.substeps]
 
     def go(self, n):
         steps = n * self.substeps
         for first in range(0, steps, BLOCK):
-            self.rows[0] = self.now
             last = min(BLOCK, steps - first)
             self.stepper.take(self.rows[: last + 1])
-            self.now = self.rows[last].copy()
+            self.rows[0] = self.rows[last]
 
     @cached_property
     def stepper(self):
         """Return the compiled loops, which go on from where they are."""
-        home = contact.optional_module("compiled.run")
-        return home.Stepper(*self.given, self.settings)
+        return compiled.Stepper(*self.given, self.settings)
 
     def state(self):
-        return np.split(self.now.copy(), 2)
+        return np.split(self.rows[0].copy(), 2)
 
 
 class Events(Whole):
@@ -424,9 +422,8 @@ class Dart(Session):
         self.put(dart.dynamics.BoxShape([2.0 * FLOOR, 2.0, 2.0 * FLOOR]), (0.0, -1.0))
         for place, velocity, mass, radius, fixed in balls_of(scene):
             ball = self.put(dart.dynamics.SphereShape(radius), place, None if fixed else mass)
-            if not fixed:
-                ball.setVelocities([*velocity, 0.0])
-                self.balls.append(ball)
+            ball.setVelocities([*velocity, 0.0])
+            self.balls.append(ball)
         self.step = world.step
 
     def put(self, shape, place, mass=None):
@@ -449,9 +446,8 @@ class Dart(Session):
         return [ball.getPositions()[1] for ball in self.balls]
 
     def state(self):
-        q = [ball.getPositions()[:2] for ball in self.balls]
-        v = [ball.getVelocities()[:2] for ball in self.balls]
-        return self.with_the_fixed(np.array(q), np.array(v))
+        q, v = zip(*((ball.getPositions(), ball.getVelocities()) for ball in self.balls))
+        return np.array(q)[:, :2].T, np.array(v)[:, :2].T
 
 
 ENGINES = {  # label, package, session

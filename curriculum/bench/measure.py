@@ -85,7 +85,7 @@ def time_of(job, timed=timing.timed):
     found = []
     for looks in (min(50, steps), steps, steps, steps):
         session = engines.BY_NAME[name].build(scene, dt, substeps)
-        seconds, _ = timed(partial(session.trace, looks))
+        seconds = timed(partial(session.trace, looks))
         found.append(session.took or seconds)
         if sum(found[1:]) > ENOUGH:
             break
@@ -147,16 +147,16 @@ def shaft(count, q=None):
 
 def piles(quick, only, known):
     """Measure a row for each setting and size; known: rows that stay and may win."""
-    rows, states = [], {}
+    rows, settled = [], {}
     for count in (12,) if quick else (*SIZES, MANY):
         chosen = winners(known + rows) if count == MANY else engines.PILES
-        chosen = fitting(chosen, count, only)[:: 4 if quick else 1]
-        jobs, label = [(count, *each, states.get(each)) for each in chosen], f"{count} balls"
-        settled = parallel.run_jobs(settle, jobs, f"{label} settle")
-        states.update((each, found[:2]) for each, found in zip(chosen, settled))
-        jobs, often = [(count, *each, states[each]) for each in chosen], PROCESSES - (count == MANY)
-        times = timing.in_fresh_processes(fall_and_rest, jobs, 1 if quick else often, label)
-        for (_, _, row), found in zip(settled, times):
+        chosen, label = fitting(chosen, count, only)[:: 4 if quick else 1], f"{count} balls"
+        jobs = [(count, *each, settled.get(each)) for each in chosen]
+        settled = dict(zip(chosen, parallel.run_jobs(settle, jobs, f"{label} settle")))
+        jobs = [(count, *each, end) for each, end in settled.items()]
+        often = 1 if quick else PROCESSES - (count == MANY)
+        times = timing.in_fresh_processes(fall_and_rest, jobs, often, label)
+        for (*_, row), found in zip(settled.values(), times):
             falling, resting = zip(*found)
             spreads = timing.spread("falling", falling) | timing.spread("resting", resting)
             rows.append(row | spreads)
@@ -169,7 +169,7 @@ def fitting(chosen, count, only):
 
 
 def settle(job):
-    """Return q, v of the settled pile, and its row without times; the speed is that at the end."""
+    """Return q, v of a settled pile, and its row without times; start: that of a copy, or None."""
     count, c, substeps, start = job
     session = c.build(shaft(count, start and np.array(start[0])), DT, substeps)
     session.go((AGAIN if count == MANY else SETTLE) - WATCHED)
@@ -197,13 +197,13 @@ def depths(q):
 
 
 def fall_and_rest(job, timed=timing.timed):
-    """Return microseconds a step, from the lattice and from the settled state."""
-    count, c, substeps, (q, v) = job
+    """Return microseconds a step, from the lattice and from the state that settle has found."""
+    count, c, substeps, (q, v, _) = job
     scene, found = shaft(count), []
     for start in (scene, scene._replace(q0=np.array(q, float), v0=np.array(v, float))):
         session = c.build(start, DT, substeps)
         session.go(100)
-        seconds = [timed(partial(session.go, TURN))[0] for _ in range(TURNS)]
+        seconds = [timed(partial(session.go, TURN)) for _ in range(TURNS)]
         found.append(1e6 * statistics.median(seconds) / TURN)
     return found
 
@@ -241,12 +241,12 @@ def sink_of(job):
     return row | dict(mean_depth=float(mean.mean()), worst_depth=float(worst.max()))
 
 
-def time_of_heap(job, timed=timing.timed):
+def time_of_heap(job):
     """Return microseconds a step of the heap, from its start to its end."""
     c, substeps, steps = job
     session = c.build(heap(), DT, substeps)
     session.go(1)
-    return 1e6 * timed(partial(session.go, steps - 1))[0] / (steps - 1)
+    return 1e6 * timing.timed(partial(session.go, steps - 1)) / (steps - 1)
 
 
 def fastest(rows, depth, who, time="resting"):
@@ -259,11 +259,8 @@ def fastest(rows, depth, who, time="resting"):
 
 def winners(rows):
     """Return those of PILES that are worth running with 10,000 balls."""
-    chosen = set()
-    for depth in DEPTHS:
-        for engine in engines.LABELS:
-            if row := fastest(rows, depth, [engine]).get(1000):
-                chosen.add((engine, row["setting"], row["substeps"]))
+    found = [fastest(rows, d, [name]).get(1000) for d in DEPTHS for name in engines.LABELS]
+    chosen = {(row["engine"], row["setting"], row["substeps"]) for row in found if row}
     return [(c, substeps) for c, substeps in engines.PILES if (*c[:2], substeps) in chosen]
 
 

@@ -101,7 +101,6 @@ def numbered_spec(number, small=False):
     spring = [10.0 ** rng.uniform(-2.5, -1.0), rng.uniform(0.2, 2.0)]
     rows = (x, y, vx, vy, mass, radius)
     return {name: row.tolist() for name, row in zip(BODY, rows)} | {
-        "layout": layout.__name__,
         "restitution": pick(rng, 0.0, 1.0, (0.0, 1.0)),
         "damping": pick(rng, 0.0, 80.0, (0.0, 150.0)),
         "dt": float(10.0 ** rng.uniform(-3.3, -1.7)),
