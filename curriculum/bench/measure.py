@@ -7,9 +7,7 @@ timed in fresh processes: from the lattice, and from their own settled state.
 """
 
 import math
-import random
 import statistics
-import sys
 import tempfile
 from functools import partial
 from operator import itemgetter
@@ -268,13 +266,10 @@ def processes(quick, only, known):
     """Measure the seconds of whole processes, those of commands.csv: contact.py, imports, a step
     that is compiled. The first of each finds empty caches, and fills them."""
     commands = stored.load(engines.HERE)[0]["commands"]
-    found = [[] for _ in commands]
     with tempfile.TemporaryDirectory() as folder:
-        for number in range(3 if quick else 16):
-            for k in random.Random(number).sample(range(len(commands)), len(commands)):
-                out = f"{folder}/{k}"
-                words = commands[k]["words"].format(out=out).split(" | ")
-                found[k].append(timing.whole_process([sys.executable, *words], out))
+        jobs = [(row["words"], f"{folder}/{k}") for k, row in enumerate(commands)]
+        often, label = 3 if quick else 16, "processes"
+        found = timing.in_fresh_processes(timing.whole_process, jobs, often, label)
     names = [dict(process=row["process"]) for row in commands]
     return [name | timing.spread("seconds", seconds) | dict(first=first)
             for name, (first, *seconds) in zip(names, found)]  # fmt: skip

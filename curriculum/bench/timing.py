@@ -10,6 +10,7 @@ import os
 import random
 import statistics
 import subprocess
+import sys
 import time
 import timeit
 from concurrent.futures import ProcessPoolExecutor
@@ -41,12 +42,15 @@ def in_fresh_processes(work, jobs, processes, label):
     return found
 
 
-def whole_process(command, folder) -> float:
-    """Return the wall time [s] of a command. Raises RuntimeError if it fails.
+def whole_process(job) -> float:
+    """Return the wall time [s] of a Python process. Raises RuntimeError if it fails.
 
-    folder: where Python keeps what it compiles. An environment that forbids to keep any would have
-    each process compile the course's modules again, but not numpy's.
+    job: its words, joined by " | ", and {out}, a folder where Python keeps what it compiles. An
+    environment that forbids to keep any would have each process compile the course's modules
+    again, but not numpy's.
     """
+    words, folder = job
+    command = [sys.executable, *words.format(out=folder).split(" | ")]
     environment = dict(os.environ, PYTHONPYCACHEPREFIX=folder)
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     start = time.perf_counter()

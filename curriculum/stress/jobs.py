@@ -27,11 +27,8 @@ def run(job):
     """Return (place, what judge says, what was noted) of a job."""
     place, subject, stated = job
     if not stated:
-        subject = Trial(scenes.numbered_spec(*subject))
-    found = properties.judge(subject, *(stated or properties.PROPERTIES.values()))
-    if not stated:
-        runs = subject.motions | {"exact": subject.exact}  # of which some could be judged
-        subject.noted["ran"] = {m: 1 for m, each in runs.items() if each and len(each.listed)}
+        subject, stated = Trial(scenes.numbered_spec(*subject)), properties.PROPERTIES.values()
+    found = properties.judge(subject, *stated)
     return place, found, getattr(subject, "noted", {})
 
 
