@@ -9,9 +9,10 @@ import pytest
 
 import contact
 from curriculum.bench.measure import shaft
+from curriculum.compiled import cache
 from curriculum.compiled import run as compiled
 from curriculum.stress import scenes
-from curriculum.tests.helpers import clone, python
+from curriculum.tests.helpers import python
 
 pytest.importorskip("numba", reason="numba is missing")
 MODELS = contact.STEPPED
@@ -128,8 +129,7 @@ def test_once_all_is_compiled_no_run_compiles_anything(tmp_path):
         "--scene pile --contact exact --steps 300",
         "--scene stack --bodies 40 --dt 1e-4 --steps 700 --iters 3 --solimp 0 1 0.01 0 1",
     ):
-        ended = python("contact.py", *line.split(), "--no-rerun", "--out", tmp_path)
-        assert ended.returncode == 0 and "compiling" not in ended.stderr, ended.stderr
+        assert contact.main([*line.split(), "--no-rerun", "--out", str(tmp_path)]) == 0
     assert kept_files() == before
 
 
@@ -140,46 +140,37 @@ def kept_files():
     return {(path, path.stat().st_size) for files in found for path in files}
 
 
-PLAIN = (
-    "import contact; "
-    "print(contact.run_model('lcp', contact.build_scene('pile', 0, 40), 0.002, 700).q.sum())"
-)
-TWICE = "def twice(x):\n    return 2.0 * x\n"
-TINY = (
-    "from curriculum.compiled import cache; "
-    f"print(cache.Loops('tiny', {TWICE!r}).load({{'twice': (1.0,)}}).twice(3.0))"
-)
-
-
-def run_in(folder, code, **environment):
-    """The number that a copy of the course in a folder prints."""
-    if not (folder / "contact.py").exists():
-        clone(folder, "tests", "page", "results", "exercises")
-    done = python("-c", code, cwd=folder, PYTHONPATH="", **environment)
-    assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr[-2000:]
-    return float(done.stdout)
-
-
-def test_nothing_is_compiled_for_a_short_run_or_where_numba_must_not(tmp_path):
+def test_nothing_is_compiled_for_a_short_run_or_where_numba_must_not(monkeypatch):
+    pile = "import contact; pile = contact.build_scene('pile', 0, 40)"
+    code = f"{pile}; print(contact.run_model('lcp', pile, 0.002, 700).q.sum())"
     scene = contact.build_scene("pile", 0, 40)
     right = plainly("lcp", scene, 0.002, 700, contact.Settings()).q.sum()
-    assert run_in(tmp_path, PLAIN) == run_in(tmp_path, PLAIN, NUMBA_DISABLE_JIT="1") == right
-    assert not (tmp_path / ".cache").exists()
+    assert float(python("-c", code, NUMBA_DISABLE_JIT="1").stdout) == right
+    monkeypatch.setattr(contact, "GRAVITY", -1.62)  # whose loops nobody has kept
+    contact.run_model("lcp", scene, 0.002, 700)
+    assert not compiled.loops_of("lcp_step").folder.exists()
 
 
-def test_whatever_stands_in_the_way_of_the_kept_loops_they_give_the_same(tmp_path):
+def twice(number):
+    """The number times two, by loops that are loaded as a new process would."""
+    loops = cache.Loops("tiny", "def twice(x):\n    return 2.0 * x\n")
+    return loops.load({"twice": (1.0,)}).twice(number)
+
+
+def test_whatever_stands_in_the_way_of_the_kept_loops_they_give_the_same(tmp_path, monkeypatch):
     """Cut, random, a file in place of the folder, no home."""
-    cache = tmp_path / ".cache/loops"
-    assert run_in(tmp_path, TINY) == 6.0 and list(cache.glob("tiny_*/complete"))
+    monkeypatch.setenv("HOME", "/nowhere")
+    monkeypatch.setattr(cache, "FOLDER", tmp_path / "loops")
+    assert twice(3.0) == 6.0 and list(tmp_path.glob("loops/tiny_*/complete"))
     for content in (b"cut", os.urandom(3000)):
-        kept = [*cache.rglob("*.nb?")]
+        kept = [*tmp_path.rglob("*.nb?")]
         assert kept, "compiled anew and kept"
         for path in kept:
             path.write_bytes(content)
-        assert run_in(tmp_path, TINY, HOME="/nowhere") == run_in(tmp_path, TINY) == 6.0
-    shutil.rmtree(tmp_path / ".cache")
-    (tmp_path / ".cache").write_text("no folder")
-    assert run_in(tmp_path, TINY) == 6.0
+        assert twice(3.0) == twice(3.0) == 6.0
+    shutil.rmtree(tmp_path / "loops")
+    (tmp_path / "loops").write_text("no folder")
+    assert twice(3.0) == 6.0
 
 
 def test_other_source_and_other_constants_are_other_loops(monkeypatch):
