@@ -49,8 +49,8 @@ def test_the_error_of_an_invented_run_is_that_worked_out_by_hand():
     assert problems.quality(truth, q, v, mass)[1], "it exploded"
 
 
-# beyond 16 substeps the lag drowns in the rounding of float32
-FALLING = [(each, n) for n in (1, 4) for each in ALL if each.inner * n <= 16]
+# beyond 16 substeps the lag drowns in the rounding of float32; some choose their steps themselves
+FALLING = [(c, n) for c in ALL for n in (1, 4)[: 2 if c.substeps else 1] if c.inner * n <= 16]
 
 
 @pytest.mark.parametrize("setting, substeps", FALLING, ids=named)
@@ -68,7 +68,11 @@ def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setti
     assert lag == pytest.approx(known, rel=0.01, abs=max(2e-5, within))
 
 
-@pytest.mark.parametrize("setting", [s for s in OTHERS if s.runs("drop")], ids=named)
+FIRST, LAST = ({s.engine: s for s in some if s.runs("drop")} for some in (OTHERS[::-1], OTHERS))
+ENDS = [s for s in OTHERS if s in (FIRST[s.engine], LAST[s.engine])]  # of each engine's settings
+
+
+@pytest.mark.parametrize("setting", ENDS, ids=named)
 def test_an_engine_rests_awake_and_keeps_momentum(setting):
     q, v = setting.build(contact.scene_of(0.0, 1.0, vx=1e-5), 0.002).states(1000)
     slow = setting.engine in ("drake", "siconos", "dart") or setting.knobs.get("push") == 0
@@ -82,7 +86,7 @@ def test_an_engine_rests_awake_and_keeps_momentum(setting):
 KEPT = stored.load(bench.FULL)[0]["points"]
 HERE = [p for p in KEPT if bench.name(p) in engines.BY_NAME]  # of the engines that are installed
 ALL_BEST = [p for engine in engines.ENGINES for p in measure.contest(HERE, [engine]).values()]
-BEST = [p for p in ALL_BEST if p["ms"] < 2000.0]  # three of a hundred take longer, a third of all
+BEST = [p for p in ALL_BEST if p["ms"] < 200.0]  # three of four; the rest takes far longer
 
 
 @pytest.mark.parametrize("best", BEST, ids=lambda p: f"{p['engine']} {p['problem']}")
@@ -173,17 +177,18 @@ def test_who_wins_and_loses_is_as_the_numbers_say(mine, rival):
 TAKEN = stored.load(engines.HERE)[0]["take"]
 
 
-@pytest.mark.parametrize("row", TAKEN, ids=lambda row: f"{row['engine']} {row['problem']}")
+@pytest.mark.parametrize("row", [row for row in TAKEN if row["problem"] != "pile"],
+                         ids=lambda row: f"{row['engine']} {row['problem']}")  # fmt: skip
 def test_what_the_readme_tells_one_to_type_prints_the_error_that_the_row_promises(row, capsys):
-    """They are exact's, whose errors are below 1e-10 r; the 1,000 balls are 12 here."""
+    """They are exact's, whose errors are below 1e-10 r; the 1,000 balls are 12 here. Of a pile it
+    is the reference."""
     _, _, _, part, *words = shlex.split(report.typed(row, bench.name(row)))
     assert part == "try" and words[0] == str(row["problem"])
     bench.main([part, *("12" if word == "1000" else word for word in words)])
     printed = capsys.readouterr().out
-    found = re.search(": at rest, (.*) r deep|: error (.*) r |: the reference", printed)
-    depth, error = found.groups()
-    assert 0.0 < float(depth) < 1e-3 if depth else float(error or 0.0) < 1e-10
-    assert "of CPU" in printed and (depth or error or row["problem"] == "pile")
+    depth, error = re.search(": at rest, (.*) r deep|: error (.*) r ", printed).groups()
+    assert 0.0 < float(depth) < 1e-3 if depth else float(error) < 1e-10
+    assert "of CPU" in printed
 
 
 def test_try_names_what_is_allowed(capsys):

@@ -1,6 +1,5 @@
 """What a user installs, and what the README tells him to type."""
 
-import ast
 import importlib
 import os
 import re
@@ -8,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
+import contact
 from curriculum.commands import write_atomic
 from curriculum.source import read_text, replace_once
 from curriculum.tests import plant
-from curriculum.tests.helpers import CONTACT, ROOT, python
+from curriculum.tests.helpers import ROOT, python
 
 TEXTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 README, CONTRIBUTING, _ = ((ROOT / file).read_text("utf-8") for file in TEXTS)
@@ -61,8 +61,7 @@ def test_what_is_no_file_is_written_into_and_stays_what_it_is(tmp_path):
 @pytest.mark.parametrize("table", plant.TABLES)
 def test_what_a_mutant_replaces_stands_there_once(table):
     for file, old, new, _ in importlib.import_module(f"curriculum.tests.faults.{table}").FAULTS:
-        text = replace_once(read_text(file), old, new, f"{table}: {file}")
-        assert not file.endswith(".py") or ast.parse(text)
+        replace_once(read_text(file), old, new, f"{table}: {file}")
 
 
 def test_links_of_the_texts_lead_somewhere():
@@ -78,10 +77,10 @@ def test_commands_of_the_texts_exist_with_their_flags():
     for module, flags in re.findall(r"python -m (curriculum[\w.]*)((?: --[a-z]+)*)", BOTH):
         typed.setdefault(module, set()).update(flags.split())
     assert typed.keys() <= {*COMMANDS, "curriculum.tests.test_golden", "curriculum.tests.plant"}
-    helped = python(CONTACT, "--help").stdout
+    helped = contact.make_parser().format_help()
     for flag in set(re.findall(r"contact\.py[^`\n]*?(--[a-z]+)", BOTH)) - {"--help"}:
         assert flag in helped, flag
-    for module in sorted(typed.keys() & set(COMMANDS)):
+    for module in (module for module in COMMANDS if typed.get(module)):
         helped = python("-m", module, "--help")
         if " is missing; install it: " not in helped.stderr:
             assert helped.returncode == 0 and all(f in helped.stdout for f in typed[module]), module

@@ -23,11 +23,11 @@ def drawn():
     return mass, radius, bodies, stiffness, damping, lcp, 10.0 ** RNG.uniform(-0.5, 0.5, bodies)
 
 
-SETTINGS = [drawn() for _ in range(10)]
+SETTINGS = [drawn() for _ in range(4)]
 NEAR = {"rel": 0.03}
 
 
-@pytest.mark.parametrize("case", range(10))
+@pytest.mark.parametrize("case", range(4))
 def test_penalty_sinks_dives_and_trembles_as_on_paper(case):
     mass, radius, bodies, stiffness, damping, *_ = SETTINGS[case]
     spring = partial(predict.quality, "penalty", stiffness=stiffness)
@@ -49,7 +49,7 @@ def test_penalty_sinks_dives_and_trembles_as_on_paper(case):
             assert found["rest_penetration_frac"] == pytest.approx(sink, **NEAR)
 
 
-@pytest.mark.parametrize("case", range(10))
+@pytest.mark.parametrize("case", range(4))
 def test_lcp_dives_hops_and_sags_as_on_paper(case):
     mass, radius, bodies, _, _, (dt, beta, warm), shares = SETTINGS[case]
     most = predict.dive_of_lcp(math.sqrt(2.0 * predict.G * predict.FALLS[-1]), dt) / radius
@@ -79,7 +79,7 @@ def test_a_tower_sags_by_the_law_within_a_tenth_up_to_a_fortieth_of_its_squared_
         assert found == pytest.approx(sag / contact.RADIUS, rel=0.1)
 
 
-@pytest.mark.parametrize("start, d0", RNG.uniform((0.05, 0.3), (0.35, 0.9), (10, 2)))
+@pytest.mark.parametrize("start, d0", RNG.uniform((0.05, 0.3), (0.35, 0.9), (4, 2)))
 def test_soft_flickers_from_the_angle_of_the_paper_on(start, d0):
     """A stiff contact and a short step, so that the ball is out of its depth at once."""
     solimp = (d0, max(d0, 0.95), 0.001, 0.5, 2.0)
