@@ -46,9 +46,16 @@ def stopped(number, words, ready, terminal=False, cwd=ROOT):
 
 
 def clone(folder, *leave):
-    """Copy the course into a folder, but for hidden files and those so named; return the folder."""
+    """Copy the course into a folder, but for hidden files and those so named; return the folder.
+
+    Compiled loops, named by their source, are shared.
+    """
     leave = shutil.ignore_patterns(".*", "__pycache__", "outputs", *leave)
-    return shutil.copytree(ROOT, folder, ignore=leave, dirs_exist_ok=True)
+    shutil.copytree(ROOT, folder, ignore=leave, dirs_exist_ok=True)
+    (ROOT / ".cache/loops").mkdir(parents=True, exist_ok=True)
+    (folder / ".cache").mkdir()
+    (folder / ".cache/loops").symlink_to(ROOT / ".cache/loops")
+    return folder
 
 
 def edit(path, old, new):

@@ -23,19 +23,15 @@ from pathlib import Path
 from curriculum.commands import Parser, number
 from curriculum.parallel import run_jobs
 from curriculum.source import replace_once
-from curriculum.tests.helpers import ROOT, clone
+from curriculum.tests.helpers import clone
 
 TABLES = {path.stem: path for path in sorted(Path(__file__).with_name("faults").glob("*.py"))}
 
 
 @cache
 def course(home):
-    """Return a clone for this process; compiled loops, named by their source, are shared."""
-    folder, loops = clone(Path(tempfile.mkdtemp(dir=home))), ".cache/loops"
-    (ROOT / loops).mkdir(parents=True, exist_ok=True)
-    (folder / ".cache").mkdir()
-    (folder / loops).symlink_to(ROOT / loops)
-    return folder
+    """Return a clone for this process."""
+    return clone(Path(tempfile.mkdtemp(dir=home)))
 
 
 def ended(home, file, *words):

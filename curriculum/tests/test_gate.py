@@ -52,7 +52,7 @@ def accepted(tmp_path_factory):
 @pytest.fixture
 def project(accepted, tmp_path):
     """A copy of it for one test."""
-    return shutil.copytree(accepted, tmp_path / "project")
+    return shutil.copytree(accepted, tmp_path / "project", symlinks=True)
 
 
 def test_project_that_was_read_passes_and_nothing_is_written(project):
