@@ -6,13 +6,15 @@ import importlib.util
 import os
 import re
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from curriculum.tests.page_browser import start  # noqa: F401
 
-SLOW = "test_page.py", "test_bench.py"
+FIRST = "test_page.py", "test_gate.py", "test_exercises.py", "test_notebook.py", "test_recipes.py"
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's `&` leaves it so, to all children
     signal.signal(signal.SIGINT, signal.default_int_handler)
 os.environ.pop("UV", None)  # `uv run pytest` sets it; commands are printed as for any other Python
@@ -25,13 +27,17 @@ def pytest_xdist_auto_num_workers():
 
 
 def pytest_configure(config):
-    """Let xdist take files in the order of their tests, in place of the largest number first."""
+    """Let xdist take files in the order of their tests, in place of the largest number first; and
+    compile all loops once, beside the first files, which need none, if all tests are run."""
     config.option.loadscopereorder = False
+    if config.getoption("numprocesses", None) and not config.option.file_or_dir:
+        words, none = [sys.executable, "-m", "curriculum.compiled"], subprocess.DEVNULL
+        config.compiles = subprocess.Popen(words, cwd=config.rootpath, stdout=none, stderr=none)
 
 
 def pytest_collection_modifyitems(items):
-    """Begin with the files that take longest, so that all workers end at about the same time."""
-    items.sort(key=lambda item: item.path.name not in SLOW)
+    """Begin with the page, whose tests take longest, and with what needs no compiled loops."""
+    items.sort(key=lambda item: [*FIRST, item.path.name].index(item.path.name))
 
 
 @pytest.hookimpl(wrapper=True)
