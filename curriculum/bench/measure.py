@@ -270,9 +270,8 @@ def processes(quick, only, known):
         jobs = [(row["words"], f"{folder}/{k}") for k, row in enumerate(commands)]
         often, label = 3 if quick else 16, "processes"
         found = timing.in_fresh_processes(timing.whole_process, jobs, often, label)
-    names = [dict(process=row["process"]) for row in commands]
-    return [name | timing.spread("seconds", seconds) | dict(first=first)
-            for name, (first, *seconds) in zip(names, found)]  # fmt: skip
+    return [dict(process=row["process"]) | timing.spread("seconds", seconds) | dict(first=first)
+            for row, (first, *seconds) in zip(commands, found)]  # fmt: skip
 
 
 PARTS = {"points": points, "piles": piles, "collapse": collapse, "processes": processes}

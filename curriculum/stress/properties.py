@@ -63,16 +63,16 @@ def unlike(run, other):
     return ~((a == b) | (a != a) & (b != b)), 0.0
 
 
-def beside_one_that_overflows(trial):
-    """Return the changes that add a ball which overflows at once, and is NaN from then on."""
+def alone_and_beside_one_that_overflows(trial, **alone):
+    """Return lists of changes: of one or two balls also to add one that overflows, then is NaN."""
     odd = {"x": 3.0, "y": -1e300, "vx": 0.0, "vy": 0.0, "mass": 1e-12, "radius": 0.1}
-    return {name: [*trial.spec[name], value] for name, value in odd.items()}
+    beside = {name: [*trial.spec[name], value] for name, value in odd.items()}
+    return [alone, beside] if len(trial.scene.mass) <= 2 else [alone]
 
 
 def finite_or_said_to_have_exploded(trial):
     """Every number of a run is finite, or contact_quality says that it blew up, and when."""
-    odd = [beside_one_that_overflows(trial)] if len(trial.scene.mass) <= 2 else []
-    for model, more in itertools.product(STEPPED, ({}, *odd)):
+    for model, more in itertools.product(STEPPED, alone_and_beside_one_that_overflows(trial)):
         run = trial.run(model, **more)
         quality = contact.contact_quality(run, scenes.to_scene(trial.spec | more), trial.dt)
         finite = np.isfinite(run.q).all() and np.isfinite(run.v).all()
@@ -86,11 +86,10 @@ def a_skip_changes_no_bit(trial):
     """Compiled loops are bitwise identical to contact.py's plain steps. With one or two balls so is
     step skipping, also beside a ball whose position is NaN.
     """
-    few = len(trial.scene.mass) <= 2
-    odd = [beside_one_that_overflows(trial)] if few else []
-    for model, changes in itertools.product(STEPPED, ({"steps": 8}, *odd)):
+    cases = alone_and_beside_one_that_overflows(trial, steps=8)
+    for model, changes in itertools.product(STEPPED, cases):
         plain = trial.run(model, "plain", **changes)
-        for way in ("twin", "skips")[: 1 + few]:
+        for way in ("twin", "skips")[: len(cases)]:
             yield f"{way}: {model}", *unlike(plain, trial.run(model, way, **changes))
 
 
