@@ -170,7 +170,7 @@ def test_every_figure_has_a_picture_that_is_read_and_few_are_kinds():
 @pytest.mark.parametrize(
     "dt, late, does",
     [(0.003, 0, "holds still"), (0.004, 0, "trembles"), (0.006, 0, "flies apart")]
-    + [(0.006, 1, "holds still")],  # with the force from the step's end
+    + [(0.0046, 0, "trembles"), (0.006, 1, "holds still")],  # the force from the step's end
 )
 def test_picture_gripper_moves_as_it_says_and_its_knob_is_in_that_part(draw, dt, late, does):
     seen = [draw("gripper", {"dt": dt, "late": late}, {"time": k * dt}) for k in range(64)]
@@ -183,8 +183,10 @@ def test_picture_gripper_moves_as_it_says_and_its_knob_is_in_that_part(draw, dt,
     cup = [each.all("circle", "m-penalty")[0]["cx"] for each in seen]
     moves = np.ptp([c - each["cx"] for c, each in zip(cup, left)]) / left[0]["r"]
     if does == "trembles":
-        trembling, larger = said(words)[1:3]
-        assert moves == pytest.approx(trembling * larger, rel=0.05) and moves > 0.1  # one sees it
+        trembling, larger = (*said(words)[1:], 1.0)[:2]
+        assert (
+            moves == pytest.approx(trembling * larger, rel=0.05) and 0.1 < moves < 2
+        )  # one sees it
     else:
         assert moves > 1.0 if does == "flies apart" else moves < 1e-3
         assert "larger" not in words

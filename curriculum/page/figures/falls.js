@@ -5,7 +5,7 @@ import { table, within } from "../draw.js";
 import { data } from "../data.js";
 import { column, G, gapsOf, inRow, kept, pushIn, R, record } from "../runs.js";
 
-const [GROUND, LOWEST] = [50, 0.4]; // px; m: a picture is at least so high
+const [GROUND, NAMES, LOWEST] = [50, 28, 0.4]; // px, px; m: a picture is at least so high
 const SCENES = { drop: "A ball falls", bounce: "A ball bounces", stack: "Three balls stand" };
 
 const run = kept((model, heights, knobs, count) => {
@@ -59,7 +59,7 @@ function lane(view, { model, made }, row, x, { twin, from, floor, scale, larger,
   });
   const what = {
     label: `${model}: the balls`, value: "lift", low: 1.05 * R - start[0],
-    high: top - R - start[start.length - 1], step: 0.02, at: (_, y) => (floor - y) / scale,
+    high: top - R - NAMES / scale - start[start.length - 1], step: 0.02, at: (_, y) => (floor - y) / scale,
     seen: () => (from + own.time > 0 && heights[0] < top ? heights[0] - start[0] : own.lift),
     also: { time: 0 }, release: () => view.play(0), twin,
   };
@@ -101,7 +101,7 @@ function draw(view) {
   view.seen = Math.max(view.seen ?? (view.text.time > 0 ? to : 0), time);
   const chartTop = Math.round(0.54 * height);
   const [wide, floor, top] = [width / all.length, chartTop - GROUND, topOf(view.text)];
-  const scale = Math.min((floor - 6) / top, (0.42 * wide) / R); // px for 1 m
+  const scale = Math.min(floor / top, (0.42 * wide) / R); // px for 1 m
   const [larger, many] = [enlarged(own, all), own.scene === "stack"];
   const told = all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row], many)}`);
   return {

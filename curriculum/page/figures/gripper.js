@@ -1,11 +1,11 @@
-/* Three balls by penalty, two of which have motors, each drawn LARGER times as far from its mean place
- * as it is; and what becomes of them at which step. With switch=1 the force may be the step's last. */
+/* Three balls by penalty, two of which have motors, each drawn some times as far from its mean place as
+ * it is; and what becomes of them at which step. With switch=1 the force may be the step's last. */
 import { ball, label, line, ms, number, path, range, rect, scaleOf, svg, table, within } from "../draw.js";
 import { column, inRow, kept, R, record } from "../runs.js";
 
 const [AT, MASS, MOTOR] = [[-0.205, 0, 0.205], [0.2, 1, 0.2], [20, 0, -20]]; // m, kg, N
 const [DAMPING, SECONDS, LATE] = [80, 1, 0.75]; // N s/m, s; what comes after this share is judged
-const [LARGER, FAR] = [80, 0.5]; // times; m: what is farther away has flown apart
+const [LARGER, FAR] = [[80, 20, 5], 0.5]; // times; m: what is farther away has flown apart
 const FATES = ["holds still", "trembles", "flies apart"];
 const endsOf = ({ switch: shown }) => (shown ? [0.0005, 0.016] : [0.002, 0.008]); // s
 
@@ -21,9 +21,10 @@ const squeezed = kept((dt, stiffness, late) => {
   const rest = states.slice(Math.floor(LATE * states.length));
   const depths = rest.map(([x, y]) => 2 - Math.hypot(x[1] - x[0], y[1] - y[0]) / R);
   const trembling = Math.max(...depths) - Math.min(...depths);
+  const larger = LARGER.find((times) => times * trembling < 1) ?? 1;
   const means = range(3, (i) => rest.reduce((sum, [x]) => sum + x[i], 0) / rest.length);
-  const shown = rest.map(([x, y]) => [x.map((each, i) => means[i] + LARGER * (each - means[i])), y]);
-  return { fate: trembling < 1e-5 ? 0 : 1, trembling, shown };
+  const shown = rest.map(([x, y]) => [x.map((each, i) => means[i] + larger * (each - means[i])), y]);
+  return { fate: trembling < 1e-5 ? 0 : 1, trembling, larger, shown };
 }, 60);
 
 // From which step on it is as bad as this fate, found by halving [s].
@@ -40,10 +41,12 @@ const begins = kept((fate, stiffness, late, good, bad) => {
 function draw(view) {
   const { own: { dt, stiffness, late, time }, width, height } = view;
   const [low, high] = endsOf(view.own);
-  const { fate, trembling, shown } = squeezed(dt, stiffness, late);
+  const { fate, trembling, larger, shown } = squeezed(dt, stiffness, late);
   const [floor, top, middle] = [height - 104, height - 60, width / 2];
   const scale = Math.min((floor - 24) / (2.5 * R), width / 8.6 / R); // px for 1 m
-  const [r, row, share] = [R * scale, Math.floor(time / dt), (time / dt) % 1];
+  const waits = fate === 2 && time === 0 && !view.running; // until it is played one sees where it ends
+  const steps = waits ? shown.length - 1 : time / dt;
+  const [r, row, share] = [R * scale, Math.floor(steps), steps % 1];
   const [now, next] = [row, row + 1].map((k) => shown[k % shown.length]); // a step moves straight
   const places = range(3, (i) => [0, 1].map((k) => now[k][i] + share * (next[k][i] - now[k][i])))
     .map(([x, y]) => [middle + x * scale, floor - Math.max(R, y) * scale]);
@@ -70,7 +73,8 @@ function draw(view) {
       line(at(dt), top - 8, at(dt), top + 18, "rule"), view.point(at(dt), top + 9, what),
     ],
     words: `In steps of ${ms(dt)} it ${FATES[fate]}` +
-      `${fate === 1 ? `, by ${number(trembling, 2)} r, drawn ${LARGER} times larger` : ""}.`,
+      `${fate === 1 ? `, by ${number(trembling, 2)} r` : ""}` +
+      `${fate === 1 && larger > 1 ? `, drawn ${larger} times larger` : ""}.`,
   };
 }
 
