@@ -95,6 +95,8 @@ class Complementarity:
 
     def keep(self, chosen):
         """Leave out the other contacts."""
+        if chosen.all():
+            return
         table = pivot(self.table, self.active, np.flatnonzero(self.active & ~chosen))
         self.active = self.active[chosen]
         each = (table, self.scale, self.W)
