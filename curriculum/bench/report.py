@@ -249,8 +249,7 @@ def error_figure(rows, problem):
 def write(folder, sections, made):
     """Write README.md and figures into a folder. Raises ImportError without matplotlib."""
     files, rows = {"README.md": written("page.md", sections, made)}, sections.get("points", ())
-    about = {"measured": made.get("points")}
     for name in {p["problem"] for p in rows} & {*DRAWN}:
-        files[f"error-{name}.svg"] = picture.svg(error_figure(rows, name), about)
+        files[f"error-{name}.svg"] = picture.svg(error_figure(rows, name), made.get("points"))
     for name, content in files.items():
         write_atomic(folder / name, content)

@@ -2,7 +2,7 @@
 
     figure, axes = picture.figure(rows=2, title="...", explained="...")
     picture.line(axes[0], x, y, "lcp", label="lcp, 20 sweeps")
-    svg = picture.svg(figure, section)
+    svg = picture.svg(figure, origin)
 
 One method has one colour, marker and dash in every figure; models have the course's colours. A
 figure is 6 inches wide, so that a phone can show its words large enough, and panels stand below one
@@ -10,7 +10,6 @@ another. The SVG has no date and fixed ids: the same results give the same bytes
 """
 
 import io
-import math
 import os
 import re
 import textwrap
@@ -84,31 +83,15 @@ def legend_below(axis, columns: int, down: float) -> None:
     axis.legend(loc="upper left", ncols=columns, bbox_to_anchor=(-0.1, -down))
 
 
-def svg(figure, section=None) -> str:
-    """The figure as SVG text, with the date and machine of its section under it."""
-    if section is not None:
-        about = section["measured"]
-        note = f"{about['date']}, {about['cores']} cores of {about['cpu']}, {about['command']}"
+def svg(figure, made=None) -> str:
+    """The figure as SVG text, with the date and machine of stored.origin under it."""
+    if made:
+        note = f"{made['date']}, {made['cores']} cores of {made['cpu']}, {made['command']}"
         figure.text(0.01, 0.06 / figure.get_figheight(), note, fontsize=7, color=PALE, va="bottom")
-    for axis in figure.axes:
-        whole_decades(axis.xaxis)
-        whole_decades(axis.yaxis)
     out, (title, explained) = io.StringIO(), figure.words
     about = {"Date": None, "Creator": None, "Title": title, "Description": explained}
     figure.savefig(out, format="svg", metadata=about)
     return smaller(out.getvalue())
-
-
-def whole_decades(axis) -> None:
-    """Words at powers of ten only on a logarithmic axis, and room for at least two of them."""
-    from matplotlib.ticker import NullFormatter
-
-    if axis.get_scale() != "log":
-        return
-    axis.set_minor_formatter(NullFormatter())
-    low, high = (math.log10(value) for value in axis.get_view_interval())
-    if math.floor(high) - math.ceil(low) < 1:
-        axis.set_view_interval(10 ** math.floor(low), 10 ** math.ceil(high), ignore=True)
 
 
 def smaller(text: str) -> str:

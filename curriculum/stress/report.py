@@ -122,7 +122,7 @@ def penalty_map(rows, made):
         axis.set_title(f"c = {damping:g} N s/m; line: k dt² + 2 c dt = 4 m")
     axes[0].get_legend().remove()
     axes[0].set_xlabel("")
-    return picture.svg(figure, {"measured": made})
+    return picture.svg(figure, made)
 
 
 def draw_panel(axis, rows):
