@@ -271,13 +271,6 @@ def test_whole_numbers_are_places_and_velocities_too(model):
     assert one.q.tobytes() == other.q.tobytes() and one.v.tobytes() == other.v.tobytes()
 
 
-def test_jitter_sees_what_trembles_and_what_hops():
-    for dt, least, most in ((0.0056, 0.0, 1e-9), (0.006, 1e-3, 1.0), (0.008, 5e-3, 1.0)):
-        for steps in (1000, 1500, 4000):
-            assert least <= quality("stack", "penalty", dt, steps)["height_jitter_frac"] < most
-    assert quality("bounce", "exact", restitution=1.0)["height_jitter_frac"] > 1.0
-
-
 @pytest.mark.parametrize("model", STEPPED)
 def test_who_sees_the_contacts_hears_of_every_push(model):
     """What the floor's contacts say that they gave is what all momenta changed by, but g dt."""

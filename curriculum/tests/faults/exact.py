@@ -18,7 +18,7 @@ FAULTS = [
     (E, "target = -self.e * v_n\n", "target = -self.e * np.abs(v_n)\n", ANY),
     (E, "self.slip(touching, J, self.v) ** 2 / self.touch_distance[touching]",
      "0.0 * self.found[touching]",
-     T + "'slides_off or pyramid'"),
+     T + "slides"),
     (E, "lam[0] = np.maximum(lam[0], 0.0) + ROUNDING",
      "lam[0] = np.maximum(lam[0], 0.0) + 1e9 * ROUNDING", T + "two_thirds"),
     (E, "for _ in range(50):\n            if not (self.found",
@@ -27,5 +27,5 @@ FAULTS = [
     (E, "4.0 * max(value, 0.0) * bend", "2.0 * max(value, 0.0) * bend", HEAP),
     (E, "np.vander(times[done:last] - now", "np.vander((1.0 + 1e-12) * (times[done:last] - now)",
      T + "parabolas"),
-    (E, "turn = 0.5 * factor", "turn = 0.4 * factor", T + "'slides or pyramid'"),
+    (E, "turn = 0.5 * factor", "turn = 0.4 * factor", T + "slides"),
 ]  # fmt: skip
