@@ -124,7 +124,7 @@ WAYS = [
     ("out/contact.rrd/", {}, "CONTACT --steps 5 --out out", 2, "metrics: out", ".*cannot write .*"),
     ("outputs", {}, "CONTACT --smoke --no-rerun", 2, "stability: pen", ".*report is complete.*"),
     ("x", {}, "CONTACT --smoke --no-rerun --out x/y", 2, "stability: pen", ".*cannot write to x.*"),
-    ("", PLAIN, "-OO CONTACT --steps 1e1 --plot --no-rerun", 0, f": 10 steps(?s:.*){PICTURE}", ""),
+    ("", PLAIN, "CONTACT --steps 1e1 --plot --no-rerun", 0, f": 10 steps(?s:.*){PICTURE}", ""),
     ("", {"PYTHONIOENCODING": "ascii"}, "CONTACT --steps 5 --no-rerun --out é", 0, "xe9", ""),
 ]  # fmt: skip
 

@@ -142,12 +142,12 @@ def kept_files():
 
 def test_nothing_is_compiled_for_a_short_run_or_where_numba_must_not(monkeypatch):
     pile = "import contact; pile = contact.build_scene('pile', 0, 40)"
-    code = f"{pile}; print(contact.run_model('lcp', pile, 0.002, 700).q.sum())"
+    code = f"{pile}; print(contact.run_model('lcp', pile, 0.002, 300).q.sum())"
     scene = contact.build_scene("pile", 0, 40)
-    right = plainly("lcp", scene, 0.002, 700, contact.Settings()).q.sum()
+    right = plainly("lcp", scene, 0.002, 300, contact.Settings()).q.sum()
     assert float(python("-c", code, NUMBA_DISABLE_JIT="1").stdout) == right
     monkeypatch.setattr(contact, "GRAVITY", -1.62)  # whose loops nobody has kept
-    contact.run_model("lcp", scene, 0.002, 700)
+    contact.run_model("lcp", scene, 0.002, 300)
     assert not compiled.loops_of("lcp_step").folder.exists()
 
 
