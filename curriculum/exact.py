@@ -154,6 +154,9 @@ def invert(W):
     return inverse if np.abs(inverse.diagonal()).max(initial=0.0) < 1.0 / DEPENDENT else None
 
 
+# --- endregion ---
+
+
 # --- region: slide-series ---
 def slide_series(q, v, a, w, J, sides, reach, floor, solve, size, enough):
     """Expand q while K contacts are active. Return the series Q (terms, 2 N) of q in time [s], lam
