@@ -77,7 +77,7 @@ def pip_column():
 
 
 def authors():
-    """What pip's line for tests installs, in a clone of its own; there the tests and the checks."""
+    """What pip's line for tests installs, in a clone of its own; then what an author runs there."""
     fresh("dev")
     install, _, tests = readme.set_up("pip")[1].rpartition(" && ")
     check("README, pip: test, set-up", install, "dev")
@@ -138,8 +138,7 @@ def main():
     same = "for it in html ipynb; do cmp {pip,uv}-contact.$it; cmp {pip,dev}-contact.$it; done"
     check("each page, each notebook", same, ".")
     passed, failed = (sum(each) for each in zip(*done))
-    print(f"{time.monotonic() - start:.0f} s; lines of the README and of authors, and the tests:")
-    print(f"{passed} passed, {failed} failed")
+    print(f"{time.monotonic() - start:.0f} s\n{passed} passed, {failed} failed")
     return 1 if failed else 0
 
 
