@@ -31,7 +31,7 @@ from curriculum.commands import one_thread
 ORDER = 20  # of the power series at most; a longer one lasts longer and costs more
 MAX_EVENTS = 50_000  # in a run: about a minute with 40 balls
 TOUCH_TOLERANCE = 1e-12  # of a radius: a smaller gap is closed. Rounding is 1e-15, the goal 1e-10
-MIN_BOUNCE = 1e-13  # of a radius: a bounce that would rise less is the last of its series
+MIN_BOUNCE = 1e-13  # of a radius: the restitution threshold, as a height: less is no bounce
 ROUNDING = 1e-12  # of g, of sqrt(g r), of the largest entry: less is rounding (1e-15)
 GRAZE = 3e-8  # of the slip: a ball between two fixed ones may close as slowly as that
 DEPENDENT = 1e-10  # of a contact's 1 / m_eff: with a smaller pivot it depends linearly on others
@@ -43,8 +43,9 @@ class Complementarity:
     """The LCP of K contacts: lam >= 0, s = W lam + b >= 0, and lam s = 0 (Signorini).
 
     A contact is active, s = 0, or it parts, lam = 0. x holds lam of the active contacts and s of
-    the others, z the zeros; the table gives x = table z + what b adds, and is W where none is
-    active. To pivot on a contact is to exchange its lam and s. A solution has x >= 0.
+    the others (the basic variables), z their partners, all 0; the table gives x = table z + what b
+    adds, and is W where none is active. To pivot on a contact is to exchange its lam and s. A
+    solution has x >= 0.
     """
 
     def __init__(self, W, likely):
@@ -64,8 +65,8 @@ class Complementarity:
 
         Principal pivoting: first on all x < 0 together (Kostreva 1978), as long as they become
         fewer; then on one at a time, lam >= 0 throughout (Dantzig; for contacts Baraff 1994).
-        Raises RuntimeError if a ball is crushed, unless all contacts close by slack (K,), in the
-        unit of b, at most; and if the pivots do not converge.
+        Raises RuntimeError if a ball is crushed, unless no contact closes by more than the largest
+        slack (K,), in the unit of b, of those that push; and if the pivots do not converge.
         """
         unit, table, active = np.sqrt(self.scale.diagonal()), self.table, self.active.copy()
         b, fewest = b / unit, len(b) + 1
@@ -124,7 +125,7 @@ def activate(table, active, x, k):
 
 
 def pivot(table, active, chosen):
-    """Return the table with lam and s of the chosen exchanged; as it was, if they are dependent."""
+    """Exchange lam and s of the chosen: return the table, flip `active`; unless dependent."""
     inverse = invert(table[chosen[:, None], chosen]) if len(chosen) else None
     if inverse is None:
         return table
@@ -204,7 +205,7 @@ class Motion:
     """The state of all bodies at an event, and what each of the C possible contacts did so far."""
 
     def __init__(self, scene, gravity):
-        """List all pairs that can touch: two fixed bodies cannot. Raises RuntimeError: masses."""
+        """List the pairs with a body that can move. RuntimeError: the mass ratio is too large."""
         e, mass = scene.restitution, 1.0 * scene.mass[np.isfinite(scene.mass)]
         ratio = mass.max(initial=0.0) / mass.min(initial=math.inf)
         if 0.0 < e < 1.0 and ratio > MAX_MASS_RATIO:
@@ -238,7 +239,7 @@ class Motion:
         return d
 
     def update_gaps(self):
-        """Compute normals and gaps from q, but keep a tracked gap below 1e4 times a closed one.
+        """Compute normals and gaps from q; a gap tracked as below 1e4 `closed` stays as tracked.
 
         A light ball between two others bounces until its gaps fall below the rounding of q. found:
         the gap from q; bits: rounding of q; closed: the largest gap that counts as closed [m].
@@ -271,7 +272,7 @@ class Motion:
         return lcp.table / lcp.scale
 
     def separate(self):
-        """Move overlapping bodies apart, as at a start; what this closes in the next round."""
+        """Move overlapping bodies apart, as at a start; new overlaps of this, in the next round."""
         for _ in range(50):
             if not (self.found < -self.closed).any():
                 return
@@ -305,7 +306,7 @@ class Motion:
 
         The gap of a resting contact may open and may not close: its acceleration n . a + turn is
         >= 0, and 0 where it pushes; turn = slip^2 / touch_distance, since the normal turns. A
-        contact that parts rests all the same if its force closes it before it rises MIN_BOUNCE.
+        contact that parts rests all the same if it would close again before it rises MIN_BOUNCE.
         """
         speed = np.abs(v_n)
         self.gap[touching], self.since[touching], self.parting[touching] = 0.0, 0.0, speed
@@ -327,7 +328,7 @@ class Motion:
         return touching[on], J[on], solve
 
     def solve_contacts(self):
-        """Resolve all impacts of this moment, then find the active contacts."""
+        """Resolve all impacts of this moment. Return the active contacts, J, and their W^-1."""
         self.separate()
         near = (self.gap <= self.closed).nonzero()[0]
         J = self.jacobian(near)
@@ -384,7 +385,7 @@ class Motion:
 
         Rounding is no event: a resting gap counts as half of TOUCH_TOLERANCE wider, another by its
         last digits. A gap falls no faster than along the normal of now; terms of Q above t^2 bend
-        it by `margin` at most. So few pairs need a search. Of these, tiny gaps are tracked.
+        it by `margin` at most. So few pairs need a search. Gaps that may become tiny are tracked.
         """
         gap, rounds, rate, bend, soon = gaps
         margin = 3.0 * (horizon ** np.arange(3, len(Q)) @ np.abs(Q[3:])).max(initial=0.0)
@@ -471,7 +472,8 @@ def first_root(p, horizon):
 def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MAX_EVENTS) -> np.ndarray:
     """Return q, v (2, S, 2, N) [m, m/s] of a contact.Scene at `times` (S,) [s], rising from 0.
 
-    Gravity [m/s^2] is along y, negative. At the time of an event v is that after all impacts.
+    Gravity [m/s^2] is along y, negative. At the time of an event v is that after all impacts; an
+    overlap at the start is opened first, so that q at 0 may differ from the scene's.
     progress(k) is called after each event with the samples done. Raises RuntimeError beyond the
     limits, and after `most` events.
     """

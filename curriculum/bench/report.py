@@ -20,7 +20,7 @@ LEAST = 1e-16  # r: an error of exactly zero is drawn here
 DRAWN = "slide", "bounce", "pile"  # the problems with a picture of their own
 SHOWN = "exact", REFERENCE, "leapfrog", "lcp"  # each with a column of its own
 CONTESTS = {f"{work} substeps in 2 ms": dict(work=work) for work in WORK}
-CONTESTS |= {f"{us} µs a ball and 2 ms": dict(budget=us) for us in BUDGETS}
+CONTESTS |= {f"{us} µs of CPU a ball in 2 ms": dict(budget=us) for us in BUDGETS}
 
 
 def error_of(p):
