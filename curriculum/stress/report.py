@@ -67,7 +67,7 @@ def summary(tables):
     return (
         f"Every model on {scenes:,} random scenes, `exact` on the {scenes - sum(beyond):,} within "
         f"its limits; {runs:,} runs of heaps, narrow gaps, ceilings and columns; `penalty` over "
-        f"step and stiffness; `soft` beside MuJoCo. Of {total:,} checks in all, {wrong or 'none'} failed."
+        f"step and stiffness; `soft` beside MuJoCo. Of {total:,} checks {wrong or 'none'} failed."
     )
 
 

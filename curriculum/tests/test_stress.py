@@ -91,7 +91,7 @@ def test_scenes_are_judged_and_said_and_what_is_no_scene_is_refused(capsys):
 def test_a_run_writes_tables_a_page_and_a_map(found, tmp_path):
     assert report.write(found, stored.origin("stress", kept=False), tmp_path) == 0
     page = (tmp_path / "README.md").read_text("utf-8")
-    assert " checks in all, none failed." in page and "| 2 ms | heap | leapfrog | 0 |" in page
+    assert " checks none failed." in page and "| 2 ms | heap | leapfrog | 0 |" in page
     assert all(" ".join(f.__doc__.split("\n\n")[0].split()) in page for f in PROPERTIES.values())
     assert "settles at m g / k" in (tmp_path / "penalty-map.svg").read_text("utf-8")
 
