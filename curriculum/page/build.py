@@ -22,6 +22,7 @@ from curriculum.show import picture
 from curriculum.source import ROOT, read_all
 
 SCENES = ("drop", "bounce", "stack")  # of the figures: balls in one column
+OWN = ("damping", "restitution")  # of a scene
 EARLY = 'document.documentElement.className = "js"'  # before the first paint
 COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb"
 
@@ -34,27 +35,25 @@ def page_data():
         "models": list(contact.MODELS),
         "taken": {model: contact.MODELS[model].knobs for model in contact.STEPPED},
         "scenes": {
-            name: {
-                "start": scene.q0[1].tolist(),
-                "own": {"damping": scene.damping, "restitution": scene.restitution},
-            }
+            name: {"start": scene.q0[1].tolist(), "own": {key: getattr(scene, key) for key in OWN}}
             for name, scene in scenes.items()
         },
         "radius": contact.RADIUS,
         "solimp": contact.SOLIMP,
         "defaults": knobs
-        | {
-            "dt": contact.parse_flags([]).dt,
-            "damping": scenes["drop"].damping,
-            "restitution": scenes["drop"].restitution,
-        }
-        | {"impedance": contact.SOLIMP[1]},
+        | {"dt": contact.parse_flags([]).dt, "impedance": contact.SOLIMP[1]}
+        | {name: getattr(scenes["drop"], name) for name in OWN},
     }
+
+
+def draw_slots(slots):
+    """Return what the figure of each slot (name, {quantity: value}) shows first, or its error."""
+    return evaluate("still.js", page_data(), f"stills({json.dumps(slots)})")
 
 
 def slot_errors(slots):
     """Return what is wrong with each slot NAME?quantity=value of a figure, or ""."""
-    return evaluate("still.js", page_data(), f"errors({json.dumps([*map(chapter.asked, slots)])})")
+    return [shown.get("error", "") for shown in draw_slots([*map(chapter.asked, slots)])]
 
 
 # ---- what stands in the slots
@@ -110,7 +109,7 @@ def build(text=None):
     """The page of the chapter, or of `text` in its place. Raises ValueError (file:line: what)
     where it can't be shown as it is."""
     text = (ROOT / chapter.CHAPTER).read_text("utf-8") if text is None else text
-    exercises, regions, data = all_exercises(), read_all(), page_data()
+    exercises, regions = all_exercises(), read_all()
     end = ("heading", (2, "colophon", "Colophon")), ("colophon", ())
     parts = [*chapter.blocks(fill(text)), *end]
     for kind, (name, *_) in ((kind, values) for kind, values in parts if values):
@@ -119,14 +118,14 @@ def build(text=None):
             held = f"there is no {kind} {name}; known: {', '.join(known)}"
             raise ValueError(f"{chapter.CHAPTER}: {held}")
     slots = [values for kind, values in parts if kind == "figure"]
-    wanted = [[name, given] for _, name, given in slots]
-    drawn = evaluate("still.js", data, f"stills({json.dumps(wanted)})")
-    figures = {id: figure for (id, *_), figure in zip(slots, drawn)}
+    figures = dict(zip([id for id, *_ in slots], draw_slots([slot for _, *slot in slots])))
+    for error in (shown["error"] for shown in figures.values() if "error" in shown):
+        raise ValueError(f"{chapter.CHAPTER}: {error}")
     templates = environment(figures=figures, exercises=exercises, regions=regions)
     macros = templates.get_template("parts.html.j2").module
     titles = {id: figure["title"] for id, figure in figures.items()}
     body, ((_, _, title), *contents) = chapter.assemble(parts, macros, titles)
-    script = bundle("main.js", data)
+    script = bundle("main.js", page_data())
     return templates.get_template("page.html.j2").render(
         allowed=[named(EARLY), named(script)],
         style=Markup((HERE / "style.css").read_text("utf-8")),

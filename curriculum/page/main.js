@@ -4,20 +4,24 @@ import { figures } from "./figures.js";
 import { stage } from "./stage.js";
 
 const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+const settings = history.state ?? {}; // of all figures, kept by each place of the history
 const takes = Object.fromEntries([...document.querySelectorAll("[data-figure]")].map((box) =>
-  [box.id, stage(box, figures[box.dataset.figure], JSON.parse(box.dataset.given), still)]));
+  [box.id, stage(box, figures[box.dataset.figure], JSON.parse(box.dataset.given), still, settings)]));
 
 // What an address sets, #fig-cliff?dt=0.014: numbers, and the names of switches.
 function follow() {
   const [id, query] = decodeURIComponent(location.hash.slice(1)).split("?");
-  if (!takes[id] || !query) return;
-  takes[id](Object.fromEntries([...new URLSearchParams(query)].map(([name, text]) =>
-    [name, text.trim() && Number.isFinite(Number(text)) ? Number(text) : text])));
-  document.getElementById(id).scrollIntoView({ block: "center" });
+  if (takes[id] && query) {
+    settings[id] = Object.fromEntries([...new URLSearchParams(query)].map(([name, text]) =>
+      [name, text.trim() && Number.isFinite(Number(text)) ? Number(text) : text]));
+    takes[id](settings[id]);
+    document.getElementById(id).scrollIntoView({ block: "center" });
+  }
+  history.replaceState(settings, "");
 }
 window.addEventListener("hashchange", follow);
 if (!history.state) follow();
-for (const [id, set] of Object.entries(history.state ?? {})) takes[id]?.(set); // after a reload
+for (const [id, set] of Object.entries(settings)) takes[id]?.(set); // after a reload
 
 document.querySelectorAll(".exercise:has(.bet)").forEach(startBet);
 document.querySelector(".forget").addEventListener("click", forgetBets);

@@ -77,15 +77,11 @@ export const inRow = (run, part, row) => run[part].slice(run.n * row, run.n * (r
 export const gapsOf = (run) =>
   run.t.map((_, row) => {
     const ys = inRow(run, "y", row);
-    let least = { gap: Infinity };
-    const see = (gap, upper, lower) => {
-      if (!(gap >= least.gap)) least = { gap, upper, lower };
-    };
-    ys.forEach((y, i) => {
-      see(y / R - 1, i + 1, 0);
-      for (let k = 0; k < i; k++) see(Math.abs(y - ys[k]) / R - 2, i + 1, k + 1);
-    });
-    return least;
+    const gaps = ys.flatMap((y, i) => [
+      { gap: y / R - 1, upper: i + 1, lower: 0 },
+      ...ys.slice(0, i).map((low, k) => ({ gap: Math.abs(y - low) / R - 2, upper: i + 1, lower: k + 1 })),
+    ]);
+    return gaps.reduce((a, b) => (b.gap >= a.gap ? a : b));
   });
 
 // The push of the table [m g] on balls of 1 kg, in the step that ends in a row: what changed their

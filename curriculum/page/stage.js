@@ -127,8 +127,9 @@ function hands(view, box) {
   };
 }
 
-// Put a figure into its box. Returns take({name: value}): as in the text, but for these.
-export function stage(box, figure, given, still) {
+// Put a figure into its box; what is set there is kept in `settings`, by the box. Returns
+// take({name: value}): as in the text, but for these.
+export function stage(box, figure, given, still, settings) {
   const view = viewOf(figure, given);
   const { own, text } = view;
   let [frame, near, begun, last, soon] = [0, false, false, 0, 0];
@@ -136,10 +137,10 @@ export function stage(box, figure, given, still) {
   const same = (name) => own[name] === text[name] || (name === "time" && figure.clock?.(view).loops);
   // the address leads here, with all that differs from the text; a reload finds the other figures'
   function remember() {
-    const set = Object.fromEntries(Object.entries(own).filter(([name, value]) =>
+    settings[box.id] = Object.fromEntries(Object.entries(own).filter(([name, value]) =>
       !same(name) && fits(figure, view, name, value)));
-    const query = new URLSearchParams(set).toString();
-    history.replaceState({ ...history.state, [box.id]: set }, "", `#${box.id}${query && `?${query}`}`);
+    const query = new URLSearchParams(settings[box.id]).toString();
+    history.replaceState(settings, "", `#${box.id}${query && `?${query}`}`);
   }
   const [hand, { grab }] = [hands(view, box), view];
   view.grab = (what, shape) => hand(what, grab(what, shape));

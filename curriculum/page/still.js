@@ -26,34 +26,23 @@ function check(figure, given) {
   }
 }
 
-// What a figure shows first.
+// What a figure shows first, or the error that keeps it from being drawn.
 function still([name, given]) {
   const figure = figures[name];
-  if (!figure)
-    throw new Error(`there is no figure ${name}; known: ${Object.keys(figures).join(", ")}`);
+  if (!figure) return { error: `there is no figure ${name}; known: ${Object.keys(figures).join(", ")}` };
   try {
     check(figure, given);
     const view = viewOf(figure, given, WIDE);
     const { picture, words } = figure.draw(view);
     return { svg: textOf(picture), words: worded(words), caption: captionOf(figure, view),
       title: asked(figure.title, view.own),
-      heights: [WIDE, NARROW].map((width) => figure.height(width, view.own)),
+      heights: [WIDE, NARROW].map((width) => figure.height(width)),
       knobs: figure.room ?? knobsOf(figure, view).length,
       buttons: figure.play || figure.switches?.(view.own).length ? 1 : 0 };
-  } catch (error) {
-    throw new Error(`the figure ${name}: ${error.message}`);
-  }
-}
-
-// "" where a slot can be drawn, or why not.
-function errorOf(slot) {
-  try {
-    return still(slot) && "";
   } catch ({ message }) {
-    return message;
+    return { error: `the figure ${name}: ${message}` };
   }
 }
 
-export const errors = (slots) => slots.map(errorOf);
 export const stills = (slots) => slots.map(still);
 export { captionOf, figures, knobsOf, QUANTITIES, textOf, viewOf };

@@ -146,7 +146,7 @@ def by_keys(page, fig):
     """Each handle, slider and button tells what came of it, and its range; no part moves away."""
     name = fig.get_attribute("id")
     place = page.evaluate(STATE, name)[1:3]
-    for part in fig.locator("[role=slider], input, .buttons button").all():
+    for part in fig.locator("[tabindex='0'], input, .buttons button").all():
         before = part.get_attribute("aria-valuetext")
         for key in ("ArrowUp", "Shift+ArrowLeft", "Enter"):
             part.press(key)
@@ -275,10 +275,12 @@ def test_a_link_sets_numbers_in_their_range_a_reload_keeps_all_and_the_address_i
         page.evaluate(SEE, "fig-corner")
         page.locator("#fig-corner .buttons button").last.click()
         page.wait_for_url(re.compile(r"#fig-corner\?model=soft$"))
+        page.evaluate("location.hash = '#one-bowl'")
         page.reload()
         page.wait_for_selector("[data-ready]", state="attached")
-        for name in ("fig-sag", "fig-corner"):
+        for name in ("fig-cliff", "fig-sag", "fig-corner"):
             page.evaluate(SEE, name)
+        assert "12.3 ms" in page.evaluate(STATE, "fig-cliff")[0]
         assert page.locator("#fig-sag output").first.inner_text().strip() == "8"
         assert page.locator("#fig-corner [aria-pressed=true]").inner_text() == "soft"
         page.locator("#fig-corner .back").click()

@@ -190,6 +190,8 @@ def test_picture_gripper_moves_as_it_says_and_its_knob_is_in_that_part(draw, dt,
     else:
         assert moves > 1.0 if does == "flies apart" else moves < 1e-3
         assert "larger" not in words
+    apart = (cup[0] - left[0]["cx"]) / left[0]["r"]  # before it is played one sees where it ends
+    assert (apart > 3) == (does == "flies apart")
 
 
 @pytest.mark.parametrize(
@@ -231,6 +233,9 @@ def test_picture_falls_tells_what_comes_only_once_it_was_played_and_enlarges_a_s
         stack.larger() * said(stack.words)[1], rel=0.02
     )
     assert "ball 1 on the table" in stack.words
+    lifted = draw("falls", given, {"lift": after.handles[0]["high"]})
+    name, ball = lifted.all("text", "strong")[0], lifted.all("circle", "ball")[0]
+    assert name["y"] < ball["cy"] - ball["r"]  # no ball covers its name
 
 
 @pytest.mark.parametrize(
@@ -291,7 +296,7 @@ def test_picture_cliff_stands_at_its_limit_and_there_an_eigenvalue_leaves_the_ci
         before, beyond = (line[:, 0] < 990 * critical), (line[:, 0] > 1010 * critical)
         assert (line[before, 1] < 1e-5).all() or c == 0  # without a damper it swings on
         assert (line[beyond, 1] > (1e-5 if k < 1e6 else 2e-6)).all()
-        (ring,) = seen.all("circle", "region-ring")
+        (ring,) = seen.all("circle", "region")
         pair = seen.all("circle", "mark")[:2]
         far = max(math.hypot(m["cx"] - ring["cx"], m["cy"] - ring["cy"]) for m in pair)
         assert (far > ring["r"] + 0.5) == (dt > critical)
@@ -370,7 +375,7 @@ def test_picture_rod_has_its_circles_where_the_line_crosses_zero(draw, mu):
     line = seen.curve("m-exact")
     pieces = [(a, b) for a, b in itertools.pairwise(line) if (a[1] > 0) != (b[1] > 0)]
     crossings = [a[0] + (b[0] - a[0]) * a[1] / (a[1] - b[1]) for a, b in pieces]
-    circles = [seen.seen((c["cx"], c["cy"])) for c in seen.all("circle", "answer")][1:]
+    circles = [seen.seen((c["cx"], c["cy"])) for c in seen.all("circle", "rule")][1:]
     assert [y for _, y in circles] == pytest.approx([0.0] * len(crossings), abs=0.01)
     assert [x for x, _ in circles if x < 1.3] == pytest.approx(
         [x for x in crossings if x < 1.3], abs=0.01

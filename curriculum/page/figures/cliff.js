@@ -37,7 +37,7 @@ function circleOf(own, pairs, critical, width, height) {
   const least = Math.min(...pairs.map(([real]) => real));
   return [
     line(x + LEFTMOST * unit, y, x + 1.4 * unit, y, "axis"),
-    line(x, y - 1.1 * unit, x, y + 1.1 * unit, "grid"), circle(x, y, unit, "region-ring"),
+    line(x, y - 1.1 * unit, x, y + 1.1 * unit, "grid"), circle(x, y, unit, "rule region"),
     tick("size 1", x + 0.74 * unit, y - 0.78 * unit), tick("1", x + unit + 6, y + 20),
     tick("−1", x - unit - 6, y + 20, "end"), tick("0", x - 6, y + 20, "end"),
     label("eigenvalues of a step", 0, 14, "start", "axis-name"),

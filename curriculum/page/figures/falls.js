@@ -41,7 +41,7 @@ function enlarged({ scene }, all) {
   return scene === "stack" ? [20, 5, 2].find((times) => times * deepest < 1.8) ?? 1 : 1;
 }
 
-// A model's balls; for one above the picture an arrow and how high it is.
+// A model's balls; for one above the picture an arrow.
 function lane(view, { model, made }, row, x, { twin, from, floor, scale, larger, top }) {
   const { own } = view;
   const start = data.scenes[own.scene].start;
@@ -53,9 +53,7 @@ function lane(view, { model, made }, row, x, { twin, from, floor, scale, larger,
     drawn += 2 * R + (apart < 0 ? larger * apart : apart);
     below = height;
     if (drawn < top + R) return ball(model, x, Math.min(floor + GROUND, floor - drawn * scale), r);
-    const far = Number.isFinite(height) ? `${number(height, 2)} m` : "out of sight";
-    return [circle(x, 52, 22, "halo"), arrow("weight", x, 62, 0, -30),
-      label(far, x, 78, "middle", "tick")];
+    return [circle(x, 52, 22, "halo"), arrow("weight", x, 67, 0, -30)];
   });
   const what = {
     label: `${model}: the balls`, value: "lift", low: 1.05 * R - start[0],

@@ -50,7 +50,7 @@ function draw(view) {
         line(2 * middle[0] - x, 2 * middle[1] - floor, x, floor, "rod"), circle(...middle, 4, "dot"),
         arrow("weight", x, floor, 14 * Math.min(4, v_t), -14 * 4 * v_n),
         arrow("push m-exact", x, floor + 58, 0, -44 * within(0, push, 1))),
-      picture, coulomb.map((p) => circle(sx(p), sy(p ? 0 : FREE[0]), 9, "answer")),
+      picture, coulomb.map((p) => circle(sx(p), sy(p ? 0 : FREE[0]), 9, "rule")),
       mark("exact", sx(push), sy(v_n), 7), knob("push", "the push", 0.02),
     ],
     words: `The law: ${told} N s; relaxed: ${number(relaxed, 2)} N s. At ${number(push, 2)} N s ` +

@@ -35,7 +35,7 @@ function draw(view) {
     picture: [
       table(0, floor, box.left, 30), depths.map((deep, i) => [ball("lcp", box.left - r, at(i) - r, r),
         rect(sx(0), at(i) - 0.6 * r, to(deep) - sx(0), 0.8 * r, "bar-fill m-lcp")]),
-      path(law.map((deep, i) => [to(deep), at(i) - 0.2 * r]), "law-line"),
+      path(law.map((deep, i) => [to(deep), at(i) - 0.2 * r]), "rule dashed"),
       label("the law", Math.min(to(law[1]) + 14, width - 62), at(1) - 0.2 * r + 2),
       picture, line(sx(0), box.top, sx(0), box.bottom, "rule"),
     ],
@@ -48,6 +48,7 @@ export const figure = {
   title: "What unfinished sweeps leave",
   caption: "A bar for every contact of a column at rest: how deep it is. The dashed line is the law.",
   height: (width) => (width < 480 ? 280 : 360),
-  start: () => ({ balls: 30, knobs: "iters,dt" }),
+  knobs: ["iters", "dt"],
+  start: () => ({ balls: 30 }),
   draw,
 };
