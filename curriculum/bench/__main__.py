@@ -26,6 +26,7 @@ from curriculum.commands import Parser, needs, write_json
 
 with needs("bench"):
     from curriculum.bench import engines, measure, problems, report
+    from curriculum.bench.report import called
 
 FULL, QUICK = stored.ROOT / stored.FOLDERS["bench"], stored.ROOT / "outputs" / "bench-quick"
 CODE = "curriculum/bench/measure.py", "curriculum/bench/settings.csv"  # and what they import
@@ -42,11 +43,11 @@ def take(part, quick, only, folder, tier=None):
     sections, made = stored.load(folder)
     stay, known, groups = [], list(engines.EVERYBODY), list(problems.BY_NAME)
     if only:
-        stay = [row for row in sections.get(part, ()) if name(row) in known]
-        stay = [row for row in stay if only not in name(row)]
+        stay = [row for row in sections.get(part, ()) if called(row) in known]
+        stay = [row for row in stay if only not in called(row)]
     rows = stay + measure.PARTS[part](quick, only, stay)
     if only:
-        rows.sort(key=lambda row: known.index(name(row)))
+        rows.sort(key=lambda row: known.index(called(row)))
         rows.sort(key=lambda row: row.get("bodies") or groups.index(row["problem"]))
     made = {key: about for key, about in made.items()
             if key.split()[0] != part or only not in key.removeprefix(part)}  # fmt: skip
@@ -55,11 +56,6 @@ def take(part, quick, only, folder, tier=None):
     if rows:
         stored.save(folder / f"{part}.csv", rows)
         write_json(folder / "made.json", made | {f"{part} {only}".strip(): about})
-
-
-def name(row):
-    """Return the name of a row's setting."""
-    return f"{row['engine']} {row['setting'] or ''}".strip()
 
 
 def try_one(problem, setting, substeps):
@@ -94,7 +90,7 @@ def main(argv=None):
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
     args = parser.parse_args(argv)
     folder = QUICK if args.quick else FULL
-    parts = [name for name in measure.PARTS if args.part in ("all", name)]
+    parts = [part for part in measure.PARTS if args.part in ("all", part)]
     if args.only and "processes" in parts:
         parts.remove("processes")  # which are no settings
     try:
@@ -106,8 +102,8 @@ def main(argv=None):
             subprocess.run(
                 [sys.executable, "-m", "curriculum.compiled"], cwd=stored.ROOT, check=True
             )
-        for name in parts:
-            take(name, args.quick, args.only, folder, args.tier)
+        for part in parts:
+            take(part, args.quick, args.only, folder, args.tier)
         sections, made = stored.load(folder)
         report.write(folder, sections, made)
         if folder == FULL:

@@ -23,6 +23,11 @@ CONTESTS = {f"{work} substeps in 2 ms": dict(work=work) for work in WORK}
 CONTESTS |= {f"{us} µs of CPU a ball in 2 ms": dict(budget=us) for us in BUDGETS}
 
 
+def called(row):
+    """Return how a row's setting is called, with its engine."""
+    return f"{row['engine']} {row['setting'] or ''}".strip()
+
+
 def error_of(p):
     """Return the error [r] of a point, for a reader."""
     return "-" if p is None else "reference" if p["error"] is None else format_number(p["error"])
@@ -43,8 +48,7 @@ def step_of(row, time):
     if row is None:
         return ["-", "-"]
     cut = f", {row['substeps']} substeps" if row["substeps"] > 1 else ""
-    called = f"{LABELS[row['engine']]} {row['setting'] or ''}".strip()
-    return [called + cut, format_number(row[time])]
+    return [called(row | {"engine": LABELS[row["engine"]]}) + cut, format_number(row[time])]
 
 
 def loses(one, other):
@@ -80,6 +84,7 @@ def claims(points, piles, processes):
     exact, rival, leapfrog = (contest(points, [name]) for name in ("exact", REFERENCE, "leapfrog"))
     both = [(exact[name], rival[name]) for name in exact if name in rival]
     lost = [name for name, p in rival.items() if loses(leapfrog.get(name), p)]
+    longer = [p["ms"] / mine["ms"] for mine, p in both]
     errors = ([p[key] for _, p in both] for key in ("error", "error_max"))
     usual, worst = (format_number(max(each, default=None)) for each in errors)
     spans = sorted(100.0 * (p["ms_max"] / p["ms_min"] - 1.0) for p in points if p["ms"]) or [0.0]
@@ -89,7 +94,7 @@ def claims(points, piles, processes):
         peers=f"{', '.join(others)} and {last}",
         where=where(points),
         rival=f"{len(lost)} of {len(leapfrog)} ({', '.join(lost)})",
-        longer=span([p["ms"] / mine["ms"] for mine, p in both]),
+        longer=" to ".join(format_number(pick(longer, default=None)) for pick in (min, max)),
         usual_error=usual,
         worst_error=worst,
         phases=PHASES,
@@ -112,12 +117,6 @@ def where(points):
     return "; ".join(f"{result} with at most {', '.join(each)}" for result, each in found.items())
 
 
-def span(values):
-    """Return the least and the greatest, as text."""
-    least, greatest = (format_number(pick(values, default=None)) for pick in (min, max))
-    return f"{least} to {greatest}"
-
-
 def ratios(piles, which):
     """Return how many times as long as ours the fastest other engine takes, for piles at rest, and
     where that is least."""
@@ -136,22 +135,21 @@ def take(points, piles):
     rows |= {(row["bodies"], *same(row)): row for row in piles}
     for want in stored.load(HERE)[0]["take"]:
         row = rows.get((want["problem"], *same(want)))
-        called = f"{want['engine']} {want['setting'] or ''}".strip()
-        cells = [want["wish"], f"`{called}`", f"`{typed(want, called)}`"]
+        cells = [want["wish"], f"`{called(want)}`", f"`{typed(want)}`"]
         if row in points:
             yield [*cells, error_of(row), time_of(row), *peer(peers.get(row["problem"]))]
         elif row:
             depth = min(d for d in DEPTHS if row["mean_depth"] <= d)
             other = measure.fastest(piles, depth, ENGINES).get(row["bodies"])
-            name, time = step_of(other, "resting")
+            rival, time = step_of(other, "resting")
             mine = f"{depth:g}, mean depth", f"{format_number(row['resting'])} µs a step"
-            yield [*cells, *mine, name, f"{depth:g}", f"{time} µs a step"]
+            yield [*cells, *mine, rival, f"{depth:g}", f"{time} µs a step"]
 
 
-def typed(want, called):
+def typed(want):
     """Return the command that measures a row of the README's table again."""
     more = f" --substeps {want['substeps']}" if want["substeps"] > 1 else ""
-    setting = f'"{called}"' if " " in called else called
+    setting = f'"{called(want)}"' if want["setting"] else want["engine"]
     return f"python -m curriculum.bench try {want['problem']} {setting}{more}"
 
 

@@ -19,15 +19,6 @@ from exercises.kit.script import practise
 KNOBS = {knob for row in contact.MODELS.values() for knob in row.knobs} - {"restitution"}
 
 
-def print_unused(args) -> None:
-    """Print a line on each flag that has no effect on the model that was chosen."""
-    default = contact.Settings()._asdict() | {"damping": None, "restitution": None}
-    for knob in default:
-        owners = [name for name, row in contact.MODELS.items() if knob in row.knobs + row.also]
-        if owners and getattr(args, knob) != default[knob] and args.contact not in ("all", *owners):
-            print(f"--{knob} is for {' and '.join(owners)}, and has no effect here")
-
-
 def add_remarks(notes: dict, job: tuple, runs: dict, quality: dict, args=None) -> None:
     """Print what exact or soft did, where no table says it; add to notes what else is wrong.
 
@@ -79,11 +70,16 @@ def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
 
 
 def print_next(args, argv: list[str]) -> None:
-    """Print the last lines of a run: unused flags, how to read on, to see it, the next exercise.
+    """Print the last lines of a run: flags that the chosen model does not use, how to read on, to
+    see it, the next exercise.
 
     args: the flags as contact.parse_flags gives them; argv: the words they were read from.
     """
-    print_unused(args)
+    default = contact.Settings()._asdict() | {"damping": None, "restitution": None}
+    for knob in default:
+        owners = [name for name, row in contact.MODELS.items() if knob in row.knobs + row.also]
+        if owners and getattr(args, knob) != default[knob] and args.contact not in ("all", *owners):
+            print(f"--{knob} is for {' and '.join(owners)}, and has no effect here")
     if Path.cwd() == ROOT:  # from where python -m finds it
         page = command("-m", "curriculum.page", bring=("--extra", "page"))
         print(f"next, read the chapter: {page}")

@@ -14,19 +14,8 @@ from functools import partial
 from curriculum.commands import Parser, needs, number
 
 with needs("dev"):
-    from curriculum import parallel
-    from curriculum.stress import jobs
-
-
-def parse(argv):
-    """Return the checked command line."""
-    parser = Parser(prog="python -m curriculum.stress", description=__doc__)
-    flag, count = parser.add_argument, partial(number, int, 1, 1e6)
-    flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
-    flag("--draw", action="store_true", help="page and figure again, from the results alone")
-    flag("--workers", type=count, metavar="N", help="processes (all cores)")
-    flag("--scene", type=chosen, metavar="[small:]N[-N]", help="what all properties say of these")
-    return parser.parse_args(argv)
+    from curriculum import parallel, stored
+    from curriculum.stress import jobs, report
 
 
 def chosen(text):
@@ -57,9 +46,6 @@ def some_scenes(todo):
 
 def everything(args):
     """Run everything, or --quick, and write the report. Returns the violations."""
-    from curriculum import stored
-    from curriculum.stress import report
-
     if args.draw:
         return report.draw(report.RESULTS)
     if not args.quick:
@@ -77,7 +63,13 @@ def everything(args):
 
 def main(argv=None):
     """Print the violations. Returns the exit status."""
-    args = parse(argv)
+    parser = Parser(prog="python -m curriculum.stress", description=__doc__)
+    flag, count = parser.add_argument, partial(number, int, 1, 1e6)
+    flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
+    flag("--draw", action="store_true", help="page and figure again, from the results alone")
+    flag("--workers", type=count, metavar="N", help="processes (all cores)")
+    flag("--scene", type=chosen, metavar="[small:]N[-N]", help="what all properties say of these")
+    args = parser.parse_args(argv)
     return 1 if (some_scenes(args.scene) if args.scene else everything(args)) else 0
 
 

@@ -110,6 +110,8 @@ def cells(row):
 
 def penalty_map(rows, made):
     """Draw the outcomes over dt and stiffness, a panel for each damper, with the theory: SVG."""
+    from matplotlib.patches import Patch
+
     figure, axes = picture.figure(
         rows=2,
         title="penalty: what a ball dropped 1 m does",
@@ -120,15 +122,15 @@ def penalty_map(rows, made):
     for axis, damping in zip(axes, (0.0, 80.0)):
         draw_panel(axis, [row for row in rows if row["damping"] == damping])
         axis.set_title(f"c = {damping:g} N s/m; line: k dt² + 2 c dt = 4 m")
-    axes[0].get_legend().remove()
-    axes[0].set_xlabel("")
+    axis.set_xlabel("time step dt [ms]", loc="right")
+    patches = [Patch(color=colour, label=text) for colour, text in zip(COLOURS, maps.WORDS)]
+    axis.legend(handles=patches, loc="upper left", bbox_to_anchor=(-0.1, -0.17), ncols=2)
     return picture.svg(figure, made)
 
 
 def draw_panel(axis, rows):
     """Draw the outcomes at one damping, and the critical dt."""
     from matplotlib.colors import ListedColormap
-    from matplotlib.patches import Patch
 
     stiffness, critical = ([row[name] for row in rows] for name in ("stiffness", "critical"))
     dt = maps.steps_of(len(rows[0]["outcomes"]))
@@ -138,10 +140,7 @@ def draw_panel(axis, rows):
     axis.grid(False)
     for look in (dict(color="white", lw=4), dict(color=LINE, lw=1.8)):
         axis.plot(critical, stiffness, **look)
-    patches = [Patch(color=colour, label=text) for colour, text in zip(COLOURS, maps.WORDS)]
-    axis.legend(handles=patches, loc="upper left", bbox_to_anchor=(-0.1, -0.17), ncols=2)
     axis.set(xscale="log", yscale="log", xlim=(dt[0], dt[-1]), ylim=(stiffness[0], stiffness[-1]))
     axis.set_ylabel("stiffness k [N/m]")
     axis.set_xticks([1e-3 * mark for mark in MARKS], MARKS)
     axis.minorticks_off()
-    axis.set_xlabel("time step dt [ms]", loc="right")

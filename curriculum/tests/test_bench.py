@@ -84,7 +84,7 @@ def test_an_engine_rests_awake_and_keeps_momentum(setting):
 
 
 KEPT = stored.load(bench.FULL)[0]["points"]
-HERE = [p for p in KEPT if bench.name(p) in engines.BY_NAME]  # of the engines that are installed
+HERE = [p for p in KEPT if bench.called(p) in engines.BY_NAME]  # of the engines that are installed
 ALL_BEST = [p for engine in engines.ENGINES for p in measure.contest(HERE, [engine]).values()]
 BEST = [p for p in ALL_BEST if p["ms"] < 200.0]  # three of four; the rest takes far longer
 
@@ -92,7 +92,7 @@ BEST = [p for p in ALL_BEST if p["ms"] < 200.0]  # three of four; the rest takes
 @pytest.mark.parametrize("best", BEST, ids=lambda p: f"{p['engine']} {p['problem']}")
 def test_an_engines_best_setting_of_a_problem_is_as_near_as_the_page_says(best):
     """Within a factor of three, as of another version: restitution, stiffness, what is fixed."""
-    job = best["problem"], bench.name(best), best["dt"], best["substeps"], 1
+    job = best["problem"], bench.called(best), best["dt"], best["substeps"], 1
     row = measure.errors_of(job)
     assert row["error"] <= 3.0 * best["error_max"] + 1e-12 and row["diverged"] == 0
     assert row["work"] == pytest.approx(best["work"], rel=0.5)
@@ -182,7 +182,7 @@ TAKEN = stored.load(engines.HERE)[0]["take"]
 def test_what_the_readme_tells_one_to_type_prints_the_error_that_the_row_promises(row, capsys):
     """They are exact's, whose errors are below 1e-10 r; the 1,000 balls are 12 here. Of a pile it
     is the reference."""
-    _, _, _, part, *words = shlex.split(report.typed(row, bench.name(row)))
+    _, _, _, part, *words = shlex.split(report.typed(row))
     assert part == "try" and words[0] == str(row["problem"])
     bench.main([part, *("12" if word == "1000" else word for word in words)])
     printed = capsys.readouterr().out
@@ -245,7 +245,7 @@ def test_rows_come_back_as_measured_and_one_engine_alone_leaves_all_others(tmp_p
     monkeypatch.setitem(measure.PARTS, "points", partial(measured, error=8.0))
     bench.take("points", True, LANDS, tmp_path)
     sections, made = stored.load(tmp_path)
-    new = [LANDS in bench.name(row) for row in whole]
+    new = [LANDS in bench.called(row) for row in whole]
     changed = [row | dict(error=8.0, error_max=8.0) if one else row for row, one in zip(whole, new)]
     assert sum(new) == 3 and sections["points"] == changed
     assert sorted(made) == ["points", f"points {LANDS}"]
