@@ -1,4 +1,4 @@
-"""How every measured figure and the curves of a run are drawn: as small SVG files, text as text.
+"""Draw every measured figure and the curves of a run: as small SVG files, text as text.
 
     figure, axes = picture.figure(rows=2, title="...", explained="...")
     picture.line(axes[0], x, y, "lcp", label="lcp, 20 sweeps")
@@ -45,7 +45,7 @@ IN_THE_DARK = {
 
 
 def figure(rows=1, title="", explained="", height=3.4, below=0.0) -> tuple:
-    """A figure with its heading, and the list of its axes, one below the other.
+    """Return a figure with its heading, and the list of its axes, one below the other.
 
     height: inches of a panel. below: inches kept free under them, for a legend. No backend is
     chosen, so a notebook keeps its own. Raises contact.MissingPackage.
@@ -71,7 +71,7 @@ def figure(rows=1, title="", explained="", height=3.4, below=0.0) -> tuple:
 
 
 def line(axis, x, y, name: str, label: str | None = None, **changes) -> None:
-    """One method as a line with its own look."""
+    """Draw one method as a line with its own look."""
     color, marker, dash = LOOKS[name]
     size = {"*": 9.0, "d": 6.5}.get(marker, 5.5)
     look = dict(color=color, marker=marker, ls=dash, markersize=size)
@@ -79,12 +79,12 @@ def line(axis, x, y, name: str, label: str | None = None, **changes) -> None:
 
 
 def legend_below(axis, columns: int, down: float) -> None:
-    """The legend under a panel, where it covers nothing: `down` heights of the panel below it."""
+    """Put the legend under a panel, `down` of its heights below it, where it covers nothing."""
     axis.legend(loc="upper left", ncols=columns, bbox_to_anchor=(-0.1, -down))
 
 
 def svg(figure, made=None) -> str:
-    """The figure as SVG text, with the date and machine of stored.origin under it."""
+    """Return a figure as SVG text, with the date and machine of stored.origin under it."""
     if made:
         note = f"{made['date']}, {made['cores']} cores of {made['cpu']}, {made['command']}"
         figure.text(0.01, 0.06 / figure.get_figheight(), note, fontsize=7, color=PALE, va="bottom")
@@ -95,7 +95,7 @@ def svg(figure, made=None) -> str:
 
 
 def smaller(text: str) -> str:
-    """Two decimals are enough for a pixel; and a style for dark mode, at the front."""
+    """Cut an SVG's numbers to two decimals, enough for a pixel, and add a style for dark mode."""
 
     def shorter(match):
         return f"{float(match[0]):.2f}".rstrip("0").rstrip(".")
@@ -113,7 +113,7 @@ def smaller(text: str) -> str:
 
 @np.errstate(all="ignore")
 def contact_impulses(run: contact.Run, scene: contact.Scene) -> np.ndarray:
-    """The impulse [N s] that all contacts of a ball give it in each step, (S, 2, N).
+    """Return the impulse [N s] that all contacts of a ball give it in each step, (S, 2, N).
 
     It is the change of momentum that gravity does not explain, so it is there for every model.
     """
@@ -123,13 +123,13 @@ def contact_impulses(run: contact.Run, scene: contact.Scene) -> np.ndarray:
 
 
 def weight(scene: contact.Scene) -> float:
-    """The weight [N] of all balls that can move."""
+    """Return the weight [N] of all balls that can move."""
     return -contact.GRAVITY * float(scene.mass[np.isfinite(scene.mass)].sum())
 
 
 @np.errstate(all="ignore")
 def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
-    """What is plotted of runs {model: Run}, {title: {model: values (S,)}}."""
+    """Return the curves of runs {model: Run}, {title: {model: values (S,)}}."""
     drawn: dict = {}
     free = np.isfinite(scene.mass)
     for model, run in runs.items():
@@ -150,7 +150,7 @@ def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
 
 @np.errstate(all="ignore")
 def worth_seeing(runs: dict, scene: contact.Scene) -> tuple[float, float]:
-    """From when to when [s]: from when every model has pushed, to when the last ball rests.
+    """Return two times [s]: when every model has pushed, and when the last ball rests.
 
     A ball rests once it goes slower than 1 cm/s for good, judged by its way, since speeds at the
     end of leapfrog's steps may be larger; a tenth more is shown, at most to the end.

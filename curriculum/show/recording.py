@@ -1,4 +1,4 @@
-"""Runs as a rerun recording: a view of balls for every model, curves beside them.
+"""Write runs as a rerun recording: a view of balls for every model, curves beside them.
 
 rerun's 2-D views have y down and no option, so y is negated here and nowhere else.
 Raises contact.MissingPackage on import where rerun is missing.
@@ -61,12 +61,12 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
 
 
 def rgba(color: str) -> np.ndarray:
-    """The colour "#rrggbb" as rerun stores it."""
+    """Return the colour "#rrggbb" as rerun stores it."""
     return np.array([int(color[1:] + "ff", 16)], np.uint32)
 
 
 def timelines(t: np.ndarray, first: float) -> list:
-    """The columns of time."""
+    """Return the columns of time."""
     times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
     for name, seconds in zip(SECONDS, (t, np.maximum(t, first))):
         nanoseconds = np.round(np.minimum(seconds, LONGEST) * 1e9)  # no stamp is off
@@ -75,7 +75,7 @@ def timelines(t: np.ndarray, first: float) -> list:
 
 
 def send_table(recording, model):
-    """The table: a grey body under the balls, and a thin line over them, so that a sink is seen.
+    """Send the table: a grey body under the balls, and a thin line over them that shows a sink.
 
     The body is made of lines of five radii, each with its upper edge at y = 0, since an old viewer
     (0.26) draws a thick line thinner by a hundredth, which left a gap under the thin one.
@@ -91,7 +91,7 @@ def send_table(recording, model):
 
 
 def send_balls(recording, model, run, scene, times):
-    """The balls, where the run had them, and the push on each as an arrow from its centre."""
+    """Send the balls, where the run had them, and the push on each as an arrow from its centre."""
     count, rows = len(scene.radius), [len(scene.radius)] * len(run.t)
     color = np.where(np.isfinite(scene.mass), rgba(COLORS[model]), rgba(GROUND))
     look = rr.Points2D.from_fields(radii=scene.radius, colors=color, draw_order=20.0)
@@ -111,7 +111,7 @@ def send_balls(recording, model, run, scene, times):
 
 @np.errstate(all="ignore")
 def foot_of(run: contact.Run, scene: contact.Scene) -> np.ndarray | None:
-    """Where the only ball that moves touches the fixed one below it (S, 2) [m], to be followed."""
+    """Return where the only ball that moves touches the fixed one (S, 2) [m], to be followed."""
     ball, *others = np.flatnonzero(np.isfinite(scene.mass))
     if others or len(scene.mass) == 1:
         return None
@@ -123,20 +123,20 @@ def foot_of(run: contact.Run, scene: contact.Scene) -> np.ndarray | None:
 
 
 def send(recording, entity: str, look, times, columns) -> None:
-    """An entity: its look, once, and what changes of it, a row a step."""
+    """Send an entity: its look, once, and what changes of it, a row a step."""
     recording.log(entity, look, static=True)
     recording.send_columns(entity, times, columns)
 
 
 def flat(rows: np.ndarray) -> np.ndarray:
-    """Vectors (S, 2, N) as a list (S N, 2) with y down, in 32 bits, which is what rerun keeps."""
+    """Return vectors (S, 2, N) as a list (S N, 2) with y down, in the 32 bits that rerun keeps."""
     with np.errstate(over="ignore"):
         return np.stack((rows[:, 0], -rows[:, 1]), axis=-1).reshape(-1, 2).astype(np.float32)
 
 
 @np.errstate(all="ignore")
 def arrow_vectors(run: contact.Run, scene: contact.Scene) -> np.ndarray:
-    """Arrows (S, 2, N) along the pushes, r log2(1 + push / weight) long [m].
+    """Return arrows (S, 2, N) along the pushes, r log2(1 + push / weight) long [m].
 
     So a ball at rest has an arrow as long as its radius, and an impact still fits in the view.
     """
@@ -149,7 +149,7 @@ def arrow_vectors(run: contact.Run, scene: contact.Scene) -> np.ndarray:
 
 
 def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
-    """The curves {title: {model: values}}, each at the title's first word / MODEL."""
+    """Send the curves {title: {model: values}}, each at the title's first word / MODEL."""
     for place, model in enumerate(sorted(runs, reverse=True)):
         width = 1.2 * 1.5**place  # points: lines that coincide are seen beneath
         line = {"colors": rgba(COLORS[model]), "names": model, "widths": width}
@@ -160,8 +160,8 @@ def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
 
 
 def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
-    """The blueprint that travels in the file: on the left the balls, and under them the table
-    magnified; on the right what it is, and the plots.
+    """Return the blueprint that travels in the file: on the left the balls, and under them the
+    table magnified; on the right what it is, and the plots.
 
     Every run has views of its own, so balls that roll far never cross into another run's. Piles
     have them one below the other. Where one ball moves on a fixed one, they go with its foot.
@@ -191,7 +191,7 @@ def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
 
 
 def view(model: str, name: str, x_range: list, y_range: list, followed) -> rrb.Spatial2DView:
-    """A view of what a model's balls do in these ranges of x and of -y [m], from its foot."""
+    """Return a view of a model's balls in these ranges of x and of -y [m], from its foot."""
     world = f"world/{model}"
     origin = f"{world}/foot" if followed else world
     bounds = rrb.VisualBounds2D(x_range=x_range, y_range=y_range)
@@ -199,7 +199,7 @@ def view(model: str, name: str, x_range: list, y_range: list, followed) -> rrb.S
 
 
 def plot(title: str, most: float, first: float, last: float) -> rrb.TimeSeriesView:
-    """A plot of these seconds, in the colours of the balls; of a force up to `most`."""
+    """Return a plot of these seconds, in the colours of the balls; of a force up to `most`."""
     name, shown = title.split()[0], None
     axis = rrb.ScalarAxis(range=(0.0, most)) if name == "force" else None
     if first < last < LONGEST:  # all that was before stands on the first instant: left out
@@ -210,7 +210,7 @@ def plot(title: str, most: float, first: float, last: float) -> rrb.TimeSeriesVi
 
 
 def time_panel():
-    """Opens on the landing, four times slowed down. rerun-sdk before 0.28 plays it at once."""
+    """Open on the landing, four times slowed down. rerun-sdk before 0.28 plays it at once."""
     panel = partial(rrb.TimePanel, timeline="landing", state="collapsed")
     try:
         return panel(play_state="paused", playback_speed=0.25)

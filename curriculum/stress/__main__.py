@@ -5,7 +5,7 @@
     python -m curriculum.stress --scene 17              what every property says of one scene
     python -m curriculum.stress --scene small:0-299     of 300 small ones, to the first violation
 
-Exit status 0: no violation; 1: violations; 2: bad command line.
+Exit status 0: no violation; 1: violations; 2: bad command line, or code that is not committed.
 """
 
 import sys
@@ -44,21 +44,14 @@ def some_scenes(todo):
     return wrong
 
 
-def everything(args):
-    """Run everything, or --quick, and write the report. Returns the violations."""
-    if args.draw:
-        return report.draw(report.RESULTS)
-    if not args.quick:
+def everything(quick, workers, origin):
+    """Run everything, or a hundredth, and write the report. Returns how many violations."""
+    if not quick:
         with needs("bench"):
             import mujoco  # noqa: F401  # without it a section would judge nothing
-    command = "python -m curriculum.stress" + " --quick" * args.quick
-    try:
-        origin = stored.origin(command, "curriculum/stress/jobs.py", kept=not args.quick)
-    except ValueError as error:  # a tree that is not committed
-        sys.exit(f"python -m curriculum.stress: {error}")
-    todo = jobs.all_jobs(args.quick).items()
-    found = {name: parallel.run_jobs(jobs.run, each, name, args.workers) for name, each in todo}
-    return report.write(found, origin, report.QUICK if args.quick else report.RESULTS)
+    todo = jobs.all_jobs(quick).items()
+    found = {name: parallel.run_jobs(jobs.run, each, name, workers) for name, each in todo}
+    return report.write(found, origin, report.QUICK if quick else report.RESULTS)
 
 
 def main(argv=None):
@@ -70,7 +63,16 @@ def main(argv=None):
     flag("--workers", type=count, metavar="N", help="processes (all cores)")
     flag("--scene", type=chosen, metavar="[small:]N[-N]", help="what all properties say of these")
     args = parser.parse_args(argv)
-    return 1 if (some_scenes(args.scene) if args.scene else everything(args)) else 0
+    if args.scene:
+        return 1 if some_scenes(args.scene) else 0
+    if args.draw:
+        return 1 if report.draw(report.RESULTS) else 0
+    command = parser.prog + " --quick" * args.quick
+    try:
+        origin = stored.origin(command, "curriculum/stress/jobs.py", kept=not args.quick)
+    except ValueError as error:  # a tree that is not committed
+        parser.error(error)
+    return 1 if everything(args.quick, args.workers, origin) else 0
 
 
 if __name__ == "__main__":
