@@ -17,9 +17,7 @@ def set_up(system):
     block = TEXT.partition("\n## Installation and first run\n")[2].partition("\n## ")[0]
     lines = re.search(rf"^# {heading}.*\n(.+)\n(.+)\n(?=#|```)", block, re.M)
     if not lines:
-        raise SystemExit(
-            f"README.md, Installation and first run: two lines are expected below # {heading}"
-        )
+        raise SystemExit(f"README.md, Installation: two lines are expected below # {heading}")
     return lines.groups()
 
 

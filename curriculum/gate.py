@@ -31,7 +31,8 @@ with needs("dev"):
     from curriculum.source import DOCSTRING, ROOT, blank, read_text, split_all
 
 GATE = "python -m curriculum.gate"
-FIGURES, META, TEXTS = "curriculum/page/figures/*.js", "meta.yaml", ("README.md", "CONTRIBUTING.md")
+EXERCISES, FIGURES = "exercises/ex*.py", "curriculum/page/figures/*.js"
+META, TEXTS = "meta.yaml", ("README.md", "CONTRIBUTING.md")
 CAPTION = re.compile(r"^( *)(?:title|caption):.*\n(?:\1 +.*\n)*", re.MULTILINE)
 STRING = re.compile(r"\"[^\"]*\"|`[^`]*`")
 COMPUTED = re.compile(r"\$\{[^{}]*\}")
@@ -64,7 +65,7 @@ def passages():
         if headings:
             headings[-1] = headings[-1]._replace(text=headings[-1].text + part.text)
     yield from headings
-    for file in files("exercises/ex*.py"):
+    for file in files(EXERCISES):
         yield Part("exercise", Path(file).stem.split("_")[0], 1, read_text(file), file)
     for file in ("contact.py", "curriculum/exact.py"):
         yield Part("opening", Path(file).name, 1, DOCSTRING.match(read_text(file))[0], file)
@@ -118,33 +119,28 @@ class Gate:
         """Includes and slots name what exists, once, and all that exists has a place."""
         known: dict = {("puzzle", ""): None, ("wallclock", ""): None}  # they need no place
         known |= {("region", r.source): (r.file, r.line - 1) for r in self.regions.values()}
-        for each in self.passages.values():
-            if each.kind == "exercise":
-                known["exercise", each.name] = each.file, 1
-        for file in files(FIGURES):
-            known["figure", Path(file).stem] = file, 1
+        for kind, pattern in (("exercise", EXERCISES), ("figure", FIGURES)):
+            known |= {(kind, Path(file).stem.split("_")[0]): (file, 1) for file in files(pattern)}
         for kind, folder in stored.FOLDERS.items():
             drawn = files(f"{folder}/*.svg")  # some of them have a place, others have none
             known |= {(kind, Path(file).stem.removeprefix("error-")): None for file in drawn}
-        placed, slots = set(), []
+        placed = set()
         for part in (part for part in self.chapter if part.kind not in PLAIN):
             mark = kind, name = part.kind, part.name.partition("?")[0]  # behind it are settings
-            if mark not in known:
+            if mark not in known and kind != "figure":  # check_slots tries those
                 names = ", ".join(name for each, name in known if each == kind)
                 self.say(CHAPTER, part.line, f"there is no {kind} {name}", f"name one of {names}")
             elif mark in placed and kind not in ("figure", "puzzle"):
                 self.say(CHAPTER, part.line, f"a second {kind} {name}", "delete one of the two")
-            elif kind == "figure":
-                slots.append(part)
             placed.add(mark)
-        self.check_slots(slots)
         self.problems += faults(self.chapter)
         for mark, place in known.items():
             if place and mark not in placed:
                 self.say(*place, f"{' '.join(mark)} has no place in {CHAPTER}", "give it one")
 
-    def check_slots(self, slots):
+    def check_slots(self):
         """Every figure can be drawn as its slot sets it: the page's own code tries it."""
+        slots = [part for part in self.chapter if part.kind == "figure"]
         try:
             for part, error in zip(slots, slot_errors([part.name for part in slots])):
                 if error:
@@ -269,8 +265,9 @@ def check(release=False) -> int:
     Results of other code are a problem of a release alone: a change need not measure them again.
     """
     gate = Gate()
-    for each in (gate.check_marks, gate.check_names, gate.check_typed, gate.check_numbers):
+    for each in (gate.check_marks, gate.check_slots, gate.check_names, gate.check_typed):
         each()
+    gate.check_numbers()
     unread, wrong = gate.check_read(), len(gate.problems)
     gate.check_results()
     print(*gate.problems or ["text, code, numbers and results agree"], sep="\n")

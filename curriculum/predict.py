@@ -77,10 +77,12 @@ def flicker(start, d0):
     return math.acos(min(1.0, 2.0 * math.cos(start) / (3.0 - d0)))
 
 
-def quality(model, scene, dt, seconds, **knobs):
-    """Run a model and measure it."""
-    made = contact.run_model(model, scene, dt, round(seconds / dt), contact.Settings(**knobs))
-    return contact.contact_quality(made, scene, dt)
+def quality(model, scene, dt, seconds, beside_exact=False, **knobs):
+    """Run a model and measure it, beside exact for what is an error against it."""
+    steps = round(seconds / dt)
+    made = contact.run_model(model, scene, dt, steps, contact.Settings(**knobs))
+    exact = contact.run_model("exact", scene, dt, steps) if beside_exact else None
+    return contact.contact_quality(made, scene, dt, exact)
 
 
 def first_without_force(dt, start, hill=contact.HILL, **knobs):

@@ -12,7 +12,6 @@ it installs where they are missing. Same inputs, same bytes.
 import base64
 import io
 import sys
-import textwrap
 import zipfile
 from pathlib import Path
 
@@ -64,7 +63,7 @@ def start():
 def region(source):
     """A region. Those of contact.py run; others are shown, since their names are their own."""
     file, name = source.split("#")
-    code = textwrap.dedent(read_all()[name].code).strip()
+    code = read_all()[name].code.strip()
     if file == "contact.py":
         return new_code_cell(f"# contact.py, region {name}\n{code}")
     return new_markdown_cell(f"{file}, region {name}:\n\n```python\n{code}\n```\n\n")

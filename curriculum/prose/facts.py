@@ -78,7 +78,6 @@ def paper():
         "hop": predict.hop(depth, *step),
         "full_hop": predict.hop(depth, dt, 1.0),
         "sag_30": predict.sag(29.0, 1.0, *step, usual.iters),
-        "sag_20_warm": predict.sag(19.0, 1.0, *step, usual.iters, warm=0.9),
     }
     angle = math.degrees(predict.flicker(predict.START, contact.SOLIMP[0]))
     return {"flicker": angle} | {name: each / contact.RADIUS for name, each in lengths.items()}
@@ -110,7 +109,7 @@ def jaws():
         return balls[1], [c for c in contact.detect_contacts(balls) if c.m_eff > 0.0]
 
     values = {}
-    for sweeps in (1, 20, 200, 2000):
+    for sweeps in (1, 20, 2000):
         ball, contacts = held()
         for c in contacts:
             c.target = contact.contact_target(c, 0.0, contact.Settings().baumgarte, DT)
@@ -170,7 +169,7 @@ def friction():
     rises, ahead = 0.4, 4.0
     jams, back = np.linalg.solve(W, [-rises, -ahead])
     takes = 2.0 * W[0, 1] - W[0, 0]  # m/s that the end loses upwards for each N s, as it rubs
-    found = {"slides": rises / takes, "jams": jams, "rub": -back, "takes": takes}
+    found = {"slides": rises / takes, "jams": jams, "rub": -back}
     return {"rises": rises, "ahead": ahead} | found
 
 

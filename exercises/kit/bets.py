@@ -24,13 +24,6 @@ def columns(corner, heads, rows, form):
     return "\n".join(f"{first:<16}" + "".join(f"{x:>15}" for x in rest) for first, *rest in lines)
 
 
-def quality(key, model, scene, dt, steps=2000, settings=USUAL):
-    """Return a measure of a run, beside exact if it needs that."""
-    exact = contact.run_model("exact", scene, dt, steps) if key == "force_error" else None
-    run = contact.run_model(model, scene, dt, steps, settings)
-    return contact.contact_quality(run, scene, dt, exact)[key]
-
-
 @cache
 def measure(name):
     """Return the numbers of a bet {MODEL_LABEL: number}, and what its reasons quote beside them."""
@@ -39,7 +32,8 @@ def measure(name):
     for label, row in facts["measured"].items():
         scene = contact.scene_of(0.0, contact.RADIUS + row["fall"], row["mass"])
         for model in MODELS:
-            numbers[f"{model}_{label}"] = quality(row["key"], model, scene, row["dt"])
+            found = predict.quality(model, scene, row["dt"], 2000 * row["dt"])
+            numbers[f"{model}_{label}"] = found[row["key"]]
     return numbers
 
 
@@ -91,9 +85,11 @@ KNOBS = {"k x 4": {"stiffness": 4.0 * USUAL.stiffness}, "dt / 4": {},
 def error_of(name, knob=None):
     """Return how large an error is, with that knob turned."""
     model, scene, bodies, dt, steps, key, seeds = ERRORS[name]["run"]
-    settings, by = USUAL._replace(**KNOBS.get(knob, {})), 4 if knob == "dt / 4" else 1
+    how = {"beside_exact": key == "force_error"} | KNOBS.get(knob, {})
     scenes = [contact.build_scene(scene, seed, bodies) for seed in range(seeds)]
-    return statistics.fmean(quality(key, model, s, dt / by, by * steps, settings) for s in scenes)
+    small = dt / 4 if knob == "dt / 4" else dt
+    runs = (predict.quality(model, each, small, dt * steps, **how) for each in scenes)
+    return statistics.fmean(run[key] for run in runs)
 
 
 @cache
