@@ -1,7 +1,7 @@
 # ruff: noqa: E401, E402, F401, F821, I001
 # fmt: off
 #@title Run me first: the course's folder is unpacked beside the notebook, and contact.py is read
-import base64, importlib.util, io, os, re, subprocess, sys, zipfile
+import base64, importlib.util, io, os, pathlib, re, subprocess, sys, zipfile
 
 absent = [name for name in ("numpy", "matplotlib") if importlib.util.find_spec(name) is None]
 if absent:
@@ -11,8 +11,7 @@ zipfile.ZipFile(io.BytesIO(base64.b64decode(FOLDER))).extractall(COURSE)
 sys.path.insert(0, COURSE)
 sys.modules["contact"] = sys.modules["__main__"]    # whatever you change below is used everywhere
 __file__ = os.path.join(COURSE, "contact.py")
-with open(__file__, encoding="utf-8") as file:
-    LESSON = file.read()
+LESSON = pathlib.Path(__file__).read_text("utf-8")
 exec(LESSON.replace('__name__ == "__main__"', "False"))
 from IPython.core.magic import register_cell_magic
 from IPython.display import SVG
@@ -32,8 +31,7 @@ def write_lesson():
             code = cell[found.end():].rstrip().replace("\\", r"\\") + "\n\n\n"
             start = rf"(?ms)(?<=^# --- region: {found[1]} ---\n)"
             text = re.sub(rf"{start}.*?(?=^# --- region: |\Z)", code, text)
-    with open(__file__, "w", encoding="utf-8") as file:
-        file.write(text)
+    pathlib.Path(__file__).write_text(text, "utf-8")
 
 
 @register_cell_magic
@@ -41,8 +39,7 @@ def exercise(words, text):
     """Try what the cell says, and print what came of it."""
     write_lesson()
     file, *flags = words.split()
-    with open(os.path.join(COURSE, file), "w", encoding="utf-8") as written:
-        written.write("\n" + text)    # so that its lines have the cell's numbers
+    pathlib.Path(COURSE, file).write_text(f"\n{text}", "utf-8")    # numbered as in the cell
     here = {"cwd": COURSE, "env": os.environ | {"IN_A_NOTEBOOK": "1"}, "stdin": subprocess.DEVNULL}
     done = subprocess.run([sys.executable, file, *flags], capture_output=True, text=True, **here)
     print(done.stdout + done.stderr)
