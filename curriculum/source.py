@@ -26,7 +26,7 @@ REGION = re.compile(
 MARKER = re.compile(r"^ *# *-+ *(end)? *region\b.*$", re.IGNORECASE | re.MULTILINE)
 # What a piece of code defines: functions, classes, and constants by their capitals.
 DEFINITION = re.compile(
-    r"^\s*(?:(?:def|class)\s+(\w+)|([A-Z][A-Z0-9_]*)(?:, \w+)*\s*=(?!=))", re.MULTILINE
+    r"^\s*(?:(?:def|class)\s+(?!__)(\w+)|([A-Z][A-Z0-9_]*)(?:, \w+)*\s*=(?!=))", re.MULTILINE
 )
 DOCSTRING = re.compile(r'(?:#[^\n]*\n|\s)*(?:""".*?""")?', re.DOTALL)
 CODE_LINE = re.compile(r"^[^\s#].*", re.MULTILINE)
@@ -53,8 +53,7 @@ class Region(NamedTuple):
     @property
     def defines(self) -> set:
         """Return the functions, methods, classes and constants that the region defines."""
-        names = {name or constant for name, constant in DEFINITION.findall(self.code)}
-        return {name for name in names if not name.startswith("__")}
+        return {name or constant for name, constant in DEFINITION.findall(self.code)}
 
 
 def blank(pattern, text):

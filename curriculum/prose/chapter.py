@@ -68,12 +68,11 @@ def split(text) -> list:
 
 def kind_of(match) -> tuple:
     """Return (kind, name) of a match of PART."""
-    if match["fence"]:
-        include = INCLUDE.fullmatch(match["code"].strip())
-        return ("region", include[1]) if include else ("code", match["code"])
-    for kind in ("heading", "comment"):
-        if match[kind] is not None:
-            return kind, match[kind].strip()
+    kind = match.lastgroup
+    if kind == "code" and (include := INCLUDE.fullmatch(match["code"].strip())):
+        return "region", include[1]
+    if kind in PLAIN:
+        return kind, match[kind].rstrip()
     return match["kind"], match["slot"] or ""
 
 
