@@ -14,8 +14,7 @@ TEXT = (ROOT / "README.md").read_text("utf-8")
 def set_up(system):
     """The two lines of pip, windows or uv in the block below "Installation and first run"."""
     heading = {"pip": "Linux", "windows": "Windows", "uv": "anywhere with uv"}[system]
-    block = TEXT.partition("\n## Installation and first run\n")[2].partition("\n## ")[0]
-    lines = re.search(rf"^# {heading}.*\n(.+)\n(.+)\n(?=#|```)", block, re.M)
+    lines = re.search(rf"^# {heading}.*\n(.+)\n(.+)\n(?=#|```)", TEXT, re.M)
     if not lines:
         raise SystemExit(f"README.md, Installation: two lines are expected below # {heading}")
     return lines.groups()
