@@ -74,7 +74,13 @@ def main(argv=None):
     table = {f"{model} {way}": row for model, ways in found.items() for way, row in ways.items()}
     contact.print_table(table, lambda row: ending(row, len(seeds)))
     for model, ways in found.items():
-        print(f"{model}, seeds of its lowest and highest:", extremes(ways) or "-")
+        low, high = ways["lowest"], ways["highest"]
+        differ = ", ".join(
+            f"{title} {low['seeds'][key]} and {high['seeds'][key]}"
+            for title, (key, _) in contact.COLUMNS.items()
+            if contact.format_number(low[key]) != contact.format_number(high[key])
+        )
+        print(f"{model}, seeds of its lowest and highest:", differ or "-")
     print("seeds:", path.with_suffix(".json"))
     return 0
 
@@ -145,17 +151,11 @@ def rows_of(args, known, seed):
     ends |= {model: (contact.final_state(row), row) for model, row in quality.items()}
     text = ""
     for model, (end, row) in ends.items():
-        cells = (cell(row.get(key)) for key in KEYS)
+        values = (row.get(key) for key in KEYS)
+        cells = ("" if x is None else str(x if math.isfinite(x) else math.inf) for x in values)
         line = made_by(args), str(seed), model, end.replace(",", ";"), *cells, "yes"
         text += ",".join(line) + "\n"
     return text
-
-
-def cell(value):
-    """Return a measure as text: empty for None, and inf for all that is not finite."""
-    if value is None:
-        return ""
-    return str(value if math.isfinite(value) else math.inf)
 
 
 def ended(end):
@@ -185,14 +185,6 @@ def summary(rows, seeds):
             way[key] = float(values[at]) if known else None
             way["seeds"][key] = seeds[int(ran[at])] if known else None
     return {"median": median, "lowest": lowest, "highest": highest}
-
-
-def extremes(ways):
-    """Return the seeds of the lowest and the highest measures of a model, where these differ."""
-    low, high = ways["lowest"], ways["highest"]
-    differ = [(title, key) for title, (key, _) in contact.COLUMNS.items()
-              if contact.format_number(low[key]) != contact.format_number(high[key])]  # fmt: skip
-    return ", ".join(f"{t} {low['seeds'][k]} and {high['seeds'][k]}" for t, k in differ)
 
 
 def ending(row, count):

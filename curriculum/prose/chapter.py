@@ -61,19 +61,14 @@ def split(text) -> list:
     for match in PART.finditer(text):
         if before := text[done : match.start()]:
             parts.append(Part("text", "", line_at(text, done), before))
-        parts.append(Part(*kind_of(match), line_at(text, match.start()), match[0]))
+        kind, name = match["kind"] or match.lastgroup, match["slot"] or ""
+        if kind in PLAIN:
+            name = match[kind].rstrip()
+        if kind == "code" and (include := INCLUDE.fullmatch(name.strip())):
+            kind, name = "region", include[1]
+        parts.append(Part(kind, name, line_at(text, match.start()), match[0]))
         done = match.end()
     return [*parts, Part("text", "", line_at(text, done), text[done:])]
-
-
-def kind_of(match) -> tuple:
-    """Return (kind, name) of a match of PART."""
-    kind = match.lastgroup
-    if kind == "code" and (include := INCLUDE.fullmatch(match["code"].strip())):
-        return "region", include[1]
-    if kind in PLAIN:
-        return kind, match[kind].rstrip()
-    return match["kind"], match["slot"] or ""
 
 
 def faults(parts):

@@ -38,15 +38,10 @@ def loose_ratios(text):
         start, end = sentence.span()
         own = [match[1] for match in claims if start < match.end() <= end]
         for ratio in RATIO.finditer(plain, start, end) if own or "_" in sentence[0] else ():
-            value = number_of(ratio)
+            count, part, half, times = (word and word.lower() for word in ratio.groups())
+            value = 0.5 if half else COUNTS[count] / PARTS[part] if part else COUNTS.get(times, 2)
             if not any(holds(claim, x) for claim in own for x in (value, 1.0 / value)):
                 yield ratio, value
-
-
-def number_of(ratio):
-    """Return the number that a match of RATIO says."""
-    count, part, half, times = (word and word.lower() for word in ratio.groups())
-    return 0.5 if half else COUNTS[count] / PARTS[part] if part else COUNTS.get(times, 2)
 
 
 def holds(claim, number):

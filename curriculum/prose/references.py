@@ -144,20 +144,17 @@ def shown(reference) -> str:
         raise TextError(f"{formula!r} is {value}, no number")
     if isinstance(value, float) and not form:
         raise TextError(f"{formula!r} is a fraction and needs a format, such as |.3f")
-    return text if isinstance(value, str) else typeset(text)
+    if isinstance(value, str):
+        return text
+    mantissa, _, power = text.partition("e")  # as it is printed: -7e-05 is −7 × 10⁻⁵
+    raised = f"\u00a0×\u00a010{str(int(power)).translate(RAISED)}" if power else ""
+    return mantissa.replace("-", "−") + raised
 
 
 def fill(text) -> str:
     """Return the text with every reference replaced."""
     prepare(text)
     return REFERENCE.sub(lambda match: shown(match[1]), text)
-
-
-def typeset(number: str) -> str:
-    """Return a number as it is printed: -7e-05 as −7 × 10⁻⁵."""
-    mantissa, _, power = number.partition("e")
-    raised = f"\u00a0×\u00a010{str(int(power)).translate(RAISED)}" if power else ""
-    return mantissa.replace("-", "−") + raised
 
 
 def leaves(tree, path=""):
