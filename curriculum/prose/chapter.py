@@ -40,7 +40,7 @@ AS_IT_IS = "write [include-by-region: FILE#NAME] alone in a fence, or <!-- figur
 class Part(NamedTuple):
     """A piece of the chapter, or of another file; those of a file together are the file.
 
-    kind: one of PLAIN ("code" is a fence), "region", what a slot is called, or "passage".
+    kind: one of PLAIN ("code" is a fence), "region", what a slot is called, or "opening".
     name: of a region FILE#NAME, of a slot what stands behind its colon, else the words within.
     """
 
