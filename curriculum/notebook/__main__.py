@@ -2,11 +2,10 @@
 
     python -m curriculum.notebook [--out FILE]
 
-Prose with its numbers; the regions of contact.py as cells, so that every cell below uses what one
-changes there, exercises too; some runs with their curves, where the chapter has a figure; the
-exercises as cells to edit.
-Its first cell (start.py) carries the course's folder with it and needs numpy and matplotlib, which
-it installs where they are missing. Same inputs, same bytes.
+Prose with its numbers; the regions of contact.py and the exercises as cells; some runs with their
+curves, where the chapter has a figure. Its first cell (start.py) carries the course's folder with
+it and needs numpy and matplotlib, which it installs where they are missing. Same inputs, same
+bytes.
 """
 
 import base64
