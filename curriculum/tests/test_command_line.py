@@ -159,22 +159,15 @@ ODD = (
 )  # fmt: skip
 
 
-def inside(name):
-    """Its lowest value, and four up to its highest, each as many times the last one."""
-    kind, low, high = contact.LIMITS[name][:3]
-    least = low or (1 if kind is int else min(1e-9, high / 1e3))
-    return [low, *(kind(least * (high / least) ** (k / 3)) for k in range(4))]
-
-
-WALKED = "dt mass stiffness damping baumgarte restitution warm iters seed".split()
-WALK = [f"--{name} {value}" for name in WALKED for value in inside(name)]
+NAMES = "dt mass stiffness damping baumgarte restitution warm iters seed".split()
+ENDS = [f"--{name} {end}" for name in NAMES for end in contact.LIMITS[name][1:3]]
 
 
 def test_flags_inside_and_at_the_ends_of_their_ranges_give_a_right_report_or_one_line(
     tmp_path, capsys
 ):
     """A warning is an error in these tests. Few steps, down to none, are recorded, too."""
-    for flags in (*ODD, *WALK):
+    for flags in (*ODD, *ENDS):
         few = () if "--steps" in flags else ("--steps", 60, "--no-rerun")
         words = "--scene", "stack", *flags.split(), *few, "--out", tmp_path
         status, out, err = main(capsys, *words)
