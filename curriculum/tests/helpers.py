@@ -1,5 +1,6 @@
 """What several test files share."""
 
+import contextlib
 import os
 import shlex
 import shutil
@@ -46,15 +47,13 @@ def stopped(number, words, ready, terminal=False, cwd=ROOT):
 
 
 def clone(folder, *leave):
-    """Copy the course into a folder, but for hidden files and those so named; return the folder.
-
-    Compiled loops, named by their source, are shared.
-    """
+    """Copy the course into a folder, but for hidden files and those so named; return the folder."""
     leave = shutil.ignore_patterns(".*", "__pycache__", "outputs", *leave)
     shutil.copytree(ROOT, folder, ignore=leave, dirs_exist_ok=True)
-    (ROOT / ".cache/loops").mkdir(parents=True, exist_ok=True)
-    (folder / ".cache").mkdir()
-    (folder / ".cache/loops").symlink_to(ROOT / ".cache/loops")
+    with contextlib.suppress(OSError):  # share compiled loops, which are named by their source
+        (ROOT / ".cache/loops").mkdir(parents=True, exist_ok=True)
+        (folder / ".cache").mkdir()
+        (folder / ".cache/loops").symlink_to(ROOT / ".cache/loops")
     return folder
 
 
