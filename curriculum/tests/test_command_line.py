@@ -251,7 +251,6 @@ def test_a_pipe_that_nobody_reads_ends_it_without_a_word_and_a_full_disk_with_a_
 
 # flags, how the run of their model ended, and why; where something is wrong a cure is printed
 CAUSES = [
-    ("--contact penalty --dt 0.03", "EXPLODED at step 98", "critical step of a ball, 0.01354 s"),
     ("--contact penalty --dt 0.0135", "rests after a gain of 329 % energy", "a step late"),
     ("--contact penalty --stiffness 60", "through the floor", "the spring is too weak"),
     ("--contact penalty --stiffness 1e3", "rests", "only where it is compressed, 0.0981 r"),
@@ -260,10 +259,8 @@ CAUSES = [
     ("--contact lcp --dt 0.064", "through the floor", "once a step, in which a ball moves 2.81 r"),
     ("--contact lcp --baumgarte 1", "rests after a hop of 4.07 r", "beta depth / dt, is kept"),
     ("--contact lcp --baumgarte 0", "rests", "beta = 0: no share of an overlap is opened"),
-    ("--scene stack --bodies 30 --contact lcp --steps 4000", "rests", "20 sweeps do not converge"),
     ("--contact soft --solref 0.02 0.1", "moves after a hop of 4.38 r", "the damper is weak"),
     ("--contact soft --solref -1e6 -100", "moves after a gain", "of this solref, 0.001902 s"),
-    ("--scene slide", "moves", "a contact begins with impedance d0 = 0.9"),
     ("--scene slide --contact leapfrog", "moves", "nothing is wrong: it still slides at 4 s"),
     ("--smoke --scene bounce --contact lcp", "moves", "nothing is wrong: it still bounces"),
     ("--contact exact --steps 5", "moves", "nothing is wrong: it still falls at 0.01 s"),
