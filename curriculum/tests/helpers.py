@@ -83,6 +83,16 @@ SLOTS
 ## Code
 """
 
+FIGURE = r"""const x = 1;
+export const figure = {
+  title: "A `solve_contacts`",
+  caption: ({ dt }) => `It pushes by ${1000 * dt} px.`,
+  height: () => 9,
+  start: () => ({ model: "lcp" }),
+  draw: () => ({ picture: [], words: "", values: { x } }),
+};
+"""
+
 
 def shorten(folder, slots):
     """Give a clone a short chapter with these slots and every region, one run, and no times."""

@@ -16,19 +16,10 @@ import pytest
 import curriculum.gate
 from curriculum import source, stored
 from curriculum.prose import ratios, references
-from curriculum.tests.helpers import clone, edit, gate, python, review, shorten, stopped
+from curriculum.tests.helpers import FIGURE, clone, edit, gate, python, review, shorten, stopped
 
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
 EXERCISE, MADE = "exercises/ex1_bet.py", "curriculum/bench/results/made.json"
-FIGURE = r"""const x = 1;
-export const figure = {
-  title: "A `solve_contacts`",
-  caption: ({ dt }) => `It pushes by ${1000 * dt} px.`,
-  height: () => 9,
-  start: () => ({ model: "lcp" }),
-  draw: () => ({ picture: [], words: "", values: { x } }),
-};
-"""
 CAPTION = "figures/clamp"
 READ = ["A sponge", "A sweep", "Code", "ex1", "contact.py", "exact.py", CAPTION]
 

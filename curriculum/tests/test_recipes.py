@@ -9,7 +9,7 @@ import pytest
 from curriculum.compiled import to_loops
 from curriculum.prose.chapter import CHAPTER
 from curriculum.source import read_text, replace_once
-from curriculum.tests.helpers import clone, edit, gate, python, review, shorten
+from curriculum.tests.helpers import FIGURE, clone, edit, gate, python, review, shorten
 
 STEP = '''# --- region: sixth ---
 def sixth_step(balls, dt, iters, relax):
@@ -27,17 +27,6 @@ def sixth_step(balls, dt, iters, relax):
 '''
 MODEL = '    "sixth": Model(sixth_step, ("iters", "relax"), 1, ("#666666", "x", (0, (2, 4)))),\n'
 PAIR = '    if name == "pair":\n        x, y = [-0.15, 0.15], [1.0 + draw, 1.0 + draw]\n'
-FIGURE = """import { circle } from "../draw.js";
-
-export const figure = {
-  title: "A dot",
-  caption: ({ dt }) => `It is ${1000 * dt} px wide.`,
-  height: () => 40,
-  knobs: ["dt"],
-  draw: ({ own, width }) =>
-    ({ picture: circle(width / 2, 20, 500 * own.dt, "dot"), words: "A dot.", values: {} }),
-};
-"""
 EXERCISE = '''"""Exercise 12, write it (2 minutes): twice as fast."""
 
 from kit import script
@@ -146,7 +135,7 @@ def test_a_figure_an_exercise_and_a_model_are_on_the_page(course):
     folder, _ = course
     done = python("-m", "curriculum.page", "--out", "page.html", cwd=folder)
     page = (folder / "page.html").read_text("utf-8")
-    assert done.returncode == 0 and "It is 10 px wide" in page and "sixth_step" in page
+    assert done.returncode == 0 and "It pushes by 10 px" in page and "sixth_step" in page
     assert "Exercise 12: twice as fast" in page and '"relax": 0.5' in page
 
 
