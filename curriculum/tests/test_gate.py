@@ -146,6 +146,7 @@ def test_a_ratio_in_words_is_held_by_a_claim_of_its_sentence(text):
 def test_a_passage_that_there_is_not_and_a_meta_yaml_without_runs_are_said(capsys, monkeypatch):
     assert curriculum.gate.main(["--read", "nowhere"]) == 2
     assert "given nowhere; allowed: " in capsys.readouterr().err
+    references.load_meta.cache_clear()
     for text, why in ("- [", " is not YAML: "), ("", ":1: it names no runs; repair: "):
         monkeypatch.setattr(references, "read_text", lambda file, text=text: text)
         assert curriculum.gate.main([]) == 2
