@@ -239,7 +239,7 @@ def error_figure(rows, problem):
             picture.line(axis, *zip(*dots), engine, label)
     time = f"time for {problems.BY_NAME[problem].duration:g} s of motion [ms]"
     axis.set(xscale="log", yscale="log", xlabel="worst position error [r]", ylabel=time)
-    picture.legend_below(axis, columns=4, down=0.2)
+    picture.legend_below(axis, columns=5, down=0.2)
     axis.set_xlim(None, min(axis.get_xlim()[1], 30.0))
     return figure
 
