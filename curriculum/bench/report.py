@@ -229,7 +229,7 @@ def error_figure(rows, problem):
         title=f"{problem.capitalize()}: {problems.BY_NAME[problem].title}",
         explained="Left and down is better. A line joins what no other setting or step of the same "
         "engine beats in both error and time.",
-        below=0.8,
+        below=0.9,
     )
     for engine, label in LABELS.items():
         dots = front((max(p["error"], LEAST), p["ms"]) for p in rows
