@@ -16,7 +16,7 @@ function struck(impacts) {
 
 function draw(view) {
   const { own: { time }, width, height } = view;
-  const [scale, tall, since] = [width / 1.9, height / 2, time - BEFORE]; // px for 1 m, px, s
+  const [scale, tall, since] = [width / 1.95, height / 2, time - BEFORE]; // px for 1 m, px, s
   const r = R * scale;
   const after = ROWS.map(([, impacts]) => struck(impacts));
   const rows = ROWS.map(([name], k) => {
@@ -24,7 +24,7 @@ function draw(view) {
     return [table(0, floor, width, GROUND), label(name, 4, floor - tall + GROUND + 26),
       after[k].map((v, i) => {
         const now = since >= 0 ? v : Number(i === 0);
-        const x = 0.39 * width + (2 * R * (i - 1) + now * since) * scale;
+        const x = 0.385 * width + (2 * R * (i - 1) + now * since) * scale;
         return [ball("exact", x, floor - r, r), arrow("weight", x, floor - r, 1.6 * r * now, 0)];
       })];
   });
