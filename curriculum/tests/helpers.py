@@ -35,14 +35,14 @@ def stopped(number, words, ready, terminal=False, cwd=ROOT):
                 assert process.poll() is None
                 time.sleep(0.01)
             (os.killpg if terminal else os.kill)(process.pid, number)
-            printed = process.communicate(timeout=600)
+            printed = process.communicate(timeout=100)  # one that ends takes a second
+            with pytest.raises(ProcessLookupError):
+                for _ in range(6000):  # a minute: what lives on would take longer
+                    os.killpg(process.pid, 0)
+                    time.sleep(0.01)
         except BaseException:
-            os.killpg(process.pid, signal.SIGKILL)  # or it would be waited for
+            os.killpg(process.pid, signal.SIGKILL)  # or it would be waited for, or live on
             raise
-    with pytest.raises(ProcessLookupError):
-        for _ in range(6000):  # a minute: what lives on would take longer
-            os.killpg(process.pid, 0)
-            time.sleep(0.01)
     return process.returncode, *printed
 
 
