@@ -1,15 +1,14 @@
 """The notebook runs in full beside no project, finds what contact.py finds, feels every change."""
 
+import importlib
 import json
 import re
 import tempfile
 
-import nbformat
 import pytest
 
 import contact
 from curriculum import source
-from curriculum.notebook import __main__ as notebook
 from curriculum.prose.chapter import CHAPTER
 from curriculum.tests.helpers import python
 
@@ -30,19 +29,27 @@ WAITS = "is still a blank|no prediction yet|given \\? \\?|no choice yet|yet; wri
 
 
 @pytest.fixture(scope="module")
-def text(tmp_path_factory):
+def notebook():
+    """Its module, which imports nbformat: that takes seconds, so not where tests are collected."""
+    pytest.importorskip("nbformat", reason="nbformat is missing: the extra `dev`")
+    return importlib.import_module("curriculum.notebook.__main__")
+
+
+@pytest.fixture(scope="module")
+def text(notebook, tmp_path_factory):
     file = tmp_path_factory.mktemp("made") / "contact.ipynb"
     assert python("-m", "curriculum.notebook", "--out", file, PYTHONHASHSEED="7").returncode == 0
     return file.read_text("utf-8")
 
 
 @pytest.fixture(scope="module")
-def ran(text, tmp_path_factory):
+def ran(notebook, text, tmp_path_factory):
     """[(source, what it printed, what it showed)] of the cells, run in an empty folder with a bet
     made in its cell; then the region penalty without its force, and two cells below it."""
     needed = "nbclient", "zmq", "ipykernel", "matplotlib"
     nbclient, zmq, *_ = (pytest.importorskip(each, reason=f"{each} is missing") for each in needed)
-    book, folder = nbformat.reads(text, as_version=4), tmp_path_factory.mktemp("notebook")
+    nbformat, folder = notebook.nbformat, tmp_path_factory.mktemp("notebook")
+    book = nbformat.reads(text, as_version=4)
     (penalty,) = (
         c.source for c in book.cells if c.source.startswith("# contact.py, region penalty")
     )
@@ -68,13 +75,15 @@ def ran(text, tmp_path_factory):
     return [(c.source, "".join(o.get("text", "") for o in c.outputs), c.outputs) for c in cells]
 
 
-def test_two_builds_are_the_same_bytes_whatever_the_hash_seed(text):
+def test_two_builds_are_the_same_bytes_whatever_the_hash_seed(notebook, text):
     assert notebook.build() == text
 
 
-def test_what_the_chapter_shows_of_contact_is_a_cell_and_no_mark_of_the_page_is_left(text):
+def test_what_the_chapter_shows_of_contact_is_a_cell_and_no_mark_of_the_page_is_left(
+    notebook, text
+):
     kinds = {"code": "", "markdown": ""}
-    for cell in nbformat.reads(text, as_version=4).cells:
+    for cell in notebook.nbformat.reads(text, as_version=4).cells:
         kinds[cell.cell_type] += f"{cell.source}\n"
     code, prose = kinds.values()
     chapter, _, _ = (source.ROOT / CHAPTER).read_text("utf-8").partition(f"# {notebook.REST}")
@@ -85,7 +94,7 @@ def test_what_the_chapter_shows_of_contact_is_a_cell_and_no_mark_of_the_page_is_
     assert not re.search(said, prose), "only the page can do that"
 
 
-def test_it_runs_beside_no_project_and_finds_what_contact_finds(ran, tmp_path):
+def test_it_runs_beside_no_project_and_finds_what_contact_finds(notebook, ran, tmp_path):
     found = json.loads(ran[-1][1])
     last = re.findall('"(.+?)"', notebook.RUNS["sag"]) + ["--steps", "200"]
     assert contact.main([*last, "--no-rerun", "--out", str(tmp_path)]) == 0
