@@ -12,18 +12,18 @@ from curriculum.page.build import build
 
 DESK = {"width": 1280, "height": 800}
 PHONE = {"width": 390, "height": 844, "has_touch": True, "is_mobile": True}
-FRAMES = "for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);"
+FRAME = "await new Promise(requestAnimationFrame);"
 # a figure in the middle of the window, alive
 SEE = f"""async (id) => {{
   const fig = document.getElementById(id);
   fig.scrollIntoView({{ block: "center" }});
   for (let k = 0; k < 99 && !fig.querySelector(".back"); k++)
     await new Promise(requestAnimationFrame);
-  {FRAMES}
+  {FRAME}
 }}"""
 # what a figure says, how high it is, and where it and the window stand
 STATE = f"""async (id) => {{
-  {FRAMES}
+  {FRAME}
   const fig = document.getElementById(id);
   return [fig.querySelector(".words").textContent.replaceAll("\\xa0", " "),
     fig.offsetHeight, fig.offsetTop, scrollY];
