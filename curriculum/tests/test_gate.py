@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import curriculum.gate
 from curriculum import source, stored
 from curriculum.prose import ratios, references
 from curriculum.tests.helpers import FIGURE, clone, edit, gate, python, review, shorten, stopped
@@ -144,12 +143,14 @@ def test_a_ratio_in_words_is_held_by_a_claim_of_its_sentence(text):
 
 
 def test_a_passage_that_there_is_not_and_a_meta_yaml_without_runs_are_said(capsys, monkeypatch):
-    assert curriculum.gate.main(["--read", "nowhere"]) == 2
+    from curriculum.gate import main  # above it would end the tests where yaml is missing
+
+    assert main(["--read", "nowhere"]) == 2
     assert "given nowhere; allowed: " in capsys.readouterr().err
     references.load_meta.cache_clear()
     for text, why in ("- [", " is not YAML: "), ("", ":1: it names no runs; repair: "):
         monkeypatch.setattr(references, "read_text", lambda file, text=text: text)
-        assert curriculum.gate.main([]) == 2
+        assert main([]) == 2
         assert capsys.readouterr().err.startswith(f"meta.yaml{why}")
 
 
