@@ -90,7 +90,9 @@ def test_an_engine_rests_awake_and_keeps_momentum(setting):
 KEPT = stored.load(bench.FULL)[0]["points"]
 HERE = [p for p in KEPT if bench.called(p) in engines.BY_NAME]  # of the engines that are installed
 ALL_BEST = [p for engine in engines.ENGINES for p in measure.contest(HERE, [engine]).values()]
-BEST = [p for p in ALL_BEST if p["ms"] < 200.0]  # three of four; the rest takes far longer
+ONLY = "drake", "elastic"  # of its problems with restitution
+# three of four; the rest takes far longer
+BEST = [p for p in ALL_BEST if p["ms"] < 200.0 or (p["engine"], p["problem"]) == ONLY]
 
 
 @pytest.mark.parametrize("best", BEST, ids=lambda p: f"{p['engine']} {p['problem']}")

@@ -99,6 +99,8 @@ def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(
     lines = (each.splitlines() for each in (alone.stdout, out))
     mine, full = ([line for line in some if not line.startswith(FOLDER_ONLY)] for some in lines)
     assert sorted(mine) == sorted(full)
+    for model in contact.MODELS if "\nstate: " in out else ():
+        assert ended(alone.stdout, model)[0] == ended(out, model)[0]
     causes, more = (re.findall("because: (?!nothing).*", each) for each in (alone.stdout, out))
     assert {*causes} <= {*more}
     assert (alone.returncode, alone.stderr) == (status, err)

@@ -140,15 +140,18 @@ def kept_files():
     return {(path, path.stat().st_size) for files in found for path in files}
 
 
-def test_nothing_is_compiled_for_a_short_run_or_where_numba_must_not(monkeypatch):
+def test_nothing_is_compiled_for_a_short_run_or_where_numba_must_not(monkeypatch, tmp_path):
+    """Of 700 steps, for which contact.py asks whether it pays."""
     pile = "import contact; pile = contact.build_scene('pile', 0, 40)"
-    code = f"{pile}; print(contact.run_model('lcp', pile, 0.002, 300).q.sum())"
+    code = f"{pile}; print(contact.run_model('lcp', pile, 0.002, 700).q.sum())"
     scene = contact.build_scene("pile", 0, 40)
-    right = plainly("lcp", scene, 0.002, 300, contact.Settings()).q.sum()
+    assert 700 * 40**2 > contact.COMPILE_FROM
+    right = plainly("lcp", scene, 0.002, 700, contact.Settings()).q.sum()
     assert float(python("-c", code, NUMBA_DISABLE_JIT="1").stdout) == right
-    monkeypatch.setattr(contact, "GRAVITY", -1.62)  # whose loops nobody has kept
-    contact.run_model("lcp", scene, 0.002, 300)
-    assert not compiled.loops_of("lcp_step").folder.exists()
+    monkeypatch.setattr(cache, "FOLDER", tmp_path)
+    monkeypatch.setattr(contact, "GRAVITY", -3.71)  # whose loops this process has not loaded
+    contact.run_model("lcp", scene, 0.002, 700)
+    assert compiled.loops_of("lcp_step").folder.parent == tmp_path and not any(tmp_path.iterdir())
 
 
 def twice(number):
