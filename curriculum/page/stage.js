@@ -88,7 +88,7 @@ function hands(view, box) {
     const [names, lows, highs] = [value, low, high].map((each) => [each].flat());
     const now = () => (seen ? [seen()] : names.map((name) => view.own[name]));
     const put = (wanted) => view.set({ ...also, ...Object.fromEntries(names.map((name, k) =>
-      [name, Number(within(lows[k], wanted[k], highs[k]).toPrecision(5))])) });
+      [name, within(lows[k], Number(wanted[k].toPrecision(5)), highs[k])])) });
     const placeOf = ({ clientX, clientY }) => {
       const { left, top, width } = box.querySelector("svg").getBoundingClientRect();
       return [at(...[clientX - left, clientY - top].map((px) => (px * view.width) / width))].flat();
@@ -98,7 +98,8 @@ function hands(view, box) {
       event.preventDefault();
       event.currentTarget.querySelector("[tabindex]").focus({ preventScroll: true });
       event.currentTarget.setPointerCapture(event.pointerId);
-      const [place, first] = [placeOf(event), now()];
+      const place = placeOf(event);
+      const first = now().map((v, k) => within(lows[k], v, highs[k])); // a ball seized far off comes here
       held = { pointer: event.pointerId, off: first.map((v, k) => v - place[k]) };
       view.stop();
       put(first);
@@ -169,9 +170,11 @@ export function stage(box, figure, given, still, settings) {
   }
   function take(set) {
     Object.assign(own, text);
-    figure.draw(view); // which tells the ranges of its handles
-    for (const [name, value] of Object.entries(set))
-      if (fits(figure, view, name, value)) own[name] = value;
+    for (const _ of [1, 2]) { // a lifted ball has a longer time, whichever the address names first
+      figure.draw(view); // which tells the ranges of its handles
+      for (const [name, value] of Object.entries(set))
+        if (fits(figure, view, name, value)) own[name] = value;
+    }
     view.stop();
   }
   const button = (words, act, pressed) => html`<button type="button" aria-pressed=${pressed ?? nothing}

@@ -277,6 +277,10 @@ def test_a_link_sets_numbers_in_their_range_a_reload_keeps_all_and_the_address_i
         page.evaluate("location.hash = '#fig-sag?iters=7'")
         page.evaluate(SEE, "fig-sag")
         page.locator("#fig-sag input").first.press("ArrowRight")
+        page.evaluate(SEE, "fig-falls")
+        page.locator("#fig-falls [role=slider]").first.press("ArrowDown")
+        page.locator("#fig-falls [role=slider]").last.press("End")
+        fallen = page.evaluate(STATE, "fig-falls")[0]
         page.evaluate(SEE, "fig-corner")
         page.locator("#fig-corner .buttons button").last.click()
         page.wait_for_url(re.compile(r"#fig-corner\?model=soft$"))
@@ -284,8 +288,9 @@ def test_a_link_sets_numbers_in_their_range_a_reload_keeps_all_and_the_address_i
         page.wait_for_function("history.state")  # a new place of the history
         page.reload()
         page.wait_for_selector("[data-ready]", state="attached")
-        for name in ("fig-cliff", "fig-sag", "fig-corner"):
+        for name in ("fig-cliff", "fig-sag", "fig-falls", "fig-corner"):
             page.evaluate(SEE, name)
+        assert fallen.startswith("1.400 s") and page.evaluate(STATE, "fig-falls")[0] == fallen
         assert "12.3 ms" in page.evaluate(STATE, "fig-cliff")[0]
         assert page.locator("#fig-sag output").first.inner_text().strip() == "8"
         assert page.locator("#fig-corner [aria-pressed=true]").inner_text() == "soft"
