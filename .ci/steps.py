@@ -125,7 +125,7 @@ def checks():
         "workflows": "zizmor --offline --quiet --min-severity medium .github",
         "page": "python -m curriculum.page --out ../dev-contact.html",
         "notebook": "python -m curriculum.notebook --out ../dev-contact.ipynb",
-        "ten planted faults": "python -m curriculum.tests.plant --most 10",
+        "six planted faults": "python -m curriculum.tests.plant --most 6",
         "quick benchmark": "python -m curriculum.bench --quick",
         "quick stress": "python -m curriculum.stress --quick",
     }.items():
