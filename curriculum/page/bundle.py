@@ -21,11 +21,11 @@ from curriculum.source import ROOT
 
 HERE = Path(__file__).resolve().parent
 USED = (  # of contact.py, beside the steps
-    "solve_impacts accelerations next_impact MAX_IMPACTS TOUCH_TOLERANCE critical_dt "
+    "flights solve_impacts critical_dt "
     "soft_defaults implicit_step contact_target CONTACT_MARGIN time_to_impact"
 ).split()
 IMPORT = re.compile(r'^import \{ ([^}]+) \} from "([./\w-]+)";$', re.MULTILINE)
-EXPORT = re.compile(r"^export (const|function|class) ([\w$]+)", re.MULTILINE)
+EXPORT = re.compile(r"^export (const|function\*?|class) ([\w$]+)", re.MULTILINE)
 LISTED = re.compile(r"\bexport\s*\{([^}]+)\};")  # as lit-html says what it exports
 
 

@@ -1,7 +1,6 @@
 /* Runs of contact.py's steps, made into JavaScript (to_js.py). A recording has `n` balls, `steps` + 1
  * times t [s], and lists x, y, vx, vy, row by row. */
-import { accelerations, Ball, detect_contacts, GRAVITY, implicit_step, MAX_IMPACTS } from "./contact.js";
-import { next_impact, soft_defaults, solve_impacts, STEP, TOUCH_TOLERANCE } from "./contact.js";
+import { Ball, flights, GRAVITY, implicit_step, soft_defaults, STEP } from "./contact.js";
 import { data } from "./data.js";
 
 export const R = data.radius; // m
@@ -41,7 +40,7 @@ export function record(model, balls, knobs, steps, push = () => {}) {
       for (const [key, list] of lists) list.push(Number.isNaN(state[key]) ? NaN : state[key] + 0);
   };
   if (model === "exact") {
-    followImpacts(balls, knobs.restitution ?? 0, run.t, write);
+    sample(balls, knobs.restitution ?? 0, run.t, write);
     return run;
   }
   const step = stepOf(model, knobs);
@@ -54,19 +53,17 @@ export function record(model, balls, knobs, steps, push = () => {}) {
   return run;
 }
 
-// From one impact to the next, of balls over one another, as contact.exact_run does.
-function followImpacts(balls, restitution, times, write) {
-  const pairs = detect_contacts(balls, Infinity);
-  let [now, row, touching] = [0, 0, pairs.filter((c) => -c.depth <= TOUCH_TOLERANCE)];
-  for (let impact = 0; impact < MAX_IMPACTS && row < times.length; impact++) {
-    solve_impacts(touching, restitution);
-    const [a, gaps] = accelerations(balls, touching, pairs);
-    const [span, next] = next_impact(pairs, gaps);
-    const fly = (t) => balls.map(({ x, y, vx, vy }, k) =>
-      ({ x, y: y + t * (vy + 0.5 * t * a[k]), vx, vy: vy + t * a[k] }));
-    while (row < times.length && times[row] < now + span) write(fly(times[row++] - now));
-    fly(span).forEach((each, k) => Object.assign(balls[k], each));
-    [now, touching] = [now + span, next];
+// The states at these times [s], as contact.exact_run has them.
+function sample(balls, restitution, times, write) {
+  let [now, row] = [0, 0];
+  for (const [flight, a] of flights(balls, restitution)) {
+    for (; row < times.length && times[row] < now + flight; row++) {
+      const t = times[row] - now;
+      write(balls.map(({ x, y, vx, vy }, k) =>
+        ({ x, y: y + t * (vy + 0.5 * t * a[k]), vx, vy: vy + t * a[k] })));
+    }
+    if (row === times.length) return;
+    now += flight;
   }
 }
 

@@ -14,7 +14,8 @@ FORMS = {  # of a node: its fields in JavaScript
     "UnaryOp": "({op}{operand})", "IfExp": "({test} ? {body} : {orelse})",
     "AugAssign": "{target} {op}= {value};", "While": "while ({test}) {body}",
     "If": "if ({test}) {body} else {orelse}",
-    "Return": "return {value};", "Raise": "throw {exc};", "Break": "break;",
+    "Return": "return {value};", "Yield": "yield {value}",
+    "Raise": "throw {exc};", "Break": "break;",
     "Add": "+", "Sub": "-", "Mult": "*", "Div": "/", "Pow": "**", "USub": "-", "Not": "!",
     "Lt": "<", "Gt": ">", "LtE": "<=", "GtE": ">=", "Eq": "===", "NotEq": "!==",
     "Is": "===", "IsNot": "!==", "In": "in", "And": " && ", "Or": " || ",
@@ -67,7 +68,8 @@ class Script(ast.NodeVisitor):
         self.local = set()
         name = "constructor" if node.name == "__init__" else node.name
         head = ", ".join(map(str.__add__, names, usual))
-        return f"{'' if method else 'function '}{name}({head}) {body}"
+        word = "function* " if "yield " in body else "" if method else "function "
+        return f"{word}{name}({head}) {body}"
 
     def visit_ClassDef(self, node):
         methods = [each for each in node.body if isinstance(each, ast.FunctionDef)]
