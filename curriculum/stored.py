@@ -25,7 +25,7 @@ from curriculum.commands import write_atomic
 from curriculum.source import ROOT, read_text, split
 
 FOLDERS = {"bench": "curriculum/bench/results", "stress": "curriculum/stress/results"}
-PACKAGES = "numpy numba rerun-sdk mujoco-core pymunk pyb2d3 drake dartpy scipy".split()
+PACKAGES = "numpy numba rerun-sdk mujoco-core pymunk pyb2d3 drake dartpy rapier3d scipy".split()
 ALWAYS = "curriculum/exact.py", "curriculum/compiled/run.py"  # optional modules of contact.py
 MAKES = re.compile(r"curriculum/(bench|stress|compiled|exact|variants|page/to_js)\b")  # numbers
 USES = re.compile(r"\bcontact\.(\w+)|from contact import (.*)")

@@ -12,9 +12,8 @@
                                             here; or depth and time of a pile: try 1000 "lcp iters=4
                                             baumgarte=1" --substeps 4
 
-Results are CSV files in curriculum/bench/results. --only rapier, or --only "lcp iters=20", measures
-the settings whose name contains these words; all other rows stay. With --quick it takes a minute or
-two, measures little, and writes to outputs/bench-quick, which nothing quotes.
+Results are CSV files in curriculum/bench/results. With --quick it takes a minute or two, measures
+little, and writes to outputs/bench-quick, which nothing quotes.
 """
 
 import subprocess
@@ -26,36 +25,21 @@ from curriculum.commands import Parser, needs, write_json
 
 with needs("bench"):
     from curriculum.bench import engines, measure, problems, report
-    from curriculum.bench.report import called
 
 FULL, QUICK = stored.ROOT / stored.FOLDERS["bench"], stored.ROOT / "outputs" / "bench-quick"
 CODE = "curriculum/bench/measure.py", "curriculum/bench/settings.csv"  # and what they import
 
 
-def take(part, quick, only, folder, tier=None):
-    """Measure a part, or the settings of it whose names contain `only`, and write its file."""
-    if not any(only in name for name in engines.BY_NAME):
-        raise ValueError(f"--only {only}: no setting in settings.csv that runs here has this name")
-    command = f"python -m curriculum.bench {part}" + f" --only {only!r}" * bool(only)
+def take(part, quick, folder, tier=None):
+    """Measure a part and write its file."""
     code = ("contact.py", "curriculum/bench/commands.csv") if part == "processes" else ()
-    about = stored.origin(command, *CODE, *code, kept=folder == FULL)
-    about["versions"] |= engines.versions()
-    sections, made = stored.load(folder)
-    stay, known, groups = [], list(engines.EVERYBODY), list(problems.BY_NAME)
-    if only:
-        stay = [row for row in sections.get(part, ()) if called(row) in known]
-        stay = [row for row in stay if only not in called(row)]
-    rows = stay + measure.PARTS[part](quick, only, stay)
-    if only:
-        rows.sort(key=lambda row: known.index(called(row)))
-        rows.sort(key=lambda row: row.get("bodies") or groups.index(row["problem"]))
-    made = {key: about for key, about in made.items()
-            if key.split()[0] != part or only not in key.removeprefix(part)}  # fmt: skip
+    about = stored.origin(f"python -m curriculum.bench {part}", *CODE, *code, kept=folder == FULL)
+    rows, made = measure.PARTS[part](quick), stored.load(folder)[1]
     if tier and part == "processes" and folder == FULL:
         stored.enter(tier, about, rows[0]["seconds"])
-    if rows:
-        stored.save(folder / f"{part}.csv", rows)
-        write_json(folder / "made.json", made | {f"{part} {only}".strip(): about})
+    stored.save(folder / f"{part}.csv", rows)
+    made = {name: made[name] for name in measure.PARTS if name in made}
+    write_json(folder / "made.json", made | {part: about})
 
 
 def try_one(problem, setting, substeps):
@@ -67,7 +51,7 @@ def try_one(problem, setting, substeps):
         raise ValueError(f"try: given problem {problem!r}; allowed: {', '.join(map(str, sizes))}")
     if problem.isdecimal():
         *_, row = end = measure.settle((int(problem), c, substeps, None))
-        _, step = measure.fall_and_rest((int(problem), c, substeps, end))
+        step = measure.time_of_pile((int(problem), c, substeps, end))
         rest = "at rest" if row["at_rest"] else "not at rest"
         depth = f"{contact.format_number(row['mean_depth'])} r deep in the mean"
         return f"{problem} balls by {setting}: {rest}, {depth}, {step:.3g} µs of CPU a step"
@@ -85,14 +69,11 @@ def main(argv=None):
     )
     parser.add_argument("what", nargs="*", help="of try: a problem or a number of balls; a setting")
     parser.add_argument("--substeps", type=int, default=1, help="of try: in 2 ms (1)")
-    parser.add_argument("--only", default="", help="settings whose name contains this")
     parser.add_argument("--tier", metavar="NAME", help="what the ledger calls this machine")
     parser.add_argument("--quick", action="store_true", help="reduced settings, for CI")
     args = parser.parse_args(argv)
     folder = QUICK if args.quick else FULL
     parts = [part for part in measure.PARTS if args.part in ("all", part)]
-    if args.only and "processes" in parts:
-        parts.remove("processes")  # which are no settings
     try:
         if len(args.what) != (2 if args.part == "try" else 0):
             raise ValueError(f"{args.part}: given {args.what}; try takes a problem and a setting")
@@ -103,7 +84,7 @@ def main(argv=None):
                 [sys.executable, "-m", "curriculum.compiled"], cwd=stored.ROOT, check=True
             )
         for part in parts:
-            take(part, args.quick, args.only, folder, args.tier)
+            take(part, args.quick, folder, args.tier)
         sections, made = stored.load(folder)
         report.write(folder, sections, made)
         if folder == FULL:

@@ -11,11 +11,9 @@ scene's masses, radii and restitution, a floor along y = 0. A ball of infinite m
 ball sleeps, and steps are warm-started as shipped.
 """
 
-import json
 import math
-import subprocess
 from ast import literal_eval
-from functools import cache, cached_property, partial
+from functools import cached_property, partial
 from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
@@ -42,7 +40,6 @@ class Session:
     """One world, looked at after every `substeps` steps. A subclass has step, state and heights."""
 
     substeps = 1
-    took = None  # CPU seconds of a trace in a process of its own, which that process has measured
 
     def go(self, n):
         """Take the steps of n looks and read nothing: the bare cost of stepping."""
@@ -125,24 +122,6 @@ class Events(Whole):
 
     def states(self, n):
         return self.run(np.arange(n + 1) * self.dt * self.substeps)
-
-
-class Siconos(Whole):
-    """Moreau-Jean's step, in a process of its own: Debian's Python has the package, not ours."""
-
-    def __init__(self, scene, dt):
-        self.given = dict(balls=balls_of(scene), e=scene.restitution, dt=dt, gravity=GRAVITY)
-
-    def states(self, n):
-        words = json.dumps(self.given | dict(looks=n, substeps=self.substeps))
-        command = ["/usr/bin/python3", "-c", "import moreau; moreau.main()"]
-        how = dict(cwd=HERE, capture_output=True, text=True)
-        run = subprocess.run(command, input=words, **how)
-        if run.returncode:  # its solver has given up; that is no error of ours
-            self.took, rows = math.nan, np.full((n + 1, len(self.given["balls"]), 4), math.nan)
-        else:
-            self.took, rows = json.loads(run.stdout.splitlines()[-1])
-        return np.split(np.array(rows).transpose(0, 2, 1), 2, axis=1)
 
 
 def balls_of(scene, scale=1.0):
@@ -457,26 +436,14 @@ ENGINES = {  # label, package, session
     "rapier": ("Rapier", "rapier3d", Rapier),
     "drake": ("Drake", "drake", Drake),
     "dart": ("DART", "dartpy", Dart),
-    "siconos": ("Siconos", "python3-siconos", Siconos),
     "events": ("event-driven", "scipy", Events),
 }
 LABELS = {name: name for name in contact.MODELS} | {name: row[0] for name, row in ENGINES.items()}
 
 
-@cache
-def versions():
-    """Return {package: version} of every engine that is there."""
-    packages = [package for _, package, _ in ENGINES.values()]
-    found = {name: d.version for name in packages for d in metadata.distributions(name=name)}
-    if Path("/usr/lib/python3/dist-packages/siconos").exists():  # which pip knows nothing of
-        query = ["dpkg-query", "-W", "-f=${Version}", "python3-siconos"]
-        found["python3-siconos"] = subprocess.run(query, capture_output=True, text=True).stdout
-    return found
-
-
 def missing(engine):
     """Return whether an engine is not installed; a model always is."""
-    return engine in ENGINES and ENGINES[engine][1] not in versions()
+    return engine in ENGINES and not any(metadata.distributions(name=ENGINES[engine][1]))
 
 
 class Setting(NamedTuple):
@@ -525,12 +492,12 @@ class Setting(NamedTuple):
 
 
 def listed():
-    """Yield every setting of settings.csv, whether it can run here or not."""
+    """Yield every setting of settings.csv that can run here."""
     for *row, substeps, piles, most in map(dict.values, stored.load(HERE)[0]["settings"]):
         counts = (tuple(map(int, str(cell or "").split())) for cell in (substeps, piles))
-        yield Setting(*row, *counts, most)
+        if not missing(row[0]):
+            yield Setting(*row, *counts, most)
 
 
-EVERYBODY = {setting.name: setting for setting in listed()}
-BY_NAME = {name: setting for name, setting in EVERYBODY.items() if not missing(setting.engine)}
+BY_NAME = {setting.name: setting for setting in listed()}
 PILES = [(setting, substeps) for setting in BY_NAME.values() for substeps in setting.piles]

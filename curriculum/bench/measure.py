@@ -3,7 +3,7 @@
 page.md says how. A point is one problem and setting, sampled every dt, after so many substeps.
 Errors are medians over the starts; times are CPU times, medians over fresh processes, with every
 height read at each sample. Piles fall from the same lattice and settle untimed. Then they are
-timed in fresh processes: from the lattice, and from their own settled state.
+timed in fresh processes, from their own settled state.
 """
 
 import math
@@ -23,7 +23,7 @@ WORK, BUDGETS = (4, 16), (3, 10, 100)  # substeps in 2 ms; us a ball in 2 ms
 PROCESSES = 3
 ENOUGH = 0.03  # s: once the runs of a point have taken so long, it is not timed again
 DT = 0.002  # s, the step of contact.py's own default run
-LONGER = 0.004, 0.008, 0.016  # s: steps that are looked at once each
+LONGER = 0.004  # s: a step that is looked at once
 MOVING = {p.name: int(np.isfinite(p.build(0).mass).sum()) for p in problems.PROBLEMS}  # balls
 HEAP, COLLAPSE = (18, 12), 2000  # balls side by side and over one another; steps
 WATCHED, TURN, TURNS = 250, 50, 3  # steps at the end; timed steps in one go; how many goes
@@ -32,22 +32,22 @@ SIZES, SETTLE = {12: 4, 100: 10, 1000: 25}, 6000  # balls: side by side; steps t
 MANY, COPIES, AGAIN = 10_000, 10, 1500  # made of settled copies; steps to settle again
 
 
-def points(quick, only, known):
-    """Measure a row for each point, of the settings whose names contain `only`."""
-    jobs = list(cells(quick, only))
+def points(quick):
+    """Measure a row for each point."""
+    jobs = list(cells(quick))
     rows = parallel.run_jobs(errors_of, jobs, "errors")
     times = timing.in_fresh_processes(time_of, jobs, 1 if quick else PROCESSES, "run times")
     return [row | timing.spread("ms", each) for row, each in zip(rows, times)]
 
 
-def cells(quick, only):
+def cells(quick):
     """Yield (problem, setting, dt, substeps, starts) of every point, by names."""
     for name in ("drop", "slide") if quick else problems.BY_NAME:
         starts = 1 if quick else problems.BY_NAME[name].starts
         for c in engines.BY_NAME.values():
-            if c.runs(name) and only in c.name and not (quick and c.engine in ("drake", "siconos")):
+            if c.runs(name) and not (quick and c.engine == "drake"):
                 steps = [(DT, n) for n in c.substeps or (1,) if n in (1, 4) or not quick]
-                steps += [(dt, 1) for dt in LONGER if c.substeps and not quick]
+                steps += [(LONGER, 1)] * bool(c.substeps and not quick)
                 yield from ((name, c.name, *each, starts) for each in steps)
 
 
@@ -83,8 +83,7 @@ def time_of(job, timed=timing.timed):
     found = []
     for looks in (min(50, steps), steps, steps, steps):
         session = engines.BY_NAME[name].build(scene, dt, substeps)
-        seconds = timed(partial(session.trace, looks))
-        found.append(session.took or seconds)
+        found.append(timed(partial(session.trace, looks)))
         if sum(found[1:]) > ENOUGH:
             break
     return 1e3 * statistics.median(found[1:])
@@ -143,27 +142,25 @@ def shaft(count, q=None):
     return contact.scene_of(np.append(x, sides), np.concatenate((y, wall, wall)), mass)
 
 
-def piles(quick, only, known):
-    """Measure a row for each setting and size; known: rows that stay and may win."""
+def piles(quick):
+    """Measure a row for each setting and size."""
     rows, settled = [], {}
     for count in (12,) if quick else (*SIZES, MANY):
-        chosen = winners(known + rows) if count == MANY else engines.PILES
-        chosen, label = fitting(chosen, count, only)[:: 4 if quick else 1], f"{count} balls"
+        chosen = winners(rows) if count == MANY else engines.PILES
+        chosen, label = fitting(chosen, count)[:: 4 if quick else 1], f"{count} balls"
         jobs = [(count, *each, settled.get(each)) for each in chosen]
         settled = dict(zip(chosen, parallel.run_jobs(settle, jobs, f"{label} settle")))
         jobs = [(count, *each, end) for each, end in settled.items()]
         often = 1 if quick else PROCESSES - (count == MANY)
-        times = timing.in_fresh_processes(fall_and_rest, jobs, often, label)
-        for (*_, row), found in zip(settled.values(), times):
-            falling, resting = zip(*found)
-            spreads = timing.spread("falling", falling) | timing.spread("resting", resting)
-            rows.append(row | spreads)
+        times = timing.in_fresh_processes(time_of_pile, jobs, often, label)
+        for (*_, row), each in zip(settled.values(), times):
+            rows.append(row | timing.spread("us", each))
     return rows
 
 
-def fitting(chosen, count, only):
-    """Return those (setting, substeps) whose names contain `only`, and that run so many balls."""
-    return [(c, n) for c, n in chosen if only in c.name and count <= (c.most or count)]
+def fitting(chosen, count):
+    """Return those (setting, substeps) that run so many balls."""
+    return [(c, n) for c, n in chosen if count <= (c.most or count)]
 
 
 def settle(job):
@@ -194,16 +191,14 @@ def depths(q):
     return dict(mean_depth=mean, worst_depth=float(found.max()))
 
 
-def fall_and_rest(job, timed=timing.timed):
-    """Return microseconds a step, from the lattice and from the state that settle has found."""
+def time_of_pile(job, timed=timing.timed):
+    """Return microseconds a step, from the state that settle has found."""
     count, c, substeps, (q, v, _) = job
-    scene, found = shaft(count), []
-    for start in (scene, scene._replace(q0=np.array(q, float), v0=np.array(v, float))):
-        session = c.build(start, DT, substeps)
-        session.go(100)
-        seconds = [timed(partial(session.go, TURN)) for _ in range(TURNS)]
-        found.append(1e6 * statistics.median(seconds) / TURN)
-    return found
+    scene = shaft(count)._replace(q0=np.array(q, float), v0=np.array(v, float))
+    session = c.build(scene, DT, substeps)
+    session.go(100)
+    seconds = [timed(partial(session.go, TURN)) for _ in range(TURNS)]
+    return 1e6 * statistics.median(seconds) / TURN
 
 
 def heap():
@@ -217,14 +212,14 @@ def heap():
     return contact.scene_of(x.ravel() + nudge[0], y.ravel() + nudge[1], 10.0)
 
 
-def collapse(quick, only, known):
+def collapse(quick):
     """Measure a row for each setting of the piles: the heap's overlaps, and the time of a step."""
     count = math.prod(HEAP)
-    chosen = fitting(engines.PILES, count, only)[:: 8 if quick else 1]
+    chosen = fitting(engines.PILES, count)[:: 8 if quick else 1]
     jobs = [(*each, COLLAPSE // 20 if quick else COLLAPSE) for each in chosen]
     rows = parallel.run_jobs(sink_of, jobs, f"{count} balls collapse")
     times = timing.in_fresh_processes(time_of_heap, jobs, 1 if quick else PROCESSES, "their times")
-    return [row | timing.spread("falling", each) for row, each in zip(rows, times)]
+    return [row | timing.spread("us", each) for row, each in zip(rows, times)]
 
 
 def sink_of(job):
@@ -247,12 +242,12 @@ def time_of_heap(job):
     return 1e6 * timing.timed(partial(session.go, steps - 1)) / (steps - 1)
 
 
-def fastest(rows, depth, who, time="resting"):
+def fastest(rows, depth, who):
     """Return {balls: the fastest row} of these engines, of piles at rest within a mean depth [r],
     or of a heap in motion."""
     may = (row for row in rows if row["engine"] in who and row.get("at_rest", 1))
     deep = (row for row in may if row["mean_depth"] is not None and row["mean_depth"] <= depth)
-    return best(deep, "bodies", itemgetter(time))
+    return best(deep, "bodies", itemgetter("us"))
 
 
 def winners(rows):
@@ -262,7 +257,7 @@ def winners(rows):
     return [(c, substeps) for c, substeps in engines.PILES if (*c[:2], substeps) in chosen]
 
 
-def processes(quick, only, known):
+def processes(quick):
     """Measure the seconds of whole processes, those of commands.csv: contact.py, imports, a step
     that is compiled. The first of each finds empty caches, and fills them."""
     commands = stored.load(engines.HERE)[0]["commands"]

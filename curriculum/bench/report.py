@@ -5,7 +5,7 @@ The words stand in page.md, readme.md and claims.md, the numbers come from the C
 
 from operator import itemgetter
 
-from contact import COMPILE_FROM, MODELS, STEPPED, format_number
+from contact import MODELS, STEPPED, format_number
 from curriculum import stored
 from curriculum.bench import measure, problems
 from curriculum.bench.engines import ENGINES, HERE, LABELS
@@ -43,12 +43,12 @@ def peer(p):
     return [LABELS[p["engine"]] if p else "-", error_of(p), time_of(p)]
 
 
-def step_of(row, time):
+def step_of(row):
     """Return engine and setting as typed, and the time of a step of a pile: two cells."""
     if row is None:
         return ["-", "-"]
     cut = f", {row['substeps']} substeps" if row["substeps"] > 1 else ""
-    return [called(row | {"engine": LABELS[row["engine"]]}) + cut, format_number(row[time])]
+    return [called(row | {"engine": LABELS[row["engine"]]}) + cut, format_number(row["us"])]
 
 
 def loses(one, other):
@@ -68,17 +68,17 @@ def limits(points):
                                    if loses(mine.get(name), other)} for each in others)  # fmt: skip
 
 
-def races(rows, depths, time):
+def races(rows, depths):
     """Yield (balls, depth, our fastest row, leapfrog's, the fastest other engine's) of piles."""
     for depth in depths:
-        sides = [measure.fastest(rows, depth, w, time) for w in (MODELS, ["leapfrog"], ENGINES)]
+        sides = [measure.fastest(rows, depth, w) for w in (MODELS, ["leapfrog"], ENGINES)]
         for count in sorted(set().union(*sides)):
             yield count, depth, *(side.get(count) for side in sides)
 
 
-def claims(points, piles, processes):
+def claims(points, piles):
     """Return the numbers of claims.md and page.md: leapfrog and exact beside other engines, losses
-    too; piles at rest; the cost of compiling; how far times differ between processes."""
+    too; piles at rest; how far times differ between processes."""
     there = {p["engine"] for p in points}
     *others, last = [LABELS[name] for name in PEERS if name in there] or ["nobody"]
     exact, rival, leapfrog = (contest(points, [name]) for name in ("exact", REFERENCE, "leapfrog"))
@@ -88,8 +88,6 @@ def claims(points, piles, processes):
     errors = ([p[key] for _, p in both] for key in ("error", "error_max"))
     usual, worst = (format_number(max(each, default=None)) for each in errors)
     spans = sorted(100.0 * (p["ms_max"] / p["ms_min"] - 1.0) for p in points if p["ms"]) or [0.0]
-    taken = {row["process"]: row["seconds"] for row in processes}
-    first = {row["process"]: row["first"] for row in processes}
     return dict(
         peers=f"{', '.join(others)} and {last}",
         where=where(points),
@@ -100,9 +98,6 @@ def claims(points, piles, processes):
         phases=PHASES,
         our_piles=ratios(piles, 2),
         leapfrog_piles=ratios(piles, 3),
-        numba=format_number(taken.get("one compiled step", 0.0) - taken.get("import numpy", 0.0)),
-        first=format_number(first.get("one compiled step")),
-        many=COMPILE_FROM,
         usual_span=format_number(spans[len(spans) // 2]),
         widest_span=format_number(spans[-1]),
     )
@@ -120,8 +115,8 @@ def where(points):
 def ratios(piles, which):
     """Return how many times as long as ours the fastest other engine takes, for piles at rest, and
     where that is least."""
-    found = {race[4]["resting"] / race[which]["resting"]: f"{race[0]:,} balls, {race[1]:g} r"
-             for race in races(piles, DEPTHS, "resting") if race[which] and race[4]}  # fmt: skip
+    found = {race[4]["us"] / race[which]["us"]: f"{race[0]:,} balls, {race[1]:g} r"
+             for race in races(piles, DEPTHS) if race[which] and race[4]}  # fmt: skip
     least, most = min(found, default=None), max(found, default=None)
     low = f"1/{format_number(1.0 / least)}" if least and least < 1.0 else format_number(least)
     return f"{low} to {format_number(most)} times (least: {found.get(least)})"
@@ -141,8 +136,8 @@ def take(points, piles):
         elif row:
             depth = min(d for d in DEPTHS if row["mean_depth"] <= d)
             other = measure.fastest(piles, depth, ENGINES).get(row["bodies"])
-            rival, time = step_of(other, "resting")
-            mine = f"{depth:g}, mean depth", f"{format_number(row['resting'])} µs a step"
+            rival, time = step_of(other)
+            mine = f"{depth:g}, mean depth", f"{format_number(row['us'])} µs a step"
             yield [*cells, *mine, rival, f"{depth:g}", f"{time} µs a step"]
 
 
@@ -174,15 +169,6 @@ def losses(rows):
                 yield [words, name, error_of(mine), time_of(mine), *peer(other)]
 
 
-def falling(rows):
-    """Yield a row an engine: the time of a step while a pile falls, at its fastest setting."""
-    for engine in dict.fromkeys(row["engine"] for row in rows):
-        mine = (row for row in rows if row["engine"] == engine)
-        found = measure.best(mine, "bodies", itemgetter("falling"))
-        each = (found.get(count, {}) for count in (*measure.SIZES, measure.MANY))
-        yield [LABELS[engine], *(format_number(row.get("falling")) for row in each)]
-
-
 def written(name, sections, made):
     """Return page.md or readme.md with everything filled in."""
     points, piles, heap, processes = (sections.get(part, ()) for part in measure.PARTS)
@@ -190,9 +176,9 @@ def written(name, sections, made):
     for each in made.values():
         about["versions"] |= each["versions"]
     there = (f"{row[1]} {about['versions'].get(row[1], 'not there')}" for row in ENGINES.values())
-    facts = claims(points, piles, processes)
+    facts = claims(points, piles)
     template, words = ((HERE / file).read_text("utf-8") for file in (name, "claims.md"))
-    facts |= zip(("claims", "piles", "compiled"), words.format(**facts).strip().split("\n\n"))
+    facts |= zip(("claims", "piles"), words.format(**facts).strip().split("\n\n"))
     spent = map(dict.values, processes)
     return template.format(
         **facts,
@@ -203,18 +189,17 @@ def written(name, sections, made):
         errors=stored.lines(winners(points, error_of)),
         times=stored.lines(winners(points, time_of)),
         losses=stored.lines(losses(points)),
-        races=stored.lines(raced(piles, DEPTHS, "resting")),
-        heap=stored.lines(raced(heap, (1e-2, *DEPTHS), "falling")),
-        falling=stored.lines(falling(piles)),
+        races=stored.lines(raced(piles, DEPTHS)),
+        heap=stored.lines(raced(heap, (1e-2, *DEPTHS))),
         processes=stored.lines([name, *map(format_number, each)] for name, *each in spent),
         origins="\n".join(f"- {part}: {stored.footer(each)}" for part, each in made.items()),
     )
 
 
-def raced(rows, depths, time):
+def raced(rows, depths):
     """Yield rows of a table of races: setting and time of each side."""
-    for count, depth, *each in races(rows, depths, time):
-        yield [f"{count:,}", f"{depth:g}", *(cell for row in each for cell in step_of(row, time))]
+    for count, depth, *each in races(rows, depths):
+        yield [f"{count:,}", f"{depth:g}", *(cell for row in each for cell in step_of(row))]
 
 
 def front(dots):

@@ -32,13 +32,12 @@ LOOKS = {
     "drake": ("#56b4e9", "X", (0, (6, 2, 1, 2))),
     "rapier": ("#b2182b", "<", (0, (3, 1, 1, 1))),
     "dart": ("#1b7837", ">", (0, (2, 1))),
-    "siconos": ("#7f7f00", "h", (0, (1, 3))),
     "events": ("#333399", "p", (0, (8, 2))),
 }
 COLORS = {model: LOOKS[model][0] for model in contact.MODELS}
 IN_THE_DARK = {
     INK: "#e6e6e6", PALE: "#a8a8a8", GRID: "#3a3f4a", "#0072b2": "#56a8e0",
-    "#7b5ea7": "#b59ae0", "#a6611a": "#cf8f4f", "#b2182b": "#e8737f", "#7f7f00": "#c2c24a",
+    "#7b5ea7": "#b59ae0", "#a6611a": "#cf8f4f", "#b2182b": "#e8737f",
     "#1b7837": "#5cc47c", "#333399": "#9a9af0", "#d55e00": "#ef7a2a", "#009e73": "#2fc79a",
     "#cc79a7": "#e096bd", "#e69f00": "#f5b83d",
 }  # fmt: skip

@@ -4,7 +4,6 @@ import math
 import re
 import shlex
 import time
-from functools import partial
 
 import numpy as np
 import pytest
@@ -66,10 +65,10 @@ def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setti
     scene, dt, t = contact.build_scene("drop"), 0.002, 0.4
     session = setting.build(scene, dt, substeps)
     heights = np.array(session.trace(200))
-    assert heights.shape == (201, 1) and bool(session.took) == (setting.engine == "siconos")
+    assert heights.shape == (201, 1)
     lag = heights[-1, 0] - (scene.q0[1, 0] - g * t * t / 2)
     late = 1.0 if setting.engine == "pymunk" else -1.0  # it moves first, then accelerates
-    exact = not setting.substeps or setting.engine in ("leapfrog", "siconos")
+    exact = not setting.substeps or setting.engine == "leapfrog"
     known = late * g * t * dt / (substeps * setting.inner) / 2
     known = 0.0 if exact or "ahead" in setting.knobs else known
     within = 0.7 * math.sqrt(setting.knobs.get("accuracy", 0.0))  # of CENIC, measured
@@ -79,7 +78,7 @@ def test_a_falling_ball_lags_by_half_a_substep_as_semi_implicit_euler_does(setti
 @pytest.mark.parametrize("setting", ends(OTHERS), ids=named)
 def test_an_engine_rests_awake_and_keeps_momentum(setting):
     q, v = setting.build(contact.scene_of(0.0, 1.0, vx=1e-5), 0.002).states(1000)
-    slow = setting.engine in ("drake", "siconos", "dart") or setting.knobs.get("push") == 0
+    slow = setting.engine in ("drake", "dart") or setting.knobs.get("push") == 0
     assert abs(q[-1, 1, 0] - R) < (0.2 if slow else 0.02) * R and abs(v[-1]).max() < 1e-2
     assert v[-1, 0, 0] == pytest.approx(1e-5, rel=1e-3), "awake, it slides on for ever"
     scene = contact.scene_of([-0.2, 0.2], 5.0, [3.0, 1.0], [0.1, 0.05], vx=[1.0, -1.0])
@@ -88,7 +87,7 @@ def test_an_engine_rests_awake_and_keeps_momentum(setting):
 
 
 KEPT = stored.load(bench.FULL)[0]["points"]
-HERE = [p for p in KEPT if bench.called(p) in engines.BY_NAME]  # of the engines that are installed
+HERE = [p for p in KEPT if report.called(p) in engines.BY_NAME]  # of the engines that are installed
 ALL_BEST = [p for engine in engines.ENGINES for p in measure.contest(HERE, [engine]).values()]
 ONLY = "drake", "elastic"  # of its problems with restitution
 # three of four; the rest takes far longer
@@ -98,7 +97,7 @@ BEST = [p for p in ALL_BEST if p["ms"] < 200.0 or (p["engine"], p["problem"]) ==
 @pytest.mark.parametrize("best", BEST, ids=lambda p: f"{p['engine']} {p['problem']}")
 def test_an_engines_best_setting_of_a_problem_is_as_near_as_the_page_says(best):
     """Within a factor of three, as of another version: restitution, stiffness, what is fixed."""
-    job = best["problem"], bench.called(best), best["dt"], best["substeps"], 1
+    job = best["problem"], report.called(best), best["dt"], best["substeps"], 1
     row = measure.errors_of(job)
     assert row["error"] <= 3.0 * best["error_max"] + 1e-12 and row["diverged"] == 0
     assert row["work"] == pytest.approx(best["work"], rel=0.5)
@@ -115,7 +114,7 @@ def test_a_point_is_what_one_works_out_by_hand_in_medians_over_its_starts():
     assert row["error"] is None, "the reference has no error of its own"
 
 
-def test_times_are_medians_of_runs_after_a_short_one_and_of_piles_from_both_starts():
+def test_times_are_medians_of_runs_after_a_short_one_and_of_piles_from_where_they_settled():
     calls = []
 
     def clock(call):
@@ -125,23 +124,13 @@ def test_times_are_medians_of_runs_after_a_short_one_and_of_piles_from_both_star
 
     assert measure.time_of(("drop", LANDS, 0.002, 1, 5), clock) == 2.0
     assert [call.args[0] for call in calls] == [50, 2000, 2000, 2000]
-    lcp, scene = engines.BY_NAME["lcp iters=4 baumgarte=1"], measure.shaft(12)
+    lcp, scene = engines.BY_NAME["lcp iters=5 warm=0.8"], measure.shaft(12)
     settled = scene._replace(q0=scene.q0 + 1.0)
     calls.clear()
     job = 12, lcp, 4, (settled.q0, settled.v0, {})
-    assert measure.fall_and_rest(job, clock) == pytest.approx([9e3 / 50] * 2)
-    for call, start in zip(calls, [scene] * 3 + [settled] * 3):  # 250 looks, 4 steps each
-        run = contact.run_model("lcp", start, 0.0005, 1000, call.func.__self__.settings)
-        assert np.array_equal(call.func.__self__.state(), (run.q[-1], run.v[-1]))
-
-
-def test_a_model_goes_on_from_its_state_whatever_its_memory_holds():
-    scene = measure.shaft(12)
-    session = engines.BY_NAME["lcp iters=5 warm=0.8"].build(scene, 0.002, 4)
-    for looks in (1, 60, 39):
-        session.rows[1:] = math.nan
-        session.go(looks)
-    run = contact.run_model("lcp", scene, 0.0005, 400, session.settings)
+    assert measure.time_of_pile(job, clock) == pytest.approx(9e3 / 50)
+    session = calls[0].func.__self__  # it went on from look to look: 250 of 4 steps each
+    run = contact.run_model("lcp", settled, 0.0005, 1000, session.settings)
     assert np.array_equal(session.state(), (run.q[-1], run.v[-1]))
 
 
@@ -150,7 +139,7 @@ def test_all_engines_get_the_same_substeps_and_leapfrogs_two_solves_count_twice(
     for c in (c for c in ALL if c.substeps):
         found.setdefault(c.engine, set()).update(n * c.inner for n in c.substeps)
     assert found.pop("leapfrog") == {2, 4, 8, 16, 32}
-    assert all(found.pop(slow, {1, 4}) == {1, 4} for slow in ("siconos", "drake"))
+    assert all(found.pop(slow, {1, 4}) == {1, 4} for slow in ("drake",))
     assert all({1, 4, 16} <= work and max(work) in (16, 64) for work in found.values())
 
 
@@ -209,8 +198,8 @@ def test_the_heap_is_that_of_simbenchmark_in_a_plane():
     row = measure.sink_of((lcp, 1, 600))
     assert 1e-6 < row["mean_depth"] < row["worst_depth"] < 0.2 and row["bodies"] == 216
     assert measure.time_of_heap((lcp, 1, 50)) > 1.0
-    rows = [row | dict(falling=t, mean_depth=d) for t, d in ((9.0, 1e-4), (3.0, 1e-2), (1.0, None))]
-    assert measure.fastest(rows, 1e-3, ["lcp"], "falling")[216]["falling"] == 9.0
+    rows = [row | dict(us=t, mean_depth=d) for t, d in ((9.0, 1e-4), (3.0, 1e-2), (1.0, None))]
+    assert measure.fastest(rows, 1e-3, ["lcp"])[216]["us"] == 9.0
 
 
 LAST = {setting.engine: (setting, substeps) for setting, substeps in engines.PILES}
@@ -237,24 +226,14 @@ def test_time_is_that_of_the_processor_in_fresh_processes_that_do_not_fail(tmp_p
         timing.whole_process(("-c | import no_such", str(tmp_path)))
 
 
-def test_rows_come_back_as_measured_and_one_engine_alone_leaves_all_others(tmp_path, monkeypatch):
-    def measured(quick, only, known, error=0.25):
-        return [point(c.engine, None if c.engine == "exact" else error, 1.23456, setting=c.options)
-                for c in engines.BY_NAME.values() if only in c.name]  # fmt: skip
-
-    monkeypatch.setitem(measure.PARTS, "points", measured)
-    bench.take("points", True, "", tmp_path)
-    whole = stored.load(tmp_path)[0]["points"]
-    assert whole == measured(True, "", [])
-    monkeypatch.setitem(measure.PARTS, "points", partial(measured, error=8.0))
-    bench.take("points", True, LANDS, tmp_path)
+def test_rows_come_back_as_measured_and_replace_all_of_their_part(tmp_path, monkeypatch):
+    rows = [point("exact", None, 1.23456), point("lcp", 0.25, 1.0, setting="iters=20")]
+    stored.save(tmp_path / "points.csv", [*rows, point("gone", 0.1, 1.0)])
+    (tmp_path / "made.json").write_text('{"points gone": {}, "piles": {}}')
+    monkeypatch.setitem(measure.PARTS, "points", lambda quick: rows)
+    bench.take("points", True, tmp_path)
     sections, made = stored.load(tmp_path)
-    new = [LANDS in bench.called(row) for row in whole]
-    changed = [row | dict(error=8.0, error_max=8.0) if one else row for row, one in zip(whole, new)]
-    assert sum(new) == 3 and sections["points"] == changed
-    assert sorted(made) == ["points", f"points {LANDS}"]
-    with pytest.raises(ValueError, match="--only no_such: no setting"):
-        bench.take("points", True, "no_such", tmp_path)
+    assert sections["points"] == rows and sorted(made) == ["piles", "points"]
 
 
 def test_page_block_and_figures_are_made_of_the_results_that_are_kept(tmp_path):
