@@ -7,7 +7,6 @@ exercises/. Its figures compute with the functions of contact.py, made into Java
     build.py      collects all that; chapter.py, panels.py, exercises.py make the parts
     bundle.py     joins the modules into one script without globals, and runs some while building:
                   still.js draws every figure's first picture, for readers without scripts
-    fonts.py      the fonts; pictures.py the README's picture, by a browser.py that tests share
     main.js       the start; stage.js what can be grabbed and set; draw.js charts and balls
     runs.js       recordings of the made steps, for which python.js has what JavaScript lacks
     figures/NAME.js   a figure each, for the slot <!-- figure: NAME?quantity=value -->

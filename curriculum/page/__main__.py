@@ -1,4 +1,4 @@
-"""python -m curriculum.page [--out FILE] [--pictures FOLDER]"""
+"""python -m curriculum.page [--out FILE]"""
 
 import sys
 from pathlib import Path
@@ -12,9 +12,9 @@ def main(argv=None):
     parser = Parser(
         prog="python -m curriculum.page", description="Write the chapter as one web page."
     )
-    add, default = parser.add_argument, Path("outputs/contact.html")
-    add("--out", type=Path, default=default, metavar="FILE", help=f"the file to write ({default})")
-    add("--pictures", type=Path, metavar="FOLDER", help="and the README's picture of it")
+    default = Path("outputs/contact.html")
+    written = f"the file to write ({default})"
+    parser.add_argument("--out", type=Path, default=default, metavar="FILE", help=written)
     args = parser.parse_args(argv)
     if args.out.is_dir():
         parser.error(f"--out: given the folder {args.out}; allowed: a file")
@@ -30,10 +30,6 @@ def main(argv=None):
         return 1
     print(f"{args.out}: {len(page.encode()) / 1000:.0f} kB, one file; open it in a browser:")
     print(args.out.resolve().as_uri())
-    if args.pictures:
-        with needs("dev"):
-            from curriculum.page import pictures
-        print(pictures.photograph(args.out, args.pictures))
     return 0
 
 

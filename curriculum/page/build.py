@@ -13,10 +13,11 @@ from markupsafe import Markup
 
 import contact
 from curriculum import stored
-from curriculum.page import chapter, fonts
+from curriculum.page import chapter
 from curriculum.page.bundle import HERE, bundle, evaluate
 from curriculum.page.exercises import all_exercises
 from curriculum.page.panels import IDEAS, panel
+from curriculum.prose.chapter import CHAPTER
 from curriculum.prose.references import fill
 from curriculum.show import picture
 from curriculum.source import ROOT, read_all
@@ -24,6 +25,12 @@ from curriculum.source import ROOT, read_all
 SCENES = ("drop", "bounce", "stack")  # of the figures: balls in one column
 OWN = ("damping", "restitution")  # of a scene
 EARLY = 'document.documentElement.className = "js"'  # before the first paint
+FACES = (  # name, file, kind, style, weight: how they were cut, their licenses say
+    ("Chapter Maths", "maths.woff", "woff", "normal", 400),
+    ("Chapter Text", "text-regular.woff2", "woff2", "normal", 400),
+    ("Chapter Text", "text-italic.woff2", "woff2", "italic", 400),
+    ("Chapter Text", "text-bold.woff2", "woff2", "normal", 700),
+)
 COLAB = "https://colab.research.google.com/github/{}/blob/gh-pages/contact.ipynb"
 
 
@@ -66,9 +73,7 @@ def base64_of(content):
 
 def drawn_by(kind, name):
     """The picture NAME that bench or stress has drawn, as the template wants it."""
-    path = next((ROOT / "curriculum" / kind / "results").glob(f"*{name}.svg"), None)
-    if path is None:
-        raise ValueError(f"{chapter.CHAPTER}: {kind} has drawn no picture {name}")
+    [path] = (ROOT / "curriculum" / kind / "results").glob(f"*{name}.svg")
     text = path.read_text("utf-8")
     root = ElementTree.fromstring(text)
     _, _, width, height = root.get("viewBox").split()
@@ -97,7 +102,7 @@ def environment(**held):
     colab = COLAB.format(repository) if repository else None
     faces = [
         (name, Markup(f"data:font/{kind};base64,{base64_of((HERE / file).read_bytes())}"), *rest)
-        for name, file, kind, *rest in fonts.FACES
+        for name, file, kind, *rest in FACES
     ]
     made.globals.update(colab=colab, faces=faces, models=[*contact.MODELS])
     made.globals.update(stored=stored, picture=picture, drawn_by=drawn_by, **held)
@@ -105,23 +110,17 @@ def environment(**held):
     return made
 
 
-def build(text=None):
-    """The page of the chapter, or of `text` in its place. Raises ValueError (file:line: what)
-    where it can't be shown as it is."""
-    text = (ROOT / chapter.CHAPTER).read_text("utf-8") if text is None else text
-    exercises, regions = all_exercises(), read_all()
+def build():
+    """The page of the chapter, of which curriculum.gate tells all that can't be shown. Raises
+    ValueError at a figure that can't be drawn."""
+    text = (ROOT / CHAPTER).read_text("utf-8")
     end = ("heading", (2, "colophon", "Colophon")), ("colophon", ())
     parts = [*chapter.blocks(fill(text)), *end]
-    for kind, (name, *_) in ((kind, values) for kind, values in parts if values):
-        known = {"exercise": exercises, "region": regions}.get(kind, [name])
-        if name not in known:
-            held = f"there is no {kind} {name}; known: {', '.join(known)}"
-            raise ValueError(f"{chapter.CHAPTER}: {held}")
     slots = [values for kind, values in parts if kind == "figure"]
     figures = dict(zip([id for id, *_ in slots], draw_slots([slot for _, *slot in slots])))
     for error in (shown["error"] for shown in figures.values() if "error" in shown):
-        raise ValueError(f"{chapter.CHAPTER}: {error}")
-    templates = environment(figures=figures, exercises=exercises, regions=regions)
+        raise ValueError(f"{CHAPTER}: {error}")
+    templates = environment(figures=figures, exercises=all_exercises(), regions=read_all())
     macros = templates.get_template("parts.html.j2").module
     titles = {id: figure["title"] for id, figure in figures.items()}
     body, ((_, _, title), *contents) = chapter.assemble(parts, macros, titles)

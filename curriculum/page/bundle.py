@@ -76,8 +76,6 @@ def module(path, text):
         names.append(f"{called}: {own}" if called else own)
     held = ", ".join(names)
     body = EXPORT.sub(r"\1 \2", IMPORT.sub(imported, LISTED.sub("", text)))
-    if re.search(r"^(import|export)\b", body, re.MULTILINE):
-        raise ValueError(f"curriculum/page/{path}: an import or export that is not on one line")
     return f'modules["{path}"] = (() => {{\n{body}return {{ {held} }};\n}})();\n'
 
 
@@ -92,8 +90,6 @@ def bundle(start, data, lit="lit-html.js"):
             paths += needs[path]
     order = TopologicalSorter(needs).static_order()
     joined = "".join(module(path, texts[path]) for path in order)
-    if "</script" in joined.lower():
-        raise ValueError("curriculum/page: the text '</script' in a module would end the script")
     head = '"use strict";\nconst modules = {};\n'
     return f'(() => {{\n{head}{joined}return modules["{start}"];\n}})()'
 

@@ -16,8 +16,7 @@ from mdit_py_plugins.anchors import anchors_plugin
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 import contact
-from curriculum.page import fonts
-from curriculum.prose.chapter import CHAPTER, read
+from curriculum.prose.chapter import read
 
 FOLDED = ("references", "the-rest-of-the-file", "colophon")  # sections, on a phone
 # the blanks within a number and between it and its unit
@@ -30,15 +29,8 @@ UNIT = re.compile(
 
 
 def formula(text, options):
-    """A formula as MathML. Raises ValueError where the page's font lacks one of its characters."""
-    shown = convert(text, display="block" if options["display_mode"] else "inline")
-    lacking = fonts.lacking(Markup(shown).striptags())
-    if lacking:
-        raise ValueError(
-            f"{CHAPTER}: the formula {text!r} has {' '.join(lacking)}, which the page's font "
-            "lacks; see curriculum/page/fonts.py"
-        )
-    return shown
+    """A formula as MathML."""
+    return convert(text, display="block" if options["display_mode"] else "inline")
 
 
 def text(self, tokens, index, options, env):

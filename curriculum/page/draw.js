@@ -103,18 +103,14 @@ export const axis = (domain, name, ...at) => ({
 
 export const logAxis = (...given) => ({ ...axis(...given), log: true });
 
-// An axis of time steps from 0.5 ms on, `count` doublings long.
-export const timeSteps = (count) => logAxis([0.0005, 0.0005 * 2 ** count], "time step dt (ms)",
-  ...range(count + 1, (k) => [0.0005 * 2 ** k, plain(0.5 * 2 ** k)]));
-
 /* A chart from `left` and `top` on, {picture, sx, sy, box, knob}: knob(value, name, step) stands on
  * the x axis and sets a value of the state. lines: {model, points, kind}, each up to where a value is
  * no number; with `layers`, drawn as each [kind, up to which x]. zero: a line where y is 0. */
-export function plot(view, { left = 0, top = 0, height = view.height, x, y, lines = [], zero }) {
+export function plot(view, { left = 0, top = 0, x, y, lines = [], zero }) {
   const wide = Math.max(0, ...y.ticks.map(([, text]) => text.length));
   const box = {
     left: left + Math.max(26, 12 + 8.4 * wide), right: view.width - 12,
-    top: top + (y.label ? 28 : 8), bottom: height - (x.label ? 46 : 28),
+    top: top + (y.label ? 28 : 8), bottom: view.height - (x.label ? 46 : 28),
   };
   const [sx, sy] = [scaleOf(x, box.left, box.right), scaleOf(y, box.bottom, box.top)];
   const across = y.ticks.map(([value, text]) => [
@@ -141,7 +137,7 @@ export function plot(view, { left = 0, top = 0, height = view.height, x, y, line
     across, along, line(box.left, box.bottom, box.right, box.bottom, "axis"),
     zero ? line(box.left, sy(0), box.right, sy(0), "rule") : "",
     label(y.label, left, top + 14, "start", "axis-name"),
-    label(x.label, box.right, height - 4, "end", "axis-name"), drawn,
+    label(x.label, box.right, view.height - 4, "end", "axis-name"), drawn,
   ];
   const knob = (value, name, step) => view.point(sx(view.own[value]), box.bottom,
     { label: name, value, low: x.domain[0], high: x.domain[1], step, at: sx.back });

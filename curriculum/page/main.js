@@ -1,5 +1,5 @@
 /* The start: figures, settings in the address, bets, and what is folded on a phone. */
-import { forgetBets, startBet } from "./bets.js";
+import { startBet } from "./bets.js";
 import { figures } from "./figures.js";
 import { stage } from "./stage.js";
 
@@ -24,7 +24,6 @@ if (!history.state) follow();
 for (const [id, set] of Object.entries(settings)) takes[id]?.(set); // after a reload
 
 document.querySelectorAll(".exercise:has(.bet)").forEach(startBet);
-document.querySelector(".forget").addEventListener("click", forgetBets);
 
 // On a phone folded: code, which is wider than the screen, and what asks for a terminal.
 const folds = [...document.querySelectorAll("details.folds")];

@@ -12,10 +12,9 @@
  *   play(own)         what the button says that lets it run
  *   switches(own)     buttons [[label, name, value]]: own[name] becomes value, or 0 if it was that
  *
- * The view has own, width, height, set(changes), and grab({label, value, low, high, step, at, also,
- * seen, release, twin}, shape), a shape that one can seize. A value is a name of the state, or two;
- * at(x, y) gives it; `also` is set with it; seen() is what one sees, if that is not the state; no key
- * leads to a twin of another handle. view.point is grab with a knob at (x, y). */
+ * The view has own, width, height, set(changes), and grab({label, value, low, high, step, at}, shape),
+ * a shape that one can seize. A value is a name of the state, which at(x, y) gives. view.point is grab
+ * with a knob at (x, y). */
 import { html, nothing, render, svg } from "./lit.js";
 import { circle, plain, within } from "./draw.js";
 import { data } from "./data.js";
@@ -30,8 +29,7 @@ export const QUANTITIES = {
   mu: { low: 0, high: 3, step: 0.01, unit: "", label: "Friction µ" },
 };
 const PLACES = 200; // of a slider whose steps are shares
-const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
-  Home: [-Infinity, 0], End: [Infinity, 0] };
+const KEYS = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: 1, ArrowDown: -1, Home: -Infinity, End: Infinity };
 const LEAST = 358; // px: on a screen smaller than a phone's it is drawn so, and made smaller
 
 export const asked = (what, own) => (typeof what === "function" ? what(own) : what);
@@ -52,7 +50,7 @@ export function viewOf(figure, given, width = 640) {
     own, text: { ...own }, ranges, width, running: false,
     get height() { return figure.height(this.width); },
     grab({ value, low, high }, shape) {
-      [value].flat().forEach((name, k) => (ranges[name] = [[low].flat()[k], [high].flat()[k]]));
+      ranges[value] = [low, high];
       return shape;
     },
     point(x, y, what) {
@@ -81,50 +79,39 @@ function slider(view, name) {
 }
 
 /* What is grabbed: a hand changes its state from where it took hold, so that nothing jumps; the arrow
- * keys by `step`, or ten with shift. Of two values each is a slider to a screen reader. */
+ * keys by `step`, or ten with shift. */
 function hands(view, box) {
   let held = null; // by which pointer, and how far from the value's own place
-  return ({ label, value, low, high, step, at, also, seen, release, twin }, shape) => {
-    const [names, lows, highs] = [value, low, high].map((each) => [each].flat());
-    const now = () => (seen ? [seen()] : names.map((name) => view.own[name]));
-    const put = (wanted) => view.set({ ...also, ...Object.fromEntries(names.map((name, k) =>
-      [name, within(lows[k], Number(wanted[k].toPrecision(5)), highs[k])])) });
+  return ({ label, value, low, high, step, at }, shape) => {
+    const put = (wanted) => view.set({ [value]: within(low, Number(wanted.toPrecision(5)), high) });
     const placeOf = ({ clientX, clientY }) => {
       const { left, top, width } = box.querySelector("svg").getBoundingClientRect();
-      return [at(...[clientX - left, clientY - top].map((px) => (px * view.width) / width))].flat();
+      return at(...[clientX - left, clientY - top].map((px) => (px * view.width) / width));
     };
     const seize = (event) => {
       if (event.button > 0 || held) return;
       event.preventDefault();
-      event.currentTarget.querySelector("[tabindex]").focus({ preventScroll: true });
+      event.currentTarget.focus({ preventScroll: true });
       event.currentTarget.setPointerCapture(event.pointerId);
-      const place = placeOf(event);
-      const first = now().map((v, k) => within(lows[k], v, highs[k])); // a ball seized far off comes here
-      held = { pointer: event.pointerId, off: first.map((v, k) => v - place[k]) };
+      held = { pointer: event.pointerId, off: view.own[value] - placeOf(event) };
       view.stop();
-      put(first);
     };
     const drag = (event) => {
-      if (held?.pointer === event.pointerId) put(placeOf(event).map((v, k) => v + held.off[k]));
+      if (held?.pointer === event.pointerId) put(placeOf(event) + held.off);
     };
     const letGo = (event) => {
-      if (held?.pointer !== event.pointerId) return;
-      held = null;
-      release?.();
+      if (held?.pointer === event.pointerId) held = null;
     };
     const key = (event) => {
       if (!KEYS[event.key] || event.ctrlKey || event.altKey || event.metaKey) return;
       event.preventDefault();
-      const [across, up] = KEYS[event.key];
-      const by = names.length > 1 ? [across, up] : [across + up];
-      put(now().map((v, k) => v + by[k] * (event.shiftKey ? 10 : 1) * step));
+      put(view.own[value] + KEYS[event.key] * (event.shiftKey ? 10 : 1) * step);
     };
     const stay = (event) => event.preventDefault(); // no finger moves the page
-    const name = (k) => label + (names.length > 1 ? [", across", ", up"][k] : "");
     return svg`<g class="handle" @pointerdown=${seize} @pointermove=${drag} @pointerup=${letGo}
-      @pointercancel=${letGo} @touchstart=${stay}>${names.map((_, k) => svg`<g role="slider"
-      tabindex=${twin ? -1 : 0} aria-label=${name(k)} aria-valuemin=${lows[k]} aria-valuemax=${highs[k]}
-      aria-valuenow=${within(lows[k], now()[k], highs[k])} @keydown=${key}>${k ? "" : shape}</g>`)}</g>`;
+      @pointercancel=${letGo} @touchstart=${stay} @keydown=${key} role="slider" tabindex="0"
+      aria-label=${label} aria-valuemin=${low} aria-valuemax=${high}
+      aria-valuenow=${within(low, view.own[value], high)}>${shape}</g>`;
   };
 }
 
@@ -170,11 +157,9 @@ export function stage(box, figure, given, still, settings) {
   }
   function take(set) {
     Object.assign(own, text);
-    for (const _ of [1, 2]) { // a lifted ball has a longer time, whichever the address names first
-      figure.draw(view); // which tells the ranges of its handles
-      for (const [name, value] of Object.entries(set))
-        if (fits(figure, view, name, value)) own[name] = value;
-    }
+    figure.draw(view); // which tells the ranges of its handles
+    for (const [name, value] of Object.entries(set))
+      if (fits(figure, view, name, value)) own[name] = value;
     view.stop();
   }
   const button = (words, act, pressed) => html`<button type="button" aria-pressed=${pressed ?? nothing}

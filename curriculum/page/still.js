@@ -5,7 +5,7 @@ import { textOf } from "./lit.js";
 import { asked, captionOf, fits, knobsOf, QUANTITIES, viewOf, worded } from "./stage.js";
 
 const [WIDE, NARROW] = [640, 358]; // px
-const CHOICES = { // words that a slot may set, where the figure has no switch of that name
+const CHOICES = { // words that a slot may set
   models: [...data.models, "implicit"], model: data.models, scene: Object.keys(data.scenes),
   knobs: Object.keys(QUANTITIES),
 };
@@ -15,11 +15,10 @@ function check(figure, given) {
   const view = viewOf(figure, {});
   figure.draw(view); // which tells the ranges of its handles
   for (const [name, value] of Object.entries(given)) {
-    const switches = (figure.switches?.(view.own) ?? []).filter(([, key]) => key === name);
-    const known = switches.length ? switches.map(([, , to]) => String(to)) : CHOICES[name];
+    const known = CHOICES[name];
     if (!(name in view.own))
       throw new Error(`${name} sets nothing; known: ${Object.keys(view.own).join(", ")}`);
-    if (known && value !== 0 && !String(value).split(",").every((word) => known.includes(word)))
+    if (known && !String(value).split(",").every((word) => known.includes(word)))
       throw new Error(`${name}=${value}; allowed: ${known.join(", ")}`);
     if (name in view.ranges && !fits(figure, view, name, value))
       throw new Error(`${name}=${value}; allowed: from ${view.ranges[name].join(" to ")}`);

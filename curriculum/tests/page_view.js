@@ -19,8 +19,8 @@ const lost = (name, given, width) => {
   const [found, first] = [new Set(), drawn(name, given, {}, width)];
   const knobs = first.knobs.flatMap((knob) =>
     ["low", "high"].map((end) => ({ [knob]: MADE.QUANTITIES[knob][end] })));
-  const hands = first.handles.flatMap(({ value, low, high, also }) => [low, high].map((ends) => ({ ...also,
-    ...Object.fromEntries([value].flat().map((key, k) => [key, [ends].flat()[k] ?? ends])) })));
+  const hands = first.handles.flatMap(({ value, low, high }) =>
+    [low, high].map((end) => ({ [value]: end })));
   for (const own of [{}, ...hands].flatMap((hand) => [{}, ...knobs].map((knob) => ({ ...hand, ...knob })))) {
     const { svg, words, handles, height } = drawn(name, given, own, width);
     const outside = ([, x, y], by) => !(x >= -by && x <= width + by && y >= -by && y <= height + 1);

@@ -233,9 +233,11 @@ def test_picture_falls_tells_what_comes_only_once_it_was_played_and_enlarges_a_s
         stack.larger() * said(stack.words)[1], rel=0.02
     )
     assert "ball 1 on the table" in stack.words
-    lifted = draw("falls", given, {"lift": after.handles[0]["high"]})
-    name, ball = lifted.all("text", "strong")[0], lifted.all("circle", "ball")[0]
-    assert name["y"] < ball["cy"] - ball["r"]  # no ball covers its name
+    for slot in SLOTS:
+        if slot.startswith("falls"):  # no ball covers its name
+            for seen in (draw(*asked(slot)), draw(*asked(slot), {"time": 0.0})):
+                balls = seen.all("circle", "ball")
+                assert seen.all("text", "strong")[0]["y"] < min(b["cy"] - b["r"] for b in balls)
 
 
 @pytest.mark.parametrize(
@@ -267,21 +269,6 @@ def test_picture_corner_line_ends_where_a_models_line_crosses_that_of_the_step(
         assert off_line((end, lam), seen.curve(f"m-{model}")) < 0.01
         assert off_line((end, lam), step) < 0.01
         assert of_model(model, seen.words) == pytest.approx(end, abs=1e-3)
-
-
-def test_picture_signs_has_its_normals_from_b_to_a_and_the_depths_and_speeds_it_says(draw):
-    own = {"x": 0.2, "y": 0.15, "vx": -0.7, "vy": 0.4}
-    seen = draw("signs", {}, own)
-    a, b = seen.all("circle", "m-exact")[0], seen.all("circle", "m-fixed")[0]
-    apart = np.array([a["cx"] - b["cx"], a["cy"] - b["cy"]])
-    to_table, speed, between, v_n = said(seen.words)
-    assert to_table == pytest.approx(-seen.gap("m-exact"), abs=0.06)
-    assert between == pytest.approx(2 - np.hypot(*apart) / a["r"], abs=0.06)
-    normal, weight = apart / np.hypot(*apart), [own["vx"], -own["vy"]]
-    assert v_n == pytest.approx(normal @ weight, abs=0.06) and speed == pytest.approx(0.4)
-    turned = re.compile(r"rotate\((\S+)\)")
-    turns = [float(turned.search(each["transform"])[1]) for each in seen.all("path", "push")]
-    assert turns == pytest.approx([-90.0, math.degrees(math.atan2(apart[1], apart[0]))], abs=1.0)
 
 
 @pytest.mark.parametrize("k, c", [(1e4, 80.0), (1e6, 80.0), (1e4, 0.0), (2000.0, 300.0)])
@@ -333,19 +320,6 @@ def test_picture_sweeps_walks_down_the_bowl_to_where_the_balls_are_stopped_one_w
     assert off[1] < 0.3 * off[0]
 
 
-def test_picture_clamp_has_arrows_as_long_as_the_speeds_it_says(draw):
-    seen = draw("clamp", {}, {"vx": 0.4, "vy": -0.9})
-    v = np.array([0.4, -0.9])
-    for _ in range(20):  # with a clamp on each change
-        for n in ([0.6, 0.8], [-0.6, 0.8]):
-            v = v + max(0.0, -v @ n) * np.array(n)
-    (left,) = seen.all("path", "weight")  # only one ball leaves
-    r = seen.all("circle", "m-lcp")[0]["r"]
-    length = float(re.match(r"M0 0H([\d.]+)", left["d"])[1]) + 9
-    assert length / (1.7 * r) == pytest.approx(np.hypot(*v), rel=0.02)
-    assert said(seen.words)[-2:] == pytest.approx([0.0, np.hypot(*v)], rel=0.05)
-
-
 def test_picture_sag_opens_where_its_law_holds_and_its_bars_are_what_it_says(draw):
     for own in ({}, {"iters": 4, "dt": 0.003}):
         seen = draw("sag", {}, own)
@@ -356,16 +330,6 @@ def test_picture_sag_opens_where_its_law_holds_and_its_bars_are_what_it_says(dra
         assert deep == pytest.approx(law, rel=0.1)  # as the text says
     told = said(draw("sag", {"balls": 5}, {"dt": 0.0005, "iters": 1}).words)[-1]
     assert told == pytest.approx(4 * G * 0.0005**2 / 0.2 / R, rel=0.05)
-
-
-def test_picture_sliding_has_slopes_of_one_and_two_and_opens_with_the_texts_errors(draw):
-    seen, right = draw("sliding", {"dt": 0.002}), facts.slide()
-    for model, order in (("lcp", 1), ("leapfrog", 2)):
-        line = np.log(seen.curve(f"m-{model}")[:5])
-        assert np.polyfit(*line.T, 1)[0] == pytest.approx(order, abs=0.25)
-        assert seen.mark(model) == pytest.approx([2.0, right[f"{model}.0.002"]], rel=0.1)
-        told = value(re.search(rf"({NUMBER}) r", seen.words.split(model)[1])[1])
-        assert told == pytest.approx(right[f"{model}.0.002"], rel=0.05)
 
 
 @pytest.mark.parametrize("mu", [2.0, 3.0, 0.0, 1.7])

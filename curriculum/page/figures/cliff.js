@@ -1,7 +1,7 @@
 /* The eigenvalues of a step of a pressed spring, beside the circle of size one; and how far a ball
  * still moves that was lifted by a ten thousandth of its depth at rest. */
-import { circle, label, line, logAxis, mark, ms, number, path, plot, range } from "../draw.js";
-import { tenTo, timeSteps, within } from "../draw.js";
+import { circle, label, line, logAxis, mark, ms, number, path, plain, plot, range } from "../draw.js";
+import { tenTo, within } from "../draw.js";
 import { critical_dt } from "../contact.js";
 import { column, G, kept, R, record } from "../runs.js";
 
@@ -54,7 +54,8 @@ function draw(view) {
     .filter((each) => each >= LOW && each <= HIGH).sort((a, b) => a - b);
   const [left, top] = isWide(width) ? [Math.round(0.42 * width), 0] : [0, Math.round(0.42 * height)];
   const { sx, sy, box, picture, knob } = plot(view, {
-    left, top, x: timeSteps(7),
+    left, top, x: logAxis([LOW, HIGH], "time step dt (ms)",
+      ...range(8, (k) => [LOW * 2 ** k, plain(1000 * LOW * 2 ** k)])),
     y: logAxis([NONE, FARTHEST], `still moving after ${COUNT.toLocaleString("en")} steps / r`,
       [NONE, "<10⁻⁶"], 0.001, 1, 1000, [1e6, tenTo(6)]),
     lines: [{ model: "penalty", kind: "plainly",

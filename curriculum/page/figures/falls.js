@@ -1,11 +1,11 @@
 /* The models side by side over one table, and their gaps over time: dark up to now, faint where one
  * has seen what comes. A stack's overlaps are drawn enlarged. */
-import { arrow, axis, ball, circle, clipped, label, line, ms, number, plain, plot } from "../draw.js";
+import { arrow, axis, ball, clipped, label, line, ms, number, plain, plot } from "../draw.js";
 import { table, within } from "../draw.js";
 import { data } from "../data.js";
 import { column, G, gapsOf, inRow, kept, pushIn, R, record } from "../runs.js";
 
-const [GROUND, NAMES, LOWEST] = [50, 28, 0.4]; // px, px; m: a picture is at least so high
+const [GROUND, NAMES, LOWEST] = [50, 28, 0.34]; // px, px; m: a picture is at least so high
 const SCENES = { drop: "A ball falls", bounce: "A ball bounces", stack: "Three balls stand" };
 
 const run = kept((model, heights, knobs, count) => {
@@ -13,21 +13,18 @@ const run = kept((model, heights, knobs, count) => {
   return { model, made, gaps: gapsOf(made) };
 });
 
-// The runs of the models, and the times between which they are shown [s].
+// The runs of the models, and until when they are shown [s].
 function runsOf(own) {
-  const heights = data.scenes[own.scene].start.map((y) => y + own.lift);
-  const from = own.lift ? 0 : own.from; // who lifts them sees all of the fall
-  const to = Math.max(own.to, from + 8 * own.dt);
+  const to = Math.max(own.to, own.from + 8 * own.dt);
   const knobs = Object.fromEntries(Object.keys(data.defaults).map((name) => [name, own[name]]));
-  const runOf = (model) => run(model, heights, knobs, Math.ceil(to / own.dt));
-  return { from, to, all: own.models.split(",").map(runOf) };
+  const { start } = data.scenes[own.scene];
+  const runOf = (model) => run(model, start, knobs, Math.ceil(to / own.dt));
+  return { to, all: own.models.split(",").map(runOf) };
 }
 
-// How high the picture is [m], with some room to lift the balls.
-function topOf({ scene, from }) {
-  const { start } = data.scenes[scene];
-  return Math.max(LOWEST, Math.max(...start) - (G / 2) * from ** 2 + 1.2 * R * start.length);
-}
+// How high the picture is [m], without the models' names.
+const topOf = ({ scene, from }) =>
+  Math.max(LOWEST, Math.max(...data.scenes[scene].start) - (G / 2) * from ** 2 + R);
 
 function placeWords({ gap, upper, lower }, many) {
   if (!Number.isFinite(gap)) return "gone";
@@ -42,35 +39,24 @@ function enlarged({ scene }, all) {
 }
 
 // A model's balls; for one above the picture an arrow.
-function lane(view, { model, made }, row, x, { twin, from, floor, scale, larger, top }) {
-  const { own } = view;
-  const start = data.scenes[own.scene].start;
-  const r = Math.max(5, R * scale);
-  const heights = inRow(made, "y", row);
+function lane({ model, made }, row, x, { floor, scale, larger }) {
   let [below, drawn] = [-R, -R]; // of the ball below: where it is, where it is drawn
-  const shown = heights.map((height) => {
+  const shown = inRow(made, "y", row).map((height) => {
     const apart = height - below - 2 * R;
     drawn += 2 * R + (apart < 0 ? larger * apart : apart);
     below = height;
-    if (drawn < top + R) return ball(model, x, Math.min(floor + GROUND, floor - drawn * scale), r);
-    return [circle(x, 52, 22, "halo"), arrow("weight", x, 67, 0, -30)];
+    const y = Math.min(floor + GROUND, floor - drawn * scale);
+    return y > -R * scale ? ball(model, x, y, R * scale) : arrow("weight", x, 67, 0, -30);
   });
-  const what = {
-    label: `${model}: the balls`, value: "lift", low: 1.05 * R - start[0],
-    high: top - R - NAMES / scale - start[start.length - 1], step: 0.02, at: (_, y) => (floor - y) / scale,
-    seen: () => (from + own.time > 0 && heights[0] < top ? heights[0] - start[0] : own.lift),
-    also: { time: 0 }, release: () => view.play(0), twin,
-  };
   const push = Math.min(40, 14 * Math.sqrt(Math.max(0, pushIn(made, row))));
-  const halo = circle(x, within(22, floor - (heights[0] || 0) * scale, floor), 22, "halo");
   return [
-    view.grab(what, [shown, r < 22 ? halo : ""]),
-    arrow(`push m-${model}`, x, floor + GROUND / 2, 0, -push),
+    shown, arrow(`push m-${model}`, x, floor + GROUND / 2, 0, -push),
     label(model, x, 15, "middle"), line(x - 24, 23, x + 24, 23, `line m-${model}`),
   ];
 }
 
-function chartOf(view, { all, from, to }, top, time) {
+function chartOf(view, { all, to }, top, time) {
+  const { from } = view.own;
   const first = Math.round(from / view.own.dt);
   const seen = all.flatMap(({ gaps }) => gaps.slice(first).map(({ gap }) => gap)).filter(Number.isFinite);
   const low = seen.reduce((a, b) => Math.min(a, b), -0.05);
@@ -92,22 +78,22 @@ function chartOf(view, { all, from, to }, top, time) {
 
 function draw(view) {
   const { own, width, height } = view;
-  const { all, from, to } = runsOf(own);
+  const [{ all, to }, { from }] = [runsOf(own), own];
   const row = Math.min(Math.round(within(from, from + own.time, to) / own.dt), all[0].made.steps);
   const time = row * own.dt;
   // what comes is not told before it has been played, unless the text shows some of it
   view.seen = Math.max(view.seen ?? (view.text.time > 0 ? to : 0), time);
   const chartTop = Math.round(0.54 * height);
-  const [wide, floor, top] = [width / all.length, chartTop - GROUND, topOf(view.text)];
-  const scale = Math.min(floor / top, (0.42 * wide) / R); // px for 1 m
+  const [wide, floor] = [width / all.length, chartTop - GROUND];
+  const scale = Math.min((floor - NAMES) / topOf(own), (0.42 * wide) / R); // px for 1 m
   const [larger, many] = [enlarged(own, all), own.scene === "stack"];
   const told = all.map(({ model, gaps }) => `${model} ${placeWords(gaps[row], many)}`);
   return {
     picture: [
       clipped(0, 0, width, chartTop, table(0, floor, width, GROUND), all.map((each, k) =>
-        lane(view, each, row, wide * (k + 0.5), { twin: k > 0, from, floor, scale, larger, top })),
+        lane(each, row, wide * (k + 0.5), { floor, scale, larger })),
       larger > 1 ? label(`overlaps × ${larger}`, 4, 42, "start", "tick") : ""),
-      chartOf(view, { all, from, to }, chartTop, within(from, time, to)),
+      chartOf(view, { all, to }, chartTop, within(from, time, to)),
     ],
     words: `${time.toFixed(3)} s: ${told.join(", ")}.`,
   };
@@ -117,16 +103,13 @@ const slower = ({ from, to }) => (to - from > 2 ? 1 : to - from > 0.5 ? 6 : 30);
 
 export const figure = {
   title: ({ scene, models }) => `${SCENES[scene]}: ${models.replaceAll(",", ", ")}`,
-  caption: ({ scene, lift, from, to, dt }) =>
-    `${SCENES[scene]}, from ${lift ? 0 : plain(from)} to ${plain(to)} s, in steps of ${ms(dt)}.`,
+  caption: ({ scene, from, to, dt }) =>
+    `${SCENES[scene]}, from ${plain(from)} to ${plain(to)} s, in steps of ${ms(dt)}.`,
   height: (width) => (width < 480 ? 360 : 440),
   start: ({ scene = "drop" }) => ({
-    scene, models: "penalty,lcp", from: 0.4, to: 1.2, lift: 0, knobs: "dt", ...data.scenes[scene].own,
+    scene, models: "penalty,lcp", from: 0.4, to: 1.2, knobs: "dt", ...data.scenes[scene].own,
   }),
-  clock({ own }) {
-    const { from, to } = runsOf(own);
-    return { end: to - from, rate: 1 / slower(own) };
-  },
+  clock: ({ own }) => ({ end: runsOf(own).to - own.from, rate: 1 / slower(own) }),
   play: (own) => `Let go${slower(own) > 1 ? `, speed 1/${slower(own)}` : ""}`,
   draw,
 };

@@ -12,7 +12,6 @@ FAULTS = [
     (f"{FIGURES}/sag.js", "balls: 30 }", "balls: 8 }", PICTURE + "sag"),
     (f"{FIGURES}/gripper.js", "shown: states.slice(0, gone) }", "shown: states.slice(0, 1) }",
      PICTURE + "gripper"),
-    (f"{FIGURES}/sliding.js", "[0.48, 1e-4, 5]", "[0.5, 1e-4, 5]", PICTURE + "sliding"),
     (f"{FIGURES}/cliff.js", "column([R - ((1 - 1e-4) * G) / stiffness])",
      "column([R + 0.6])", PICTURE + "cliff"),
     (f"{FIGURES}/gripper.js", "fate === 2 && time === 0", "fate > 2 && time === 0",
