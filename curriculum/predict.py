@@ -34,10 +34,8 @@ def dive_of_penalty(speed, mass, stiffness, damping):
     scatters about it by up to zeta dt sqrt(k / m): where in a step the ball lands decides.
     """
     zeta = damping / (2.0 * math.sqrt(stiffness * mass))
-    if zeta < 1.0:
-        power = zeta * math.acos(zeta) / math.sqrt(1.0 - zeta * zeta)
-    else:
-        power = zeta * math.acosh(zeta) / math.sqrt(zeta * zeta - 1.0) if zeta > 1.0 else 1.0
+    root = np.emath.sqrt(1.0 - zeta * zeta)  # imaginary where nothing rings
+    power = abs(zeta * np.emath.arccos(zeta) / root) if root else 1.0
     left = math.exp(-power)  # the share of the depth that the damper leaves
     undamped = speed * math.sqrt(mass / stiffness)
     return left * undamped + (1.0 - 2.0 * zeta * left) * sink(mass, stiffness)
@@ -85,18 +83,16 @@ def quality(model, scene, dt, seconds, beside_exact=False, **knobs):
     return contact.contact_quality(made, scene, dt, exact)
 
 
-def first_without_force(dt, start, hill=contact.HILL, **knobs):
-    """Return the angle [rad] of the first step in which soft does not push, or pi if none.
-
-    The hill has a radius of `hill` [m]; a ball slides for about as long as it takes to leave it.
-    """
-    far, force = hill + contact.RADIUS, []
+def first_without_force(dt, start, **knobs):
+    """Return the angle [rad] of the first step in which soft does not push, or pi if none, on the
+    hill of the scene slide; in 4 s a ball leaves it."""
+    hill, force = contact.HILL, []
+    far = hill + contact.RADIUS
     x, y = [0.0, far * math.sin(start)], [hill, hill + far * math.cos(start)]
     scene = contact.scene_of(x, y, [math.inf, 1.0], [hill, contact.RADIUS])
-    step = contact.step_of("soft", scene, dt, contact.Settings(**knobs))
     note = lambda k, contacts: force.append(sum(c.lam for c in contacts))  # noqa: E731
-    steps = round(4.0 * math.sqrt(hill / contact.HILL) / dt)
-    q = contact.simulate(step, scene, dt, steps, on_step=note).q[:-1, :, 1]
+    steps, chosen = round(4.0 / dt), contact.Settings(**knobs)
+    q = contact.run_model("soft", scene, dt, steps, chosen, on_step=note).q[:-1, :, 1]
     off = np.flatnonzero(np.array(force[10:]) == 0.0) + 10  # it begins on the surface, unpressed
     return math.atan2(q[off[0], 0], q[off[0], 1] - hill) if len(off) else math.pi
 
