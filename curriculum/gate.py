@@ -4,10 +4,11 @@
     python -m curriculum.gate --read "HEADING"  # you have reviewed these, as they are now
 
 It checks that every region is included once; that slots, their settings, flags and names in `code`
-exist; that numbers are quoted by reference, ratios in words held by a claim; that results are of
-today's code. Whether a sentence is true only a reader can say: meta.yaml keeps what each passage
-depended on at its last review, its numbers and the hashes of its code: of the text of what it
-shows, of the syntax of what it names. When one has changed, or is new, the gate asks for a review.
+exist; that numbers are quoted by reference, and a ratio in words has a claim in its sentence; that
+results are of today's code. Whether a sentence is true only a reader can say: meta.yaml keeps what
+each passage depended on at its last review, its numbers and the hashes of its code: of the text of
+what it shows, of the syntax of what it names. When one has changed, is new or gone, the gate asks
+for a review.
 """
 
 import hashlib
@@ -25,8 +26,7 @@ with needs("dev"):
     import contact
     from curriculum import stored
     from curriculum.page.build import slot_errors
-    from curriculum.prose.chapter import CHAPTER, INCLUDE, INLINE, PLAIN, PROSE, Part, faults, split
-    from curriculum.prose.ratios import loose_ratios
+    from curriculum.prose.chapter import CHAPTER, INCLUDE, INLINE, PROSE, Part, faults, split
     from curriculum.prose.references import REFERENCE, TextError, load_meta, prepare, shown
     from curriculum.source import DOCSTRING, ROOT, blank, read_text, split_all
 
@@ -50,6 +50,11 @@ NOT_PROSE = re.compile(
     re.DOTALL | re.MULTILINE | re.IGNORECASE | re.VERBOSE,
 )
 TYPED = re.compile(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*")  # a token that begins with a digit
+COUNT = r"(?:an?|one|two|three|four|five|six|seven|eight|nine|ten|\w+ty|\w+teen|\w*hundred)"
+PART = r"(?:third|quarter|fifth|sixth|seventh|eighth|ninth|tenth|hundredth|thousandth|\w+onth)s?"
+TIMES = rf"(?:{COUNT}|thousand)\stimes|(?:twice|double)(?=\s(?:as|the)\b)"
+RATIO = re.compile(rf"\b(?:{COUNT}\s{PART}|half|{TIMES})\b", re.IGNORECASE)
+SENTENCE = re.compile(r"\S(?s:.)*?(?:(?:[.?!](?=[\s\0])|\n\s*\n|\|)[\s\0]*|\Z)")
 
 
 def passages():
@@ -81,17 +86,25 @@ def files(*patterns) -> list:
     return [path.relative_to(ROOT).as_posix() for path in paths]
 
 
+def loose_ratios(text):
+    """Yield each ratio in words, "a quarter", "twice as", whose sentence quotes a number and has no
+    claim; the claims that follow a sentence are its own. Others are theory."""
+    mark = lambda match: ("\0" if match[1][0] == "?" else "_") * len(match[0])  # noqa: E731
+    for sentence in SENTENCE.finditer(REFERENCE.sub(mark, blank(INLINE, text))):
+        if "_" in sentence[0] and "\0" not in sentence[0]:
+            yield from RATIO.finditer(sentence.string, *sentence.span())
+
+
 class Gate:
     """One pass over the project.
 
-    problems: lines. shows, names: {passage: {source: hash, or reference: number}}, of the text of
-    the regions that it includes; of the rest that it depends on, code by its syntax.
+    problems: lines. depends: {passage: {source: hash, or reference: number}}; of a region that it
+    includes the hash is one of the text, of other code one of the syntax.
     """
 
     def __init__(self):
         self.chapter, self.meta = split(read_text(CHAPTER)), load_meta()
-        (self.regions, self.problems), self.passages = split_all(), {}
-        self.shows, self.names = {}, {}
+        (self.regions, self.problems), self.passages, self.depends = split_all(), {}, {}
         for each in filter(lambda each: each.text, passages()):
             if each.name in self.passages:
                 self.say(each.file, each.line, f"a second heading {each.name}", "rename one")
@@ -105,52 +118,44 @@ class Gate:
     def depend(self, each):
         """Note the code that a passage shows or names, and its own words where it is in code."""
         words = set(re.findall(r"\w+", " ".join(SPAN.findall(each.text))))
-        included = INCLUDE.findall(each.text)
-        shows, names = self.shows.setdefault(each.name, {}), self.names.setdefault(each.name, {})
+        included, depends = INCLUDE.findall(each.text), self.depends.setdefault(each.name, {})
         if not each.file.startswith(("exercises/", CHAPTER)):
-            names["its words"] = hashlib.sha256(each.text.encode()).hexdigest()[:12]
+            depends["its words"] = hashlib.sha256(each.text.encode()).hexdigest()[:12]
         for region in self.regions.values():
             if region.source in included:
-                shows[region.source] = region.sha
+                depends[region.source] = region.sha[:12]
             elif region.defines & words:
-                names[region.source] = stored.digits(region.source, region.code)
+                depends[region.source] = stored.digits(region.source, region.code)
 
     def check_marks(self):
-        """Includes and slots name what exists, once, and all that exists has a place."""
-        known: dict = {("puzzle", ""): None, ("wallclock", ""): None}  # they need no place
-        known |= {("region", r.source): (r.file, r.line - 1) for r in self.regions.values()}
+        """Includes and slots are well formed; each region, exercise and figure has its place."""
+        self.problems += faults(self.chapter)
+        places = {("region", r.source): (r.file, r.line - 1) for r in self.regions.values()}
         for kind, pattern in (("exercise", EXERCISES), ("figure", FIGURES)):
-            known |= {(kind, Path(file).stem.split("_")[0]): (file, 1) for file in files(pattern)}
-        for kind, folder in stored.FOLDERS.items():
-            drawn = files(f"{folder}/*.svg")  # some of them have a place, others have none
-            known |= {(kind, Path(file).stem.removeprefix("error-")): None for file in drawn}
+            places |= {(kind, Path(file).stem.split("_")[0]): (file, 1) for file in files(pattern)}
         placed = set()
-        for part in (part for part in self.chapter if part.kind not in PLAIN):
+        for part in self.chapter:
             mark = kind, name = part.kind, part.name.partition("?")[0]  # behind it are settings
-            if mark not in known and kind != "figure":  # check_slots tries those
-                names = ", ".join(name for each, name in known if each == kind)
+            if kind in ("region", "exercise") and mark not in places:
+                names = ", ".join(name for each, name in places if each == kind)
                 self.say(CHAPTER, part.line, f"there is no {kind} {name}", f"name one of {names}")
-            elif mark in placed and kind not in ("figure", "puzzle"):
+            elif kind in ("region", "exercise") and mark in placed:
                 self.say(CHAPTER, part.line, f"a second {kind} {name}", "delete one of the two")
             placed.add(mark)
-        self.problems += faults(self.chapter)
-        for mark, place in known.items():
-            if place and mark not in placed:
+        for mark, place in places.items():
+            if mark not in placed:
                 self.say(*place, f"{' '.join(mark)} has no place in {CHAPTER}", "give it one")
 
     def check_slots(self):
         """Every figure can be drawn as its slot sets it: the page's own code tries it."""
         slots = [part for part in self.chapter if part.kind == "figure"]
-        try:
-            for part, error in zip(slots, slot_errors([part.name for part in slots])):
-                if error:
-                    self.say(CHAPTER, part.line, error, "set what is allowed")
-        except ValueError as error:  # of a step that has no JavaScript, or a slip in a module
-            self.problems.append(f"{error}; repair: python -m curriculum.page must build")
+        for part, error in zip(slots, slot_errors([part.name for part in slots])):
+            if error:
+                self.say(CHAPTER, part.line, error, "set what is allowed")
 
     def check_names(self):
         """Names and flags in `code` are in code (comments and docstrings are none), or in the list
-        of MuJoCo's names in meta.yaml; and each of that list is in the chapter."""
+        of MuJoCo's names in meta.yaml."""
         code = files("*.py", "exercises/**/*.py", "curriculum/*.py", "curriculum/[!t]*/*.py")
         known = {Path(file).stem for file in files("curriculum/**/*.py")}
         known |= {flag for each in contact.make_parser()._actions for flag in each.option_strings}
@@ -161,25 +166,25 @@ class Gate:
         texts = [part._replace(file=file) for file in TEXTS for part in split(read_text(file))]
         for each in (*self.passages.values(), *(part for part in texts if part.kind in PROSE)):
             for match in SPAN.finditer(each.text):
-                named = NAMED.findall(match[1]) + WORD.findall(match[1]) * (each.name in self.names)
+                named = NAMED.findall(match[1]) + WORD.findall(match[1]) * (
+                    each.name in self.depends
+                )
                 for name in {*named} - known:
                     repair = f"name what exists, or list it in {META}, reading"
                     self.say(each.file, each.line_of(match), f"`{name}` is in no code", repair)
-        for name in reading.get("names", ()):
-            if not re.search(rf"\b{name}\b", read_text(CHAPTER)):
-                self.say(META, 1, f"reading: {name} is not in the chapter", "take it out")
 
     def check_typed(self):
-        """Prose and captions type no number, and claims hold the ratios in words beside them."""
+        """Prose and captions type no number, and a ratio in words has a claim beside it."""
         for part in (part for part in self.chapter if part.kind in PROSE):
             for token in TYPED.finditer(blank(NOT_PROSE, part.text)):
                 number = token[0].rstrip(".,")
                 repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
                 self.say(CHAPTER, part.line_of(token), f"a typed number, {number}", repair)
-            for match, number in loose_ratios(part.text):
+            for match in loose_ratios(part.text):
                 what = f"no claim of its sentence holds {match[0]!r}"
-                repair = f"add {{{{? LOW < FORMULA < HIGH}}}} around {number:.4g}"
-                repair += f", or write {{{{= {match[0]} | REASON}}}}"
+                repair = (
+                    f"add {{{{? LOW < FORMULA < HIGH}}}}, or write {{{{= {match[0]} | REASON}}}}"
+                )
                 self.say(CHAPTER, part.line_of(match), what, repair)
         for each in (each for each in self.passages.values() if each.kind == "figure"):
             text = each.text
@@ -190,56 +195,32 @@ class Gate:
                 self.say(each.file, each.line, what, "compute it: `${...}`")
 
     def check_numbers(self):
-        """References can be made, claims are true, each run is quoted. Notes the numbers."""
-        prepare(text := read_text(CHAPTER))
+        """References can be made, claims are true. Notes the numbers."""
+        prepare(read_text(CHAPTER))
         for each in self.passages.values():
             for match in REFERENCE.finditer(each.text) if each.file == CHAPTER else ():
                 try:
                     number = shown(match[1])
                     if not match[1].startswith(("?", "=")):
-                        self.names[each.name][match[1]] = number
+                        self.depends[each.name][match[1]] = number
                 except TextError as error:
                     repair = "correct the text, or name what is known"
                     self.say(CHAPTER, each.line_of(match, 1), error, repair)
-        for name in [*self.meta["runs"]][1:]:
-            if f"{name}:" not in text:
-                self.say(META, 1, f"run {name} is quoted nowhere", "take it out")
-
-    def record(self, names=()) -> tuple:
-        """Return region_hashes and read, as meta.yaml keeps them once these passages are reviewed.
-
-        A region's hash is the one that the passage which includes it was reviewed with.
-        """
-        hashes, read = {}, {}
-        for name, shows in self.shows.items():
-            for source, now in shows.items():
-                region = source.partition("#")[2]
-                was = self.meta["region_hashes"].get(region)
-                hashes[region] = now if name in names else was
-            now, was = self.names[name], self.meta["read"].get(name, {})
-            read[name] = now if name in names else {k: was[k] for k in was if k in now}
-        in_order = {name: hashes[name] for name in self.regions if hashes.get(name)}
-        return in_order, {name: kept for name, kept in read.items() if kept}
 
     def check_read(self) -> list:
         """Return the names of the passages that somebody has to review."""
-        unread, (hashes, read) = [], self.record()
-        for name, each in self.passages.items():
-            was = {source: hashes.get(source.partition("#")[2]) for source in self.shows[name]}
-            was |= read.get(name, {})
+        unread = []
+        for name, now in self.depends.items():
+            was, each = self.meta["read"].get(name, {}), self.passages[name]
             moved = ", ".join(
-                f"{source} was {(was.get(source) or 'never read')[:12]} and is {now[:12]}"
-                for source, now in (self.shows[name] | self.names[name]).items()
-                if was.get(source) != now
+                f"{source} was {was.get(source, 'never read')} and is {now.get(source, 'gone')}"
+                for source in now | was
+                if was.get(source) != now.get(source)
             )
             if moved:
                 unread.append(name)
                 what = f"read {name!r} again: {moved}"
                 self.say(each.file, each.line, what, f"{GATE} --read {shlex.quote(name)}")
-        for key, right in (("region_hashes", hashes), ("read", read)):
-            if gone := [name for name, kept in self.meta[key].items() if right.get(name) != kept]:
-                what = f"its {key} keeps what is gone of {', '.join(gone)}"
-                self.say(META, 1, what, f"{GATE} --read")
         return unread
 
     def check_results(self):
@@ -284,10 +265,13 @@ def read(names) -> int:
         wrong = f"given {', '.join(unknown)}; allowed: {', '.join(gate.passages)}"
         raise TextError("\n".join(gate.problems) or wrong)
     gate.check_numbers()
+    was, hashes = gate.meta["read"], {r.name: r.sha for r in gate.regions.values()}
+    kept = {name: now if name in names else was.get(name) for name, now in gate.depends.items()}
     text = read_text(META).partition("\nregion_hashes:")[0].rstrip() + "\n\n"
     form = {"sort_keys": False, "allow_unicode": True, "width": 10**6}
-    for key, kept, flow in zip(("region_hashes", "read"), gate.record(names), (False, None)):
-        text += yaml.safe_dump({key: kept}, default_flow_style=flow, **form)  # a line each
+    text += yaml.safe_dump({"region_hashes": hashes}, default_flow_style=False, **form)
+    kept = {name: read for name, read in kept.items() if read}
+    text += yaml.safe_dump({"read": kept}, default_flow_style=None, **form)  # a line each
     write_atomic(ROOT / META, text)
     print(f"recorded in {META} as read: {', '.join(names) or 'nothing more'}")
     return 0
@@ -301,7 +285,7 @@ def main(argv=None) -> int:
     args = parser.parse_args(argv)
     try:
         return check(args.release) if args.read is None else read(args.read)
-    except (OSError, TextError) as error:
+    except (OSError, ValueError) as error:  # what names a place and a repair
         print(error, file=sys.stderr)
         return 2
 

@@ -23,7 +23,6 @@ REGION = re.compile(
     rf"^ *# --- region: ({NAME}) ---\n(.*?)(^ *# --- endregion --- *$|(?=^# --- region: )|\Z)",
     re.DOTALL | re.MULTILINE,
 )
-MARKER = re.compile(r"^ *# *-+ *(end)? *region\b.*$", re.IGNORECASE | re.MULTILINE)
 # What a piece of code defines: functions, classes, and constants by their capitals.
 DEFINITION = re.compile(
     r"^\s*(?:(?:def|class)\s+(?!__)(\w+)|([A-Z][A-Z0-9_]*)(?:, \w+)*\s*=(?!=))", re.MULTILINE
@@ -78,17 +77,13 @@ def line_at(text, index) -> int:
 
 def split(text: str, file: str) -> tuple:
     """Return ([Region] in reading order, problems) of a file's text; each problem is a line."""
-    regions, wrong, markers = [], [], set()
+    regions, wrong = [], []
     for match in REGION.finditer(text):
         name, code, end = match.groups()
         code = dedent(code).rstrip("\n") + "\n"
         regions.append(Region(name, code, line_at(text, match.start(2)), file))
-        markers |= {match.start(), match.start(3)}
         if not end and file not in WHOLE:
             wrong.append((match.start(), f"region {name} is never closed"))
-    for marker in MARKER.finditer(text):
-        if marker.start() not in markers:
-            wrong.append((marker.start(), f"{marker[0].strip()!r} does not belong there"))
     opening = next(DOCSTRING.finditer(text)).end() if file in WHOLE else len(text)
     for line in CODE_LINE.finditer(blank(REGION, text), opening):
         wrong.append((line.start(), f"code outside any region: {line[0][:60]!r}"))

@@ -50,12 +50,9 @@ class TextError(ValueError):
 
 @cache
 def load_meta() -> dict:
-    """Return meta.yaml. Raises TextError, with the place, if it is not YAML or lacks its runs."""
+    """Return meta.yaml. Raises TextError, with the place, if it is not YAML."""
     try:
-        meta = yaml.safe_load(read_text("meta.yaml")) or {}
-        return {"region_hashes": {}, "read": {}, "runs": meta["runs"]} | meta
-    except (KeyError, TypeError):
-        raise TextError("meta.yaml:1: it names no runs; repair: git checkout meta.yaml") from None
+        return yaml.safe_load(read_text("meta.yaml"))
     except yaml.YAMLError as error:
         raise TextError(f"meta.yaml is not YAML: {' '.join(str(error).split())}") from None
 

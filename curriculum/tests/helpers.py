@@ -67,7 +67,7 @@ SHORT = """# Chapter
 ## A sponge
 
 The ball rests {{quality.penalty.rest_penetration_frac|.5f}} r deep, seen from a margin of
-{{contact.CONTACT_MARGIN * 1000|.0f}} mm, and [drops](#x) by {{jump:before|.4f}} m/s.
+{{contact.CONTACT_MARGIN * 1000|.0f}} mm, and [drops](#x) by {{friction:ahead|.1f}} m/s.
 {{? quality.penalty.rest_penetration_frac > quality.lcp.rest_penetration_frac}} It stays there.
 <!-- no 9 is
 typed here -->
@@ -100,7 +100,7 @@ def shorten(folder, slots):
     text = SHORT.replace("SLOTS", slots) + "".join(shown)
     (folder / "curriculum/prose/chapter.md").write_text(text, "utf-8")
     (folder / "README.md").write_text("# Contact\n", "utf-8")
-    (folder / "meta.yaml").write_text("runs:\n  drop: []\n", "utf-8")
+    (folder / "meta.yaml").write_text("runs:\n  drop: []\n\nregion_hashes: {}\nread: {}\n", "utf-8")
     (folder / "wallclock.csv").write_text(
         "chapter,tier,wallclock_min,config_hash,commit,date,status\nch3.5-contact,t4,,,,,PENDING\n"
     )
