@@ -28,8 +28,7 @@ with needs("notebook"):
 CARRIED = """contact.py checks.py exercises/*.py exercises/*/*.py exercises/kit/answers.json
 curriculum/__init__.py curriculum/commands.py curriculum/exact.py curriculum/predict.py
 curriculum/variants.py curriculum/show/__init__.py curriculum/show/picture.py
-curriculum/show/figures.mplstyle curriculum/bench/results/error-slide.svg
-curriculum/stress/results/penalty-map.svg""".split()
+curriculum/show/figures.mplstyle""".split()
 RUNS = {  # after the exercise or the figure of that name
     "ex1": 'show_run("--scene", "drop")',
     "cliff": 'show_run("--dt", "0.03")',
@@ -74,23 +73,14 @@ def exercise(name):
     return new_code_cell(f"%%exercise {FILES[name]}\n{source.strip()}")
 
 
-def picture(name):
-    """A picture of a report."""
-    (file,) = (each for each in CARRIED if each.endswith(f"{name}.svg"))
-    return new_code_cell(f'SVG(filename=os.path.join(COURSE, "{file}"))')
-
-
-PLACES = {"region": region, "exercise": exercise, "bench": picture, "stress": picture}
-
-
 def cells_of(text):
     """The chapter's cells, in order: title, introduction and start, then all the others."""
     cells = []
     for kind, name, _, written, _ in read(text):
         if kind == "heading" and name == REST:
             break
-        if kind in PLACES:
-            cells.append(PLACES[kind](name))
+        if kind in ("region", "exercise"):
+            cells.append(region(name) if kind == "region" else exercise(name))
         if (slot := name.partition("?")[0]) in RUNS:
             cells.append(new_code_cell(RUNS[slot]))
         if kind == "heading" or kind in ("text", "code") and cells[-1].cell_type == "code":

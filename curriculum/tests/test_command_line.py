@@ -87,14 +87,14 @@ KNOBS = (
     "--scene drop", f"--smoke --scene stack --bodies 4 {KNOBS}", "--help", "--scene pool",
 ])  # fmt: skip
 def test_alone_in_an_empty_folder_it_prints_and_writes_the_same_bytes(
-    flags, only, tmp_path, monkeypatch, capsys
+    flags, numpy_alone, tmp_path, monkeypatch, capsys
 ):
     """With numpy and nothing else; but for what the folder beside it adds."""
     (tmp_path / "beside").mkdir()
     monkeypatch.chdir(tmp_path / "beside")
     status, out, err = main(capsys, *flags.split())
     shutil.copy(CONTACT, tmp_path)
-    how = {"PYTHONPATH": only("numpy"), "PYTHONHASHSEED": "97"}
+    how = {"PYTHONPATH": numpy_alone, "PYTHONHASHSEED": "97"}
     alone = python("-S", "contact.py", *flags.split(), cwd=tmp_path, **how)
     lines = (each.splitlines() for each in (alone.stdout, out))
     mine, full = ([line for line in some if not line.startswith(FOLDER_ONLY)] for some in lines)
