@@ -103,7 +103,7 @@ def run_missing(path, args, seeds, models, scheduler):
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a", buffering=1, encoding="utf-8", newline="\n") as file:
             file.write("\n" if file.tell() else f"{HEAD}\n")
-            for _, text in parallel.as_they_come(job, missing, todo, "seeds", None, scheduler):
+            for text in parallel.one_by_one(job, missing, todo, "seeds", None, scheduler):
                 file.write(text)
 
 

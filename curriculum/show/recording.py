@@ -4,13 +4,11 @@ rerun's 2-D views have y down and no option, so y is negated here and nowhere el
 Raises contact.MissingPackage on import where rerun is missing.
 """
 
-from functools import partial
-
 import numpy as np
 
 import contact
 from curriculum import commands
-from curriculum.show.picture import COLORS, contact_impulses, curves, weight, worth_seeing
+from curriculum.show.picture import COLORS, contact_impulses, curves, time_of_rest, weight
 
 try:
     import rerun as rr
@@ -19,17 +17,16 @@ except ImportError:
     raise contact.MissingPackage(commands.to_install("rerun-sdk")) from None
 
 PUSH = "#f0e442"  # colour of the arrows
-GROUND, LINE = "#3a3f4a", "#ffffff"
+FIXED, LINE = "#3a3f4a", "#808080"  # colours of fixed balls and of the table, by day and night
+WIDE = 50.0  # m: half the table; a longer line is drawn with gaps where it is magnified
 MOST_ARROWS = 24  # balls: more have no arrows
-SECONDS = ("sim_time", "landing")  # timelines, besides step
 LONGEST = 9e9  # s: 64 bits of nanoseconds
 MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sinks by 0.01
 ABOUT = """\
 **{title}**
 
-An arrow is what all contacts push on a ball: a radius for its weight, and a
-radius more for each doubling. Below, the table is magnified: those views are so many r
-high. The line `landing` begins at the first contact, at {first:.4g} s; `sim_time` at the start.
+An arrow is what all contacts push on a ball: a radius for its weight, and a radius more for each
+doubling. Below, the table is magnified: those views are so many r high.
 """
 
 
@@ -37,21 +34,20 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
 
     quality: {model: contact_quality} of the runs. Whole columns are sent, in rerun's strict mode.
-    The timelines are step, sim_time, and landing, which it opens on: sim_time, but all that is
-    before the first push at its start. The entities are about, world/MODEL/{ground,table,balls,
-    pushes,foot} and CURVE/MODEL; foot only where one ball moves, on a fixed one.
+    The timelines are step and sim_time. The entities are about, world/MODEL/{table,balls,pushes,
+    foot} and CURVE/MODEL; foot only where one ball moves, on a fixed one.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
-    drawn, seconds = curves(runs, scene), worth_seeing(runs, scene)
-    times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
+    drawn = curves(runs, scene)
+    times = {model: timelines(run.t) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
     if not rr.is_enabled(recording):
         raise contact.MissingPackage("rerun is switched off by the variable RERUN")
     # rerun's own file would wait for ever where a disk is full
     kept = recording.binary_stream()  # type: ignore[misc]
-    blueprint = layout(runs, scene, drawn, seconds, quality)
+    blueprint = layout(runs, scene, drawn, quality)
     recording.send_blueprint(blueprint, make_active=True, make_default=True)
-    words = ABOUT.format(title=title, first=seconds[0])
+    words = ABOUT.format(title=title)
     recording.log("about", rr.TextDocument(words, media_type=rr.MediaType.MARKDOWN), static=True)
     for model, run in runs.items():
         send_table(recording, model)
@@ -65,35 +61,24 @@ def rgba(color: str) -> np.ndarray:
     return np.array([int(color[1:] + "ff", 16)], np.uint32)
 
 
-def timelines(t: np.ndarray, first: float) -> list:
+def timelines(t: np.ndarray) -> list:
     """Return the columns of time."""
-    times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
-    for name, seconds in zip(SECONDS, (t, np.maximum(t, first))):
-        nanoseconds = np.round(np.minimum(seconds, LONGEST) * 1e9)  # no stamp is off
-        times.append(rr.TimeColumn(name, duration=nanoseconds.astype("timedelta64[ns]")))
-    return times
+    nanoseconds = np.round(np.minimum(t, LONGEST) * 1e9).astype("timedelta64[ns]")  # none is off
+    steps = rr.TimeColumn("step", sequence=np.arange(len(t)))
+    return [steps, rr.TimeColumn("sim_time", duration=nanoseconds)]
 
 
 def send_table(recording, model):
-    """Send the table: a grey body under the balls, and a thin line over them that shows a sink.
-
-    The body is made of lines of five radii, each with its upper edge at y = 0, since an old viewer
-    (0.26) draws a thick line thinner by a hundredth, which left a gap under the thin one.
-    """
-    wide = 50.0  # m; a longer line is drawn with gaps where it is magnified
-    depths = [0.005, 0.05, 0.5, 5.0, 50.0]
-    ground = "ground", depths, depths, GROUND, -10.0
-    table = "table", [0.0], [rr.Radius.ui_points(0.6)], LINE, 40.0
-    for name, below, radii, color, order in (ground, table):
-        lines = [[[-wide, depth], [wide, depth]] for depth in below]
-        shown = rr.LineStrips2D(lines, colors=rgba(color), radii=radii, draw_order=order)
-        recording.log(f"world/{model}/{name}", shown, static=True)
+    """Send the table: a thin line over the balls, which shows how far one sinks."""
+    ends = [[-WIDE, 0.0], [WIDE, 0.0]]
+    look = {"colors": rgba(LINE), "radii": rr.Radius.ui_points(0.6), "draw_order": 40.0}
+    recording.log(f"world/{model}/table", rr.LineStrips2D([ends], **look), static=True)
 
 
 def send_balls(recording, model, run, scene, times):
     """Send the balls, where the run had them, and the push on each as an arrow from its centre."""
     count, rows = len(scene.radius), [len(scene.radius)] * len(run.t)
-    color = np.where(np.isfinite(scene.mass), rgba(COLORS[model]), rgba(GROUND))
+    color = np.where(np.isfinite(scene.mass), rgba(COLORS[model]), rgba(FIXED))
     look = rr.Points2D.from_fields(radii=scene.radius, colors=color, draw_order=20.0)
     columns = rr.Points2D.columns(positions=flat(run.q)).partition(rows)
     send(recording, f"world/{model}/balls", look, times, columns)
@@ -111,14 +96,12 @@ def send_balls(recording, model, run, scene, times):
 
 @np.errstate(all="ignore")
 def foot_of(run: contact.Run, scene: contact.Scene) -> np.ndarray | None:
-    """Return where the only ball that moves touches the fixed one (S, 2) [m], to be followed."""
-    ball, *others = np.flatnonzero(np.isfinite(scene.mass))
-    if others or len(scene.mass) == 1:
+    """Return where a ball touches the fixed one (S, 2) [m], to be followed, in a scene of two."""
+    if len(scene.mass) != 2 or np.isfinite(scene.mass).all():
         return None
-    way = np.delete(run.q, ball, axis=2) - run.q[..., ball, None]  # to the centres of fixed balls
-    far = np.hypot(*way.swapaxes(0, 1))
-    nearest = (far - np.delete(scene.radius, ball))[0].argmin()
-    unit = (way / far[:, None])[..., nearest]
+    ball = int(np.isfinite(scene.mass).argmax())
+    way = run.q[..., 1 - ball] - run.q[..., ball]
+    unit = way / np.hypot(*way.T)[:, None]
     return np.nan_to_num(run.q[..., ball] + scene.radius[ball] * unit)
 
 
@@ -159,33 +142,31 @@ def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
             send(recording, f"{title.split()[0]}/{model}", look, times[model], columns)
 
 
-def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
+def layout(runs, scene, drawn, quality: dict) -> rrb.Blueprint:
     """Return the blueprint that travels in the file: on the left the balls, and under them the
     table magnified; on the right what it is, and the plots.
 
-    Every run has views of its own, so balls that roll far never cross into another run's. Piles
-    have them one below the other. Where one ball moves on a fixed one, they go with its foot.
+    Every run has views of its own, so balls that roll far never cross into another run's. Where
+    one ball moves on a fixed one, they go with its foot.
     """
     free = np.isfinite(scene.mass)
     large, (x, y) = float(scene.radius[free].max()), scene.q0[:, free]
     followed = foot_of(next(iter(runs.values())), scene) is not None
     if followed:
         x, y = np.zeros(1), np.full(1, 5.0 * large)
-    middle, half, pile = 0.5 * (x.min() + x.max()), 0.5 * np.ptp(x), np.ptp(x) > 0.0
-    wide, top = 1.6 * half + 1.6 * large, y.max() + 2.0 * large
+    middle, wide = 0.5 * (x.min() + x.max()), 0.8 * np.ptp(x) + 1.6 * large
+    top = y.max() + 2.0 * large
     sides = [middle - wide, middle + wide], [-top, (0.3 if followed else 0.1) * top]
-    bad = {model: row for model, row in quality.items() if row["blew_up"] or row["through"]}
-    ended = {model: f"{model}: {contact.final_state(row)}" for model, row in bad.items()}
-    lanes = [view(model, ended.get(model, model), *sides, followed) for model in runs]
-    high, up = (3.0, 0.9) if pile else (MAGNIFIED, 0.6)  # radii; of a pile it is the middle
+    high = MAGNIFIED if np.ptp(x) == 0.0 else 3.0  # radii; of a pile it shows the middle
     reach = high * large
-    near = [middle - 1.2 * reach, middle + 1.2 * reach], [-up * reach, 0.4 * reach]
+    near = [middle - 1.2 * reach, middle + 1.2 * reach], [-0.6 * reach, 0.4 * reach]
+    ends = {model: f"{model}: {contact.final_state(quality[model])}" for model in runs}
+    lanes = rrb.Grid(*[view(model, ends[model], *sides, followed) for model in runs])
     small = rrb.Horizontal(*[view(model, f"{high:g} r", *near, followed) for model in runs])
-    lanes = rrb.Vertical(*lanes) if pile else rrb.Horizontal(*lanes)  # type: ignore[assignment]
-    left = rrb.Vertical(lanes, small, row_shares=[7 if pile else 5, 2])  # type: ignore[arg-type]
     about = rrb.TextDocumentView(origin="about", name="about")
-    most = 5.0 * weight(scene)
-    right = rrb.Vertical(about, *[plot(title, most, *seconds) for title in drawn])
+    most, last = 5.0 * weight(scene), time_of_rest(runs)
+    right = rrb.Vertical(about, *[plot(title, most, last) for title in drawn])
+    left = rrb.Vertical(lanes, small, row_shares=[5, 2])
     both = rrb.Horizontal(left, right, column_shares=[3, 2])
     return rrb.Blueprint(both, time_panel(), collapse_panels=True)
 
@@ -198,21 +179,20 @@ def view(model: str, name: str, x_range: list, y_range: list, followed) -> rrb.S
     return rrb.Spatial2DView(origin=origin, contents=f"{world}/**", name=name, visual_bounds=bounds)
 
 
-def plot(title: str, most: float, first: float, last: float) -> rrb.TimeSeriesView:
-    """Return a plot of these seconds, in the colours of the balls; of a force up to `most`."""
+def plot(title: str, most: float, last: float) -> rrb.TimeSeriesView:
+    """Return a plot until `last` [s], in the colours of the balls; of a force up to `most`."""
     name, shown = title.split()[0], None
     axis = rrb.ScalarAxis(range=(0.0, most)) if name == "force" else None
-    if first < last < LONGEST:  # all that was before stands on the first instant: left out
-        start, end = (rrb.TimeRangeBoundary.absolute(seconds=each) for each in (first + 1e-6, last))
-        shown = [rrb.VisibleTimeRange(line, start=start, end=end) for line in SECONDS]
+    if 0.0 < last < LONGEST:
+        start, end = (rrb.TimeRangeBoundary.absolute(seconds=each) for each in (0.0, last))
+        shown = [rrb.VisibleTimeRange("sim_time", start=start, end=end)]
     how = {"plot_legend": rrb.PlotLegend(visible=False), "time_ranges": shown, "axis_y": axis}
     return rrb.TimeSeriesView(origin=name, name=title, **how)  # type: ignore[arg-type]
 
 
 def time_panel():
-    """Open on the landing, four times slowed down. rerun-sdk before 0.28 plays it at once."""
-    panel = partial(rrb.TimePanel, timeline="landing", state="collapsed")
+    """Open at the start, four times slowed down; rerun-sdk before 0.28 plays it at once."""
     try:
-        return panel(play_state="paused", playback_speed=0.25)
+        return rrb.TimePanel(timeline="sim_time", play_state="paused", playback_speed=0.25)
     except TypeError:
-        return panel(duration_cursor=0.0)
+        return rrb.TimePanel(timeline="sim_time")

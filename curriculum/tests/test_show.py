@@ -82,8 +82,7 @@ def expected_of(run, model):
 
 def test_a_recording_has_every_models_balls_pushes_and_curves_a_row_a_step(stack):
     recording, runs = stack
-    tables = {f"/world/{model}/{kind}" for model in runs for kind in ("table", "ground")}
-    found = tables | {"/about", "/__properties", "views"}
+    found = {f"/world/{model}/table" for model in runs} | {"/about", "/__properties", "views"}
     for model, run in runs.items():
         for entity, columns in expected_of(run, model).items():
             found.add(entity)
@@ -98,28 +97,15 @@ def test_a_recording_has_every_models_balls_pushes_and_curves_a_row_a_step(stack
     assert "a title" in recording["/about"]["TextDocument:text"][0][0]
 
 
-def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(stack):
-    recording, runs = stack
-    fall = np.sqrt(2.0 * (0.131 - RADIUS[0]) / 9.81)  # s, of a ball that starts at rest
-    landing = recording["/world/lcp/balls"]["landing"]
-    first = landing[0] / 1e9  # where a viewer's cursor starts
-    assert 0.0 < first - fall < 2 * DT
-    assert landing == [max(t, landing[0]) for t in recording["/world/lcp/balls"]["sim_time"]]
-    for model in ("penalty", "lcp", "soft"):  # on the row that is shown then
-        pushed = recording[f"/world/{model}/pushes"]["Arrows2D:vectors"]
-        assert -pushed[landing.count(landing[0]) - 1][0][1] > RADIUS[0], "more than the weight's"
-    views = [each[0] for each in recording["views"]["VisualBounds2D:range"]]
-    (left, right), (top, _) = min((view["x_range"], view["y_range"]) for view in views)
-    for run in runs.values():  # all of it is in view
-        assert left < run.q[:, 0].min() - 0.12 and run.q[:, 0].max() + 0.12 < right
-        assert top < -run.q[:, 1].max() - 0.12
-    panel = {key[19:]: each for key, each in recording["views"].items() if "TimePanel" in key}
-    assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["landing"]])
-    (ranges,) = {str(each) for each in recording["views"]["VisibleTimeRanges:ranges"]}
-    start, *_, end = sorted({int(n) / 1e9 for n in re.findall(r"\d{8,}", ranges)})
+def test_it_opens_slowed_down_and_its_plots_end_where_all_rest(stack):
+    views, runs = stack[0]["views"], stack[1]
+    panel = {key[19:]: each for key, each in views.items() if "TimePanel" in key}
+    assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["sim_time"]])
+    (ranges,) = {str(each) for each in views["VisibleTimeRanges:ranges"]}
+    end = max(int(n) / 1e9 for n in re.findall(r"\d{8,}", ranges))
     ways = [np.abs(np.diff(run.q, axis=0)).max((1, 2)) for run in runs.values()]
     moves = DT * max(np.flatnonzero(way >= 0.01 * DT)[-1] for way in ways)
-    assert fall < first < start < moves and abs(end - 1.1 * moves) < 2 * DT
+    assert moves > 0.0 and abs(end - 1.1 * moves) < 2 * DT
 
 
 def test_views_say_how_a_run_ended_show_the_table_magnified_and_no_explosion_widens_one(tmp_path):
@@ -130,12 +116,17 @@ def test_views_say_how_a_run_ended_show_the_table_magnified_and_no_explosion_wid
     assert sorted(origins) == sorted((*worlds, *CURVES, "about"))
     names = {name for (name,) in filter(None, views["ViewBlueprint:display_name"])}
     exploded = f"penalty: EXPLODED at step {drop[2]['penalty']['blew_up_step']}"
-    assert {exploded, "lcp: through the floor", "exact", "0.16 r"} < names
-    ranges = sorted(tuple(view[0]["y_range"]) for view in views["VisualBounds2D:range"])
-    assert -2.0 < ranges[0][0] < -1.12 and np.ptp(ranges[-1]) < 0.02  # the ball starts at 1 m
+    assert {exploded, "lcp: through the floor", "exact: rests", "0.16 r"} < names
+    bounds = [view[0] for view in views["VisualBounds2D:range"]]
+    ranges = sorted((*view["y_range"], *view["x_range"]) for view in bounds)
+    high, low, left, right = ranges[0]
+    assert -2.0 < high < -1.12 and low > 0.0 and left < -0.1 and right > 0.1  # it starts at 1 m
+    assert np.ptp(ranges[-1][:2]) < 0.02
 
 
-def test_the_recording_of_the_slide_goes_with_the_ball(tmp_path):
+def test_the_recording_of_the_slide_goes_with_the_ball_and_of_many_balls_arrows_are_left_out(
+    tmp_path,
+):
     scene, runs, quality = runs_of(contact.build_scene("slide"), 300, models=("soft", "exact"))
     recording = recorded(tmp_path, scene, runs, quality)
     (hill, ball), (large, small) = runs["soft"].q.transpose(2, 0, 1), scene.radius
@@ -146,12 +137,11 @@ def test_the_recording_of_the_slide_goes_with_the_ball(tmp_path):
     views = [each[0] for each in recording["views"]["VisualBounds2D:range"]]
     assert max(np.ptp(view["y_range"]) for view in views) < 20 * small, "the ball is seen"
     assert recording["/world/soft/balls"]["Points2D:colors"][0][0] != int("cc79a7ff", 16)
+    pile = recorded(tmp_path, *runs_of(contact.build_scene("pile", bodies=40), 20, DT, ["lcp"]))
+    assert "/world/lcp/balls" in pile and "/world/lcp/pushes" not in pile
 
 
-def test_of_many_balls_arrows_are_left_out_and_a_run_that_overflows_is_recorded(tmp_path):
-    pile = contact.build_scene("pile", bodies=40)
-    recording = recorded(tmp_path, *runs_of(pile, 20, DT, ["lcp"]))
-    assert "/world/lcp/balls" in recording and "/world/lcp/pushes" not in recording
+def test_a_run_that_overflows_is_recorded(tmp_path):
     light = runs_of(contact.scene_of(0.0, 1.0, mass=1e-300), 300, 1e3, ["penalty"])
     assert not np.isfinite(light[1]["penalty"].q).all()
     assert len(recorded(tmp_path, *light)["/height/penalty"]["step"]) == 301
@@ -260,27 +250,26 @@ def test_seeds_give_median_and_range(tmp_path):
 def test_a_dask_cluster_gives_the_same_and_what_it_lacks_is_one_line(tmp_path, capsys, monkeypatch):
     """Nobody there, no workers, workers without the code or with other code, and then with ours."""
     distributed = pytest.importorskip("dask.distributed", reason="dask is not installed")
-    monkeypatch.setattr(parallel, "PATIENCE", 1.0)
     assert "error: given --scheduler ''" in one_line(capsys, "0:5", "--scheduler=")
     nobody = *FIVE, str(tmp_path), "--scheduler", "127.0.0.1:1"
-    assert "which does not answer (" in one_line(capsys, *nobody)
+    assert "Timed out trying to connect" in one_line(capsys, *nobody)
     fast = clone(tmp_path / "other", "tests") / "curriculum/compiled/run.py"
     fast.write_text(f"{fast.read_text('utf-8')}\n\nMORE = 1\n", "utf-8")
     start = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard", "--no-nanny"]
     how = {"stderr": subprocess.DEVNULL, "env": os.environ | {"PYTHONPATH": ""}}
-    lacks = {".": "its PYTHONPATH must have", "other": "another curriculum/compiled/run.py is"}
+    lacks = {".": "PYTHONPATH lacks", "other": "another curriculum/compiled/run.py is"}
     with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as cluster:
         there = "--scheduler", cluster.scheduler_address
         start += [cluster.scheduler_address, "--nthreads", "1"]
         words = *FIVE, str(tmp_path), *there
-        assert "has no workers; start some: dask worker" in one_line(capsys, *words)
+        assert "Only 0/1 workers arrived" in one_line(capsys, *words)
         for folder in (".", "other", ROOT):
             worker = subprocess.Popen(start, cwd=tmp_path / folder, **how)
             try:
                 distributed.Client(cluster).wait_for_workers(1)
                 if folder in lacks:
                     err = one_line(capsys, *words)
-                    assert f", process {worker.pid}: " in err and lacks[folder] in err
+                    assert lacks[folder] in err
                     kept = (tmp_path / "seeds.csv").read_text("utf-8").strip()
                     assert kept == seeds.HEAD, "no row of other code"
                 else:
@@ -338,7 +327,7 @@ def test_seeds_count_what_exploded_went_through_or_could_not_be_run():
 
 @pytest.mark.parametrize("words", [
     "3", "4:4", "5:2", "0:1.5", "a:b", "0:9999999999999999999", "0:1000000001", "0:5 --seed 3",
-    "0:5 --plot", "0:5 --dt 0", "0:5 --mass=--", "0:5 --scheduler=--",
+    "0:5 --plot", "0:5 --dt 0",
 ])  # fmt: skip
 def test_seeds_refuses_bad_input_in_one_line(words, capsys):
     err = one_line(capsys, *words.split())
