@@ -80,9 +80,8 @@ def main(argv=None):
         if args.part == "try":
             return print(try_one(*args.what, args.substeps))
         if parts:  # or loops would be compiled while they are timed
-            subprocess.run(
-                [sys.executable, "-m", "curriculum.compiled"], cwd=stored.ROOT, check=True
-            )
+            compile_all = [sys.executable, "-m", "curriculum.compiled"]
+            subprocess.run(compile_all, cwd=stored.ROOT, check=True)
         for part in parts:
             take(part, args.quick, folder, args.tier)
         sections, made = stored.load(folder)

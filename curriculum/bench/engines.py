@@ -1,10 +1,10 @@
 """Other engines and contact.py's models, as sessions that step the scenes of contact.py.
 
 **To send a better setting, add one line to settings.csv**: the engine, its options as they are
-typed, the problems that it is for (names, "all", "-name" for all but this one, or a group of
-GROUPS), the numbers of substeps in 2 ms that it is measured with (none: it chooses its own steps),
-those for the piles, and the most balls of a pile (none: any). Options are the arguments of a
-session's __init__, or contact.py's own flags.
+typed, the problems that it is for (names, "all", "-name" for all but this one), the numbers of
+substeps in 2 ms that it is measured with (none: it chooses its own steps), those for the piles, and
+the most balls of a pile (none: any). Options are the arguments of a session's __init__, or
+contact.py's own flags.
 
 Every engine is optional. The same for all: balls that cannot rotate, no friction, one thread, the
 scene's masses, radii and restitution, a floor along y = 0. A ball of infinite mass is fixed. No
@@ -30,10 +30,6 @@ BLOCK = 200  # steps that one of our models takes in one go
 GRAVITY = 9.81  # m/s^2, downwards
 FLOOR = 1000.0  # m, half the length of the floor, where an engine wants an end to it
 MANY = 60  # balls: from here on MuJoCo gets 4 GB of memory, pymunk a spatial hash
-GROUPS = {
-    "shared": "stack pile heavy_100 heavy_1000 tower spread pile_bounce cradle",
-    "resting": "drop slide stack heavy_100 heavy_1000 tower spread glance",  # e = 0, no lottery
-}
 
 
 class Session:
@@ -477,7 +473,7 @@ class Setting(NamedTuple):
 
     def runs(self, problem):
         """Return whether it is for a problem."""
-        words = " ".join(GROUPS.get(word, word) for word in (self.problems or "").split()).split()
+        words = (self.problems or "").split()
         return ("all" in words or problem in words) and f"-{problem}" not in words
 
     def build(self, scene, dt, substeps=1):

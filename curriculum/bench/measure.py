@@ -146,8 +146,7 @@ def piles(quick):
     """Measure a row for each setting and size."""
     rows, settled = [], {}
     for count in (12,) if quick else (*SIZES, MANY):
-        chosen = winners(rows) if count == MANY else engines.PILES
-        chosen, label = fitting(chosen, count)[:: 4 if quick else 1], f"{count} balls"
+        chosen, label = fitting(count)[:: 4 if quick else 1], f"{count} balls"
         jobs = [(count, *each, settled.get(each)) for each in chosen]
         settled = dict(zip(chosen, parallel.run_jobs(settle, jobs, f"{label} settle")))
         jobs = [(count, *each, end) for each, end in settled.items()]
@@ -158,9 +157,9 @@ def piles(quick):
     return rows
 
 
-def fitting(chosen, count):
-    """Return those (setting, substeps) that run so many balls."""
-    return [(c, n) for c, n in chosen if count <= (c.most or count)]
+def fitting(count):
+    """Return the (setting, substeps) that run so many balls."""
+    return [(c, n) for c, n in engines.PILES if count <= (c.most or count)]
 
 
 def settle(job):
@@ -215,7 +214,7 @@ def heap():
 def collapse(quick):
     """Measure a row for each setting of the piles: the heap's overlaps, and the time of a step."""
     count = math.prod(HEAP)
-    chosen = fitting(engines.PILES, count)[:: 8 if quick else 1]
+    chosen = fitting(count)[:: 8 if quick else 1]
     jobs = [(*each, COLLAPSE // 20 if quick else COLLAPSE) for each in chosen]
     rows = parallel.run_jobs(sink_of, jobs, f"{count} balls collapse")
     times = timing.in_fresh_processes(time_of_heap, jobs, 1 if quick else PROCESSES, "their times")
@@ -248,13 +247,6 @@ def fastest(rows, depth, who):
     may = (row for row in rows if row["engine"] in who and row.get("at_rest", 1))
     deep = (row for row in may if row["mean_depth"] is not None and row["mean_depth"] <= depth)
     return best(deep, "bodies", itemgetter("us"))
-
-
-def winners(rows):
-    """Return those of PILES that are worth running with 10,000 balls."""
-    found = [fastest(rows, d, [name]).get(1000) for d in DEPTHS for name in engines.LABELS]
-    chosen = {(row["engine"], row["setting"], row["substeps"]) for row in found if row}
-    return [(c, substeps) for c, substeps in engines.PILES if (*c[:2], substeps) in chosen]
 
 
 def processes(quick):

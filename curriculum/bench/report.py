@@ -57,15 +57,11 @@ def loses(one, other):
 
 
 def limits(points):
-    """Yield (limit, number of problems, where an engine beats leapfrog, where the reference does)
-
-    Where it is beaten: {problem: (leapfrog's point, the better one)}.
-    """
+    """Yield (limit, number of problems, {problem where an engine beats leapfrog: both points})."""
     for words, limit in CONTESTS.items():
-        sides = ["leapfrog"], PEERS, [REFERENCE]
-        mine, *others = (contest(points, side, **limit) for side in sides)
-        yield words, len(mine), *({name: (mine[name], other) for name, other in each.items()
-                                   if loses(mine.get(name), other)} for each in others)  # fmt: skip
+        mine, others = (contest(points, side, **limit) for side in (["leapfrog"], PEERS))
+        beaten = [name for name in mine if loses(mine[name], others.get(name))]
+        yield words, len(mine), {name: (mine[name], others[name]) for name in beaten}
 
 
 def races(rows, depths):
@@ -106,7 +102,7 @@ def claims(points, piles):
 def where(points):
     """Return in how many problems leapfrog is at least as accurate as each engine, by limit."""
     found = {}
-    for words, fields, lost, _ in limits(points):
+    for words, fields, lost in limits(points):
         but = f" (not {', '.join(lost)})" * bool(lost)
         found.setdefault(f"in {fields - len(lost)} of {fields} problems{but}", []).append(words)
     return "; ".join(f"{result} with at most {', '.join(each)}" for result, each in found.items())
@@ -149,24 +145,19 @@ def typed(want):
 
 
 def winners(rows, cell):
-    """Yield a row a problem: a cell of each side, the better of two in bold."""
+    """Yield a row a problem: a cell of each of our models, name and cell of the best engine."""
     best = [contest(rows, side) for side in (*([name] for name in SHOWN), PEERS)]
-    for name, problem in problems.BY_NAME.items():
-        found = [each.get(name) for each in best]
-        cells = [cell(p) for p in found]
-        if cell is error_of:
-            won = 4 if loses(found[2], found[4]) else 2
-            cells[won] = f"**{cells[won]}**"
-        if any(found):
-            yield [f"{name}: {problem.title}", *cells[:4], peer(found[-1])[0], cells[4]]
+    for name in best[0]:
+        *ours, other = (each.get(name) for each in best)
+        title = f"{name}: {problems.BY_NAME[name].title}"
+        yield [title, *map(cell, ours), peer(other)[0], cell(other)]
 
 
 def losses(rows):
-    """Yield a row for each limit and problem where leapfrog is beaten, and by whom."""
-    for words, _, *sides in limits(rows):
-        for lost in sides:
-            for name, (mine, other) in lost.items():
-                yield [words, name, error_of(mine), time_of(mine), *peer(other)]
+    """Yield a row for each limit and problem where an engine beats leapfrog."""
+    for words, _, lost in limits(rows):
+        for name, (mine, other) in lost.items():
+            yield [words, name, error_of(mine), time_of(mine), *peer(other)]
 
 
 def written(name, sections, made):
