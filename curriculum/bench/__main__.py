@@ -50,8 +50,8 @@ def try_one(problem, setting, substeps):
     if problem not in map(str, sizes):
         raise ValueError(f"try: given problem {problem!r}; allowed: {', '.join(map(str, sizes))}")
     if problem.isdecimal():
-        *_, row = end = measure.settle((int(problem), c, substeps, None))
-        step = measure.time_of_pile((int(problem), c, substeps, end))
+        pile, row = measure.settle((int(problem), c, substeps, None))
+        step = measure.time_of_step((pile, c, substeps, *measure.TIMED))
         rest = "at rest" if row["at_rest"] else "not at rest"
         depth = f"{contact.format_number(row['mean_depth'])} r deep in the mean"
         return f"{problem} balls by {setting}: {rest}, {depth}, {step:.3g} µs of CPU a step"
@@ -64,9 +64,8 @@ def try_one(problem, setting, substeps):
 
 def main(argv=None):
     parser = Parser(prog="python -m curriculum.bench", description=__doc__)
-    parser.add_argument(
-        "part", nargs="?", default="all", choices=("all", *measure.PARTS, "draw", "try")
-    )
+    allowed = "all", *measure.PARTS, "draw", "try"
+    parser.add_argument("part", nargs="?", default="all", choices=allowed)
     parser.add_argument("what", nargs="*", help="of try: a problem or a number of balls; a setting")
     parser.add_argument("--substeps", type=int, default=1, help="of try: in 2 ms (1)")
     parser.add_argument("--tier", metavar="NAME", help="what the ledger calls this machine")

@@ -26,7 +26,8 @@ DT = 0.002  # s, the step of contact.py's own default run
 LONGER = 0.004  # s: a step that is looked at once
 MOVING = {p.name: int(np.isfinite(p.build(0).mass).sum()) for p in problems.PROBLEMS}  # balls
 HEAP, COLLAPSE = (18, 12), 2000  # balls side by side and over one another; steps
-WATCHED, TURN, TURNS = 250, 50, 3  # steps at the end; timed steps in one go; how many goes
+WATCHED, LOOK = 250, 50  # steps at the end, and from one look to the next
+TIMED = 100, 50, 3  # steps of a settled pile before it is timed, in one go; how many goes
 AT_REST, DEPTHS = 1e-3, (1e-3, 1e-4)  # m/s, r
 SIZES, SETTLE = {12: 4, 100: 10, 1000: 25}, 6000  # balls: side by side; steps to settle
 MANY, COPIES, AGAIN = 10_000, 10, 1500  # made of settled copies; steps to settle again
@@ -119,16 +120,16 @@ def best(rows, group, rank):
     return found
 
 
-def shaft(count, q=None):
+def shaft(count, one=None):
     """Return balls on a lattice between two walls of fixed balls, and the floor. The seed is fixed.
 
-    Of 10,000: ten copies of a thousand, which stand at q (2, N), each with its own walls; centred,
-    for engines in float32.
+    Of 10,000: ten copies of a thousand, `one`, each with its own walls; centred, for engines in
+    float32.
     """
     r, rng = contact.RADIUS, np.random.default_rng(0)
     if count == MANY:
-        one = shaft(MANY // COPIES)
-        x, y = one.q0 if q is None else q
+        one = one or shaft(MANY // COPIES)
+        x, y = one.q0
         places = (np.arange(COPIES) - 0.5 * (COPIES - 1)) * (np.ptp(x) + 3.0 * r)
         x, mass = np.add.outer(places, x).ravel(), np.tile(one.mass, COPIES)
         return contact.scene_of(x, np.tile(y, COPIES), mass)
@@ -148,12 +149,12 @@ def piles(quick):
     for count in (12,) if quick else (*SIZES, MANY):
         chosen, label = fitting(count)[:: 4 if quick else 1], f"{count} balls"
         jobs = [(count, *each, settled.get(each)) for each in chosen]
-        settled = dict(zip(chosen, parallel.run_jobs(settle, jobs, f"{label} settle")))
-        jobs = [(count, *each, end) for each, end in settled.items()]
+        ends, found = zip(*parallel.run_jobs(settle, jobs, f"{label} settle"))
+        settled = dict(zip(chosen, ends))
+        jobs = [(end, *each, *TIMED) for each, end in settled.items()]
         often = 1 if quick else PROCESSES - (count == MANY)
-        times = timing.in_fresh_processes(time_of_pile, jobs, often, label)
-        for (*_, row), each in zip(settled.values(), times):
-            rows.append(row | timing.spread("us", each))
+        times = timing.in_fresh_processes(time_of_step, jobs, often, label)
+        rows += [row | timing.spread("us", each) for row, each in zip(found, times)]
     return rows
 
 
@@ -163,19 +164,21 @@ def fitting(count):
 
 
 def settle(job):
-    """Return q, v of a settled pile, and its row without times; start: that of a copy, or None."""
-    count, c, substeps, start = job
-    session = c.build(shaft(count, start and np.array(start[0])), DT, substeps)
+    """Return a settled pile, and its row without times; one: of a thousand, or None."""
+    count, c, substeps, one = job
+    scene = shaft(count, one)
+    session = c.build(scene, DT, substeps)
     session.go((AGAIN if count == MANY else SETTLE) - WATCHED)
     speeds, (before, _) = [], session.state()
-    for _ in range(WATCHED // TURN):
-        session.go(TURN)
+    for _ in range(WATCHED // LOOK):
+        session.go(LOOK)
         q, v = session.state()
-        speeds.append(np.hypot(*(q - before)).max() / (TURN * DT))
+        speeds.append(np.hypot(*(q - before)).max() / (LOOK * DT))
         before = q.copy()
     speed = float(np.max(speeds))  # the longest way of a ball from look to look; NaN is no rest
     row = dict(bodies=count, engine=c.engine, setting=c.options, substeps=substeps, speed=speed)
-    return q, v, row | dict(at_rest=int(speed < AT_REST)) | depths(q)
+    row |= dict(at_rest=int(speed < AT_REST)) | depths(q)
+    return scene._replace(q0=q, v0=v), row
 
 
 def depths(q):
@@ -190,14 +193,13 @@ def depths(q):
     return dict(mean_depth=mean, worst_depth=float(found.max()))
 
 
-def time_of_pile(job, timed=timing.timed):
-    """Return microseconds a step, from the state that settle has found."""
-    count, c, substeps, (q, v, _) = job
-    scene = shaft(count)._replace(q0=np.array(q, float), v0=np.array(v, float))
+def time_of_step(job, timed=timing.timed):
+    """Return microseconds a step: the median of so many goes, after the first steps."""
+    scene, c, substeps, first, steps, goes = job
     session = c.build(scene, DT, substeps)
-    session.go(100)
-    seconds = [timed(partial(session.go, TURN)) for _ in range(TURNS)]
-    return 1e6 * statistics.median(seconds) / TURN
+    session.go(first)
+    seconds = [timed(partial(session.go, steps)) for _ in range(goes)]
+    return 1e6 * statistics.median(seconds) / steps
 
 
 def heap():
@@ -213,11 +215,12 @@ def heap():
 
 def collapse(quick):
     """Measure a row for each setting of the piles: the heap's overlaps, and the time of a step."""
-    count = math.prod(HEAP)
-    chosen = fitting(count)[:: 8 if quick else 1]
-    jobs = [(*each, COLLAPSE // 20 if quick else COLLAPSE) for each in chosen]
+    count, steps = math.prod(HEAP), COLLAPSE // 20 if quick else COLLAPSE
+    chosen, often = fitting(count)[:: 8 if quick else 1], 1 if quick else PROCESSES
+    jobs = [(*each, steps) for each in chosen]
     rows = parallel.run_jobs(sink_of, jobs, f"{count} balls collapse")
-    times = timing.in_fresh_processes(time_of_heap, jobs, 1 if quick else PROCESSES, "their times")
+    jobs = [(heap(), *each, 1, steps - 1, 1) for each in chosen]
+    times = timing.in_fresh_processes(time_of_step, jobs, often, "their times")
     return [row | timing.spread("us", each) for row, each in zip(rows, times)]
 
 
@@ -231,14 +234,6 @@ def sink_of(job):
     row = dict(bodies=math.prod(HEAP), engine=c.engine, setting=c.options, substeps=substeps)
     mean, worst = np.array([list(each.values()) for each in found]).T
     return row | dict(mean_depth=float(mean.mean()), worst_depth=float(worst.max()))
-
-
-def time_of_heap(job):
-    """Return microseconds a step of the heap, from its start to its end."""
-    c, substeps, steps = job
-    session = c.build(heap(), DT, substeps)
-    session.go(1)
-    return 1e6 * timing.timed(partial(session.go, steps - 1)) / (steps - 1)
 
 
 def fastest(rows, depth, who):

@@ -163,9 +163,7 @@ def losses(rows):
 def written(name, sections, made):
     """Return page.md or readme.md with everything filled in."""
     points, piles, heap, processes = (sections.get(part, ()) for part in measure.PARTS)
-    about = dict(made.get("points", {}), versions={})
-    for each in made.values():
-        about["versions"] |= each["versions"]
+    about = made.get("points", {"versions": {}})
     there = (f"{row[1]} {about['versions'].get(row[1], 'not there')}" for row in ENGINES.values())
     facts = claims(points, piles)
     template, words = ((HERE / file).read_text("utf-8") for file in (name, "claims.md"))

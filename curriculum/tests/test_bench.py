@@ -128,8 +128,8 @@ def test_times_are_medians_of_runs_after_a_short_one_and_of_piles_from_where_the
     lcp, scene = engines.BY_NAME["lcp iters=5 warm=0.8"], measure.shaft(12)
     settled = scene._replace(q0=scene.q0 + 1.0)
     calls.clear()
-    job = 12, lcp, 4, (settled.q0, settled.v0, {})
-    assert measure.time_of_pile(job, clock) == pytest.approx(9e3 / 50)
+    job = settled, lcp, 4, *measure.TIMED
+    assert measure.time_of_step(job, clock) == pytest.approx(9e3 / 50)
     session = calls[0].func.__self__  # it went on from look to look: 250 of 4 steps each
     run = contact.run_model("lcp", settled, 0.0005, 1000, session.settings)
     assert np.array_equal(session.state(), (run.q[-1], run.v[-1]))
@@ -188,7 +188,6 @@ def test_the_heap_is_that_of_simbenchmark_in_a_plane():
     assert scene.q0[1].min() == pytest.approx(1.101, abs=1e-3)
     row = measure.sink_of((lcp, 1, 600))
     assert 1e-6 < row["mean_depth"] < row["worst_depth"] < 0.2 and row["bodies"] == 216
-    assert measure.time_of_heap((lcp, 1, 50)) > 1.0
     rows = [row | dict(us=t, mean_depth=d) for t, d in ((9.0, 1e-4), (3.0, 1e-2), (1.0, None))]
     assert measure.fastest(rows, 1e-3, ["lcp"])[216]["us"] == 9.0
 
@@ -198,9 +197,9 @@ LAST = {setting.engine: (setting, substeps) for setting, substeps in engines.PIL
 
 @pytest.mark.parametrize("setting, substeps", LAST.values(), ids=named)
 def test_a_pile_of_twelve_settles_between_walls_in_every_engine(setting, substeps):
-    q, v, row = measure.settle((12, setting, substeps, None))
+    pile, row = measure.settle((12, setting, substeps, None))
     assert row["at_rest"] and row["speed"] < 1e-3 and 0.0 < row["mean_depth"] < 0.02
-    assert abs(q[0, :12]).max() < 6.0 * R, "no ball left the shaft"
+    assert abs(pile.q0[0, :12]).max() < 6.0 * R, "no ball left the shaft"
 
 
 def test_depths_are_those_of_the_contacts():
