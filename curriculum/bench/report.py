@@ -16,7 +16,6 @@ from curriculum.show import picture
 
 REFERENCE = "events"  # the event-driven code, which takes nothing from contact.py
 PEERS = [name for name in ENGINES if name != REFERENCE]
-LEAST = 1e-16  # r: an error of exactly zero is drawn here
 DRAWN = "slide", "bounce", "pile"  # the problems with a picture of their own
 SHOWN = "exact", REFERENCE, "leapfrog", "lcp"  # each with a column of its own
 CONTESTS = {f"{work} substeps in 2 ms": dict(work=work) for work in WORK}
@@ -28,19 +27,12 @@ def called(row):
     return f"{row['engine']} {row['setting'] or ''}".strip()
 
 
-def error_of(p):
-    """Return the error [r] of a point, for a reader."""
-    return "-" if p is None else "reference" if p["error"] is None else format_number(p["error"])
-
-
-def time_of(p):
-    """Return the time [ms] of a point, for a reader."""
-    return "-" if p is None else format_number(p["ms"])
-
-
-def peer(p):
-    """Return name, error [r] and time [ms] of another engine's point: three cells."""
-    return [LABELS[p["engine"]] if p else "-", error_of(p), time_of(p)]
+def told(p):
+    """Return engine, error [r] and time [ms] of a point: three cells."""
+    if p is None:
+        return ["-"] * 3
+    error = "reference" if p["error"] is None else format_number(p["error"])
+    return [LABELS[p["engine"]], error, format_number(p["ms"])]
 
 
 def step_of(row):
@@ -128,7 +120,7 @@ def take(points, piles):
         row = rows.get((want["problem"], *same(want)))
         cells = [want["wish"], f"`{called(want)}`", f"`{typed(want)}`"]
         if row in points:
-            yield [*cells, error_of(row), time_of(row), *peer(peers.get(row["problem"]))]
+            yield [*cells, *told(row)[1:], *told(peers.get(row["problem"]))]
         elif row:
             depth = min(d for d in DEPTHS if row["mean_depth"] <= d)
             other = measure.fastest(piles, depth, ENGINES).get(row["bodies"])
@@ -144,20 +136,20 @@ def typed(want):
     return f"python -m curriculum.bench try {want['problem']} {setting}{more}"
 
 
-def winners(rows, cell):
-    """Yield a row a problem: a cell of each of our models, name and cell of the best engine."""
+def winners(rows, which):
+    """Yield a row a problem: error (1) or time (2) of each of SHOWN, the best engine and its."""
     best = [contest(rows, side) for side in (*([name] for name in SHOWN), PEERS)]
     for name in best[0]:
-        *ours, other = (each.get(name) for each in best)
+        *ours, other = (told(each.get(name)) for each in best)
         title = f"{name}: {problems.BY_NAME[name].title}"
-        yield [title, *map(cell, ours), peer(other)[0], cell(other)]
+        yield [title, *(cells[which] for cells in ours), other[0], other[which]]
 
 
 def losses(rows):
     """Yield a row for each limit and problem where an engine beats leapfrog."""
     for words, _, lost in limits(rows):
         for name, (mine, other) in lost.items():
-            yield [words, name, error_of(mine), time_of(mine), *peer(other)]
+            yield [words, name, *told(mine)[1:], *told(other)]
 
 
 def written(name, sections, made):
@@ -175,8 +167,8 @@ def written(name, sections, made):
         stepped=", ".join(m for m in STEPPED if any(p["engine"] == m for p in points)),
         machine=f"{about.get('cores')} cores of {about.get('cpu')}, with {', '.join(there)}",
         take=stored.lines(take(points, piles)),
-        errors=stored.lines(winners(points, error_of)),
-        times=stored.lines(winners(points, time_of)),
+        errors=stored.lines(winners(points, 1)),
+        times=stored.lines(winners(points, 2)),
         losses=stored.lines(losses(points)),
         races=stored.lines(raced(piles, DEPTHS)),
         heap=stored.lines(raced(heap, (1e-2, *DEPTHS))),
@@ -206,7 +198,7 @@ def error_figure(rows, problem):
         below=0.9,
     )
     for engine, label in LABELS.items():
-        dots = front((max(p["error"], LEAST), p["ms"]) for p in rows
+        dots = front((p["error"], p["ms"]) for p in rows
                      if (p["engine"], p["problem"], p["diverged"]) == (engine, problem, 0)
                      and p["error"] is not None)  # fmt: skip
         if dots:
