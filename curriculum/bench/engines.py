@@ -149,9 +149,8 @@ class Mujoco(Session):
 
     def __init__(self, scene, dt, texts=None, solver="Newton", xml="", **options):
         import mujoco
-        from mujoco import rollout
 
-        self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
+        self.mujoco, self.scene = mujoco, scene
         mujoco.set_mju_user_warning(lambda text: None)  # its default writes a log file
         solref, solimp = texts or spring(scene, dt, **options)
         many = len(scene.mass) >= MANY
@@ -167,6 +166,7 @@ class Mujoco(Session):
         self.step = partial(mujoco.mj_step, self.model, self.data)
         self.data.qpos[:] = scene.q0[:, self.moving].T.ravel()
         self.data.qvel[:] = scene.v0[:, self.moving].T.ravel()
+        self.heights = self.data.qpos[1::2].copy  # the array stays where it is
 
     @staticmethod
     def body(ball):
@@ -177,15 +177,6 @@ class Mujoco(Session):
 
     def go(self, n):
         self.mujoco.mj_step(self.model, self.data, nstep=n * self.substeps)
-
-    def trace(self, n):
-        """Return heights by MuJoCo's own rollout, a loop in C that stores every state."""
-        full = self.mujoco.mjtState.mjSTATE_FULLPHYSICS
-        start = np.empty(self.mujoco.mj_stateSize(self.model, full))
-        self.mujoco.mj_getState(self.model, self.data, start, full)
-        rows = self.rollout(self.model, self.data, start, nstep=n * self.substeps)[0][0]
-        rows = np.vstack((start, rows[self.substeps - 1 :: self.substeps]))
-        return rows[:, 2 : 1 + self.model.nq : 2]
 
     def state(self):
         return self.with_the_fixed(self.data.qpos, self.data.qvel)
