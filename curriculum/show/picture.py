@@ -148,33 +148,36 @@ def curves(runs: dict[str, contact.Run], scene: contact.Scene) -> dict:
 
 
 @np.errstate(all="ignore")
-def time_of_rest(runs: dict) -> float:
-    """Return when the last ball rests [s]: it goes slower than 1 cm/s for good.
+def worth_seeing(runs: dict, scene: contact.Scene) -> tuple[float, float]:
+    """Return two times [s]: when every model has pushed, and when the last ball rests.
 
-    It is judged by its way, since speeds at the end of leapfrog's steps may be larger; a tenth more
-    is added, at most to the end.
+    A ball rests once it goes slower than 1 cm/s for good, judged by its way, since speeds at the
+    end of leapfrog's steps may be larger; a tenth more is shown, at most to the end.
     """
-    rests = [0.0]
+    pushes, rests = [], [0.0]
     for run in runs.values():
+        push = np.abs(contact_impulses(run, scene)).max((1, 2))
+        pushes += run.t[np.flatnonzero(push > 1e-6 * weight(scene) * run.t[1:2])[:1]].tolist()
         slow = np.abs(np.diff(run.q, axis=0)) < 0.01 * np.diff(run.t)[:, None, None]
         moving = np.flatnonzero(~slow.all((1, 2)))
         rests += [run.t[min(len(run.t) - 1, k + k // 10 + 1)] for k in moving[-1:]]
-    return float(max(rests))
+    return float(max(pushes, default=0.0)), float(max(rests))
 
 
 def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str) -> None:
-    """Draw the curves of runs {model: Run} until all rest, a panel each, as SVG.
+    """Draw the curves of runs {model: Run} from the landing to rest, a panel each, as SVG.
 
     Takes what recording.write takes. Raises contact.MissingPackage where matplotlib is missing.
     """
-    drawn, last = curves(runs, scene), time_of_rest(runs)
+    drawn, (first, last) = curves(runs, scene), worth_seeing(runs, scene)
+    first -= 0.03 * max(last - first, 0.0)
     picture, axes = figure(len(drawn), title, height=1.5, below=0.3)
     for axis, (name, lines) in zip(axes, drawn.items()):
         axis.set_title(name)
         axis.tick_params(labelbottom=axis is axes[-1])
         for place, (model, values) in enumerate(lines.items()):
             t = runs[model].t
-            seen = (t <= last) & (np.abs(values) < 1e30)  # or it is not drawn
+            seen = (t >= first) & (t <= max(first, last)) & (np.abs(values) < 1e30)  # or not drawn
             width = 2.6 - 0.45 * place  # thick beneath thin: lines that coincide are all seen
             line(axis, t[seen], values[seen], model, marker="", linewidth=width)
         if name.startswith("force"):

@@ -8,7 +8,7 @@ import numpy as np
 
 import contact
 from curriculum import commands
-from curriculum.show.picture import COLORS, contact_impulses, curves, time_of_rest, weight
+from curriculum.show.picture import COLORS, contact_impulses, curves, weight, worth_seeing
 
 try:
     import rerun as rr
@@ -20,6 +20,7 @@ PUSH = "#f0e442"  # colour of the arrows
 FIXED, LINE = "#3a3f4a", "#808080"  # colours of fixed balls and of the table, by day and night
 WIDE = 50.0  # m: half the table; a longer line is drawn with gaps where it is magnified
 MOST_ARROWS = 24  # balls: more have no arrows
+SECONDS = ("sim_time", "landing")  # timelines, besides step
 LONGEST = 9e9  # s: 64 bits of nanoseconds
 MAGNIFIED = 0.16  # radii: the height of the view of the table, where a rest sinks by 0.01
 ABOUT = """\
@@ -27,6 +28,7 @@ ABOUT = """\
 
 An arrow is what all contacts push on a ball: a radius for its weight, and a radius more for each
 doubling. Below, the table is magnified: those views are so many r high.
+The line `landing` begins at the first contact, at {first:.4g} s; `sim_time` at the start.
 """
 
 
@@ -34,20 +36,21 @@ def write(path: str, runs: dict, scene: contact.Scene, quality: dict, title: str
     """Write the runs {model: Run} of a scene as a recording, whole or not at all.
 
     quality: {model: contact_quality} of the runs. Whole columns are sent, in rerun's strict mode.
-    The timelines are step and sim_time. The entities are about, world/MODEL/{table,balls,pushes,
+    The timelines are step, sim_time, and landing, which it opens on: sim_time, but all that is
+    before the first push at its start. The entities are about, world/MODEL/{table,balls,pushes,
     foot} and CURVE/MODEL; foot only where one ball moves, on a fixed one.
     """
     rr.set_strict_mode(True)  # a wrong call raises instead of warning
-    drawn = curves(runs, scene)
-    times = {model: timelines(run.t) for model, run in runs.items()}
+    drawn, seconds = curves(runs, scene), worth_seeing(runs, scene)
+    times = {model: timelines(run.t, seconds[0]) for model, run in runs.items()}
     recording = rr.RecordingStream("contact")
     if not rr.is_enabled(recording):
         raise contact.MissingPackage("rerun is switched off by the variable RERUN")
     # rerun's own file would wait for ever where a disk is full
     kept = recording.binary_stream()  # type: ignore[misc]
-    blueprint = layout(runs, scene, drawn, quality)
+    blueprint = layout(runs, scene, drawn, seconds, quality)
     recording.send_blueprint(blueprint, make_active=True, make_default=True)
-    words = ABOUT.format(title=title)
+    words = ABOUT.format(title=title, first=seconds[0])
     recording.log("about", rr.TextDocument(words, media_type=rr.MediaType.MARKDOWN), static=True)
     for model, run in runs.items():
         send_table(recording, model)
@@ -61,11 +64,13 @@ def rgba(color: str) -> np.ndarray:
     return np.array([int(color[1:] + "ff", 16)], np.uint32)
 
 
-def timelines(t: np.ndarray) -> list:
+def timelines(t: np.ndarray, first: float) -> list:
     """Return the columns of time."""
-    nanoseconds = np.round(np.minimum(t, LONGEST) * 1e9).astype("timedelta64[ns]")  # none is off
-    steps = rr.TimeColumn("step", sequence=np.arange(len(t)))
-    return [steps, rr.TimeColumn("sim_time", duration=nanoseconds)]
+    times = [rr.TimeColumn("step", sequence=np.arange(len(t)))]
+    for name, seconds in zip(SECONDS, (t, np.maximum(t, first))):
+        nanoseconds = np.round(np.minimum(seconds, LONGEST) * 1e9)  # no stamp is off
+        times.append(rr.TimeColumn(name, duration=nanoseconds.astype("timedelta64[ns]")))
+    return times
 
 
 def send_table(recording, model):
@@ -142,7 +147,7 @@ def send_curves(recording, runs: dict, drawn: dict, times: dict) -> None:
             send(recording, f"{title.split()[0]}/{model}", look, times[model], columns)
 
 
-def layout(runs, scene, drawn, quality: dict) -> rrb.Blueprint:
+def layout(runs, scene, drawn, seconds: tuple, quality: dict) -> rrb.Blueprint:
     """Return the blueprint that travels in the file: on the left the balls, and under them the
     table magnified; on the right what it is, and the plots.
 
@@ -164,8 +169,8 @@ def layout(runs, scene, drawn, quality: dict) -> rrb.Blueprint:
     lanes = rrb.Grid(*[view(model, ends[model], *sides, followed) for model in runs])
     small = rrb.Horizontal(*[view(model, f"{high:g} r", *near, followed) for model in runs])
     about = rrb.TextDocumentView(origin="about", name="about")
-    most, last = 5.0 * weight(scene), time_of_rest(runs)
-    right = rrb.Vertical(about, *[plot(title, most, last) for title in drawn])
+    most = 5.0 * weight(scene)
+    right = rrb.Vertical(about, *[plot(title, most, *seconds) for title in drawn])
     left = rrb.Vertical(lanes, small, row_shares=[5, 2])
     both = rrb.Horizontal(left, right, column_shares=[3, 2])
     return rrb.Blueprint(both, time_panel(), collapse_panels=True)
@@ -179,20 +184,20 @@ def view(model: str, name: str, x_range: list, y_range: list, followed) -> rrb.S
     return rrb.Spatial2DView(origin=origin, contents=f"{world}/**", name=name, visual_bounds=bounds)
 
 
-def plot(title: str, most: float, last: float) -> rrb.TimeSeriesView:
-    """Return a plot until `last` [s], in the colours of the balls; of a force up to `most`."""
+def plot(title: str, most: float, first: float, last: float) -> rrb.TimeSeriesView:
+    """Return a plot of times [s] after `first`, in the balls' colours; of a force up to `most`."""
     name, shown = title.split()[0], None
     axis = rrb.ScalarAxis(range=(0.0, most)) if name == "force" else None
-    if 0.0 < last < LONGEST:
-        start, end = (rrb.TimeRangeBoundary.absolute(seconds=each) for each in (0.0, last))
-        shown = [rrb.VisibleTimeRange("sim_time", start=start, end=end)]
+    if first < last < LONGEST:  # all that was before stands on the first instant: left out
+        start, end = (rrb.TimeRangeBoundary.absolute(seconds=each) for each in (first + 1e-6, last))
+        shown = [rrb.VisibleTimeRange(line, start=start, end=end) for line in SECONDS]
     how = {"plot_legend": rrb.PlotLegend(visible=False), "time_ranges": shown, "axis_y": axis}
     return rrb.TimeSeriesView(origin=name, name=title, **how)  # type: ignore[arg-type]
 
 
 def time_panel():
-    """Open at the start, four times slowed down; rerun-sdk before 0.28 plays it at once."""
+    """Open on the landing, four times slowed down; rerun-sdk before 0.28 plays it at once."""
     try:
-        return rrb.TimePanel(timeline="sim_time", play_state="paused", playback_speed=0.25)
+        return rrb.TimePanel(timeline="landing", play_state="paused", playback_speed=0.25)
     except TypeError:
-        return rrb.TimePanel(timeline="sim_time")
+        return rrb.TimePanel(timeline="landing")

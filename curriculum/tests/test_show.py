@@ -97,15 +97,20 @@ def test_a_recording_has_every_models_balls_pushes_and_curves_a_row_a_step(stack
     assert "a title" in recording["/about"]["TextDocument:text"][0][0]
 
 
-def test_it_opens_slowed_down_and_its_plots_end_where_all_rest(stack):
-    views, runs = stack[0]["views"], stack[1]
-    panel = {key[19:]: each for key, each in views.items() if "TimePanel" in key}
-    assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["sim_time"]])
-    (ranges,) = {str(each) for each in views["VisibleTimeRanges:ranges"]}
-    end = max(int(n) / 1e9 for n in re.findall(r"\d{8,}", ranges))
+def test_it_opens_slowed_down_on_the_landing_and_plots_end_where_all_rest(stack):
+    recording, runs = stack
+    fall = np.sqrt(2.0 * (0.131 - RADIUS[0]) / 9.81)  # s, of a ball that starts at rest
+    landing = recording["/world/lcp/balls"]["landing"]
+    first = landing[0] / 1e9  # where a viewer's cursor starts
+    assert 0.0 < first - fall < 2 * DT
+    assert landing == [max(t, landing[0]) for t in recording["/world/lcp/balls"]["sim_time"]]
+    panel = {key[19:]: each for key, each in recording["views"].items() if "TimePanel" in key}
+    assert (panel["playback_speed"], panel["timeline"]) == ([[0.25]], [["landing"]])
+    (ranges,) = {str(each) for each in recording["views"]["VisibleTimeRanges:ranges"]}
+    start, *_, end = sorted({int(n) / 1e9 for n in re.findall(r"\d{8,}", ranges)})
     ways = [np.abs(np.diff(run.q, axis=0)).max((1, 2)) for run in runs.values()]
     moves = DT * max(np.flatnonzero(way >= 0.01 * DT)[-1] for way in ways)
-    assert moves > 0.0 and abs(end - 1.1 * moves) < 2 * DT
+    assert fall < first < start < moves and abs(end - 1.1 * moves) < 2 * DT
 
 
 def test_views_say_how_a_run_ended_show_the_table_magnified_and_no_explosion_widens_one(tmp_path):
