@@ -22,9 +22,9 @@ dive: of a step well below the critical one; of lcp at worst. sag: iters 1, or u
 flicker: later in a run, since the ball must first come out of its depth. The others: always"""
 
 
-def sink(mass, stiffness, count=1):
-    """Compute how deep [m] the lowest of `count` balls rests in penalty's floor."""
-    return count * mass * G / stiffness
+def sink(mass, stiffness):
+    """Compute how deep [m] a ball rests in penalty's floor that carries `mass`, its own too."""
+    return mass * G / stiffness
 
 
 def dive_of_penalty(speed, mass, stiffness, damping):
@@ -55,12 +55,12 @@ def hop(depth, dt, baumgarte):
     return max(0.0, (baumgarte * depth / dt) ** 2 / (2.0 * G) - (1.0 - 0.5 * baumgarte) * depth)
 
 
-def sag(above, mass, dt, baumgarte, iters, warm=0.0):
+def sag(above, mass, dt, baumgarte, iters):
     """Compute how deep [m] lcp's ball rests that carries the mass `above`, in a column.
 
     Right with one sweep; with K within a tenth while K is below a fortieth of n^2, n balls.
     """
-    return (1.0 - warm) * above / mass * G * dt * dt / (baumgarte * iters)
+    return above / mass * G * dt * dt / (baumgarte * iters)
 
 
 tremble = contact.critical_dt  # (mass, stiffness, damping, count): penalty trembles above this step

@@ -57,7 +57,7 @@ def paper():
     ball, step = (1.0, usual.stiffness, 80.0), (DT, usual.baumgarte)
     lengths = {
         "sink": predict.sink(*ball[:2]),
-        "stack": predict.sink(*ball[:2], count=3),
+        "stack": predict.sink(3.0 * ball[0], ball[1]),
         "undamped": speed * math.sqrt(ball[0] / ball[1]),
         "dive": predict.dive_of_penalty(speed, *ball),
         "late": predict.dive_of_lcp(speed, DT),

@@ -1,5 +1,5 @@
-"""Mutants of curriculum/gate.py, prose/, stored.py and source.py: (file, what stands there, what is
-planted, the tests that must name it)."""
+"""Mutants of curriculum/gate.py, prose/, stored.py, source.py and predict.py: (file, what stands
+there, what is planted, the tests that must name it)."""
 
 GATE, REFERENCES = "curriculum/gate.py", "curriculum/prose/references.py"
 CHAPTER, STORED = "curriculum/prose/chapter.py", "curriculum/stored.py"
@@ -9,6 +9,7 @@ KEPT = "test_gate.py -k test_what_is_quoted_is_kept"
 ROW = "test_gate.py -k test_a_row_of_the_ledger"
 STALE = "test_gate.py -k test_results_are_stale"
 RATIO = "test_gate.py -k test_a_ratio_in_words"
+PREDICT, PAPER = "curriculum/predict.py", "test_predict.py -k as_on_paper"
 
 FAULTS = [
     (GATE, r"[\d¼½¾⅓⅔⅛]", r"[\d]", ERRORS),
@@ -39,4 +40,9 @@ FAULTS = [
     ("curriculum/__init__.py", "os.kill(int(child), signal.SIGKILL)", "pass",
      "test_gate.py -k leaves_no_run_behind"),
     ("curriculum/source.py", 'dedent(code).rstrip("\\n")', "dedent(code)", READ),
+    (PREDICT, "return mass * G / stiffness", "return 1.01 * mass * G / stiffness", PAPER),
+    (PREDICT, "(1.0 - 2.0 * zeta * left)", "0.0", PAPER),
+    (PREDICT, "- (1.0 - 0.5 * baumgarte)", "- (1.0 - baumgarte)", PAPER),
+    (PREDICT, "/ (3.0 - d0)", "/ 3.0", "test_predict.py -k soft_flickers"),
+    ("contact.py", "4.0 * math.cos(math.pi / (2 * count + 1)) ** 2", "4.0", PAPER),
 ]  # fmt: skip
