@@ -8,13 +8,13 @@ Beside plain Markdown it may hold
   which the rest of a section is its answer. What a figure begins with stands behind its name:
   cliff?dt=0.03.
 
-Other comments, on lines of their own, vanish. There is no HTML.
+Other comments, on lines of their own, vanish. HTML is shown as it is typed.
 """
 
 import re
 from typing import NamedTuple
 
-from curriculum.source import NAME, blank, line_at
+from curriculum.source import NAME, line_at
 
 CHAPTER = "curriculum/prose/chapter.md"
 INCLUDE = re.compile(rf"\[include-by-region: ([\w./-]+\.py#{NAME})\]")
@@ -31,7 +31,6 @@ PART = re.compile(
 )
 LIKE_A_MARK = re.compile(rf"include-by-region|<!--\s*(?:(?:{MARKS})\b|[\w-]+(?::\s*\S+)?\s*-->)")
 INLINE = re.compile(r"(`+)[^`]+\1|\$\$.+?\$\$|\$[^$\n]+\$|<https?://[^>\s]+>", re.DOTALL)
-HTML = re.compile(r"<[A-Za-z/!?][^\n]*")
 PROSE = ("text", "heading")
 PLAIN = (*PROSE, "code", "comment")
 AS_IT_IS = "write [include-by-region: FILE#NAME] alone in a fence, or <!-- figure: NAME -->"
@@ -72,15 +71,11 @@ def split(text) -> list:
 
 
 def faults(parts):
-    """Yield a line for each malformed mark, and for raw HTML."""
+    """Yield a line for each malformed mark."""
     for part in (part for part in parts if part.kind in PLAIN):
         for match in LIKE_A_MARK.finditer(part.text):
             place = f"{CHAPTER}:{part.line_of(match)}"
             yield f"{place}: no include or slot that is well formed; repair: {AS_IT_IS}"
-        prose = blank(LIKE_A_MARK, blank(INLINE, part.text)) if part.kind in PROSE else ""
-        for match in HTML.finditer(prose):
-            place = f"{CHAPTER}:{part.line_of(match)}"
-            yield f"{place}: raw HTML, {match[0].strip()[:50]!r}; repair: write Markdown"
 
 
 def read(text) -> list:

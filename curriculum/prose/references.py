@@ -137,8 +137,6 @@ def shown(reference) -> str:
         if value is not True:
             raise TextError(f"{formula!r} does not hold: {numbers}")
         return ""
-    if type(value) not in (int, float, str):
-        raise TextError(f"{formula!r} is {value}, no number")
     if isinstance(value, float) and not form:
         raise TextError(f"{formula!r} is a fraction and needs a format, such as |.3f")
     if isinstance(value, str):

@@ -73,7 +73,6 @@ ERRORS = [  # file, what stands there, what takes its place, the problems that i
     (CHAPTER, "exercise: ex1", "exercise ex1",
      ["{}:17: no include or slot that is well formed",
       f"{EXERCISE}:1: exercise ex1 has no place in {CHAPTER}"]),
-    (CHAPTER, "are not typed", "<b>are</b> not typed", ["{}:14: raw HTML, '<b>are</b> not"]),
     (CHAPTER, "contact.py#flight]", "contact.py#fligt]",
      ["{}:#: there is no region contact.py#fligt", "contact.py:#: region contact.py#flight ha"]),
     (CHAPTER, "contact.py#quality]", "contact.py#quality] and more",
@@ -247,12 +246,10 @@ MADE_OF = {  # reference: what a reader sees, or what is said where it cannot be
     "contact.RADIUS": "is a fraction and needs a format",
     "contact.SOLREF.1|.2q": "cannot be made of (1.0): Unknown format code 'q'",
     "quality.lcp.rest|.2f": "no 'quality.lcp.rest'; known there: quality.lcp.rests, ",
-    "quality.lcp.rests": "is True, no number",
     "steps + scene": "cannot be made of (2000) + ('drop'): unsupported",
     "slides:key": "'slides' is not there: no 'slides'; known there: slide, ",
     "? 2e3 <= steps <\n1 + steps": "",
     "? 1 < steps < 2e3": "does not hold: 1 < (2000) < 2e3",
-    "? contact.RADIUS": "does not hold: (0.1)",
 }
 
 
