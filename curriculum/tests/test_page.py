@@ -36,9 +36,6 @@ SLIDERS = """(fig) => [...fig.querySelectorAll("[role=slider], input")].map((nod
     Number(node.getAttribute(`aria-value${key}`) ?? node[own])).concat(
     node.getAttribute("aria-label") ?? node.closest("label").textContent, told.split(words)[1]);
 })"""
-STOPS = """[...document.querySelectorAll("a[href], button, input, summary, [tabindex]")]
-  .filter((node) => node.tabIndex >= 0 && !node.disabled && node.checkVisibility())
-  .map((node) => node.closest(".fig")?.id ?? "")"""
 SIZES = (
     "[...document.querySelectorAll('math')].map((it) => parseFloat(getComputedStyle(it).fontSize))"
 )
@@ -160,13 +157,6 @@ def move_all(page, *ways, every=1):
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
-def follow_a_citation(page):
-    """Its reference is seen, folded or not."""
-    page.evaluate("document.querySelector('a[href=\"#references-7\"]').click()")
-    entry = "document.getElementById('references-7')"
-    assert page.evaluate(f"{entry}.checkVisibility() && {entry}.textContent.length") > 20
-
-
 def see_first(page, height):
     """The first figure, its handle, words and button are on the first screen."""
     page.wait_for_selector("#fig-gripper .back", state="attached")
@@ -186,10 +176,6 @@ def test_a_learners_way_at_the_desk(desk, url):
     for above, below in itertools.pairwise(boxes):
         assert below["y"] - above["y"] - above["height"] <= 1600, below
     wake_all(desk)
-    stops = desk.evaluate(STOPS)
-    assert len(stops) <= 200
-    for name, run in itertools.groupby(stops):
-        assert not name or len([*run]) == stops.count(name) <= 12
     move_all(desk, partial(by_hand, hand=drag), by_keys)
 
 
@@ -202,13 +188,11 @@ def test_a_learners_way_on_a_phone(visit):
         wake_all(page)
         assert page.evaluate(SMALL) == []
         move_all(page, partial(by_hand, hand=swipe))
-        follow_a_citation(page)
 
 
 def test_a_third_of_it_in_firefox(visit):
     with visit(kind="firefox") as page:
         move_all(page, partial(by_hand, hand=drag), every=3)
-        follow_a_citation(page)
 
 
 @pytest.mark.parametrize("name, dy", [("fig-set-back", 20), ("fig-corner", -9)])
@@ -222,28 +206,29 @@ def test_a_ball_that_is_seized_stays_under_the_mouse(desk, name, dy):
 
 
 def test_the_first_figure_alone_moves_unasked_and_where_motion_is_not_wanted_when_asked(visit):
-    def moves(page, name, shape):
-        """Whether a shape moves within half a second, by more than 5 px."""
+    def moves(page, name):
+        """Whether the first ball of a figure moves within half a second, by more than 5 px."""
         page.evaluate(SEE, name)
-        shape, seen = page.locator(f"#{name} {shape}").first, []
+        ball, seen = page.locator(f"#{name} :is(.m-fixed, .ball)").first, []
         while len(seen) < 6 and (not seen or max(seen) - min(seen) <= 5):
             page.wait_for_timeout(80)
-            seen.append(sum(middle(shape)))
+            seen.append(sum(middle(ball)))
         return max(seen) - min(seen) > 5
 
-    finger, falling = ("fig-gripper", "circle.m-fixed"), ("fig-falls", ".ball")
     with visit() as page:
-        press = [page.locator(f"#{name} .buttons button").first for name, _ in (finger, falling)]
-        assert not moves(page, *finger)
-        press[0].click()
-        assert moves(page, *finger)
+        gripper, falls = (
+            page.locator(f"#{name} .buttons button") for name in ("fig-gripper", "fig-falls")
+        )
+        assert not moves(page, "fig-gripper")
+        gripper.click()
+        assert moves(page, "fig-gripper")
         page.emulate_media(reduced_motion="no-preference")
         page.reload()
-        assert moves(page, *finger)  # one sees it
-        press[0].click()
-        assert not moves(page, *finger) and not moves(page, *falling)
-        press[1].click()
-        assert moves(page, *falling)
+        assert moves(page, "fig-gripper")  # one sees it
+        gripper.click()
+        assert not moves(page, "fig-gripper") and not moves(page, "fig-falls")
+        falls.click()
+        assert moves(page, "fig-falls")
 
 
 def test_a_link_sets_numbers_in_their_range_a_reload_keeps_all_and_the_address_is_a_link(visit):
@@ -256,8 +241,6 @@ def test_a_link_sets_numbers_in_their_range_a_reload_keeps_all_and_the_address_i
             "80\xa0N s/m",
         ]
         page.evaluate("location.hash = '#fig-sag?iters=7'")
-        page.evaluate(SEE, "fig-sag")
-        page.locator("#fig-sag input").first.press("ArrowRight")
         page.evaluate(SEE, "fig-falls")
         page.locator("#fig-falls [role=slider]").press("End")
         fallen = page.evaluate(STATE, "fig-falls")[0]
@@ -272,7 +255,7 @@ def test_a_link_sets_numbers_in_their_range_a_reload_keeps_all_and_the_address_i
             page.evaluate(SEE, name)
         assert fallen.startswith("1.400 s") and page.evaluate(STATE, "fig-falls")[0] == fallen
         assert "12.3 ms" in page.evaluate(STATE, "fig-cliff")[0]
-        assert page.locator("#fig-sag output").first.inner_text().strip() == "8"
+        assert page.locator("#fig-sag output").first.inner_text().strip() == "7"
         assert page.locator("#fig-corner [aria-pressed=true]").inner_text() == "soft"
         page.locator("#fig-corner .back").click()
         page.wait_for_url(re.compile("#fig-corner$"))

@@ -2,7 +2,6 @@
 
 import itertools
 import json
-import re
 from functools import cache, partial
 
 import numpy as np
@@ -89,11 +88,8 @@ def test_firefox_does_so_too(start):
     judge(start("firefox").new_page().evaluate)
 
 
-@pytest.mark.parametrize(
-    "line, named", [("x = {1, 2}", "{1, 2}"), ("x = a // 2", "FloorDiv"), ("x = sum(a)", "sum(a)")]
-)
-def test_what_has_no_javascript_is_refused_by_its_line(tmp_path, line, named):
+def test_what_has_no_javascript_is_refused_by_its_line(tmp_path):
     file = tmp_path / "steps.py"
-    file.write_text(f"def step(a):\n    {line}\n    return a\n", "utf-8")
-    with pytest.raises(ValueError, match=rf"steps\.py:2: .*{re.escape(named)}"):
+    file.write_text("def step(a):\n    x = a // 2\n    return x\n", "utf-8")
+    with pytest.raises(ValueError, match=r"steps\.py:2: .*FloorDiv"):
         to_js(["step"], file)

@@ -167,31 +167,29 @@ def test_every_figure_has_a_picture_that_is_read_and_few_are_kinds():
 # ---- what is drawn
 
 
-@pytest.mark.parametrize(
-    "dt, late, does",
-    [(0.003, 0, "holds still"), (0.004, 0, "trembles"), (0.006, 0, "flies apart")]
-    + [(0.0046, 0, "trembles"), (0.006, 1, "holds still")],  # the force from the step's end
+FATES = ["holds still", "trembles", "flies apart"]
+
+
+@pytest.mark.parametrize(  # with late=1 by the force from the step's end
+    "dt, late, fate", [(0.003, 0, 0), (0.004, 0, 1), (0.0046, 0, 1), (0.006, 0, 2), (0.006, 1, 0)]
 )
-def test_picture_gripper_moves_as_it_says_and_its_knob_is_in_that_part(draw, dt, late, does):
+def test_picture_gripper_moves_as_it_says_and_its_knob_is_in_that_part(draw, dt, late, fate):
     seen = [draw("gripper", {"dt": dt, "late": late}, {"time": k * dt}) for k in range(64)]
     words, (strong,) = seen[0].words, seen[0].all("text", "strong")
-    part = seen[0].all("rect", f"fate-{['holds still', 'trembles', 'flies apart'].index(does)}")[0]
-    (knob,) = seen[0].all("circle", "knob-dot")
-    assert does in words and strong["text"] == does
+    (part,), (knob,) = seen[0].all("rect", f"fate-{fate}"), seen[0].all("circle", "knob-dot")
+    assert FATES[fate] in words and strong["text"] == FATES[fate]
     assert part["x"] <= knob["cx"] <= part["x"] + part["width"]
     left = [each.all("circle", "m-fixed")[0] for each in seen]
     cup = [each.all("circle", "m-penalty")[0]["cx"] for each in seen]
     moves = np.ptp([c - each["cx"] for c, each in zip(cup, left)]) / left[0]["r"]
-    if does == "trembles":
+    if fate == 1:
         trembling, larger = (*said(words)[1:], 1.0)[:2]
-        assert (
-            moves == pytest.approx(trembling * larger, rel=0.05) and 0.1 < moves < 2
-        )  # one sees it
+        assert moves == pytest.approx(trembling * larger, rel=0.05) and 0.1 < moves < 2
     else:
-        assert moves > 1.0 if does == "flies apart" else moves < 1e-3
+        assert moves > 1.0 if fate else moves < 1e-3
         assert "larger" not in words
     apart = (cup[0] - left[0]["cx"]) / left[0]["r"]  # before it is played one sees where it ends
-    assert (apart > 3) == (does == "flies apart")
+    assert (apart > 3) == (fate == 2)
 
 
 @pytest.mark.parametrize(
@@ -199,7 +197,6 @@ def test_picture_gripper_moves_as_it_says_and_its_knob_is_in_that_part(draw, dt,
 )
 def test_picture_falls_shows_the_gaps_at_the_time_that_it_says(draw, scene, e, dt):
     given = {"scene": scene, "models": ",".join(contact.MODELS), "from": 0.3, "restitution": e}
-    tops = set()
     for time in (0.0, 0.1, 0.14, 0.7):  # s, of the hand
         seen = draw("falls", given, {"time": time, "dt": dt})
         at, (begins, _, step) = said(seen.words)[0], said(seen.caption)[-3:]
@@ -207,7 +204,6 @@ def test_picture_falls_shows_the_gaps_at_the_time_that_it_says(draw, scene, e, d
         assert round(at / dt) * dt == pytest.approx(at, abs=6e-4)
         assert abs(at - 0.3 - time) <= 0.5 * dt + 1e-3
         assert step == 1000 * dt and begins == 0.3
-        tops.add(seen.all("line", "table-top")[0]["y1"] - seen.all("circle", "ball")[0]["r"])
         for model in contact.MODELS:
             told, line = of_model(model, seen.words), seen.curve(f"m-{model}")
             near = line[np.abs(line[:, 0] - at).argmin()]
@@ -215,10 +211,6 @@ def test_picture_falls_shows_the_gaps_at_the_time_that_it_says(draw, scene, e, d
                 assert near == pytest.approx([at, told], abs=0.02), model
                 if scene == "drop":
                     assert seen.gap("ball", f"m-{model}") == pytest.approx(told, abs=0.02), model
-        if scene == "drop" and at < 0.4:
-            fallen = contact.build_scene("drop").q0[1, 0] - R - G * at * at / 2
-            assert of_model("exact", seen.words) == pytest.approx(fallen / R, rel=0.03)
-    assert len(tops) == 1
 
 
 def test_picture_falls_tells_what_comes_only_once_it_was_played_and_enlarges_a_stacks_overlap(draw):
@@ -228,10 +220,8 @@ def test_picture_falls_tells_what_comes_only_once_it_was_played_and_enlarges_a_s
     for seen in (after, draw("falls", given | {"time": 0.1})):  # or where the text shows some of it
         assert len(seen.all("path", "coming")) == 2
     stack = draw("falls", {"scene": "stack", "from": 0.0, "models": "penalty"}, {"time": 1.0})
-    drawn = stack.gap("ball")
-    assert stack.larger() > 1 and drawn == pytest.approx(
-        stack.larger() * said(stack.words)[1], rel=0.02
-    )
+    larger, overlap = stack.larger(), said(stack.words)[1]
+    assert larger > 1 and stack.gap("ball") == pytest.approx(larger * overlap, rel=0.02)
     assert "ball 1 on the table" in stack.words
     for slot in SLOTS:
         if slot.startswith("falls"):  # no ball covers its name
@@ -328,8 +318,6 @@ def test_picture_sag_opens_where_its_law_holds_and_its_bars_are_what_it_says(dra
         assert len(bars) == said(seen.words)[0] and bars == sorted(bars, reverse=True)
         assert bars[0] / 1000 == pytest.approx(deep, rel=0.05)
         assert deep == pytest.approx(law, rel=0.1)  # as the text says
-    told = said(draw("sag", {"balls": 5}, {"dt": 0.0005, "iters": 1}).words)[-1]
-    assert told == pytest.approx(4 * G * 0.0005**2 / 0.2 / R, rel=0.05)
 
 
 @pytest.mark.parametrize("mu", [2.0, 3.0, 0.0, 1.7])
@@ -341,9 +329,7 @@ def test_picture_rod_has_its_circles_where_the_line_crosses_zero(draw, mu):
     crossings = [a[0] + (b[0] - a[0]) * a[1] / (a[1] - b[1]) for a, b in pieces]
     circles = [seen.seen((c["cx"], c["cy"])) for c in seen.all("circle", "rule")][1:]
     assert [y for _, y in circles] == pytest.approx([0.0] * len(crossings), abs=0.01)
-    assert [x for x, _ in circles if x < 1.3] == pytest.approx(
-        [x for x in crossings if x < 1.3], abs=0.01
-    )
+    assert [x for x, _ in circles] == pytest.approx(crossings, abs=0.01)
     assert off_line(seen.mark("exact"), line) < 0.01
     assert said(seen.words)[: len(crossings) + 1] == pytest.approx([0, *crossings], abs=0.01)
     if mu == 2.0:  # the text's
