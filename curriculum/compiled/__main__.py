@@ -3,17 +3,13 @@
 It takes about half a minute, once for each contact.py; runs then start in a second.
 """
 
-import sys
-
 from curriculum.commands import Parser, needs
 
 with needs("bench"):
+    import numba  # noqa: F401  # first: without it run cannot be imported
+
     import contact
-try:
     from curriculum.compiled import run
-except ImportError as error:  # no numba
-    print(f"python -m curriculum.compiled: {error}", file=sys.stderr)
-    sys.exit(2)
 
 if __name__ == "__main__":
     Parser(prog="python -m curriculum.compiled", description=__doc__).parse_args()

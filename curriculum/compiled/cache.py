@@ -27,18 +27,14 @@ SECONDS_A_LINE = 0.01  # of CPU: compiling scalar loops, by the lines of their s
 
 
 class Loops:
-    """A module of loops, given as source, that numba compiles; options are numba's.
+    """A module of loops, given as source, that numba compiles."""
 
-    seconds: about how long compiling takes, by the source's length if it is not known.
-    """
-
-    def __init__(self, name: str, source: str, seconds: float | None = None, **options):
-        decided_by = f"{source}{options}{sys.version}{NUMBA}"
+    def __init__(self, name: str, source: str):
+        decided_by = f"{source}{sys.version}{NUMBA}"
         self.name = f"{name}_{hashlib.sha256(decided_by.encode()).hexdigest()[:16]}"
-        self.source, self.options = source, options
-        self.seconds = seconds or SECONDS_A_LINE * source.count("\n")
+        self.source = source
+        self.seconds = SECONDS_A_LINE * source.count("\n")  # about how long compiling takes
         self.folder = FOLDER / self.name
-        self.complete = self.folder / "complete"  # a file, once all is compiled and on disk
         self.module: types.ModuleType | None = None
 
     def pays(self, seconds: float) -> bool:
@@ -46,8 +42,11 @@ class Loops:
 
         It does where they are loaded or on disk, or compiled sooner than the run is done.
         """
-        ready = self.module is not None or self.complete.exists()
-        return ready or seconds > self.seconds
+        return self.module is not None or self.kept() or seconds > self.seconds
+
+    def kept(self) -> bool:
+        """Return whether numba has put them on disk."""
+        return any(self.folder.rglob("*.nbc"))
 
     def load(self, examples: dict) -> types.ModuleType:
         """Return the module, compiled for {function that Python calls: arguments like these}.
@@ -56,15 +55,13 @@ class Loops:
         """
         path = self.folder / f"{self.name}.py"
         if self.module is None:
-            if not self.complete.exists() and sys.stderr:
+            if not self.kept() and sys.stderr:
                 name = self.name.rpartition("_")[0].removesuffix("_step")
                 print(f"compiling {name}, once ({self.seconds:.0f} s) ...", file=sys.stderr)
             try:
                 if not path.exists():
                     write_atomic(path, self.source)
                 self.module = self.compile(examples, path)
-                if not self.complete.exists():
-                    write_atomic(self.complete, "")
             except ImportError:
                 raise
             except Exception:  # numba's own, pickle's, a full disk: forget what is on disk
@@ -86,7 +83,7 @@ class Loops:
                     options = {"cache": path is not None}
                 else:  # Python does not call it
                     options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-                setattr(module, name, numba.njit(function, **options, **self.options))
+                setattr(module, name, numba.njit(function, **options))
         for name, given in examples.items():
             getattr(module, name).compile(tuple(map(numba.typeof, given)))
         return module

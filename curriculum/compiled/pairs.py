@@ -18,7 +18,7 @@ def list_pairs(q, radius, cutoff, order):
     order (N,): that of the last call is nearly right, so it is soon sorted, in place. A ball whose
     position is not finite is in no pair.
     """
-    count, axis = len(radius), 1 if spread(q[1]) > spread(q[0]) else 0
+    count, axis = len(radius), 1 if np.ptp(q[1]) > np.ptp(q[0]) else 0
     low, room, size = np.empty(count), 0, 4 * count
     for k in range(count):
         place = q[axis, order[k]]
@@ -42,15 +42,6 @@ def list_pairs(q, radius, cutoff, order):
                     size += 1
     pairs = sort_pairs(pairs, pairs[1], size, count)
     return sort_pairs(pairs, pairs[0], size, count)
-
-
-def spread(x):
-    """Return the distance [m] of the outermost two of x (N,)."""
-    least = most = x[0]
-    for each in x:
-        least = each if each < least else least
-        most = each if each > most else most
-    return most - least
 
 
 def sort_balls(keys, order):
@@ -118,7 +109,7 @@ def find_gaps(q, radius, skin, order, pairs):
     """
     gaps, cutoff, listed = np.empty(len(q)), -math.inf, q[0]
     for k in range(len(q)):
-        if not is_finite(q[k]):  # a gap may be NaN, and then the smallest is
+        if not abs(q[k].sum()) < math.inf:  # a gap may be NaN, and then the smallest is
             gaps[k] = math.inf
             for i in range(len(radius)):
                 gaps[k] = least(gaps[k], q[k, 1, i] - radius[i])
@@ -131,14 +122,6 @@ def find_gaps(q, radius, skin, order, pairs):
             pairs = list_pairs(q[k], radius, cutoff, order)
             gaps[k] = smallest_of(q[k], radius, pairs)
     return gaps
-
-
-def is_finite(q):
-    """Return whether all positions are finite."""
-    for i in range(q.shape[1]):
-        if not (abs(q[0, i]) < math.inf and abs(q[1, i]) < math.inf):
-            return False
-    return True
 
 
 def smallest_of(q, radius, pairs):

@@ -80,15 +80,14 @@ def add_contacts(W, balls, contacts, distance, restitution):
     return np.arange(count).astype(np.uint32)
 
 
-def take_steps(states, bits, W, balls, k, mark, marked, listed, cutoff, skip, knobs):
-    """Take steps from states[k] on, and write the states. Returns k, distance, repeats. It stops
+def take_steps(states, W, balls, k, listed, cutoff, knobs):
+    """Take steps from states[k] on, and write the states. Returns k at the end, or before a step
 
-    before a step that must detect gaps up to a `distance` [m] > 0 where the list of pairs may lack
-    one (they had gaps up to the cutoff when the balls were at `listed`); with `skip`, after one
-    that repeats the state and the impulses at the mark; when the next mark is due; or at the end.
+    that must detect gaps up to a distance [m] where the list of pairs may lack one (they had gaps
+    up to the cutoff when the balls were at `listed`); and that distance.
     """
-    distance, repeats = 0.0, False
-    while k < len(states) - 1 and k <= 64 + 1.25 * mark and not repeats:
+    distance = 0.0
+    while k < len(states) - 1:
         distance = detection_distance(W, balls, knobs[0])  # no model looks farther
         if largest_approach(states[k], listed) > 0.998 * (cutoff - distance):
             break
@@ -101,24 +100,9 @@ def take_steps(states, bits, W, balls, k, mark, marked, listed, cutoff, skip, kn
                 ball.x, ball.y = states[k, 0, i], states[k, 1, i]
                 ball.vx, ball.vy = states[k, 2, i], states[k, 3, i]
             break
-        k, distance = k + 1, 0.0
+        k += 1
         for i in balls:
             ball = W.balls[i]
             states[k, 0, i], states[k, 1, i] = ball.x, ball.y
             states[k, 2, i], states[k, 3, i] = ball.vx, ball.vy
-        repeats = skip and is_repeated(W, bits, k, mark, marked)
-    return k, distance, repeats
-
-
-def is_repeated(W, bits, k, mark, marked):
-    """Return whether states k and mark, and the impulses of now and then, are the same bits."""
-    if W.count[1] != len(marked):
-        return False
-    for row in range(bits.shape[1]):
-        for i in range(bits.shape[2]):
-            if bits[k, row, i] != bits[mark, row, i]:
-                return False
-    for c in range(len(marked)):  # no impulse is -0, and NaN is equal to nothing
-        if W.impulses[c, 0] != marked[c, 0] or W.impulses[c, 1] != marked[c, 1]:
-            return False
-    return True
+    return k, distance

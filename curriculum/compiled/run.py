@@ -61,7 +61,6 @@ class Stepper:
     def __init__(self, model, scene, dt, settings):
         step = contact.step_of(model, scene, dt, settings)
         self.knobs = tuple(same_type(name, value) for name, value in step.keywords.items())
-        self.skip = bool(settings.skip)
         self.spreads = model == "lcp" and step.keywords["warm"] == 0.0  # any order does
         self.loops = loops_of(step.func.__name__)
         source, self.radius = self.loops.source, np.array(scene.radius, float, order="C")
@@ -73,31 +72,14 @@ class Stepper:
         self.listed, self.order = np.empty((2, len(self.radius))), np.arange(len(self.radius))
 
     def take(self, states) -> None:
-        """Take len(states) - 1 steps from states[0], that of now, and write them to states[1:].
-
-        Once state and impulses are those of an earlier step, what follows is a copy, as in
-        simulate. A step is compared with one other, the last mark; marks grow rarer (Brent 1980).
-        """
-        last, k, mark, marked = len(states) - 1, 0, 0, self.impulses()
-        bits, take_steps = states.view(np.int64), None
-        while k < last:
-            now = self.world, self.balls, k, mark, marked, self.listed, self.cutoff
-            given = states, bits, *now, self.skip, self.knobs
+        """Take len(states) - 1 steps from states[0], that of now, and write them to states[1:]."""
+        k, take_steps = 0, None
+        while k < len(states) - 1:
+            given = states, self.world, self.balls, k, self.listed, self.cutoff, self.knobs
             take_steps = take_steps or self.loops.load({"take_steps": given}).take_steps
-            k, distance, repeats = take_steps(*given)
-            if distance > 0.0:
+            k, distance = take_steps(*given)
+            if k < len(states) - 1:
                 self.list_pairs(states[k, :2].copy(), distance + self.skin)
-            elif repeats:
-                period = k - mark
-                for later in range(k + 1, last + 1):
-                    states[later] = states[later - period]
-                k += (last - k) // period * period  # then the world is in this state again
-            else:
-                mark, marked = k, self.impulses()
-
-    def impulses(self) -> np.ndarray:
-        """Return those of the last step."""
-        return self.world.impulses[: self.world.count[1]].copy()
 
     def list_pairs(self, q, cutoff) -> None:
         """List the pairs anew, with room for their contacts."""

@@ -36,8 +36,6 @@ FAULTS = [
      "c.start = c.lam + share * (c.lam - c.previous)", "test_golden.py -k leapfrog"),
     # the other models
     (C, "(rows[k].tobytes(), *cached)", "(rows[k].tobytes(),)", "test_compiled.py -k stand_still"),
-    ("curriculum/compiled/rows.py", " or W.impulses[c, 1] != marked[c, 1]", "",
-     "test_compiled.py -k stand_still"),
     (C, "if bias > 0.0:  # an overlap", "if bias >= 0.0:  # an overlap", SEES),
     (C, "max(0.0, stiffness * depth - damping * v_n)", "abs(stiffness * depth - damping * v_n)",
      "test_golden.py -k penalty"),
