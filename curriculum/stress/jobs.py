@@ -3,7 +3,7 @@
 A job: (place, subject, properties). A place is how its violations are said, such as "scene 17".
 """
 
-from curriculum.stress import heaps, maps, mujoco_match, properties, scenes
+from curriculum.stress import heaps, maps, properties, scenes
 from curriculum.stress.trial import Trial
 
 
@@ -14,7 +14,6 @@ def all_jobs(quick):
         "scenes": scene_jobs(range(large)) + scene_jobs(range(small), small=True),
         "heaps": heaps.heap_jobs(many),
         "maps": list(maps.map_jobs(quick)),
-        "mujoco": list(mujoco_match.match_jobs(quick)),
     }
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from curriculum import stored
 from curriculum.commands import write_atomic, write_json
 from curriculum.show import picture
-from curriculum.stress import heaps, jobs, maps, mujoco_match, properties
+from curriculum.stress import heaps, jobs, maps, properties
 
 FOLDER = stored.FOLDERS["stress"]
 RESULTS, QUICK = stored.ROOT / FOLDER, stored.ROOT / "outputs" / "stress-quick"
@@ -15,7 +15,7 @@ PAGE = Path(__file__).with_name("page.md")
 COLOURS = ("#fde9c9", "#ec9c5a", "#9c4058", "#2b1741")  # light to dark, as an outcome gets worse
 LINE = "#111111"  # over coloured cells, which stay as they are in the dark
 MARKS = (0.3, 1, 3, 10, 30, 100, 300)  # ms
-STATED = vars(properties) | vars(maps) | vars(mujoco_match) | vars(heaps)  # by their names
+STATED = vars(properties) | vars(maps) | vars(heaps)  # by their names
 
 
 def tables_of(found):
@@ -45,10 +45,7 @@ def draw(folder):
     """Write page and figure of a folder's tables, and the README's block where they are kept."""
     tables, made = stored.load(folder)
     write_atomic(folder / "README.md", page(tables, made))
-    try:
-        write_atomic(folder / "penalty-map.svg", penalty_map(tables["penalty"], made["all"]))
-    except ImportError as error:
-        print(f"no figure: {error}")
+    write_atomic(folder / "penalty-map.svg", penalty_map(tables["penalty"], made["all"]))
     if folder == RESULTS:
         stored.write_block("stress", readme(tables))
     print(f"report: {folder / 'README.md'}")
@@ -67,7 +64,7 @@ def summary(tables):
     return (
         f"Every model on {scenes:,} random scenes, `exact` on the {scenes - sum(beyond):,} within "
         f"its limits; {runs:,} runs of heaps, narrow gaps, ceilings and columns; `penalty` over "
-        f"step and stiffness; `soft` beside MuJoCo. Of {total:,} checks {wrong or 'none'} failed."
+        f"step and stiffness. Of {total:,} checks {wrong or 'none'} failed."
     )
 
 
@@ -83,8 +80,7 @@ def page(tables, made):
     wrong = [f"**{failed(row)}**" for row in tables["judged"] if row["violations"]]
     return PAGE.read_text("utf-8").format(
         summary="\n\n".join([summary(tables), *wrong]),
-        gained=stored.lines(heaps.cells(tables["energy"], "gained")),
-        largest=stored.lines(heaps.cells(tables["energy"], "largest")),
+        energy=stored.lines(row.values() for row in tables["energy"]),
         limits=stored.lines([row["what"], f"{row['scenes']:,}"] for row in tables["limits"]),
         judged=stored.lines(map(cells, tables["judged"])),
         footer=stored.footer(made["all"]),

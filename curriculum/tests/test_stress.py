@@ -77,15 +77,12 @@ def test_a_number_that_is_off_is_a_violation_and_a_flight_says_nothing_of_contac
     assert said.startswith("lcp, moves [m]: 1e-09, bound ")
 
 
-def test_scenes_are_judged_and_said_and_what_is_no_scene_is_refused(capsys):
-    assert command.main(["--scene", "small:3-4"]) == 0
-    said = capsys.readouterr().out
-    assert all(f"{name}: " in said for name in PROPERTIES) and "comparisons" in said
-    for scene, words in (("big:3", "allowed"), ("5-3", "from 5")):
-        with pytest.raises(SystemExit) as stop:
-            command.main(["--scene", scene])
-        said = capsys.readouterr().err
-        assert stop.value.code == 2 and said.count("\n") == 1 and words in said
+def test_a_place_is_judged_alone_and_what_is_none_is_refused(capsys):
+    assert command.main(["small scene 3"]) == 0
+    assert "'a_skip_changes_no_bit', 'judged': 1, " in capsys.readouterr().out
+    with pytest.raises(SystemExit):
+        command.main(["scene -1"])
+    assert "given 'scene -1'; allowed: scene 0, " in capsys.readouterr().err
 
 
 def test_a_run_writes_tables_a_page_and_a_map(found, tmp_path):
