@@ -28,7 +28,7 @@ def run(job):
     if not stated:
         subject, stated = Trial(scenes.numbered_spec(*subject)), properties.PROPERTIES.values()
     found = properties.judge(subject, *stated)
-    return place, found, getattr(subject, "noted", {})
+    return place, found, subject.noted
 
 
 def added_up(found):

@@ -33,7 +33,7 @@ FAULTS = [
      "test_stress.py -k last_bit"),
     ("curriculum/stress/trial.py", "U = 2.0**-53", "U = 2.0**-33", TIGHT),
     (PROPERTIES, "rounding = 1e-13 *", "rounding = 1e-3 *", TIGHT),
-    (PROPERTIES, "clash = np.maximum(grew", "clash = 1.0 + np.maximum(grew", TIGHT),
+    (PROPERTIES, "grows = np.abs(lam", "grows = 1.0 + np.abs(lam", TIGHT),
     (JOBS, 'if not row["judged"]', 'if row["judged"] is None', "test_stress.py -k judges_nothing"),
     (JOBS, '+= count > 0', '+= 1', "test_stress.py -k judges_nothing"),
 ]  # fmt: skip
