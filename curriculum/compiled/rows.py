@@ -16,7 +16,7 @@ class World(NamedTuple):
     contacts: np.ndarray
     pairs: np.ndarray  # (3, M): balls that may touch in this step, in contact.py's order
     impulses: np.ndarray  # (M, 2): rank and impulse of the last step's contacts, in their order
-    count: np.ndarray  # type: ignore[assignment]  # how many contacts, and how many impulses
+    count: np.ndarray  # type: ignore[assignment]  # of rows that contacts need, and of impulses
     farthest: np.ndarray  # (1,): how far [m] this step looks, if farther than at its start
 
 
@@ -58,28 +58,6 @@ def store_impulses(W, balls, contacts):
         W.impulses[k, 0], W.impulses[k, 1] = rank(W, c), W.contacts[c].lam
 
 
-def add_contacts(W, balls, contacts, distance, restitution):
-    """Return the contacts, and the rows of the new ones; rows of known ones are used again.
-
-    Balls begin the step up to 4 dt times the fastest speed nearer than they do: twice distance.
-    """
-    W.farthest[0] = 2.0 * distance
-    count = W.count[0]
-    for new in detect_contacts(W, balls, distance):
-        a, b = W.contacts[new].a, W.contacts[new].b
-        known = False
-        for c in contacts:
-            known = known or (W.contacts[c].a == a and W.contacts[c].b == b)
-        if not known:
-            W.contacts[count] = W.contacts[new]
-            W.contacts[count].touch_distance = W.balls[a].radius + W.balls[b].radius
-            W.contacts[count].impact_lam = 0.0
-            W.contacts[count].load = 1e-6 if restitution > 0.0 else -GRAVITY
-            count += 1
-    W.count[0] = count
-    return np.arange(count).astype(np.uint32)
-
-
 def take_steps(states, W, balls, k, listed, cutoff, knobs):
     """Take steps from states[k] on, and write the states. Returns k at the end, or before a step
 
@@ -94,7 +72,8 @@ def take_steps(states, W, balls, k, listed, cutoff, knobs):
         W.count[0], W.farthest[0] = 0, 0.0
         take_step(W, balls, *knobs)
         distance = W.farthest[0]
-        if distance > 0.0 and largest_approach(states[k], listed) > 0.998 * (cutoff - distance):
+        far = distance > 0.0 and largest_approach(states[k], listed) > 0.998 * (cutoff - distance)
+        if far or W.count[0] > len(W.contacts):
             for i in balls:  # take this step again
                 ball = W.balls[i]
                 ball.x, ball.y = states[k, 0, i], states[k, 1, i]

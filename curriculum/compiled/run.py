@@ -88,7 +88,7 @@ class Stepper:
         pairs = pair_loops().list_pairs(q, self.radius, cutoff, self.order)
         if self.spreads:
             pairs = pair_loops().spread_out(pairs, len(self.radius))
-        most = 2 * (len(balls) + pairs.shape[1])  # a step may detect them twice; see add_contacts
+        most = max(len(balls) + pairs.shape[1], count[0])  # more, where a step had too many
         if most > len(contacts):
             contacts, old = np.empty(most + most // 4, contacts.dtype), impulses
             impulses = np.empty((len(contacts), 2))

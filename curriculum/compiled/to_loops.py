@@ -3,9 +3,9 @@
 Balls and contacts become numbers of rows: where the lesson says `c.target` the loops say
 `CONTACTS[c].target`, `c.a.vx` is `BALLS[CONTACTS[c].a].vx`, and FLOOR is the last row of BALLS.
 Every function is given these tables first, in W; a method is a function, and a call gives every
-parameter. A list of contacts that is complete becomes an array; max and min are Python's own also
-where a value is NaN; itertools.combinations gives the pairs that are near instead of all, in the
-same order. All else stays as it stands.
+parameter. A list of contacts that is complete becomes an array, and add_contacts makes it a list
+again; max and min are Python's own also where a value is NaN; itertools.combinations gives the
+pairs that are near instead of all, in the same order. All else stays as it stands.
 """
 
 import ast
@@ -23,7 +23,7 @@ TABLES = {"BALLS": "W.balls", "CONTACTS": "W.contacts", "FLOOR": FLOOR_ROW}
 METHOD = "contact_"  # c.apply_impulse(x) becomes contact_apply_impulse(W, c, x)
 KNOWN = {"": "abs bool enumerate float int len range zip".split(), "math": dir(math)}
 EXTREMES = {"max": "larger", "min": "smaller"}
-GIVEN = ("warm_start", "store_impulses", "add_contacts")  # written by hand in rows.py
+GIVEN = ("warm_start", "store_impulses")  # written by hand in rows.py
 REFUSED = (ast.GeneratorExp, ast.SetComp, ast.DictComp, ast.Set, ast.Dict, ast.Lambda, ast.Starred,
            ast.NamedExpr, ast.With, ast.Try, ast.JoinedStr, ast.Global)  # fmt: skip
 INSTEAD = "write loops over balls and contacts, fields of Ball and Contact, functions of numbers"
@@ -53,13 +53,16 @@ class Rows(ast.NodeTransformer):
         head = ""
         if node.name == "__init__":  # of a contact: the next row
             node.name, names = "Contact", names[1:]
-            head = "self = np.uint32(W.count[0])\nW.count[0] += 1"
+            head = "self = np.uint32(min(W.count[0], len(W.contacts) - 1))\nW.count[0] += 1"
             node.body.append(ast.parse("return self").body[0])
         elif "self" in names:
             node.name = METHOD + node.name
         node.args.args, node.args.defaults = [ast.arg(name) for name in ("W", *names)], []
         node.returns = None
         self.lists = set()
+        if node.name == "add_contacts":  # balls stand up to half of `farthest` off their places
+            head = "contacts = list(contacts)\nW.farthest[0] = 2.0 * distance"
+            self.lists = {"contacts"}
         node.body[: 1 if ast.get_docstring(node) else 0] = []
         self.generic_visit(node)
         used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)} & {*TABLES}
