@@ -187,10 +187,8 @@ class Pymunk(Session):
 
     def __init__(self, scene, dt, iterations, push=None, slop=1e-6):
         import pymunk
-        import pymunk.batch
         from pymunk._chipmunk_cffi import lib
 
-        self.batch, self.buffer = pymunk.batch, pymunk.batch.Buffer()
         self.space, self.bodies = pymunk.Space(), []
         space = self.space
         space.gravity, space.iterations, space.collision_slop = (0, -GRAVITY), iterations, slop
@@ -209,17 +207,9 @@ class Pymunk(Session):
             shape.elasticity, shape.friction = math.sqrt(scene.restitution), 0.0
         # the engine alone: of one ball's microsecond, pymunk's own step is two thirds.
         self.step = partial(lib.cpSpaceStep, space._space, dt)
-        if len(self.bodies) > 1 and not np.isinf(scene.mass).any():
-            self.heights = self.many_heights
 
     def heights(self):
         return [body.position[1] for body in self.bodies]
-
-    def many_heights(self):
-        """Return all heights by the engine's own batch call; the floor comes last."""
-        self.buffer.clear()
-        self.batch.get_space_bodies(self.space, self.batch.BodyFields.POSITION, self.buffer)
-        return np.frombuffer(self.buffer.float_buf())[1:-2:2].copy()
 
     def state(self):
         q, v = zip(*((body.position, body.velocity) for body in self.bodies))
