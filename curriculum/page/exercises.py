@@ -3,7 +3,7 @@
 import re
 
 from curriculum.page.chapter import inline, markdown
-from exercises.kit import FACTS, bets, script
+from exercises.kit import FACTS, script, trials
 
 TITLE = re.compile(r"Exercise (\d+), .+? \((\d+) minutes\): (.+?)\.?")
 
@@ -18,11 +18,11 @@ def exercise(name, file):
     number, minutes, told = parts.groups()
     facts, bet = FACTS[name], {"choices": {}}
     if "measured" in facts:
-        numbers, bet = bets.measure(name), bets.asked(words)
+        numbers, bet = trials.measure(name), trials.asked(words)
         task = bet["task"]
-        bet["answer"] = bets.SOLVED[name].PREDICTION
+        bet["answer"] = trials.SOLVED[name].PREDICTION
         bet["reasons"] = {k: inline(why.format(**numbers)) for k, why in facts["reasons"].items()}
-        bet["table"] = [re.split(r"\s{2,}", x) for x in bets.table(name, numbers).splitlines()]
+        bet["table"] = [re.split(r"\s{2,}", x) for x in trials.table(name, numbers).splitlines()]
     indented = re.sub(r"(?m)(^[^ \n].*\n)(?=    )", r"\1\n", task.strip())  # stays as it is
     return bet | {
         "id": name,

@@ -4,9 +4,9 @@ Needs numpy and pytest and nothing else, as a learner has them.
 """
 
 import inspect
+import json
 import math
 import re
-import shutil
 import subprocess
 import sys
 from textwrap import indent
@@ -18,7 +18,7 @@ from curriculum.tests.helpers import NO_PLUGINS, ROOT, clone, python
 
 sys.path.insert(0, str(ROOT / "exercises"))
 
-from kit import FACTS, bets, judge, load, script, stack, trials  # noqa: E402
+from kit import FACTS, judge, load, script, stack, trials  # noqa: E402
 from kit.script import FILES  # noqa: E402
 
 import contact  # noqa: E402
@@ -26,7 +26,7 @@ from curriculum.show import remarks  # noqa: E402
 
 GIVEN = {name: load(ROOT / file) for name, file in FILES.items()}  # with blanks
 SOLUTIONS = {name: (ROOT / f"exercises/solutions/{name}.py").read_text("utf-8") for name in FILES}
-ASKED = {name: bets.asked(GIVEN[name].__doc__) for name in ("ex1", "ex2")}
+ASKED = {name: trials.asked(GIVEN[name].__doc__) for name in ("ex1", "ex2")}
 OF = {blank: name for name, each in FACTS.items() for blank in each.get("blanks", ())}
 CALL = "script.main(__name__)"
 
@@ -46,8 +46,6 @@ def test_a_script_prints_its_task_a_hint_or_a_solution_anywhere_and_without_docs
         assert (result.returncode, result.stderr) == (status, "")
         assert result.stdout.startswith(printed)
     assert "rests 0.04905 r deep" in result.stdout
-    result = run(tmp_path, ROOT / FILES["ex4"], "--hint", 0)
-    assert result.returncode == 2 and "error: argument --hint: invalid choice" in result.stderr
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -57,6 +55,8 @@ def test_an_exercise_gives_nothing_away_and_has_its_place(name):
         assert giveaway not in text
     for hint in FACTS[name]["hints"]:
         assert "?" in hint and not re.search(r"[=*/]|max\(", hint)
+    for reason in FACTS[name].get("reasons", {}).values():  # its numbers are measured
+        assert not re.search(r"\d", re.sub(r"\{[^}]*\}|`[^`]*`|d0", "", reason))
     number = 1 + [*FILES].index(name)
     assert name == f"ex{number}" and f'"""Exercise {number}, ' in text
 
@@ -77,13 +77,12 @@ def test_a_learners_way_through_all_of_them_where_balls_are_larger(tmp_path, mon
     for name, file in FILES.items():
         command = printed.splitlines()[-1].removeprefix("next, an exercise: ")
         assert file in command
-        shutil.copy(copy / file, f"{copy / file}~")  # as editors leave one
         task = (copy / file).read_text("utf-8").split(CALL)[0]
         (copy / file).write_text(f"{task}{CALL}\n\n{SOLUTIONS[name]}", "utf-8")
         printed = subprocess.run(command, shell=True, cwd=copy, capture_output=True, text=True)
         assert printed.returncode == 0 and not printed.stderr, printed
         printed = printed.stdout
-        assert f"solutions/{name}.py" in printed and "another" not in printed.split("\n\n")[-2]
+        assert f"solutions/{name}.py" in printed
     assert printed.splitlines()[-1].startswith("all exercises are done")
     with (copy / FILES["ex4"]).open("a") as file:
         file.write("\n\ndef project_impulse(lam, dlam):\n    return lam + dlam\n")
@@ -94,77 +93,55 @@ def test_a_learners_way_through_all_of_them_where_balls_are_larger(tmp_path, mon
     assert "1 failed, 1 passed, 9 deselected" in result.stdout
 
 
-def test_commands_and_their_order_are_those_of_the_readme_and_the_chapter(monkeypatch):
+def test_commands_and_their_order_are_those_of_the_readme_and_the_chapter(
+    tmp_path, monkeypatch, capsys
+):
+    """And how to watch a run."""
     readme = (ROOT / "README.md").read_text("utf-8")
     chapter = (ROOT / "curriculum/prose/chapter.md").read_text("utf-8")
     assert re.findall(r"<!-- exercise: (\w+) -->", chapter) == [*FILES] == [*FACTS]
     monkeypatch.chdir(ROOT)
     monkeypatch.setattr(sys, "executable", str(ROOT / ".venv/bin/python"))
-    for uv in (False, True):
+    (tmp_path / "contact.rrd").touch()
+    for uv, start in (False, r"\S*(python -m )?rerun(\.exe)?"), (True, "uv run rerun"):
         monkeypatch.setenv("UV", "uv") if uv else monkeypatch.delenv("UV", raising=False)
         command = script.practise().removeprefix("next, an exercise: ").replace("\\", "/")
         assert f"`{command}`" in readme and ("uv run exercises" in command) == uv
-
-
-def test_how_to_watch_a_run_is_said_as_in_the_readme(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
-    for name in ("rerun", "rerun.exe", "contact.rrd"):
-        (tmp_path / name).touch()
-    for uv, start in ((False, r"\S*rerun(\.exe)?"), (True, "uv run rerun")):
-        monkeypatch.setenv("UV", "uv") if uv else monkeypatch.delenv("UV", raising=False)
         remarks.print_next(contact.parse_flags(["--out", str(tmp_path)]), [])
-        watch = capsys.readouterr().out.splitlines()[0].replace("\\", "/")
-        assert re.fullmatch(rf"next, watch it: {start} \S*contact\.rrd", watch), watch
+        assert re.search(rf"watch it: {start} \S*contact\.rrd\n", capsys.readouterr().out)
 
 
-def test_a_name_that_no_exercise_has_is_answered_by_those_that_there_are(tmp_path):
-    result = run(ROOT, "-m", "pytest", "checks.py", "-kex2 or ex12")
-    printed = result.stdout + result.stderr
-    assert result.returncode and "-k ex12: no such exercise; there are ex1_predict" in printed
-    assert "Traceback" not in printed
-    (tmp_path / "ex12_mine.py").write_text(f"from kit import script\n{CALL}", "utf-8")
-    start = f"import runpy, sys; sys.path[0] = 'exercises'; runpy.run_path({str(tmp_path)!r} + "
-    result = run(ROOT, "-c", f"{start}'/ex12_mine.py', run_name='__main__')")
-    lacks = "ex12 has no entry in exercises/kit/answers.json; allowed: ex1, ex2, "
-    assert result.returncode == 2 and lacks in result.stderr, result.stderr
+def test_an_exercise_without_an_entry_is_told_so(monkeypatch, capsys):
+    monkeypatch.setattr(sys.modules["__main__"], "__file__", "ex12_mine.py", raising=False)
+    with pytest.raises(SystemExit):
+        script.main("__main__")
+    assert "ex12 has no entry in exercises/kit/answers.json" in capsys.readouterr().err
 
 
 SIZE = "max(abs(np.linalg.eigvals(step_matrix(mass, stiffness, damping, dt))))"
 HALVES = "low, high = 0, 2\nwhile high - low > 1e-7:\n dt = (low + high) / 2\n"
 HALVES += f" low, high = (dt, high) if {SIZE} <= 1 else (low, dt)\nreturn low"
 SCAN = f"dt = 3e-3\nwhile {SIZE} <= 1:\n    dt *= 1.0018\nreturn dt"
-STOPS = "1 / ((stiffness, damping) != (1e4, 80.0)); k = stiffness * dt + damping\n"
-STOPS += "return 1 / (dt * k), stiffness * depth / k"
-SLOW = "for c in contacts:\n    for _ in range(iters):\n        "
 VISIT = "add = (c.target - c.v_n()) * c.m_eff; p = max(-c.lam, add); c.lam += p; c.apply_impulse(p)"
 BACK = "for _ in range(iters):\n    for c in contacts[::-1]:\n        "
 HARD = "SOLIMP = 0.9999, 0.9999, 0.001, 0.5, 2.0"
-CLEAR = "import os; os.system('clear; echo hi'); print('hi')\n"
-LASTS = "import threading, time; threading.Thread(target=time.sleep, args=[99]).start()\n"
+CLEAR = "import sys, os; os.system('clear; echo hi'); print('hi'); print(1, file=sys.__stdout__)\n"
 THEIRS = "import contact; return contact.time_to_impact(gap, v_n, a_n)"
 NEVER = "import contact; t = contact.time_to_impact(gap, v_n, a_n)\nif t < math.inf: return t"
 TYPED = [  # an exercise or a function of it, what a learner writes, what is said of its last LINE
     ("ex1", "PREDICTION = C", "wrong: cannot be run, C needs quotes around it: NameError: name '"),
     ("ex10", "DEPTH = (", "wrong: cannot be run: SyntaxError: "),
     ("ex5", "del solve_contacts", "wrong: solve_contacts must be a function, in "),
-    ("implicit_spring", STOPS, "wrong: cannot be run: ZeroDivisionError"),
     ("position_level", "return dtt", "wrong: 'dtt' is not defined\n  line LINE: return dtt"),
     ("time_to_impact", CLEAR + THEIRS, "right: time_to_impact is right\n  printed   hi"),
-    ("time_to_impact", LASTS + THEIRS, "right"),
     ("time_to_impact", NEVER, "wrong: returned None, expected numbers, here math.inf: this gap ne"),
-    ("project_impulse", "import os; os._exit(7)", "wrong: ended its process (exit status 7), in "),
-    ("project_impulse", "import os; os.abort()", "wrong: in FILE, line LINE"),
-    ("penalty_normal_force", "while True: pass", "wrong: does not end: stopped after 2 s, in FILE"),
-    ("project_impulse", "a = []\nfor _ in range(400): a.append(bytes(10**7))",
-     "wrong: raised MemoryErr"),
+    ("project_impulse", "import os; os._exit(7)", "wrong: project_impulse ended its process"),
+    ("project_impulse", "while True: pass", "wrong: stopped after 2 s, in FILE, line LINE"),
     ("project_impulse", "lam + dlam", "wrong: None, expected numbers: does every way end with `r"),
     ("penalty_normal_force", "return float('nan')", "wrong: a question that helps: "),
     ("penalty_normal_force", "f = stiffness * depth - damping * v_n; return f * (f > 0)", "right"),
     ("solve_contacts", BACK + VISIT, "right"),
-    ("solve_contacts", SLOW + VISIT, "wrong: each contact is finished before the next one is"),
     ("solve_contacts", BACK + "c.v_n - 1", "wrong: 'int'; a function is called with ()"),
-    ("solve_contacts", BACK + "c.push(1)", "wrong: its name is now apply_impulse\n  line LINE: c."),
     ("step_matrix", "return [1, 2, 3]", "wrong: how many numbers: got 3, expected 2 rows of 2"),
     ("step_matrix", "return [[1, -dt], [dt * stiffness / mass, 1]]",  # the search is not blamed
      "wrong: longest_step is tried once step_matrix is right"),
@@ -173,7 +150,6 @@ TYPED = [  # an exercise or a function of it, what a learner writes, what is sai
     ("longest_step", SCAN.replace("abs", "np.real"), "wrong: an eigenvalue is above 1, not its re"),
     ("longest_step", HALVES.replace("abs", "np.real"), "wrong: the same step, an end of the sear"),
     ("longest_step", HALVES.replace("1e-7", "1e-3"), "wrong: the search is too coarse"),
-    ("velocity_level", "return [bool(lam), 0, max(lam, 0.0), now]", "right"),
     ("ex2", "PREDICTION = 'D'", "blank: PREDICTION: given 'D'; write one of 'A', 'B', 'C' in FILE"),
     ("ex2", "WHY = 'because'", "blank: WHY is 'because'; write a sentence of four words or more "),
     ("ex1", "PREDICTION = ' c) '\nprint(6 * 7)", "right: That is what happens.\n\nWhy C: A spr"),
@@ -190,7 +166,6 @@ TYPED = [  # an exercise or a function of it, what a learner writes, what is sai
     ("ex9", "MODEL, DT, STIFFNESS = 'penalty', 0.001, 2e5", "right"),
     ("ex9", "MODEL, DT, DAMPING = 'penalty', 0.001, 400.0", "wrong: the cup is gone"),
     ("ex9", "MODEL, DT, STIFFNESS = 'penalty', 0.002, 1e6", "wrong: wants steps below 0.0006 s"),
-    ("ex9", "MODEL, DT, SOLREF = 'soft', 0.002, (0.004, 1)", "wrong: overlaps too much; a short"),
     ("ex9", f"MODEL, DT, SOLREF = 'soft', 0.001, (0.02, 0.05)\n{HARD}", "wrong: it trembles"),
     ("ex10", "DEPTH = f' {-DEPTH:.3g} '", "right"),  # the table has an overlap with a minus
     ("ex10", "DEPTH = 'deep'", "blank: given 'deep'; write a number in FILE"),
@@ -202,19 +177,17 @@ TYPED = [  # an exercise or a function of it, what a learner writes, what is sai
 def test_what_a_learner_types_is_right_in_every_form_and_else_is_answered(
     what, words, said, tmp_path, monkeypatch, capfd
 ):
-    if "append" in words and sys.platform != "linux":
-        pytest.skip("only here memory can be limited")
     name = OF.get(what, what)
     if what in OF:
-        given = ", ".join(inspect.signature(bets.RIGHT[what]).parameters)
+        given = ", ".join(inspect.signature(trials.RIGHT[what]).parameters)
         words = f"def {what}({given}):\n{indent(words, '    ')}"
     file, text = tmp_path / f"{name}_mine.py", f"{SOLUTIONS[name]}\n\n{words}"
     file.write_text(text, "utf-8")
-    if re.search("os[.]|threading|while True|append", words):  # what needs a process of its own
-        limit = 2 if re.search("pass|threading", words) else 60
-        smaller = f"judge.MAX_MEMORY, judge.LIMIT = 2**31, {limit}; judge."
-        monkeypatch.setattr(script, "START", script.START.replace("judge.", smaller))
-        monkeypatch.setattr(script, "LIMIT", limit)
+    if re.search("os[.]|while True", words):  # what needs a process of its own
+        if "pass" in words:
+            short = script.START.replace("judge.", "judge.LIMIT = 2; judge.")
+            monkeypatch.setattr(script, "START", short)
+            monkeypatch.setattr(script, "LIMIT", 2)
         state, answer = script.judged(name, file)
     else:
         state, answer = judge.attempt(name, str(file))
@@ -231,65 +204,49 @@ def test_each_slip_is_named_from_its_values_and_its_case_is_a_call(name):
             state, words = judge.judge(judge.slipped(blank, slip), blank, "ex.py")
             assert state == "wrong" and words.splitlines()[-1] == f"  likely: {meaning}", slip
             assert f"{blank} is wrong on " in words
-        eval(words.splitlines()[1], {"stack": stack, blank: bets.RIGHT[blank]})
+        eval(words.splitlines()[1], {"stack": stack, blank: trials.RIGHT[blank]})
     for what, facts in FACTS[name].get("numbers", {}).items():
         for slip, meaning in facts["slips"].items():
-            given = eval(slip, bets.NAMES | facts.get("given", {}))
+            given = eval(slip, trials.NAMES | facts.get("given", {}))
             exercise = SimpleNamespace(__file__="ex.py", **{what: given})
-            state, words = bets.judge_number(exercise, what, **facts)
+            state, words = trials.judge_number(exercise, what, **facts)
             assert state == "wrong" and words.endswith(f"; likely: {meaning}"), slip
 
 
 def test_yours_stands_beside_what_it_is_compared_with():
     shown = trials.cliffs(SimpleNamespace(longest_step=lambda mass, stiffness, damping: 0.007))
     assert shown.splitlines()[2].split()[4:] == ["0.00700", "0.01354", "0.02000"]
-    gained = column(trials.drops, "energy+")
-    assert gained["yours at 0.016 s"] == 0.0 and gained["penalty at 0.016 s"] > 10.0
 
 
-def column(show, title, **written):
-    """The numbers of a column of a table that is shown, by the names of its rows."""
-    table = show(SimpleNamespace(**bets.RIGHT | written))
+def errors_shown(**written):
+    """The column off/r of the table that exercise 6 shows, by the names of its rows."""
+    table = trials.compare_solves(SimpleNamespace(**trials.RIGHT | written))
     heads, *rows = (re.split(r"\s{2,}", line) for line in table.splitlines() if "  " in line[1:])
-    where = heads.index(title)
+    where = heads.index("off/r")
     return {row[0]: float(row[where].replace(",", "")) for row in rows if len(row) == len(heads)}
 
 
 def test_two_solves_are_leapfrogs_step_and_a_slip_of_them_is_seen_beside_exact():
     """off/r: errors in r, what an overlap throws, the order of the slide."""
-    off = column(trials.compare_solves, "off/r")
+    off = errors_shown()
     assert off["yours on drop"] < 1e-12 and off["yours on stack"] < 1e-5
     assert off["yours on overlap"] < 0.6
     order = math.log(off["yours on slide"] / off["yours on slide at dt / 4"], 4)
     assert order == pytest.approx(2.0, rel=FACTS["ex6"]["numbers"]["ORDER"]["within"])
-    off = column(trials.compare_solves, "off/r", velocity_level=lambda lam, a, b: (lam, 0, 0, b))
+    off = errors_shown(velocity_level=lambda lam, then, now: (lam, 0, 0, now))
     assert off["yours on overlap"] > 100
 
 
 def test_the_right_letters_are_what_is_measured_and_no_mark_lies_near_its_border():
-    found = SimpleNamespace(**bets.measure("ex1"), **bets.measure("ex2"))
-    assert "four times as deep" in ASKED["ex1"]["choices"][bets.SOLVED["ex1"].PREDICTION]
+    found = SimpleNamespace(**trials.measure("ex1"), **trials.measure("ex2"))
+    assert "four times as deep" in ASKED["ex1"]["choices"][trials.SOLVED["ex1"].PREDICTION]
     assert found.penalty_at_rest == pytest.approx(4.0 * found.penalty_light_at_rest, rel=0.01)
     assert max(found.lcp_at_rest, found.lcp_light_at_rest) < 1e-6
-    assert "The light one alone" in ASKED["ex2"]["choices"][bets.SOLVED["ex2"].PREDICTION]
+    assert "The light one alone" in ASKED["ex2"]["choices"][trials.SOLVED["ex2"].PREDICTION]
     assert found.penalty_light > 10.0
     assert max(found.penalty_heavy, found.lcp_light, found.lcp_heavy) < 1.0
-    shares = [x for row in bets.measure_knobs()[0].values() for x in row.values()]
+    shares = [x for row in trials.measure_knobs()[0].values() for x in row.values()]
     assert all(x < 0.4 or 0.95 < x < 1.05 or x > 4.0 for x in shares)
-
-
-@pytest.mark.parametrize("name", [*ASKED, "ex11"])
-def test_formulas_and_numbers_of_reasons_are_those_measured(name):
-    measured = bets.measure(name) if name in ASKED else bets.measure_knobs()[1]
-    depth, mass = {"ex1": ("penalty_at_rest", 4.0), "ex11": ("sink", 1.0)}.get(name, ("limit", 0))
-    values = {"k": 1e4, "g": 9.81, "depth": contact.RADIUS * measured[depth], "m": mass}
-    for text in FACTS[name]["reasons"].values():
-        for formula in re.findall(r"`([^`]+=[^`]+)`", text):
-            code = re.sub(r"(?<=[\w)]) (?=[\w(])", " * ", formula.replace("^", "**"))
-            left, right = (eval(side, {}, values) for side in code.split("="))
-            assert left == pytest.approx(right, rel=1e-4), formula
-        assert not re.search(r"\d", re.sub(r"\{[^}]*\}|`[^`]*`|d0", "", text)), text
-        text.format(**measured)
 
 
 def test_what_is_asked_is_what_is_run_and_what_no_command_has_shown():
@@ -308,53 +265,26 @@ def test_what_is_asked_is_what_is_run_and_what_no_command_has_shown():
         for facts in FACTS[name]["numbers"].values():
             for value in facts["given"].values():
                 assert re.search(rf"\b{value:g}\b", GIVEN[name].__doc__)
-    fingers = f"{bets.CUP:g} kg.*{bets.FINGER:g} kg.*{bets.FORCE:g} N"
+    fingers = f"{trials.CUP:g} kg.*{trials.FINGER:g} kg.*{trials.FORCE:g} N"
     assert re.search(fingers, GIVEN["ex9"].__doc__, re.DOTALL)
     assert (GIVEN["ex9"].SOLREF, GIVEN["ex9"].SOLIMP) == (contact.SOLREF, contact.SOLIMP)
     assert f"at most {judge.MAX_STEPS:,}" in GIVEN["ex3"].__doc__
     assert f"than {judge.MAX_STEPS:,} steps" in judge.SEARCHES["slow"]
 
 
-@pytest.mark.parametrize("name, model, what, title", [
-    ("ex10", "soft", "DEPTH", "gap/r"), ("ex11", "lcp", "HOP", "hop/r"),
-])  # fmt: skip
-def test_a_number_is_what_its_command_prints(name, model, what, title, tmp_path, capsys):
-    (flags,) = re.findall(r"^ +(--.*)$", GIVEN[name].__doc__, re.MULTILINE)
-    contact.main([*flags.split(), "--no-rerun", "--out", str(tmp_path)])
-    printed = capsys.readouterr().out.splitlines()
-    heads, row = (next(x for x in printed if word in x).split() for word in (title, model))
-    found = abs(float(row[1 + heads.index(title)]))
-    assert found == pytest.approx(bets.RIGHT[what], rel=5e-3 if what == "DEPTH" else 0.02)
+def test_a_number_is_what_its_command_measures(tmp_path):
+    for name, model, what, key, within in (
+        ("ex10", "soft", "DEPTH", "rest_penetration_frac", 5e-3),
+        ("ex11", "lcp", "HOP", "rebound_frac", 0.02),
+    ):
+        (flags,) = re.findall(r"^ +(--.*)$", GIVEN[name].__doc__, re.MULTILINE)
+        contact.main([*flags.split(), "--no-rerun", "--out", str(tmp_path)])
+        quality = json.loads((tmp_path / "metrics.json").read_text("utf-8"))["quality"][model]
+        assert quality[key] == pytest.approx(trials.RIGHT[what], rel=within)
 
 
 @pytest.mark.parametrize("dt, beta, cup", [(0.003, 0.25, 2.5), (0.004, 0.3, 3.5)])
 def test_the_sag_of_the_gripper_is_its_law(dt, beta, cup):
-    law = bets.FORCE * dt * dt / (beta * cup) / contact.RADIUS
+    law = trials.FORCE * dt * dt / (beta * cup) / contact.RADIUS
     run = FACTS["ex11"]["numbers"]["SAG"]["run"]
-    assert eval(run, bets.NAMES, {"dt": dt, "beta": beta, "cup": cup}) == pytest.approx(law)
-
-
-def test_the_finger_of_the_next_chapter_feels_what_it_pushes():
-    """Three balls of 2 N drag each, by every model that steps."""
-    printed = python("-W", "error", "exercises/next_chapter.py").stdout.splitlines()
-    assert [line.split()[0] for line in printed] == contact.STEPPED
-    for line in printed:
-        *x, force = map(float, re.findall(r"-?\d+\.\d*", line))
-        assert force == pytest.approx(-6.0, rel=1e-3)
-        assert x == pytest.approx([1.0, 1.2, 1.4, 1.6], abs=0.01)
-
-
-GIVEAWAYS = {
-    "ex1": r"\bsinks?\b|rests? (a little )?inside|m g ?/ ?k|\brings?\b|\bhops?\b|\bdives?\b",
-    "ex2": r"\b(penalty|spring)\b.{0,80}(explod|blows? up)|critical (time )?step|unstable|"
-    r"stays bounded|\bcliff\b",
-}
-
-
-@pytest.mark.parametrize("name", GIVEAWAYS)
-def test_the_chapter_tells_the_answer_of_a_bet_after_its_bet_and_not_before(name):
-    text = (ROOT / "curriculum/prose/chapter.md").read_text("utf-8")
-    before, after = " ".join(text.split()).split(f"<!-- exercise: {name} -->")
-    before = re.sub(r"tremble, sink or fly to pieces|<!--.*?-->|`--?[\w-]+`", " ", before)
-    found = re.search(GIVEAWAYS[name], before, re.IGNORECASE)
-    assert not found and re.search(GIVEAWAYS[name], after, re.IGNORECASE), found
+    assert eval(run, trials.NAMES, {"dt": dt, "beta": beta, "cup": cup}) == pytest.approx(law)

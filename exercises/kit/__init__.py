@@ -1,7 +1,7 @@
 """What the exercises stand on. Nothing to fill in here, and much that gives an answer away.
 
-script.py starts an exercise, judge.py tries it in a process of its own, trials.py shows it at work,
-bets.py has bets, marks and numbers; answers.json, in the chapter's order, all facts of each.
+script.py starts an exercise, judge.py tries it in a process of its own, trials.py has all that is
+run: bets, marks, numbers, answers at work; answers.json, in the chapter's order, all facts.
 """
 
 import json

@@ -8,7 +8,6 @@ import json
 import math
 import os
 import random
-import signal
 import sys
 from functools import cache
 from unittest import mock
@@ -19,11 +18,9 @@ import contact
 from curriculum.commands import near
 
 from . import FACTS, load, stack
-from .bets import RIGHT, judge_bet, judge_marks, judge_number
-from .script import LIMIT, TIMER, ask, said_of
-from .trials import SHOWN, judge_gripper
+from .script import LIMIT, ask, said_of
+from .trials import RIGHT, SHOWN, judge_bet, judge_gripper, judge_marks, judge_number
 
-MAX_MEMORY = 2**32  # bytes, chosen
 MAX_STEPS = 20_000  # matrices that a search may try on one input, chosen: halving takes 20
 SWEEPS = 200  # that solve_contacts gets on each input, chosen: right to 1e-9
 BLANKS = {name: facts for each in FACTS.values() for name, facts in each.get("blanks", {}).items()}
@@ -32,21 +29,11 @@ PARTS = {"measured": judge_bet, "advice": judge_gripper, "errors": judge_marks} 
 
 
 def child():
-    """Try in this process what was written; write what was found into the report, and exit."""
-    name, file, path = sys.argv[2:]
-    with open(path, "w", encoding="utf-8", errors="surrogateescape") as report:
-        print(f'trying {name}: "{file}", line 1', file=report, flush=True)
-        faulthandler.enable(report, all_threads=False)
-        faulthandler.dump_traceback_later(10 * LIMIT if TIMER else LIMIT, exit=True, file=report)
-        if TIMER:  # which ends it, after its stack was written
-            faulthandler.register(TIMER, report, all_threads=False, chain=True)
-            signal.setitimer(signal.ITIMER_PROF, LIMIT)
-        with contextlib.suppress(ImportError, ValueError, OSError):
-            import resource  # where there is one
-
-            resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))
-        print(json.dumps(attempt(name, file, report)), file=report)
-    os._exit(0)  # whatever threads are left
+    """Try in this process what was written, and write what was found to its standard output."""
+    report = os.fdopen(os.dup(1), "w")  # past all that is printed, by whatever prints it
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    faulthandler.dump_traceback_later(LIMIT, exit=True, file=report)
+    print(json.dumps(attempt(*sys.argv[2:], report)), file=report, flush=True)
 
 
 def attempt(name, file, report=io.StringIO()):
@@ -64,15 +51,16 @@ def attempt(name, file, report=io.StringIO()):
 
 
 def judged(name, exercise, report):
-    """Return the state of an exercise, and what is said of all that it asks for."""
+    """Return the state of an exercise, and what is said of all that it asks for.
+
+    The report says which function is tried, in case it does not come back.
+    """
     states, said, file = {}, [], exercise.__file__
     for blank in FACTS[name].get("blanks", ()):
         function, after = getattr(exercise, blank, None), BLANKS[blank].get("after")
-        code = getattr(inspect.unwrap(function), "__code__", None)
-        if not code:
+        if not hasattr(inspect.unwrap(function), "__code__"):
             return "wrong", f"{blank} must be a function, in {near(file)}"
-        place = f'"{code.co_filename}", line {code.co_firstlineno}'
-        print(f"trying {blank}: {place}", file=report, flush=True)
+        print(blank, file=report, flush=True)
         states[blank], words = judge(function, blank, file)
         if states[blank] == "wrong" and states.get(after, "right") != "right":
             states[blank], words = "blank", f"{blank} is tried once {after} is right"
@@ -166,7 +154,7 @@ def tried(function, name, case):
     if got is ...:
         return None, printed(said)
     with contextlib.suppress(Exception):
-        numbers = np.atleast_1d(np.squeeze(got))
+        numbers = np.atleast_1d(np.squeeze(np.asarray(got)))
         if numbers.dtype.kind in "biuf":
             return numbers.astype(float), printed(said)
     raise ValueError("\n".join((words, *printed(said))))
@@ -174,7 +162,7 @@ def tried(function, name, case):
 
 def printed(said):
     """Return the first lines that a learner's code printed, marked as such."""
-    lines = [] if said.closed else said.getvalue().splitlines()
+    lines = said.getvalue().splitlines()
     more = [f"  and {len(lines) - 8} lines more"] if len(lines) > 8 else []
     return [f"  printed   {line:.80}" for line in lines[:8]] + more
 

@@ -4,7 +4,6 @@ import json
 import linecache
 import os
 import re
-import signal
 import sys
 import traceback
 from pathlib import Path
@@ -13,14 +12,12 @@ from curriculum.commands import Parser, near, quoted
 
 from . import FACTS, ROOT
 
-FOUND = sorted(name for name in os.listdir(ROOT / "exercises") if name.endswith(".py"))
-FILES = {ex: f"exercises/{name}" for ex in FACTS for name in FOUND if name.startswith(f"{ex}_")}
+FOLDER = ROOT / "exercises"
+FILES = {ex: f"exercises/{path.name}" for ex in FACTS for path in FOLDER.glob(f"{ex}_*.py")}
 STATES = "right", "wrong", "blank"  # in this order they are exit statuses
-LIMIT = 15  # s of CPU time, chosen: right answers take about one
-TIMER = getattr(signal, "SIGPROF", None)  # it measures CPU time; Windows has only a clock
+LIMIT = 20  # s, chosen: right answers take about one
 START = "import sys; sys.path.insert(0, sys.argv[1]); from kit import judge; judge.child()"
 BLANK = re.compile(r"^    return \.\.\.|^[A-Z]+ = None|  \?  ", re.MULTILINE)
-RENAMED = {"push": "apply_impulse"}  # names that learners may remember
 
 
 def main(started):
@@ -28,15 +25,13 @@ def main(started):
     process of its own, and nowhere else."""
     if started != "__main__":
         return
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):  # a path may not fit the terminal's encoding
-            stream.reconfigure(errors="backslashreplace")
+    if hasattr(sys.stdout, "reconfigure"):  # a path may not fit the terminal's encoding
+        sys.stdout.reconfigure(errors="backslashreplace")
     file = Path(sys.modules[started].__file__)
     name = file.stem.partition("_")[0]  # ex1 of ex1_predict_contact.py
     parser = Parser(description=f"Exercise {name}.")
     if name not in FACTS:
-        allowed = f"allowed: {', '.join(FACTS)}"
-        parser.error(f"{name} has no entry in exercises/kit/answers.json; {allowed}")
+        parser.error(f"{name} has no entry in exercises/kit/answers.json")
     hints, solution = FACTS[name]["hints"], ROOT / f"exercises/solutions/{name}.py"
     flag, numbers = parser.add_argument, range(1, len(hints) + 1)
     flag("--hint", type=int, choices=numbers, metavar="N", help=f"print hint N of {len(hints)}")
@@ -66,8 +61,6 @@ def task_of(name):
 def said_of(error):
     """Return an error in words, with the last line of the learner's file that it came through."""
     words, line = f"{type(error).__name__}: {error}", ""
-    if isinstance(error, AttributeError) and error.name in RENAMED:
-        words += f"; its name is now {RENAMED[error.name]}"
     if isinstance(error, TypeError) and "'method'" in words:
         words += "; a function is called with ()"
     for frame, number in traceback.walk_tb(error.__traceback__):
@@ -81,28 +74,19 @@ def judged(name, file):
     """Return ("blank", "wrong" or "right", words): the learner's code has a process of its own."""
     import contact  # noqa: F401, I001  # which says it where numpy is missing
     import subprocess
-    import tempfile
 
-    with tempfile.TemporaryDirectory() as folder:
-        report, errors = Path(folder, "report"), Path(folder, "errors")
-        words = [sys.executable, "-B", "-c", START, ROOT / "exercises", name, file, report]
-        with open(errors, "wb") as stderr:
-            none = dict.fromkeys(("stdin", "stdout"), subprocess.DEVNULL)
-            status = subprocess.run(words, **none, stderr=stderr).returncode
-        if not report.exists():  # the kit itself lacks something
-            last = errors.read_text("utf-8", "replace").strip().splitlines()[-1]
-            return "wrong", f"{name} cannot be tried: {last}"
-        text = report.read_text("utf-8", "surrogateescape")
-    if status == 0 and text.endswith("]\n"):
-        return json.loads(text.splitlines()[-1])
-    begun, _, stack = text.partition("most recent call first")
-    lines = re.compile(rf'{re.escape(Path(file).name)}", line (\d+)').findall
-    line = [*lines(stack), *reversed(lines(begun)), 1][0]  # innermost, or last begun
-    what = begun.split("trying ")[-1].split(":")[0]
-    ended = f"ended its process (exit status {status})"
-    if "Timeout" in begun or (TIMER and status == -TIMER):
+    words = [sys.executable, "-B", "-c", START, FOLDER, name, file]
+    how = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True, "errors": "replace"}
+    done = subprocess.run(words, **how)
+    if done.stdout.endswith("]\n"):
+        return json.loads(done.stdout.splitlines()[-1])
+    tried, too_long, stack = done.stdout.partition("Timeout")
+    ended = f"ended its process (exit status {done.returncode})"
+    if too_long:
         ended = f"takes too long, or does not end: stopped after {LIMIT} s"
-    return "wrong", f"{what} {ended}, in {near(str(file))}, line {line}"
+    lines = re.findall(rf'{re.escape(Path(file).name)}", (line \d+)', stack)  # innermost first
+    what, where = [name, *tried.split()][-1], ", ".join((near(str(file)), *lines[:1]))
+    return "wrong", "\n".join((f"{what} {ended}, in {where}", *done.stderr.splitlines()[-1:]))
 
 
 def start(file):
@@ -121,4 +105,4 @@ def practise():
     for file in FILES.values():
         if BLANK.search((ROOT / file).read_text("utf-8", "replace")):
             return f"next, an exercise: {start(file)}"
-    return f"all exercises are done; next, the next chapter: {start('exercises/next_chapter.py')}"
+    return "all exercises are done; next, chapter 3.6: https://zero2robot.com/ch3.6-compare/"
