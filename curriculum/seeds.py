@@ -3,16 +3,17 @@
     python -m curriculum.seeds 0:20 --scene stack                   # seeds 0 to 19
     python -m curriculum.seeds 0:20 --scheduler localhost:8786      # on a dask cluster
 
-Other flags are those of contact.py. A seed is kept in seeds.csv of --out as soon as it is done, a
-row a model, and the same command again goes on from there. Files of several machines are merged by
-writing them one after the other: cat a/seeds.csv b/seeds.csv > c/seeds.csv, then --out c sums up.
-The first column says which flags, code and numpy made a row; those of others are left alone. The
-summary, seeds.json, is the same bytes wherever, in whatever order and parts the seeds ran.
+Other flags are those of contact.py. The rows of a seed, one a model, are kept in seeds.csv of --out
+as soon as they are there, and the same command again goes on from there. Files of several machines
+are merged by writing them one after the other: cat a/seeds.csv b/seeds.csv > c/seeds.csv, then
+--out c sums up. The first column says which flags, code and numpy made a row; others do not count.
+The summary, seeds.json, is the same bytes wherever, in whatever order and parts the seeds ran.
 """
 
 import argparse
+import csv
 import math
-import re
+import platform
 import sys
 from functools import cache, partial
 from importlib.metadata import version
@@ -25,19 +26,16 @@ from curriculum.commands import Parser, near, write_json
 
 PROG = "python -m curriculum.seeds"
 KEYS = [key for key, _ in contact.COLUMNS.values()]
-HEAD = ",".join(("made by", "seed", "model", "ending", *KEYS, "whole"))
-NUMBER = r"(?:inf|-?\d+(?:\.\d+)?(?:e[+-]\d+)?)?"  # of a cell, as Python writes it
-WHOLE = re.compile(rf"\w+,\d+,\w+,[^,]*(?:,{NUMBER}){{{len(KEYS)}}},yes\n").fullmatch
-ENDINGS = None, "no: ", "EXPLODED", "through", ""  # the words begin so; "": it came to its end
+HEAD = "made by", "seed", "model", "ending", *KEYS, "whole"
 fail = Parser(prog=PROG).error
 
 
 def seed_range(text):
     """Return the seeds of "A:B", from A to B - 1; an argparse type."""
     first, _, last = text.partition(":")
-    numbers = first.isdecimal() and last.isdecimal() and int(last) <= 10**18
-    if not (numbers and 0 < int(last) - int(first) <= 10**6):
-        allowed = "A:B, whole numbers, A < B <= 1e18, at most 1e6 seeds, such as 0:20 for 0 to 19"
+    numbers = first.isdecimal() and last.isdecimal()
+    if not numbers or not 0 < int(last) - int(first) <= 10**5:
+        allowed = "A:B, whole numbers, A < B, at most 1e5 seeds, such as 0:20 for 0 to 19"
         raise argparse.ArgumentTypeError(f"given {text[:40]!r}; allowed: {allowed}")
     return range(int(first), int(last))
 
@@ -61,8 +59,8 @@ def main(argv=None):
     path = Path(args.out, "seeds.csv")
     try:
         run_missing(path, args, seeds, models, scheduler)
-        rows, _ = read(path, made_by(args), seeds, models)
-        found = {model: summary(each, seeds) for model, each in zip(models, rows)}
+        rows = read(path, args, seeds)
+        found = {model: summary({seed: rows[seed, model] for seed in seeds}) for model in models}
         found = contact.json_safe({model: ways for model, ways in found.items() if ways})
         kept = {"scene": args.scene, "dt": args.dt, "steps": args.steps, "rows": found}
         write_json(path.with_suffix(".json"), kept | {"seeds": [seeds[0], seeds[-1] + 1]})
@@ -86,47 +84,30 @@ def main(argv=None):
 
 
 def run_missing(path, args, seeds, models, scheduler):
-    """Run the seeds that the file lacks, and add the rows of each as soon as it is done.
+    """Run the seeds that the file lacks, and add the rows of each.
 
     A blank line stands where it went on, so that a row that was cut spoils no other.
     """
-    rows, others = read(path, made_by(args), seeds, models)
-    done = (rows[..., 0] > 0.0).all(axis=0)
-    todo = len(seeds) - int(done.sum())
-    if others or 0 < todo < len(seeds):
-        note = f"{near(str(path))}: {len(seeds) - todo:,} of {len(seeds):,} seeds are there"
-        alone = f"; {others:,} rows of other flags or other code are left alone"
-        print(note + alone * (others > 0), file=sys.stderr)
-    if todo:
-        missing = (seed for seed, there in zip(seeds, done) if not there)
-        job = partial(rows_of, args, code())
+    rows = read(path, args, seeds)
+    missing = [seed for seed in seeds if any((seed, model) not in rows for model in models)]
+    if rows and missing:
+        there = f"{len(seeds) - len(missing):,} of {len(seeds):,} seeds are there"
+        print(f"{near(str(path))}: {there}", file=sys.stderr)
+    if missing:
+        job = partial(rows_of, args, made_by(args))
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a", buffering=1, encoding="utf-8", newline="\n") as file:
-            file.write("\n" if file.tell() else f"{HEAD}\n")
-            for text in parallel.one_by_one(job, missing, todo, "seeds", None, scheduler):
+            file.write("\n" if file.tell() else f"{','.join(HEAD)}\n")
+            for text in parallel.one_by_one(job, missing, len(missing), "seeds", None, scheduler):
                 file.write(text)
 
 
-def read(path, mark, seeds, models):
-    """Return the whole rows of these seeds in a file that have this mark, and how many have others.
-
-    The rows are (models, seeds, 1 + KEYS). Column 0 is how a run ended, as a place in ENDINGS, and
-    0 where there is no row. NaN: the run has no such measure.
-    """
-    rows, others = np.zeros((len(models), len(seeds), 1 + len(KEYS))), 0
-    for line in path.open(encoding="utf-8", errors="replace") if path.is_file() else ():
-        if not WHOLE(line):
-            continue  # a head, or a row that was cut or that something fell into
-        first, seed, model, end, *values, _ = line.split(",")
-        others += first != mark
-        if first == mark and int(seed) in seeds and model in models:
-            row = [ended(end), *(float(value or "nan") for value in values)]
-            there = rows[models.index(model), int(seed) - seeds[0]]
-            if there[0] > 0.0 and not np.array_equal(there, row, equal_nan=True):
-                twice = f"two results of seed {seed} by {model}; take the rows of one machine out"
-                fail(f"{near(str(path))}: {twice}")
-            there[:] = row
-    return rows, others
+def read(path, args, seeds):
+    """Return {(seed, model): row} of a file's whole rows of these seeds, flags, code and numpy."""
+    mark, text = made_by(args), path.read_text("utf-8", "replace") if path.is_file() else ""
+    rows = csv.DictReader(text.splitlines(), HEAD)
+    rows = (row for row in rows if row["made by"] == mark and row["whole"] == "yes")
+    return {(int(row["seed"]), row["model"]): row for row in rows if int(row["seed"]) in seeds}
 
 
 @cache
@@ -142,10 +123,10 @@ def made_by(args):
     return stored.digest([flags, code()])
 
 
-def rows_of(args, known, seed):
+def rows_of(args, mark, seed):
     """Run one seed, perhaps in another process. Returns its rows, a line a model."""
-    if other := {name.partition("#")[0] for name in known if code().get(name) != known[name]}:
-        raise ImportError(f"another {', '.join(sorted(other))} is there; give all the same")
+    if made_by(args) != mark:
+        raise ImportError(f"{platform.node()} has other code or another numpy; give all the same")
     _, without, quality = contact.run_models(*contact.asked_for(args, seed))
     ends = {model: (f"no: {why}", {}) for model, why in without.items()}
     ends |= {model: (contact.final_state(row), row) for model, row in quality.items()}
@@ -153,37 +134,29 @@ def rows_of(args, known, seed):
     for model, (end, row) in ends.items():
         values = (row.get(key) for key in KEYS)
         cells = ("" if x is None else str(x if math.isfinite(x) else math.inf) for x in values)
-        line = made_by(args), str(seed), model, end.replace(",", ";"), *cells, "yes"
-        text += ",".join(line) + "\n"
+        text += ",".join((mark, str(seed), model, end.replace(",", ";"), *cells, "yes")) + "\n"
     return text
 
 
-def ended(end):
-    """Return the place in ENDINGS of how a run ended."""
-    return next(place for place, words in enumerate(ENDINGS) if place and end.startswith(words))
-
-
-def summary(rows, seeds):
-    """Return {"median": row, "lowest": row, "highest": row} of a model's rows; {} without a run.
+def summary(rows):
+    """Return {"median": row, "lowest": row, "highest": row} of a model's rows {seed: row}; {}
+    without a run.
 
     A row counts the runs, those that exploded, and others that went through something; a key
     that a run lacks is None. seeds: by which seed it is the lowest or the highest.
     """
-    ran = np.flatnonzero(rows[:, 0] > ended("no: "))
-    if not len(ran):
+    ran = {seed: row for seed, row in rows.items() if not row["ending"].startswith("no: ")}
+    if not ran:
         return {}
-    counts = {"runs": len(ran)}
-    counts["blew_up"] = int((rows[:, 0] == ended("EXPLODED")).sum())
-    counts["through"] = int((rows[:, 0] == ended("through")).sum())
+    ends = [row["ending"].split()[0] for row in ran.values()]
+    counts = {"runs": len(ran), "blew_up": ends.count("EXPLODED"), "through": ends.count("through")}
     median, lowest, highest = {**counts}, counts | {"seeds": {}}, counts | {"seeds": {}}
-    for place, key in enumerate(KEYS, 1):
-        values = rows[ran, place]
-        order = np.argsort(values, kind="stable")  # of equal ones the first seed is the lowest
-        known = not np.isnan(values).any()
-        median[key] = float(np.median(values)) if known else None
-        for way, at in (lowest, order[0]), (highest, order[-1]):
-            way[key] = float(values[at]) if known else None
-            way["seeds"][key] = seeds[int(ran[at])] if known else None
+    for key in KEYS:
+        values = sorted((float(row[key] or "nan"), seed) for seed, row in ran.items())
+        known = all(row[key] for row in ran.values())
+        median[key] = float(np.median([value for value, _ in values])) if known else None
+        for way, place in (lowest, 0), (highest, -1):
+            way[key], way["seeds"][key] = values[place] if known else (None, None)
     return {"median": median, "lowest": lowest, "highest": highest}
 
 
