@@ -8,30 +8,21 @@ Exit status 0: no violation; 1: violations; 2: bad command line, or code that is
 """
 
 import sys
-from functools import partial
 
-from curriculum.commands import Parser, needs, number
+from curriculum.commands import Parser, needs
 
 with needs("dev"):
     from curriculum import parallel, stored
     from curriculum.stress import jobs, report
 
 
-def everything(quick, workers, origin):
-    """Run everything, or a hundredth, and write the report. Returns how many violations."""
-    todo = jobs.all_jobs(quick).items()
-    found = {name: parallel.run_jobs(jobs.run, each, name, workers) for name, each in todo}
-    return report.write(found, origin, report.QUICK if quick else report.RESULTS)
-
-
 def main(argv=None):
     """Print the violations. Returns the exit status."""
     parser = Parser(prog="python -m curriculum.stress", description=__doc__)
-    flag, count = parser.add_argument, partial(number, int, 1, 1e6)
+    flag = parser.add_argument
     flag("place", nargs="?", help="the only scene, heap or row of the map to check")
     flag("--quick", action="store_true", help="about a hundredth, into outputs/stress-quick")
     flag("--draw", action="store_true", help="page and figure again, from the results alone")
-    flag("--workers", type=count, metavar="N", help="processes (all cores)")
     args = parser.parse_args(argv)
     if args.place:
         every = {job[0]: job for each in jobs.all_jobs(quick=False).values() for job in each}
@@ -47,7 +38,9 @@ def main(argv=None):
         origin = stored.origin(command, "curriculum/stress/jobs.py", kept=not args.quick)
     except ValueError as error:  # a tree that is not committed
         parser.error(error)
-    return 1 if everything(args.quick, args.workers, origin) else 0
+    todo = jobs.all_jobs(args.quick).items()
+    found = {name: parallel.run_jobs(jobs.run, each, name) for name, each in todo}
+    return 1 if report.write(found, origin, report.QUICK if args.quick else report.RESULTS) else 0
 
 
 if __name__ == "__main__":
