@@ -13,7 +13,6 @@ import signal
 import sys
 
 HOME, OWNER = os.path.dirname(os.path.dirname(os.path.realpath(__file__))), os.getpid()
-unfinished: set = set()  # files that are being written
 
 
 def stop(number, frame):
@@ -25,9 +24,6 @@ def stop(number, frame):
             with contextlib.suppress(OSError), open(listed) as file:
                 for child in file.read().split():
                     os.kill(int(child), signal.SIGKILL)
-        for path in list(unfinished):
-            with contextlib.suppress(OSError):
-                os.unlink(path)
     os._exit(128 + number)
 
 

@@ -9,7 +9,7 @@ import shlex
 import sys
 from pathlib import Path
 
-from curriculum import HOME, unfinished
+from curriculum import HOME
 
 ROOT = Path(HOME)
 
@@ -109,7 +109,6 @@ def write_atomic(path, content):
     data = content.encode() if isinstance(content, str) else content
     path = Path(os.path.realpath(path))
     temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-    unfinished.add(temporary)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         if path.exists() and not path.is_file():
@@ -122,7 +121,6 @@ def write_atomic(path, content):
     finally:
         with contextlib.suppress(OSError):
             temporary.unlink()
-        unfinished.discard(temporary)
 
 
 def write_json(path, data):

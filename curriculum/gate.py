@@ -224,7 +224,7 @@ class Gate:
         return unread
 
     def check_results(self):
-        """Results and rows of the ledger are of today's code; all that are not make one problem."""
+        """Results and rows of the ledger are of today's code."""
         measured = [  # where it is kept, what measures it again, what changed since then
             (f"{folder}/made.json", about["command"], stored.changed(about["code"]))
             for folder in stored.FOLDERS.values()
@@ -232,12 +232,9 @@ class Gate:
         ]
         for row in filter(stored.stale, stored.ledger()):
             measured.append(("wallclock.csv", f"{stored.TIMES} {row['tier']}", stored.TIMED))
-        if stale := [each for each in measured if each[2]]:
-            places, commands, moved = zip(*stale)
-            changed = ", ".join([*dict.fromkeys(chain(*moved))][:6])
-            what = f"measured on other code; since then these changed: {changed}"
-            again = "; ".join(dict.fromkeys(commands))
-            self.say(places[0], 1, what, f"the maintainer runs {again}")
+        for place, command, moved in (each for each in measured if each[2]):
+            what = f"measured on other code; since then these changed: {', '.join(moved)}"
+            self.say(place, 1, what, f"the maintainer runs {command}")
 
 
 def check(release=False) -> int:

@@ -4,8 +4,7 @@
 
 Prose with its numbers; the regions of contact.py and the exercises as cells; some runs with their
 curves, where the chapter has a figure. Its first cell (start.py) carries the course's folder with
-it and needs numpy and matplotlib, which it installs where they are missing. Same inputs, same
-bytes.
+it and needs numpy and matplotlib. Same inputs, same bytes.
 """
 
 import base64
@@ -68,7 +67,7 @@ def region(source):
 
 
 def exercise(name):
-    """An exercise's file as a cell that tries it; what it needs, the first cell installed."""
+    """An exercise's file, without its header for uv, as a cell that tries it."""
     source = (ROOT / FILES[name]).read_text("utf-8").split("# ///\n")[-1]
     return new_code_cell(f"%%exercise {FILES[name]}\n{source.strip()}")
 

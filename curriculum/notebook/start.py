@@ -1,11 +1,8 @@
 # ruff: noqa: E401, E402, F401, F821, I001
 # fmt: off
 #@title Run me first: the course's folder is unpacked beside the notebook, and contact.py is read
-import base64, importlib.util, io, os, pathlib, re, subprocess, sys, zipfile
+import base64, io, os, pathlib, re, subprocess, sys, zipfile
 
-absent = [name for name in ("numpy", "matplotlib") if importlib.util.find_spec(name) is None]
-if absent:
-    subprocess.check_call([sys.executable, "-m", "pip", "install", "--quiet", *absent])
 COURSE = os.path.abspath("contact_chapter")
 zipfile.ZipFile(io.BytesIO(base64.b64decode(FOLDER))).extractall(COURSE)
 sys.path.insert(0, COURSE)

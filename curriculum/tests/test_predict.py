@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-import contact
 from curriculum import predict
 
 RNG = np.random.default_rng(72)
@@ -30,22 +29,6 @@ def test_penalty_and_lcp_err_as_on_paper(spring, lcp):
         for error, share in shares.items():
             paper, run, _ = rows[error]
             assert run == pytest.approx(paper, rel=share), error
-
-
-def test_a_tower_sags_by_the_law_within_a_tenth_up_to_a_fortieth_of_its_squared_height():
-    for bodies, iters in ((20, 10), (30, 20), (40, 30)):
-        scene = contact.build_scene("stack", bodies=bodies)
-        found = predict.quality("lcp", scene, 0.002, 6.0, iters=iters)["rest_penetration_frac"]
-        sag = predict.sag(bodies - 1.0, 1.0, 0.002, contact.Settings().baumgarte, iters)
-        assert found == pytest.approx(sag / contact.RADIUS, rel=0.1)
-
-
-@pytest.mark.parametrize("start, d0", RNG.uniform((0.05, 0.3), (0.35, 0.9), (4, 2)))
-def test_soft_flickers_from_the_angle_of_the_paper_on(start, d0):
-    """A stiff contact and a short step, so that the ball is out of its depth at once."""
-    solimp = (d0, max(d0, 0.95), 0.001, 0.5, 2.0)
-    found = predict.first_without_force(2e-4, start, solref=(0.005, 1.0), solimp=solimp)
-    assert found == pytest.approx(predict.flicker(start, d0), rel=0.03)
 
 
 def test_the_command_prints_paper_beside_run_of_ones_own_numbers(capsys):

@@ -42,6 +42,6 @@ FAULTS = [
     (PREDICT, "return mass * G / stiffness", "return 1.01 * mass * G / stiffness", PAPER),
     (PREDICT, "(1.0 - 2.0 * zeta * left)", "0.0", PAPER),
     (PREDICT, "- (1.0 - 0.5 * baumgarte)", "- (1.0 - baumgarte)", PAPER),
-    (PREDICT, "/ (3.0 - d0)", "/ 3.0", "test_predict.py -k soft_flickers"),
+    (PREDICT, "/ (3.0 - d0)", "/ 3.0", "test_predict.py -k the_command"),
     ("contact.py", "4.0 * math.cos(math.pi / (2 * count + 1)) ** 2", "4.0", PAPER),
 ]  # fmt: skip
