@@ -16,8 +16,8 @@ import contact
 from curriculum.compiled import pairs, rows, to_loops
 from curriculum.compiled.cache import Loops
 
+STATES = 200_000  # positions of balls that are filled in one go: between two Ctrl-C is heard
 PLAIN_SECONDS = {"penalty": 4e-6, "lcp": 1.5e-5, "soft": 3e-5, "leapfrog": 6e-5}  # measured
-STATES = 200_000  # positions of balls that are filled in one go, before progress() is called
 _, _, BY_HAND = Path(rows.__file__).read_text("utf-8").partition("\n# What is compiled")
 IMPORTS = f"import math\nimport numpy as np\nfrom {rows.__name__} import World\n"
 PAIRS = Loops("pairs", Path(pairs.__file__).read_text("utf-8"))
@@ -111,31 +111,26 @@ def pair_loops():
     return PAIRS.load(given | {"find_gaps": (q, radius, 1.0, order, some)})
 
 
-def run_model(model, scene, dt, steps, settings, progress=None) -> contact.Run:
-    """The run by a model that steps: what contact.run_model gives, bit for bit.
-
-    `progress(k)` is called with the steps done, now and then.
-    """
+def run_model(model, scene, dt, steps, settings) -> contact.Run:
+    """The run by a model that steps: what contact.run_model gives, bit for bit."""
     stepper = Stepper(model, scene, dt, settings)
     states = np.empty((steps + 1, 4, len(scene.mass)))
     states[0, :2], states[0, 2:] = scene.q0, scene.v0
     for k in range(0, steps, part := 1 + STATES // len(scene.mass)):
         stepper.take(states[k : k + part + 1])
-        if progress:
-            progress(min(k + part, steps))
     states += 0.0  # turns -0.0 into 0.0
     states[np.isnan(states)] = math.nan  # which has a sign too, left to chance
     return contact.Run(np.arange(steps + 1) * dt, states[:, :2], states[:, 2:])
 
 
-def run_if_it_pays(model, scene, dt, steps, settings, progress=None) -> contact.Run | None:
+def run_if_it_pays(model, scene, dt, steps, settings) -> contact.Run | None:
     """Return the Run, or None where plain loops are as soon done, or must do it."""
     count = len(scene.mass)  # a ball costs PLAIN_SECONDS a step, a pair 0.12 microseconds
     seconds = steps * count * (6e-8 * count + PLAIN_SECONDS.get(model, 4e-5))
     try:
         if not loops_of(contact.MODELS[model].step.__name__).pays(seconds):  # type: ignore
             return None
-        return run_model(model, scene, dt, steps, settings, progress)
+        return run_model(model, scene, dt, steps, settings)
     except to_loops.Refused as error:
         print(f"{model} runs in plain loops: {error}", file=sys.stderr)
     except ImportError:

@@ -53,8 +53,8 @@ class Trial:
             return None
         left = iter(range(EVENTS))
         try:
-            given = "exact", self.scene, self.dt, self.spec["steps"]
-            run = contact.run_model(*given, progress=lambda k: next(left))
+            given = self.scene, self.dt, self.spec["steps"]
+            run = contact.run_exact(*given, progress=lambda k: next(left))
         except StopIteration:
             self.noted[f"exact: more than {EVENTS} events"] = {}
             return None
