@@ -17,5 +17,3 @@ if __name__ == "__main__":
     for model in contact.STEPPED:
         run.run_model(model, scene, 0.002, 2, contact.Settings())
         print(f"compiled: {model}", flush=True)
-    run.smallest_gap(scene.q0[None], scene.radius)
-    print("compiled: the smallest gap", flush=True)

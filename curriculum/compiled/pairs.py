@@ -1,4 +1,4 @@
-"""The broad phase: loops that list near pairs and find the smallest gap, compiled for all models.
+"""The broad phase: loops that list near pairs, compiled for all models.
 
 Positions q (2, N) and a cutoff are in m, radius is (N,), pairs (3, M): first ball < second, and a
 row for the keys of a sort. No model stands here, so these loops are compiled once.
@@ -98,48 +98,3 @@ def largest_approach(q, listed):
         down, up = (dy if dy < down else down), (dy if dy > up else up)
     width, height = (right - left if left < right else 0.0), (up - down if down < up else 0.0)
     return math.sqrt(width * width + height * height)
-
-
-def find_gaps(q, radius, skin, order, pairs):
-    """Return the smallest gap to the floor or between two balls in each state q (S, 2, N).
-
-    Pairs that are not listed had gaps above the cutoff. Where one may have become the smallest,
-    pairs are listed anew, to a cutoff that is wider by the skin [m] (Verlet 1967). Any `pairs` will
-    do at first.
-    """
-    gaps, cutoff, listed = np.empty(len(q)), -math.inf, q[0]
-    for k in range(len(q)):
-        if not abs(q[k].sum()) < math.inf:  # a gap may be NaN, and then the smallest is
-            gaps[k] = math.inf
-            for i in range(len(radius)):
-                gaps[k] = least(gaps[k], q[k, 1, i] - radius[i])
-                for j in range(i):
-                    gaps[k] = least(gaps[k], gap_between(q[k], radius, i, j))
-            continue
-        gaps[k] = smallest_of(q[k], radius, pairs)
-        if not gaps[k] < 0.999 * cutoff - 1.001 * largest_approach(q[k], listed):
-            cutoff, listed = (gaps[k] if gaps[k] > 0.0 else 0.0) + skin, q[k]
-            pairs = list_pairs(q[k], radius, cutoff, order)
-            gaps[k] = smallest_of(q[k], radius, pairs)
-    return gaps
-
-
-def smallest_of(q, radius, pairs):
-    """Return the smallest gap [m] to the floor, or between two balls of the pairs."""
-    gap = math.inf
-    for i in range(len(radius)):
-        gap = least(gap, q[1, i] - radius[i])
-    for k in range(pairs.shape[1]):
-        gap = least(gap, gap_between(q, radius, pairs[0, k], pairs[1, k]))
-    return gap
-
-
-def gap_between(q, radius, i, j):
-    """Return the gap [m] between two balls."""
-    dx, dy = q[0, i] - q[0, j], q[1, i] - q[1, j]
-    return math.sqrt(dx * dx + dy * dy) - (radius[i] + radius[j])
-
-
-def least(first, second):
-    """Return the smaller of two numbers; NaN if one is."""
-    return second if second < first or second != second else first

@@ -1,4 +1,4 @@
-"""Run many balls by the compiled loops of contact.py's own steps, and find the smallest gap.
+"""Run many balls by the compiled loops of contact.py's own steps.
 
 Nothing may be rounded differently: no fast-math, no fused multiply-add.
 """
@@ -105,10 +105,8 @@ def same_type(name, value):
 @cache
 def pair_loops():
     """Return the module of pairs.py, compiled."""
-    q, radius, order = np.ones((1, 2, 1)), np.ones(1), np.arange(1)
-    some = np.empty((3, 1), np.uint32)
-    given = {"list_pairs": (q[0], radius, 1.0, order), "spread_out": (some, 1)}
-    return PAIRS.load(given | {"find_gaps": (q, radius, 1.0, order, some)})
+    given = np.ones((2, 1)), np.ones(1), 1.0, np.arange(1)
+    return PAIRS.load({"list_pairs": given, "spread_out": (np.empty((3, 1), np.uint32), 1)})
 
 
 def run_model(model, scene, dt, steps, settings) -> contact.Run:
@@ -136,17 +134,3 @@ def run_if_it_pays(model, scene, dt, steps, settings) -> contact.Run | None:
     except ImportError:
         pass  # numba does not work here
     return None
-
-
-def smallest_gap(q, radius) -> np.ndarray:
-    """Return the smallest gap [m] to the floor or between two balls, in each state (S, 2, N)."""
-    q, radius = (np.array(each, float, order="C") for each in (q, radius))
-    order = np.argsort(q[0, 0])
-    some = np.array((order[1:], order[:-1], order[1:]), np.uint32)  # for a first bound
-    return pair_loops().find_gaps(q, radius, float(np.median(radius)), order, some)
-
-
-def gap_if_it_pays(q, radius) -> np.ndarray | None:
-    """Return the smallest gaps, or None where numpy is as soon done."""
-    seconds = 4e-9 * q.size * len(radius)  # of numpy, measured
-    return smallest_gap(q, radius) if PAIRS.pays(seconds) else None

@@ -16,7 +16,6 @@ pytest.importorskip("numba", reason="numba is missing")
 from curriculum import stored  # noqa: E402
 from curriculum.bench import __main__ as bench  # noqa: E402
 from curriculum.bench import engines, measure, problems, report, timing  # noqa: E402
-from curriculum.compiled import run as fast  # noqa: E402
 
 R, g = contact.RADIUS, 9.81
 ALL = [setting for setting in engines.BY_NAME.values() if setting.problems]
@@ -184,7 +183,7 @@ def test_the_heap_is_that_of_simbenchmark_in_a_plane():
     scene, lcp = measure.heap(), engines.BY_NAME["lcp iters=4 baumgarte=1"]
     assert len(scene.mass) == 6 * 6 * 6 and set(scene.mass) == {10.0} and scene.restitution == 0.0
     for each in (scene, measure.shaft(10_000)):
-        assert fast.smallest_gap(each.q0[None], each.radius)[0] > 0.0, "it starts apart"
+        assert contact.smallest_gap(each.q0[None], each.radius)[0] > 0.0, "it starts apart"
     assert scene.q0[1].min() == pytest.approx(1.101, abs=1e-3)
     row = measure.sink_of((lcp, 1, 600))
     assert 1e-6 < row["mean_depth"] < row["worst_depth"] < 0.2 and row["bodies"] == 216

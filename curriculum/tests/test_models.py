@@ -317,6 +317,15 @@ def test_measures_of_recordings_made_by_hand():
     assert contact_quality(recording([1.0, -0.01]), scene, 0.01)["through"] == "the floor"
 
 
+def test_the_smallest_gap_is_that_of_all_pairs_and_of_the_floor():
+    rng = np.random.default_rng(0)
+    q, radius = rng.normal((0.0, 9.0), 1.0, (50, 40, 2)).swapaxes(1, 2), rng.uniform(0.1, 0.5, 40)
+    a, b = np.triu_indices(40, 1)
+    pairs = np.hypot(*(q[:, :, a] - q[:, :, b]).swapaxes(0, 1)) - radius[a] - radius[b]
+    least = np.minimum(pairs.min(-1), (q[:, 1] - radius).min(-1))
+    assert contact.smallest_gap(q, radius) == pytest.approx(least, abs=1e-12)
+
+
 def test_measures_are_in_radii_of_the_smallest_ball():
     scene = contact.scene_of([2.0, 0.0], [0.5, 0.05], radius=[0.2, 0.06])
     row = contact_quality(run_model("lcp", scene, DT, 0), scene, DT)

@@ -188,7 +188,7 @@ def test_a_scene_of_ones_own_is_reported_recorded_and_drawn_by_one_call(tmp_path
 def test_what_is_no_scene_or_no_settings_is_answered_in_words(wrong):
     (name, given), *_ = wrong.items()
     right = {"scene": contact.build_scene("drop"), "settings": contact.Settings()}
-    words = f"{name} must be a contact.{name.title()}, given {type(given).__name__} "
+    words = f"{name} must be a contact.{name.title()}, given {given!r}"
     with pytest.raises(ValueError, match=re.escape(words)):
         contact.run_model("lcp", dt=0.002, steps=5, **right | wrong)
 

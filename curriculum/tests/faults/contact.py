@@ -54,6 +54,7 @@ FAULTS = [
      MODELS + "first_contact"),
     (C, "float(scene.radius.min())\n    scale", "float(scene.radius[0])\n    scale",
      MODELS + "smallest_ball"),
+    (C, "if dx.min() > widest + gap.max():", "if dx.min() > gap.max():", MODELS + "all_pairs"),
     (C, "way = np.diff(q, axis=0, append=q[-1:])", "way = 0.0 * q", MODELS + "pair_by_pair"),
     (C, "if (inside & (free[lag:] | free[:-lag])).any():", "if inside.any():",
      MODELS + "pair_by_pair"),
