@@ -125,7 +125,7 @@ SCAN = f"dt = 3e-3\nwhile {SIZE} <= 1:\n    dt *= 1.0018\nreturn dt"
 VISIT = "add = (c.target - c.v_n()) * c.m_eff; p = max(-c.lam, add); c.lam += p; c.apply_impulse(p)"
 BACK = "for _ in range(iters):\n    for c in contacts[::-1]:\n        "
 HARD = "SOLIMP = 0.9999, 0.9999, 0.001, 0.5, 2.0"
-CLEAR = "import sys, os; os.system('clear; echo hi'); print('hi'); print(1, file=sys.__stdout__)\n"
+CLEAR = "import atexit, os; os.system('clear; echo hi'); atexit.register(print, 1); print('hi')\n"
 THEIRS = "import contact; return contact.time_to_impact(gap, v_n, a_n)"
 NEVER = "import contact; t = contact.time_to_impact(gap, v_n, a_n)\nif t < math.inf: return t"
 TYPED = [  # an exercise or a function of it, what a learner writes, what is said of its last LINE
