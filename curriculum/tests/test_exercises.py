@@ -158,7 +158,6 @@ TYPED = [  # an exercise or a function of it, what a learner writes, what is sai
     ("ex11", "BETS = BETS.replace('sink', '?')", "blank: row sink: given nothing; expected 2 mark"),
     ("ex11", "BETS = BETS.replace('-', '\N{MINUS SIGN}')", "right: holds in 15 of 15;"),
     ("ex11", "BETS = BETS.replace('=   ', '-   ', 1)", "right: holds in 14 of 15;"),
-    ("ex11", "SAG = None", "blank: no SAG yet; write a number in FILE, in r"),
     ("ex9", "MODEL = 'lcp'", "wrong: lcp, leapfrog and exact are not allowed here: their contacts"),
     ("ex9", "DT = 1e-4", "wrong: given DT = 0.0001, STIFFNESS = 300000; allowed: DT from 0.0005"),
     ("ex9", "STIFFNESS = 3e4", "wrong: it overlaps too much; 20 N press a spring of 30000 N/m in"),
