@@ -25,20 +25,19 @@ FLIGHTS = 10_000  # after so many a bounce is over in the last bit, or the run
 
 
 def bounce_motion(gap, e, t):
-    """Return gap [m] and vertical speed [m/s] at t [s] of a ball released at a gap [m]."""
+    """Return the gap [m] at t [s] of a ball released at a gap [m]."""
     t, t1 = np.asarray(t, dtype=float), math.sqrt(2.0 * gap / g)
     flights = 2.0 * e ** np.arange(1.0, FLIGHTS)
     impacts = t1 * (1.0 + np.append(0.0, np.cumsum(flights)))
     k = np.searchsorted(impacts, t, side="right") - 1
     s, leaving = t - impacts[k], g * t1 * e ** (k + 1.0)
     flight = np.maximum(leaving * s - 0.5 * g * s * s, 0.0)  # s may round to just outside
-    when, still = [k < 0, k == FLIGHTS - 1], np.zeros_like(t)  # it falls, it rests
-    height = np.select(when, [gap - 0.5 * g * t * t, still], flight)
-    return height, np.select(when, [-g * t, still], leaving - g * s)
+    when = [k < 0, k == FLIGHTS - 1]  # it falls, it rests
+    return np.select(when, [gap - 0.5 * g * t * t, np.zeros_like(t)], flight)
 
 
 def slide_motion(theta0, length, radius, height, t):
-    """Return q, v, (len(t), 2), of a ball that starts at rest on a fixed one and slides off it.
+    """Return q, (len(t), 2), of a ball that starts at rest on a fixed one and slides off it.
 
     theta0: its angle from the vertical at the start; length: distance of the centres while they
     touch; height: of the fixed centre, which stands at x = 0. On the floor it loses its vertical
@@ -63,8 +62,7 @@ def slide_motion(theta0, length, radius, height, t):
     free = np.maximum(t - release, 0.0)  # it flies with what it has at the release; no rebound
     down = free >= (vy + np.sqrt(np.maximum(vy**2 + 2.0 * g * (y - radius), 0.0))) / g
     y = np.where(down, radius, y + vy * free - 0.5 * g * free * free)
-    vy = np.where(down, 0.0, vy - g * free)
-    return np.stack([x + vx * free, y], axis=1), np.stack([vx, vy], axis=1)
+    return np.stack([x + vx * free, y], axis=1)
 
 
 class Problem(NamedTuple):
@@ -74,7 +72,7 @@ class Problem(NamedTuple):
     what: str
     duration: float  # s
     build: Callable  # start -> contact.Scene
-    truth: Callable  # (scene, t) -> q, v, (len(t), 2, N)
+    truth: Callable  # (scene, t) -> q, (len(t), 2, N)
     starts: int = 5  # the error of one is a lottery of where a step falls
 
     @property
@@ -88,24 +86,22 @@ class Problem(NamedTuple):
 def column(scene, t):
     """Return the motion of balls over one another, e = 0, or of one ball with any e."""
     height = scene.q0[1]
-    gap, speed = bounce_motion(float(height[0]) - R, scene.restitution, t)
+    gap = bounce_motion(float(height[0]) - R, scene.restitution, t)
     y = R * (2.0 * np.arange(len(height)) + 1.0) + gap[:, None]
-    return np.stack([0.0 * y, y], axis=1), np.stack([0.0 * y, speed[:, None] + 0.0 * y], axis=1)
+    return np.stack([0.0 * y, y], axis=1)
 
 
 def slide(scene, t):
     """Return the motion of a ball off a fixed one."""
     x, y = scene.q0[:, 1]
     hill, radius = scene.radius
-    q, v = slide_motion(math.atan2(x, y - hill), hill + radius, radius, hill, t)
-    held = np.broadcast_to(scene.q0[:, 0], q.shape)
-    return np.stack([held, q], axis=2), np.stack([0.0 * v, v], axis=2)
+    q = slide_motion(math.atan2(x, y - hill), hill + radius, radius, hill, t)
+    return np.stack([np.broadcast_to(scene.q0[:, 0], q.shape), q], axis=2)
 
 
 def judged(scene, t):
     """Return the motion by contact.py's own exact: no closed form is known."""
-    run = contact.run_model("exact", scene, t[1], len(t) - 1)
-    return run.q, run.v
+    return contact.run_model("exact", scene, t[1], len(t) - 1).q
 
 
 def spread_scene(start):
@@ -129,10 +125,8 @@ def cradle_scene(start):
 def cradle(scene, t):
     """Return the motion of equal balls in a row, e = 1: each flies on through the others."""
     free = scene.q0[0] - 2 * R * np.arange(len(scene.mass)) + np.outer(t, scene.v0[0])
-    order = np.argsort(free, axis=1, kind="stable")
-    x = np.take_along_axis(free, order, 1) + 2 * R * np.arange(len(scene.mass))
-    vx = scene.v0[0][order]
-    return np.stack([x, 0 * x + R], axis=1), np.stack([vx, 0 * vx], axis=1)
+    x = np.sort(free, axis=1) + 2 * R * np.arange(len(scene.mass))
+    return np.stack([x, 0 * x + R], axis=1)
 
 
 def heavy(ratio, start):
@@ -166,7 +160,7 @@ BY_NAME = {problem.name: problem for problem in PROBLEMS}
 def answer(name, start, dt):
     """Return q (T, 2, N) of a start of a problem, as it should be at each look."""
     problem = BY_NAME[name]
-    return problem.truth(problem.build(start), np.arange(problem.steps(dt) + 1) * dt)[0]
+    return problem.truth(problem.build(start), np.arange(problem.steps(dt) + 1) * dt)
 
 
 @np.errstate(all="ignore")
