@@ -54,18 +54,17 @@ def cells(quick):
 
 def errors_of(job):
     """Return a point's row without times: the median error of its starts, None of the reference;
-    the greatest one; of how many starts the energy exploded; the work."""
+    the greatest one; the work."""
     name, contestant, dt, substeps, starts = job
     problem, c, found, work = problems.BY_NAME[name], engines.BY_NAME[contestant], [], []
     for start in range(starts):
-        scene = problem.build(start)
-        session = c.build(scene, dt, substeps)
-        states = session.states(problem.steps(dt))
-        found.append(problems.quality(problems.answer(name, start, dt), *states, scene.mass))
+        session = c.build(problem.build(start), dt, substeps)
+        q, _ = session.states(problem.steps(dt))
+        found.append(problems.worst_error(problems.answer(name, start, dt), q))
         work.append(work_of(c, session, problem.steps(dt)))
     row = dict(problem=name, engine=c.engine, setting=c.options, substeps=substeps, dt=dt)
-    row |= dict(work=statistics.median(work), diverged=sum(diverged for _, diverged in found))
-    spread = timing.spread("error", [error for error, _ in found])
+    row |= dict(work=statistics.median(work))
+    spread = timing.spread("error", found)
     itself = problem.truth is problems.judged and c.engine == "exact"
     return row | {key: None if itself else spread[key] for key in ("error", "error_max")}
 
@@ -93,7 +92,7 @@ def time_of(job, timed=timing.timed):
 def allowed(p, budget=None, work=WORK[-1]):
     """Return whether a point competes: at equal work, or within us a ball. exact does,
     also as the reference, which has no error."""
-    if p["engine"] == "exact" or p["error"] is None or p["diverged"]:
+    if p["engine"] == "exact" or p["error"] is None:
         return p["engine"] == "exact"
     if budget is None:
         return p["dt"] == DT and p["work"] <= work

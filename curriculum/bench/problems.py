@@ -164,8 +164,8 @@ def answer(name, start, dt):
 
 
 @np.errstate(all="ignore")
-def quality(truth, q, v, mass):
-    """Return the largest position error [r] of a run q, v (T, 2, N), of any ball at any time; and
-    whether the energy exploded."""
-    distance = np.sqrt(((q - truth) ** 2).sum(axis=1)).max() / R
-    return float(distance), contact.blow_up_step(contact.energy(q, v, mass)) is not None
+def worst_error(truth, q):
+    """Return the largest position error [r] of a run q (T, 2, N), of any ball at any time; of one
+    that exploded inf, which sorts behind all others."""
+    worst = np.sqrt(((q - truth) ** 2).sum(axis=1)).max() / R
+    return float(worst) if np.isfinite(worst) else math.inf

@@ -199,7 +199,7 @@ def error_figure(rows, problem):
     )
     for engine, label in LABELS.items():
         dots = front((p["error"], p["ms"]) for p in rows
-                     if (p["engine"], p["problem"], p["diverged"]) == (engine, problem, 0)
+                     if (p["engine"], p["problem"]) == (engine, problem)
                      and p["error"] is not None)  # fmt: skip
         if dots:
             picture.line(axis, *zip(*dots), engine, label)

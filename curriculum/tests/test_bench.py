@@ -32,19 +32,19 @@ def test_exact_and_the_event_driven_code_agree_with_every_reference_and_penalty_
     scene, steps, error = problem.build(1), min(problem.steps(0.004), 300), []
     truth = problems.answer(problem.name, 1, 0.004)[: steps + 1]
     for name in ("exact", "events rtol=1e-12 longest=0.01", "penalty stiffness=1e4"):
-        states = engines.BY_NAME[name].build(scene, 0.004).states(steps)
-        error.append(problems.quality(truth, *states, scene.mass)[0])
+        q, _ = engines.BY_NAME[name].build(scene, 0.004).states(steps)
+        error.append(problems.worst_error(truth, q))
     assert error[0] < 1e-10 and error[1] < 1e-9 and error[2] > 1e-4
 
 
 def test_the_error_of_an_invented_run_is_that_worked_out_by_hand():
-    truth, mass = problems.answer("drop", 0, 0.002), np.ones(1)
-    q, v = truth.copy(), 0.0 * truth
+    truth = problems.answer("drop", 0, 0.002)
+    q = truth.copy()
     q[100, 1] += 0.3 * R
     q[-1, 1] -= 0.2 * R
-    assert problems.quality(truth, q, v, mass) == (pytest.approx(0.3), False)
-    v[50:] = 1e9
-    assert problems.quality(truth, q, v, mass)[1], "it exploded"
+    assert problems.worst_error(truth, q) == pytest.approx(0.3)
+    q[3] = math.nan
+    assert problems.worst_error(truth, q) == math.inf
 
 
 def ends(settings):
@@ -98,7 +98,7 @@ def test_an_engines_best_setting_of_a_problem_is_as_near_as_the_page_says(best):
     """Within a factor of three, as of another version: restitution, stiffness, what is fixed."""
     job = best["problem"], report.called(best), best["dt"], best["substeps"], 1
     row = measure.errors_of(job)
-    assert row["error"] <= 3.0 * best["error_max"] + 1e-12 and row["diverged"] == 0
+    assert row["error"] <= 3.0 * best["error_max"] + 1e-12
     assert row["work"] == pytest.approx(best["work"], rel=0.5)
     assert best["error"] < 0.1 or best["problem"] == "elastic", "with e = 1 little adds up"
 
@@ -108,7 +108,7 @@ def test_a_point_is_what_one_works_out_by_hand_in_medians_over_its_starts():
     first, *_, last = sorted(math.sqrt(2 * (drop.build(k).q0[1, 0] - R) / g) for k in range(5))
     least, most = 0.98 * g * 0.0005 * first / 2, 4 * g * 0.0005 * last  # half a substep, a dive
     assert least <= row["error"] * R < row["error_max"] * R <= most
-    assert (row["setting"], row["work"], row["diverged"]) == ("iters=20", 4, 0)
+    assert (row["setting"], row["work"]) == ("iters=20", 4)
     assert measure.errors_of(("drop", "leapfrog iters=20", 0.002, 4, 1))["work"] == 8, "two solves"
     row = measure.errors_of(("spread", "exact", 0.002, 1, 3))
     assert row["error"] is None, "the reference has no error of its own"
@@ -134,16 +134,16 @@ def test_times_are_medians_of_runs_after_a_short_one_and_of_piles_from_where_the
     assert np.array_equal(session.state(), (run.q[-1], run.v[-1]))
 
 
-def point(engine, error, ms, setting=None, diverged=0):
+def point(engine, error, ms, setting=None):
     row = dict(problem="drop", engine=engine, setting=setting, substeps=1, dt=0.002, work=16)
-    row |= dict(diverged=diverged, error=error, error_max=error)
+    row |= dict(error=error, error_max=error)
     return row | timing.spread("ms", [ms])
 
 
 @pytest.mark.parametrize("mine, rival", [(0.1, 0.2), (0.2, 0.1)])
 def test_who_wins_and_loses_is_as_the_numbers_say(mine, rival):
     rows = [point("exact", 1e-12, 1.0), point("leapfrog", mine, 5.0), point("pymunk", rival, 5.0)]
-    rows += [point("events", 1e-9, 30.0), point("leapfrog", 1e-9, 1.0, diverged=1)]
+    rows += [point("events", 1e-9, 30.0), point("leapfrog", None, 1.0)]
     (cells,) = report.winners(rows, 1)
     assert cells[1:] == ["1.0e-12", "1.0e-09", f"{mine:g}", "-", "pymunk", f"{rival:g}"]
     words = " ".join(report.written("claims.md", {"points": rows}, {}).split())
