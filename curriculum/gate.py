@@ -4,8 +4,8 @@
     python -m curriculum.gate --read "HEADING"  # you have reviewed these, as they are now
 
 It checks that every region is included once; that slots, their settings, flags and names in `code`
-exist; that numbers are quoted by reference, and a ratio in words has a claim in its sentence; that
-results are of today's code. Whether a sentence is true only a reader can say: meta.yaml keeps what
+exist; that numbers are quoted by reference, ratios in words held by a claim; that results are of
+today's code. Whether a sentence is true only a reader can say: meta.yaml keeps what
 each passage depended on at its last review, its numbers and the hashes of its code: of the text of
 what it shows, of the syntax of what it names. When one has changed, is new or gone, the gate asks
 for a review.
@@ -27,6 +27,7 @@ with needs("dev"):
     from curriculum import stored
     from curriculum.page.build import slot_errors
     from curriculum.prose.chapter import CHAPTER, INCLUDE, INLINE, PROSE, Part, faults, split
+    from curriculum.prose.ratios import loose_ratios
     from curriculum.prose.references import REFERENCE, TextError, load_meta, prepare, shown
     from curriculum.source import DOCSTRING, ROOT, blank, read_text, split_all
 
@@ -50,11 +51,6 @@ NOT_PROSE = re.compile(
     re.DOTALL | re.MULTILINE | re.IGNORECASE | re.VERBOSE,
 )
 TYPED = re.compile(r"(?<![\w.])\.?[\d¼½¾⅓⅔⅛][\w.,]*")  # a token that begins with a digit
-COUNT = r"(?:an?|one|two|three|four|five|six|seven|eight|nine|ten|\w+ty|\w+teen|\w*hundred)"
-PART = r"(?:third|quarter|fifth|sixth|seventh|eighth|ninth|tenth|hundredth|thousandth|\w+onth)s?"
-TIMES = rf"(?:{COUNT}|thousand)\stimes|(?:twice|double)(?=\s(?:as|the)\b)"
-RATIO = re.compile(rf"\b(?:{COUNT}\s{PART}|half|{TIMES})\b", re.IGNORECASE)
-SENTENCE = re.compile(r"\S(?s:.)*?(?:(?:[.?!](?=[\s\0])|\n\s*\n|\|)[\s\0]*|\Z)")
 
 
 def passages():
@@ -84,15 +80,6 @@ def files(*patterns) -> list:
     """Return the project's files of these patterns, as they are named in git."""
     paths = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
     return [path.relative_to(ROOT).as_posix() for path in paths]
-
-
-def loose_ratios(text):
-    """Yield each ratio in words, "a quarter", "twice as", whose sentence quotes a number and has no
-    claim; the claims that follow a sentence are its own. Others are theory."""
-    mark = lambda match: ("\0" if match[1][0] == "?" else "_") * len(match[0])  # noqa: E731
-    for sentence in SENTENCE.finditer(REFERENCE.sub(mark, blank(INLINE, text))):
-        if "_" in sentence[0] and "\0" not in sentence[0]:
-            yield from RATIO.finditer(sentence.string, *sentence.span())
 
 
 class Gate:
@@ -174,17 +161,16 @@ class Gate:
                     self.say(each.file, each.line_of(match), f"`{name}` is in no code", repair)
 
     def check_typed(self):
-        """Prose and captions type no number, and a ratio in words has a claim beside it."""
+        """Prose and captions type no number, and claims hold the ratios in words beside them."""
         for part in (part for part in self.chapter if part.kind in PROSE):
             for token in TYPED.finditer(blank(NOT_PROSE, part.text)):
                 number = token[0].rstrip(".,")
                 repair = f"write {{{{KEY|FORMAT}}}} or {{{{= {number} | REASON}}}}"
                 self.say(CHAPTER, part.line_of(token), f"a typed number, {number}", repair)
-            for match in loose_ratios(part.text):
+            for match, number in loose_ratios(part.text):
                 what = f"no claim of its sentence holds {match[0]!r}"
-                repair = (
-                    f"add {{{{? LOW < FORMULA < HIGH}}}}, or write {{{{= {match[0]} | REASON}}}}"
-                )
+                repair = f"add {{{{? LOW < FORMULA < HIGH}}}} around {number:.4g}"
+                repair += f", or write {{{{= {match[0]} | REASON}}}}"
                 self.say(CHAPTER, part.line_of(match), what, repair)
         for each in (each for each in self.passages.values() if each.kind == "figure"):
             text = each.text

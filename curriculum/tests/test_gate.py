@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from curriculum import source, stored
-from curriculum.prose import references
+from curriculum.prose import ratios, references
 from curriculum.tests.helpers import FIGURE, clone, edit, gate, python, review, shorten, stopped
 
 CHAPTER, CLAMP = "curriculum/prose/chapter.md", "curriculum/page/figures/clamp.js"
@@ -122,21 +122,20 @@ def test_each_error_of_a_text_is_named_in_a_line_with_its_place_and_nothing_else
     assert refused.returncode == 2 and "outside any region" in refused.stderr
 
 
-RATIOS = {  # a text, and the ratios in words whose sentence quotes a number and has no claim
+RATIOS = {  # a text, and the ratios that no claim of its sentence holds
     "It dives a quarter {{? 0.24 < a.b < 0.26}} in.": [],
-    "It dives a third. {{? a.b > 0.3}} And half of {{a.b}}.": ["half"],
+    "It dives a third. {{? 0.24 < a.b < 0.26}} {{? a.b == 4}} And half of that.": ["a third"],
+    "It is a Hundred times {{? a.b == 100 * c.d}} as large as {{c.d|.2f}}.": [],
     "Four\ntimes {{c.d|.2f}} m. Half the step: {{c.d}} m": ["Four\ntimes", "Half"],
-    "| half the step | {{c.d|.2f}} |": [],
+    "Half {{? a.b == 2 * c.d}} the step. | half the step | {{c.d|.2f}} |": [],
     "Asked twice, half the error, in theory.": [],
-    "As `half`, $half$ or {{half:c.d}} says, twice as fast.": ["twice"],
+    "As `half`, $half$ or {{half:c.d}} says, two thirds {{? a.b < 2 / 3}}.": [],
 }
 
 
 @pytest.mark.parametrize("text", RATIOS)
-def test_a_ratio_in_words_has_a_claim_in_its_sentence(text):
-    from curriculum.gate import loose_ratios
-
-    assert [match[0] for match in loose_ratios(text)] == RATIOS[text]
+def test_a_ratio_in_words_is_held_by_a_claim_of_its_sentence(text):
+    assert [match[0] for match, _ in ratios.loose_ratios(text)] == RATIOS[text]
 
 
 def test_a_passage_that_there_is_not_and_what_is_no_yaml_are_said(capsys, monkeypatch):

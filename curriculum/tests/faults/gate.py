@@ -2,7 +2,7 @@
 there, what is planted, the tests that must name it)."""
 
 GATE, REFERENCES = "curriculum/gate.py", "curriculum/prose/references.py"
-STORED = "curriculum/stored.py"
+STORED, RATIOS = "curriculum/stored.py", "curriculum/prose/ratios.py"
 ERRORS = "test_gate.py -k test_each_error_of_a_text"
 READ = "test_gate.py -k test_a_changed_region"
 KEPT = "test_gate.py -k test_what_is_quoted_is_kept"
@@ -27,8 +27,9 @@ FAULTS = [
     (GATE, "elif region.defines & words:", "elif False:", READ),
     (GATE, "stored.digits(region.source, region.code)", "region.sha", READ),
     (GATE, 'startswith(("exercises/", CHAPTER))', 'startswith(("exercises/", "c"))', ERRORS),
-    (GATE, 'if "_" in sentence[0] and', "if", RATIO),
-    (GATE, r"[\s\0]*|", r"\s*|", RATIO),
+    (RATIOS, "min(bounds) <= number <= max(bounds)", "bool(bounds)", RATIO),
+    (RATIOS, "(value, 1.0 / value)", "(value, 0.5)", RATIO),
+    (RATIOS, "start < match.end() <= end", "True", RATIO),
     (REFERENCES, "[inputs, made_by(), ", "[inputs, ", KEPT),
     (REFERENCES, 'version("numpy"), sys.version', "sys.version", KEPT),
     (REFERENCES, "if value is not True:", "if False:", "test_gate.py -k test_a_reference_becomes"),
