@@ -85,6 +85,21 @@ def needs(extra):
         sys.exit(2)
 
 
+def one_thread():
+    """A context in which BLAS takes one thread, where threadpoolctl is installed; then as before.
+
+    A second thread gains nothing on matrices of our sizes. Commands limit it before numpy loads
+    (curriculum/__init__.py); this is for an interactive Python, a notebook, a test.
+    """
+    if os.environ.get("OPENBLAS_NUM_THREADS") == "1":
+        return contextlib.nullcontext()
+    try:
+        from threadpoolctl import threadpool_limits
+    except ImportError:
+        return contextlib.nullcontext()
+    return threadpool_limits(1, "blas")
+
+
 def write_atomic(path, content):
     """Replace the file at `path`, whole or not at all; make missing folders.
 

@@ -26,6 +26,8 @@ import math
 
 import numpy as np
 
+from curriculum.commands import one_thread
+
 ORDER = 20  # of the power series at most; a longer one lasts longer and costs more
 MAX_EVENTS = 50_000  # in a run: about a minute with 40 balls
 TOUCH_TOLERANCE = 1e-12  # of a radius: a smaller gap is closed. Rounding is 1e-15, the goal 1e-10
@@ -478,7 +480,7 @@ def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MAX_EVEN
     motion, times = Motion(scene, gravity), np.asarray(times)
     out = np.empty((2, len(times), len(motion.w)))
     now, done, event = 0.0, 0, True
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"), one_thread():
         for _ in range(most):
             motion.update_gaps()
             if event:

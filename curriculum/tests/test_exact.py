@@ -142,6 +142,22 @@ def test_rounding_of_dependent_contacts_does_not_pivot_in_circles():
             assert (lam >= 0.0).all() and s.min() >= -1e-7 and np.abs(lam * s).max() <= 1e-6
 
 
+def test_blas_has_one_thread_while_exact_runs_and_then_those_it_had(monkeypatch):
+    pools = pytest.importorskip("threadpoolctl")
+    seen = []
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+
+    def threads():
+        return [
+            each["num_threads"] for each in pools.threadpool_info() if each["user_api"] == "blas"
+        ]
+
+    with pools.threadpool_limits(2, "blas"):
+        before = threads()
+        simulate_exact(PILE, np.zeros(1), GRAVITY, lambda k: seen.extend(threads()))
+        assert set(seen) == {1} and threads() == before
+
+
 def test_balls_that_overlap_at_the_start_move_apart_and_their_centre_stays():
     """Also where they fly apart, so that nothing else would ever part them."""
     mass, radius = np.array((0.4, 3.7, 1.3)), np.array((0.07, 0.13, 0.09))
