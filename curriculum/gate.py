@@ -219,7 +219,7 @@ class Gate:
         for row in filter(stored.stale, stored.ledger()):
             measured.append(("wallclock.csv", f"{stored.TIMES} {row['tier']}", stored.TIMED))
         for place, command, moved in (each for each in measured if each[2]):
-            what = f"measured on other code; since then these changed: {', '.join(moved)}"
+            what = f"measured on other code; since then these changed: {', '.join(moved[:6])}"
             self.say(place, 1, what, f"the maintainer runs {command}")
 
 
