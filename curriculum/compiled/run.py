@@ -83,17 +83,16 @@ class Stepper:
 
     def list_pairs(self, q, cutoff) -> None:
         """List the pairs anew, with room for their contacts."""
-        balls, contacts, _, impulses, count, farthest = self.world
+        balls, contacts, _, impulses, count, _ = self.world
         self.listed, self.cutoff = q, cutoff
         pairs = pair_loops().list_pairs(q, self.radius, cutoff, self.order)
         if self.spreads:
             pairs = pair_loops().spread_out(pairs, len(self.radius))
         most = max(len(balls) + pairs.shape[1], count[0])  # more, where a step had too many
         if most > len(contacts):
-            contacts, old = np.empty(most + most // 4, contacts.dtype), impulses
-            impulses = np.empty((len(contacts), 2))
-            impulses[: count[1]] = old[: count[1]]
-        self.world = rows.World(balls, contacts, pairs, impulses, count, farthest)
+            contacts = np.empty(most + most // 4, contacts.dtype)
+            impulses = np.resize(impulses, (len(contacts), 2))
+        self.world = self.world._replace(contacts=contacts, pairs=pairs, impulses=impulses)
 
 
 def same_type(name, value):
