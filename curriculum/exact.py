@@ -9,8 +9,8 @@ Accuracy: over some seconds and metres within 1e-10 r of every closed form, and 
 independent solver for as long as a start shifted by 1e-15 m stays within 1e-9 r (see the tests). No
 overlap is above 1e-12 r, and no energy is gained above 1e-12 of the start.
 Limits, each a RuntimeError: mass ratios above 100 where 0 < e < 1; MAX_EVENTS events, which a crowd
-with e > 0 may use up within a second (Zeno behaviour); a ball that is crushed; pivots that do not
-converge.
+with e > 0 may use up within a second (Zeno behaviour); a ball that is crushed between two fixed
+ones, or just passes between them; pivots that do not converge.
 
     q, v, a      positions, velocities, accelerations: (2 N,), all x, then all y   m, m/s, m/s^2
                  N: the bodies of the scene and, the last of them, the floor
@@ -26,6 +26,7 @@ import math
 
 import numpy as np
 
+from contact import time_to_impact
 from curriculum.commands import one_thread
 
 ORDER = 20  # of the power series at most; a longer one lasts longer and costs more
@@ -33,75 +34,54 @@ MAX_EVENTS = 50_000  # in a run: about a minute with 40 balls
 TOUCH_TOLERANCE = 1e-12  # of a radius: a smaller gap is closed. Rounding is 1e-15, the goal 1e-10
 MIN_BOUNCE = 1e-13  # of a radius: the restitution threshold, as a height: less is no bounce
 ROUNDING = 1e-12  # of g, of sqrt(g r), of the largest entry: less is rounding (1e-15)
-GRAZE = 3e-8  # of the slip: a ball between two fixed ones may close as slowly as that
 DEPENDENT = 1e-10  # of a contact's 1 / m_eff: with a smaller pivot it depends linearly on others
 MAX_MASS_RATIO = 100.0  # where 0 < e < 1; above it light balls bounce ever faster under heavy ones
 
 
 # --- region: slide-lcp ---
-class Complementarity:
-    """The LCP of K contacts: lam >= 0, s = W lam + b >= 0, and lam s = 0 (Signorini).
+def solve_lcp(W, b):
+    """Solve the LCP of K contacts: lam >= 0, s = W lam + b >= 0, and lam s = 0 (Signorini).
 
-    A contact is active, s = 0, or it parts, lam = 0. x holds lam of the active contacts and s of
-    the others (the basic variables), z their partners, all 0; the table gives x = table z + what b
-    adds, and is W where none is active. To pivot on a contact is to exchange its lam and s. A
-    solution has x >= 0.
+    Return lam (K,), the active contacts, and the inverse of their part of W. A contact is active,
+    s = 0, or it parts, lam = 0. x holds lam of the active contacts and s of the others (the basic
+    variables), z their partners, all 0; the table gives x = table z + what b adds, and is W where
+    none is active. To pivot on a contact is to exchange its lam and s. A solution has x >= 0.
+
+    Principal pivoting, from all contacts active, as at rest; if they are dependent, from none:
+    first on all x < 0 together (Kostreva 1978), as long as they become fewer; then on one at a
+    time, lam >= 0 throughout (Dantzig; for contacts Baraff 1994). Raises RuntimeError if no push
+    keeps a contact from closing, and if the pivots do not converge.
     """
-
-    def __init__(self, W, likely):
-        """Start with all contacts active, as at rest; if they are dependent, with the likely."""
-        unit = np.sqrt(W.diagonal())
-        self.scale = unit * unit[:, None]  # makes the diagonal 1, whatever the masses
-        self.table = self.W = W / self.scale
-        self.active, inverse = np.zeros(len(W), bool), invert(self.W)
-        if inverse is None:
-            self.table = pivot(self.W, self.active, np.flatnonzero(likely))
-        else:
-            self.table, self.active[:] = inverse, True
-        self.exact = np.abs(self.table.diagonal()).max(initial=0.0) < 1e4  # else inverted anew
-
-    def solve(self, b, slack=0.0):
-        """Return lam (K,), the active contacts, and the inverse of their part of W.
-
-        Principal pivoting: first on all x < 0 together (Kostreva 1978), as long as they become
-        fewer; then on one at a time, lam >= 0 throughout (Dantzig; for contacts Baraff 1994).
-        Raises RuntimeError if a ball is crushed, unless no contact closes by more than the largest
-        slack (K,), in the unit of b, of those that push; and if the pivots do not converge.
-        """
-        unit, table, active = np.sqrt(self.scale.diagonal()), self.table, self.active.copy()
-        b, fewest = b / unit, len(b) + 1
-        small = ROUNDING * np.abs(b).max(initial=0.0)
-        for _ in range(50 + 10 * len(b)):
-            x = np.where(active, 0.0, b) - table @ np.where(active, b, 0.0)
-            wrong = (x < -small).nonzero()[0]
-            if not len(wrong):
-                on = active.nonzero()[0]
-                block, lam = (on[:, None], on), 0.0 * b
-                inverse = table[block] if self.exact else np.linalg.inv(self.W[block])
-                lam[on] = np.maximum(-inverse @ b[on], 0.0)
-                return lam / unit, on, inverse / self.scale[block]
-            chosen = wrong if len(wrong) < fewest else wrong[active[wrong]]
-            fewest = min(fewest, len(wrong))
-            if len(chosen):
-                table = pivot(table, active, chosen)
-                continue
-            k = x.argmin()
-            table, free = activate(table, active, x, k)
-            if free is not None:  # pushes in the null space of W: s_k falls without end
-                way = free * (free @ b / (free @ free))
-                if (-way).max() > max((slack / unit * (free > 0.0)).max(), 1e3 * small):
-                    raise RuntimeError("exact: a ball is crushed between two fixed bodies")
-                b = b - way
-        raise RuntimeError("exact: the pivots did not converge: the masses differ too much")
-
-    def keep(self, chosen):
-        """Leave out the other contacts."""
-        if chosen.all():
-            return
-        table = pivot(self.table, self.active, np.flatnonzero(self.active & ~chosen))
-        self.active = self.active[chosen]
-        each = (table, self.scale, self.W)
-        self.table, self.scale, self.W = (m[chosen][:, chosen] for m in each)
+    unit = np.sqrt(W.diagonal())
+    scale = unit * unit[:, None]  # makes the diagonal 1, whatever the masses
+    W, b, fewest = W / scale, b / unit, len(b) + 1
+    inverse = invert(W)
+    table, active = W if inverse is None else inverse, np.full(len(b), inverse is not None)
+    well_scaled = np.abs(table.diagonal()).max(initial=0.0) < 1e4
+    small = ROUNDING * np.abs(b).max(initial=0.0)
+    for _ in range(50 + 10 * len(b)):
+        x = np.where(active, 0.0, b) - table @ np.where(active, b, 0.0)
+        wrong = (x < -small).nonzero()[0]
+        if not len(wrong):
+            on = active.nonzero()[0]
+            block, lam = (on[:, None], on), 0.0 * b
+            inverse = table[block] if well_scaled else np.linalg.inv(W[block])
+            lam[on] = np.maximum(-inverse @ b[on], 0.0)
+            return lam / unit, on, inverse / scale[block]
+        chosen = wrong if len(wrong) < fewest else wrong[active[wrong]]
+        fewest = min(fewest, len(wrong))
+        if len(chosen):
+            table = pivot(table, active, chosen)
+            continue
+        table, free = activate(table, active, x, x.argmin())
+        if free is not None:  # pushes in the null space of W: s_k falls without end
+            way = free * (free @ b / (free @ free))
+            if (-way).max() > 1e3 * small:
+                raise RuntimeError(
+                    "exact: a ball is crushed between two fixed bodies, or just fits"
+                )
+            b = b - way
+    raise RuntimeError("exact: the pivots did not converge: the masses differ too much")
 
 
 def activate(table, active, x, k):
@@ -126,7 +106,7 @@ def activate(table, active, x, k):
 
 def pivot(table, active, chosen):
     """Exchange lam and s of the chosen: return the table, flip `active`; unless dependent."""
-    inverse = invert(table[chosen[:, None], chosen]) if len(chosen) else None
+    inverse = invert(table[chosen[:, None], chosen])
     if inverse is None:
         return table
     rows, left = table[chosen], table[:, chosen] @ inverse
@@ -139,17 +119,12 @@ def pivot(table, active, chosen):
 
 def invert(W):
     """Return W^-1, or None where a contact depends on others."""
-    if len(W) == 1:
-        return 1.0 / W if abs(W[0, 0]) > DEPENDENT else None
-    if len(W) > 40:  # a ball alone on the floor has one contact, with 0 beside its diagonal
-        linked = np.flatnonzero((W != 0.0).sum(0) > 1)
-        if 2 * len(linked) < len(W):
-            inverse, part = np.diag(1.0 / W.diagonal()), invert(W[linked[:, None], linked])
-            if part is not None:
-                inverse[linked[:, None], linked] = part
-                return inverse if (inverse.diagonal() < 1.0 / DEPENDENT).all() else None
+    inverse, block = np.zeros_like(W), slice(None)
+    if len(W) > 40:  # balls alone on the floor have one contact each, with 0 beside its diagonal
+        linked = (W != 0.0).sum(0) > 1
+        inverse, block = np.diag(1.0 / W.diagonal()), np.ix_(linked, linked)
     try:
-        inverse = np.linalg.inv(W)
+        inverse[block] = np.linalg.inv(W[block])
     except np.linalg.LinAlgError:
         return None
     return inverse if np.abs(inverse.diagonal()).max(initial=0.0) < 1.0 / DEPENDENT else None
@@ -178,7 +153,7 @@ def slide_series(q, v, a, w, J, sides, reach, floor, solve, size, enough):
     Q, n = np.zeros((ORDER + 1, len(q))), np.zeros((ORDER + 1, 2, len(J)))
     lam, lasts = np.zeros((ORDER + 1, len(J))), [0.0, 0.0]
     turns, push, pushes = sides.T * (~floor / reach), J * w, sides * w[: sides.shape[1]]
-    Q[0], Q[1], W = q, v, push @ J.T
+    Q[0], Q[1] = q, v
     n[0] = q.reshape(2, -1) @ turns
     n[0, 1] += floor
     for k in range(ORDER - 1):
@@ -187,8 +162,7 @@ def slide_series(q, v, a, w, J, sides, reach, floor, solve, size, enough):
             a = (np.einsum("mic,mc->ic", n[k:0:-1], lam[:k]) @ pushes).ravel()
         factor = (k + 1.0) * (k + 2.0)
         turn = 0.5 * factor * reach * np.einsum("mic,mic->c", n[1 : k + 2], n[k + 1 : 0 : -1])
-        force = solve @ -(J @ a + turn)
-        lam[k] = force - solve @ (J @ a + turn + W @ force)  # once more, for the last digits
+        lam[k] = solve @ -(J @ a + turn)
         Q[k + 2] = (a + lam[k] @ push) / factor
         change = max(math.sqrt(Q[k + 2] @ Q[k + 2]), 1e-300)
         length, speed = 1e-16 * size[0] / change, 1e-16 * size[1] / change / (k + 2)
@@ -219,8 +193,7 @@ class Motion:
         self.touch_distance, self.inv_m_eff = radius[self.pairs].sum(0), w[self.pairs].sum(0)
         a, b = np.eye(count)[self.pairs]
         self.sides, self.curves = a - b, 1.0 - self.floor  # 1 at body a, -1 at b; the floor is flat
-        state = np.array((scene.q0, scene.v0), float)
-        self.q, self.v = np.pad(state, ((0, 0), (0, 0), (0, 1))).reshape(2, -1)
+        self.q, self.v = 1.0 * np.pad((scene.q0, scene.v0), ((0, 0), (0, 0), (0, 1))).reshape(2, -1)
         self.w, self.e, self.g = np.tile(w, 2), e, -gravity
         self.fall = np.where(self.w > 0.0, np.repeat((0.0, gravity), count), 0.0)
         self.radius, small = radius[self.pairs[0]], scene.radius.min()
@@ -266,11 +239,6 @@ class Motion:
         row = row + solve @ (target - J @ row) @ push
         return row + solve @ (target - J @ row) @ push
 
-    def delassus_inverse(self, J):
-        """W^-1 of contacts that do not depend on one another."""
-        lcp = Complementarity(J * self.w @ J.T, np.ones(len(J), bool))
-        return lcp.table / lcp.scale
-
     def separate(self):
         """Move overlapping bodies apart, as at a start; new overlaps of this, in the next round."""
         for _ in range(50):
@@ -279,29 +247,24 @@ class Motion:
             self.n[:, self.length == 0.0] = (0.0,), (1.0,)  # one centre: up
             near = np.flatnonzero(self.found <= -2.0 * self.found.min())
             J = self.jacobian(near)
-            lcp = Complementarity(J * self.w @ J.T, np.zeros(len(near), bool))
-            self.q = self.q + lcp.solve(self.found[near], 4.0 * self.bits)[0] @ J * self.w
-            self.tracked[:] = math.inf
+            self.q = self.q + solve_lcp(J * self.w @ J.T, self.found[near])[0] @ J * self.w
             self.update_gaps()
 
-    def solve_impacts(self, touching, J, lcp):
+    def solve_impacts(self, touching, J, W):
         """Apply impulses: v_n of an active contact becomes -e v_n, all at once. Return v_n after.
 
-        An LCP in s = v_n after - target; the target is 0 where the bounce would rise less than
-        MIN_BOUNCE. A ball that touches two fixed ones and passes between them closes until its
-        normals have turned, by GRAZE^2 radii at most: that is allowed.
+        An LCP in s = v_n after - target, 0 for a bounce that would rise less than MIN_BOUNCE.
         """
         v_n, slow = J @ self.v, self.slow[touching]
         if not (v_n < -slow).any():
             return v_n
         target = -self.e * v_n
         target[(v_n < 0.0) & (target < math.sqrt(2.0 * MIN_BOUNCE) / ROUNDING * slow)] = 0.0
-        turns = GRAZE * np.abs(self.slip(touching, J, self.v))
-        _, on, solve = lcp.solve(v_n - target, turns)
+        _, on, solve = solve_lcp(W, v_n - target)
         self.v = self.project(self.v, J[on], solve, target[on])
-        return np.maximum(J @ self.v, np.minimum(target, 0.0))  # 0 where it was allowed to close
+        return J @ self.v
 
-    def solve_resting(self, touching, J, lcp, v_n):
+    def solve_resting(self, touching, J, W, v_n):
         """Find the resting contacts and their forces. Return the active ones, J, their W^-1.
 
         The gap of a resting contact may open and may not close: its acceleration n . a + turn is
@@ -315,14 +278,14 @@ class Motion:
         stays, on = needed <= self.g, None
         while on is None or not stays.all():
             touching, J, needed = touching[stays], J[stays], needed[stays]
-            lcp.keep(stays)
+            W = W[stays][:, stays]
             turn = self.slip(touching, J, self.v) ** 2 / self.touch_distance[touching]
-            lam, on, solve = lcp.solve(J @ self.fall + turn)
+            lam, on, solve = solve_lcp(W, J @ self.fall + turn)
             pushes = lam * self.inv_m_eff[touching]  # m/s^2
             stays = needed <= pushes
         if (pushes[on] <= ROUNDING * self.g).any():
             on = np.flatnonzero(pushes > ROUNDING * self.g)
-            solve = self.delassus_inverse(J[on])
+            solve = np.linalg.inv(W[on[:, None], on])
         self.rests[:] = self.active[:] = False
         self.rests[touching] = self.active[touching[on]] = True
         return touching[on], J[on], solve
@@ -337,14 +300,13 @@ class Motion:
         # a tiny gap is closed only if it was wider
         on = self.rests[near] & (v_n <= self.slow[near]) | (self.gap[near] <= 1e-4 * opened)
         touching, J = near[on], J[on]
-        lcp = Complementarity(J * self.w @ J.T, self.active[touching])
-        return self.solve_resting(touching, J, lcp, self.solve_impacts(touching, J, lcp))
+        W = J * self.w @ J.T
+        return self.solve_resting(touching, J, W, self.solve_impacts(touching, J, W))
 
     def accelerate(self, held, J, solve):
         """Return a, and whether an active contact slips; take drift out of q and v."""
-        apart = self.found[held]
-        if (np.abs(apart) > 2.0 * self.bits).any():
-            self.q = self.project(self.q, J, solve, J @ self.q - apart)
+        if (np.abs(self.found[held]) > 2.0 * self.bits).any():
+            self.q = self.project(self.q, J, solve, J @ self.q - self.found[held])
         if (np.abs(J @ self.v) > 1e-3 * self.slow[held]).any():
             self.v = self.project(self.v, J, solve, 0.0)
         beside = J.any(0)  # what rounding leaves of v and a at rest becomes 0, or a heap creeps
@@ -398,18 +360,14 @@ class Motion:
         lowest += far * (np.minimum(rate, 0.0) + far * np.minimum(bend, 0.0))
         lowest[self.active] = math.inf
         near = (lowest <= 1e4 * self.closed).nonzero()[0]
-        for k in near[(lowest[near] <= 0.0) & (near != first)]:
-            t = first_root(self.polynomial(k, Q, gap[k], rounds[k]), span)
-            span, first = (t, k) if t < span else (span, first)
         least = lam[0] + far ** np.arange(1, len(lam)) @ np.minimum(lam[1:], 0.0)
-        for k in (least <= 0.0).nonzero()[0]:
-            t = first_root(lam[:, k].tolist(), span)
-            span, first = (t, -1) if t < span else (span, first)
+        may = near[(lowest[near] <= 0.0) & (near != first)]
+        falls = [(k, self.polynomial(k, Q, gap[k], rounds[k])) for k in may]
+        for k, p in falls + [(-1, lam[:, k].tolist()) for k in (least <= 0.0).nonzero()[0]]:
+            t = first_root(p, span)
+            span, first = (t, k) if t < span else (span, first)
         self.tracked[:] = math.inf
-        self.tracked[near] = self.track(near, Q, gap[near], span)
-        self.tracked[self.active] = 0.0
-        if first >= 0:
-            self.tracked[first] = 0.0
+        self.tracked[near] = [self.track(k, Q, gap[k], span) for k in near]
         self.since += span
         return span
 
@@ -424,14 +382,11 @@ class Motion:
         square = (np.convolve(x, x) + np.convolve(y, y))[1 : max(len(Q), 5)]
         return [float(gap * (gap + reach) + rounds * (rounds + reach)), *square.tolist()]
 
-    def track(self, near, Q, gap, span):
-        """The gaps of these pairs after span, without cancellation: relative to what they were."""
-        sides, reach = self.sides[near].T, self.touch_distance[near]
-        start = Q[0].reshape(2, -1) @ sides
-        move = (span ** np.arange(1, len(Q)) @ Q[1:]).reshape(2, -1) @ sides
-        square = gap * (gap + 2.0 * reach) + (move * (2.0 * start + move)).sum(0)
-        around = square / (reach + np.sqrt(reach**2 + square))
-        return np.where(self.floor[near], gap + move[1], around)
+    def track(self, k, Q, gap, span):
+        """The gap of pair k after span, without cancellation: relative to what it was."""
+        rise = sum(c * span**k for k, c in enumerate(self.polynomial(k, Q, gap, 0.0)))
+        reach = self.touch_distance[k]
+        return rise if self.floor[k] else rise / (reach + np.sqrt(reach**2 + rise))
 
 
 def first_root(p, horizon):
@@ -455,11 +410,7 @@ def first_root(p, horizon):
             bend = c - 0.25 * b * b / a
         if end < math.inf:
             bend = min(bend, c + end * (b + end * a)) - far * end * end
-        square, step = slope * slope - 4.0 * max(value, 0.0) * bend, math.inf
-        if square >= 0.0 and slope < 0.0:
-            step = 2.0 * max(value, 0.0) / (math.sqrt(square) - slope)
-        elif square >= 0.0 and bend < 0.0:
-            step = (slope + math.sqrt(square)) / (-2.0 * bend)
+        step = time_to_impact(max(value, 0.0), slope, 2.0 * bend)
         if step <= 1e-15 * t:
             return t
         if t + step > end >= horizon:
@@ -479,18 +430,13 @@ def simulate_exact(scene, times, gravity, progress=lambda k: None, most=MAX_EVEN
     """
     motion, times = Motion(scene, gravity), np.asarray(times)
     out = np.empty((2, len(times), len(motion.w)))
-    now, done, event = 0.0, 0, True
+    now, done = 0.0, 0
     with np.errstate(all="ignore"), one_thread():
         for _ in range(most):
             motion.update_gaps()
-            if event:
-                held, J, solve = motion.solve_contacts()
-            else:
-                J = motion.jacobian(held)
-                solve = motion.delassus_inverse(J)
+            held, J, solve = motion.solve_contacts()
             Q, lam, horizon, gaps = motion.expand(held, J, solve)
             span = motion.next_event(Q, lam, horizon, gaps)
-            event = span < horizon
             last = int(np.searchsorted(times, now + span))
             if last > done:
                 powers = np.vander(times[done:last] - now, len(Q))  # small terms first

@@ -24,7 +24,7 @@ FAULTS = [
     (E, "for _ in range(50):\n            if not (self.found",
      "for _ in range(0):\n            if not (self.found", T + "overlap_at_the_start"),
     # flights
-    (E, "4.0 * max(value, 0.0) * bend", "2.0 * max(value, 0.0) * bend", HEAP),
+    (E, "slope, 2.0 * bend)", "slope, bend)", HEAP),
     (E, "np.vander(times[done:last] - now", "np.vander((1.0 + 1e-12) * (times[done:last] - now)",
      T + "parabolas"),
     (E, "turn = 0.5 * factor", "turn = 0.4 * factor", T + "slides"),
