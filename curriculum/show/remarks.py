@@ -4,7 +4,6 @@ writes it, what to do next; what went wrong, and a change of flags that cures it
 
 import math
 import os
-import sys
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import contact
-from curriculum.commands import ROOT, command, quoted
+from curriculum.commands import ROOT, command
 from curriculum.show.picture import contact_impulses
 from exercises.kit.script import practise
 
@@ -31,7 +30,7 @@ def add_remarks(notes: dict, job: tuple, runs: dict, quality: dict, args=None) -
         if moved > 1e-9:
             print(f"exact: balls overlap at the start, and were moved apart by up to {moved:.3g} r")
     if list(runs) == ["exact"] and np.isfinite(scene.mass).all():
-        print(*landing(runs["exact"], scene), sep="\n")
+        print(landing(runs["exact"], scene))
     if list(runs) == ["soft"]:
         knobs = contact.soft_defaults(scene.restitution, dt, settings.solref, settings.solimp)
         solref, solimp = (" ".join(map(repr, values)) for values in knobs)
@@ -49,24 +48,15 @@ def add_remarks(notes: dict, job: tuple, runs: dict, quality: dict, args=None) -
                 break
 
 
-def landing(run: contact.Run, scene: contact.Scene) -> Iterator[str]:
-    """Lines on the lowest ball's landing and bounces, from the parabolas between two states."""
+def landing(run: contact.Run, scene: contact.Scene) -> str:
+    """Return a line on the lowest ball's landing; until then all fall alike."""
     k, g = int(scene.q0[1].argmin()), contact.GRAVITY
-    gap, vy = run.q[:, 1, k] - scene.radius[k], run.v[:, 1, k]
+    gap, vy = float(run.q[0, 1, k] - scene.radius[k]), float(run.v[0, 1, k])
     who = "the ball" if len(scene.mass) == 1 else "the lowest ball"
-    after = contact.time_to_impact(float(gap[0]), float(vy[0]), g)  # until then all fall alike
+    after = contact.time_to_impact(gap, vy, g)
     if after > run.t[-1]:
-        yield f"exact: {who} does not land within these steps"
-        return
-    yield f"exact: {who} lands after {after:.6g} s, at {-(vy[0] + after * g):.6g} m/s"
-    turns = np.flatnonzero((vy[:-1] > 0.0) & (vy[1:] <= 0.0))
-    tops = gap[turns] - vy[turns] ** 2 / (2 * g)
-    tops = tops[tops > 1e-12 * scene.radius[k]]  # m; a ball at rest turns at the last digit of v
-    if len(tops):
-        heights = ", ".join(f"{top:.4g}" for top in tops[:5])
-        yield f"exact: its bounces rise to {heights} m" + (" ..." if len(tops) > 5 else "")
-    else:
-        yield "exact: it does not bounce"
+        return f"exact: {who} does not land within these steps"
+    return f"exact: {who} lands after {after:.6g} s, at {-(vy + after * g):.6g} m/s"
 
 
 def print_next(args, argv: list[str]) -> None:
@@ -85,10 +75,7 @@ def print_next(args, argv: list[str]) -> None:
         print(f"next, read the chapter: {page}")
     recording = os.path.join(args.out, "contact.rrd")
     if args.rerun and os.path.exists(recording):
-        viewer = Path(sys.executable).with_name("rerun.exe" if os.name == "nt" else "rerun")
-        by = ("uv", "run", "rerun") if "UV" in os.environ else (viewer,)
-        there = quoted(*by, recording) if by[0] == "uv" or viewer.exists() else None
-        print(f"next, watch it: {there or command('-m', 'rerun', recording)}")
+        print(f"next, watch it: {command('-m', 'rerun', recording)}")
     elif not args.plot and find_spec("matplotlib"):
         print(f"next, see it: {command(ROOT / 'contact.py', *argv, '--plot')}")
     print(practise())

@@ -310,8 +310,6 @@ def test_ipython_runs_it_goes_on_after_an_interrupt_and_keeps_its_own_handlers(t
 
 # fmt: off
 LINES = [
-    ("--contact exact --scene bounce", r"exact: its bounces rise to 0\.4437, 0\.2174, .* m \.\.\."),
-    ("--contact exact --scene pile --bodies 7 --steps 400", "exact: it does not bounce"),
     ("--contact soft --iters 5", "--iters is for lcp.* leapfrog.*, and has no effect here"),
     ("--dt 0.064", "stability: lcp .*, through the floor"),
     ("--scene stack --contact soft --dt 0.1", "state: through a ball: soft"),

@@ -103,7 +103,7 @@ def test_commands_and_their_order_are_those_of_the_readme_and_the_chapter(
     monkeypatch.chdir(ROOT)
     monkeypatch.setattr(sys, "executable", str(ROOT / ".venv/bin/python"))
     (tmp_path / "contact.rrd").touch()
-    for uv, start in (False, r"\S*(python -m )?rerun(\.exe)?"), (True, "uv run rerun"):
+    for uv, start in (False, r"\S*python -m rerun"), (True, "uv run python -m rerun"):
         monkeypatch.setenv("UV", "uv") if uv else monkeypatch.delenv("UV", raising=False)
         command = script.practise().removeprefix("next, an exercise: ").replace("\\", "/")
         assert f"`{command}`" in readme and ("uv run exercises" in command) == uv

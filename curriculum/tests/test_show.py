@@ -127,6 +127,9 @@ def test_views_say_how_a_run_ended_show_the_table_magnified_and_no_explosion_wid
     high, low, left, right = ranges[0]
     assert -2.0 < high < -1.12 and low > 0.0 and left < -0.1 and right > 0.1  # it starts at 1 m
     assert np.ptp(ranges[-1][:2]) < 0.02
+    light = runs_of(contact.scene_of(0.0, 1.0, mass=1e-300), 300, 1e3, ["penalty"])
+    assert not np.isfinite(light[1]["penalty"].q).all(), "what overflows is recorded, too"
+    assert len(recorded(tmp_path, *light)["/height/penalty"]["step"]) == 301
 
 
 def test_the_recording_of_the_slide_goes_with_the_ball_and_of_many_balls_arrows_are_left_out(
@@ -144,12 +147,6 @@ def test_the_recording_of_the_slide_goes_with_the_ball_and_of_many_balls_arrows_
     assert recording["/world/soft/balls"]["Points2D:colors"][0][0] != int("cc79a7ff", 16)
     pile = recorded(tmp_path, *runs_of(contact.build_scene("pile", bodies=40), 20, DT, ["lcp"]))
     assert "/world/lcp/balls" in pile and "/world/lcp/pushes" not in pile
-
-
-def test_a_run_that_overflows_is_recorded(tmp_path):
-    light = runs_of(contact.scene_of(0.0, 1.0, mass=1e-300), 300, 1e3, ["penalty"])
-    assert not np.isfinite(light[1]["penalty"].q).all()
-    assert len(recorded(tmp_path, *light)["/height/penalty"]["step"]) == 301
 
 
 def test_a_picture_is_the_same_bytes_twice_and_draws_every_curve_of_every_model(tmp_path):
