@@ -118,7 +118,7 @@ def code():
 
 def made_by(args):
     """Return the mark of all rows of these flags, this code and this numpy."""
-    no_matter = "seed", "out", "rerun", "plot", "smoke", "skip"
+    no_matter = "seed", "out", "rerun", "plot", "smoke", "skip", "device"
     flags = {name: value for name, value in sorted(vars(args).items()) if name not in no_matter}
     return stored.digest([flags, code()])
 

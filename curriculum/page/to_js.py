@@ -21,7 +21,7 @@ FORMS = {  # of a node: its fields in JavaScript
     "Is": "===", "IsNot": "!==", "In": "in", "And": " && ", "Or": " || ",
 }  # fmt: skip
 NAMES = {"True": "true", "False": "false", "None": "null", "self": "this", "abs": "Math.abs"}
-NAMES |= {"int": "Math.trunc", "math.inf": "Infinity", "RuntimeError": "Error"}
+NAMES |= {"int": "Math.trunc", "math.inf": "Infinity", "ArithmeticError": "Error"}
 NAMES |= {f"math.{name}": f"Math.{name}" for name in ("sqrt", "cos")}
 NAMES |= {name: f"$.{name}" for name in ("zip", "map", "len")}
 

@@ -28,6 +28,11 @@ def test_at_the_critical_dt_an_eigenvalue_of_the_step_leaves_the_unit_circle(dam
         assert (np.abs(np.linalg.eigvals(step)).max() < 1.0 + 1e-9) == (share < 1.0)
 
 
+def test_critical_dt_also_without_a_spring_with_a_damper_that_feeds_and_of_what_nothing_moves():
+    given = (1.0, 0.0, 80.0), (1.0, 0.0, 0.0), (1.0, 1e4, -1.0), (math.inf, 1e4, 80.0)
+    assert [contact.critical_dt(*each) for each in given] == [0.025, math.inf, 0.0, math.inf]
+
+
 def test_no_seed_starts_a_stack_or_pile_inside_the_floor():
     for seed in range(50):
         for scene in (build_scene("stack", seed), build_scene("pile", seed, 30)):
@@ -246,7 +251,7 @@ def test_flight_and_rest_cost_no_steps():
 
 
 @pytest.mark.parametrize("field, values", {
-    "q0": ([[0.0], [math.inf]], np.zeros((2, 2))),
+    "q0": ([[0.0], [math.inf]], np.zeros((2, 2)), [[0.0], [1.0, 2.0]]),
     "v0": ([[math.nan], [0.0]], "still"), "radius": ([-0.1], None), "damping": (math.nan, -1.0),
     "mass": ([0.0], [math.nan], [1j], []), "restitution": (-1.0, 1.1, [0.5, 0.5]),
     "stiffness": (-1.0, math.nan, math.inf), "baumgarte": (-0.1, 2.0, math.nan),

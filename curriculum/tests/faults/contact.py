@@ -60,7 +60,9 @@ FAULTS = [
      MODELS + "pair_by_pair"),
     (C, "EXPLODED = 10.0", "EXPLODED = 11.0", MODELS + "ten_times"),
     (C, ".max(initial=0.0) >= kick", ".max(initial=0.0) >= 3.0 * kick", MODELS + "at_rest_is"),
+    (C, "    if mass == math.inf:\n        return math.inf\n", "", MODELS + "critical_dt_also"),
     # the command line
+    (C, 'errors="backslashreplace"', 'errors="strict"', LINE + "whatever_is"),
     (C, "except KeyboardInterrupt:\n        print", "except EOFError:\n        print",
      LINE + "ipython"),
     (C, "        del os.environ[THREADS]\n", "        pass\n", LINE + "ipython"),
