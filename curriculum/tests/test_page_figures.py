@@ -245,12 +245,9 @@ def test_picture_corner_has_its_mark_on_the_thick_line_where_the_words_say(draw,
         assert told == pytest.approx([rest / R - 1, 1.0], rel=0.02)
 
 
-@pytest.mark.parametrize("third", ["soft", "implicit"])
 @pytest.mark.parametrize("gap, free", [(-0.02, -0.07), (-0.05, 0.02), (0.03, -0.05)])
-def test_picture_corner_line_ends_where_a_models_line_crosses_that_of_the_step(
-    draw, gap, free, third
-):
-    models = ("penalty", "lcp", third)
+def test_picture_corner_line_ends_where_a_models_line_crosses_that_of_the_step(draw, gap, free):
+    models = ("penalty", "lcp", "implicit")
     seen = draw("corner-line", {"models": ",".join(models)}, {"gap": gap, "free": free})
     step = seen.curve("step-line")
     assert step[0] == pytest.approx([free, 0.0], abs=0.01)

@@ -1,7 +1,7 @@
 /* The line of a step: the more impulse, the farther out it ends; and the line of what each model
- * asks for: lcp's is upright, soft's and that of the spring from after the step lean, penalty's is level. */
+ * asks for: lcp's is upright, that of the spring from after the step leans, penalty's is level. */
 import { arrow, axis, ball, label, lane, mark, plain, plot, within } from "../draw.js";
-import { CONTACT_MARGIN, Contact, contact_target, FLOOR, soft_defaults, soften } from "../contact.js";
+import { CONTACT_MARGIN, Contact, contact_target, FLOOR } from "../contact.js";
 import { column, G, R, record, springOf } from "../runs.js";
 
 const [LOW, HIGH, MOST] = [-0.1, 0.06, 6]; // r, r, N s
@@ -14,7 +14,6 @@ function stepped(model, own) {
   const [one] = column([(1 + gap) * R], { vy: fall + kick });
   const contact = new Contact(one, FLOOR, 0, 1, -gap * R);
   contact.target = contact_target(contact, 0, baumgarte, dt);
-  if (model === "soft") soften(contact, dt, ...soft_defaults(0, dt));
   if (model === "implicit") [contact.softness, contact.target] = springOf(own)(contact.depth);
   const near = -contact.depth < (model === "lcp" ? CONTACT_MARGIN : 0);
   const run = record(model, [one], { ...own, restitution: 0 }, 1);
@@ -63,10 +62,10 @@ function draw(view) {
 }
 
 export const figure = {
-  title: "The line of a step",
+  title: ({ models }) => `The line of a step: ${models.replaceAll(",", ", ")}`,
   caption: "The more push, the farther out the step ends. Where its line crosses a model’s, it is solved.",
   height: (width) => (width < 480 ? 280 : 320),
   knobs: ({ models }) => (models.includes("implicit") ? ["stiffness"] : []),
-  start: () => ({ models: "penalty,lcp,soft", gap: -0.02, free: -0.07, baumgarte: 1 }),
+  start: () => ({ models: "penalty,lcp", gap: -0.02, free: -0.07, baumgarte: 1 }),
   draw,
 };
