@@ -1,7 +1,4 @@
-"""All that runs: bets, marks, numbers from paper, the gripper, and answers at work beside a model.
-
-A bet has what is measured, and a word on every choice.
-"""
+"""All that is run: bets, marks, numbers from paper, the gripper, and answers beside a model."""
 
 import contextlib
 import io
