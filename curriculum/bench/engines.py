@@ -149,8 +149,9 @@ class Mujoco(Session):
 
     def __init__(self, scene, dt, texts=None, solver="Newton", xml="", **options):
         import mujoco
+        from mujoco import rollout
 
-        self.mujoco, self.scene = mujoco, scene
+        self.mujoco, self.rollout, self.scene = mujoco, rollout.rollout, scene
         mujoco.set_mju_user_warning(lambda text: None)  # its default writes a log file
         solref, solimp = texts or spring(scene, dt, **options)
         many = len(scene.mass) >= MANY
@@ -166,7 +167,6 @@ class Mujoco(Session):
         self.step = partial(mujoco.mj_step, self.model, self.data)
         self.data.qpos[:] = scene.q0[:, self.moving].T.ravel()
         self.data.qvel[:] = scene.v0[:, self.moving].T.ravel()
-        self.heights = self.data.qpos[1::2].copy  # the array stays where it is
 
     @staticmethod
     def body(ball):
@@ -178,6 +178,15 @@ class Mujoco(Session):
     def go(self, n):
         self.mujoco.mj_step(self.model, self.data, nstep=n * self.substeps)
 
+    def trace(self, n):
+        """Return heights by MuJoCo's own rollout, a loop in C that stores every state."""
+        full = self.mujoco.mjtState.mjSTATE_FULLPHYSICS
+        start = np.empty(self.mujoco.mj_stateSize(self.model, full))
+        self.mujoco.mj_getState(self.model, self.data, start, full)
+        rows = self.rollout(self.model, self.data, start, nstep=n * self.substeps)[0][0]
+        rows = np.vstack((start, rows[self.substeps - 1 :: self.substeps]))
+        return rows[:, 2 : 1 + self.model.nq : 2]
+
     def state(self):
         return self.with_the_fixed(self.data.qpos, self.data.qvel)
 
@@ -187,8 +196,10 @@ class Pymunk(Session):
 
     def __init__(self, scene, dt, iterations, push=None, slop=1e-6):
         import pymunk
+        import pymunk.batch
         from pymunk._chipmunk_cffi import lib
 
+        self.batch, self.buffer = pymunk.batch, pymunk.batch.Buffer()
         self.space, self.bodies = pymunk.Space(), []
         space = self.space
         space.gravity, space.iterations, space.collision_slop = (0, -GRAVITY), iterations, slop
@@ -207,9 +218,17 @@ class Pymunk(Session):
             shape.elasticity, shape.friction = math.sqrt(scene.restitution), 0.0
         # the engine alone: of one ball's microsecond, pymunk's own step is two thirds.
         self.step = partial(lib.cpSpaceStep, space._space, dt)
+        if len(self.bodies) > 1 and not np.isinf(scene.mass).any():
+            self.heights = self.many_heights
 
     def heights(self):
         return [body.position[1] for body in self.bodies]
+
+    def many_heights(self):
+        """Return all heights by the engine's own batch call; the floor comes last."""
+        self.buffer.clear()
+        self.batch.get_space_bodies(self.space, self.batch.BodyFields.POSITION, self.buffer)
+        return np.frombuffer(self.buffer.float_buf())[1:-2:2].copy()
 
     def state(self):
         q, v = zip(*((body.position, body.velocity) for body in self.bodies))
