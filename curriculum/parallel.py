@@ -13,7 +13,7 @@ from multiprocessing import parent_process
 
 from curriculum import commands
 
-AHEAD, PATIENCE = 10_000, 10.0  # jobs that are handed out at a time; s to wait for a cluster
+AHEAD = 10_000  # jobs that are handed out at a time
 
 
 def run_jobs(function, jobs, label, workers=None) -> list:
@@ -101,8 +101,8 @@ def on_machines(scheduler):
         return client.get_executor(pure=False).map(lambda job: pickle.loads(data)(job), jobs)
 
     try:
-        with Client(scheduler, timeout=PATIENCE) as client:
-            client.wait_for_workers(1, timeout=PATIENCE)
+        with Client(scheduler, timeout=10) as client:
+            client.wait_for_workers(1, timeout=10)
             yield spread
     except ModuleNotFoundError as error:
         lacks = "a worker's PYTHONPATH lacks the folder of contact.py"
