@@ -7,7 +7,8 @@ Other flags are those of contact.py. The rows of a seed, one a model, are kept i
 as soon as they are there, and the same command again goes on from there. Files of several machines
 are merged by writing them one after the other: cat a/seeds.csv b/seeds.csv > c/seeds.csv, then
 --out c sums up. The first column says which flags, code and numpy made a row; others do not count.
-The summary, seeds.json, is the same bytes wherever, in whatever order and parts the seeds ran.
+The summary, seeds.json, names the seeds of the lowest and highest; it is the same bytes wherever,
+in whatever order and parts the seeds ran.
 """
 
 import argparse
@@ -71,14 +72,6 @@ def main(argv=None):
     print(f"{args.steps} steps of {args.dt:g} s")
     table = {f"{model} {way}": row for model, ways in found.items() for way, row in ways.items()}
     contact.print_table(table, lambda row: ending(row, len(seeds)))
-    for model, ways in found.items():
-        low, high = ways["lowest"], ways["highest"]
-        differ = ", ".join(
-            f"{title} {low['seeds'][key]} and {high['seeds'][key]}"
-            for title, (key, _) in contact.COLUMNS.items()
-            if contact.format_number(low[key]) != contact.format_number(high[key])
-        )
-        print(f"{model}, seeds of its lowest and highest:", differ or "-")
     print("seeds:", path.with_suffix(".json"))
     return 0
 

@@ -15,8 +15,6 @@ from curriculum.commands import ROOT, command
 from curriculum.show.picture import contact_impulses
 from exercises.kit.script import practise
 
-KNOBS = {knob for row in contact.MODELS.values() for knob in row.knobs} - {"restitution"}
-
 
 def add_remarks(notes: dict, job: tuple, runs: dict, quality: dict, args=None) -> None:
     """Print what exact or soft did, where no table says it; add to notes what else is wrong.
@@ -159,12 +157,10 @@ def typed(args, model, kind, changes) -> str:
         return ", ".join(f"{names.get(key, key)}={value!r}" for key, value in changes.items())
     default, words = vars(contact.parse_flags([])), []
     wanted = vars(args) | ({} if kind == "flicker" else {"contact": model}) | changes
-    row = contact.MODELS.get(wanted["contact"])  # flags without effect on it are left out
     for name, value in wanted.items():
-        idle = row and name in KNOBS and name not in row.knobs + row.also
         if isinstance(value, bool):
             words += [f"--no-{name}"] if name in ("skip", "rerun") and not value else []
-        elif value != default[name] and not idle:
+        elif value != default[name]:
             several = map(str, value) if isinstance(value, tuple) else [str(value)]
             words += [f"--{name}", *several]
     return command(ROOT / "contact.py", *words)
