@@ -22,7 +22,7 @@ from curriculum.stress.trial import STEPPED, G, Trajectory, U
 NOTABLE = 1e-9  # share of the speeds: if sweeps still move more, they are not done
 MOST = contact.MAX_SWEEPS
 PROMISE = 1e-12  # of exact: of a radius, and of the energy at the start
-NEAR = 1e-9  # share of the sizes that leapfrog's bounces may be off
+NEAR = 1e-11  # share of the sizes that leapfrog's bounces may be off
 
 
 def judge(subject, *properties):
@@ -205,7 +205,7 @@ def lcp_target(gap, v_n, spec):
 
 def leapfrog_is_exact_until_something_lasts(trial):
     """leapfrog, e > 0, few balls that start apart: positions and velocities are exact's until an
-    approach speed falls below 4 g dt. Bound: 1e-9 of the lengths and speeds (a choice).
+    approach speed falls below 4 g dt. Bound: 1e-11 of the lengths and speeds (a choice).
     """
     apart = trial.start > 0.0 and len(trial.scene.mass) <= 4
     if apart and trial.spec["restitution"] > 0.0 and trial.exact:
