@@ -90,9 +90,9 @@ def first_without_force(dt, start, **knobs):
     far = hill + contact.RADIUS
     x, y = [0.0, far * math.sin(start)], [hill, hill + far * math.cos(start)]
     scene = contact.scene_of(x, y, [math.inf, 1.0], [hill, contact.RADIUS])
-    note = lambda k, contacts: force.append(sum(c.lam for c in contacts))  # noqa: E731
-    steps, chosen = round(4.0 / dt), contact.Settings(**knobs)
-    q = contact.run_model("soft", scene, dt, steps, chosen, on_step=note).q[:-1, :, 1]
+    push = contact.step_of("soft", scene, dt, contact.Settings(**knobs))
+    step = lambda balls: force.append(sum(c.lam for c in push(balls)))  # noqa: E731
+    q = contact.simulate(step, scene, dt, round(4.0 / dt)).q[:-1, :, 1]
     off = np.flatnonzero(np.array(force[10:]) == 0.0) + 10  # it begins on the surface, unpressed
     return math.atan2(q[off[0], 0], q[off[0], 1] - hill) if len(off) else math.pi
 

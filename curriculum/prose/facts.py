@@ -75,12 +75,10 @@ def jaws():
     ball's speed after it [m/s], of lcp by its sweeps and of soft."""
     values, scene = {}, contact.scene_of((-0.15, 0.0, 0.15), 1.0, (math.inf, 1.0, math.inf))
     for name, sweeps in (("lcp", 1), ("lcp", 20), ("lcp", 2000), ("soft", 20)):
-        pushes: list = []
-        note = lambda k, contacts, to=pushes: to.extend(c.lam for c in contacts)  # noqa: E731
-        chosen = contact.Settings(iters=sweeps)
-        run = contact.run_model(name, scene, DT, 1, chosen, on_step=note)
-        values[f"{name}_{sweeps}"] = max(pushes)
-        values[f"{name}_leaves"] = abs(float(run.v[1, 0, 1]))
+        step = contact.step_of(name, scene, DT, contact.Settings(iters=sweeps))
+        balls = contact.make_balls(scene)
+        values[f"{name}_{sweeps}"] = max(c.lam for c in step(balls))
+        values[f"{name}_leaves"] = abs(balls[1].vx)
     return values
 
 

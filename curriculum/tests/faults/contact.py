@@ -29,7 +29,7 @@ FAULTS = [
     (C, "min(10 * iters, sweeps_left)", "10 * iters", BOUNDED),
     (C, "earliest_impact(contacts, toi, dt)", "earliest_impact(contacts, 0.0, dt)", BOUNDED),
     (C, "sweeps_left *= 0.5", "sweeps_left *= 1.0", BOUNDED),
-    (C, "c.lam += c.impact_lam", "c.lam += 0.0", MODELS + "who_sees"),
+    (C, "c.lam += c.impact_lam", "c.lam += 0.0", MODELS + "changed_the_momenta"),
     # the sweeps
     (C, "        if agreement < 0.0:\n            t = 1.0\n", "", MODELS + "momentum"),
     (C, "c.start = max(0.0, c.lam + share * (c.lam - c.previous))",
