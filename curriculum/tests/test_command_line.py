@@ -277,7 +277,7 @@ def test_a_verdict_names_its_cause_and_a_command_that_cures_it(flags, state, why
 
 
 IN_IPYTHON = """
-import os, signal, sys, threading, time
+import os, signal, sys, threading, time, traceback
 from IPython.core.interactiveshell import InteractiveShell
 shell, threads = InteractiveShell.instance(), "OPENBLAS_NUM_THREADS"
 os.environ.pop(threads, None)
@@ -286,12 +286,8 @@ state = lambda: (*map(signal.getsignal, (2, 15)), sys.excepthook, *there())
 run, before = f"contact.py --no-skip --no-rerun --out {sys.argv[1]} --steps ", state()
 shell.run_line_magic("run", run + "5")
 def interrupt(main=threading.get_ident()):  # once it takes steps
-    names = []
-    while "simulate" not in names:
+    while "simulate" not in str(traceback.format_stack(sys._current_frames()[main])):
         time.sleep(0.01)
-        frame, names = sys._current_frames()[main], []
-        while frame:
-            frame, names = frame.f_back, [*names, frame.f_code.co_name]
     os.kill(os.getpid(), signal.SIGINT)
 threading.Thread(target=interrupt).start()
 shell.run_line_magic("run", run + "100000000")

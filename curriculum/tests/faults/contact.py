@@ -13,7 +13,6 @@ FAULTS = [
     (C, "    accelerate(balls, 0.5 * dt)\n    solve_accelerated(contacts",
      "    accelerate(balls, dt)\n    solve_accelerated(contacts", STEP),
     (C, "radii - max(0.0, c.depth - MAX_CORRECTION * radii)", "radii", MODELS + "throws_nobody"),
-    (C, "active = [c for c in contacts if c.lam > 0.0]", "active = contacts", STEP),
     (C, "update_contact(c, time_of_closest_approach(c, dt))", "pass", "test_stress.py"),
     (C, "or speed2 == 0.0:", "or speed2 < 0.0:", OWN),
     # each impact is resolved at its time of impact
@@ -26,7 +25,6 @@ FAULTS = [
     ("curriculum/compiled/to_loops.py", "W.farthest[0] = 2.0 * distance", "W.farthest[0] = 0.0",
      MODELS + "was_far"),
     (C, "latest = dt if final else toi + WINDOW * dt", "latest = dt", OWN),
-    (C, "min(10 * iters, sweeps_left)", "10 * iters", BOUNDED),
     (C, "earliest_impact(contacts, toi, dt)", "earliest_impact(contacts, 0.0, dt)", BOUNDED),
     (C, "sweeps_left *= 0.5", "sweeps_left *= 1.0", BOUNDED),
     (C, "c.lam += c.impact_lam", "c.lam += 0.0", MODELS + "changed_the_momenta"),
@@ -39,9 +37,8 @@ FAULTS = [
     (C, "if bias > 0.0:  # an overlap", "if bias >= 0.0:  # an overlap", SEES),
     (C, "max(0.0, stiffness * depth - damping * v_n)", "abs(stiffness * depth - damping * v_n)",
      "test_golden.py -k penalty"),
-    (C, "max(power, 1.0)", "power", MODELS + "mujocos_bounds"),
+    (C, "max(power, 1.0)", "power", MODELS + "mujoco_in"),
     (C, "if width <= 1e-15:", "if width <= -1.0:", MODELS + "mujoco_in"),
-    (C, "MAX_SWEEPS = 10_000", "MAX_SWEEPS = 1_000", "test_exact.py -k over_one_another"),
     (C, "SIMULTANEOUS = 1.0 + 1e-12", "SIMULTANEOUS = 1.0 + 1e-3",
      "test_exact.py -k over_one_another"),
     # skips and measures
