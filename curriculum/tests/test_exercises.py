@@ -287,3 +287,13 @@ def test_the_sag_of_the_gripper_is_its_law(dt, beta, cup):
     law = trials.FORCE * dt * dt / (beta * cup) / contact.RADIUS
     run = FACTS["ex11"]["numbers"]["SAG"]["run"]
     assert eval(run, trials.NAMES, {"dt": dt, "beta": beta, "cup": cup}) == pytest.approx(law)
+
+
+def test_the_finger_of_the_next_chapter_feels_what_it_pushes():
+    """Three balls of 2 N drag each, by every model that steps."""
+    printed = python("-W", "error", "exercises/next_chapter.py").stdout.splitlines()
+    assert [line.split()[0] for line in printed] == contact.STEPPED
+    for line in printed:
+        *x, force = map(float, re.findall(r"-?\d+\.\d*", line))
+        assert force == pytest.approx(-6.0, rel=1e-3)
+        assert x == pytest.approx([1.0, 1.2, 1.4, 1.6], abs=0.01)

@@ -105,4 +105,4 @@ def practise():
     for file in FILES.values():
         if BLANK.search((ROOT / file).read_text("utf-8", "replace")):
             return f"next, an exercise: {start(file)}"
-    return "all exercises are done; next, chapter 3.6: https://zero2robot.com/ch3.6-compare/"
+    return f"all exercises are done; next, the next chapter: {start('exercises/next_chapter.py')}"
