@@ -8,37 +8,30 @@ import threading
 import time
 from concurrent import futures
 from contextlib import contextmanager, nullcontext
-from itertools import islice
 from multiprocessing import parent_process
 
 from curriculum import commands
 
-AHEAD = 10_000  # jobs that are handed out at a time
 
-
-def run_jobs(function, jobs, label, workers=None) -> list:
+def run_jobs(function, jobs, label) -> list:
     """Return [function(job) for job in jobs], computed on all cores."""
-    jobs = list(jobs)
-    return list(one_by_one(function, jobs, len(jobs), label, workers))
+    return list(one_by_one(function, list(jobs), label))
 
 
-def one_by_one(function, jobs, total, label, workers=None, scheduler=None):
+def one_by_one(function, jobs: list, label, scheduler=None):
     """Yield function(job) of each job, in their order, with a bar.
 
-    function: one that another process can import. workers: how many processes, all cores if None;
-    one needs no process. scheduler: "host:port" of a running dask scheduler; its workers do the
-    work instead; the code must be on their PYTHONPATH. Raises what the function raises; ImportError
-    where dask is missing; and OSError, in one line, where scheduler, workers or processes are gone.
+    function: one that another process can import. scheduler: "host:port" of a running dask
+    scheduler, whose workers do the work; the code must be on their PYTHONPATH. Raises what the
+    function raises; ImportError where dask is missing; and OSError where scheduler, workers or
+    processes are gone.
     """
-    jobs, count, progress = iter(jobs), 0, bar(total, label)
-    workers = min(total, workers or os.cpu_count() or 1)
+    workers, progress = min(len(jobs), os.cpu_count() or 1), bar(len(jobs), label)
     cores = on_cores(workers) if workers > 1 else nullcontext(map)
     with cores if scheduler is None else on_machines(scheduler) as spread:
-        while block := list(islice(jobs, AHEAD)):
-            for result in spread(function, block):
-                yield result
-                count += 1
-                progress(count)
+        for done, result in enumerate(spread(function, jobs), 1):
+            yield result
+            progress(done)
 
 
 def bar(total, label):

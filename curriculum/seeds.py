@@ -91,7 +91,7 @@ def run_missing(path, args, seeds, models, scheduler):
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a", buffering=1, encoding="utf-8", newline="\n") as file:
             file.write("\n" if file.tell() else f"{','.join(HEAD)}\n")
-            for text in parallel.one_by_one(job, missing, len(missing), "seeds", None, scheduler):
+            for text in parallel.one_by_one(job, missing, "seeds", scheduler):
                 file.write(text)
 
 
