@@ -115,26 +115,6 @@ def test_a_heap_in_a_box_comes_to_rest_and_stays_for_hours():
     assert np.array_equal(q[1], q[2]) and not v[1:].any()
 
 
-def test_rounding_of_dependent_contacts_does_not_pivot_in_circles():
-    """Six balls around one: twelve contacts, eleven of which determine the last. The forces of a
-    load, and an error of 1e-10 in it that no forces can hold."""
-    turn = np.arange(6) * np.pi / 3.0
-    x, y = np.append(0.0, np.cos(turn)), np.append(0.0, np.sin(turn))
-    a = np.append(np.arange(1, 7), np.arange(1, 7))
-    b = np.append(np.zeros(6, int), np.roll(np.arange(1, 7), 1))
-    sides = np.eye(7)[a] - np.eye(7)[b]
-    J = np.concatenate(((sides @ x)[:, None] * sides, (sides @ y)[:, None] * sides), 1)
-    W, loads = J @ J.T, np.random.default_rng(0)
-    idle = np.linalg.svd(W)[0][:, -1]
-    for _ in range(50):
-        load = -W @ loads.uniform(0.0, 9.81, 12)
-        for off in (1e-10, -1e-10):
-            load += 9.81 * off * idle
-            lam, *_ = solve_lcp(W, load)
-            s = W @ lam + load
-            assert (lam >= 0.0).all() and s.min() >= -1e-7 and np.abs(lam * s).max() <= 1e-6
-
-
 def test_blas_has_one_thread_while_exact_runs_and_then_those_it_had(monkeypatch):
     pools = pytest.importorskip("threadpoolctl")
     seen = []
