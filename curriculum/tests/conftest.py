@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from curriculum.tests.page_browser import start  # noqa: F401
+from curriculum.tests.page_browser import running
 
 FIRST = "test_page.py", "test_gate.py", "test_exercises.py", "test_recipes.py", "test_notebook.py"
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's `&` leaves it so, to all children
@@ -44,3 +44,10 @@ def numpy_alone(tmp_path_factory):
     for part in Path(np.__file__).parents[1].glob("numpy*"):
         (folder / part.name).symlink_to(part)
     return str(folder)
+
+
+@pytest.fixture(scope="session")
+def start():
+    """A function that starts "chromium" or "firefox", once."""
+    with running() as started:
+        yield started
