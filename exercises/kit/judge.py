@@ -21,6 +21,7 @@ from . import FACTS, load, stack
 from .script import LIMIT, ask, said_of
 from .trials import RIGHT, SHOWN, judge_bet, judge_gripper, judge_marks, judge_number
 
+MAX_MEMORY = 2**32  # bytes, chosen
 MAX_STEPS = 20_000  # matrices that a search may try on one input, chosen: halving takes 20
 SWEEPS = 200  # that solve_contacts gets on each input, chosen: right to 1e-9
 BLANKS = {name: facts for each in FACTS.values() for name, facts in each.get("blanks", {}).items()}
@@ -32,6 +33,10 @@ def child():
     """Try in this process what was written, and write what was found to its standard output."""
     report = os.fdopen(os.dup(1), "w")  # past all that is printed, by whatever prints it
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    with contextlib.suppress(ImportError, ValueError, OSError):
+        import resource  # where there is one
+
+        resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))
     faulthandler.dump_traceback_later(LIMIT, exit=True, file=report)
     print(json.dumps(attempt(*sys.argv[2:], report)), file=report, flush=True)
 
