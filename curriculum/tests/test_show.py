@@ -276,7 +276,7 @@ def test_seeds_count_what_exploded_went_through_or_could_not_be_run():
 
 
 @pytest.mark.parametrize("words", [
-    "3", "4:4", "5:2", "0:1.5", "0:1000000", "0:5 --seed 3", "0:5 --dt 0",
+    "3", "4:4", "5:2", "0:1.5", "0:1000000", "0:5 --seed 3", "0:5 --dt 0", "0:5 --dt=--",
 ])  # fmt: skip
 def test_seeds_refuses_bad_input_in_one_line(words, tmp_path, capsys):
     with pytest.raises(SystemExit, match="2"):
