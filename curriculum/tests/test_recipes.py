@@ -127,7 +127,7 @@ def test_a_model_with_its_parameter_is_run_recorded_drawn_compiled_and_on_the_pa
     )
     assert python("-c", same, cwd=folder, PYTHONPATH="").stdout == "True True\n"
     refused = python(CONTACT, "--relax", "2", cwd=folder)
-    assert refused.returncode == 2 and "--relax: given 2.0; allowed: " in refused.stderr
+    assert refused.returncode == 2 and "--relax: given 2; allowed: " in refused.stderr
 
 
 def test_a_figure_an_exercise_and_a_model_are_on_the_page(course):
