@@ -153,7 +153,7 @@ def slide_series(q, v, a, w, J, sides, reach, floor, solve, size, enough):
     Q, n = np.zeros((ORDER + 1, len(q))), np.zeros((ORDER + 1, 2, len(J)))
     lam, lasts = np.zeros((ORDER + 1, len(J))), [0.0, 0.0]
     turns, push, pushes = sides.T * (~floor / reach), J * w, sides * w[: sides.shape[1]]
-    Q[0], Q[1] = q, v
+    Q[0], Q[1], W = q, v, push @ J.T
     n[0] = q.reshape(2, -1) @ turns
     n[0, 1] += floor
     for k in range(ORDER - 1):
@@ -162,7 +162,8 @@ def slide_series(q, v, a, w, J, sides, reach, floor, solve, size, enough):
             a = (np.einsum("mic,mc->ic", n[k:0:-1], lam[:k]) @ pushes).ravel()
         factor = (k + 1.0) * (k + 2.0)
         turn = 0.5 * factor * reach * np.einsum("mic,mic->c", n[1 : k + 2], n[k + 1 : 0 : -1])
-        lam[k] = solve @ -(J @ a + turn)
+        force = solve @ -(J @ a + turn)
+        lam[k] = force - solve @ (J @ a + turn + W @ force)  # once more, for the last digits
         Q[k + 2] = (a + lam[k] @ push) / factor
         change = max(math.sqrt(Q[k + 2] @ Q[k + 2]), 1e-300)
         length, speed = 1e-16 * size[0] / change, 1e-16 * size[1] / change / (k + 2)
@@ -368,6 +369,9 @@ class Motion:
             span, first = (t, k) if t < span else (span, first)
         self.tracked[:] = math.inf
         self.tracked[near] = [self.track(k, Q, gap[k], span) for k in near]
+        self.tracked[self.active] = 0.0
+        if first >= 0:
+            self.tracked[first] = 0.0
         self.since += span
         return span
 
