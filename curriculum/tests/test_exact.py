@@ -106,6 +106,19 @@ def test_at_the_moment_of_an_impact_the_velocities_are_those_after_all_its_round
     assert run(pair, [0.0])[1][0, 1] == pytest.approx([0.5, 1.0], abs=1e-15)
 
 
+@pytest.mark.parametrize("seed", [11, 15, 84])
+def test_a_pyramid_of_unequal_balls_that_touch_neither_rattles_nor_sinks(seed):
+    """Some are fixed. Forces with an error of 1e-10 let it sink by 1e-11 r, and then bounce."""
+    rng, rows, events = np.random.default_rng(seed), enumerate((6, 5, 2)), []
+    places = [(R * (k + 2.0 * np.arange(n)), np.full(n, R + k * R * 3**0.5)) for k, n in rows]
+    x, y = np.hstack(places)
+    mass = 10.0 ** rng.uniform(-1.0, 1.0, len(x))
+    mass[rng.random(len(x)) < 0.2] = INF
+    scene, t = scene_of(x, y, mass, restitution=1.0), np.linspace(0.0, 0.15, 70)
+    q, _ = simulate_exact(scene, t, GRAVITY, events.append)
+    assert len(events) < 10 and contact.smallest_gap(q, scene.radius).min() > -1e-13 * R
+
+
 def test_a_heap_in_a_box_comes_to_rest_and_stays_for_hours():
     """What rounding leaves of v and a at rest is 0: else the heap creeps, by 1e-6 r in hours."""
     rng, k = np.random.default_rng(0), np.arange(6)

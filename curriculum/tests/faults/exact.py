@@ -23,6 +23,7 @@ FAULTS = [
      "lam[0] = np.maximum(lam[0], 0.0) + 1e9 * ROUNDING", T + "two_thirds"),
     (E, "for _ in range(50):\n            if not (self.found",
      "for _ in range(0):\n            if not (self.found", T + "overlap_at_the_start"),
+    (E, "force - solve @ (J @ a + turn + W @ force)", "force", T + "pyramid"),
     # flights
     (E, "slope, 2.0 * bend)", "slope, bend)", HEAP),
     (E, "np.vander(times[done:last] - now", "np.vander((1.0 + 1e-12) * (times[done:last] - now)",
