@@ -234,10 +234,7 @@ def test_page_block_and_figures_are_made_of_the_results_that_are_kept(tmp_path):
     assert block in (stored.ROOT / "README.md").read_text("utf-8")
     assert all(f"| {row['wish']} |" in block for row in TAKEN), "each was measured"
     assert all((bench.FULL / figure.name).exists() for figure in tmp_path.glob("*.svg"))
-
-
-def test_a_figures_legend_ends_above_the_line_that_says_where_it_was_measured():
-    drawn = report.error_figure(stored.load(bench.FULL)[0]["points"], "slide")
+    drawn = report.error_figure(sections["points"], "slide")
     drawn.draw_without_rendering()
     lowest = drawn.axes[0].get_legend().get_window_extent().y0 / drawn.dpi
-    assert lowest > 0.06 + 7 / 72, "inches; the line has letters of 7 points"
+    assert lowest > 0.06 + 7 / 72, "inches: the legend ends above the line that says where it was"

@@ -23,14 +23,11 @@ COMMANDS = {
     if '\nif __name__ == "__main__":' in (text := path.read_text("utf-8"))
 }
 SCRIPTS = "contact.py", "checks.py", "exercises/ex1_predict_contact.py"
+TYPED = [*SCRIPTS, *(f"-m {each}" for each in COMMANDS if ".tests." not in each)]
 
 
-@pytest.mark.parametrize(
-    "command", [*SCRIPTS, *(f"-m {each}" for each in COMMANDS if ".tests." not in each)]
-)
-def test_without_its_packages_a_command_says_in_one_line_what_to_install(
-    numpy_alone, tmp_path, command
-):
+@pytest.mark.parametrize("command", TYPED)
+def test_without_its_packages_a_command_says_what_to_install(numpy_alone, tmp_path, command):
     """With no package at all; and those that need more than numpy, with numpy alone."""
     runs = [(str(tmp_path), ()), (str(tmp_path), ("--help",)), (numpy_alone, ("--help",))]
     if re.search("checks|bench|notebook|page|gate", command):
