@@ -7,7 +7,7 @@ at acceleration level the forces of the contacts that rest (Motion.solve_contact
 
 Accuracy: over some seconds and metres within 1e-10 r of every closed form, and within 1e-8 r of an
 independent solver for as long as a start shifted by 1e-15 m stays within 1e-9 r (see the tests). No
-overlap is above 1e-12 r, and no energy is gained above 1e-12 of the start.
+overlap is above 1e-12 r (one of 5,088 random scenes: 1.2e-12 r), no gain of energy above 1e-12.
 Limits, each a RuntimeError: mass ratios above 100 where 0 < e < 1; MAX_EVENTS events, which a crowd
 with e > 0 may use up within a second (Zeno behaviour); a ball that is crushed between two fixed
 ones, or just passes between them; pivots that do not converge.
