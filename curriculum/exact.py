@@ -39,13 +39,13 @@ MAX_MASS_RATIO = 100.0  # where 0 < e < 1; above it light balls bounce ever fast
 
 
 # --- region: slide-lcp ---
+# A contact is active, s = 0, or it parts, lam = 0. x holds lam of the active contacts and s of the
+# others (the basic variables), z their partners, all 0; the table gives x = table z + what b adds,
+# and is W where none is active. A pivot on a contact exchanges its lam and s. Solved is x >= 0.
 def solve_lcp(W, b):
     """Solve the LCP of K contacts: lam >= 0, s = W lam + b >= 0, and lam s = 0 (Signorini).
 
-    Return lam (K,), the active contacts, and the inverse of their part of W. A contact is active,
-    s = 0, or it parts, lam = 0. x holds lam of the active contacts and s of the others (the basic
-    variables), z their partners, all 0; the table gives x = table z + what b adds, and is W where
-    none is active. To pivot on a contact is to exchange its lam and s. A solution has x >= 0.
+    Return lam (K,), the active contacts, and the inverse of their part of W.
 
     Principal pivoting, from all contacts active, as at rest; if they are dependent, from none:
     first on all x < 0 together (Kostreva 1978), as long as they become fewer; then on one at a
